@@ -1,0 +1,61 @@
+// A packet as a container or a line delivers it: its bytes, and everything the bytes lack.
+#pragma once
+
+#include <cstdint>
+
+#include "codec/runtime/bytes.h"
+#include "codec/runtime/result.h"
+
+namespace rubric {
+
+/// How a packet was framed, and so what its bytes begin with.
+enum class Framing : std::uint8_t {
+  kHdlc,   ///< Serial line; bytes from the dispatch byte on.
+  kSf,     ///< Serial forwarder; bytes from the dispatch byte on.
+  kRadio,  ///< 802.15.4; bytes from the frame control field on, FCS excluded.
+  kBare,   ///< A message alone.
+};
+
+enum class Direction : std::uint8_t { kUnknown, kInbound, kOutbound };
+
+inline constexpr std::int64_t kNoTime = INT64_MIN;
+inline constexpr std::int32_t kAbsent = -1;
+
+/// One packet. `bytes` belong to the reader and live until the callback that got them returns.
+struct Packet {
+  Framing framing = Framing::kBare;
+  Direction direction = Direction::kUnknown;
+  Bytes bytes;
+  std::uint64_t offset_bytes = 0;      ///< Of its first byte (flags excluded) in the input.
+  std::int64_t time_ns = kNoTime;      ///< Since the epoch of the input, or kNoTime.
+  std::uint32_t interface_id = 0;      ///< Index into the reader's interfaces().
+  std::uint16_t link_type = 0;         ///< LINKTYPE_ of a capture file, 0 elsewhere.
+  // Serial line (kHdlc): what stands around `bytes`; kAbsent where the frame was too short for it.
+  std::int32_t kind = kAbsent;         ///< Packet kind.
+  std::int32_t serial_seq = kAbsent;   ///< Sequence number; only kinds ACK and PACKET_ACK have one.
+  std::int32_t crc = kAbsent;          ///< As received.
+  // Radio (kRadio).
+  std::int32_t fcs = kAbsent;          ///< As received; kAbsent where the capture has none.
+  /// What the framing itself breaks; fault kNone where it is sound. Its offset counts from the
+  /// first byte of the frame (kind byte, length byte or frame control field).
+  Error error{Fault::kNone, 0, ReqId::kNone};
+  /// Bytes that were dropped because the frame grew beyond every bound (Fault::kTooLong).
+  std::uint64_t dropped_bytes = 0;
+};
+
+/// A callback for packets: a plain pair, so that calling it costs no more than a function pointer.
+class PacketSink {
+ public:
+  template <class F>
+  PacketSink(F& call)  // NOLINT: a borrowed view of a callable, as std::function_ref will be.
+      : object_(&call), call_([](void* object, const Packet& packet) {
+          (*static_cast<F*>(object))(packet);
+        }) {}
+  void operator()(const Packet& packet) const { call_(object_, packet); }
+
+ private:
+  void* object_;
+  void (*call_)(void*, const Packet&);
+};
+
+}  // namespace rubric

@@ -1,0 +1,175 @@
+// What the reflection tables are made of: a protocol as constant data. The spec compiler emits the
+// tables (codec/generated/*/tables.h); the decoder, the encoder and the tools only read them, so
+// none of them knows a protocol. Plain C++14 data without constructors or allocation.
+#pragma once
+
+#include <stdint.h>
+
+#include "codec/generated/requirements.h"
+
+namespace rubric {
+namespace reflect {
+
+struct Type;
+
+struct EnumEntry {
+  uint32_t value;
+  const char* name;
+};
+/// Entries in ascending order of value.
+struct EnumTable {
+  const char* name;
+  const EnumEntry* entries;
+  uint16_t count;
+};
+
+/// bit_names[i] names bit i (from the least significant); null where the protocol leaves it unnamed.
+struct MaskTable {
+  const char* name;
+  const char* const* bit_names;
+  uint8_t width_bits;
+};
+
+/// A step of an expression, in postfix order on a stack of int64. Loads read a number at a constant
+/// offset from the start of the enclosing structure.
+enum class Op : uint8_t {
+  kConst, kLoadU8, kLoadBe16, kLoadLe16, kLoadBe32, kLoadLe32,
+  kAdd, kSub, kMul, kDiv, kMod,
+  kEq, kNe, kLt, kLe, kGt, kGe, kAnd, kOr, kNot,
+};
+struct ExprStep {
+  Op op;
+  int32_t value;  ///< The constant, or the offset in bytes of a load.
+};
+/// No steps: the expression is absent. At most kMaxExprDepth values on the stack.
+struct Expr {
+  const ExprStep* steps;
+  uint8_t count;
+};
+constexpr int kMaxExprDepth = 8;
+
+/// What an integer may be. Values compare as unsigned (as signed for Kind::kSint).
+enum class ValidKind : uint8_t { kAny, kRange, kOneOf };
+struct Valid {
+  ValidKind kind;
+  int64_t min;            ///< kRange.
+  int64_t max;            ///< kRange.
+  const int64_t* one_of;  ///< kOneOf.
+  uint8_t one_of_count;
+};
+
+/// Physical value = raw * scale + offset, in `symbol`.
+struct Unit {
+  const char* symbol;
+  double scale;
+  double offset;
+};
+
+struct SwitchCase {
+  int64_t key;
+  const Type* type;
+};
+/// Chooses the type of a field by a key. Cases in ascending order of key. Null `otherwise`: bytes
+/// without a case stay opaque.
+struct Switch {
+  Expr key;
+  const SwitchCase* cases;
+  uint16_t count;
+  const Type* otherwise;
+};
+
+enum class Kind : uint8_t {
+  kUint,    ///< width_bytes 1, 2 or 4.
+  kSint,    ///< width_bytes 1, 2 or 4.
+  kFloat,   ///< IEEE 754 binary32.
+  kMask,    ///< width_bytes 1 or 2, with a MaskTable.
+  kBytes,   ///< Opaque bytes.
+  kStruct,  ///< `type`, or what `choice` chooses.
+};
+enum class Repeat : uint8_t { kOnce, kCount, kToEnd };
+enum class Extent : uint8_t {
+  kOwn,    ///< As large as its kind says.
+  kSize,   ///< As many bytes as `size` says.
+  kToEnd,  ///< All bytes that the enclosing structure has left.
+};
+
+struct Field {
+  const char* name;       ///< As shown, which is `-name` where the spec has one.
+  const char* json_key;   ///< The same with quotes and colon: "\"seq_num\":".
+  uint8_t json_key_size;
+  Kind kind;
+  uint8_t width_bytes;    ///< Of a number or mask; 0 for bytes and structures.
+  bool little_endian;
+  Repeat repeat;
+  Extent extent;
+  /// Offset in bytes from the start of the structure, -1 where what comes before varies in size.
+  int32_t fixed_offset;
+  /// Least and greatest value, as Valid says; structures and bytes have ValidKind::kAny.
+  Valid valid;
+  /// A value that is expected but not required (noted, not refused); -1 if none.
+  int64_t expect;
+  const EnumTable* enumeration;
+  const MaskTable* mask;
+  const Type* type;       ///< kStruct without a choice.
+  const Switch* choice;   ///< kStruct with a choice.
+  Expr size;              ///< Extent::kSize: bytes.
+  Expr count;             ///< Repeat::kCount: elements.
+  Expr condition;         ///< Present only if not zero.
+  ReqId requirement;
+  const Unit* unit;
+  const char* doc;
+};
+
+/// An interpretation of bytes that a sequence field leaves opaque: tried in order, the first whose
+/// condition holds and whose type fits is shown in place of the field `overlays` (its index in
+/// `fields`). Bytes that fit none stay opaque, with a note.
+struct Interpretation {
+  Field field;            ///< kStruct with Extent::kToEnd, fixed_offset >= 0.
+  uint16_t overlays;
+};
+
+struct Type {
+  const char* id;         ///< Name in the spec.
+  const char* name;       ///< As shown, which is `-name` where the spec has one.
+  const Field* fields;
+  uint16_t field_count;
+  const Interpretation* interpretations;
+  uint16_t interpretation_count;
+  uint32_t min_size;      ///< Bytes; the least that parses.
+  uint32_t max_size;      ///< Bytes; UINT32_MAX where it is as large as its surroundings.
+  int32_t am_type;        ///< -1 if none.
+  ReqId requirement;
+  const char* doc;
+  const char* doc_ref;
+};
+
+/// The structure that a carrier's frames begin with: "serial", "radio_i", "radio_t", "radio_ack".
+struct Carrier {
+  const char* name;
+  const Type* type;
+};
+
+struct Protocol {
+  const char* id;
+  const char* title;
+  const Type* const* types;  ///< In the order of the spec; carriers' structures included.
+  uint16_t type_count;
+  const EnumTable* const* enums;
+  uint16_t enum_count;
+  const MaskTable* const* masks;
+  uint16_t mask_count;
+  const Carrier* carriers;
+  uint16_t carrier_count;
+};
+
+/// A requirement's text; the table in generated/requirements_table.h is indexed by ReqId.
+struct Requirement {
+  const char* id;
+  const char* level;
+  const char* clause;
+  const char* sentence;
+  const char* source;
+};
+
+}  // namespace reflect
+}  // namespace rubric

@@ -1,0 +1,82 @@
+# The CMake verbs of this project: a folder's CMakeLists.txt is a few calls to these.
+include_guard()
+
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+
+# What every target of the project is compiled with.
+add_library(rubric_options INTERFACE)
+target_include_directories(rubric_options INTERFACE ${PROJECT_SOURCE_DIR})
+target_compile_features(rubric_options INTERFACE cxx_std_20)
+target_compile_options(rubric_options INTERFACE -Wall -Wextra -Wshadow -Wconversion)
+if(RUBRIC_WERROR)
+  target_compile_options(rubric_options INTERFACE -Werror)
+endif()
+if(RUBRIC_SANITIZE)
+  target_compile_options(rubric_options INTERFACE
+    -fsanitize=${RUBRIC_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(rubric_options INTERFACE -fsanitize=${RUBRIC_SANITIZE})
+endif()
+
+# rubric_library(NAME SOURCES a.cc ... [DEPS lib ...]): a static library.
+function(rubric_library name)
+  cmake_parse_arguments(arg "" "" "SOURCES;DEPS" ${ARGN})
+  add_library(${name} STATIC ${arg_SOURCES})
+  target_link_libraries(${name} PUBLIC rubric_options ${arg_DEPS})
+endfunction()
+
+# rubric_program(NAME SOURCES a.cc ... [DEPS lib ...]): a program, at the top of the build folder.
+function(rubric_program name)
+  cmake_parse_arguments(arg "" "" "SOURCES;DEPS" ${ARGN})
+  add_executable(${name} ${arg_SOURCES})
+  target_link_libraries(${name} PRIVATE rubric_options ${arg_DEPS})
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
+endfunction()
+
+# rubric_test(NAME SOURCES a_test.cc ... [DEPS lib ...] [LABEL fast|slow]): one GoogleTest program,
+# one ctest entry, run from the project's folder.
+function(rubric_test name)
+  if(NOT RUBRIC_TESTS)
+    return()
+  endif()
+  cmake_parse_arguments(arg "" "LABEL" "SOURCES;DEPS" ${ARGN})
+  if(NOT arg_LABEL)
+    set(arg_LABEL fast)
+  endif()
+  add_executable(${name} ${arg_SOURCES})
+  target_link_libraries(${name} PRIVATE rubric_options ${arg_DEPS} GTest::gmock GTest::gtest_main)
+  add_test(NAME ${name} COMMAND ${name} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+  set_tests_properties(${name} PROPERTIES LABELS ${arg_LABEL} TIMEOUT 600)
+endfunction()
+
+# rubric_script_test(NAME [LABEL fast|slow] COMMAND word ...): a program or script as a ctest entry.
+function(rubric_script_test name)
+  if(NOT RUBRIC_TESTS)
+    return()
+  endif()
+  cmake_parse_arguments(arg "" "LABEL" "COMMAND" ${ARGN})
+  if(NOT arg_LABEL)
+    set(arg_LABEL fast)
+  endif()
+  add_test(NAME ${name} COMMAND ${arg_COMMAND} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+  set_tests_properties(${name} PROPERTIES LABELS ${arg_LABEL} TIMEOUT 900)
+endfunction()
+
+# rubric_must_not_compile(NAME SOURCE x.cc EXPECT regex): compiling x.cc must fail with a message
+# that matches; a control build of the same file with -DRUBRIC_CONTROL must succeed.
+function(rubric_must_not_compile name)
+  cmake_parse_arguments(arg "" "SOURCE;EXPECT" "" ${ARGN})
+  rubric_script_test(${name} COMMAND ${PROJECT_SOURCE_DIR}/spec/cmake/must_not_compile.sh
+    ${CMAKE_CXX_COMPILER} ${CMAKE_CURRENT_SOURCE_DIR}/${arg_SOURCE} ${PROJECT_SOURCE_DIR}
+    "${arg_EXPECT}")
+endfunction()
+
+# rubric_benchmark(NAME SOURCES a_bench.cc ... [DEPS lib ...]): a Google Benchmark program.
+function(rubric_benchmark name)
+  if(NOT RUBRIC_BENCH)
+    return()
+  endif()
+  cmake_parse_arguments(arg "" "" "SOURCES;DEPS" ${ARGN})
+  add_executable(${name} ${arg_SOURCES})
+  target_link_libraries(${name} PRIVATE rubric_options ${arg_DEPS} benchmark::benchmark_main)
+endfunction()

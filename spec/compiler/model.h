@@ -1,0 +1,195 @@
+// The model of a wire spec: what the reader builds, the checker completes, and the emitters print.
+// Everything is decided here or in check.cc; emitters decide nothing.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace rubricc {
+
+/// A place in a spec file; line and column count from 1, 0 is unknown.
+struct Place {
+  std::string file;
+  int line = 0;
+  int column = 0;
+};
+
+struct Type;
+struct Enum;
+struct Field;
+struct Spec;
+
+/// Least and greatest value that an expression or field can have, both included.
+struct Interval {
+  std::int64_t min = 0;
+  std::int64_t max = 0;
+};
+
+enum class ExprOp {
+  kInt, kField, kEnumValue,
+  kAdd, kSub, kMul, kDiv, kMod,
+  kEq, kNe, kLt, kLe, kGt, kGe, kAnd, kOr, kNot,
+};
+struct Expr {
+  ExprOp op = ExprOp::kInt;
+  Place place;
+  std::int64_t value = 0;              // kInt; kEnumValue once resolved.
+  std::vector<std::string> path;       // kField: {"src", "devid"}; kEnumValue: {"component", "net"}.
+  std::vector<std::unique_ptr<Expr>> operands;
+  // Resolved by the checker:
+  const Field* field = nullptr;        // kField: the last field of the path.
+  std::vector<const Field*> steps;     // kField: every field of the path.
+  std::int64_t offset_bytes = -1;      // kField: from the start of the enclosing structure.
+  Interval range;
+};
+using ExprPtr = std::unique_ptr<Expr>;
+
+enum class ValueKind { kUint, kSint, kFloat, kBytes, kStruct, kMask };
+enum class RepeatKind { kOnce, kCount, kToEnd };
+enum class ExtentKind { kOwn, kSize, kToEnd };
+
+struct Valid {
+  Place place;
+  // Any of these may be absent. `contents` and eq become one_of with one value.
+  std::optional<std::int64_t> min;
+  std::optional<std::int64_t> max;
+  std::vector<std::int64_t> one_of;
+  bool in_enum = false;                // The checker fills one_of from the enum.
+  // As written; the checker resolves them to the numbers above.
+  ExprPtr min_expr;
+  ExprPtr max_expr;
+  std::vector<ExprPtr> one_of_exprs;
+};
+
+struct SwitchCase {
+  Place place;
+  ExprPtr key_expr;                    // Null for `_`.
+  std::int64_t key = 0;                // Resolved.
+  std::string type_name;
+  const Type* type = nullptr;          // Resolved.
+};
+struct Switch {
+  Place place;
+  ExprPtr key;
+  std::vector<SwitchCase> cases;       // Without `_`; ascending by key after the check.
+  std::optional<SwitchCase> otherwise; // `_`.
+};
+
+struct Unit {
+  std::string symbol;
+  double scale = 1;
+  double offset = 0;
+};
+
+struct Field {
+  std::string id;
+  std::string name;                    // `-name`, else id.
+  Place place;
+  std::string doc;
+  std::string doc_ref;
+  std::string requirement;             // `-requirement`, else the type's.
+  ValueKind kind = ValueKind::kBytes;
+  int width_bytes = 0;                 // Of a number or mask.
+  bool little_endian = false;
+  RepeatKind repeat = RepeatKind::kOnce;
+  ExtentKind extent = ExtentKind::kOwn;
+  std::string type_name;               // As written: a user type, possibly "spec::type".
+  const Type* type = nullptr;          // Resolved: a structure or a mask.
+  std::unique_ptr<Switch> choice;
+  std::string enum_name;
+  const Enum* enumeration = nullptr;
+  ExprPtr size;                        // Extent kSize.
+  ExprPtr count;                       // Repeat kCount.
+  ExprPtr condition;                   // `if`.
+  std::optional<Valid> valid;
+  ExprPtr expect_expr;                 // `-expect`
+  std::optional<std::int64_t> expect;
+  std::optional<Unit> unit;
+  // Instances only.
+  bool is_instance = false;
+  std::int64_t position = -1;
+  bool is_peek = false;                // A number that expressions read; never shown by itself.
+  int overlays = -1;                   // Interpretation: index of the seq field that it overlays.
+  // Resolved by the checker.
+  std::int64_t fixed_offset = -1;      // -1 where what comes before varies in size.
+  std::uint32_t min_size = 0;          // Bytes, all repetitions; 0 if conditional.
+  std::uint32_t max_size = 0;          // Bytes; UINT32_MAX if unbounded.
+  Interval range;                      // Numbers: what valid leaves, else what the width allows.
+};
+
+struct MaskBit {
+  std::string name;
+  bool unnamed = false;                // `-unnamed`
+};
+
+struct Type {
+  std::string id;
+  std::string name;                    // `-name`, else id.
+  const Spec* spec = nullptr;
+  Place place;
+  std::string doc;
+  std::string doc_ref;
+  std::string requirement;
+  std::vector<std::unique_ptr<Field>> fields;     // seq
+  std::vector<std::unique_ptr<Field>> instances;  // peeks and interpretations, in order
+  bool is_mask = false;                // `-mask`: then only bits, from the highest bit down.
+  std::vector<MaskBit> bits;
+  std::optional<std::int64_t> declared_size;      // `-size`: the greatest size.
+  std::vector<std::int64_t> am_types;  // `-am-type`
+  std::string carrier;                 // `-carrier`
+  std::string framing;                 // `-framing`
+  bool has_crc = false;                // `-crc`
+  // Resolved by the checker.
+  std::uint32_t min_size = 0;
+  std::uint32_t max_size = 0;          // UINT32_MAX if unbounded.
+  bool constant_size() const { return min_size == max_size; }
+};
+
+struct EnumEntry {
+  std::int64_t value = 0;
+  std::string name;
+  std::string doc;
+  Place place;
+};
+struct Enum {
+  std::string id;
+  const Spec* spec = nullptr;
+  Place place;
+  std::vector<EnumEntry> entries;      // Ascending by value after the check.
+};
+
+/// One .ksy file. The root structure, where the file has a top-level seq, is the first type; its id
+/// is the spec's id.
+struct Spec {
+  std::string id;
+  std::string title;
+  std::string doc;
+  std::string doc_ref;
+  std::string file;                    // As given on the command line: "spec/wire/rubicon.ksy".
+  bool little_endian = false;
+  std::vector<std::string> import_names;
+  std::vector<const Spec*> imports;
+  std::vector<std::unique_ptr<Type>> types;       // In file order, the root first.
+  std::vector<std::unique_ptr<Enum>> enums;
+};
+
+struct Requirement {
+  std::string id;
+  std::string level;
+  std::string clause;
+  std::string sentence;
+  std::string source;
+  Place place;
+};
+
+/// Everything that one run of the compiler reads. Specs in dependency order, imports first.
+struct Model {
+  std::vector<std::unique_ptr<Spec>> specs;
+  std::vector<Requirement> requirements;
+};
+
+}  // namespace rubricc
