@@ -1,0 +1,385 @@
+#include "codec/reflect/decode.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace rubric::reflect {
+
+std::int64_t load_number(const Field& field, const std::uint8_t* at) {
+  std::uint32_t raw = 0;
+  switch (field.width_bytes) {
+    case 1: raw = load_u8(at); break;
+    case 2: raw = field.little_endian ? load_le16(at) : load_be16(at); break;
+    default: raw = field.little_endian ? load_le32(at) : load_be32(at); break;
+  }
+  if (field.kind != Kind::kSint) return raw;
+  const int unused_bits = 32 - 8 * field.width_bytes;
+  return static_cast<std::int32_t>(raw << unused_bits) >> unused_bits;
+}
+
+namespace {
+
+std::int64_t load_step(const ExprStep& step, Bytes structure) {
+  const auto at = static_cast<std::size_t>(step.value);
+  const std::size_t width = step.op == Op::kLoadU8 ? 1
+                            : step.op == Op::kLoadBe16 || step.op == Op::kLoadLe16 ? 2
+                                                                                   : 4;
+  if (at + width > structure.size()) return 0;
+  const std::uint8_t* p = structure.data() + at;
+  switch (step.op) {
+    case Op::kLoadU8: return load_u8(p);
+    case Op::kLoadBe16: return load_be16(p);
+    case Op::kLoadLe16: return load_le16(p);
+    case Op::kLoadBe32: return load_be32(p);
+    default: return load_le32(p);
+  }
+}
+
+// Division as Kaitai Struct defines it: towards negative infinity.
+std::int64_t floor_div(std::int64_t a, std::int64_t b) {
+  if (b == 0) return 0;
+  const std::int64_t q = a / b;
+  return q - ((a % b != 0) && ((a < 0) != (b < 0)));
+}
+
+std::int64_t apply(Op op, std::int64_t a, std::int64_t b) {
+  switch (op) {
+    case Op::kAdd: return a + b;
+    case Op::kSub: return a - b;
+    case Op::kMul: return a * b;
+    case Op::kDiv: return floor_div(a, b);
+    case Op::kMod: return b == 0 ? 0 : a - floor_div(a, b) * b;
+    case Op::kEq: return a == b;
+    case Op::kNe: return a != b;
+    case Op::kLt: return a < b;
+    case Op::kLe: return a <= b;
+    case Op::kGt: return a > b;
+    case Op::kGe: return a >= b;
+    case Op::kAnd: return a && b;
+    case Op::kOr: return a || b;
+    default: return 0;
+  }
+}
+
+}  // namespace
+
+std::int64_t evaluate(const Expr& expr, Bytes structure) {
+  if (expr.count == 1) {  // By far the most frequent: one load.
+    const ExprStep& only = expr.steps[0];
+    return only.op == Op::kConst ? only.value : load_step(only, structure);
+  }
+  std::int64_t stack[kMaxExprDepth];
+  int top = 0;
+  for (int i = 0; i < expr.count; ++i) {
+    const ExprStep& step = expr.steps[i];
+    if (step.op == Op::kConst) {
+      stack[top++] = step.value;
+    } else if (step.op <= Op::kLoadLe32) {
+      stack[top++] = load_step(step, structure);
+    } else if (step.op == Op::kNot) {
+      stack[top - 1] = !stack[top - 1];
+    } else {
+      --top;
+      stack[top - 1] = apply(step.op, stack[top - 1], stack[top]);
+    }
+  }
+  return stack[0];
+}
+
+const Type* choose(const Switch& choice, std::int64_t key) {
+  const SwitchCase* end = choice.cases + choice.count;
+  const SwitchCase* found = std::lower_bound(
+      choice.cases, end, key, [](const SwitchCase& c, std::int64_t k) { return c.key < k; });
+  return found != end && found->key == key ? found->type : choice.otherwise;
+}
+
+const Type* find_type(const Protocol& protocol, std::string_view name) {
+  for (int i = 0; i < protocol.type_count; ++i) {
+    if (name == protocol.types[i]->id) return protocol.types[i];
+  }
+  for (int i = 0; i < protocol.type_count; ++i) {
+    if (name == protocol.types[i]->name) return protocol.types[i];
+  }
+  return nullptr;
+}
+
+const Type* find_carrier(const Protocol& protocol, std::string_view carrier) {
+  for (int i = 0; i < protocol.carrier_count; ++i) {
+    if (carrier == protocol.carriers[i].name) return protocol.carriers[i].type;
+  }
+  return nullptr;
+}
+
+const char* enum_name(const EnumTable& table, std::int64_t value) {
+  const EnumEntry* end = table.entries + table.count;
+  // Most enums count up from their first value without gaps.
+  const std::int64_t guess = table.count ? value - table.entries[0].value : -1;
+  if (guess >= 0 && guess < table.count && table.entries[guess].value == value) {
+    return table.entries[guess].name;
+  }
+  const EnumEntry* found =
+      std::lower_bound(table.entries, end, value, [](const EnumEntry& e, std::int64_t v) {
+        return static_cast<std::int64_t>(e.value) < v;
+      });
+  return found != end && static_cast<std::int64_t>(found->value) == value ? found->name : nullptr;
+}
+
+void Decoded::clear(Bytes frame) {
+  bytes = frame;
+  error = Error{Fault::kNone, 0, ReqId::kNone};
+  node_count_ = note_count_ = path_count_ = stale_count_ = 0;
+}
+
+std::size_t Decoded::child(std::size_t parent, std::string_view name) const {
+  if (parent >= node_count_) return 0;
+  for (std::size_t i = parent + 1; i < nodes_[parent].end; i = nodes_[i].end) {
+    if (nodes_[i].field && name == nodes_[i].field->name) return i;
+  }
+  return 0;
+}
+
+/// One decoding: a cursor over the tables that appends nodes.
+class Decoder {
+ public:
+  Decoder(Decoded& out) : out_(out) {}
+
+  void run(const Type& type, Tail tail, bool is_message) {
+    // A node is a structure or takes at least a byte, and structures nest less than kMaxPath deep.
+    const std::size_t need = 2 * out_.bytes.size() + 64 * Decoded::kMaxPath;
+    if (out_.capacity_ < need) {
+      out_.nodes_ = std::make_unique<Node[]>(need);
+      out_.capacity_ = need;
+    }
+    nodes_ = out_.nodes_.get();
+    if (is_message) push_path(type);
+    const auto size = static_cast<std::uint32_t>(out_.bytes.size());
+    if (!structure(type, nullptr, 0, size)) return;
+    const std::uint32_t used = nodes_[0].size;
+    if (used == size) return;
+    if (tail == Tail::kStale) return push_stale(used, size);
+    const Field* last = type.field_count ? &type.fields[type.field_count - 1] : nullptr;
+    set_error(Fault::kTrailing, used, last ? last->requirement : type.requirement);
+  }
+
+ private:
+  bool set_error(Fault fault, std::uint32_t offset, ReqId requirement) {
+    out_.error = Error{fault, offset, requirement};
+    return false;
+  }
+  void push_path(const Type& type) {
+    if (out_.path_count_ < Decoded::kMaxPath) out_.path_[out_.path_count_++] = &type;
+  }
+  void push_note(const Note& note) {
+    if (out_.note_count_ < Decoded::kMaxNotes) out_.notes_[out_.note_count_++] = note;
+  }
+  void push_stale(std::uint32_t from, std::uint32_t to) {
+    if (out_.stale_count_ < Decoded::kMaxStale) {
+      out_.stale_[out_.stale_count_++] = Range{from, to - from};
+    }
+  }
+  Node& push(NodeKind kind, const Field* field, std::uint32_t offset, std::uint32_t size) {
+    if (out_.node_count_ == out_.capacity_) grow();
+    Node& node = nodes_[out_.node_count_++];
+    node.field = field;
+    node.type = nullptr;
+    node.value = 0;
+    node.offset = offset;
+    node.size = size;
+    node.end = static_cast<std::uint32_t>(out_.node_count_);
+    node.count = 0;
+    node.kind = kind;
+    return node;
+  }
+  void grow() {
+    auto larger = std::make_unique<Node[]>(2 * out_.capacity_);
+    std::copy_n(nodes_, out_.node_count_, larger.get());
+    out_.nodes_ = std::move(larger);
+    out_.capacity_ *= 2;
+    nodes_ = out_.nodes_.get();
+  }
+  Bytes from(std::uint32_t base, std::uint32_t end) const {
+    return out_.bytes.sub(base, end - base);
+  }
+
+  /// Decodes the fields of `type` in [base, limit) and closes the node.
+  bool structure(const Type& type, const Field* field, std::uint32_t base, std::uint32_t limit) {
+    const std::size_t index = out_.node_count_;
+    push(NodeKind::kStruct, field, base, 0).type = &type;
+    std::uint32_t at = base;
+    bool good = true;
+    const Interpretation* interpretations = type.interpretations;
+    for (std::uint16_t i = 0; good && i < type.field_count; ++i) {
+      const Field& f = type.fields[i];
+      if (f.condition.count && !evaluate(f.condition, from(base, limit))) continue;
+      if (f.repeat == Repeat::kOnce && f.extent == Extent::kOwn && f.kind <= Kind::kMask) {
+        good = number(f, at, limit);
+      } else {
+        if (type.interpretation_count && f.kind == Kind::kBytes &&
+            interpret(type, interpretations, i, base, at, limit)) {
+          at = limit;
+          continue;
+        }
+        good = other(f, base, at, limit);
+      }
+    }
+    Node& node = nodes_[index];
+    node.size = at - base;
+    node.end = static_cast<std::uint32_t>(out_.node_count_);
+    return good;
+  }
+
+  bool number(const Field& f, std::uint32_t& at, std::uint32_t limit) {
+    if (limit - at < f.width_bytes) return set_error(Fault::kTruncated, limit, f.requirement);
+    const std::int64_t value = load_number(f, out_.bytes.data() + at);
+    if (f.valid.kind != ValidKind::kAny && !valid(f, value, at)) return false;
+    Node& node = push(NodeKind::kNumber, &f, at, f.width_bytes);
+    node.value = value;
+    if (f.expect >= 0 && value != f.expect) {
+      push_note({NoteKind::kUnexpectedValue, at, &f, nullptr, value});
+    }
+    at += f.width_bytes;
+    return true;
+  }
+
+  bool valid(const Field& f, std::int64_t value, std::uint32_t at) {
+    if (f.valid.kind == ValidKind::kRange) {
+      if (value >= f.valid.min && value <= f.valid.max) return true;
+      return set_error(Fault::kOutOfRange, at, f.requirement);
+    }
+    for (int i = 0; i < f.valid.one_of_count; ++i) {
+      if (f.valid.one_of[i] == value) return true;
+    }
+    return set_error(Fault::kUnexpected, at, f.requirement);
+  }
+
+  bool other(const Field& f, std::uint32_t base, std::uint32_t& at, std::uint32_t limit) {
+    std::uint32_t end = limit;
+    if (f.extent == Extent::kSize) {
+      const std::int64_t size = evaluate(f.size, from(base, limit));
+      if (size < 0 || size > limit - at) return truncated(f, at, limit);
+      end = at + static_cast<std::uint32_t>(size);
+    }
+    if (f.repeat != Repeat::kOnce) return array(f, base, at, end);
+    if (f.kind == Kind::kBytes) {
+      push(NodeKind::kBytes, &f, at, end - at);
+      at = end;
+      return true;
+    }
+    return nested(f, base, at, end, limit);
+  }
+
+  // What there is of a field that is cut off stays visible.
+  bool truncated(const Field& f, std::uint32_t at, std::uint32_t limit) {
+    if (at < limit) push(NodeKind::kBytes, &f, at, limit - at);
+    return set_error(Fault::kTruncated, limit, f.requirement);
+  }
+
+  bool nested(const Field& f, std::uint32_t base, std::uint32_t& at, std::uint32_t end,
+              std::uint32_t limit) {
+    const Type* type = f.type;
+    if (f.choice) {
+      const std::int64_t key = evaluate(f.choice->key, from(base, limit));
+      type = choose(*f.choice, key);
+      if (!type) {
+        if (end > at) push_note({NoteKind::kUnknownMessage, at, &f, nullptr, key});
+        push(NodeKind::kBytes, &f, at, end - at);
+        at = end;
+        return true;
+      }
+      push_path(*type);
+    }
+    const std::size_t index = out_.node_count_;
+    if (!structure(*type, &f, at, end)) return false;
+    const std::uint32_t used = at + nodes_[index].size;
+    if (f.extent == Extent::kOwn) {
+      at = used;
+    } else {
+      if (used < end) push_stale(used, end);
+      at = end;
+    }
+    return true;
+  }
+
+  bool array(const Field& f, std::uint32_t base, std::uint32_t& at, std::uint32_t limit) {
+    const std::uint32_t width = f.kind == Kind::kStruct ? f.type->max_size : f.width_bytes;
+    std::int64_t count = 0;
+    if (f.repeat == Repeat::kCount) {
+      count = evaluate(f.count, from(base, limit));
+      if (count < 0 || count * width > limit - at) return truncated(f, at, limit);
+    } else {
+      count = (limit - at) / width;
+      if (count * width != limit - at) return truncated(f, at, limit);
+    }
+    const auto size = static_cast<std::uint32_t>(count * width);
+    if (f.kind != Kind::kStruct) {
+      Node& node = push(NodeKind::kNumberArray, &f, at, size);
+      node.count = static_cast<std::uint32_t>(count);
+      at += size;
+      return true;
+    }
+    const std::size_t index = out_.node_count_;
+    push(NodeKind::kStructArray, &f, at, size).count = static_cast<std::uint32_t>(count);
+    bool good = true;
+    for (std::int64_t i = 0; good && i < count; ++i, at += width) {
+      good = structure(*f.type, &f, at, at + width);
+    }
+    nodes_[index].end = static_cast<std::uint32_t>(out_.node_count_);
+    return good;
+  }
+
+  /// Tries the interpretations of field `i`; true if one fits. Leaves notes where none does.
+  bool interpret(const Type& type, const Interpretation* first, std::uint16_t i,
+                 std::uint32_t base, std::uint32_t at, std::uint32_t limit) {
+    const Type* unfit = nullptr;
+    const Field* about = nullptr;
+    for (std::uint16_t k = 0; k < type.interpretation_count; ++k) {
+      const Interpretation& candidate = first[k];
+      if (candidate.overlays != i) continue;
+      const Field& f = candidate.field;
+      const Bytes whole = from(base, limit);
+      if (f.condition.count && !evaluate(f.condition, whole)) continue;
+      about = &f;
+      const Type* chosen = f.type;
+      if (f.choice) {
+        if (at == limit) continue;  // The key is the first byte, and there is none.
+        chosen = choose(*f.choice, evaluate(f.choice->key, whole));
+      }
+      if (!chosen) continue;
+      if (fits(f, *chosen, at, limit)) return true;
+      unfit = chosen;
+    }
+    if (at == limit) return false;  // Nothing there, nothing to remark.
+    const NoteKind kind = unfit ? NoteKind::kDoesNotFit : NoteKind::kUnknownMessage;
+    push_note({kind, at, about ? about : &type.fields[i], unfit, out_.bytes[at]});
+    return false;
+  }
+
+  bool fits(const Field& f, const Type& chosen, std::uint32_t at, std::uint32_t limit) {
+    const std::size_t nodes = out_.node_count_;
+    const std::size_t notes = out_.note_count_;
+    const std::size_t path = out_.path_count_;
+    const std::size_t stale = out_.stale_count_;
+    push_path(chosen);
+    if (structure(chosen, &f, at, limit)) {
+      const std::uint32_t used = at + nodes_[nodes].size;
+      if (used < limit) push_stale(used, limit);
+      return true;
+    }
+    out_.error = Error{Fault::kNone, 0, ReqId::kNone};
+    out_.node_count_ = nodes;
+    out_.note_count_ = notes;
+    out_.path_count_ = path;
+    out_.stale_count_ = stale;
+    return false;
+  }
+
+  Decoded& out_;
+  Node* nodes_ = nullptr;
+};
+
+void decode(const Type& type, Bytes bytes, Tail tail, bool is_message, Decoded& out) {
+  out.clear(bytes);
+  Decoder(out).run(type, tail, is_message);
+}
+
+}  // namespace rubric::reflect

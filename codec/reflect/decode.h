@@ -1,0 +1,125 @@
+// Decodes bytes by the reflection tables into a flat list of nodes that every view of a frame (text,
+// JSON, filters, hex dumps) reads. It knows the tables' form and no protocol.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string_view>
+
+#include "codec/reflect/schema.h"
+#include "codec/runtime/bytes.h"
+#include "codec/runtime/result.h"
+
+namespace rubric::reflect {
+
+/// What a node of a decoded frame is.
+enum class NodeKind : std::uint8_t {
+  kNumber,       ///< kUint, kSint, kFloat or kMask of the field; `value` holds it.
+  kNumberArray,  ///< `count` numbers in a row, to be read from the bytes.
+  kBytes,        ///< Opaque bytes.
+  kStruct,       ///< Its fields follow as children.
+  kStructArray,  ///< `count` kStruct children.
+};
+
+/// A field of a decoded frame. Nodes stand in preorder; children of node i are i + 1 up to `end`.
+struct Node {
+  const Field* field;         ///< Null for the outermost structure.
+  const Type* type;           ///< Of structures; null elsewhere.
+  std::int64_t value;         ///< Numbers; a float as its 32 bits.
+  std::uint32_t offset;       ///< In bytes, from the start of the frame.
+  std::uint32_t size;         ///< In bytes, without stale bytes.
+  std::uint32_t end;          ///< Index of the first node behind this one's children.
+  std::uint32_t count;        ///< Elements of an array.
+  NodeKind kind;
+};
+
+/// Something remarkable that does not make a frame malformed.
+enum class NoteKind : std::uint8_t {
+  kUnknownMessage,   ///< No message has this key; the bytes stay opaque.
+  kDoesNotFit,       ///< The bytes do not fit the message that their key names; they stay opaque.
+  kUnexpectedValue,  ///< A field's value is not the expected one.
+};
+struct Note {
+  NoteKind kind;
+  std::uint32_t offset;   ///< In bytes, from the start of the frame.
+  const Field* field;     ///< That the note is about.
+  const Type* type;       ///< kDoesNotFit: the message that it was held against.
+  std::int64_t value;     ///< The key, or the value.
+};
+
+struct Range {
+  std::uint32_t offset;
+  std::uint32_t size;
+};
+
+/// A decoded frame. Reuse one object for many frames: it allocates only while it grows.
+class Decoded {
+ public:
+  static constexpr std::size_t kMaxNotes = 16;
+  static constexpr std::size_t kMaxPath = 8;
+  static constexpr std::size_t kMaxStale = 8;
+
+  Bytes bytes;                              ///< The frame; borrowed.
+  Error error{Fault::kNone, 0, ReqId::kNone};  ///< Of the first rule that the bytes break.
+
+  const Node* nodes() const { return nodes_.get(); }
+  std::size_t node_count() const { return node_count_; }
+  const Node& operator[](std::size_t i) const { return nodes_[i]; }
+
+  const Note* notes() const { return notes_; }
+  std::size_t note_count() const { return note_count_; }
+
+  /// The chosen messages from the outermost in.
+  const Type* const* path() const { return path_; }
+  std::size_t path_count() const { return path_count_; }
+  /// The innermost message, or null.
+  const Type* message() const { return path_count_ ? path_[path_count_ - 1] : nullptr; }
+
+  /// Bytes behind the meant content, in ascending order of offset.
+  const Range* stale() const { return stale_; }
+  std::size_t stale_count() const { return stale_count_; }
+
+  /// Forgets everything but the bytes.
+  void clear(Bytes frame);
+
+  /// Index of the child of `parent` with this name, or 0 (which is never a child).
+  std::size_t child(std::size_t parent, std::string_view name) const;
+
+ private:
+  friend class Decoder;
+  std::unique_ptr<Node[]> nodes_;
+  std::size_t capacity_ = 0;
+  std::size_t node_count_ = 0;
+  std::size_t note_count_ = 0;
+  std::size_t path_count_ = 0;
+  std::size_t stale_count_ = 0;
+  Note notes_[kMaxNotes];
+  const Type* path_[kMaxPath];
+  Range stale_[kMaxStale];
+};
+
+/// Whether bytes behind the outermost structure are stale or a fault (Fault::kTrailing).
+enum class Tail : std::uint8_t { kStale, kFault };
+
+/// Decodes `bytes` as `type`. `is_message`: the type itself is the first name of the path. What was
+/// decoded before a fault stays in `out`. Bytes must not exceed 2^31.
+void decode(const Type& type, Bytes bytes, Tail tail, bool is_message, Decoded& out);
+
+/// The value of an expression over the structure that begins at `base`, whose loads lie within
+/// `bytes` (the spec compiler proves it, loads beyond the end give 0).
+std::int64_t evaluate(const Expr& expr, Bytes structure);
+
+/// The type that the switch chooses for the key; null for opaque.
+const Type* choose(const Switch& choice, std::int64_t key);
+
+/// Looks up by name as shown or by id; null if there is none.
+const Type* find_type(const Protocol& protocol, std::string_view name);
+/// The carrier's structure; null if the protocol does not travel on it.
+const Type* find_carrier(const Protocol& protocol, std::string_view carrier);
+/// The entry's name, or null.
+const char* enum_name(const EnumTable& table, std::int64_t value);
+
+/// Element `i` of a number array, or the number itself for i = 0; a float as its 32 bits.
+std::int64_t load_number(const Field& field, const std::uint8_t* at);
+
+}  // namespace rubric::reflect

@@ -1,0 +1,70 @@
+// A packet decoded: the TinyOS frames (serial packet, 802.15.4) around the messages of a protocol.
+#pragma once
+
+#include <cstdint>
+
+#include "codec/containers/packet.h"
+#include "codec/reflect/decode.h"
+
+namespace rubric::reflect {
+
+/// The active-message header, wherever it was read from. On the radio length counts the bytes behind
+/// the AM type and group is the low byte of the PAN.
+struct ActiveMessage {
+  bool present = false;
+  std::uint16_t dest = 0;
+  std::uint16_t src = 0;
+  std::uint16_t length = 0;
+  std::uint8_t group = 0;
+  std::uint8_t type = 0;
+};
+
+/// The 802.15.4 header of a radio frame. An acknowledgement has fcf and dsn only.
+struct MacHeader {
+  bool present = false;
+  bool has_addresses = false;
+  bool has_network = false;  ///< I-frame.
+  std::uint16_t fcf = 0;
+  std::uint8_t dsn = 0;
+  std::uint16_t destpan = 0;
+  std::uint16_t dest = 0;
+  std::uint16_t src = 0;
+};
+
+/// What a decoded packet amounts to. `packet` and the bytes are borrowed.
+struct Frame {
+  const Packet* packet = nullptr;
+  Decoded decoded;                  ///< Empty (no nodes) where the bytes are not a message.
+  std::uint32_t payload_node = 0;   ///< Node of the outermost message's fields; 0 for bare messages.
+  bool has_payload = false;         ///< payload_node names a structure or opaque bytes.
+  ActiveMessage am;
+  MacHeader mac;
+  /// Of the framing, else of the content. The offset counts from the first byte of packet->bytes; a
+  /// fault of the frame's check sum stands right behind them.
+  Error error{Fault::kNone, 0, ReqId::kNone};
+  bool malformed() const { return error.fault != Fault::kNone; }
+};
+
+/// Decodes packets by one protocol's tables.
+class FrameDecoder {
+ public:
+  /// `bare`: the type of packets with Framing::kBare; null if there will be none.
+  explicit FrameDecoder(const Protocol& protocol, const Type* bare = nullptr);
+
+  /// Decodes `packet` into `out`, which borrows it. Reuse `out`.
+  void decode(const Packet& packet, Frame& out) const;
+
+  const Protocol& protocol() const { return protocol_; }
+
+ private:
+  void decode_serial(Frame& out) const;
+  void decode_radio(Frame& out) const;
+
+  const Protocol& protocol_;
+  const Type* bare_;
+  const Type* serial_;
+  const Type* radio_i_;
+  const Type* radio_t_;
+};
+
+}  // namespace rubric::reflect

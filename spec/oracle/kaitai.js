@@ -1,0 +1,32 @@
+// Compiles the wire spec with Kaitai Struct's own compiler and loads the parsers that it makes.
+'use strict';
+const fs = require('fs');
+const os = require('os');
+const path = require('path');
+const yaml = require('js-yaml');
+const compiler = require('kaitai-struct-compiler');
+
+const wireFolder = path.join(__dirname, '..', 'wire');
+
+function readSpec(name) {
+  return yaml.load(fs.readFileSync(path.join(wireFolder, `${name}.ksy`), 'utf8'));
+}
+
+/// {parser: constructor, spec: the spec as an object, Stream: KaitaiStream}
+async function load(name) {
+  const spec = readSpec(name);
+  const files = await compiler.compile('javascript', spec,
+      {importYaml: async (imported) => readSpec(imported)}, false);
+  const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'rubric-kaitai-'));
+  fs.symlinkSync(path.join(__dirname, 'node_modules'), path.join(folder, 'node_modules'));
+  for (const [file, text] of Object.entries(files)) {
+    fs.writeFileSync(path.join(folder, file), text);
+  }
+  const className = name[0].toUpperCase() + name.slice(1);
+  const parser = require(path.join(folder, `${className}.js`))[className];
+  const Stream = require('kaitai-struct/KaitaiStream');
+  fs.rmSync(folder, {recursive: true});
+  return {parser, spec, Stream};
+}
+
+module.exports = {load};

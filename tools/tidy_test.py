@@ -1,0 +1,76 @@
+#!/usr/bin/env python3
+"""Keeps the house rules that a compiler does not: who may include whom, line lengths, file sizes.
+
+Usage: tidy_test.py PROJECT_FOLDER. Prints each breach with its place; exit 1 if there is one.
+"""
+
+import pathlib
+import re
+import subprocess
+import sys
+
+# A folder and the project's folders whose headers its files may include. Tests may include more.
+ALLOWED = {
+    "spec/compiler": ["spec/compiler", "codec/runtime"],
+    "codec/runtime": ["codec/runtime", "codec/generated/requirements.h"],
+    "codec/generated": ["codec/runtime", "codec/generated", "codec/reflect/schema.h"],
+    "codec/containers": ["codec/runtime", "codec/containers", "codec/generated/requirements.h"],
+    "codec/reflect": ["codec"],
+    "conformance": ["codec", "conformance"],
+    "fuzz": ["codec", "conformance", "spec/compiler", "fuzz", "tools"],
+    "tools": ["codec", "conformance", "tools"],
+}
+SOURCES = {".cc", ".h", ".py", ".js", ".ksy", ".cmake", ".md", ".sh", ".yaml"}
+MAX_COLUMNS = 100
+MAX_LINES = 500
+INCLUDE = re.compile(r'#include "([^"]+)"')
+
+
+def tracked(root):
+    out = subprocess.run(["git", "ls-files", "-co", "--exclude-standard"], cwd=root, check=True,
+                         capture_output=True, text=True).stdout
+    return [pathlib.PurePath(line) for line in out.splitlines() if (root / line).is_file()]
+
+
+def include_breaches(path, lines):
+    area = next((a for a in ALLOWED if str(path).startswith(a + "/")), None)
+    if area is None or path.stem.endswith(("_test", "_bench")) or "_test/" in str(path) \
+            or "_bench/" in str(path):
+        return
+    for number, line in enumerate(lines, 1):
+        found = INCLUDE.match(line)
+        if found and not any(found[1] == a or found[1].startswith(a + "/") for a in ALLOWED[area]):
+            yield f"{path}:{number}: {area} may not include {found[1]}"
+
+
+def breaches(root, path):
+    generated = "generated" in path.parts or "captures" in path.parts or "vectors" in path.parts
+    if path.suffix not in SOURCES or path.name == "package-lock.json":
+        return
+    lines = (root / path).read_text(encoding="utf-8").splitlines()
+    yield from include_breaches(path, lines)
+    code = path.suffix in {".cc", ".h", ".py", ".js"}
+    for number, line in enumerate(lines, 1):
+        # Prose in data files and tables in documents may run long.
+        if code and not (generated and path.suffix != ".h") and len(line) > MAX_COLUMNS:
+            yield f"{path}:{number}: {len(line)} columns, at most {MAX_COLUMNS}"
+        if code and line != line.rstrip():
+            yield f"{path}:{number}: blanks at the end of the line"
+    if code and not generated and len(lines) > MAX_LINES:
+        yield f"{path}: {len(lines)} lines, at most {MAX_LINES}"
+    if path.suffix == ".h" and "#pragma once" not in lines[:12]:
+        yield f"{path}: no #pragma once"
+
+
+def main():
+    root = pathlib.Path(sys.argv[1])
+    files = tracked(root)
+    found = [b for path in files for b in breaches(root, path)]
+    for breach in found:
+        print(breach)
+    print(f"{len(files)} files, {len(found)} breaches")
+    return 1 if found or not files else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
