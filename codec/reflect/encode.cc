@@ -1,0 +1,374 @@
+#include "codec/reflect/encode.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "codec/reflect/encode_measure.h"
+#include "codec/reflect/encode_number.h"
+
+namespace rubric::reflect {
+namespace {
+
+using std::to_string;
+
+/// Where the bytes of a part of the output end; no limit while its measure is missing.
+using Limit = std::optional<std::size_t>;
+
+std::string bytes_text(std::size_t n) { return to_string(n) + (n == 1 ? " byte" : " bytes"); }
+
+}  // namespace
+
+/// One encoding. Structures are written front to back, so that what an expression reads is there;
+/// only measures that are missing are filled in later.
+class Encoder {
+ public:
+  Encoder(Bytes stale, std::vector<std::uint8_t>& out)
+      : stale_(stale), out_(out), start_(out.size()) {}
+
+  void run(const Type& type, const Value& fields, Tail tail) {
+    open_parts_ = tail == Tail::kStale ? 1 : 0;
+    structure(type, fields, std::nullopt);
+    if (tail == Tail::kStale) append_stale(stale_.size() - stale_used_);
+    if (const Measure* measure = measures_.first_missing()) {
+      throw EncodeError(measure->path, "is missing: expected " + expectation(*measure->field),
+                        measure->field->requirement);
+    }
+    if (stale_used_ == stale_.size()) return;
+    throw EncodeError("stale", "expected " + bytes_text(stale_used_) + ", given " +
+                                   to_string(stale_.size()) +
+                                   ": the sizes in the fields leave no room for more",
+                      type.requirement);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& problem, ReqId requirement) const {
+    throw EncodeError(path_, problem, requirement);
+  }
+
+  Bytes from(std::size_t base) const { return Bytes(out_.data() + base, out_.size() - base); }
+
+  void append_stale(std::size_t n) {
+    const std::uint8_t* p = stale_.data() + stale_used_;
+    out_.insert(out_.end(), p, p + n);
+    stale_used_ += n;
+  }
+
+  // What an expression reads has to be there when something depends on it.
+  void require_given(const Expr& expr, std::size_t base) {
+    if (const Measure* measure = measures_.missing_in(expr, base)) {
+      throw EncodeError(measure->path, "is missing, and what follows depends on it",
+                        measure->field->requirement);
+    }
+  }
+
+  /// Makes `expr`, which measures `what` at the present path, come to `actual`.
+  void settle(const Expr& expr, std::size_t base, std::size_t actual, const std::string& what,
+              const Field& measured) {
+    Measure* measure = measures_.of(expr, base);
+    if (measure && measure->missing) return fill_in(*measure, expr, base, actual, what);
+    const std::int64_t given = evaluate(expr, from(base));
+    if (given == static_cast<std::int64_t>(actual)) return;
+    const std::string problem = "expected " + to_string(actual) + ", given " + to_string(given) +
+                                ": " + path_ + " has " + what;
+    if (!measure) fail("expected " + to_string(given) + ", given " + what, measured.requirement);
+    throw EncodeError(measure->path, problem, measured.requirement);
+  }
+
+  void fill_in(Measure& measure, const Expr& expr, std::size_t base, std::size_t actual,
+               const std::string& what) {
+    const Field& field = *measure.field;
+    const auto wanted = static_cast<std::int64_t>(actual);
+    const auto comes_to = [&](std::int64_t value) {
+      store_number(field, value, out_.data() + measure.offset);
+      return evaluate(expr, from(base));
+    };
+    // Sizes grow with what measures them, so the least value that is large enough is the one.
+    std::int64_t value = 0;
+    std::int64_t above = (std::int64_t{1} << (8 * field.width_bytes)) - 1;
+    while (value < above) {
+      const std::int64_t middle = value + (above - value) / 2;
+      comes_to(middle) < wanted ? value = middle + 1 : above = middle;
+    }
+    if (comes_to(value) != wanted) {
+      throw EncodeError(measure.path, "expected " + expectation(field) + ", but " + path_ +
+                                          " has " + what,
+                        field.requirement);
+    }
+    const std::string problem = number_problem(field, value);
+    if (!problem.empty()) {
+      throw EncodeError(measure.path, problem + ", as " + path_ + " has " + what,
+                        field.requirement);
+    }
+    measure.missing = false;
+  }
+
+  // Structures.
+
+  void structure(const Type& type, const Value& object, Limit limit) {
+    if (!object.is(Value::Kind::kObject)) {
+      fail("expected an object with the fields of " + std::string(type.name) + ", given " +
+               value_text(object),
+           type.requirement);
+    }
+    const std::size_t base = out_.size();
+    measures_.expect(type, base);
+    std::size_t used = 0;  // Members of the object that were taken.
+    for (std::uint16_t i = 0; i < type.field_count; ++i) {
+      const Field& f = type.fields[i];
+      if (f.condition.count) {
+        require_given(f.condition, base);
+        if (!evaluate(f.condition, from(base))) continue;
+      }
+      if (f.kind == Kind::kBytes && interpreted(type, i, object, base, limit)) {
+        ++used;
+        continue;
+      }
+      const std::size_t path_size = push_path(f.name);
+      used += one_field(f, object, base, limit);
+      path_.resize(path_size);
+    }
+    if (used != object.keys.size()) unknown_member(type, object, base);
+  }
+
+  std::size_t push_path(std::string_view name) {
+    const std::size_t size = path_.size();
+    if (size) path_ += '.';
+    path_ += name;
+    return size;
+  }
+
+  /// Returns how many members of the object it took.
+  std::size_t one_field(const Field& f, const Value& object, std::size_t base, Limit limit) {
+    const Value* value = object.find(f.name);
+    if (f.repeat == Repeat::kOnce && f.kind <= Kind::kMask) return number(f, object, value);
+    if (f.repeat != Repeat::kOnce) {
+      if (!value) fail("is missing: expected an array", f.requirement);
+      array(f, *value, base, limit);
+      return 1 + (f.enumeration && object.find(std::string(f.name) + "_name"));
+    }
+    if (f.kind == Kind::kBytes) {
+      opaque(f, value, base, limit);
+      return value ? 1 : 0;
+    }
+    if (!value) fail("is missing: expected an object", f.requirement);
+    nested(f, *value, base, limit);
+    return 1;
+  }
+
+  [[noreturn]] void unknown_member(const Type& type, const Value& object, std::size_t base) {
+    std::string known;
+    for (std::size_t i = 0; i < object.keys.size(); ++i) {
+      if (known_member(type, object.keys[i], base)) {
+        if (object.find(object.keys[i]) == &object.items[i]) continue;
+        push_path(object.keys[i]);
+        fail("is given twice", type.requirement);
+      }
+      for (int k = 0; k < type.field_count; ++k) {
+        known += std::string(k ? ", " : "") + type.fields[k].name;
+      }
+      push_path(object.keys[i]);
+      fail("is no field of " + std::string(type.name) + " here, which has " + known,
+           type.requirement);
+    }
+    fail("expected each field once", type.requirement);
+  }
+
+  bool known_member(const Type& type, const std::string& key, std::size_t base) {
+    for (int i = 0; i < type.field_count; ++i) {
+      const Field& f = type.fields[i];
+      if (f.condition.count && !evaluate(f.condition, from(base))) continue;
+      if (key == f.name || (f.enumeration && key == std::string(f.name) + "_name") ||
+          (f.mask && key == std::string(f.name) + "_bits")) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  // Fields.
+
+  std::size_t number(const Field& f, const Value& object, const Value* value) {
+    const NumberResult result = number_of(f, object, value);
+    if (!result.problem.empty()) fail(result.problem, f.requirement);
+    const std::size_t at = out_.size();
+    out_.resize(at + f.width_bytes);
+    if (result.present) store_number(f, result.value, out_.data() + at);
+    Measure* measure = measures_.find(at);
+    if (measure) {
+      measure->field = &f;
+      measure->path = path_;
+      measure->missing = !result.present;
+    } else if (!result.present) {
+      fail("is missing: expected " + expectation(f), f.requirement);
+    }
+    return result.members;
+  }
+
+  void opaque(const Field& f, const Value* value, std::size_t base, Limit limit) {
+    const std::size_t at = out_.size();
+    if (value && (!value->is(Value::Kind::kString) || !parse_hex(value->text, out_))) {
+      fail("expected hex digits, given " + value_text(*value), f.requirement);
+    }
+    const std::size_t size = out_.size() - at;
+    if (f.extent == Extent::kSize) return settle(f.size, base, size, bytes_text(size), f);
+    if (limit && out_.size() != *limit) {
+      fail("expected " + bytes_text(*limit - std::min(at, *limit)) + ", given " + to_string(size),
+           f.requirement);
+    }
+  }
+
+  void array(const Field& f, const Value& value, std::size_t base, Limit limit) {
+    if (!value.is(Value::Kind::kArray)) {
+      fail("expected an array, given " + value_text(value), f.requirement);
+    }
+    const std::size_t count = value.items.size();
+    if (f.repeat == Repeat::kCount) {
+      settle(f.count, base, count, to_string(count) + (count == 1 ? " element" : " elements"), f);
+    }
+    const std::size_t path_size = path_.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      path_ += '[' + to_string(i) + ']';
+      if (f.kind == Kind::kStruct) {
+        structure(*f.type, value.items[i], limit);
+      } else {
+        number(f, Value::of_object(), &value.items[i]);
+      }
+      path_.resize(path_size);
+    }
+    if (f.repeat == Repeat::kToEnd && limit && out_.size() != *limit) {
+      fail("its " + to_string(count) + " elements end at byte " + to_string(out_.size() - start_) +
+               ", expected byte " + to_string(*limit - start_),
+           f.requirement);
+    }
+  }
+
+  void nested(const Field& f, const Value& value, std::size_t base, Limit limit) {
+    const Type* type = f.type;
+    if (f.choice) {
+      require_given(f.choice->key, base);
+      type = choose(*f.choice, evaluate(f.choice->key, from(base)));
+      if (!type) return opaque(f, &value, base, limit);
+    }
+    if (f.extent == Extent::kOwn) return structure(*type, value, limit);
+    part(f, *type, value, base, limit);
+  }
+
+  /// A structure whose size is said elsewhere; stale bytes may stand behind its content.
+  void part(const Field& f, const Type& type, const Value& value, std::size_t base, Limit limit) {
+    const std::size_t at = out_.size();
+    Limit end = limit;
+    if (f.extent == Extent::kSize) {
+      const Measure* measure = measures_.of(f.size, base);
+      end = std::nullopt;
+      if (!measure || !measure->missing) {
+        const std::int64_t size = evaluate(f.size, from(base));
+        if (size < 0) fail("its size comes to " + to_string(size), f.requirement);
+        end = at + static_cast<std::size_t>(size);
+      }
+    }
+    ++open_parts_;
+    structure(type, value, end);
+    --open_parts_;
+    const std::size_t rest = stale_.size() - stale_used_;
+    if (end && out_.size() < *end && rest >= *end - out_.size()) {
+      append_stale(*end - out_.size());
+    } else if (!end && open_parts_ == 0) {
+      append_stale(rest);
+    }
+    const std::size_t size = out_.size() - at;
+    std::string what = bytes_text(size);
+    if (end && out_.size() < *end && !stale_.empty()) {
+      what += " and " + to_string(rest) + " stale ones are left";
+    }
+    if (f.extent == Extent::kSize) return settle(f.size, base, size, what, f);
+    if (end && out_.size() != *end) {
+      fail("expected " + bytes_text(*end - std::min(at, *end)) + ", given " + what,
+           f.requirement);
+    }
+  }
+
+  // Interpretations. Their key may be their own first byte, so they are tried until one is chosen
+  // by the very bytes that it came to.
+
+  struct Mark {
+    std::size_t size, stale, path;
+    Measures measures;
+    int open_parts;
+  };
+  Mark mark() const { return {out_.size(), stale_used_, path_.size(), measures_, open_parts_}; }
+  void back_to(const Mark& mark) {
+    out_.resize(mark.size);
+    stale_used_ = mark.stale;
+    path_.resize(mark.path);
+    measures_ = mark.measures;
+    open_parts_ = mark.open_parts;
+  }
+
+  bool interpreted(const Type& type, std::uint16_t index, const Value& object, std::size_t base,
+                   Limit limit) {
+    bool given = false;
+    std::optional<EncodeError> error;
+    bool error_is_chosen = false;
+    for (int k = 0; k < type.interpretation_count; ++k) {
+      const Interpretation& candidate = type.interpretations[k];
+      const Field& f = candidate.field;
+      const Value* value = candidate.overlays == index ? object.find(f.name) : nullptr;
+      if (!value || object.find(type.fields[index].name)) continue;
+      given = true;
+      require_given(f.condition, base);
+      if (f.condition.count && !evaluate(f.condition, from(base))) continue;
+      const int count = f.choice ? f.choice->count + 1 : 1;
+      for (int c = 0; c < count; ++c) {
+        const Type* tried = !f.choice             ? f.type
+                            : c < count - 1       ? f.choice->cases[c].type
+                                                  : f.choice->otherwise;
+        if (!tried) continue;
+        bool chosen = false;
+        const Mark before = mark();
+        try {
+          push_path(f.name);
+          attempt(f, *tried, *value, base, limit, chosen);
+          path_.resize(before.path);
+          if (chosen) return true;
+        } catch (const EncodeError& e) {
+          if (!error || (chosen && !error_is_chosen)) error = e;
+          error_is_chosen = error_is_chosen || chosen;
+        }
+        back_to(before);
+      }
+    }
+    if (!given) return false;
+    if (error) throw *error;
+    push_path(type.interpretations[0].field.name);
+    fail("no message of " + std::string(type.name) + " has these fields here", type.requirement);
+  }
+
+  void attempt(const Field& f, const Type& type, const Value& value, std::size_t base,
+               Limit limit, bool& chosen) {
+    const auto picks = [&] {
+      return !f.choice || choose(*f.choice, evaluate(f.choice->key, from(base))) == &type;
+    };
+    try {
+      part(f, type, value, base, limit);
+    } catch (const EncodeError&) {
+      chosen = picks();
+      throw;
+    }
+    chosen = picks();
+  }
+
+  Bytes stale_;
+  std::size_t stale_used_ = 0;
+  std::vector<std::uint8_t>& out_;
+  std::size_t start_;
+  Measures measures_;
+  std::string path_;
+  int open_parts_ = 0;  // Parts around the present place whose end may take stale bytes.
+};
+
+void encode(const Type& type, const Value& fields, Bytes stale, Tail tail,
+            std::vector<std::uint8_t>& out) {
+  Encoder(stale, out).run(type, fields, tail);
+}
+
+}  // namespace rubric::reflect
