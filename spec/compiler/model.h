@@ -23,6 +23,9 @@ struct Enum;
 struct Field;
 struct Spec;
 
+/// Where the value of each key stands, for diagnostics.
+using KeyPlaces = std::map<std::string, Place, std::less<>>;
+
 /// Least and greatest value that an expression or field can have, both included.
 struct Interval {
   std::int64_t min = 0;
@@ -38,7 +41,8 @@ struct Expr {
   ExprOp op = ExprOp::kInt;
   Place place;
   std::int64_t value = 0;              // kInt; kEnumValue once resolved.
-  std::vector<std::string> path;       // kField: {"src", "devid"}; kEnumValue: {"component", "net"}.
+  std::vector<std::string> path;       // kField: {"src", "devid"}; kEnumValue: {"pid", "local"}.
+  bool to_i = false;                   // `.to_i`: an enum's number.
   std::vector<std::unique_ptr<Expr>> operands;
   // Resolved by the checker:
   const Field* field = nullptr;        // kField: the last field of the path.
@@ -89,6 +93,7 @@ struct Field {
   std::string id;
   std::string name;                    // `-name`, else id.
   Place place;
+  KeyPlaces places;
   std::string doc;
   std::string doc_ref;
   std::string requirement;             // `-requirement`, else the type's.
@@ -131,13 +136,14 @@ struct Type {
   std::string name;                    // `-name`, else id.
   const Spec* spec = nullptr;
   Place place;
+  KeyPlaces places;
   std::string doc;
   std::string doc_ref;
   std::string requirement;
   std::vector<std::unique_ptr<Field>> fields;     // seq
   std::vector<std::unique_ptr<Field>> instances;  // peeks and interpretations, in order
   bool is_mask = false;                // `-mask`: then only bits, from the highest bit down.
-  std::vector<MaskBit> bits;
+  std::vector<MaskBit> bits;           // From the highest down; as many as `-mask` says.
   std::optional<std::int64_t> declared_size;      // `-size`: the greatest size.
   std::vector<std::int64_t> am_types;  // `-am-type`
   std::string carrier;                 // `-carrier`
@@ -171,9 +177,13 @@ struct Spec {
   std::string doc_ref;
   std::string file;                    // As given on the command line: "spec/wire/rubicon.ksy".
   bool little_endian = false;
+  KeyPlaces places;
+  bool named = false;                  // On the command line; else only imported, not emitted.
   std::vector<std::string> import_names;
+  std::vector<Place> import_places;
   std::vector<const Spec*> imports;
   std::vector<std::unique_ptr<Type>> types;       // In file order, the root first.
+  std::vector<const Type*> dependency_order;      // The same, what a type contains before it.
   std::vector<std::unique_ptr<Enum>> enums;
 };
 

@@ -1,0 +1,15 @@
+#include "spec/compiler/check.h"
+
+#include "spec/compiler/load.h"
+
+namespace rubricc {
+
+void check_model(Model& model, Diagnostics& diagnostics) {
+  Check check{model, diagnostics, {}};
+  check_names(check);
+  check_order(check);
+  check_layout(check);
+  check_types(check);
+}
+
+}  // namespace rubricc

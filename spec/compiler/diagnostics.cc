@@ -1,0 +1,142 @@
+#include "spec/compiler/diagnostics.h"
+
+#include <algorithm>
+#include <fmt/core.h>
+
+namespace rubricc {
+namespace {
+
+constexpr std::size_t kShownMax = 500;        // Diagnostics printed in a run.
+constexpr std::size_t kSourceLineMax = 200;   // Bytes of a source line that are shown.
+constexpr std::size_t kListedMax = 12;        // Names in a list of known ones.
+
+std::string_view line_of(std::string_view text, int line) {
+  for (int at = 1; at < line; ++at) {
+    const std::size_t end = text.find('\n');
+    if (end == text.npos) return {};
+    text.remove_prefix(end + 1);
+  }
+  text = text.substr(0, text.find('\n'));
+  if (text.ends_with('\r')) text.remove_suffix(1);
+  return text;
+}
+
+/// As wide as the first `count` bytes of `line`: tabs stay tabs, a UTF-8 character is one column.
+std::string blank_like(std::string_view line, std::size_t count) {
+  std::string out;
+  for (std::size_t i = 0; i < count; ++i) {
+    const unsigned char c = i < line.size() ? static_cast<unsigned char>(line[i]) : ' ';
+    if ((c & 0xC0) == 0x80) continue;
+    out += c == '\t' ? '\t' : ' ';
+  }
+  return out;
+}
+
+/// Edits (insert, delete, replace, swap of neighbours count one each) that turn `a` into `b`.
+std::size_t distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> before(b.size() + 1), last(b.size() + 1), next(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) last[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    next[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      next[j] = std::min({last[j] + 1, next[j - 1] + 1, last[j - 1] + (a[i - 1] != b[j - 1])});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
+        next[j] = std::min(next[j], before[j - 2] + 1);
+      }
+    }
+    before.swap(last);
+    last.swap(next);
+  }
+  return last[b.size()];
+}
+
+}  // namespace
+
+void Diagnostics::add_source(const std::string& file, std::string text) {
+  sources_.insert_or_assign(file, std::move(text));
+}
+
+const std::string* Diagnostics::source(const std::string& file) const {
+  const auto found = sources_.find(file);
+  return found == sources_.end() ? nullptr : &found->second;
+}
+
+void Diagnostics::error(const Place& place, std::string what, std::string_view expected) {
+  if (!expected.empty()) what.append("; ").append(expected);
+  found_.try_emplace(Key{place.file, place.line, place.column, what}, Diagnostic{place, what});
+}
+
+std::vector<Diagnostic> Diagnostics::sorted() const {
+  std::vector<Diagnostic> out;
+  for (const auto& [key, diagnostic] : found_) out.push_back(diagnostic);
+  return out;
+}
+
+std::string Diagnostics::print() const {
+  std::string out;
+  std::size_t shown = 0;
+  for (const auto& [key, found] : found_) {
+    if (shown == kShownMax) {
+      out += fmt::format("{} more errors\n", found_.size() - shown);
+      break;
+    }
+    ++shown;
+    const Place& place = found.place;
+    if (place.line == 0) {
+      out += fmt::format("{}: error: {}\n", place.file, found.text);
+      continue;
+    }
+    out += fmt::format("{}:{}:{}: error: {}\n", place.file, place.line, place.column, found.text);
+    const std::string* text = source(place.file);
+    if (text == nullptr) continue;
+    const std::string_view line = line_of(*text, place.line).substr(0, kSourceLineMax);
+    const std::size_t before = static_cast<std::size_t>(std::max(place.column - 1, 0));
+    if (before > line.size()) continue;
+    out += fmt::format("    {}\n    {}^\n", line, blank_like(line, before));
+  }
+  return out;
+}
+
+std::string quoted(std::string_view word) {
+  std::string out = "'";
+  for (const char c : word.substr(0, 80)) {
+    out += static_cast<unsigned char>(c) < 0x20 ? '?' : c;
+  }
+  if (word.size() > 80) out += "...";
+  return out + "'";
+}
+
+std::string nearest(std::string_view word, std::span<const std::string_view> candidates) {
+  std::string_view best;
+  std::size_t best_distance = std::min<std::size_t>(word.size(), 80) / 3 + 2;
+  if (word.size() > 80) return {};
+  for (const std::string_view candidate : candidates) {
+    if (candidate.size() > 80) continue;
+    const std::size_t d = distance(word, candidate);
+    if (d < best_distance && d < candidate.size()) {
+      best = candidate;
+      best_distance = d;
+    }
+  }
+  return std::string(best);
+}
+
+std::string suggestion(std::string_view word, std::span<const std::string_view> candidates) {
+  const std::string near = nearest(word, candidates);
+  if (!near.empty()) return fmt::format("did you mean {}?", quoted(near));
+  if (candidates.empty()) return "there is none here";
+  std::string list;
+  for (std::size_t i = 0; i < candidates.size() && i < kListedMax; ++i) {
+    if (i > 0) list += ", ";
+    list += candidates[i];
+  }
+  if (candidates.size() > kListedMax) list += ", ...";
+  return "known are " + list;
+}
+
+std::string suggestion(std::string_view word, const std::vector<std::string>& candidates) {
+  const std::vector<std::string_view> views(candidates.begin(), candidates.end());
+  return suggestion(word, std::span<const std::string_view>(views));
+}
+
+}  // namespace rubricc

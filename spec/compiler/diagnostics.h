@@ -1,0 +1,51 @@
+// Everything that is wrong with the input, collected in one run and printed in order.
+#pragma once
+
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <vector>
+
+#include "spec/compiler/model.h"
+
+namespace rubricc {
+
+struct Diagnostic {
+  Place place;
+  std::string text;  // "what is wrong; what was expected"
+};
+
+class Diagnostics {
+ public:
+  /// Remembers a file's text so that its lines can be shown.
+  void add_source(const std::string& file, std::string text);
+  const std::string* source(const std::string& file) const;
+
+  /// `expected` may be empty. The same error at the same place is kept once: an aliased YAML node is
+  /// read as often as it is used.
+  void error(const Place& place, std::string what, std::string_view expected = {});
+
+  bool empty() const { return found_.empty(); }
+  /// By file, line and column.
+  std::vector<Diagnostic> sorted() const;
+  /// Each as "file:line:column: error: text", the source line and a caret.
+  std::string print() const;
+
+ private:
+  using Key = std::tuple<std::string, int, int, std::string>;
+  std::map<std::string, std::string> sources_;
+  std::map<Key, Diagnostic> found_;
+};
+
+/// `'word'`
+std::string quoted(std::string_view word);
+
+/// The candidate that `word` was probably meant to be; empty if none is near.
+std::string nearest(std::string_view word, std::span<const std::string_view> candidates);
+/// "did you mean 'x'?" where something is near, else "known are a, b, c".
+std::string suggestion(std::string_view word, std::span<const std::string_view> candidates);
+std::string suggestion(std::string_view word, const std::vector<std::string>& candidates);
+
+}  // namespace rubricc

@@ -1,0 +1,20 @@
+// The emitters: a checked model in, files out. They decide nothing.
+#pragma once
+
+#include "spec/compiler/generated_file.h"
+#include "spec/compiler/model.h"
+
+namespace rubricc {
+
+/// codec/generated/<spec>/tables.h: reflection tables, see codec/reflect/schema.h.
+GeneratedFiles emit_tables(const Spec& spec);
+/// codec/generated/requirements.h and requirements_table.h.
+GeneratedFiles emit_requirements(const Model& model, const std::string& file);
+/// fuzz/dictionaries/<spec>.dict for libFuzzer.
+GeneratedFiles emit_dictionary(const Spec& spec);
+/// codec/generated/<spec>/messages.h: how each message is reached, for the structure-aware fuzzer.
+GeneratedFiles emit_messages(const Spec& spec);
+/// doc/wire.html: all specs on one page.
+GeneratedFiles emit_doc(const Model& model);
+
+}  // namespace rubricc

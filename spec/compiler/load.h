@@ -1,0 +1,23 @@
+// From files to a checked model.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "spec/compiler/diagnostics.h"
+
+namespace rubricc {
+
+/// Reads `files` and what they import (beside them, "name.ksy") into `model`, imports first.
+void load_specs(const std::vector<std::string>& files, Model& model, Diagnostics& diagnostics);
+/// Reads the catalogue of requirements.
+void load_requirements(const std::string& file, Model& model, Diagnostics& diagnostics);
+/// The same from text in memory, for the fuzzer and the tests; `file` is what diagnostics show.
+void load_spec_text(const std::string& file, const std::string& text, Model& model,
+                    Diagnostics& diagnostics);
+
+/// Resolves names, expressions, sizes and offsets, and reports everything that breaks a rule of
+/// the profile. Emitters may run only when nothing was reported.
+void check_model(Model& model, Diagnostics& diagnostics);
+
+}  // namespace rubricc

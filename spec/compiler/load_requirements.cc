@@ -1,0 +1,85 @@
+#include <array>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <fmt/core.h>
+
+#include "spec/compiler/cpp_text.h"
+#include "spec/compiler/load.h"
+#include "spec/compiler/read_spec.h"
+
+namespace rubricc {
+namespace {
+
+constexpr std::array<std::string_view, 5> kKeys{"id", "level", "clause", "sentence", "source"};
+
+bool is_requirement_id(std::string_view id) {
+  if (id.empty() || id.size() > 64 || id.front() < 'A' || id.front() > 'Z') return false;
+  for (std::size_t i = 0; i < id.size(); ++i) {
+    const char c = id[i];
+    const bool letter = (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+    if (!letter && (c != '-' || i + 1 == id.size() || id[i - 1] == '-')) return false;
+  }
+  return true;
+}
+
+Requirement read_requirement(const YamlInput& input, const YAML::Node& node) {
+  const YamlMap map(input, node, "a requirement", kKeys);
+  Requirement out;
+  out.place = input.place(node);
+  if (!node.IsMap()) return out;
+  for (const std::string_view key : kKeys) {
+    if (!map.has(key)) {
+      input.error(node, fmt::format("a requirement without {}", key),
+                  "id, level, clause, sentence and source were expected");
+    } else if (one_line(map.text(key).value_or("-")).empty()) {
+      input.error(map.find(key)->value, fmt::format("{} is empty", quoted(key)));
+    }
+  }
+  if (const YamlEntry* id = map.find("id")) out.place = input.place(id->value);
+  out.id = map.text("id").value_or("");
+  out.level = map.text("level").value_or("MUST");
+  out.clause = one_line(map.text("clause").value_or(""));
+  out.sentence = one_line(map.text("sentence").value_or(""));
+  out.source = one_line(map.text("source").value_or(""));
+  if (out.level != "MUST" && out.level != "SHOULD" && out.level != "MAY") {
+    input.error(map.find("level")->value, "level is " + quoted(out.level),
+                "MUST, SHOULD or MAY was expected");
+  }
+  if (!out.id.empty() && !is_requirement_id(out.id)) {
+    input.diagnostics.error(out.place, "requirement id " + quoted(out.id),
+                            "upper-case words with '-' between them were expected");
+    out.id.clear();
+  }
+  return out;
+}
+
+}  // namespace
+
+void load_requirements(const std::string& file, Model& model, Diagnostics& diagnostics) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) {
+    diagnostics.error({file, 0, 0}, "cannot be read");
+    return;
+  }
+  const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  diagnostics.add_source(file, text);
+  const auto root = parse_yaml(file, text, diagnostics);
+  if (!root) return;
+  int budget = kNodeBudget;
+  const YamlInput input{file, diagnostics, budget};
+  std::map<std::string, int> lines;  // By name in C++, since that must differ too.
+  for (const YAML::Node& item : yaml_items(input, *root, "requirements")) {
+    Requirement found = read_requirement(input, item);
+    if (found.id.empty()) continue;
+    const auto [first, fresh] = lines.try_emplace(cpp_constant(found.id), found.place.line);
+    if (!fresh) {
+      diagnostics.error(found.place, fmt::format("requirement {} twice", quoted(found.id)),
+                        fmt::format("it stands already in line {}", first->second));
+      continue;
+    }
+    model.requirements.push_back(std::move(found));
+  }
+}
+
+}  // namespace rubricc

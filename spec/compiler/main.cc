@@ -1,0 +1,115 @@
+// rubricc: the compiler of wire specs. See spec/README.md.
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "spec/compiler/emit.h"
+#include "spec/compiler/load.h"
+#ifdef RUBRICC_HAS_CPP
+#include "spec/compiler/emit_cpp.h"
+#endif
+
+namespace {
+
+enum Exit { kOk = 0, kDiagnostics = 1, kUsage = 2, kCannotReadOrWrite = 3 };
+
+const std::vector<std::string> kEmitters{"cpp",        "tables",   "requirements",
+                                         "dictionary", "messages", "doc"};
+
+struct Options {
+  std::string requirements = "spec/requirements.yaml";
+  std::vector<std::string> emit;
+  bool check = false;
+  std::string out;
+  std::vector<std::string> files;
+};
+
+bool wants(const Options& options, std::string_view emitter) {
+  return std::find(options.emit.begin(), options.emit.end(), emitter) != options.emit.end();
+}
+
+void append(rubricc::GeneratedFiles& all, rubricc::GeneratedFiles more) {
+  std::move(more.begin(), more.end(), std::back_inserter(all));
+}
+
+rubricc::GeneratedFiles emit(const Options& options, const rubricc::Model& model) {
+  rubricc::GeneratedFiles out;
+  for (const auto& spec : model.specs) {
+    if (!spec->named) continue;
+    if (wants(options, "tables")) append(out, rubricc::emit_tables(*spec));
+    if (wants(options, "dictionary")) append(out, rubricc::emit_dictionary(*spec));
+    if (wants(options, "messages")) append(out, rubricc::emit_messages(*spec));
+#ifdef RUBRICC_HAS_CPP
+    if (wants(options, "cpp")) append(out, rubricc::emit_cpp(*spec));
+#endif
+  }
+  if (wants(options, "requirements")) {
+    append(out, rubricc::emit_requirements(model, options.requirements));
+  }
+  if (wants(options, "doc")) append(out, rubricc::emit_doc(model));
+  return out;
+}
+
+bool write(const std::filesystem::path& folder, const rubricc::GeneratedFile& file) {
+  const std::filesystem::path path = folder / file.path;
+  std::error_code fault;
+  std::filesystem::create_directories(path.parent_path(), fault);
+  std::ofstream out(path, std::ios::binary);
+  out << file.text;
+  out.close();
+  if (!out.fail()) return true;
+  std::cerr << "rubricc: cannot write " << path.string() << '\n';
+  return false;
+}
+
+int run(const Options& options) {
+  std::vector<std::string> inputs = options.files;
+  inputs.push_back(options.requirements);
+  for (const std::string& input : inputs) {
+    if (std::ifstream(input).good() && !std::filesystem::is_directory(input)) continue;
+    std::cerr << "rubricc: cannot read " << input << '\n';
+    return kCannotReadOrWrite;
+  }
+  rubricc::Model model;
+  rubricc::Diagnostics diagnostics;
+  rubricc::load_requirements(options.requirements, model, diagnostics);
+  rubricc::load_specs(options.files, model, diagnostics);
+  rubricc::check_model(model, diagnostics);
+  std::cerr << diagnostics.print();
+  if (!diagnostics.empty()) return kDiagnostics;
+  for (const auto& file : emit(options, model)) {
+    if (!write(options.out, file)) return kCannotReadOrWrite;
+  }
+  return kOk;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app{"rubricc: checks wire specs (a strict profile of Kaitai Struct) and generates from "
+               "them. Exit code: 0 fine, 1 mistakes in the input, 2 wrong usage, 3 a file cannot "
+               "be read or written."};
+  app.add_option("--requirements", options.requirements, "The catalogue of requirements")
+      ->capture_default_str();
+  auto* check = app.add_flag("--check", options.check, "Only check");
+  auto* emit = app.add_option("--emit", options.emit, "What to generate, separated by commas")
+                   ->delimiter(',')
+                   ->check(CLI::IsMember(kEmitters));
+  auto* out = app.add_option("--out", options.out, "The folder to write into");
+  app.add_option("FILE", options.files, "Wire specs (.ksy)")->required();
+  check->excludes(emit)->excludes(out);
+  emit->needs(out);
+  try {
+    app.parse(argc, argv);
+    if (!options.check && options.emit.empty()) throw CLI::RequiredError("--check or --emit");
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? kOk : kUsage;
+  }
+  return run(options);
+}
