@@ -1,0 +1,206 @@
+#include "codec/reflect/decode.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "codec/generated/oscilloscope/tables.h"
+#include "codec/generated/rubicon/tables.h"
+
+namespace rubric::reflect {
+namespace {
+
+std::vector<std::uint8_t> from_hex(const std::string& hex) {
+  std::vector<std::uint8_t> out;
+  for (std::size_t i = 0; i + 1 < hex.size();) {
+    if (hex[i] == ' ') {
+      ++i;
+      continue;
+    }
+    out.push_back(static_cast<std::uint8_t>(std::stoi(hex.substr(i, 2), nullptr, 16)));
+    i += 2;
+  }
+  return out;
+}
+
+class Message {
+ public:
+  Message(const char* name, const std::string& hex, Tail tail = Tail::kStale)
+      : bytes_(from_hex(hex)) {
+    const Type* type = find_type(rubicon::tables::kProtocol, name);
+    EXPECT_NE(type, nullptr) << name;
+    if (type) decode(*type, Bytes(bytes_.data(), bytes_.size()), tail, true, decoded_);
+  }
+  const Decoded* operator->() const { return &decoded_; }
+  const Decoded& operator*() const { return decoded_; }
+
+  std::string path() const {
+    std::string out;
+    for (std::size_t i = 0; i < decoded_.path_count(); ++i) {
+      out += (i ? " " : "") + std::string(decoded_.path()[i]->name);
+    }
+    return out;
+  }
+
+ private:
+  std::vector<std::uint8_t> bytes_;
+  Decoded decoded_;
+};
+
+const std::string kNetToSink = "000b fffd 000b 0002 00 b0d3 ";
+
+TEST(Decode, JoinReply_EveryFieldInOrder) {
+  const Message m("join_reply", "000b 0002 00000102 c4f5");
+  ASSERT_EQ(m->error.fault, Fault::kNone);
+  ASSERT_EQ(m->node_count(), 5u);
+  EXPECT_EQ((*m)[m->child(0, "island_addr")].value, 11);
+  EXPECT_EQ((*m)[m->child(0, "mote_addr")].value, 2);
+  EXPECT_EQ((*m)[m->child(0, "cur_time")].value, 258);
+  EXPECT_EQ((*m)[m->child(0, "seq_num")].value, 0xc4f5);
+  EXPECT_EQ((*m)[4].offset, 8u);
+  EXPECT_EQ(m->child(0, "nothing"), 0u);
+}
+
+TEST(Decode, Updates_PathNestingAndStaleBytesOnBothLevels) {
+  // nbytes 16 of which the updates take 10; two bytes behind the network message.
+  const Message m("net_msg", kNetToSink + "10 030a 23 02 0001 012e 0040 04b2 aabbccdd eeff");
+  ASSERT_EQ(m->error.fault, Fault::kNone);
+  EXPECT_EQ(m.path(), "net_msg app_msg updates");
+  ASSERT_EQ(m->stale_count(), 2u);
+  EXPECT_EQ(m->stale()[0].offset, 24u);
+  EXPECT_EQ(m->stale()[0].size, 4u);
+  EXPECT_EQ(m->stale()[1].offset, 28u);
+  EXPECT_EQ(m->stale()[1].size, 2u);
+  const std::size_t body = m->child(m->child(0, "payload"), "body");
+  const std::size_t pairs = m->child(body, "updates");
+  ASSERT_NE(pairs, 0u);
+  EXPECT_EQ((*m)[pairs].kind, NodeKind::kStructArray);
+  EXPECT_EQ((*m)[pairs].count, 2u);
+  const std::size_t second = (*m)[pairs + 1].end;
+  EXPECT_EQ((*m)[m->child(second, "value")].value, 0x04b2);
+}
+
+struct RejectCase {
+  const char* name;
+  const char* message;
+  std::string hex;
+  Error error;
+};
+
+const RejectCase kRejects[] = {
+    {"Empty_Join", "join_request", "", {Fault::kTruncated, 0, req::kWireJoinRequest}},
+    {"OneShort_JoinReply", "join_reply", "000b 0002 0000 0000 c4",
+     {Fault::kTruncated, 9, req::kWireJoinReply}},
+    {"Reliable2", "net_msg", "000b fffd 000b 0002 02 b0d3 02 030a",
+     {Fault::kOutOfRange, 8, req::kWireNetReliable}},
+    {"Nbytes1", "net_msg", kNetToSink + "01 03", {Fault::kOutOfRange, 11, req::kWireNetNbytes}},
+    {"Nbytes103", "net_msg", kNetToSink + "67 03", {Fault::kOutOfRange, 11, req::kWireNetNbytes}},
+    {"NbytesMoreThanArrived", "net_msg", kNetToSink + "05 030a 2300",
+     {Fault::kTruncated, 16, req::kWireNetPayload}},
+    {"Updates25", "updates", "23 19", {Fault::kOutOfRange, 1, req::kWireUpdates}},
+    {"UpdatesPairCut", "updates", "23 02 0001 012e 0040",
+     {Fault::kTruncated, 8, req::kWireUpdates}},
+    {"SynapticPartialFloat", "synaptic_data", "0000803f 0000",
+     {Fault::kTruncated, 6, req::kWireSynapticData}},
+};
+
+class DecodeReject : public testing::TestWithParam<RejectCase> {};
+
+TEST_P(DecodeReject, NamesFaultPlaceAndRule) {
+  const Message m(GetParam().message, GetParam().hex);
+  EXPECT_EQ(m->error.fault, GetParam().error.fault);
+  EXPECT_EQ(m->error.offset_bytes, GetParam().error.offset_bytes);
+  EXPECT_EQ(m->error.requirement, GetParam().error.requirement);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, DecodeReject, testing::ValuesIn(kRejects),
+                         [](const auto& row) { return row.param.name; });
+
+struct BodyCase {
+  const char* name;
+  std::string hex;
+  const char* path;
+  int notes;
+  NoteKind note;
+};
+
+const BodyCase kBodies[] = {
+    {"UnknownApp_StaysOpaque", kNetToSink + "03 0304 99", "net_msg app_msg", 1,
+     NoteKind::kUnknownMessage},
+    {"UnknownTypeByte_StaysOpaque", kNetToSink + "03 030a 99", "net_msg app_msg", 1,
+     NoteKind::kUnknownMessage},
+    {"TooShortForItsMessage_StaysOpaque", kNetToSink + "04 030a 2401", "net_msg app_msg", 1,
+     NoteKind::kDoesNotFit},
+    {"NoBody_NothingToRemark", kNetToSink + "02 030a", "net_msg app_msg", 0,
+     NoteKind::kUnknownMessage},
+    {"Ack_Deployed", kNetToSink + "06 0905 17 c4f5 00", "net_msg app_msg rubicon_ack", 0,
+     NoteKind::kUnknownMessage},
+    {"Ack_OtherKind_IsNoted", kNetToSink + "06 0905 18 c4f5 00", "net_msg app_msg rubicon_ack", 1,
+     NoteKind::kUnexpectedValue},
+    {"Ack_OfThePaper", kNetToSink + "04 0905 c4f5", "net_msg app_msg rubicon_ack_seq_only", 0,
+     NoteKind::kUnknownMessage},
+    {"Learning23_ToThePc", kNetToSink + "06 0306 17 0001 00",
+     "net_msg app_msg learning_notification", 0, NoteKind::kUnknownMessage},
+    {"Learning23_FromThePc", "000b 0002 000b fffd 00 b0d3 07 0306 17 0001 0002",
+     "net_msg app_msg netid_cmd", 0, NoteKind::kUnknownMessage},
+    {"Synaptic", kNetToSink + "0a 010b 0000803f 00000040", "net_msg app_msg synaptic_data", 0,
+     NoteKind::kUnknownMessage},
+};
+
+class DecodeBody : public testing::TestWithParam<BodyCase> {};
+
+TEST_P(DecodeBody, IsInterpretedOrOpaqueNeverMalformed) {
+  const Message m("net_msg", GetParam().hex);
+  EXPECT_EQ(m->error.fault, Fault::kNone);
+  EXPECT_EQ(m.path(), GetParam().path);
+  ASSERT_EQ(m->note_count(), static_cast<std::size_t>(GetParam().notes));
+  if (GetParam().notes) {
+    EXPECT_EQ(m->notes()[0].kind, GetParam().note);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, DecodeBody, testing::ValuesIn(kBodies),
+                         [](const auto& row) { return row.param.name; });
+
+TEST(Decode, BytesBehindACarrier_AreAFault) {
+  const Message m("rubicon", "00 ffff 0000 03 00 25 0a000c 77", Tail::kFault);
+  EXPECT_EQ(m->error.fault, Fault::kTrailing);
+  EXPECT_EQ(m->error.offset_bytes, 11u);
+  EXPECT_EQ(m->error.requirement, req::kWireAmLength);
+}
+
+TEST(Decode, OneObjectForManyFrames_ForgetsTheOneBefore) {
+  Decoded decoded;
+  const Type* type = find_type(rubicon::tables::kProtocol, "updates");
+  const auto good = from_hex("23 01 0001 012e ff");
+  decode(*type, Bytes(good.data(), good.size()), Tail::kStale, true, decoded);
+  EXPECT_EQ(decoded.stale_count(), 1u);
+  decode(*type, Bytes(good.data(), 1), Tail::kStale, true, decoded);
+  EXPECT_EQ(decoded.error.fault, Fault::kTruncated);
+  EXPECT_EQ(decoded.stale_count(), 0u);
+  EXPECT_EQ(decoded.node_count(), 2u);
+}
+
+TEST(Decode, AnotherProtocolIsOnlyOtherTables) {
+  const Type* type = find_type(oscilloscope::tables::kProtocol, "oscilloscope_msg");
+  ASSERT_NE(type, nullptr);
+  const auto bytes = from_hex(
+      "0001 0100 0007 000a 0001 0002 0003 0004 0005 0006 0007 0008 0009 000a");
+  Decoded decoded;
+  decode(*type, Bytes(bytes.data(), bytes.size()), Tail::kStale, true, decoded);
+  EXPECT_EQ(decoded.error.fault, Fault::kNone);
+  const Node& readings = decoded[decoded.child(0, "readings")];
+  EXPECT_EQ(readings.count, 10u);
+  EXPECT_EQ(load_number(*readings.field, bytes.data() + readings.offset + 18), 10);
+}
+
+TEST(Evaluate, FloorsLikeKaitai) {
+  const ExprStep steps[] = {{Op::kConst, -7}, {Op::kConst, 2}, {Op::kDiv, 0}};
+  EXPECT_EQ(evaluate(Expr{steps, 3}, Bytes()), -4);
+  const ExprStep mod[] = {{Op::kConst, -7}, {Op::kConst, 4}, {Op::kMod, 0}};
+  EXPECT_EQ(evaluate(Expr{mod, 3}, Bytes()), 1);
+}
+
+}  // namespace
+}  // namespace rubric::reflect
