@@ -124,7 +124,7 @@ class Encoder {
         continue;
       }
       const std::size_t path_size = push_path(f.name);
-      used += one_field(f, object, base, limit);
+      used += one_field(f, object, base, limit) + (converted_beside(f, object) ? 1 : 0);
       path_.resize(path_size);
     }
     if (used != object.keys.size()) unknown_member(type, object, base);
@@ -135,6 +135,11 @@ class Encoder {
     if (size) path_ += '.';
     path_ += name;
     return size;
+  }
+
+  // A value converted by the field's unit, "temp_degC" beside "temp", is for readers only.
+  static bool converted_beside(const Field& f, const Value& object) {
+    return f.unit && object.find(std::string(f.name) + '_' + f.unit->symbol);
   }
 
   /// Returns how many members of the object it took.
@@ -178,7 +183,8 @@ class Encoder {
       const Field& f = type.fields[i];
       if (f.condition.count && !evaluate(f.condition, from(base))) continue;
       if (key == f.name || (f.enumeration && key == std::string(f.name) + "_name") ||
-          (f.mask && key == std::string(f.name) + "_bits")) {
+          (f.mask && key == std::string(f.name) + "_bits") ||
+          (f.unit && key == std::string(f.name) + '_' + f.unit->symbol)) {
         return true;
       }
     }

@@ -123,6 +123,7 @@ const Row kGood[] = {
     {"FloatSubnormal", {{"real", real("1e-45")}}, "02833412fffe01000000060709"},
     {"OnlyValueImplied", {{"seven", {}}}, "02833412fffe0000c03f060709"},
     {"ExpectedValueImplied", {{"eight", {}}}, "02833412fffe0000c03f060708"},
+    {"ConvertedBesideIsIgnored", {{"little_mV", real("0.5")}}, "02833412fffe0000c03f060709"},
     {"SmallestSigned", {{"signed", integer(-32768)}}, "0283341280000000c03f060709"},
 };
 

@@ -14,6 +14,8 @@ inline constexpr const char* kFlagNames[8] = {"up", "down", nullptr, nullptr,
                                               nullptr, nullptr, nullptr, "odd"};
 inline constexpr MaskTable kFlags = {"flags", kFlagNames, 8};
 
+inline constexpr Unit kMillivolt = {"mV", 0.5, 0};
+
 inline constexpr Valid kAny = {ValidKind::kAny, 0, 0, nullptr, 0};
 inline constexpr Expr kNoExpr = {nullptr, 0};
 
@@ -84,6 +86,10 @@ constexpr Field little(Field f) {
   f.little_endian = true;
   return f;
 }
+constexpr Field with_unit(Field f, const Unit& unit) {
+  f.unit = &unit;
+  return f;
+}
 template <std::size_t N>
 constexpr Expr expr(const ExprStep (&steps)[N]) {
   return {steps, static_cast<std::uint8_t>(N)};
@@ -100,7 +106,7 @@ inline constexpr std::int64_t kFourOrSix[] = {4, 6};
 inline constexpr Field kScalarFields[] = {
     with_enum(field("colour", Kind::kUint, 1, 0), kColour),
     with_mask(field("flags", Kind::kMask, 1, 1), kFlags),
-    little(field("little", Kind::kUint, 2, 2)),
+    with_unit(little(field("little", Kind::kUint, 2, 2)), kMillivolt),
     field("signed", Kind::kSint, 2, 4),
     little(field("real", Kind::kFloat, 4, 6)),
     with_valid(field("four_or_six", Kind::kUint, 1, 10),
