@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 
 #include "codec/runtime/bytes.h"
 #include "codec/runtime/result.h"
@@ -26,7 +27,9 @@ struct Packet {
   Framing framing = Framing::kBare;
   Direction direction = Direction::kUnknown;
   Bytes bytes;
-  std::uint64_t offset_bytes = 0;      ///< Of its first byte (flags excluded) in the input.
+  /// Where its frame begins in the input: the first byte after the flag, the length byte, the
+  /// frame control field, the record's data or the line. Errors count from there.
+  std::uint64_t offset_bytes = 0;
   std::int64_t time_ns = kNoTime;      ///< Since the epoch of the input, or kNoTime.
   std::uint32_t interface_id = 0;      ///< Index into the reader's interfaces().
   std::uint16_t link_type = 0;         ///< LINKTYPE_ of a capture file, 0 elsewhere.
@@ -36,10 +39,13 @@ struct Packet {
   std::int32_t crc = kAbsent;          ///< As received.
   // Radio (kRadio).
   std::int32_t fcs = kAbsent;          ///< As received; kAbsent where the capture has none.
+  std::string_view comment;            ///< The capture file's; lives as long as `bytes`.
   /// What the framing itself breaks; fault kNone where it is sound. Its offset counts from the
   /// first byte of the frame (kind byte, length byte or frame control field).
   Error error{Fault::kNone, 0, ReqId::kNone};
-  /// Bytes that were dropped because the frame grew beyond every bound (Fault::kTooLong).
+  /// Bytes of the packet that are not in `bytes`: it grew beyond every bound (Fault::kTooLong), the
+  /// capture kept only its beginning (Fault::kCut), or they could not be read at all
+  /// (Fault::kContainer).
   std::uint64_t dropped_bytes = 0;
 };
 

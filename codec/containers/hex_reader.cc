@@ -1,0 +1,132 @@
+#include "codec/containers/hex_reader.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "codec/containers/link_record.h"
+
+namespace rubric {
+namespace {
+
+constexpr int kNoDigit = -1;
+
+int hex_digit(std::uint8_t c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  const int lower = c | 0x20;
+  return lower >= 'a' && lower <= 'f' ? lower - 'a' + 10 : kNoDigit;
+}
+
+bool is_space(std::uint8_t c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
+
+std::uint16_t link_type_of(const ReaderOptions& options) {
+  switch (options.hex_framing) {
+    case Framing::kHdlc:
+      return kLinkSerial;
+    case Framing::kSf:
+      return kLinkSf;
+    case Framing::kRadio:
+      return options.hex_has_fcs ? kLinkRadioFcs : kLinkRadioNoFcs;
+    case Framing::kBare:
+      break;
+  }
+  return 0;
+}
+
+}  // namespace
+
+Error decode_hex_line(Bytes text, std::vector<std::uint8_t>& bytes) {
+  bytes.clear();
+  bool at_token = true;  // Where a 0x may stand.
+  for (std::size_t i = 0; i < text.size();) {
+    if (is_space(text[i])) {
+      at_token = true;
+      ++i;
+      continue;
+    }
+    if (text[i] == '#') break;
+    const bool pair = i + 1 < text.size();
+    if (at_token && pair && text[i] == '0' && (text[i + 1] | 0x20) == 'x') {
+      i += 2;
+      at_token = false;
+      // A 0x with nothing behind it is no byte.
+      if (i < text.size() && hex_digit(text[i]) != kNoDigit) continue;
+      return fail(Fault::kUnexpected, i, req::kWireHex).error;
+    }
+    at_token = false;
+    const int high = hex_digit(text[i]);
+    if (high == kNoDigit) return fail(Fault::kUnexpected, i, req::kWireHex).error;
+    const int low = pair ? hex_digit(text[i + 1]) : kNoDigit;
+    if (low == kNoDigit) return fail(Fault::kUnexpected, i + 1, req::kWireHex).error;
+    bytes.push_back(static_cast<std::uint8_t>(high << 4 | low));
+    i += 2;
+  }
+  return Error{Fault::kNone, 0, ReqId::kNone};
+}
+
+HexReader::HexReader(const ReaderOptions& options) : options_(options) {
+  Interface stream;
+  stream.name = options.interface_name;
+  interfaces_.push_back(stream);
+}
+
+void HexReader::feed(Bytes chunk, PacketSink sink) {
+  while (!chunk.empty()) {
+    const void* const found = std::memchr(chunk.data(), '\n', chunk.size());
+    if (found == nullptr) return hold(chunk);
+    const auto size =
+        static_cast<std::size_t>(static_cast<const std::uint8_t*>(found) - chunk.data());
+    if (held_.empty() && size <= kHexLineMax) {
+      line(chunk.first(size), sink);
+      line_offset_ += size;
+    } else {
+      hold(chunk.first(size));
+      deliver_held(sink);
+    }
+    ++line_offset_;
+    chunk = chunk.from(size + 1);
+  }
+}
+
+void HexReader::hold(Bytes text) {
+  const std::size_t kept = std::min(text.size(), kHexLineMax - held_.size());
+  held_.insert(held_.end(), text.begin(), text.begin() + kept);
+  dropped_ += text.size() - kept;
+}
+
+void HexReader::deliver_held(PacketSink sink) {
+  line(Bytes(held_.data(), held_.size()), sink);
+  line_offset_ += held_.size() + dropped_;
+  held_.clear();
+  dropped_ = 0;
+}
+
+void HexReader::line(Bytes text, PacketSink sink) {
+  Packet packet;
+  packet.framing = options_.hex_framing;
+  packet.direction = options_.direction;
+  packet.offset_bytes = line_offset_;
+  packet.error = decode_hex_line(text, bytes_);
+  if (dropped_ != 0) packet.error = fail(Fault::kTooLong, text.size(), req::kWireHex).error;
+  if (packet.error.fault != Fault::kNone) {
+    packet.framing = Framing::kBare;
+    packet.bytes = text;
+    packet.dropped_bytes = dropped_;
+    return sink(packet);
+  }
+  if (bytes_.empty()) return;
+  const Bytes bytes(bytes_.data(), bytes_.size());
+  if (options_.hex_framing == Framing::kBare) {
+    packet.bytes = bytes;
+  } else {
+    decode_record(bytes, bytes.size(), link_type_of(options_), req::kWireHex, packet);
+    packet.link_type = 0;
+  }
+  sink(packet);
+}
+
+void HexReader::finish(PacketSink sink) {
+  if (!held_.empty()) deliver_held(sink);
+  line_offset_ = 0;
+}
+
+}  // namespace rubric

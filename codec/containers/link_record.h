@@ -1,0 +1,34 @@
+// A record of a capture file, read as its link type says.
+#pragma once
+
+#include <cstdint>
+
+#include "codec/containers/packet.h"
+
+namespace rubric {
+
+// LINKTYPE_ values. USER0 and USER1 are what this kit uses them for.
+inline constexpr std::uint16_t kLinkSerial = 147;   ///< Serial frame, kind byte to CRC, unescaped.
+inline constexpr std::uint16_t kLinkSf = 148;       ///< Serial forwarder packet, no length byte.
+inline constexpr std::uint16_t kLinkRadioFcs = 195;    ///< IEEE802_15_4_WITHFCS.
+inline constexpr std::uint16_t kLinkRadioNoFcs = 230;  ///< IEEE802_15_4_NOFCS.
+inline constexpr std::uint16_t kLinkRadioTap = 283;    ///< IEEE802_15_4_TAP.
+
+inline constexpr std::size_t kRadioFrameMax = 127;  ///< FCS included.
+
+/// Reads the radio frame in `record`, which is whole: fills framing, bytes, fcs, error, and moves
+/// offset_bytes from the record's first byte to the frame control field.
+/// Faults: kEmpty, kTooShort (no room for the FCS), kTooLong, kFcs; of a TAP header kTruncated,
+/// kUnexpected (version, FCS type), kOutOfRange (length), kUnsupported (32-bit FCS), with offsets
+/// from the record's first byte. What some sniffers put in place of the FCS is not guessed.
+/// Source: IEEE 802.15.4-2006, sections 6.4.1 and 7.2.1; LINKTYPE_IEEE802_15_4_TAP.
+void decode_radio_record(Bytes record, std::uint16_t link_type, Packet& packet);
+
+/// Reads a record of any link type of which `record` is what was captured and `original_bytes` the
+/// size that it had. `packet` comes with offset_bytes of the record's first byte.
+/// Faults: those of the link type, kCut (not captured whole; by rule `container`), kUnsupported
+/// (another link type: kBare and the bytes as they are).
+void decode_record(Bytes record, std::uint64_t original_bytes, std::uint16_t link_type,
+                   ReqId container, Packet& packet);
+
+}  // namespace rubric

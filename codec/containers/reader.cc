@@ -1,0 +1,103 @@
+#include "codec/containers/reader.h"
+
+#include <algorithm>
+
+#include "codec/containers/hdlc_reader.h"
+#include "codec/containers/hex_reader.h"
+#include "codec/containers/pcap_reader.h"
+#include "codec/containers/pcapng_format.h"
+#include "codec/containers/pcapng_reader.h"
+#include "codec/containers/sf_reader.h"
+#include "codec/runtime/hdlc.h"
+
+namespace rubric {
+namespace {
+
+// More would not make the guess better.
+constexpr std::size_t kSampleMax = 16 * 1024;
+
+bool is_pcap(Bytes first) {
+  if (first.size() < 4) return false;
+  for (std::uint32_t magic : {0xA1B2C3D4u, 0xA1B23C4Du}) {
+    if (load_le32(first.data()) == magic || load_be32(first.data()) == magic) return true;
+  }
+  return false;
+}
+
+bool is_json(Bytes first) {
+  for (std::uint8_t c : first) {
+    if (c == ' ' || c == '\t' || c == '\r' || c == '\n') continue;
+    return c == '{';
+  }
+  return false;
+}
+
+// Every line is hex text, a comment or empty, and not all of them are empty.
+bool is_hex_text(Bytes sample) {
+  std::vector<std::uint8_t> bytes;
+  bool any = false;
+  for (const std::uint8_t* p = sample.begin(); p != sample.end();) {
+    const std::uint8_t* const newline = std::find(p, sample.end(), '\n');
+    const bool whole = newline != sample.end();
+    const Bytes line(p, static_cast<std::size_t>(newline - p));
+    const Error error = decode_hex_line(line, bytes);
+    // The sample may end within a byte of its last line.
+    if (error.fault != Fault::kNone && (whole || error.offset_bytes < line.size())) return false;
+    any = any || !bytes.empty() || std::find(line.begin(), line.end(), '#') != line.end();
+    p = whole ? newline + 1 : newline;
+  }
+  return any;
+}
+
+// An intact frame anywhere, or at least the beginning of one: a stream may begin in mid-frame.
+bool is_hdlc(Bytes sample) {
+  bool found = false;
+  auto look = [&](const Packet& packet) {
+    const bool known = packet.kind == kSerialAck || packet.kind == kSerialPacketAck ||
+                       packet.kind == kSerialPacketNoAck || packet.kind == kSerialUnknown;
+    const bool opened = packet.offset_bytes != 0 && packet.error.fault == Fault::kCut;
+    found = found || (known && (packet.error.fault == Fault::kNone || opened));
+  };
+  HdlcReader reader;
+  reader.feed(sample, look);
+  reader.finish(look);
+  return found;
+}
+
+}  // namespace
+
+std::unique_ptr<Reader> make_reader(InputFormat format, const ReaderOptions& options) {
+  switch (format) {
+    case InputFormat::kHdlc:
+      return std::make_unique<HdlcReader>(options);
+    case InputFormat::kSf:
+      return std::make_unique<SfReader>(options);
+    case InputFormat::kPcap:
+      return std::make_unique<PcapReader>();
+    case InputFormat::kPcapng:
+      return std::make_unique<PcapngReader>();
+    case InputFormat::kHex:
+      return std::make_unique<HexReader>(options);
+    case InputFormat::kUnknown:
+    case InputFormat::kJsonl:
+      break;
+  }
+  return nullptr;
+}
+
+InputFormat detect(Bytes first_bytes) {
+  const Bytes sample = first_bytes.first(std::min(first_bytes.size(), kSampleMax));
+  if (sample.size() >= 4 && load_le32(sample.data()) == pcapng::kSectionHeader) {
+    return InputFormat::kPcapng;
+  }
+  if (is_pcap(sample)) return InputFormat::kPcap;
+  if (sample.size() >= 2 && sample[0] == kSfMagic && sample[1] == kSfVersion) {
+    return InputFormat::kSf;
+  }
+  if (is_json(sample)) return InputFormat::kJsonl;
+  if (is_hex_text(sample)) return InputFormat::kHex;
+  if (is_hdlc(sample)) return InputFormat::kHdlc;
+  return InputFormat::kUnknown;
+}
+
+}  // namespace rubric

@@ -1,0 +1,45 @@
+// What readers of length-prefixed containers share: joining what spans two chunks.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "codec/containers/reader.h"
+
+namespace rubric {
+
+/// Reads an input that is a row of units, each of which tells its size near its beginning. A unit
+/// that lies in one chunk is handed on in place; one that spans chunks is joined in a buffer, which
+/// grows with the bytes that really came, never with what a length claims.
+class UnitReader : public Reader {
+ public:
+  void feed(Bytes chunk, PacketSink sink) final;
+  void finish(PacketSink sink) final;
+
+ protected:
+  /// What step made of its input: the bytes that it is done with, or, where it is done with none,
+  /// how many it wants to see together (more than it saw).
+  struct Step {
+    std::size_t used_bytes;
+    std::size_t wanted_bytes;
+  };
+  static Step used(std::size_t bytes) { return {bytes, 0}; }
+  static Step want(std::size_t bytes) { return {0, bytes}; }
+
+  /// Takes units off the front of `input`, which is not empty and begins at offset().
+  virtual Step step(Bytes input, PacketSink sink) = 0;
+  /// The input has ended with `rest`, of which step wanted more. Leaves the reader as new.
+  virtual void end(Bytes rest, PacketSink sink) = 0;
+
+  /// Of the first byte that step or end sees, in the whole input.
+  std::uint64_t offset() const { return offset_; }
+  void advance(std::size_t bytes) { offset_ += bytes; }
+
+ private:
+  std::uint64_t offset_ = 0;
+  std::vector<std::uint8_t> held_;
+  std::size_t wanted_ = 0;
+};
+
+}  // namespace rubric

@@ -1,0 +1,112 @@
+// One interface for everything that packets are written to.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "codec/containers/packet.h"
+
+namespace rubric {
+
+/// Writes packets as bytes that are appended to a string; where they go is the caller's matter.
+class Writer {
+ public:
+  virtual ~Writer() = default;
+
+  /// Appends what the format begins with.
+  virtual void begin(std::string& out);
+
+  /// Appends a packet heard on the interface of that name. False, and nothing appended, if the
+  /// format cannot hold such a packet.
+  virtual bool write(const Packet& packet, std::string_view interface_name, std::string& out) = 0;
+  bool write(const Packet& packet, std::string& out) { return write(packet, {}, out); }
+
+  /// Appends what the format ends with.
+  virtual void finish(std::string& out);
+};
+
+/// Serial frames, each between two flags of its own, since motes drop a frame that shares its
+/// opening flag. A kHdlc packet is put together from its pieces, the CRC as received, so that a
+/// malformed one comes out as it went in; an aborted one ends with escape and flag, one that was
+/// cut without any flag. A kSf packet becomes a PACKET_NOACK frame with a fresh CRC. Others are
+/// refused. Source: TEP 113, section 3.1.
+class HdlcWriter final : public Writer {
+ public:
+  using Writer::write;
+  bool write(const Packet& packet, std::string_view interface_name, std::string& out) override;
+};
+
+/// One direction of a serial forwarder connection: handshake, then length byte and packet. Takes
+/// kSf packets, empty and cut ones included, and sound kHdlc ones that carry a packet of 1 to 255
+/// bytes. Source: TinyOS serial forwarder protocol, version 2.
+class SfWriter final : public Writer {
+ public:
+  using Writer::write;
+  void begin(std::string& out) override;
+  bool write(const Packet& packet, std::string_view interface_name, std::string& out) override;
+};
+
+/// A pcap file of one link type (see link_record.h), little-endian, nanoseconds. Packets of other
+/// framings are refused; a missing time is written as 0, as is one before 1970.
+/// Source: draft-ietf-opsawg-pcap.
+class PcapWriter final : public Writer {
+ public:
+  explicit PcapWriter(std::uint16_t link_type) : link_type_(link_type) {}
+  using Writer::write;
+  void begin(std::string& out) override;
+  bool write(const Packet& packet, std::string_view interface_name, std::string& out) override;
+
+ private:
+  std::uint16_t link_type_;
+};
+
+/// A pcapng file: an interface for each pair of link type and interface name, described before its
+/// first packet; times in nanoseconds; direction flags; comments; at the end statistics with the
+/// times of the first and the last packet. Takes everything but a kBare packet without link type.
+/// A packet without time is written with the time of the one before it.
+/// Source: draft-ietf-opsawg-pcapng.
+class PcapngWriter final : public Writer {
+ public:
+  using Writer::write;
+  void begin(std::string& out) override;
+  bool write(const Packet& packet, std::string_view interface_name, std::string& out) override;
+  void finish(std::string& out) override;
+
+ private:
+  struct Described {
+    std::uint16_t link_type;
+    std::string name;
+    std::uint64_t packets;
+  };
+  std::uint32_t interface_of(std::uint16_t link_type, std::string_view name, std::string& out);
+
+  std::vector<Described> interfaces_;
+  std::string record_;
+  std::int64_t last_ns_ = 0;
+  std::int64_t first_ns_ = kNoTime;
+  std::int64_t latest_ns_ = kNoTime;
+};
+
+/// A packet a line in hex, bytes separated by spaces, as Listen prints them (from the dispatch byte
+/// on; a radio frame from the frame control field on, without FCS). Malformed packets and frames
+/// that carry no packet are refused. Source: TinyOS Listen tool.
+class HexWriter final : public Writer {
+ public:
+  explicit HexWriter(bool upper_case = true) : upper_case_(upper_case) {}
+  using Writer::write;
+  bool write(const Packet& packet, std::string_view interface_name, std::string& out) override;
+
+ private:
+  bool upper_case_;
+};
+
+/// The link type that a capture file holds `packet` under; 0 if under none.
+std::uint16_t link_type_of(const Packet& packet);
+
+/// What a capture file holds of `packet`: the record that link_record.h reads back.
+void append_record(const Packet& packet, std::string& out);
+
+}  // namespace rubric
