@@ -1,0 +1,37 @@
+// The parts of a generated header; emit_cpp.cc puts them together.
+#pragma once
+
+#include <string>
+
+#include "spec/compiler/emit_cpp_layout.h"
+
+namespace rubricc::cpp {
+
+/// `struct T`, its comparison, and the unchecked parts of write.
+std::string emit_value(const Layout& layout, const Spec& spec);
+/// `class TView`.
+std::string emit_view(const Layout& layout, const Spec& spec);
+/// The body of TView::check and, where it is needed, TView::check_short.
+std::string emit_check(const Layout& layout, const Spec& spec);
+/// The kinds of a payload or of interpretations, and the views of each.
+std::string emit_group(const Layout& layout, const Group& group, const Spec& spec);
+/// `class TBuilder`.
+std::string emit_builder(const Layout& layout, const Spec& spec);
+/// `write(const T&, MutableBytes)`.
+std::string emit_write(const Layout& layout, const Spec& spec);
+
+/// enums.h, and the header of a mask.
+std::string emit_enums(const Spec& spec);
+std::string emit_mask(const Type& type);
+/// all.h
+std::string emit_all(const Spec& spec);
+
+/// The bytes of a field of a builder.
+SizeText builder_sizes(const Spec& spec);
+
+/// A line of documentation with the byte range and the requirement.
+std::string field_doc(const Layout& layout, std::size_t i);
+/// Whether a value of the type can have lengths that do not fit.
+bool has_lengths(const Type& type);
+
+}  // namespace rubricc::cpp
