@@ -95,6 +95,11 @@ class Resolver {
   /// The field that the path begins with, or null after an error.
   const Field* head(const Expr& expr) {
     const std::string& name = expr.path[0];
+    if (scope_.wide) {
+      check_.error(expr.place, fmt::format("{} is no constant", quoted(to_text(expr))),
+                   "a number or an enum::value was expected");
+      return nullptr;
+    }
     const auto& fields = scope_.type.fields;
     std::vector<std::string> known;
     for (std::size_t i = 0; i < fields.size(); ++i) {

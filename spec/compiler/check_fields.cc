@@ -11,9 +11,10 @@ bool is_number(const Field& field) { return is_integer(field) || field.kind == V
 
 void check_bytes(Check& check, Field& field) {
   if (field.kind != ValueKind::kBytes || field.extent != ExtentKind::kOwn) return;
+  check.open.insert(&field);
+  if (field.refused_keys || field.places.contains("contents")) return;
   check.error(field.place, fmt::format("field {} has neither type nor size", quoted(field.id)),
               "type, size, size-eos or contents was expected");
-  check.open.insert(&field);
 }
 
 void check_extent(Check& check, Field& field) {

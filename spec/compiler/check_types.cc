@@ -20,7 +20,7 @@ class Requirements {
   void check_type(Type& type) {
     known(type.requirement, place_of(type.places, "-requirement", type.place));
     const bool needed = !type.is_mask && type.carrier.empty() && type.id != type.spec->id;
-    if (needed && !type.places.contains("-requirement")) {
+    if (needed && !type.places.contains("-requirement") && !type.refused_keys) {
       check_.error(type.place, fmt::format("type {} without requirement", quoted(type.id)),
                    "-requirement: was expected");
     }

@@ -45,7 +45,7 @@ class Loader {
     }
     diagnostics_.add_source(file, text);
     auto spec = read_spec(file, text, diagnostics_, budget_);
-    if (spec == nullptr) return nullptr;
+    if (spec == nullptr || budget_ < 0) return nullptr;
     open_.push_back(file);
     for (std::size_t i = 0; i < spec->import_names.size(); ++i) {
       import(*spec, spec->import_names[i], spec->import_places[i]);
@@ -59,7 +59,9 @@ class Loader {
  private:
   void import(Spec& spec, const std::string& name, const Place& place) {
     const std::string file = beside(spec.file, name);
-    if (std::count(spec.import_names.begin(), spec.import_names.end(), name) > 1) {
+    const bool again = std::any_of(spec.imports.begin(), spec.imports.end(),
+                                   [&](const Spec* one) { return one->file == file; });
+    if (again) {
       diagnostics_.error(place, fmt::format("{} is imported twice", quoted(name)));
       return;
     }

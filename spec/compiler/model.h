@@ -94,6 +94,7 @@ struct Field {
   std::string name;                    // `-name`, else id.
   Place place;
   KeyPlaces places;
+  bool refused_keys = false;           // Then what is missing may be among them.
   std::string doc;
   std::string doc_ref;
   std::string requirement;             // `-requirement`, else the type's.
@@ -137,6 +138,7 @@ struct Type {
   const Spec* spec = nullptr;
   Place place;
   KeyPlaces places;
+  bool refused_keys = false;           // Then what is missing may be among them.
   std::string doc;
   std::string doc_ref;
   std::string requirement;

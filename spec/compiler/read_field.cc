@@ -91,6 +91,9 @@ void read_type_of(const YamlInput& input, const YamlMap& map, const Spec& spec, 
   if (!word || set_number(input, entry->value, *word, spec, field)) return;
   if (*word == "b1") {
     input.error(entry->value, "b1 outside a mask", "-mask: 8 or -mask: 16 was expected at the type");
+    field.kind = ValueKind::kUint;
+    field.width_bytes = 1;
+    return;
   }
   field.kind = ValueKind::kStruct;
   field.type_name = *word;
@@ -268,6 +271,7 @@ std::unique_ptr<Field> read_field(const YamlInput& input, const YAML::Node& node
   if (!node.IsMap()) return nullptr;
   auto field = std::make_unique<Field>();
   field->places = places_of(input, map);
+  field->refused_keys = map.refused_keys();
   field->place = input.place(instance != nullptr ? instance->key_node : node);
   field->is_instance = !in_seq;
   if (instance != nullptr) {

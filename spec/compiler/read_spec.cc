@@ -109,6 +109,7 @@ void read_fields(const YamlInput& input, const YamlMap& map, const Spec& spec, T
 
 void read_type(const YamlInput& input, const YamlMap& map, const Spec& spec, Type& type) {
   type.places = places_of(input, map);
+  type.refused_keys = map.refused_keys();
   type.name = map.text("-name").value_or(type.id);
   if (map.has("-name")) {
     check_id(input.diagnostics, type.places.at("-name"), type.name, "a shown name");
@@ -214,7 +215,7 @@ std::unique_ptr<Spec> read_spec(const std::string& file, const std::string& text
   if (!root) return nullptr;
   const YamlInput input{file, diagnostics, budget};
   if (!root->IsMap()) {
-    diagnostics.error({file, 1, 1}, "not a spec", "a mapping with meta: was expected");
+    diagnostics.error(input.place(*root), "not a spec", "a mapping with meta: was expected");
     return nullptr;
   }
   auto spec = std::make_unique<Spec>();

@@ -59,16 +59,16 @@ Place YamlInput::place(const YAML::Node& node) const {
 }
 
 void YamlInput::error(const YAML::Node& node, std::string what, std::string_view expected) const {
-  diagnostics.error(place(node), std::move(what), expected);
+  if (budget >= 0) diagnostics.error(place(node), std::move(what), expected);
 }
 
 bool YamlInput::spend(const YAML::Node& node) const {
-  if (budget > 0) {
-    --budget;
-    return true;
+  if (budget > 0) return --budget, true;
+  if (budget == 0) {
+    error(node, "too much to read once aliases are expanded",
+          fmt::format("at most {} values are read", kNodeBudget));
   }
-  error(node, "too much to read once aliases are expanded",
-        fmt::format("at most {} values are read", kNodeBudget));
+  budget = -1;
   return false;
 }
 
@@ -107,6 +107,7 @@ YamlMap::YamlMap(const YamlInput& input, const YAML::Node& node, std::string_vie
     if (!allowed.empty() && std::find(allowed.begin(), allowed.end(), key) == allowed.end()) {
       input.error(pair.first, fmt::format("unknown key {} of {}", quoted(key), what),
                   suggestion(key, allowed));
+      refused_keys_ = true;
       continue;
     }
     index_.emplace(key, entries_.size());
@@ -162,7 +163,8 @@ std::vector<YAML::Node> yaml_items(const YamlInput& input, const YAML::Node& nod
 std::optional<std::string> yaml_text(const YamlInput& input, const YAML::Node& node,
                                      std::string_view what) {
   if (node.IsScalar()) return node.Scalar();
-  input.error(node, fmt::format("{} is {}", quoted(what), kind_of(node)),
+  const bool is_key = what.find(' ') == what.npos;
+  input.error(node, fmt::format("{} is {}", is_key ? quoted(what) : what, kind_of(node)),
               node.IsNull() ? "a value was expected; quote the word 'null'"
                             : "a value was expected");
   return std::nullopt;

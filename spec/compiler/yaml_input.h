@@ -15,7 +15,8 @@
 
 namespace rubricc {
 
-/// One file being read. Aliases make a small file large; `budget` bounds what is read in a run.
+/// One file being read. Aliases make a small file large; `budget` bounds what is read in a run, and
+/// once it is used up (-1) what is missing is no longer reported.
 struct YamlInput {
   std::string file;
   Diagnostics& diagnostics;
@@ -23,7 +24,7 @@ struct YamlInput {
 
   Place place(const YAML::Node& node) const;
   void error(const YAML::Node& node, std::string what, std::string_view expected = {}) const;
-  /// False, after one error, once the budget is used up.
+  /// False once the budget is used up, which is reported once.
   bool spend(const YAML::Node& node) const;
 };
 constexpr int kNodeBudget = 200'000;
@@ -48,6 +49,7 @@ class YamlMap {
   const std::vector<YamlEntry>& entries() const { return entries_; }
   const YamlEntry* find(std::string_view key) const;
   bool has(std::string_view key) const { return find(key) != nullptr; }
+  bool refused_keys() const { return refused_keys_; }
 
   /// The value of `key`; nothing, after an error, where it is of another kind; nothing if absent.
   std::optional<std::string> text(std::string_view key) const;
@@ -58,6 +60,7 @@ class YamlMap {
   const YamlInput& input_;
   std::vector<YamlEntry> entries_;
   std::map<std::string, std::size_t, std::less<>> index_;
+  bool refused_keys_ = false;
 };
 
 /// The items of a sequence; empty after an error where `node` is none.

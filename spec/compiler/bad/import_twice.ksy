@@ -1,0 +1,7 @@
+# expect: 7:7: 'imports/good' is imported twice
+meta:
+  id: bad
+  endian: be
+  imports:
+    - imports/good
+    - imports/good

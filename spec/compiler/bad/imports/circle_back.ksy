@@ -1,0 +1,5 @@
+# The other half of the circle.
+meta:
+  id: circle_back
+  imports:
+    - circle

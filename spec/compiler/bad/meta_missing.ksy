@@ -1,0 +1,2 @@
+# expect: 2:1: no meta; a spec begins with meta: and its id
+types: {}

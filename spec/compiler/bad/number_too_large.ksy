@@ -1,0 +1,14 @@
+# expect: 14:18: '99999999999999999999' is no number; decimal or 0x digits of a 64-bit number were
+#   expected
+meta:
+  id: bad
+  endian: be
+types:
+  one:
+    -requirement: WIRE-DATA
+    seq:
+      - id: n
+        type: u4
+      - id: b
+        type: u1
+        if: n == 99999999999999999999

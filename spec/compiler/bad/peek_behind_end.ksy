@@ -1,0 +1,14 @@
+# expect: 12:7: peek 'b' lies behind the end of 'one'; 'one' has at most 1 bytes
+meta:
+  id: bad
+  endian: be
+types:
+  one:
+    -requirement: WIRE-DATA
+    seq:
+      - id: a
+        type: u1
+    instances:
+      b:
+        pos: 1
+        type: u1

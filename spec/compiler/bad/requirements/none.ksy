@@ -1,0 +1,3 @@
+# A spec without types, to read requirements with.
+meta:
+  id: none

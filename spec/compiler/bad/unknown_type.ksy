@@ -1,0 +1,13 @@
+# expect: 11:15: unknown type 'onee'; did you mean 'one'?
+# expect: 13:15: unknown type 'u8'; did you mean 'u1'?
+meta:
+  id: bad
+  endian: be
+types:
+  one:
+    -requirement: WIRE-DATA
+    seq:
+      - id: a
+        type: onee
+      - id: b
+        type: u8

@@ -1,0 +1,2 @@
+# expect: 2:1: not a spec; a mapping with meta: was expected
+- meta

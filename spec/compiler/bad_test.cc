@@ -1,0 +1,121 @@
+// Every file in bad/ holds a mistake and says in its first lines what must be reported:
+//   # expect: line:column: text        (or another file before it)
+//   #   continued
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "spec/compiler/load.h"
+
+namespace rubricc {
+namespace {
+
+const std::string kFolder = "spec/compiler/bad/";
+
+std::vector<std::string> files_in(const std::string& folder, std::string_view extension) {
+  std::vector<std::string> out;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() == extension) out.push_back(entry.path().stem().string());
+  }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+std::vector<std::string> expected_in(const std::string& file) {
+  std::vector<std::string> out;
+  std::ifstream in(file);
+  for (std::string line; std::getline(in, line) && line.starts_with('#');) {
+    if (line.starts_with("# expect: ")) {
+      out.push_back(line.substr(10));
+    } else if (!out.empty()) {
+      out.back() += " " + line.substr(line.find_first_not_of("# "));
+    }
+  }
+  return out;
+}
+
+std::vector<std::string> shown(const Diagnostics& diagnostics, const std::string& file) {
+  std::vector<std::string> out;
+  for (const Diagnostic& one : diagnostics.sorted()) {
+    std::string where = fmt::format("{}:{}: ", one.place.line, one.place.column);
+    if (one.place.file != file) {
+      where = one.place.file.substr(kFolder.size()) + ":" + where;
+    }
+    out.push_back(where + one.text);
+  }
+  return out;
+}
+
+class BadSpec : public testing::TestWithParam<std::string> {};
+
+TEST_P(BadSpec, IsRefusedWithTheDiagnosticsThatItExpects) {
+  const std::string file = kFolder + GetParam() + ".ksy";
+  Model model;
+  Diagnostics diagnostics;
+  load_requirements("spec/requirements.yaml", model, diagnostics);
+  load_specs({file}, model, diagnostics);
+  check_model(model, diagnostics);
+  EXPECT_EQ(shown(diagnostics, file), expected_in(file));
+  EXPECT_FALSE(diagnostics.empty());
+}
+
+INSTANTIATE_TEST_SUITE_P(Files, BadSpec, testing::ValuesIn(files_in(kFolder, ".ksy")),
+                         [](const auto& one) { return one.param; });
+
+class BadRequirements : public testing::TestWithParam<std::string> {};
+
+TEST_P(BadRequirements, AreRefusedWithTheDiagnosticsThatTheyExpect) {
+  const std::string file = kFolder + "requirements/" + GetParam() + ".yaml";
+  Model model;
+  Diagnostics diagnostics;
+  load_requirements(file, model, diagnostics);
+  EXPECT_EQ(shown(diagnostics, file), expected_in(file));
+  EXPECT_FALSE(diagnostics.empty());
+}
+
+INSTANTIATE_TEST_SUITE_P(Files, BadRequirements,
+                         testing::ValuesIn(files_in(kFolder + "requirements/", ".yaml")),
+                         [](const auto& one) { return one.param; });
+
+// A file that lost its first lines would expect nothing and a renamed folder would test nothing.
+TEST(BadSpecs, AreAllThere) {
+  EXPECT_GE(files_in(kFolder, ".ksy").size(), 125U);
+  EXPECT_GE(files_in(kFolder + "requirements/", ".yaml").size(), 9U);
+}
+
+TEST(Diagnostics, ShowTheLineAndACaretBelowTheColumn) {
+  Diagnostics diagnostics;
+  diagnostics.add_source("a.ksy", "meta:\n\tid: \xC3\xA4\xC3\xB6x\n");
+  diagnostics.error({"a.ksy", 2, 10}, "name 'x'", "another was expected");
+  diagnostics.error({"a.ksy", 1, 1}, "first");
+  diagnostics.error({"a.ksy", 1, 1}, "first");
+  diagnostics.error({"b.ksy", 0, 0}, "cannot be read");
+  EXPECT_EQ(diagnostics.print(),
+            "a.ksy:1:1: error: first\n"
+            "    meta:\n"
+            "    ^\n"
+            "a.ksy:2:10: error: name 'x'; another was expected\n"
+            "    \tid: \xC3\xA4\xC3\xB6x\n"
+            "    \t      ^\n"
+            "b.ksy: error: cannot be read\n");
+}
+
+TEST(WireSpecs, HaveNoMistakes) {
+  Model model;
+  Diagnostics diagnostics;
+  load_requirements("spec/requirements.yaml", model, diagnostics);
+  load_specs({"spec/wire/rubicon.ksy", "spec/wire/tinyos.ksy", "spec/wire/oscilloscope.ksy"},
+             model, diagnostics);
+  check_model(model, diagnostics);
+  EXPECT_EQ(diagnostics.print(), "");
+  EXPECT_EQ(model.specs.size(), 3U);
+  EXPECT_EQ(model.specs.front()->id, "tinyos");  // Imports come first.
+}
+
+}  // namespace
+}  // namespace rubricc
