@@ -1,0 +1,140 @@
+#include "tools/record/packet_output.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <system_error>
+
+#include "codec/containers/link_record.h"
+#include "codec/containers/serial_frame.h"
+#include "codec/reflect/fault_text.h"
+#include "codec/runtime/hdlc.h"
+
+namespace rubric::record {
+namespace {
+
+constexpr std::string_view kHdlc = "hdlc";
+constexpr std::string_view kSf = "sf";
+constexpr std::string_view kHex = "hex";
+constexpr std::string_view kPcap = "pcap";
+
+std::string_view link_type_name(std::uint16_t link_type) {
+  switch (link_type) {
+    case kLinkSerial: return "serial frames";
+    case kLinkSf: return "serial forwarder packets";
+    case kLinkRadioFcs: return "radio frames with FCS";
+    case kLinkRadioNoFcs: return "radio frames without FCS";
+    case kLinkRadioTap: return "radio frames with TAP header";
+    default: return "packets of no link type";
+  }
+}
+
+// Why a writer refused a packet.
+std::string reason(std::string_view container, const Packet& packet, std::uint16_t link_type) {
+  if (container == kPcap && link_type_of(packet) != link_type) {
+    return fmt::format("pcap holds one link type, here {}, and no {}", link_type_name(link_type),
+                       link_type_name(link_type_of(packet)));
+  }
+  if (packet.framing == Framing::kBare && packet.error.fault == Fault::kNone) {
+    return fmt::format("{} holds framed packets, no bare messages", container);
+  }
+  if (packet.framing == Framing::kRadio && (container == kHdlc || container == kSf)) {
+    return fmt::format("{} holds no radio frames", container);
+  }
+  if (packet.error.fault != Fault::kNone) {
+    return fmt::format("{} holds no malformed frames: {}", container,
+                       reflect::fault_sentence(packet.error.fault));
+  }
+  if (packet.bytes.empty()) return fmt::format("{} holds no frames without a packet", container);
+  return fmt::format("{} holds no packet of {} bytes", container, packet.bytes.size());
+}
+
+}  // namespace
+
+const std::vector<std::string>& container_names() {
+  static const std::vector<std::string> names = {"hex", "hdlc", "sf", "pcap", "pcapng"};
+  return names;
+}
+
+Holds holds(std::string_view container) {
+  const bool pcapng = container == "pcapng";
+  return {pcapng || container == kPcap, pcapng, pcapng, pcapng};
+}
+
+PacketOutput::PacketOutput(std::string_view container, const std::string& path)
+    : container_(container),
+      fd_(path == "-" ? 1
+                      : ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
+  if (fd_ < 0) throw std::system_error(errno, std::generic_category());
+  output_ = std::make_unique<cli::Output>(fd_);
+}
+
+PacketOutput::~PacketOutput() {
+  output_.reset();
+  if (fd_ > 1) ::close(fd_);
+}
+
+// A pcap file takes the link type of its first packet.
+bool PacketOutput::make_writer(const Packet& first) {
+  if (container_ == kHdlc) writer_ = std::make_unique<HdlcWriter>();
+  if (container_ == kSf) writer_ = std::make_unique<SfWriter>();
+  if (container_ == kHex) writer_ = std::make_unique<HexWriter>();
+  if (container_ == "pcapng") writer_ = std::make_unique<PcapngWriter>();
+  if (container_ == kPcap) {
+    link_type_ = link_type_of(first);
+    if (link_type_ == 0) return false;
+    writer_ = std::make_unique<PcapWriter>(link_type_);
+  }
+  writer_->begin(bytes_);
+  output_->buffer().append(bytes_);
+  return true;
+}
+
+std::string PacketOutput::write(const Packet& packet, std::string_view interface_name) {
+  cut_refused_ = false;
+  if (packet.framing == Framing::kHdlc && packet.error.fault == Fault::kTooLong &&
+      packet.dropped_bytes) {
+    return fmt::format("{} bytes of this frame were dropped when it was read",
+                       packet.dropped_bytes);
+  }
+  if (packet.error.requirement == req::kWireSfHandshake) {
+    return "the handshake of a stream is written whole, or not at all";
+  }
+  if (!writer_ && !make_writer(packet)) return reason(container_, packet, link_type_);
+  bytes_.clear();
+  if (!writer_->write(packet, interface_name, bytes_)) {
+    return reason(container_, packet, link_type_);
+  }
+  cut_refused_ = !cut_.empty();
+  cut_.clear();
+  const bool is_stream = container_ == kHdlc || container_ == kSf;
+  if (is_stream && packet.error.fault == Fault::kCut) {
+    // Without a byte of content, only an escape can have come of it.
+    const bool empty = container_ == kHdlc && serial_content_size(packet) == 0;
+    if (empty) bytes_ += static_cast<char>(kHdlcEscape);
+    cut_ = bytes_;
+  } else {
+    output_->buffer().append(bytes_);
+    output_->drain();
+  }
+  return {};
+}
+
+std::string PacketOutput::finish() {
+  if (!writer_) {
+    Packet none;
+    none.framing = Framing::kHdlc;
+    make_writer(none);
+  }
+  output_->buffer().append(cut_);
+  bytes_.clear();
+  writer_->finish(bytes_);
+  output_->buffer().append(bytes_);
+  output_->flush();
+  std::string what;
+  return output_->failed(&what) ? what : std::string{};
+}
+
+}  // namespace rubric::record
