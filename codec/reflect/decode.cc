@@ -158,12 +158,16 @@ class Decoder {
     if (used == size) return;
     if (tail == Tail::kStale) return push_stale(used, size);
     const Field* last = type.field_count ? &type.fields[type.field_count - 1] : nullptr;
-    set_error(Fault::kTrailing, used, last ? last->requirement : type.requirement);
+    out_.error = Error{Fault::kTrailing, used, last ? last->requirement : type.requirement};
+    out_.error_field = nullptr;
+    out_.error_value = size - used;
   }
 
  private:
-  bool set_error(Fault fault, std::uint32_t offset, ReqId requirement) {
-    out_.error = Error{fault, offset, requirement};
+  bool set_error(Fault fault, std::uint32_t offset, const Field& field, std::int64_t value) {
+    out_.error = Error{fault, offset, field.requirement};
+    out_.error_field = &field;
+    out_.error_value = value;
     return false;
   }
   void push_path(const Type& type) {
@@ -205,6 +209,8 @@ class Decoder {
   bool structure(const Type& type, const Field* field, std::uint32_t base, std::uint32_t limit) {
     const std::size_t index = out_.node_count_;
     push(NodeKind::kStruct, field, base, 0).type = &type;
+    // A structure never takes more than its greatest size, whatever is left around it.
+    if (limit - base > type.max_size) limit = base + type.max_size;
     std::uint32_t at = base;
     bool good = true;
     const Interpretation* interpretations = type.interpretations;
@@ -229,7 +235,7 @@ class Decoder {
   }
 
   bool number(const Field& f, std::uint32_t& at, std::uint32_t limit) {
-    if (limit - at < f.width_bytes) return set_error(Fault::kTruncated, limit, f.requirement);
+    if (limit - at < f.width_bytes) return set_error(Fault::kTruncated, limit, f, f.width_bytes);
     const std::int64_t value = load_number(f, out_.bytes.data() + at);
     if (f.valid.kind != ValidKind::kAny && !valid(f, value, at)) return false;
     Node& node = push(NodeKind::kNumber, &f, at, f.width_bytes);
@@ -244,19 +250,19 @@ class Decoder {
   bool valid(const Field& f, std::int64_t value, std::uint32_t at) {
     if (f.valid.kind == ValidKind::kRange) {
       if (value >= f.valid.min && value <= f.valid.max) return true;
-      return set_error(Fault::kOutOfRange, at, f.requirement);
+      return set_error(Fault::kOutOfRange, at, f, value);
     }
     for (int i = 0; i < f.valid.one_of_count; ++i) {
       if (f.valid.one_of[i] == value) return true;
     }
-    return set_error(Fault::kUnexpected, at, f.requirement);
+    return set_error(Fault::kUnexpected, at, f, value);
   }
 
   bool other(const Field& f, std::uint32_t base, std::uint32_t& at, std::uint32_t limit) {
     std::uint32_t end = limit;
     if (f.extent == Extent::kSize) {
       const std::int64_t size = evaluate(f.size, from(base, limit));
-      if (size < 0 || size > limit - at) return truncated(f, at, limit);
+      if (size < 0 || size > limit - at) return truncated(f, at, limit, size);
       end = at + static_cast<std::uint32_t>(size);
     }
     if (f.repeat != Repeat::kOnce) return array(f, base, at, end);
@@ -269,9 +275,9 @@ class Decoder {
   }
 
   // What there is of a field that is cut off stays visible.
-  bool truncated(const Field& f, std::uint32_t at, std::uint32_t limit) {
+  bool truncated(const Field& f, std::uint32_t at, std::uint32_t limit, std::int64_t needed) {
     if (at < limit) push(NodeKind::kBytes, &f, at, limit - at);
-    return set_error(Fault::kTruncated, limit, f.requirement);
+    return set_error(Fault::kTruncated, limit, f, needed);
   }
 
   bool nested(const Field& f, std::uint32_t base, std::uint32_t& at, std::uint32_t end,
@@ -305,10 +311,10 @@ class Decoder {
     std::int64_t count = 0;
     if (f.repeat == Repeat::kCount) {
       count = evaluate(f.count, from(base, limit));
-      if (count < 0 || count * width > limit - at) return truncated(f, at, limit);
+      if (count < 0 || count * width > limit - at) return truncated(f, at, limit, count * width);
     } else {
       count = (limit - at) / width;
-      if (count * width != limit - at) return truncated(f, at, limit);
+      if (count * width != limit - at) return truncated(f, at, limit, (count + 1) * width);
     }
     const auto size = static_cast<std::uint32_t>(count * width);
     if (f.kind != Kind::kStruct) {

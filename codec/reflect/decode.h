@@ -1,5 +1,5 @@
-// Decodes bytes by the reflection tables into a flat list of nodes that every view of a frame (text,
-// JSON, filters, hex dumps) reads. It knows the tables' form and no protocol.
+// Decodes bytes by the reflection tables into a flat list of nodes that every view of a frame
+// (text, JSON, filters, hex dumps) reads. It knows the tables' form and no protocol.
 #pragma once
 
 #include <cstdint>
@@ -61,6 +61,10 @@ class Decoded {
 
   Bytes bytes;                              ///< The frame; borrowed.
   Error error{Fault::kNone, 0, ReqId::kNone};  ///< Of the first rule that the bytes break.
+  /// With an error: the field that it is about, null where it is about none, and a number: the
+  /// field's value, for kTruncated the bytes that it needs, for kTrailing the bytes too many.
+  const Field* error_field = nullptr;
+  std::int64_t error_value = 0;
 
   const Node* nodes() const { return nodes_.get(); }
   std::size_t node_count() const { return node_count_; }

@@ -8,8 +8,8 @@
 
 namespace rubric::reflect {
 
-/// The active-message header, wherever it was read from. On the radio length counts the bytes behind
-/// the AM type and group is the low byte of the PAN.
+/// The active-message header, wherever it was read from. On the radio length counts the bytes
+/// behind the AM type and group is the low byte of the PAN.
 struct ActiveMessage {
   bool present = false;
   std::uint16_t dest = 0;
@@ -35,7 +35,7 @@ struct MacHeader {
 struct Frame {
   const Packet* packet = nullptr;
   Decoded decoded;                  ///< Empty (no nodes) where the bytes are not a message.
-  std::uint32_t payload_node = 0;   ///< Node of the outermost message's fields; 0 for bare messages.
+  std::uint32_t payload_node = 0;   ///< Node of the outermost message's fields; 0 if bare.
   bool has_payload = false;         ///< payload_node names a structure or opaque bytes.
   ActiveMessage am;
   MacHeader mac;

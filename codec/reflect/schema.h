@@ -23,7 +23,7 @@ struct EnumTable {
   uint16_t count;
 };
 
-/// bit_names[i] names bit i (from the least significant); null where the protocol leaves it unnamed.
+/// bit_names[i] names bit i (from the least significant); null where it has no name.
 struct MaskTable {
   const char* name;
   const char* const* bit_names;

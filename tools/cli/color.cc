@@ -1,0 +1,26 @@
+#include "tools/cli/color.h"
+
+#include <unistd.h>
+
+#include <cstdlib>
+#include <string_view>
+
+namespace rubric::cli {
+
+void add_color_option(CLI::App& app, std::string& when) {
+  app.add_option("--color", when, "Colour the text: auto (on a terminal), always, never")
+      ->check(CLI::IsMember({"auto", "always", "never"}))
+      ->capture_default_str();
+}
+
+bool use_color(const std::string& when, int fd) {
+  if (when == "always") return true;
+  if (when == "never") return false;
+  const char* no_color = std::getenv("NO_COLOR");
+  if (no_color && *no_color) return false;
+  const char* term = std::getenv("TERM");
+  if (term && std::string_view(term) == "dumb") return false;
+  return isatty(fd) == 1;
+}
+
+}  // namespace rubric::cli

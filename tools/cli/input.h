@@ -1,0 +1,60 @@
+// Input of every subcommand that reads packets: which files, what is in them, which protocol.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "codec/containers/packet.h"
+#include "codec/reflect/schema.h"
+
+namespace rubric::cli {
+
+/// What add_input_options fills.
+struct InputOptions {
+  std::vector<std::string> files;  ///< In order; none or "-" is stdin.
+  std::string format = "auto";     ///< auto, hdlc, sf, pcap, pcapng, hex, bare.
+  std::string spec = "rubicon";    ///< A protocol's id.
+  std::string as_message;          ///< Bytes are this message alone; empty: framed packets.
+  bool progress = true;            ///< A bar on stderr for long files, where that is a terminal.
+};
+
+/// Adds FILE..., --input-format, --spec and --as to a subcommand.
+void add_input_options(CLI::App& app, InputOptions& options);
+
+/// The protocol that --spec names; CLI::ValidationError with the nearest name if there is none.
+const reflect::Protocol& chosen_protocol(const InputOptions& options);
+/// The message that --as names, null if it is not given; CLI::ValidationError as above.
+const reflect::Type* chosen_message(const InputOptions& options,
+                                    const reflect::Protocol& protocol);
+
+/// Where a packet came from. Borrowed: valid during the callback.
+struct Source {
+  std::string_view file;            ///< As given; "-" is stdin.
+  std::size_t file_index = 0;       ///< Counts from 0.
+  std::string_view format;          ///< As for --input-format, after detection.
+  std::string_view interface_name;  ///< Empty if the packet's interface has no name.
+};
+
+/// What reading came to.
+struct InputResult {
+  bool failed = false;   ///< A file could not be opened or read, or is damaged; said on stderr.
+  bool stopped = false;  ///< The callback asked to stop.
+};
+
+/// Called for each packet, in order; false stops reading.
+using OnPacket = std::function<bool(const Packet&, const Source&)>;
+/// Called before reading waits for more of a pipe or a device: a good time to flush output.
+using OnIdle = std::function<void()>;
+
+/// Reads all files in constant memory. A damaged place of a capture file is delivered as a packet
+/// with an error; what can be read behind it, and the files after it, are read.
+InputResult read_packets(const InputOptions& options, const OnPacket& on_packet,
+                         const OnIdle& on_idle = {});
+
+/// Whether this packet stands for a damaged place of its file rather than for a malformed frame.
+bool is_damage(const Packet& packet);
+
+}  // namespace rubric::cli

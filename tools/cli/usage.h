@@ -1,0 +1,11 @@
+// Parses the command line, runs the subcommand, and says what is wrong with a bad one.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace rubric::cli {
+
+/// The program's exit code. Mistakes go to stderr, with the nearest subcommand or option.
+int parse_and_run(CLI::App& app, int argc, char** argv);
+
+}  // namespace rubric::cli

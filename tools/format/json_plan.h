@@ -1,0 +1,74 @@
+// Ready-made pieces of JSON for every field and type of a protocol, so that printing a frame is
+// mostly copying short runs of fixed length.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "codec/reflect/schema.h"
+#include "codec/runtime/bytes.h"
+
+namespace rubric::format {
+
+/// Text in one cache line, copied whole: writers need kPieceRoom characters behind what they write.
+struct alignas(64) Piece {
+  char text[63] = {};
+  std::uint8_t size = 0;
+
+  /// Whether `value` fits; it is kept if so.
+  bool set(std::string_view value);
+};
+inline constexpr std::size_t kPieceRoom = 64;
+
+RUBRIC_INLINE char* put(char* at, const Piece& piece) {
+  std::memcpy(at, &piece, sizeof(piece));
+  return at + piece.size;
+}
+
+/// Everything about a field that printing needs.
+struct FieldPlan {
+  Piece key;                    ///< `,"seq_num":`
+  const reflect::Field* field = nullptr;
+  std::string long_key;         ///< The same where it does not fit in `key`.
+  std::string name_key;         ///< `,"type_name":`
+  std::string bits_key;         ///< `,"transducers_bits":`
+  std::string unit_key;         ///< `,"temp_degC":`
+  /// For enums whose values lie close: the member and its name for each value from first_value on,
+  /// `,"type":35,"type_name":"updates"`; size 0 where a value has no name.
+  std::vector<Piece> members;
+  std::int64_t first_value = 0;
+  std::vector<Piece> bits;      ///< For masks: `,"light"` for each bit.
+  bool plain = false;           ///< A number with nothing beside it.
+};
+
+/// The plans of a protocol.
+class JsonPlan {
+ public:
+  /// `units`: a converted value stands beside each field that has a unit.
+  JsonPlan(const reflect::Protocol& protocol, bool units);
+
+  const FieldPlan& field(const reflect::Field* field) const {
+    const auto slot = (reinterpret_cast<std::uintptr_t>(field) - first_address_) / kStep;
+    return plans_[slots_[slot]];
+  }
+  bool units() const { return units_; }
+  /// Most characters that one number or an opening and closing bracket take, slack included.
+  std::size_t max_member_chars() const { return max_member_chars_; }
+
+ private:
+  static constexpr std::uintptr_t kStep = alignof(reflect::Field);
+
+  void add(const reflect::Field& field);
+  void index_addresses();
+
+  bool units_;
+  std::vector<FieldPlan> plans_;
+  std::vector<std::uint16_t> slots_;  ///< By distance from the first field in memory.
+  std::uintptr_t first_address_ = 0;
+  std::size_t max_member_chars_ = 0;
+};
+
+}  // namespace rubric::format

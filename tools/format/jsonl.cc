@@ -1,0 +1,275 @@
+#include "tools/format/jsonl.h"
+
+#include <algorithm>
+
+#include "codec/reflect/fault_text.h"
+#include "tools/format/put.h"
+
+namespace rubric::format {
+namespace {
+
+using reflect::Decoded;
+using reflect::Frame;
+
+/// For all members that are numbers, or text of bounded length.
+constexpr std::size_t kFixedRoom = 2048;
+
+char* put_or_null(char* at, std::int32_t value) {
+  return value == kAbsent ? put(at, "null") : put_uint(at, static_cast<std::uint32_t>(value));
+}
+
+char* put_quoted(char* at, std::string_view ascii) {
+  *at++ = '"';
+  at = put(at, ascii);
+  *at++ = '"';
+  return at;
+}
+
+char* put_hdlc(char* at, const Packet& packet) {
+  at = put_or_null(put(at, "{\"kind\":"), packet.kind);
+  const std::string_view name = serial_kind_name(packet.kind);
+  at = put(at, ",\"kind_name\":");
+  at = name.empty() ? put(at, "null") : put_quoted(at, name);
+  at = put_or_null(put(at, ",\"serial_seq\":"), packet.serial_seq);
+  at = put_or_null(put(at, ",\"crc\":"), packet.crc);
+  at = put_or_null(put(at, ",\"dispatch\":"), dispatch_of(packet));
+  if (packet.error.fault == Fault::kAborted) at = put(at, ",\"aborted\":true");
+  return at;
+}
+
+char* put_radio(char* at, const Frame& frame) {
+  const reflect::MacHeader& mac = frame.mac;
+  const bool far = mac.has_addresses;
+  at = put_or_null(put(at, "{\"fcf\":"), mac.present ? mac.fcf : kAbsent);
+  at = put_or_null(put(at, ",\"dsn\":"), mac.present ? mac.dsn : kAbsent);
+  at = put_or_null(put(at, ",\"destpan\":"), far ? mac.destpan : kAbsent);
+  at = put_or_null(put(at, ",\"dest\":"), far ? mac.dest : kAbsent);
+  at = put_or_null(put(at, ",\"src\":"), far ? mac.src : kAbsent);
+  at = put_or_null(put(at, ",\"network\":"), network_of(frame));
+  return put_or_null(put(at, ",\"fcs\":"), frame.packet->fcs);
+}
+
+char* put_framing(char* at, const Frame& frame) {
+  const Packet& packet = *frame.packet;
+  switch (packet.framing) {
+    case Framing::kHdlc: at = put_hdlc(put(at, ",\"framing\":\"hdlc\",\"frame\":"), packet); break;
+    case Framing::kSf:
+      at = put(at, ",\"framing\":\"sf\",\"frame\":{\"dispatch\":");
+      at = put_or_null(at, dispatch_of(packet));
+      break;
+    case Framing::kRadio: at = put_radio(put(at, ",\"framing\":\"radio\",\"frame\":"), frame); break;
+    case Framing::kBare: at = put(at, ",\"framing\":\"bare\",\"frame\":{"); break;
+  }
+  if (packet.dropped_bytes) {
+    if (at[-1] != '{') *at++ = ',';
+    at = put_uint(put(at, "\"dropped\":"), packet.dropped_bytes);
+  }
+  *at++ = '}';
+  return at;
+}
+
+char* put_am(char* at, const reflect::ActiveMessage& am) {
+  if (!am.present) return put(at, ",\"am\":null");
+  at = put_uint(put(at, ",\"am\":{\"dest\":"), am.dest);
+  at = put_uint(put(at, ",\"src\":"), am.src);
+  at = put_uint(put(at, ",\"length\":"), am.length);
+  at = put_uint(put(at, ",\"group\":"), am.group);
+  at = put_uint(put(at, ",\"type\":"), am.type);
+  *at++ = '}';
+  return at;
+}
+
+char* put_path(char* at, const Decoded& decoded) {
+  const std::size_t count = decoded.path_count();
+  if (count == 0) return put(at, ",\"message\":null,\"path\":[]");
+  at = put_quoted(put(at, ",\"message\":"), decoded.path()[count - 1]->name);
+  at = put(at, ",\"path\":[");
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i) *at++ = ',';
+    at = put_quoted(at, decoded.path()[i]->name);
+  }
+  *at++ = ']';
+  return at;
+}
+
+char* put_stale_and_raw(char* at, const Decoded& decoded) {
+  at = put(at, ",\"stale\":\"");
+  for (std::size_t i = 0; i < decoded.stale_count(); ++i) {
+    const reflect::Range range = decoded.stale()[i];
+    at = put_hex(at, decoded.bytes.sub(range.offset, range.size));
+  }
+  at = put_hex(put(at, "\",\"raw\":\""), decoded.bytes);
+  *at++ = '"';
+  return at;
+}
+
+std::size_t path_room(const Decoded& decoded) {
+  std::size_t room = 0;
+  for (std::size_t i = 0; i < decoded.path_count(); ++i) {
+    room += 2 * std::string_view(decoded.path()[i]->name).size() + 8;
+  }
+  return room;
+}
+
+// Notes and errors are rare and made of text: they may cost.
+void append_text_member(Buffer& out, std::string_view key, std::string_view text) {
+  out.append(key);
+  char* at = out.reserve(6 * text.size() + 2);
+  out.commit(put_json_string(at, text));
+}
+
+void append_uint(Buffer& out, std::uint64_t value) {
+  out.commit(put_uint(out.reserve(kMaxIntChars), value));
+}
+
+void append_notes(const Decoded& decoded, Buffer& out) {
+  out.append(",\"notes\":[");
+  for (std::size_t i = 0; i < decoded.note_count(); ++i) {
+    const reflect::Note& note = decoded.notes()[i];
+    if (i) out.append(',');
+    append_text_member(out, "{\"note\":", reflect::note_name(note.kind));
+    out.append(",\"offset\":");
+    append_uint(out, note.offset);
+    append_text_member(out, ",\"text\":", reflect::note_text(note));
+    out.append('}');
+  }
+  out.append(']');
+}
+
+void append_error(const Frame& frame, Buffer& out) {
+  append_text_member(out, ",\"error\":{\"fault\":", reflect::fault_name(frame.error.fault));
+  out.append(",\"offset\":");
+  append_uint(out, frame.error.offset_bytes);
+  if (frame.error.requirement == ReqId::kNone) {
+    out.append(",\"requirement\":null");
+  } else {
+    const char* id = reflect::requirement(frame.error.requirement).id;
+    append_text_member(out, ",\"requirement\":", id);
+  }
+  append_text_member(out, ",\"text\":", reflect::error_text(frame));
+  out.append('}');
+}
+
+}  // namespace
+
+JsonlFormatter::JsonlFormatter(const reflect::Protocol& protocol, bool units,
+                               std::vector<Path> fields)
+    : nodes_(protocol, units), fields_(std::move(fields)) {}
+
+void JsonlFormatter::print(const Record& record, Buffer& out) {
+  if (!fields_.empty()) return print_selected(record, out);
+  const Frame& frame = *record.frame;
+  const Packet& packet = record.packet();
+  const Decoded& decoded = record.decoded();
+  char* at = out.reserve(kFixedRoom + 6 * record.interface_name.size() + path_room(decoded) +
+                         nodes_.room(decoded));
+  at = put_uint(put(at, "{\"schema\":\"rubric.decode/1\",\"index\":"), record.index);
+  at = put_uint(put(at, ",\"offset\":"), packet.offset_bytes);
+  at = put(at, ",\"time\":");
+  at = record.time_ns == kNoTime ? put(at, "null") : put_time(at, record.time_ns);
+  at = put(at, ",\"interface\":");
+  at = record.interface_name.empty() ? put(at, "null")
+                                     : put_json_string(at, record.interface_name);
+  switch (packet.direction) {
+    case Direction::kInbound: at = put(at, ",\"direction\":\"inbound\""); break;
+    case Direction::kOutbound: at = put(at, ",\"direction\":\"outbound\""); break;
+    case Direction::kUnknown: at = put(at, ",\"direction\":null"); break;
+  }
+  at = put_path(put_am(put_framing(at, frame), frame.am), decoded);
+  at = put(at, ",\"fields\":");
+  const std::size_t root = frame.payload_node;
+  const bool has_fields = frame.has_payload && root < decoded.node_count() &&
+                          decoded[root].kind == reflect::NodeKind::kStruct;
+  at = has_fields ? nodes_.value(at, decoded, root) : put(at, "null");
+  if (decoded.note_count()) {
+    out.commit(at);
+    append_notes(decoded, out);
+    at = out.reserve(kFixedRoom + 4 * decoded.bytes.size());
+  } else {
+    at = put(at, ",\"notes\":[]");
+  }
+  at = put_stale_and_raw(at, decoded);
+  if (!frame.malformed()) {
+    out.commit(put(at, ",\"error\":null}\n"));
+    return;
+  }
+  out.commit(at);
+  append_error(frame, out);
+  out.append("}\n");
+}
+
+void JsonlFormatter::print_selected(const Record& record, Buffer& out) const {
+  out.append("{\"schema\":\"rubric.decode/1\",\"index\":");
+  append_uint(out, record.index);
+  for (const Path& path : fields_) {
+    if (path.text() == "index") continue;
+    append_text_member(out, ",", path.text());
+    out.append(':');
+    append_json_value(path, record, nodes_, out);
+  }
+  out.append("}\n");
+}
+
+namespace {
+
+void append_json_bits(const reflect::Field& field, std::int64_t value, Buffer& out) {
+  const char* separator = "[";
+  for (int bit = 0; bit < field.mask->width_bits; ++bit) {
+    if (!(value >> bit & 1)) continue;
+    out.append(separator);
+    separator = ",";
+    const char* name = field.mask->bit_names[bit];
+    append_text_member(out, {}, name ? std::string(name) : "bit" + std::to_string(bit));
+  }
+  out.append(*separator == '[' ? "[]" : "]");
+}
+
+void append_json(const Value& value, const Record& record, const JsonNodes& nodes, Buffer& out) {
+  switch (value.kind) {
+    case Value::Kind::kAbsent: out.append("null"); break;
+    case Value::Kind::kInteger:
+      out.commit(put_int(out.reserve(kMaxIntChars), value.integer));
+      break;
+    case Value::Kind::kReal:
+      out.commit(put_double(out.reserve(kMaxFloatChars), value.real));
+      break;
+    case Value::Kind::kTime:
+      out.commit(put_time(out.reserve(kMaxTimeChars), value.integer));
+      break;
+    case Value::Kind::kText: append_text_member(out, {}, value.text); break;
+    case Value::Kind::kBits: append_json_bits(*value.field, value.integer, out); break;
+    case Value::Kind::kBytes: {
+      out.append('"');
+      out.commit(put_hex(out.reserve(2 * value.bytes.size()), value.bytes));
+      out.append('"');
+      break;
+    }
+    case Value::Kind::kNode: {
+      char* at = out.reserve(nodes.room(record.decoded()));
+      out.commit(nodes.value(at, record.decoded(), value.node));
+      break;
+    }
+  }
+}
+
+}  // namespace
+
+void append_json_value(const Path& path, const Record& record, const JsonNodes& nodes,
+                       Buffer& out) {
+  const bool list = path.is_list();
+  std::size_t count = 0;
+  if (list) out.append('[');
+  auto each = [&](const Value& value) {
+    if (count++) out.append(',');
+    append_json(value, record, nodes, out);
+    return list;
+  };
+  path.visit_first(record, each);
+  if (list) {
+    out.append(']');
+  } else if (count == 0) {
+    out.append("null");
+  }
+}
+
+}  // namespace rubric::format

@@ -1,0 +1,76 @@
+// Paths to what is known of a frame: what filters compare and --fields selects.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "codec/reflect/schema.h"
+#include "tools/format/attributes.h"
+#include "tools/format/record.h"
+#include "tools/format/value.h"
+
+namespace rubric::format {
+
+/// A path that names nothing; the message says so, and what was meant, perhaps.
+class PathError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// An attribute of every frame ("framing", "am.type"), or the tail of a path to a field
+/// ("devid", "src.devid", "updates.value"). Names of messages stand for their structures:
+/// "rubicon_ack.seq_num". "fields." in front makes a field of what would be an attribute. "x_name",
+/// "x_bits" and "x_UNIT" lead to what jsonl shows beside x.
+class Path {
+ public:
+  /// Throws PathError where no frame of the protocol can have it.
+  Path(std::string_view text, const reflect::Protocol& protocol);
+
+  const std::string& text() const { return text_; }
+
+  /// Visits every value it leads to, elements of arrays one by one, until `visit` returns false.
+  void visit(const Record& record, Visitor visit) const;
+  /// The same, but stays with the first field that matches.
+  void visit_first(const Record& record, Visitor visit) const;
+  /// Whether it can lead to several values at once.
+  bool is_list() const;
+
+  /// Names that its values can have: enum entries, messages, faults, ...
+  std::vector<std::string> names() const;
+  /// Names of the bits of the masks that it can lead to.
+  std::vector<std::string> bit_names() const;
+  /// Whether its values are text or bytes of any kind, such as an interface's name.
+  bool is_free_text() const;
+
+ private:
+  enum class Beside : std::uint8_t { kNothing, kName, kBits, kUnit };
+  struct Target {  // What the last component can mean: a field, perhaps beside it, or a message.
+    const reflect::Field* field;
+    const reflect::Type* type;
+    Beside beside;
+    bool list;  // An array, or within one.
+  };
+
+  void add_targets(const reflect::Field& field, std::string_view name, bool list);
+  const Target* target(const reflect::Node& node) const;
+  static bool give(const Target& target, std::int64_t raw, Visitor visit);
+  static bool give_node(const Target& target, const reflect::Decoded& decoded, std::size_t index,
+                        Visitor visit);
+  void find(const Record& record, bool first_only, Visitor visit) const;
+
+  std::string text_;
+  const reflect::Protocol* protocol_;
+  const Attribute* attribute_ = nullptr;
+  std::vector<std::string> components_;
+  std::vector<Target> targets_;
+};
+
+/// Splits "a,b.c" and makes a path of each.
+std::vector<Path> parse_paths(std::string_view list, const reflect::Protocol& protocol);
+
+/// All attributes, fields and messages, for "did you mean".
+std::vector<std::string> known_names(const reflect::Protocol& protocol);
+
+}  // namespace rubric::format

@@ -1,0 +1,43 @@
+// What a formatter gets and what it is.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "codec/reflect/frame.h"
+#include "tools/format/buffer.h"
+
+namespace rubric::format {
+
+/// A decoded frame with what only the run knows of it. Borrowed: valid during the call.
+struct Record {
+  std::uint64_t index = 0;              ///< Counts the frames of all inputs from 0.
+  std::string_view interface_name;      ///< Empty: the input names none.
+  std::int64_t time_ns = kNoTime;       ///< As --time wants it; kNoTime: not shown.
+  const reflect::Frame* frame = nullptr;
+
+  const Packet& packet() const { return *frame->packet; }
+  const reflect::Decoded& decoded() const { return frame->decoded; }
+};
+
+/// Prints records in one format.
+class Formatter {
+ public:
+  virtual ~Formatter() = default;
+  /// What stands before the first record.
+  virtual void begin(Buffer&) {}
+  virtual void print(const Record& record, Buffer& out) = 0;
+};
+
+/// "hdlc", "sf", "radio", "bare".
+std::string_view framing_name(Framing framing);
+/// "inbound", "outbound", or empty.
+std::string_view direction_name(Direction direction);
+/// Name of a serial packet kind, or empty.
+std::string_view serial_kind_name(std::int32_t kind);
+/// The dispatch byte of serial packets, or kAbsent.
+std::int32_t dispatch_of(const Packet& packet);
+/// The network byte of radio frames, or kAbsent.
+std::int32_t network_of(const reflect::Frame& frame);
+
+}  // namespace rubric::format

@@ -1,0 +1,21 @@
+// The fields of a frame on one line: name=value.
+#pragma once
+
+#include "tools/format/record.h"
+#include "tools/format/style.h"
+
+namespace rubric::format {
+
+struct FieldStyle {
+  bool units = false;      ///< Values with a unit are shown converted.
+  bool in_turns = false;   ///< Values in the colours of the hex dump.
+};
+
+/// Appends all fields of the outermost message. Structures of two numbers are pairs, "dest=11:2";
+/// messages within the message follow behind a bar.
+void append_fields(const Record& record, FieldStyle style, Styled& styled);
+
+/// Hex of the first `most` bytes, and how many there are if there are more.
+void append_hex_short(Bytes bytes, std::size_t most, Buffer& out);
+
+}  // namespace rubric::format

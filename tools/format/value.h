@@ -1,0 +1,59 @@
+// A value somewhere in a frame, as filters compare it and columns show it.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "codec/reflect/schema.h"
+#include "codec/runtime/bytes.h"
+
+namespace rubric::format {
+
+/// Borrowed from the record, or valid during the visit.
+struct Value {
+  enum class Kind : std::uint8_t { kAbsent, kInteger, kReal, kText, kBytes, kTime, kBits, kNode };
+  Kind kind = Kind::kAbsent;
+  std::int64_t integer = 0;               ///< kInteger, kBits; kTime: nanoseconds.
+  double real = 0;                        ///< kReal.
+  std::string_view text;                  ///< kText; beside kInteger its name, where it has one.
+  Bytes bytes;                            ///< kBytes.
+  const reflect::Field* field = nullptr;  ///< Of a field's value: for enum and bit names.
+  std::size_t node = 0;                   ///< kNode: a structure or an array of structures.
+
+  static Value of_integer(std::int64_t value, std::string_view name = {}) {
+    Value v;
+    v.kind = Kind::kInteger;
+    v.integer = value;
+    v.text = name;
+    return v;
+  }
+  static Value of_text(std::string_view value) {
+    Value v;
+    v.kind = Kind::kText;
+    v.text = value;
+    return v;
+  }
+  static Value of_bytes(Bytes value) {
+    Value v;
+    v.kind = Kind::kBytes;
+    v.bytes = value;
+    return v;
+  }
+};
+
+/// Takes values until it returns false.
+class Visitor {
+ public:
+  template <class F>
+  Visitor(F& call)  // NOLINT: a borrowed view of a callable.
+      : object_(&call), call_([](void* object, const Value& value) -> bool {
+          return (*static_cast<F*>(object))(value);
+        }) {}
+  bool operator()(const Value& value) const { return call_(object_, value); }
+
+ private:
+  void* object_;
+  bool (*call_)(void*, const Value&);
+};
+
+}  // namespace rubric::format
