@@ -18,6 +18,11 @@ if(RUBRIC_SANITIZE)
   target_link_options(rubric_options INTERFACE -fsanitize=${RUBRIC_SANITIZE})
 endif()
 
+if(RUBRIC_FUZZ)
+  target_compile_options(rubric_options INTERFACE -fsanitize=fuzzer-no-link)
+  target_link_options(rubric_options INTERFACE -fsanitize=fuzzer-no-link)
+endif()
+
 # rubric_library(NAME SOURCES a.cc ... [DEPS lib ...]): a static library.
 function(rubric_library name)
   cmake_parse_arguments(arg "" "" "SOURCES;DEPS" ${ARGN})
@@ -79,4 +84,12 @@ function(rubric_benchmark name)
   cmake_parse_arguments(arg "" "" "SOURCES;DEPS" ${ARGN})
   add_executable(${name} ${arg_SOURCES})
   target_link_libraries(${name} PRIVATE rubric_options ${arg_DEPS} benchmark::benchmark_main)
+endfunction()
+
+# rubric_fuzzer(NAME SOURCES x_fuzz.cc ... [DEPS lib ...]): a libFuzzer program (clang only).
+function(rubric_fuzzer name)
+  cmake_parse_arguments(arg "" "" "SOURCES;DEPS" ${ARGN})
+  add_executable(${name} ${arg_SOURCES})
+  target_link_libraries(${name} PRIVATE rubric_options ${arg_DEPS})
+  target_link_options(${name} PRIVATE -fsanitize=fuzzer)
 endfunction()

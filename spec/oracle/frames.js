@@ -83,7 +83,7 @@ function mutate(frame, random) {
     case 2: if (out.length > 5) out[5] = interesting[random.below(interesting.length)]; break;
     case 3: if (out.length > 19) out[19] = interesting[random.below(interesting.length)]; break;
     case 4: if (out.length > 16) out[16] = random.below(random.chance(0.5) ? 3 : 256); break;
-    case 5: if (random.chance(0.3)) out[0] = random.below(256); else out[out.length - 1] ^= 1; break;
+    case 5: out[random.chance(0.3) ? 0 : out.length - 1] ^= 1 << random.below(8); break;
     case 6: if (out.length > 7) out[7] = random.below(40); break;
     case 7: if (out.length > 23) out[20 + random.below(4)] = random.below(40); break;
     default:

@@ -74,7 +74,9 @@ async function main() {
     const record = JSON.parse(line);
     const frame = frames[index++];
     const what = disagreement(kaitai, comparer, frame, record);
-    if (what && ++disagreements <= 10) console.log(`frame ${index}: ${what}\n  ${frame.toString('hex')}`);
+    if (what && ++disagreements <= 10) {
+      console.log(`frame ${index}: ${what}\n  ${frame.toString('hex')}`);
+    }
     const fault = record.error ? record.error.fault : 'accepted';
     faults[fault] = (faults[fault] || 0) + 1;
     if (!record.error) messages[record.message] = (messages[record.message] || 0) + 1;
@@ -88,7 +90,8 @@ async function main() {
   console.log('by fault:', JSON.stringify(faults));
   console.log('by message:', JSON.stringify(messages));
   console.log(`disagreements: ${disagreements}`);
-  const good = status <= 1 && index === frames.length && disagreements === 0 && rejected >= 0.3 * index;
+  const good = status <= 1 && index === frames.length && disagreements === 0 &&
+      rejected >= 0.3 * index;
   console.log(good ? '1 passed, 0 failed' : '0 passed, 1 failed');
   process.exit(good ? 0 : 1);
 }
