@@ -23,8 +23,8 @@ class Diagnostics {
   void add_source(const std::string& file, std::string text);
   const std::string* source(const std::string& file) const;
 
-  /// `expected` may be empty. The same error at the same place is kept once: an aliased YAML node is
-  /// read as often as it is used.
+  /// `expected` may be empty. The same error at the same place is kept once: an aliased YAML node
+  /// is read as often as it is used.
   void error(const Place& place, std::string what, std::string_view expected = {});
 
   bool empty() const { return found_.empty(); }

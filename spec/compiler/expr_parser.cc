@@ -145,7 +145,8 @@ class Parser {
         token_ != "not") {
       return name();
     }
-    fail(token_.empty() ? "the expression ends early" : fmt::format("unexpected {}", quoted(token_)),
+    fail(token_.empty() ? "the expression ends early"
+                        : fmt::format("unexpected {}", quoted(token_)),
          "a number, a field or an enum::value was expected");
   }
 
@@ -229,8 +230,8 @@ std::string text_at(const Expr& expr, int level) {
   const int own = level_of(expr.op);
   switch (expr.op) {
     case ExprOp::kInt: return std::to_string(expr.value);
-    case ExprOp::kField: return joined(expr.path, ".");
-    case ExprOp::kEnumValue: return joined(expr.path, "::");
+    case ExprOp::kField: return joined(expr.path, ".") + (expr.to_i ? ".to_i" : "");
+    case ExprOp::kEnumValue: return joined(expr.path, "::") + (expr.to_i ? ".to_i" : "");
     case ExprOp::kNot: out = "not " + text_at(*expr.operands[0], own); break;
     default:
       for (const Operator& candidate : kOperators) {

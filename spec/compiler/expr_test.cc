@@ -25,7 +25,8 @@ TEST(Expressions, BindAsInKaitaiStruct) {
   EXPECT_EQ(parsed("not a == b or c < 1 and d >= 0x10"), "not a == b or c < 1 and d >= 16");
   EXPECT_EQ(parsed("(a == 1 or b == 2) and c == 3"), "(a == 1 or b == 2) and c == 3");
   EXPECT_EQ(parsed("-4 + a.b.c"), "-4 + a.b.c");
-  EXPECT_EQ(parsed("kind.to_i == tinyos::serial_kind::ack.to_i"), "kind == tinyos::serial_kind::ack");
+  EXPECT_EQ(parsed("kind.to_i == tinyos::serial_kind::ack.to_i"),
+            "kind.to_i == tinyos::serial_kind::ack.to_i");
 }
 
 TEST(Expressions, PlacesCountFromTheStartOfTheText) {

@@ -9,10 +9,8 @@
 #include <CLI/CLI.hpp>
 
 #include "spec/compiler/emit.h"
-#include "spec/compiler/load.h"
-#ifdef RUBRICC_HAS_CPP
 #include "spec/compiler/emit_cpp.h"
-#endif
+#include "spec/compiler/load.h"
 
 namespace {
 
@@ -44,9 +42,7 @@ rubricc::GeneratedFiles emit(const Options& options, const rubricc::Model& model
     if (wants(options, "tables")) append(out, rubricc::emit_tables(*spec));
     if (wants(options, "dictionary")) append(out, rubricc::emit_dictionary(*spec));
     if (wants(options, "messages")) append(out, rubricc::emit_messages(*spec));
-#ifdef RUBRICC_HAS_CPP
     if (wants(options, "cpp")) append(out, rubricc::emit_cpp(*spec));
-#endif
   }
   if (wants(options, "requirements")) {
     append(out, rubricc::emit_requirements(model, options.requirements));

@@ -90,7 +90,8 @@ void read_type_of(const YamlInput& input, const YamlMap& map, const Spec& spec, 
   const auto word = yaml_text(input, entry->value, "type");
   if (!word || set_number(input, entry->value, *word, spec, field)) return;
   if (*word == "b1") {
-    input.error(entry->value, "b1 outside a mask", "-mask: 8 or -mask: 16 was expected at the type");
+    input.error(entry->value, "b1 outside a mask",
+                "-mask: 8 or -mask: 16 was expected at the type");
     field.kind = ValueKind::kUint;
     field.width_bytes = 1;
     return;
@@ -229,7 +230,9 @@ void read_unit(const YamlInput& input, const YamlMap& map, Field& field) {
   out.symbol = unit.text("symbol").value_or("");
   out.scale = read_real(input, unit, "scale", 1);
   out.offset = read_real(input, unit, "offset", 0);
-  if (out.symbol.empty()) input.error(entry->value, "a unit without symbol", "symbol: was expected");
+  if (out.symbol.empty()) {
+    input.error(entry->value, "a unit without symbol", "symbol: was expected");
+  }
   field.unit = out;
 }
 
