@@ -5,33 +5,39 @@
 
 namespace rubric::reflect {
 
-std::int64_t load_number(const Field& field, const std::uint8_t* at) {
+namespace {
+
+// In a header's place: the decoder wants it inlined, others call load_number.
+RUBRIC_INLINE std::int64_t load(const Field& field, const std::uint8_t* at) {
   std::uint32_t raw = 0;
-  switch (field.width_bytes) {
-    case 1: raw = load_u8(at); break;
-    case 2: raw = field.little_endian ? load_le16(at) : load_be16(at); break;
-    default: raw = field.little_endian ? load_le32(at) : load_be32(at); break;
+  if (field.width_bytes == 1) {
+    raw = load_u8(at);
+  } else if (field.width_bytes == 2) {
+    raw = field.little_endian ? load_le16(at) : load_be16(at);
+  } else {
+    raw = field.little_endian ? load_le32(at) : load_be32(at);
   }
   if (field.kind != Kind::kSint) return raw;
   const int unused_bits = 32 - 8 * field.width_bytes;
   return static_cast<std::int32_t>(raw << unused_bits) >> unused_bits;
 }
 
+}  // namespace
+
+std::int64_t load_number(const Field& field, const std::uint8_t* at) { return load(field, at); }
+
 namespace {
 
-std::int64_t load_step(const ExprStep& step, Bytes structure) {
+RUBRIC_INLINE std::int64_t load_step(const ExprStep& step, Bytes structure) {
   const auto at = static_cast<std::size_t>(step.value);
-  const std::size_t width = step.op == Op::kLoadU8 ? 1
-                            : step.op == Op::kLoadBe16 || step.op == Op::kLoadLe16 ? 2
-                                                                                   : 4;
-  if (at + width > structure.size()) return 0;
   const std::uint8_t* p = structure.data() + at;
+  const std::size_t size = structure.size();
   switch (step.op) {
-    case Op::kLoadU8: return load_u8(p);
-    case Op::kLoadBe16: return load_be16(p);
-    case Op::kLoadLe16: return load_le16(p);
-    case Op::kLoadBe32: return load_be32(p);
-    default: return load_le32(p);
+    case Op::kLoadU8: return at + 1 <= size ? load_u8(p) : 0;
+    case Op::kLoadBe16: return at + 2 <= size ? load_be16(p) : 0;
+    case Op::kLoadLe16: return at + 2 <= size ? load_le16(p) : 0;
+    case Op::kLoadBe32: return at + 4 <= size ? load_be32(p) : 0;
+    default: return at + 4 <= size ? load_le32(p) : 0;
   }
 }
 
@@ -61,6 +67,8 @@ std::int64_t apply(Op op, std::int64_t a, std::int64_t b) {
   }
 }
 
+Op step_of(const Expr& expr, int i) { return expr.steps[i].op; }
+
 }  // namespace
 
 std::int64_t evaluate(const Expr& expr, Bytes structure) {
@@ -75,7 +83,14 @@ std::int64_t evaluate(const Expr& expr, Bytes structure) {
     if (step.op == Op::kConst) {
       stack[top++] = step.value;
     } else if (step.op <= Op::kLoadLe32) {
-      stack[top++] = load_step(step, structure);
+      std::int64_t value = load_step(step, structure);
+      // "field == constant" is what most conditions are made of.
+      if (i + 2 < expr.count && step_of(expr, i + 1) == Op::kConst &&
+          step_of(expr, i + 2) == Op::kEq) {
+        value = value == expr.steps[i + 1].value;
+        i += 2;
+      }
+      stack[top++] = value;
     } else if (step.op == Op::kNot) {
       stack[top - 1] = !stack[top - 1];
     } else {
@@ -144,6 +159,12 @@ class Decoder {
   Decoder(Decoded& out) : out_(out) {}
 
   void run(const Type& type, Tail tail, bool is_message) {
+    whole(type, tail, is_message);
+    out_.node_count_ = count_;
+  }
+
+ private:
+  void whole(const Type& type, Tail tail, bool is_message) {
     // A node is a structure or takes at least a byte, and structures nest less than kMaxPath deep.
     const std::size_t need = 2 * out_.bytes.size() + 64 * Decoded::kMaxPath;
     if (out_.capacity_ < need) {
@@ -163,7 +184,6 @@ class Decoder {
     out_.error_value = size - used;
   }
 
- private:
   bool set_error(Fault fault, std::uint32_t offset, const Field& field, std::int64_t value) {
     out_.error = Error{fault, offset, field.requirement};
     out_.error_field = &field;
@@ -181,22 +201,23 @@ class Decoder {
       out_.stale_[out_.stale_count_++] = Range{from, to - from};
     }
   }
-  Node& push(NodeKind kind, const Field* field, std::uint32_t offset, std::uint32_t size) {
-    if (out_.node_count_ == out_.capacity_) grow();
-    Node& node = nodes_[out_.node_count_++];
+  RUBRIC_INLINE Node& push(NodeKind kind, const Field* field, std::uint32_t offset,
+                           std::uint32_t size) {
+    if (count_ == out_.capacity_) grow();
+    Node& node = nodes_[count_++];
     node.field = field;
     node.type = nullptr;
     node.value = 0;
     node.offset = offset;
     node.size = size;
-    node.end = static_cast<std::uint32_t>(out_.node_count_);
+    node.end = static_cast<std::uint32_t>(count_);
     node.count = 0;
     node.kind = kind;
     return node;
   }
-  void grow() {
+  __attribute__((noinline)) void grow() {
     auto larger = std::make_unique<Node[]>(2 * out_.capacity_);
-    std::copy_n(nodes_, out_.node_count_, larger.get());
+    std::copy_n(nodes_, count_, larger.get());
     out_.nodes_ = std::move(larger);
     out_.capacity_ *= 2;
     nodes_ = out_.nodes_.get();
@@ -207,39 +228,33 @@ class Decoder {
 
   /// Decodes the fields of `type` in [base, limit) and closes the node.
   bool structure(const Type& type, const Field* field, std::uint32_t base, std::uint32_t limit) {
-    const std::size_t index = out_.node_count_;
+    const std::size_t index = count_;
     push(NodeKind::kStruct, field, base, 0).type = &type;
-    // A structure never takes more than its greatest size, whatever is left around it.
-    if (limit - base > type.max_size) limit = base + type.max_size;
     std::uint32_t at = base;
     bool good = true;
-    const Interpretation* interpretations = type.interpretations;
-    for (std::uint16_t i = 0; good && i < type.field_count; ++i) {
-      const Field& f = type.fields[i];
-      if (f.condition.count && !evaluate(f.condition, from(base, limit))) continue;
-      if (f.repeat == Repeat::kOnce && f.extent == Extent::kOwn && f.kind <= Kind::kMask) {
-        good = number(f, at, limit);
+    const Field* const fields_end = type.fields + type.field_count;
+    for (const Field* f = type.fields; good && f != fields_end; ++f) {
+      if (f->condition.count && !evaluate(f->condition, from(base, limit))) continue;
+      if (f->width_bytes != 0 && f->repeat == Repeat::kOnce) {
+        good = number(*f, at, limit);
+      } else if (type.interpretation_count && f->kind == Kind::kBytes &&
+                 interpret(type, static_cast<std::uint16_t>(f - type.fields), base, at, limit)) {
+        at = limit;
       } else {
-        if (type.interpretation_count && f.kind == Kind::kBytes &&
-            interpret(type, interpretations, i, base, at, limit)) {
-          at = limit;
-          continue;
-        }
-        good = other(f, base, at, limit);
+        good = other(*f, base, at, limit);
       }
     }
     Node& node = nodes_[index];
     node.size = at - base;
-    node.end = static_cast<std::uint32_t>(out_.node_count_);
+    node.end = static_cast<std::uint32_t>(count_);
     return good;
   }
 
-  bool number(const Field& f, std::uint32_t& at, std::uint32_t limit) {
+  RUBRIC_INLINE bool number(const Field& f, std::uint32_t& at, std::uint32_t limit) {
     if (limit - at < f.width_bytes) return set_error(Fault::kTruncated, limit, f, f.width_bytes);
-    const std::int64_t value = load_number(f, out_.bytes.data() + at);
+    const std::int64_t value = load(f, out_.bytes.data() + at);
     if (f.valid.kind != ValidKind::kAny && !valid(f, value, at)) return false;
-    Node& node = push(NodeKind::kNumber, &f, at, f.width_bytes);
-    node.value = value;
+    push(NodeKind::kNumber, &f, at, f.width_bytes).value = value;
     if (f.expect >= 0 && value != f.expect) {
       push_note({NoteKind::kUnexpectedValue, at, &f, nullptr, value});
     }
@@ -294,7 +309,7 @@ class Decoder {
       }
       push_path(*type);
     }
-    const std::size_t index = out_.node_count_;
+    const std::size_t index = count_;
     if (!structure(*type, &f, at, end)) return false;
     const std::uint32_t used = at + nodes_[index].size;
     if (f.extent == Extent::kOwn) {
@@ -323,23 +338,23 @@ class Decoder {
       at += size;
       return true;
     }
-    const std::size_t index = out_.node_count_;
+    const std::size_t index = count_;
     push(NodeKind::kStructArray, &f, at, size).count = static_cast<std::uint32_t>(count);
     bool good = true;
     for (std::int64_t i = 0; good && i < count; ++i, at += width) {
       good = structure(*f.type, &f, at, at + width);
     }
-    nodes_[index].end = static_cast<std::uint32_t>(out_.node_count_);
+    nodes_[index].end = static_cast<std::uint32_t>(count_);
     return good;
   }
 
   /// Tries the interpretations of field `i`; true if one fits. Leaves notes where none does.
-  bool interpret(const Type& type, const Interpretation* first, std::uint16_t i,
-                 std::uint32_t base, std::uint32_t at, std::uint32_t limit) {
+  bool interpret(const Type& type, std::uint16_t i, std::uint32_t base, std::uint32_t at,
+                 std::uint32_t limit) {
     const Type* unfit = nullptr;
     const Field* about = nullptr;
     for (std::uint16_t k = 0; k < type.interpretation_count; ++k) {
-      const Interpretation& candidate = first[k];
+      const Interpretation& candidate = type.interpretations[k];
       if (candidate.overlays != i) continue;
       const Field& f = candidate.field;
       const Bytes whole = from(base, limit);
@@ -361,7 +376,7 @@ class Decoder {
   }
 
   bool fits(const Field& f, const Type& chosen, std::uint32_t at, std::uint32_t limit) {
-    const std::size_t nodes = out_.node_count_;
+    const std::size_t nodes = count_;
     const std::size_t notes = out_.note_count_;
     const std::size_t path = out_.path_count_;
     const std::size_t stale = out_.stale_count_;
@@ -372,7 +387,7 @@ class Decoder {
       return true;
     }
     out_.error = Error{Fault::kNone, 0, ReqId::kNone};
-    out_.node_count_ = nodes;
+    count_ = nodes;
     out_.note_count_ = notes;
     out_.path_count_ = path;
     out_.stale_count_ = stale;
@@ -381,6 +396,7 @@ class Decoder {
 
   Decoded& out_;
   Node* nodes_ = nullptr;
+  std::size_t count_ = 0;  // Of nodes; `out_` learns it at the end.
 };
 
 void decode(const Type& type, Bytes bytes, Tail tail, bool is_message, Decoded& out) {

@@ -20,9 +20,10 @@ char* put_key(char* at, const FieldPlan& plan) {
 }
 
 char* put_bits(char* at, const FieldPlan& plan, std::int64_t value) {
-  at = put(at, std::string_view(plan.bits_key));
+  at = plan.bits_open.size ? put(at, plan.bits_open)
+                           : put(put(at, std::string_view(plan.bits_key)), "[");
   // Every element brings its comma; the bracket replaces the first one.
-  char* const open = at;
+  char* const open = --at;
   for (auto bits = static_cast<std::uint32_t>(value); bits; bits &= bits - 1) {
     at = put(at, plan.bits[static_cast<std::size_t>(std::countr_zero(bits))]);
   }
@@ -107,6 +108,7 @@ char* JsonNodes::number(char* at, const FieldPlan& plan, std::int64_t value) con
   // An enum that is known whole: number and name are one ready-made piece.
   const auto slot = static_cast<std::uint64_t>(value - plan.first_value);
   if (slot < plan.members.size() && plan.members[slot].size) return put(at, plan.members[slot]);
+  if (plan.enumerated) return put(put_int(put(at, plan.key), value), plan.nameless);
   return number_beside(at, plan, value);
 }
 

@@ -23,18 +23,21 @@ void plan_enum(const reflect::EnumTable& table, FieldPlan& plan) {
   plan.first_value = table.entries[0].value;
   const std::int64_t span = table.entries[table.count - 1].value - plan.first_value + 1;
   if (span > kMaxEnumSpan) return;
+  plan.enumerated = plan.key.size > 0 && plan.nameless.set(plan.name_key + "null");
   plan.members.resize(static_cast<std::size_t>(span));
   for (int i = 0; i < table.count; ++i) {
     const reflect::EnumEntry& entry = table.entries[i];
     const auto at = static_cast<std::size_t>(entry.value - plan.first_value);
-    plan.members[at].set(
+    const bool fits = plan.members[at].set(
         fmt::format("{}{}{}\"{}\"", plan.long_key, entry.value, plan.name_key, entry.name));
+    plan.enumerated = plan.enumerated && fits;
   }
 }
 
 // Returns the most characters that all names together take.
 std::size_t plan_mask(const reflect::MaskTable& table, FieldPlan& plan) {
   std::size_t chars = 0;
+  plan.bits_open.set(plan.bits_key + "[");
   plan.bits.resize(table.width_bits);
   for (std::size_t bit = 0; bit < plan.bits.size(); ++bit) {
     const char* name = table.bit_names[bit];

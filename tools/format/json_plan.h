@@ -31,6 +31,8 @@ RUBRIC_INLINE char* put(char* at, const Piece& piece) {
 /// Everything about a field that printing needs.
 struct FieldPlan {
   Piece key;                    ///< `,"seq_num":`
+  Piece nameless;               ///< For enums: `,"type_name":null`
+  Piece bits_open;              ///< For masks: `,"transducers_bits":[`
   const reflect::Field* field = nullptr;
   std::string long_key;         ///< The same where it does not fit in `key`.
   std::string name_key;         ///< `,"type_name":`
@@ -42,6 +44,7 @@ struct FieldPlan {
   std::int64_t first_value = 0;
   std::vector<Piece> bits;      ///< For masks: `,"light"` for each bit.
   bool plain = false;           ///< A number with nothing beside it.
+  bool enumerated = false;      ///< `members` is all there is to know of its names.
 };
 
 /// The plans of a protocol.

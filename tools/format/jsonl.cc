@@ -1,5 +1,7 @@
 #include "tools/format/jsonl.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "codec/reflect/fault_text.h"
@@ -18,18 +20,24 @@ char* put_or_null(char* at, std::int32_t value) {
   return value == kAbsent ? put(at, "null") : put_uint(at, static_cast<std::uint32_t>(value));
 }
 
-char* put_quoted(char* at, std::string_view ascii) {
-  *at++ = '"';
-  at = put(at, ascii);
-  *at++ = '"';
-  return at;
-}
+// `{"kind":69,"kind_name":"packet_noack","serial_seq":` of each kind; the last is of none.
+struct KindPieces {
+  static constexpr std::size_t kNone = 256;
+  Piece pieces[kNone + 1];
+  KindPieces() {
+    for (std::size_t kind = 0; kind <= kNone; ++kind) {
+      const std::string number = kind == kNone ? "null" : std::to_string(kind);
+      const std::string_view name = serial_kind_name(static_cast<std::int32_t>(kind));
+      pieces[kind].set(fmt::format("{{\"kind\":{},\"kind_name\":{}", number,
+                                   name.empty() ? "null" : fmt::format("\"{}\"", name)));
+    }
+  }
+};
 
 char* put_hdlc(char* at, const Packet& packet) {
-  at = put_or_null(put(at, "{\"kind\":"), packet.kind);
-  const std::string_view name = serial_kind_name(packet.kind);
-  at = put(at, ",\"kind_name\":");
-  at = name.empty() ? put(at, "null") : put_quoted(at, name);
+  static const KindPieces kKinds;
+  const bool known = packet.kind >= 0 && packet.kind < 256;
+  at = put(at, kKinds.pieces[known ? static_cast<std::size_t>(packet.kind) : KindPieces::kNone]);
   at = put_or_null(put(at, ",\"serial_seq\":"), packet.serial_seq);
   at = put_or_null(put(at, ",\"crc\":"), packet.crc);
   at = put_or_null(put(at, ",\"dispatch\":"), dispatch_of(packet));
@@ -79,17 +87,15 @@ char* put_am(char* at, const reflect::ActiveMessage& am) {
   return at;
 }
 
-char* put_path(char* at, const Decoded& decoded) {
+// Names are ASCII identifiers: the spec's compiler sees to that.
+std::string make_path_text(const Decoded& decoded) {
   const std::size_t count = decoded.path_count();
-  if (count == 0) return put(at, ",\"message\":null,\"path\":[]");
-  at = put_quoted(put(at, ",\"message\":"), decoded.path()[count - 1]->name);
-  at = put(at, ",\"path\":[");
+  if (count == 0) return ",\"message\":null,\"path\":[]";
+  std::string text = fmt::format(",\"message\":\"{}\",\"path\":", decoded.message()->name);
   for (std::size_t i = 0; i < count; ++i) {
-    if (i) *at++ = ',';
-    at = put_quoted(at, decoded.path()[i]->name);
+    text += fmt::format("{}\"{}\"", i ? "," : "[", decoded.path()[i]->name);
   }
-  *at++ = ']';
-  return at;
+  return text + "]";
 }
 
 char* put_stale_and_raw(char* at, const Decoded& decoded) {
@@ -101,14 +107,6 @@ char* put_stale_and_raw(char* at, const Decoded& decoded) {
   at = put_hex(put(at, "\",\"raw\":\""), decoded.bytes);
   *at++ = '"';
   return at;
-}
-
-std::size_t path_room(const Decoded& decoded) {
-  std::size_t room = 0;
-  for (std::size_t i = 0; i < decoded.path_count(); ++i) {
-    room += 2 * std::string_view(decoded.path()[i]->name).size() + 8;
-  }
-  return room;
 }
 
 // Notes and errors are rare and made of text: they may cost.
@@ -156,12 +154,29 @@ JsonlFormatter::JsonlFormatter(const reflect::Protocol& protocol, bool units,
                                std::vector<Path> fields)
     : nodes_(protocol, units), fields_(std::move(fields)) {}
 
+const std::string& JsonlFormatter::path_text(const Decoded& decoded) {
+  constexpr std::size_t kSlots = 64;
+  if (path_texts_.empty()) path_texts_.resize(kSlots);
+  const std::size_t count = decoded.path_count();
+  const reflect::Type* const* path = decoded.path();
+  const auto hash = count ? reinterpret_cast<std::uintptr_t>(path[count - 1]) / alignof(Decoded) : 0;
+  PathText& known = path_texts_[(hash + count) % kSlots];
+  if (known.count == count && !known.text.empty() && std::equal(path, path + count, known.path)) {
+    return known.text;
+  }
+  known.count = count;
+  std::copy(path, path + count, known.path);
+  known.text = make_path_text(decoded);
+  return known.text;
+}
+
 void JsonlFormatter::print(const Record& record, Buffer& out) {
   if (!fields_.empty()) return print_selected(record, out);
   const Frame& frame = *record.frame;
   const Packet& packet = record.packet();
   const Decoded& decoded = record.decoded();
-  char* at = out.reserve(kFixedRoom + 6 * record.interface_name.size() + path_room(decoded) +
+  const std::string& path = path_text(decoded);
+  char* at = out.reserve(kFixedRoom + 6 * record.interface_name.size() + path.size() +
                          nodes_.room(decoded));
   at = put_uint(put(at, "{\"schema\":\"rubric.decode/1\",\"index\":"), record.index);
   at = put_uint(put(at, ",\"offset\":"), packet.offset_bytes);
@@ -175,7 +190,7 @@ void JsonlFormatter::print(const Record& record, Buffer& out) {
     case Direction::kOutbound: at = put(at, ",\"direction\":\"outbound\""); break;
     case Direction::kUnknown: at = put(at, ",\"direction\":null"); break;
   }
-  at = put_path(put_am(put_framing(at, frame), frame.am), decoded);
+  at = put(put_am(put_framing(at, frame), frame.am), std::string_view(path));
   at = put(at, ",\"fields\":");
   const std::size_t root = frame.payload_node;
   const bool has_fields = frame.has_payload && root < decoded.node_count() &&

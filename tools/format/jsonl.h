@@ -18,9 +18,18 @@ class JsonlFormatter final : public Formatter {
   void print(const Record& record, Buffer& out) override;
 
  private:
+  /// The members "message" and "path" of a path, which few paths of a protocol differ in.
+  struct PathText {
+    std::size_t count = 0;
+    const reflect::Type* path[reflect::Decoded::kMaxPath] = {};
+    std::string text;
+  };
+
   void print_selected(const Record& record, Buffer& out) const;
+  const std::string& path_text(const reflect::Decoded& decoded);
 
   JsonNodes nodes_;
+  std::vector<PathText> path_texts_;
   std::vector<Path> fields_;
 };
 

@@ -31,15 +31,21 @@ RUBRIC_INLINE char* put(char* at, std::string_view text) {
   return at + text.size();
 }
 
-/// Out of line: numbers beyond four digits.
+/// Out of line: numbers beyond five digits.
 char* put_long_uint(char* at, std::uint64_t value);
 
 RUBRIC_INLINE char* put_pair(char* at, std::uint32_t pair) {
   std::memcpy(at, kDigitPairs + 2 * pair, 2);
   return at + 2;
 }
-inline char* put_uint(char* at, std::uint64_t value) {
-  if (value >= 10'000) return put_long_uint(at, value);
+RUBRIC_INLINE char* put_uint(char* at, std::uint64_t value) {
+  if (value >= 10'000) {
+    if (value >= 100'000) return put_long_uint(at, value);
+    const auto five = static_cast<std::uint32_t>(value);
+    *at = static_cast<char>('0' + five / 10'000);
+    const std::uint32_t rest = five % 10'000;
+    return put_pair(put_pair(at + 1, rest / 100), rest % 100);
+  }
   const auto small = static_cast<std::uint32_t>(value);
   if (small < 10) {
     *at = static_cast<char>('0' + small);
@@ -52,7 +58,7 @@ inline char* put_uint(char* at, std::uint64_t value) {
   }
   return put_pair(put_pair(at, small / 100), small % 100);
 }
-inline char* put_int(char* at, std::int64_t value) {
+RUBRIC_INLINE char* put_int(char* at, std::int64_t value) {
   if (value >= 0) return put_uint(at, static_cast<std::uint64_t>(value));
   *at++ = '-';
   return put_uint(at, std::uint64_t{0} - static_cast<std::uint64_t>(value));
