@@ -24,6 +24,9 @@ std::string wrap(const std::vector<std::string>& words, std::size_t indent);
 /// An integer literal whose type holds it in C++14: "-1", "4294967295".
 std::string cpp_int(std::int64_t value);
 
+/// `#include "path"`
+std::string cpp_include(std::string_view path);
+
 /// The two lines that begin every generated file, each behind `comment`.
 std::string banner(std::string_view comment, std::string_view inputs);
 

@@ -13,8 +13,7 @@ namespace {
 constexpr std::string_view kFile = R"(<<banner>>
 #pragma once
 
-#include "codec/generated/<<spec>>/tables.h"
-#include "codec/reflect/route.h"
+<<include>>
 
 namespace rubric {
 namespace <<spec>> {
@@ -84,6 +83,7 @@ GeneratedFiles emit_messages(const Spec& spec) {
       found.empty() ? "nullptr, 0" : fmt::format("kRouteList, {}", found.size());
   return {{fmt::format("codec/generated/{}/messages.h", spec.id),
            fill(kFile, {{"banner", banner("// ", spec.file)}, {"spec", spec.id},
+                        {"include", cpp_include("codec/generated/" + spec.id + "/tables.h")},
                         {"parts", lists.text()}, {"routes", routes}, {"table", table}})}};
 }
 

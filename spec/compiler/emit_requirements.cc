@@ -28,7 +28,7 @@ namespace req {
 constexpr std::string_view kTable = R"(<<banner>>
 #pragma once
 
-#include "codec/reflect/schema.h"
+<<include>>
 
 namespace rubric {
 
@@ -69,7 +69,8 @@ GeneratedFiles emit_requirements(const Model& model, const std::string& file) {
            fill(kHeader, {{"banner", head}, {"file", file}, {"ids", ids},
                           {"constants", constants}})},
           {"codec/generated/requirements_table.h",
-           fill(kTable, {{"banner", head}, {"entries", entries}})}};
+           fill(kTable, {{"banner", head}, {"include", cpp_include("codec/reflect/schema.h")},
+                        {"entries", entries}})}};
 }
 
 }  // namespace rubricc

@@ -14,8 +14,7 @@ namespace {
 constexpr std::string_view kFile = R"(<<banner>>
 #pragma once
 
-<<includes?>>
-#include "codec/reflect/schema.h"
+<<includes>>
 
 namespace rubric {
 namespace <<spec>> {
@@ -332,8 +331,9 @@ GeneratedFiles emit_tables(const Spec& spec) {
   std::string includes;
   std::vector<std::string> blocks;
   for (const Spec* import : spec.imports) {
-    includes += fmt::format("#include \"codec/generated/{}/tables.h\"\n", import->id);
+    includes += cpp_include("codec/generated/" + import->id + "/tables.h") + "\n";
   }
+  includes += cpp_include("codec/reflect/schema.h");
   for (const auto& one : spec.enums) blocks.push_back(enum_table(*one));
   for (const auto& type : spec.types) {
     if (type->is_mask) blocks.push_back(mask_table(*type));

@@ -1,4 +1,4 @@
-// How frames reach messages, worked out from switches and conditions. See codec/reflect/route.h.
+// How frames reach messages, worked out from switches and conditions. See codec/reflect/schema.h.
 #pragma once
 
 #include <cstdint>

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "codec/generated/rubicon/tables.h"
-#include "codec/reflect/route.h"
 
 namespace rubric {
 namespace rubicon {

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "codec/generated/tinyos/tables.h"
-#include "codec/reflect/route.h"
 
 namespace rubric {
 namespace tinyos {

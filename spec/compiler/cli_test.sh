@@ -1,0 +1,42 @@
+#!/bin/sh
+# Exit codes of rubricc, and that a mistake leaves no file behind.
+# usage: spec/compiler/cli_test.sh RUBRICC   (in the project's folder)
+set -u
+rubricc=$1
+out=$(mktemp -d)
+trap 'rm -rf "$out"' EXIT
+failures=0
+
+expect() {  # expect CODE ARGUMENT...
+  code=$1
+  shift
+  "$rubricc" "$@" >"$out/stdout" 2>"$out/stderr"
+  got=$?
+  if [ "$got" -ne "$code" ]; then
+    echo "rubricc $*: exit $got, expected $code"
+    cat "$out/stderr"
+    failures=$((failures + 1))
+  fi
+}
+
+good=spec/wire/tinyos.ksy
+bad=spec/compiler/bad/many_mistakes.ksy
+expect 0 --check $good
+expect 0 --help
+expect 0 --emit tables,doc --out "$out/good" $good
+[ -f "$out/good/codec/generated/tinyos/tables.h" ] || { echo "no tables"; failures=1; }
+[ -f "$out/good/doc/wire.html" ] || { echo "no page"; failures=1; }
+expect 1 --check $bad
+grep -q 'many_mistakes.ksy:43:5: error: duplicate enum value 2' "$out/stderr" ||
+  { echo "the diagnostics are not on stderr"; failures=1; }
+expect 1 --emit tables --out "$out/bad" $bad
+[ ! -e "$out/bad" ] || { echo "files in spite of mistakes"; failures=1; }
+expect 2
+expect 2 $good
+expect 2 --emit tables $good
+expect 2 --emit poetry --out "$out" $good
+expect 2 --check --emit tables --out "$out" $good
+expect 3 --check spec/wire/nothing.ksy
+expect 3 --check --requirements nothing.yaml $good
+expect 3 --emit tables --out /dev/null/nowhere $good
+exit "$failures"
