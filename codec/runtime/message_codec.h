@@ -15,6 +15,12 @@ struct MessageCodec {
   Result<MutableBytes> (*rewrite)(Bytes bytes, MutableBytes out);
 };
 
+/// A view's type as an argument.
+template <class View>
+struct ViewTag {
+  using Type = View;
+};
+
 namespace detail {
 
 template <class View>

@@ -14,10 +14,16 @@
 namespace rubric {
 namespace oscilloscope {
 
+/// The fields of a value or of a view in order: visitor(name, field).
 template <class Visitor>
 void visit_fields(Oscilloscope& value, Visitor& visitor) {
   visitor("am", value.am);
   visitor("payload", value.payload);
+}
+template <class Visitor>
+void visit_fields(OscilloscopeView view, Visitor& visitor) {
+  visitor("am", view.am());
+  visitor("payload", view.payload());
 }
 template <class Visitor>
 void visit_fields(RadioIFrame& value, Visitor& visitor) {
@@ -27,10 +33,23 @@ void visit_fields(RadioIFrame& value, Visitor& visitor) {
   visitor("payload", value.payload);
 }
 template <class Visitor>
+void visit_fields(RadioIFrameView view, Visitor& visitor) {
+  visitor("mac", view.mac());
+  visitor("network", view.network());
+  visitor("type", view.type());
+  visitor("payload", view.payload());
+}
+template <class Visitor>
 void visit_fields(RadioTFrame& value, Visitor& visitor) {
   visitor("mac", value.mac);
   visitor("type", value.type);
   visitor("payload", value.payload);
+}
+template <class Visitor>
+void visit_fields(RadioTFrameView view, Visitor& visitor) {
+  visitor("mac", view.mac());
+  visitor("type", view.type());
+  visitor("payload", view.payload());
 }
 template <class Visitor>
 void visit_fields(OscilloscopeMsg& value, Visitor& visitor) {
@@ -40,6 +59,23 @@ void visit_fields(OscilloscopeMsg& value, Visitor& visitor) {
   visitor("count", value.count);
   visitor("readings", value.readings);
 }
+template <class Visitor>
+void visit_fields(OscilloscopeMsgView view, Visitor& visitor) {
+  visitor("version", view.version());
+  visitor("interval", view.interval());
+  visitor("id", view.id());
+  visitor("count", view.count());
+  visitor("readings", view.readings());
+}
+/// Calls visitor(name, ViewTag) for every structure of the spec.
+template <class Visitor>
+void for_each_view(Visitor& visitor) {
+  visitor("oscilloscope", ViewTag<OscilloscopeView>());
+  visitor("radio_i_frame", ViewTag<RadioIFrameView>());
+  visitor("radio_t_frame", ViewTag<RadioTFrameView>());
+  visitor("oscilloscope_msg", ViewTag<OscilloscopeMsgView>());
+}
+
 /// Every structure of the spec by its name in the spec.
 constexpr MessageCodec kMessages[] = {
   message_codec<OscilloscopeView>("oscilloscope"),

@@ -49,10 +49,16 @@
 namespace rubric {
 namespace rubicon {
 
+/// The fields of a value or of a view in order: visitor(name, field).
 template <class Visitor>
 void visit_fields(Rubicon& value, Visitor& visitor) {
   visitor("am", value.am);
   visitor("payload", value.payload);
+}
+template <class Visitor>
+void visit_fields(RubiconView view, Visitor& visitor) {
+  visitor("am", view.am());
+  visitor("payload", view.payload());
 }
 template <class Visitor>
 void visit_fields(RadioIFrame& value, Visitor& visitor) {
@@ -62,10 +68,23 @@ void visit_fields(RadioIFrame& value, Visitor& visitor) {
   visitor("payload", value.payload);
 }
 template <class Visitor>
+void visit_fields(RadioIFrameView view, Visitor& visitor) {
+  visitor("mac", view.mac());
+  visitor("network", view.network());
+  visitor("type", view.type());
+  visitor("payload", view.payload());
+}
+template <class Visitor>
 void visit_fields(RadioTFrame& value, Visitor& visitor) {
   visitor("mac", value.mac);
   visitor("type", value.type);
   visitor("payload", value.payload);
+}
+template <class Visitor>
+void visit_fields(RadioTFrameView view, Visitor& visitor) {
+  visitor("mac", view.mac());
+  visitor("type", view.type());
+  visitor("payload", view.payload());
 }
 template <class Visitor>
 void visit_fields(RAddr& value, Visitor& visitor) {
@@ -73,10 +92,21 @@ void visit_fields(RAddr& value, Visitor& visitor) {
   visitor("devid", value.devid);
 }
 template <class Visitor>
+void visit_fields(RAddrView view, Visitor& visitor) {
+  visitor("pid", view.pid());
+  visitor("devid", view.devid());
+}
+template <class Visitor>
 void visit_fields(MoteDesc& value, Visitor& visitor) {
   visitor("mote_type", value.mote_type);
   visitor("transducers", value.transducers);
   visitor("actuators", value.actuators);
+}
+template <class Visitor>
+void visit_fields(MoteDescView view, Visitor& visitor) {
+  visitor("mote_type", view.mote_type());
+  visitor("transducers", view.transducers());
+  visitor("actuators", view.actuators());
 }
 template <class Visitor>
 void visit_fields(NetMsg& value, Visitor& visitor) {
@@ -87,10 +117,25 @@ void visit_fields(NetMsg& value, Visitor& visitor) {
   visitor("payload", value.payload);
 }
 template <class Visitor>
+void visit_fields(NetMsgView view, Visitor& visitor) {
+  visitor("dest", view.dest());
+  visitor("src", view.src());
+  visitor("reliable", view.reliable());
+  visitor("seq_num", view.seq_num());
+  visitor("nbytes", view.nbytes());
+  visitor("payload", view.payload());
+}
+template <class Visitor>
 void visit_fields(AppMsg& value, Visitor& visitor) {
   visitor("trans_id", value.trans_id);
   visitor("app_id", value.app_id);
   visitor("payload", value.payload);
+}
+template <class Visitor>
+void visit_fields(AppMsgView view, Visitor& visitor) {
+  visitor("trans_id", view.trans_id());
+  visitor("app_id", view.app_id());
+  visitor("payload", view.payload());
 }
 template <class Visitor>
 void visit_fields(AppMsgFromPc& value, Visitor& visitor) {
@@ -99,23 +144,48 @@ void visit_fields(AppMsgFromPc& value, Visitor& visitor) {
   visitor("payload", value.payload);
 }
 template <class Visitor>
+void visit_fields(AppMsgFromPcView view, Visitor& visitor) {
+  visitor("trans_id", view.trans_id());
+  visitor("app_id", view.app_id());
+  visitor("payload", view.payload());
+}
+template <class Visitor>
 void visit_fields(RubiconAck& value, Visitor& visitor) {
   visitor("msg_type", value.msg_type);
   visitor("seq_num", value.seq_num);
   visitor("ack", value.ack);
 }
 template <class Visitor>
+void visit_fields(RubiconAckView view, Visitor& visitor) {
+  visitor("msg_type", view.msg_type());
+  visitor("seq_num", view.seq_num());
+  visitor("ack", view.ack());
+}
+template <class Visitor>
 void visit_fields(RubiconAckSeqOnly& value, Visitor& visitor) {
   visitor("seq_num", value.seq_num);
+}
+template <class Visitor>
+void visit_fields(RubiconAckSeqOnlyView view, Visitor& visitor) {
+  visitor("seq_num", view.seq_num());
 }
 template <class Visitor>
 void visit_fields(SynapticData& value, Visitor& visitor) {
   visitor("values", value.values);
 }
 template <class Visitor>
+void visit_fields(SynapticDataView view, Visitor& visitor) {
+  visitor("values", view.values());
+}
+template <class Visitor>
 void visit_fields(JoinRequest& value, Visitor& visitor) {
   visitor("seq_num", value.seq_num);
   visitor("mote_desc", value.mote_desc);
+}
+template <class Visitor>
+void visit_fields(JoinRequestView view, Visitor& visitor) {
+  visitor("seq_num", view.seq_num());
+  visitor("mote_desc", view.mote_desc());
 }
 template <class Visitor>
 void visit_fields(JoinReply& value, Visitor& visitor) {
@@ -125,11 +195,25 @@ void visit_fields(JoinReply& value, Visitor& visitor) {
   visitor("seq_num", value.seq_num);
 }
 template <class Visitor>
+void visit_fields(JoinReplyView view, Visitor& visitor) {
+  visitor("island_addr", view.island_addr());
+  visitor("mote_addr", view.mote_addr());
+  visitor("cur_time", view.cur_time());
+  visitor("seq_num", view.seq_num());
+}
+template <class Visitor>
 void visit_fields(AckJoin& value, Visitor& visitor) {
   visitor("dest", value.dest);
   visitor("src", value.src);
   visitor("seq_num", value.seq_num);
   visitor("mote_desc", value.mote_desc);
+}
+template <class Visitor>
+void visit_fields(AckJoinView view, Visitor& visitor) {
+  visitor("dest", view.dest());
+  visitor("src", view.src());
+  visitor("seq_num", view.seq_num());
+  visitor("mote_desc", view.mote_desc());
 }
 template <class Visitor>
 void visit_fields(SerialJoined& value, Visitor& visitor) {
@@ -141,9 +225,23 @@ void visit_fields(SerialJoined& value, Visitor& visitor) {
   visitor("actuators", value.actuators);
 }
 template <class Visitor>
+void visit_fields(SerialJoinedView view, Visitor& visitor) {
+  visitor("msg_type", view.msg_type());
+  visitor("island_addr", view.island_addr());
+  visitor("mote_addr", view.mote_addr());
+  visitor("mote_type", view.mote_type());
+  visitor("transducers", view.transducers());
+  visitor("actuators", view.actuators());
+}
+template <class Visitor>
 void visit_fields(Config& value, Visitor& visitor) {
   visitor("type", value.type);
   visitor("value", value.value);
+}
+template <class Visitor>
+void visit_fields(ConfigView view, Visitor& visitor) {
+  visitor("type", view.type());
+  visitor("value", view.value());
 }
 template <class Visitor>
 void visit_fields(Command& value, Visitor& visitor) {
@@ -152,12 +250,26 @@ void visit_fields(Command& value, Visitor& visitor) {
   visitor("delay", value.delay);
 }
 template <class Visitor>
+void visit_fields(CommandView view, Visitor& visitor) {
+  visitor("type", view.type());
+  visitor("counter", view.counter());
+  visitor("delay", view.delay());
+}
+template <class Visitor>
 void visit_fields(Data& value, Visitor& visitor) {
   visitor("counter", value.counter);
   visitor("temp", value.temp);
   visitor("humid", value.humid);
   visitor("light", value.light);
   visitor("rssi", value.rssi);
+}
+template <class Visitor>
+void visit_fields(DataView view, Visitor& visitor) {
+  visitor("counter", view.counter());
+  visitor("temp", view.temp());
+  visitor("humid", view.humid());
+  visitor("light", view.light());
+  visitor("rssi", view.rssi());
 }
 template <class Visitor>
 void visit_fields(SerialData& value, Visitor& visitor) {
@@ -170,10 +282,26 @@ void visit_fields(SerialData& value, Visitor& visitor) {
   visitor("rssi", value.rssi);
 }
 template <class Visitor>
+void visit_fields(SerialDataView view, Visitor& visitor) {
+  visitor("src_island_addr", view.src_island_addr());
+  visitor("src_mote_addr", view.src_mote_addr());
+  visitor("counter", view.counter());
+  visitor("temp", view.temp());
+  visitor("humid", view.humid());
+  visitor("light", view.light());
+  visitor("rssi", view.rssi());
+}
+template <class Visitor>
 void visit_fields(Demo& value, Visitor& visitor) {
   visitor("msg_type", value.msg_type);
   visitor("sensors_bitmask", value.sensors_bitmask);
   visitor("period", value.period);
+}
+template <class Visitor>
+void visit_fields(DemoView view, Visitor& visitor) {
+  visitor("msg_type", view.msg_type());
+  visitor("sensors_bitmask", view.sensors_bitmask());
+  visitor("period", view.period());
 }
 template <class Visitor>
 void visit_fields(Complete& value, Visitor& visitor) {
@@ -185,6 +313,17 @@ void visit_fields(Complete& value, Visitor& visitor) {
   visitor("trans_id", value.trans_id);
   visitor("app_id", value.app_id);
   visitor("payload", value.payload);
+}
+template <class Visitor>
+void visit_fields(CompleteView view, Visitor& visitor) {
+  visitor("dest", view.dest());
+  visitor("src", view.src());
+  visitor("reliable", view.reliable());
+  visitor("seq_num", view.seq_num());
+  visitor("nbytes", view.nbytes());
+  visitor("trans_id", view.trans_id());
+  visitor("app_id", view.app_id());
+  visitor("payload", view.payload());
 }
 template <class Visitor>
 void visit_fields(DemoData& value, Visitor& visitor) {
@@ -200,14 +339,38 @@ void visit_fields(DemoData& value, Visitor& visitor) {
   visitor("my_rssi", value.my_rssi);
 }
 template <class Visitor>
+void visit_fields(DemoDataView view, Visitor& visitor) {
+  visitor("msg_type", view.msg_type());
+  visitor("light", view.light());
+  visitor("temp", view.temp());
+  visitor("accx", view.accx());
+  visitor("accy", view.accy());
+  visitor("pir", view.pir());
+  visitor("mic", view.mic());
+  visitor("humid", view.humid());
+  visitor("magnetic", view.magnetic());
+  visitor("my_rssi", view.my_rssi());
+}
+template <class Visitor>
 void visit_fields(TransducerUpdate& value, Visitor& visitor) {
   visitor("transducer", value.transducer);
   visitor("value", value.value);
 }
 template <class Visitor>
+void visit_fields(TransducerUpdateView view, Visitor& visitor) {
+  visitor("transducer", view.transducer());
+  visitor("value", view.value());
+}
+template <class Visitor>
 void visit_fields(Updates& value, Visitor& visitor) {
   visitor("msg_type", value.msg_type);
   visitor("updates", value.updates);
+}
+template <class Visitor>
+void visit_fields(UpdatesView view, Visitor& visitor) {
+  visitor("msg_type", view.msg_type());
+  visitor("output_size", view.output_size());
+  visitor("updates", view.updates());
 }
 template <class Visitor>
 void visit_fields(ReadUpdates& value, Visitor& visitor) {
@@ -216,8 +379,18 @@ void visit_fields(ReadUpdates& value, Visitor& visitor) {
   visitor("transducers", value.transducers);
 }
 template <class Visitor>
+void visit_fields(ReadUpdatesView view, Visitor& visitor) {
+  visitor("msg_type", view.msg_type());
+  visitor("sampling_rate", view.sampling_rate());
+  visitor("transducers", view.transducers());
+}
+template <class Visitor>
 void visit_fields(RssiBeacon& value, Visitor& visitor) {
   visitor("anchor_id", value.anchor_id);
+}
+template <class Visitor>
+void visit_fields(RssiBeaconView view, Visitor& visitor) {
+  visitor("anchor_id", view.anchor_id());
 }
 template <class Visitor>
 void visit_fields(NetidCmd& value, Visitor& visitor) {
@@ -226,10 +399,22 @@ void visit_fields(NetidCmd& value, Visitor& visitor) {
   visitor("seq_num", value.seq_num);
 }
 template <class Visitor>
+void visit_fields(NetidCmdView view, Visitor& visitor) {
+  visitor("type", view.type());
+  visitor("net_id", view.net_id());
+  visitor("seq_num", view.seq_num());
+}
+template <class Visitor>
 void visit_fields(BroadcastCmd& value, Visitor& visitor) {
   visitor("type", value.type);
   visitor("clock", value.clock);
   visitor("seq_num", value.seq_num);
+}
+template <class Visitor>
+void visit_fields(BroadcastCmdView view, Visitor& visitor) {
+  visitor("type", view.type());
+  visitor("clock", view.clock());
+  visitor("seq_num", view.seq_num());
 }
 template <class Visitor>
 void visit_fields(SynCreateCmd& value, Visitor& visitor) {
@@ -248,6 +433,22 @@ void visit_fields(SynCreateCmd& value, Visitor& visitor) {
   visitor("seq_num", value.seq_num);
 }
 template <class Visitor>
+void visit_fields(SynCreateCmdView view, Visitor& visitor) {
+  visitor("type", view.type());
+  visitor("src_island_addr", view.src_island_addr());
+  visitor("src_mote_addr", view.src_mote_addr());
+  visitor("dest_island_addr", view.dest_island_addr());
+  visitor("dest_mote_addr", view.dest_mote_addr());
+  visitor("src_net_id", view.src_net_id());
+  visitor("dest_net_id", view.dest_net_id());
+  visitor("src_neurons_size", view.src_neurons_size());
+  visitor("src_neurons", view.src_neurons());
+  visitor("dest_neurons_size", view.dest_neurons_size());
+  visitor("dest_neurons", view.dest_neurons());
+  visitor("params", view.params());
+  visitor("seq_num", view.seq_num());
+}
+template <class Visitor>
 void visit_fields(LearningModuleCmd& value, Visitor& visitor) {
   visitor("type", value.type);
   visitor("net_id", value.net_id);
@@ -255,6 +456,16 @@ void visit_fields(LearningModuleCmd& value, Visitor& visitor) {
   visitor("rows", value.rows);
   visitor("cols", value.cols);
   visitor("weights", value.weights);
+}
+template <class Visitor>
+void visit_fields(LearningModuleCmdView view, Visitor& visitor) {
+  visitor("type", view.type());
+  visitor("net_id", view.net_id());
+  visitor("seq_num", view.seq_num());
+  visitor("rows", view.rows());
+  visitor("cols", view.cols());
+  visitor("matrix_size", view.matrix_size());
+  visitor("weights", view.weights());
 }
 template <class Visitor>
 void visit_fields(LearningModuleFloatCmd& value, Visitor& visitor) {
@@ -266,10 +477,26 @@ void visit_fields(LearningModuleFloatCmd& value, Visitor& visitor) {
   visitor("weights", value.weights);
 }
 template <class Visitor>
+void visit_fields(LearningModuleFloatCmdView view, Visitor& visitor) {
+  visitor("type", view.type());
+  visitor("net_id", view.net_id());
+  visitor("seq_num", view.seq_num());
+  visitor("rows", view.rows());
+  visitor("cols", view.cols());
+  visitor("matrix_size", view.matrix_size());
+  visitor("weights", view.weights());
+}
+template <class Visitor>
 void visit_fields(LearningNotification& value, Visitor& visitor) {
   visitor("msg_type", value.msg_type);
   visitor("seq_num", value.seq_num);
   visitor("ack", value.ack);
+}
+template <class Visitor>
+void visit_fields(LearningNotificationView view, Visitor& visitor) {
+  visitor("msg_type", view.msg_type());
+  visitor("seq_num", view.seq_num());
+  visitor("ack", view.ack());
 }
 template <class Visitor>
 void visit_fields(LearningModuleDown& value, Visitor& visitor) {
@@ -278,15 +505,34 @@ void visit_fields(LearningModuleDown& value, Visitor& visitor) {
   visitor("weights", value.weights);
 }
 template <class Visitor>
+void visit_fields(LearningModuleDownView view, Visitor& visitor) {
+  visitor("msg_type", view.msg_type());
+  visitor("net_id", view.net_id());
+  visitor("matrix_size", view.matrix_size());
+  visitor("weights", view.weights());
+}
+template <class Visitor>
 void visit_fields(LearningOutput& value, Visitor& visitor) {
   visitor("msg_type", value.msg_type);
   visitor("output", value.output);
+}
+template <class Visitor>
+void visit_fields(LearningOutputView view, Visitor& visitor) {
+  visitor("msg_type", view.msg_type());
+  visitor("output_size", view.output_size());
+  visitor("output", view.output());
 }
 template <class Visitor>
 void visit_fields(NetCommand& value, Visitor& visitor) {
   visitor("src_island_addr", value.src_island_addr);
   visitor("src_mote_addr", value.src_mote_addr);
   visitor("type", value.type);
+}
+template <class Visitor>
+void visit_fields(NetCommandView view, Visitor& visitor) {
+  visitor("src_island_addr", view.src_island_addr());
+  visitor("src_mote_addr", view.src_mote_addr());
+  visitor("type", view.type());
 }
 template <class Visitor>
 void visit_fields(NetData& value, Visitor& visitor) {
@@ -300,6 +546,17 @@ void visit_fields(NetData& value, Visitor& visitor) {
   visitor("rssi", value.rssi);
 }
 template <class Visitor>
+void visit_fields(NetDataView view, Visitor& visitor) {
+  visitor("src_island_addr", view.src_island_addr());
+  visitor("src_mote_addr", view.src_mote_addr());
+  visitor("id", view.id());
+  visitor("counter", view.counter());
+  visitor("temp", view.temp());
+  visitor("humid", view.humid());
+  visitor("light", view.light());
+  visitor("rssi", view.rssi());
+}
+template <class Visitor>
 void visit_fields(Connless& value, Visitor& visitor) {
   visitor("msg_type", value.msg_type);
   visitor("island_addr", value.island_addr);
@@ -308,6 +565,58 @@ void visit_fields(Connless& value, Visitor& visitor) {
   visitor("seq_num", value.seq_num);
   visitor("payload", value.payload);
 }
+template <class Visitor>
+void visit_fields(ConnlessView view, Visitor& visitor) {
+  visitor("msg_type", view.msg_type());
+  visitor("island_addr", view.island_addr());
+  visitor("mote_addr", view.mote_addr());
+  visitor("reliable", view.reliable());
+  visitor("seq_num", view.seq_num());
+  visitor("nbytes", view.nbytes());
+  visitor("payload", view.payload());
+}
+/// Calls visitor(name, ViewTag) for every structure of the spec.
+template <class Visitor>
+void for_each_view(Visitor& visitor) {
+  visitor("rubicon", ViewTag<RubiconView>());
+  visitor("radio_i_frame", ViewTag<RadioIFrameView>());
+  visitor("radio_t_frame", ViewTag<RadioTFrameView>());
+  visitor("r_addr", ViewTag<RAddrView>());
+  visitor("mote_desc", ViewTag<MoteDescView>());
+  visitor("net_msg", ViewTag<NetMsgView>());
+  visitor("app_msg", ViewTag<AppMsgView>());
+  visitor("app_msg_from_pc", ViewTag<AppMsgFromPcView>());
+  visitor("rubicon_ack", ViewTag<RubiconAckView>());
+  visitor("rubicon_ack_seq_only", ViewTag<RubiconAckSeqOnlyView>());
+  visitor("synaptic_data", ViewTag<SynapticDataView>());
+  visitor("join_request", ViewTag<JoinRequestView>());
+  visitor("join_reply", ViewTag<JoinReplyView>());
+  visitor("ack_join", ViewTag<AckJoinView>());
+  visitor("serial_joined", ViewTag<SerialJoinedView>());
+  visitor("config", ViewTag<ConfigView>());
+  visitor("command", ViewTag<CommandView>());
+  visitor("data", ViewTag<DataView>());
+  visitor("serial_data", ViewTag<SerialDataView>());
+  visitor("demo", ViewTag<DemoView>());
+  visitor("complete", ViewTag<CompleteView>());
+  visitor("demo_data", ViewTag<DemoDataView>());
+  visitor("transducer_update", ViewTag<TransducerUpdateView>());
+  visitor("updates", ViewTag<UpdatesView>());
+  visitor("read_updates", ViewTag<ReadUpdatesView>());
+  visitor("rssi_beacon", ViewTag<RssiBeaconView>());
+  visitor("netid_cmd", ViewTag<NetidCmdView>());
+  visitor("broadcast_cmd", ViewTag<BroadcastCmdView>());
+  visitor("syn_create_cmd", ViewTag<SynCreateCmdView>());
+  visitor("learning_module_cmd", ViewTag<LearningModuleCmdView>());
+  visitor("learning_module_float_cmd", ViewTag<LearningModuleFloatCmdView>());
+  visitor("learning_notification", ViewTag<LearningNotificationView>());
+  visitor("learning_module_down", ViewTag<LearningModuleDownView>());
+  visitor("learning_output", ViewTag<LearningOutputView>());
+  visitor("net_command", ViewTag<NetCommandView>());
+  visitor("net_data", ViewTag<NetDataView>());
+  visitor("connless", ViewTag<ConnlessView>());
+}
+
 /// Every structure of the spec by its name in the spec.
 constexpr MessageCodec kMessages[] = {
   message_codec<RubiconView>("rubicon"),

@@ -13,11 +13,18 @@
 namespace rubric {
 namespace tinyos {
 
+/// The fields of a value or of a view in order: visitor(name, field).
 template <class Visitor>
 void visit_fields(SerialFrame& value, Visitor& visitor) {
   visitor("kind", value.kind);
   visitor("seq_num", value.seq_num);
   visitor("packet", value.packet);
+}
+template <class Visitor>
+void visit_fields(SerialFrameView view, Visitor& visitor) {
+  visitor("kind", view.kind());
+  if (view.has_seq_num()) visitor("seq_num", view.seq_num());
+  visitor("packet", view.packet());
 }
 template <class Visitor>
 void visit_fields(AmHeader& value, Visitor& visitor) {
@@ -29,6 +36,15 @@ void visit_fields(AmHeader& value, Visitor& visitor) {
   visitor("type", value.type);
 }
 template <class Visitor>
+void visit_fields(AmHeaderView view, Visitor& visitor) {
+  visitor("dispatch", view.dispatch());
+  visitor("dest", view.dest());
+  visitor("src", view.src());
+  visitor("length", view.length());
+  visitor("group", view.group());
+  visitor("type", view.type());
+}
+template <class Visitor>
 void visit_fields(MacHeader& value, Visitor& visitor) {
   visitor("fcf", value.fcf);
   visitor("dsn", value.dsn);
@@ -37,10 +53,32 @@ void visit_fields(MacHeader& value, Visitor& visitor) {
   visitor("src", value.src);
 }
 template <class Visitor>
+void visit_fields(MacHeaderView view, Visitor& visitor) {
+  visitor("fcf", view.fcf());
+  visitor("dsn", view.dsn());
+  visitor("destpan", view.destpan());
+  visitor("dest", view.dest());
+  visitor("src", view.src());
+}
+template <class Visitor>
 void visit_fields(MacAck& value, Visitor& visitor) {
   visitor("fcf", value.fcf);
   visitor("dsn", value.dsn);
 }
+template <class Visitor>
+void visit_fields(MacAckView view, Visitor& visitor) {
+  visitor("fcf", view.fcf());
+  visitor("dsn", view.dsn());
+}
+/// Calls visitor(name, ViewTag) for every structure of the spec.
+template <class Visitor>
+void for_each_view(Visitor& visitor) {
+  visitor("serial_frame", ViewTag<SerialFrameView>());
+  visitor("am_header", ViewTag<AmHeaderView>());
+  visitor("mac_header", ViewTag<MacHeaderView>());
+  visitor("mac_ack", ViewTag<MacAckView>());
+}
+
 /// Every structure of the spec by its name in the spec.
 constexpr MessageCodec kMessages[] = {
   message_codec<SerialFrameView>("serial_frame"),

@@ -1,0 +1,145 @@
+// The generated views against spec/vectors: bytes and what they must mean, decided without them.
+#include "codec/codec_test/vectors.h"
+
+#include <algorithm>
+#include <functional>
+#include <iostream>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "codec/codec_test/every_view.h"
+#include "codec/generated/requirements_table.h"
+
+namespace rubric {
+namespace {
+
+// The fields of a view as text, by path.
+class Dump {
+ public:
+  std::map<std::string, std::string> fields;
+
+  template <class T>
+  void operator()(const char* name, const T& value) {
+    add(path_ + name, value);
+  }
+
+ private:
+  template <class T>
+  static std::string text(const T& value) {
+    if constexpr (std::is_same_v<T, float>) {
+      return std::to_string(bits_of_float(value));
+    } else if constexpr (requires { value.raw(); }) {
+      return std::to_string(value.raw());
+    } else {
+      return std::to_string(static_cast<long long>(value));
+    }
+  }
+  void add(const std::string& path, Bytes value) {
+    static const char* const kDigits = "0123456789abcdef";
+    std::string hex = "x";
+    for (const uint8_t byte : value) hex += {kDigits[byte >> 4], kDigits[byte & 15]};
+    fields[path] = hex;
+  }
+  template <class T>
+  void add(const std::string& path, const T& value) {
+    if constexpr (requires { T::kMinSizeBytes; }) {
+      within(path, value);
+    } else {
+      fields[path] = text(value);
+    }
+  }
+  template <class Number>
+  void add(const std::string& path, const NumberArrayView<Number>& values) {
+    std::string out;
+    for (const auto value : values) out += (out.empty() ? "" : " ") + text(value);
+    fields[path] = "[" + out + "]";
+  }
+  template <class View>
+  void add(const std::string& path, const StructArrayView<View>& values) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      within(path + "." + std::to_string(i), values[i]);
+    }
+  }
+  template <class View>
+  void within(const std::string& path, const View& view) {
+    const std::string before = path_;
+    path_ = path + ".";
+    visit_fields(view, *this);
+    path_ = before;
+  }
+
+  std::string path_;
+};
+
+const char* name_of(Fault fault) {
+  switch (fault) {
+    case Fault::kTruncated: return "truncated";
+    case Fault::kUnexpected: return "unexpected";
+    case Fault::kOutOfRange: return "out_of_range";
+    default: return "another";
+  }
+}
+
+using Check = std::function<void(const Vector&)>;
+
+template <class View>
+void check(const Vector& vector) {
+  const Bytes bytes(vector.bytes.data(), vector.bytes.size());
+  const Result<View> view = View::parse(bytes);
+  if (vector.fault) {
+    ASSERT_FALSE(view.has_value());
+    EXPECT_EQ(name_of(view.error().fault), vector.fault->kind);
+    EXPECT_EQ(view.error().offset_bytes, vector.fault->offset_bytes);
+    const auto id = static_cast<std::size_t>(view.error().requirement);
+    EXPECT_EQ(std::string(kRequirements[id].id), vector.fault->requirement);
+    return;
+  }
+  ASSERT_TRUE(view.has_value()) << name_of(view.error().fault) << " at "
+                                << view.error().offset_bytes;
+  EXPECT_EQ(view->bytes().size(), vector.size_bytes);
+  EXPECT_EQ(view->bytes().size() + view->stale().size(), vector.bytes.size());
+  Dump dump;
+  visit_fields(*view, dump);
+  EXPECT_EQ(dump.fields, vector.fields);
+}
+
+std::map<std::string, Check> checks() {
+  std::map<std::string, Check> out;
+  for_each_view_of_all([&out]<class View>(const std::string& name, ViewTag<View>) {
+    out[name] = &check<View>;
+  });
+  return out;
+}
+
+TEST(Vectors, ViewsAcceptReadAndRefuseAsTheySay) {
+  const auto by_name = checks();
+  const std::vector<Vector> vectors = load_vectors("spec/vectors");
+  ASSERT_GE(vectors.size(), 700U) << "run from the project's folder";
+  std::size_t valid = 0;
+  for (const Vector& vector : vectors) {
+    SCOPED_TRACE(vector.file);
+    const auto found = by_name.find(vector.message);
+    ASSERT_NE(found, by_name.end());
+    found->second(vector);
+    valid += !vector.fault;
+  }
+  std::cout << vectors.size() << " vectors: " << valid << " valid, " << vectors.size() - valid
+            << " invalid\n";
+}
+
+TEST(Vectors, EachStructureHasValidAndInvalidOnes) {
+  std::map<std::string, std::pair<int, int>> counts;
+  for (const Vector& vector : load_vectors("spec/vectors")) {
+    auto& [good, bad] = counts[vector.message];
+    ++(vector.fault ? bad : good);
+  }
+  for (const auto& [name, check] : checks()) {
+    EXPECT_GE(counts[name].first, 1) << name;
+    EXPECT_GE(counts[name].second, 1) << name;
+  }
+  std::cout << counts.size() << " structures\n";
+}
+
+}  // namespace
+}  // namespace rubric
