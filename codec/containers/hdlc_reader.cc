@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "codec/containers/crc16_fast.h"
+#include "codec/containers/frame_scan.h"
 #include "codec/containers/serial_frame.h"
 #include "codec/runtime/hdlc.h"
 
@@ -71,7 +72,17 @@ void HdlcReader::feed_with(Bytes chunk, PacketSink sink) {
     deliver_held<kPath>(sink);
     p = flag + 1;
   }
+  ScanBatch batch;
   for (;;) {
+    if constexpr (kPath != CpuPath::kPortable) {
+      p = scan_frames(p, end, batch, kPath);
+      for (std::size_t i = 0; i < batch.count; ++i) {
+        const ScannedFrame& frame = batch.frames[i];
+        packet_.offset_bytes = offset_of(frame.wire);
+        deliver_usual(Bytes(frame.content, frame.size_bytes), frame.crc, sink);
+      }
+      if (batch.count == kScanBatch) continue;
+    }
     while (p != end && *p == kHdlcFlag) ++p;
     if (p == end) return;
     const Pointer special = find_special<kPath>(p, end);
@@ -134,13 +145,19 @@ void HdlcReader::deliver(Bytes content, PacketSink sink) {
     content = content.first(std::min(size, kHdlcKeptMax));
     return deliver_damaged(content, check_serial_content(content, kPath), sink);
   }
-  const std::size_t crc_at = size - kSerialCrcBytes;
+  deliver_usual(content, crc<kPath>(content.first(size - kSerialCrcBytes)), sink);
+}
+
+// A frame of a size that may be sound, and the CRC that it should have.
+inline void HdlcReader::deliver_usual(Bytes content, std::uint16_t crc_wanted, PacketSink sink) {
+  const std::size_t crc_at = content.size() - kSerialCrcBytes;
+  const int kind = content[0];
   const std::size_t begin = serial_kind_has_seq(kind) ? 2 : 1;
   packet_.kind = kind;
   packet_.serial_seq = begin == 2 ? content[1] : kAbsent;
   packet_.crc = load_le16(content.data() + crc_at);
   packet_.bytes = content.sub(begin, crc_at - begin);
-  if (crc<kPath>(content.first(crc_at)) == packet_.crc) [[likely]] {
+  if (crc_wanted == packet_.crc) [[likely]] {
     packet_.error = Error{Fault::kNone, 0, ReqId::kNone};
   } else {
     packet_.error = fail(Fault::kCrc, crc_at, req::kWireSerialCrc).error;

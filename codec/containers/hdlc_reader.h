@@ -37,6 +37,7 @@ class HdlcReader final : public Reader {
   void hold(const std::uint8_t* begin, const std::uint8_t* end);
   template <CpuPath kPath>
   void deliver(Bytes content, PacketSink sink);
+  void deliver_usual(Bytes content, std::uint16_t crc_wanted, PacketSink sink);
   void deliver_damaged(Bytes content, const Error& error, PacketSink sink);
   template <CpuPath kPath>
   void deliver_held(PacketSink sink);

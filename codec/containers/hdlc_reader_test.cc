@@ -225,6 +225,35 @@ RC_GTEST_PROP(WireHdlcFlag, AnySplitOfAnyBytesGivesTheSame, ()) {
   }
 }
 
+// Long enough for the vector scan, and full of what it leaves to slower code.
+TEST(WireHdlcEscape, PathsAgreeOnLongStreamsOfOddities) {
+  std::mt19937 random(12);
+  const std::uint8_t odd[] = {kHdlcFlag, kHdlcFlag, kHdlcEscape, kHdlcEscape, 0x5D, 0x5E, 0x45};
+  std::size_t packets = 0;
+  for (int round = 0; round < 200; ++round) {
+    std::string stream;
+    const unsigned every = 2u << random() % 8;  // One byte in so many is odd.
+    while (stream.size() < 6000) {
+      if (random() % (2 * every) == 0) {
+        std::string content(2 + random() % 250, '\x45');
+        for (char& c : content) c = static_cast<char>(random() % 4 ? random() : 0x7D);
+        stream += framed(content);
+      }
+      stream += static_cast<char>(random() % every == 0 ? odd[random() % 7] : random());
+    }
+    HdlcReader portable({}, CpuPath::kPortable);
+    const std::vector<Kept> want = read_all(portable, view(stream));
+    packets += want.size();
+    for (CpuPath path : kPaths) {
+      if (!cpu_has(path)) continue;
+      HdlcReader reader({}, path);
+      ASSERT_EQ(read_all(reader, view(stream)), want) << static_cast<int>(path);
+      ASSERT_EQ(read_split(reader, view(stream), random, 2000), want);
+    }
+  }
+  EXPECT_GT(packets, 10'000u);
+}
+
 TEST(WireHdlcFlag, SearchesAgree) {
   std::mt19937 random(11);
   for (int round = 0; round < 4000; ++round) {

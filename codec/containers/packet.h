@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string_view>
+#include <type_traits>
 
 #include "codec/runtime/bytes.h"
 #include "codec/runtime/result.h"
@@ -53,6 +54,7 @@ struct Packet {
 class PacketSink {
  public:
   template <class F>
+    requires(!std::is_same_v<F, PacketSink>)  // Copies must not call through one another.
   PacketSink(F& call)  // NOLINT: a borrowed view of a callable, as std::function_ref will be.
       : object_(&call), call_([](void* object, const Packet& packet) {
           (*static_cast<F*>(object))(packet);
