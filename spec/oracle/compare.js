@@ -56,10 +56,10 @@ class Comparer {
     const given = json[field.id];
     if (field.repeat) {
       this.same(given.length, value.length, `${where} length`);
-      value.forEach((v, i) => this.single(given[i], v, `${where}[${i}]`));
+      value.forEach((v, i) => this.single(given[i], v, field, `${where}[${i}]`));
       return;
     }
-    this.single(given, value, where);
+    this.single(given, value, field, where);
     if (field.enum) {
       const names = this.enums[field.enum.split('::').pop()];
       const name = value in names ? String(names[value].id ?? names[value]) : null;
@@ -85,18 +85,19 @@ class Comparer {
     return {number, names};
   }
 
-  single(given, value, where) {
+  single(given, value, field, where) {
     if (isBytes(value)) return this.same(given, Buffer.from(value).toString('hex'), where);
-    if (typeof value === 'number') return this.number(given, value, where);
+    if (typeof value === 'number') return this.number(given, value, field, where);
     const mask = this.mask(value);
     if (mask) return this.same(given, mask.number, where);
     return this.structure(given, value, where);
   }
 
-  number(given, value, where) {
+  number(given, value, field, where) {
     const expected = Number.isFinite(value) ? value : String(value);
-    const got = typeof given === 'number' && !Number.isInteger(value) ? Math.fround(given) : given;
-    return this.same(got, expected, where);
+    // A float is printed as short as binary32 allows; Kaitai gives it as a binary64.
+    const isFloat = String(field.type).startsWith('f4') && typeof given === 'number';
+    return this.same(isFloat ? Math.fround(given) : given, expected, where);
   }
 
   same(got, expected, where) {
