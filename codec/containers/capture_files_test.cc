@@ -250,6 +250,21 @@ TEST(WirePcapng, FilesThatEndOrBeginWrong) {
   EXPECT_EQ(versions[1].packet.error, kSound);
 }
 
+// Damage full of what might be blocks, each of them nearly as long as the search lets be.
+TEST(WirePcapng, TheSearchIsNotLedAstray) {
+  File file;
+  file.section();
+  file.interface(195);
+  file.out += file.n(6, 4) + file.n(13, 4);
+  for (int i = 0; i < 100'000; ++i) file.out += file.n(6, 4) + file.n(0x7FFEC, 4);
+  file.packet(0, 3, kRadioAck);
+  const std::vector<Kept> got = read(InputFormat::kPcapng, file.out);
+  ASSERT_EQ(got.size(), 2u);
+  EXPECT_EQ(got[0].packet.error, (Error{Fault::kContainer, 4, req::kWirePcapng}));
+  EXPECT_EQ(got[0].packet.dropped_bytes, 8u + 800'000u - 12u);
+  EXPECT_EQ(got[1].packet.error, kSound);
+}
+
 std::string pcap(const File& f, std::uint32_t magic, unsigned link_type) {
   return f.n(magic, 4) + f.n(2, 2) + f.n(4, 2) + f.n(0, 8) + f.n(65535, 4) + f.n(link_type, 4);
 }

@@ -231,6 +231,54 @@ TEST(WirePcapng, Times) {
   EXPECT_EQ(time_ns_of_ticks(1, interface), kNoTime);
 }
 
+TEST(Writers, TakeWhatTheyCanHold) {
+  const std::string ack_packet = from_hex("00 ff ff 00 00 03 00 25 63 00 0c");
+  Packet sf;
+  sf.framing = Framing::kSf;
+  sf.bytes = view(ack_packet);
+  Packet serial_ack;
+  serial_ack.framing = Framing::kHdlc;
+  serial_ack.kind = 0x43;
+  serial_ack.serial_seq = 1;
+  serial_ack.crc = 0x48be;
+  Packet radio;
+  radio.framing = Framing::kRadio;
+  radio.bytes = view(ack_packet);
+  Packet bad = sf;
+  bad.error = Error{Fault::kUnexpected, 0, req::kWireHex};
+  const struct {
+    InputFormat format;
+    bool takes[4];  // In the order of `packets`.
+  } rows[] = {
+      {InputFormat::kHdlc, {true, true, false, true}},
+      {InputFormat::kSf, {true, false, false, false}},
+      {InputFormat::kPcap, {false, false, true, false}},
+      {InputFormat::kPcapng, {true, true, true, true}},
+      {InputFormat::kHex, {true, false, true, false}},
+  };
+  const Packet packets[] = {sf, serial_ack, radio, bad};
+  for (const auto& row : rows) {
+    const auto writer = make_writer(row.format, kLinkRadioNoFcs);
+    std::string out;
+    writer->begin(out);
+    for (std::size_t i = 0; i < 4; ++i) {
+      const std::size_t size = out.size();
+      EXPECT_EQ(writer->write(packets[i], out), row.takes[i]) << static_cast<int>(row.format) << i;
+      EXPECT_EQ(out.size() > size, row.takes[i]);
+    }
+  }
+  EXPECT_EQ(make_writer(InputFormat::kJsonl), nullptr);
+  std::string text;
+  HexWriter().write(sf, text);
+  HexWriter(false).write(sf, text);
+  EXPECT_EQ(text, "00 FF FF 00 00 03 00 25 63 00 0C\n00 ff ff 00 00 03 00 25 63 00 0c\n");
+  std::string frame;
+  HdlcWriter().write(sf, frame);
+  EXPECT_EQ(to_hex(view(frame.substr(0, 3))), "7e4500");
+  const auto reader = make_reader(InputFormat::kHdlc);
+  EXPECT_EQ(read_all(*reader, view(frame)).at(0).bytes, ack_packet);
+}
+
 struct DetectCase {
   const char* name;
   std::string input;

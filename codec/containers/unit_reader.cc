@@ -6,7 +6,7 @@ namespace rubric {
 
 void UnitReader::feed(Bytes chunk, PacketSink sink) {
   for (;;) {
-    if (held_.empty()) {
+    if (held().empty()) {
       if (chunk.empty()) return;
       const Step done = step(chunk, sink);
       if (done.used_bytes == 0) {
@@ -18,22 +18,32 @@ void UnitReader::feed(Bytes chunk, PacketSink sink) {
       chunk = chunk.from(done.used_bytes);
       continue;
     }
-    if (held_.size() < wanted_) {
-      const std::size_t taken = std::min(wanted_ - held_.size(), chunk.size());
+    if (held().size() < wanted_) {
+      const std::size_t taken = std::min(wanted_ - held().size(), chunk.size());
       held_.insert(held_.end(), chunk.begin(), chunk.begin() + taken);
       chunk = chunk.from(taken);
-      if (held_.size() < wanted_) return;
+      if (held().size() < wanted_) return;
     }
-    const Step done = step(Bytes(held_.data(), held_.size()), sink);
-    held_.erase(held_.begin(), held_.begin() + static_cast<std::ptrdiff_t>(done.used_bytes));
+    const Step done = step(held(), sink);
+    drop_held(done.used_bytes);
     offset_ += done.used_bytes;
     wanted_ = done.wanted_bytes;
   }
 }
 
+// Moves the rest to the front only when that is no more than what goes: input that is used up in
+// tiny steps must not cost a move each.
+void UnitReader::drop_held(std::size_t bytes) {
+  held_begin_ += bytes;
+  if (held_begin_ < held_.size() - held_begin_) return;
+  held_.erase(held_.begin(), held_.begin() + static_cast<std::ptrdiff_t>(held_begin_));
+  held_begin_ = 0;
+}
+
 void UnitReader::finish(PacketSink sink) {
-  end(Bytes(held_.data(), held_.size()), sink);
+  end(held(), sink);
   held_.clear();
+  held_begin_ = 0;
   offset_ = 0;
   wanted_ = 0;
 }

@@ -38,7 +38,11 @@ class UnitReader : public Reader {
 
  private:
   std::uint64_t offset_ = 0;
+  Bytes held() const { return Bytes(held_.data() + held_begin_, held_.size() - held_begin_); }
+  void drop_held(std::size_t bytes);
+
   std::vector<std::uint8_t> held_;
+  std::size_t held_begin_ = 0;  // What step was done with before it is still there.
   std::size_t wanted_ = 0;
 };
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "codec/containers/packet.h"
+#include "codec/containers/reader.h"
 
 namespace rubric {
 
@@ -102,6 +103,10 @@ class HexWriter final : public Writer {
  private:
   bool upper_case_;
 };
+
+/// A writer of that format, with its defaults; null for kUnknown and kJsonl. `link_type` is that of
+/// a pcap file, which can hold but one.
+std::unique_ptr<Writer> make_writer(InputFormat format, std::uint16_t link_type = 0);
 
 /// The link type that a capture file holds `packet` under; 0 if under none.
 std::uint16_t link_type_of(const Packet& packet);
