@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <span>
 
 #include "spec/compiler/check.h"
 #include "spec/compiler/expr_parser.h"
@@ -73,20 +74,19 @@ class Resolver {
   ExprShape enum_value(Expr& expr) {
     const Enum* found = find_enum(*scope_.type.spec, expr.path);
     if (found == nullptr) {
-      std::vector<std::string> known;
-      for (const auto& one : scope_.type.spec->enums) known.push_back(one->id);
       check_.error(expr.place, fmt::format("unknown enum in {}", quoted(to_text(expr))),
-                   suggestion(expr.path[expr.path.size() - 2], known));
+                   suggestion(expr.path[expr.path.size() - 2],
+                              ids_of(scope_.type.spec->enums)));
       return open();
     }
-    std::vector<std::string> known;
     for (const EnumEntry& entry : found->entries) {
-      known.push_back(entry.name);
       if (entry.name != expr.path.back()) continue;
       expr.value = entry.value;
       return constant(expr, expr.to_i ? ExprShape{Shape::kInt, nullptr}
                                       : ExprShape{Shape::kEnum, found});
     }
+    std::vector<std::string> known;
+    for (const EnumEntry& entry : found->entries) known.push_back(entry.name);
     check_.error(expr.place, fmt::format("unknown enum value {}", quoted(to_text(expr))),
                  suggestion(expr.path.back(), known));
     return open();
@@ -101,9 +101,7 @@ class Resolver {
       return nullptr;
     }
     const auto& fields = scope_.type.fields;
-    std::vector<std::string> known;
     for (std::size_t i = 0; i < fields.size(); ++i) {
-      if (i < scope_.fields_before) known.push_back(fields[i]->id);
       if (fields[i]->id != name) continue;
       if (i < scope_.fields_before) return fields[i].get();
       check_.error(expr.place, fmt::format("field {} is used before it is read", quoted(name)),
@@ -117,8 +115,9 @@ class Resolver {
                    "only instances read peeks");
       return nullptr;
     }
+    const std::span before(fields.data(), scope_.fields_before);
     check_.error(expr.place, fmt::format("unknown field {}", quoted(name)),
-                 suggestion(name, known));
+                 suggestion(name, ids_of(before)));
     return nullptr;
   }
 
@@ -128,14 +127,12 @@ class Resolver {
                    outer.choice ? "its type depends on a switch" : "it is no structure");
       return nullptr;
     }
-    std::vector<std::string> known;
     for (const auto& field : outer.type->fields) {
       if (field->id == name) return field.get();
-      known.push_back(field->id);
     }
     check_.error(expr.place, fmt::format("unknown field {} of {}", quoted(name),
                                          quoted(outer.type->id)),
-                 suggestion(name, known));
+                 suggestion(name, ids_of(outer.type->fields)));
     return nullptr;
   }
 

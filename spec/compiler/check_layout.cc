@@ -38,6 +38,7 @@ class Layout {
 
   void place(Field& field, std::size_t index) {
     const Scope scope{type_, index};
+    if (is_open_) check_.open.insert(&field);
     check_field_shape(check_, field);
     check_values(check_, field, scope);
     const bool conditional = resolve_condition(field, scope);
@@ -52,11 +53,6 @@ class Layout {
       is_open_ = true;
     } else {
       measure(field, index, conditional);
-    }
-    if (is_open_) {
-      for (std::size_t i = index + 1; i < type_.fields.size(); ++i) {
-        check_.open.insert(type_.fields[i].get());
-      }
     }
   }
 

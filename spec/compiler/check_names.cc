@@ -44,23 +44,21 @@ const Spec* import_named(const Spec& spec, std::string_view id) {
   return nullptr;
 }
 
-/// The spec that "spec::name" or "name" is looked up in, and the bare name. Null after an error.
-struct Place2 {
+/// The spec that "spec::name" or "name" is looked up in (null after an error), and the bare name.
+struct Lookup {
   const Spec* spec;
   std::string name;
 };
-Place2 split(Check& check, const Spec& spec, const std::string& name, const Place& place) {
+Lookup split(Check& check, const Spec& spec, const std::string& name, const Place& place) {
   const std::size_t colons = name.find("::");
   if (colons == name.npos) return {&spec, name};
   const std::string id = name.substr(0, colons);
   const Spec* import = import_named(spec, id);
   if (import == nullptr) {
-    std::vector<std::string> known;
-    for (const Spec* one : spec.imports) known.push_back(one->id);
     // An import that could not be read was reported already.
     const bool failed = spec.imports.size() != spec.import_names.size();
     if (!failed) {
-      check.error(place, fmt::format("{} is not imported", quoted(id)), suggestion(id, known));
+      check.error(place, fmt::format("{} is not imported", quoted(id)), suggestion(id, ids_of(spec.imports)));
     }
   }
   return {import, name.substr(colons + 2)};
@@ -70,11 +68,10 @@ const Type* find_type(Check& check, const Spec& spec, const std::string& name,
                       const Place& place) {
   const auto [where, id] = split(check, spec, name, place);
   if (where == nullptr) return nullptr;
-  std::vector<std::string> known;
   for (const auto& type : where->types) {
     if (type->id == id) return type.get();
-    known.push_back(type->id);
   }
+  std::vector<std::string> known = ids_of(where->types);
   if (where == &spec) known.insert(known.end(), kNumberTypes.begin(), kNumberTypes.end());
   check.error(place, fmt::format("unknown type {}", quoted(name)), suggestion(id, known));
   return nullptr;
@@ -112,10 +109,8 @@ void resolve_field(Check& check, const Spec& spec, Field& field) {
     if (where == nullptr) return;
     field.enumeration = find_enum(*where, id);
     if (field.enumeration != nullptr) return;
-    std::vector<std::string> known;
-    for (const auto& one : where->enums) known.push_back(one->id);
     check.error(place, fmt::format("unknown enum {}", quoted(field.enum_name)),
-                suggestion(id, known));
+                suggestion(id, ids_of(where->enums)));
   }
 }
 

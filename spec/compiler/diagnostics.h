@@ -48,4 +48,15 @@ std::string nearest(std::string_view word, std::span<const std::string_view> can
 std::string suggestion(std::string_view word, std::span<const std::string_view> candidates);
 std::string suggestion(std::string_view word, const std::vector<std::string>& candidates);
 
+/// The ids of a list of pointers, for `suggestion`: enough of them, not all of very many.
+template <class List>
+std::vector<std::string> ids_of(const List& list) {
+  constexpr std::size_t kEnough = 300;
+  std::vector<std::string> out;
+  for (const auto& one : list) {
+    if (out.size() < kEnough) out.push_back(one->id);
+  }
+  return out;
+}
+
 }  // namespace rubricc
