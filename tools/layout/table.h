@@ -1,0 +1,36 @@
+// Aligned columns of text.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace rubric::layout {
+
+/// Rows of cells; columns are as wide as their widest cell, and the last one is not padded. A
+/// column without any text is left out, its heading too.
+class Table {
+ public:
+  explicit Table(std::vector<std::string> headings) : headings_(std::move(headings)) {}
+
+  /// Columns whose cells stand at the right end: numbers.
+  void align_right(std::size_t column) { right_.push_back(column); }
+
+  void add(std::vector<std::string> cells) { rows_.push_back(std::move(cells)); }
+  bool empty() const { return rows_.empty(); }
+
+  /// All lines, each with its end, behind `indent` blanks.
+  std::string text(std::size_t indent = 0) const;
+
+ private:
+  std::vector<std::string> headings_;
+  std::vector<std::vector<std::string>> rows_;
+  std::vector<std::size_t> right_;
+};
+
+/// A blank where wrapped() does not break.
+inline constexpr char kFirmBlank = '\x1f';
+
+/// `text` in lines of at most `columns` characters, broken at blanks, each behind `indent` blanks.
+std::string wrapped(const std::string& text, std::size_t indent = 0, std::size_t columns = 100);
+
+}  // namespace rubric::layout

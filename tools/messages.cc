@@ -1,0 +1,114 @@
+#include "tools/messages.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "tools/cli/exit_codes.h"
+#include "tools/cli/input.h"
+#include "tools/cli/output.h"
+#include "tools/layout/json_text.h"
+#include "tools/layout/reach.h"
+#include "tools/layout/table.h"
+#include "tools/layout/type_text.h"
+
+namespace rubric::tools {
+namespace {
+
+using layout::json_string;
+using layout::Reach;
+using reflect::Protocol;
+using reflect::Type;
+
+struct Options {
+  cli::InputOptions input;  // Only the choice of the protocol.
+  std::string format = "text";
+};
+
+constexpr std::string_view kByNameAlone = "by name alone (--as)";
+
+std::string ways(const std::vector<Reach>& reaches) {
+  std::vector<std::string> texts;
+  if (layout::is_part(reaches)) {
+    for (const Reach& reach : reaches) {
+      const std::string parent = reach.parent->id;
+      if (std::find(texts.begin(), texts.end(), parent) == texts.end()) texts.push_back(parent);
+    }
+    return fmt::format("part of {}", fmt::join(texts, ", "));
+  }
+  texts = layout::reach_texts(reaches);
+  return texts.empty() ? std::string(kByNameAlone) : fmt::format("{}", fmt::join(texts, "; "));
+}
+
+std::string text(const Protocol& protocol) {
+  layout::Table table({"AM", "message", "size", "what", "how it is reached"});
+  table.align_right(0);
+  table.align_right(2);
+  for (int i = 0; i < protocol.type_count; ++i) {
+    const Type& type = *protocol.types[i];
+    if (layout::is_carrier(protocol, type)) continue;
+    const std::vector<Reach> reaches = layout::reaches(protocol, type);
+    table.add({fmt::format("{}", fmt::join(layout::am_types(reaches), ", ")), type.id,
+               layout::size_text(type), layout::first_sentence(type.doc), ways(reaches)});
+  }
+  return table.text();
+}
+
+std::string json(const Reach& reach) {
+  if (!reach.carrier.empty()) {
+    return fmt::format(R"({{"carrier":{},"am_types":[{}]}})", json_string(reach.carrier),
+                       fmt::join(reach.values, ","));
+  }
+  std::string out = fmt::format(R"({{"in":{},"field":{})", json_string(reach.parent->id),
+                                json_string(reach.field->name));
+  out += ",\"if\":" + layout::json_string_or_null(reach.condition);
+  out += ",\"key\":" + layout::json_string_or_null(reach.key);
+  return out + fmt::format(R"(,"values":[{}],"otherwise":{}}})", fmt::join(reach.values, ","),
+                           reach.otherwise);
+}
+
+std::string json(const Protocol& protocol) {
+  std::string out =
+      fmt::format(R"({{"schema":"rubric.messages/1","spec":{},"title":{},"messages":[)",
+                  json_string(protocol.id), json_string(protocol.title));
+  const char* separator = "\n";
+  for (int i = 0; i < protocol.type_count; ++i) {
+    const Type& type = *protocol.types[i];
+    if (layout::is_carrier(protocol, type)) continue;
+    const std::vector<Reach> reaches = layout::reaches(protocol, type);
+    out += separator;
+    separator = ",\n";
+    out += fmt::format(R"({{"id":{},"name":{},"am_types":[{}],"min_size":{},"max_size":{})",
+                       json_string(type.id), json_string(type.name),
+                       fmt::join(layout::am_types(reaches), ","), type.min_size,
+                       type.max_size == UINT32_MAX ? "null" : std::to_string(type.max_size));
+    out += ",\"reached\":[";
+    for (std::size_t k = 0; k < reaches.size(); ++k) out += (k ? "," : "") + json(reaches[k]);
+    out += fmt::format(R"(],"doc":{},"doc_ref":{}}})", json_string(type.doc ? type.doc : ""),
+                       json_string(type.doc_ref ? type.doc_ref : ""));
+  }
+  return out + "\n]}\n";
+}
+
+}  // namespace
+
+void add_messages(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* sub = app.add_subcommand("messages", "The messages of a protocol");
+  sub->add_option("--spec", options->input.spec, "Protocol above the AM layer")
+      ->capture_default_str();
+  sub->add_option("--format", options->format, "text or json")
+      ->check(CLI::IsMember({"text", "json"}))
+      ->capture_default_str();
+  sub->callback([options] {
+    const Protocol& protocol = cli::chosen_protocol(options->input);
+    cli::Output output;
+    output.buffer().append(options->format == "json" ? json(protocol) : text(protocol));
+    output.flush();
+    if (output.failed()) cli::exit_with(cli::kExitInput);
+  });
+}
+
+}  // namespace rubric::tools
