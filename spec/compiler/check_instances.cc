@@ -32,7 +32,7 @@ void check_peek(Check& check, const Type& type, Field& peek) {
   if (!check.is_open(&type) && end > type.max_size) {
     check.error(peek.place, fmt::format("peek {} lies behind the end of {}", quoted(peek.id),
                                         quoted(type.id)),
-                fmt::format("{} has at most {} bytes", quoted(type.id), type.max_size));
+                fmt::format("{} has at most {}", quoted(type.id), bytes_text(type.max_size)));
   }
 }
 

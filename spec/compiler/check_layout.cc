@@ -153,7 +153,7 @@ class Layout {
                    bounded(static_cast<std::uint64_t>(range.max))};
     if (field.kind == ValueKind::kStruct && inner.min > out.max) {
       check_.error(field.size->place,
-                   fmt::format("{} never fits in {} bytes", quoted(field.id), out.max),
+                   fmt::format("{} never fits in {}", quoted(field.id), bytes_text(out.max)),
                    fmt::format("it has at least {}", inner.min));
       is_open_ = true;
     }
@@ -167,12 +167,12 @@ class Layout {
     if (type_.max_size != kUnbounded) {
       if (declared == type_.max_size) return;
       check_.error(place, fmt::format("-size {} does not add up", declared),
-                   fmt::format("the fields of {} take {} bytes", quoted(type_.id),
-                               type_.max_size));
+                   fmt::format("the fields of {} take {}", quoted(type_.id),
+                               bytes_text(type_.max_size)));
     } else if (declared <= type_.min_size || declared >= kUnbounded) {
       check_.error(place, fmt::format("-size {} leaves no room", declared),
-                   fmt::format("{} has at least {} bytes and takes what follows",
-                               quoted(type_.id), type_.min_size));
+                   fmt::format("{} has at least {} and takes what follows", quoted(type_.id),
+                               bytes_text(type_.min_size)));
     } else {
       type_.max_size = static_cast<std::uint32_t>(declared);
     }
@@ -193,7 +193,7 @@ void check_layout(Check& check) {
       if (type->declared_size && *type->declared_size != type->max_size) {
         check.error(place_of(type->places, "-size", type->place),
                     fmt::format("-size {} does not add up", *type->declared_size),
-                    fmt::format("the mask takes {} bytes", type->max_size));
+                    "the mask takes " + bytes_text(type->max_size));
       }
       continue;
     }

@@ -58,7 +58,8 @@ Lookup split(Check& check, const Spec& spec, const std::string& name, const Plac
     // An import that could not be read was reported already.
     const bool failed = spec.imports.size() != spec.import_names.size();
     if (!failed) {
-      check.error(place, fmt::format("{} is not imported", quoted(id)), suggestion(id, ids_of(spec.imports)));
+      check.error(place, fmt::format("{} is not imported", quoted(id)),
+                  suggestion(id, ids_of(spec.imports)));
     }
   }
   return {import, name.substr(colons + 2)};

@@ -106,6 +106,10 @@ std::string quoted(std::string_view word) {
   return out + "'";
 }
 
+std::string bytes_text(std::uint64_t count) {
+  return fmt::format("{} byte{}", count, count == 1 ? "" : "s");
+}
+
 std::string nearest(std::string_view word, std::span<const std::string_view> candidates) {
   std::string_view best;
   std::size_t best_distance = std::min<std::size_t>(word.size(), 80) / 3 + 2;

@@ -42,6 +42,9 @@ class Diagnostics {
 /// `'word'`
 std::string quoted(std::string_view word);
 
+/// "1 byte", "2 bytes"
+std::string bytes_text(std::uint64_t count);
+
 /// The candidate that `word` was probably meant to be; empty if none is near.
 std::string nearest(std::string_view word, std::span<const std::string_view> candidates);
 /// "did you mean 'x'?" where something is near, else "known are a, b, c".

@@ -25,8 +25,6 @@ using reflect::RouteLength;
 using reflect::RouteTable;
 
 <<parts?>>
-
-<<routes?>>
 constexpr RouteTable kRoutes{<<table>>};
 
 }  // namespace messages
@@ -76,15 +74,14 @@ GeneratedFiles emit_messages(const Spec& spec) {
                           lists.name_of("RouteChoice", "Choices", one.choices),
                           lists.name_of("RouteLength", "Lengths", one.lengths));
   }
-  if (!routes.empty()) {
-    routes = "constexpr Route kRouteList[] = {\n" + routes + "};";
-  }
+  std::string parts = lists.text();
+  if (!routes.empty()) parts += "\nconstexpr Route kRouteList[] = {\n" + routes + "};";
   const std::string table =
       found.empty() ? "nullptr, 0" : fmt::format("kRouteList, {}", found.size());
   return {{fmt::format("codec/generated/{}/messages.h", spec.id),
            fill(kFile, {{"banner", banner("// ", spec.file)}, {"spec", spec.id},
                         {"include", cpp_include("codec/generated/" + spec.id + "/tables.h")},
-                        {"parts", lists.text()}, {"routes", routes}, {"table", table}})}};
+                        {"parts", parts}, {"table", table}})}};
 }
 
 }  // namespace rubricc

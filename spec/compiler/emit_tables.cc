@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "spec/compiler/cpp_text.h"
+#include "spec/compiler/diagnostics.h"
 #include "spec/compiler/emit.h"
 #include "spec/compiler/emit_steps.h"
 #include "spec/compiler/template.h"
@@ -115,8 +116,7 @@ class TypeTables {
       interpretations =
           "constexpr Interpretation kInterpretations[] = {\n" + interpretations + "};";
     }
-    const std::string comment =
-        fmt::format("// {}: {} bytes.", type_.id, size_text());
+    const std::string comment = fmt::format("// {}: {}.", type_.id, size_text());
     return fill(kType, {{"comment", comment}, {"id", type_.id}, {"parts", parts_},
                         {"fields", fields}, {"interpretations", interpretations},
                         {"name", cpp_constant(type_.id)}, {"values", type_values(shown)}});
@@ -124,9 +124,9 @@ class TypeTables {
 
  private:
   std::string size_text() const {
-    if (type_.max_size == UINT32_MAX) return fmt::format("{} and more", type_.min_size);
-    if (type_.constant_size()) return std::to_string(type_.min_size);
-    return fmt::format("{} to {}", type_.min_size, type_.max_size);
+    if (type_.max_size == UINT32_MAX) return fmt::format("{} bytes and more", type_.min_size);
+    if (type_.constant_size()) return bytes_text(type_.min_size);
+    return fmt::format("{} to {} bytes", type_.min_size, type_.max_size);
   }
 
   std::string part(const Field& field, std::string_view what) const {

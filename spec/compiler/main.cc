@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -78,8 +79,13 @@ int run(const Options& options) {
   rubricc::check_model(model, diagnostics);
   std::cerr << diagnostics.print();
   if (!diagnostics.empty()) return kDiagnostics;
-  for (const auto& file : emit(options, model)) {
-    if (!write(options.out, file)) return kCannotReadOrWrite;
+  try {
+    for (const auto& file : emit(options, model)) {
+      if (!write(options.out, file)) return kCannotReadOrWrite;
+    }
+  } catch (const std::logic_error& e) {  // A limit of an emitter that no check knows.
+    std::cerr << "rubricc: cannot emit: " << e.what() << '\n';
+    return kDiagnostics;
   }
   return kOk;
 }

@@ -89,7 +89,7 @@ constexpr Type kOscilloscope{
     "tinyos-2.x apps/Oscilloscope/Oscilloscope.h"};
 }  // namespace types
 
-// radio_i_frame: 11 and more bytes.
+// radio_i_frame: 11 bytes and more.
 namespace of {
 namespace radio_i_frame {
 constexpr int64_t kNetworkOneOf[] = {63};
@@ -119,7 +119,7 @@ constexpr Type kRadioIFrame{
     ""};
 }  // namespace types
 
-// radio_t_frame: 10 and more bytes.
+// radio_t_frame: 10 bytes and more.
 namespace of {
 namespace radio_t_frame {
 constexpr ExprStep kPayloadKey[] = {{Op::kLoadU8, 9}};

@@ -950,7 +950,7 @@ constexpr Type kRubicon{
     "paper: The Structure of the Communication Layer"};
 }  // namespace types
 
-// rssi_beacon: 1 bytes.
+// rssi_beacon: 1 byte.
 namespace of {
 namespace rssi_beacon {
 constexpr Field kFields[] = {
@@ -1067,7 +1067,7 @@ constexpr Type kAckJoin{
     "paper: Component Management"};
 }  // namespace types
 
-// radio_i_frame: 11 and more bytes.
+// radio_i_frame: 11 bytes and more.
 namespace of {
 namespace radio_i_frame {
 constexpr int64_t kNetworkOneOf[] = {63};
@@ -1099,7 +1099,7 @@ constexpr Type kRadioIFrame{
     "TEP 125"};
 }  // namespace types
 
-// radio_t_frame: 10 and more bytes.
+// radio_t_frame: 10 bytes and more.
 namespace of {
 namespace radio_t_frame {
 constexpr ExprStep kPayloadKey[] = {{Op::kLoadU8, 9}};

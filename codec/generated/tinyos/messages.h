@@ -13,7 +13,6 @@ using reflect::RouteChoice;
 using reflect::RouteLength;
 using reflect::RouteTable;
 
-
 constexpr RouteTable kRoutes{nullptr, 0};
 
 }  // namespace messages

@@ -50,7 +50,7 @@ namespace enums {
 constexpr EnumTable kDispatch{"dispatch", of::dispatch::kEntries, 4};
 }  // namespace enums
 
-// serial_frame: 1 and more bytes.
+// serial_frame: 1 bytes and more.
 namespace of {
 namespace serial_frame {
 constexpr ExprStep kSeqNumIf[] = {

@@ -1,4 +1,4 @@
-# expect: 10:15: 'a' never fits in 1 bytes; it has at least 2
+# expect: 10:15: 'a' never fits in 1 byte; it has at least 2
 meta:
   id: bad
   endian: be
