@@ -1,5 +1,4 @@
 // The documentation page: well-formed, every link has its target, everything escaped.
-#include <regex>
 #include <set>
 #include <string>
 #include <vector>
@@ -23,20 +22,22 @@ std::string page_of(const std::vector<std::string>& files) {
   return emit_doc(model).at(0).text;
 }
 
-std::vector<std::string> all(const std::string& text, const char* pattern) {
+/// What stands between each `before` and the next of `ends`.
+std::vector<std::string> all(const std::string& text, const std::string& before,
+                             const char* ends) {
   std::vector<std::string> out;
-  const std::regex regex(pattern);
-  for (std::sregex_iterator at(text.begin(), text.end(), regex), end; at != end; ++at) {
-    out.push_back((*at)[1]);
+  for (std::size_t at = text.find(before); at != text.npos; at = text.find(before, at)) {
+    at += before.size();
+    out.push_back(text.substr(at, text.find_first_of(ends, at) - at));
   }
   return out;
 }
 
 /// The first tag that closes what is not open; empty if all is well.
 std::string first_unbalanced(const std::string& text) {
-  const std::set<std::string> alone{"meta", "link", "br"};
+  const std::set<std::string> alone{"meta", "!DOCTYPE", "!--"};
   std::vector<std::string> open;
-  for (const std::string& tag : all(text, "<(/?[a-z][a-z0-9]*)[^>]*>")) {
+  for (const std::string& tag : all(text, "<", " >\n")) {
     if (alone.contains(tag)) continue;
     if (tag[0] != '/') {
       open.push_back(tag);
@@ -53,10 +54,10 @@ TEST(Doc, LinksLeadSomewhereAndTagsBalance) {
   const std::string page =
       page_of({"spec/wire/rubicon.ksy", "spec/wire/tinyos.ksy", "spec/wire/oscilloscope.ksy"});
   EXPECT_EQ(first_unbalanced(page), "");
-  const auto ids = all(page, " id=\"([^\"]*)\"");
+  const auto ids = all(page, " id=\"", "\"");
   const std::set<std::string> targets(ids.begin(), ids.end());
   EXPECT_EQ(ids.size(), targets.size());
-  const auto links = all(page, " href=\"([^\"]*)\"");
+  const auto links = all(page, " href=\"", "\"");
   EXPECT_GT(links.size(), 300U);
   for (const std::string& link : links) {
     ASSERT_EQ(link[0], '#') << "the page needs no network: " << link;
