@@ -38,7 +38,8 @@ class Message {
   std::string path() const {
     std::string out;
     for (std::size_t i = 0; i < decoded_.path_count(); ++i) {
-      out += (i ? " " : "") + std::string(decoded_.path()[i]->name);
+      if (i) out += ' ';
+      out += decoded_.path()[i]->name;
     }
     return out;
   }
