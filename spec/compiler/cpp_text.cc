@@ -35,12 +35,12 @@ std::string pascal(std::string_view id) {
   return out;
 }
 
-std::string cpp_constant(std::string_view id) { return "k" + pascal(id); }
+std::string cpp_constant(std::string_view id) { return fmt::format("k{}", pascal(id)); }
 
 std::string cpp_string(std::string_view text) {
-  std::string out = "\"";
+  std::string out;
   for (const char c : text) out += escaped(c);
-  return out + "\"";
+  return fmt::format("\"{}\"", out);
 }
 
 std::vector<std::string> cpp_string_pieces(std::string_view text, std::size_t width) {
@@ -51,14 +51,14 @@ std::vector<std::string> cpp_string_pieces(std::string_view text, std::size_t wi
     const std::string next = escaped(c);
     if (piece.size() + next.size() + 2 > width && !piece.empty()) {
       const std::size_t cut = break_at > 0 ? break_at : piece.size();
-      out.push_back("\"" + piece.substr(0, cut) + "\"");
+      out.push_back(fmt::format("\"{}\"", piece.substr(0, cut)));
       piece.erase(0, cut);
       break_at = 0;
     }
     piece += next;
     if (c == ' ') break_at = piece.size();
   }
-  out.push_back("\"" + piece + "\"");
+  out.push_back(fmt::format("\"{}\"", piece));
   return out;
 }
 
