@@ -53,11 +53,16 @@ struct Losses {
   std::uint64_t directions = 0;
   std::uint64_t interfaces = 0;
   std::uint64_t comments = 0;
+  std::uint64_t sequence_numbers = 0;  // Of the serial line.
+  std::uint64_t radio = 0;             // Among those written.
   std::map<std::string, std::uint64_t> refused;  // By reason: a handful.
 };
 
 void count_details(const Packet& packet, std::string_view interface_name,
-                   const record::Holds& holds, Losses& losses) {
+                   const record::Holds& holds, const std::string& container, Losses& losses) {
+  const bool bare_packets = container == "sf" || container == "hex";
+  losses.sequence_numbers += bare_packets && packet.serial_seq != kAbsent;
+  losses.radio += packet.framing == Framing::kRadio;
   losses.times += !holds.times && packet.time_ns != kNoTime;
   losses.directions += !holds.directions && packet.direction != Direction::kUnknown;
   losses.interfaces += !holds.interfaces && !interface_name.empty();
@@ -77,6 +82,11 @@ void report(const Losses& losses, const std::string& container) {
   lost(losses.directions, "directions");
   lost(losses.interfaces, "interface names");
   lost(losses.comments, "comments");
+  lost(losses.sequence_numbers, "serial sequence numbers");
+  if (container == "hex" && losses.radio && losses.radio != losses.written) {
+    fmt::print(stderr, "rubric: hex does not say which lines are radio frames; --only keeps one "
+                       "framing\n");
+  }
 }
 
 bool same_file(const std::string& a, const std::string& b) {
@@ -128,7 +138,7 @@ int run(const Options& options) {
         return true;
       }
       ++losses.written;
-      count_details(packet, source.interface_name, holds, losses);
+      count_details(packet, source.interface_name, holds, options.format, losses);
       return output.open();
     };
     result = cli::read_packets(options.input, on_packet);

@@ -92,7 +92,8 @@ class Layout {
     for (const EnumTable* table : enums_) {
       std::vector<std::string> values;
       for (int i = 0; i < table->count; ++i) {
-        values.push_back(fmt::format("{}{}{}", table->entries[i].value, kFirmBlank, table->entries[i].name));
+        const reflect::EnumEntry& entry = table->entries[i];
+        values.push_back(fmt::format("{}{}{}", entry.value, kFirmBlank, entry.name));
       }
       out += fmt::format("\n  {}:\n{}", table->name,
                          wrapped(fmt::format("{}", fmt::join(values, ", ")), 4));

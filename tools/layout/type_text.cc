@@ -67,8 +67,10 @@ void name_constant(Operand& constant, const Operand& other) {
 }
 
 Operand combined(Operand a, Operand b, const Operator& with) {
-  name_constant(a, b);
-  name_constant(b, a);
+  if (with.op >= Op::kEq && with.op <= Op::kGe) {
+    name_constant(a, b);
+    name_constant(b, a);
+  }
   if (a.precedence < with.precedence) a.text = '(' + a.text + ')';
   if (b.precedence <= with.precedence && b.precedence != kAtom) b.text = '(' + b.text + ')';
   Operand result;

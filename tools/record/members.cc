@@ -1,6 +1,8 @@
 #include "tools/record/members.h"
 
 #include <charconv>
+#include <cmath>
+#include <cstdlib>
 
 #include "codec/reflect/encode_number.h"
 #include "codec/reflect/fault_text.h"
@@ -45,6 +47,12 @@ std::int64_t time_of(const Value* value) {
                                "behind the point, or null, given " + value_text(*value));
   };
   if (!value->is(Value::Kind::kInteger) && !value->is(Value::Kind::kReal)) throw wrong();
+  if (text.find_first_of("eE") != std::string::npos) {
+    // As other programs write small numbers; good for a double's digits, which is all they had.
+    const double exact = std::strtod(text.c_str(), nullptr) * static_cast<double>(kSecond);
+    if (!(std::abs(exact) < static_cast<double>(INT64_MAX) / 2)) throw wrong();
+    return std::llround(exact);
+  }
   const bool negative = text.starts_with('-');
   const char* at = text.data() + negative;
   const char* const end = text.data() + text.size();

@@ -1,0 +1,262 @@
+#!/usr/bin/env python3
+"""`rubric encode`, convert, stats, explain and messages as their users meet them.
+
+Usage: commands_test.py RUBRIC.
+"""
+
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+RUBRIC = sys.argv.pop(1)
+CAPTURES = pathlib.Path("spec/captures")
+SERIAL = CAPTURES / "firmware/a_join_data.serial.bin"
+PCAPNG = CAPTURES / "firmware/a_join_data.pcapng"
+BAD_CRC = CAPTURES / "firmware/h10_hdlc_escape_and_bad_serial.serial_in.bin"
+STREAM = CAPTURES / "basestation/s07_frames.from_sink.sfstream"
+
+CONFIG = '{"type":"set_island_id","value":12}\n'
+CONFIG_PACKET = b"00 FF FF 00 00 03 00 25 0A 00 0C\n"
+
+
+def rubric(*args, stdin=b""):
+    """Exit code, stdout, stderr as text."""
+    if isinstance(stdin, str):
+        stdin = stdin.encode()
+    done = subprocess.run([RUBRIC, *map(str, args)], input=stdin, capture_output=True)
+    return done.returncode, done.stdout, done.stderr.decode()
+
+
+class Folder(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+
+class Encode(Folder):
+    def decoded(self, *files):
+        return rubric("decode", "--format", "jsonl", *files)[1]
+
+    def test_serial_captures_come_back_byte_for_byte(self):
+        for file in sorted(CAPTURES.glob("firmware/*.bin")):
+            code, out, err = rubric("encode", "--format", "hdlc", stdin=self.decoded(file))
+            self.assertEqual((code, err), (0, ""), file)
+            again = self.folder / "again.bin"
+            again.write_bytes(out)
+            self.assertEqual(self.lines(again), self.lines(file), file)
+
+    def lines(self, file):
+        """Decoded frames without their places, which depend on idle flags between them."""
+        frames = [json.loads(line) for line in self.decoded(file).splitlines()]
+        for frame in frames:
+            del frame["offset"]
+        return frames
+
+    def test_streams_come_back_byte_for_byte(self):
+        for file in sorted(CAPTURES.glob("basestation/*.sfstream")):
+            code, out, err = rubric("encode", "--format", "sf", stdin=self.decoded(file))
+            self.assertEqual((code, err), (0, ""), file)
+            self.assertEqual(out, file.read_bytes(), file)
+
+    def test_capture_files_come_back(self):
+        for file in sorted(CAPTURES.glob("firmware/*.pcapng")):
+            again = self.folder / "again.pcapng"
+            code, _, err = rubric("encode", "--format", "pcapng", "-o", again,
+                                  stdin=self.decoded(file))
+            self.assertEqual((code, err), (0, ""), file)
+            self.assertEqual(self.lines(again), self.lines(file), file)
+
+    def test_fields_alone(self):
+        self.assertEqual(rubric("encode", "--as", "config", stdin=CONFIG), (0, CONFIG_PACKET, ""))
+        code, out, _ = rubric("encode", "--as", "config", "--format", "hdlc", "--dest", "0x1",
+                              stdin=CONFIG)
+        self.assertEqual(code, 0)
+        self.assertEqual(out[1:12].hex(), "4500000100000300250a00"[:22])
+        code, out, _ = rubric("encode", "--as", "config", "--carrier", "none", stdin=CONFIG)
+        self.assertEqual((code, out), (0, b"0A 00 0C\n"))
+        reply = '{"island_addr":11,"mote_addr":2,"cur_time":258,"seq_num":7}'
+        code, out, _ = rubric("encode", "--as", "join_reply", "--format", "pcapng", stdin=reply)
+        code, out, _ = rubric("decode", "--format", "jsonl", stdin=out)
+        frame = json.loads(out)
+        self.assertEqual((frame["message"], frame["fields"]["seq_num"], frame["error"]),
+                         ("join_reply", 7, None))
+
+    def test_other_lines_go_on_after_a_bad_one(self):
+        file = self.folder / "in.jsonl"
+        file.write_text(CONFIG + "\n" + '{"type":1,"value":70000}\n' + "{oops}\n" + CONFIG)
+        code, out, err = rubric("encode", "--as", "config", file)
+        self.assertEqual((code, out), (3, 2 * CONFIG_PACKET))
+        first, second = err.splitlines()
+        self.assertEqual(first, f"rubric: {file}:3: value: expected a number from 0 to 65535, "
+                                "given 70000 (WIRE-CONFIG)")
+        self.assertTrue(second.startswith(f"rubric: {file}:4:"), second)
+
+    def test_fields_changed_beside_raw(self):
+        line = json.loads(self.decoded(SERIAL).splitlines()[0])
+        line["fields"]["seq_num"] = 9
+        code, out, err = rubric("encode", stdin=json.dumps(line))
+        self.assertEqual((code, out), (3, b""))
+        self.assertIn('stdin:1: fields.seq_num: given 9, but "raw" says 0; delete "raw"', err)
+        del line["raw"]
+        code, out, err = rubric("encode", stdin=json.dumps(line))
+        self.assertEqual(code, 3)
+        self.assertIn('delete "crc" to have it computed', err)
+        del line["frame"]["crc"]
+        code, out, err = rubric("encode", "--format", "hdlc", stdin=json.dumps(line))
+        self.assertEqual((code, err), (0, ""))
+        code, out, _ = rubric("decode", "--format", "jsonl", stdin=out)
+        self.assertEqual((code, json.loads(out)["fields"]["seq_num"]), (0, 9))
+
+    def test_what_a_container_cannot_hold(self):
+        code, out, err = rubric("encode", "--format", "hex", stdin=self.decoded(BAD_CRC))
+        self.assertEqual(code, 3)
+        self.assertIn("hex holds no malformed frames: ", err)
+
+    def test_usage(self):
+        for args, says in [
+            (["--as", "confg"], "did you mean 'config'?"),
+            (["--as", "updates"], "no AM type carries updates itself"),
+            (["--format", "xml"], "--format"),
+            (["--dest", "1"], "go with --as MESSAGE"),
+            (["--spec", "rubicn"], "did you mean 'rubicon'?"),
+        ]:
+            code, out, err = rubric("encode", *args)
+            self.assertEqual((code, out), (2, b""), args)
+            self.assertIn(says, err)
+
+    def test_files_that_are_not_there(self):
+        self.assertEqual(rubric("encode", "/nonexistent")[0], 3)
+        self.assertEqual(rubric("encode", "-o", "/nonexistent/x", stdin="")[0], 3)
+
+
+class Convert(Folder):
+    def test_to_pcapng_and_back_to_the_line(self):
+        pcapng, back = self.folder / "x.pcapng", self.folder / "x.bin"
+        self.assertEqual(rubric("convert", SERIAL, pcapng), (0, b"", ""))
+        self.assertEqual(rubric("convert", pcapng, back)[0], 0)
+        self.assertEqual(back.read_bytes(), SERIAL.read_bytes())
+
+    def test_pcapng_keeps_everything(self):
+        again = self.folder / "x.pcapng"
+        self.assertEqual(rubric("convert", PCAPNG, again), (0, b"", ""))
+        self.assertEqual(rubric("decode", again)[1], rubric("decode", PCAPNG)[1])
+
+    def test_says_what_is_lost(self):
+        code, out, err = rubric("convert", PCAPNG, "--format", "hex")
+        self.assertEqual((code, len(out.splitlines())), (0, 151))
+        for what in ["holds no times", "holds no directions", "holds no interface names",
+                     "does not say which lines are radio frames"]:
+            self.assertIn(what, err)
+        code, _, err = rubric("convert", PCAPNG, "-o", self.folder / "x.pcap")
+        self.assertEqual(code, 0)
+        self.assertIn("left out 71 of 151 packets: pcap holds one link type", err)
+        code, _, err = rubric("convert", PCAPNG, "-o", self.folder / "x.sf")
+        self.assertIn("left out 80 of 151 packets: sf holds no radio frames", err)
+        code, _, err = rubric("convert", BAD_CRC, "--format", "sf")
+        self.assertIn("sf holds no malformed frames", err)
+
+    def test_only(self):
+        pcap = self.folder / "x.pcap"
+        code, _, err = rubric("convert", PCAPNG, pcap, "--only", "hdlc")
+        self.assertEqual(code, 0)
+        self.assertNotIn("left out", err)
+        self.assertEqual(len(rubric("decode", pcap)[1].splitlines()), 71)
+
+    def test_usage(self):
+        self.assertEqual(rubric("convert", SERIAL, "--format", "xml")[0], 2)
+        self.assertEqual(rubric("convert", SERIAL, self.folder / "x.xyz")[0], 2)
+        copy = self.folder / "x.bin"
+        copy.write_bytes(SERIAL.read_bytes())
+        code, _, err = rubric("convert", copy, copy)
+        self.assertEqual(code, 2)
+        self.assertIn("is also the input", err)
+        self.assertEqual(copy.read_bytes(), SERIAL.read_bytes())
+        self.assertEqual(rubric("convert", "/nonexistent", self.folder / "y.sf")[0], 3)
+
+
+class Stats(unittest.TestCase):
+    def test_agrees_with_decode(self):
+        for file in [*CAPTURES.glob("firmware/*.pcapng"), *CAPTURES.glob("basestation/*.sfstream")]:
+            frames = [json.loads(line)
+                      for line in rubric("decode", "--format", "jsonl", file)[1].splitlines()]
+            code, out, _ = rubric("stats", "--format", "json", file)
+            stats = json.loads(out)
+            malformed = sum(1 for frame in frames if frame["error"])
+            self.assertEqual(stats["schema"], "rubric.stats/1")
+            self.assertEqual((stats["frames"], stats["malformed"]), (len(frames), malformed), file)
+            self.assertEqual(code, 1 if malformed else 0)
+            self.assertEqual(sum(m["frames"] for m in stats["messages"]), len(frames))
+            self.assertEqual(sum(f["frames"] for f in stats["faults"]), malformed)
+            for row in stats["messages"]:
+                named = sum(1 for frame in frames if frame["message"] == row["message"])
+                self.assertEqual(row["frames"], named or row["frames"])
+
+    def test_text(self):
+        code, out, _ = rubric("stats", STREAM)
+        self.assertEqual(code, 1)
+        for what in ["message", "source>destination", "fault", "WIRE-AM-DISPATCH"]:
+            self.assertIn(what, out.decode())
+        self.assertEqual(rubric("stats", "/nonexistent")[0], 3)
+
+
+class Explain(unittest.TestCase):
+    def test_names(self):
+        for name, says in [
+            ("net_msg", "WIRE-NET-NBYTES"),
+            ("wire-net-nbytes", "so it is 2 to 102"),
+            ("transducer_mask", "0x1000  rssi5"),
+            ("component", "control_layer"),
+            ("am_header", "WIRE-AM-DISPATCH"),
+        ]:
+            code, out, err = rubric("explain", name)
+            self.assertEqual((code, err), (0, ""), name)
+            self.assertIn(says, out.decode())
+        code, out, _ = rubric("explain", "--spec", "oscilloscope", "oscilloscope_msg")
+        self.assertEqual(code, 0)
+        self.assertIn("AM 147 on serial", out.decode())
+
+    def test_frames(self):
+        code, out, _ = rubric("explain", *CONFIG_PACKET.decode().split())
+        self.assertEqual(code, 0)
+        self.assertIn("set_island_id", out.decode())
+        code, out, _ = rubric("explain", "--as", "config", "0a000c")
+        self.assertEqual(code, 0)
+        self.assertIn("the message config alone", out.decode())
+        code, out, _ = rubric("explain", "--as", "config", "0a00")
+        self.assertEqual(code, 1)
+        self.assertIn("WIRE-CONFIG (MUST)", out.decode())
+
+    def test_unknown(self):
+        for args, says in [(["net_mesg"], "did you mean 'net_msg'?"),
+                           (["99887766"], "begin like no frame"),
+                           (["--framing", "sf", "xyz"], "expected hex digits"),
+                           (["net_msg", "upates"], "did you mean 'updates'?")]:
+            code, out, err = rubric("explain", *args)
+            self.assertEqual((code, out), (2, b""), args)
+            self.assertIn(says, err)
+
+
+class Messages(unittest.TestCase):
+    def test_text_and_json(self):
+        code, out, _ = rubric("messages")
+        self.assertEqual(code, 0)
+        text = out.decode()
+        listed = json.loads(rubric("messages", "--format", "json")[1])
+        self.assertEqual(listed["schema"], "rubric.messages/1")
+        for message in listed["messages"]:
+            self.assertIn(f" {message['id']} ", text)
+        net_msg = next(m for m in listed["messages"] if m["id"] == "net_msg")
+        self.assertEqual((net_msg["am_types"], net_msg["min_size"], net_msg["max_size"]),
+                         ([28], 14, 114))
+        code, out, _ = rubric("messages", "--spec", "oscilloscope")
+        self.assertEqual(code, 0)
+        self.assertIn("oscilloscope_msg", out.decode())
+        self.assertEqual(rubric("messages", "--spec", "nothing")[0], 2)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,16 @@
+// The counters for people and for programs.
+#pragma once
+
+#include <string>
+
+#include "tools/count/counters.h"
+
+namespace rubric::count {
+
+/// Aligned tables.
+std::string text_report(const Counters& counters);
+
+/// One JSON object, schema "rubric.stats/1".
+std::string json_report(const Counters& counters);
+
+}  // namespace rubric::count
