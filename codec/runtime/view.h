@@ -41,8 +41,8 @@ constexpr Error wrong_length(size_t have, size_t want, size_t offset_bytes, ReqI
   return error_at(have < want ? Fault::kTruncated : Fault::kTrailing, offset_bytes, requirement);
 }
 
-/// Numbers on the wire: how many bytes, and how to read and write them at any alignment. `fast_load`
-/// is for loops: compilers turn it into vector code more readily than the portable one.
+/// Numbers on the wire: how many bytes, and how to read and write them at any alignment.
+/// `fast_load` is for loops: compilers turn it into vector code more readily.
 struct U8 {
   using Value = uint8_t;
   static constexpr size_t kSizeBytes = 1;
@@ -171,7 +171,7 @@ void store_numbers(uint8_t* p, const typename Number::Value* from, size_t count)
 
 }  // namespace detail
 
-/// A lens on an array of numbers in bytes that somebody else owns.
+/// A lens on an array of numbers in bytes that somebody else owns; whole elements only.
 template <class Number>
 class NumberArrayView {
  public:
@@ -212,7 +212,7 @@ class NumberArrayView {
     const uint8_t* at_;
   };
   Iterator begin() const { return Iterator(bytes_.data()); }
-  Iterator end() const { return Iterator(bytes_.data() + size() * Number::kSizeBytes); }
+  Iterator end() const { return Iterator(bytes_.end()); }
 
  private:
   friend struct detail::Access;
@@ -257,7 +257,7 @@ class StructArrayView {
     const uint8_t* at_;
   };
   Iterator begin() const { return Iterator(bytes_.data()); }
-  Iterator end() const { return Iterator(bytes_.data() + size() * View::kMaxSizeBytes); }
+  Iterator end() const { return Iterator(bytes_.end()); }
 
  private:
   friend struct detail::Access;

@@ -94,7 +94,9 @@ GeneratedFile structure(const Type& type, const Spec& spec) {
 GeneratedFile all(const Spec& spec) {
   std::set<std::string> headers{"codec/runtime/message_codec.h"};
   for (const auto& type : spec.types) headers.insert(header_of(*type));
-  for (const Spec* import : spec.imports) headers.insert("codec/generated/" + import->id + "/all.h");
+  for (const Spec* import : spec.imports) {
+    headers.insert("codec/generated/" + import->id + "/all.h");
+  }
   return {"codec/generated/" + spec.id + "/all.h",
           whole(spec, "// Everything of " + spec.id + ", for tests and tools.", headers,
                 emit_all(spec))};

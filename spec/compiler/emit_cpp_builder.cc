@@ -8,8 +8,8 @@
 namespace rubricc::cpp {
 namespace {
 
-const char kBuilder[] = R"(/// Writes <<name>> in place. What is not set keeps the value that `out` held before. A setter that
-/// can refuse its value returns whether it took it.
+const char kBuilder[] = R"(/// Writes <<name>> in place. What is not set keeps what `out` held.
+/// A setter that can refuse its value returns whether it took it.
 class <<class>>Builder {
  public:
   constexpr <<class>>Builder() = default;
@@ -53,7 +53,7 @@ const char kNestedSetter[] = R"(<<class>>Builder <<id>>() {
 const char kPlainSet[] = R"(void set_<<id>>(const <<class>>& value) {
   <<class>>Layout::store(value, <<at>>);
 })";
-const char kRoom[] = R"(/// Where <<id>> goes, as far as there is room for it.
+const char kRoom[] = R"(/// Where <<id>> goes: all the room that there is.
 MutableBytes <<id>>_room() {
   <<room>>
 })";
@@ -63,9 +63,9 @@ RUBRIC_MUST_USE bool set_<<id>>(Bytes value) {
   detail::store_bytes(<<at>>, value);
   return true;
 })";
-const char kTailSize[] = R"(/// <<id>> is the first `size` bytes of <<id>>_room(); false where there is no room.
+const char kTailSize[] = R"(/// The first `size` bytes of <<id>>_room() are it; false: no room.
 RUBRIC_MUST_USE bool set_<<id>>_size(size_t size) {
-  if (size > <<id>>_room().size()) return false;
+  if (size > <<id>>_room().size()<<limit?>>) return false;
   tail_ = size;
   return true;
 })";
@@ -186,14 +186,10 @@ std::string payload(const Context& c, std::size_t i) {
   }
   std::string room = "return " + left + ";";
   if (!c.is_sure(i)) room = "if (out_.size() < " + at + ") return MutableBytes();\n" + room;
-  if (!is_unbounded(most)) {
-    const std::string limit = std::to_string(most);
-    room = (c.is_sure(i) ? "" : "if (out_.size() < " + at + ") return MutableBytes();\n") +
-           std::string("const MutableBytes left = ") + left + ";\nreturn left.size() > " + limit +
-           " ? left.first(" + limit + ") : left;";
-  }
   std::string out = fill(kRoom, {{"id", f.id}, {"room", room}}) + "\n";
   std::string checks = refuse("value.size() > " + f.id + "_room().size()");
+  const std::string limit = " > " + std::to_string(most);
+  if (!is_unbounded(most)) checks += refuse("value.size()" + limit);
   std::string also = " (its length is set elsewhere)";
   if (l.length) {
     checks += refuse("!set_" + l.length->id + "(static_cast<" + number_type(*l.length, c.spec) +
@@ -202,7 +198,9 @@ std::string payload(const Context& c, std::size_t i) {
   } else if (tail) {
     checks += "tail_ = value.size();\n";
     also = " and its size";
-    out += fill(kTailSize, {{"id", f.id}}) + "\n";
+    out += fill(kTailSize,
+                {{"id", f.id}, {"limit", is_unbounded(most) ? "" : " || size" + limit}}) +
+           "\n";
   }
   return out + fill(kSetBytes, {{"id", f.id},
                                 {"and", also},

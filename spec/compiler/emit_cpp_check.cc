@@ -8,16 +8,15 @@
 namespace rubricc::cpp {
 namespace {
 
-const char kCheck[] = R"(/// The first rule that `bytes` break, in field order; Fault::kNone if they break none.
+const char kCheck[] = R"(/// The first rule that `bytes` break, or Fault::kNone.<<doc?>>
 static constexpr Error check(Bytes bytes) {
-  <<clamp?>>
   <<pointer?>>
   <<front?>>
   <<rest?>>
   return no_error();
 })";
 
-const char kCheckShort[] = R"(// Bytes that end within the first <<size>>: what stands before the end may be wrong as well.
+const char kCheckShort[] = R"(// Bytes that end within the first <<size>>; they may be wrong before.
 RUBRIC_COLD static constexpr Error check_short(Bytes bytes) {
   <<steps>>
 })";
@@ -100,11 +99,12 @@ Front front(const Layout& layout) {
 
 Source source_of(const Layout& layout) { return {"p", "bytes.size()", layout.front_size}; }
 
-std::string cases(const Field& f, const Spec& spec, const std::string& range) {
+std::string cases(const Field& f, const Spec& spec, const std::string& range,
+                  std::uint32_t most) {
   std::string out;
   const auto check_as = [&](const Type* type) {
-    return "  in_" + f.id + " = " + class_of(*type, spec) + "View::check(" + range +
-           ");\n  break;\n";
+    return "  in_" + f.id + " = " + class_of(*type, spec) + "View::check(" +
+           limited(range, *type, spec, most) + ");\n  break;\n";
   };
   const auto& all = f.choice->cases;
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -116,16 +116,19 @@ std::string cases(const Field& f, const Spec& spec, const std::string& range) {
   return out + "default:\n" + (otherwise ? check_as(otherwise->type) : "  break;\n");
 }
 
-std::string nested(const Field& f, const Spec& spec, const Leaf& loads, const std::string& range,
-                   const std::string& at) {
+std::string nested(const Layout& layout, const Field& f, const Spec& spec,
+                   const std::string& range, const std::string& at) {
+  const std::uint32_t most = most_of(layout, f);
   if (f.choice) {
     return fill(kChoose, {{"id", f.id},
-                          {"key", print(*f.choice->key, loads)},
-                          {"cases", cases(f, spec, range)},
+                          {"key", print(*f.choice->key, loads_from(source_of(layout)))},
+                          {"cases", cases(f, spec, range, most)},
                           {"at", at}});
   }
-  return fill(kNested,
-              {{"id", f.id}, {"class", class_of(*f.type, spec)}, {"range", range}, {"at", at}});
+  return fill(kNested, {{"id", f.id},
+                        {"class", class_of(*f.type, spec)},
+                        {"range", limited(range, *f.type, spec, most)},
+                        {"at", at}});
 }
 
 // One field behind the front part. `at` is its offset; the size that it takes goes to `size`.
@@ -190,7 +193,7 @@ Rest delimited(const FieldLayout& l, const Leaf& loads, const std::string& at, b
   return out;
 }
 
-Rest rest_of(const FieldLayout& l, const Spec& spec, const Leaf& loads, const std::string& at,
+Rest rest_of(const Layout& layout, const FieldLayout& l, const Spec& spec, const std::string& at,
              bool more) {
   const Field& f = *l.field;
   const std::string left = at == "0" ? "bytes.size()" : "bytes.size() - " + at;
@@ -204,18 +207,18 @@ Rest rest_of(const FieldLayout& l, const Spec& spec, const Leaf& loads, const st
     return out;
   }
   if (l.shape == Shape::kNested) {
-    out.text = nested(f, spec, loads, from, at);
+    out.text = nested(layout, f, spec, from, at);
     out.size = f.type->constant_size()
                    ? std::to_string(f.type->max_size)
                    : "detail::Access::view<" + class_of(*f.type, spec) + "View>(" + from +
                          ").size_bytes()";
     return out;
   }
-  out = delimited(l, loads, at, more);
+  out = delimited(l, loads_from(source_of(layout)), at, more);
   if (l.shape == Shape::kChoice || l.shape == Shape::kNestedRange) {
     const bool to_end = f.extent == ExtentKind::kToEnd;
     const std::string range = to_end ? from : "bytes.sub(" + at + ", " + out.size + ")";
-    out.text += nested(f, spec, loads, range, at);
+    out.text += nested(layout, f, spec, range, at);
   } else if (l.shape != Shape::kBytes) {
     out.text += array_rest(l, spec, at, out.size);
   }
@@ -237,7 +240,7 @@ std::string rest(const Layout& layout, const Spec& spec) {
       out += "size_t at = " + std::to_string(f.fixed_offset) + ";\n";
       running = true;
     }
-    Rest one = rest_of(l, spec, loads, running ? "at" : at, more_moves);
+    Rest one = rest_of(layout, l, spec, running ? "at" : at, more_moves);
     if (more_moves) one.text += "at += " + one.size + ";\n";
     if (f.condition) {
       one.text = fill("if (<<if>>) {\n  <<then>>\n}\n",
@@ -254,10 +257,9 @@ std::string emit_check(const Layout& layout, const Spec& spec) {
   const Front first = front(layout);
   const std::string behind = rest(layout, spec);
   const bool loads = (first.fast + behind).find("(p") != std::string::npos;
-  const std::string most = std::to_string(layout.type->max_size);
   std::string out = fill(
       kCheck,
-      {{"clamp", layout.clamps ? "bytes = at_most(bytes, kMaxSizeBytes);" : ""},
+      {{"doc", layout.clamps ? " At most kMaxSizeBytes of them." : ""},
        {"pointer", loads ? "const uint8_t* const p = bytes.data();" : ""},
        {"front", first.fast},
        {"rest", behind}});

@@ -29,6 +29,12 @@ std::string emit_all(const Spec& spec);
 /// The bytes of a field of a builder.
 SizeText builder_sizes(const Spec& spec);
 
+/// `range` cut to what the type takes at most, where `most` bytes of it may be more.
+std::string limited(const std::string& range, const Type& type, const Spec& spec,
+                    std::uint32_t most);
+/// The most bytes that the field can have.
+std::uint32_t most_of(const Layout& layout, const Field& field);
+
 /// A line of documentation with the byte range and the requirement.
 std::string field_doc(const Layout& layout, std::size_t i);
 /// Whether a value of the type can have lengths that do not fit.

@@ -35,8 +35,9 @@ const char kCheckLengths[] = R"(static Error check_lengths(const <<class>>& valu
   return no_error();
 })";
 
-const char kWrite[] = R"(/// Writes `value` and returns the bytes written. Refuses what <<class>>View::parse would refuse,
-/// with the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
+const char kWrite[] = R"(/// Writes `value` and returns the bytes written. Refuses what parse
+/// would refuse, with the same fault, and an `out` that is too small (kNoRoom); what `out` then
+/// holds is undefined.
 inline Result<MutableBytes> write(const <<class>>& value, MutableBytes out) {
   <<lengths?>>
   const size_t size = <<class>>Layout::size_bytes(value);

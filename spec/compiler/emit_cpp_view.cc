@@ -9,8 +9,8 @@
 namespace rubricc::cpp {
 namespace {
 
-const char kView[] = R"(/// A lens on the bytes of <<name>>; copy it like a pointer. Somebody else owns the bytes; they must
-/// outlive it. It exists only where parse found nothing wrong.
+const char kView[] = R"(/// A lens on the bytes of <<name>>; copy it like a pointer. Somebody
+/// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class <<class>>View {
  public:
   using Value = <<class>>;
@@ -20,9 +20,10 @@ class <<class>>View {
 
   /// Checks everything once. <<stale_doc>>
   static constexpr Result<<class_in_angles>> parse(Bytes bytes) {
+    <<clamp?>>
     const Error error = check(bytes);
     if (RUBRIC_UNLIKELY(is_error(error))) return Failure{error};
-    return <<class>>View(<<made_of>>);
+    return <<class>>View(bytes);
   }
   template <size_t kCount>
   static Result<<class_in_angles>> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
@@ -129,20 +130,6 @@ std::string range_of(const Layout& layout, std::size_t i, const Spec& spec) {
   return "bytes_.sub(" + at + ", " + sizes(l) + ")";
 }
 
-// Views take all that they are given, so what is given must not be more than they may have.
-std::string limited(const std::string& range, const Type& type, const Spec& spec,
-                    std::uint32_t most) {
-  const Layout inner = lay_out(type);
-  if (!inner.clamps || most <= type.max_size) return range;
-  return "at_most(" + range + ", " + class_of(type, spec) + "View::kMaxSizeBytes)";
-}
-
-std::uint32_t most_of(const Layout& layout, const Field& f) {
-  if (!is_unbounded(f.max_size) && f.max_size > 0) return f.max_size;
-  if (is_unbounded(layout.type->max_size) || f.fixed_offset < 0) return UINT32_MAX;
-  return layout.type->max_size - static_cast<std::uint32_t>(f.fixed_offset);
-}
-
 std::string type_of(const FieldLayout& l, const Spec& spec) {
   const Field& f = *l.field;
   switch (l.shape) {
@@ -207,11 +194,12 @@ std::string copy(const FieldLayout& l) {
 }
 
 // Both kinds of groups end in: these bytes, held against that type.
-std::string pick(const Group& group, const Type* type, const std::string& range,
-                 const Spec& spec) {
+std::string pick(const Layout& layout, const Group& group, const Type* type,
+                 const std::string& range, const Spec& spec) {
   const std::string kind = pascal(group.name) + "Kind::" + constant(type->id);
   if (!group.interpretation) return "return " + kind + ";\n";
-  const std::string fits = "!is_error(" + class_of(*type, spec) + "View::check(" + range + "))";
+  const std::string fits = "!is_error(" + class_of(*type, spec) + "View::check(" +
+                           limited(range, *type, spec, most_of(layout, *group.overlaid)) + "))";
   const std::string text = guard(fits, "return " + kind + ";", false);
   if (text.size() <= 90) return text;
   return "if (" + fits + ") {\n  return " + kind + ";\n}\n";
@@ -219,16 +207,18 @@ std::string pick(const Group& group, const Type* type, const std::string& range,
 
 std::string switch_of(const Layout& layout, const Group& group, const Field& f, const Spec& spec,
                       const std::string& range) {
-  if (!f.choice) return pick(group, f.type, range, spec);
+  if (!f.choice) return pick(layout, group, f.type, range, spec);
   // An interpretation's key may be the first byte of a body that is known not to be empty.
   const std::int64_t safe = group.interpretation ? group.overlaid->fixed_offset + 1 : 0;
   const Leaf loads = loads_from({"bytes_.data()", "bytes_.size()",
                                  std::max<std::int64_t>(safe, layout.front_size)});
   std::string out = "switch (" + print(*f.choice->key, loads) + ") {\n";
   const auto add = [&](const Type* type) {
-    const std::string text = pick(group, type, range, spec);
+    const std::string text = pick(layout, group, type, range, spec);
     out += "    ";
-    for (const char c : text.substr(0, text.size() - 1)) out += c == '\n' ? "\n    " : std::string(1, c);
+    for (const char c : text.substr(0, text.size() - 1)) {
+      out += c == '\n' ? "\n    " : std::string(1, c);
+    }
     out += group.interpretation ? "\n    break;\n" : "\n";
   };
   const auto& all = f.choice->cases;
@@ -274,6 +264,20 @@ std::string kind_body(const Layout& layout, const Group& group, const Spec& spec
 }
 
 }  // namespace
+
+// Views take all that they are given, so what is given must not be more than they may have.
+std::string limited(const std::string& range, const Type& type, const Spec& spec,
+                    std::uint32_t most) {
+  const Layout inner = lay_out(type);
+  if (!inner.clamps || most <= type.max_size) return range;
+  return "at_most(" + range + ", " + class_of(type, spec) + "View::kMaxSizeBytes)";
+}
+
+std::uint32_t most_of(const Layout& layout, const Field& f) {
+  if (!is_unbounded(f.max_size) && f.max_size > 0) return f.max_size;
+  if (is_unbounded(layout.type->max_size) || f.fixed_offset < 0) return UINT32_MAX;
+  return layout.type->max_size - static_cast<std::uint32_t>(f.fixed_offset);
+}
 
 SizeText builder_sizes(const Spec& spec) {
   return sizes_of(spec, "out_", loads_from({"out_.data()", "out_.size()", INT32_MAX}));
@@ -346,7 +350,7 @@ std::string emit_view(const Layout& layout, const Spec& spec) {
        {"stale_doc", exact ? "All bytes are part of it."
                      : all ? "Bytes behind the greatest size are left out."
                            : "Bytes behind the structure are stale()."},
-       {"made_of", layout.clamps ? "at_most(bytes, kMaxSizeBytes)" : "bytes"},
+       {"clamp", layout.clamps ? "bytes = at_most(bytes, kMaxSizeBytes);" : ""},
        {"check", check},
        {"getters", getters},
        {"meant", all ? "bytes_" : "bytes_.first(size_bytes())"},

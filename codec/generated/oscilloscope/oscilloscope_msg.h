@@ -49,8 +49,8 @@ struct OscilloscopeMsgLayout {
   }
 };
 
-/// A lens on the bytes of oscilloscope_msg; copy it like a pointer. Somebody else owns the bytes;
-/// they must outlive it. It exists only where parse found nothing wrong.
+/// A lens on the bytes of oscilloscope_msg; copy it like a pointer. Somebody
+/// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class OscilloscopeMsgView {
  public:
   using Value = OscilloscopeMsg;
@@ -65,7 +65,7 @@ class OscilloscopeMsgView {
   }
   template <size_t kCount>
   static Result<OscilloscopeMsgView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order; Fault::kNone if they break none.
+  /// The first rule that `bytes` break, in field order, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     if (RUBRIC_UNLIKELY(bytes.size() < 28)) return truncated(bytes, req::kWireOscilloscope);
     return no_error();
@@ -115,9 +115,8 @@ class OscilloscopeMsgView {
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what OscilloscopeMsgView::parse would
-/// refuse, with the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is
-/// undefined.
+/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
+/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
 inline Result<MutableBytes> write(const OscilloscopeMsg& value, MutableBytes out) {
   const size_t size = OscilloscopeMsgLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
@@ -127,8 +126,8 @@ inline Result<MutableBytes> write(const OscilloscopeMsg& value, MutableBytes out
   return out.first(size);
 }
 
-/// Writes oscilloscope_msg in place. What is not set keeps the value that `out` held before. A
-/// setter that can refuse its value returns whether it took it.
+/// Writes oscilloscope_msg in place. What is not set keeps what `out` held.
+/// A setter that can refuse its value returns whether it took it.
 class OscilloscopeMsgBuilder {
  public:
   constexpr OscilloscopeMsgBuilder() = default;

@@ -41,8 +41,8 @@ struct RadioTFrameLayout {
   }
 };
 
-/// A lens on the bytes of radio_t_frame; copy it like a pointer. Somebody else owns the bytes; they
-/// must outlive it. It exists only where parse found nothing wrong.
+/// A lens on the bytes of radio_t_frame; copy it like a pointer. Somebody
+/// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class RadioTFrameView {
  public:
   using Value = RadioTFrame;
@@ -59,7 +59,7 @@ class RadioTFrameView {
   }
   template <size_t kCount>
   static Result<RadioTFrameView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order; Fault::kNone if they break none.
+  /// The first rule that `bytes` break, in field order, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     const uint8_t* const p = bytes.data();
     if (RUBRIC_UNLIKELY(bytes.size() < 10)) return check_short(bytes);
@@ -124,7 +124,7 @@ class RadioTFrameView {
   friend class Result<RadioTFrameView>;
   constexpr RadioTFrameView() = default;
   constexpr explicit RadioTFrameView(Bytes bytes) : bytes_(bytes) {}
-  // Bytes that end within the first 10: what stands before the end may be wrong as well.
+  // Bytes that end within the first 10; they may be wrong before.
   RUBRIC_COLD static constexpr Error check_short(Bytes bytes) {
     if (bytes.size() < 9) return truncated(bytes, req::kWireRadioHeader);
     return truncated(bytes, ReqId::kNone);
@@ -133,9 +133,8 @@ class RadioTFrameView {
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what RadioTFrameView::parse would refuse,
-/// with the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is
-/// undefined.
+/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
+/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
 inline Result<MutableBytes> write(const RadioTFrame& value, MutableBytes out) {
   const size_t size = RadioTFrameLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
@@ -147,8 +146,8 @@ inline Result<MutableBytes> write(const RadioTFrame& value, MutableBytes out) {
   return out.first(size);
 }
 
-/// Writes radio_t_frame in place. What is not set keeps the value that `out` held before. A setter
-/// that can refuse its value returns whether it took it.
+/// Writes radio_t_frame in place. What is not set keeps what `out` held.
+/// A setter that can refuse its value returns whether it took it.
 class RadioTFrameBuilder {
  public:
   constexpr RadioTFrameBuilder() = default;
@@ -170,11 +169,11 @@ class RadioTFrameBuilder {
   /// Byte 9.
   void set_type(uint8_t value) { store_u8(out_.data() + 9, value); }
   /// From byte 10. WIRE-RADIO-LENGTH.
-  /// Where payload goes, as far as there is room for it.
+  /// Where payload goes: all the room that there is.
   MutableBytes payload_room() {
     return out_.from(10);
   }
-  /// payload is the first `size` bytes of payload_room(); false where there is no room.
+  /// The first `size` bytes of payload_room() are it; false: no room.
   RUBRIC_MUST_USE bool set_payload_size(size_t size) {
     if (size > payload_room().size()) return false;
     tail_ = size;

@@ -46,8 +46,8 @@ struct AckJoinLayout {
   }
 };
 
-/// A lens on the bytes of ack_join; copy it like a pointer. Somebody else owns the bytes; they must
-/// outlive it. It exists only where parse found nothing wrong.
+/// A lens on the bytes of ack_join; copy it like a pointer. Somebody
+/// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class AckJoinView {
  public:
   using Value = AckJoin;
@@ -62,7 +62,7 @@ class AckJoinView {
   }
   template <size_t kCount>
   static Result<AckJoinView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order; Fault::kNone if they break none.
+  /// The first rule that `bytes` break, in field order, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     if (RUBRIC_UNLIKELY(bytes.size() < 14)) return check_short(bytes);
     return no_error();
@@ -103,7 +103,7 @@ class AckJoinView {
   friend class Result<AckJoinView>;
   constexpr AckJoinView() = default;
   constexpr explicit AckJoinView(Bytes bytes) : bytes_(bytes) {}
-  // Bytes that end within the first 14: what stands before the end may be wrong as well.
+  // Bytes that end within the first 14; they may be wrong before.
   RUBRIC_COLD static constexpr Error check_short(Bytes bytes) {
     if (bytes.size() < 8) return truncated(bytes, req::kWireRAddr);
     if (bytes.size() < 10) return truncated(bytes, req::kWireAckJoin);
@@ -113,9 +113,8 @@ class AckJoinView {
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what AckJoinView::parse would refuse,
-/// with the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is
-/// undefined.
+/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
+/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
 inline Result<MutableBytes> write(const AckJoin& value, MutableBytes out) {
   const size_t size = AckJoinLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
@@ -125,8 +124,8 @@ inline Result<MutableBytes> write(const AckJoin& value, MutableBytes out) {
   return out.first(size);
 }
 
-/// Writes ack_join in place. What is not set keeps the value that `out` held before. A setter that
-/// can refuse its value returns whether it took it.
+/// Writes ack_join in place. What is not set keeps what `out` held.
+/// A setter that can refuse its value returns whether it took it.
 class AckJoinBuilder {
  public:
   constexpr AckJoinBuilder() = default;

@@ -58,8 +58,8 @@ struct AppMsgLayout {
   }
 };
 
-/// A lens on the bytes of app_msg; copy it like a pointer. Somebody else owns the bytes; they must
-/// outlive it. It exists only where parse found nothing wrong.
+/// A lens on the bytes of app_msg; copy it like a pointer. Somebody
+/// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class AppMsgView {
  public:
   using Value = AppMsg;
@@ -73,15 +73,16 @@ class AppMsgView {
 
   /// Checks everything once. Bytes behind the greatest size are left out.
   static constexpr Result<AppMsgView> parse(Bytes bytes) {
+    bytes = at_most(bytes, kMaxSizeBytes);
     const Error error = check(bytes);
     if (RUBRIC_UNLIKELY(is_error(error))) return Failure{error};
-    return AppMsgView(at_most(bytes, kMaxSizeBytes));
+    return AppMsgView(bytes);
   }
   template <size_t kCount>
   static Result<AppMsgView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order; Fault::kNone if they break none.
+  /// The first rule that `bytes` break, in field order, or Fault::kNone. At most kMaxSizeBytes of
+  /// them.
   static constexpr Error check(Bytes bytes) {
-    bytes = at_most(bytes, kMaxSizeBytes);
     if (RUBRIC_UNLIKELY(bytes.size() < 2)) return truncated(bytes, req::kWireAppHeader);
     return no_error();
   }
@@ -236,9 +237,8 @@ class AppMsgView {
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what AppMsgView::parse would refuse,
-/// with the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is
-/// undefined.
+/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
+/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
 inline Result<MutableBytes> write(const AppMsg& value, MutableBytes out) {
   const Error wrong = AppMsgLayout::check_lengths(value);
   if (RUBRIC_UNLIKELY(is_error(wrong))) return Failure{wrong};
@@ -250,8 +250,8 @@ inline Result<MutableBytes> write(const AppMsg& value, MutableBytes out) {
   return out.first(size);
 }
 
-/// Writes app_msg in place. What is not set keeps the value that `out` held before. A setter that
-/// can refuse its value returns whether it took it.
+/// Writes app_msg in place. What is not set keeps what `out` held.
+/// A setter that can refuse its value returns whether it took it.
 class AppMsgBuilder {
  public:
   constexpr AppMsgBuilder() = default;
@@ -268,20 +268,20 @@ class AppMsgBuilder {
   /// Byte 1. Application component.
   void set_app_id(Component value) { store_u8(out_.data() + 1, static_cast<uint8_t>(value)); }
   /// From byte 2. The application's bytes.
-  /// Where payload goes, as far as there is room for it.
+  /// Where payload goes: all the room that there is.
   MutableBytes payload_room() {
-    const MutableBytes left = out_.from(2);
-    return left.size() > 100 ? left.first(100) : left;
+    return out_.from(2);
   }
-  /// payload is the first `size` bytes of payload_room(); false where there is no room.
+  /// The first `size` bytes of payload_room() are it; false: no room.
   RUBRIC_MUST_USE bool set_payload_size(size_t size) {
-    if (size > payload_room().size()) return false;
+    if (size > payload_room().size() || size > 100) return false;
     tail_ = size;
     return true;
   }
   /// Copies payload and its size; false where there is no room.
   RUBRIC_MUST_USE bool set_payload(Bytes value) {
     if (value.size() > payload_room().size()) return false;
+    if (value.size() > 100) return false;
     tail_ = value.size();
     detail::store_bytes(out_.data() + 2, value);
     return true;

@@ -40,8 +40,8 @@ struct BroadcastCmdLayout {
   }
 };
 
-/// A lens on the bytes of broadcast_cmd; copy it like a pointer. Somebody else owns the bytes; they
-/// must outlive it. It exists only where parse found nothing wrong.
+/// A lens on the bytes of broadcast_cmd; copy it like a pointer. Somebody
+/// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class BroadcastCmdView {
  public:
   using Value = BroadcastCmd;
@@ -56,7 +56,7 @@ class BroadcastCmdView {
   }
   template <size_t kCount>
   static Result<BroadcastCmdView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order; Fault::kNone if they break none.
+  /// The first rule that `bytes` break, in field order, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     if (RUBRIC_UNLIKELY(bytes.size() < 5)) return truncated(bytes, req::kWireBroadcastCmd);
     return no_error();
@@ -98,9 +98,8 @@ class BroadcastCmdView {
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what BroadcastCmdView::parse would refuse,
-/// with the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is
-/// undefined.
+/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
+/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
 inline Result<MutableBytes> write(const BroadcastCmd& value, MutableBytes out) {
   const size_t size = BroadcastCmdLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
@@ -110,8 +109,8 @@ inline Result<MutableBytes> write(const BroadcastCmd& value, MutableBytes out) {
   return out.first(size);
 }
 
-/// Writes broadcast_cmd in place. What is not set keeps the value that `out` held before. A setter
-/// that can refuse its value returns whether it took it.
+/// Writes broadcast_cmd in place. What is not set keeps what `out` held.
+/// A setter that can refuse its value returns whether it took it.
 class BroadcastCmdBuilder {
  public:
   constexpr BroadcastCmdBuilder() = default;

@@ -41,8 +41,8 @@ struct CommandLayout {
   }
 };
 
-/// A lens on the bytes of command; copy it like a pointer. Somebody else owns the bytes; they must
-/// outlive it. It exists only where parse found nothing wrong.
+/// A lens on the bytes of command; copy it like a pointer. Somebody
+/// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class CommandView {
  public:
   using Value = Command;
@@ -57,7 +57,7 @@ class CommandView {
   }
   template <size_t kCount>
   static Result<CommandView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order; Fault::kNone if they break none.
+  /// The first rule that `bytes` break, in field order, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     if (RUBRIC_UNLIKELY(bytes.size() < 5)) return truncated(bytes, req::kWireCommand);
     return no_error();
@@ -97,9 +97,8 @@ class CommandView {
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what CommandView::parse would refuse,
-/// with the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is
-/// undefined.
+/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
+/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
 inline Result<MutableBytes> write(const Command& value, MutableBytes out) {
   const size_t size = CommandLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
@@ -109,8 +108,8 @@ inline Result<MutableBytes> write(const Command& value, MutableBytes out) {
   return out.first(size);
 }
 
-/// Writes command in place. What is not set keeps the value that `out` held before. A setter that
-/// can refuse its value returns whether it took it.
+/// Writes command in place. What is not set keeps what `out` held.
+/// A setter that can refuse its value returns whether it took it.
 class CommandBuilder {
  public:
   constexpr CommandBuilder() = default;

@@ -67,8 +67,8 @@ struct CompleteLayout {
   }
 };
 
-/// A lens on the bytes of complete; copy it like a pointer. Somebody else owns the bytes; they must
-/// outlive it. It exists only where parse found nothing wrong.
+/// A lens on the bytes of complete; copy it like a pointer. Somebody
+/// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class CompleteView {
  public:
   using Value = Complete;
@@ -83,7 +83,7 @@ class CompleteView {
   }
   template <size_t kCount>
   static Result<CompleteView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order; Fault::kNone if they break none.
+  /// The first rule that `bytes` break, in field order, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     const uint8_t* const p = bytes.data();
     if (RUBRIC_UNLIKELY(bytes.size() < 19)) return check_short(bytes);
@@ -143,7 +143,7 @@ class CompleteView {
   friend class Result<CompleteView>;
   constexpr CompleteView() = default;
   constexpr explicit CompleteView(Bytes bytes) : bytes_(bytes) {}
-  // Bytes that end within the first 19: what stands before the end may be wrong as well.
+  // Bytes that end within the first 19; they may be wrong before.
   RUBRIC_COLD static constexpr Error check_short(Bytes bytes) {
     const uint8_t* const p = bytes.data();
     if (bytes.size() < 8) return truncated(bytes, req::kWireRAddr);
@@ -163,9 +163,8 @@ class CompleteView {
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what CompleteView::parse would refuse,
-/// with the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is
-/// undefined.
+/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
+/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
 inline Result<MutableBytes> write(const Complete& value, MutableBytes out) {
   const size_t size = CompleteLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
@@ -177,8 +176,8 @@ inline Result<MutableBytes> write(const Complete& value, MutableBytes out) {
   return out.first(size);
 }
 
-/// Writes complete in place. What is not set keeps the value that `out` held before. A setter that
-/// can refuse its value returns whether it took it.
+/// Writes complete in place. What is not set keeps what `out` held.
+/// A setter that can refuse its value returns whether it took it.
 class CompleteBuilder {
  public:
   constexpr CompleteBuilder() = default;

@@ -35,8 +35,8 @@ struct ConfigLayout {
   }
 };
 
-/// A lens on the bytes of config; copy it like a pointer. Somebody else owns the bytes; they must
-/// outlive it. It exists only where parse found nothing wrong.
+/// A lens on the bytes of config; copy it like a pointer. Somebody
+/// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class ConfigView {
  public:
   using Value = Config;
@@ -51,7 +51,7 @@ class ConfigView {
   }
   template <size_t kCount>
   static Result<ConfigView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order; Fault::kNone if they break none.
+  /// The first rule that `bytes` break, in field order, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     if (RUBRIC_UNLIKELY(bytes.size() < 3)) return truncated(bytes, req::kWireConfig);
     return no_error();
@@ -88,9 +88,8 @@ class ConfigView {
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what ConfigView::parse would refuse,
-/// with the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is
-/// undefined.
+/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
+/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
 inline Result<MutableBytes> write(const Config& value, MutableBytes out) {
   const size_t size = ConfigLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
@@ -100,8 +99,8 @@ inline Result<MutableBytes> write(const Config& value, MutableBytes out) {
   return out.first(size);
 }
 
-/// Writes config in place. What is not set keeps the value that `out` held before. A setter that
-/// can refuse its value returns whether it took it.
+/// Writes config in place. What is not set keeps what `out` held.
+/// A setter that can refuse its value returns whether it took it.
 class ConfigBuilder {
  public:
   constexpr ConfigBuilder() = default;

@@ -64,8 +64,8 @@ struct ConnlessLayout {
   }
 };
 
-/// A lens on the bytes of connless; copy it like a pointer. Somebody else owns the bytes; they must
-/// outlive it. It exists only where parse found nothing wrong.
+/// A lens on the bytes of connless; copy it like a pointer. Somebody
+/// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class ConnlessView {
  public:
   using Value = Connless;
@@ -80,7 +80,7 @@ class ConnlessView {
   }
   template <size_t kCount>
   static Result<ConnlessView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order; Fault::kNone if they break none.
+  /// The first rule that `bytes` break, in field order, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     const uint8_t* const p = bytes.data();
     if (RUBRIC_UNLIKELY(bytes.size() < 8)) return check_short(bytes);
@@ -137,7 +137,7 @@ class ConnlessView {
   friend class Result<ConnlessView>;
   constexpr ConnlessView() = default;
   constexpr explicit ConnlessView(Bytes bytes) : bytes_(bytes) {}
-  // Bytes that end within the first 8: what stands before the end may be wrong as well.
+  // Bytes that end within the first 8; they may be wrong before.
   RUBRIC_COLD static constexpr Error check_short(Bytes bytes) {
     const uint8_t* const p = bytes.data();
     if (bytes.size() < 5) return truncated(bytes, req::kWireConnless);
@@ -150,9 +150,8 @@ class ConnlessView {
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what ConnlessView::parse would refuse,
-/// with the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is
-/// undefined.
+/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
+/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
 inline Result<MutableBytes> write(const Connless& value, MutableBytes out) {
   const Error wrong = ConnlessLayout::check_lengths(value);
   if (RUBRIC_UNLIKELY(is_error(wrong))) return Failure{wrong};
@@ -166,8 +165,8 @@ inline Result<MutableBytes> write(const Connless& value, MutableBytes out) {
   return out.first(size);
 }
 
-/// Writes connless in place. What is not set keeps the value that `out` held before. A setter that
-/// can refuse its value returns whether it took it.
+/// Writes connless in place. What is not set keeps what `out` held.
+/// A setter that can refuse its value returns whether it took it.
 class ConnlessBuilder {
  public:
   constexpr ConnlessBuilder() = default;
@@ -201,14 +200,14 @@ class ConnlessBuilder {
     return true;
   }
   /// From byte 8. The application's bytes.
-  /// Where payload goes, as far as there is room for it.
+  /// Where payload goes: all the room that there is.
   MutableBytes payload_room() {
-    const MutableBytes left = out_.from(8);
-    return left.size() > 100 ? left.first(100) : left;
+    return out_.from(8);
   }
   /// Copies payload and sets nbytes; false where there is no room.
   RUBRIC_MUST_USE bool set_payload(Bytes value) {
     if (value.size() > payload_room().size()) return false;
+    if (value.size() > 100) return false;
     if (!set_nbytes(static_cast<uint8_t>(value.size()))) return false;
     detail::store_bytes(out_.data() + 8, value);
     return true;

@@ -48,8 +48,8 @@ struct DataLayout {
   }
 };
 
-/// A lens on the bytes of data; copy it like a pointer. Somebody else owns the bytes; they must
-/// outlive it. It exists only where parse found nothing wrong.
+/// A lens on the bytes of data; copy it like a pointer. Somebody
+/// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class DataView {
  public:
   using Value = Data;
@@ -64,7 +64,7 @@ class DataView {
   }
   template <size_t kCount>
   static Result<DataView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order; Fault::kNone if they break none.
+  /// The first rule that `bytes` break, in field order, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     if (RUBRIC_UNLIKELY(bytes.size() < 10)) return truncated(bytes, req::kWireData);
     return no_error();
@@ -110,9 +110,8 @@ class DataView {
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what DataView::parse would refuse,
-/// with the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is
-/// undefined.
+/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
+/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
 inline Result<MutableBytes> write(const Data& value, MutableBytes out) {
   const size_t size = DataLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
@@ -122,8 +121,8 @@ inline Result<MutableBytes> write(const Data& value, MutableBytes out) {
   return out.first(size);
 }
 
-/// Writes data in place. What is not set keeps the value that `out` held before. A setter that
-/// can refuse its value returns whether it took it.
+/// Writes data in place. What is not set keeps what `out` held.
+/// A setter that can refuse its value returns whether it took it.
 class DataBuilder {
  public:
   constexpr DataBuilder() = default;

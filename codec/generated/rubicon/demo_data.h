@@ -73,8 +73,8 @@ struct DemoDataLayout {
   }
 };
 
-/// A lens on the bytes of demo_data; copy it like a pointer. Somebody else owns the bytes; they
-/// must outlive it. It exists only where parse found nothing wrong.
+/// A lens on the bytes of demo_data; copy it like a pointer. Somebody
+/// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class DemoDataView {
  public:
   using Value = DemoData;
@@ -89,7 +89,7 @@ class DemoDataView {
   }
   template <size_t kCount>
   static Result<DemoDataView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order; Fault::kNone if they break none.
+  /// The first rule that `bytes` break, in field order, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     if (RUBRIC_UNLIKELY(bytes.size() < 19)) return truncated(bytes, req::kWireDemoData);
     return no_error();
@@ -150,9 +150,8 @@ class DemoDataView {
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what DemoDataView::parse would refuse,
-/// with the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is
-/// undefined.
+/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
+/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
 inline Result<MutableBytes> write(const DemoData& value, MutableBytes out) {
   const size_t size = DemoDataLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
@@ -162,8 +161,8 @@ inline Result<MutableBytes> write(const DemoData& value, MutableBytes out) {
   return out.first(size);
 }
 
-/// Writes demo_data in place. What is not set keeps the value that `out` held before. A setter that
-/// can refuse its value returns whether it took it.
+/// Writes demo_data in place. What is not set keeps what `out` held.
+/// A setter that can refuse its value returns whether it took it.
 class DemoDataBuilder {
  public:
   constexpr DemoDataBuilder() = default;

@@ -45,8 +45,8 @@ struct JoinReplyLayout {
   }
 };
 
-/// A lens on the bytes of join_reply; copy it like a pointer. Somebody else owns the bytes; they
-/// must outlive it. It exists only where parse found nothing wrong.
+/// A lens on the bytes of join_reply; copy it like a pointer. Somebody
+/// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class JoinReplyView {
  public:
   using Value = JoinReply;
@@ -61,7 +61,7 @@ class JoinReplyView {
   }
   template <size_t kCount>
   static Result<JoinReplyView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order; Fault::kNone if they break none.
+  /// The first rule that `bytes` break, in field order, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     if (RUBRIC_UNLIKELY(bytes.size() < 10)) return truncated(bytes, req::kWireJoinReply);
     return no_error();
@@ -104,9 +104,8 @@ class JoinReplyView {
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what JoinReplyView::parse would refuse,
-/// with the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is
-/// undefined.
+/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
+/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
 inline Result<MutableBytes> write(const JoinReply& value, MutableBytes out) {
   const size_t size = JoinReplyLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
@@ -116,8 +115,8 @@ inline Result<MutableBytes> write(const JoinReply& value, MutableBytes out) {
   return out.first(size);
 }
 
-/// Writes join_reply in place. What is not set keeps the value that `out` held before. A setter
-/// that can refuse its value returns whether it took it.
+/// Writes join_reply in place. What is not set keeps what `out` held.
+/// A setter that can refuse its value returns whether it took it.
 class JoinReplyBuilder {
  public:
   constexpr JoinReplyBuilder() = default;

@@ -36,8 +36,8 @@ struct JoinRequestLayout {
   }
 };
 
-/// A lens on the bytes of join_request; copy it like a pointer. Somebody else owns the bytes; they
-/// must outlive it. It exists only where parse found nothing wrong.
+/// A lens on the bytes of join_request; copy it like a pointer. Somebody
+/// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class JoinRequestView {
  public:
   using Value = JoinRequest;
@@ -52,7 +52,7 @@ class JoinRequestView {
   }
   template <size_t kCount>
   static Result<JoinRequestView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order; Fault::kNone if they break none.
+  /// The first rule that `bytes` break, in field order, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     if (RUBRIC_UNLIKELY(bytes.size() < 6)) return check_short(bytes);
     return no_error();
@@ -89,7 +89,7 @@ class JoinRequestView {
   friend class Result<JoinRequestView>;
   constexpr JoinRequestView() = default;
   constexpr explicit JoinRequestView(Bytes bytes) : bytes_(bytes) {}
-  // Bytes that end within the first 6: what stands before the end may be wrong as well.
+  // Bytes that end within the first 6; they may be wrong before.
   RUBRIC_COLD static constexpr Error check_short(Bytes bytes) {
     if (bytes.size() < 2) return truncated(bytes, req::kWireJoinRequest);
     return truncated(bytes, req::kWireMoteDesc);
@@ -98,9 +98,8 @@ class JoinRequestView {
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what JoinRequestView::parse would refuse,
-/// with the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is
-/// undefined.
+/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
+/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
 inline Result<MutableBytes> write(const JoinRequest& value, MutableBytes out) {
   const size_t size = JoinRequestLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
@@ -110,8 +109,8 @@ inline Result<MutableBytes> write(const JoinRequest& value, MutableBytes out) {
   return out.first(size);
 }
 
-/// Writes join_request in place. What is not set keeps the value that `out` held before. A setter
-/// that can refuse its value returns whether it took it.
+/// Writes join_request in place. What is not set keeps what `out` held.
+/// A setter that can refuse its value returns whether it took it.
 class JoinRequestBuilder {
  public:
   constexpr JoinRequestBuilder() = default;

@@ -63,8 +63,8 @@ struct LearningModuleCmdLayout {
   }
 };
 
-/// A lens on the bytes of learning_module_cmd; copy it like a pointer. Somebody else owns the
-/// bytes; they must outlive it. It exists only where parse found nothing wrong.
+/// A lens on the bytes of learning_module_cmd; copy it like a pointer. Somebody
+/// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class LearningModuleCmdView {
  public:
   using Value = LearningModuleCmd;
@@ -80,7 +80,7 @@ class LearningModuleCmdView {
   template <size_t kCount>
   static Result<LearningModuleCmdView> parse(const uint8_t (
       &&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order; Fault::kNone if they break none.
+  /// The first rule that `bytes` break, in field order, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     const uint8_t* const p = bytes.data();
     if (RUBRIC_UNLIKELY(bytes.size() < 8)) return truncated(bytes, req::kWireLearningModuleCmd);
@@ -145,9 +145,8 @@ class LearningModuleCmdView {
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what LearningModuleCmdView::parse would
-/// refuse, with the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is
-/// undefined.
+/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
+/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
 inline Result<MutableBytes> write(const LearningModuleCmd& value, MutableBytes out) {
   const Error wrong = LearningModuleCmdLayout::check_lengths(value);
   if (RUBRIC_UNLIKELY(is_error(wrong))) return Failure{wrong};
@@ -159,8 +158,8 @@ inline Result<MutableBytes> write(const LearningModuleCmd& value, MutableBytes o
   return out.first(size);
 }
 
-/// Writes learning_module_cmd in place. What is not set keeps the value that `out` held before. A
-/// setter that can refuse its value returns whether it took it.
+/// Writes learning_module_cmd in place. What is not set keeps what `out` held.
+/// A setter that can refuse its value returns whether it took it.
 class LearningModuleCmdBuilder {
  public:
   constexpr LearningModuleCmdBuilder() = default;

@@ -51,8 +51,8 @@ struct LearningModuleDownLayout {
   }
 };
 
-/// A lens on the bytes of learning_module_down; copy it like a pointer. Somebody else owns the
-/// bytes; they must outlive it. It exists only where parse found nothing wrong.
+/// A lens on the bytes of learning_module_down; copy it like a pointer. Somebody
+/// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class LearningModuleDownView {
  public:
   using Value = LearningModuleDown;
@@ -68,7 +68,7 @@ class LearningModuleDownView {
   template <size_t kCount>
   static Result<LearningModuleDownView> parse(const uint8_t (
       &&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order; Fault::kNone if they break none.
+  /// The first rule that `bytes` break, in field order, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     const uint8_t* const p = bytes.data();
     if (RUBRIC_UNLIKELY(bytes.size() < 4)) return truncated(bytes, req::kWireLearningModuleDown);
@@ -124,9 +124,8 @@ class LearningModuleDownView {
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what LearningModuleDownView::parse would
-/// refuse, with the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is
-/// undefined.
+/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
+/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
 inline Result<MutableBytes> write(const LearningModuleDown& value, MutableBytes out) {
   const Error wrong = LearningModuleDownLayout::check_lengths(value);
   if (RUBRIC_UNLIKELY(is_error(wrong))) return Failure{wrong};
@@ -138,8 +137,8 @@ inline Result<MutableBytes> write(const LearningModuleDown& value, MutableBytes 
   return out.first(size);
 }
 
-/// Writes learning_module_down in place. What is not set keeps the value that `out` held before. A
-/// setter that can refuse its value returns whether it took it.
+/// Writes learning_module_down in place. What is not set keeps what `out` held.
+/// A setter that can refuse its value returns whether it took it.
 class LearningModuleDownBuilder {
  public:
   constexpr LearningModuleDownBuilder() = default;

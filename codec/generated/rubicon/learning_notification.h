@@ -43,8 +43,8 @@ struct LearningNotificationLayout {
   }
 };
 
-/// A lens on the bytes of learning_notification; copy it like a pointer. Somebody else owns the
-/// bytes; they must outlive it. It exists only where parse found nothing wrong.
+/// A lens on the bytes of learning_notification; copy it like a pointer. Somebody
+/// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class LearningNotificationView {
  public:
   using Value = LearningNotification;
@@ -60,7 +60,7 @@ class LearningNotificationView {
   template <size_t kCount>
   static Result<LearningNotificationView> parse(const uint8_t (
       &&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order; Fault::kNone if they break none.
+  /// The first rule that `bytes` break, in field order, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     if (RUBRIC_UNLIKELY(bytes.size() < 4)) {
       return truncated(bytes, req::kWireLearningNotification);
@@ -106,9 +106,8 @@ class LearningNotificationView {
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what LearningNotificationView::parse would
-/// refuse, with the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is
-/// undefined.
+/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
+/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
 inline Result<MutableBytes> write(const LearningNotification& value, MutableBytes out) {
   const size_t size = LearningNotificationLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
@@ -118,8 +117,8 @@ inline Result<MutableBytes> write(const LearningNotification& value, MutableByte
   return out.first(size);
 }
 
-/// Writes learning_notification in place. What is not set keeps the value that `out` held before. A
-/// setter that can refuse its value returns whether it took it.
+/// Writes learning_notification in place. What is not set keeps what `out` held.
+/// A setter that can refuse its value returns whether it took it.
 class LearningNotificationBuilder {
  public:
   constexpr LearningNotificationBuilder() = default;

@@ -44,8 +44,8 @@ struct LearningOutputLayout {
   }
 };
 
-/// A lens on the bytes of learning_output; copy it like a pointer. Somebody else owns the bytes;
-/// they must outlive it. It exists only where parse found nothing wrong.
+/// A lens on the bytes of learning_output; copy it like a pointer. Somebody
+/// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class LearningOutputView {
  public:
   using Value = LearningOutput;
@@ -60,7 +60,7 @@ class LearningOutputView {
   }
   template <size_t kCount>
   static Result<LearningOutputView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order; Fault::kNone if they break none.
+  /// The first rule that `bytes` break, in field order, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     const uint8_t* const p = bytes.data();
     if (RUBRIC_UNLIKELY(bytes.size() < 2)) return truncated(bytes, req::kWireLearningOutput);
@@ -113,9 +113,8 @@ class LearningOutputView {
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what LearningOutputView::parse would
-/// refuse, with the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is
-/// undefined.
+/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
+/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
 inline Result<MutableBytes> write(const LearningOutput& value, MutableBytes out) {
   const Error wrong = LearningOutputLayout::check_lengths(value);
   if (RUBRIC_UNLIKELY(is_error(wrong))) return Failure{wrong};
@@ -127,8 +126,8 @@ inline Result<MutableBytes> write(const LearningOutput& value, MutableBytes out)
   return out.first(size);
 }
 
-/// Writes learning_output in place. What is not set keeps the value that `out` held before. A
-/// setter that can refuse its value returns whether it took it.
+/// Writes learning_output in place. What is not set keeps what `out` held.
+/// A setter that can refuse its value returns whether it took it.
 class LearningOutputBuilder {
  public:
   constexpr LearningOutputBuilder() = default;

@@ -43,8 +43,8 @@ struct MoteDescLayout {
   }
 };
 
-/// A lens on the bytes of mote_desc; copy it like a pointer. Somebody else owns the bytes; they
-/// must outlive it. It exists only where parse found nothing wrong.
+/// A lens on the bytes of mote_desc; copy it like a pointer. Somebody
+/// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class MoteDescView {
  public:
   using Value = MoteDesc;
@@ -59,7 +59,7 @@ class MoteDescView {
   }
   template <size_t kCount>
   static Result<MoteDescView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order; Fault::kNone if they break none.
+  /// The first rule that `bytes` break, in field order, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     if (RUBRIC_UNLIKELY(bytes.size() < 4)) return truncated(bytes, req::kWireMoteDesc);
     return no_error();
@@ -101,9 +101,8 @@ class MoteDescView {
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what MoteDescView::parse would refuse,
-/// with the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is
-/// undefined.
+/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
+/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
 inline Result<MutableBytes> write(const MoteDesc& value, MutableBytes out) {
   const size_t size = MoteDescLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
@@ -113,8 +112,8 @@ inline Result<MutableBytes> write(const MoteDesc& value, MutableBytes out) {
   return out.first(size);
 }
 
-/// Writes mote_desc in place. What is not set keeps the value that `out` held before. A setter that
-/// can refuse its value returns whether it took it.
+/// Writes mote_desc in place. What is not set keeps what `out` held.
+/// A setter that can refuse its value returns whether it took it.
 class MoteDescBuilder {
  public:
   constexpr MoteDescBuilder() = default;

@@ -41,8 +41,8 @@ struct NetCommandLayout {
   }
 };
 
-/// A lens on the bytes of net_command; copy it like a pointer. Somebody else owns the bytes; they
-/// must outlive it. It exists only where parse found nothing wrong.
+/// A lens on the bytes of net_command; copy it like a pointer. Somebody
+/// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class NetCommandView {
  public:
   using Value = NetCommand;
@@ -57,7 +57,7 @@ class NetCommandView {
   }
   template <size_t kCount>
   static Result<NetCommandView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order; Fault::kNone if they break none.
+  /// The first rule that `bytes` break, in field order, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     if (RUBRIC_UNLIKELY(bytes.size() < 4)) return truncated(bytes, req::kWireNetCommand);
     return no_error();
@@ -99,9 +99,8 @@ class NetCommandView {
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what NetCommandView::parse would refuse,
-/// with the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is
-/// undefined.
+/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
+/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
 inline Result<MutableBytes> write(const NetCommand& value, MutableBytes out) {
   const size_t size = NetCommandLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
@@ -111,8 +110,8 @@ inline Result<MutableBytes> write(const NetCommand& value, MutableBytes out) {
   return out.first(size);
 }
 
-/// Writes net_command in place. What is not set keeps the value that `out` held before. A setter
-/// that can refuse its value returns whether it took it.
+/// Writes net_command in place. What is not set keeps what `out` held.
+/// A setter that can refuse its value returns whether it took it.
 class NetCommandBuilder {
  public:
   constexpr NetCommandBuilder() = default;

@@ -62,8 +62,8 @@ struct NetDataLayout {
   }
 };
 
-/// A lens on the bytes of net_data; copy it like a pointer. Somebody else owns the bytes; they must
-/// outlive it. It exists only where parse found nothing wrong.
+/// A lens on the bytes of net_data; copy it like a pointer. Somebody
+/// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class NetDataView {
  public:
   using Value = NetData;
@@ -78,7 +78,7 @@ class NetDataView {
   }
   template <size_t kCount>
   static Result<NetDataView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order; Fault::kNone if they break none.
+  /// The first rule that `bytes` break, in field order, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     if (RUBRIC_UNLIKELY(bytes.size() < 15)) return truncated(bytes, req::kWireNetData);
     return no_error();
@@ -133,9 +133,8 @@ class NetDataView {
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what NetDataView::parse would refuse,
-/// with the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is
-/// undefined.
+/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
+/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
 inline Result<MutableBytes> write(const NetData& value, MutableBytes out) {
   const size_t size = NetDataLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
@@ -145,8 +144,8 @@ inline Result<MutableBytes> write(const NetData& value, MutableBytes out) {
   return out.first(size);
 }
 
-/// Writes net_data in place. What is not set keeps the value that `out` held before. A setter that
-/// can refuse its value returns whether it took it.
+/// Writes net_data in place. What is not set keeps what `out` held.
+/// A setter that can refuse its value returns whether it took it.
 class NetDataBuilder {
  public:
   constexpr NetDataBuilder() = default;

@@ -63,8 +63,8 @@ struct NetMsgLayout {
   }
 };
 
-/// A lens on the bytes of net_msg; copy it like a pointer. Somebody else owns the bytes; they must
-/// outlive it. It exists only where parse found nothing wrong.
+/// A lens on the bytes of net_msg; copy it like a pointer. Somebody
+/// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class NetMsgView {
  public:
   using Value = NetMsg;
@@ -81,7 +81,7 @@ class NetMsgView {
   }
   template <size_t kCount>
   static Result<NetMsgView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order; Fault::kNone if they break none.
+  /// The first rule that `bytes` break, in field order, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     const uint8_t* const p = bytes.data();
     if (RUBRIC_UNLIKELY(bytes.size() < 12)) return check_short(bytes);
@@ -167,7 +167,7 @@ class NetMsgView {
   friend class Result<NetMsgView>;
   constexpr NetMsgView() = default;
   constexpr explicit NetMsgView(Bytes bytes) : bytes_(bytes) {}
-  // Bytes that end within the first 12: what stands before the end may be wrong as well.
+  // Bytes that end within the first 12; they may be wrong before.
   RUBRIC_COLD static constexpr Error check_short(Bytes bytes) {
     const uint8_t* const p = bytes.data();
     if (bytes.size() < 8) return truncated(bytes, req::kWireRAddr);
@@ -182,9 +182,8 @@ class NetMsgView {
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what NetMsgView::parse would refuse,
-/// with the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is
-/// undefined.
+/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
+/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
 inline Result<MutableBytes> write(const NetMsg& value, MutableBytes out) {
   const Error wrong = NetMsgLayout::check_lengths(value);
   if (RUBRIC_UNLIKELY(is_error(wrong))) return Failure{wrong};
@@ -198,8 +197,8 @@ inline Result<MutableBytes> write(const NetMsg& value, MutableBytes out) {
   return out.first(size);
 }
 
-/// Writes net_msg in place. What is not set keeps the value that `out` held before. A setter that
-/// can refuse its value returns whether it took it.
+/// Writes net_msg in place. What is not set keeps what `out` held.
+/// A setter that can refuse its value returns whether it took it.
 class NetMsgBuilder {
  public:
   constexpr NetMsgBuilder() = default;
@@ -242,14 +241,14 @@ class NetMsgBuilder {
   }
   /// From byte 12. The message of the transport level; who sent it decides what a learning code
   /// means. WIRE-NET-PAYLOAD.
-  /// Where payload goes, as far as there is room for it.
+  /// Where payload goes: all the room that there is.
   MutableBytes payload_room() {
-    const MutableBytes left = out_.from(12);
-    return left.size() > 102 ? left.first(102) : left;
+    return out_.from(12);
   }
   /// Copies payload and sets nbytes; false where there is no room.
   RUBRIC_MUST_USE bool set_payload(Bytes value) {
     if (value.size() > payload_room().size()) return false;
+    if (value.size() > 102) return false;
     if (!set_nbytes(static_cast<uint8_t>(value.size()))) return false;
     detail::store_bytes(out_.data() + 12, value);
     return true;

@@ -36,8 +36,8 @@ struct RAddrLayout {
   }
 };
 
-/// A lens on the bytes of r_addr; copy it like a pointer. Somebody else owns the bytes; they must
-/// outlive it. It exists only where parse found nothing wrong.
+/// A lens on the bytes of r_addr; copy it like a pointer. Somebody
+/// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class RAddrView {
  public:
   using Value = RAddr;
@@ -52,7 +52,7 @@ class RAddrView {
   }
   template <size_t kCount>
   static Result<RAddrView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order; Fault::kNone if they break none.
+  /// The first rule that `bytes` break, in field order, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     if (RUBRIC_UNLIKELY(bytes.size() < 4)) return truncated(bytes, req::kWireRAddr);
     return no_error();
@@ -89,9 +89,8 @@ class RAddrView {
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what RAddrView::parse would refuse,
-/// with the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is
-/// undefined.
+/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
+/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
 inline Result<MutableBytes> write(const RAddr& value, MutableBytes out) {
   const size_t size = RAddrLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
@@ -101,8 +100,8 @@ inline Result<MutableBytes> write(const RAddr& value, MutableBytes out) {
   return out.first(size);
 }
 
-/// Writes r_addr in place. What is not set keeps the value that `out` held before. A setter that
-/// can refuse its value returns whether it took it.
+/// Writes r_addr in place. What is not set keeps what `out` held.
+/// A setter that can refuse its value returns whether it took it.
 class RAddrBuilder {
  public:
   constexpr RAddrBuilder() = default;

@@ -52,8 +52,8 @@ struct RadioIFrameLayout {
   }
 };
 
-/// A lens on the bytes of radio_i_frame; copy it like a pointer. Somebody else owns the bytes; they
-/// must outlive it. It exists only where parse found nothing wrong.
+/// A lens on the bytes of radio_i_frame; copy it like a pointer. Somebody
+/// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class RadioIFrameView {
  public:
   using Value = RadioIFrame;
@@ -71,7 +71,7 @@ class RadioIFrameView {
   }
   template <size_t kCount>
   static Result<RadioIFrameView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order; Fault::kNone if they break none.
+  /// The first rule that `bytes` break, in field order, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     const uint8_t* const p = bytes.data();
     if (RUBRIC_UNLIKELY(bytes.size() < 11)) return check_short(bytes);
@@ -182,7 +182,7 @@ class RadioIFrameView {
   friend class Result<RadioIFrameView>;
   constexpr RadioIFrameView() = default;
   constexpr explicit RadioIFrameView(Bytes bytes) : bytes_(bytes) {}
-  // Bytes that end within the first 11: what stands before the end may be wrong as well.
+  // Bytes that end within the first 11; they may be wrong before.
   RUBRIC_COLD static constexpr Error check_short(Bytes bytes) {
     const uint8_t* const p = bytes.data();
     if (bytes.size() < 9) return truncated(bytes, req::kWireRadioHeader);
@@ -196,9 +196,8 @@ class RadioIFrameView {
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what RadioIFrameView::parse would refuse,
-/// with the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is
-/// undefined.
+/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
+/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
 inline Result<MutableBytes> write(const RadioIFrame& value, MutableBytes out) {
   const size_t size = RadioIFrameLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
@@ -210,8 +209,8 @@ inline Result<MutableBytes> write(const RadioIFrame& value, MutableBytes out) {
   return out.first(size);
 }
 
-/// Writes radio_i_frame in place. What is not set keeps the value that `out` held before. A setter
-/// that can refuse its value returns whether it took it.
+/// Writes radio_i_frame in place. What is not set keeps what `out` held.
+/// A setter that can refuse its value returns whether it took it.
 class RadioIFrameBuilder {
  public:
   constexpr RadioIFrameBuilder() = default;
@@ -239,11 +238,11 @@ class RadioIFrameBuilder {
   /// Byte 10. AM type.
   void set_type(AmType value) { store_u8(out_.data() + 10, static_cast<uint8_t>(value)); }
   /// From byte 11. WIRE-RADIO-LENGTH.
-  /// Where payload goes, as far as there is room for it.
+  /// Where payload goes: all the room that there is.
   MutableBytes payload_room() {
     return out_.from(11);
   }
-  /// payload is the first `size` bytes of payload_room(); false where there is no room.
+  /// The first `size` bytes of payload_room() are it; false: no room.
   RUBRIC_MUST_USE bool set_payload_size(size_t size) {
     if (size > payload_room().size()) return false;
     tail_ = size;

@@ -42,8 +42,8 @@ struct ReadUpdatesLayout {
   }
 };
 
-/// A lens on the bytes of read_updates; copy it like a pointer. Somebody else owns the bytes; they
-/// must outlive it. It exists only where parse found nothing wrong.
+/// A lens on the bytes of read_updates; copy it like a pointer. Somebody
+/// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class ReadUpdatesView {
  public:
   using Value = ReadUpdates;
@@ -58,7 +58,7 @@ class ReadUpdatesView {
   }
   template <size_t kCount>
   static Result<ReadUpdatesView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order; Fault::kNone if they break none.
+  /// The first rule that `bytes` break, in field order, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     if (RUBRIC_UNLIKELY(bytes.size() < 5)) return truncated(bytes, req::kWireReadUpdates);
     return no_error();
@@ -102,9 +102,8 @@ class ReadUpdatesView {
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what ReadUpdatesView::parse would refuse,
-/// with the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is
-/// undefined.
+/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
+/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
 inline Result<MutableBytes> write(const ReadUpdates& value, MutableBytes out) {
   const size_t size = ReadUpdatesLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
@@ -114,8 +113,8 @@ inline Result<MutableBytes> write(const ReadUpdates& value, MutableBytes out) {
   return out.first(size);
 }
 
-/// Writes read_updates in place. What is not set keeps the value that `out` held before. A setter
-/// that can refuse its value returns whether it took it.
+/// Writes read_updates in place. What is not set keeps what `out` held.
+/// A setter that can refuse its value returns whether it took it.
 class ReadUpdatesBuilder {
  public:
   constexpr ReadUpdatesBuilder() = default;

@@ -31,8 +31,8 @@ struct RssiBeaconLayout {
   }
 };
 
-/// A lens on the bytes of rssi_beacon; copy it like a pointer. Somebody else owns the bytes; they
-/// must outlive it. It exists only where parse found nothing wrong.
+/// A lens on the bytes of rssi_beacon; copy it like a pointer. Somebody
+/// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class RssiBeaconView {
  public:
   using Value = RssiBeacon;
@@ -47,7 +47,7 @@ class RssiBeaconView {
   }
   template <size_t kCount>
   static Result<RssiBeaconView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order; Fault::kNone if they break none.
+  /// The first rule that `bytes` break, in field order, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     if (RUBRIC_UNLIKELY(bytes.size() < 1)) return truncated(bytes, req::kWireRssiBeacon);
     return no_error();
@@ -81,9 +81,8 @@ class RssiBeaconView {
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what RssiBeaconView::parse would refuse,
-/// with the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is
-/// undefined.
+/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
+/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
 inline Result<MutableBytes> write(const RssiBeacon& value, MutableBytes out) {
   const size_t size = RssiBeaconLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
@@ -93,8 +92,8 @@ inline Result<MutableBytes> write(const RssiBeacon& value, MutableBytes out) {
   return out.first(size);
 }
 
-/// Writes rssi_beacon in place. What is not set keeps the value that `out` held before. A setter
-/// that can refuse its value returns whether it took it.
+/// Writes rssi_beacon in place. What is not set keeps what `out` held.
+/// A setter that can refuse its value returns whether it took it.
 class RssiBeaconBuilder {
  public:
   constexpr RssiBeaconBuilder() = default;

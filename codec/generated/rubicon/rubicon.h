@@ -51,8 +51,8 @@ struct RubiconLayout {
   }
 };
 
-/// A lens on the bytes of rubicon; copy it like a pointer. Somebody else owns the bytes; they must
-/// outlive it. It exists only where parse found nothing wrong.
+/// A lens on the bytes of rubicon; copy it like a pointer. Somebody
+/// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class RubiconView {
  public:
   using Value = Rubicon;
@@ -70,7 +70,7 @@ class RubiconView {
   }
   template <size_t kCount>
   static Result<RubiconView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order; Fault::kNone if they break none.
+  /// The first rule that `bytes` break, in field order, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     const uint8_t* const p = bytes.data();
     if (RUBRIC_UNLIKELY(bytes.size() < 8)) return check_short(bytes);
@@ -190,7 +190,7 @@ class RubiconView {
   friend class Result<RubiconView>;
   constexpr RubiconView() = default;
   constexpr explicit RubiconView(Bytes bytes) : bytes_(bytes) {}
-  // Bytes that end within the first 8: what stands before the end may be wrong as well.
+  // Bytes that end within the first 8; they may be wrong before.
   RUBRIC_COLD static constexpr Error check_short(Bytes bytes) {
     const uint8_t* const p = bytes.data();
     if (bytes.size() < 1) return truncated(bytes, req::kWireAmDispatch);
@@ -208,9 +208,8 @@ class RubiconView {
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what RubiconView::parse would refuse,
-/// with the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is
-/// undefined.
+/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
+/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
 inline Result<MutableBytes> write(const Rubicon& value, MutableBytes out) {
   const Error wrong = RubiconLayout::check_lengths(value);
   if (RUBRIC_UNLIKELY(is_error(wrong))) return Failure{wrong};
@@ -224,8 +223,8 @@ inline Result<MutableBytes> write(const Rubicon& value, MutableBytes out) {
   return out.first(size);
 }
 
-/// Writes rubicon in place. What is not set keeps the value that `out` held before. A setter that
-/// can refuse its value returns whether it took it.
+/// Writes rubicon in place. What is not set keeps what `out` held.
+/// A setter that can refuse its value returns whether it took it.
 class RubiconBuilder {
  public:
   constexpr RubiconBuilder() = default;
@@ -245,14 +244,14 @@ class RubiconBuilder {
     tinyos::AmHeaderLayout::store(value, out_.data());
   }
   /// From byte 8. WIRE-AM-LENGTH.
-  /// Where payload goes, as far as there is room for it.
+  /// Where payload goes: all the room that there is.
   MutableBytes payload_room() {
-    const MutableBytes left = out_.from(8);
-    return left.size() > 114 ? left.first(114) : left;
+    return out_.from(8);
   }
   /// Copies payload (its length is set elsewhere); false where there is no room.
   RUBRIC_MUST_USE bool set_payload(Bytes value) {
     if (value.size() > payload_room().size()) return false;
+    if (value.size() > 114) return false;
     detail::store_bytes(out_.data() + 8, value);
     return true;
   }

@@ -41,8 +41,8 @@ struct RubiconAckLayout {
   }
 };
 
-/// A lens on the bytes of rubicon_ack; copy it like a pointer. Somebody else owns the bytes; they
-/// must outlive it. It exists only where parse found nothing wrong.
+/// A lens on the bytes of rubicon_ack; copy it like a pointer. Somebody
+/// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class RubiconAckView {
  public:
   using Value = RubiconAck;
@@ -57,7 +57,7 @@ class RubiconAckView {
   }
   template <size_t kCount>
   static Result<RubiconAckView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order; Fault::kNone if they break none.
+  /// The first rule that `bytes` break, in field order, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     if (RUBRIC_UNLIKELY(bytes.size() < 4)) return truncated(bytes, req::kWireRubiconAck);
     return no_error();
@@ -97,9 +97,8 @@ class RubiconAckView {
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what RubiconAckView::parse would refuse,
-/// with the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is
-/// undefined.
+/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
+/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
 inline Result<MutableBytes> write(const RubiconAck& value, MutableBytes out) {
   const size_t size = RubiconAckLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
@@ -109,8 +108,8 @@ inline Result<MutableBytes> write(const RubiconAck& value, MutableBytes out) {
   return out.first(size);
 }
 
-/// Writes rubicon_ack in place. What is not set keeps the value that `out` held before. A setter
-/// that can refuse its value returns whether it took it.
+/// Writes rubicon_ack in place. What is not set keeps what `out` held.
+/// A setter that can refuse its value returns whether it took it.
 class RubiconAckBuilder {
  public:
   constexpr RubiconAckBuilder() = default;

@@ -31,8 +31,8 @@ struct RubiconAckSeqOnlyLayout {
   }
 };
 
-/// A lens on the bytes of rubicon_ack_seq_only; copy it like a pointer. Somebody else owns the
-/// bytes; they must outlive it. It exists only where parse found nothing wrong.
+/// A lens on the bytes of rubicon_ack_seq_only; copy it like a pointer. Somebody
+/// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class RubiconAckSeqOnlyView {
  public:
   using Value = RubiconAckSeqOnly;
@@ -48,7 +48,7 @@ class RubiconAckSeqOnlyView {
   template <size_t kCount>
   static Result<RubiconAckSeqOnlyView> parse(const uint8_t (
       &&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order; Fault::kNone if they break none.
+  /// The first rule that `bytes` break, in field order, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     if (RUBRIC_UNLIKELY(bytes.size() < 2)) return truncated(bytes, req::kWireRubiconAck);
     return no_error();
@@ -84,9 +84,8 @@ class RubiconAckSeqOnlyView {
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what RubiconAckSeqOnlyView::parse would
-/// refuse, with the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is
-/// undefined.
+/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
+/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
 inline Result<MutableBytes> write(const RubiconAckSeqOnly& value, MutableBytes out) {
   const size_t size = RubiconAckSeqOnlyLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
@@ -96,8 +95,8 @@ inline Result<MutableBytes> write(const RubiconAckSeqOnly& value, MutableBytes o
   return out.first(size);
 }
 
-/// Writes rubicon_ack_seq_only in place. What is not set keeps the value that `out` held before. A
-/// setter that can refuse its value returns whether it took it.
+/// Writes rubicon_ack_seq_only in place. What is not set keeps what `out` held.
+/// A setter that can refuse its value returns whether it took it.
 class RubiconAckSeqOnlyBuilder {
  public:
   constexpr RubiconAckSeqOnlyBuilder() = default;

@@ -58,8 +58,8 @@ struct SerialDataLayout {
   }
 };
 
-/// A lens on the bytes of serial_data; copy it like a pointer. Somebody else owns the bytes; they
-/// must outlive it. It exists only where parse found nothing wrong.
+/// A lens on the bytes of serial_data; copy it like a pointer. Somebody
+/// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class SerialDataView {
  public:
   using Value = SerialData;
@@ -74,7 +74,7 @@ class SerialDataView {
   }
   template <size_t kCount>
   static Result<SerialDataView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order; Fault::kNone if they break none.
+  /// The first rule that `bytes` break, in field order, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     if (RUBRIC_UNLIKELY(bytes.size() < 13)) return truncated(bytes, req::kWireSerialData);
     return no_error();
@@ -126,9 +126,8 @@ class SerialDataView {
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what SerialDataView::parse would refuse,
-/// with the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is
-/// undefined.
+/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
+/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
 inline Result<MutableBytes> write(const SerialData& value, MutableBytes out) {
   const size_t size = SerialDataLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
@@ -138,8 +137,8 @@ inline Result<MutableBytes> write(const SerialData& value, MutableBytes out) {
   return out.first(size);
 }
 
-/// Writes serial_data in place. What is not set keeps the value that `out` held before. A setter
-/// that can refuse its value returns whether it took it.
+/// Writes serial_data in place. What is not set keeps what `out` held.
+/// A setter that can refuse its value returns whether it took it.
 class SerialDataBuilder {
  public:
   constexpr SerialDataBuilder() = default;

@@ -59,8 +59,8 @@ struct SerialJoinedLayout {
   }
 };
 
-/// A lens on the bytes of serial_joined; copy it like a pointer. Somebody else owns the bytes; they
-/// must outlive it. It exists only where parse found nothing wrong.
+/// A lens on the bytes of serial_joined; copy it like a pointer. Somebody
+/// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class SerialJoinedView {
  public:
   using Value = SerialJoined;
@@ -75,7 +75,7 @@ class SerialJoinedView {
   }
   template <size_t kCount>
   static Result<SerialJoinedView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order; Fault::kNone if they break none.
+  /// The first rule that `bytes` break, in field order, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     if (RUBRIC_UNLIKELY(bytes.size() < 9)) return truncated(bytes, req::kWireSerialJoined);
     return no_error();
@@ -128,9 +128,8 @@ class SerialJoinedView {
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what SerialJoinedView::parse would refuse,
-/// with the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is
-/// undefined.
+/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
+/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
 inline Result<MutableBytes> write(const SerialJoined& value, MutableBytes out) {
   const size_t size = SerialJoinedLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
@@ -140,8 +139,8 @@ inline Result<MutableBytes> write(const SerialJoined& value, MutableBytes out) {
   return out.first(size);
 }
 
-/// Writes serial_joined in place. What is not set keeps the value that `out` held before. A setter
-/// that can refuse its value returns whether it took it.
+/// Writes serial_joined in place. What is not set keeps what `out` held.
+/// A setter that can refuse its value returns whether it took it.
 class SerialJoinedBuilder {
  public:
   constexpr SerialJoinedBuilder() = default;

@@ -91,8 +91,8 @@ struct SynCreateCmdLayout {
   }
 };
 
-/// A lens on the bytes of syn_create_cmd; copy it like a pointer. Somebody else owns the bytes;
-/// they must outlive it. It exists only where parse found nothing wrong.
+/// A lens on the bytes of syn_create_cmd; copy it like a pointer. Somebody
+/// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class SynCreateCmdView {
  public:
   using Value = SynCreateCmd;
@@ -107,7 +107,7 @@ class SynCreateCmdView {
   }
   template <size_t kCount>
   static Result<SynCreateCmdView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order; Fault::kNone if they break none.
+  /// The first rule that `bytes` break, in field order, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     const uint8_t* const p = bytes.data();
     if (RUBRIC_UNLIKELY(bytes.size() < 58)) return check_short(bytes);
@@ -186,7 +186,7 @@ class SynCreateCmdView {
   friend class Result<SynCreateCmdView>;
   constexpr SynCreateCmdView() = default;
   constexpr explicit SynCreateCmdView(Bytes bytes) : bytes_(bytes) {}
-  // Bytes that end within the first 58: what stands before the end may be wrong as well.
+  // Bytes that end within the first 58; they may be wrong before.
   RUBRIC_COLD static constexpr Error check_short(Bytes bytes) {
     const uint8_t* const p = bytes.data();
     if (bytes.size() < 14) return truncated(bytes, req::kWireSynCreateCmd);
@@ -203,9 +203,8 @@ class SynCreateCmdView {
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what SynCreateCmdView::parse would refuse,
-/// with the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is
-/// undefined.
+/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
+/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
 inline Result<MutableBytes> write(const SynCreateCmd& value, MutableBytes out) {
   const size_t size = SynCreateCmdLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
@@ -217,8 +216,8 @@ inline Result<MutableBytes> write(const SynCreateCmd& value, MutableBytes out) {
   return out.first(size);
 }
 
-/// Writes syn_create_cmd in place. What is not set keeps the value that `out` held before. A setter
-/// that can refuse its value returns whether it took it.
+/// Writes syn_create_cmd in place. What is not set keeps what `out` held.
+/// A setter that can refuse its value returns whether it took it.
 class SynCreateCmdBuilder {
  public:
   constexpr SynCreateCmdBuilder() = default;

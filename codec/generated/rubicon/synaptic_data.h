@@ -37,8 +37,8 @@ struct SynapticDataLayout {
   }
 };
 
-/// A lens on the bytes of synaptic_data; copy it like a pointer. Somebody else owns the bytes; they
-/// must outlive it. It exists only where parse found nothing wrong.
+/// A lens on the bytes of synaptic_data; copy it like a pointer. Somebody
+/// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class SynapticDataView {
  public:
   using Value = SynapticData;
@@ -47,15 +47,16 @@ class SynapticDataView {
 
   /// Checks everything once. Bytes behind the greatest size are left out.
   static constexpr Result<SynapticDataView> parse(Bytes bytes) {
+    bytes = at_most(bytes, kMaxSizeBytes);
     const Error error = check(bytes);
     if (RUBRIC_UNLIKELY(is_error(error))) return Failure{error};
-    return SynapticDataView(at_most(bytes, kMaxSizeBytes));
+    return SynapticDataView(bytes);
   }
   template <size_t kCount>
   static Result<SynapticDataView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order; Fault::kNone if they break none.
+  /// The first rule that `bytes` break, in field order, or Fault::kNone. At most kMaxSizeBytes of
+  /// them.
   static constexpr Error check(Bytes bytes) {
-    bytes = at_most(bytes, kMaxSizeBytes);
     if (RUBRIC_UNLIKELY(bytes.size() % 4 != 0)) return truncated(bytes, req::kWireSynapticData);
     return no_error();
   }
@@ -94,9 +95,8 @@ class SynapticDataView {
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what SynapticDataView::parse would refuse,
-/// with the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is
-/// undefined.
+/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
+/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
 inline Result<MutableBytes> write(const SynapticData& value, MutableBytes out) {
   const Error wrong = SynapticDataLayout::check_lengths(value);
   if (RUBRIC_UNLIKELY(is_error(wrong))) return Failure{wrong};
@@ -108,8 +108,8 @@ inline Result<MutableBytes> write(const SynapticData& value, MutableBytes out) {
   return out.first(size);
 }
 
-/// Writes synaptic_data in place. What is not set keeps the value that `out` held before. A setter
-/// that can refuse its value returns whether it took it.
+/// Writes synaptic_data in place. What is not set keeps what `out` held.
+/// A setter that can refuse its value returns whether it took it.
 class SynapticDataBuilder {
  public:
   constexpr SynapticDataBuilder() = default;

@@ -36,8 +36,8 @@ struct TransducerUpdateLayout {
   }
 };
 
-/// A lens on the bytes of transducer_update; copy it like a pointer. Somebody else owns the bytes;
-/// they must outlive it. It exists only where parse found nothing wrong.
+/// A lens on the bytes of transducer_update; copy it like a pointer. Somebody
+/// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class TransducerUpdateView {
  public:
   using Value = TransducerUpdate;
@@ -53,7 +53,7 @@ class TransducerUpdateView {
   template <size_t kCount>
   static Result<TransducerUpdateView> parse(const uint8_t (
       &&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order; Fault::kNone if they break none.
+  /// The first rule that `bytes` break, in field order, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     if (RUBRIC_UNLIKELY(bytes.size() < 4)) return truncated(bytes, req::kWireUpdates);
     return no_error();
@@ -92,9 +92,8 @@ class TransducerUpdateView {
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what TransducerUpdateView::parse would
-/// refuse, with the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is
-/// undefined.
+/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
+/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
 inline Result<MutableBytes> write(const TransducerUpdate& value, MutableBytes out) {
   const size_t size = TransducerUpdateLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
@@ -104,8 +103,8 @@ inline Result<MutableBytes> write(const TransducerUpdate& value, MutableBytes ou
   return out.first(size);
 }
 
-/// Writes transducer_update in place. What is not set keeps the value that `out` held before. A
-/// setter that can refuse its value returns whether it took it.
+/// Writes transducer_update in place. What is not set keeps what `out` held.
+/// A setter that can refuse its value returns whether it took it.
 class TransducerUpdateBuilder {
  public:
   constexpr TransducerUpdateBuilder() = default;

@@ -48,8 +48,8 @@ struct UpdatesLayout {
   }
 };
 
-/// A lens on the bytes of updates; copy it like a pointer. Somebody else owns the bytes; they must
-/// outlive it. It exists only where parse found nothing wrong.
+/// A lens on the bytes of updates; copy it like a pointer. Somebody
+/// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class UpdatesView {
  public:
   using Value = Updates;
@@ -64,7 +64,7 @@ class UpdatesView {
   }
   template <size_t kCount>
   static Result<UpdatesView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order; Fault::kNone if they break none.
+  /// The first rule that `bytes` break, in field order, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     const uint8_t* const p = bytes.data();
     if (RUBRIC_UNLIKELY(bytes.size() < 2)) return truncated(bytes, req::kWireUpdates);
@@ -115,9 +115,8 @@ class UpdatesView {
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what UpdatesView::parse would refuse,
-/// with the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is
-/// undefined.
+/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
+/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
 inline Result<MutableBytes> write(const Updates& value, MutableBytes out) {
   const Error wrong = UpdatesLayout::check_lengths(value);
   if (RUBRIC_UNLIKELY(is_error(wrong))) return Failure{wrong};
@@ -129,8 +128,8 @@ inline Result<MutableBytes> write(const Updates& value, MutableBytes out) {
   return out.first(size);
 }
 
-/// Writes updates in place. What is not set keeps the value that `out` held before. A setter that
-/// can refuse its value returns whether it took it.
+/// Writes updates in place. What is not set keeps what `out` held.
+/// A setter that can refuse its value returns whether it took it.
 class UpdatesBuilder {
  public:
   constexpr UpdatesBuilder() = default;

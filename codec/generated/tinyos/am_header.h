@@ -55,8 +55,8 @@ struct AmHeaderLayout {
   }
 };
 
-/// A lens on the bytes of am_header; copy it like a pointer. Somebody else owns the bytes; they
-/// must outlive it. It exists only where parse found nothing wrong.
+/// A lens on the bytes of am_header; copy it like a pointer. Somebody
+/// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class AmHeaderView {
  public:
   using Value = AmHeader;
@@ -71,7 +71,7 @@ class AmHeaderView {
   }
   template <size_t kCount>
   static Result<AmHeaderView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order; Fault::kNone if they break none.
+  /// The first rule that `bytes` break, in field order, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     const uint8_t* const p = bytes.data();
     if (RUBRIC_UNLIKELY(bytes.size() < 8)) return check_short(bytes);
@@ -123,7 +123,7 @@ class AmHeaderView {
   friend class Result<AmHeaderView>;
   constexpr AmHeaderView() = default;
   constexpr explicit AmHeaderView(Bytes bytes) : bytes_(bytes) {}
-  // Bytes that end within the first 8: what stands before the end may be wrong as well.
+  // Bytes that end within the first 8; they may be wrong before.
   RUBRIC_COLD static constexpr Error check_short(Bytes bytes) {
     const uint8_t* const p = bytes.data();
     if (bytes.size() < 1) return truncated(bytes, req::kWireAmDispatch);
@@ -141,9 +141,8 @@ class AmHeaderView {
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what AmHeaderView::parse would refuse,
-/// with the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is
-/// undefined.
+/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
+/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
 inline Result<MutableBytes> write(const AmHeader& value, MutableBytes out) {
   const size_t size = AmHeaderLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
@@ -155,8 +154,8 @@ inline Result<MutableBytes> write(const AmHeader& value, MutableBytes out) {
   return out.first(size);
 }
 
-/// Writes am_header in place. What is not set keeps the value that `out` held before. A setter that
-/// can refuse its value returns whether it took it.
+/// Writes am_header in place. What is not set keeps what `out` held.
+/// A setter that can refuse its value returns whether it took it.
 class AmHeaderBuilder {
  public:
   constexpr AmHeaderBuilder() = default;

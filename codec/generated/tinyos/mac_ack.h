@@ -34,8 +34,8 @@ struct MacAckLayout {
   }
 };
 
-/// A lens on the bytes of mac_ack; copy it like a pointer. Somebody else owns the bytes; they must
-/// outlive it. It exists only where parse found nothing wrong.
+/// A lens on the bytes of mac_ack; copy it like a pointer. Somebody
+/// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class MacAckView {
  public:
   using Value = MacAck;
@@ -50,7 +50,7 @@ class MacAckView {
   }
   template <size_t kCount>
   static Result<MacAckView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order; Fault::kNone if they break none.
+  /// The first rule that `bytes` break, in field order, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     if (RUBRIC_UNLIKELY(bytes.size() < 3)) return truncated(bytes, req::kWireRadioHeader);
     return no_error();
@@ -87,9 +87,8 @@ class MacAckView {
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what MacAckView::parse would refuse,
-/// with the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is
-/// undefined.
+/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
+/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
 inline Result<MutableBytes> write(const MacAck& value, MutableBytes out) {
   const size_t size = MacAckLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
@@ -99,8 +98,8 @@ inline Result<MutableBytes> write(const MacAck& value, MutableBytes out) {
   return out.first(size);
 }
 
-/// Writes mac_ack in place. What is not set keeps the value that `out` held before. A setter that
-/// can refuse its value returns whether it took it.
+/// Writes mac_ack in place. What is not set keeps what `out` held.
+/// A setter that can refuse its value returns whether it took it.
 class MacAckBuilder {
  public:
   constexpr MacAckBuilder() = default;

@@ -49,8 +49,8 @@ struct MacHeaderLayout {
   }
 };
 
-/// A lens on the bytes of mac_header; copy it like a pointer. Somebody else owns the bytes; they
-/// must outlive it. It exists only where parse found nothing wrong.
+/// A lens on the bytes of mac_header; copy it like a pointer. Somebody
+/// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class MacHeaderView {
  public:
   using Value = MacHeader;
@@ -65,7 +65,7 @@ class MacHeaderView {
   }
   template <size_t kCount>
   static Result<MacHeaderView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order; Fault::kNone if they break none.
+  /// The first rule that `bytes` break, in field order, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     if (RUBRIC_UNLIKELY(bytes.size() < 9)) return truncated(bytes, req::kWireRadioHeader);
     return no_error();
@@ -111,9 +111,8 @@ class MacHeaderView {
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what MacHeaderView::parse would refuse,
-/// with the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is
-/// undefined.
+/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
+/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
 inline Result<MutableBytes> write(const MacHeader& value, MutableBytes out) {
   const size_t size = MacHeaderLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
@@ -123,8 +122,8 @@ inline Result<MutableBytes> write(const MacHeader& value, MutableBytes out) {
   return out.first(size);
 }
 
-/// Writes mac_header in place. What is not set keeps the value that `out` held before. A setter
-/// that can refuse its value returns whether it took it.
+/// Writes mac_header in place. What is not set keeps what `out` held.
+/// A setter that can refuse its value returns whether it took it.
 class MacHeaderBuilder {
  public:
   constexpr MacHeaderBuilder() = default;

@@ -49,8 +49,8 @@ struct SerialFrameLayout {
   }
 };
 
-/// A lens on the bytes of serial_frame; copy it like a pointer. Somebody else owns the bytes; they
-/// must outlive it. It exists only where parse found nothing wrong.
+/// A lens on the bytes of serial_frame; copy it like a pointer. Somebody
+/// else owns the bytes; they must outlive it. It exists only where parse found nothing wrong.
 class SerialFrameView {
  public:
   using Value = SerialFrame;
@@ -65,7 +65,7 @@ class SerialFrameView {
   }
   template <size_t kCount>
   static Result<SerialFrameView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order; Fault::kNone if they break none.
+  /// The first rule that `bytes` break, in field order, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     const uint8_t* const p = bytes.data();
     if (RUBRIC_UNLIKELY(bytes.size() < 1)) return truncated(bytes, req::kWireSerialKind);
@@ -120,9 +120,8 @@ class SerialFrameView {
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what SerialFrameView::parse would refuse,
-/// with the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is
-/// undefined.
+/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
+/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
 inline Result<MutableBytes> write(const SerialFrame& value, MutableBytes out) {
   const size_t size = SerialFrameLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
@@ -132,8 +131,8 @@ inline Result<MutableBytes> write(const SerialFrame& value, MutableBytes out) {
   return out.first(size);
 }
 
-/// Writes serial_frame in place. What is not set keeps the value that `out` held before. A setter
-/// that can refuse its value returns whether it took it.
+/// Writes serial_frame in place. What is not set keeps what `out` held.
+/// A setter that can refuse its value returns whether it took it.
 class SerialFrameBuilder {
  public:
   constexpr SerialFrameBuilder() = default;
@@ -154,12 +153,12 @@ class SerialFrameBuilder {
     return true;
   }
   /// After seq_num. From the dispatch byte on.
-  /// Where packet goes, as far as there is room for it.
+  /// Where packet goes: all the room that there is.
   MutableBytes packet_room() {
     if (out_.size() < 1 + (has_seq_num() ? 1 : 0)) return MutableBytes();
     return out_.from(1 + (has_seq_num() ? 1 : 0));
   }
-  /// packet is the first `size` bytes of packet_room(); false where there is no room.
+  /// The first `size` bytes of packet_room() are it; false: no room.
   RUBRIC_MUST_USE bool set_packet_size(size_t size) {
     if (size > packet_room().size()) return false;
     tail_ = size;
