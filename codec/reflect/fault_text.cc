@@ -109,9 +109,8 @@ const Requirement& requirement(ReqId id) {
 }
 
 ReqId find_requirement(std::string_view id) {
-  const auto same = [](char a, char b) {
-    return std::toupper(static_cast<unsigned char>(a)) == std::toupper(static_cast<unsigned char>(b));
-  };
+  const auto upper = [](char c) { return std::toupper(static_cast<unsigned char>(c)); };
+  const auto same = [&](char a, char b) { return upper(a) == upper(b); };
   for (std::size_t i = 1; i < std::size(kRequirements); ++i) {
     const std::string_view known = kRequirements[i].id;
     if (std::equal(id.begin(), id.end(), known.begin(), known.end(), same)) {

@@ -65,7 +65,9 @@ char* put_framing(char* at, const Frame& frame) {
       at = put(at, ",\"framing\":\"sf\",\"frame\":{\"dispatch\":");
       at = put_or_null(at, dispatch_of(packet));
       break;
-    case Framing::kRadio: at = put_radio(put(at, ",\"framing\":\"radio\",\"frame\":"), frame); break;
+    case Framing::kRadio:
+      at = put_radio(put(at, ",\"framing\":\"radio\",\"frame\":"), frame);
+      break;
     case Framing::kBare: at = put(at, ",\"framing\":\"bare\",\"frame\":{"); break;
   }
   if (packet.dropped_bytes) {
@@ -159,8 +161,8 @@ const std::string& JsonlFormatter::path_text(const Decoded& decoded) {
   if (path_texts_.empty()) path_texts_.resize(kSlots);
   const std::size_t count = decoded.path_count();
   const reflect::Type* const* path = decoded.path();
-  const auto hash = count ? reinterpret_cast<std::uintptr_t>(path[count - 1]) / alignof(Decoded) : 0;
-  PathText& known = path_texts_[(hash + count) % kSlots];
+  const auto address = reinterpret_cast<std::uintptr_t>(decoded.message());
+  PathText& known = path_texts_[(address / alignof(reflect::Type) + count) % kSlots];
   if (known.count == count && !known.text.empty() && std::equal(path, path + count, known.path)) {
     return known.text;
   }

@@ -1,0 +1,261 @@
+#!/usr/bin/env python3
+"""`rubric decode` as its users meet it: options, exit codes, pipes, damaged files.
+
+Usage: cli_test.py RUBRIC.
+"""
+
+import csv
+import io
+import json
+import os
+import pathlib
+import pty
+import subprocess
+import sys
+import tempfile
+import unittest
+
+FIRMWARE = pathlib.Path("spec/captures/firmware")
+JOIN = FIRMWARE / "a_join_data.pcapng"
+SERIAL = FIRMWARE / "a_join_data.serial.bin"
+BAD = FIRMWARE / "h10_hdlc_escape_and_bad_serial.serial_in.bin"
+NOTED = FIRMWARE / "b_reliable.serial.bin"
+CLEAN, MALFORMED, USAGE, INPUT = range(4)
+
+RUBRIC = None
+
+
+def run(*words, stdin=b"", env=None):
+    return subprocess.run([RUBRIC, *map(str, words)], input=stdin, capture_output=True,
+                          check=False, env={**os.environ, **(env or {})})
+
+
+def decode(*words, **more):
+    return run("decode", *words, **more)
+
+
+def lines(done):
+    return done.stdout.decode("utf-8").splitlines()
+
+
+class ExitCodes(unittest.TestCase):
+    def test_clean_is_0(self):
+        self.assertEqual(decode(JOIN).returncode, CLEAN)
+        self.assertEqual(decode(stdin=b"").returncode, CLEAN)
+
+    def test_malformed_is_1(self):
+        self.assertEqual(decode(BAD).returncode, MALFORMED)
+        self.assertEqual(decode(JOIN, BAD).returncode, MALFORMED)
+
+    def test_strict_counts_notes(self):
+        self.assertEqual(decode(NOTED).returncode, CLEAN)
+        self.assertEqual(decode(NOTED, "--strict").returncode, CLEAN)
+        noted = FIRMWARE / "b_reliable.pcapng"
+        self.assertEqual(decode(noted).returncode, CLEAN)
+        self.assertEqual(decode(noted, "--strict").returncode, MALFORMED)
+
+    def test_usage_is_2_and_says_what_was_meant(self):
+        cases = {
+            ("decoed",): "did you mean 'decode'?",
+            ("decode", "--filtr", "x"): "did you mean '--filter'?",
+            ("decode", "--format", "xml"): "--format",
+            ("decode", "--count", "-1"): "--count",
+            ("decode", "--filter", "message==updats"): "did you mean 'updates'?",
+            ("decode", "--filter", "(index"): "expected ')'",
+            ("decode", "--fields", "src.devd"): "unknown name",
+            ("decode", "--spec", "rubicn"): "did you mean 'rubicon'?",
+            ("decode", "--as", "join_requst"): "did you mean 'join_request'?",
+            ("decode", "--as", "config", "--input-format", "pcap"): "--as",
+            ("decode", "--input-format", "bare"): "--as",
+            (): "subcommand",
+        }
+        for words, wanted in cases.items():
+            with self.subTest(words):
+                done = run(*words)
+                self.assertEqual(done.returncode, USAGE)
+                self.assertIn(wanted, done.stderr.decode())
+                self.assertEqual(done.stdout, b"")
+
+    def test_filter_mistakes_have_a_caret(self):
+        done = decode("--filter", "index>0 && src.devd==4")
+        self.assertIn("  index>0 && src.devd==4\n             ^\n", done.stderr.decode())
+
+    def test_unreadable_is_3_and_the_rest_is_read(self):
+        done = decode("/nonexistent/file", JOIN)
+        self.assertEqual(done.returncode, INPUT)
+        self.assertIn("/nonexistent/file: No such file", done.stderr.decode())
+        self.assertEqual(lines(done), lines(decode(JOIN)))
+        self.assertEqual(decode("spec").returncode, INPUT)  # A folder.
+        self.assertEqual(decode(stdin=b"\x01\x02\x03 no capture").returncode, INPUT)
+        sf_jsonl = decode(FIRMWARE / "a_join_data.sf.jsonl")
+        self.assertEqual(sf_jsonl.returncode, INPUT)
+        self.assertIn("encode", sf_jsonl.stderr.decode())
+
+    def test_unwritable_is_3(self):
+        with open("/dev/full", "wb") as full:
+            done = subprocess.run([RUBRIC, "decode", str(JOIN)], stdout=full,
+                                  stderr=subprocess.PIPE, check=False)
+        self.assertEqual(done.returncode, INPUT)
+        self.assertIn("cannot write", done.stderr.decode())
+
+    def test_help_is_0(self):
+        self.assertEqual(run("--help").returncode, CLEAN)
+        self.assertIn("--filter", run("decode", "--help").stdout.decode())
+        self.assertRegex(run("--version").stdout.decode(), r"^\d+\.\d+")
+
+
+class Damage(unittest.TestCase):
+    def test_a_cut_file_prints_what_stands_before(self):
+        whole = JOIN.read_bytes()
+        all_lines = lines(decode(JOIN, "--format", "jsonl"))
+        done = decode("--format", "jsonl", stdin=whole[:5000])
+        self.assertEqual(done.returncode, INPUT)
+        self.assertIn("stdin: damaged at byte", done.stderr.decode())
+        shown = lines(done)
+        self.assertGreater(len(shown), 10)
+        self.assertEqual(shown[:-1], all_lines[:len(shown) - 1])
+        self.assertEqual(json.loads(shown[-1])["error"]["fault"], "cut")
+
+    def test_what_stands_behind_a_damaged_block_is_found(self):
+        whole = bytearray(JOIN.read_bytes())
+        all_lines = [json.loads(line) for line in lines(decode(JOIN, "--format", "jsonl"))]
+        place = all_lines[20]["offset"] - 24  # The length of the block that holds it.
+        whole[place:place + 4] = b"\xff\xff\xff\x7f"
+        done = decode("--format", "jsonl", stdin=bytes(whole))
+        self.assertEqual(done.returncode, INPUT)
+        shown = [json.loads(line) for line in lines(done)]
+        self.assertEqual(len(shown), len(all_lines))
+        self.assertEqual(shown[20]["error"]["fault"], "container")
+        self.assertEqual([line["raw"] for line in shown[21:]],
+                         [line["raw"] for line in all_lines[21:]])
+
+    def test_a_stream_cut_in_a_frame_is_malformed(self):
+        done = decode("--format", "jsonl", stdin=SERIAL.read_bytes()[:-10])
+        self.assertEqual(done.returncode, MALFORMED)
+        self.assertEqual(json.loads(lines(done)[-1])["error"]["fault"], "cut")
+
+
+class Output(unittest.TestCase):
+    def test_stdin_is_a_file(self):
+        for path in (JOIN, SERIAL, BAD):
+            from_file = decode(path, "--format", "jsonl")
+            from_pipe = decode("-", "--format", "jsonl", stdin=path.read_bytes())
+            self.assertEqual(from_file.stdout, from_pipe.stdout)
+            self.assertEqual(from_file.returncode, from_pipe.returncode)
+
+    def test_files_come_in_order_and_indexes_count_on(self):
+        both = [json.loads(line) for line in lines(decode(SERIAL, JOIN, "--format", "jsonl"))]
+        first = lines(decode(SERIAL, "--format", "jsonl"))
+        self.assertEqual([line["index"] for line in both], list(range(len(both))))
+        self.assertEqual(both[len(first)]["framing"], "radio")
+
+    def test_hex_text_of_either_case(self):
+        sent = "00 FF FF 00 00 03 00 25 0A 00 0C\n"
+        for text in (sent, sent.lower(), sent.replace(" ", "")):
+            line = json.loads(decode("--format", "jsonl", stdin=text.encode()).stdout)
+            self.assertEqual(line["message"], "config")
+            self.assertEqual(line["fields"],
+                             {"type": 10, "type_name": "set_island_id", "value": 12})
+
+    def test_bare_messages(self):
+        two = decode("--as", "config", "--format", "jsonl", stdin=b"0a000c\n01 00 02\n")
+        self.assertEqual([json.loads(line)["fields"]["value"] for line in lines(two)], [12, 2])
+        with tempfile.NamedTemporaryFile() as file:
+            file.write(b"\x0a\x00\x0c")
+            file.flush()
+            one = decode("--as", "config", "--format", "jsonl", file.name)
+        line = json.loads(one.stdout)
+        self.assertEqual((line["framing"], line["fields"]["value"], line["raw"]),
+                         ("bare", 12, "0a000c"))
+
+    def test_count_stops(self):
+        self.assertEqual(len(lines(decode(JOIN, "--count", 3))), 3)
+        only = decode(JOIN, "--count", 2, "--filter", "message==updates", "--format", "jsonl")
+        self.assertEqual([json.loads(line)["message"] for line in lines(only)], ["updates"] * 2)
+
+    def test_filter_selects(self):
+        some = decode(JOIN, "--filter", "message==updates && src.devid==4", "--format", "jsonl")
+        every = [json.loads(line) for line in lines(decode(JOIN, "--format", "jsonl"))]
+        wanted = [line for line in every if line["message"] == "updates"
+                  and line["fields"]["src"]["devid"] == 4]
+        self.assertGreater(len(wanted), 5)
+        self.assertEqual([json.loads(line) for line in lines(some)], wanted)
+
+    def test_times(self):
+        def times(*words):
+            done = decode(JOIN, "--count", 3, "--format", "jsonl", *words)
+            return [json.loads(line)["time"] for line in lines(done)]
+        absolute = times()
+        self.assertEqual(times("--time", "none"), [None] * 3)
+        self.assertEqual(times("--time", "zero"),
+                         [round(t - absolute[0], 9) for t in absolute])
+        self.assertEqual(times("--time", "delta"),
+                         [0] + [round(b - a, 9) for a, b in zip(absolute, absolute[1:])])
+
+    def test_csv(self):
+        table = list(csv.DictReader(io.StringIO(decode(JOIN, "--format", "csv").stdout.decode())))
+        every = [json.loads(line) for line in lines(decode(JOIN, "--format", "jsonl"))]
+        self.assertEqual(len(table), len(every))
+        for row, line in zip(table, every):
+            self.assertEqual(row["message"], line["message"])
+            self.assertEqual(float(row["time"]), line["time"])
+            self.assertEqual(row["am.type"], str(line["am"]["type"]) if line["am"] else "")
+
+    def test_other_protocols(self):
+        message = "00 ffff 0001 1c 22 93 0001 00fa 0007 0014" + " 0123" * 10
+        done = decode("--spec", "oscilloscope", "--format", "jsonl", stdin=message.encode())
+        line = json.loads(done.stdout)
+        self.assertEqual(line["message"], "oscilloscope_msg")
+        self.assertEqual(line["fields"]["readings"], [0x123] * 10)
+
+    def test_units_and_hex(self):
+        text = decode(JOIN, "--count", 1, "--hex").stdout.decode()
+        self.assertIn("        0000  41 88", text)
+        reply = decode("--as", "data", "--units", stdin=b"0001 18c4 04b2 012e 0003")
+        self.assertIn("temp=23.4degC", reply.stdout.decode())
+
+
+class Terminals(unittest.TestCase):
+    def test_colour_only_where_it_is_wanted(self):
+        self.assertNotIn(b"\033", decode(JOIN).stdout)
+        self.assertIn(b"\033", decode(JOIN, "--color", "always").stdout)
+        self.assertIn(b"\033", self.on_terminal({"TERM": "xterm"}))
+        self.assertNotIn(b"\033", self.on_terminal({"TERM": "xterm", "NO_COLOR": "1"}))
+        self.assertNotIn(b"\033", self.on_terminal({"TERM": "dumb"}))
+        self.assertNotIn(b"\033", self.on_terminal({"TERM": "xterm"}, "--color", "never"))
+
+    def on_terminal(self, env, *words):
+        leader, follower = pty.openpty()
+        environment = {k: v for k, v in os.environ.items() if k != "NO_COLOR"} | env
+        subprocess.run([RUBRIC, "decode", str(JOIN), "--count", "1", *words], stdout=follower,
+                       stdin=subprocess.DEVNULL, check=True, env=environment)
+        os.close(follower)
+        shown = os.read(leader, 65536)
+        os.close(leader)
+        return shown
+
+    def test_a_closed_pipe_ends_it_quietly(self):
+        # More than any pipe takes, so that writing fails.
+        stream = SERIAL.read_bytes() * 400
+        with tempfile.TemporaryFile() as file:
+            file.write(stream)
+            file.seek(0)
+            with subprocess.Popen([RUBRIC, "decode", "--format", "jsonl"], stdin=file,
+                                  stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+                json.loads(process.stdout.readline())
+                process.stdout.close()
+                self.assertEqual(process.stderr.read(), b"")
+                self.assertEqual(process.wait(), CLEAN)
+
+    def test_what_comes_slowly_is_shown_at_once(self):
+        with subprocess.Popen([RUBRIC, "decode", "--input-format", "hdlc"], stdin=subprocess.PIPE,
+                              stdout=subprocess.PIPE) as process:
+            process.stdin.write(SERIAL.read_bytes()[:300])
+            process.stdin.flush()
+            self.assertIn(b"serial_joined", process.stdout.readline())
+            process.stdin.close()
+
+
+if __name__ == "__main__":
+    RUBRIC = sys.argv.pop(1)
+    unittest.main()
