@@ -1,5 +1,5 @@
-// Encodes a tree of values into bytes by the reflection tables: the way back of decode.h. Host code;
-// firmware writes through the generated builders.
+// Encodes a tree of values into bytes by the reflection tables: the way back of decode.h. Host
+// code; firmware writes through the generated builders.
 #pragma once
 
 #include <cstdint>

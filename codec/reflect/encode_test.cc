@@ -269,7 +269,8 @@ TEST(Encode, StaleBytesFillUp) {
 TEST(Encode, MissingKey) {
   const Value fields =
       object({{"header", object({{"size", integer(2)}})}, {"payload", pair(8, 9)}});
-  EXPECT_EQ(outcome(toy::kFrame, fields), "header.key: is missing: expected a number from 0 to 255");
+  EXPECT_EQ(outcome(toy::kFrame, fields),
+            "header.key: is missing: expected a number from 0 to 255");
 }
 
 TEST(Encode, UnknownKeyIsOpaque) {
@@ -326,7 +327,9 @@ TEST(ParseHex, Rows) {
   std::vector<std::uint8_t> out;
   EXPECT_TRUE(parse_hex("00 fF 1a2B", out));
   EXPECT_EQ(hex(out), "00ff1a2b");
-  for (const char* bad : {"0", "0 0", "gg", "0x12", "12\n"}) EXPECT_FALSE(parse_hex(bad, out)) << bad;
+  for (const char* bad : {"0", "0 0", "gg", "0x12", "12\n"}) {
+    EXPECT_FALSE(parse_hex(bad, out)) << bad;
+  }
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
 #include <string>
 
 #include "codec/generated/rubicon/tables.h"
@@ -216,6 +217,49 @@ TEST(Records, EverythingAroundTheBytes) {
   EXPECT_EQ(packet.packet.kind, 68);
   EXPECT_EQ(packet.packet.serial_seq, 9);
   EXPECT_EQ(packet.packet.time_ns, kNoTime);
+}
+
+// Replaces a random value somewhere in the tree by another one.
+void damage(Value& value, std::mt19937& random) {
+  if (!value.items.empty() && random() % 8 != 0) {
+    return damage(value.items[random() % value.items.size()], random);
+  }
+  switch (random() % 9) {
+    case 0: value = Value{}; break;
+    case 1: value = Value::of_integer(static_cast<std::int64_t>(random()) - 1000); break;
+    case 2: value = Value::of_integer(static_cast<std::int64_t>(random() % 260)); break;
+    case 3: value = Value::of_string("0aff"); break;
+    case 4: value = Value::of_string("app_msg"); break;
+    case 5: value = Value::of_real("1e39"); break;
+    case 6: value = Value::of_array({Value::of_string("light"), Value::of_integer(3)}); break;
+    case 7: value = Value::of_object(); break;
+    default:
+      if (!value.keys.empty()) {
+        value.keys.pop_back();
+        value.items.pop_back();
+      }
+  }
+}
+
+TEST(Records, DamagedLinesAreRefusedOrRead) {
+  std::mt19937 random(7);
+  RecordReader reader(rubicon::tables::kProtocol);
+  OwnedPacket packet;
+  int refused = 0;
+  constexpr int kRounds = 20'000;
+  for (int i = 0; i < kRounds; ++i) {
+    Value line = i % 2 ? radio_line() : serial_line();
+    if (i % 3) line = changed(line, {{"raw", ""}});
+    const auto changes = 1 + random() % 3;
+    for (unsigned k = 0; k < changes; ++k) damage(line, random);
+    try {
+      reader.read(line, packet);
+    } catch (const RecordError&) {
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, kRounds / 4);
+  EXPECT_LT(refused, kRounds);
 }
 
 TEST(Times, ExactToTheNanosecond) {
