@@ -1,15 +1,13 @@
 #include "codec/reflect/registry.h"
 
-#include "codec/generated/oscilloscope/tables.h"
-#include "codec/generated/rubicon/tables.h"
+#include <iterator>
+
+#include "codec/generated/protocols.h"
 
 namespace rubric::reflect {
 
 const std::vector<const Protocol*>& protocols() {
-  static const std::vector<const Protocol*> all = {
-      &rubicon::tables::kProtocol,
-      &oscilloscope::tables::kProtocol,
-  };
+  static const std::vector<const Protocol*> all(std::begin(kProtocols), std::end(kProtocols));
   return all;
 }
 

@@ -26,6 +26,8 @@ expect 0 --help
 expect 0 --emit tables,doc --out "$out/good" $good
 [ -f "$out/good/codec/generated/tinyos/tables.h" ] || { echo "no tables"; failures=1; }
 [ -f "$out/good/doc/wire.html" ] || { echo "no page"; failures=1; }
+expect 0 doc --out "$out/doc" $good
+[ -f "$out/doc/doc/wire.html" ] || { echo "no page by doc"; failures=1; }
 expect 1 --check $bad
 grep -q 'many_mistakes.ksy:43:5: error: duplicate enum value 2' "$out/stderr" ||
   { echo "the diagnostics are not on stderr"; failures=1; }

@@ -11,13 +11,14 @@
 
 #include "spec/compiler/emit.h"
 #include "spec/compiler/emit_cpp.h"
+#include "spec/compiler/emit_cpp.h"
 #include "spec/compiler/load.h"
 
 namespace {
 
 enum Exit { kOk = 0, kDiagnostics = 1, kUsage = 2, kCannotReadOrWrite = 3 };
 
-const std::vector<std::string> kEmitters{"cpp",        "tables",   "requirements",
+const std::vector<std::string> kEmitters{"cpp",        "tables",   "requirements", "protocols",
                                          "dictionary", "messages", "doc"};
 
 struct Options {
@@ -48,6 +49,7 @@ rubricc::GeneratedFiles emit(const Options& options, const rubricc::Model& model
   if (wants(options, "requirements")) {
     append(out, rubricc::emit_requirements(model, options.requirements));
   }
+  if (wants(options, "protocols")) append(out, rubricc::emit_protocols(model));
   if (wants(options, "doc")) append(out, rubricc::emit_doc(model));
   return out;
 }
@@ -96,7 +98,8 @@ int main(int argc, char** argv) {
   Options options;
   CLI::App app{"rubricc: checks wire specs (a strict profile of Kaitai Struct) and generates from "
                "them. Exit code: 0 fine, 1 mistakes in the input, 2 wrong usage, 3 a file cannot "
-               "be read or written."};
+               "be read or written. `rubricc doc --out DIR FILE...` is short for `--emit doc`: "
+               "one HTML page, DIR/doc/wire.html."};
   app.add_option("--requirements", options.requirements, "The catalogue of requirements")
       ->capture_default_str();
   auto* check = app.add_flag("--check", options.check, "Only check");
@@ -107,8 +110,11 @@ int main(int argc, char** argv) {
   app.add_option("FILE", options.files, "Wire specs (.ksy)")->required();
   check->excludes(emit)->excludes(out);
   emit->needs(out);
+  std::vector<std::string> words(argv + 1, argv + argc);
+  if (!words.empty() && words[0] == "doc") words[0] = "--emit=doc";
+  std::reverse(words.begin(), words.end());  // As CLI11 takes them.
   try {
-    app.parse(argc, argv);
+    app.parse(words);
     if (!options.check && options.emit.empty()) throw CLI::RequiredError("--check or --emit");
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? kOk : kUsage;

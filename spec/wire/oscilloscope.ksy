@@ -11,6 +11,7 @@ doc: |
 doc-ref: tinyos-2.x apps/Oscilloscope/Oscilloscope.h
 
 -carrier: serial
+-requirement: WIRE-AM-HEADER
 seq:
   - id: am
     type: tinyos::am_header
@@ -25,6 +26,7 @@ seq:
 types:
   radio_i_frame:
     -carrier: radio_i
+    -requirement: WIRE-RADIO-HEADER
     seq:
       - id: mac
         type: tinyos::mac_header
@@ -43,6 +45,7 @@ types:
 
   radio_t_frame:
     -carrier: radio_t
+    -requirement: WIRE-RADIO-HEADER
     seq:
       - id: mac
         type: tinyos::mac_header

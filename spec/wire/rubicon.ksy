@@ -13,6 +13,7 @@ doc: |
 doc-ref: "paper: The Structure of the Communication Layer"
 
 -carrier: serial
+-requirement: WIRE-AM-HEADER
 seq:
   - id: am
     type: tinyos::am_header
@@ -34,6 +35,7 @@ types:
     doc: On the radio, with the 6LoWPAN network byte (I-frame).
     doc-ref: TEP 125
     -carrier: radio_i
+    -requirement: WIRE-RADIO-HEADER
     seq:
       - id: mac
         type: tinyos::mac_header
@@ -62,6 +64,7 @@ types:
     doc: On the radio, without a network byte (T-frame, TFRAMES builds).
     doc-ref: TEP 125
     -carrier: radio_t
+    -requirement: WIRE-RADIO-HEADER
     seq:
       - id: mac
         type: tinyos::mac_header

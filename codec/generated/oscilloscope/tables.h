@@ -83,7 +83,7 @@ constexpr Field kFields[] = {
 namespace types {
 constexpr Type kOscilloscope{
     "oscilloscope", "oscilloscope", of::oscilloscope::kFields, 2, nullptr, 0, 8, 122, -1,
-    ReqId::kNone,
+    ReqId::kWireAmHeader,
     "The demo application of TinyOS: a mote sends ten readings of its sensor in a message. It "
     "shows that another protocol over the same frames is one more file here.",
     "tinyos-2.x apps/Oscilloscope/Oscilloscope.h"};
@@ -104,7 +104,7 @@ constexpr Field kFields[] = {
      {ValidKind::kOneOf, 0, 0, kNetworkOneOf, 1}, -1, nullptr, nullptr, nullptr, nullptr, {}, {},
      {}, ReqId::kWireRadioNetwork, nullptr, ""},
     {"type", "\"type\":", 7, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 10, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kNone, nullptr, ""},
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireRadioHeader, nullptr, ""},
     {"payload", "\"payload\":", 10, Kind::kStruct, 0, false, Repeat::kOnce, Extent::kToEnd, 11,
      kAny, -1, nullptr, nullptr, nullptr, &kPayloadSwitch, {}, {}, {}, ReqId::kWireRadioLength,
      nullptr, ""},
@@ -114,7 +114,7 @@ constexpr Field kFields[] = {
 namespace types {
 constexpr Type kRadioIFrame{
     "radio_i_frame", "radio_i_frame", of::radio_i_frame::kFields, 4, nullptr, 0, 11, UINT32_MAX,
-    -1, ReqId::kNone,
+    -1, ReqId::kWireRadioHeader,
     "",
     ""};
 }  // namespace types
@@ -130,7 +130,7 @@ constexpr Field kFields[] = {
      nullptr, nullptr, &::rubric::tinyos::tables::types::kMacHeader, nullptr, {}, {}, {},
      ReqId::kWireRadioHeader, nullptr, ""},
     {"type", "\"type\":", 7, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 9, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kNone, nullptr, ""},
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireRadioHeader, nullptr, ""},
     {"payload", "\"payload\":", 10, Kind::kStruct, 0, false, Repeat::kOnce, Extent::kToEnd, 10,
      kAny, -1, nullptr, nullptr, nullptr, &kPayloadSwitch, {}, {}, {}, ReqId::kWireRadioLength,
      nullptr, ""},
@@ -140,7 +140,7 @@ constexpr Field kFields[] = {
 namespace types {
 constexpr Type kRadioTFrame{
     "radio_t_frame", "radio_t_frame", of::radio_t_frame::kFields, 3, nullptr, 0, 10, UINT32_MAX,
-    -1, ReqId::kNone,
+    -1, ReqId::kWireRadioHeader,
     "",
     ""};
 }  // namespace types

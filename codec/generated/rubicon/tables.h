@@ -942,7 +942,7 @@ constexpr Field kFields[] = {
 }  // namespace of
 namespace types {
 constexpr Type kRubicon{
-    "rubicon", "rubicon", of::rubicon::kFields, 2, nullptr, 0, 8, 122, -1, ReqId::kNone,
+    "rubicon", "rubicon", of::rubicon::kFields, 2, nullptr, 0, 8, 122, -1, ReqId::kWireAmHeader,
     "The messages of the RUBICON Communication Layer on TinyOS active messages: joins, network "
     "messages between islands, and what applications carry in them. seq is syntax: bytes that "
     "break it are malformed. instances are interpretations: bytes that do not fit one stay "
@@ -1084,7 +1084,8 @@ constexpr Field kFields[] = {
      {ValidKind::kOneOf, 0, 0, kNetworkOneOf, 1}, -1, nullptr, nullptr, nullptr, nullptr, {}, {},
      {}, ReqId::kWireRadioNetwork, nullptr, "NALP code of TinyOS in 6LoWPAN."},
     {"type", "\"type\":", 7, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 10, kAny, -1,
-     &enums::kAmType, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kNone, nullptr, "AM type."},
+     &enums::kAmType, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireRadioHeader, nullptr,
+     "AM type."},
     {"payload", "\"payload\":", 10, Kind::kStruct, 0, false, Repeat::kOnce, Extent::kToEnd, 11,
      kAny, -1, nullptr, nullptr, nullptr, &kPayloadSwitch, {}, {}, {}, ReqId::kWireRadioLength,
      nullptr, ""},
@@ -1094,7 +1095,7 @@ constexpr Field kFields[] = {
 namespace types {
 constexpr Type kRadioIFrame{
     "radio_i_frame", "radio_i_frame", of::radio_i_frame::kFields, 4, nullptr, 0, 11, UINT32_MAX,
-    -1, ReqId::kNone,
+    -1, ReqId::kWireRadioHeader,
     "On the radio, with the 6LoWPAN network byte (I-frame).",
     "TEP 125"};
 }  // namespace types
@@ -1112,7 +1113,8 @@ constexpr Field kFields[] = {
      nullptr, nullptr, &::rubric::tinyos::tables::types::kMacHeader, nullptr, {}, {}, {},
      ReqId::kWireRadioHeader, nullptr, ""},
     {"type", "\"type\":", 7, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 9, kAny, -1,
-     &enums::kAmType, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kNone, nullptr, "AM type."},
+     &enums::kAmType, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireRadioHeader, nullptr,
+     "AM type."},
     {"payload", "\"payload\":", 10, Kind::kStruct, 0, false, Repeat::kOnce, Extent::kToEnd, 10,
      kAny, -1, nullptr, nullptr, nullptr, &kPayloadSwitch, {}, {}, {}, ReqId::kWireRadioLength,
      nullptr, ""},
@@ -1122,7 +1124,7 @@ constexpr Field kFields[] = {
 namespace types {
 constexpr Type kRadioTFrame{
     "radio_t_frame", "radio_t_frame", of::radio_t_frame::kFields, 3, nullptr, 0, 10, UINT32_MAX,
-    -1, ReqId::kNone,
+    -1, ReqId::kWireRadioHeader,
     "On the radio, without a network byte (T-frame, TFRAMES builds).",
     "TEP 125"};
 }  // namespace types
