@@ -19,7 +19,7 @@ namespace oscilloscope {
 
 /// oscilloscope as a value. Its bytes are borrowed.
 struct Oscilloscope {
-  /// Bytes 0-7. WIRE-AM-HEADER.
+  /// Bytes 0-7.
   tinyos::AmHeader am;
   /// From byte 8. WIRE-AM-LENGTH.
   Bytes payload;
@@ -63,7 +63,7 @@ class OscilloscopeView {
   }
   template <size_t kCount>
   static Result<OscilloscopeView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order, or Fault::kNone.
+  /// The first rule that `bytes` break, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     const uint8_t* const p = bytes.data();
     if (RUBRIC_UNLIKELY(bytes.size() < 8)) return check_short(bytes);
@@ -89,7 +89,7 @@ class OscilloscopeView {
     return no_error();
   }
 
-  /// Bytes 0-7. WIRE-AM-HEADER.
+  /// Bytes 0-7.
   constexpr tinyos::AmHeaderView am() const {
     return detail::Access::view<tinyos::AmHeaderView>(bytes_.sub(0, 8));
   }
@@ -153,14 +153,15 @@ class OscilloscopeView {
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
-/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
+/// Writes `value` and returns the bytes written. Refuses what parse
+/// would refuse, with the same fault, and an `out` that is too small (kNoRoom); what `out` then
+/// holds is undefined.
 inline Result<MutableBytes> write(const Oscilloscope& value, MutableBytes out) {
   const Error wrong = OscilloscopeLayout::check_lengths(value);
   if (RUBRIC_UNLIKELY(is_error(wrong))) return Failure{wrong};
   const size_t size = OscilloscopeLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
-    return fail(Fault::kNoRoom, out.size(), ReqId::kNone);
+    return fail(Fault::kNoRoom, out.size(), req::kWireAmHeader);
   }
   OscilloscopeLayout::store(value, out.data());
   const Error error = OscilloscopeView::check(out.first(size));
@@ -176,12 +177,12 @@ class OscilloscopeBuilder {
   /// kNoRoom where `out` is smaller than kMinSizeBytes of the view.
   static constexpr Result<OscilloscopeBuilder> create(MutableBytes out) {
     if (RUBRIC_UNLIKELY(out.size() < OscilloscopeView::kMinSizeBytes)) {
-      return fail(Fault::kNoRoom, out.size(), ReqId::kNone);
+      return fail(Fault::kNoRoom, out.size(), req::kWireAmHeader);
     }
     return OscilloscopeBuilder(out);
   }
 
-  /// Bytes 0-7. WIRE-AM-HEADER.
+  /// Bytes 0-7.
   tinyos::AmHeaderBuilder am() {
     return detail::Access::builder<tinyos::AmHeaderBuilder>(out_.sub(0, 8));
   }

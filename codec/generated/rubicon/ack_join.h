@@ -62,7 +62,7 @@ class AckJoinView {
   }
   template <size_t kCount>
   static Result<AckJoinView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order, or Fault::kNone.
+  /// The first rule that `bytes` break, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     if (RUBRIC_UNLIKELY(bytes.size() < 14)) return check_short(bytes);
     return no_error();
@@ -113,8 +113,9 @@ class AckJoinView {
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
-/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
+/// Writes `value` and returns the bytes written. Refuses what parse
+/// would refuse, with the same fault, and an `out` that is too small (kNoRoom); what `out` then
+/// holds is undefined.
 inline Result<MutableBytes> write(const AckJoin& value, MutableBytes out) {
   const size_t size = AckJoinLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {

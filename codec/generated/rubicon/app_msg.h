@@ -80,8 +80,7 @@ class AppMsgView {
   }
   template <size_t kCount>
   static Result<AppMsgView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order, or Fault::kNone. At most kMaxSizeBytes of
-  /// them.
+  /// The first rule that `bytes` break, or Fault::kNone. At most kMaxSizeBytes of them.
   static constexpr Error check(Bytes bytes) {
     if (RUBRIC_UNLIKELY(bytes.size() < 2)) return truncated(bytes, req::kWireAppHeader);
     return no_error();
@@ -237,8 +236,9 @@ class AppMsgView {
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
-/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
+/// Writes `value` and returns the bytes written. Refuses what parse
+/// would refuse, with the same fault, and an `out` that is too small (kNoRoom); what `out` then
+/// holds is undefined.
 inline Result<MutableBytes> write(const AppMsg& value, MutableBytes out) {
   const Error wrong = AppMsgLayout::check_lengths(value);
   if (RUBRIC_UNLIKELY(is_error(wrong))) return Failure{wrong};

@@ -80,7 +80,7 @@ class ConnlessView {
   }
   template <size_t kCount>
   static Result<ConnlessView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order, or Fault::kNone.
+  /// The first rule that `bytes` break, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     const uint8_t* const p = bytes.data();
     if (RUBRIC_UNLIKELY(bytes.size() < 8)) return check_short(bytes);
@@ -150,8 +150,9 @@ class ConnlessView {
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
-/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
+/// Writes `value` and returns the bytes written. Refuses what parse
+/// would refuse, with the same fault, and an `out` that is too small (kNoRoom); what `out` then
+/// holds is undefined.
 inline Result<MutableBytes> write(const Connless& value, MutableBytes out) {
   const Error wrong = ConnlessLayout::check_lengths(value);
   if (RUBRIC_UNLIKELY(is_error(wrong))) return Failure{wrong};

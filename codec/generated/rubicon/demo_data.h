@@ -89,7 +89,7 @@ class DemoDataView {
   }
   template <size_t kCount>
   static Result<DemoDataView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order, or Fault::kNone.
+  /// The first rule that `bytes` break, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     if (RUBRIC_UNLIKELY(bytes.size() < 19)) return truncated(bytes, req::kWireDemoData);
     return no_error();
@@ -150,8 +150,9 @@ class DemoDataView {
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
-/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
+/// Writes `value` and returns the bytes written. Refuses what parse
+/// would refuse, with the same fault, and an `out` that is too small (kNoRoom); what `out` then
+/// holds is undefined.
 inline Result<MutableBytes> write(const DemoData& value, MutableBytes out) {
   const size_t size = DemoDataLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {

@@ -68,7 +68,7 @@ class LearningModuleDownView {
   template <size_t kCount>
   static Result<LearningModuleDownView> parse(const uint8_t (
       &&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order, or Fault::kNone.
+  /// The first rule that `bytes` break, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     const uint8_t* const p = bytes.data();
     if (RUBRIC_UNLIKELY(bytes.size() < 4)) return truncated(bytes, req::kWireLearningModuleDown);
@@ -124,8 +124,9 @@ class LearningModuleDownView {
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
-/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
+/// Writes `value` and returns the bytes written. Refuses what parse
+/// would refuse, with the same fault, and an `out` that is too small (kNoRoom); what `out` then
+/// holds is undefined.
 inline Result<MutableBytes> write(const LearningModuleDown& value, MutableBytes out) {
   const Error wrong = LearningModuleDownLayout::check_lengths(value);
   if (RUBRIC_UNLIKELY(is_error(wrong))) return Failure{wrong};

@@ -6,7 +6,7 @@
 //   byte  field               type                  rule
 //   0     mac                 tinyos::MacHeader     WIRE-RADIO-HEADER
 //   9     network             uint8_t               WIRE-RADIO-NETWORK
-//   10    type                AmType                -
+//   10    type                AmType                WIRE-RADIO-HEADER
 //   11    payload             bytes                 WIRE-RADIO-LENGTH
 #pragma once
 
@@ -24,7 +24,7 @@ namespace rubicon {
 
 /// radio_i_frame as a value. Its bytes are borrowed.
 struct RadioIFrame {
-  /// Bytes 0-8. WIRE-RADIO-HEADER.
+  /// Bytes 0-8.
   tinyos::MacHeader mac;
   /// Byte 9. NALP code of TinyOS in 6LoWPAN. WIRE-RADIO-NETWORK.
   uint8_t network = 0;
@@ -71,7 +71,7 @@ class RadioIFrameView {
   }
   template <size_t kCount>
   static Result<RadioIFrameView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order, or Fault::kNone.
+  /// The first rule that `bytes` break, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     const uint8_t* const p = bytes.data();
     if (RUBRIC_UNLIKELY(bytes.size() < 11)) return check_short(bytes);
@@ -102,7 +102,7 @@ class RadioIFrameView {
     return no_error();
   }
 
-  /// Bytes 0-8. WIRE-RADIO-HEADER.
+  /// Bytes 0-8.
   constexpr tinyos::MacHeaderView mac() const {
     return detail::Access::view<tinyos::MacHeaderView>(bytes_.sub(0, 9));
   }
@@ -190,18 +190,19 @@ class RadioIFrameView {
     if (RUBRIC_UNLIKELY(load_u8(p + 9) != 63)) {
       return error_at(Fault::kUnexpected, 9, req::kWireRadioNetwork);
     }
-    return truncated(bytes, ReqId::kNone);
+    return truncated(bytes, req::kWireRadioHeader);
   }
 
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
-/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
+/// Writes `value` and returns the bytes written. Refuses what parse
+/// would refuse, with the same fault, and an `out` that is too small (kNoRoom); what `out` then
+/// holds is undefined.
 inline Result<MutableBytes> write(const RadioIFrame& value, MutableBytes out) {
   const size_t size = RadioIFrameLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
-    return fail(Fault::kNoRoom, out.size(), ReqId::kNone);
+    return fail(Fault::kNoRoom, out.size(), req::kWireRadioHeader);
   }
   RadioIFrameLayout::store(value, out.data());
   const Error error = RadioIFrameView::check(out.first(size));
@@ -217,12 +218,12 @@ class RadioIFrameBuilder {
   /// kNoRoom where `out` is smaller than kMinSizeBytes of the view.
   static constexpr Result<RadioIFrameBuilder> create(MutableBytes out) {
     if (RUBRIC_UNLIKELY(out.size() < RadioIFrameView::kMinSizeBytes)) {
-      return fail(Fault::kNoRoom, out.size(), ReqId::kNone);
+      return fail(Fault::kNoRoom, out.size(), req::kWireRadioHeader);
     }
     return RadioIFrameBuilder(out);
   }
 
-  /// Bytes 0-8. WIRE-RADIO-HEADER.
+  /// Bytes 0-8.
   tinyos::MacHeaderBuilder mac() {
     return detail::Access::builder<tinyos::MacHeaderBuilder>(out_.sub(0, 9));
   }
@@ -260,7 +261,7 @@ class RadioIFrameBuilder {
   Result<RadioIFrameView> finish() const {
     const size_t size = 11 + tail_;
     if (RUBRIC_UNLIKELY(out_.size() < size)) {
-      return fail(Fault::kNoRoom, out_.size(), ReqId::kNone);
+      return fail(Fault::kNoRoom, out_.size(), req::kWireRadioHeader);
     }
     const Result<RadioIFrameView> whole = RadioIFrameView::parse(out_.first(size));
     if (!whole) return whole;

@@ -5,7 +5,7 @@
 //
 //   byte  field               type                  rule
 //   0     mac                 tinyos::MacHeader     WIRE-RADIO-HEADER
-//   9     type                AmType                -
+//   9     type                AmType                WIRE-RADIO-HEADER
 //   10    payload             bytes                 WIRE-RADIO-LENGTH
 #pragma once
 
@@ -23,7 +23,7 @@ namespace rubicon {
 
 /// radio_t_frame as a value. Its bytes are borrowed.
 struct RadioTFrame {
-  /// Bytes 0-8. WIRE-RADIO-HEADER.
+  /// Bytes 0-8.
   tinyos::MacHeader mac;
   /// Byte 9. AM type.
   AmType type = AmType();
@@ -65,10 +65,10 @@ class RadioTFrameView {
   }
   template <size_t kCount>
   static Result<RadioTFrameView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order, or Fault::kNone.
+  /// The first rule that `bytes` break, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     const uint8_t* const p = bytes.data();
-    if (RUBRIC_UNLIKELY(bytes.size() < 10)) return check_short(bytes);
+    if (RUBRIC_UNLIKELY(bytes.size() < 10)) return truncated(bytes, req::kWireRadioHeader);
     Error in_payload = no_error();
     switch (load_u8(p + 9)) {
       case 6:
@@ -93,7 +93,7 @@ class RadioTFrameView {
     return no_error();
   }
 
-  /// Bytes 0-8. WIRE-RADIO-HEADER.
+  /// Bytes 0-8.
   constexpr tinyos::MacHeaderView mac() const {
     return detail::Access::view<tinyos::MacHeaderView>(bytes_.sub(0, 9));
   }
@@ -170,21 +170,17 @@ class RadioTFrameView {
   friend class Result<RadioTFrameView>;
   constexpr RadioTFrameView() = default;
   constexpr explicit RadioTFrameView(Bytes bytes) : bytes_(bytes) {}
-  // Bytes that end within the first 10; they may be wrong before.
-  RUBRIC_COLD static constexpr Error check_short(Bytes bytes) {
-    if (bytes.size() < 9) return truncated(bytes, req::kWireRadioHeader);
-    return truncated(bytes, ReqId::kNone);
-  }
 
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
-/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
+/// Writes `value` and returns the bytes written. Refuses what parse
+/// would refuse, with the same fault, and an `out` that is too small (kNoRoom); what `out` then
+/// holds is undefined.
 inline Result<MutableBytes> write(const RadioTFrame& value, MutableBytes out) {
   const size_t size = RadioTFrameLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
-    return fail(Fault::kNoRoom, out.size(), ReqId::kNone);
+    return fail(Fault::kNoRoom, out.size(), req::kWireRadioHeader);
   }
   RadioTFrameLayout::store(value, out.data());
   const Error error = RadioTFrameView::check(out.first(size));
@@ -200,12 +196,12 @@ class RadioTFrameBuilder {
   /// kNoRoom where `out` is smaller than kMinSizeBytes of the view.
   static constexpr Result<RadioTFrameBuilder> create(MutableBytes out) {
     if (RUBRIC_UNLIKELY(out.size() < RadioTFrameView::kMinSizeBytes)) {
-      return fail(Fault::kNoRoom, out.size(), ReqId::kNone);
+      return fail(Fault::kNoRoom, out.size(), req::kWireRadioHeader);
     }
     return RadioTFrameBuilder(out);
   }
 
-  /// Bytes 0-8. WIRE-RADIO-HEADER.
+  /// Bytes 0-8.
   tinyos::MacHeaderBuilder mac() {
     return detail::Access::builder<tinyos::MacHeaderBuilder>(out_.sub(0, 9));
   }
@@ -237,7 +233,7 @@ class RadioTFrameBuilder {
   Result<RadioTFrameView> finish() const {
     const size_t size = 10 + tail_;
     if (RUBRIC_UNLIKELY(out_.size() < size)) {
-      return fail(Fault::kNoRoom, out_.size(), ReqId::kNone);
+      return fail(Fault::kNoRoom, out_.size(), req::kWireRadioHeader);
     }
     const Result<RadioTFrameView> whole = RadioTFrameView::parse(out_.first(size));
     if (!whole) return whole;

@@ -25,7 +25,7 @@ namespace rubicon {
 
 /// rubicon as a value. Its bytes are borrowed.
 struct Rubicon {
-  /// Bytes 0-7. WIRE-AM-HEADER.
+  /// Bytes 0-7.
   tinyos::AmHeader am;
   /// From byte 8. WIRE-AM-LENGTH.
   Bytes payload;
@@ -70,7 +70,7 @@ class RubiconView {
   }
   template <size_t kCount>
   static Result<RubiconView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order, or Fault::kNone.
+  /// The first rule that `bytes` break, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     const uint8_t* const p = bytes.data();
     if (RUBRIC_UNLIKELY(bytes.size() < 8)) return check_short(bytes);
@@ -111,7 +111,7 @@ class RubiconView {
     return no_error();
   }
 
-  /// Bytes 0-7. WIRE-AM-HEADER.
+  /// Bytes 0-7.
   constexpr tinyos::AmHeaderView am() const {
     return detail::Access::view<tinyos::AmHeaderView>(bytes_.sub(0, 8));
   }
@@ -208,14 +208,15 @@ class RubiconView {
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
-/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
+/// Writes `value` and returns the bytes written. Refuses what parse
+/// would refuse, with the same fault, and an `out` that is too small (kNoRoom); what `out` then
+/// holds is undefined.
 inline Result<MutableBytes> write(const Rubicon& value, MutableBytes out) {
   const Error wrong = RubiconLayout::check_lengths(value);
   if (RUBRIC_UNLIKELY(is_error(wrong))) return Failure{wrong};
   const size_t size = RubiconLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
-    return fail(Fault::kNoRoom, out.size(), ReqId::kNone);
+    return fail(Fault::kNoRoom, out.size(), req::kWireAmHeader);
   }
   RubiconLayout::store(value, out.data());
   const Error error = RubiconView::check(out.first(size));
@@ -231,12 +232,12 @@ class RubiconBuilder {
   /// kNoRoom where `out` is smaller than kMinSizeBytes of the view.
   static constexpr Result<RubiconBuilder> create(MutableBytes out) {
     if (RUBRIC_UNLIKELY(out.size() < RubiconView::kMinSizeBytes)) {
-      return fail(Fault::kNoRoom, out.size(), ReqId::kNone);
+      return fail(Fault::kNoRoom, out.size(), req::kWireAmHeader);
     }
     return RubiconBuilder(out);
   }
 
-  /// Bytes 0-7. WIRE-AM-HEADER.
+  /// Bytes 0-7.
   tinyos::AmHeaderBuilder am() {
     return detail::Access::builder<tinyos::AmHeaderBuilder>(out_.sub(0, 8));
   }

@@ -54,8 +54,7 @@ class SynapticDataView {
   }
   template <size_t kCount>
   static Result<SynapticDataView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order, or Fault::kNone. At most kMaxSizeBytes of
-  /// them.
+  /// The first rule that `bytes` break, or Fault::kNone. At most kMaxSizeBytes of them.
   static constexpr Error check(Bytes bytes) {
     if (RUBRIC_UNLIKELY(bytes.size() % 4 != 0)) return truncated(bytes, req::kWireSynapticData);
     return no_error();
@@ -95,8 +94,9 @@ class SynapticDataView {
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
-/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
+/// Writes `value` and returns the bytes written. Refuses what parse
+/// would refuse, with the same fault, and an `out` that is too small (kNoRoom); what `out` then
+/// holds is undefined.
 inline Result<MutableBytes> write(const SynapticData& value, MutableBytes out) {
   const Error wrong = SynapticDataLayout::check_lengths(value);
   if (RUBRIC_UNLIKELY(is_error(wrong))) return Failure{wrong};

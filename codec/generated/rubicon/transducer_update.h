@@ -53,7 +53,7 @@ class TransducerUpdateView {
   template <size_t kCount>
   static Result<TransducerUpdateView> parse(const uint8_t (
       &&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order, or Fault::kNone.
+  /// The first rule that `bytes` break, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     if (RUBRIC_UNLIKELY(bytes.size() < 4)) return truncated(bytes, req::kWireUpdates);
     return no_error();
@@ -92,8 +92,9 @@ class TransducerUpdateView {
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
-/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
+/// Writes `value` and returns the bytes written. Refuses what parse
+/// would refuse, with the same fault, and an `out` that is too small (kNoRoom); what `out` then
+/// holds is undefined.
 inline Result<MutableBytes> write(const TransducerUpdate& value, MutableBytes out) {
   const size_t size = TransducerUpdateLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {

@@ -64,7 +64,7 @@ class UpdatesView {
   }
   template <size_t kCount>
   static Result<UpdatesView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order, or Fault::kNone.
+  /// The first rule that `bytes` break, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     const uint8_t* const p = bytes.data();
     if (RUBRIC_UNLIKELY(bytes.size() < 2)) return truncated(bytes, req::kWireUpdates);
@@ -115,8 +115,9 @@ class UpdatesView {
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
-/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
+/// Writes `value` and returns the bytes written. Refuses what parse
+/// would refuse, with the same fault, and an `out` that is too small (kNoRoom); what `out` then
+/// holds is undefined.
 inline Result<MutableBytes> write(const Updates& value, MutableBytes out) {
   const Error wrong = UpdatesLayout::check_lengths(value);
   if (RUBRIC_UNLIKELY(is_error(wrong))) return Failure{wrong};

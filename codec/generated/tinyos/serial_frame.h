@@ -65,7 +65,7 @@ class SerialFrameView {
   }
   template <size_t kCount>
   static Result<SerialFrameView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
-  /// The first rule that `bytes` break, in field order, or Fault::kNone.
+  /// The first rule that `bytes` break, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     const uint8_t* const p = bytes.data();
     if (RUBRIC_UNLIKELY(bytes.size() < 1)) return truncated(bytes, req::kWireSerialKind);
@@ -120,8 +120,9 @@ class SerialFrameView {
   Bytes bytes_;
 };
 
-/// Writes `value` and returns the bytes written. Refuses what the view's parse would refuse, with
-/// the same fault, and an `out` that is too small (kNoRoom); what `out` then holds is undefined.
+/// Writes `value` and returns the bytes written. Refuses what parse
+/// would refuse, with the same fault, and an `out` that is too small (kNoRoom); what `out` then
+/// holds is undefined.
 inline Result<MutableBytes> write(const SerialFrame& value, MutableBytes out) {
   const size_t size = SerialFrameLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
