@@ -35,6 +35,10 @@ const Value& object_of(const Value& line, std::string_view key) {
   throw RecordError(std::string(key), "expected an object or null, given " + value_text(*value));
 }
 
+RecordError no_raw(const std::string& why) {
+  return RecordError("raw", "is missing, and " + why);
+}
+
 Value without_nulls(const Value& object) {
   Value kept = Value::of_object();
   for (std::size_t i = 0; i < object.keys.size(); ++i) {
@@ -162,64 +166,74 @@ const Type* RecordReader::bare_type(const Value& line) const {
   return name.empty() ? nullptr : reflect::find_type(protocol_, name);
 }
 
+RecordReader::Plan RecordReader::plan_radio(const Value& line, const Value& am) const {
+  const Value& frame = object_of(line, "frame");
+  const Value* fields = given(line, "fields");
+  const auto fcf = integer_of(frame, "frame", "fcf", 0xffff);
+  if (fcf && (*fcf & kFrameTypeMask) == kFrameTypeAck) {
+    Value values = Value::of_object();
+    values.set("fcf", Value::of_integer(*fcf));
+    if (const Value* dsn = given(frame, "dsn")) values.set("dsn", *dsn);
+    return {reflect::find_carrier(tinyos::tables::kProtocol, "radio_ack"), std::move(values)};
+  }
+  const bool has_network = !frame.find("network") || given(frame, "network");
+  const Type* type = reflect::find_carrier(protocol_, has_network ? "radio_i" : "radio_t");
+  const Value payload = fields ? *fields : Value{};
+  return {type, radio_values(with_am_type(line, am, type), frame, has_network, payload)};
+}
+
+// Without raw: what the frame is made of.
+RecordReader::Plan RecordReader::plan(const Value& line, Framing framing) const {
+  const Value* fields = given(line, "fields");
+  const Value am = without_nulls(object_of(line, "am"));
+  if (framing == Framing::kBare) {
+    const Type* message = bare_type(line);
+    if (!message || !fields) throw no_raw("there are no fields of a known message");
+    return {message, *fields};
+  }
+  const bool nothing = !fields && am.keys.empty();
+  // A radio acknowledgement is a frame control field and a number alone.
+  if (nothing && (framing != Framing::kRadio || !given(object_of(line, "frame"), "fcf") ||
+                  given(object_of(line, "frame"), "dest"))) {
+    throw no_raw("there are neither fields nor am");
+  }
+  Plan made;
+  if (framing == Framing::kRadio) {
+    made = plan_radio(line, am);
+  } else {
+    made.type = reflect::find_carrier(protocol_, "serial");
+    made.values = serial_values(with_am_type(line, am, made.type), object_of(line, "frame"),
+                                fields ? *fields : Value{});
+  }
+  if (!made.type) throw no_raw(std::string(protocol_.id) + " does not travel in these frames");
+  return made;
+}
+
+// A named message knows its AM type.
+Value RecordReader::with_am_type(const Value& line, Value am, const Type* carrier) const {
+  const Type* message = bare_type(line);
+  if (!message || !carrier || given(am, "type")) return am;
+  if (const auto am_type = am_type_on(*carrier, *message)) {
+    am.set("type", Value::of_integer(*am_type));
+  }
+  return am;
+}
+
 void RecordReader::build(const Value& line, const OwnedPacket& around,
                          std::vector<std::uint8_t>& out) const {
-  const Value& frame = object_of(line, "frame");
-  Value am = without_nulls(object_of(line, "am"));
-  const Value* fields = given(line, "fields");
-  const Type* message = bare_type(line);
-  const Type* type = nullptr;
-  Value values;
-  const auto no_raw = [](const std::string& why) {
-    return RecordError("raw", "is missing, and " + why);
-  };
-  bool has_network = true;
-  switch (around.packet.framing) {
-    case Framing::kBare:
-      if (!message || !fields) throw no_raw("there are no fields of a known message");
-      type = message;
-      values = *fields;
-      break;
-    case Framing::kHdlc:
-    case Framing::kSf:
-      if (!fields && am.keys.empty()) {
-        if (around.packet.framing == Framing::kHdlc) return;  // An acknowledgement.
-        throw no_raw("there are neither fields nor am");
-      }
-      type = reflect::find_carrier(protocol_, "serial");
-      break;
-    case Framing::kRadio:
-      const auto fcf = integer_of(frame, "frame", "fcf", 0xffff);
-      if (fcf && (*fcf & kFrameTypeMask) == kFrameTypeAck) {
-        type = reflect::find_carrier(tinyos::tables::kProtocol, "radio_ack");
-        values = Value::of_object();
-        values.set("fcf", Value::of_integer(*fcf));
-        if (const Value* dsn = given(frame, "dsn")) values.set("dsn", *dsn);
-        break;
-      }
-      if (!fields && am.keys.empty()) throw no_raw("there are neither fields nor am");
-      has_network = !frame.find("network") || given(frame, "network");
-      type = reflect::find_carrier(protocol_, has_network ? "radio_i" : "radio_t");
-      break;
+  const Framing framing = around.packet.framing;
+  const bool is_bare = framing == Framing::kBare;
+  // An acknowledgement of the serial line has no packet.
+  if (framing == Framing::kHdlc && !given(line, "fields") &&
+      object_of(line, "am").keys.empty()) {
+    return;
   }
-  if (!type) throw no_raw(std::string(protocol_.id) + " does not travel in these frames");
-  if (!values.is(Value::Kind::kObject)) {
-    if (message && !given(am, "type")) {
-      if (const auto am_type = am_type_on(*type, *message)) {
-        am.set("type", Value::of_integer(*am_type));
-      }
-    }
-    const Value payload = fields ? *fields : Value{};
-    values = around.packet.framing == Framing::kRadio
-                 ? radio_values(am, frame, has_network, payload)
-                 : serial_values(am, frame, payload);
-  }
-  const bool bare = around.packet.framing == Framing::kBare;
+  const Plan made = plan(line, framing);
   try {
-    reflect::encode(*type, values, Bytes(stale_.data(), stale_.size()),
-                    bare ? reflect::Tail::kStale : reflect::Tail::kFault, out);
+    reflect::encode(*made.type, made.values, Bytes(stale_.data(), stale_.size()),
+                    is_bare ? reflect::Tail::kStale : reflect::Tail::kFault, out);
   } catch (const reflect::EncodeError& error) {
-    const std::string path = bare && !error.path().empty() && error.path() != "stale"
+    const std::string path = is_bare && !error.path().empty() && error.path() != "stale"
                                  ? "fields." + error.path()
                                  : path_in_line(error.path());
     throw RecordError(path, error.problem(), error.requirement());

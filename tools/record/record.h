@@ -55,6 +55,14 @@ class RecordReader {
 
  private:
   using Value = reflect::Value;
+  struct Plan {
+    const reflect::Type* type = nullptr;
+    Value values;
+  };
+
+  Plan plan(const Value& line, Framing framing) const;
+  Plan plan_radio(const Value& line, const Value& am) const;
+  Value with_am_type(const Value& line, Value am, const reflect::Type* carrier) const;
   void build(const Value& line, const OwnedPacket& around, std::vector<std::uint8_t>& out) const;
   void compare(const Value& line, const OwnedPacket& out);
   const reflect::Type* bare_type(const Value& line) const;
