@@ -9,10 +9,6 @@ add_library(rubric_options INTERFACE)
 target_include_directories(rubric_options INTERFACE ${PROJECT_SOURCE_DIR})
 target_compile_features(rubric_options INTERFACE cxx_std_20)
 target_compile_options(rubric_options INTERFACE -Wall -Wextra -Wshadow -Wconversion)
-if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
-  # g++ 12 sees overlapping copies in std::string's operator+ (GCC bug 105651).
-  target_compile_options(rubric_options INTERFACE -Wno-restrict)
-endif()
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   # It warns of overlap in its own std::string at -O2 and above (GCC bug 105651).
   target_compile_options(rubric_options INTERFACE -Wno-restrict)

@@ -111,17 +111,7 @@ std::string rule(const Field& f) {
   if (!has_rule(f)) return "";
   const std::string x =
       f.enumeration ? "static_cast<" + raw_type(f) + ">(value)" : std::string("value");
-  std::vector<std::string> wrong;
-  if (!f.valid->one_of.empty()) {
-    for (const std::int64_t good : f.valid->one_of) wrong.push_back(x + " != " + literal(good));
-    return refuse(join(wrong, "&&"));
-  }
-  const bool sint = f.kind == ValueKind::kSint;
-  if (f.valid->min && (sint || *f.valid->min > 0)) {
-    wrong.push_back(x + " < " + literal(*f.valid->min));
-  }
-  if (f.valid->max) wrong.push_back(x + " > " + literal(*f.valid->max));
-  return refuse(join(wrong, "||"));
+  return refuse(join(breaches(f, x), f.valid->one_of.empty() ? "||" : "&&"));
 }
 
 std::string number(const Context& c, std::size_t i) {

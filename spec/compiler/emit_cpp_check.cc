@@ -40,19 +40,9 @@ if (RUBRIC_UNLIKELY(is_error(in_<<id>>))) return moved(in_<<id>>, <<at>>);
 std::string rule(const Field& f, const std::string& pointer, const std::string& at) {
   if (!has_rule(f)) return "";
   const std::string x = load_integer(f, plus(pointer, at));
-  std::vector<std::string> wrong;
   const bool listed = !f.valid->one_of.empty();
-  for (const std::int64_t good : f.valid->one_of) wrong.push_back(x + " != " + literal(good));
-  if (!listed) {
-    const std::int64_t least =
-        f.kind == ValueKind::kSint ? -(std::int64_t{1} << (8 * f.width_bytes - 1)) : 0;
-    const std::int64_t most =
-        least + (std::int64_t{1} << (8 * f.width_bytes)) - 1;
-    if (f.valid->min.value_or(least) > least) wrong.push_back(x + " < " + literal(*f.valid->min));
-    if (f.valid->max.value_or(most) < most) wrong.push_back(x + " > " + literal(*f.valid->max));
-  }
   const std::string fault = listed ? "Fault::kUnexpected" : "Fault::kOutOfRange";
-  return guard(join(wrong, listed ? "&&" : "||"),
+  return guard(join(breaches(f, x), listed ? "&&" : "||"),
                "return error_at(" + fault + ", " + at + ", " + req(f.requirement) + ");");
 }
 

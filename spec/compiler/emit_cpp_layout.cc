@@ -137,14 +137,19 @@ std::vector<Group> groups_of(const Type& type) {
 
 bool is_unbounded(std::uint32_t size) { return size == UINT32_MAX; }
 
-bool has_rule(const Field& f) {
-  if (!f.valid) return false;
-  if (!f.valid->one_of.empty()) return true;
+bool has_rule(const Field& f) { return f.valid && !breaches(f, "").empty(); }
+
+std::vector<std::string> breaches(const Field& f, const std::string& x) {
+  std::vector<std::string> out;
+  for (const std::int64_t good : f.valid->one_of) out.push_back(x + " != " + literal(good));
+  if (!out.empty()) return out;
   const int value_bits = 8 * f.width_bytes;
   const bool sint = f.kind == ValueKind::kSint;
   const std::int64_t least = sint ? -(std::int64_t{1} << (value_bits - 1)) : 0;
   const std::int64_t most = (std::int64_t{1} << (sint ? value_bits - 1 : value_bits)) - 1;
-  return f.valid->min.value_or(least) > least || f.valid->max.value_or(most) < most;
+  if (f.valid->min.value_or(least) > least) out.push_back(x + " < " + literal(*f.valid->min));
+  if (f.valid->max.value_or(most) < most) out.push_back(x + " > " + literal(*f.valid->max));
+  return out;
 }
 
 bool is_plain(const Type& type) {

@@ -77,5 +77,8 @@ bool has_tail(const Type& type);
 bool is_unbounded(std::uint32_t size);
 /// Whether the value has rules: not each value of its width is allowed.
 bool has_rule(const Field& field);
+/// The comparisons of `x` of which one holds (all, if values are listed) when the field's rule is
+/// broken. Bounds that the type itself keeps are left out.
+std::vector<std::string> breaches(const Field& field, const std::string& x);
 
 }  // namespace rubricc::cpp

@@ -32,6 +32,22 @@ types:
         size-eos: true
         doc: From the dispatch byte on.
 
+  sf_packet:
+    doc: |
+      A packet on a serial forwarder connection. The stream begins with two bytes from each side:
+      'U' and a version.
+    doc-ref: TinyOS serial forwarder protocol, version 2
+    -requirement: WIRE-SF-LENGTH
+    seq:
+      - id: length
+        type: u1
+        valid:
+          min: 1
+        doc: Bytes of the packet.
+      - id: packet
+        size: length
+        doc: From the dispatch byte on.
+
   am_header:
     doc: Dispatch byte and serial active-message header, 8 bytes.
     doc-ref: TEP 113, section 3.2; TEP 111

@@ -8,6 +8,7 @@
 #include "codec/generated/tinyos/mac_ack.h"
 #include "codec/generated/tinyos/mac_header.h"
 #include "codec/generated/tinyos/serial_frame.h"
+#include "codec/generated/tinyos/sf_packet.h"
 #include "codec/runtime/message_codec.h"
 
 namespace rubric {
@@ -24,6 +25,15 @@ template <class Visitor>
 void visit_fields(SerialFrameView view, Visitor& visitor) {
   visitor("kind", view.kind());
   if (view.has_seq_num()) visitor("seq_num", view.seq_num());
+  visitor("packet", view.packet());
+}
+template <class Visitor>
+void visit_fields(SfPacket& value, Visitor& visitor) {
+  visitor("packet", value.packet);
+}
+template <class Visitor>
+void visit_fields(SfPacketView view, Visitor& visitor) {
+  visitor("length", view.length());
   visitor("packet", view.packet());
 }
 template <class Visitor>
@@ -74,6 +84,7 @@ void visit_fields(MacAckView view, Visitor& visitor) {
 template <class Visitor>
 void for_each_view(Visitor& visitor) {
   visitor("serial_frame", ViewTag<SerialFrameView>());
+  visitor("sf_packet", ViewTag<SfPacketView>());
   visitor("am_header", ViewTag<AmHeaderView>());
   visitor("mac_header", ViewTag<MacHeaderView>());
   visitor("mac_ack", ViewTag<MacAckView>());
@@ -82,6 +93,7 @@ void for_each_view(Visitor& visitor) {
 /// Every structure of the spec by its name in the spec.
 constexpr MessageCodec kMessages[] = {
   message_codec<SerialFrameView>("serial_frame"),
+  message_codec<SfPacketView>("sf_packet"),
   message_codec<AmHeaderView>("am_header"),
   message_codec<MacHeaderView>("mac_header"),
   message_codec<MacAckView>("mac_ack"),

@@ -78,6 +78,29 @@ constexpr Type kSerialFrame{
     "TEP 113, section 3.1"};
 }  // namespace types
 
+// sf_packet: 2 to 256 bytes.
+namespace of {
+namespace sf_packet {
+constexpr ExprStep kPacketSize[] = {{Op::kLoadU8, 0}};
+constexpr Field kFields[] = {
+    {"length", "\"length\":", 9, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 0,
+     {ValidKind::kRange, 1, 255, nullptr, 0}, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {},
+     ReqId::kWireSfLength, nullptr, "Bytes of the packet."},
+    {"packet", "\"packet\":", 9, Kind::kBytes, 0, false, Repeat::kOnce, Extent::kSize, 1, kAny,
+     -1, nullptr, nullptr, nullptr, nullptr, {kPacketSize, 1}, {}, {}, ReqId::kWireSfLength,
+     nullptr, "From the dispatch byte on."},
+};
+}  // namespace sf_packet
+}  // namespace of
+namespace types {
+constexpr Type kSfPacket{
+    "sf_packet", "sf_packet", of::sf_packet::kFields, 2, nullptr, 0, 2, 256, -1,
+    ReqId::kWireSfLength,
+    "A packet on a serial forwarder connection. The stream begins with two bytes from each "
+    "side: 'U' and a version.",
+    "TinyOS serial forwarder protocol, version 2"};
+}  // namespace types
+
 // am_header: 8 bytes.
 namespace of {
 namespace am_header {
@@ -163,13 +186,14 @@ constexpr Type kMacAck{
 }  // namespace types
 
 constexpr const Type* kTypes[] = {
-    &types::kSerialFrame, &types::kAmHeader, &types::kMacHeader, &types::kMacAck};
+    &types::kSerialFrame, &types::kSfPacket, &types::kAmHeader, &types::kMacHeader,
+    &types::kMacAck};
 constexpr const EnumTable* kEnums[] = {
     &enums::kSerialKind, &enums::kDispatch};
 constexpr Carrier kCarriers[] = {
     {"radio_ack", &types::kMacAck}};
 constexpr Protocol kProtocol{
-    "tinyos", "TinyOS active messages on serial lines, TCP and 802.15.4", kTypes, 4, kEnums, 2,
+    "tinyos", "TinyOS active messages on serial lines, TCP and 802.15.4", kTypes, 5, kEnums, 2,
     nullptr, 0, kCarriers, 1};
 
 }  // namespace tables
