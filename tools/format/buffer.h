@@ -1,6 +1,7 @@
 // A growing buffer of characters with unchecked writes into capacity that was ensured before.
 #pragma once
 
+#include <cassert>
 #include <cstddef>
 #include <cstring>
 #include <memory>
@@ -18,10 +19,14 @@ class Buffer {
   /// Where the next `room` characters may be written.
   char* reserve(std::size_t room) {
     if (capacity_ - size_ < room) grow(room);
+    reserved_ = size_ + room;
     return data_.get() + size_;
   }
   /// `end` is one past the last character that was written into the reserved room.
-  void commit(const char* end) { size_ = static_cast<std::size_t>(end - data_.get()); }
+  void commit(const char* end) {
+    size_ = static_cast<std::size_t>(end - data_.get());
+    assert(size_ <= reserved_);
+  }
 
   void append(std::string_view text) {
     char* at = reserve(text.size());
@@ -56,6 +61,7 @@ class Buffer {
   std::unique_ptr<char[]> data_;
   std::size_t capacity_;
   std::size_t size_ = 0;
+  std::size_t reserved_ = 0;  // Where the room ends that was asked for last.
 };
 
 }  // namespace rubric::format

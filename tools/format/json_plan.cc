@@ -68,7 +68,7 @@ bool Piece::set(std::string_view value) {
 }
 
 JsonPlan::JsonPlan(const reflect::Protocol& protocol, bool units) : units_(units) {
-  for (const Type* type : message_types(protocol)) {
+  for (const Type* type : all_types(protocol)) {
     for (int i = 0; i < type->field_count; ++i) add(type->fields[i]);
     for (int i = 0; i < type->interpretation_count; ++i) add(type->interpretations[i].field);
   }

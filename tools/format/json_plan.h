@@ -2,6 +2,7 @@
 // mostly copying short runs of fixed length.
 #pragma once
 
+#include <cassert>
 #include <cstdint>
 #include <cstring>
 #include <string>
@@ -53,8 +54,10 @@ class JsonPlan {
   /// `units`: a converted value stands beside each field that has a unit.
   JsonPlan(const reflect::Protocol& protocol, bool units);
 
+  /// Of a field of the protocol's types; no other has one.
   const FieldPlan& field(const reflect::Field* field) const {
     const auto slot = (reinterpret_cast<std::uintptr_t>(field) - first_address_) / kStep;
+    assert(slot < slots_.size() && plans_[slots_[slot]].field == field);
     return plans_[slots_[slot]];
   }
   bool units() const { return units_; }

@@ -47,5 +47,11 @@ std::vector<const Type*> message_types(const reflect::Protocol& protocol) {
   for (int i = 0; i < protocol.type_count; ++i) collector.add(protocol.types[i]);
   return collector.types;
 }
+std::vector<const Type*> all_types(const reflect::Protocol& protocol) {
+  Collector collector;
+  for (int i = 0; i < protocol.carrier_count; ++i) collector.add(protocol.carriers[i].type);
+  for (int i = 0; i < protocol.type_count; ++i) collector.add(protocol.types[i]);
+  return collector.types;
+}
 
 }  // namespace rubric::format

@@ -1,0 +1,118 @@
+// Whatever bytes come: every format prints them within the room that it asked for, JSON parses.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "tools/format/csv.h"
+#include "tools/format/filter.h"
+#include "tools/format/jsonl.h"
+#include "tools/format/testing.h"
+#include "tools/format/text.h"
+
+namespace rubric::format {
+namespace {
+
+constexpr int kRounds = 4000;
+
+class Robust : public testing::Test {
+ protected:
+  Robust()
+      : jsonl_(rubicon(), true),
+        selected_(rubicon(), false,
+                  parse_paths("seq_num,value,updates,transducers_bits,payload,error,stale,net_msg",
+                              rubicon())),
+        csv_(rubicon(), {}),
+        text_(rubicon(), [] {
+          TextOptions options;
+          options.hex = options.color = options.units = true;
+          return options;
+        }()),
+        filter_("seq_num>5 || values<1 || transducers & temp || !error && payload==00", rubicon()) {}
+
+  void print_all(const Sample& sample) {
+    const auto line = nlohmann::json::parse(sample.print(jsonl_));
+    EXPECT_EQ(line.size(), 16U);
+    EXPECT_EQ(line["error"].is_null(), !sample.frame.malformed());
+    EXPECT_EQ(line["raw"].get<std::string>().size(), 2 * sample.bytes.size());
+    EXPECT_TRUE(nlohmann::json::accept(sample.print(selected_)));
+    sample.print(csv_);
+    sample.print(text_);
+    filter_.matches(sample.record);
+  }
+
+  std::size_t below(std::size_t bound) { return random_() % bound; }
+  std::uint8_t byte(std::size_t bound = 256) { return static_cast<std::uint8_t>(below(bound)); }
+
+  std::mt19937 random_{1};
+  JsonlFormatter jsonl_;
+  JsonlFormatter selected_;
+  CsvFormatter csv_;
+  TextFormatter text_;
+  Filter filter_;
+};
+
+TEST_F(Robust, mutated_frames) {
+  const std::vector<std::uint8_t> good = from_hex(kUpdates);
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<std::uint8_t> bytes = good;
+    for (std::size_t flips = below(4); flips > 0; --flips) {
+      bytes[below(bytes.size())] = byte();
+    }
+    if (round % 5 == 0) bytes.resize(below(140));
+    print_all(Sample(std::move(bytes), round % 2 ? Framing::kHdlc : Framing::kSf));
+  }
+}
+
+TEST_F(Robust, random_radio_frames) {
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<std::uint8_t> bytes = from_hex("4188 07 2200 0100 0200 3f 1c");
+    bytes.back() = round % 3 ? std::uint8_t{28} : byte();
+    for (std::size_t size = below(116); size > 0; --size) {
+      bytes.push_back(byte(below(3) ? 36 : 256));
+    }
+    print_all(Sample(std::move(bytes), Framing::kRadio));
+  }
+}
+
+TEST_F(Robust, random_messages_of_every_type) {
+  for (int i = 0; i < rubicon().type_count; ++i) {
+    for (int round = 0; round < 100; ++round) {
+      std::vector<std::uint8_t> bytes(below(130));
+      for (std::uint8_t& value : bytes) value = byte(round % 2 ? 30 : 256);
+      print_all(Sample(std::move(bytes), Framing::kBare, rubicon().types[i]->id));
+    }
+  }
+}
+
+TEST_F(Robust, large_messages) {
+  print_all(Sample(std::vector<std::uint8_t>(100'000, 0x3e), Framing::kBare, "synaptic_data"));
+  print_all(Sample(std::vector<std::uint8_t>(100'001, 0xff), Framing::kBare, "synaptic_data"));
+  print_all(Sample(std::vector<std::uint8_t>(70'000, 0x00), Framing::kBare, "net_msg"));
+}
+
+TEST_F(Robust, random_expressions) {
+  constexpr std::string_view kPieces[] = {
+      "message", "==", "updates", "&&", "||", "!", "(", ")", "src.devid", "4", "0x", "&", "|",
+      "temp", "exists", "\"", "'", "1e9", "-1", ".", "!=", "<", "error", "\xff", " ", "not"};
+  int accepted = 0;
+  const Sample sample(kUpdates);
+  for (int round = 0; round < 20'000; ++round) {
+    std::string expression;
+    for (std::size_t pieces = below(10); pieces > 0; --pieces) {
+      expression += kPieces[below(std::size(kPieces))];
+      if (below(2)) expression += ' ';
+    }
+    try {
+      Filter(expression, rubicon()).matches(sample.record);
+      ++accepted;
+    } catch (const FilterError& error) {
+      EXPECT_LE(error.position(), expression.size());
+      error.explain(expression);
+    }
+  }
+  EXPECT_GT(accepted, 100);
+}
+
+}  // namespace
+}  // namespace rubric::format
