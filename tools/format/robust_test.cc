@@ -28,7 +28,8 @@ class Robust : public testing::Test {
           options.hex = options.color = options.units = true;
           return options;
         }()),
-        filter_("seq_num>5 || values<1 || transducers & temp || !error && payload==00", rubicon()) {}
+        filter_("seq_num>5 || values<1 || transducers & temp || !error && payload==00",
+                rubicon()) {}
 
   void print_all(const Sample& sample) {
     const auto line = nlohmann::json::parse(sample.print(jsonl_));
