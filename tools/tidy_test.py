@@ -58,7 +58,7 @@ def breaches(root, path):
             yield f"{path}:{number}: blanks at the end of the line"
     if code and not generated and len(lines) > MAX_LINES:
         yield f"{path}: {len(lines)} lines, at most {MAX_LINES}"
-    if path.suffix == ".h" and "#pragma once" not in lines[:12]:
+    if path.suffix == ".h" and "#pragma once" not in lines:
         yield f"{path}: no #pragma once"
 
 

@@ -173,7 +173,8 @@ RUBRIC_WIDE inline __m128i multiply_frame_wide(Pointer p, std::size_t size) {
 }
 
 // Flattened, so that the loop above is compiled for the vectors in it.
-RUBRIC_VECTOR __attribute__((flatten)) Pointer scan_vector(Pointer begin, Pointer end, ScanBatch& batch) {
+RUBRIC_VECTOR __attribute__((flatten)) Pointer scan_vector(Pointer begin, Pointer end,
+                                                            ScanBatch& batch) {
   const Pointer stop = find_frames(begin, end, batch, find_near_vector, unescape_near);
   __m128i sums[kScanBatch];
   for (std::size_t i = 0; i < batch.count; ++i) {
@@ -199,7 +200,8 @@ RUBRIC_WIDE inline __m512i reduce_four(__m512i sum) {
                           _mm512_clmulepi64_epi128(quotient, constant(kPolynomial), 0x00));
 }
 
-RUBRIC_WIDE __attribute__((flatten)) Pointer scan_wide(Pointer begin, Pointer end, ScanBatch& batch) {
+RUBRIC_WIDE __attribute__((flatten)) Pointer scan_wide(Pointer begin, Pointer end,
+                                                        ScanBatch& batch) {
   const Pointer stop = find_frames(begin, end, batch, find_near_wide, unescape_wide);
   alignas(64) std::uint64_t sums[kScanBatch][2];
   const std::size_t count = batch.count;

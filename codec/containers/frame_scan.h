@@ -1,5 +1,5 @@
-// The innermost loop of the deframer: frames are found, unescaped and summed many at a time, finding
-// and summing each in a loop of its own, so that neither waits for the other's results.
+// The innermost loop of the deframer: frames are found, unescaped and summed many at a time,
+// finding and summing each in a loop of its own, so that neither waits for the other's results.
 #pragma once
 
 #include <cstddef>

@@ -230,6 +230,8 @@ class Decoder {
   bool structure(const Type& type, const Field* field, std::uint32_t base, std::uint32_t limit) {
     const std::size_t index = count_;
     push(NodeKind::kStruct, field, base, 0).type = &type;
+    // A structure never takes more than its greatest size, whatever is left around it.
+    if (limit - base > type.max_size) limit = base + type.max_size;
     std::uint32_t at = base;
     bool good = true;
     const Field* const fields_end = type.fields + type.field_count;

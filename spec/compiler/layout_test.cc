@@ -95,7 +95,12 @@ TEST(Values, RangesFollowValid) {
   const Loaded loaded(kMessage);
   EXPECT_EQ(loaded.type("pair").fields[0]->range.min, -4);
   EXPECT_EQ(loaded.type("pair").fields[0]->range.max, 127);
-  const Field& dispatch = *loaded.model.specs.front()->types[1]->fields[0];
+  const Field* found = nullptr;
+  for (const auto& type : loaded.model.specs.front()->types) {
+    if (type->id == "am_header") found = type->fields[0].get();
+  }
+  ASSERT_NE(found, nullptr);
+  const Field& dispatch = *found;
   EXPECT_EQ(dispatch.id, "dispatch");
   EXPECT_EQ(dispatch.range.max, 0);
 }
