@@ -187,6 +187,9 @@ class NumberArrayView {
     return Number::load(bytes_.data() + i * Number::kSizeBytes);
   }
   constexpr Bytes bytes() const { return bytes_; }
+  /// The same bytes.
+  friend bool operator==(NumberArrayView a, NumberArrayView b) { return equal(a.bytes_, b.bytes_); }
+  friend bool operator!=(NumberArrayView a, NumberArrayView b) { return !(a == b); }
 
   /// Copies the first `n` elements, or all where there are fewer; returns how many.
   size_t copy_to(Value* out, size_t n) const {
@@ -237,6 +240,9 @@ class StructArrayView {
     return detail::Access::view<View>(bytes_.sub(i * View::kMaxSizeBytes, View::kMaxSizeBytes));
   }
   constexpr Bytes bytes() const { return bytes_; }
+  /// The same bytes.
+  friend bool operator==(StructArrayView a, StructArrayView b) { return equal(a.bytes_, b.bytes_); }
+  friend bool operator!=(StructArrayView a, StructArrayView b) { return !(a == b); }
 
   /// Copies the first `n` elements, or all where there are fewer; returns how many.
   size_t copy_to(Value* out, size_t n) const {

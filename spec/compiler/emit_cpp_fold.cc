@@ -22,13 +22,13 @@ std::string mark_of(const std::string& line) {
 
 // The last place within the columns where a line may end: the best kind of place first.
 std::size_t break_of(const std::string& line, std::size_t indent) {
-  for (const char* mark : {" && ", " || ", " ? ", ", ", "(", " = "}) {
-    const std::string_view text(mark);
-    std::size_t at = line.rfind(text, kColumns - text.size());
-    if (at == line.npos || at < indent + 8) continue;
-    if (text == "(" && (line[at + 1] == ')' || line.find("if (") + 3 == at)) continue;
-    const bool before = text == " ? ";
-    return before ? at + 1 : text == "(" ? at + 1 : at + text.size();
+  for (const std::string_view text : {" && ", " || ", " ? ", ", ", " + ", "(", " = "}) {
+    for (std::size_t at = line.rfind(text, kColumns - text.size());
+         at != line.npos && at >= indent + 8; at = line.rfind(text, at - 1)) {
+      if (text == "(" && (line[at + 1] == ')' || line.find("if (") + 3 == at)) continue;
+      const bool keep_left = text != " ? " && text != " + ";
+      return keep_left ? at + text.size() : at + 1;
+    }
   }
   return line.npos;
 }
