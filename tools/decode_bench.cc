@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "codec/containers/reader.h"
+#include "codec/generated/rubicon/rubicon.h"
 #include "codec/reflect/frame.h"
 #include "codec/reflect/registry.h"
 #include "tools/format/filter.h"
@@ -107,6 +108,23 @@ void deframe(benchmark::State& state) {
   benchmark::DoNotOptimize(sum);
 }
 
+// Down to what the body of the message is, by the generated views.
+bool valid_to_the_body(Bytes bytes) {
+  const auto packet = rubicon::RubiconView::parse(bytes);
+  if (!packet) return false;
+  if (packet->payload_kind() != rubicon::RubiconView::PayloadKind::kNetMsg) return true;
+  const rubicon::NetMsgView message = packet->payload_as_net_msg();
+  if (message.payload_kind() != rubicon::NetMsgView::PayloadKind::kAppMsg) return true;
+  using Body = rubicon::AppMsgView::BodyKind;
+  return message.payload_as_app_msg().body_kind() != Body::kOpaque;
+}
+
+void deframe_validate(benchmark::State& state) {
+  std::uint64_t valid = 0;
+  run(state, [&](const Packet& packet) { valid += valid_to_the_body(packet.bytes); });
+  benchmark::DoNotOptimize(valid);
+}
+
 void deframe_decode(benchmark::State& state) {
   const reflect::FrameDecoder decoder(*reflect::find_protocol("rubicon"));
   reflect::Frame frame;
@@ -166,6 +184,7 @@ void filter(benchmark::State& state) {
 }
 
 BENCHMARK(deframe);
+BENCHMARK(deframe_validate);
 BENCHMARK(deframe_decode);
 BENCHMARK(jsonl);
 BENCHMARK(text);
