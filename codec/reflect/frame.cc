@@ -15,7 +15,6 @@ constexpr std::uint16_t kShapeShortAddresses = 0x8841;
 constexpr std::size_t kMacHeaderBytes = 9;
 constexpr std::size_t kAmHeaderBytes = 8;
 constexpr std::uint8_t kNalpNetwork = 0x3f;
-constexpr std::int32_t kKindAck = 67;
 constexpr std::int32_t kKindPacketAck = 68;
 constexpr std::int32_t kKindPacketNoack = 69;
 

@@ -46,10 +46,6 @@ const char kCheckedSetter[] = R"(RUBRIC_MUST_USE bool set_<<id>>(<<type>> value)
   <<store>>
   return true;
 })";
-const char kNestedSetter[] = R"(<<class>>Builder <<id>>() {
-  return detail::Access::builder<<builder_in_angles>>(<<range>>);
-}
-<<set>>)";
 const char kPlainSet[] = R"(void set_<<id>>(const <<class>>& value) {
   <<class>>Layout::store(value, <<at>>);
 })";
@@ -264,7 +260,7 @@ std::string setter(const Context& c, std::size_t i) {
 std::string emit_builder(const Layout& layout, const Spec& spec) {
   const Type& type = *layout.type;
   const std::string name = pascal(type.id);
-  const Context context{layout, spec, builder_sizes(spec)};
+  const Context context{layout, spec, builder_sizes()};
   std::string setters;
   for (std::size_t i = 0; i < layout.fields.size(); ++i) {
     setters += field_doc(layout, i) + setter(context, i) + "\n";

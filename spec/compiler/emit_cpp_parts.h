@@ -27,7 +27,7 @@ std::string emit_mask(const Type& type);
 std::string emit_all(const Spec& spec);
 
 /// The bytes of a field of a builder.
-SizeText builder_sizes(const Spec& spec);
+SizeText builder_sizes();
 
 /// `range` cut to what the type takes at most, where `most` bytes of it may be more.
 std::string limited(const std::string& range, const Type& type, const Spec& spec,

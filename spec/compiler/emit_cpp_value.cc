@@ -87,8 +87,8 @@ Leaf value_leaf(const Layout& layout) {
   };
 }
 
-SizeText value_sizes(const Layout& layout, const Spec& spec) {
-  return [&layout, &spec](const FieldLayout& l) {
+SizeText value_sizes(const Spec& spec) {
+  return [&spec](const FieldLayout& l) {
     const Field& f = *l.field;
     std::string size = std::to_string(f.width_bytes);
     if (l.shape == Shape::kNested) {
@@ -156,7 +156,7 @@ std::string length_check(const Layout& layout, std::size_t i, const Spec& spec) 
   const FieldLayout& l = layout.fields[i];
   const Field& f = *l.field;
   if (l.derived_from) return derived_check(l);
-  const std::string offset = offset_of(layout, i, value_sizes(layout, spec));
+  const std::string offset = offset_of(layout, i, value_sizes(spec));
   const std::string have = length_text(f);
   std::string out;
   if (l.shape == Shape::kNested) {
@@ -214,7 +214,7 @@ std::string length_checks(const Layout& layout, const Spec& spec) {
 std::string store_field(const Layout& layout, std::size_t i, const Spec& spec) {
   const FieldLayout& l = layout.fields[i];
   const Field& f = *l.field;
-  const std::string at = plus("p", offset_of(layout, i, value_sizes(layout, spec)));
+  const std::string at = plus("p", offset_of(layout, i, value_sizes(spec)));
   const std::string value = value_of(f);
   if (l.derived_from) {
     return store(f, at, "static_cast<" + raw_type(f) + ">(" + length_text(*l.derived_from) + ")") +
@@ -290,7 +290,7 @@ std::string emit_value(const Layout& layout, const Spec& spec) {
     }
     same.push_back("detail::same(a." + f.id + ", b." + f.id + ")");
   }
-  const std::string size = total_of(layout, value_sizes(layout, spec));
+  const std::string size = total_of(layout, value_sizes(spec));
   const bool uses_value = size.find("value") != std::string::npos;
   std::string check;
   if (has_lengths(type)) {

@@ -95,8 +95,8 @@ Leaf from_getters() {
   };
 }
 
-SizeText sizes_of(const Spec& spec, const std::string& bytes, const Leaf& leaf) {
-  return [&spec, bytes, leaf](const FieldLayout& l) {
+SizeText sizes_of(const std::string& bytes, const Leaf& leaf) {
+  return [bytes, leaf](const FieldLayout& l) {
     const Field& f = *l.field;
     std::string size = std::to_string(f.width_bytes);
     if (l.shape == Shape::kNested) {
@@ -118,9 +118,9 @@ SizeText sizes_of(const Spec& spec, const std::string& bytes, const Leaf& leaf) 
 }
 
 // An expression for the field's bytes within the view.
-std::string range_of(const Layout& layout, std::size_t i, const Spec& spec) {
+std::string range_of(const Layout& layout, std::size_t i) {
   const FieldLayout& l = layout.fields[i];
-  const SizeText sizes = sizes_of(spec, "bytes_", from_getters());
+  const SizeText sizes = sizes_of("bytes_", from_getters());
   const std::string at = offset_of(layout, i, sizes);
   const bool to_end = l.field->repeat != RepeatKind::kCount &&
                       l.field->extent != ExtentKind::kSize &&
@@ -144,13 +144,13 @@ std::string type_of(const FieldLayout& l, const Spec& spec) {
 std::string getter(const Layout& layout, std::size_t i, const Spec& spec) {
   const FieldLayout& l = layout.fields[i];
   const Field& f = *l.field;
-  const SizeText sizes = sizes_of(spec, "bytes_", from_getters());
+  const SizeText sizes = sizes_of("bytes_", from_getters());
   const std::string type = type_of(l, spec);
   std::string value;
   if (l.shape == Shape::kNumber) {
     value = load(f, spec, plus("bytes_.data()", offset_of(layout, i, sizes)));
   } else {
-    value = range_of(layout, i, spec);
+    value = range_of(layout, i);
     if (l.shape == Shape::kNested) value = limited(value, *f.type, spec, most_of(layout, f));
     if (type != "Bytes") value = "detail::Access::view<" + type + ">(" + value + ")";
   }
@@ -279,8 +279,8 @@ std::uint32_t most_of(const Layout& layout, const Field& f) {
   return layout.type->max_size - static_cast<std::uint32_t>(f.fixed_offset);
 }
 
-SizeText builder_sizes(const Spec& spec) {
-  return sizes_of(spec, "out_", loads_from({"out_.data()", "out_.size()", INT32_MAX}));
+SizeText builder_sizes() {
+  return sizes_of("out_", loads_from({"out_.data()", "out_.size()", INT32_MAX}));
 }
 
 std::string emit_group(const Layout& layout, const Group& group, const Spec& spec) {
@@ -337,7 +337,7 @@ std::string emit_view(const Layout& layout, const Spec& spec) {
     check = check.substr(split + 2);
   }
   const bool all = layout.has_tail;
-  const std::string size = total_of(layout, sizes_of(spec, "bytes_", from_getters()));
+  const std::string size = total_of(layout, sizes_of("bytes_", from_getters()));
   const bool exact = all && !layout.clamps;
   return fill(
       kView,
