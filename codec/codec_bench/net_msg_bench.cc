@@ -103,7 +103,7 @@ bool view_read(Bytes bytes) {
   switch (app.body_kind()) {
     case AppMsgView::BodyKind::kUpdates: {
       const UpdatesView u = app.body_as_updates();
-      take(u.msg_type());
+      take(u.type());
       take(u.output_size());
       for (const TransducerUpdateView update : u.updates()) {
         take(update.transducer().raw());
@@ -113,7 +113,7 @@ bool view_read(Bytes bytes) {
     }
     case AppMsgView::BodyKind::kReadUpdates: {
       const ReadUpdatesView r = app.body_as_read_updates();
-      take(r.msg_type());
+      take(r.type());
       take(r.sampling_rate());
       take(r.transducers().raw());
       return true;
@@ -205,7 +205,7 @@ bool build(const Input& in, MutableBytes out) {
   const Result<UpdatesBuilder> updates_made = UpdatesBuilder::create(app.payload_room());
   if (!updates_made) return false;
   UpdatesBuilder updates = *updates_made;
-  updates.set_msg_type(AmType::kUpdates);
+  updates.set_type(AmType::kUpdates);
   if (!updates.set_output_size(5)) return false;
   for (std::size_t i = 0; i < 5; ++i) {
     updates.updates(i).set_transducer(TransducerMask(static_cast<std::uint16_t>(1 << i)));

@@ -21,7 +21,7 @@ TEST(Builder, NestsFromTheOutsideIn) {
   app.set_trans_id(Component::kConnless);
   app.set_app_id(Component::kControlLayer);
   UpdatesBuilder updates = *UpdatesBuilder::create(app.payload_room());
-  updates.set_msg_type(AmType::kUpdates);
+  updates.set_type(AmType::kUpdates);
   ASSERT_TRUE(updates.set_output_size(2));
   updates.updates(0).set_transducer(TransducerMask::kLight);
   updates.updates(0).set_value(1000);

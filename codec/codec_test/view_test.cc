@@ -217,7 +217,7 @@ TEST(Write, LengthsOfOtherFieldsMustAgree) {
 
 TEST(Write, ArraysAreWrittenAsFarAsTheyCount) {
   LearningOutput output;
-  output.msg_type = AmType::kLearningOutput;
+  output.type = AmType::kLearningOutput;
   ASSERT_TRUE(output.output.push(1.0F));
   ASSERT_TRUE(output.output.push(-2.0F));
   std::uint8_t out[98];

@@ -67,7 +67,7 @@ TEST(FaultText, says_what_was_expected) {
   ASSERT_EQ(decoded.note_count(), 1U);
   EXPECT_EQ(note_name(decoded.notes()[0].kind), "unexpected_value");
   EXPECT_EQ(note_text(decoded.notes()[0]),
-            "msg_type is 34 (demo_data), expected is 35 (updates)");
+            "type is 34 (demo_data), expected is 35 (updates)");
 }
 
 TEST(Registry, has_protocols_by_name) {

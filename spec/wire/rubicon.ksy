@@ -307,7 +307,7 @@ types:
     -size: 4
     -requirement: WIRE-RUBICON-ACK
     seq:
-      - id: msg_type
+      - id: type
         type: u1
         enum: am_type
         doc: Kind of the body.
@@ -630,7 +630,7 @@ types:
     -size: 98
     -requirement: WIRE-UPDATES
     seq:
-      - id: msg_type
+      - id: type
         type: u1
         enum: am_type
         -expect: am_type::updates
@@ -653,7 +653,7 @@ types:
     -size: 5
     -requirement: WIRE-READ-UPDATES
     seq:
-      - id: msg_type
+      - id: type
         type: u1
         enum: am_type
         -expect: am_type::read_updates
@@ -847,7 +847,7 @@ types:
     -size: 4
     -requirement: WIRE-LEARNING-NOTIFICATION
     seq:
-      - id: msg_type
+      - id: type
         type: u1
         enum: am_type
         -expect: am_type::learning_notification
@@ -866,7 +866,7 @@ types:
     -size: 96
     -requirement: WIRE-LEARNING-MODULE-DOWN
     seq:
-      - id: msg_type
+      - id: type
         type: u1
         enum: am_type
         -expect: am_type::learning_module_down
@@ -892,7 +892,7 @@ types:
     -size: 98
     -requirement: WIRE-LEARNING-OUTPUT
     seq:
-      - id: msg_type
+      - id: type
         type: u1
         enum: am_type
         -expect: am_type::learning_output

@@ -62,7 +62,7 @@ TEST(Jsonl, shows_a_serial_frame) {
       "reliable": 0, "seq_num": 45267, "nbytes": 18,
       "payload": {
         "trans_id": 3, "trans_id_name": "connless", "app_id": 10, "app_id_name": "control_layer",
-        "body": {"msg_type": 35, "msg_type_name": "updates", "output_size": 3, "updates": [
+        "body": {"type": 35, "type_name": "updates", "output_size": 3, "updates": [
           {"transducer": 1, "transducer_bits": ["light"], "value": 302},
           {"transducer": 2, "transducer_bits": ["temp"], "value": 6402},
           {"transducer": 64, "transducer_bits": ["humid"], "value": 1202}]}}},

@@ -28,7 +28,7 @@ TEST(Text, is_a_line_a_frame) {
   EXPECT_EQ(print(sample),
             "     6    0.526298 serial:1 -> hdlc     0>bcast net_msg/app_msg/updates "
             "dest=11:null src=11:2 reliable=0 seq_num=45267 nbytes=18 | trans_id=connless "
-            "app_id=control_layer | msg_type=updates output_size=3 "
+            "app_id=control_layer | type=updates output_size=3 "
             "updates=[light:302 temp:6402 humid:1202] +2 stale\n");
 }
 

@@ -57,7 +57,7 @@ TEST(TypeText, Fields) {
   EXPECT_EQ(text("net_msg", "dest"), "r_addr | 4 | ");
   EXPECT_EQ(text("net_msg", "payload"), "by src.devid | nbytes | ");
   EXPECT_EQ(text("updates", "updates"), "transducer_update[output_size] | 4 * output_size | ");
-  EXPECT_EQ(text("updates", "msg_type"), "u8 | 1 | expected 35 (updates)");
+  EXPECT_EQ(text("updates", "type"), "u8 | 1 | expected 35 (updates)");
   EXPECT_EQ(text("syn_create_cmd", "src_neurons"), "u16[10] | 20 | ");
   EXPECT_EQ(text("syn_create_cmd", "params"), "s8 | 1 | ");
   EXPECT_EQ(text("synaptic_data", "values"), "f32le[...] | rest | ");

@@ -151,13 +151,13 @@ void visit_fields(AppMsgFromPcView view, Visitor& visitor) {
 }
 template <class Visitor>
 void visit_fields(RubiconAck& value, Visitor& visitor) {
-  visitor("msg_type", value.msg_type);
+  visitor("type", value.type);
   visitor("seq_num", value.seq_num);
   visitor("ack", value.ack);
 }
 template <class Visitor>
 void visit_fields(RubiconAckView view, Visitor& visitor) {
-  visitor("msg_type", view.msg_type());
+  visitor("type", view.type());
   visitor("seq_num", view.seq_num());
   visitor("ack", view.ack());
 }
@@ -363,24 +363,24 @@ void visit_fields(TransducerUpdateView view, Visitor& visitor) {
 }
 template <class Visitor>
 void visit_fields(Updates& value, Visitor& visitor) {
-  visitor("msg_type", value.msg_type);
+  visitor("type", value.type);
   visitor("updates", value.updates);
 }
 template <class Visitor>
 void visit_fields(UpdatesView view, Visitor& visitor) {
-  visitor("msg_type", view.msg_type());
+  visitor("type", view.type());
   visitor("output_size", view.output_size());
   visitor("updates", view.updates());
 }
 template <class Visitor>
 void visit_fields(ReadUpdates& value, Visitor& visitor) {
-  visitor("msg_type", value.msg_type);
+  visitor("type", value.type);
   visitor("sampling_rate", value.sampling_rate);
   visitor("transducers", value.transducers);
 }
 template <class Visitor>
 void visit_fields(ReadUpdatesView view, Visitor& visitor) {
-  visitor("msg_type", view.msg_type());
+  visitor("type", view.type());
   visitor("sampling_rate", view.sampling_rate());
   visitor("transducers", view.transducers());
 }
@@ -488,37 +488,37 @@ void visit_fields(LearningModuleFloatCmdView view, Visitor& visitor) {
 }
 template <class Visitor>
 void visit_fields(LearningNotification& value, Visitor& visitor) {
-  visitor("msg_type", value.msg_type);
+  visitor("type", value.type);
   visitor("seq_num", value.seq_num);
   visitor("ack", value.ack);
 }
 template <class Visitor>
 void visit_fields(LearningNotificationView view, Visitor& visitor) {
-  visitor("msg_type", view.msg_type());
+  visitor("type", view.type());
   visitor("seq_num", view.seq_num());
   visitor("ack", view.ack());
 }
 template <class Visitor>
 void visit_fields(LearningModuleDown& value, Visitor& visitor) {
-  visitor("msg_type", value.msg_type);
+  visitor("type", value.type);
   visitor("net_id", value.net_id);
   visitor("weights", value.weights);
 }
 template <class Visitor>
 void visit_fields(LearningModuleDownView view, Visitor& visitor) {
-  visitor("msg_type", view.msg_type());
+  visitor("type", view.type());
   visitor("net_id", view.net_id());
   visitor("matrix_size", view.matrix_size());
   visitor("weights", view.weights());
 }
 template <class Visitor>
 void visit_fields(LearningOutput& value, Visitor& visitor) {
-  visitor("msg_type", value.msg_type);
+  visitor("type", value.type);
   visitor("output", value.output);
 }
 template <class Visitor>
 void visit_fields(LearningOutputView view, Visitor& visitor) {
-  visitor("msg_type", view.msg_type());
+  visitor("type", view.type());
   visitor("output_size", view.output_size());
   visitor("output", view.output());
 }

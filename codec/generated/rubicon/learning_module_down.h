@@ -4,7 +4,7 @@
 // learning_module_down. Weights of a learning module, to the PC. (release 1.0)
 //
 //   byte  field               type                  rule
-//   0     msg_type            AmType                WIRE-LEARNING-MODULE-DOWN
+//   0     type                AmType                WIRE-LEARNING-MODULE-DOWN
 //   1     net_id              uint16_t              WIRE-LEARNING-MODULE-DOWN
 //   3     matrix_size         uint8_t               WIRE-LEARNING-MODULE-DOWN
 //   4     weights             float[]               WIRE-LEARNING-MODULE-DOWN
@@ -19,14 +19,14 @@ namespace rubicon {
 /// learning_module_down as a value. Its bytes are borrowed. matrix_size is the size of weights.
 struct LearningModuleDown {
   /// Byte 0. Kind of the body.
-  AmType msg_type = AmType();
+  AmType type = AmType();
   /// Bytes 1-2. The learning module.
   uint16_t net_id = 0;
   /// From byte 4. Weights.
   Array<float, 23> weights;
 };
 inline bool operator==(const LearningModuleDown& a, const LearningModuleDown& b) {
-  return detail::same(a.msg_type, b.msg_type) &&
+  return detail::same(a.type, b.type) &&
     detail::same(a.net_id, b.net_id) &&
     detail::same(a.weights, b.weights);
 }
@@ -44,7 +44,7 @@ struct LearningModuleDownLayout {
     return no_error();
   }
   static void store(const LearningModuleDown& value, uint8_t* p) {
-    store_u8(p, static_cast<uint8_t>(value.msg_type));
+    store_u8(p, static_cast<uint8_t>(value.type));
     store_be16(p + 1, value.net_id);
     store_u8(p + 3, static_cast<uint8_t>(value.weights.size()));
     detail::store_numbers<F32Le>(p + 4, value.weights.items, value.weights.size());
@@ -83,7 +83,7 @@ class LearningModuleDownView {
   }
 
   /// Byte 0. Kind of the body.
-  constexpr AmType msg_type() const { return static_cast<AmType>(load_u8(bytes_.data())); }
+  constexpr AmType type() const { return static_cast<AmType>(load_u8(bytes_.data())); }
   /// Bytes 1-2. The learning module.
   constexpr uint16_t net_id() const { return load_be16(bytes_.data() + 1); }
   /// Byte 3. Number of weights. From 0 to 23.
@@ -102,7 +102,7 @@ class LearningModuleDownView {
 
   LearningModuleDown to_value() const {
     LearningModuleDown value_;
-    value_.msg_type = msg_type();
+    value_.type = type();
     value_.net_id = net_id();
     value_.weights.count = static_cast<uint16_t>(
         weights().copy_to(value_.weights.items, 23));
@@ -152,7 +152,7 @@ class LearningModuleDownBuilder {
   }
 
   /// Byte 0. Kind of the body.
-  void set_msg_type(AmType value) { store_u8(out_.data(), static_cast<uint8_t>(value)); }
+  void set_type(AmType value) { store_u8(out_.data(), static_cast<uint8_t>(value)); }
   /// Bytes 1-2. The learning module.
   void set_net_id(uint16_t value) { store_be16(out_.data() + 1, value); }
   /// Byte 3. Number of weights. From 0 to 23.

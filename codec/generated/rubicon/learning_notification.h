@@ -4,7 +4,7 @@
 // learning_notification. A learning module answers a command. (release 1.0)
 //
 //   byte  field               type                  rule
-//   0     msg_type            AmType                WIRE-LEARNING-NOTIFICATION
+//   0     type                AmType                WIRE-LEARNING-NOTIFICATION
 //   1     seq_num             uint16_t              WIRE-LEARNING-NOTIFICATION
 //   3     ack                 uint8_t               WIRE-LEARNING-NOTIFICATION
 #pragma once
@@ -18,14 +18,14 @@ namespace rubicon {
 /// learning_notification as a value. Its bytes are borrowed.
 struct LearningNotification {
   /// Byte 0. Kind of the body.
-  AmType msg_type = AmType();
+  AmType type = AmType();
   /// Bytes 1-2. Of the command.
   uint16_t seq_num = 0;
   /// Byte 3. 0 is success.
   uint8_t ack = 0;
 };
 inline bool operator==(const LearningNotification& a, const LearningNotification& b) {
-  return detail::same(a.msg_type, b.msg_type) &&
+  return detail::same(a.type, b.type) &&
     detail::same(a.seq_num, b.seq_num) &&
     detail::same(a.ack, b.ack);
 }
@@ -37,7 +37,7 @@ inline bool operator!=(const LearningNotification& a, const LearningNotification
 struct LearningNotificationLayout {
   static size_t size_bytes(const LearningNotification&) { return 4; }
   static void store(const LearningNotification& value, uint8_t* p) {
-    store_u8(p, static_cast<uint8_t>(value.msg_type));
+    store_u8(p, static_cast<uint8_t>(value.type));
     store_be16(p + 1, value.seq_num);
     store_u8(p + 3, value.ack);
   }
@@ -69,7 +69,7 @@ class LearningNotificationView {
   }
 
   /// Byte 0. Kind of the body.
-  constexpr AmType msg_type() const { return static_cast<AmType>(load_u8(bytes_.data())); }
+  constexpr AmType type() const { return static_cast<AmType>(load_u8(bytes_.data())); }
   /// Bytes 1-2. Of the command.
   constexpr uint16_t seq_num() const { return load_be16(bytes_.data() + 1); }
   /// Byte 3. 0 is success.
@@ -83,7 +83,7 @@ class LearningNotificationView {
 
   LearningNotification to_value() const {
     LearningNotification value_;
-    value_.msg_type = msg_type();
+    value_.type = type();
     value_.seq_num = seq_num();
     value_.ack = ack();
     return value_;
@@ -132,7 +132,7 @@ class LearningNotificationBuilder {
   }
 
   /// Byte 0. Kind of the body.
-  void set_msg_type(AmType value) { store_u8(out_.data(), static_cast<uint8_t>(value)); }
+  void set_type(AmType value) { store_u8(out_.data(), static_cast<uint8_t>(value)); }
   /// Bytes 1-2. Of the command.
   void set_seq_num(uint16_t value) { store_be16(out_.data() + 1, value); }
   /// Byte 3. 0 is success.

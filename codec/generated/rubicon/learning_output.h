@@ -4,7 +4,7 @@
 // learning_output. Output of a learning module, to the PC. (release 1.0)
 //
 //   byte  field               type                  rule
-//   0     msg_type            AmType                WIRE-LEARNING-OUTPUT
+//   0     type                AmType                WIRE-LEARNING-OUTPUT
 //   1     output_size         uint8_t               WIRE-LEARNING-OUTPUT
 //   2     output              float[]               WIRE-LEARNING-OUTPUT
 #pragma once
@@ -18,12 +18,12 @@ namespace rubicon {
 /// learning_output as a value. output_size is the size of output.
 struct LearningOutput {
   /// Byte 0. Kind of the body.
-  AmType msg_type = AmType();
+  AmType type = AmType();
   /// From byte 2. Values.
   Array<float, 24> output;
 };
 inline bool operator==(const LearningOutput& a, const LearningOutput& b) {
-  return detail::same(a.msg_type, b.msg_type) &&
+  return detail::same(a.type, b.type) &&
     detail::same(a.output, b.output);
 }
 inline bool operator!=(const LearningOutput& a, const LearningOutput& b) { return !(a == b); }
@@ -38,7 +38,7 @@ struct LearningOutputLayout {
     return no_error();
   }
   static void store(const LearningOutput& value, uint8_t* p) {
-    store_u8(p, static_cast<uint8_t>(value.msg_type));
+    store_u8(p, static_cast<uint8_t>(value.type));
     store_u8(p + 1, static_cast<uint8_t>(value.output.size()));
     detail::store_numbers<F32Le>(p + 2, value.output.items, value.output.size());
   }
@@ -75,7 +75,7 @@ class LearningOutputView {
   }
 
   /// Byte 0. Kind of the body.
-  constexpr AmType msg_type() const { return static_cast<AmType>(load_u8(bytes_.data())); }
+  constexpr AmType type() const { return static_cast<AmType>(load_u8(bytes_.data())); }
   /// Byte 1. Number of values. From 0 to 24.
   constexpr uint8_t output_size() const { return load_u8(bytes_.data() + 1); }
   /// From byte 2. Values.
@@ -92,7 +92,7 @@ class LearningOutputView {
 
   LearningOutput to_value() const {
     LearningOutput value_;
-    value_.msg_type = msg_type();
+    value_.type = type();
     value_.output.count = static_cast<uint16_t>(
         output().copy_to(value_.output.items, 24));
     return value_;
@@ -141,7 +141,7 @@ class LearningOutputBuilder {
   }
 
   /// Byte 0. Kind of the body.
-  void set_msg_type(AmType value) { store_u8(out_.data(), static_cast<uint8_t>(value)); }
+  void set_type(AmType value) { store_u8(out_.data(), static_cast<uint8_t>(value)); }
   /// Byte 1. Number of values. From 0 to 24.
   RUBRIC_MUST_USE bool set_output_size(uint8_t value) {
     if (value > 24) return false;

@@ -4,7 +4,7 @@
 // read_updates. Asks a mote for periodic updates. (release 1.0)
 //
 //   byte  field               type                  rule
-//   0     msg_type            AmType                WIRE-READ-UPDATES
+//   0     type                AmType                WIRE-READ-UPDATES
 //   1     sampling_rate       uint16_t              WIRE-READ-UPDATES
 //   3     transducers         TransducerMask        WIRE-READ-UPDATES
 #pragma once
@@ -19,14 +19,14 @@ namespace rubicon {
 /// read_updates as a value. Its bytes are borrowed.
 struct ReadUpdates {
   /// Byte 0. Kind of the body.
-  AmType msg_type = AmType();
+  AmType type = AmType();
   /// Bytes 1-2. Period of the readings. Unit: ms.
   uint16_t sampling_rate = 0;
   /// Bytes 3-4. What to read.
   TransducerMask transducers = TransducerMask();
 };
 inline bool operator==(const ReadUpdates& a, const ReadUpdates& b) {
-  return detail::same(a.msg_type, b.msg_type) &&
+  return detail::same(a.type, b.type) &&
     detail::same(a.sampling_rate, b.sampling_rate) &&
     detail::same(a.transducers, b.transducers);
 }
@@ -36,7 +36,7 @@ inline bool operator!=(const ReadUpdates& a, const ReadUpdates& b) { return !(a 
 struct ReadUpdatesLayout {
   static size_t size_bytes(const ReadUpdates&) { return 5; }
   static void store(const ReadUpdates& value, uint8_t* p) {
-    store_u8(p, static_cast<uint8_t>(value.msg_type));
+    store_u8(p, static_cast<uint8_t>(value.type));
     store_be16(p + 1, value.sampling_rate);
     store_be16(p + 3, value.transducers.raw());
   }
@@ -65,7 +65,7 @@ class ReadUpdatesView {
   }
 
   /// Byte 0. Kind of the body.
-  constexpr AmType msg_type() const { return static_cast<AmType>(load_u8(bytes_.data())); }
+  constexpr AmType type() const { return static_cast<AmType>(load_u8(bytes_.data())); }
   /// Bytes 1-2. Period of the readings. Unit: ms.
   constexpr uint16_t sampling_rate() const { return load_be16(bytes_.data() + 1); }
   /// Bytes 3-4. What to read.
@@ -81,7 +81,7 @@ class ReadUpdatesView {
 
   ReadUpdates to_value() const {
     ReadUpdates value_;
-    value_.msg_type = msg_type();
+    value_.type = type();
     value_.sampling_rate = sampling_rate();
     value_.transducers = transducers();
     return value_;
@@ -128,7 +128,7 @@ class ReadUpdatesBuilder {
   }
 
   /// Byte 0. Kind of the body.
-  void set_msg_type(AmType value) { store_u8(out_.data(), static_cast<uint8_t>(value)); }
+  void set_type(AmType value) { store_u8(out_.data(), static_cast<uint8_t>(value)); }
   /// Bytes 1-2. Period of the readings. Unit: ms.
   void set_sampling_rate(uint16_t value) { store_be16(out_.data() + 1, value); }
   /// Bytes 3-4. What to read.

@@ -4,7 +4,7 @@
 // rubicon_ack. Acknowledgement of a reliable message, as release 1.0 sends it. (paper: Rubicon ACK)
 //
 //   byte  field               type                  rule
-//   0     msg_type            AmType                WIRE-RUBICON-ACK
+//   0     type                AmType                WIRE-RUBICON-ACK
 //   1     seq_num             uint16_t              WIRE-RUBICON-ACK
 //   3     ack                 uint8_t               WIRE-RUBICON-ACK
 #pragma once
@@ -18,14 +18,14 @@ namespace rubicon {
 /// rubicon_ack as a value. Its bytes are borrowed.
 struct RubiconAck {
   /// Byte 0. Kind of the body.
-  AmType msg_type = AmType();
+  AmType type = AmType();
   /// Bytes 1-2. Of the message that it acknowledges.
   uint16_t seq_num = 0;
   /// Byte 3. 0 is success.
   uint8_t ack = 0;
 };
 inline bool operator==(const RubiconAck& a, const RubiconAck& b) {
-  return detail::same(a.msg_type, b.msg_type) &&
+  return detail::same(a.type, b.type) &&
     detail::same(a.seq_num, b.seq_num) &&
     detail::same(a.ack, b.ack);
 }
@@ -35,7 +35,7 @@ inline bool operator!=(const RubiconAck& a, const RubiconAck& b) { return !(a ==
 struct RubiconAckLayout {
   static size_t size_bytes(const RubiconAck&) { return 4; }
   static void store(const RubiconAck& value, uint8_t* p) {
-    store_u8(p, static_cast<uint8_t>(value.msg_type));
+    store_u8(p, static_cast<uint8_t>(value.type));
     store_be16(p + 1, value.seq_num);
     store_u8(p + 3, value.ack);
   }
@@ -64,7 +64,7 @@ class RubiconAckView {
   }
 
   /// Byte 0. Kind of the body.
-  constexpr AmType msg_type() const { return static_cast<AmType>(load_u8(bytes_.data())); }
+  constexpr AmType type() const { return static_cast<AmType>(load_u8(bytes_.data())); }
   /// Bytes 1-2. Of the message that it acknowledges.
   constexpr uint16_t seq_num() const { return load_be16(bytes_.data() + 1); }
   /// Byte 3. 0 is success.
@@ -78,7 +78,7 @@ class RubiconAckView {
 
   RubiconAck to_value() const {
     RubiconAck value_;
-    value_.msg_type = msg_type();
+    value_.type = type();
     value_.seq_num = seq_num();
     value_.ack = ack();
     return value_;
@@ -123,7 +123,7 @@ class RubiconAckBuilder {
   }
 
   /// Byte 0. Kind of the body.
-  void set_msg_type(AmType value) { store_u8(out_.data(), static_cast<uint8_t>(value)); }
+  void set_type(AmType value) { store_u8(out_.data(), static_cast<uint8_t>(value)); }
   /// Bytes 1-2. Of the message that it acknowledges.
   void set_seq_num(uint16_t value) { store_be16(out_.data() + 1, value); }
   /// Byte 3. 0 is success.

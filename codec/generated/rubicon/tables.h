@@ -356,8 +356,8 @@ namespace of {
 namespace updates {
 constexpr ExprStep kUpdatesCount[] = {{Op::kLoadU8, 1}};
 constexpr Field kFields[] = {
-    {"msg_type", "\"msg_type\":", 11, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 0, kAny,
-     35, &enums::kAmType, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireUpdates, nullptr,
+    {"type", "\"type\":", 7, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 0, kAny, 35,
+     &enums::kAmType, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireUpdates, nullptr,
      "Kind of the body."},
     {"output_size", "\"output_size\":", 14, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 1,
      {ValidKind::kRange, 0, 24, nullptr, 0}, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {},
@@ -380,8 +380,8 @@ namespace of {
 namespace read_updates {
 constexpr Unit kSamplingRateUnit{"ms", 1, 0};
 constexpr Field kFields[] = {
-    {"msg_type", "\"msg_type\":", 11, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 0, kAny,
-     36, &enums::kAmType, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireReadUpdates, nullptr,
+    {"type", "\"type\":", 7, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 0, kAny, 36,
+     &enums::kAmType, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireReadUpdates, nullptr,
      "Kind of the body."},
     {"sampling_rate", "\"sampling_rate\":", 16, Kind::kUint, 2, false, Repeat::kOnce,
      Extent::kOwn, 1, kAny, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {},
@@ -576,8 +576,8 @@ constexpr Type kNetidCmd{
 namespace of {
 namespace rubicon_ack {
 constexpr Field kFields[] = {
-    {"msg_type", "\"msg_type\":", 11, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 0, kAny,
-     23, &enums::kAmType, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireRubiconAck, nullptr,
+    {"type", "\"type\":", 7, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 0, kAny, 23,
+     &enums::kAmType, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireRubiconAck, nullptr,
      "Kind of the body."},
     {"seq_num", "\"seq_num\":", 10, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 1, kAny,
      -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireRubiconAck, nullptr,
@@ -714,8 +714,8 @@ constexpr Type kAppMsgFromPc{
 namespace of {
 namespace learning_notification {
 constexpr Field kFields[] = {
-    {"msg_type", "\"msg_type\":", 11, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 0, kAny,
-     23, &enums::kAmType, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireLearningNotification,
+    {"type", "\"type\":", 7, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 0, kAny, 23,
+     &enums::kAmType, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireLearningNotification,
      nullptr, "Kind of the body."},
     {"seq_num", "\"seq_num\":", 10, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 1, kAny,
      -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireLearningNotification,
@@ -739,8 +739,8 @@ namespace of {
 namespace learning_module_down {
 constexpr ExprStep kWeightsCount[] = {{Op::kLoadU8, 3}};
 constexpr Field kFields[] = {
-    {"msg_type", "\"msg_type\":", 11, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 0, kAny,
-     24, &enums::kAmType, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireLearningModuleDown,
+    {"type", "\"type\":", 7, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 0, kAny, 24,
+     &enums::kAmType, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireLearningModuleDown,
      nullptr, "Kind of the body."},
     {"net_id", "\"net_id\":", 9, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 1, kAny, -1,
      nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireLearningModuleDown, nullptr,
@@ -767,9 +767,9 @@ namespace of {
 namespace learning_output {
 constexpr ExprStep kOutputCount[] = {{Op::kLoadU8, 1}};
 constexpr Field kFields[] = {
-    {"msg_type", "\"msg_type\":", 11, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 0, kAny,
-     25, &enums::kAmType, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireLearningOutput,
-     nullptr, "Kind of the body."},
+    {"type", "\"type\":", 7, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 0, kAny, 25,
+     &enums::kAmType, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireLearningOutput, nullptr,
+     "Kind of the body."},
     {"output_size", "\"output_size\":", 14, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 1,
      {ValidKind::kRange, 0, 24, nullptr, 0}, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {},
      ReqId::kWireLearningOutput, nullptr, "Number of values."},

@@ -5,7 +5,7 @@
 // Test-Bed; release 1.0)
 //
 //   byte  field               type                  rule
-//   0     msg_type            AmType                WIRE-UPDATES
+//   0     type                AmType                WIRE-UPDATES
 //   1     output_size         uint8_t               WIRE-UPDATES
 //   2     updates             TransducerUpdate[]    WIRE-UPDATES
 #pragma once
@@ -20,12 +20,12 @@ namespace rubicon {
 /// updates as a value. output_size is the size of updates.
 struct Updates {
   /// Byte 0. Kind of the body.
-  AmType msg_type = AmType();
+  AmType type = AmType();
   /// From byte 2. The pairs.
   Array<TransducerUpdate, 24> updates;
 };
 inline bool operator==(const Updates& a, const Updates& b) {
-  return detail::same(a.msg_type, b.msg_type) &&
+  return detail::same(a.type, b.type) &&
     detail::same(a.updates, b.updates);
 }
 inline bool operator!=(const Updates& a, const Updates& b) { return !(a == b); }
@@ -40,7 +40,7 @@ struct UpdatesLayout {
     return no_error();
   }
   static void store(const Updates& value, uint8_t* p) {
-    store_u8(p, static_cast<uint8_t>(value.msg_type));
+    store_u8(p, static_cast<uint8_t>(value.type));
     store_u8(p + 1, static_cast<uint8_t>(value.updates.size()));
     for (size_t i = 0; i < value.updates.size(); ++i) {
       TransducerUpdateLayout::store(value.updates.items[i], p + 2 + i * 4);
@@ -79,7 +79,7 @@ class UpdatesView {
   }
 
   /// Byte 0. Kind of the body.
-  constexpr AmType msg_type() const { return static_cast<AmType>(load_u8(bytes_.data())); }
+  constexpr AmType type() const { return static_cast<AmType>(load_u8(bytes_.data())); }
   /// Byte 1. Number of pairs. From 0 to 24.
   constexpr uint8_t output_size() const { return load_u8(bytes_.data() + 1); }
   /// From byte 2. The pairs.
@@ -96,7 +96,7 @@ class UpdatesView {
 
   Updates to_value() const {
     Updates value_;
-    value_.msg_type = msg_type();
+    value_.type = type();
     value_.updates.count = static_cast<uint16_t>(
         updates().copy_to(value_.updates.items, 24));
     return value_;
@@ -143,7 +143,7 @@ class UpdatesBuilder {
   }
 
   /// Byte 0. Kind of the body.
-  void set_msg_type(AmType value) { store_u8(out_.data(), static_cast<uint8_t>(value)); }
+  void set_type(AmType value) { store_u8(out_.data(), static_cast<uint8_t>(value)); }
   /// Byte 1. Number of pairs. From 0 to 24.
   RUBRIC_MUST_USE bool set_output_size(uint8_t value) {
     if (value > 24) return false;
