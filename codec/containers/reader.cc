@@ -56,7 +56,9 @@ bool is_hdlc(Bytes sample) {
     const bool known = packet.kind == kSerialAck || packet.kind == kSerialPacketAck ||
                        packet.kind == kSerialPacketNoAck || packet.kind == kSerialUnknown;
     const bool opened = packet.offset_bytes != 0 && packet.error.fault == Fault::kCut;
-    found = found || (known && (packet.error.fault == Fault::kNone || opened));
+    // Bytes from the very start, between flags: a line that garbles its check sums is still one.
+    const bool garbled = packet.error.fault == Fault::kCrc && sample[0] == kHdlcFlag;
+    found = found || (known && (packet.error.fault == Fault::kNone || opened || garbled));
   };
   HdlcReader reader;
   reader.feed(sample, look);

@@ -1,19 +1,18 @@
 // The tables and the generated views are two readers of one spec: over random and mutated bytes of
-// every structure they must find the same faults, the same meant bytes, and the same numbers.
+// every structure they must find the same faults, the same meant bytes, and the same values in all
+// fields, nested structures and arrays.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <map>
 #include <random>
 #include <string>
-#include <type_traits>
 #include <vector>
 
-#include "codec/codec_test/every_view.h"
 #include "codec/generated/oscilloscope/tables.h"
 #include "codec/generated/rubicon/tables.h"
 #include "codec/generated/tinyos/tables.h"
-#include "codec/reflect/decode.h"
+#include "codec/reflect/compare_view.h"
 
 namespace rubric::reflect {
 namespace {
@@ -28,32 +27,6 @@ const Type* type_of(const std::string& name) {
   }
   return nullptr;
 }
-
-template <class T, class = void>
-struct HasRaw : std::false_type {};
-template <class T>
-struct HasRaw<T, std::void_t<decltype(std::declval<T>().raw())>> : std::true_type {};
-
-/// Compares the numbers among the fields of a view with the children of the outermost node.
-struct NumberVisitor {
-  const Decoded& decoded;
-  int compared = 0;
-
-  template <class T>
-  void operator()(const char* name, const T& field) {
-    const std::size_t node = decoded.child(0, name);
-    if constexpr (std::is_integral_v<T> || std::is_enum_v<T>) {
-      compare(name, node, static_cast<std::int64_t>(field));
-    } else if constexpr (HasRaw<T>::value) {
-      compare(name, node, static_cast<std::int64_t>(field.raw()));
-    }
-  }
-  void compare(const char* name, std::size_t node, std::int64_t value) {
-    if (node == 0) return;  // A conditional field that is absent.
-    EXPECT_EQ(decoded[node].value, value) << name;
-    ++compared;
-  }
-};
 
 /// Bytes that often hold the structure: small counts, real sizes, short and long ones.
 std::vector<std::uint8_t> make_bytes(std::mt19937_64& random, const Type& type) {
@@ -70,10 +43,11 @@ std::vector<std::uint8_t> make_bytes(std::mt19937_64& random, const Type& type) 
   return bytes;
 }
 
-TEST(Agreement, TablesAndViews_SameFaultsSameBytesSameNumbers) {
+TEST(Agreement, TablesAndViews_SameFaultsSameBytesSameValues) {
   std::mt19937_64 random(7);
   std::map<std::string, int> faults;
-  int numbers = 0;
+  long numbers = 0;
+  long elements = 0;
   int structures = 0;
   Decoded decoded;
   for_each_view_of_all([&](const std::string& name, auto tag) {
@@ -89,15 +63,18 @@ TEST(Agreement, TablesAndViews_SameFaultsSameBytesSameNumbers) {
       EXPECT_EQ(decoded.error, view.error()) << name << " input " << i;
       ++faults[std::to_string(static_cast<int>(decoded.error.fault))];
       if (!view || decoded.error.fault != Fault::kNone) continue;
-      EXPECT_EQ(decoded[0].size, view->bytes().size()) << name << " input " << i;
-      NumberVisitor visitor{decoded};
-      visit_fields(*view, visitor);
-      numbers += visitor.compared;
+      ViewComparer comparer(decoded);
+      comparer.structure(*view, 0);
+      EXPECT_EQ(comparer.difference(), "") << name << " input " << i;
+      numbers += comparer.numbers();
+      elements += comparer.elements();
     }
   });
   EXPECT_GE(structures, 40);
-  EXPECT_GE(numbers, 100000);
-  std::printf("%d structures, %d numbers compared; inputs by fault:", structures, numbers);
+  EXPECT_GE(numbers, 300000);
+  EXPECT_GE(elements, 20000);
+  std::printf("%d structures, %ld numbers and %ld elements compared; inputs by fault:", structures,
+              numbers, elements);
   for (const auto& [fault, count] : faults) std::printf(" %s:%d", fault.c_str(), count);
   std::printf("\n");
 }

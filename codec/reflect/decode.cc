@@ -145,6 +145,10 @@ void Decoded::clear(Bytes frame) {
   node_count_ = note_count_ = path_count_ = stale_count_ = 0;
 }
 
+void Decoded::add_note(const Note& note) {
+  if (note_count_ < kMaxNotes) notes_[note_count_++] = note;
+}
+
 std::size_t Decoded::child(std::size_t parent, std::string_view name) const {
   if (parent >= node_count_) return 0;
   for (std::size_t i = parent + 1; i < nodes_[parent].end; i = nodes_[i].end) {
@@ -193,9 +197,7 @@ class Decoder {
   void push_path(const Type& type) {
     if (out_.path_count_ < Decoded::kMaxPath) out_.path_[out_.path_count_++] = &type;
   }
-  void push_note(const Note& note) {
-    if (out_.note_count_ < Decoded::kMaxNotes) out_.notes_[out_.note_count_++] = note;
-  }
+  void push_note(const Note& note) { out_.add_note(note); }
   void push_stale(std::uint32_t from, std::uint32_t to) {
     if (out_.stale_count_ < Decoded::kMaxStale) {
       out_.stale_[out_.stale_count_++] = Range{from, to - from};

@@ -38,6 +38,7 @@ enum class NoteKind : std::uint8_t {
   kUnknownMessage,   ///< No message has this key; the bytes stay opaque.
   kDoesNotFit,       ///< The bytes do not fit the message that their key names; they stay opaque.
   kUnexpectedValue,  ///< A field's value is not the expected one.
+  kNotDecoded,       ///< The frame is of a kind that carries no message known here.
 };
 struct Note {
   NoteKind kind;
@@ -85,6 +86,8 @@ class Decoded {
 
   /// Forgets everything but the bytes.
   void clear(Bytes frame);
+  /// Adds a note of the framing; beyond kMaxNotes it is dropped.
+  void add_note(const Note& note);
 
   /// Index of the child of `parent` with this name, or 0 (which is never a child).
   std::size_t child(std::size_t parent, std::string_view name) const;

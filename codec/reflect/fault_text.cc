@@ -153,6 +153,7 @@ std::string_view note_name(NoteKind kind) {
   switch (kind) {
     case NoteKind::kUnknownMessage: return "unknown_message";
     case NoteKind::kDoesNotFit: return "does_not_fit";
+    case NoteKind::kNotDecoded: return "not_decoded";
     case NoteKind::kUnexpectedValue: break;
   }
   return "unexpected_value";
@@ -166,6 +167,11 @@ std::string note_text(const Note& note) {
     case NoteKind::kDoesNotFit:
       return name + " has the key " + key + " and does not fit " +
              (note.type ? note.type->name : "its message");
+    case NoteKind::kNotDecoded: {
+      char hex[24];
+      std::snprintf(hex, sizeof(hex), "%#llx", static_cast<unsigned long long>(note.value));
+      return std::string("frames of kind ") + hex + " carry no message known here";
+    }
     case NoteKind::kUnexpectedValue: break;
   }
   if (!note.field) return "value " + key + " is not the expected one";

@@ -15,6 +15,7 @@ constexpr std::uint16_t kShapeShortAddresses = 0x8841;
 constexpr std::size_t kMacHeaderBytes = 9;
 constexpr std::size_t kAmHeaderBytes = 8;
 constexpr std::uint8_t kNalpNetwork = 0x3f;
+constexpr std::int32_t kKindAck = 67;
 constexpr std::int32_t kKindPacketAck = 68;
 constexpr std::int32_t kKindPacketNoack = 69;
 
@@ -26,6 +27,10 @@ void clear(Frame& out, const Packet& packet) {
   out.payload_node = 0;
   out.has_payload = false;
   out.decoded.clear(packet.bytes);
+}
+
+void not_decoded(Frame& out, std::int64_t kind) {
+  out.decoded.add_note({NoteKind::kNotDecoded, 0, nullptr, nullptr, kind});
 }
 
 // The message's fields are the last child of the carrier's structure, where decoding got that far.
@@ -54,7 +59,11 @@ void FrameDecoder::decode(const Packet& packet, Frame& out) const {
   clear(out, packet);
   switch (packet.framing) {
     case Framing::kHdlc:
-      if (packet.kind == kKindPacketAck || packet.kind == kKindPacketNoack) decode_serial(out);
+      if (packet.kind == kKindPacketAck || packet.kind == kKindPacketNoack) {
+        decode_serial(out);
+      } else if (packet.kind != kAbsent && packet.kind != kKindAck) {
+        not_decoded(out, packet.kind);
+      }
       break;
     case Framing::kSf: decode_serial(out); break;
     case Framing::kRadio: decode_radio(out); break;
@@ -81,7 +90,7 @@ void FrameDecoder::decode_serial(Frame& out) const {
     const std::uint8_t* p = bytes.data();
     out.am = {true, load_be16(p + 1), load_be16(p + 3), p[5], p[6], p[7]};
   }
-  if (!serial_) return;
+  if (!serial_) return not_decoded(out, out.packet->kind);
   reflect::decode(*serial_, bytes, Tail::kFault, false, out.decoded);
   find_payload(out);
 }
@@ -100,7 +109,7 @@ void FrameDecoder::decode_radio(Frame& out) const {
     reflect::decode(*ack, bytes, Tail::kFault, true, out.decoded);
     return;
   }
-  if ((fcf & kShapeMask) != kShapeShortAddresses) return;  // Not an active message: left opaque.
+  if ((fcf & kShapeMask) != kShapeShortAddresses) return not_decoded(out, fcf);
   if (bytes.size() >= kMacHeaderBytes) {
     out.mac.has_addresses = true;
     out.mac.destpan = load_le16(p + 3);
@@ -119,7 +128,7 @@ void FrameDecoder::decode_radio(Frame& out) const {
               p[head - 1]};
   }
   const Type* carrier = i_frame ? radio_i_ : radio_t_;
-  if (!carrier) return;
+  if (!carrier) return not_decoded(out, fcf);
   reflect::decode(*carrier, bytes, Tail::kFault, false, out.decoded);
   find_payload(out);
 }

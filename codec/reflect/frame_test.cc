@@ -1,0 +1,117 @@
+#include "codec/reflect/frame.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "codec/generated/rubicon/tables.h"
+
+namespace rubric::reflect {
+namespace {
+
+const FrameDecoder kDecoder(rubicon::tables::kProtocol);
+
+std::vector<std::uint8_t> from_hex(const std::string& hex) {
+  std::vector<std::uint8_t> out;
+  for (std::size_t i = 0; i + 1 < hex.size(); i += 2) {
+    out.push_back(static_cast<std::uint8_t>(std::stoi(hex.substr(i, 2), nullptr, 16)));
+  }
+  return out;
+}
+
+/// A packet with its bytes, decoded.
+struct Case {
+  Case(Framing framing, const std::string& hex, std::int32_t kind = kAbsent)
+      : bytes(from_hex(hex)) {
+    packet.framing = framing;
+    packet.bytes = Bytes(bytes.data(), bytes.size());
+    packet.kind = kind;
+  }
+  const Frame& decode() {
+    kDecoder.decode(packet, frame);
+    return frame;
+  }
+  std::vector<std::uint8_t> bytes;
+  Packet packet;
+  Frame frame;
+};
+
+const std::string kSerialConfig = "00000100000300250a000c";
+const std::string kJoinRequest = "c4f501004301";
+
+TEST(Frame, RadioIFrame_AndTFrame_SameMessage) {
+  for (const std::string network : {"3f", ""}) {
+    Case c(Framing::kRadio, "4188072200" "01000200" + network + "0e" + kJoinRequest);
+    const Frame& frame = c.decode();
+    EXPECT_FALSE(frame.malformed());
+    ASSERT_NE(frame.decoded.message(), nullptr);
+    EXPECT_STREQ(frame.decoded.message()->name, "join_request");
+    EXPECT_EQ(frame.mac.has_network, !network.empty());
+    EXPECT_EQ(frame.mac.dsn, 7);
+    EXPECT_EQ(frame.am.dest, 1);
+    EXPECT_EQ(frame.am.src, 2);
+    EXPECT_EQ(frame.am.group, 0x22);
+    EXPECT_EQ(frame.am.length, 6);
+    EXPECT_EQ(frame.am.type, 14);
+  }
+}
+
+TEST(Frame, LinkAck_IsAMessageWithoutActiveMessage) {
+  Case c(Framing::kRadio, "020007");
+  const Frame& frame = c.decode();
+  EXPECT_FALSE(frame.malformed());
+  EXPECT_FALSE(frame.am.present);
+  EXPECT_STREQ(frame.decoded.message()->name, "mac_ack");
+}
+
+struct NoteCase {
+  const char* name;
+  Framing framing;
+  const char* hex;
+  std::int32_t kind;
+  std::size_t notes;
+};
+
+class FrameNote : public testing::TestWithParam<NoteCase> {};
+
+TEST_P(FrameNote, FramesThatNobodyReadsAreNoted) {
+  const NoteCase& row = GetParam();
+  Case c(row.framing, row.hex, row.kind);
+  const Frame& frame = c.decode();
+  EXPECT_FALSE(frame.malformed());
+  ASSERT_EQ(frame.decoded.note_count(), row.notes);
+  if (row.notes) {
+    EXPECT_EQ(frame.decoded.notes()[0].kind, NoteKind::kNotDecoded);
+    EXPECT_FALSE(frame.am.present);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, FrameNote,
+    testing::Values(NoteCase{"Beacon", Framing::kRadio, "008007220001000200", kAbsent, 1},
+                    NoteCase{"LongAddresses", Framing::kRadio, "41cc07220001000200", kAbsent, 1},
+                    NoteCase{"UnknownSerialKind", Framing::kHdlc, "43", 0xff, 1},
+                    NoteCase{"SerialAck", Framing::kHdlc, "", 67, 0},
+                    NoteCase{"SerialPacket", Framing::kHdlc, "00000100000300250a000c", 69, 0}),
+    [](const auto& row) { return row.param.name; });
+
+TEST(Frame, FramingFault_ComesFirst_AndCountsFromTheDispatchByte) {
+  Case c(Framing::kHdlc, kSerialConfig, 68);
+  c.packet.serial_seq = 0;
+  c.packet.error = Error{Fault::kCrc, 13, req::kWireSerialCrc};
+  const Frame& frame = c.decode();
+  EXPECT_EQ(frame.error, (Error{Fault::kCrc, 11, req::kWireSerialCrc}));
+  EXPECT_STREQ(frame.decoded.message()->name, "config");
+}
+
+TEST(Frame, CutInTheHeader_NamesTheHeadersRule) {
+  Case serial(Framing::kSf, "00ffff");
+  EXPECT_EQ(serial.decode().error, (Error{Fault::kTruncated, 3, req::kWireAmHeader}));
+  EXPECT_FALSE(serial.frame.has_payload);
+  Case radio(Framing::kRadio, "418807220001000200");
+  EXPECT_EQ(radio.decode().error, (Error{Fault::kTruncated, 9, req::kWireRadioNetwork}));
+}
+
+}  // namespace
+}  // namespace rubric::reflect
