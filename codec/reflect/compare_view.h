@@ -44,7 +44,9 @@ class ViewComparer {
   void same(const char* what, std::int64_t view, std::int64_t node) {
     if (view != node) differ(what, std::to_string(view) + ", not " + std::to_string(node));
   }
-  void same(const char* what, int view, int node) { same(what, std::int64_t{view}, node); }
+  void same(const char* what, int view, int node) {
+    same(what, std::int64_t{view}, std::int64_t{node});
+  }
   void differ(const std::string& what, const std::string& how) {
     if (difference_.empty()) difference_ = what + ": " + how;
   }
