@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "codec/generated/tinyos/tables.h"
+#include "codec/runtime/hdlc.h"
 
 namespace rubric::reflect {
 namespace {
@@ -15,9 +16,6 @@ constexpr std::uint16_t kShapeShortAddresses = 0x8841;
 constexpr std::size_t kMacHeaderBytes = 9;
 constexpr std::size_t kAmHeaderBytes = 8;
 constexpr std::uint8_t kNalpNetwork = 0x3f;
-constexpr std::int32_t kKindAck = 67;
-constexpr std::int32_t kKindPacketAck = 68;
-constexpr std::int32_t kKindPacketNoack = 69;
 
 void clear(Frame& out, const Packet& packet) {
   out.packet = &packet;
@@ -59,9 +57,9 @@ void FrameDecoder::decode(const Packet& packet, Frame& out) const {
   clear(out, packet);
   switch (packet.framing) {
     case Framing::kHdlc:
-      if (packet.kind == kKindPacketAck || packet.kind == kKindPacketNoack) {
+      if (packet.kind == kSerialPacketAck || packet.kind == kSerialPacketNoAck) {
         decode_serial(out);
-      } else if (packet.kind != kAbsent && packet.kind != kKindAck) {
+      } else if (packet.kind != kAbsent && packet.kind != kSerialAck) {
         not_decoded(out, packet.kind);
       }
       break;
