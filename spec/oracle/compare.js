@@ -1,4 +1,5 @@
-// Compares a decoded record's fields with the object that Kaitai Struct's parser made of the frame.
+// Compares a decoded record's fields and stale bytes with the object that Kaitai Struct's parser made
+// of the frame.
 'use strict';
 
 class Disagreement extends Error {}
@@ -32,7 +33,24 @@ class Comparer {
     return null;
   }
 
+  /// Fields and stale bytes of a record whose outermost message is `object`.
+  message(record, object) {
+    this.unread = [];
+    this.structure(record.fields, object, record.path[0]);
+    this.unread.sort((a, b) => a.byteOffset - b.byteOffset);
+    this.same(record.stale, Buffer.concat(this.unread).toString('hex'), 'stale');
+  }
+
+  /// Notes what the object left unread, where it has bytes of its own. To be done before any of its
+  /// instances is asked for: one that does not fit leaves the stream where it failed.
+  noteUnread(object) {
+    const io = object._io;
+    if (object._parent && object._parent._io === io) return;
+    this.unread.push(Buffer.from(io._buffer, io.byteOffset + io.pos, io.size - io.pos));
+  }
+
   structure(json, object, where) {
+    this.noteUnread(object);
     const type = this.typeOf(object);
     const wanted = new Set();
     const body = this.interpretation(object, type);

@@ -1,8 +1,9 @@
-// Makes frames to hold both decoders against: real ones and made-up bodies of every kind, mutated
+// Makes frames to hold both decoders against: real ones and made-up messages of every kind, mutated
 // where parsers go wrong. Seeded, so a run can be repeated.
 'use strict';
 const fs = require('fs');
 const path = require('path');
+const bodies = require('./bodies.js');
 
 /// A small seeded generator (mulberry32); below(n) gives 0..n-1.
 function seeded(seed) {
@@ -30,62 +31,101 @@ function realFrames(folder) {
       }
     }
   }
+  if (frames.length === 0) throw new Error(`no captures under ${folder}`);
   return frames;
 }
 
 const amHeaderBytes = 8;
 const netHeaderBytes = 12;
+const netPayloadMax = 102;
+const devidNull = 0xfffd;
 const interesting = [0, 1, 2, 3, 9, 10, 16, 22, 23, 24, 25, 34, 35, 36, 92, 93, 100, 102, 103, 113,
   114, 115, 127, 128, 253, 254, 255];
 
-/// A net_msg with a body whose kind, size and counts are near what the protocol knows.
-function madeUp(random) {
-  const size = random.chance(0.3) ? 100 : random.below(101);
-  const body = Buffer.from(Array.from({length: size}, () => random.below(256)));
-  const kinds = [1, 8, 9, 10, 11, 12, 13, 16, 18, 20, 22, 23, 24, 25, 28, 34, 35, 36];
-  if (size > 0) body[0] = kinds[random.below(kinds.length)];
-  for (const at of [1, 3, 7, 13, 34]) {  // Where counts stand in one body or another.
-    if (at < size && random.chance(0.7)) body[at] = random.below(26);
-  }
-  const frame = Buffer.alloc(amHeaderBytes + netHeaderBytes + 2 + size);
-  frame.writeUInt16BE(0xffff, 1);
-  frame[5] = frame.length - amHeaderBytes;
-  frame[7] = 28;
-  frame.writeUInt32BE(0x000bfffd, 8);
-  frame.writeUInt32BE(random.chance(0.5) ? 0x000bfffd : 0x000b0002, 12);
-  frame[16] = random.below(2);
-  frame.writeUInt16BE(random.below(65536), 17);
-  frame[19] = size + 2;
-  frame[20] = [3, 3, 3, 1, 9, random.below(12)][random.below(6)];
-  frame[21] = [5, 6, 6, 10, 11, random.below(12)][random.below(6)];
-  body.copy(frame, 22);
-  return frame;
+/// A net_msg around a message of an application, or around noise.
+function netMessage(random) {
+  const [trans, app, fromPc, first, message] = bodies.pick(bodies.applications, random);
+  let inner = random.chance(0.85) ? bodies.body(message, random)
+      : bodies.noise(random.below(101), random);
+  if (inner.length > 0 && first !== null) inner[0] = first;
+  // What stands behind the body is left over from earlier frames, within nbytes and behind it.
+  if (random.chance(0.2)) inner = Buffer.concat([inner, bodies.noise(random.below(20), random)]);
+  inner = inner.subarray(0, netPayloadMax - 2);
+  const byPc = random.chance(0.05) ? !fromPc : (fromPc ?? random.chance(0.5));
+  const head = Buffer.alloc(netHeaderBytes + 2);
+  head.writeUInt32BE(0x000bfffd, 0);
+  head.writeUInt16BE(0x000b, 4);
+  head.writeUInt16BE(byPc ? devidNull : 2, 6);
+  head[8] = random.below(2);
+  head.writeUInt16BE(random.below(65536), 9);
+  head[11] = inner.length + 2;
+  head[12] = random.chance(0.05) ? random.below(12) : trans;
+  head[13] = random.chance(0.05) ? random.below(12) : app;
+  const behind = random.chance(0.3) ? random.below(netPayloadMax - inner.length - 1) : 0;
+  return Buffer.concat([head, inner, bodies.noise(behind, random)]);
 }
 
-/// A message that travels as an AM type of its own.
-function otherType(random) {
-  const types = [[11, 5], [12, 13], [20, 100], [21, 100], [37, 3], [random.below(256), 20]];
-  const [type, least] = types[random.below(types.length)];
-  const size = Math.max(0, least - 2 + random.below(20)) % 115;
-  const frame = Buffer.from(Array.from({length: amHeaderBytes + size}, () => random.below(256)));
-  frame[0] = 0;
-  frame[5] = size;
-  frame[7] = type;
-  if (size > 7 && random.chance(0.7)) frame[15] = random.below(100);
-  return frame;
+/// A message that travels as an AM type of its own: {type, payload}.
+function ownType(types, random) {
+  const [type, message] = bodies.pick(types, random);
+  const payload = bodies.body(message, random);
+  const behind = random.chance(0.3) ? bodies.noise(random.below(12), random) : Buffer.alloc(0);
+  return {type: random.chance(0.05) ? random.below(256) : type,
+    payload: Buffer.concat([payload, behind])};
 }
 
-function mutate(frame, random) {
+const message = (types, netShare, random) => random.chance(netShare)
+    ? {type: 28, payload: netMessage(random)} : ownType(types, random);
+
+function serialFrame({type, payload}, random) {
+  const head = bodies.noise(amHeaderBytes, random);
+  head[0] = 0;
+  head[5] = payload.length;
+  head[7] = type;
+  return Buffer.concat([head, payload]);
+}
+
+function radioFrame({type, payload}, network, random) {
+  const head = bodies.noise(network ? 11 : 10, random);
+  head.writeUInt16LE(0x8841, 0);
+  if (network) head[9] = 0x3f;
+  head[head.length - 1] = type;
+  return Buffer.concat([head, payload]);
+}
+
+/// What each carrier's frames are made from: a fresh frame, and the bytes where parsers go wrong.
+const makers = {
+  serial: {
+    fresh: (random) => serialFrame(message(bodies.serialTypes, 0.8, random), random),
+    headers: [0, 5, 7], net: amHeaderBytes,
+  },
+  oscilloscope: {
+    fresh: (random) => serialFrame(ownType(bodies.oscilloscopeTypes, random), random),
+    headers: [0, 5, 7], net: null,
+  },
+  radio_i_frame: {
+    fresh: (random) => radioFrame(message(bodies.radioTypes, 0.4, random), true, random),
+    headers: [9, 10], net: 11,
+  },
+  radio_t_frame: {
+    fresh: (random) => radioFrame(message(bodies.radioTypes, 0.4, random), false, random),
+    headers: [9], net: 10,
+  },
+};
+
+function mutate(frame, {headers, net}, random) {
   const out = Buffer.from(frame);
-  switch (random.below(10)) {
+  const set = (at, value) => {
+    if (at < out.length) out[at] = value;
+  };
+  const odd = () => bodies.pick(interesting, random);
+  switch (random.below(9)) {
     case 0: return out.subarray(0, random.below(out.length + 1));
     case 1: return Buffer.concat([out, Buffer.alloc(1 + random.below(5), random.below(256))]);
-    case 2: if (out.length > 5) out[5] = interesting[random.below(interesting.length)]; break;
-    case 3: if (out.length > 19) out[19] = interesting[random.below(interesting.length)]; break;
-    case 4: if (out.length > 16) out[16] = random.below(random.chance(0.5) ? 3 : 256); break;
-    case 5: out[random.chance(0.3) ? 0 : out.length - 1] ^= 1 << random.below(8); break;
-    case 6: if (out.length > 7) out[7] = random.below(40); break;
-    case 7: if (out.length > 23) out[20 + random.below(4)] = random.below(40); break;
+    case 2: set(bodies.pick(headers, random), random.chance(0.5) ? odd() : random.below(40)); break;
+    case 3: if (net) set(net + 11, odd()); break;                                     // nbytes
+    case 4: if (net) set(net + 8, random.below(random.chance(0.5) ? 3 : 256)); break;  // reliable
+    case 5: if (net) set(net + 12 + random.below(4), random.below(40)); break;
     default:
       for (let n = 1 + random.below(4); n > 0 && out.length > 0; --n) {
         out[random.below(out.length)] ^= 1 << random.below(8);
@@ -94,18 +134,24 @@ function mutate(frame, random) {
   return out;
 }
 
-/// `count` frames of at least one byte, from the dispatch byte on.
-function makeFrames(folder, count, seed) {
+/// `count` frames of at least one byte for that carrier: {bytes, origin: real, made up or mutated}.
+/// The real ones are of the serial line.
+function makeFrames(carrier, folder, count, seed) {
   const random = seeded(seed);
-  const real = realFrames(folder);
-  if (real.length === 0) throw new Error(`no captures under ${folder}`);
-  const frames = [...real];
+  const maker = makers[carrier];
+  const real = carrier === 'serial' ? realFrames(folder) : [];
+  const frames = real.map((bytes) => ({bytes, origin: 'real'}));
   while (frames.length < count) {
-    const kind = random.below(10);
-    let frame = kind < 3 ? real[random.below(real.length)]
-        : kind < 8 ? madeUp(random) : otherType(random);
-    for (let n = random.below(3); n > 0; --n) frame = mutate(frame, random);
-    if (frame.length > 0) frames.push(frame);
+    const fromReal = real.length > 0 && random.chance(0.25);
+    const source = fromReal ? bodies.pick(real, random) : maker.fresh(random);
+    let bytes = source;
+    // A copy of a real frame shows nothing new.
+    for (let n = fromReal ? 1 + random.below(2) : random.below(3); n > 0; --n) {
+      bytes = mutate(bytes, maker, random);
+    }
+    const same = bytes.equals(source);
+    if (bytes.length === 0 || (same && fromReal)) continue;
+    frames.push({bytes, origin: same ? 'made up' : 'mutated'});
   }
   return frames;
 }

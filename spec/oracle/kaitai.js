@@ -6,10 +6,31 @@ const path = require('path');
 const yaml = require('js-yaml');
 const compiler = require('kaitai-struct-compiler');
 
+let positionsTold = false;
 const wireFolder = path.join(__dirname, '..', 'wire');
 
 function readSpec(name) {
   return yaml.load(fs.readFileSync(path.join(wireFolder, `${name}.ksy`), 'utf8'));
+}
+
+/// Kaitai Struct's runtime knows where it failed but does not tell: makes its errors do so, with
+/// `io` and, of a value that is not valid, `srcPath`, where the spec says what it is.
+function tellPositions(Stream) {
+  const {ensureBytesLeft} = Stream.prototype;
+  Stream.prototype.ensureBytesLeft = function(length) {
+    try {
+      ensureBytesLeft.call(this, length);
+    } catch (error) {
+      throw Object.assign(error, {io: this});
+    }
+  };
+  for (const name of Object.keys(Stream).filter((key) => key.startsWith('Validation'))) {
+    const Silent = Stream[name];
+    Stream[name] = function(...details) {
+      const [io, srcPath] = details.slice(-2);
+      return Object.assign(new Silent(...details), {io, srcPath});
+    };
+  }
 }
 
 /// {parser: constructor, spec: the spec as an object, Stream: KaitaiStream}
@@ -25,6 +46,8 @@ async function load(name) {
   const className = name[0].toUpperCase() + name.slice(1);
   const parser = require(path.join(folder, `${className}.js`))[className];
   const Stream = require('kaitai-struct/KaitaiStream');
+  if (!positionsTold) tellPositions(Stream);
+  positionsTold = true;
   fs.rmSync(folder, {recursive: true});
   return {parser, spec, Stream};
 }

@@ -1,5 +1,6 @@
-// Holds `rubric decode` against Kaitai Struct's own parser: same frames accepted, same faults, same
-// fields. Usage: node oracle.js PATH_TO_RUBRIC [COUNT] [SEED]
+// Holds `rubric decode` against Kaitai Struct's own parser: same frames accepted, same faults in the
+// same places, same fields, same bytes left over.
+// Usage: node oracle.js PATH_TO_RUBRIC [COUNT] [SEED]
 'use strict';
 const fs = require('fs');
 const os = require('os');
@@ -10,6 +11,7 @@ const {load} = require('./kaitai.js');
 const {makeFrames} = require('./frames.js');
 const {Comparer, Disagreement} = require('./compare.js');
 
+const captures = path.join(__dirname, '..', 'captures');
 const faultOfError = {
   EOFError: 'truncated',
   ValidationNotEqualError: 'unexpected',
@@ -18,35 +20,59 @@ const faultOfError = {
   ValidationLessThanError: 'out_of_range',
   ValidationGreaterThanError: 'out_of_range',
 };
+// What is run: its share of COUNT, and the least of different mutated frames where that matters.
+const suites = [
+  {carrier: 'serial', spec: 'rubicon', share: 0.7, leastMutated: 100000},
+  {carrier: 'radio_i_frame', spec: 'rubicon', share: 0.15, as: 'RadioIFrame'},
+  {carrier: 'radio_t_frame', spec: 'rubicon', share: 0.1, as: 'RadioTFrame'},
+  {carrier: 'oscilloscope', spec: 'oscilloscope', share: 0.05},
+];
 
-/// {object} or {fault} as Kaitai Struct sees the frame.
-function kaitaiVerdict(kaitai, frame) {
+/// Bytes of the number that a path such as /types/net_msg/seq/3 names.
+function widthAt(specs, srcPath) {
+  for (const spec of specs) {
+    const field = srcPath.split('/').slice(1).reduce((at, key) => at && at[key], spec);
+    if (field) return Number(/^[us](\d)/.exec(field.type)[1]);
+  }
+  throw new Error(`no ${srcPath} in the spec`);
+}
+
+/// Where Kaitai's error is: what is too short is so at its end; a value is where it begins.
+function offsetOf(error, specs) {
+  const {io, srcPath} = error;
+  return io.byteOffset + (srcPath ? io.pos - widthAt(specs, srcPath) : io.size);
+}
+
+/// {object} or {fault, offset} as Kaitai Struct sees the frame.
+function kaitaiVerdict({Parser, Stream, specs}, frame) {
+  // A copy that begins at 0 of its buffer, so that offsets in the buffer are those in the frame.
   const buffer = frame.buffer.slice(frame.byteOffset, frame.byteOffset + frame.length);
-  const stream = new kaitai.Stream(buffer);
+  const stream = new Stream(buffer);
   try {
-    const object = new kaitai.parser(stream);
-    return stream.isEof() ? {object} : {fault: 'trailing'};
+    const object = new Parser(stream);
+    return stream.isEof() ? {object} : {fault: 'trailing', offset: stream.pos};
   } catch (error) {
-    const name = error.name === 'Error' ? error.constructor.name : error.name;
-    if (!(name in faultOfError)) throw error;
-    return {fault: faultOfError[name]};
+    if (!(error.name in faultOfError)) throw error;
+    return {fault: faultOfError[error.name], offset: offsetOf(error, specs)};
   }
 }
 
-function disagreement(kaitai, comparer, frame, record) {
+function disagreement(kaitai, frame, record) {
   const verdict = kaitaiVerdict(kaitai, frame);
-  const fault = record.error ? record.error.fault : undefined;
+  const {fault, offset} = record.error || {};
   if (record.raw !== frame.toString('hex')) return 'raw differs';
-  if (fault !== verdict.fault) {
-    return `rubric ${fault || 'accepts'}, Kaitai ${verdict.fault || 'accepts'}`;
+  if (fault !== verdict.fault || offset !== verdict.offset) {
+    const said = (v) => v.fault ? `${v.fault} at ${v.offset}` : 'accepts';
+    return `rubric ${said({fault, offset})}, Kaitai ${said(verdict)}`;
   }
   if (fault) return null;
-  const message = verdict.object.payload;
+  // Of a serial frame the record shows the message; with --as all of it.
+  const message = kaitai.whole ? verdict.object : verdict.object.payload;
   if (message instanceof Uint8Array || message === undefined) {
     return record.message === null ? null : `rubric ${record.message}, Kaitai opaque`;
   }
   try {
-    comparer.structure(record.fields, message, record.path[0]);
+    kaitai.comparer.message(record, message);
   } catch (error) {
     if (error instanceof Disagreement) return error.message;
     throw error;
@@ -54,46 +80,73 @@ function disagreement(kaitai, comparer, frame, record) {
   return null;
 }
 
-async function main() {
-  const [rubric, count = '100000', seed = '1'] = process.argv.slice(2);
-  const kaitai = await load('rubicon');
-  const tinyos = await load('tinyos');
-  const comparer = new Comparer([kaitai.spec, tinyos.spec]);
-  const frames = makeFrames(path.join(__dirname, '..', 'captures'), Number(count), Number(seed));
-  const file = path.join(fs.mkdtempSync(path.join(os.tmpdir(), 'rubric-oracle-')), 'frames.hex');
-  fs.writeFileSync(file, frames.map((f) => f.toString('hex') + '\n').join(''));
+async function loadSuite({spec, as}) {
+  const {parser, Stream, spec: main} = await load(spec);
+  const specs = [main, (await load('tinyos')).spec];
+  return {Parser: as ? parser[as] : parser, Stream, specs, whole: Boolean(as),
+    comparer: new Comparer(specs)};
+}
 
-  const args = ['decode', '--input-format', 'hex', '--format', 'jsonl', file];
+const count = (counts, key) => counts[key] = (counts[key] || 0) + 1;
+
+/// What the frames are: {origins, different: of the mutated ones}.
+function census(frames) {
+  const origins = {};
+  for (const {origin} of frames) count(origins, origin);
+  const mutated = frames.filter((f) => f.origin === 'mutated');
+  return {origins, different: new Set(mutated.map((f) => f.bytes.toString('latin1'))).size};
+}
+
+/// Decodes the frames by both; {index: frames decoded, status, disagreements, faults, messages}.
+async function hold(rubric, suite, frames) {
+  const kaitai = await loadSuite(suite);
+  const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'rubric-oracle-'));
+  const file = path.join(folder, 'frames.hex');
+  fs.writeFileSync(file, frames.map((f) => f.bytes.toString('hex') + '\n').join(''));
+  const args = ['decode', '--input-format', 'hex', '--format', 'jsonl', '--spec', suite.spec,
+    ...(suite.as ? ['--as', suite.carrier] : []), file];
   const child = spawn(rubric, args, {stdio: ['ignore', 'pipe', 'inherit']});
   const ended = new Promise((resolve) => child.on('close', resolve));
-  const faults = {};
-  const messages = {};
-  let index = 0;
-  let disagreements = 0;
+  const result = {index: 0, disagreements: 0, faults: {}, messages: {}};
   for await (const line of readline.createInterface({input: child.stdout})) {
     const record = JSON.parse(line);
-    const frame = frames[index++];
-    const what = disagreement(kaitai, comparer, frame, record);
-    if (what && ++disagreements <= 10) {
-      console.log(`frame ${index}: ${what}\n  ${frame.toString('hex')}`);
+    const {bytes} = frames[result.index++];
+    const what = disagreement(kaitai, bytes, record);
+    if (what && ++result.disagreements <= 10) {
+      console.log(`${suite.carrier} frame ${result.index}: ${what}\n  ${bytes.toString('hex')}`);
     }
-    const fault = record.error ? record.error.fault : 'accepted';
-    faults[fault] = (faults[fault] || 0) + 1;
-    if (!record.error) messages[record.message] = (messages[record.message] || 0) + 1;
+    count(result.faults, record.error ? record.error.fault : 'accepted');
+    if (!record.error) count(result.messages, record.message);
   }
-  const status = await ended;
-  fs.rmSync(path.dirname(file), {recursive: true});
+  result.status = await ended;
+  fs.rmSync(folder, {recursive: true});
+  return result;
+}
 
-  const rejected = index - (faults.accepted || 0);
-  const share = (100 * rejected / index).toFixed(1);
-  console.log(`frames: ${index}, rejected: ${rejected} (${share} %), seed ${seed}`);
-  console.log('by fault:', JSON.stringify(faults));
-  console.log('by message:', JSON.stringify(messages));
-  console.log(`disagreements: ${disagreements}`);
-  const good = status <= 1 && index === frames.length && disagreements === 0 &&
-      rejected >= 0.3 * index;
-  console.log(good ? '1 passed, 0 failed' : '0 passed, 1 failed');
-  process.exit(good ? 0 : 1);
+/// Runs one suite and says what came of it; whether it is good.
+async function run(rubric, suite, total, seed) {
+  const frames = makeFrames(suite.carrier, captures, Math.round(total * suite.share), seed);
+  const {origins, different} = census(frames);
+  const result = await hold(rubric, suite, frames);
+  const rejected = result.index - (result.faults.accepted || 0);
+  const share = (100 * rejected / result.index).toFixed(1);
+  console.log(`${suite.carrier}: ${result.index} frames, ${JSON.stringify(origins)}, ` +
+      `${different} different mutated ones; rejected ${rejected} (${share} %); seed ${seed}`);
+  console.log('  by fault:', JSON.stringify(result.faults));
+  console.log('  by message:', JSON.stringify(result.messages));
+  console.log(`  disagreements: ${result.disagreements}`);
+  const enough = different >= (suite.leastMutated || 0);
+  if (!enough) console.log(`  fewer than ${suite.leastMutated} different mutated frames`);
+  return enough && result.status <= 1 && result.index === frames.length &&
+      result.disagreements === 0 && rejected >= 0.1 * result.index;
+}
+
+async function main() {
+  const [rubric, total = '220000', seed = '1'] = process.argv.slice(2);
+  let passed = 0;
+  for (const suite of suites) passed += await run(rubric, suite, Number(total), Number(seed));
+  console.log(`${passed} passed, ${suites.length - passed} failed`);
+  process.exit(passed === suites.length ? 0 : 1);
 }
 
 main().catch((error) => {
