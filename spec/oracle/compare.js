@@ -1,5 +1,5 @@
-// Compares a decoded record's fields and stale bytes with the object that Kaitai Struct's parser made
-// of the frame.
+// Compares a decoded record's fields and stale bytes with the object that Kaitai Struct's parser
+// made of the frame.
 'use strict';
 
 class Disagreement extends Error {}

@@ -1,5 +1,5 @@
-// Holds `rubric decode` against Kaitai Struct's own parser: same frames accepted, same faults in the
-// same places, same fields, same bytes left over.
+// Holds `rubric decode` against Kaitai Struct's own parser: same frames accepted, same faults in
+// the same places, same fields, same bytes left over.
 // Usage: node oracle.js PATH_TO_RUBRIC [COUNT] [SEED]
 'use strict';
 const fs = require('fs');
