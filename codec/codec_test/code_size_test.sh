@@ -5,7 +5,7 @@ set -u
 folder=$1 bound=$2
 for tool in avr-g++ avr-nm avr-size; do
   command -v $tool >/dev/null && continue
-  echo "$tool is missing; tools/test needs it (see README.md for the packages)."
+  echo "$tool is missing; tools/install-packages installs what the tests need."
   exit 1
 done
 object=$(mktemp)

@@ -25,6 +25,7 @@ void for_each_view_of_all(F f) {
   oscilloscope::for_each_view(oscilloscope);
 }
 
+/// A row of a spec's kMessages, under its name with the spec's before it.
 struct NamedCodec {
   std::string name;
   MessageCodec codec;

@@ -128,6 +128,44 @@ TEST(Vectors, ViewsAcceptReadAndRefuseAsTheySay) {
             << " invalid\n";
 }
 
+// Chosen at run time, by the tables of all.h: the value of a valid vector is written as its meant
+// bytes again, and what parse refuses, the table's functions refuse with the same error.
+TEST(Vectors, CodecsByNameWriteTheMeantBytesAgain) {
+  std::map<std::string, MessageCodec> codecs;
+  for (const NamedCodec& named : all_codecs()) codecs.emplace(named.name, named.codec);
+  EXPECT_EQ(codecs.size(), checks().size());
+  std::size_t rewritten = 0;
+  std::size_t refused = 0;
+  for (const Vector& vector : load_vectors("spec/vectors")) {
+    SCOPED_TRACE(vector.file);
+    const auto found = codecs.find(vector.message);
+    ASSERT_NE(found, codecs.end());
+    const MessageCodec& codec = found->second;
+    const Bytes bytes(vector.bytes.data(), vector.bytes.size());
+    const Result<Bytes> meant = codec.parse(bytes);
+    std::uint8_t out[512];
+    const Result<MutableBytes> again = codec.rewrite(bytes, MutableBytes(out));
+    if (vector.fault) {
+      ++refused;
+      ASSERT_FALSE(meant.has_value());
+      EXPECT_EQ(name_of(meant.error().fault), vector.fault->kind);
+      ASSERT_FALSE(again.has_value());
+      EXPECT_EQ(again.error(), meant.error());
+      continue;
+    }
+    ++rewritten;
+    ASSERT_TRUE(meant.has_value());
+    EXPECT_TRUE(equal(*meant, bytes.first(vector.size_bytes)));
+    EXPECT_GE(meant->size(), codec.min_size_bytes);
+    EXPECT_LE(meant->size(), codec.max_size_bytes);
+    ASSERT_TRUE(again.has_value());
+    EXPECT_TRUE(equal(*again, *meant));
+  }
+  EXPECT_GE(rewritten, 300U);
+  EXPECT_GE(refused, 200U);
+  std::cout << rewritten << " written again, " << refused << " refused\n";
+}
+
 TEST(Vectors, EachStructureHasValidAndInvalidOnes) {
   std::map<std::string, std::pair<int, int>> counts;
   for (const Vector& vector : load_vectors("spec/vectors")) {

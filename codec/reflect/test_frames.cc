@@ -96,7 +96,7 @@ std::vector<std::uint8_t> FrameMaker::net_msg() {
     body[0] = static_cast<std::uint8_t>(
         one_of({1, 8, 9, 10, 11, 12, 13, 16, 18, 20, 22, 23, 24, 25, 28, 34, 35, 36}));
   }
-  for (const std::size_t at : {1, 3, 7, 13, 34}) {  // Where counts stand in one body or another.
+  for (const std::size_t at : {1u, 3u, 7u, 13u, 34u}) {  // Where counts stand in some body.
     if (at < size && chance(70)) body[at] = static_cast<std::uint8_t>(below(26));
   }
   store_be16(out.data() + 6, chance(50) ? 0xfffd : chance(80) ? 2 : 0xfffe);
