@@ -59,7 +59,9 @@ class ExitCodes(unittest.TestCase):
             ("decoed",): "did you mean 'decode'?",
             ("decode", "--filtr", "x"): "did you mean '--filter'?",
             ("decode", "--format", "xml"): "--format",
-            ("decode", "--count", "-1"): "--count",
+            ("decode", "--count", "-1"): "--count: expected a number of 1 or more, given '-1'",
+            ("decode", "--count", "0"): "--count: expected a number of 1 or more, given '0'",
+            ("decode", "--as", ""): "--as: is empty",
             ("decode", "--filter", "message==updats"): "did you mean 'updates'?",
             ("decode", "--filter", "(index"): "expected ')'",
             ("decode", "--fields", "src.devd"): "unknown name",
@@ -167,6 +169,13 @@ class Output(unittest.TestCase):
         line = json.loads(one.stdout)
         self.assertEqual((line["framing"], line["fields"]["value"], line["raw"]),
                          ("bare", 12, "0a000c"))
+
+    def test_a_capture_file_is_no_bare_message(self):
+        done = decode("--as", "config", JOIN)
+        self.assertEqual((done.returncode, done.stdout), (INPUT, b""))
+        self.assertIn("this is pcapng; --as takes a message alone", done.stderr.decode())
+        done = decode("--as", "config", "--input-format", "bare", JOIN)
+        self.assertEqual((done.returncode, len(lines(done))), (CLEAN, 1))
 
     def test_count_stops(self):
         self.assertEqual(len(lines(decode(JOIN, "--count", 3))), 3)

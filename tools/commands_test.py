@@ -115,6 +115,13 @@ class Encode(Folder):
         code, out, err = rubric("encode", "--format", "hex", stdin=self.decoded(BAD_CRC))
         self.assertEqual(code, 3)
         self.assertIn("hex holds no malformed frames: ", err)
+        # Cut when it was captured: on a serial line its last bytes would read as a CRC.
+        cut = {"schema": "rubric.decode/1", "framing": "hdlc", "raw": "00ffff00000300250a000c",
+               "frame": {"kind": 69, "dropped": 4}, "error": {"fault": "cut"}}
+        for container, expected in [("pcapng", 0), ("hdlc", 3)]:
+            code, _, err = rubric("encode", "--format", container, stdin=json.dumps(cut))
+            self.assertEqual(code, expected, err)
+        self.assertIn("4 bytes of this frame were dropped", err)
 
     def test_usage(self):
         for args, says in [
@@ -127,6 +134,25 @@ class Encode(Folder):
             code, out, err = rubric("encode", *args)
             self.assertEqual((code, out), (2, b""), args)
             self.assertIn(says, err)
+
+    def test_never_overwrites_what_it_reads(self):
+        file = self.folder / "x.jsonl"
+        file.write_text(CONFIG)
+        for args in [[file], ["-"], []]:
+            with open(file, "rb") as stdin:
+                done = subprocess.run([RUBRIC, "encode", "--as", "config", *args, "-o", file],
+                                      stdin=stdin, capture_output=True)
+            self.assertEqual(done.returncode, 2, args)
+            self.assertIn(b"is also the input", done.stderr)
+            self.assertEqual(file.read_text(), CONFIG)
+
+    def test_an_unreadable_input_leaves_the_target_alone(self):
+        old, new = self.folder / "old.sf", self.folder / "new.sf"
+        old.write_text("old")
+        for target in [old, new]:
+            self.assertEqual(rubric("encode", "/nonexistent", "-o", target)[0], 3)
+        self.assertEqual(old.read_text(), "old")
+        self.assertFalse(new.exists())
 
     def test_files_that_are_not_there(self):
         self.assertEqual(rubric("encode", "/nonexistent")[0], 3)
@@ -175,7 +201,27 @@ class Convert(Folder):
         self.assertEqual(code, 2)
         self.assertIn("is also the input", err)
         self.assertEqual(copy.read_bytes(), SERIAL.read_bytes())
-        self.assertEqual(rubric("convert", "/nonexistent", self.folder / "y.sf")[0], 3)
+        with open(copy, "rb") as stdin:
+            done = subprocess.run([RUBRIC, "convert", "-o", copy], stdin=stdin, capture_output=True)
+        self.assertEqual(done.returncode, 2)
+        self.assertEqual(copy.read_bytes(), SERIAL.read_bytes())
+        code, out, err = rubric("convert", SERIAL, "-o", "", "--format", "sf")
+        self.assertEqual((code, out), (2, b""))
+        self.assertIn("--output: is empty", err)
+
+    def test_an_unreadable_input_leaves_the_target_alone(self):
+        old, new = self.folder / "old.sf", self.folder / "new.sf"
+        old.write_text("old")
+        for target in [old, new]:
+            self.assertEqual(rubric("convert", "/nonexistent", target)[0], 3)
+        self.assertEqual(old.read_text(), "old")
+        self.assertFalse(new.exists())
+
+    def test_a_shorter_capture_replaces_a_longer_one(self):
+        target = self.folder / "x.bin"
+        target.write_bytes(3 * SERIAL.read_bytes())
+        self.assertEqual(rubric("convert", SERIAL, target)[0], 0)
+        self.assertEqual(target.read_bytes(), SERIAL.read_bytes())
 
 
 class Stats(unittest.TestCase):
@@ -232,6 +278,7 @@ class Explain(unittest.TestCase):
 
     def test_unknown(self):
         for args, says in [(["net_mesg"], "did you mean 'net_msg'?"),
+                           (["NET_MSG"], "did you mean 'net_msg'?"),
                            (["99887766"], "begin like no frame"),
                            (["--framing", "sf", "xyz"], "expected hex digits"),
                            (["net_msg", "upates"], "did you mean 'updates'?")]:
@@ -252,6 +299,8 @@ class Messages(unittest.TestCase):
         net_msg = next(m for m in listed["messages"] if m["id"] == "net_msg")
         self.assertEqual((net_msg["am_types"], net_msg["min_size"], net_msg["max_size"]),
                          ([28], 14, 114))
+        self.assertLessEqual(max(map(len, text.splitlines())), 110)
+        self.assertRegex(text, r"(?m)^35  updates .* app_msg ")
         code, out, _ = rubric("messages", "--spec", "oscilloscope")
         self.assertEqual(code, 0)
         self.assertIn("oscilloscope_msg", out.decode())

@@ -1,7 +1,6 @@
 #include "tools/convert.h"
 
 #include <fmt/format.h>
-#include <sys/stat.h>
 
 #include <cstdio>
 #include <map>
@@ -89,13 +88,6 @@ void report(const Losses& losses, const std::string& container) {
   }
 }
 
-bool same_file(const std::string& a, const std::string& b) {
-  struct stat x {};
-  struct stat y {};
-  return ::stat(a.c_str(), &x) == 0 && ::stat(b.c_str(), &y) == 0 && S_ISREG(x.st_mode) &&
-         x.st_dev == y.st_dev && x.st_ino == y.st_ino;
-}
-
 // Several files and no -o: the last one is the target, as with cp.
 void settle_target(Options& options) {
   if (options.output.empty() && options.input.files.size() > 1) {
@@ -109,8 +101,7 @@ void settle_target(Options& options) {
                                                "' has no suffix that says what to write (.pcapng, "
                                                ".pcap, .sf, .hex, .hdlc)");
   }
-  for (const std::string& file : options.input.files) {
-    if (!same_file(file, options.output)) continue;
+  if (record::overwrites(options.output, options.input.files)) {
     throw CLI::ValidationError("OUT", "'" + options.output + "' is also the input");
   }
 }
@@ -142,7 +133,8 @@ int run(const Options& options) {
       return output.open();
     };
     result = cli::read_packets(options.input, on_packet);
-    failure = output.finish();
+    // A name that was mistyped must not cost the file that would have been replaced.
+    if (!result.failed || losses.packets > 0) failure = output.finish();
   } catch (const std::system_error& error) {
     failure = error.code().message();
   }
@@ -159,7 +151,7 @@ void add_convert(CLI::App& app) {
   sub->footer(kFooter);
   sub->add_option("FILE", options->input.files,
                   "Captures, and last the target unless -o names it; - is stdin or stdout");
-  sub->add_option("-o,--output", options->output, "Where to; - is stdout");
+  sub->add_option("-o,--output", options->output, "Where to; - is stdout")->check(cli::given());
   sub->add_option("--format", options->format,
                   "What to write: hex, hdlc, sf, pcap, pcapng (default: by the target's suffix)")
       ->check(CLI::IsMember(record::container_names()));

@@ -173,7 +173,7 @@ void add_decode(CLI::App& app) {
       ->check(CLI::IsMember({"abs", "delta", "zero", "none"}))
       ->capture_default_str();
   command->add_option("--count", options->count, "Stop after this many lines")
-      ->check(CLI::PositiveNumber);
+      ->check(cli::at_least_one());
   command->add_flag("--hex", options->hex, "Text: a hex dump below each line");
   command->add_flag("--strict", options->strict, "Exit code 1 for noted frames, too");
   command->add_flag("--units", options->units, "Show values in their units, such as degrees C");

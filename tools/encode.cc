@@ -163,6 +163,9 @@ class Run {
     return good_;
   }
 
+  /// Whether there was anything to encode.
+  bool any() const { return any_; }
+
  private:
   void complain(const std::string& place, const std::string& what) {
     fmt::print(stderr, "rubric: {}: {}\n", place, what);
@@ -173,6 +176,7 @@ class Run {
     std::string_view line;
     while (output_.open() && lines.next(line)) {
       if (line.find_first_not_of(" \t") == std::string_view::npos) continue;
+      any_ = true;
       const std::string place = fmt::format("{}:{}", file_, lines.number());
       if (lines.too_long()) {
         complain(place, fmt::format("expected a line of at most {} bytes", lines.kMaxBytes));
@@ -209,6 +213,7 @@ class Run {
   OwnedPacket packet_;
   bool as_message_ = false;
   bool good_ = true;
+  bool any_ = false;
 };
 
 int run(const Options& options) {
@@ -217,7 +222,10 @@ int run(const Options& options) {
   LineEncoder encoder(options, protocol, message);
   try {
     record::PacketOutput output(options.format, options.output);
-    const bool good = Run(options, encoder, output).all();
+    Run run(options, encoder, output);
+    const bool good = run.all();
+    // A name that was mistyped must not cost the file that would have been replaced.
+    if (!good && !run.any()) return cli::kExitInput;
     const std::string failure = output.finish();
     if (failure.empty()) return good ? cli::kExitClean : cli::kExitInput;
     fmt::print(stderr, "rubric: {}: {}\n", options.output, failure);
@@ -225,6 +233,12 @@ int run(const Options& options) {
     fmt::print(stderr, "rubric: {}: {}\n", options.output, error.code().message());
   }
   return cli::kExitInput;
+}
+
+void check_target(const Options& options) {
+  if (record::overwrites(options.output, options.input.files)) {
+    throw CLI::ValidationError("--output", "'" + options.output + "' is also the input");
+  }
 }
 
 void check_wrapping(const Options& options) {
@@ -247,11 +261,14 @@ void add_encode(CLI::App& app) {
   sub->add_option("--format", options->format, "What to write: hex, hdlc, sf, pcap, pcapng")
       ->check(CLI::IsMember(record::container_names()))
       ->capture_default_str();
-  sub->add_option("-o,--output", options->output, "Where to; - is stdout")->capture_default_str();
+  sub->add_option("-o,--output", options->output, "Where to; - is stdout")
+      ->check(cli::given())
+      ->capture_default_str();
   sub->add_option("--spec", options->input.spec, "Protocol above the AM layer")
       ->capture_default_str();
   sub->add_option("--as", options->input.as_message,
-                  "Each line is the fields of this message, which is put into a frame");
+                  "Each line is the fields of this message, which is put into a frame")
+      ->check(cli::given());
   sub->add_option("--carrier", options->carrier,
                   "With --as, the frame: serial, radio, or none (default: what carries it)")
       ->check(CLI::IsMember({"serial", "radio", "none"}));
@@ -266,6 +283,7 @@ void add_encode(CLI::App& app) {
       ->check(CLI::Range(0, 0xff));
   sub->callback([options] {
     check_wrapping(*options);
+    check_target(*options);
     const int code = run(*options);
     if (code != cli::kExitClean) cli::exit_with(code);
   });

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstdio>
 #include <memory>
 
@@ -80,16 +81,18 @@ std::vector<std::string> all_names(const Protocol& protocol) {
   return names;
 }
 
-std::string upper(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+std::string in_case(std::string text, int (*to_case)(int)) {
+  std::transform(text.begin(), text.end(), text.begin(), [to_case](unsigned char c) {
+    return static_cast<char>(to_case(c));
+  });
   return text;
 }
 
 [[noreturn]] void nothing_of(const std::string& name, const Protocol& protocol) {
   const std::vector<std::string> names = all_names(protocol);
   std::string hint = cli::did_you_mean(name, names);
-  if (hint.empty()) hint = cli::did_you_mean(upper(name), names);
+  if (hint.empty()) hint = cli::did_you_mean(in_case(name, std::tolower), names);
+  if (hint.empty()) hint = cli::did_you_mean(in_case(name, std::toupper), names);
   throw CLI::ValidationError(
       "X", fmt::format("nothing is called '{}'{}; 'rubric messages' lists the messages", name,
                        hint));
@@ -154,7 +157,8 @@ void add_explain(CLI::App& app) {
   sub->add_option("X", options->words, "A name, or hex bytes in one word or several")->required();
   sub->add_option("--spec", options->input.spec, "Protocol above the AM layer")
       ->capture_default_str();
-  sub->add_option("--as", options->input.as_message, "The bytes are this message alone");
+  sub->add_option("--as", options->input.as_message, "The bytes are this message alone")
+      ->check(cli::given());
   sub->add_option("--framing", options->framing,
                   "What the bytes are: auto, sf (from the dispatch byte), hdlc (from the kind "
                   "byte), radio (802.15.4)")

@@ -27,33 +27,48 @@ struct Options {
   std::string format = "text";
 };
 
-constexpr std::string_view kByNameAlone = "by name alone (--as)";
+constexpr const char* kFooter =
+    "\nAM is a message's own number; it stands in frames under that number where 'in' is serial or\n"
+    "radio. No frame leads to a message 'by name', only --as. 'rubric explain NAME' says more.\n";
 
-std::string ways(const std::vector<Reach>& reaches) {
-  std::vector<std::string> texts;
-  if (layout::is_part(reaches)) {
-    for (const Reach& reach : reaches) {
-      const std::string parent = reach.parent->id;
-      if (std::find(texts.begin(), texts.end(), parent) == texts.end()) texts.push_back(parent);
-    }
-    return fmt::format("part of {}", fmt::join(texts, ", "));
+// The name that is shown, where that of the type says no more: several of one shown name lead on.
+std::string place(const Reach& reach, const std::vector<Reach>& reaches) {
+  if (!reach.carrier.empty()) return reach.carrier;
+  const std::string_view name = reach.parent->name;
+  const bool several = std::any_of(reaches.begin(), reaches.end(), [&](const Reach& other) {
+    return other.parent != reach.parent && other.parent->name == name;
+  });
+  return several ? reach.parent->name : reach.parent->id;
+}
+
+// What it stands in: frames of which carrier, which other messages.
+std::string places(const std::vector<Reach>& reaches) {
+  std::vector<std::string> names;
+  for (const Reach& reach : reaches) {
+    const std::string name = place(reach, reaches);
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   }
-  texts = layout::reach_texts(reaches);
-  return texts.empty() ? std::string(kByNameAlone) : fmt::format("{}", fmt::join(texts, "; "));
+  return names.empty() ? "by name" : fmt::format("{}", fmt::join(names, ", "));
+}
+
+std::string am_text(const Type& type, const std::vector<Reach>& reaches) {
+  std::vector<std::int64_t> numbers = layout::am_types(reaches);
+  if (numbers.empty() && type.am_type >= 0) numbers.push_back(type.am_type);
+  return fmt::format("{}", fmt::join(numbers, ", "));
 }
 
 std::string text(const Protocol& protocol) {
-  layout::Table table({"AM", "message", "size", "what", "how it is reached"});
+  layout::Table table({"AM", "message", "bytes", "in", "what"});
   table.align_right(0);
   table.align_right(2);
   for (int i = 0; i < protocol.type_count; ++i) {
     const Type& type = *protocol.types[i];
     if (layout::is_carrier(protocol, type)) continue;
     const std::vector<Reach> reaches = layout::reaches(protocol, type);
-    table.add({fmt::format("{}", fmt::join(layout::am_types(reaches), ", ")), type.id,
-               layout::size_text(type), layout::first_sentence(type.doc), ways(reaches)});
+    table.add({am_text(type, reaches), type.id, layout::size_text(type), places(reaches),
+               layout::first_sentence(type.doc)});
   }
-  return table.text();
+  return table.text_within(layout::kColumns) + kFooter;
 }
 
 std::string json(const Reach& reach) {

@@ -24,7 +24,7 @@ constexpr std::size_t kDetectBytes = 4096;
 constexpr std::size_t kDetectMost = 64 * 1024;
 constexpr int kDetectPatienceMs = 200;
 /// A bare message of a binary file: a bound, so that memory stays flat whatever is read.
-constexpr std::size_t kBareMost = 1024 * 1024;
+constexpr std::size_t kBareMost = kDetectMost;
 
 struct FormatName {
   const char* name;
@@ -139,7 +139,12 @@ class Run {
       size = look(file, format);
       if (size == 0) return;  // Nothing in it, nothing wrong with it.
       if (format == InputFormat::kUnknown && !bare) {
-        return complain("cannot tell what this is; --input-format says it");
+        return complain("this begins like no serial line, forwarder stream, pcap, pcapng or hex "
+                        "text; name it with --input-format");
+      }
+      if (bare && (format == InputFormat::kPcap || format == InputFormat::kPcapng)) {
+        return complain(fmt::format("this is {}; --as takes a message alone (--input-format bare "
+                                    "reads the file as one)", format_name(format)));
       }
       if (format == InputFormat::kJsonl && !bare) {
         return complain("this is JSON; 'rubric encode' reads it");
@@ -237,7 +242,24 @@ void add_input_options(CLI::App& app, InputOptions& options) {
       ->capture_default_str();
   app.add_option("--spec", options.spec, "Protocol above the AM layer")->capture_default_str();
   app.add_option("--as", options.as_message,
-                 "The input is this message alone: each line of hex text, or a binary file whole");
+                 "The input is this message alone: each line of hex text, or a binary file whole")
+      ->check(given());
+}
+
+CLI::Validator given() {
+  const auto check = [](const std::string& text) {
+    return text.empty() ? std::string("is empty") : std::string();
+  };
+  return {check, ""};
+}
+
+CLI::Validator at_least_one() {
+  const auto check = [](const std::string& text) {
+    const bool digits = !text.empty() && text.find_first_not_of("0123456789") == text.npos;
+    if (digits && text.find_first_not_of('0') != text.npos) return std::string();
+    return fmt::format("expected a number of 1 or more, given '{}'", text);
+  };
+  return {check, ""};
 }
 
 const reflect::Protocol& chosen_protocol(const InputOptions& options) {

@@ -24,6 +24,11 @@ struct InputOptions {
 /// Adds FILE..., --input-format, --spec and --as to a subcommand.
 void add_input_options(CLI::App& app, InputOptions& options);
 
+/// Checks that an option's text is not empty, as that of a shell's unset variable is.
+CLI::Validator given();
+/// Checks for a whole number of 1 or more.
+CLI::Validator at_least_one();
+
 /// The protocol that --spec names; CLI::ValidationError with the nearest name if there is none.
 const reflect::Protocol& chosen_protocol(const InputOptions& options);
 /// The message that --as names, null if it is not given; CLI::ValidationError as above.

@@ -39,7 +39,7 @@ std::string short_seconds(std::int64_t ns) {
 }
 
 std::string place_text(const Place& place) {
-  return fmt::format("frame {} at {} s (byte {} of {})", place.index, seconds(place.time_ns),
+  return fmt::format("frame {} at {} s, byte {} of {}", place.index, seconds(place.time_ns),
                      place.offset, place.file);
 }
 
@@ -67,7 +67,7 @@ std::string faults_text(const Counters& counters) {
     table.add({std::string(reflect::fault_name(key.first)), rule.id,
                std::to_string(count.frames), std::to_string(count.first.index), rule.sentence});
   }
-  return table.empty() ? std::string{} : '\n' + table.text();
+  return table.empty() ? std::string{} : '\n' + table.text_within(layout::kColumns);
 }
 
 std::string json(const Place& place) {
@@ -109,7 +109,7 @@ std::string text_report(const Counters& counters) {
   if (all.backward) out += fmt::format(", {} older than the frame before", all.backward);
   out += '\n';
   if (all.gap_ns >= 0) {
-    out += fmt::format("largest gap: {} s, from {} to {}\n", seconds(all.gap_ns),
+    out += fmt::format("largest gap: {} s\n  from {}\n  to   {}\n", seconds(all.gap_ns),
                        place_text(all.gap_from), place_text(all.gap_to));
   }
   out += flows_text("message", counters.messages());

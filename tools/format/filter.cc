@@ -88,7 +88,11 @@ std::int64_t mask_of(const Term& term, const Value& value) {
 
 }  // namespace
 
+// A caret below a longer expression points at nothing on a terminal.
+constexpr std::size_t kMaxShown = 1000;
+
 std::string FilterError::explain(std::string_view expression) const {
+  if (expression.size() > kMaxShown) return fmt::format("{} (character {})", what(), position_ + 1);
   // Characters that are no printable ASCII would shift the caret.
   std::string shown(expression);
   for (char& c : shown) {

@@ -159,7 +159,9 @@ class FilterParser {
  public:
   FilterParser(std::string_view text, const reflect::Protocol& protocol, Filter& filter)
       : lexer_(text), protocol_(protocol), filter_(filter) {
-    if (text.size() > kMaxChars) throw FilterError("the expression is too long", 0);
+    if (text.size() > kMaxChars) {
+      throw FilterError(fmt::format("the expression is longer than {} characters", kMaxChars), 0);
+    }
     token_ = lexer_.next();
   }
 
@@ -333,9 +335,17 @@ class FilterParser {
         break;
       default: fail("expected a number, a name or a string");
     }
+    if (left.is_bytes() && !term.masked) hex(term.operand.text);
     if (term.compare != Compare::kEq && term.compare != Compare::kNe) {
       fail("names and text compare by == and != alone");
     }
+  }
+
+  // What bytes are compared with; 0x may stand before it, as before numbers.
+  void hex(std::string& text) const {
+    if (text.starts_with("0x") || text.starts_with("0X")) text.erase(0, 2);
+    const bool digits = text.find_first_not_of("0123456789abcdefABCDEF") == std::string::npos;
+    if (!digits || text.size() % 2 != 0) fail("bytes compare with hex digits, two a byte");
   }
 
   // A name that the left side can have, else another path; true if it was a path.

@@ -173,6 +173,8 @@ const BadCase kBad[] = {
     {"exists(4)", 7, "expected a name"},
     {"exists(index", 12, "expected ')'"},
     {"index==index==1", 12, "expected '&&', '||' or the end"},
+    {"raw==zz", 5, "bytes compare with hex digits, two a byte"},
+    {"stale!=abc", 7, "bytes compare with hex digits, two a byte"},
 };
 
 TEST(Filter, explains_mistakes) {
@@ -191,6 +193,11 @@ TEST(Filter, explains_mistakes) {
 TEST(Filter, points_at_the_mistake) {
   const FilterError error("unknown name 'b'", 5);
   EXPECT_EQ(error.explain("a && b"), "unknown name 'b'\n  a && b\n       ^");
+}
+
+TEST(Filter, shows_no_expression_that_is_too_long_for_a_caret) {
+  const FilterError error("unknown name 'b'", 5);
+  EXPECT_EQ(error.explain(std::string(100'000, 'a')), "unknown name 'b' (character 6)");
 }
 
 TEST(Filter, bounds_its_depth) {

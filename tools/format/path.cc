@@ -255,6 +255,13 @@ bool Path::is_free_text() const {
   });
 }
 
+bool Path::is_bytes() const {
+  if (attribute_) return attribute_->name == "raw" || attribute_->name == "stale";
+  return std::all_of(targets_.begin(), targets_.end(), [](const Target& target) {
+    return target.field && target.field->kind == Kind::kBytes;
+  });
+}
+
 std::vector<Path> parse_paths(std::string_view list, const Protocol& protocol) {
   std::vector<Path> paths;
   while (true) {

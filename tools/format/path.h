@@ -43,6 +43,8 @@ class Path {
   std::vector<std::string> bit_names() const;
   /// Whether its values are text or bytes of any kind, such as an interface's name.
   bool is_free_text() const;
+  /// Whether all its values are bytes, which compare with hex.
+  bool is_bytes() const;
 
  private:
   enum class Beside : std::uint8_t { kNothing, kName, kBits, kUnit };

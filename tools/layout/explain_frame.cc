@@ -73,7 +73,7 @@ class Rows {
     }
     rest();
     tail();
-    return table_.text(2);
+    return table_.text_within(kColumns, 2);
   }
 
   std::uint32_t head_bytes() const { return head_bytes_; }

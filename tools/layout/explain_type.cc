@@ -40,7 +40,7 @@ class Layout {
   }
 
   std::string text() const {
-    return "\n" + table_.text(2) + choices_ + enums_text() + masks_text();
+    return "\n" + table_.text_within(kColumns, 2) + choices_ + enums_text() + masks_text();
   }
 
  private:

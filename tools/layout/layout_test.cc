@@ -42,6 +42,19 @@ TEST(Table, AlignsAndLeavesOutEmptyColumns) {
   EXPECT_EQ(table.text(1), " a       n\n x       1\n long  100\n");
 }
 
+TEST(Table, BreaksItsLastColumn) {
+  Table table({"n", "what"});
+  table.align_right(0);
+  table.add({"1", "one two three four five six seven"});
+  table.add({"22", "-"});
+  EXPECT_EQ(table.text_within(80), table.text());
+  EXPECT_EQ(table.text_within(28),
+            " n  what\n 1  one two three four five\n    six seven\n22  -\n");
+  // Without room the last column goes below.
+  EXPECT_EQ(table.text_within(20, 1),
+            "  n\n  1\n     one two three\n     four five six\n     seven\n 22\n     -\n");
+}
+
 TEST(Table, Wraps) {
   const std::string text = std::string("aa bb") + kFirmBlank + "cc dd";
   EXPECT_EQ(wrapped(text, 1, 8), " aa\n bb cc\n dd\n");

@@ -21,11 +21,21 @@ class Table {
   /// All lines, each with its end, behind `indent` blanks.
   std::string text(std::size_t indent = 0) const;
 
+  /// The same in `columns` columns, if the last one can be broken at blanks to end there. Where the
+  /// others leave it no room, its cells stand below their rows, without a heading.
+  std::string text_within(std::size_t columns, std::size_t indent = 0) const;
+
  private:
+  std::vector<std::size_t> widths() const;
+  std::string with_last_below(std::size_t columns, std::size_t indent) const;
+
   std::vector<std::string> headings_;
   std::vector<std::vector<std::string>> rows_;
   std::vector<std::size_t> right_;
 };
+
+/// As wide as text should be on a terminal.
+inline constexpr std::size_t kColumns = 110;
 
 /// A blank where wrapped() does not break.
 inline constexpr char kFirmBlank = '\x1f';

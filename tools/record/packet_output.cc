@@ -2,8 +2,10 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <system_error>
 
@@ -63,17 +65,39 @@ Holds holds(std::string_view container) {
   return {pcapng || container == kPcap, pcapng, pcapng, pcapng};
 }
 
+bool overwrites(const std::string& output, const std::vector<std::string>& inputs) {
+  struct stat to {};
+  if (output == "-" || ::stat(output.c_str(), &to) != 0 || !S_ISREG(to.st_mode)) return false;
+  const auto is_output = [&to](const std::string& input) {
+    struct stat from {};
+    const int got = input == "-" ? ::fstat(0, &from) : ::stat(input.c_str(), &from);
+    return got == 0 && to.st_dev == from.st_dev && to.st_ino == from.st_ino;
+  };
+  if (inputs.empty()) return is_output("-");
+  return std::any_of(inputs.begin(), inputs.end(), is_output);
+}
+
 PacketOutput::PacketOutput(std::string_view container, const std::string& path)
-    : container_(container),
-      fd_(path == "-" ? 1
-                      : ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
-  if (fd_ < 0) throw std::system_error(errno, std::generic_category());
+    : container_(container) {
+  if (path != "-") open_file(path);
   output_ = std::make_unique<cli::Output>(fd_);
 }
 
 PacketOutput::~PacketOutput() {
   output_.reset();
   if (fd_ > 1) ::close(fd_);
+  if (!created_.empty()) ::unlink(created_.c_str());
+}
+
+void PacketOutput::open_file(const std::string& path) {
+  constexpr int kFlags = O_WRONLY | O_CREAT | O_CLOEXEC;
+  fd_ = ::open(path.c_str(), kFlags | O_EXCL, 0666);
+  if (fd_ >= 0) {
+    created_ = path;
+  } else {
+    fd_ = ::open(path.c_str(), kFlags, 0666);
+  }
+  if (fd_ < 0) throw std::system_error(errno, std::generic_category());
 }
 
 // A pcap file takes the link type of its first packet.
@@ -87,6 +111,10 @@ bool PacketOutput::make_writer(const Packet& first) {
     if (link_type_ == 0) return false;
     writer_ = std::make_unique<PcapWriter>(link_type_);
   }
+  created_.clear();
+  struct stat status {};
+  const bool file = fd_ > 1 && ::fstat(fd_, &status) == 0 && S_ISREG(status.st_mode);
+  if (file && ::ftruncate(fd_, 0) != 0) throw std::system_error(errno, std::generic_category());
   writer_->begin(bytes_);
   output_->buffer().append(bytes_);
   return true;
@@ -94,8 +122,9 @@ bool PacketOutput::make_writer(const Packet& first) {
 
 std::string PacketOutput::write(const Packet& packet, std::string_view interface_name) {
   cut_refused_ = false;
-  if (packet.framing == Framing::kHdlc && packet.error.fault == Fault::kTooLong &&
-      packet.dropped_bytes) {
+  const bool cut_short = packet.error.fault == Fault::kTooLong ||
+                         (packet.error.fault == Fault::kCut && container_ == kHdlc);
+  if (packet.framing == Framing::kHdlc && cut_short && packet.dropped_bytes) {
     return fmt::format("{} bytes of this frame were dropped when it was read",
                        packet.dropped_bytes);
   }

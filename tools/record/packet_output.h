@@ -23,7 +23,12 @@ struct Holds {
 };
 Holds holds(std::string_view container);
 
-/// Writes packets. What a container begins with is written even if no packet follows.
+/// Whether writing to `output` would overwrite a file that is read; none or "-" is stdin,
+/// an `output` of "-" stdout.
+bool overwrites(const std::string& output, const std::vector<std::string>& inputs);
+
+/// Writes packets. What a container begins with is written even if no packet follows, but nothing
+/// before the first packet or the end: until then a file that is there keeps what it holds.
 class PacketOutput {
  public:
   /// `path`: a file, "-" is stdout. Throws std::system_error.
@@ -44,10 +49,12 @@ class PacketOutput {
   std::string finish();
 
  private:
+  void open_file(const std::string& path);
   bool make_writer(const Packet& first);
 
   std::string container_;
-  int fd_;
+  std::string created_;  ///< The file's name as long as nothing was written to a new one.
+  int fd_ = 1;
   std::unique_ptr<cli::Output> output_;
   std::unique_ptr<Writer> writer_;
   std::uint16_t link_type_ = 0;
