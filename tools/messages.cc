@@ -29,7 +29,7 @@ struct Options {
 
 constexpr const char* kFooter =
     "\nAM is a message's own number; it stands in frames under that number where 'in' is serial\n"
-    "or radio. No frame leads to a message 'by name', only --as. 'rubric explain NAME' says more.\n";
+    "or radio. No frame leads to a message 'by name', only --as; see 'rubric explain NAME'.\n";
 
 // The name that is shown, where that of the type says no more: several of one shown name lead on.
 std::string place(const Reach& reach, const std::vector<Reach>& reaches) {
