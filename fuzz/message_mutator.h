@@ -19,8 +19,8 @@ class MessageMaker {
  public:
   MessageMaker(const reflect::RouteTable& routes, unsigned seed) : routes_(routes), random_(seed) {}
 
-  /// A frame that leads to the message of a random route, framed as `format` wants it. Routes of the
-  /// radio only where the format carries radio frames.
+  /// A frame that leads to the message of a random route, framed as `format` wants it. Routes of
+  /// the radio only where the format carries radio frames.
   std::vector<std::uint8_t> framed(Format format);
 
   std::size_t below(std::size_t n) { return n == 0 ? 0 : random_() % n; }
