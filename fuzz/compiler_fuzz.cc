@@ -4,6 +4,7 @@
 #include <string>
 
 #include "spec/compiler/emit.h"
+#include "spec/compiler/emit_cpp.h"
 #include "spec/compiler/load.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -16,6 +17,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (const auto& spec : model.specs) {
     rubricc::emit_tables(*spec);
     rubricc::emit_dictionary(*spec);
+    rubricc::emit_messages(*spec);
+    rubricc::emit_cpp(*spec);
   }
   rubricc::emit_doc(model);
   return 0;

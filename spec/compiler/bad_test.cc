@@ -84,8 +84,42 @@ INSTANTIATE_TEST_SUITE_P(Files, BadRequirements,
 
 // A file that lost its first lines would expect nothing and a renamed folder would test nothing.
 TEST(BadSpecs, AreAllThere) {
-  EXPECT_GE(files_in(kFolder, ".ksy").size(), 125U);
+  EXPECT_GE(files_in(kFolder, ".ksy").size(), 155U);
   EXPECT_GE(files_in(kFolder + "requirements/", ".yaml").size(), 9U);
+}
+
+// What would be too large for a file beside the others.
+std::string reported_for(const std::string& text) {
+  Model model;
+  Diagnostics diagnostics;
+  load_spec_text("big.ksy", text, model, diagnostics);
+  check_model(model, diagnostics);
+  return diagnostics.print();
+}
+
+TEST(BadSpecs, FilesAreNotLargerThanOneMebibyte) {
+  const std::string text = "meta: {id: big}\n";
+  EXPECT_EQ(reported_for(text + std::string((1 << 20) - text.size(), '#')), "");
+  EXPECT_EQ(reported_for(text + std::string((1 << 20) + 1 - text.size(), '#')),
+            "big.ksy: error: the file is too large; at most 1 MiB is read\n");
+}
+
+TEST(BadSpecs, TypesNestNotTooDeep) {
+  std::string text = "meta: {id: big}\ntypes:\n";
+  for (int i = 0; i < 110; ++i) {
+    text += fmt::format("  t{}: {{-requirement: A, seq: [{{id: a, type: {}}}]}}\n", i,
+                        i + 1 < 110 ? fmt::format("t{}", i + 1) : "u1");
+  }
+  EXPECT_NE(reported_for(text).find("error: types nest too deep; at most 100 levels\n"),
+            std::string::npos);
+}
+
+TEST(BadSpecs, OnlyTheFirst500DiagnosticsAreShown) {
+  std::string text = "meta: {id: big}\ntypes:\n";
+  // Each of them breaks three rules.
+  for (int i = 0; i < 503; ++i) text += fmt::format("  T{}: 1\n", i);
+  const std::string shown = reported_for(text);
+  EXPECT_TRUE(shown.ends_with("\n1009 more errors\n")) << shown.substr(shown.size() - 200);
 }
 
 TEST(Diagnostics, ShowTheLineAndACaretBelowTheColumn) {

@@ -1,3 +1,4 @@
+// The passes over the model, in their order.
 #include "spec/compiler/check.h"
 
 #include "spec/compiler/load.h"
@@ -10,6 +11,7 @@ void check_model(Model& model, Diagnostics& diagnostics) {
   check_order(check);
   check_layout(check);
   check_types(check);
+  if (diagnostics.empty()) check_cpp(check);  // It lays out what the passes before it completed.
 }
 
 }  // namespace rubricc

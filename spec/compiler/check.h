@@ -51,8 +51,8 @@ const Enum* find_enum(const Spec& spec, const std::vector<std::string>& path);
 void check_order(Check& check);
 /// Resolves `expr`: fields, offsets, enum values, range. kOpen after an error.
 ExprShape resolve_expr(Check& check, Expr& expr, const Scope& scope);
-/// The value of an expression without fields.
-/// A value of `enumeration` if there is one, else a number. `what` names whose value it is.
+/// The value of an expression without fields: a value of `enumeration` if there is one, else a
+/// number. `what` names whose value it is.
 std::optional<std::int64_t> resolve_constant(Check& check, Expr& expr, std::string_view what,
                                              const Enum* enumeration, const Scope& scope);
 /// Whether keys fit the kind of their field: `valid`, `enum`, -expect, -unit, size, repeat.
@@ -64,7 +64,9 @@ void check_switch(Check& check, Switch& choice, const Field& field, const Scope&
 void check_layout(Check& check);
 /// Peeks and interpretations of a type whose seq is laid out.
 void check_instances(Check& check, Type& type);
-/// Requirements, carriers.
+/// Requirements, carriers, AM types.
 void check_types(Check& check);
+/// Names and sizes that the generated C++ could not have.
+void check_cpp(Check& check);
 
 }  // namespace rubricc

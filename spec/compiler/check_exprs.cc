@@ -1,3 +1,4 @@
+// Expressions: what their names are, what they yield, and between which numbers.
 #include <algorithm>
 #include <array>
 #include <optional>
@@ -125,6 +126,11 @@ class Resolver {
     if (outer.kind != ValueKind::kStruct || outer.choice) {
       check_.error(expr.place, fmt::format("{} has no fields to read", quoted(outer.id)),
                    outer.choice ? "its type depends on a switch" : "it is no structure");
+      return nullptr;
+    }
+    if (outer.extent != ExtentKind::kOwn) {
+      check_.error(expr.place, fmt::format("the fields of {} cannot be read", quoted(outer.id)),
+                   "a size delimits it; a structure without one was expected");
       return nullptr;
     }
     for (const auto& field : outer.type->fields) {

@@ -1,3 +1,4 @@
+// Peeks and interpretations of a type whose seq is laid out.
 #include "spec/compiler/check.h"
 
 namespace rubricc {

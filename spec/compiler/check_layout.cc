@@ -92,6 +92,11 @@ class Layout {
                                expr->range.min, expr->range.max));
       return false;
     }
+    if (expr->range.max == 0) {
+      check_.error(expr->place, fmt::format("the {} {} is always 0", what, quoted(to_text(*expr))),
+                   "a field has bytes");
+      return false;
+    }
     return true;
   }
 

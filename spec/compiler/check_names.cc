@@ -1,3 +1,4 @@
+// Names: what they stand for, and that no two are the same.
 #include <algorithm>
 #include <array>
 #include <map>

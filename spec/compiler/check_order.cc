@@ -1,3 +1,4 @@
+// The order of types: what a type contains before it; no type contains itself.
 #include <functional>
 #include <map>
 

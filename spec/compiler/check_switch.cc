@@ -1,3 +1,4 @@
+// Switches: keys that can be, each once, and all that must be there.
 #include <algorithm>
 #include <map>
 
@@ -74,6 +75,7 @@ void check_switch(Check& check, Switch& choice, const Field& field, const Scope&
       continue;
     }
     one.key = *value;
+    one.number = value;
     const auto [first, fresh] = lines.try_emplace(*value, one.place.line);
     if (!fresh) {
       check.error(one.place, fmt::format("duplicate case {}", name_of(key.enumeration, *value)),

@@ -1,4 +1,4 @@
-// Requirements and carriers.
+// Requirements, carriers and AM types.
 #include <algorithm>
 #include <array>
 #include <map>
@@ -48,6 +48,21 @@ class Requirements {
   std::vector<std::string> ids_;
 };
 
+/// A carrier's switch chooses by AM type; what it chooses must not claim another.
+void check_am_types(Check& check, const Type& carrier) {
+  for (const auto& field : carrier.fields) {
+    if (!field->choice) continue;
+    for (const SwitchCase& one : field->choice->cases) {
+      if (!one.number || one.type == nullptr || one.type->am_types.empty()) continue;
+      const auto& own = one.type->am_types;
+      if (std::find(own.begin(), own.end(), *one.number) != own.end()) continue;
+      check.error(one.place, fmt::format("case {} leads to {}, whose AM type is {}", *one.number,
+                                         quoted(one.type_name), own.front()),
+                  "the switch of a carrier and -am-type must agree");
+    }
+  }
+}
+
 }  // namespace
 
 void check_types(Check& check) {
@@ -57,6 +72,7 @@ void check_types(Check& check) {
     for (const auto& type : spec->types) {
       requirements.check_type(*type);
       if (type->carrier.empty()) continue;
+      check_am_types(check, *type);
       const Place& place = place_of(type->places, "-carrier", type->place);
       if (std::find(kCarriers.begin(), kCarriers.end(), type->carrier) == kCarriers.end()) {
         check.error(place, fmt::format("unknown carrier {}", quoted(type->carrier)),

@@ -1,3 +1,4 @@
+// Names, strings and lists as C++ text.
 #include "spec/compiler/cpp_text.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// How diagnostics are kept and printed, and what was probably meant.
 #include "spec/compiler/diagnostics.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// The C++ codec: the files, and the comment and includes at the top of each.
 #include "spec/compiler/emit_cpp.h"
 
 #include <algorithm>
@@ -91,10 +92,16 @@ GeneratedFile structure(const Type& type, const Spec& spec) {
   return {header_of(type), whole(spec, about(layout, spec), headers, body)};
 }
 
+bool has_structures(const Spec& spec) {
+  return std::any_of(spec.types.begin(), spec.types.end(),
+                     [](const auto& type) { return !type->is_mask; });
+}
+
 GeneratedFile all(const Spec& spec) {
   std::set<std::string> headers{"codec/runtime/message_codec.h"};
   for (const auto& type : spec.types) headers.insert(header_of(*type));
   for (const Spec* import : spec.imports) {
+    if (!has_structures(*import)) continue;
     headers.insert("codec/generated/" + import->id + "/all.h");
   }
   return {"codec/generated/" + spec.id + "/all.h",
@@ -119,7 +126,7 @@ std::vector<GeneratedFile> emit_cpp(const Spec& spec) {
     out.push_back({header_of(*type), whole(spec, comment(type->name + ". " + type->doc, "//"), {},
                                            emit_mask(*type))});
   }
-  out.push_back(all(spec));
+  if (has_structures(spec)) out.push_back(all(spec));
   return out;
 }
 

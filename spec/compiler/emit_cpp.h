@@ -7,8 +7,7 @@
 
 namespace rubricc {
 
-/// The codec of one checked spec: codec/generated/<spec>/*.h. Throws std::logic_error for what the
-/// checker lets pass and no header can hold yet.
+/// The codec of one checked spec: codec/generated/<spec>/*.h.
 std::vector<GeneratedFile> emit_cpp(const Spec& spec);
 
 }  // namespace rubricc

@@ -232,7 +232,7 @@ std::string rest(const Layout& layout, const Spec& spec) {
     }
     Rest one = rest_of(layout, l, spec, running ? "at" : at, more_moves);
     if (more_moves) one.text += "at += " + one.size + ";\n";
-    if (f.condition) {
+    if (f.condition && !one.text.empty()) {
       one.text = fill("if (<<if>>) {\n  <<then>>\n}\n",
                       {{"if", print(*f.condition, loads)}, {"then", one.text}});
     }

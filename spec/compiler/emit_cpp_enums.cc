@@ -50,7 +50,8 @@ constexpr <<class>> operator|(<<class>>::Bit a, <<class>>::Bit b) {
 
 // As wide as the widest field that holds it.
 int width_of(const Enum& e, const Spec& spec) {
-  int width = e.entries.empty() || e.entries.back().value <= 0xff ? 1 : 2;
+  const std::int64_t most = e.entries.empty() ? 0 : e.entries.back().value;
+  int width = most <= 0xff ? 1 : most <= 0xffff ? 2 : 4;
   for (const auto& type : spec.types) {
     for (const auto* list : {&type->fields, &type->instances}) {
       for (const auto& f : *list) {

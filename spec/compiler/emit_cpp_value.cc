@@ -73,14 +73,15 @@ Leaf value_leaf(const Layout& layout) {
     if (expr.field->is_instance) {
       throw std::logic_error("emit_cpp: " + expr.field->id + ": a length reads an instance");
     }
-    const std::vector<std::string>& path = expr.path;
-    if (path.size() == 1) {
-      for (const FieldLayout& l : layout.fields) {
-        if (l.field == expr.field && l.derived_from) return length_text(*l.derived_from);
-      }
-    }
+    const std::size_t depth = expr.steps.size();
     std::string out = "value";
-    for (const std::string& step : path) out += "." + step;
+    for (std::size_t i = 0; i + 1 < depth; ++i) out += "." + expr.path[i];
+    const Layout inner = depth > 1 ? lay_out(*expr.steps[depth - 2]->type) : Layout{};
+    for (const FieldLayout& l : (depth > 1 ? inner : layout).fields) {
+      if (l.field != expr.field || !l.derived_from) continue;
+      return out + "." + l.derived_from->id + ".size()";
+    }
+    out += "." + expr.path.back();
     if (expr.field->kind == ValueKind::kMask) return out + ".raw()";
     return expr.field->enumeration ? "static_cast<" + raw_type(*expr.field) + ">(" + out + ")"
                                    : out;
@@ -138,7 +139,10 @@ bool needs_length_check(const FieldLayout& l) {
   if (l.length || (is_array(l) && l.fixed_count)) {
     return l.shape == Shape::kStructs && has_lengths(*l.field->type);
   }
-  return is_array(l) || (is_bytes(l) && l.field->extent == ExtentKind::kSize);
+  const bool sized = l.field->extent == ExtentKind::kSize;
+  if (!is_array(l)) return is_bytes(l) && sized;
+  return l.capacity > 0 || sized || l.field->repeat == RepeatKind::kCount ||
+         (l.shape == Shape::kStructs && has_lengths(*l.field->type));
 }
 
 std::string derived_check(const FieldLayout& l) {
@@ -203,7 +207,7 @@ std::string length_checks(const Layout& layout, const Spec& spec) {
     out += optional(*layout.fields[i].field, length_check(layout, i, spec));
   }
   const FieldLayout* last = layout.fields.empty() ? nullptr : &layout.fields.back();
-  if (layout.clamps && is_bytes(*last)) {
+  if (layout.clamps && (!is_array(*last) || last->capacity == 0)) {
     const std::string most = std::to_string(layout.type->max_size);
     out += guard("size_bytes(value) > " + most, "return error_at(Fault::kTooLong, " + most + ", " +
                                                     req(last->field->requirement) + ");");

@@ -284,7 +284,9 @@ SizeText builder_sizes() {
 }
 
 std::string emit_group(const Layout& layout, const Group& group, const Spec& spec) {
-  const std::string range = group.overlaid->id + "()";
+  // kind_body() has a variable of that name.
+  const std::string& id = group.overlaid->id;
+  const std::string range = (id == "body" ? "this->" : "") + id + "()";
   const std::string name = pascal(group.name);
   const std::string doc =
       group.interpretation

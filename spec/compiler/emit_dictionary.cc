@@ -1,3 +1,4 @@
+// Dictionaries for libFuzzer: constants and borders of ranges as bytes.
 #include <set>
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// The page about the wire: its frame, specs, enums and requirements.
 #include "spec/compiler/emit_doc.h"
 
 #include <map>

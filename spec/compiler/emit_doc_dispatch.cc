@@ -1,3 +1,4 @@
+// The page about the wire: which numbers lead to which message.
 #include <set>
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// The page about the wire: the picture of the bytes of a structure.
 #include <algorithm>
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// The page about the wire: one type, with its fields and interpretations.
 #include <fmt/format.h>
 
 #include "spec/compiler/emit_doc.h"

@@ -1,3 +1,4 @@
+// protocols.h: the list of all protocols.
 #include <algorithm>
 
 #include "spec/compiler/cpp_text.h"

@@ -1,3 +1,4 @@
+// requirements.h and its table: ids and texts of the rules.
 #include "spec/compiler/cpp_text.h"
 #include "spec/compiler/emit.h"
 #include "spec/compiler/template.h"

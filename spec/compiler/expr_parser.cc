@@ -1,3 +1,4 @@
+// Parses expressions by precedence, and prints them again.
 #include "spec/compiler/expr_parser.h"
 
 #include <array>

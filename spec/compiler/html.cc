@@ -1,3 +1,4 @@
+// HTML text: escaping and tags.
 #include "spec/compiler/html.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Arithmetic of ranges, in 128 bits so that overflow is seen.
 #include "spec/compiler/intervals.h"
 
 #include <algorithm>

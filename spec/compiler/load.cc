@@ -1,3 +1,4 @@
+// Loads specs and what they import.
 #include "spec/compiler/load.h"
 
 #include <algorithm>

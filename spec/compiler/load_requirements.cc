@@ -1,3 +1,4 @@
+// Loads the catalogue of requirements.
 #include <array>
 #include <fstream>
 #include <iterator>

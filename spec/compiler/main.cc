@@ -11,7 +11,6 @@
 
 #include "spec/compiler/emit.h"
 #include "spec/compiler/emit_cpp.h"
-#include "spec/compiler/emit_cpp.h"
 #include "spec/compiler/load.h"
 
 namespace {
@@ -85,8 +84,8 @@ int run(const Options& options) {
     for (const auto& file : emit(options, model)) {
       if (!write(options.out, file)) return kCannotReadOrWrite;
     }
-  } catch (const std::logic_error& e) {  // A limit of an emitter that no check knows.
-    std::cerr << "rubricc: cannot emit: " << e.what() << '\n';
+  } catch (const std::logic_error& e) {  // A check let pass what an emitter cannot print.
+    std::cerr << "rubricc: a mistake of the compiler itself: " << e.what() << '\n';
     return kDiagnostics;
   }
   return kOk;

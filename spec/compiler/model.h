@@ -72,7 +72,8 @@ struct Valid {
 struct SwitchCase {
   Place place;
   ExprPtr key_expr;                    // Null for `_`.
-  std::int64_t key = 0;                // Resolved.
+  std::optional<std::int64_t> number;  // The key, unless that had a mistake.
+  std::int64_t key = 0;                // The same, for emitters.
   std::string type_name;
   const Type* type = nullptr;          // Resolved.
 };

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "spec/compiler/emit.h"
+#include "spec/compiler/emit_cpp.h"
 #include "spec/compiler/load.h"
 
 namespace rubricc {
@@ -93,6 +94,7 @@ TEST(Mutations, AreReportedOrCompiled) {
         EXPECT_FALSE(emit_tables(*spec).empty());
         EXPECT_FALSE(emit_messages(*spec).empty());
         EXPECT_FALSE(emit_dictionary(*spec).empty());
+        EXPECT_FALSE(emit_cpp(*spec).empty());
       }
       EXPECT_FALSE(emit_doc(model).empty());
     }

@@ -1,3 +1,4 @@
+// Reads one field, instance or bit of a mask.
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -202,7 +203,9 @@ void read_extent(const YamlInput& input, const YamlMap& map, Field& field) {
     field.size = read_expr(input, size->value, "size");
     field.extent = ExtentKind::kSize;
   }
-  if (map.boolean("size-eos").value_or(false)) {
+  const auto to_end = map.boolean("size-eos");
+  if (map.has("size-eos") && !to_end) field.refused_keys = true;
+  if (to_end.value_or(false)) {
     if (map.has("size")) {
       input.error(map.find("size-eos")->key_node, "size-eos beside size", "one of both");
     }
@@ -306,7 +309,9 @@ std::unique_ptr<Field> read_field(const YamlInput& input, const YAML::Node& node
     field->expect_expr = read_expr(input, entry->value, "-expect");
   }
   if (!in_seq) {
-    field->position = map.integer("pos").value_or(-1);
+    const auto position = map.integer("pos");
+    field->position = position.value_or(-1);
+    if (!position) field->places.erase("pos");  // What stands there was reported.
     field->is_peek = field->kind != ValueKind::kStruct && field->extent == ExtentKind::kOwn;
     if (!map.has("pos")) input.error(instance->key_node, "an instance without pos", "");
   }

@@ -1,3 +1,4 @@
+// Reads a file: meta, types, enums.
 #include "spec/compiler/read_spec.h"
 
 #include <algorithm>
@@ -107,6 +108,16 @@ void read_fields(const YamlInput& input, const YamlMap& map, const Spec& spec, T
   }
 }
 
+/// Only where seq is absent or []: what could not be read in it was reported.
+void check_seq(const YamlInput& input, const YamlMap& map, const Type& type) {
+  const YamlEntry* seq = map.find("seq");
+  const bool empty = seq == nullptr ? !map.refused_keys()
+                                    : seq->value.IsSequence() && seq->value.size() == 0;
+  if (!empty) return;
+  input.diagnostics.error(type.place, fmt::format("type {} without fields", quoted(type.id)),
+                          "seq: with a field was expected");
+}
+
 void read_type(const YamlInput& input, const YamlMap& map, const Spec& spec, Type& type) {
   type.places = places_of(input, map);
   type.refused_keys = map.refused_keys();
@@ -127,6 +138,7 @@ void read_type(const YamlInput& input, const YamlMap& map, const Spec& spec, Typ
                             fmt::format("unknown framing {}", quoted(type.framing)),
                             "known is hdlc");
   }
+  if (input.budget >= 0 && map.is_map()) check_seq(input, map, type);
   if (map.has("-mask")) {
     read_bits(input, map, type);
   } else {

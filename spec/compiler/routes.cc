@@ -1,3 +1,4 @@
+// Which numbers must stand where for a frame to hold a message.
 #include "spec/compiler/routes.h"
 
 #include <algorithm>

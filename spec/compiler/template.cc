@@ -1,3 +1,4 @@
+// Fills the holes of a template.
 #include "spec/compiler/template.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Templates: holes alone on a line, empty ones, and missing values.
 #include "spec/compiler/template.h"
 
 #include <stdexcept>

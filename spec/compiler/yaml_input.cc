@@ -1,3 +1,4 @@
+// YAML with places, limits and diagnostics.
 #include "spec/compiler/yaml_input.h"
 
 #include <algorithm>
@@ -91,6 +92,7 @@ YamlMap::YamlMap(const YamlInput& input, const YAML::Node& node, std::string_vie
     input.error(node, fmt::format("{} is {}", what, kind_of(node)), "a mapping was expected");
     return;
   }
+  is_map_ = true;
   for (const auto& pair : node) {
     if (!input.spend(pair.first)) return;
     if (!pair.first.IsScalar()) {

@@ -49,6 +49,7 @@ class YamlMap {
   const std::vector<YamlEntry>& entries() const { return entries_; }
   const YamlEntry* find(std::string_view key) const;
   bool has(std::string_view key) const { return find(key) != nullptr; }
+  bool is_map() const { return is_map_; }
   bool refused_keys() const { return refused_keys_; }
 
   /// The value of `key`; nothing, after an error, where it is of another kind; nothing if absent.
@@ -60,6 +61,7 @@ class YamlMap {
   const YamlInput& input_;
   std::vector<YamlEntry> entries_;
   std::map<std::string, std::size_t, std::less<>> index_;
+  bool is_map_ = false;
   bool refused_keys_ = false;
 };
 

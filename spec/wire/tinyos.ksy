@@ -25,7 +25,7 @@ types:
         doc: Packet kind. An unknown kind is shown and kept.
       - id: seq_num
         type: u1
-        if: kind.to_i == 67 or kind.to_i == 68
+        if: kind == serial_kind::ack or kind == serial_kind::packet_ack
         doc: Of the frame to confirm, or of the frame that it confirms.
         -requirement: WIRE-SERIAL-SEQ
       - id: packet
