@@ -6,6 +6,7 @@
 
 #include "spec/compiler/cpp_text.h"
 #include "spec/compiler/emit.h"
+#include "spec/compiler/emit_cpp.h"
 #include "spec/compiler/load.h"
 #include "spec/compiler/routes.h"
 
@@ -131,6 +132,54 @@ TEST(Emitters, TheDictionaryHasValuesInWireOrder) {
   EXPECT_NE(text.find("r_addr_pid_proxy=\"\\xff\\xfd\"\n"), std::string::npos);
   EXPECT_NE(text.find("am_net_msg=\"\\x1c\"\n"), std::string::npos);
   EXPECT_NE(text.find("net_msg_nbytes_above_max=\"\\x67\"\n"), std::string::npos);
+}
+
+// Unbounded arrays, a tail in a clamped structure, a length within a nested structure, a field
+// with the name of a variable of the generated code, an enum of 32 bits, a spec of enums only.
+constexpr char kUnlikeTheWire[] = R"(
+meta: {id: test, endian: be}
+types:
+  named_body:
+    -requirement: A
+    -size: 50
+    seq: [{id: n, type: u1}, {id: body, size-eos: true}]
+    instances:
+      kind: {pos: 1, type: u1}
+      known: {pos: 1, size-eos: true, type: {switch-on: kind, cases: {1: numbers}}}
+  numbers:
+    -requirement: A
+    seq: [{id: n, type: u1}, {id: p, type: u4, repeat: eos}]
+  counted:
+    -requirement: A
+    seq: [{id: n, type: u1, valid: 3}, {id: a, type: u2, repeat: expr, repeat-expr: n}]
+  outer:
+    -requirement: A
+    -size: 60
+    seq: [{id: head, type: counted}, {id: b, size: head.n}, {id: rest, type: numbers}]
+  late:
+    -requirement: A
+    -size: 90
+    seq: [{id: n, type: u1}, {id: v, size: n}, {id: rest, type: u2, repeat: eos}]
+  wide:
+    -requirement: A
+    seq: [{id: e, type: u4, enum: far}]
+enums:
+  far: {0x12345678: one}
+)";
+
+TEST(Emitters, CppOfWhatTheWireSpecsDoNotHold) {
+  std::string all;
+  for (const char* text : {kUnlikeTheWire, "meta: {id: names}\nenums: {e: {1: one}}\n"}) {
+    Model model;
+    Diagnostics diagnostics;
+    load_spec_text("spec/wire/test.ksy", text, model, diagnostics);
+    check_model(model, diagnostics);
+    ASSERT_EQ(diagnostics.print(), "");
+    for (const GeneratedFile& file : emit_cpp(*model.specs.back())) all += file.text;
+  }
+  EXPECT_NE(all.find("const Bytes body = this->body();"), all.npos);
+  EXPECT_NE(all.find("value.head.a.size()"), all.npos);
+  EXPECT_NE(all.find("kOne = 0x12345678,"), all.npos);
 }
 
 TEST(CppText, NamesAndStrings) {
