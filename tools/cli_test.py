@@ -47,6 +47,13 @@ class ExitCodes(unittest.TestCase):
         self.assertEqual(decode(BAD).returncode, MALFORMED)
         self.assertEqual(decode(JOIN, BAD).returncode, MALFORMED)
 
+    def test_hex_of_radio_frames_reads_back(self):
+        radio = run("convert", JOIN, "-", "--format", "hex", "--only", "radio").stdout
+        self.assertEqual(decode(stdin=radio).returncode, MALFORMED)
+        again = decode("--input-format", "hex-radio", "--time", "none", stdin=radio)
+        self.assertEqual(again.returncode, CLEAN)
+        self.assertIn("join_request", lines(again)[0])
+
     def test_strict_counts_notes(self):
         self.assertEqual(decode(NOTED).returncode, CLEAN)
         self.assertEqual(decode(NOTED, "--strict").returncode, CLEAN)

@@ -42,8 +42,10 @@ struct Options {
 
 constexpr const char* kFooter =
     "A line with \"raw\" is encoded from it. Where it also has \"fields\" and is not marked\n"
-    "malformed, both must say the same: delete \"raw\" to encode changed fields. Sizes, counts\n"
-    "and check sums that are missing are computed.\n"
+    "malformed, both must say the same: delete \"raw\", and \"crc\" or \"fcs\" in\n"
+    "\"frame\", to encode changed fields. Sizes, counts and check sums that are missing are\n"
+    "computed. A message alone:\n"
+    "  echo '{\"type\":10,\"value\":12}' | rubric encode --as config\n"
     "Exit codes: 0 all lines encoded, 2 usage, 3 some line or file could not be read or encoded.";
 
 /// Turns a line into a packet; throws record::RecordError.

@@ -26,13 +26,16 @@ constexpr int kDetectPatienceMs = 200;
 /// A bare message of a binary file: a bound, so that memory stays flat whatever is read.
 constexpr std::size_t kBareMost = kDetectMost;
 
+/// Hex text whose lines are 802.15.4 frames without FCS.
+constexpr const char* kHexRadio = "hex-radio";
+
 struct FormatName {
   const char* name;
   InputFormat format;
 };
 constexpr FormatName kFormats[] = {
     {"hdlc", InputFormat::kHdlc}, {"sf", InputFormat::kSf},   {"pcap", InputFormat::kPcap},
-    {"pcapng", InputFormat::kPcapng}, {"hex", InputFormat::kHex},
+    {"pcapng", InputFormat::kPcapng}, {"hex", InputFormat::kHex}, {kHexRadio, InputFormat::kHex},
 };
 
 std::string_view format_name(InputFormat format) {
@@ -152,6 +155,7 @@ class Run {
     }
     if (bare && format != InputFormat::kHex) return whole(file, size);
     ReaderOptions reader_options;
+    if (options_.format == kHexRadio) reader_options.hex_framing = Framing::kRadio;
     if (bare) reader_options.hex_framing = Framing::kBare;
     std::unique_ptr<Reader> reader = make_reader(format, reader_options);
     source_.format = format_name(format);
@@ -237,8 +241,9 @@ void add_input_options(CLI::App& app, InputOptions& options) {
   app.add_option("FILE", options.files, "Captures, in order; none or - is stdin");
   app.add_option("--input-format", options.format,
                  "What the input is: auto, hdlc (bytes of a serial line), sf (serial forwarder), "
-                 "pcap, pcapng, hex (text), bare (one message, with --as)")
-      ->check(CLI::IsMember({"auto", "hdlc", "sf", "pcap", "pcapng", "hex", "bare"}))
+                 "pcap, pcapng, hex (text, from the dispatch byte on), hex-radio (text, 802.15.4 "
+                 "without FCS), bare (one message, with --as)")
+      ->check(CLI::IsMember({"auto", "hdlc", "sf", "pcap", "pcapng", "hex", kHexRadio, "bare"}))
       ->capture_default_str();
   app.add_option("--spec", options.spec, "Protocol above the AM layer")->capture_default_str();
   app.add_option("--as", options.as_message,

@@ -15,7 +15,7 @@ namespace rubric::cli {
 /// What add_input_options fills.
 struct InputOptions {
   std::vector<std::string> files;  ///< In order; none or "-" is stdin.
-  std::string format = "auto";     ///< auto, hdlc, sf, pcap, pcapng, hex, bare.
+  std::string format = "auto";     ///< As --input-format takes it.
   std::string spec = "rubicon";    ///< A protocol's id.
   std::string as_message;          ///< Bytes are this message alone; empty: framed packets.
   bool progress = true;            ///< A bar on stderr for long files, where that is a terminal.
