@@ -61,7 +61,7 @@ std::string meaning(const Field& field, std::int64_t value) {
 class Rows {
  public:
   explicit Rows(const Frame& frame)
-      : frame_(frame), decoded_(frame.decoded), packet_(*frame.packet) {
+      : decoded_(frame.decoded), packet_(*frame.packet) {
     table_.align_right(0);
   }
 
@@ -193,7 +193,6 @@ class Rows {
                         : fmt::format("Check sum, should be {:#06x}.", computed));
   }
 
-  const Frame& frame_;
   const Decoded& decoded_;
   const Packet& packet_;
   Table table_{{"offset", "bytes", "field", "value", "meaning"}};
