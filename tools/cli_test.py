@@ -19,7 +19,7 @@ FIRMWARE = pathlib.Path("spec/captures/firmware")
 JOIN = FIRMWARE / "a_join_data.pcapng"
 SERIAL = FIRMWARE / "a_join_data.serial.bin"
 BAD = FIRMWARE / "h10_hdlc_escape_and_bad_serial.serial_in.bin"
-NOTED = FIRMWARE / "b_reliable.serial.bin"
+PLAIN = FIRMWARE / "b_reliable.serial.bin"
 CLEAN, MALFORMED, USAGE, INPUT = range(4)
 
 RUBRIC = None
@@ -55,8 +55,8 @@ class ExitCodes(unittest.TestCase):
         self.assertIn("join_request", lines(again)[0])
 
     def test_strict_counts_notes(self):
-        self.assertEqual(decode(NOTED).returncode, CLEAN)
-        self.assertEqual(decode(NOTED, "--strict").returncode, CLEAN)
+        self.assertEqual(decode(PLAIN).returncode, CLEAN)
+        self.assertEqual(decode(PLAIN, "--strict").returncode, CLEAN)
         noted = FIRMWARE / "b_reliable.pcapng"
         self.assertEqual(decode(noted).returncode, CLEAN)
         self.assertEqual(decode(noted, "--strict").returncode, MALFORMED)

@@ -3,26 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <string>
-#include <vector>
 
+#include "codec/containers/testing.h"
 #include "codec/generated/oscilloscope/tables.h"
 #include "codec/generated/rubicon/tables.h"
 
 namespace rubric::reflect {
 namespace {
 
-std::vector<std::uint8_t> from_hex(const std::string& hex) {
-  std::vector<std::uint8_t> out;
-  for (std::size_t i = 0; i + 1 < hex.size();) {
-    if (hex[i] == ' ') {
-      ++i;
-      continue;
-    }
-    out.push_back(static_cast<std::uint8_t>(std::stoi(hex.substr(i, 2), nullptr, 16)));
-    i += 2;
-  }
-  return out;
-}
+using rubric::testing::from_hex;
+using rubric::testing::view;
 
 class Message {
  public:
@@ -30,7 +20,7 @@ class Message {
       : bytes_(from_hex(hex)) {
     const Type* type = find_type(rubicon::tables::kProtocol, name);
     EXPECT_NE(type, nullptr) << name;
-    if (type) decode(*type, Bytes(bytes_.data(), bytes_.size()), tail, true, decoded_);
+    if (type) decode(*type, view(bytes_), tail, true, decoded_);
   }
   const Decoded* operator->() const { return &decoded_; }
   const Decoded& operator*() const { return decoded_; }
@@ -45,7 +35,7 @@ class Message {
   }
 
  private:
-  std::vector<std::uint8_t> bytes_;
+  std::string bytes_;
   Decoded decoded_;
 };
 
@@ -106,7 +96,7 @@ const RejectCase kRejects[] = {
      {Fault::kTruncated, 6, req::kWireSynapticData}},
 };
 
-class DecodeReject : public testing::TestWithParam<RejectCase> {};
+class DecodeReject : public ::testing::TestWithParam<RejectCase> {};
 
 TEST_P(DecodeReject, NamesFaultPlaceAndRule) {
   const Message m(GetParam().message, GetParam().hex);
@@ -115,7 +105,7 @@ TEST_P(DecodeReject, NamesFaultPlaceAndRule) {
   EXPECT_EQ(m->error.requirement, GetParam().error.requirement);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, DecodeReject, testing::ValuesIn(kRejects),
+INSTANTIATE_TEST_SUITE_P(All, DecodeReject, ::testing::ValuesIn(kRejects),
                          [](const auto& row) { return row.param.name; });
 
 struct BodyCase {
@@ -149,7 +139,7 @@ const BodyCase kBodies[] = {
      NoteKind::kUnknownMessage},
 };
 
-class DecodeBody : public testing::TestWithParam<BodyCase> {};
+class DecodeBody : public ::testing::TestWithParam<BodyCase> {};
 
 TEST_P(DecodeBody, IsInterpretedOrOpaqueNeverMalformed) {
   const Message m("net_msg", GetParam().hex);
@@ -161,7 +151,7 @@ TEST_P(DecodeBody, IsInterpretedOrOpaqueNeverMalformed) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, DecodeBody, testing::ValuesIn(kBodies),
+INSTANTIATE_TEST_SUITE_P(All, DecodeBody, ::testing::ValuesIn(kBodies),
                          [](const auto& row) { return row.param.name; });
 
 TEST(Decode, BytesBehindACarrier_AreAFault) {
@@ -175,9 +165,9 @@ TEST(Decode, OneObjectForManyFrames_ForgetsTheOneBefore) {
   Decoded decoded;
   const Type* type = find_type(rubicon::tables::kProtocol, "updates");
   const auto good = from_hex("23 01 0001 012e ff");
-  decode(*type, Bytes(good.data(), good.size()), Tail::kStale, true, decoded);
+  decode(*type, view(good), Tail::kStale, true, decoded);
   EXPECT_EQ(decoded.stale_count(), 1u);
-  decode(*type, Bytes(good.data(), 1), Tail::kStale, true, decoded);
+  decode(*type, view(good).first(1), Tail::kStale, true, decoded);
   EXPECT_EQ(decoded.error.fault, Fault::kTruncated);
   EXPECT_EQ(decoded.stale_count(), 0u);
   EXPECT_EQ(decoded.node_count(), 2u);
@@ -189,11 +179,11 @@ TEST(Decode, AnotherProtocolIsOnlyOtherTables) {
   const auto bytes = from_hex(
       "0001 0100 0007 000a 0001 0002 0003 0004 0005 0006 0007 0008 0009 000a");
   Decoded decoded;
-  decode(*type, Bytes(bytes.data(), bytes.size()), Tail::kStale, true, decoded);
+  decode(*type, view(bytes), Tail::kStale, true, decoded);
   EXPECT_EQ(decoded.error.fault, Fault::kNone);
   const Node& readings = decoded[decoded.child(0, "readings")];
   EXPECT_EQ(readings.count, 10u);
-  EXPECT_EQ(load_number(*readings.field, bytes.data() + readings.offset + 18), 10);
+  EXPECT_EQ(load_number(*readings.field, view(bytes).data() + readings.offset + 18), 10);
 }
 
 TEST(Evaluate, FloorsLikeKaitai) {

@@ -3,36 +3,31 @@
 #include <gtest/gtest.h>
 
 #include <string>
-#include <vector>
 
+#include "codec/containers/testing.h"
 #include "codec/generated/rubicon/tables.h"
 
 namespace rubric::reflect {
 namespace {
 
-const FrameDecoder kDecoder(rubicon::tables::kProtocol);
+using rubric::testing::from_hex;
+using rubric::testing::view;
 
-std::vector<std::uint8_t> from_hex(const std::string& hex) {
-  std::vector<std::uint8_t> out;
-  for (std::size_t i = 0; i + 1 < hex.size(); i += 2) {
-    out.push_back(static_cast<std::uint8_t>(std::stoi(hex.substr(i, 2), nullptr, 16)));
-  }
-  return out;
-}
+const FrameDecoder kDecoder(rubicon::tables::kProtocol);
 
 /// A packet with its bytes, decoded.
 struct Case {
   Case(Framing framing, const std::string& hex, std::int32_t kind = kAbsent)
       : bytes(from_hex(hex)) {
     packet.framing = framing;
-    packet.bytes = Bytes(bytes.data(), bytes.size());
+    packet.bytes = view(bytes);
     packet.kind = kind;
   }
   const Frame& decode() {
     kDecoder.decode(packet, frame);
     return frame;
   }
-  std::vector<std::uint8_t> bytes;
+  std::string bytes;
   Packet packet;
   Frame frame;
 };
@@ -73,7 +68,7 @@ struct NoteCase {
   std::size_t notes;
 };
 
-class FrameNote : public testing::TestWithParam<NoteCase> {};
+class FrameNote : public ::testing::TestWithParam<NoteCase> {};
 
 TEST_P(FrameNote, FramesThatNobodyReadsAreNoted) {
   const NoteCase& row = GetParam();
@@ -89,7 +84,7 @@ TEST_P(FrameNote, FramesThatNobodyReadsAreNoted) {
 
 INSTANTIATE_TEST_SUITE_P(
     All, FrameNote,
-    testing::Values(NoteCase{"Beacon", Framing::kRadio, "008007220001000200", kAbsent, 1},
+    ::testing::Values(NoteCase{"Beacon", Framing::kRadio, "008007220001000200", kAbsent, 1},
                     NoteCase{"LongAddresses", Framing::kRadio, "41cc07220001000200", kAbsent, 1},
                     NoteCase{"UnknownSerialKind", Framing::kHdlc, "43", 0xff, 1},
                     NoteCase{"SerialAck", Framing::kHdlc, "", 67, 0},
