@@ -193,6 +193,9 @@ struct RouteTable {
   uint16_t count;
 };
 
+/// Who must follow a requirement.
+enum Roles : uint8_t { kRoleMote = 1, kRoleSink = 2, kRoleBaseStation = 4 };
+
 /// A requirement's text; the table in generated/requirements_table.h is indexed by ReqId.
 struct Requirement {
   const char* id;
@@ -200,6 +203,9 @@ struct Requirement {
   const char* clause;
   const char* sentence;
   const char* source;
+  uint8_t roles;         ///< Bits of Roles; 0 where the rule names none (those of the wire).
+  bool forbids;          ///< It says what must not happen: a case has to attempt it.
+  const char* deployed;  ///< How release 1.0 differs; empty where it does not.
 };
 
 }  // namespace reflect

@@ -35,23 +35,39 @@ namespace rubric {
 
 /// Indexed by ReqId; the first entry stands for none.
 constexpr reflect::Requirement kRequirements[] = {
-    {"", "", "", "", ""},
+    {"", "", "", "", "", 0, false, ""},
     <<entries?>>
 };
 
 }  // namespace rubric
 )";
 
-std::string table_entry(const Requirement& one) {
-  std::vector<std::string> words;
-  for (const std::string* text : {&one.id, &one.level, &one.clause, &one.sentence, &one.source}) {
-    const auto pieces = cpp_string_pieces(*text, 88);
-    std::string word = pieces[0];
-    for (std::size_t i = 1; i < pieces.size(); ++i) word += "\n " + pieces[i];
-    words.push_back(word);
+std::string roles_text(const Requirement& one) {
+  std::string out;
+  for (const auto& [bit, name] : {std::pair<int, std::string_view>{1, "kRoleMote"},
+                                  {2, "kRoleSink"},
+                                  {4, "kRoleBaseStation"}}) {
+    if ((one.roles & bit) == 0) continue;
+    if (!out.empty()) out += " | ";
+    out += "reflect::";
+    out += name;
   }
-  return "{" + words[0] + ", " + words[1] + ", " + words[2] + ",\n " + words[3] + ",\n " +
-         words[4] + "},\n";
+  return out.empty() ? "0" : out;
+}
+
+/// A string literal in lines that fit, each behind one blank.
+std::string literal(const std::string& text) {
+  const auto pieces = cpp_string_pieces(text, 88);
+  std::string out = pieces[0];
+  for (std::size_t i = 1; i < pieces.size(); ++i) out += "\n " + pieces[i];
+  return out;
+}
+
+std::string table_entry(const Requirement& one) {
+  return "{" + literal(one.id) + ", " + literal(one.level) + ", " + literal(one.clause) + ",\n " +
+         literal(one.sentence) + ",\n " + literal(one.source) + ",\n " + roles_text(one) + ", " +
+         (one.forbids ? "true" : "false") + (one.deployed.empty() ? ", " : ",\n ") +
+         literal(one.deployed) + "},\n";
 }
 
 }  // namespace

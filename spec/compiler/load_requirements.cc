@@ -1,8 +1,10 @@
 // Loads the catalogue of requirements.
+#include <algorithm>
 #include <array>
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <span>
 #include <fmt/core.h>
 
 #include "spec/compiler/cpp_text.h"
@@ -12,7 +14,10 @@
 namespace rubricc {
 namespace {
 
-constexpr std::array<std::string_view, 5> kKeys{"id", "level", "clause", "sentence", "source"};
+constexpr std::array<std::string_view, 8> kKeys{"id",     "level", "clause",  "sentence",
+                                                "source", "roles", "forbids", "deployed"};
+constexpr std::size_t kNeeded = 5;  // The first of them; the others may be absent.
+constexpr std::array<std::string_view, 3> kRoles{"mote", "sink", "base_station"};
 
 bool is_requirement_id(std::string_view id) {
   if (id.empty() || id.size() > 64 || id.front() < 'A' || id.front() > 'Z') return false;
@@ -24,18 +29,42 @@ bool is_requirement_id(std::string_view id) {
   return true;
 }
 
+/// The bits of `roles`, in the order of kRoles.
+std::uint8_t read_roles(const YamlInput& input, const YAML::Node& node) {
+  std::uint8_t out = 0;
+  const auto items = yaml_items(input, node, "roles");
+  if (node.IsSequence() && node.size() == 0) {
+    input.error(node, "'roles' is empty", "a rule that nobody must follow is none");
+  }
+  for (const YAML::Node& item : items) {
+    const auto word = yaml_text(input, item, "a role");
+    if (!word) continue;
+    const auto role = std::find(kRoles.begin(), kRoles.end(), *word);
+    if (role == kRoles.end()) {
+      input.error(item, "unknown role " + quoted(*word), suggestion(*word, kRoles));
+      continue;
+    }
+    const auto bit = static_cast<std::uint8_t>(1U << (role - kRoles.begin()));
+    if ((out & bit) != 0) input.error(item, fmt::format("role {} twice", quoted(*word)));
+    out = static_cast<std::uint8_t>(out | bit);
+  }
+  return out;
+}
+
 Requirement read_requirement(const YamlInput& input, const YAML::Node& node) {
   const YamlMap map(input, node, "a requirement", kKeys);
   Requirement out;
   out.place = input.place(node);
   if (!node.IsMap()) return out;
-  for (const std::string_view key : kKeys) {
-    if (!map.has(key)) {
-      input.error(node, fmt::format("a requirement without {}", key),
-                  "id, level, clause, sentence and source were expected");
-    } else if (one_line(map.text(key).value_or("-")).empty()) {
-      input.error(map.find(key)->value, fmt::format("{} is empty", quoted(key)));
-    }
+  for (const std::string_view key : std::span(kKeys).first(kNeeded)) {
+    if (map.has(key)) continue;
+    input.error(node, fmt::format("a requirement without {}", key),
+                "id, level, clause, sentence and source were expected");
+  }
+  for (const std::string_view key : {"id", "level", "clause", "sentence", "source", "deployed"}) {
+    const YamlEntry* entry = map.find(key);
+    if (entry == nullptr || !one_line(map.text(key).value_or("-")).empty()) continue;
+    input.error(entry->value, fmt::format("{} is empty", quoted(key)));
   }
   if (const YamlEntry* id = map.find("id")) out.place = input.place(id->value);
   out.id = map.text("id").value_or("");
@@ -43,6 +72,9 @@ Requirement read_requirement(const YamlInput& input, const YAML::Node& node) {
   out.clause = one_line(map.text("clause").value_or(""));
   out.sentence = one_line(map.text("sentence").value_or(""));
   out.source = one_line(map.text("source").value_or(""));
+  if (const YamlEntry* roles = map.find("roles")) out.roles = read_roles(input, roles->value);
+  out.forbids = map.boolean("forbids").value_or(false);
+  out.deployed = one_line(map.text("deployed").value_or(""));
   if (out.level != "MUST" && out.level != "SHOULD" && out.level != "MAY") {
     input.error(map.find("level")->value, "level is " + quoted(out.level),
                 "MUST, SHOULD or MAY was expected");

@@ -196,6 +196,9 @@ struct Requirement {
   std::string clause;
   std::string sentence;
   std::string source;
+  std::uint8_t roles = 0;              // Bits: 1 mote, 2 sink, 4 base station; 0 where it has none.
+  bool forbids = false;                // It says what must not happen.
+  std::string deployed;                // How release 1.0 differs; else empty.
   Place place;
 };
 
