@@ -1,0 +1,85 @@
+// What a run shows: the frames of its files in one order of time, and what the user knows of it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "conformance/machine/address.h"
+#include "conformance/machine/event.h"
+#include "conformance/oracle/finding.h"
+
+namespace rubric::oracle {
+
+/// One thing that was seen.
+struct Observation {
+  enum class Kind : std::uint8_t {
+    kRadio,     ///< An active message on the air; time_us is the start of the frame.
+    kLinkAck,   ///< An 802.15.4 acknowledgement; dsn says of what.
+    kSerial,    ///< An active message on a serial line; time_us is the end of the frame.
+    kDamaged,   ///< Bytes that are no frame (bad CRC and the like): heard by nobody.
+    kCall,      ///< An application's call, from a .rtr log.
+    kNotice,    ///< What an application was told, from a .rtr log.
+  };
+  Kind kind = Kind::kRadio;
+  Place place;
+  std::uint32_t tap = 0;       ///< Index into Run::taps.
+  bool to_mote = false;        ///< Serial: towards the sink. Without direction flags see Tap.
+  bool ack_request = false;    ///< Radio: asks for a link ack.
+  std::uint8_t dsn = 0;        ///< Radio and link ack.
+  std::uint16_t pan = 0;
+  machine::Frame frame;        ///< Bytes live as long as the Run.
+  std::string node;            ///< From a .rtr log: who sent it, who called; else empty.
+  machine::Call call;
+  machine::Notice notice;
+};
+
+/// A place where somebody listened: the air, a serial line.
+struct Tap {
+  std::string name;
+  machine::Link link = machine::Link::kRadio;
+  bool has_direction = false;  ///< The capture says which way a frame went.
+};
+
+/// What the user says of a node (`--node 2=mote`, `--sink 1=11`).
+struct KnownNode {
+  std::uint16_t id = 0;
+  machine::Role role = machine::Role::kMote;
+  std::uint16_t island = 0;  ///< Of a sink; 0: unknown.
+};
+
+struct Options {
+  bool deployed = false;          ///< The profile.
+  bool sniffer_complete = false;  ///< Every frame on the air was captured.
+  bool start_cold = false;        ///< Nothing had happened before the first frame.
+  std::int64_t response_us = 300'000;   ///< Stated response time (decision 125).
+  std::int64_t ack_timeout_us = 976'563; ///< Stated ack timeout (decision 110).
+  std::int64_t skew_us = 50'000;        ///< Bound of the skew between the stamps of two taps.
+  std::vector<KnownNode> nodes;
+  std::vector<std::uint16_t> testers;   ///< AM addresses of senders that are no node under test.
+};
+
+struct Run {
+  std::vector<std::string> files;
+  std::vector<Tap> taps;
+  std::vector<Observation> seen;   ///< In order of cause: see merge() in read.h.
+  std::int64_t start_us = 0;       ///< Of the capture, where its file says so; else the first stamp.
+  std::int64_t end_us = 0;
+  bool has_time = true;            ///< Raw bytes carry none: timing rules are inconclusive.
+};
+
+/// The whole answer.
+struct Report {
+  Verdict verdict = Verdict::kPass;
+  std::vector<Finding> findings;   ///< In order of place.
+  std::uint64_t frames = 0;        ///< Judged.
+  /// What was found out about the run: one sentence each (nodes, roles, islands, holes).
+  std::vector<std::string> facts;
+  /// Rules that were exercised at least once, with how often.
+  std::vector<std::pair<ReqId, std::uint64_t>> exercised;
+};
+
+/// Judges a run. Never fails on any input; bounded memory.
+Report judge(const Run& run, const Options& options);
+
+}  // namespace rubric::oracle
