@@ -1,0 +1,294 @@
+// The .rtr text trace as plain values: golden trace, log of a run, input of the offline checker,
+// counterexample, seed of a fuzzer. Grammar and meaning: spec/trace/README.md.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "codec/generated/requirements.h"
+
+namespace rubric::trace {
+
+/// Where something stands in its file, counted from 1; zeros for what was built in code. It is no
+/// part of the value: places always compare equal.
+struct Place {
+  std::uint32_t line = 0;
+  std::uint32_t column = 0;  ///< In bytes.
+  friend bool operator==(const Place&, const Place&) { return true; }
+};
+
+// Values.
+
+/// What a field is, or must be.
+struct Value {
+  enum class Kind : std::uint8_t {
+    kAny,       ///< `*`
+    kNumber,    ///< `7`, `-7`, `0x1f`
+    kRange,     ///< `5..9`: a number from `number` to `max`
+    kReal,      ///< `0.5`, `nan`, `-inf`; `text` as it is written
+    kNames,     ///< `temp`, `light|temp`; `text`: an enumerator, or bits of a mask
+    kBytes,     ///< `x0a0b`; `text` holds the bytes themselves
+    kText,      ///< `"OPEN_DOOR"`; the same, shown as text
+    kVariable,  ///< `$q`; `text` is the name without the dollar
+    kAddress,   ///< `11:5`; items: pid and devid, each kNumber, kNames, kVariable or kAny
+    kChannel,   ///< `2->1`; items: source and destination devid, of the same kinds
+    kList,      ///< `[1 2 3]`; items without lists in them
+  };
+
+  Kind kind = Kind::kAny;
+  bool negated = false;  ///< `!x`: anything but x.
+  bool hex = false;      ///< kNumber: written as 0x.
+  std::int64_t number = 0;
+  std::int64_t max = 0;
+  std::string text;
+  std::vector<Value> items;
+
+  static Value any() { return {}; }
+  static Value of(std::int64_t number);
+  static Value range(std::int64_t min, std::int64_t max);
+  /// As short as binary32 allows.
+  static Value real(float number);
+  /// "temp" or "light|temp".
+  static Value names(std::string_view names);
+  static Value bytes(std::string_view raw);
+  static Value quoted(std::string_view raw);
+  static Value variable(std::string_view name);
+  static Value address(Value pid, Value devid);
+  static Value channel(Value source, Value destination);
+  /// With the names of reserved devids and pids: `11:null`, `11:all`, `local:5`.
+  static Value address(std::uint16_t pid, std::uint16_t devid);
+  /// Source devid in the upper 16 bits, as channel ids have it.
+  static Value channel(std::uint32_t id);
+  static Value list(std::vector<Value> items);
+  static Value but(Value value);  ///< `!value`
+
+  bool is(Kind k) const { return kind == k; }
+  friend bool operator==(const Value&, const Value&) = default;
+};
+
+/// `path=value`. The path is dotted as decoding shows it ("payload.body.updates[0].value") or an
+/// unambiguous tail of that; an empty path is a positional argument of an application message.
+struct FieldValue {
+  std::string path;
+  Value value;
+  Place place;
+  friend bool operator==(const FieldValue&, const FieldValue&) = default;
+};
+
+/// A message, or what a message must look like.
+struct Message {
+  /// How the fields stand: `join`, `join(*)` or `join(seq_num=$q ...)`. The first two are the same
+  /// for messages that have fields: any of that name.
+  enum class Form : std::uint8_t { kBare, kAny, kFields };
+
+  std::string name = "*";  ///< As the wire spec or the application table has it; `*`: any message.
+  Form form = Form::kBare;
+  bool open = false;       ///< `...`: fields that are not given are free.
+  std::vector<FieldValue> fields;
+  Place place;
+
+  static Message any() { return {}; }
+  /// Add fields with `with`; closed until `and_more`.
+  static Message named(std::string_view name);
+  Message&& with(std::string_view path, Value value) &&;
+  Message& with(std::string_view path, Value value) &;
+  Message&& and_more() &&;
+
+  /// The value given for exactly this path, or null.
+  const Value* find(std::string_view path) const;
+  friend bool operator==(const Message&, const Message&) = default;
+};
+
+/// `am=2->1`: AM source and destination, each kNumber, kNames (`all`), kVariable or kAny.
+struct AmAddresses {
+  Value source;
+  Value dest;
+  friend bool operator==(const AmAddresses&, const AmAddresses&) = default;
+};
+
+/// An active message as it travels on every link.
+struct AmFrame {
+  std::uint16_t dest = 0;
+  std::uint16_t src = 0;
+  std::uint8_t group = 0;
+  std::uint8_t type = 0;
+  std::vector<std::uint8_t> payload;
+  friend bool operator==(const AmFrame&, const AmFrame&) = default;
+};
+constexpr std::uint16_t kAmAll = 0xFFFF;
+
+/// The serial forwarder packet: dispatch 00, AM header, payload.
+std::vector<std::uint8_t> packet_of(const AmFrame& frame);
+/// False when the bytes are no such packet, its length included.
+bool parse_packet(std::string_view bytes, AmFrame& out);
+
+// Lines.
+
+/// What a line says of its message.
+enum class Op : std::uint8_t {
+  kGiven,    ///< `<`: given to the node.
+  kEmits,    ///< `>`: the node must emit it.
+  kMustNot,  ///< `!>`: the node must not emit it.
+  kLost,     ///< The link loses it.
+  kDup,      ///< The link doubles it.
+};
+std::string_view op_text(Op op);
+constexpr bool is_fault(Op op) { return op == Op::kLost || op == Op::kDup; }
+
+/// When, in ticks of the file: exactly `from`, or from `from` to `to`, both included.
+struct Time {
+  enum class Base : std::uint8_t {
+    kPrevious,  ///< `5`, `0..50`: after the line that was matched last.
+    kLabel,     ///< `a+10`, `a+0..50`: after the line with that label.
+    kStart,     ///< `@1234`, `@10..20`: since the start of the case; logs have these.
+  };
+  Base base = Base::kPrevious;
+  std::int64_t from = 0;
+  std::int64_t to = 0;
+  std::string label;
+
+  static Time at(std::int64_t ticks) { return {Base::kStart, ticks, ticks, {}}; }
+  static Time after(std::int64_t ticks) { return {Base::kPrevious, ticks, ticks, {}}; }
+  static Time after(std::string_view label, std::int64_t from, std::int64_t to) {
+    return {Base::kLabel, from, to, std::string(label)};
+  }
+  bool exact() const { return from == to; }
+  friend bool operator==(const Time&, const Time&) = default;
+};
+
+/// One line of a case.
+struct Line {
+  std::string label;  ///< Empty: none.
+  Time time;
+  std::string node;   ///< `*`: any node; empty for the faults of a link.
+  Op op = Op::kGiven;
+  std::string link;   ///< rA, serA, peis, app, power; `*`: any.
+  std::optional<AmAddresses> am;
+  Message message;
+  std::vector<std::string> requirements;  ///< "J4-SEQ", or "J4" for the family.
+  /// The serial forwarder packet, exactly. In a stimulus it is what the node is given.
+  std::optional<std::string> bytes;
+  std::string comment;
+  Place place;
+  friend bool operator==(const Line&, const Line&) = default;
+};
+
+// Headers.
+
+enum class Role : std::uint8_t { kMote, kSink, kBaseStation };
+enum class LinkKind : std::uint8_t { kRadio, kSerial, kPeis, kApp, kPower, kAny };
+enum class Tick : std::uint8_t { kBinaryMs, kMs, kUs };
+std::string_view role_text(Role role);
+std::string_view tick_text(Tick tick);
+std::string_view link_text(LinkKind kind);
+/// Ticks in a second: 1024, 1000 or 1000000.
+std::uint32_t ticks_per_second(Tick tick);
+
+struct VersionHeader {
+  std::int64_t version = 1;
+  friend bool operator==(const VersionHeader&, const VersionHeader&) = default;
+};
+struct ProfileHeader {
+  std::string name = "paper";  ///< Or "deployed".
+  friend bool operator==(const ProfileHeader&, const ProfileHeader&) = default;
+};
+struct TickHeader {
+  Tick tick = Tick::kBinaryMs;
+  friend bool operator==(const TickHeader&, const TickHeader&) = default;
+};
+struct NodeHeader {
+  std::string name;
+  Role role = Role::kMote;
+  std::optional<std::uint16_t> id;      ///< TinyOS id; motes and sinks have one.
+  std::optional<std::uint16_t> island;  ///< Of sinks and base stations when they start.
+  bool iut = false;                     ///< Under test.
+  friend bool operator==(const NodeHeader&, const NodeHeader&) = default;
+};
+struct LinkHeader {
+  std::string name;
+  LinkKind kind = LinkKind::kRadio;  ///< kRadio, kSerial or kPeis.
+  std::vector<std::string> nodes;
+  friend bool operator==(const LinkHeader&, const LinkHeader&) = default;
+};
+struct SeedHeader {
+  std::uint64_t seed = 0;
+  friend bool operator==(const SeedHeader&, const SeedHeader&) = default;
+};
+struct NoteHeader {
+  std::string text;
+  friend bool operator==(const NoteHeader&, const NoteHeader&) = default;
+};
+struct Header {
+  std::variant<VersionHeader, ProfileHeader, TickHeader, NodeHeader, LinkHeader, SeedHeader,
+               NoteHeader>
+      what;
+  std::string comment;  ///< Not of a note, which is text to the end of its line.
+  Place place;
+  friend bool operator==(const Header&, const Header&) = default;
+};
+
+// The file.
+
+struct Blank {
+  friend bool operator==(const Blank&, const Blank&) { return true; }
+};
+/// A line that is only a comment.
+struct Comment {
+  char marker = '#';      ///< '#' or ';'.
+  bool indented = false;
+  std::string text;       ///< Behind the marker.
+  friend bool operator==(const Comment&, const Comment&) = default;
+};
+using Item = std::variant<Blank, Comment, Header, Line>;
+
+struct Case {
+  std::string name;     ///< Stable: words of letters, digits, `_` and `-`, joined by dots.
+  std::string comment;
+  std::vector<Item> items;
+  Place place;
+
+  Case() = default;
+  explicit Case(std::string_view case_name) : name(case_name) {}
+  void add(Line line) { items.emplace_back(std::move(line)); }
+  /// The lines in their order; pointers into `items`.
+  std::vector<const Line*> lines() const;
+  friend bool operator==(const Case&, const Case&) = default;
+};
+
+struct File {
+  std::vector<Item> head;  ///< Before the first case.
+  std::vector<Case> cases;
+
+  /// With the headers that every file begins with.
+  static File begin(std::string_view profile, Tick tick = Tick::kBinaryMs);
+  File& node(NodeHeader header);
+  File& header(Header header);
+  const Case* find(std::string_view case_name) const;
+  friend bool operator==(const File&, const File&) = default;
+};
+
+/// What the headers say for one case: its own where it has some of that kind, else the file's.
+struct Scope {
+  std::string profile = "paper";
+  Tick tick = Tick::kBinaryMs;
+  std::uint64_t seed = 0;
+  std::vector<NodeHeader> nodes;
+  std::vector<LinkHeader> links;
+
+  const NodeHeader* node(std::string_view name) const;
+  /// By %link, else by its name: r..., ser..., peis, app, power, `*`.
+  std::optional<LinkKind> link(std::string_view name) const;
+};
+Scope scope_of(const File& file, const Case& one);
+
+/// "J4-SEQ"; empty for ReqId::kNone.
+std::string_view requirement_text(ReqId id);
+/// ReqId::kNone for a family ("J4") and for what the catalogue does not have.
+ReqId requirement_id(std::string_view text);
+
+}  // namespace rubric::trace
