@@ -1,6 +1,7 @@
 // Every file in bad/ holds a mistake and says in its first lines what must be reported:
 //   # expect: line:column: text        (or another file before it)
 //   #   continued
+// In traces `;` begins such a line.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -29,11 +30,11 @@ std::vector<std::string> files_in(const std::string& folder, std::string_view ex
 std::vector<std::string> expected_in(const std::string& file) {
   std::vector<std::string> out;
   std::ifstream in(file);
-  for (std::string line; std::getline(in, line) && line.starts_with('#');) {
-    if (line.starts_with("# expect: ")) {
+  for (std::string line; std::getline(in, line) && line.find_first_of("#;") == 0;) {
+    if (line.substr(1).starts_with(" expect: ")) {
       out.push_back(line.substr(10));
     } else if (!out.empty()) {
-      out.back() += " " + line.substr(line.find_first_not_of("# "));
+      out.back() += " " + line.substr(line.find_first_not_of("#; "));
     }
   }
   return out;
@@ -82,10 +83,50 @@ INSTANTIATE_TEST_SUITE_P(Files, BadRequirements,
                          testing::ValuesIn(files_in(kFolder + "requirements/", ".yaml")),
                          [](const auto& one) { return one.param; });
 
+Model catalogue() {
+  Model model;
+  Diagnostics diagnostics;
+  load_requirements("spec/requirements.yaml", model, diagnostics);
+  EXPECT_EQ(diagnostics.print(), "");
+  return model;
+}
+
+class BadProfile : public testing::TestWithParam<std::string> {};
+
+TEST_P(BadProfile, IsRefusedWithTheDiagnosticsThatItExpects) {
+  const std::string file = kFolder + "profiles/" + GetParam() + ".yaml";
+  Model model = catalogue();
+  Diagnostics diagnostics;
+  load_profile(file, model, diagnostics);
+  EXPECT_EQ(shown(diagnostics, file), expected_in(file));
+  EXPECT_FALSE(diagnostics.empty());
+}
+
+INSTANTIATE_TEST_SUITE_P(Files, BadProfile,
+                         testing::ValuesIn(files_in(kFolder + "profiles/", ".yaml")),
+                         [](const auto& one) { return one.param; });
+
+class BadCases : public testing::TestWithParam<std::string> {};
+
+TEST_P(BadCases, AreRefusedWithTheDiagnosticsThatTheyExpect) {
+  const std::string file = kFolder + "cases/" + GetParam() + ".rtr";
+  Model model = catalogue();
+  Diagnostics diagnostics;
+  load_cases({file}, model, diagnostics);
+  EXPECT_EQ(shown(diagnostics, file), expected_in(file));
+  EXPECT_FALSE(diagnostics.empty());
+}
+
+INSTANTIATE_TEST_SUITE_P(Files, BadCases,
+                         testing::ValuesIn(files_in(kFolder + "cases/", ".rtr")),
+                         [](const auto& one) { return one.param; });
+
 // A file that lost its first lines would expect nothing and a renamed folder would test nothing.
 TEST(BadSpecs, AreAllThere) {
   EXPECT_GE(files_in(kFolder, ".ksy").size(), 155U);
   EXPECT_GE(files_in(kFolder + "requirements/", ".yaml").size(), 16U);
+  EXPECT_GE(files_in(kFolder + "profiles/", ".yaml").size(), 11U);
+  EXPECT_GE(files_in(kFolder + "cases/", ".rtr").size(), 6U);
 }
 
 // What would be too large for a file beside the others.

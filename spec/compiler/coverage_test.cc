@@ -24,9 +24,9 @@ std::string expectations() {
   for (const auto& entry : std::filesystem::recursive_directory_iterator(kFolder + "bad")) {
     if (!entry.is_regular_file()) continue;
     std::ifstream in(entry.path());
-    for (std::string line; std::getline(in, line) && line.starts_with('#');) {
-      const bool first = line.starts_with("# expect: ");
-      out += (first ? "\n" : " ") + line.substr(std::min(line.find_first_not_of("# "),
+    for (std::string line; std::getline(in, line) && line.find_first_of("#;") == 0;) {
+      const bool first = line.substr(1).starts_with(" expect: ");
+      out += (first ? "\n" : " ") + line.substr(std::min(line.find_first_not_of("#; "),
                                                         line.size()));
     }
   }

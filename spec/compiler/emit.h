@@ -16,6 +16,10 @@ GeneratedFiles emit_protocols(const Model& model);
 GeneratedFiles emit_dictionary(const Spec& spec);
 /// codec/generated/<spec>/messages.h: how each message is reached, for the structure-aware fuzzer.
 GeneratedFiles emit_messages(const Spec& spec);
+/// conformance/generated/profiles.h; nothing if there is no profile.
+GeneratedFiles emit_profiles(const Model& model);
+/// conformance/generated/cases.h; `folder` is where the cases are from.
+GeneratedFiles emit_cases(const Model& model, const std::string& folder);
 /// doc/wire.html: all specs on one page.
 GeneratedFiles emit_doc(const Model& model);
 

@@ -12,7 +12,14 @@ namespace rubricc {
 void load_specs(const std::vector<std::string>& files, Model& model, Diagnostics& diagnostics);
 /// Reads the catalogue of requirements.
 void load_requirements(const std::string& file, Model& model, Diagnostics& diagnostics);
-/// The same from text in memory, for the fuzzer and the tests; `file` is what diagnostics show.
+/// Reads a profile, or all of a folder; the requirements come first.
+void load_profile(const std::string& file, Model& model, Diagnostics& diagnostics);
+void load_profiles(const std::string& folder, Model& model, Diagnostics& diagnostics);
+/// Finds the rules that golden traces name; the requirements come first.
+void load_cases(const std::vector<std::string>& files, Model& model, Diagnostics& diagnostics);
+/// The traces (.rtr) in `folder` and below, by name; none where there is no such folder.
+std::vector<std::string> case_files(const std::string& folder);
+/// Specs as load_specs(), from text in memory, for the fuzzer and the tests; `file` is what diagnostics show.
 void load_spec_text(const std::string& file, const std::string& text, Model& model,
                     Diagnostics& diagnostics);
 

@@ -18,10 +18,13 @@ namespace {
 enum Exit { kOk = 0, kDiagnostics = 1, kUsage = 2, kCannotReadOrWrite = 3 };
 
 const std::vector<std::string> kEmitters{"cpp",        "tables",   "requirements", "protocols",
-                                         "dictionary", "messages", "doc"};
+                                         "dictionary", "messages", "profiles",     "cases",
+                                         "doc"};
 
 struct Options {
   std::string requirements = "spec/requirements.yaml";
+  std::string profiles = "spec/profiles";
+  std::string cases = "conformance/cases";
   std::vector<std::string> emit;
   bool check = false;
   std::string out;
@@ -49,6 +52,8 @@ rubricc::GeneratedFiles emit(const Options& options, const rubricc::Model& model
     append(out, rubricc::emit_requirements(model, options.requirements));
   }
   if (wants(options, "protocols")) append(out, rubricc::emit_protocols(model));
+  if (wants(options, "profiles")) append(out, rubricc::emit_profiles(model));
+  if (wants(options, "cases")) append(out, rubricc::emit_cases(model, options.cases));
   if (wants(options, "doc")) append(out, rubricc::emit_doc(model));
   return out;
 }
@@ -73,9 +78,18 @@ int run(const Options& options) {
     std::cerr << "rubricc: cannot read " << input << '\n';
     return kCannotReadOrWrite;
   }
+  const bool has_profiles = std::filesystem::is_directory(options.profiles);
+  if (!has_profiles && wants(options, "profiles")) {
+    std::cerr << "rubricc: cannot read " << options.profiles << '\n';
+    return kCannotReadOrWrite;
+  }
   rubricc::Model model;
   rubricc::Diagnostics diagnostics;
   rubricc::load_requirements(options.requirements, model, diagnostics);
+  if (has_profiles) rubricc::load_profiles(options.profiles, model, diagnostics);
+  if (options.check || wants(options, "cases")) {
+    rubricc::load_cases(rubricc::case_files(options.cases), model, diagnostics);
+  }
   rubricc::load_specs(options.files, model, diagnostics);
   rubricc::check_model(model, diagnostics);
   std::cerr << diagnostics.print();
@@ -100,6 +114,10 @@ int main(int argc, char** argv) {
                "be read or written. `rubricc doc --out DIR FILE...` is short for `--emit doc`: "
                "one HTML page, DIR/doc/wire.html."};
   app.add_option("--requirements", options.requirements, "The catalogue of requirements")
+      ->capture_default_str();
+  app.add_option("--profiles", options.profiles, "The folder of the profiles (.yaml)")
+      ->capture_default_str();
+  app.add_option("--cases", options.cases, "The folder of the golden traces (.rtr)")
       ->capture_default_str();
   auto* check = app.add_flag("--check", options.check, "Only check");
   auto* emit = app.add_option("--emit", options.emit, "What to generate, separated by commas")

@@ -202,10 +202,32 @@ struct Requirement {
   Place place;
 };
 
+struct AcceptedDifference {
+  std::string requirement;
+  std::string sentence;                // What is accepted instead.
+};
+struct Profile {
+  std::string name;                    // The file's: "paper".
+  std::string file;
+  std::string doc;
+  std::vector<std::int64_t> values;    // Of profile_fields().
+  std::vector<AcceptedDifference> accepted;
+};
+
+/// A golden trace names a rule.
+struct CaseUse {
+  std::string case_name;
+  std::string file;
+  std::string requirement;
+  bool negative = false;               // On a line of what must not happen.
+};
+
 /// Everything that one run of the compiler reads. Specs in dependency order, imports first.
 struct Model {
   std::vector<std::unique_ptr<Spec>> specs;
   std::vector<Requirement> requirements;
+  std::vector<Profile> profiles;
+  std::vector<CaseUse> case_uses;
 };
 
 }  // namespace rubricc
