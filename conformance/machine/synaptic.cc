@@ -1,0 +1,249 @@
+#include "conformance/machine/synaptic.h"
+
+#include <algorithm>
+#include <variant>
+
+namespace rubric::machine {
+namespace {
+
+using ChannelList = BoundedList<Channel, kChannelsMax>;
+
+constexpr std::size_t kFloatBytes = 4;
+
+Channel* find(ChannelList& list, ChannelId id) {
+  auto* const found =
+      std::find_if(list.begin(), list.end(), [id](const Channel& c) { return c.id == id; });
+  return found == list.end() ? nullptr : found;
+}
+
+bool erase(ChannelList& list, ChannelId id) {
+  Channel* const channel = find(list, id);
+  if (channel == nullptr) return false;
+  list.erase(static_cast<std::size_t>(channel - list.begin()));
+  return true;
+}
+
+bool any_started(const Synaptic& synaptic) {
+  const auto started = [](const Channel& channel) { return channel.started; };
+  return std::any_of(synaptic.out.begin(), synaptic.out.end(), started) ||
+         std::any_of(synaptic.in.begin(), synaptic.in.end(), started);
+}
+
+// A channel from a node to itself. Every sink is mote 1 of its island, so the devid alone says too
+// little.
+bool is_local(const Channel& out, Address own) {
+  return out.peer.devid == own.devid && (out.peer.pid == own.pid || out.peer.pid == kLocalPid);
+}
+
+// One call on the channels of one node.
+struct Caller {
+  Synaptic& synaptic;
+  const Config& config;
+  Address own;
+  Ticks now;
+  Actions& actions;
+
+  void result(bool success, ReqId requirement) {
+    actions.notify(OperationResult{success}, requirement);
+  }
+
+  void begin_clock() {
+    //= S6-CLOCK: Starting a channel again does not shift the clock of the others.
+    if (synaptic.due != 0) return actions.followed(req::kS6Clock);
+    Ticks phase = 0;
+    //= S2-PHASE: A mote's clock starts shifted by (devid - 1) * 30 ms.
+    if (config.role == Role::kMote && own.devid > 1) {
+      phase = static_cast<Ticks>(own.devid - 1) * config.profile.synaptic_phase_ticks;
+      actions.followed(req::kS2Phase);
+    }
+    synaptic.due = now + phase + synaptic.period_ticks;
+  }
+  void end_clock() {
+    if (!any_started(synaptic)) synaptic.due = 0;
+  }
+
+  // An output sends at its first tick in either mode. An input has nothing new yet.
+  static void start(Channel& channel, bool out) {
+    if (channel.started) return;
+    channel.started = true;
+    channel.fresh = out;
+  }
+  static void stop(Channel& channel) { channel.started = channel.fresh = false; }
+
+  void operator()(const CreateChannel& call) {
+    const bool out = call.direction == Direction::kOut;
+    const ChannelId id = out ? channel_id(own.devid, call.peer.devid)
+                             : channel_id(call.peer.devid, own.devid);
+    ChannelList& list = out ? synaptic.out : synaptic.in;
+    Channel* const existing = find(list, id);
+    const std::size_t before = existing == nullptr ? 0 : existing->size;
+    const bool room = existing != nullptr || !list.full();
+    //= S1-LIMIT: Creation beyond four channels of a direction, or ten connections of a channel, is
+    //= refused and changes nothing.
+    if (!room || call.size == 0 || before + call.size > kConnectionsMax) {
+      return actions.notify(ChannelResult{id, false}, req::kS1Limit);
+    }
+    if (existing != nullptr) {  // Peer and mode stay those of its creation.
+      existing->size = static_cast<std::uint8_t>(before + call.size);
+      return actions.notify(ChannelResult{id, true}, req::kS1Enlarge);
+    }
+    Channel channel;
+    channel.id = id;
+    channel.peer = call.peer;
+    channel.mode = call.mode;
+    channel.size = call.size;
+    list.push(channel);
+    actions.notify(ChannelResult{id, true}, req::kS1Id);
+  }
+
+  void operator()(const DisposeChannel& call) {
+    const bool out = erase(synaptic.out, call.id);  // A local channel has both ends here.
+    const bool in = erase(synaptic.in, call.id);
+    end_clock();
+    result(out || in, req::kS6Disposed);
+  }
+
+  void operator()(const StartChannel& call) {
+    Channel* const out = find(synaptic.out, call.id);
+    Channel* const in = find(synaptic.in, call.id);
+    if (out == nullptr && in == nullptr) return result(false, req::kS6Disposed);
+    if (out != nullptr) start(*out, true);
+    if (in != nullptr) start(*in, false);
+    begin_clock();
+    result(true, out != nullptr ? req::kS2Send : req::kS2Signal);
+  }
+
+  void operator()(const StopChannel& call) {
+    Channel* const out = find(synaptic.out, call.id);
+    Channel* const in = find(synaptic.in, call.id);
+    if (out == nullptr && in == nullptr) return result(false, req::kS6Disposed);
+    //= S6-OTHERS: stop_syn_channel stops that channel only.
+    if (out != nullptr) stop(*out);
+    if (in != nullptr) stop(*in);
+    end_clock();
+    result(true, req::kS6Others);
+  }
+
+  void operator()(const StartAllChannels&) {
+    for (Channel& channel : synaptic.out) start(channel, true);
+    for (Channel& channel : synaptic.in) start(channel, false);
+    if (any_started(synaptic)) begin_clock();
+    result(true, req::kS2Send);
+  }
+
+  void operator()(const StopAllChannels&) {
+    for (Channel& channel : synaptic.out) stop(channel);
+    for (Channel& channel : synaptic.in) stop(channel);
+    end_clock();
+    result(true, req::kS6Stopped);
+  }
+
+  void operator()(const WriteOutput& call) {
+    Channel* const out = find(synaptic.out, call.id);
+    //= S1-WRITE: write_output_value sets the value at pos, which the next tick sends; a pos outside
+    //= the channel is refused.
+    if (out == nullptr || call.pos >= out->size) return result(false, req::kS1Write);
+    std::uint32_t& bits = out->value_bits[call.pos];
+    // Bits, not numbers: a NaN written twice is unchanged, and 0 is not -0. A value that changes
+    // there and back between two ticks has changed.
+    if (bits != bits_of_float(call.value)) out->fresh = true;
+    bits = bits_of_float(call.value);
+    result(true, req::kS1Write);
+  }
+
+  void operator()(const ReadInput& call) {
+    const Channel* const in = find(synaptic.in, call.id);
+    //= S1-READ: read_input_value tells the value at pos that was received last; a pos outside the
+    //= channel is refused.
+    const bool good = in != nullptr && call.pos < in->size;
+    const float value = good ? float_of_bits(in->value_bits[call.pos]) : 0;
+    actions.notify(InputValue{value, good}, req::kS1Read);
+  }
+
+  void operator()(const SetTimeStep& call) {
+    if (call.ticks == 0) return result(false, req::kS1Clock);
+    //= S1-CLOCK: set_time_step sets the period of the clock, 500 ms by default.
+    synaptic.period_ticks = call.ticks;
+    if (synaptic.due != 0) synaptic.due = now + call.ticks;
+    result(true, req::kS1Clock);
+  }
+
+  template <class Other>
+  void operator()(const Other&) {
+    assert(false && "not a call of the synaptic interface");
+  }
+};
+
+// The other end of a channel from a node to itself.
+void hand_over(const Channel& out, ChannelList& inputs, Actions& actions) {
+  //= S4-LOCAL: A channel from a node to itself hands its values over at the tick without sending
+  //= anything.
+  Channel* const in = find(inputs, out.id);
+  if (in == nullptr || !in->started) return actions.ignored(req::kS4Local);
+  std::copy_n(out.value_bits.begin(), std::min(in->size, out.size), in->value_bits.begin());
+  in->fresh = true;
+  actions.followed(req::kS4Local);
+}
+
+}  // namespace
+
+ChannelId channel_id(std::uint16_t source_devid, std::uint16_t destination_devid) {
+  return static_cast<ChannelId>(source_devid) << 16 | destination_devid;
+}
+
+void call_synaptic(Synaptic& synaptic, const Config& config, Address own, Ticks now,
+                   const Call& call, Actions& actions) {
+  if (synaptic.period_ticks == 0) synaptic.period_ticks = config.profile.synaptic_period_ticks;
+  std::visit(Caller{synaptic, config, own, now, actions}, call);
+}
+
+void hear_synaptic(Synaptic& synaptic, Address own, Address src, Bytes floats, Actions& actions) {
+  const ChannelId id = channel_id(src.devid, own.devid);  // An id holds no island.
+  Channel* const in = find(synaptic.in, id);
+  if (in == nullptr) {
+    //= S5-UNKNOWN: Data for an unknown channel is reported by its status and not stored.
+    return actions.notify(SynDataReceived{id, DataStatus::kUnknownChannel}, req::kS5Unknown);
+  }
+  if (!in->started) return actions.ignored(req::kS6Stopped);
+  // How many connections the sender meant is not in the data (decision 8): what both sides know.
+  const std::size_t count = std::min<std::size_t>(in->size, floats.size() / kFloatBytes);
+  if (count == 0) return actions.ignored(req::kS2Content);
+  for (std::size_t i = 0; i < count; ++i) {
+    in->value_bits[i] = load_le32(floats.data() + kFloatBytes * i);
+  }
+  in->fresh = true;
+  actions.followed(req::kS1Read);
+}
+
+void tick_synaptic(Synaptic& synaptic, Address own, Ticks now, SynapticSends& sends,
+                   Actions& actions) {
+  if (synaptic.due == 0) return actions.ignored(req::kS6Stopped);
+  for (Channel& out : synaptic.out) {
+    if (!out.started) continue;
+    const bool power_save = out.mode == Mode::kPowerSave;
+    const bool changed = out.fresh;
+    out.fresh = false;
+    if (power_save && !changed) {
+      //= S3-UNCHANGED: In power-save mode a tick sends nothing when no value changed since the last
+      //= tick.
+      actions.followed(req::kS3Unchanged);
+    } else if (is_local(out, own)) {
+      hand_over(out, synaptic.in, actions);
+    } else {
+      const ReqId requirement = power_save ? req::kS3Changed : req::kS2Send;
+      sends.push({out.peer, out.size, out.value_bits, requirement});
+    }
+  }
+  for (Channel& in : synaptic.in) {
+    if (!in.started) continue;
+    //= S2-SIGNAL: At each tick every started input channel signals synData_received with status new
+    //= or old.
+    const DataStatus status = in.fresh ? DataStatus::kNew : DataStatus::kOld;
+    actions.notify(SynDataReceived{in.id, status}, in.fresh ? req::kS2Signal : req::kS3Old);
+    in.fresh = false;
+  }
+  //= S2-TICK: A channel sends at most once a tick, and ticks are no closer than the clock's period.
+  synaptic.due = now + synaptic.period_ticks;
+}
+
+}  // namespace rubric::machine

@@ -1,0 +1,123 @@
+#include "conformance/machine/transport.h"
+
+#include "codec/generated/rubicon/enums.h"
+
+namespace rubric::machine {
+namespace {
+
+using rubicon::AmType;
+using rubicon::Component;
+
+bool is_broadcast(Address dest) {
+  return dest.pid == kBroadcastPid || dest.devid == kBroadcastDevid;
+}
+
+// A 16-bit xorshift with the full period of 65535; 0 is its one fixed point, so it is left first.
+std::uint16_t xorshift(std::uint16_t x) {
+  if (x == 0) x = 0xACE1;
+  x = static_cast<std::uint16_t>(x ^ (x << 7));
+  x = static_cast<std::uint16_t>(x ^ (x >> 9));
+  return static_cast<std::uint16_t>(x ^ (x << 8));
+}
+
+}  // namespace
+
+void await_ack(AwaitedList& list, const Profile& profile, Ticks now, std::uint16_t seq_num,
+               std::uint8_t app_id, Address dest) {
+  if (list.full()) return;
+  // Without a timeout the ack is awaited for ever, as release 1.0 does: due 0 is no timer.
+  const Ticks due = profile.ack_timeout_ticks == 0 ? 0 : now + profile.ack_timeout_ticks;
+  list.push({seq_num, app_id, dest, due});
+}
+
+void hear_ack(AwaitedList& list, Address from, std::uint8_t app_id, std::uint16_t seq_num,
+              Actions& actions) {
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const Awaited& awaited = list[i];
+    if (awaited.seq_num != seq_num) continue;
+    //= T3-SENDER: An ack counts only if it comes from the message's destination and carries its
+    //= APPID.
+    // Nobody acks a broadcast (T2-BROADCAST), so whoever claims to is not its destination either.
+    if (is_broadcast(awaited.dest) || awaited.dest != from || awaited.app_id != app_id) {
+      return actions.ignored(req::kT3Sender);
+    }
+    actions.notify(AckReceived{app_id, seq_num, true}, req::kT3Success);
+    return list.erase(i);  // What comes later with this number finds nothing: T3-ONCE.
+  }
+  //= T3-MATCH: An ack whose sequence number is that of no message awaiting its ack changes nothing.
+  actions.ignored(req::kT3Match);
+}
+
+void ack_timeout(AwaitedList& list, std::size_t index, Actions& actions) {
+  if (index >= list.size()) return actions.ignored(req::kT3Once);
+  const Awaited awaited = list[index];
+  list.erase(index);
+  actions.notify(AckReceived{awaited.app_id, awaited.seq_num, false}, req::kT3Timeout);
+}
+
+bool is_awaited(const AwaitedList& list, std::uint16_t seq_num) {
+  for (const Awaited& awaited : list) {
+    if (awaited.seq_num == seq_num) return true;
+  }
+  return false;
+}
+
+std::uint16_t next_seq_num(Sequence& sequence, const AwaitedList& list) {
+  // Ends: at most kAwaitedMax numbers and kNoSeq are skipped, of 65535 or more.
+  do {
+    sequence.last = sequence.random ? xorshift(sequence.last)
+                                    : static_cast<std::uint16_t>(sequence.last + 1);
+    //= N12-REUSE: A sequence number is not used again while its ack is awaited.
+    //= N12-ERROR: 0xFFFF, the error value of send, is not used as a sequence number.
+  } while (sequence.last == kNoSeq || is_awaited(list, sequence.last));
+  return sequence.last;
+}
+
+bool is_known_app(std::uint8_t app_id) {
+  // TRANSID and APPID share one numbering. An application is a component above the transport level:
+  // those whose bodies the wire spec knows under CONNLESS (MOCKUP, LEARNING, CONTROL_LAYER), the
+  // learning networks' data (ESN_DATA) and the dispatcher of applications (APPLICATION_MD). The
+  // rest belongs to transport and network, which nobody reaches through Connectionless.
+  switch (static_cast<Component>(app_id)) {
+    case Component::kMockup:
+    case Component::kLearning:
+    case Component::kApplicationMd:
+    case Component::kControlLayer:
+    case Component::kEsnData:
+      return true;
+    case Component::kSynChannel:
+    case Component::kStream:
+    case Component::kConnless:
+    case Component::kCompMngmnt:
+    case Component::kTransportMd:
+    case Component::kRubiconAck:
+      break;
+  }
+  return false;
+}
+
+bool must_ack(bool reliable, Address dest, std::uint8_t trans_id, std::uint8_t app_id) {
+  //= T2-UNRELIABLE: An unreliable message is never acked.
+  if (!reliable) return false;
+  //= T2-LOOP: An ack is never acked.
+  // Neither is synaptic data: acks are Connectionless's.
+  if (trans_id != static_cast<std::uint8_t>(Component::kConnless)) return false;
+  //= T2-BROADCAST: A broadcast is not acked.
+  if (is_broadcast(dest)) return false;
+  return is_known_app(app_id);  // Else dropped; both acking and not are legal (decision 111).
+}
+
+std::int32_t acked_seq_num(Bytes body) {
+  if (body.size() == 2) return load_be16(body.data());
+  // The deployed form, maybe with stale bytes behind it where a sink has set nbytes to 102.
+  constexpr std::size_t kDeployedBytes = 4;
+  const bool deployed = body.size() >= kDeployedBytes &&
+                        body[0] == static_cast<std::uint8_t>(AmType::kLearningNotification);
+  if (deployed) return load_be16(body.data() + 1);
+  // The paper's form after such a sink. (One whose number begins with 23 looks deployed; that is
+  // the price of two forms without a mark.)
+  if (body.size() == kAppDataMax) return load_be16(body.data());
+  return -1;
+}
+
+}  // namespace rubric::machine
