@@ -1,0 +1,159 @@
+#include "conformance/trace/print.h"
+
+#include "conformance/trace/value_text.h"
+
+namespace rubric::trace {
+namespace {
+
+constexpr std::size_t kLabelColumns = 3;
+constexpr std::size_t kTimeColumns = 10;
+constexpr std::size_t kNodeColumns = 3;
+constexpr std::size_t kOpColumns = 2;
+constexpr std::size_t kLinkColumns = 4;
+
+// A word and at least one blank behind it, in columns.
+void put_padded(std::string_view word, std::size_t columns, std::string& out) {
+  out += word;
+  out.append(word.size() < columns ? columns - word.size() + 1 : 1, ' ');
+}
+
+void put_comment(const std::string& comment, std::string& out) {
+  if (!comment.empty()) out += "  ; " + comment;
+}
+
+void put_time(const Time& time, std::string& out) {
+  if (time.base == Time::Base::kStart) out += '@';
+  if (time.base == Time::Base::kLabel) out += time.label + '+';
+  out += std::to_string(time.from);
+  if (!time.exact()) out += ".." + std::to_string(time.to);
+}
+
+struct HeaderText {
+  std::string& out;
+
+  void operator()(const VersionHeader& h) const { out += "%rtr " + std::to_string(h.version); }
+  void operator()(const ProfileHeader& h) const { out += "%profile " + h.name; }
+  void operator()(const TickHeader& h) const { out += "%tick " + std::string(tick_text(h.tick)); }
+  void operator()(const SeedHeader& h) const { out += "%seed " + std::to_string(h.seed); }
+  void operator()(const NoteHeader& h) const { out += "%note " + h.text; }
+  void operator()(const NodeHeader& h) const {
+    out += "%node " + h.name + ' ' + std::string(role_text(h.role));
+    if (h.id) out += " id=" + std::to_string(*h.id);
+    if (h.island) out += " island=" + std::to_string(*h.island);
+    if (h.iut) out += " iut";
+  }
+  void operator()(const LinkHeader& h) const {
+    out += "%link " + h.name + ' ' + std::string(link_text(h.kind));
+    for (const std::string& node : h.nodes) out += ' ' + node;
+  }
+};
+
+void put_item(const Item& item, std::string& out) {
+  if (const auto* line = std::get_if<Line>(&item)) {
+    put_line(*line, out);
+  } else if (const auto* header = std::get_if<Header>(&item)) {
+    put_header(*header, out);
+  } else if (const auto* comment = std::get_if<Comment>(&item)) {
+    if (comment->indented) out += "  ";
+    out += comment->marker + comment->text;
+  }
+  out += '\n';
+}
+
+}  // namespace
+
+void put_header(const Header& header, std::string& out) {
+  std::visit(HeaderText{out}, header.what);
+  put_comment(header.comment, out);
+}
+
+void put_message(const Message& message, std::string& out) {
+  out += message.name;
+  if (message.form == Message::Form::kBare) return;
+  if (message.form == Message::Form::kAny) {
+    out += "(*)";
+    return;
+  }
+  out += '(';
+  const char* between = "";
+  for (const FieldValue& field : message.fields) {
+    out += between;
+    between = " ";
+    if (!field.path.empty()) out += field.path + '=';
+    put_value(field.value, out);
+  }
+  if (message.open) {
+    out += between;
+    out += "...";
+  }
+  out += ')';
+}
+
+void put_line(const Line& line, std::string& out) {
+  out += "  ";
+  put_padded(line.label.empty() ? "" : line.label + ':', kLabelColumns, out);
+  std::string time;
+  put_time(line.time, time);
+  put_padded(time, kTimeColumns, out);
+  if (is_fault(line.op)) {
+    put_padded(line.link, kNodeColumns, out);
+    put_padded(op_text(line.op), kOpColumns, out);
+  } else {
+    put_padded(line.node, kNodeColumns, out);
+    put_padded(op_text(line.op), kOpColumns, out);
+    put_padded(line.link, kLinkColumns, out);
+  }
+  if (line.am) {
+    out += "am=";
+    put_value(line.am->source, out);
+    out += "->";
+    put_value(line.am->dest, out);
+    out += ' ';
+  }
+  put_message(line.message, out);
+  if (!line.requirements.empty()) {
+    out += "  [";
+    for (std::size_t i = 0; i < line.requirements.size(); ++i) {
+      if (i) out += ' ';
+      out += line.requirements[i];
+    }
+    out += ']';
+  }
+  if (line.bytes) {
+    out += "  | ";
+    put_hex(*line.bytes, out);
+  }
+  put_comment(line.comment, out);
+}
+
+std::string print(const File& file) {
+  std::string out;
+  for (const Item& item : file.head) put_item(item, out);
+  for (const Case& one : file.cases) {
+    out += "case " + one.name;
+    put_comment(one.comment, out);
+    out += '\n';
+    for (const Item& item : one.items) put_item(item, out);
+  }
+  return out;
+}
+
+std::string print(const Line& line) {
+  std::string out;
+  put_line(line, out);
+  return out;
+}
+
+std::string print(const Message& message) {
+  std::string out;
+  put_message(message, out);
+  return out;
+}
+
+std::string print(const Time& time) {
+  std::string out;
+  put_time(time, out);
+  return out;
+}
+
+}  // namespace rubric::trace

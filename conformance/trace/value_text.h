@@ -1,0 +1,33 @@
+// Single values of a trace as text.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "conformance/trace/trace.h"
+
+namespace rubric::trace {
+
+/// Appends the value as a trace writes it.
+void put_value(const Value& value, std::string& out);
+std::string value_text(const Value& value);
+
+/// Reads one value; returns what is wrong with it, or nothing.
+std::string read_value(std::string_view text, Value& out);
+/// How far a value goes that begins at the first byte: to a blank, `)` or `]` that is not in quotes
+/// or brackets.
+std::size_t value_size(std::string_view text);
+
+/// A whole number in decimal or, behind 0x, in hex; false at anything else and beyond 15 digits.
+bool read_integer(std::string_view text, std::int64_t& out);
+/// A letter or `_`, then letters, digits and `_`.
+bool is_name(std::string_view text);
+/// The same with `-` and `.` inside: names of nodes, links and cases; may begin with a digit.
+bool is_dotted_name(std::string_view text);
+/// Names joined by dots, each perhaps with an index: "payload.body.updates[0].value".
+bool is_path(std::string_view text);
+
+/// Two hex digits a byte.
+void put_hex(std::string_view bytes, std::string& out);
+
+}  // namespace rubric::trace
