@@ -2,7 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "conformance/machine/address.h"
@@ -15,23 +18,27 @@ namespace rubric::oracle {
 struct Observation {
   enum class Kind : std::uint8_t {
     kRadio,     ///< An active message on the air; time_us is the start of the frame.
-    kLinkAck,   ///< An 802.15.4 acknowledgement; dsn says of what.
+    kLinkAck,   ///< An 802.15.4 acknowledgement, or that of a serial line; dsn says of what.
     kSerial,    ///< An active message on a serial line; time_us is the end of the frame.
     kDamaged,   ///< Bytes that are no frame (bad CRC and the like): heard by nobody.
     kCall,      ///< An application's call, from a .rtr log.
     kNotice,    ///< What an application was told, from a .rtr log.
   };
   Kind kind = Kind::kRadio;
-  Place place;
-  std::uint32_t tap = 0;       ///< Index into Run::taps.
   bool to_mote = false;        ///< Serial: towards the sink. Without direction flags see Tap.
-  bool ack_request = false;    ///< Radio: asks for a link ack.
-  std::uint8_t dsn = 0;        ///< Radio and link ack.
+  bool ack_request = false;    ///< Asks for an acknowledgement of the link.
+  bool has_dsn = false;        ///< A .rtr log has no DSN; of a serial line the packets with number.
+  std::uint8_t dsn = 0;        ///< Radio and link ack; the sequence number of a serial packet.
+  /// From a .rtr log: `node` was given this frame, so it did receive it. Else `node` sent it.
+  bool received = false;
   std::uint16_t pan = 0;
+  std::uint32_t tap = 0;       ///< Index into Run::taps.
+  Place place;
   machine::Frame frame;        ///< Bytes live as long as the Run.
-  std::string node;            ///< From a .rtr log: who sent it, who called; else empty.
-  machine::Call call;
-  machine::Notice notice;
+  std::string_view node;       ///< From a .rtr log: who sent it, who called; else empty.
+  const machine::Call* call = nullptr;      ///< kCall.
+  const machine::Notice* notice = nullptr;  ///< kNotice.
+  ReqId broken = ReqId::kNone;  ///< kDamaged: the rule that the bytes break.
 };
 
 /// A place where somebody listened: the air, a serial line.
@@ -59,8 +66,23 @@ struct Options {
   std::vector<std::uint16_t> testers;   ///< AM addresses of senders that are no node under test.
 };
 
+/// What a .rtr log says of a node.
+struct LoggedNode {
+  std::string name;
+  machine::Role role = machine::Role::kMote;
+  std::uint16_t id = 0;
+  std::uint16_t island = 0;   ///< 0: not said.
+  bool under_test = true;     ///< Where a log marks some nodes as under test the others are not.
+  bool application = false;   ///< The log has its application's calls and events.
+};
+
+/// Holds what observations point to.
+struct RunStorage;
+
 struct Run {
   std::vector<std::string> files;
+  std::vector<LoggedNode> nodes;
+  std::shared_ptr<RunStorage> storage;
   std::vector<Tap> taps;
   std::vector<Observation> seen;   ///< In order of cause: see merge() in read.h.
   std::int64_t start_us = 0;       ///< Of the capture, where its file says so; else the first stamp.
