@@ -30,7 +30,8 @@ struct Descriptor {
 
 enum class Role : std::uint8_t { kMote, kSink, kBaseStation };
 
-/// The lines of a node. A mote has a radio; a sink radio and serial; a base station serial and PEIS.
+/// The lines of a node. A mote has a radio; a sink radio and serial line; a base station serial line
+/// and PEIS.
 enum class Link : std::uint8_t { kRadio, kSerial, kPeis };
 
 }  // namespace rubric::machine

@@ -31,6 +31,12 @@ class BoundedQueue {
     head_ = static_cast<std::uint8_t>((head_ + 1) % kRoom);
     --count_;
   }
+  /// Takes out the i-th oldest; the others keep their order.
+  void erase(std::size_t i) {
+    assert(i < count_);
+    for (std::size_t k = i + 1; k < count_; ++k) (*this)[k - 1] = (*this)[k];
+    --count_;
+  }
   void clear() { head_ = count_ = 0; }
   friend bool operator==(const BoundedQueue& a, const BoundedQueue& b) {
     if (a.count_ != b.count_) return false;

@@ -30,14 +30,14 @@ struct Config {
   friend bool operator==(const Config&, const Config&) = default;
 };
 
-/// A mote's part in joining. kAccepted: a reply was accepted, ack_join is on its way.
+/// A mote's part in joining. A member whose ack_join the link layer has not confirmed is !acked.
 struct JoinMote {
   enum class Phase : std::uint8_t { kOutside, kJoining, kMember };
   Phase phase = Phase::kOutside;
-  std::uint8_t requests = 0;   ///< Sent for the present call.
+  std::uint8_t requests = 0;   ///< Of the present or last call; the first and one an expiry.
   std::uint8_t acks = 0;       ///< ack_join sent for the accepted reply.
   bool acked = false;          ///< The link layer confirmed ack_join.
-  std::uint16_t seq_num = 0;   ///< Of the present call's requests; kept while a member.
+  std::uint16_t seq_num = 0;   ///< Of the present or last call's requests.
   std::uint16_t sink_devid = 0;
   Address address;             ///< While a member.
   Descriptor descriptor;
@@ -139,6 +139,7 @@ struct State {
   Synaptic synaptic;
   Interface<4> radio;
   Interface<2> serial;
+  BoundedQueue<Link, 6> waiting;  ///< The lines of what is in radio.in and serial.in, by arrival.
   friend bool operator==(const State&, const State&) = default;
 };
 

@@ -1,0 +1,50 @@
+// The lines of a node: what is sent goes out now or waits in a circular buffer until the line is
+// free. (paper: The Network level)
+#pragma once
+
+#include "conformance/machine/node.h"
+
+namespace rubric::machine {
+
+/// A frame to send, but for its payload.
+struct Header {
+  Link link = Link::kRadio;
+  std::uint8_t type = 0;
+  std::uint16_t dest = 0;
+  ReqId requirement = ReqId::kNone;
+  bool link_ack = false;
+};
+
+/// Where the payload of an accepted frame goes, so that it is written once and in its place.
+struct Place {
+  std::uint8_t* payload = nullptr;  ///< Room for kAmPayloadMax bytes; null when refused.
+  std::uint8_t* size_bytes = nullptr;
+  explicit operator bool() const { return payload != nullptr; }
+  MutableBytes room() const { return {payload, kAmPayloadMax}; }
+};
+
+/// Whether a role has such a line.
+bool has_line(Role role, Link link);
+/// Why the line takes nothing now: kN10Off, kN1Full; kNone: it takes a frame.
+ReqId line_refusal(const State& state, Link link);
+/// Takes a frame: it leaves now, or waits. Refused: says so as ignored, and returns no place. The
+/// place is to be filled at once.
+Place put(Node& node, const Header& header);
+/// Sends the first frame that waits, if the line allows.
+void flush(Node& node, Link link);
+/// Forgets frames of this AM type that wait for the radio.
+void forget_waiting(State& state, std::uint8_t type);
+/// Whether one waits.
+bool is_waiting(const State& state, std::uint8_t type);
+
+/// The last transmission has ended.
+void send_done(Node& node, const SendDone& event);
+/// Somebody else takes the line or leaves it.
+void line_busy(Node& node, const LinkBusy& event);
+
+/// A mote's or sink's join messages.
+void send_join_request(Node& node, ReqId requirement);
+void send_ack_join(Node& node, ReqId requirement);
+void send_join_reply(Node& node, std::uint16_t dest, std::uint16_t seq_num);
+
+}  // namespace rubric::machine

@@ -1,0 +1,256 @@
+// The network level and the message dispatcher: net_msg from the application and from the lines.
+#include <algorithm>
+
+#include "codec/generated/rubicon/learning_notification.h"
+#include "codec/generated/rubicon/net_msg.h"
+#include "codec/generated/rubicon/serial_joined.h"
+#include "conformance/machine/lines.h"
+#include "conformance/machine/messages.h"
+#include "conformance/machine/synaptic.h"
+#include "conformance/machine/transport.h"
+
+namespace rubric::machine {
+namespace {
+
+constexpr std::size_t kNetHeaderBytes = 12;
+constexpr std::size_t kAppHeaderBytes = 2;
+
+Link link_of(Route::Onward onward) {
+  switch (onward) {
+    case Route::Onward::kSerial:
+      return Link::kSerial;
+    case Route::Onward::kPeis:
+      return Link::kPeis;
+    case Route::Onward::kRadio:
+    case Route::Onward::kNowhere:
+      break;
+  }
+  return Link::kRadio;
+}
+
+// On the serial line a net_msg always has its full length.
+void end_net_msg(const Place& place, Link link, std::size_t size_bytes) {
+  if (link == Link::kSerial) {
+    std::fill(place.payload + size_bytes, place.payload + kAmPayloadMax, std::uint8_t{0});
+    size_bytes = kAmPayloadMax;
+  }
+  *place.size_bytes = static_cast<std::uint8_t>(size_bytes);
+}
+
+struct NetHeader {
+  Address dest;
+  Address src;
+  bool reliable = false;
+  std::uint16_t seq_num = 0;
+};
+
+void fill_net_msg(const Place& place, Link link, const NetHeader& header, std::uint8_t trans_id,
+                  std::uint8_t app_id, Bytes data) {
+  const std::size_t nbytes = kAppHeaderBytes + data.size();
+  std::uint8_t* const p = place.payload;
+  rubicon::NetMsg wire;
+  wire.dest = wire_of(header.dest);
+  wire.src = wire_of(header.src);
+  wire.reliable = header.reliable ? 1 : 0;
+  wire.seq_num = header.seq_num;
+  //= T1-WRAP: The payload of a net_msg begins with TRANSID CONNLESS and the APPID of the sender for
+  //= what Connectionless.send was given.
+  std::uint8_t* const body = p + kNetHeaderBytes;
+  body[0] = trans_id;
+  body[1] = app_id;
+  std::copy_n(data.data(), data.size(), body + kAppHeaderBytes);
+  wire.payload = {body, nbytes};
+  rubicon::NetMsgLayout::store(wire, p);
+  end_net_msg(place, link, kNetHeaderBytes + nbytes);
+}
+
+void forward(Node& node, const Route& route, rubicon::NetMsgView message) {
+  const Link link = link_of(route.onward);
+  const Place place = put(node, {link, am::kNet, route.am_dest, route.requirement, false});
+  if (!place) return;
+  //= N6-CONTENT: What a sink forwards keeps addresses, reliable, sequence number and payload; on
+  //= the serial line only nbytes and the bytes behind the payload may differ.
+  //= N7-CONTENT: What a sink sends on by radio keeps addresses, reliable, sequence number, nbytes
+  //= and payload, and no byte behind the payload.
+  //= N8-INCOMING: A base station hands a message from PEIS for a mote of its island to its sink
+  //= with addresses, reliable, sequence number and payload kept.
+  const Bytes bytes = message.bytes();
+  std::copy_n(bytes.data(), bytes.size(), place.payload);
+  end_net_msg(place, link, bytes.size());
+}
+
+void send_ack(Node& node, Address to, std::uint8_t app_id, std::uint16_t seq_num) {
+  std::uint8_t body[rubicon::LearningNotificationView::kMaxSizeBytes];
+  rubicon::LearningNotification ack;
+  ack.type = rubicon::AmType::kLearningNotification;
+  ack.seq_num = seq_num;
+  rubicon::LearningNotificationLayout::store(ack, body);
+  //= T2-CONTENT: An ack has TRANSID RUBICON_ACK, the APPID and the sequence number of the message,
+  //= is unreliable, and goes to the message's source.
+  ReqId refused = ReqId::kNone;
+  send_own(node, {to, component::kRubiconAck, app_id, false, body, req::kT2Ack}, refused);
+  if (refused != ReqId::kNone) node.actions.ignored(refused);
+}
+
+void hear_connless(Node& node, rubicon::NetMsgView message, std::uint8_t app_id, Bytes data) {
+  Actions& actions = node.actions;
+  //= T1-UNKNOWN: A message with an unknown TRANSID or APPID is dropped without harm.
+  if (!is_known_app(app_id)) return actions.ignored(req::kT1Unknown);
+  const Address src = address_of(message.src());
+  const Address dest = address_of(message.dest());
+  const bool reliable = message.reliable() != 0;
+  actions.notify(Received{src, app_id, data}, reliable ? req::kT2Deliver : req::kT1Deliver);
+  if (!reliable) return actions.followed(req::kT2Unreliable);
+  if (!must_ack(reliable, dest, component::kConnless, app_id)) {
+    return actions.followed(req::kT2Broadcast);
+  }
+  send_ack(node, src, app_id, message.seq_num());
+}
+
+// The message dispatcher.
+void deliver(Node& node, rubicon::NetMsgView message) {
+  const Bytes payload = message.payload();
+  const std::uint8_t trans_id = payload[0];
+  const std::uint8_t app_id = payload[1];
+  const Bytes body = payload.from(kAppHeaderBytes);
+  switch (trans_id) {
+    case component::kConnless:
+      return hear_connless(node, message, app_id, body);
+    case component::kRubiconAck: {
+      const std::int32_t acked = acked_seq_num(body);
+      if (acked < 0) return node.actions.ignored(req::kWireRubiconAck);
+      hear_ack(node.state.awaited, address_of(message.src()), app_id,
+               static_cast<std::uint16_t>(acked), node.actions);
+      if (message.reliable() != 0) node.actions.followed(req::kT2Loop);
+      return;
+    }
+    case component::kSynChannel:
+      if (node.config().role == Role::kBaseStation) break;  // It has no channels.
+      return hear_synaptic(node.state.synaptic, own_address(node.state),
+                           address_of(message.src()), body, node.actions);
+    default:
+      break;
+  }
+  node.actions.ignored(req::kT1Unknown);
+}
+
+// Room for a message that asks for an ack; without a timeout the oldest is given up.
+bool can_await(AwaitedList& list, const Profile& profile) {
+  if (!list.full()) return true;
+  if (profile.ack_timeout_ticks != 0) return false;
+  list.erase(0);
+  return true;
+}
+
+}  // namespace
+
+std::uint16_t send_own(Node& node, const OwnMessage& message, ReqId& refused) {
+  State& state = node.state;
+  const Router router = router_of(state);
+  Address dest = message.dest;
+  //= N3-LOCAL: dest.pid 0xFFFE (local island) is replaced by the sender's own island before the
+  //= message is sent.
+  const bool local = dest.pid == kLocalPid;
+  if (local) dest.pid = router.own.pid;
+  const Route route = route_own(router, dest);
+  const Link link = link_of(route.onward);
+  refused = route.onward == Route::Onward::kNowhere ? route.requirement : line_refusal(state, link);
+  // A caller can be told of an ack only if there is a place to remember that it waits for it.
+  if (refused == ReqId::kNone && message.reliable && !can_await(state.awaited, node.profile())) {
+    refused = req::kN1Full;
+  }
+  if (refused != ReqId::kNone) return kNoSeq;
+  if (local) node.actions.followed(req::kN3Local);
+  const std::uint16_t seq_num = next_seq_num(state.sequence, state.awaited);
+  const bool plain = message.requirement == ReqId::kNone;
+  const ReqId requirement = plain ? route.requirement : message.requirement;
+  const Place place = put(node, {link, am::kNet, route.am_dest, requirement, false});
+  //= N1-SRC: What a node sends on behalf of its applications carries the node's own address as src;
+  //= a base station's src is <its island, NULL>.
+  fill_net_msg(place, link, {dest, router.own, message.reliable, seq_num}, message.trans_id,
+               message.app_id, message.data);
+  if (message.reliable) {
+    await_ack(state.awaited, node.profile(), node.now, seq_num, message.app_id, dest);
+  }
+  return seq_num;
+}
+
+void hear_net_msg(Node& node, Link from, Bytes bytes) {
+  const Router router = router_of(node.state);
+  // J11-HEAR: a node without an address does not look at them.
+  if (!router.member) return node.actions.ignored(req::kJ11Hear);
+  const auto message = rubicon::NetMsgView::parse(bytes);
+  if (!message) {
+    //= N11-NBYTES: A net_msg whose nbytes is over 102, under 2, or more than arrived is dropped: no
+    //= delivery, no ack, no forward.
+    const ReqId rule = message.error().requirement;
+    return node.actions.ignored(rule == req::kWireNetReliable ? rule : req::kN11Nbytes);
+  }
+  const Route route =
+      route_received(router, from, address_of(message->dest()), address_of(message->src()));
+  const bool nowhere = route.onward == Route::Onward::kNowhere;
+  if (!nowhere) forward(node, route, *message);
+  if (route.deliver) {
+    node.actions.followed(route.delivered);
+    deliver(node, *message);
+  }
+  if (nowhere && (!route.deliver || route.requirement != ReqId::kNone)) {
+    node.actions.ignored(route.requirement);
+  }
+}
+
+void report_joined(Node& node, Address member, const Descriptor& descriptor) {
+  //= J6-REPORT: A sink reports each new member to its base station with one serial_joined.
+  const Place place = put(node, {Link::kSerial, am::kNet, kAmBroadcast, req::kJ6Report, false});
+  if (!place) return;
+  const rubicon::MoteDesc wire = wire_of(descriptor);
+  rubicon::SerialJoined joined;
+  joined.msg_type = rubicon::AmType::kSerialJoined;
+  joined.island_addr = member.pid;
+  joined.mote_addr = member.devid;
+  joined.mote_type = wire.mote_type;
+  joined.transducers = wire.transducers;
+  joined.actuators = wire.actuators;
+  std::uint8_t body[rubicon::SerialJoinedView::kMaxSizeBytes];
+  rubicon::SerialJoinedLayout::store(joined, body);
+  //= J6-CONTENT: serial_joined carries the member's address and descriptor in an unreliable net_msg
+  //= from <island, mote> to <island, NULL>, TRANSID CONNLESS, APPID CONTROL_LAYER.
+  fill_net_msg(place, Link::kSerial, {{member.pid, kNullDevid}, member, false, 0},
+               component::kConnless, component::kControlLayer, body);
+}
+
+void tick(Node& node) {
+  State& state = node.state;
+  SynapticSends sends;
+  tick_synaptic(state.synaptic, own_address(state), node.now, sends, node.actions);
+  for (const SynapticSend& send : sends) {
+    //= S2-CONTENT: Synaptic data has TRANSID SYN_CHANNEL and one little-endian binary32 for each
+    //= connection, in order, unreliable.
+    std::uint8_t floats[4 * kConnectionsMax];
+    for (std::size_t i = 0; i < send.size; ++i) store_le32(floats + 4 * i, send.value_bits[i]);
+    const Bytes data(floats, std::size_t{4} * send.size);
+    ReqId refused = ReqId::kNone;
+    send_own(node,
+             {send.dest, component::kSynChannel, component::kEsnData, false, data,
+              send.requirement},
+             refused);
+    if (refused != ReqId::kNone) node.actions.ignored(refused);
+  }
+}
+
+void set_island(Node& node, std::uint16_t island) {
+  State& state = node.state;
+  const bool changes = island != state.island;
+  //= N9-SET: A config message SET_ISLAND_ID over serial sets the sink's island id; what the sink
+  //= does after it uses the new one.
+  state.island = island;
+  node.actions.followed(req::kN9Set);
+  if (!changes || node.config().role != Role::kSink) return;
+  //= N9-MEMBERS: A sink whose island id changes forgets its members.
+  state.sink.members.clear();
+  state.sink.pending.clear();
+  forget_waiting(state, am::kJoinReply);  // They offer the island that is no more.
+  node.actions.followed(req::kN9Members);
+}
+
+}  // namespace rubric::machine

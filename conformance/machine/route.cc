@@ -1,0 +1,143 @@
+#include "conformance/machine/route.h"
+
+namespace rubric::machine {
+namespace {
+
+using Onward = Route::Onward;
+
+Route nowhere(ReqId requirement) { return {false, Onward::kNowhere, 0, requirement, ReqId::kNone}; }
+Route onward(Onward line, std::uint16_t am_dest, ReqId requirement) {
+  return {false, line, am_dest, requirement, ReqId::kNone};
+}
+Route deliver(ReqId requirement) { return {true, Onward::kNowhere, 0, ReqId::kNone, requirement}; }
+
+bool for_own_island(const Router& router, Address dest) {
+  return dest.pid == router.own.pid || dest.pid == kBroadcastPid;
+}
+bool for_own_device(const Router& router, Address dest) {
+  return dest.devid == router.own.devid || dest.devid == kBroadcastDevid;
+}
+
+Route mote_from_radio(const Router& router, Address dest) {
+  //= J11-HEAR: A mote that is not a member ignores the net_msg that it hears.
+  if (!router.member) return nowhere(req::kJ11Hear);
+  //= N5-FOREIGN: A mote ignores a net_msg whose dest.pid is another island.
+  if (!for_own_island(router, dest)) return nowhere(req::kN5Foreign);
+  //= N5-OTHER: A mote ignores a net_msg of its own island whose devid is another mote or NULL.
+  if (!for_own_device(router, dest)) return nowhere(req::kN5Other);
+  return deliver(req::kN5Deliver);
+}
+
+Route sink_from_radio(const Router& router, Address dest, Address src) {
+  if (for_own_island(router, dest)) {
+    if (for_own_device(router, dest)) return deliver(req::kN6Deliver);
+    if (dest.devid == kNullDevid && dest.pid == router.own.pid) {
+      return onward(Onward::kSerial, kAmBroadcast, req::kN6Forward);
+    }
+    //= N6-OTHER: A sink does not deliver a net_msg of its island for another mote to its own
+    //= application; sending it on once by radio is allowed.
+    return nowhere(req::kN6Other);
+  }
+  //= N6-COLLISION: A sink ignores a net_msg from the radio whose dest.pid and src.pid are both
+  //= foreign.
+  if (src.pid != router.own.pid) return nowhere(req::kN6Collision);
+  return onward(Onward::kSerial, kAmBroadcast, req::kN6Route);
+}
+
+Route sink_from_serial(const Router& router, Address dest) {
+  const bool here = for_own_island(router, dest);
+  // A message of its base station for its base station has come the wrong way.
+  if (here && dest.devid == kNullDevid) return nowhere(req::kN7Radio);
+  Route route;
+  //= N7-FOREIGN: A sink does not send a net_msg from serial for another island on the radio.
+  if (!here) route.requirement = req::kN7Foreign;
+  if (for_own_device(router, dest)) {
+    // The rule looks at the devid alone: a base station is trusted with the island.
+    route.deliver = true;
+    route.delivered = req::kN7Deliver;
+  }
+  if (here && dest.devid != router.own.devid) {
+    route.onward = Onward::kRadio;
+    route.am_dest = dest.devid;  // The broadcast devid is the broadcast AM address.
+    route.requirement = req::kN7Radio;
+  }
+  return route;
+}
+
+Route base_station_received(const Router& router, Link from, Address dest) {
+  const bool from_sink = from == Link::kSerial;
+  if (!for_own_island(router, dest)) {
+    //= N8-LOOP: A base station does not hand a message for another island to its own sink.
+    if (!from_sink) return nowhere(req::kN8Loop);  // Nor back to PEIS.
+    return onward(Onward::kPeis, dest.pid, req::kN8Peis);
+  }
+  Route route;
+  if (for_own_device(router, dest)) {
+    route.deliver = true;
+    route.delivered = req::kN8Deliver;
+  }
+  if (dest.devid == kNullDevid) return route;
+  if (from_sink || dest.pid == kBroadcastPid) {  // Sent back it would go round for ever.
+    route.requirement = route.deliver ? ReqId::kNone : req::kN8Loop;
+    return route;
+  }
+  route.onward = Onward::kSerial;
+  route.am_dest = router.sink_am;
+  route.requirement = req::kN8Incoming;
+  return route;
+}
+
+Route mote_own(const Router& router, Address dest) {
+  //= J11-SEND: A mote that is not a member sends no net_msg.
+  if (!router.member) return nowhere(req::kJ11Send);
+  const bool in_island = for_own_island(router, dest) && dest.devid != kNullDevid;
+  //= N4-SINK: A mote sends a net_msg for another island, or with devid NULL, to the AM address of
+  //= its sink.
+  if (!in_island) return onward(Onward::kRadio, router.sink_am, req::kN4Sink);
+  return onward(Onward::kRadio, dest.devid, req::kN4Mote);
+}
+
+}  // namespace
+
+Route route_received(const Router& router, Link from, Address dest, Address src) {
+  if (router.role == Role::kMote && from == Link::kRadio) return mote_from_radio(router, dest);
+  if (router.role == Role::kSink && from == Link::kRadio) {
+    return sink_from_radio(router, dest, src);
+  }
+  if (router.role == Role::kSink && from == Link::kSerial) return sink_from_serial(router, dest);
+  if (router.role == Role::kBaseStation && from != Link::kRadio) {
+    return base_station_received(router, from, dest);
+  }
+  return nowhere(ReqId::kNone);  // A line that such a node does not have.
+}
+
+Route route_own(const Router& router, Address dest) {
+  Route route;
+  const bool here = for_own_island(router, dest);
+  switch (router.role) {
+    case Role::kMote:
+      route = mote_own(router, dest);
+      break;
+    case Role::kSink:
+      //= N6-OWN: What a sink itself sends to <its island, NULL> or to another island goes over
+      //= serial.
+      route = !here || dest.devid == kNullDevid
+                  ? onward(Onward::kSerial, kAmBroadcast, req::kN6Own)
+                  : onward(Onward::kRadio, dest.devid, req::kN4Mote);
+      break;
+    case Role::kBaseStation:
+      //= N8-PEIS: A base station sends a message for another island, its own or its sink's, through
+      //= PEIS to that island's base station.
+      if (!here) return onward(Onward::kPeis, dest.pid, req::kN8Peis);
+      if (dest.devid == kNullDevid) return nowhere(req::kN8Serial);  // To itself.
+      route = onward(Onward::kSerial, router.sink_am, req::kN8Serial);
+      break;
+  }
+  //= N4-MOTE: On the radio a net_msg for a mote of the sender's own island is sent to that mote's
+  //= AM address, a broadcast to AM address 0xFFFF.
+  const bool broadcast = dest.pid == kBroadcastPid && dest.devid != kNullDevid;
+  if (route.onward == Onward::kRadio && broadcast) route.am_dest = kAmBroadcast;
+  return route;
+}
+
+}  // namespace rubric::machine

@@ -1,0 +1,101 @@
+#include "conformance/machine/step.h"
+
+#include <variant>
+
+#include "conformance/machine/lines.h"
+#include "conformance/machine/messages.h"
+#include "conformance/machine/synaptic.h"
+#include "conformance/machine/transport.h"
+
+namespace rubric::machine {
+namespace {
+
+void join_timer_due(Node& node) {
+  const JoinSend send = join_timer(node.state.join, join_context(node), node.actions);
+  if (send == JoinSend::kRequest) return send_join_request(node, req::kJ8Retry);
+  forget_waiting(node.state, am::kJoin);  // The call is over; what waits for the radio is, too.
+}
+
+void timer_due(Node& node, Timer timer) {
+  switch (timer.kind) {
+    case TimerKind::kJoin:
+      return join_timer_due(node);
+    case TimerKind::kAck:
+      // Without a timeout no such timer is ever set.
+      if (node.profile().ack_timeout_ticks == 0) return node.actions.ignored(req::kT3Once);
+      return ack_timeout(node.state.awaited, timer.index, node.actions);
+    case TimerKind::kSynaptic:
+      return tick(node);
+  }
+}
+
+void app_busy(Node& node, bool busy) {
+  node.state.app_busy = busy;
+  if (!busy) handle_waiting(node);
+}
+
+// Memory is lost; who else uses the lines does not care.
+void reboot(Node& node) {
+  State& state = node.state;
+  const bool radio_taken = state.radio.taken;
+  const bool serial_taken = state.serial.taken;
+  state = start(Config(state.config));
+  state.radio.taken = radio_taken;
+  state.serial.taken = serial_taken;
+  state.clock_offset_ms = 0 - ms_of(node);
+  node.actions.followed(ReqId::kNone);
+}
+
+}  // namespace
+
+State start(const Config& config) {
+  State state;
+  state.config = config;
+  state.island = config.role == Role::kMote ? std::uint16_t{0} : config.island;
+  state.sequence.random = config.random_seq;
+  state.sequence.last = config.random_seq ? config.first_seq
+                                          : static_cast<std::uint16_t>(config.first_seq - 1);
+  state.synaptic.period_ticks = config.profile.synaptic_period_ticks;
+  return state;
+}
+
+void step(State& state, Ticks now, const Event& event, Actions& actions) {
+  actions.clear();
+  Node node{state, now, actions};
+  if (const auto* heard = std::get_if<Heard>(&event)) return hear(node, heard->frame);
+  if (const auto* called = std::get_if<Called>(&event)) return call(node, called->call);
+  if (const auto* timer = std::get_if<TimerDue>(&event)) return timer_due(node, timer->timer);
+  if (const auto* done = std::get_if<SendDone>(&event)) return send_done(node, *done);
+  if (const auto* busy = std::get_if<LinkBusy>(&event)) return line_busy(node, *busy);
+  if (const auto* busy = std::get_if<AppBusy>(&event)) return app_busy(node, busy->busy);
+  reboot(node);
+}
+
+BoundedList<DueTimer, 2 + kAwaitedMax> timers(const State& state) {
+  BoundedList<DueTimer, 2 + kAwaitedMax> set;
+  if (state.join.phase == JoinMote::Phase::kJoining) {
+    set.push({state.join.due, {TimerKind::kJoin, 0}});
+  }
+  if (state.config.profile.ack_timeout_ticks != 0) {
+    for (std::size_t i = 0; i < state.awaited.size(); ++i) {
+      set.push({state.awaited[i].due, {TimerKind::kAck, static_cast<std::uint8_t>(i)}});
+    }
+  }
+  if (state.synaptic.due != 0) set.push({state.synaptic.due, {TimerKind::kSynaptic, 0}});
+  return set;
+}
+
+Address own_address(const State& state) {
+  switch (state.config.role) {
+    case Role::kMote:
+      if (state.join.phase == JoinMote::Phase::kMember) return state.join.address;
+      return {0, state.config.id};
+    case Role::kSink:
+      return {state.island, state.config.id};
+    case Role::kBaseStation:
+      break;
+  }
+  return {state.island, kNullDevid};
+}
+
+}  // namespace rubric::machine
