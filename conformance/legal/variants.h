@@ -1,0 +1,52 @@
+// The legal variants: each is one honest way to follow the rules, or something legal that happens.
+#pragma once
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "conformance/legal/plan.h"
+#include "conformance/legal/random.h"
+#include "conformance/legal/traffic.h"
+
+namespace rubric::legal {
+
+struct Variant {
+  std::string_view name;
+  std::string_view summary;
+  std::vector<int> points;      ///< Open points of which it is a reading.
+  void (*configure)(Plan& plan, Random& random);
+  bool mixes = false;           ///< May be part of `mixed`.
+  Worst worst = Worst::kPass;
+};
+
+/// All variants, in the order in which they are listed.
+const std::vector<Variant>& variants();
+const Variant* find_variant(std::string_view name);
+
+/// An open point of which no variant can show a reading, and why.
+struct Unobservable {
+  int point;
+  std::string_view reason;
+};
+std::span<const Unobservable> unobservable_points();
+inline constexpr int kOpenPoints = 28;
+
+/// One island, a sink, three motes with readings, some messages in every direction.
+Plan common_plan(Random& random);
+
+std::vector<Variant> join_variants();
+std::vector<Variant> transport_variants();
+std::vector<Variant> network_variants();
+std::vector<Variant> synaptic_variants();
+std::vector<Variant> timing_variants();
+std::vector<Variant> capture_variants();
+
+// What several groups use.
+MotePlan mote_plan(std::uint16_t id, int island, std::int64_t boot_us);
+/// Islands 11 and 12 with two motes each.
+void two_islands(Plan& plan, bool apart, Random& random);
+/// Everybody misses frames of that type from AM address `src` before `until_us`.
+Loss lose(rubicon::AmType type, std::uint16_t src, std::int64_t until_us);
+
+}  // namespace rubric::legal
