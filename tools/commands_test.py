@@ -6,6 +6,7 @@ Usage: commands_test.py RUBRIC.
 
 import json
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -257,6 +258,8 @@ class Explain(unittest.TestCase):
             ("transducer_mask", "0x1000  rssi5"),
             ("component", "control_layer"),
             ("am_header", "WIRE-AM-DISPATCH"),
+            ("J4-SEQ", "Otherwise in release 1.0"),
+            ("J8-FAIL", "Accepted by --profile deployed"),
         ]:
             code, out, err = rubric("explain", name)
             self.assertEqual((code, err), (0, ""), name)
@@ -264,6 +267,35 @@ class Explain(unittest.TestCase):
         code, out, _ = rubric("explain", "--spec", "oscilloscope", "oscilloscope_msg")
         self.assertEqual(code, 0)
         self.assertIn("AM 147 on serial", out.decode())
+
+    def test_a_group_of_rules(self):
+        code, out, err = rubric("explain", "j4")
+        self.assertEqual((code, err), (0, ""))
+        heads = [line.split(":")[0] for line in out.decode().splitlines()
+                 if line and not line.startswith(" ")]
+        catalogue = pathlib.Path("spec/requirements.yaml").read_text()
+        self.assertEqual(heads, re.findall(r"(?m)^- id: (J4-\S+)", catalogue))
+        self.assertEqual(rubric("explain", "J4-SEQ")[1].decode().count("Source: "), 1)
+
+    def test_every_case_is_found_from_its_rule(self):
+        rules = set()
+        for file in pathlib.Path("conformance/cases").rglob("*.rtr"):
+            name = None
+            for line in file.read_text().splitlines():
+                line = line.split(";")[0]
+                if line.startswith("case "):
+                    name = line.split()[1]
+                for tag in re.findall(r"\)\s*\[([A-Z][^\]]*)\]", line):
+                    for rule in re.split(r"[\s,]+", tag.strip()):
+                        rules.add((rule, "!>" in line.split(), name))
+        self.assertTrue(rules)
+        text = {}
+        for rule, negative, name in sorted(rules):
+            if rule not in text:
+                text[rule] = rubric("explain", rule)[1].decode().split("Cases:")[1]
+            positives, _, negatives = text[rule].partition("negative:")
+            found = negatives if negative else positives
+            self.assertIn(name, re.findall(r"(\S+) \(", " ".join(found.split())), rule)
 
     def test_frames(self):
         code, out, _ = rubric("explain", *CONFIG_PACKET.decode().split())
@@ -279,6 +311,8 @@ class Explain(unittest.TestCase):
     def test_unknown(self):
         for args, says in [(["net_mesg"], "did you mean 'net_msg'?"),
                            (["NET_MSG"], "did you mean 'net_msg'?"),
+                           (["J4-SEK"], "did you mean 'J4-SEQ'?"),
+                           (["WIRES"], "did you mean 'WIRE'?"),
                            (["99887766"], "begin like no frame"),
                            (["--framing", "sf", "xyz"], "expected hex digits"),
                            (["net_msg", "upates"], "did you mean 'updates'?")]:

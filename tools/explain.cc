@@ -16,6 +16,7 @@
 #include "tools/cli/output.h"
 #include "tools/cli/suggest.h"
 #include "tools/layout/explain_frame.h"
+#include "tools/layout/explain_rule.h"
 #include "tools/layout/explain_type.h"
 #include "tools/layout/frame_guess.h"
 
@@ -31,8 +32,9 @@ struct Options {
 };
 
 constexpr const char* kFooter =
-    "X is a message, a rule (WIRE-NET-NBYTES), an enum or a mask, or the hex bytes of a frame: a\n"
-    "serial packet as Listen prints it, a serial frame with its kind byte, an 802.15.4 frame.\n"
+    "X is a message, a rule (WIRE-NET-NBYTES) or a group of them (J4), an enum or a mask, or the\n"
+    "hex bytes of a frame: a serial packet as Listen prints it, a serial frame with its kind\n"
+    "byte, an 802.15.4 frame.\n"
     "Exit codes: 0 explained, 1 the frame is malformed, 2 usage or nothing of that name.";
 
 // The protocol above and the frames below, where names are looked for.
@@ -44,12 +46,9 @@ std::vector<const Protocol*> layers(const Protocol& protocol) {
 std::string explain_name(const Protocol& protocol, const std::string& name) {
   std::string out;
   const auto add = [&](std::string text) { out += (out.empty() ? "" : "\n") + std::move(text); };
-  const ReqId rule = reflect::find_requirement(name);
-  if (rule != ReqId::kNone) {
-    std::vector<const Protocol*> all = reflect::protocols();
-    all.push_back(&tinyos::tables::kProtocol);
-    add(layout::explain_requirement(all, rule));
-  }
+  std::vector<const Protocol*> all = reflect::protocols();
+  all.push_back(&tinyos::tables::kProtocol);
+  for (const ReqId rule : layout::rules_named(name)) add(layout::explain_rule(all, rule));
   for (const Protocol* layer : layers(protocol)) {
     if (const reflect::Type* type = reflect::find_type(*layer, name)) {
       add(layout::explain_type(*layer, *type));
@@ -72,11 +71,11 @@ std::vector<std::string> all_names(const Protocol& protocol) {
     for (int i = 0; i < layer->enum_count; ++i) names.emplace_back(layer->enums[i]->name);
     for (int i = 0; i < layer->mask_count; ++i) names.emplace_back(layer->masks[i]->name);
   }
-  for (int i = 1;; ++i) {
-    const auto id = static_cast<ReqId>(i);
-    const std::string_view name = reflect::requirement(id).id;
-    if (name.empty()) break;
-    names.emplace_back(name);
+  for (const std::string& group : layout::rule_groups()) {
+    names.push_back(group);
+    for (const ReqId rule : layout::rules_named(group)) {
+      names.emplace_back(reflect::requirement(rule).id);
+    }
   }
   return names;
 }

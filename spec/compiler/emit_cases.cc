@@ -13,7 +13,7 @@ constexpr std::string_view kFile = R"(<<banner>>
 
 #include <array>
 
-#include "codec/generated/requirements.h"
+<<include>>
 
 namespace rubric::cases {
 
@@ -44,6 +44,7 @@ GeneratedFiles emit_cases(const Model& model, const std::string& folder) {
   }
   return {{"conformance/generated/cases.h",
            fill(kFile, {{"banner", banner("// ", folder)},
+                        {"include", cpp_include("codec/generated/requirements.h")},
                         {"count", std::to_string(model.case_uses.size())},
                         {"uses", uses.empty() ? "{}" : "{{\n" + uses + "}}"}})}};
 }

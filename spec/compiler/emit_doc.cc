@@ -9,6 +9,7 @@
 #include "spec/compiler/cpp_text.h"
 #include "spec/compiler/emit.h"
 #include "spec/compiler/html.h"
+#include "spec/compiler/profile_fields.h"
 #include "spec/compiler/template.h"
 
 namespace rubricc {
@@ -122,12 +123,66 @@ std::map<std::string, std::string> uses(const Model& model) {
   return out;
 }
 
+std::string roles_text(const Requirement& one) {
+  std::string out;
+  const std::pair<int, std::string_view> roles[] = {
+      {1, "mote"}, {2, "sink"}, {4, "base station"}};
+  for (const auto& [bit, name] : roles) {
+    if ((one.roles & bit) == 0) continue;
+    out += out.empty() ? "" : ", ";
+    out += name;
+  }
+  return out;
+}
+
+/// Rules that name who must follow them, and what each profile does not hold against an
+/// implementation.
+std::string doc_behaviour(const Model& model) {
+  HtmlTable table{"Behaviour",
+                  {"id", "level", "clause", "sentence", "for", "says what must not happen",
+                   "release 1.0", "accepted", "source"},
+                  {}, {}};
+  for (const Requirement& one : model.requirements) {
+    if (one.roles == 0) continue;
+    std::string accepted;
+    for (const Profile& profile : model.profiles) {
+      for (const AcceptedDifference& difference : profile.accepted) {
+        if (difference.requirement != one.id) continue;
+        accepted += (accepted.empty() ? "" : " ") + profile.name + ": " + difference.sentence;
+      }
+    }
+    table.anchors.push_back(anchor_of_requirement(one.id));
+    table.rows.push_back({html_escaped(one.id), html_escaped(one.level),
+                          html_escaped(one.clause), html_escaped(one.sentence), roles_text(one),
+                          one.forbids ? "yes" : "", html_escaped(one.deployed),
+                          html_escaped(accepted), html_escaped(one.source)});
+  }
+  return table.rows.empty() ? "" : "\n" + table.text();
+}
+
+std::string doc_profiles(const Model& model) {
+  if (model.profiles.empty()) return {};
+  HtmlTable table{"Profiles", {"constant or switch"}, {}, {}};
+  for (const Profile& profile : model.profiles) table.columns.push_back(profile.name);
+  for (std::size_t i = 0; i < profile_fields().size(); ++i) {
+    const ProfileField& field = profile_fields()[i];
+    std::vector<std::string> row{std::string(field.name)};
+    for (const Profile& profile : model.profiles) {
+      const std::int64_t value = profile.values.at(i);
+      row.push_back(!field.is_switch ? std::to_string(value) : value != 0 ? "on" : "off");
+    }
+    table.rows.push_back(std::move(row));
+  }
+  return "\n" + table.text();
+}
+
 std::string doc_requirements(const Model& model) {
   if (model.requirements.empty()) return {};
   const auto used = uses(model);
   HtmlTable table{"Requirements", {"id", "level", "clause", "sentence", "source", "used by"},
                   {}, {}};
   for (const Requirement& one : model.requirements) {
+    if (one.roles != 0) continue;
     const auto found = used.find(one.id);
     table.anchors.push_back(anchor_of_requirement(one.id));
     table.rows.push_back({html_escaped(one.id), html_escaped(one.level),
@@ -135,7 +190,8 @@ std::string doc_requirements(const Model& model) {
                           html_escaped(one.source),
                           found == used.end() ? "framing" : found->second});
   }
-  return "<section id=\"requirements\">\n<h2>Requirements</h2>\n" + table.text() + "\n</section>";
+  return "<section id=\"requirements\">\n<h2>Requirements</h2>\n" + table.text() +
+         doc_behaviour(model) + doc_profiles(model) + "\n</section>";
 }
 
 /// A comment of HTML ends at "--".

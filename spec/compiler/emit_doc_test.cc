@@ -16,6 +16,7 @@ std::string page_of(const std::vector<std::string>& files) {
   Model model;
   Diagnostics diagnostics;
   load_requirements("spec/requirements.yaml", model, diagnostics);
+  load_profiles("spec/profiles", model, diagnostics);
   load_specs(files, model, diagnostics);
   check_model(model, diagnostics);
   EXPECT_EQ(diagnostics.print(), "");
@@ -67,6 +68,21 @@ TEST(Doc, LinksLeadSomewhereAndTagsBalance) {
     EXPECT_TRUE(targets.contains(id)) << id;
   }
   EXPECT_EQ(page.find("<script"), page.npos);
+}
+
+TEST(Doc, HasRolesDifferencesAndProfiles) {
+  const std::string page = page_of({"spec/wire/tinyos.ksy"});
+  const std::size_t row = page.find("<tr id=\"req-J8-FAIL\">");
+  ASSERT_NE(row, page.npos);
+  const std::string cells = page.substr(row, page.find("</tr>", row) - row);
+  for (const char* cell : {"<td>mote</td>", "<td>No joined(FAIL) exists.</td>",
+                           "<td>deployed: A joinIsland call without success ends"}) {
+    EXPECT_NE(cells.find(cell), cells.npos) << cell;
+  }
+  EXPECT_NE(page.find("<td>mote, sink, base station</td><td>yes</td>"), page.npos);
+  EXPECT_NE(page.find("<th scope=\"row\">join_requests_max</th><td>7</td><td>5</td>"), page.npos);
+  EXPECT_NE(page.find("<th scope=\"row\">listed_ignored</th><td>off</td><td>on</td>"), page.npos);
+  EXPECT_EQ(page.find("id=\"req-J8-FAIL\"", row + 20), page.npos);
 }
 
 TEST(Doc, TextOfTheSpecIsEscaped) {

@@ -15,8 +15,7 @@ constexpr std::string_view kFile = R"(<<banner>>
 #include <array>
 #include <span>
 
-#include "codec/generated/requirements.h"
-#include "conformance/machine/profile.h"
+<<includes>>
 
 namespace rubric::machine {
 
@@ -91,6 +90,8 @@ GeneratedFiles emit_profiles(const Model& model) {
   if (model.profiles.empty()) return {};
   return {{"conformance/generated/profiles.h",
            fill(kFile, {{"banner", banner("// ", inputs)},
+                        {"includes", cpp_include("codec/generated/requirements.h") + "\n" +
+                                         cpp_include("conformance/machine/profile.h")},
                         {"profiles", profiles},
                         {"count", std::to_string(model.profiles.size())},
                         {"entries", entries}})}};

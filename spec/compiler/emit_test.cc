@@ -127,6 +127,18 @@ TEST(Emitters, SayWhereFilesComeFromAndKeepLinesShort) {
   }
 }
 
+TEST(Emitters, RequirementsHaveRolesAndDifferences) {
+  const auto files = emit_requirements(wire(), "spec/requirements.yaml");
+  const std::string& table = files.at(1).text;
+  EXPECT_NE(table.find("\"release 1.0\",\n     reflect::kRoleMote, true, \"\"},\n    {\"J9-"),
+            table.npos);
+  EXPECT_NE(table.find("     reflect::kRoleSink, false,\n     \"The sink stores one pending"),
+            table.npos);
+  EXPECT_NE(table.find("kRoleMote | reflect::kRoleSink | reflect::kRoleBaseStation, false, \"\"}"),
+            table.npos);
+  EXPECT_NE(table.find("     0, false, \"\"},\n    {\"WIRE-HDLC-ESCAPE\""), table.npos);
+}
+
 TEST(Emitters, TheDictionaryHasValuesInWireOrder) {
   const std::string text = emit_dictionary(spec_named("rubicon")).at(0).text;
   EXPECT_NE(text.find("r_addr_pid_proxy=\"\\xff\\xfd\"\n"), std::string::npos);

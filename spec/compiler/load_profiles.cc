@@ -106,7 +106,8 @@ class Reader {
       }
       std::vector<std::string> ids;
       for (const Requirement& one : model_.requirements) ids.push_back(one.id);
-      input_.error(entry.key_node, fmt::format("unknown requirement {}", rubricc::quoted(entry.key)),
+      input_.error(entry.key_node,
+                   fmt::format("unknown requirement {}", rubricc::quoted(entry.key)),
                    suggestion(entry.key, ids));
     }
   }

@@ -91,7 +91,8 @@ TEST_F(Cases, AreFoundByTheirTags) {
   write("b.rtr",
         "%rtr 1\n%node m [not a tag]\n"
         "case b.one\n"
-        "  0 m > rA x(values=[1 2] text=\"a;(\\\"[\" n=!2)  [J4-ACK, J4-CONTENT\tJ5-SUCCESS] ; [J1-X]\n"
+        "  0 m > rA x(values=[1 2] text=\"a;(\\\"[\" n=!2)  [J4-ACK, "
+        "J4-CONTENT\tJ5-SUCCESS] ; [J1-X]\n"
         "  0 m !> rA x(*) [J4-SEQ]\n"
         "  0 m !> rA x(*) [J4-SEQ] | 00ff\n"
         "  0 m > rA x(a=1) | 00ff [J4-SEQ]\n"

@@ -138,23 +138,6 @@ void each_field(const Protocol& protocol, Visit visit) {
   }
 }
 
-template <class Has>
-std::string users(const std::vector<const Protocol*>& protocols, Has has) {
-  std::string out;
-  for (const Protocol* protocol : protocols) {
-    std::vector<std::string> names;
-    each_field(*protocol, [&](const Type& type, const Field& f) {
-      std::string name = fmt::format("{}.{}", type.id, f.name);
-      if (has(f) && std::find(names.begin(), names.end(), name) == names.end()) {
-        names.push_back(std::move(name));
-      }
-    });
-    if (names.empty()) continue;
-    out += wrapped(fmt::format("Used by {}: {}", protocol->id, fmt::join(names, ", ")), 2);
-  }
-  return out;
-}
-
 }  // namespace
 
 std::string explain_type(const Protocol& protocol, const Type& type) {
@@ -177,12 +160,21 @@ std::string explain_type(const Protocol& protocol, const Type& type) {
   return out;
 }
 
-std::string explain_requirement(const std::vector<const Protocol*>& protocols, ReqId id) {
-  const reflect::Requirement& rule = reflect::requirement(id);
-  std::string out = fmt::format("{}: {}, {}\n", rule.id, rule.level, rule.clause);
-  out += wrapped(rule.sentence, 2);
-  out += fmt::format("  Source: {}\n", rule.source);
-  return out + users(protocols, [id](const Field& f) { return f.requirement == id; });
+std::string used_by(const std::vector<const Protocol*>& protocols,
+                    const std::function<bool(const Field&)>& has) {
+  std::string out;
+  for (const Protocol* protocol : protocols) {
+    std::vector<std::string> names;
+    each_field(*protocol, [&](const Type& type, const Field& f) {
+      std::string name = fmt::format("{}.{}", type.id, f.name);
+      if (has(f) && std::find(names.begin(), names.end(), name) == names.end()) {
+        names.push_back(std::move(name));
+      }
+    });
+    if (names.empty()) continue;
+    out += wrapped(fmt::format("Used by {}: {}", protocol->id, fmt::join(names, ", ")), 2);
+  }
+  return out;
 }
 
 std::string explain_enum(const Protocol& protocol, const EnumTable& table) {
@@ -195,7 +187,7 @@ std::string explain_enum(const Protocol& protocol, const EnumTable& table) {
     rows.add({std::to_string(entry.value), fmt::format("{:#x}", entry.value), entry.name});
   }
   return out + rows.text(2) +
-         users({&protocol}, [&](const Field& f) { return f.enumeration == &table; });
+         used_by({&protocol}, [&](const Field& f) { return f.enumeration == &table; });
 }
 
 std::string explain_mask(const Protocol& protocol, const MaskTable& table) {
@@ -207,7 +199,8 @@ std::string explain_mask(const Protocol& protocol, const MaskTable& table) {
     const char* name = table.bit_names[i];
     rows.add({std::to_string(i), fmt::format("{:#06x}", 1u << i), name ? name : "(unnamed)"});
   }
-  return out + rows.text(2) + users({&protocol}, [&](const Field& f) { return f.mask == &table; });
+  return out + rows.text(2) +
+         used_by({&protocol}, [&](const Field& f) { return f.mask == &table; });
 }
 
 }  // namespace rubric::layout

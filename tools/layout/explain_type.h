@@ -1,6 +1,7 @@
-// What `rubric explain` prints about messages, rules and names.
+// What `rubric explain` prints about messages and names.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,8 +14,10 @@ namespace rubric::layout {
 /// of its enums and masks, its own rule, and how it is reached.
 std::string explain_type(const reflect::Protocol& protocol, const reflect::Type& type);
 
-/// A rule, and the fields that refer to it in these protocols.
-std::string explain_requirement(const std::vector<const reflect::Protocol*>& protocols, ReqId id);
+/// "Used by rubicon: net_msg.nbytes, ...": the fields that `has` finds, a line for each protocol
+/// that has one.
+std::string used_by(const std::vector<const reflect::Protocol*>& protocols,
+                    const std::function<bool(const reflect::Field&)>& has);
 
 std::string explain_enum(const reflect::Protocol& protocol, const reflect::EnumTable& table);
 std::string explain_mask(const reflect::Protocol& protocol, const reflect::MaskTable& table);

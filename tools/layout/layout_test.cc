@@ -9,6 +9,7 @@
 #include "codec/reflect/encode.h"
 #include "codec/reflect/frame.h"
 #include "tools/layout/explain_frame.h"
+#include "tools/layout/explain_rule.h"
 #include "tools/layout/explain_type.h"
 #include "tools/layout/frame_guess.h"
 #include "tools/layout/reach.h"
@@ -134,11 +135,46 @@ TEST(Explain, EveryTypeEnumAndMask) {
 }
 
 TEST(Explain, Requirement) {
-  EXPECT_EQ(explain_requirement({&kRubicon}, ReqId::kWireNetNbytes),
+  EXPECT_EQ(explain_rule({&kRubicon}, ReqId::kWireNetNbytes, {}),
             "WIRE-NET-NBYTES: MUST, wire, messages\n"
             "  nbytes counts TRANSID, APPID and the application payload, so it is 2 to 102.\n"
             "  Source: paper: Memory Occupation; release 1.0\n"
             "  Used by rubicon: net_msg.nbytes, complete.nbytes\n");
+}
+
+TEST(Explain, RuleOfBehaviour) {
+  const cases::CaseUse uses[] = {{"j4.accept", "a.rtr", req::kJ4Ack, false},
+                                 {"j4.wrong_seq", "a.rtr", req::kJ4Seq, true},
+                                 {"j4.right_seq", "b.rtr", req::kJ4Seq, false},
+                                 {"j4.old_seq", "b.rtr", req::kJ4Seq, true}};
+  EXPECT_EQ(explain_rule({&kRubicon}, req::kJ4Seq, uses),
+            "J4-SEQ: MUST, join, mote\n"
+            "  A mote ignores a join_reply whose sequence number is not that of its outstanding "
+            "request.\n"
+            "  For: mote; it says what must not happen\n"
+            "  Source: paper: Component Management\n"
+            "  Otherwise in release 1.0: A reply with a wrong number still ends the join, with a "
+            "malformed\n"
+            "  ack_join.\n"
+            "  Cases:\n"
+            "    positive: j4.right_seq (b.rtr)\n"
+            "    negative: j4.wrong_seq (a.rtr), j4.old_seq (b.rtr)\n");
+  const std::string text = explain_rule({&kRubicon}, req::kJ8Fail, {});
+  EXPECT_THAT(text, HasSubstr("  For: mote\n"));
+  EXPECT_THAT(text, HasSubstr("  Accepted by --profile deployed: A joinIsland call without"));
+  EXPECT_THAT(text, testing::EndsWith("  Cases: none\n"));
+  EXPECT_THAT(explain_rule({}, req::kT2Loop, {}), HasSubstr("For: mote, sink, base station;"));
+}
+
+TEST(Explain, RulesByIdAndGroup) {
+  EXPECT_THAT(rules_named("j4-seq"), ElementsAre(req::kJ4Seq));
+  EXPECT_THAT(rules_named("n9"), ElementsAre(req::kN9Set, req::kN9Other, req::kN9Members));
+  EXPECT_THAT(rules_named("WIRE-HDLC"), testing::Contains(req::kWireHdlcTwoFlags));
+  EXPECT_EQ(rules_named("J1").size(), 4U);  // Not those of J10 and J11.
+  EXPECT_THAT(rules_named("J"), testing::IsEmpty());
+  EXPECT_THAT(rules_named(""), testing::IsEmpty());
+  EXPECT_THAT(rules_named("N9-"), testing::IsEmpty());
+  EXPECT_THAT(rule_groups(), testing::IsSupersetOf({"WIRE", "N1", "J4", "T3", "S6"}));
 }
 
 struct GuessRow {
