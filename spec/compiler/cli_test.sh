@@ -33,6 +33,16 @@ grep -q 'many_mistakes.ksy:43:5: error: duplicate enum value 2' "$out/stderr" ||
   { echo "the diagnostics are not on stderr"; failures=1; }
 expect 1 --emit tables --out "$out/bad" $bad
 [ ! -e "$out/bad" ] || { echo "files in spite of mistakes"; failures=1; }
+expect 0 --emit profiles,cases --cases "$out/none" --out "$out/good" $good
+for file in profiles cases; do
+  [ -f "$out/good/conformance/generated/$file.h" ] || { echo "no $file"; failures=1; }
+done
+expect 1 --check --profiles spec/compiler/bad/profiles $good
+grep -q 'profiles/not_a_switch.yaml:16:24: error: ' "$out/stderr" ||
+  { echo "profiles are not checked"; failures=1; }
+expect 1 --check --cases spec/compiler/bad/cases $good
+grep -q 'cases/no_name.rtr:4:1: error: ' "$out/stderr" ||
+  { echo "cases are not checked"; failures=1; }
 expect 2
 expect 2 $good
 expect 2 --emit tables $good
@@ -40,5 +50,6 @@ expect 2 --emit poetry --out "$out" $good
 expect 2 --check --emit tables --out "$out" $good
 expect 3 --check spec/wire/nothing.ksy
 expect 3 --check --requirements nothing.yaml $good
+expect 3 --emit profiles --profiles nothing --out "$out" $good
 expect 3 --emit tables --out /dev/null/nowhere $good
 exit "$failures"
