@@ -269,6 +269,10 @@ constexpr reflect::Requirement kRequirements[] = {
      "send returns the sequence number that the message carries.",
      "paper: The Network level; release 1.0 NetworkP",
      reflect::kRoleMote | reflect::kRoleSink | reflect::kRoleBaseStation, false, ""},
+    {"N1-ROOM", "MUST", "network, send",
+     "send accepts a message of a member while the outgoing buffer has room.",
+     "paper: The Network level; decision 122",
+     reflect::kRoleMote | reflect::kRoleSink, false, ""},
     {"N1-FULL", "MUST", "network, send",
      "When the outgoing buffer is full send returns 0xFFFF and that message is never sent.",
      "paper: The Network level; release 1.0 NetworkP",
@@ -313,12 +317,13 @@ constexpr reflect::Requirement kRequirements[] = {
      "paper: The Inter-Island Connectivity",
      reflect::kRoleMote, true, ""},
     {"N5-DELIVER", "MUST", "network, mote",
-     "A mote delivers a net_msg whose dest is its island and its own devid or the broadcast "
-     "devid.",
+     "A mote delivers a net_msg, sent or sent on by a node of its island, whose dest is its "
+     "island and its own devid or the broadcast devid.",
      "paper: Island Collision Resolution and Safe Join",
      reflect::kRoleMote, false, ""},
     {"N5-FOREIGN", "MUST", "network, mote",
-     "A mote ignores a net_msg whose dest.pid is another island.",
+     "A mote ignores a net_msg whose dest.pid is another island; 0xFFFF, every island, may "
+     "be delivered or ignored.",
      "paper: Island Collision Resolution and Safe Join",
      reflect::kRoleMote, true, ""},
     {"N5-OTHER", "MUST", "network, mote",
@@ -367,8 +372,8 @@ constexpr reflect::Requirement kRequirements[] = {
      "release 1.0 NetworkP",
      reflect::kRoleSink, false, ""},
     {"N7-RADIO", "MUST", "network, sink",
-     "A sink sends a net_msg from serial whose devid is another mote, or the broadcast "
-     "devid, on the radio to that devid.",
+     "A sink sends a net_msg from serial for its island whose devid is another mote, or the "
+     "broadcast devid, on the radio to that devid.",
      "paper: The Inter-Island Connectivity; release 1.0 NetworkP",
      reflect::kRoleSink, false, ""},
     {"N7-CONTENT", "MUST", "network, sink",
@@ -469,7 +474,8 @@ constexpr reflect::Requirement kRequirements[] = {
      reflect::kRoleSink, true,
      "The check is compiled out: a listed mote is answered."},
     {"J3-REPLY", "MUST", "join, sink",
-     "A sink answers a join_request of a mote that it does not list with a join_reply.",
+     "A sink whose list has room answers a join_request of a mote that it does not list "
+     "with a join_reply.",
      "paper: Component Management",
      reflect::kRoleSink, false, ""},
     {"J3-ONCE", "MUST", "join, sink",
@@ -491,9 +497,14 @@ constexpr reflect::Requirement kRequirements[] = {
      reflect::kRoleSink, true, ""},
     {"J3-TIME", "MUST", "join, sink",
      "cur_time of a join_reply is the sink's clock in ms when it replies; between replies "
-     "it grows as time does.",
+     "more than a second apart it grows.",
      "paper: Component Management; decision 119",
      reflect::kRoleSink, true,
+     "cur_time is the time of boot and never changes."},
+    {"J3-DRIFT", "SHOULD", "join, sink",
+     "Between two join_replies cur_time grows as time did, to within a second.",
+     "decision 119",
+     reflect::kRoleSink, false,
      "cur_time is the time of boot and never changes."},
     {"J3-FULL", "SHOULD", "join, sink",
      "A sink whose list is full does not answer a mote that it does not list.",
@@ -528,8 +539,8 @@ constexpr reflect::Requirement kRequirements[] = {
      "paper: Component Management",
      reflect::kRoleMote, false, ""},
     {"J4-REPEAT", "MUST", "join, mote",
-     "After acceptance only the same ack_join may be repeated, within one join period of "
-     "the last request or of the acceptance, at most 20 times.",
+     "The ack_join of an accepted reply is repeated only unchanged, within one join period "
+     "of the last request or of the acceptance, and at most 20 times.",
      "decision 102",
      reflect::kRoleMote, true, ""},
     {"J4-FEW", "SHOULD", "join, mote",
@@ -538,7 +549,7 @@ constexpr reflect::Requirement kRequirements[] = {
      reflect::kRoleMote, true, ""},
     {"J5-SUCCESS", "MUST", "join, mote",
      "A mote that accepted a reply signals joined(address, SUCCESS) with the address of the "
-     "reply.",
+     "reply; only while ack_join is unconfirmed may the call fail instead.",
      "paper: Component Management",
      reflect::kRoleMote, false, ""},
     {"J5-ACCEPT", "MUST", "join, mote",
@@ -557,7 +568,8 @@ constexpr reflect::Requirement kRequirements[] = {
      "No joined(FAIL) exists."},
     {"J6-ADD", "MUST", "join, sink",
      "A sink that hears ack_join for its island with the sequence number that it stored for "
-     "that mote adds the mote to its list and signals moteJoined(address, descriptor).",
+     "that mote, and whose list has room, adds the mote to its list and signals "
+     "moteJoined(address, descriptor).",
      "paper: Component Management",
      reflect::kRoleSink, false, ""},
     {"J6-SEQ", "MUST", "join, sink",
@@ -584,7 +596,8 @@ constexpr reflect::Requirement kRequirements[] = {
      "paper: Component Management",
      reflect::kRoleSink, true, ""},
     {"J7-CHOICE", "MUST", "join, mote",
-     "With several sinks in range a mote sends ack_join only for the island that it chose.",
+     "With several sinks in range a mote sends ack_join only for the island that it chose "
+     "for its present request.",
      "paper: Island Collision Resolution and Safe Join",
      reflect::kRoleMote, true, ""},
     {"J7-ONE", "MUST", "join, mote",
@@ -606,8 +619,8 @@ constexpr reflect::Requirement kRequirements[] = {
      reflect::kRoleMote, true,
      "Seven requests are sent."},
     {"J8-FAIL", "MUST", "join, mote",
-     "A joinIsland call without success signals joined(FAIL), not before the fourth expiry "
-     "of the timer and not later than the fifth.",
+     "A joinIsland call that sent requests and had no success signals joined(FAIL), not "
+     "before the fourth expiry of the timer and not later than the fifth.",
      "paper: Component Management; decision 101",
      reflect::kRoleMote, false,
      "No joined(FAIL) exists."},
@@ -652,7 +665,8 @@ constexpr reflect::Requirement kRequirements[] = {
      "release 1.0 MessageDispatcherP",
      reflect::kRoleMote | reflect::kRoleSink | reflect::kRoleBaseStation, true, ""},
     {"T2-ACK", "MUST", "transport, acks",
-     "A reliable Connectionless message is answered by an ack.",
+     "A reliable Connectionless message to the node itself, with an APPID that it knows, is "
+     "answered by an ack.",
      "paper: Rubicon ACK",
      reflect::kRoleMote | reflect::kRoleSink | reflect::kRoleBaseStation, false, ""},
     {"T2-ONCE", "MUST", "transport, acks",
@@ -666,11 +680,12 @@ constexpr reflect::Requirement kRequirements[] = {
      reflect::kRoleMote | reflect::kRoleSink | reflect::kRoleBaseStation, true,
      "The ack carries a learning_notification (type, number, code)."},
     {"T2-DELIVER", "MUST", "transport, acks",
-     "A reliable message is delivered to the application as well.",
+     "A reliable message is delivered to the application as well; a repeated one at least "
+     "once.",
      "paper: Rubicon ACK",
      reflect::kRoleMote | reflect::kRoleSink | reflect::kRoleBaseStation, false, ""},
     {"T2-UNRELIABLE", "MUST", "transport, acks",
-     "An unreliable message is never acked.",
+     "A message with reliable 0 is never acked.",
      "paper: Rubicon ACK",
      reflect::kRoleMote | reflect::kRoleSink | reflect::kRoleBaseStation, true, ""},
     {"T2-LOOP", "MUST", "transport, acks",
@@ -774,12 +789,17 @@ constexpr reflect::Requirement kRequirements[] = {
      "Signalled on reception only."},
     {"S3-CHANGED", "MUST", "synaptic, modes",
      "In power-save mode a tick sends all values when any of them changed since the last "
-     "tick, and at the first tick after start.",
+     "tick.",
      "paper: Synaptic Communication; decision 120",
      reflect::kRoleMote | reflect::kRoleSink, false,
      "Release 1.0 has no power-save mode."},
+    {"S3-FIRST", "SHOULD", "synaptic, modes",
+     "The first tick after start sends the values in either mode.",
+     "decision 120",
+     reflect::kRoleMote | reflect::kRoleSink, false, ""},
     {"S3-UNCHANGED", "MUST", "synaptic, modes",
-     "In power-save mode a tick sends nothing when no value changed since the last tick.",
+     "In power-save mode a tick, but for the first after start, sends nothing when no value "
+     "changed since the last tick.",
      "paper: Synaptic Communication",
      reflect::kRoleMote | reflect::kRoleSink, true,
      "Release 1.0 has no power-save mode."},
