@@ -74,7 +74,7 @@ JoinSend hear_reply(JoinMote& join, const JoinContext& context, Address offered,
   if (join.phase == JoinMote::Phase::kMember) {
     const bool second_offer = seq_num == join.seq_num && offered.pid != join.address.pid;
     //= J7-CHOICE: With several sinks in range a mote sends ack_join only for the island that it
-    //= chose.
+    //= chose for its present request.
     //= J4-JOINED: A mote that is joined, or has no request outstanding, ignores a join_reply.
     actions.ignored(second_offer ? req::kJ7Choice : req::kJ4Joined);
     return JoinSend::kNone;
@@ -134,8 +134,8 @@ JoinSend ack_join_sent(JoinMote& join, const JoinContext& context, bool acked, A
     actions.followed(req::kJ4Few);
     return JoinSend::kNone;
   }
-  //= J4-REPEAT: After acceptance only the same ack_join may be repeated, within one join period of
-  //= the last request or of the acceptance, at most 20 times.
+  //= J4-REPEAT: The ack_join of an accepted reply is repeated only unchanged, within one join
+  //= period of the last request or of the acceptance, and at most 20 times.
   if (context.now - join.accepted > context.profile.join_period_ticks) {
     actions.followed(req::kJ4Repeat);
     return JoinSend::kNone;
