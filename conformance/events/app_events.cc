@@ -1,0 +1,369 @@
+#include "conformance/events/app_events.h"
+
+#include <bit>
+#include <cstdlib>
+
+#include <fmt/format.h>
+
+#include "conformance/trace/schema.h"
+
+namespace rubric::events {
+
+using machine::Address;
+using machine::Descriptor;
+using trace::AppField;
+using trace::AppKind;
+using trace::AppMessage;
+using trace::Domain;
+using trace::Message;
+using trace::Value;
+
+namespace {
+
+// A message of the application table in the making: its fields in the order of the table.
+class Writer {
+ public:
+  explicit Writer(std::string_view name)
+      : message_(Message::named(name)), app_(trace::Schema::get().find(name)->app) {}
+
+  Writer& number(std::int64_t value) { return add(Domain::of(field()).show(value)); }
+  Writer& address(Address value) { return add(Value::address(value.pid, value.devid)); }
+  Writer& channel(machine::ChannelId id) { return add(Value::channel(id)); }
+  Writer& real(float value) { return add(Value::real(value)); }
+  Writer& bytes(Bytes value) {
+    return add(Value::bytes({reinterpret_cast<const char*>(value.data()), value.size()}));
+  }
+  Writer& descriptor(const Descriptor& value) {
+    return number(value.mote_type).number(value.transducers).number(value.actuators);
+  }
+  Message take() { return std::move(message_); }
+
+ private:
+  const AppField& field() const { return app_->fields[next_]; }
+  Writer& add(Value value) {
+    message_.with(field().name, std::move(value));
+    ++next_;
+    return *this;
+  }
+
+  Message message_;
+  const AppMessage* app_;
+  std::size_t next_ = 0;
+};
+
+// The values of such a message, in the order of the table. After an error all that follows is zero.
+class Reader {
+ public:
+  Reader(const Message& message, std::string& error) : message_(message), error_(error) {
+    const trace::Shape* shape = trace::Schema::get().find(message.name);
+    app_ = shape ? shape->app : nullptr;
+    error_.clear();
+    if (!app_) error_ = fmt::format("{} is no message of an application", message.name);
+  }
+
+  bool ok() const { return error_.empty(); }
+  bool named(std::string_view name) const { return app_ && name == app_->name; }
+
+  template <typename T>
+  T number() {
+    const AppField* field = next();
+    return field ? static_cast<T>(number_of(Domain::of(*field), value_)) : T{};
+  }
+  Address address() {
+    Address out;
+    if (!next() || !parts(Value::Kind::kAddress, Domain::pid())) return out;
+    out.pid = static_cast<std::uint16_t>(number_of(Domain::pid(), &value_->items[0]));
+    out.devid = static_cast<std::uint16_t>(number_of(Domain::devid(), &value_->items[1]));
+    return out;
+  }
+  machine::ChannelId channel() {
+    if (!next() || !parts(Value::Kind::kChannel, Domain::devid())) return 0;
+    const std::int64_t source = number_of(Domain::devid(), &value_->items[0]);
+    const std::int64_t destination = number_of(Domain::devid(), &value_->items[1]);
+    return static_cast<machine::ChannelId>(source << 16 | destination);
+  }
+  float real() {
+    if (!next()) return 0;
+    if (value_->is(Value::Kind::kNumber)) return static_cast<float>(value_->number);
+    if (!value_->is(Value::Kind::kReal)) unsettled();
+    return std::strtof(value_->text.c_str(), nullptr);
+  }
+  Bytes bytes() {
+    if (!next()) return {};
+    if (!value_->is(Value::Kind::kBytes) && !value_->is(Value::Kind::kText)) unsettled();
+    return {reinterpret_cast<const std::uint8_t*>(value_->text.data()), value_->text.size()};
+  }
+  Descriptor descriptor() {
+    Descriptor out;
+    out.mote_type = number<std::uint8_t>();
+    out.transducers = number<std::uint16_t>();
+    out.actuators = number<std::uint8_t>();
+    return out;
+  }
+
+ private:
+  const AppField* next() {
+    if (!ok()) return nullptr;
+    const AppField& field = app_->fields[next_];
+    value_ = message_.find(field.name);
+    if (!value_) value_ = positional(next_);
+    ++next_;
+    name_ = field.name;
+    if (value_ && !value_->negated) return &field;
+    error_ = fmt::format("{} without a settled {}", message_.name, field.name);
+    return nullptr;
+  }
+  const Value* positional(std::size_t index) const {
+    for (const trace::FieldValue& field : message_.fields) {
+      if (field.path.empty() && index-- == 0) return &field.value;
+    }
+    return nullptr;
+  }
+  bool parts(Value::Kind kind, const Domain&) {
+    if (value_->is(kind) && value_->items.size() == 2) return true;
+    unsettled();
+    return false;
+  }
+  std::int64_t number_of(const Domain& domain, const Value* value) {
+    if (value->is(Value::Kind::kNumber) && !value->negated) return value->number;
+    if (value->is(Value::Kind::kNames) && !value->negated) {
+      if (const auto number = domain.number_of(value->text)) return *number;
+    }
+    unsettled();
+    return 0;
+  }
+  void unsettled() {
+    if (ok()) error_ = fmt::format("{} of {} is not settled", name_, message_.name);
+  }
+
+  const Message& message_;
+  std::string& error_;
+  const AppMessage* app_ = nullptr;
+  const Value* value_ = nullptr;
+  std::string_view name_;
+  std::size_t next_ = 0;
+};
+
+struct CallWriter {
+  Message operator()(const machine::JoinIsland& c) const {
+    return Writer("join").descriptor(c.descriptor).take();
+  }
+  Message operator()(const machine::Send& c) const {
+    return Writer("send").address(c.dest).number(c.app_id).number(c.reliable).bytes(c.data).take();
+  }
+  Message operator()(const machine::SetInterface& c) const {
+    return Writer("interface").number(static_cast<int>(c.link)).number(c.on).take();
+  }
+  Message operator()(const machine::GetInterface& c) const {
+    return Writer("get_interface").number(static_cast<int>(c.link)).take();
+  }
+  Message operator()(const machine::CreateChannel& c) const {
+    const bool out = c.direction == machine::Direction::kOut;
+    return Writer(out ? "create_out" : "create_in").address(c.peer).number(c.size)
+        .number(static_cast<int>(c.mode)).take();
+  }
+  Message operator()(const machine::DisposeChannel& c) const {
+    return Writer("dispose").channel(c.id).take();
+  }
+  Message operator()(const machine::StartChannel& c) const {
+    return Writer("start").channel(c.id).take();
+  }
+  Message operator()(const machine::StopChannel& c) const {
+    return Writer("stop").channel(c.id).take();
+  }
+  Message operator()(const machine::StartAllChannels&) const { return Writer("start_all").take(); }
+  Message operator()(const machine::StopAllChannels&) const { return Writer("stop_all").take(); }
+  Message operator()(const machine::WriteOutput& c) const {
+    return Writer("write_output").channel(c.id).number(c.pos).real(c.value).take();
+  }
+  Message operator()(const machine::ReadInput& c) const {
+    return Writer("read_input").channel(c.id).number(c.pos).take();
+  }
+  Message operator()(const machine::SetTimeStep& c) const {
+    return Writer("set_time_step").number(c.ticks).take();
+  }
+  Message operator()(const machine::SetIslandId& c) const {
+    return Writer("set_island_id").number(c.island).take();
+  }
+  Message operator()(const machine::GetClock&) const { return Writer("get_clock").take(); }
+};
+
+struct NoticeWriter {
+  Message operator()(const machine::Joined& n) const {
+    return Writer("joined").address(n.address).number(n.success).take();
+  }
+  Message operator()(const machine::MoteJoined& n) const {
+    return Writer("mote_joined").address(n.address).descriptor(n.descriptor).take();
+  }
+  Message operator()(const machine::SendResult& n) const {
+    return Writer("send_result").number(n.seq_num).take();
+  }
+  Message operator()(const machine::Received& n) const {
+    return Writer("received").address(n.src).number(n.app_id).bytes(n.data).take();
+  }
+  Message operator()(const machine::AckReceived& n) const {
+    return Writer("ack_received").number(n.app_id).number(n.seq_num).number(n.success).take();
+  }
+  Message operator()(const machine::SynDataReceived& n) const {
+    return Writer("syn_data").channel(n.id).number(static_cast<int>(n.status)).take();
+  }
+  Message operator()(const machine::ChannelResult& n) const {
+    return Writer("channel_result").channel(n.id).number(n.success).take();
+  }
+  Message operator()(const machine::OperationResult& n) const {
+    return Writer("op_result").number(n.success).take();
+  }
+  Message operator()(const machine::InputValue& n) const {
+    return Writer("input_value").real(n.value).number(n.success).take();
+  }
+  Message operator()(const machine::InterfaceState& n) const {
+    return Writer("interface_state").number(static_cast<int>(n.link)).number(n.on).take();
+  }
+  Message operator()(const machine::Clock& n) const { return Writer("clock").number(n.ms).take(); }
+};
+
+machine::CreateChannel create(Reader& in, machine::Direction direction) {
+  machine::CreateChannel out;
+  out.direction = direction;
+  out.peer = in.address();
+  out.size = in.number<std::uint8_t>();
+  out.mode = in.number<machine::Mode>();
+  return out;
+}
+
+std::optional<machine::Call> read_call(Reader& in) {
+  if (in.named("join")) return machine::JoinIsland{in.descriptor()};
+  if (in.named("send")) {
+    machine::Send out;
+    out.dest = in.address();
+    out.app_id = in.number<std::uint8_t>();
+    out.reliable = in.number<std::uint8_t>() != 0;
+    out.data = in.bytes();
+    return out;
+  }
+  if (in.named("interface")) {
+    const auto link = in.number<machine::Link>();
+    return machine::SetInterface{link, in.number<std::uint8_t>() != 0};
+  }
+  if (in.named("get_interface")) return machine::GetInterface{in.number<machine::Link>()};
+  if (in.named("create_out")) return create(in, machine::Direction::kOut);
+  if (in.named("create_in")) return create(in, machine::Direction::kIn);
+  if (in.named("dispose")) return machine::DisposeChannel{in.channel()};
+  if (in.named("start")) return machine::StartChannel{in.channel()};
+  if (in.named("stop")) return machine::StopChannel{in.channel()};
+  if (in.named("start_all")) return machine::StartAllChannels{};
+  if (in.named("stop_all")) return machine::StopAllChannels{};
+  if (in.named("write_output")) {
+    machine::WriteOutput out;
+    out.id = in.channel();
+    out.pos = in.number<std::uint8_t>();
+    out.value = in.real();
+    return out;
+  }
+  if (in.named("read_input")) {
+    const machine::ChannelId id = in.channel();
+    return machine::ReadInput{id, in.number<std::uint8_t>()};
+  }
+  if (in.named("set_time_step")) return machine::SetTimeStep{in.number<std::uint16_t>()};
+  if (in.named("set_island_id")) return machine::SetIslandId{in.number<std::uint16_t>()};
+  if (in.named("get_clock")) return machine::GetClock{};
+  return std::nullopt;
+}
+
+std::optional<machine::Notice> read_notice(Reader& in) {
+  if (in.named("joined")) {
+    const Address address = in.address();
+    return machine::Joined{address, in.number<std::uint8_t>() != 0};
+  }
+  if (in.named("mote_joined")) {
+    const Address address = in.address();
+    return machine::MoteJoined{address, in.descriptor()};
+  }
+  if (in.named("send_result")) return machine::SendResult{in.number<std::uint16_t>()};
+  if (in.named("received")) {
+    machine::Received out;
+    out.src = in.address();
+    out.app_id = in.number<std::uint8_t>();
+    out.data = in.bytes();
+    return out;
+  }
+  if (in.named("ack_received")) {
+    machine::AckReceived out;
+    out.app_id = in.number<std::uint8_t>();
+    out.seq_num = in.number<std::uint16_t>();
+    out.success = in.number<std::uint8_t>() != 0;
+    return out;
+  }
+  if (in.named("syn_data")) {
+    const machine::ChannelId id = in.channel();
+    return machine::SynDataReceived{id, in.number<machine::DataStatus>()};
+  }
+  if (in.named("channel_result")) {
+    const machine::ChannelId id = in.channel();
+    return machine::ChannelResult{id, in.number<std::uint8_t>() != 0};
+  }
+  if (in.named("op_result")) return machine::OperationResult{in.number<std::uint8_t>() != 0};
+  if (in.named("input_value")) {
+    const float value = in.real();
+    return machine::InputValue{value, in.number<std::uint8_t>() != 0};
+  }
+  if (in.named("interface_state")) {
+    const auto link = in.number<machine::Link>();
+    return machine::InterfaceState{link, in.number<std::uint8_t>() != 0};
+  }
+  if (in.named("clock")) return machine::Clock{in.number<std::uint32_t>()};
+  return std::nullopt;
+}
+
+template <typename T>
+std::optional<T> settled(const Reader& in, std::optional<T> found, const Message& message,
+                         std::string_view what, std::string& error) {
+  if (!in.ok()) return std::nullopt;
+  if (!found) error = fmt::format("{} is no {}", message.name, what);
+  return found;
+}
+
+}  // namespace
+
+Message from_call(const machine::Call& call) { return std::visit(CallWriter{}, call); }
+Message from_notice(const machine::Notice& notice) { return std::visit(NoticeWriter{}, notice); }
+
+std::optional<machine::Call> to_call(const Message& message, std::string& error) {
+  Reader in(message, error);
+  const auto found = read_call(in);
+  return settled(in, found, message, "call", error);
+}
+
+std::optional<machine::Notice> to_notice(const Message& message, std::string& error) {
+  Reader in(message, error);
+  const auto found = read_notice(in);
+  return settled(in, found, message, "event of an application", error);
+}
+
+std::optional<machine::Event> to_state(const Message& message, trace::LinkKind kind,
+                                       std::string& error) {
+  Reader in(message, error);
+  const auto link = to_link(kind);
+  std::optional<machine::Event> found;
+  const bool busy = in.named("busy");
+  if (busy || in.named("idle")) {
+    if (link) found = machine::LinkBusy{*link, busy};
+    if (kind == trace::LinkKind::kApp) found = machine::AppBusy{busy};
+  } else if (in.named("linkack") && link) {
+    found = machine::SendDone{*link, in.number<std::uint8_t>() != 0};
+  } else if (in.named("reboot")) {
+    found = machine::Reboot{};
+  }
+  return settled(in, found, message, "state of this link", error);
+}
+
+std::optional<machine::Link> to_link(trace::LinkKind kind) {
+  switch (kind) {
+    case trace::LinkKind::kRadio: return machine::Link::kRadio;
+    case trace::LinkKind::kSerial: return machine::Link::kSerial;
+    case trace::LinkKind::kPeis: return machine::Link::kPeis;
+    default: return std::nullopt;
+  }
+}
+
+}  // namespace rubric::events

@@ -1,0 +1,28 @@
+// Calls, news and states of a node: as messages of a trace, and as the machine has them.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "conformance/machine/event.h"
+#include "conformance/trace/trace.h"
+
+namespace rubric::events {
+
+/// A call as a trace shows it.
+trace::Message from_call(const machine::Call& call);
+/// What an application is told, as a trace shows it.
+trace::Message from_notice(const machine::Notice& notice);
+
+/// The call that a message names; its bytes are those of `message`, which must outlive it. Nothing,
+/// and why in `error`, if it is no call or a value is missing or not settled.
+std::optional<machine::Call> to_call(const trace::Message& message, std::string& error);
+std::optional<machine::Notice> to_notice(const trace::Message& message, std::string& error);
+/// busy, idle, linkack and reboot; `link` is the link of the line, kApp for the application.
+std::optional<machine::Event> to_state(const trace::Message& message, trace::LinkKind link,
+                                       std::string& error);
+
+/// The machine's line of that kind; nothing for app and power.
+std::optional<machine::Link> to_link(trace::LinkKind kind);
+
+}  // namespace rubric::events
