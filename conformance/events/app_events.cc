@@ -1,9 +1,6 @@
 #include "conformance/events/app_events.h"
 
 #include <bit>
-#include <cstdlib>
-
-#include <fmt/format.h>
 
 #include "conformance/trace/schema.h"
 
@@ -12,8 +9,8 @@ namespace rubric::events {
 using machine::Address;
 using machine::Descriptor;
 using trace::AppField;
-using trace::AppKind;
 using trace::AppMessage;
+using trace::Concrete;
 using trace::Domain;
 using trace::Message;
 using trace::Value;
@@ -51,47 +48,33 @@ class Writer {
   std::size_t next_ = 0;
 };
 
-// The values of such a message, in the order of the table. After an error all that follows is zero.
+// The values of such a message, in the order of the table.
 class Reader {
  public:
-  Reader(const Message& message, std::string& error) : message_(message), error_(error) {
-    const trace::Shape* shape = trace::Schema::get().find(message.name);
+  explicit Reader(const Concrete& from) : from_(from) {
+    const trace::Shape* shape = trace::Schema::get().find(from.name);
     app_ = shape ? shape->app : nullptr;
-    error_.clear();
-    if (!app_) error_ = fmt::format("{} is no message of an application", message.name);
   }
 
-  bool ok() const { return error_.empty(); }
   bool named(std::string_view name) const { return app_ && name == app_->name; }
 
   template <typename T>
   T number() {
-    const AppField* field = next();
-    return field ? static_cast<T>(number_of(Domain::of(*field), value_)) : T{};
+    return static_cast<T>(from_.number(next()).value_or(0));
   }
   Address address() {
-    Address out;
-    if (!next() || !parts(Value::Kind::kAddress, Domain::pid())) return out;
-    out.pid = static_cast<std::uint16_t>(number_of(Domain::pid(), &value_->items[0]));
-    out.devid = static_cast<std::uint16_t>(number_of(Domain::devid(), &value_->items[1]));
-    return out;
+    const auto pair = from_.pair(next()).value_or(std::pair<std::uint16_t, std::uint16_t>());
+    return {pair.first, pair.second};
   }
   machine::ChannelId channel() {
-    if (!next() || !parts(Value::Kind::kChannel, Domain::devid())) return 0;
-    const std::int64_t source = number_of(Domain::devid(), &value_->items[0]);
-    const std::int64_t destination = number_of(Domain::devid(), &value_->items[1]);
-    return static_cast<machine::ChannelId>(source << 16 | destination);
+    const auto [source, destination] = address();
+    return static_cast<machine::ChannelId>(source) << 16 | destination;
   }
-  float real() {
-    if (!next()) return 0;
-    if (value_->is(Value::Kind::kNumber)) return static_cast<float>(value_->number);
-    if (!value_->is(Value::Kind::kReal)) unsettled();
-    return std::strtof(value_->text.c_str(), nullptr);
-  }
+  float real() { return std::bit_cast<float>(number<std::uint32_t>()); }
   Bytes bytes() {
-    if (!next()) return {};
-    if (!value_->is(Value::Kind::kBytes) && !value_->is(Value::Kind::kText)) unsettled();
-    return {reinterpret_cast<const std::uint8_t*>(value_->text.data()), value_->text.size()};
+    const trace::Leaf* leaf = from_.leaf(next());
+    if (!leaf) return {};
+    return {reinterpret_cast<const std::uint8_t*>(leaf->bytes.data()), leaf->bytes.size()};
   }
   Descriptor descriptor() {
     Descriptor out;
@@ -102,45 +85,10 @@ class Reader {
   }
 
  private:
-  const AppField* next() {
-    if (!ok()) return nullptr;
-    const AppField& field = app_->fields[next_];
-    value_ = message_.find(field.name);
-    if (!value_) value_ = positional(next_);
-    ++next_;
-    name_ = field.name;
-    if (value_ && !value_->negated) return &field;
-    error_ = fmt::format("{} without a settled {}", message_.name, field.name);
-    return nullptr;
-  }
-  const Value* positional(std::size_t index) const {
-    for (const trace::FieldValue& field : message_.fields) {
-      if (field.path.empty() && index-- == 0) return &field.value;
-    }
-    return nullptr;
-  }
-  bool parts(Value::Kind kind, const Domain&) {
-    if (value_->is(kind) && value_->items.size() == 2) return true;
-    unsettled();
-    return false;
-  }
-  std::int64_t number_of(const Domain& domain, const Value* value) {
-    if (value->is(Value::Kind::kNumber) && !value->negated) return value->number;
-    if (value->is(Value::Kind::kNames) && !value->negated) {
-      if (const auto number = domain.number_of(value->text)) return *number;
-    }
-    unsettled();
-    return 0;
-  }
-  void unsettled() {
-    if (ok()) error_ = fmt::format("{} of {} is not settled", name_, message_.name);
-  }
+  std::string_view next() { return app_->fields[next_++].name; }
 
-  const Message& message_;
-  std::string& error_;
+  const Concrete& from_;
   const AppMessage* app_ = nullptr;
-  const Value* value_ = nullptr;
-  std::string_view name_;
   std::size_t next_ = 0;
 };
 
@@ -315,46 +263,34 @@ std::optional<machine::Notice> read_notice(Reader& in) {
   return std::nullopt;
 }
 
-template <typename T>
-std::optional<T> settled(const Reader& in, std::optional<T> found, const Message& message,
-                         std::string_view what, std::string& error) {
-  if (!in.ok()) return std::nullopt;
-  if (!found) error = fmt::format("{} is no {}", message.name, what);
-  return found;
-}
-
 }  // namespace
 
 Message from_call(const machine::Call& call) { return std::visit(CallWriter{}, call); }
 Message from_notice(const machine::Notice& notice) { return std::visit(NoticeWriter{}, notice); }
 
-std::optional<machine::Call> to_call(const Message& message, std::string& error) {
-  Reader in(message, error);
-  const auto found = read_call(in);
-  return settled(in, found, message, "call", error);
+std::optional<machine::Call> to_call(const Concrete& message) {
+  Reader in(message);
+  return read_call(in);
 }
 
-std::optional<machine::Notice> to_notice(const Message& message, std::string& error) {
-  Reader in(message, error);
-  const auto found = read_notice(in);
-  return settled(in, found, message, "event of an application", error);
+std::optional<machine::Notice> to_notice(const Concrete& message) {
+  Reader in(message);
+  return read_notice(in);
 }
 
-std::optional<machine::Event> to_state(const Message& message, trace::LinkKind kind,
-                                       std::string& error) {
-  Reader in(message, error);
+std::optional<machine::Event> to_state(const Concrete& message, trace::LinkKind kind) {
+  Reader in(message);
   const auto link = to_link(kind);
-  std::optional<machine::Event> found;
   const bool busy = in.named("busy");
   if (busy || in.named("idle")) {
-    if (link) found = machine::LinkBusy{*link, busy};
-    if (kind == trace::LinkKind::kApp) found = machine::AppBusy{busy};
+    if (link) return machine::LinkBusy{*link, busy};
+    if (kind == trace::LinkKind::kApp) return machine::AppBusy{busy};
   } else if (in.named("linkack") && link) {
-    found = machine::SendDone{*link, in.number<std::uint8_t>() != 0};
+    return machine::SendDone{*link, in.number<std::uint8_t>() != 0};
   } else if (in.named("reboot")) {
-    found = machine::Reboot{};
+    return machine::Reboot{};
   }
-  return settled(in, found, message, "state of this link", error);
+  return std::nullopt;
 }
 
 std::optional<machine::Link> to_link(trace::LinkKind kind) {

@@ -2,10 +2,9 @@
 #pragma once
 
 #include <optional>
-#include <string>
 
 #include "conformance/machine/event.h"
-#include "conformance/trace/trace.h"
+#include "conformance/trace/concrete.h"
 
 namespace rubric::events {
 
@@ -14,13 +13,12 @@ trace::Message from_call(const machine::Call& call);
 /// What an application is told, as a trace shows it.
 trace::Message from_notice(const machine::Notice& notice);
 
-/// The call that a message names; its bytes are those of `message`, which must outlive it. Nothing,
-/// and why in `error`, if it is no call or a value is missing or not settled.
-std::optional<machine::Call> to_call(const trace::Message& message, std::string& error);
-std::optional<machine::Notice> to_notice(const trace::Message& message, std::string& error);
+/// The call that a message names (trace::concrete makes it of a line); its bytes are those of
+/// `message`, which must outlive it. Nothing if it is no call.
+std::optional<machine::Call> to_call(const trace::Concrete& message);
+std::optional<machine::Notice> to_notice(const trace::Concrete& message);
 /// busy, idle, linkack and reboot; `link` is the link of the line, kApp for the application.
-std::optional<machine::Event> to_state(const trace::Message& message, trace::LinkKind link,
-                                       std::string& error);
+std::optional<machine::Event> to_state(const trace::Concrete& message, trace::LinkKind link);
 
 /// The machine's line of that kind; nothing for app and power.
 std::optional<machine::Link> to_link(trace::LinkKind kind);
