@@ -198,7 +198,7 @@ std::optional<std::int64_t> Domain::number_of(std::string_view text) const {
 
 Value Domain::show(std::int64_t number) const {
   if (kind == Kind::kReal) {
-    return Value::real(reflect::float_of_bits(static_cast<std::uint32_t>(number)));
+    return Value::real(float_of_bits(static_cast<std::uint32_t>(number)));
   }
   if (names) {
     const char* name = reflect::enum_name(*names, number);

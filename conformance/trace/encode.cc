@@ -1,0 +1,340 @@
+#include "conformance/trace/encode.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "codec/reflect/decode.h"
+#include "codec/reflect/encode.h"
+#include "conformance/trace/fill.h"
+#include "conformance/trace/substitute.h"
+#include "conformance/trace/value_text.h"
+
+namespace rubric::trace {
+namespace {
+
+using Tree = reflect::Value;
+
+constexpr int kAttemptsMax = 256;
+constexpr std::size_t kIndexMax = 128;
+
+std::string hex_of(std::string_view bytes) {
+  std::string text;
+  put_hex(bytes, text);
+  return text;
+}
+
+Tree tree_of_real(const std::string& text) {
+  if (text == "nan") return Tree::of_string("NaN");
+  if (text == "inf") return Tree::of_string("Infinity");
+  if (text == "-inf") return Tree::of_string("-Infinity");
+  return Tree::of_real(text);
+}
+
+/// The tree of values that the codec's encoder takes.
+class Builder {
+ public:
+  Builder(const Message& message, const Shape& shape, const Bindings& bindings, bool any)
+      : message_(message), shape_(shape), bindings_(bindings), any_(any) {}
+
+  Tree build() {
+    Tree root = Tree::of_object();
+    for (const FieldValue& field : with_paths(message_, shape_)) {
+      const Shape::Alternatives* slots = shape_.find(field.path);
+      const std::optional<Tree> value = tree_of(field, *slots);
+      if (value) put(root, field.path, *value, field.place);
+    }
+    return root;
+  }
+
+ private:
+  std::optional<Tree> tree_of(const FieldValue& field, const Shape::Alternatives& slots) const {
+    Value value = field.value;
+    if (any_) {
+      const bool open_ended = value.is(Value::Kind::kAny) || value.is(Value::Kind::kVariable) ||
+                              value.is(Value::Kind::kRange);
+      if (open_ended && slots[0].kind != Slot::Kind::kLeaf &&
+          slots[0].kind != Slot::Kind::kAddress) {
+        return std::nullopt;
+      }
+      value = sample(value, slots[0]);
+    } else {
+      value = substituted(value, bindings_, field.place);
+    }
+    return tree_of(value, slots, field.place);
+  }
+
+  // Some value that the pattern allows.
+  static Value sample(const Value& value, const Slot& slot) {
+    if (value.is(Value::Kind::kRange)) return Value::of(value.number);
+    if (!value.is(Value::Kind::kAny) && !value.is(Value::Kind::kVariable)) {
+      Value copy = value;
+      Slot item;
+      item.domain = slot.kind == Slot::Kind::kList ? slot.domain : Domain::devid();
+      for (Value& one : copy.items) one = sample(one, item);
+      return copy;
+    }
+    if (slot.kind == Slot::Kind::kAddress) return Value::address(1, 1);
+    if (slot.domain.kind == Domain::Kind::kBytes) return Value::bytes("");
+    return Value::of(std::max(slot.domain.implied, slot.domain.min));
+  }
+
+  static Tree tree_of(const Value& value, const Shape::Alternatives& slots, Place place) {
+    switch (value.kind) {
+      case Value::Kind::kBytes:
+      case Value::Kind::kText: return Tree::of_string(hex_of(bytes_in(value, place)));
+      case Value::Kind::kAddress: return address(value, place);
+      case Value::Kind::kList: {
+        std::vector<Tree> items;
+        for (const Value& item : value.items) items.push_back(tree_of(item, slots, place));
+        return Tree::of_array(std::move(items));
+      }
+      case Value::Kind::kReal:
+        if (!value.negated) return tree_of_real(value.text);
+        return tree_of_real(Value::real(1.0f).text == value.text ? "2.0" : "1.0");
+      case Value::Kind::kNames:
+        if (!value.negated) return names(value, slots, place);
+        [[fallthrough]];
+      default: return number(value, slots, place);
+    }
+  }
+
+  static Tree number(const Value& value, const Shape::Alternatives& slots, Place place) {
+    const Slot* best = &slots[0];
+    for (const Slot& slot : slots) {
+      const bool named = value.is(Value::Kind::kNames) && slot.domain.number_of(value.text);
+      if (named) best = &slot;
+    }
+    const Domain& domain = best->domain;
+    if (domain.kind == Domain::Kind::kReal && !value.negated) return Tree::of_integer(value.number);
+    if (domain.kind == Domain::Kind::kReal) {
+      return tree_of_real(domain.show(number_in(domain, value, place)).text);
+    }
+    if (!value.negated && slots.size() > 1) return Tree::of_integer(value.number);
+    return Tree::of_integer(number_in(domain, value, place));
+  }
+
+  // Which enumeration it is may depend on other fields, so the encoder looks the name up.
+  static Tree names(const Value& value, const Shape::Alternatives& slots, Place place) {
+    bool known = false;
+    for (const Slot& slot : slots) {
+      if (!slot.domain.number_of(value.text)) continue;
+      known = true;
+      if (!slot.domain.mask) continue;
+      std::vector<Tree> bits;
+      std::string_view rest = value.text;
+      while (true) {
+        const std::size_t bar = rest.find('|');
+        bits.push_back(Tree::of_string(rest.substr(0, bar)));
+        if (bar == std::string_view::npos) return Tree::of_array(std::move(bits));
+        rest.remove_prefix(bar + 1);
+      }
+    }
+    if (!known) number_in(slots[0].domain, value, place);
+    return Tree::of_string(value.text == "all" ? "broadcast" : value.text);
+  }
+
+  static Tree address(const Value& value, Place place) {
+    const std::int64_t pid = number_in(Domain::pid(), value.items[0], place);
+    std::int64_t devid = number_in(Domain::devid(), value.items[1], place);
+    if (value.negated) devid = devid < 0xFFFF ? devid + 1 : devid - 1;
+    Tree tree = Tree::of_object();
+    tree.set("pid", Tree::of_integer(pid));
+    tree.set("devid", Tree::of_integer(devid));
+    return tree;
+  }
+
+  static Tree& member(Tree& object, std::string_view name) {
+    for (std::size_t i = 0; i < object.keys.size(); ++i) {
+      if (object.keys[i] == name) return object.items[i];
+    }
+    object.kind = Tree::Kind::kObject;
+    return object.set(name, Tree{}).items.back();
+  }
+
+  static void put(Tree& root, std::string_view path, Tree value, Place place) {
+    Tree* at = &root;
+    while (true) {
+      const std::size_t dot = path.find('.');
+      std::string_view part = path.substr(0, dot);
+      const std::size_t bracket = part.find('[');
+      if (at->kind != Tree::Kind::kNull && at->kind != Tree::Kind::kObject) break;
+      at = &member(*at, part.substr(0, bracket));
+      if (bracket != std::string_view::npos) {
+        std::int64_t index = 0;
+        read_integer(part.substr(bracket + 1, part.size() - bracket - 2), index);
+        if (at->kind != Tree::Kind::kNull && at->kind != Tree::Kind::kArray) break;
+        at->kind = Tree::Kind::kArray;
+        if (static_cast<std::size_t>(index) >= kIndexMax) {
+          throw TraceError(place, "index " + std::to_string(index) + " is too large");
+        }
+        at->items.resize(std::max(at->items.size(), static_cast<std::size_t>(index) + 1));
+        at = &at->items[static_cast<std::size_t>(index)];
+      }
+      if (dot == std::string_view::npos) {
+        if (at->kind != Tree::Kind::kNull) break;
+        *at = std::move(value);
+        return;
+      }
+      path.remove_prefix(dot + 1);
+    }
+    throw TraceError(place, "'" + std::string(path) + "' is given twice");
+  }
+
+  const Message& message_;
+  const Shape& shape_;
+  const Bindings& bindings_;
+  bool any_;
+};
+
+Place place_of(const Message& message, const std::string& path) {
+  for (const FieldValue& field : message.fields) {
+    const bool tail = path.size() > field.path.size() && path.ends_with(field.path) &&
+                      path[path.size() - field.path.size() - 1] == '.';
+    if (!field.path.empty() && (field.path == path || tail)) return field.place;
+  }
+  return message.place;
+}
+
+bool has_bodies(const reflect::Type& type) {
+  return type.interpretation_count > 0 ||
+         std::any_of(type.fields, type.fields + type.field_count,
+                     [](const reflect::Field& f) { return f.choice != nullptr; });
+}
+
+[[noreturn]] void refuse(const Message& message, const reflect::EncodeError& error) {
+  const std::string path = error.path().empty() ? "" : error.path() + ": ";
+  throw TraceError(place_of(message, error.path()), message.name + ": " + path + error.problem());
+}
+
+std::vector<std::uint8_t> encode_tree(const Message& message, const reflect::Type& type,
+                                      Tree tree) {
+  give_opaque(type, tree);
+  std::vector<std::uint8_t> payload;
+  std::optional<reflect::EncodeError> first;
+  Choices choices;
+  for (int attempt = 0; attempt < kAttemptsMax; ++attempt) {
+    Tree tried = tree;
+    if (message.open) fill(type, tried, choices);
+    payload.clear();
+    try {
+      reflect::encode(type, tried, {}, reflect::Tail::kStale, payload);
+      return payload;
+    } catch (const reflect::EncodeError& error) {
+      if (!first) first = error;
+    }
+    if (!choices.next()) break;
+  }
+  refuse(message, *first);
+}
+
+AmFrame encode_message(const Message& message, const Bindings& bindings, bool any) {
+  const Shape* shape = Schema::get().find(message.name);
+  if (!shape || (!shape->type && message.name != kFrameName)) {
+    throw TraceError(message.place, "'" + message.name + "' is no message of a frame");
+  }
+  if (message.form != Message::Form::kFields) {
+    throw TraceError(message.place, "'" + message.name + "' needs its fields");
+  }
+  AmFrame frame;
+  if (!shape->type) {
+    const Concrete given = concrete(message, bindings);
+    frame.type = static_cast<std::uint8_t>(given.leaves[0].number);
+    frame.payload.assign(given.leaves[1].bytes.begin(), given.leaves[1].bytes.end());
+  } else {
+    frame.type = shape->am_type;
+    frame.payload = encode_tree(message, *shape->type,
+                                Builder(message, *shape, bindings, any).build());
+  }
+  constexpr std::size_t kPayloadMax = 114;
+  if (frame.payload.size() > kPayloadMax) {
+    throw TraceError(message.place, message.name + " has " + std::to_string(frame.payload.size()) +
+                                        " bytes, at most " + std::to_string(kPayloadMax));
+  }
+  return frame;
+}
+
+}  // namespace
+
+AmFrame encode(const Message& message, const Bindings& bindings) {
+  return encode_message(message, bindings, false);
+}
+
+void check_possible(const Message& message) {
+  if (message.name == kFrameName) return;
+  const Shape* shape = Schema::get().find(message.name);
+  if (!shape || !shape->type) return;
+  bool free = false;
+  for (const FieldValue& field : with_paths(message, *shape)) {
+    const Slot::Kind kind = shape->find(field.path)->front().kind;
+    const bool any = field.value.is(Value::Kind::kAny) || field.value.is(Value::Kind::kVariable) ||
+                     field.value.negated;
+    free = free || any;
+    // A wildcard for a whole part leaves nothing to hold against the spec.
+    if (any && kind != Slot::Kind::kLeaf && kind != Slot::Kind::kAddress) return;
+  }
+  try {
+    encode_message(message, {}, true);
+  } catch (const TraceError&) {
+    // What is free may decide what the other fields are.
+    if (!free || !has_bodies(*shape->type)) throw;
+  }
+}
+
+namespace {
+
+std::uint16_t am_number(const Value& value, const Bindings& bindings, Place place) {
+  const Value given = substituted(value, bindings, place);
+  return static_cast<std::uint16_t>(number_in(Domain::devid(), given, place));
+}
+
+std::uint16_t destination(const Line& line, const Scope& scope) {
+  const NodeHeader* node = scope.node(line.node);
+  if (line.op != Op::kGiven || !node || line.message.name == "join_request") return kAmAll;
+  return node->id.value_or(kAmAll);
+}
+
+// Who can have sent it: the src field says, else nodes of the other role that share an id.
+std::uint16_t source(const Line& line, const Scope& scope, const AmFrame& frame) {
+  const LinkKind link = scope.link(line.link).value_or(LinkKind::kRadio);
+  if (line.op != Op::kGiven) {
+    const NodeHeader* node = scope.node(line.node);
+    if (node && node->id) return *node->id;
+  }
+  if (link != LinkKind::kRadio) return 0;
+  const Concrete seen = decode(frame, link);
+  const bool from_sink = seen.name == "join_reply";
+  if (const auto src = seen.pair("src")) {
+    const auto known = [&](const NodeHeader& one) { return one.id == src->second; };
+    if (std::any_of(scope.nodes.begin(), scope.nodes.end(), known)) return src->second;
+  }
+  std::optional<std::uint16_t> found;
+  for (const NodeHeader& one : scope.nodes) {
+    const bool fits = from_sink ? one.role == Role::kSink : one.role != Role::kBaseStation;
+    if (!fits || !one.id || one.name == line.node) continue;
+    if (found && found != one.id) {
+      throw TraceError(line.place, "several nodes can have sent this: am=SOURCE->DESTINATION says who");
+    }
+    found = one.id;
+  }
+  if (found) return *found;
+  throw TraceError(line.place, "no node can have sent this: am=SOURCE->DESTINATION says who");
+}
+
+}  // namespace
+
+AmFrame frame_of(const Line& line, const Scope& scope, const Bindings& bindings) {
+  AmFrame frame;
+  if (line.bytes) {
+    if (!parse_packet(*line.bytes, frame)) {
+      throw TraceError(line.place, "the bytes are no packet of an active message");
+    }
+    return frame;
+  }
+  frame = encode(line.message, bindings);
+  frame.src = line.am ? am_number(line.am->source, bindings, line.place)
+                      : source(line, scope, frame);
+  frame.dest = line.am ? am_number(line.am->dest, bindings, line.place) : destination(line, scope);
+  return frame;
+}
+
+}  // namespace rubric::trace

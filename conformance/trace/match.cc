@@ -1,0 +1,264 @@
+#include "conformance/trace/match.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "codec/runtime/bytes.h"
+#include "conformance/trace/substitute.h"
+#include "conformance/trace/value_text.h"
+
+namespace rubric::trace {
+namespace {
+
+constexpr std::size_t kOtherMessage = 1000;
+
+/// One attempt; what it binds counts only if all of it matches.
+class Matcher {
+ public:
+  Matcher(const Concrete& seen, const Bindings& bindings)
+      : seen_(seen), bindings_(bindings), covered_(seen.leaves.size(), false) {}
+
+  void message(const Message& pattern) {
+    if (pattern.name != "*" && pattern.name != seen_.name) {
+      return differ("message", pattern.name, seen_.name);
+    }
+    if (pattern.form != Message::Form::kFields) return;
+    const Shape* shape = Schema::get().find(pattern.name);
+    if (!shape) return differ("message", "a known message", pattern.name);
+    std::vector<FieldValue> fields;
+    try {
+      fields = with_paths(pattern, *shape);
+    } catch (const TraceError& error) {
+      return differ("message", error.what(), print_of(seen_.message));
+    }
+    for (const FieldValue& field : fields) one(field);
+    if (!pattern.open) closed();
+  }
+
+  void am(const AmAddresses& addresses) {
+    const auto side = [&](const Value& want, std::uint16_t id, const char* path) {
+      Leaf leaf;
+      leaf.path = path;
+      leaf.domain = Domain::devid();
+      leaf.number = id;
+      if (!is(want, leaf)) differ(path, describe(want), value_text(leaf.show()));
+    };
+    if (!seen_.frame) return differ("am", "a frame", seen_.name);
+    side(addresses.source, seen_.frame->src, "am source");
+    side(addresses.dest, seen_.frame->dest, "am destination");
+  }
+
+  void bytes(const std::string& wanted) {
+    std::string expected;
+    std::string seen;
+    put_hex(wanted, expected);
+    if (seen_.frame) {
+      const std::vector<std::uint8_t> packet = packet_of(*seen_.frame);
+      put_hex({reinterpret_cast<const char*>(packet.data()), packet.size()}, seen);
+    }
+    if (expected != seen) differ("bytes", expected, seen.empty() ? "none" : seen);
+  }
+
+  Match take(Bindings& bindings) {
+    if (match_.differences.empty()) bindings = std::move(bindings_);
+    return std::move(match_);
+  }
+
+ private:
+  static std::string print_of(const Message& message) {
+    std::string text = message.name + "(";
+    for (const FieldValue& field : message.fields) {
+      text += (text.back() == '(' ? "" : " ") + field.path + '=' + value_text(field.value);
+    }
+    return text + ')';
+  }
+
+  void differ(std::string_view path, std::string expected, std::string seen) {
+    match_.differences.push_back({std::string(path), std::move(expected), std::move(seen)});
+  }
+
+  // "$q = 7", as the binding says.
+  std::string describe(const Value& want) const {
+    std::string text = value_text(want);
+    const auto add = [&](const Value& value) {
+      if (!value.is(Value::Kind::kVariable)) return;
+      const Value* bound = bindings_.find(value.text);
+      text += bound ? " ($" + value.text + " = " + value_text(*bound) + ")"
+                    : " ($" + value.text + " is not bound)";
+    };
+    add(want);
+    for (const Value& item : want.items) add(item);
+    return text;
+  }
+
+  void one(const FieldValue& field) {
+    if (const Leaf* leaf = seen_.leaf(field.path)) {
+      covered_[static_cast<std::size_t>(leaf - seen_.leaves.data())] = true;
+      if (!is(field.value, *leaf)) {
+        differ(field.path, describe(field.value), value_text(leaf->show()));
+      }
+      return;
+    }
+    if (const Part* part = seen_.part(field.path)) {
+      std::fill(covered_.begin() + static_cast<std::ptrdiff_t>(part->first),
+                covered_.begin() + static_cast<std::ptrdiff_t>(part->end), true);
+      if (!is(field.value, *part)) {
+        differ(field.path, describe(field.value), value_text(show(*part)));
+      }
+      return;
+    }
+    differ(field.path, describe(field.value), "no such field");
+  }
+
+  // Fields that the pattern leaves out must have the one value that can be meant.
+  void closed() {
+    for (std::size_t i = 0; i < covered_.size(); ++i) {
+      const Leaf& leaf = seen_.leaves[i];
+      if (covered_[i] || leaf.domain.derived) continue;
+      if (leaf.domain.implied < 0) {
+        differ(leaf.path, "a value, or '...' in the pattern", value_text(leaf.show()));
+      } else if (leaf.number != leaf.domain.implied) {
+        differ(leaf.path, value_text(leaf.domain.show(leaf.domain.implied)),
+               value_text(leaf.show()));
+      }
+    }
+  }
+
+  bool is(const Value& want, const Leaf& leaf) {
+    if (want.is(Value::Kind::kVariable)) return bound(want, leaf.value());
+    return same(want, leaf) != want.negated;
+  }
+
+  // The first use binds.
+  bool bound(const Value& want, Value seen) {
+    if (const Value* value = bindings_.find(want.text)) return (*value == seen) != want.negated;
+    if (want.negated) return false;
+    bindings_.set(want.text, std::move(seen));
+    return true;
+  }
+
+  static bool same(const Value& want, const Leaf& leaf) {
+    const bool real = leaf.domain.kind == Domain::Kind::kReal;
+    const bool number = leaf.domain.kind == Domain::Kind::kNumber;
+    switch (want.kind) {
+      case Value::Kind::kAny: return true;
+      case Value::Kind::kNumber:
+        return real ? same_real(static_cast<float>(want.number), leaf)
+                    : number && leaf.number == want.number;
+      case Value::Kind::kRange:
+        return number && leaf.number >= want.number && leaf.number <= want.max;
+      case Value::Kind::kReal:
+        return real && same_real(std::strtof(want.text.c_str(), nullptr), leaf);
+      case Value::Kind::kNames: return number && leaf.domain.number_of(want.text) == leaf.number;
+      case Value::Kind::kBytes:
+      case Value::Kind::kText:
+        return leaf.domain.kind == Domain::Kind::kBytes && leaf.bytes == want.text;
+      default: return false;
+    }
+  }
+
+  // Not a number is the same as any other that is none; else bit by bit, but for the sign of zero.
+  static bool same_real(float want, const Leaf& leaf) {
+    const float seen = float_of_bits(static_cast<std::uint32_t>(leaf.number));
+    return std::isnan(want) ? std::isnan(seen) : want == seen;
+  }
+
+  bool is(const Value& want, const Part& part) {
+    if (want.is(Value::Kind::kVariable)) return bound(want, plain(part));
+    return same(want, part) != want.negated;
+  }
+
+  bool same(const Value& want, const Part& part) {
+    if (want.is(Value::Kind::kAny)) return true;
+    if (want.is(Value::Kind::kBytes) || want.is(Value::Kind::kText)) {
+      return part.kind == Slot::Kind::kStruct && part.bytes == want.text;
+    }
+    const bool fits = (want.is(Value::Kind::kAddress) && part.kind == Slot::Kind::kAddress) ||
+                      (want.is(Value::Kind::kChannel) && part.kind == Slot::Kind::kChannel) ||
+                      (want.is(Value::Kind::kList) && part.kind == Slot::Kind::kList);
+    if (!fits || want.items.size() != part.end - part.first) return false;
+    bool all = true;
+    for (std::size_t i = 0; i < want.items.size(); ++i) {
+      all = is(want.items[i], seen_.leaves[part.first + i]) && all;
+    }
+    return all;
+  }
+
+  /// What a variable is bound to.
+  Value plain(const Part& part) const {
+    if (part.kind == Slot::Kind::kStruct) return Value::bytes(part.bytes);
+    Value value;
+    value.kind = part.kind == Slot::Kind::kAddress   ? Value::Kind::kAddress
+                 : part.kind == Slot::Kind::kChannel ? Value::Kind::kChannel
+                                                     : Value::Kind::kList;
+    for (std::size_t i = part.first; i < part.end; ++i) {
+      value.items.push_back(seen_.leaves[i].value());
+    }
+    return value;
+  }
+
+  Value show(const Part& part) const {
+    Value value = plain(part);
+    for (std::size_t i = 0; i < value.items.size(); ++i) {
+      value.items[i] = seen_.leaves[part.first + i].show();
+    }
+    return value;
+  }
+
+  const Concrete& seen_;
+  Bindings bindings_;
+  std::vector<bool> covered_;
+  Match match_;
+};
+
+}  // namespace
+
+std::size_t Match::distance() const {
+  std::size_t sum = differences.size();
+  for (const Difference& one : differences) sum += one.path == "message" ? kOtherMessage : 0;
+  return sum;
+}
+
+std::string Match::text() const {
+  std::string text;
+  for (const Difference& one : differences) {
+    text += (text.empty() ? "" : "; ") + one.path + ": expected " + one.expected + ", seen " +
+            one.seen;
+  }
+  return text;
+}
+
+Message opened(const Message& message) {
+  Message copy = message;
+  if (copy.form == Message::Form::kFields) copy.open = true;
+  return copy;
+}
+
+namespace {
+
+// `am(type payload)` asks for the frame as such, whatever can be made of it.
+Match match_message(const Message& pattern, const Line* line, const Concrete& seen,
+                    Bindings& bindings) {
+  if (pattern.name == kFrameName && seen.name != kFrameName && seen.frame) {
+    return match_message(pattern, line, decode_raw(*seen.frame), bindings);
+  }
+  Matcher matcher(seen, bindings);
+  matcher.message(pattern);
+  if (line && line->am) matcher.am(*line->am);
+  if (line && line->bytes) matcher.bytes(*line->bytes);
+  return matcher.take(bindings);
+}
+
+}  // namespace
+
+Match match(const Line& line, const Concrete& seen, Bindings& bindings) {
+  if (is_fault(line.op)) return match_message(opened(line.message), &line, seen, bindings);
+  return match_message(line.message, &line, seen, bindings);
+}
+
+Match match(const Message& pattern, const Concrete& seen, Bindings& bindings) {
+  return match_message(pattern, nullptr, seen, bindings);
+}
+
+}  // namespace rubric::trace

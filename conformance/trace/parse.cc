@@ -1,0 +1,161 @@
+#include "conformance/trace/parse.h"
+
+#include <algorithm>
+
+#include "conformance/trace/check.h"
+#include "conformance/trace/parse_line.h"
+
+namespace rubric::trace {
+namespace {
+
+
+/// Offset of the first byte that is no UTF-8 or a control character other than a tab.
+std::size_t find_foreign(std::string_view text) {
+  const auto byte = [&](std::size_t i) {
+    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u;
+  };
+  const auto follows = [&](std::size_t i) { return (byte(i) & 0xC0) == 0x80; };
+  for (std::size_t i = 0; i < text.size();) {
+    const unsigned c = byte(i);
+    if (c >= 0x20 && c < 0x7F) {
+      ++i;
+    } else if (c == '\t') {
+      ++i;
+    } else if (c >= 0xC2 && c <= 0xDF && follows(i + 1)) {
+      i += 2;
+    } else if (c >= 0xE0 && c <= 0xEF && follows(i + 1) && follows(i + 2) &&
+               !(c == 0xE0 && byte(i + 1) < 0xA0) && !(c == 0xED && byte(i + 1) > 0x9F)) {
+      i += 3;
+    } else if (c >= 0xF0 && c <= 0xF4 && follows(i + 1) && follows(i + 2) && follows(i + 3) &&
+               !(c == 0xF0 && byte(i + 1) < 0x90) && !(c == 0xF4 && byte(i + 1) > 0x8F)) {
+      i += 4;
+    } else {
+      return i;
+    }
+  }
+  return std::string_view::npos;
+}
+
+class Parser {
+ public:
+  explicit Parser(Parsed& out) : out_(out) {}
+
+  void run(std::string_view text) {
+    if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+    std::uint32_t number = 0;
+    while (!text.empty()) {
+      const std::size_t end = text.find('\n');
+      std::string_view line = text.substr(0, end);
+      text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+      if (line.ends_with('\r')) line.remove_suffix(1);
+      one(line, ++number);
+    }
+  }
+
+ private:
+  void fail(Place place, std::string text) {
+    add_diagnostic(out_, place, std::move(text));
+  }
+
+  void one(std::string_view line, std::uint32_t number) {
+    if (line.size() > Parsed::kLineBytesMax) {
+      return fail({number, 1}, "a line of " + std::to_string(line.size()) + " bytes; at most " +
+                                   std::to_string(Parsed::kLineBytesMax));
+    }
+    if (const std::size_t at = find_foreign(line); at != std::string_view::npos) {
+      return fail({number, static_cast<std::uint32_t>(at + 1)},
+                  "a byte that is no UTF-8 text, or a control character");
+    }
+    Scanner in(line, number);
+    in.skip_blanks();
+    try {
+      content(in, line);
+    } catch (const LineError& error) {
+      fail(error.place, shortened(error.text));
+    }
+  }
+
+  // Quoted input may be as long as a line.
+  static std::string shortened(const std::string& text) {
+    constexpr std::size_t kMax = 240;
+    if (text.size() <= kMax) return text;
+    std::size_t end = kMax;
+    while ((static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
+    return text.substr(0, end) + "...";
+  }
+
+  void content(Scanner& in, std::string_view line) {
+    std::vector<Item>& items = out_.file.cases.empty() ? out_.file.head
+                                                       : out_.file.cases.back().items;
+    if (in.at_end()) {
+      items.emplace_back(Blank{});
+    } else if (in.peek() == '#' || in.peek() == ';') {
+      Comment comment;
+      comment.marker = in.peek();
+      comment.indented = line.data() != in.rest().data();
+      std::string_view text = in.rest().substr(1);
+      while (text.ends_with(' ') || text.ends_with('\t')) text.remove_suffix(1);
+      comment.text = text;
+      items.emplace_back(std::move(comment));
+    } else if (in.peek() == '%') {
+      parse_headers(in, items);
+    } else if (in.rest().starts_with("case ") || in.rest().starts_with("case\t") ||
+               in.rest() == "case") {
+      in.advance(4);
+      out_.file.cases.push_back(parse_case(in));
+    } else {
+      Line parsed = parse_line(in);
+      if (out_.file.cases.empty()) {
+        return fail(parsed.place, "a line before the first case; 'case NAME' begins one");
+      }
+      items.emplace_back(std::move(parsed));
+    }
+  }
+
+  Parsed& out_;
+};
+
+}  // namespace
+
+std::string Parsed::errors() const {
+  std::string text;
+  for (const Diagnostic& one : diagnostics) {
+    text += file_name + ':' + std::to_string(one.place.line) + ':' +
+            std::to_string(one.place.column) + ": " + one.text + '\n';
+  }
+  if (dropped) text += file_name + ": and " + std::to_string(dropped) + " more\n";
+  return text;
+}
+
+Parsed parse_syntax(std::string_view text, std::string_view file_name) {
+  Parsed parsed;
+  parsed.file_name = file_name;
+  Parser(parsed).run(text);
+  return parsed;
+}
+
+Parsed parse(std::string_view text, std::string_view file_name) {
+  Parsed parsed = parse_syntax(text, file_name);
+  check(parsed);
+  std::stable_sort(parsed.diagnostics.begin(), parsed.diagnostics.end(),
+                   [](const Diagnostic& a, const Diagnostic& b) {
+                     return a.place.line != b.place.line ? a.place.line < b.place.line
+                                                         : a.place.column < b.place.column;
+                   });
+  return parsed;
+}
+
+std::string parse_message(std::string_view text, Message& out) {
+  Scanner in(text, 1);
+  try {
+    in.skip_blanks();
+    out = parse_message(in);
+    in.skip_blanks();
+    if (!in.at_end()) in.fail("expected the end, given '" + std::string(in.rest()) + "'");
+  } catch (const LineError& error) {
+    return std::to_string(error.place.column) + ": " + error.text;
+  }
+  return {};
+}
+
+}  // namespace rubric::trace

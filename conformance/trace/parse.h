@@ -1,0 +1,42 @@
+// Reads .rtr text. The grammar stands in spec/trace/rtr.ebnf.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "conformance/trace/trace.h"
+
+namespace rubric::trace {
+
+/// Something wrong with a trace.
+struct Diagnostic {
+  Place place;
+  std::string text;
+};
+
+/// The file as far as it was understood, and all that is wrong with it, in order of place.
+struct Parsed {
+  static constexpr std::size_t kDiagnosticsMax = 100;
+  static constexpr std::size_t kLineBytesMax = 65536;
+
+  std::string file_name;
+  File file;
+  std::vector<Diagnostic> diagnostics;
+  std::size_t dropped = 0;  ///< Diagnostics beyond kDiagnosticsMax.
+
+  bool ok() const { return diagnostics.empty(); }
+  /// A line "file:line:column: text" for each, and a last one if some were dropped.
+  std::string errors() const;
+};
+
+/// Reads a whole file and checks it (check.h).
+Parsed parse(std::string_view text, std::string_view file_name);
+/// The grammar alone: names, values and the order of lines are not checked.
+Parsed parse_syntax(std::string_view text, std::string_view file_name);
+
+/// A message alone, "join_reply(seq_num=3 ...)"; returns what is wrong, or nothing.
+std::string parse_message(std::string_view text, Message& out);
+
+}  // namespace rubric::trace
