@@ -1,0 +1,187 @@
+// What the tests of the machine share: nodes with a clock, frames made by the codec, and looks at
+// what a step did.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "codec/generated/rubicon/ack_join.h"
+#include "codec/generated/rubicon/config.h"
+#include "codec/generated/rubicon/join_reply.h"
+#include "codec/generated/rubicon/join_request.h"
+#include "codec/generated/rubicon/net_msg.h"
+#include "codec/generated/rubicon/serial_joined.h"
+#include "conformance/machine/join.h"
+#include "conformance/machine/messages.h"
+#include "conformance/machine/step.h"
+
+namespace rubric::machine {
+
+/// A frame with its own bytes.
+struct OwnFrame {
+  Link link = Link::kRadio;
+  std::uint16_t dest = 0;
+  std::uint16_t src = 0;
+  std::uint8_t type = 0;
+  std::vector<std::uint8_t> payload;
+  Frame frame() const { return {link, dest, src, type, {payload.data(), payload.size()}}; }
+};
+
+template <class Message>
+std::vector<std::uint8_t> written(const Message& message) {
+  std::uint8_t room[kAmPayloadMax];
+  const auto bytes = write(message, MutableBytes(room));
+  EXPECT_TRUE(bytes);
+  return {bytes->data(), bytes->data() + bytes->size()};
+}
+
+struct NetFields {
+  Address dest;
+  Address src;
+  bool reliable = false;
+  std::uint16_t seq_num = 7;
+  std::vector<std::uint8_t> payload = {3, 10, 0xAB};  ///< CONNLESS, CONTROL_LAYER, a body.
+};
+inline std::vector<std::uint8_t> net_msg(const NetFields& fields) {
+  rubicon::NetMsg message;
+  message.dest = wire_of(fields.dest);
+  message.src = wire_of(fields.src);
+  message.reliable = fields.reliable ? 1 : 0;
+  message.seq_num = fields.seq_num;
+  message.payload = {fields.payload.data(), fields.payload.size()};
+  return written(message);
+}
+inline std::vector<std::uint8_t> padded(std::vector<std::uint8_t> bytes) {
+  bytes.resize(kAmPayloadMax);
+  return bytes;
+}
+
+inline OwnFrame join_request(std::uint16_t mote, std::uint16_t seq_num, const Descriptor& what) {
+  return {Link::kRadio, 1, mote, am::kJoin, written(rubicon::JoinRequest{seq_num, wire_of(what)})};
+}
+inline OwnFrame join_reply(std::uint16_t am_dest, Address offered, std::uint32_t time_ms,
+                           std::uint16_t seq_num, std::uint16_t am_src = 1) {
+  const rubicon::JoinReply reply{offered.pid, offered.devid, time_ms, seq_num};
+  return {Link::kRadio, am_dest, am_src, am::kJoinReply, written(reply)};
+}
+inline OwnFrame ack_join(Address dest, Address src, std::uint16_t seq_num, const Descriptor& what) {
+  const rubicon::AckJoin ack{wire_of(dest), wire_of(src), seq_num, wire_of(what)};
+  return {Link::kRadio, dest.devid, src.devid, am::kAckJoin, written(ack)};
+}
+inline OwnFrame config(std::uint8_t code, std::uint16_t value) {
+  rubicon::Config wire;
+  wire.type = static_cast<rubicon::CommandCode>(code);
+  wire.value = value;
+  return {Link::kSerial, 1, 0, am::kConfig, written(wire)};
+}
+inline OwnFrame set_island_id(std::uint16_t island) { return config(10, island); }
+
+/// A label of an action, for comparing whole steps.
+struct Label {
+  Action::What what;
+  ReqId requirement;
+  friend bool operator==(const Label&, const Label&) = default;
+};
+inline void PrintTo(const Label& label, std::ostream* out) {
+  constexpr const char* kNames[] = {"transmit", "notify", "followed", "ignored"};
+  *out << kNames[static_cast<int>(label.what)] << ' ' << static_cast<int>(label.requirement);
+}
+inline Label sent(ReqId requirement) { return {Action::What::kTransmit, requirement}; }
+inline Label told(ReqId requirement) { return {Action::What::kNotify, requirement}; }
+inline Label followed(ReqId requirement) { return {Action::What::kFollowed, requirement}; }
+inline Label ignored(ReqId requirement) { return {Action::What::kIgnored, requirement}; }
+
+/// One node at its present time.
+struct Device {
+  explicit Device(const Config& config) : state(start(config)) {}
+
+  Device& step(const Event& event) {
+    machine::step(state, now, event, actions);
+    return *this;
+  }
+  Device& hear(const OwnFrame& frame) { return step(Heard{frame.frame()}); }
+  Device& hear(const Transmit& transmit) { return step(Heard{transmit.frame()}); }
+  Device& call(const Call& what) { return step(Called{what}); }
+  Device& done(Link link = Link::kRadio, bool acked = true) { return step(SendDone{link, acked}); }
+  /// The join timer fires when it is due.
+  Device& join_timer() {
+    now = state.join.due;
+    return step(TimerDue{{TimerKind::kJoin, 0}});
+  }
+
+  std::vector<Label> labels() const {
+    std::vector<Label> all;
+    for (const Action& action : actions.all()) all.push_back({action.what, action.requirement});
+    return all;
+  }
+  /// The one notice of this kind in the last step; fails the test when there is another number.
+  template <class Kind>
+  Kind notice() const {
+    Kind found{};
+    int count = 0;
+    for (const Notice& each : actions.notices()) {
+      if (const auto* kind = std::get_if<Kind>(&each)) found = *kind, ++count;
+    }
+    EXPECT_EQ(count, 1);
+    return found;
+  }
+  /// The one frame of the last step.
+  const Transmit& only_frame() const {
+    EXPECT_EQ(actions.transmits().size(), 1U);
+    static const Transmit kNothing{};
+    return actions.transmits().empty() ? kNothing : actions.transmits()[0];
+  }
+  std::vector<std::uint8_t> only_payload() const {
+    const Bytes bytes = only_frame().bytes();
+    return {bytes.begin(), bytes.end()};
+  }
+  bool silent() const { return actions.transmits().empty() && actions.notices().empty(); }
+
+  State state;
+  Ticks now = 0;
+  Actions actions;
+};
+
+inline constexpr Descriptor kDescriptor{1, 1, 0x43};
+inline constexpr std::uint16_t kIsland = 11;
+inline constexpr std::uint16_t kOther = 12;  ///< Another island.
+
+inline Config mote_config(std::uint16_t id) {
+  Config config;
+  config.id = id;
+  return config;
+}
+inline Config sink_config(std::uint16_t island = kIsland) {
+  Config config;
+  config.role = Role::kSink;
+  config.id = 1;
+  config.island = island;
+  return config;
+}
+inline Config base_config(std::uint16_t island = kIsland) {
+  Config config;
+  config.role = Role::kBaseStation;
+  config.island = island;
+  return config;
+}
+
+/// A mote that is a member of kIsland and has nothing to send.
+inline Device member(std::uint16_t id, const Config* config = nullptr) {
+  Device mote(config == nullptr ? mote_config(id) : *config);
+  mote.call(JoinIsland{kDescriptor}).done();
+  mote.hear(join_reply(id, {kIsland, id}, 0, mote.state.join.seq_num)).done();
+  EXPECT_EQ(mote.state.join.phase, JoinMote::Phase::kMember);
+  return mote;
+}
+/// A sink of kIsland that lists `id`.
+inline void list_member(Device& sink, std::uint16_t id, std::uint16_t seq_num = 100) {
+  sink.hear(join_request(id, seq_num, kDescriptor)).done();
+  sink.hear(ack_join({kIsland, 1}, {kIsland, id}, seq_num, kDescriptor)).done(Link::kSerial);
+  EXPECT_NE(find_member(sink.state.sink, id), nullptr);
+}
+
+}  // namespace rubric::machine
