@@ -1,0 +1,215 @@
+#include "conformance/simulator/radio.h"
+
+#include <algorithm>
+
+namespace rubric::simulator {
+namespace {
+
+// Times of TinyOS' CC2420 stack: random waits in ticks of its 32 kHz timer, 10 to 329 before the
+// first attempt, 10 to 79 after the channel was found taken.
+constexpr Micros kInitialBackoffUs[] = {305, 10'040};
+constexpr Micros kCongestionBackoffUs[] = {305, 2'410};
+constexpr Micros kTurnaroundUs = 192;       // From listening to sending. (IEEE 802.15.4, 6.4.1)
+constexpr Micros kLinkAckUs[] = {192, 2'500};  // The acknowledgement is software's.
+constexpr Micros kLinkAckWaitUs = 8'000;
+constexpr Micros kDoubleUs[] = {500, 20'000};  // How long after a frame its double comes.
+
+constexpr std::uint16_t kFcfData = 0x8841;  // Short addresses in one PAN.
+constexpr std::uint16_t kFcfDataAck = 0x8861;
+constexpr std::uint16_t kFcfAck = 0x0002;
+constexpr std::uint8_t kNetwork6Lowpan = 0x3F;
+constexpr std::size_t kHeaderBytes = 11;
+constexpr std::size_t kAckBytes = 3;
+
+std::vector<std::uint8_t> data_frame(const machine::Frame& am, std::uint8_t dsn, bool asks_ack) {
+  std::vector<std::uint8_t> bytes(kHeaderBytes + am.payload.size());
+  store_le16(bytes.data(), asks_ack ? kFcfDataAck : kFcfData);
+  bytes[2] = dsn;
+  store_le16(bytes.data() + 3, kPanId);
+  store_le16(bytes.data() + 5, am.dest);
+  store_le16(bytes.data() + 7, am.src);
+  bytes[9] = kNetwork6Lowpan;
+  bytes[10] = am.type;
+  std::copy(am.payload.begin(), am.payload.end(), bytes.begin() + kHeaderBytes);
+  return bytes;
+}
+
+}  // namespace
+
+std::size_t Radio::add_station(std::optional<NodeId> node, std::uint16_t am_address) {
+  Station station;
+  station.node = node;
+  station.am_address = am_address;
+  stations_.push_back(station);
+  return stations_.size() - 1;
+}
+
+void Radio::send(std::size_t station, const machine::Frame& frame, bool link_ack) {
+  Station& from = stations_[station];
+  auto data = std::make_shared<OnAir>();
+  data->sender = station;
+  data->dsn = from.dsn++;
+  data->bytes = data_frame(frame, data->dsn, link_ack);
+  data->am = frame;
+  data->am.link = machine::Link::kRadio;
+  data->am.payload = Bytes(data->bytes.data(), data->bytes.size()).from(kHeaderBytes);
+  data->asks_ack = link_ack;
+  data->life = from.life;
+  try_channel(data, random_.between(kInitialBackoffUs[0], kInitialBackoffUs[1]));
+}
+
+void Radio::try_channel(const Shared& frame, Micros backoff_us) {
+  queue_.after(backoff_us, [this, frame] {
+    const Station& from = stations_[frame->sender];
+    if (from.life != frame->life) return;
+    if (is_busy(frame->sender)) {
+      const Micros wait = random_.between(kCongestionBackoffUs[0], kCongestionBackoffUs[1]);
+      return try_channel(frame, wait);
+    }
+    // Whoever finds the channel free within the turnaround sends as well: a collision.
+    queue_.after(kTurnaroundUs, [this, frame] {
+      const Station& then = stations_[frame->sender];
+      if (then.life != frame->life) return;
+      if (then.sending) return try_channel(frame, kCongestionBackoffUs[0]);  // Its link ack.
+      begin(frame);
+    });
+  });
+}
+
+bool Radio::hears(std::size_t station, std::size_t sender) const {
+  const Station& to = stations_[station];
+  const Station& from = stations_[sender];
+  if (station == sender || !to.node) return false;
+  if (!from.node) return true;
+  return std::none_of(plan_.deaf.begin(), plan_.deaf.end(), [&](const RadioPlan::Deaf& deaf) {
+    return deaf.from == *from.node && deaf.to == *to.node;
+  });
+}
+
+const Faults& Radio::faults(const Station& from, const Station& to) const {
+  for (const RadioPlan::LinkFaults& link : plan_.link_faults) {
+    if (link.from == from.node && link.to == to.node) return link.faults;
+  }
+  return plan_.faults;
+}
+
+bool Radio::is_busy(std::size_t station) const {
+  if (stations_[station].sending) return true;  // Its link ack.
+  return std::any_of(air_.begin(), air_.end(), [&](const Shared& frame) {
+    // One that only sends is told by nobody whom it hears; it hears all.
+    return !stations_[station].node || hears(station, frame->sender);
+  });
+}
+
+void Radio::begin(const Shared& frame) {
+  Station& from = stations_[frame->sender];
+  // A radio sends or listens: what it was hearing is gone.
+  for (const Shared& other : air_) {
+    for (Reception& reception : other->receptions) {
+      if (reception.station == frame->sender) reception.destroyed = true;
+    }
+  }
+  for (std::size_t to = 0; to < stations_.size(); ++to) {
+    if (!hears(to, frame->sender)) continue;
+    Reception mine{to, stations_[to].sending};
+    for (const Shared& other : air_) {
+      for (Reception& theirs : other->receptions) {
+        if (theirs.station == to) theirs.destroyed = mine.destroyed = true;
+      }
+    }
+    frame->receptions.push_back(mine);
+  }
+  from.sending = true;
+  air_.push_back(frame);
+  recorder_.on_air(queue_.now(), index_, Bytes(frame->bytes.data(), frame->bytes.size()));
+  queue_.after(air_us(frame->bytes.size()), [this, frame] { end(frame); });
+}
+
+void Radio::end(const Shared& frame) {
+  std::erase(air_, frame);
+  stations_[frame->sender].sending = false;
+  if (!frame->is_ack) sent(frame);
+  for (const Reception& reception : frame->receptions) receive(*frame, reception);
+}
+
+// The sender's side of the end of a frame.
+void Radio::sent(const Shared& frame) {
+  const std::size_t station = frame->sender;
+  Station& from = stations_[station];
+  if (!from.node || from.life != frame->life) return;
+  if (!frame->asks_ack) return finish(station, true);
+  from.awaited = frame->dsn;
+  queue_.after(kLinkAckWaitUs, [this, frame, station] {
+    const Station& then = stations_[station];
+    if (then.life == frame->life && then.awaited == frame->dsn) finish(station, false);
+  });
+}
+
+void Radio::finish(std::size_t station, bool acked) {
+  Station& from = stations_[station];
+  if (from.awaited) recorder_.link_ack(queue_.now(), *from.node, acked);
+  from.awaited.reset();
+  user_.radio_sent(*from.node, acked);
+}
+
+void Radio::receive(const OnAir& frame, const Reception& reception) {
+  Station& to = stations_[reception.station];
+  if (frame.is_ack) {
+    const bool awaited = to.awaited == frame.dsn;
+    if (!awaited || reception.destroyed || !user_.listens(*to.node)) return;
+    if (!random_.chance(faults(stations_[frame.sender], to).loss)) {
+      finish(reception.station, true);
+    }
+    return;
+  }
+  const bool broadcast = frame.am.dest == machine::kAmBroadcast;
+  if (!broadcast && frame.am.dest != to.am_address) return;
+  const auto mishap = [&](Mishap what) {
+    recorder_.mishap(queue_.now(), *to.node, what, frame.am);
+  };
+  if (!user_.listens(*to.node)) return mishap(Mishap::kUnheard);
+  if (reception.destroyed) return mishap(Mishap::kCollided);
+  const Faults& faults_here = faults(stations_[frame.sender], to);
+  if (random_.chance(faults_here.loss)) return mishap(Mishap::kLost);
+  if (frame.asks_ack && !broadcast) answer(frame, reception.station);
+  auto copy = std::make_shared<OnAir>(frame);
+  copy->am.payload = Bytes(copy->bytes.data(), copy->bytes.size()).from(kHeaderBytes);
+  const Micros delay = random_.between(0, faults_here.delay_max_us);
+  if (delay == 0) {
+    deliver(copy, to);
+  } else {
+    queue_.after(delay, [this, copy, station = reception.station] {
+      deliver(copy, stations_[station]);
+    });
+  }
+  if (!random_.chance(faults_here.duplication)) return;
+  queue_.after(delay + random_.between(kDoubleUs[0], kDoubleUs[1]),
+               [this, copy, station = reception.station] {
+    const Station& late = stations_[station];
+    if (!user_.listens(*late.node)) return;
+    recorder_.mishap(queue_.now(), *late.node, Mishap::kDoubled, copy->am);
+    deliver(copy, stations_[station]);
+  });
+}
+
+void Radio::deliver(const Shared& frame, Station& to) {
+  if (user_.listens(*to.node)) user_.heard(*to.node, frame->am);
+}
+
+// The link acknowledgement of a frame, with its number and without listening first.
+void Radio::answer(const OnAir& frame, std::size_t station) {
+  auto ack = std::make_shared<OnAir>();
+  ack->sender = station;
+  ack->is_ack = true;
+  ack->dsn = frame.dsn;
+  ack->bytes.resize(kAckBytes);
+  store_le16(ack->bytes.data(), kFcfAck);
+  ack->bytes[2] = frame.dsn;
+  ack->life = stations_[station].life;
+  queue_.after(random_.between(kLinkAckUs[0], kLinkAckUs[1]), [this, ack] {
+    const Station& from = stations_[ack->sender];
+    if (from.life == ack->life && !from.sending && user_.listens(*from.node)) begin(ack);
+  });
+}
+
+}  // namespace rubric::simulator

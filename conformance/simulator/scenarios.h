@@ -1,0 +1,34 @@
+// The networks of the paper, and one of any size.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "conformance/simulator/network.h"
+
+namespace rubric::simulator {
+
+struct ScenarioOptions {
+  std::uint64_t seed = 1;
+  double loss = 0;         ///< Of every radio frame at every receiver.
+  double duplication = 0;
+  std::size_t motes = 3;   ///< Of the scenario `free` only.
+  std::size_t sinks = 1;
+};
+
+struct Scenario {
+  const char* name;
+  const char* doc;
+  Micros length_us;        ///< How long it takes to be told.
+};
+
+/// All there are, `free` last.
+std::span<const Scenario> scenarios();
+/// Null if there is none of this name.
+const Scenario* find_scenario(std::string_view name);
+/// The network of one of them.
+Network make_network(const Scenario& scenario, const ScenarioOptions& options);
+
+}  // namespace rubric::simulator

@@ -1,0 +1,39 @@
+// A run as a .rtr log: what each node was given and what it emitted, with the rule behind each.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "conformance/simulator/recorder.h"
+#include "conformance/trace/trace.h"
+
+namespace rubric::simulator {
+
+/// One case with all lines, at absolute ticks; every node under test. Frames that a line loses,
+/// doubles, or that find their receiver off stand as the line's faults, the receiver in a comment.
+class TraceRecorder final : public Recorder {
+ public:
+  TraceRecorder(const Network& network, std::string_view case_name);
+
+  void given(Micros time_us, NodeId node, const machine::Event& event) override;
+  void did(Micros time_us, NodeId node, const machine::Actions& actions) override;
+  void power(Micros time_us, NodeId node, bool on) override;
+  void mishap(Micros time_us, NodeId node, Mishap what, const machine::Frame& frame) override;
+  void link_ack(Micros time_us, NodeId node, bool acked) override;
+
+  const trace::File& file() const { return file_; }
+
+ private:
+  struct Names {
+    std::string node;
+    std::string radio;
+    std::string serial;
+  };
+  std::string_view link_name(NodeId node, machine::Link link) const;
+  void add(trace::Line line) { file_.cases.front().add(std::move(line)); }
+
+  std::vector<Names> names_;
+  trace::File file_;
+};
+
+}  // namespace rubric::simulator
