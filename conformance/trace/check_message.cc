@@ -173,9 +173,9 @@ class MessageCheck {
     if (!shape.app || shape.app->what == AppWhat::kFrame) return;
     const bool event = shape.app->what == AppWhat::kEvent;
     if (event == !given() && !is_fault(line_.op)) return;
-    fail(line_.message.place, quoted(shape.name) + (event ? " comes from a node: expected >, given "
-                                                          : " is given to a node: expected <, given ") +
-                                  std::string(op_text(line_.op)));
+    const char* text = event ? " comes from a node: expected >, given "
+                             : " is given to a node: expected <, given ";
+    fail(line_.message.place, quoted(shape.name) + text + std::string(op_text(line_.op)));
   }
 
   void field(const std::vector<FieldValue>& whole, const Shape& shape) {
@@ -240,8 +240,8 @@ class MessageCheck {
       return fail(line_.place, "there are no frames on " + quoted(line_.link));
     }
     if (!parse_packet(*line_.bytes, frame)) {
-      return fail(line_.place, "the bytes are no packet: 00, AM destination, source, length, group, "
-                               "type, and as many bytes as length says");
+      return fail(line_.place, "the bytes are no packet: 00, AM destination, source, length, "
+                               "group, type, and as many bytes as length says");
     }
     Bindings bindings;
     // What a variable was bound to is known only when the case runs.

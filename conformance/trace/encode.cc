@@ -290,6 +290,7 @@ std::uint16_t am_number(const Value& value, const Bindings& bindings, Place plac
 std::uint16_t destination(const Line& line, const Scope& scope) {
   const NodeHeader* node = scope.node(line.node);
   if (line.op != Op::kGiven || !node || line.message.name == "join_request") return kAmAll;
+  if (scope.link(line.link) == LinkKind::kPeis) return node->island.value_or(kAmAll);
   return node->id.value_or(kAmAll);
 }
 
@@ -300,10 +301,12 @@ std::uint16_t source(const Line& line, const Scope& scope, const AmFrame& frame)
     const NodeHeader* node = scope.node(line.node);
     if (node && node->id) return *node->id;
   }
-  if (link != LinkKind::kRadio) return 0;
   const Concrete seen = decode(frame, link);
+  const auto src = seen.pair("src");
+  if (link == LinkKind::kPeis && src) return src->first;
+  if (link != LinkKind::kRadio) return 0;
   const bool from_sink = seen.name == "join_reply";
-  if (const auto src = seen.pair("src")) {
+  if (src) {
     const auto known = [&](const NodeHeader& one) { return one.id == src->second; };
     if (std::any_of(scope.nodes.begin(), scope.nodes.end(), known)) return src->second;
   }
@@ -312,7 +315,8 @@ std::uint16_t source(const Line& line, const Scope& scope, const AmFrame& frame)
     const bool fits = from_sink ? one.role == Role::kSink : one.role != Role::kBaseStation;
     if (!fits || !one.id || one.name == line.node) continue;
     if (found && found != one.id) {
-      throw TraceError(line.place, "several nodes can have sent this: am=SOURCE->DESTINATION says who");
+      throw TraceError(line.place,
+                       "several nodes can have sent this: am=SOURCE->DESTINATION says who");
     }
     found = one.id;
   }

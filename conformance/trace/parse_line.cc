@@ -28,7 +28,9 @@ void window(Scanner& in, std::string_view text, Time& time) {
   time.from = time.to = ticks(in, text.substr(0, dots));
   if (dots == std::string_view::npos) return;
   time.to = ticks(in, text.substr(dots + 2));
-  if (time.to < time.from) in.fail_at(text, "the window " + quoted(text) + " ends before it begins");
+  if (time.to < time.from) {
+    in.fail_at(text, "the window " + quoted(text) + " ends before it begins");
+  }
 }
 
 Time parse_time(Scanner& in) {
@@ -44,7 +46,8 @@ Time parse_time(Scanner& in) {
     if (!is_name(time.label)) in.fail_at(text, "expected a label before '+'");
     text.remove_prefix(plus + 1);
   } else if (is_name(text)) {
-    in.fail_at(text, "expected a time; " + quoted(text) + " wants '+' and ticks, or ':' as a label");
+    in.fail_at(text, "expected a time; " + quoted(text) + " wants '+' and ticks as a time, or "
+                     "':' as a label");
   }
   window(in, text, time);
   return time;

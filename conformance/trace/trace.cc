@@ -130,13 +130,13 @@ const Value* Message::find(std::string_view path) const {
 }
 
 std::vector<std::uint8_t> packet_of(const AmFrame& frame) {
-  std::vector<std::uint8_t> packet(kAmHeaderBytes);
+  std::vector<std::uint8_t> packet(kAmHeaderBytes + frame.payload.size());
   store_be16(packet.data() + 1, frame.dest);
   store_be16(packet.data() + 3, frame.src);
   packet[5] = static_cast<std::uint8_t>(frame.payload.size());
   packet[6] = frame.group;
   packet[7] = frame.type;
-  packet.insert(packet.end(), frame.payload.begin(), frame.payload.end());
+  std::copy(frame.payload.begin(), frame.payload.end(), packet.begin() + kAmHeaderBytes);
   return packet;
 }
 
