@@ -103,7 +103,10 @@ struct Device {
     machine::step(state, now, event, actions);
     return *this;
   }
-  Device& hear(const OwnFrame& frame) { return step(Heard{frame.frame()}); }
+  Device& hear(const OwnFrame& frame) {
+    heard = frame;  // What was received stays readable until the next step.
+    return step(Heard{heard.frame()});
+  }
   Device& hear(const Transmit& transmit) { return step(Heard{transmit.frame()}); }
   Device& call(const Call& what) { return step(Called{what}); }
   Device& done(Link link = Link::kRadio, bool acked = true) { return step(SendDone{link, acked}); }
@@ -144,6 +147,7 @@ struct Device {
   State state;
   Ticks now = 0;
   Actions actions;
+  OwnFrame heard;
 };
 
 inline constexpr Descriptor kDescriptor{1, 1, 0x43};

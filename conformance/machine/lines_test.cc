@@ -1,0 +1,216 @@
+// Buffers of both lines, and switching the interfaces.
+#include "conformance/machine/lines.h"
+
+#include "conformance/machine/machine_fixture.h"
+
+namespace rubric::machine {
+namespace {
+
+Send message(std::uint8_t mark) {
+  static std::uint8_t marks[256];
+  marks[mark] = mark;
+  return {{kIsland, 6}, 10, false, {marks + mark, 1}};
+}
+std::uint8_t mark_of(const Transmit& frame) { return frame.payload[14]; }
+
+OwnFrame heard(std::uint8_t mark, std::uint16_t id = 5) {
+  return {Link::kRadio, id, 6, am::kNet,
+          net_msg({{kIsland, id}, {kIsland, 6}, false, 1, {3, 10, mark}})};
+}
+OwnFrame heard_on_serial(std::uint8_t mark) {
+  return {Link::kSerial, 1, 0, am::kNet,
+          padded(net_msg({{kIsland, 1}, {kIsland, kNullDevid}, false, 1, {3, 10, mark}}))};
+}
+
+// Marks of what the application got in the last step.
+std::vector<std::uint8_t> received(const Device& node) {
+  std::vector<std::uint8_t> marks;
+  for (const Notice& notice : node.actions.notices()) {
+    if (const auto* got = std::get_if<Received>(&notice)) marks.push_back(got->data[0]);
+  }
+  return marks;
+}
+
+TEST(Outgoing, N2_WaitsWhileSendingAndLeavesInOrder) {
+  Device mote = member(5);
+  mote.call(message(1));
+  for (std::uint8_t mark = 2; mark <= 5; ++mark) {
+    mote.call(message(mark));
+    EXPECT_EQ(mote.labels(), (std::vector{followed(req::kN2Queue), told(req::kN1Seq)}));
+  }
+  for (std::uint8_t mark = 2; mark <= 5; ++mark) {
+    mote.done();
+    EXPECT_EQ(mote.labels(), (std::vector{sent(req::kN4Mote), followed(req::kN2Order)}));
+    EXPECT_EQ(mark_of(mote.only_frame()), mark);
+  }
+  EXPECT_TRUE(mote.done().silent());
+}
+
+TEST(Outgoing, N1Full_FifthThatWaitsIsRefused) {
+  Device mote = member(5);
+  for (std::uint8_t mark = 1; mark <= 5; ++mark) mote.call(message(mark));
+  const State before = mote.state;
+  mote.call(message(6));
+  EXPECT_EQ(mote.labels(), (std::vector{told(req::kN1Full)}));
+  EXPECT_EQ(mote.notice<SendResult>().seq_num, kNoSeq);
+  EXPECT_EQ(mote.state, before);
+  mote.done();
+  mote.call(message(7));
+  std::vector<std::uint8_t> left;
+  while (!mote.done().actions.transmits().empty()) left.push_back(mark_of(mote.only_frame()));
+  EXPECT_EQ(left, (std::vector<std::uint8_t>{3, 4, 5, 7}));
+}
+
+TEST(Outgoing, SerialHoldsTwo) {
+  Device base(base_config());
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_NE(base.call(message(1)).notice<SendResult>().seq_num, kNoSeq);
+  }
+  EXPECT_EQ(base.call(message(1)).notice<SendResult>().seq_num, kNoSeq);
+  EXPECT_EQ(base.labels(), (std::vector{told(req::kN1Full)}));
+  EXPECT_FALSE(base.call(SetIslandId{12}).notice<OperationResult>().success);
+  EXPECT_EQ(base.state.island, kIsland);
+}
+
+TEST(Outgoing, TakenLineIsLeftAlone) {
+  Device mote = member(5);
+  mote.step(LinkBusy{Link::kRadio, true});
+  EXPECT_TRUE(mote.call(message(1)).actions.transmits().empty());
+  mote.step(LinkBusy{Link::kRadio, false});
+  EXPECT_EQ(mark_of(mote.only_frame()), 1);
+  mote.step(LinkBusy{Link::kRadio, true}).done();
+  EXPECT_TRUE(mote.call(message(2)).actions.transmits().empty());
+}
+
+TEST(Outgoing, ForwardThatFindsNoPlaceIsLostAndSaidSo) {
+  Device sink(sink_config());
+  OwnFrame up = heard(1, 1);
+  up.payload = net_msg({{kIsland, kNullDevid}, {kIsland, 5}});
+  for (int i = 0; i < 3; ++i) sink.hear(up);
+  const State before = sink.state;
+  EXPECT_EQ(sink.hear(up).labels(), (std::vector{ignored(req::kN1Full)}));
+  EXPECT_EQ(sink.state, before);
+}
+
+TEST(Outgoing, LostReportChangesNothingElse) {
+  Device sink(sink_config());
+  sink.call(SetInterface{Link::kSerial, false});
+  sink.hear(join_request(5, 100, kDescriptor)).done();
+  sink.hear(ack_join({kIsland, 1}, {kIsland, 5}, 100, kDescriptor));
+  EXPECT_EQ(sink.labels(), (std::vector{told(req::kJ6Add), ignored(req::kN10Off)}));
+  EXPECT_NE(find_member(sink.state.sink, 5), nullptr);
+}
+
+TEST(Outgoing, SendDoneOfNothingIsIgnored) {
+  Device mote = member(5);
+  const State before = mote.state;
+  for (const Link link : {Link::kRadio, Link::kSerial, Link::kPeis}) {
+    EXPECT_EQ(mote.done(link).labels(), (std::vector{ignored(ReqId::kNone)}));
+  }
+  EXPECT_EQ(mote.state, before);
+}
+
+TEST(Incoming, N2InOrder_WaitsWhileTheApplicationIsBusy) {
+  Device mote = member(5);
+  mote.step(AppBusy{true});
+  for (std::uint8_t mark = 1; mark <= 4; ++mark) {
+    EXPECT_EQ(mote.hear(heard(mark)).labels(), (std::vector{followed(req::kN2InOrder)}));
+  }
+  EXPECT_EQ(mote.hear(heard(5)).labels(), (std::vector{ignored(req::kN2InFull)}));
+  mote.step(AppBusy{false});
+  EXPECT_EQ(received(mote), (std::vector<std::uint8_t>{1, 2, 3, 4}));
+  EXPECT_EQ(mote.labels()[0], followed(req::kN2InOrder));
+  EXPECT_EQ(received(mote.hear(heard(6))), (std::vector<std::uint8_t>{6}));
+}
+
+TEST(Incoming, OrderHoldsAcrossTheLinesOfASink) {
+  Device sink(sink_config());
+  sink.step(AppBusy{true});
+  sink.hear(heard_on_serial(1)).hear(heard(2, 1)).hear(heard(3, 1)).hear(heard_on_serial(4));
+  EXPECT_EQ(sink.hear(heard_on_serial(9)).labels(), (std::vector{ignored(req::kN2InFull)}));
+  sink.hear(heard(5, 1)).hear(heard(6, 1));
+  EXPECT_EQ(sink.hear(heard(9, 1)).labels(), (std::vector{ignored(req::kN2InFull)}));
+  sink.step(AppBusy{false});
+  EXPECT_EQ(received(sink), (std::vector<std::uint8_t>{1, 2, 3, 4, 5, 6}));
+}
+
+TEST(Incoming, WhatIsNotForUsTakesNoPlace) {
+  Device mote = member(5);
+  mote.step(AppBusy{true});
+  for (int i = 0; i < 9; ++i) mote.hear(heard(1, 77));
+  OwnFrame unknown = heard(1);
+  unknown.type = 99;
+  for (int i = 0; i < 9; ++i) mote.hear(unknown);
+  EXPECT_TRUE(mote.state.radio.in.empty());
+}
+
+TEST(Incoming, PeisDoesNotWait) {
+  Device base(base_config());
+  base.step(AppBusy{true});
+  OwnFrame frame{Link::kPeis, kIsland, kOther, am::kNet,
+                 net_msg({{kIsland, kNullDevid}, {kOther, 4}, false, 1, {3, 10, 8}})};
+  EXPECT_EQ(received(base.hear(frame)), (std::vector<std::uint8_t>{8}));
+}
+
+TEST(Control, N10_OffSendsAndHearsNothing) {
+  Device mote = member(5);
+  EXPECT_TRUE(mote.call(GetInterface{Link::kRadio}).notice<InterfaceState>().on);
+  EXPECT_TRUE(mote.call(SetInterface{Link::kRadio, false}).notice<OperationResult>().success);
+  EXPECT_FALSE(mote.call(GetInterface{Link::kRadio}).notice<InterfaceState>().on);
+  EXPECT_TRUE(mote.call(GetInterface{Link::kSerial}).notice<InterfaceState>().on);
+  EXPECT_EQ(mote.call(message(1)).labels(), (std::vector{told(req::kN10Off)}));
+  EXPECT_EQ(mote.notice<SendResult>().seq_num, kNoSeq);
+  EXPECT_EQ(mote.hear(heard(1)).labels(), (std::vector{ignored(req::kN10Off)}));
+  mote.call(SetInterface{Link::kRadio, true});
+  EXPECT_EQ(mote.labels(), (std::vector{told(req::kN10On)}));
+  EXPECT_EQ(received(mote.hear(heard(2))), (std::vector<std::uint8_t>{2}));
+  EXPECT_EQ(mark_of(mote.call(message(3)).only_frame()), 3);
+}
+
+TEST(Control, WhatWaitedLeavesWhenSwitchedOn) {
+  Device mote = member(5);
+  mote.call(message(1)).call(message(2));
+  mote.call(SetInterface{Link::kRadio, false});
+  EXPECT_TRUE(mote.done().actions.transmits().empty());
+  mote.call(SetInterface{Link::kRadio, true});
+  EXPECT_EQ(mark_of(mote.only_frame()), 2);
+}
+
+TEST(Control, JoinWithTheRadioOffFailsInTheEnd) {
+  Device mote(mote_config(5));
+  mote.call(SetInterface{Link::kRadio, false});
+  EXPECT_EQ(mote.call(JoinIsland{kDescriptor}).labels(), (std::vector{ignored(req::kN10Off)}));
+  for (int i = 0; i < 5; ++i) mote.join_timer();
+  EXPECT_FALSE(mote.notice<Joined>().success);
+}
+
+TEST(Control, LinesThatANodeDoesNotHave) {
+  Device base(base_config());
+  EXPECT_FALSE(base.call(SetInterface{Link::kRadio, true}).notice<OperationResult>().success);
+  EXPECT_FALSE(base.call(GetInterface{Link::kRadio}).notice<InterfaceState>().on);
+  EXPECT_FALSE(base.call(SetInterface{Link::kPeis, false}).notice<OperationResult>().success);
+  EXPECT_TRUE(base.call(GetInterface{Link::kPeis}).notice<InterfaceState>().on);
+  Device mote(mote_config(5));
+  EXPECT_FALSE(mote.call(GetInterface{Link::kPeis}).notice<InterfaceState>().on);
+  EXPECT_EQ(mote.hear(heard_on_serial(1)).labels(), (std::vector{ignored(ReqId::kNone)}));
+}
+
+TEST(Queue, EraseKeepsTheOrderOfTheOthers) {
+  for (std::size_t turned = 0; turned < 4; ++turned) {
+    for (std::size_t out = 0; out < 4; ++out) {
+      BoundedQueue<int, 4> queue;
+      for (std::size_t i = 0; i < turned; ++i) queue.push() = -1, queue.pop();
+      for (int i = 0; i < 4; ++i) queue.push() = i;
+      queue.erase(out);
+      queue.push() = 4;
+      std::vector<int> left;
+      for (std::size_t i = 0; i < queue.size(); ++i) left.push_back(queue[i]);
+      std::vector<int> expected = {0, 1, 2, 3, 4};
+      expected.erase(expected.begin() + static_cast<std::ptrdiff_t>(out));
+      EXPECT_EQ(left, expected);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace rubric::machine

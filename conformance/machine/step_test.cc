@@ -1,0 +1,340 @@
+// Whole nodes: joining, island ids, calls, and what a frame causes from one end to the other.
+#include "conformance/machine/step.h"
+
+#include "conformance/machine/machine_fixture.h"
+
+namespace rubric::machine {
+namespace {
+
+using Payload = std::vector<std::uint8_t>;
+using Phase = JoinMote::Phase;
+
+TEST(JoinStep, MoteAsksTheSink) {
+  Device mote(mote_config(5));
+  mote.call(JoinIsland{kDescriptor});
+  EXPECT_EQ(mote.labels(), (std::vector{sent(req::kJ1Request)}));
+  const Transmit& frame = mote.only_frame();
+  EXPECT_EQ(frame.link, Link::kRadio);
+  EXPECT_FALSE(frame.link_ack);
+  EXPECT_EQ(frame.dest, 1);
+  EXPECT_EQ(frame.src, 5);
+  EXPECT_EQ(mote.only_payload(), (Payload{0x00, 0x01, 0x01, 0x00, 0x43, 0x01}));
+}
+
+TEST(JoinStep, SinkAnswersWithItsClock) {
+  Device sink(sink_config());
+  sink.now = 2048;
+  sink.hear(join_request(5, 0x1234, kDescriptor));
+  EXPECT_EQ(sink.labels(), (std::vector{sent(req::kJ3Reply)}));
+  EXPECT_EQ(sink.only_frame().dest, 5);
+  EXPECT_EQ(sink.only_frame().src, 1);
+  // Island 11, mote 5, 2000 ms, the request's number.
+  EXPECT_EQ(sink.only_payload(), (Payload{0, 11, 0, 5, 0, 0, 0x07, 0xD0, 0x12, 0x34}));
+}
+
+TEST(JoinStep, J3Time_ReplyThatWaitedTellsTheTimeAtWhichItLeaves) {
+  Device sink(sink_config());
+  sink.step(LinkBusy{Link::kRadio, true});
+  sink.hear(join_request(5, 1, kDescriptor));
+  EXPECT_EQ(sink.labels(), (std::vector{followed(req::kN2Queue)}));
+  sink.now = 3072;
+  sink.step(LinkBusy{Link::kRadio, false});
+  const auto reply = rubicon::JoinReplyView::parse(sink.only_frame().bytes());
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(reply->cur_time(), 3000U);
+}
+
+TEST(JoinStep, MoteAcceptsSetsItsClockAndAcks) {
+  Device mote(mote_config(5));
+  mote.call(JoinIsland{kDescriptor}).done();
+  mote.now = 512;
+  mote.hear(join_reply(5, {kIsland, 5}, 700000, mote.state.join.seq_num));
+  EXPECT_EQ(mote.labels(), (std::vector{told(req::kJ5Success), followed(req::kJ4Clock),
+                                        sent(req::kJ4Ack)}));
+  const Transmit& ack = mote.only_frame();
+  EXPECT_TRUE(ack.link_ack);
+  EXPECT_EQ(ack.dest, 1);
+  EXPECT_EQ(mote.only_payload(), (Payload{0, 11, 0, 1, 0, 11, 0, 5, 0, 1, 1, 0, 0x43, 1}));
+  mote.now = 1536;
+  EXPECT_EQ(mote.call(GetClock{}).notice<Clock>().ms, 701000U);
+  EXPECT_EQ(own_address(mote.state), (Address{kIsland, 5}));
+}
+
+TEST(JoinStep, AckJoinIsRepeatedAtOnceWhileTheLinkSaysNo) {
+  Device mote(mote_config(5));
+  mote.call(JoinIsland{kDescriptor}).done();
+  mote.hear(join_reply(5, {kIsland, 5}, 0, 1));
+  const Payload ack = mote.only_payload();
+  for (int i = 0; i < 4; ++i) {
+    mote.done(Link::kRadio, false);
+    EXPECT_EQ(mote.labels(), (std::vector{sent(req::kJ4Repeat)}));
+    EXPECT_EQ(mote.only_payload(), ack);
+  }
+  mote.done(Link::kRadio, false);
+  EXPECT_EQ(mote.labels(), (std::vector{followed(req::kJ4Few)}));
+}
+
+TEST(JoinStep, RepeatedAckJoinGoesBeforeWhatCameLater) {
+  Device mote(mote_config(5));
+  mote.call(JoinIsland{kDescriptor}).done();
+  mote.hear(join_reply(5, {kIsland, 5}, 0, 1));
+  mote.call(Send{{kIsland, 1}, 10, false, {}});
+  EXPECT_TRUE(mote.actions.transmits().empty());
+  mote.done(Link::kRadio, false);
+  EXPECT_EQ(mote.only_frame().type, am::kAckJoin);
+  mote.done(Link::kRadio, true);
+  EXPECT_EQ(mote.only_frame().type, am::kNet);
+}
+
+TEST(JoinStep, J4Repeat_RepeatThatWaitedTooLongIsForgotten) {
+  Device mote(mote_config(5));
+  mote.call(JoinIsland{kDescriptor}).done();
+  mote.hear(join_reply(5, {kIsland, 5}, 0, 1));
+  mote.step(LinkBusy{Link::kRadio, true});
+  mote.done(Link::kRadio, false);
+  EXPECT_EQ(mote.labels(), (std::vector{followed(req::kN2Queue)}));
+  mote.now = 501;
+  mote.step(LinkBusy{Link::kRadio, false});
+  EXPECT_EQ(mote.labels(), (std::vector{ignored(req::kJ4Repeat)}));
+}
+
+TEST(JoinStep, J8_WholeCallWithoutAnswer) {
+  Device mote(mote_config(5));
+  mote.call(JoinIsland{kDescriptor}).done();
+  for (Ticks expected = 500; expected <= 2000; expected += 500) {
+    mote.join_timer();
+    EXPECT_EQ(mote.now, expected);
+    EXPECT_EQ(mote.labels(), (std::vector{sent(req::kJ8Retry)}));
+    mote.done();
+  }
+  mote.join_timer();
+  EXPECT_EQ(mote.labels(), (std::vector{told(req::kJ8Fail)}));
+  EXPECT_EQ(mote.now, 2500U);
+  EXPECT_TRUE(timers(mote.state).empty());
+  mote.call(JoinIsland{kDescriptor});
+  EXPECT_EQ(mote.labels(), (std::vector{sent(req::kJ1Request)}));
+  EXPECT_EQ(mote.state.join.seq_num, 2);  // J1-SEQ.
+}
+
+TEST(JoinStep, J8Period_RequestThatWaitsStandsForTheNext) {
+  Device mote(mote_config(5));
+  mote.step(LinkBusy{Link::kRadio, true});
+  mote.call(JoinIsland{kDescriptor});
+  mote.join_timer();
+  EXPECT_EQ(mote.labels(), (std::vector{followed(req::kJ8Period)}));
+  EXPECT_EQ(mote.state.radio.out.size(), 1U);
+  mote.now = 900;
+  mote.step(LinkBusy{Link::kRadio, false});
+  EXPECT_EQ(mote.only_frame().type, am::kJoin);
+  EXPECT_EQ(mote.state.join.due, 1400U);  // A whole period from when it left.
+}
+
+TEST(JoinStep, J8_NothingLeavesAfterFail) {
+  Device mote(mote_config(5));
+  mote.step(LinkBusy{Link::kRadio, true});
+  mote.call(JoinIsland{kDescriptor});
+  for (int i = 0; i < 5; ++i) mote.join_timer();
+  EXPECT_FALSE(mote.notice<Joined>().success);
+  mote.step(LinkBusy{Link::kRadio, false});
+  EXPECT_TRUE(mote.silent());
+}
+
+TEST(JoinStep, J5Stop_WaitingRequestDiesWithAcceptance) {
+  Device mote(mote_config(5));
+  mote.call(JoinIsland{kDescriptor}).done();
+  mote.step(LinkBusy{Link::kRadio, true});
+  mote.join_timer();
+  EXPECT_EQ(mote.state.radio.out.size(), 1U);
+  mote.hear(join_reply(5, {kIsland, 5}, 0, 1));
+  mote.step(LinkBusy{Link::kRadio, false});
+  EXPECT_EQ(mote.only_frame().type, am::kAckJoin);
+  mote.done();
+  EXPECT_TRUE(mote.silent());
+}
+
+TEST(JoinStep, SinkListsAnnouncesAndReports) {
+  Device sink(sink_config());
+  sink.hear(join_request(5, 100, kDescriptor)).done();
+  sink.hear(ack_join({kIsland, 1}, {kIsland, 5}, 100, kDescriptor));
+  EXPECT_EQ(sink.labels(), (std::vector{told(req::kJ6Add), sent(req::kJ6Report)}));
+  const Transmit& report = sink.only_frame();
+  EXPECT_EQ(report.link, Link::kSerial);
+  EXPECT_EQ(report.dest, kAmBroadcast);
+  EXPECT_EQ(report.src, 0);
+  EXPECT_EQ(sink.only_payload(),
+            padded({0, 11, 0xFF, 0xFD, 0, 11, 0, 5, 0, 0, 0, 11, 3, 10,  //
+                    16, 0, 11, 0, 5, 1, 0, 0x43, 1}));
+  sink.hear(ack_join({kIsland, 1}, {kIsland, 5}, 100, kDescriptor));
+  EXPECT_EQ(sink.labels(), (std::vector{ignored(req::kJ6Repeat)}));
+}
+
+TEST(JoinStep, DeployedSinkReportsEachJoinOfAListedMote) {
+  Config config = sink_config();
+  config.profile.listed_ignored = false;
+  Device sink(config);
+  list_member(sink, 5, 100);
+  sink.hear(join_request(5, 101, kDescriptor)).done();
+  sink.hear(ack_join({kIsland, 1}, {kIsland, 5}, 101, kDescriptor));
+  EXPECT_EQ(sink.labels(), (std::vector{told(req::kJ6Add), sent(req::kJ6Report)}));
+}
+
+TEST(JoinStep, J10_RolesIgnoreWhatIsNotTheirs) {
+  Device mote = member(5);
+  OwnFrame request = join_request(6, 1, kDescriptor);
+  request.dest = kAmBroadcast;
+  EXPECT_EQ(mote.hear(request).labels(), (std::vector{ignored(req::kJ10Mote)}));
+  OwnFrame ack = ack_join({kIsland, 5}, {kIsland, 6}, 1, kDescriptor);
+  EXPECT_EQ(mote.hear(ack).labels(), (std::vector{ignored(req::kJ10Mote)}));
+  Device sink(sink_config());
+  EXPECT_EQ(sink.hear(join_reply(1, {kIsland, 1}, 0, 1)).labels(),
+            (std::vector{ignored(req::kJ10Sink)}));
+}
+
+TEST(JoinStep, ShortJoinMessagesAreIgnored) {
+  Device sink(sink_config());
+  Device mote(mote_config(5));
+  mote.call(JoinIsland{kDescriptor}).done();
+  OwnFrame request = join_request(5, 1, kDescriptor);
+  request.payload.pop_back();
+  EXPECT_EQ(sink.hear(request).labels(), (std::vector{ignored(req::kWireMoteDesc)}));
+  OwnFrame ack = ack_join({kIsland, 1}, {kIsland, 5}, 1, kDescriptor);
+  ack.payload.resize(9);
+  EXPECT_EQ(sink.hear(ack).labels(), (std::vector{ignored(req::kWireAckJoin)}));
+  OwnFrame reply = join_reply(5, {kIsland, 5}, 0, 1);
+  reply.payload.pop_back();
+  EXPECT_EQ(mote.hear(reply).labels(), (std::vector{ignored(req::kWireJoinReply)}));
+  EXPECT_EQ(mote.state.join.phase, Phase::kJoining);
+}
+
+TEST(JoinStep, SinkAndBaseStationCannotJoin) {
+  for (const Config& config : {sink_config(), base_config()}) {
+    Device node(config);
+    node.call(JoinIsland{kDescriptor});
+    EXPECT_EQ(node.labels(), (std::vector{told(req::kJ8Joined)}));
+    EXPECT_FALSE(node.notice<Joined>().success);
+  }
+}
+
+TEST(IslandId, SinkTakesItAndForgetsMembers) {
+  Device sink(sink_config());
+  list_member(sink, 5);
+  sink.hear(join_request(6, 7, kDescriptor)).done();
+  sink.hear(set_island_id(kOther));
+  EXPECT_EQ(sink.labels(), (std::vector{followed(req::kN9Set), followed(req::kN9Members)}));
+  EXPECT_TRUE(sink.state.sink.members.empty());
+  EXPECT_TRUE(sink.state.sink.pending.empty());
+  EXPECT_EQ(own_address(sink.state), (Address{kOther, 1}));
+  sink.hear(ack_join({kOther, 1}, {kOther, 6}, 7, kDescriptor));
+  EXPECT_EQ(sink.labels(), (std::vector{ignored(req::kJ6Seq)}));
+}
+
+TEST(IslandId, SameIslandKeepsMembers) {
+  Device sink(sink_config());
+  list_member(sink, 5);
+  EXPECT_EQ(sink.hear(set_island_id(kIsland)).labels(), (std::vector{followed(req::kN9Set)}));
+  EXPECT_NE(find_member(sink.state.sink, 5), nullptr);
+}
+
+TEST(IslandId, WaitingReplyOfTheOldIslandIsForgotten) {
+  Device sink(sink_config());
+  sink.step(LinkBusy{Link::kRadio, true});
+  sink.hear(join_request(6, 7, kDescriptor));
+  sink.hear(set_island_id(kOther));
+  sink.step(LinkBusy{Link::kRadio, false});
+  EXPECT_TRUE(sink.silent());
+}
+
+TEST(IslandId, N9Other_OtherConfigChangesNothing) {
+  Device sink(sink_config());
+  list_member(sink, 5);
+  const State before = sink.state;
+  for (int code = 0; code < 256; ++code) {
+    if (code == 10) continue;
+    sink.hear(config(static_cast<std::uint8_t>(code), kOther));
+    EXPECT_EQ(sink.labels(), (std::vector{ignored(req::kN9Other)}));
+  }
+  OwnFrame cut = set_island_id(kOther);
+  cut.payload.pop_back();
+  EXPECT_EQ(sink.hear(cut).labels(), (std::vector{ignored(req::kWireConfig)}));
+  EXPECT_EQ(sink.state, before);
+}
+
+TEST(IslandId, BaseStationTellsItsSink) {
+  Device base(base_config());
+  base.call(SetIslandId{12});
+  const Transmit& frame = base.only_frame();
+  EXPECT_EQ(frame.link, Link::kSerial);
+  EXPECT_EQ(frame.dest, 1);
+  EXPECT_EQ(frame.src, 0);
+  EXPECT_EQ(frame.type, 37);
+  EXPECT_EQ(base.only_payload(), (Payload{0x0A, 0x00, 0x0C}));  // As the original sends it.
+  EXPECT_TRUE(base.notice<OperationResult>().success);
+  EXPECT_EQ(own_address(base.state), (Address{12, kNullDevid}));
+}
+
+TEST(IslandId, NobodyElseMayTell) {
+  for (const Config& config : {sink_config(), mote_config(5)}) {
+    Device node(config);
+    node.call(SetIslandId{kOther});
+    EXPECT_FALSE(node.notice<OperationResult>().success);
+    EXPECT_NE(own_address(node.state).pid, kOther);
+  }
+}
+
+TEST(Reboot, OnlyTheConfigurationStays) {
+  Device mote = member(5);
+  mote.call(Send{{kIsland, 1}, 10, true, {}});
+  mote.now = 4096;
+  mote.step(Reboot{});
+  EXPECT_TRUE(mote.silent());
+  EXPECT_EQ(mote.state.join, JoinMote{});
+  EXPECT_TRUE(mote.state.awaited.empty());
+  EXPECT_TRUE(timers(mote.state).empty());
+  EXPECT_EQ(mote.call(GetClock{}).notice<Clock>().ms, 0U);
+  mote.done();  // Of the frame that was on the air.
+  EXPECT_TRUE(mote.silent());
+  mote.call(JoinIsland{kDescriptor});
+  EXPECT_EQ(mote.state.join.seq_num, mote.state.config.first_seq);
+
+  Device sink(sink_config());
+  list_member(sink, 5);
+  sink.hear(set_island_id(kOther));
+  sink.step(Reboot{});
+  EXPECT_EQ(sink.state, start(sink_config()));
+}
+
+TEST(Timers, AreThoseThatAreSet) {
+  Device mote(mote_config(5));
+  EXPECT_TRUE(timers(mote.state).empty());
+  mote.now = 10;
+  mote.call(JoinIsland{kDescriptor}).done();
+  ASSERT_EQ(timers(mote.state).size(), 1U);
+  EXPECT_EQ(timers(mote.state)[0].due, 510U);
+  mote.hear(join_reply(5, {kIsland, 5}, 0, 1)).done();
+  EXPECT_TRUE(timers(mote.state).empty());
+  mote.call(Send{{kIsland, 1}, 10, true, {}}).done();
+  mote.now = 20;
+  mote.call(Send{{kIsland, 1}, 10, true, {}}).done();
+  ASSERT_EQ(timers(mote.state).size(), 2U);
+  EXPECT_EQ(timers(mote.state)[1].due, 1020U);
+  EXPECT_EQ(timers(mote.state)[1].timer, (Timer{TimerKind::kAck, 1}));
+  mote.step(TimerDue{{TimerKind::kAck, 1}});
+  EXPECT_EQ(mote.labels(), (std::vector{told(req::kT3Timeout)}));
+  EXPECT_EQ(timers(mote.state).size(), 1U);
+}
+
+TEST(Timers, OneThatIsNotSetChangesNothing) {
+  for (const Config& config : {sink_config(), mote_config(5), base_config()}) {
+    for (const TimerKind kind : {TimerKind::kJoin, TimerKind::kAck, TimerKind::kSynaptic}) {
+      Device node(config);
+      const State before = node.state;
+      node.step(TimerDue{{kind, 3}});
+      EXPECT_TRUE(node.silent());
+      EXPECT_EQ(node.actions.all().size(), 1U);
+      EXPECT_EQ(node.state, before);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace rubric::machine
