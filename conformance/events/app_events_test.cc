@@ -29,9 +29,9 @@ INSTANTIATE_TEST_SUITE_P(All, CallText, testing::Values(
   "send(dest=11:5 app_id=mockup reliable=1 data=x0102)",
   "interface(link=radio on=off)", "get_interface(link=serial)",
   "create_out(dest=11:1 size=3 mode=power_save)", "create_in(src=11:2 size=10 mode=reliable)",
-  "dispose(channel=2->1)", "start(channel=2->1)", "stop(channel=2->1)", "start_all", "stop_all",
+  "dispose(channel=2->1)", "start(channel=2->1)", "stop(channel=2->1)", "start_all()", "stop_all()",
   "write_output(channel=2->1 pos=2 value=0.5)", "read_input(channel=2->1 pos=9)",
-  "set_time_step(clock=250)", "set_island_id(island=12)", "get_clock"));
+  "set_time_step(clock=250)", "set_island_id(island=12)", "get_clock()"));
 
 TEST_P(NoticeText, SameAgain) {
   const trace::Concrete message = parsed(GetParam());

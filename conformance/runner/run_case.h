@@ -1,0 +1,54 @@
+// Works a golden trace on implementations: gives what its lines give, and holds what comes back
+// against what they ask for.
+//
+// Lines are worked in their order. `<` happens at its time, or at once if that has passed. `>` takes
+// the first output of that node and link, behind the one taken last, that matches and is in time.
+// `!>` forbids outputs that no `>` took; it is judged when the case is over. What no line names is
+// free.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "conformance/runner/target.h"
+#include "conformance/trace/trace.h"
+
+namespace rubric::runner {
+
+/// In this order of gravity. kError: the case itself makes no sense here, or the target broke.
+enum class CaseVerdict : std::uint8_t { kPass, kWeak, kFail, kError };
+
+/// A line that was not kept.
+struct Failure {
+  trace::Place place;                     ///< Of the line in its file.
+  std::vector<std::string> requirements;  ///< That the line names.
+  bool weak = false;                      ///< All of these are SHOULD.
+  Ticks time = 0;                         ///< Of the output that breaks it, or the end of its time.
+  std::string expected;                   ///< The line.
+  std::string text;                       ///< What happened instead, with the nearest miss.
+};
+
+struct CaseResult {
+  std::string name;
+  CaseVerdict verdict = CaseVerdict::kPass;
+  std::vector<Failure> failures;
+  trace::Case log;  ///< Everything that was given and came back.
+};
+
+/// Makes the implementation for a node under test.
+using TargetFactory = std::function<std::unique_ptr<Target>(const trace::NodeHeader& node)>;
+
+/// Every node under test of the case gets a target. Does not throw: a case that cannot be worked
+/// is kError.
+CaseResult run_case(const trace::File& file, const trace::Case& one, const TargetFactory& make);
+
+/// How a node of a trace starts.
+machine::Config config_of(const trace::Scope& scope, const trace::NodeHeader& node);
+
+/// One paragraph for each failure.
+std::string explain(const CaseResult& result, const std::string& file_name);
+
+}  // namespace rubric::runner

@@ -1,0 +1,108 @@
+// What a case asks for is held against what a target does: one row for each way to differ.
+#include "conformance/runner/run_case.h"
+
+#include <gtest/gtest.h>
+
+#include "conformance/runner/subject_target.h"
+#include "conformance/trace/parse.h"
+
+namespace rubric::runner {
+namespace {
+
+// Tells its application at each of these times how late it is.
+class Ticker : public Target {
+ public:
+  explicit Ticker(std::vector<Ticks> times) : times_(std::move(times)) {}
+  void reset(const machine::Config&) override {}
+  void give(Ticks now, const machine::Event&) override { run_until(now); }
+  std::optional<Ticks> next() const override {
+    if (done_ == times_.size()) return std::nullopt;
+    return times_[done_];
+  }
+  void run_until(Ticks time) override {
+    for (; done_ < times_.size() && times_[done_] <= time; ++done_) {
+      Output output;
+      output.time = times_[done_];
+      output.notice = machine::Clock{times_[done_]};
+      outputs_.push_back(output);
+    }
+  }
+  const std::vector<Output>& outputs() const override { return outputs_; }
+  void hold_link_acks(bool) override {}
+
+ private:
+  std::vector<Ticks> times_;
+  std::size_t done_ = 0;
+  std::vector<Output> outputs_;
+};
+
+CaseResult run(const std::string& lines, std::vector<Ticks> times) {
+  const trace::Parsed parsed = trace::parse(
+      "%rtr 1\n%profile paper\n%node m5 mote id=5 iut\ncase x\n" + lines, "x.rtr");
+  EXPECT_EQ(parsed.errors(), "");
+  return run_case(parsed.file, parsed.file.cases.at(0), [&](const trace::NodeHeader&) {
+    return std::make_unique<Ticker>(times);
+  });
+}
+
+struct Row {
+  const char* name;
+  const char* lines;
+  std::vector<Ticks> times;
+  CaseVerdict verdict;
+  const char* text;  // Of the first failure.
+};
+
+class Rows : public testing::TestWithParam<Row> {};
+
+TEST_P(Rows, AreJudged) {
+  const Row& row = GetParam();
+  const CaseResult result = run(row.lines, row.times);
+  EXPECT_EQ(result.verdict, row.verdict) << explain(result, "x.rtr");
+  if (result.failures.empty()) {
+    EXPECT_STREQ(row.text, "");
+  } else {
+    EXPECT_EQ(result.failures[0].text, row.text);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Rows, testing::Values(
+  Row{"InTime", "0..50 m5 > app clock(ms=30)\n", {30}, CaseVerdict::kPass, ""},
+  Row{"FirstTick", "30..50 m5 > app clock(ms=30)\n", {30}, CaseVerdict::kPass, ""},
+  Row{"LastTick", "0..30 m5 > app clock(ms=30)\n", {30}, CaseVerdict::kPass, ""},
+  Row{"Late", "0..29 m5 > app clock(ms=30) [J4-ACK]\n", {30}, CaseVerdict::kFail,
+      "it came at 30, not from 0 to 29"},
+  Row{"Early", "31..50 m5 > app clock(ms=30)\n", {30}, CaseVerdict::kFail,
+      "it came at 30, not from 31 to 50"},
+  Row{"Silent", "0..50 m5 > app clock(*)\n", {}, CaseVerdict::kFail, "it emitted nothing there"},
+  Row{"OtherField", "0..50 m5 > app clock(ms=31)\n", {30}, CaseVerdict::kFail,
+      "nearest, at 30: app clock(ms=30): ms: expected 31, seen 30"},
+  Row{"OnlyShould", "0..50 m5 > app clock(*) [J1-SEQ]\n", {}, CaseVerdict::kWeak,
+      "it emitted nothing there"},
+  Row{"ShouldAndMust", "0..50 m5 > app clock(*) [J1-SEQ J4-ACK]\n", {}, CaseVerdict::kFail,
+      "it emitted nothing there"},
+  Row{"Twice", "0..50 m5 > app clock(*)\n@0..90 m5 !> app clock(*)\n", {30, 60},
+      CaseVerdict::kFail, "at 60 it emitted app clock(ms=60)"},
+  Row{"OnceIsTaken", "0..50 m5 > app clock(*)\n@0..50 m5 !> app clock(*)\n", {30, 60},
+      CaseVerdict::kPass, ""},
+  Row{"ForbiddenBeforeItIsTaken", "@0..90 m5 !> * *\n0..50 m5 > app clock(ms=30)\n", {30},
+      CaseVerdict::kPass, ""},
+  Row{"BoundAndForbidden", "0..50 m5 > app clock(ms=$t)\n@0..90 m5 !> app clock(ms=!$t)\n",
+      {30, 60}, CaseVerdict::kFail, "at 60 it emitted app clock(ms=60)"},
+  Row{"AfterALabel", "a: 0..50 m5 > app clock(*)\na+20..40 m5 > app clock(*)\n", {30, 60},
+      CaseVerdict::kPass, ""},
+  Row{"AfterThePrevious", "0..50 m5 > app clock(*)\n0..29 m5 > app clock(*)\n", {30, 60},
+      CaseVerdict::kFail, "it came at 60, not from 30 to 59"},
+  Row{"OutOfOrder", "@0..90 m5 > app clock(ms=60)\n@0..90 m5 > app clock(ms=30)\n", {30, 60},
+      CaseVerdict::kFail, "at 30 it came before one that was to come first"}),
+  [](const auto& row) { return std::string(row.param.name); });
+
+TEST(RunCase, NothingUnderTestIsAnError) {
+  const trace::Parsed parsed =
+      trace::parse("%rtr 1\n%profile paper\n%node m5 mote id=5\ncase x\n", "x.rtr");
+  const CaseResult result = run_case(parsed.file, parsed.file.cases.at(0), {});
+  EXPECT_EQ(result.verdict, CaseVerdict::kError);
+}
+
+}  // namespace
+}  // namespace rubric::runner

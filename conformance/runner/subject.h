@@ -1,0 +1,39 @@
+// An implementation that lives in this process and is stepped as the machine is: the machine
+// itself, or a broken or unusual one around it.
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "conformance/machine/step.h"
+
+namespace rubric::runner {
+
+using DueTimers = machine::BoundedList<machine::DueTimer, 2 + machine::kAwaitedMax>;
+
+class Subject {
+ public:
+  virtual ~Subject() = default;
+  /// Forgets everything and starts as `config` says.
+  virtual void start(const machine::Config& config) = 0;
+  virtual void step(machine::Ticks now, const machine::Event& event, machine::Actions& actions) = 0;
+  virtual DueTimers timers() const = 0;
+};
+
+/// The reference machine.
+class Machine : public Subject {
+ public:
+  void start(const machine::Config& config) override { state_ = machine::start(config); }
+  void step(machine::Ticks now, const machine::Event& event, machine::Actions& actions) override {
+    machine::step(state_, now, event, actions);
+  }
+  DueTimers timers() const override { return machine::timers(state_); }
+  const machine::State& state() const { return state_; }
+
+ protected:
+  machine::State state_;
+};
+
+using SubjectFactory = std::function<std::unique_ptr<Subject>()>;
+
+}  // namespace rubric::runner
