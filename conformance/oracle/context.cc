@@ -1,0 +1,57 @@
+#include "conformance/oracle/context.h"
+
+#include <cstdio>
+
+namespace rubric::oracle {
+
+machine::Ticks Context::ticks(std::int64_t us) {
+  return static_cast<machine::Ticks>(us * 1024 / 1'000'000);
+}
+
+Severity Context::without(std::uint16_t cause, std::int64_t from_us, std::int64_t to_us) const {
+  return who.maybe_unseen(cause, from_us, to_us, options) ? Severity::kInconclusive
+                                                          : Severity::kFail;
+}
+
+Severity Context::without_ever(std::uint16_t cause, std::int64_t to_us) const {
+  if (!options.start_cold) return Severity::kInconclusive;
+  return without(cause, run.start_us, to_us);
+}
+
+void Context::report(ReqId requirement, Severity severity, const Place& at, std::uint16_t node,
+                     Said said) {
+  Finding finding;
+  finding.requirement = requirement;
+  finding.severity = severity;
+  finding.place = at;
+  finding.text = std::move(said.text);
+  finding.expected = std::move(said.expected);
+  finding.hypotheses = std::move(said.hypotheses);
+  if (node != kNobody) {
+    const Device& d = device(node);
+    if (!d.judged) return;
+    finding.node = d.name;
+    if (!d.known && severity > Severity::kNote) finding.severity = Severity::kStray;
+  }
+  findings.add(std::move(finding));
+}
+
+std::string text_of(machine::Address address) {
+  const auto part = [](std::uint16_t n, bool pid) -> std::string {
+    if (n == 0xFFFF) return "all";
+    if (pid && n == machine::kLocalPid) return "local";
+    if (!pid && n == machine::kNullDevid) return "null";
+    return std::to_string(n);
+  };
+  return "<" + part(address.pid, true) + ", " + part(address.devid, false) + ">";
+}
+
+std::string ms_text(std::int64_t us) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.2f ms", static_cast<double>(us) / 1000);
+  return text;
+}
+
+std::string number(std::uint64_t n) { return std::to_string(n); }
+
+}  // namespace rubric::oracle

@@ -1,0 +1,71 @@
+// What every part of the judgement shares: the run, who is who, and how to say something.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "conformance/machine/actions.h"
+#include "conformance/machine/join.h"
+#include "conformance/oracle/findings.h"
+#include "conformance/oracle/identity.h"
+#include "conformance/oracle/message.h"
+#include "conformance/oracle/observation.h"
+
+namespace rubric::oracle {
+
+/// What a finding says; see Finding.
+struct Said {
+  std::string text;
+  std::string expected;
+  std::vector<Hypothesis> hypotheses;
+};
+
+struct Context {
+  Context(const Run& r, const Options& o, const Identity& w, Findings& f)
+      : run(r), options(o), who(w), findings(f) {}
+  Context(const Context&) = delete;
+  Context& operator=(const Context&) = delete;
+
+  const Run& run;
+  const Options& options;
+  const Identity& who;
+  Findings& findings;
+  bool hears_radio = false;   ///< Some tap is on the air.
+  std::uint16_t sink_am = 1;  ///< AM address of sinks.
+  machine::Actions actions;   ///< Of the parts of the machine; nobody reads them here.
+
+  const machine::Profile& profile() const { return findings.profile(); }
+  const Device& device(std::uint16_t i) const { return who.devices[i]; }
+  /// The one sink on the air, or kNobody where there are none or several.
+  std::uint16_t only_sink = kNobody;
+
+  static machine::Ticks ticks(std::int64_t us);
+  std::int64_t us_of(std::uint32_t profile_ticks) const {
+    return std::int64_t{profile_ticks} * 1'000'000 / profile().ticks_per_second;
+  }
+  std::int64_t early_us() const { return us_of(profile().early_ticks); }
+  std::int64_t join_period_us() const { return us_of(profile().join_period_ticks); }
+  machine::JoinContext join_context(std::uint16_t id, std::uint16_t island,
+                                    std::int64_t now_us) const {
+    return {profile(), id, island, 0, ticks(now_us)};
+  }
+
+  /// How grave "X without an earlier Y of `cause`" is: kFail only where no Y can have escaped.
+  Severity without(std::uint16_t cause, std::int64_t from_us, std::int64_t to_us) const;
+  /// The same where Y may lie any time before, even before the capture.
+  Severity without_ever(std::uint16_t cause, std::int64_t to_us) const;
+
+  /// Judges device `node` at `at`. Nothing is said of testers; of unknown senders at most kStray.
+  void report(ReqId requirement, Severity severity, const Place& at, std::uint16_t node,
+              Said said);
+};
+
+// Text.
+std::string text_of(machine::Address address);
+std::string ms_text(std::int64_t us);
+std::string number(std::uint64_t n);
+
+}  // namespace rubric::oracle

@@ -1,0 +1,76 @@
+#include "conformance/oracle/findings.h"
+
+#include <algorithm>
+#include <string_view>
+#include <tuple>
+
+#include "conformance/generated/profiles.h"
+
+namespace rubric::oracle {
+namespace {
+
+const machine::NamedProfile& named(bool deployed) {
+  const std::string_view name = deployed ? "deployed" : "paper";
+  for (const machine::NamedProfile& profile : machine::kProfiles) {
+    if (profile.name == name) return profile;
+  }
+  return machine::kProfiles.front();
+}
+
+}  // namespace
+
+Findings::Findings(bool deployed) : profile_(named(deployed).profile), deployed_(deployed) {}
+
+bool Findings::accepted(ReqId requirement) const {
+  for (const machine::AcceptedDifference& difference : named(deployed_).accepted) {
+    if (difference.requirement == requirement) return true;
+  }
+  return false;
+}
+
+void Findings::add(Finding finding) {
+  if (finding.severity > Severity::kNote && accepted(finding.requirement)) {
+    finding.severity = Severity::kNote;
+  }
+  std::erase_if(open_, [&](std::size_t i) {
+    return finding.place.time_us >= 0 && all_[i].last.time_us + kOpenUs < finding.place.time_us;
+  });
+  finding.last = finding.place;
+  for (const std::size_t i : open_) {
+    Finding& before = all_[i];
+    if (before.requirement != finding.requirement || before.severity != finding.severity ||
+        before.node != finding.node || before.place.file != finding.place.file ||
+        finding.place.time_us - before.last.time_us > kEpisodeUs) {
+      continue;
+    }
+    ++before.count;
+    before.last = finding.place;
+    return;
+  }
+  if (all_.size() >= kFindingsMax) {
+    ++dropped_;
+    return;
+  }
+  if (open_.size() >= kOpenMax) open_.erase(open_.begin());
+  open_.push_back(all_.size());
+  all_.push_back(std::move(finding));
+}
+
+std::vector<Finding> Findings::take() {
+  std::stable_sort(all_.begin(), all_.end(), [](const Finding& a, const Finding& b) {
+    return std::tie(a.place.time_us, a.place.file, a.place.frame) <
+           std::tie(b.place.time_us, b.place.file, b.place.frame);
+  });
+  open_.clear();
+  return std::move(all_);
+}
+
+std::vector<std::pair<ReqId, std::uint64_t>> Findings::exercised() const {
+  std::vector<std::pair<ReqId, std::uint64_t>> out;
+  for (std::size_t i = 0; i < kept_.size(); ++i) {
+    if (kept_[i] > 0) out.emplace_back(static_cast<ReqId>(i), kept_[i]);
+  }
+  return out;
+}
+
+}  // namespace rubric::oracle

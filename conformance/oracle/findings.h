@@ -1,0 +1,48 @@
+// Collects what is found: accepts what the profile accepts, groups repeats, keeps within bounds.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "conformance/machine/profile.h"
+#include "conformance/oracle/finding.h"
+
+namespace rubric::oracle {
+
+constexpr std::size_t kRequirementsMax = 256;
+
+class Findings {
+ public:
+  explicit Findings(bool deployed);
+
+  /// Repeats of a rule by a node within 600 ms of the last one are one episode. A difference that
+  /// the profile accepts becomes a note.
+  void add(Finding finding);
+  /// A rule had its chance to be broken and was kept.
+  void kept(ReqId requirement) { ++kept_[static_cast<std::size_t>(requirement)]; }
+
+  const machine::Profile& profile() const { return profile_; }
+  /// In order of place; what did not fit any more is counted in dropped().
+  std::vector<Finding> take();
+  std::uint64_t dropped() const { return dropped_; }
+  std::vector<std::pair<ReqId, std::uint64_t>> exercised() const;
+
+ private:
+  static constexpr std::int64_t kEpisodeUs = 600'000;
+  static constexpr std::int64_t kOpenUs = 5'000'000;  ///< Absences are found late.
+  static constexpr std::size_t kFindingsMax = 20'000;
+  static constexpr std::size_t kOpenMax = 64;
+
+  bool accepted(ReqId requirement) const;
+
+  machine::Profile profile_;
+  bool deployed_ = false;
+  std::vector<Finding> all_;
+  std::vector<std::size_t> open_;  // Episodes that may go on, in all_.
+  std::uint64_t dropped_ = 0;
+  std::array<std::uint64_t, kRequirementsMax> kept_{};
+};
+
+}  // namespace rubric::oracle

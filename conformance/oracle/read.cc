@@ -1,0 +1,210 @@
+#include "conformance/oracle/read.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <limits>
+
+#include "codec/generated/rubicon/enums.h"
+#include "conformance/oracle/read_packet.h"
+#include "conformance/oracle/read_trace.h"
+#include "conformance/oracle/storage.h"
+
+namespace rubric::oracle {
+namespace {
+
+constexpr std::int64_t kNsPerUs = 1000;
+constexpr std::size_t kChunkBytes = 1024 * 1024;
+constexpr std::size_t kLookBytes = 4096;  // Enough to tell a format.
+
+struct FileCloser {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+
+}  // namespace
+
+Bytes RunStorage::keep(Bytes bytes) {
+  if (bytes.size() > kBlockBytes - used_) {
+    blocks_.push_back(std::make_unique<std::uint8_t[]>(std::max(kBlockBytes, bytes.size())));
+    used_ = 0;
+  }
+  std::uint8_t* const to = blocks_.back().get() + used_;
+  if (!bytes.empty()) std::memcpy(to, bytes.data(), bytes.size());
+  used_ = std::min(kBlockBytes, used_ + bytes.size());
+  return {to, bytes.size()};
+}
+
+std::string_view RunStorage::keep(std::string_view text) {
+  for (const std::string& known : texts_) {
+    if (known == text) return known;
+  }
+  return texts_.emplace_back(text);
+}
+
+struct RunReader::State {
+  Run run;
+  std::int64_t first_ns = std::numeric_limits<std::int64_t>::max();
+  // One file in the reading.
+  std::unique_ptr<Reader> reader;
+  std::vector<std::uint32_t> taps;  // Of the reader's interfaces.
+  std::uint64_t frames = 0;
+
+  std::uint32_t tap_of(const Packet& packet) {
+    while (taps.size() <= packet.interface_id) {
+      const std::size_t i = taps.size();
+      taps.push_back(static_cast<std::uint32_t>(run.taps.size()));
+      Tap tap;
+      const auto& interfaces = reader->interfaces();
+      if (i < interfaces.size()) tap.name = interfaces[i].name;
+      if (tap.name.empty()) tap.name = run.files.back();
+      run.taps.push_back(tap);
+    }
+    Tap& tap = run.taps[taps[packet.interface_id]];
+    if (packet.framing == Framing::kHdlc || packet.framing == Framing::kSf) {
+      tap.link = machine::Link::kSerial;
+    }
+    if (packet.direction != Direction::kUnknown) tap.has_direction = true;
+    return taps[packet.interface_id];
+  }
+
+  void take(const Packet& packet) {
+    ++frames;
+    Observation seen;
+    if (!observe_packet(packet, *run.storage, seen)) return;
+    seen.tap = tap_of(packet);
+    seen.place.file = static_cast<std::uint32_t>(run.files.size() - 1);
+    seen.place.frame = frames;
+    seen.place.offset_bytes = packet.offset_bytes;
+    if (packet.time_ns != kNoTime) {
+      first_ns = std::min(first_ns, packet.time_ns);
+      seen.place.time_us = packet.time_ns / kNsPerUs;
+    } else {
+      seen.place.time_us = std::numeric_limits<std::int64_t>::min();
+    }
+    if (seen.kind == Observation::Kind::kSerial) {
+      seen.to_mote = packet.direction == Direction::kUnknown ? looks_towards_sink(seen.frame)
+                                                             : packet.direction ==
+                                                                   Direction::kInbound;
+    } else if (seen.kind == Observation::Kind::kLinkAck && packet.framing == Framing::kHdlc) {
+      seen.to_mote = packet.direction == Direction::kInbound;
+    }
+    run.seen.push_back(seen);
+  }
+
+  void begin(const std::string& name, Bytes start, const std::string& interface_name) {
+    run.files.push_back(name);
+    ReaderOptions options;
+    options.interface_name = interface_name;
+    reader = make_reader(detect(start), options);
+    taps.clear();
+    frames = 0;
+  }
+};
+
+RunReader::RunReader() : state_(std::make_unique<State>()) {
+  state_->run.storage = std::make_shared<RunStorage>();
+}
+RunReader::~RunReader() = default;
+
+bool RunReader::add_bytes(const std::string& name, std::string_view bytes, std::string& error) {
+  const Bytes all(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+  if (looks_like_trace(bytes)) {
+    state_->run.files.push_back(name);
+    return read_trace(name, bytes, state_->run, error);
+  }
+  state_->begin(name, all.first(std::min(all.size(), kLookBytes)), name);
+  if (!state_->reader) {
+    error = name + ": not a capture that can be judged: neither pcap, pcapng, serial bytes, "
+                   "serial forwarder stream, hex nor .rtr";
+    return false;
+  }
+  auto take = [this](const Packet& packet) { state_->take(packet); };
+  state_->reader->feed(all, PacketSink(take));
+  state_->reader->finish(PacketSink(take));
+  return true;
+}
+
+bool RunReader::add_file(const std::string& path, std::string& error) {
+  const std::unique_ptr<std::FILE, FileCloser> file(std::fopen(path.c_str(), "rb"));
+  const auto broken = [&] {
+    error = path + ": " + std::strerror(errno);
+    return false;
+  };
+  if (!file) return broken();
+  std::vector<char> chunk(kChunkBytes);
+  std::size_t size = std::fread(chunk.data(), 1, chunk.size(), file.get());
+  if (std::ferror(file.get())) return broken();
+  if (size < chunk.size() || looks_like_trace({chunk.data(), size})) {
+    std::string all(chunk.data(), size);  // Small, or text that is parsed whole.
+    while ((size = std::fread(chunk.data(), 1, chunk.size(), file.get())) > 0) {
+      all.append(chunk.data(), size);
+    }
+    if (std::ferror(file.get())) return broken();
+    return add_bytes(path, all, error);
+  }
+  const auto* const data = reinterpret_cast<const std::uint8_t*>(chunk.data());
+  state_->begin(path, {data, kLookBytes}, path);
+  if (!state_->reader) return add_bytes(path, {chunk.data(), size}, error);  // Says why not.
+  auto take = [this](const Packet& packet) { state_->take(packet); };
+  do {
+    state_->reader->feed({data, size}, PacketSink(take));
+    size = std::fread(chunk.data(), 1, chunk.size(), file.get());
+  } while (size > 0);
+  if (std::ferror(file.get())) return broken();
+  state_->reader->finish(PacketSink(take));
+  return true;
+}
+
+Run RunReader::finish() {
+  Run run = std::move(state_->run);
+  const std::int64_t first_us =
+      state_->first_ns == std::numeric_limits<std::int64_t>::max() ? 0
+                                                                    : state_->first_ns / kNsPerUs;
+  state_ = std::make_unique<State>();
+  state_->run.storage = std::make_shared<RunStorage>();
+  for (Observation& seen : run.seen) {
+    if (seen.place.time_us == std::numeric_limits<std::int64_t>::min()) {
+      seen.place.time_us = -1;
+    } else if (seen.node.empty()) {  // A log's times count from its own start.
+      seen.place.time_us -= first_us;
+    }
+  }
+  merge(run);
+  return run;
+}
+
+std::optional<Run> read(const std::vector<std::string>& files, std::string& error) {
+  RunReader reader;
+  for (const std::string& file : files) {
+    if (!reader.add_file(file, error)) return std::nullopt;
+  }
+  return reader.finish();
+}
+
+void merge(Run& run) {
+  constexpr std::int64_t kLast = std::numeric_limits<std::int64_t>::max();
+  const auto time_of = [](const Observation& seen) {
+    return seen.place.time_us < 0 ? kLast : seen.place.time_us;
+  };
+  const auto earlier = [&](const Observation& a, const Observation& b) {
+    return time_of(a) < time_of(b);
+  };
+  if (!std::is_sorted(run.seen.begin(), run.seen.end(), earlier)) {
+    std::stable_sort(run.seen.begin(), run.seen.end(), earlier);
+  }
+  run.has_time = run.seen.empty() || time_of(run.seen.back()) != kLast;
+  run.start_us = run.seen.empty() ? 0 : std::max<std::int64_t>(0, run.seen.front().place.time_us);
+  run.end_us = run.has_time && !run.seen.empty() ? run.seen.back().place.time_us : run.start_us;
+}
+
+bool looks_towards_sink(const machine::Frame& frame) {
+  if (frame.type == static_cast<std::uint8_t>(rubicon::AmType::kConfig)) return true;
+  const bool net = frame.type == static_cast<std::uint8_t>(rubicon::AmType::kNet);
+  if (!net || frame.payload.size() < 8) return false;
+  const std::uint16_t dest_devid = load_be16(frame.payload.data() + 2);
+  const std::uint16_t src_devid = load_be16(frame.payload.data() + 6);
+  return src_devid == machine::kNullDevid && dest_devid != machine::kNullDevid;
+}
+
+}  // namespace rubric::oracle

@@ -1,0 +1,110 @@
+// Joins as sinks answer them: for each pair of sink and mote a set of hypotheses about the sink's
+// list, each one stepped by the very functions of the machine.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <unordered_map>
+#include <vector>
+
+#include "conformance/machine/state.h"
+#include "conformance/oracle/context.h"
+
+namespace rubric::oracle {
+
+/// What a sink may think of one mote, and what it owes.
+struct SinkHypothesis {
+  bool unknown = false;  ///< It may list the mote since before the capture.
+  std::optional<machine::Admission> member;
+  std::optional<machine::Admission> pending;
+  std::array<std::uint16_t, 4> owed_seq{};  ///< Replies, oldest first.
+  std::uint8_t owed = 0;
+  bool owes_report = false;   ///< serial_joined.
+  bool owes_notice = false;   ///< moteJoined to its application.
+  friend bool operator==(const SinkHypothesis&, const SinkHypothesis&) = default;
+};
+
+/// The machine's list with what a hypothesis says of its one mote, and back.
+machine::JoinSink list_of(const SinkHypothesis& h);
+void take_list(const machine::JoinSink& list, SinkHypothesis& h);
+
+/// A sink and a mote.
+struct PairWatch {
+  std::vector<SinkHypothesis> set;
+  std::uint16_t answered_seq = 0;      ///< Of the last reply.
+  bool answered = false;
+  Place request;                       ///< The last.
+  std::uint16_t request_seq = 0;
+  bool asked = false;
+  Place ack;                           ///< The last ack_join to this sink.
+  ReqId ignored_ack = ReqId::kNone;    ///< Why the last one must have been ignored.
+  bool report_due = false;             ///< Surely owed since `ack`, and not yet complained about.
+};
+
+struct SinkWatch {
+  std::uint16_t device = kNobody;
+  std::uint16_t island = 0;
+  bool island_set = false;   ///< SET_ISLAND_ID was seen.
+  std::unordered_map<std::uint16_t, PairWatch> motes;  ///< By AM address.
+  bool has_clock = false;    ///< Of the last reply:
+  std::uint32_t clock_ms = 0;
+  std::int64_t clock_us = 0;
+  std::uint32_t debts = 0;   ///< Pairs with something due.
+};
+
+class SinkJoins {
+ public:
+  explicit SinkJoins(Context& context);
+
+  void begin_life(std::uint16_t sink);
+  void set_island(std::uint16_t sink, std::uint16_t island, const Place& at);
+  void request(std::uint16_t mote_device, const Observation& seen, const Request& request,
+               std::uint16_t surely_received_by);
+  void reply(std::uint16_t sink, const Observation& seen, const Reply& reply);
+  void ack_join(std::uint16_t mote_device, const Observation& seen, const AckJoin& ack,
+                std::uint16_t surely_received_by);
+  void report(std::uint16_t sink, const Observation& seen, const Net& net,
+              const SerialJoined& joined);
+  void told(std::uint16_t sink, const Observation& seen, const machine::MoteJoined& joined);
+  /// The sink sent something at this time: what it owed since long it will not send any more.
+  void showed_life(std::uint16_t sink, std::int64_t now_us, bool on_serial);
+  void finish(std::int64_t end_us);
+
+  /// The sink's island now; 0: not known.
+  std::uint16_t island(std::uint16_t sink) const;
+  SinkWatch* find(std::uint16_t sink);
+
+ private:
+  static constexpr std::size_t kSetMax = 256;
+
+  PairWatch& pair(SinkWatch& sink, std::uint16_t mote_am);
+  void judge_clock(SinkWatch& sink, const Observation& seen, const Reply& reply);
+  void refuse_reply(SinkWatch& sink, PairWatch& watch, const Observation& seen,
+                    const Reply& reply);
+  void refuse_report(SinkWatch& sink, PairWatch& watch, const Place& at, std::uint16_t mote_am,
+                     bool notice);
+  void announce(SinkWatch& sink, const Place& at, machine::Address address,
+                const machine::Descriptor& descriptor, bool notice);
+  void keep(SinkWatch& sink, PairWatch& watch, std::vector<SinkHypothesis>& next, const Place& at);
+  std::uint16_t device_of(std::uint16_t mote_am) const;
+  std::size_t listed(const SinkWatch& sink) const;
+  static std::string sentence(const SinkHypothesis& h);
+
+  struct Unanswered {
+    Place request;
+    std::uint16_t seq_num = 0;
+    bool open = false;
+    bool overtaken = false;  ///< A later request of another mote was answered before.
+    std::uint16_t sink = kNobody;
+  };
+  void close_unanswered(std::uint16_t mote_am, Unanswered& unanswered);
+
+  Context& context_;
+  std::vector<SinkWatch> sinks_;
+  std::unordered_map<std::uint16_t, Unanswered> unanswered_;
+  std::unordered_map<std::uint16_t, std::uint16_t> motes_;  // Device by AM address.
+  std::vector<SinkHypothesis> next_;
+};
+
+}  // namespace rubric::oracle

@@ -1,0 +1,203 @@
+// ack_join at a sink, and what the sink then says of its new member.
+#include <algorithm>
+
+#include "conformance/oracle/sink_join.h"
+
+namespace rubric::oracle {
+
+using machine::Admission;
+using machine::JoinSink;
+
+void SinkJoins::ack_join(std::uint16_t, const Observation& seen, const AckJoin& ack,
+                         std::uint16_t surely_received_by) {
+  for (SinkWatch& sink : sinks_) {
+    const Device& device = context_.device(sink.device);
+    if (!device.known || seen.frame.dest != device.am) continue;
+    PairWatch& watch = pair(sink, ack.src.devid);
+    const bool sure = surely_received_by == sink.device;
+    next_.clear();
+    bool admitted = false;
+    bool all_admit = true;
+    ReqId ignored = ReqId::kNone;
+    for (const SinkHypothesis& h : watch.set) {
+      SinkHypothesis heard = h;
+      const Admission accepted{ack.src.devid, ack.seq_num, ack.descriptor};
+      // What a sink stored before the capture, or in answer to a request that nobody saw, can only
+      // be told from what it acts on.
+      const bool open = h.unknown || (h.pending && h.pending->descriptor == machine::Descriptor{});
+      if (open && heard.pending) heard.pending->descriptor = ack.descriptor;
+      if (open && !heard.pending) heard.pending = accepted;
+      JoinSink list = list_of(heard);
+      context_.actions.clear();
+      const bool admits = machine::hear_ack_join(
+          list, context_.join_context(device.am, sink.island, seen.place.time_us), ack.dest,
+          ack.src, ack.seq_num, ack.descriptor, context_.actions);
+      take_list(list, heard);
+      if (!admits && !context_.actions.all().empty()) {
+        ignored = context_.actions.all()[0].requirement;
+      }
+      if (!sure || !admits || h.unknown) next_.push_back(h);
+      all_admit = all_admit && admits && !h.unknown;
+      if (!admits) continue;
+      admitted = true;
+      heard.unknown = false;
+      heard.owes_report = !device.taps.empty();
+      heard.owes_notice = device.application;
+      next_.push_back(heard);
+    }
+    watch.ack = seen.place;
+    watch.ignored_ack = admitted ? ReqId::kNone : ignored;
+    if (sure && all_admit && !watch.report_due && !device.taps.empty()) {
+      watch.report_due = true;
+      ++sink.debts;
+    }
+    keep(sink, watch, next_, seen.place);
+  }
+}
+
+void SinkJoins::report(std::uint16_t sink_device, const Observation& seen, const Net& net,
+                       const SerialJoined& joined) {
+  SinkWatch* const sink = find(sink_device);
+  if (sink == nullptr) return;
+  if (sink->island == 0) sink->island = joined.address.pid;
+  const machine::Address to{joined.address.pid, machine::kNullDevid};
+  if (net.src != joined.address || net.dest != to || net.reliable != 0) {
+    context_.report(req::kJ6Content, Severity::kFail, seen.place, sink_device,
+                    {"serial_joined of " + text_of(joined.address) + " in a net_msg from " +
+                         text_of(net.src) + " to " + text_of(net.dest) + ", reliable " +
+                         number(net.reliable) + ".",
+                     "From " + text_of(joined.address) + " to " + text_of(to) + ", reliable 0.",
+                     {}});
+  }
+  announce(*sink, seen.place, joined.address, joined.descriptor, false);
+}
+
+void SinkJoins::told(std::uint16_t sink_device, const Observation& seen,
+                     const machine::MoteJoined& joined) {
+  SinkWatch* const sink = find(sink_device);
+  if (sink != nullptr) announce(*sink, seen.place, joined.address, joined.descriptor, true);
+}
+
+// serial_joined, or moteJoined (`notice`), of a mote.
+void SinkJoins::announce(SinkWatch& sink, const Place& at, machine::Address address,
+                         const machine::Descriptor& descriptor, bool notice) {
+  PairWatch& watch = pair(sink, address.devid);
+  const ReqId content = notice ? req::kJ6Add : req::kJ6Content;
+  if (address.pid != sink.island) {
+    const ReqId rule = sink.island_set ? req::kN9Set : content;
+    context_.report(rule, Severity::kFail, at, sink.device,
+                    {"A new member " + text_of(address) + " is announced by the sink of island " +
+                         number(sink.island) + ".",
+                     "Its address in island " + number(sink.island) + ".", {}});
+  }
+  next_.clear();
+  std::optional<machine::Descriptor> stored;
+  for (const SinkHypothesis& h : watch.set) {
+    SinkHypothesis next = h;
+    if (h.unknown) {
+      next.unknown = false;
+      next.member = Admission{address.devid, 0, descriptor};
+      if (h.pending) next.member->seq_num = h.pending->seq_num;
+      next.owes_report = notice && !context_.device(sink.device).taps.empty();
+      next.owes_notice = !notice && context_.device(sink.device).application;
+      next_.push_back(next);
+      stored = descriptor;
+      continue;
+    }
+    bool& owes = notice ? next.owes_notice : next.owes_report;
+    if (!owes) continue;
+    owes = false;
+    if (!stored || *stored != descriptor) stored = h.member->descriptor;
+    next_.push_back(next);
+  }
+  if (watch.report_due && !notice) {
+    watch.report_due = false;
+    --sink.debts;
+  }
+  if (next_.empty()) {
+    refuse_report(sink, watch, at, address.devid, notice);
+    return;
+  }
+  if (stored && *stored != descriptor) {
+    // The descriptor of another mote's request is what a sink with one memory for all would say.
+    context_.report(content, Severity::kFail, at, sink.device,
+                    {"The descriptor of " + text_of(address) + " is announced as type " +
+                         number(descriptor.mote_type) + ", transducers " +
+                         number(descriptor.transducers) + ", actuators " +
+                         number(descriptor.actuators) + ".",
+                     "Type " + number(stored->mote_type) + ", transducers " +
+                         number(stored->transducers) + ", actuators " +
+                         number(stored->actuators) + ", as requested.",
+                     {}});
+  } else {
+    context_.findings.kept(content);
+    context_.findings.kept(notice ? req::kJ6Add : req::kJ6Report);
+  }
+  keep(sink, watch, next_, at);
+}
+
+void SinkJoins::refuse_report(SinkWatch& sink, PairWatch& watch, const Place& at,
+                              std::uint16_t mote_am, bool notice) {
+  const SinkHypothesis& h = watch.set.back();
+  Said said;
+  for (auto it = watch.set.rbegin(); it != watch.set.rend(); ++it) {
+    said.hypotheses.push_back({sentence(*it), "No announcement of this mote.",
+                               "The mote is announced as a new member."});
+  }
+  const std::string what = notice ? "moteJoined" : "serial_joined";
+  const std::uint16_t mote = device_of(mote_am);
+  ReqId rule = req::kJ6Add;
+  const bool has_ack = watch.ack.frame != 0;
+  Severity severity = context_.without(
+      mote, has_ack ? watch.ack.time_us : context_.run.start_us, at.time_us);
+  if (!has_ack && !context_.options.start_cold) severity = Severity::kInconclusive;
+  if (h.member) {
+    rule = req::kJ6Repeat;
+    said.text = what + " of mote " + number(mote_am) + " again, without a new join.";
+    said.expected = "One " + what + " for each join; a repeated ack_join changes nothing.";
+  } else if (watch.ignored_ack == req::kJ6Seq || watch.ignored_ack == req::kJ6Island) {
+    rule = watch.ignored_ack;
+    said.text = what + " of mote " + number(mote_am) + ", whose only ack_join had " +
+                (rule == req::kJ6Seq ? "a number that was not its request's."
+                                     : "another island as its destination.");
+    said.expected = "That ack_join is ignored.";
+  } else {
+    said.text = what + " of mote " + number(mote_am) + ", which has sent no ack_join to this sink.";
+    said.expected = what + " only after an ack_join with the number of the request.";
+  }
+  context_.report(rule, severity, at, sink.device, std::move(said));
+  SinkHypothesis next = h;
+  next.unknown = false;
+  if (!next.member) next.member = Admission{mote_am, watch.request_seq, {}};
+  watch.set.assign(1, next);
+}
+
+void SinkJoins::showed_life(std::uint16_t sink_device, std::int64_t now_us, bool on_serial) {
+  SinkWatch* const sink = find(sink_device);
+  if (sink == nullptr || sink->debts == 0 || !on_serial || !context_.run.has_time) return;
+  for (auto& [am, watch] : sink->motes) {
+    if (!watch.report_due || now_us <= watch.ack.time_us + context_.options.response_us) continue;
+    watch.report_due = false;
+    --sink->debts;
+    const auto owes = [](const SinkHypothesis& h) { return !h.unknown && h.owes_report; };
+    if (!std::all_of(watch.set.begin(), watch.set.end(), owes)) continue;
+    context_.report(req::kJ6Report, Severity::kFail, watch.ack, sink->device,
+                    {"The ack_join of mote " + number(am) +
+                         " was received (the link acknowledged it), and no serial_joined followed "
+                         "within " + ms_text(context_.options.response_us) +
+                         ", though the sink sent other frames later.",
+                     "One serial_joined for the new member.", {}});
+    for (SinkHypothesis& h : watch.set) h.owes_report = false;
+  }
+}
+
+void SinkJoins::finish(std::int64_t) {
+  std::vector<std::uint16_t> open;
+  for (auto& [am, unanswered] : unanswered_) {
+    if (unanswered.open) open.push_back(am);
+  }
+  std::sort(open.begin(), open.end());
+  for (const std::uint16_t am : open) close_unanswered(am, unanswered_[am]);
+}
+
+}  // namespace rubric::oracle

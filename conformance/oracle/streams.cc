@@ -1,0 +1,136 @@
+#include "conformance/oracle/streams.h"
+
+#include <algorithm>
+
+#include "conformance/oracle/message.h"
+
+namespace rubric::oracle {
+namespace {
+
+constexpr std::int64_t kLinkRepeatUs = 100'000;
+constexpr std::uint8_t kGapMax = 8;  // Beyond it a DSN does not follow the one before.
+constexpr std::size_t kHolesMax = 256;
+constexpr std::size_t kStreamsMax = 4096;
+constexpr int kLookMax = 16;  // Streams of one address that may go on, newest first.
+
+// How much speaks for a frame being a stream's. Island agreement ranks above the DSN.
+constexpr int kNever = -1000;
+constexpr int kStrongIsland = 20;
+constexpr int kNextDsn = 6;
+constexpr int kNearDsn = 3;
+constexpr int kWeakIsland = 2;
+
+}  // namespace
+
+Streams::Streams(const Run& run, const Options& options) : run_(run), first_of_(65536, kLast) {
+  for (const KnownNode& node : options.nodes) {
+    if (node.role == machine::Role::kSink) sink_am_ = node.id;
+  }
+}
+
+IslandHint Streams::hint_of(const machine::Frame& frame) const {
+  IslandHint hint;
+  Reply reply;
+  Net net;
+  if (frame.type == kAmJoinReply && parse_reply(frame.payload, reply)) {
+    hint.strong = reply.island;
+  } else if (frame.type == kAmNet && parse_net(frame.payload, net)) {
+    if (net.src.devid == frame.src) {
+      hint.strong = net.src.pid;
+    } else {
+      if (net.src.devid == machine::kNullDevid) hint.src = net.src.pid;
+      if (net.dest.pid != machine::kBroadcastPid) hint.dest = net.dest.pid;
+    }
+  }
+  return hint;
+}
+
+int Streams::score(const Stream& stream, const Observation& seen, const IslandHint& hint) const {
+  const auto ahead = static_cast<std::uint8_t>(seen.dsn - stream.dsn);
+  if (ahead == 0 || ahead > kGapMax) return kNever;
+  int points = ahead == 1 ? kNextDsn : kNearDsn;
+  // Only sinks share an address, and a mote's address may change with its island.
+  if (!stream.sink || stream.island == 0) return points;
+  if (hint.strong != 0 && hint.strong != stream.island) return kNever;
+  if (hint.strong != 0) points += kStrongIsland;
+  // From another island's base station to that island: the other sink's.
+  if (hint.src != 0 && hint.src == hint.dest && hint.src != stream.island) return kNever;
+  if (hint.src == stream.island) points += kWeakIsland;
+  if (hint.dest == stream.island) points += kWeakIsland;
+  return points;
+}
+
+std::uint16_t Streams::assign(std::uint32_t index, bool& repeat) {
+  const Observation& seen = run_.seen[index];
+  const std::int64_t now = seen.place.time_us;
+  const IslandHint hint = hint_of(seen.frame);
+  std::uint16_t best = kLast;
+  int best_score = kNever;
+  bool even = false;
+  int looked_at = 0;
+  for (std::uint16_t i = first_of_[seen.frame.src]; i != kLast && looked_at < kLookMax;
+       i = next_[i], ++looked_at) {
+    Stream& stream = streams_[i];
+    const machine::Frame& before = run_.seen[stream.last].frame;
+    if (stream.dsn == seen.dsn && before.dest == seen.frame.dest &&
+        before.type == seen.frame.type && equal(before.payload, seen.frame.payload) &&
+        now - stream.last_us <= kLinkRepeatUs) {
+      repeat = true;
+      stream.last_us = now;
+      return i;
+    }
+    const int points = score(stream, seen, hint);
+    even = points == best_score && points != kNever;
+    if (points <= best_score) continue;
+    best = i;
+    best_score = points;
+  }
+  if (even) return kNobody;
+  if (best == kLast) return open(index, hint);
+  Stream& stream = streams_[best];
+  if (static_cast<std::uint8_t>(seen.dsn - stream.dsn) != 1) {
+    if (stream.holes.size() < kHolesMax) {
+      stream.holes.emplace_back(stream.last_us, now);
+    } else {
+      stream.holes.back().second = now;
+    }
+  }
+  stream.dsn = seen.dsn;
+  stream.last = index;
+  stream.last_us = now;
+  ++stream.frames;
+  if (seen.frame.type == kAmJoin) stream.asked = true;
+  if (seen.frame.type == kAmJoinReply && !stream.asked) stream.sink = true;
+  if (stream.sink && stream.island == 0) {
+    stream.first_island = stream.island = hint.strong != 0 ? hint.strong : hint.dest;
+  }
+  return best;
+}
+
+std::uint16_t Streams::open(std::uint32_t index, const IslandHint& hint) {
+  const Observation& seen = run_.seen[index];
+  if (streams_.size() >= kStreamsMax) return kNobody;  // Bounded, whatever the capture holds.
+  Stream stream;
+  stream.am = seen.frame.src;
+  stream.dsn = seen.dsn;
+  stream.sink = (seen.frame.src == sink_am_ && seen.frame.type != kAmJoin) || seen.frame.type == kAmJoinReply;
+  stream.joins = stream.asked = seen.frame.type == kAmJoin;
+  if (stream.sink) stream.first_island = stream.island = hint.strong != 0 ? hint.strong : hint.dest;
+  stream.first = stream.last = index;
+  stream.first_us = stream.last_us = seen.place.time_us;
+  stream.frames = 1;
+  const auto made = static_cast<std::uint16_t>(streams_.size());
+  streams_.push_back(stream);
+  next_.push_back(first_of_[stream.am]);
+  first_of_[stream.am] = made;
+  return made;
+}
+
+void Streams::rename_island(std::uint16_t from, std::uint16_t to) {
+  if (from == 0) return;
+  for (Stream& stream : streams_) {
+    if (stream.sink && stream.island == from) stream.island = to;
+  }
+}
+
+}  // namespace rubric::oracle

@@ -1,0 +1,58 @@
+// Streams of DSNs: frames of one AM address that follow each other.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "conformance/oracle/identity.h"
+
+namespace rubric::oracle {
+
+/// What a frame says of its sender's island, and how much that weighs.
+struct IslandHint {
+  std::uint16_t strong = 0;   ///< A reply's island, or the pid of the sink's own address.
+  std::uint16_t src = 0;      ///< Of a message from a base station: its pid.
+  std::uint16_t dest = 0;     ///< Of a message that is passed on: where it goes.
+};
+
+struct Stream {
+  std::uint16_t am = 0;
+  std::uint8_t dsn = 0;              ///< Of the last frame.
+  bool sink = false;
+  bool joins = false;                ///< Its first frame was a join_request.
+  bool asked = false;                ///< It sent a join_request.
+  std::uint16_t island = 0;          ///< Now; may change by SET_ISLAND_ID.
+  std::uint16_t first_island = 0;
+  std::uint32_t first = 0;           ///< Observations.
+  std::uint32_t last = 0;
+  std::int64_t first_us = 0;
+  std::int64_t last_us = 0;
+  std::uint64_t frames = 0;
+  std::vector<std::pair<std::int64_t, std::int64_t>> holes;
+};
+
+/// Assigns frames to streams, one after the other.
+class Streams {
+ public:
+  Streams(const Run& run, const Options& options);
+  /// The stream of observation `index`, a radio frame with DSN; kNobody: it could be of two.
+  std::uint16_t assign(std::uint32_t index, bool& repeat);
+  const std::vector<Stream>& all() const { return streams_; }
+  std::uint16_t sink_am() const { return sink_am_; }
+  /// A base station told the sink with frames of island `from` that it is now `to`.
+  void rename_island(std::uint16_t from, std::uint16_t to);
+
+ private:
+  IslandHint hint_of(const machine::Frame& frame) const;
+  int score(const Stream& stream, const Observation& seen, const IslandHint& hint) const;
+  std::uint16_t open(std::uint32_t index, const IslandHint& hint);
+
+  static constexpr std::uint16_t kLast = 0xFFFF;
+  const Run& run_;
+  std::uint16_t sink_am_ = 1;
+  std::vector<Stream> streams_;
+  std::vector<std::uint16_t> next_;      // Of the same address.
+  std::vector<std::uint16_t> first_of_;  // By AM address.
+};
+
+}  // namespace rubric::oracle
