@@ -25,7 +25,7 @@ Endpoint::Endpoint(World& world, int number, std::uint16_t tos_id, std::string r
     : world_(world), number_(number), tos_id_(tos_id), role_(std::move(role)) {
   const Traits& traits = world.traits();
   next_seq_ = traits.seq_mode == SeqMode::kNearTheEnd
-                  ? static_cast<std::uint16_t>(world.random().between(0xFFF8, 0xFFFE))
+                  ? static_cast<std::uint16_t>(world.random().between(0xFFF0, 0xFFF8))
                   : static_cast<std::uint16_t>(world.random().below(1000));
   paper_acks_ = traits.ack_form == AckForm::kPaper ||
                 (traits.ack_form == AckForm::kPerNode && number % 2 == 0);
@@ -47,7 +47,7 @@ std::uint16_t Endpoint::fresh_seq() {
   do {
     seq = random ? world_.random().number16() : next_seq_++;
     // 0xFFFF is the error value of send; numbers of late are not used again.
-  } while (seq == kNoSeq || pending_.count(seq) != 0 ||
+  } while ((seq == kNoSeq && !world_.traits().uses_ffff) || pending_.count(seq) != 0 ||
            std::find(recent_.begin(), recent_.end(), seq) != recent_.end());
   recent_.push_back(seq);
   if (recent_.size() > kRecentNumbers) recent_.pop_front();
@@ -116,7 +116,7 @@ void Endpoint::arrived(const NetMessage& message) {
   if (trans != rubicon::Component::kConnless) return;
   const std::uint8_t app = message.payload[1];
   const bool broadcast = message.dest.pid == kAllNodes || message.dest.devid == kAllNodes;
-  const bool acks = message.reliable && !broadcast &&
+  const bool acks = message.reliable && (!broadcast || world_.traits().ack_broadcasts) &&
                     (known_app(app) || world_.traits().ack_unknown_app);
   const bool answer_first = world_.traits().answer_before_ack;
   if (acks && !answer_first) send_ack(message);

@@ -25,7 +25,6 @@ Mote::Mote(World& world, int number, const MotePlan& plan, std::uint16_t preferr
 void Mote::boot() {
   power(true);
   reboot_clock();
-  forget_transport();
   address_ = {};
   joined_ = waiting_ = accepted_ = false;
   calls_ = 0;
@@ -61,15 +60,23 @@ void Mote::send_request() {
   frame.type = static_cast<std::uint8_t>(rubicon::AmType::kJoin);
   frame.payload = join_request(seq_, plan_.descriptor);
   transmit(std::move(frame));
-  timer(traits.join_period_us, [this, mine = ++timer_] {
+  start_join_timer();
+}
+
+void Mote::start_join_timer() {
+  timer(world().traits().join_period_us, [this, mine = ++timer_] {
     if (mine == timer_) expired();
   });
 }
 
 void Mote::expired() {
   const Traits& traits = world().traits();
-  if (accepted_ && traits.unconfirmed == Unconfirmed::kFail) return failed();
   if (requests_ >= traits.requests_max) return failed();
+  // FAIL comes at the last expiry all the same; after acceptance nothing is asked for until then.
+  if (accepted_ && traits.unconfirmed == Unconfirmed::kFail) {
+    ++requests_;
+    return start_join_timer();
+  }
   send_request();
 }
 

@@ -26,6 +26,7 @@ class Mote final : public Node {
  private:
   void join_island();
   void send_request();
+  void start_join_timer();
   void expired();
   void failed();
   void on_reply(const RadioFrame& frame);
@@ -41,7 +42,7 @@ class Mote final : public Node {
   bool accepted_ = false;   ///< A reply of this call.
   bool confirmed_ = false;  ///< ack_join, by the link layer.
   int calls_ = 0;
-  int requests_ = 0;
+  int requests_ = 0;        ///< Or expiries after acceptance.
   int timer_ = 0;           ///< Changes when the join timer is started or stopped.
   std::uint16_t seq_ = 0;
   int ack_joins_ = 0;

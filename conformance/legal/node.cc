@@ -63,6 +63,7 @@ std::size_t Node::create_out(Address dest, std::size_t size, bool power_save) {
 }
 
 void Node::start(std::size_t channel) {
+  if (channel >= channels_.size()) return;
   const bool again = clock_runs_;
   channels_[channel].started = true;
   channels_[channel].first = true;
@@ -75,10 +76,12 @@ void Node::start(std::size_t channel) {
   }
 }
 
-void Node::stop(std::size_t channel) { channels_[channel].started = false; }
+void Node::stop(std::size_t channel) {
+  if (channel < channels_.size()) channels_[channel].started = false;
+}
 
 void Node::write_value(std::size_t channel, std::size_t pos, float value) {
-  channels_[channel].values[pos] = value;
+  if (channel < channels_.size()) channels_[channel].values[pos] = value;
 }
 
 void Node::start_clock(std::int64_t first_us) {

@@ -26,7 +26,8 @@ class Node : public Device, public Endpoint {
  public:
   Node(World& world, int number, std::uint16_t id, int island_index, const std::string& role);
 
-  /// The operations of Synaptic Channels. A channel is named by its index.
+  /// The operations of Synaptic Channels. A channel is named by its index; one that does not
+  /// exist is refused.
   std::size_t create_out(Address dest, std::size_t size, bool power_save);
   void start(std::size_t channel);
   void stop(std::size_t channel);

@@ -19,8 +19,8 @@ enum class JoinedWhen : std::uint8_t { kAcceptance, kLinkAck };
 enum class Unconfirmed : std::uint8_t { kFail, kRequestAgain };
 enum class SeqMode : std::uint8_t { kRandom, kCounting, kNearTheEnd };
 enum class AckForm : std::uint8_t { kDeployed, kPaper, kPerNode };
-/// What a sink does with pid 0xFFFF from its own island.
-enum class WidePid : std::uint8_t { kIgnore, kForward };
+/// What a sink does with pid 0xFFFF from its own island. kRefuse: sends none of its own either.
+enum class WidePid : std::uint8_t { kIgnore, kForward, kRefuse };
 /// What a receiver does with `reliable` other than 0 or 1.
 enum class OddReliable : std::uint8_t { kDrop, kUnreliable };
 
@@ -46,9 +46,11 @@ struct Traits {
   int clock_ppm_max = 50;
   // Sequence numbers.
   SeqMode seq_mode = SeqMode::kRandom;
+  bool uses_ffff = false;         ///< 0xFFFF as a sequence number.
   // Transport.
   AckForm ack_form = AckForm::kDeployed;
   bool ack_unknown_app = true;
+  bool ack_broadcasts = false;
   bool answer_before_ack = false;
   std::int64_t ack_timeout_us = 1'000'000;
   int app_resends = 0;            ///< Times an application sends a failed message again.
@@ -65,6 +67,7 @@ struct Traits {
   bool radiates_foreign = false;      ///< Messages from serial for another island.
   WidePid wide_pid = WidePid::kIgnore;
   std::size_t members_max = 20;
+  bool answers_when_full = false;
   bool binary_time = false;           ///< cur_time in 1024ths of a second.
   std::uint32_t time_offset_ms = 0;
   // Motes.

@@ -56,7 +56,8 @@ void Sink::heard(const RadioFrame& frame) {
 void Sink::on_request(const RadioFrame& frame) {
   const auto request = rubicon::JoinRequestView::parse(view(frame.payload));
   if (!request || members_.count(frame.src) != 0) return;
-  if (members_.size() >= world().traits().members_max) return;
+  const bool full = members_.size() >= world().traits().members_max;
+  if (full && !world().traits().answers_when_full) return;
   const auto desc = request->mote_desc();
   joining_[frame.src] = {request->seq_num(),
                          {static_cast<std::uint8_t>(desc.mote_type()), desc.transducers().raw(),
@@ -141,6 +142,7 @@ void Sink::on_serial_net(const NetMessage& message) {
   const Address dest = message.dest;
   if (dest.pid == kAllNodes) {
     arrived(message);
+    if (world().traits().wide_pid == WidePid::kRefuse) return;
     if (first_time(message)) by_radio(message);
     return;
   }
@@ -160,7 +162,8 @@ void Sink::to_host(const NetMessage& message, bool own) {
   // The serial line always carries a whole message; what is behind the content is left over.
   const Octets bytes = encode(message);
   std::copy(bytes.begin(), bytes.end(), serial_memory_.begin());
-  if (!own && !world().traits().serial_true_nbytes) serial_memory_[kNetHeaderBytes - 1] = kMaxNbytes;
+  const bool lies = !own && !world().traits().serial_true_nbytes;
+  if (lies) serial_memory_[kNetHeaderBytes - 1] = kMaxNbytes;
   line_->to_host(kNet, serial_memory_);
 }
 
@@ -173,6 +176,7 @@ bool Sink::route(const NetMessage& message) {
     return true;
   }
   if (radio_full()) return false;
+  if (dest.pid == kAllNodes && world().traits().wide_pid == WidePid::kRefuse) return false;
   by_radio(message);
   return true;
 }

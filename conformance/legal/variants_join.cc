@@ -91,18 +91,23 @@ void ack_join_thrice(Plan& plan, Random&) {
   plan.traits.ack_join_max = 3;
   plan.traits.ack_join_always = true;
 }
+void ack_join_often(Plan& plan, Random&) {
+  plan.traits.ack_join_max = 10;
+  plan.traits.ack_join_always = true;
+}
 void unconfirmed_fails(Plan& plan, Random&) {
   early_boot(plan);
   plan.traits.joined_when = JoinedWhen::kLinkAck;
   plan.traits.ack_join_max = 4;
   plan.traits.unconfirmed = Unconfirmed::kFail;
   plan.traits.join_calls = 2;
-  plan.losses.push_back(lose(AmType::kAckJoin, kMote, 1'500'000));
+  plan.losses.push_back(lose(AmType::kAckJoin, kMote, 1'000'000));
 }
 void unconfirmed_requests_again(Plan& plan, Random& random) {
   unconfirmed_fails(plan, random);
   plan.traits.unconfirmed = Unconfirmed::kRequestAgain;
   plan.traits.join_calls = 1;
+  plan.traits.ack_join_max = 2;
 }
 void ghost(Plan& plan, Random&) {
   plan.losses.push_back(lose(AmType::kAckJoin, kMote, kAlways));
@@ -136,6 +141,10 @@ void full_list(Plan& plan, Random& random) {
     plan.motes.push_back(mote_plan(id, 0, 200'000 + id * 100'000 + random.between(0, 20'000)));
     plan.motes.back().updates = id % 7 == 0;
   }
+}
+void full_list_answers(Plan& plan, Random& random) {
+  full_list(plan, random);
+  plan.traits.answers_when_full = true;
 }
 void two_sinks_first(Plan& plan, Random& random) {
   two_islands(plan, false, random);
@@ -212,6 +221,8 @@ std::vector<Variant> join_variants() {
        {2}, link_ack_lost_same_dsn},
       {"ack_join_thrice", "ack_join sent three times, confirmed or not", {2}, ack_join_thrice,
        true},
+      {"ack_join_often", "ack_join repeated more than five times", {2}, ack_join_often, false,
+       Worst::kWeak},
       {"unconfirmed_fails", "FAIL after acceptance, since ack_join stayed unconfirmed; then again",
        {2, 3}, unconfirmed_fails},
       {"unconfirmed_requests_again", "a new request, since ack_join stayed unconfirmed", {2, 3},
@@ -224,6 +235,8 @@ std::vector<Variant> join_variants() {
        listed_mote_reboots},
       {"interleaved_joins", "five motes join at once at a slow sink", {6}, interleaved_joins},
       {"full_list", "twenty members; the motes after them are not answered", {7}, full_list},
+      {"full_list_answers", "twenty members; the motes after them are answered, never listed", {7},
+       full_list_answers, false, Worst::kWeak},
       {"two_sinks_first", "two sinks in range; motes take the reply that comes first", {27},
        two_sinks_first},
       {"two_sinks_preferred", "two sinks in range; motes wait for the island they want", {27},

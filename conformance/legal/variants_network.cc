@@ -27,6 +27,10 @@ void everybody_sends(Plan& plan, std::uint16_t pid, std::uint16_t devid, bool re
 }
 void broadcast(Plan& plan, Random&) { everybody_sends(plan, 0, kAllNodes, false); }
 void broadcast_reliable(Plan& plan, Random&) { everybody_sends(plan, 0, kAllNodes, true); }
+void broadcast_acked(Plan& plan, Random& random) {
+  broadcast_reliable(plan, random);
+  plan.traits.ack_broadcasts = true;
+}
 void broadcast_overlap(Plan& plan, Random& random) {
   two_islands(plan, false, random);
   everybody_sends(plan, 0, kAllNodes, false);
@@ -34,6 +38,10 @@ void broadcast_overlap(Plan& plan, Random& random) {
 void wide_ignored(Plan& plan, Random& random) {
   two_islands(plan, false, random);
   everybody_sends(plan, kAllNodes, kAllNodes, false);
+}
+void wide_refused(Plan& plan, Random& random) {
+  wide_ignored(plan, random);
+  plan.traits.wide_pid = WidePid::kRefuse;
 }
 void wide_forwarded(Plan& plan, Random& random) {
   wide_ignored(plan, random);
@@ -137,8 +145,12 @@ std::vector<Variant> network_variants() {
   return {
       {"broadcast", "mote, sink and PC broadcast in their island", {14}, broadcast, true},
       {"broadcast_reliable", "reliable broadcasts; nobody acks", {14}, broadcast_reliable},
+      {"broadcast_acked", "reliable broadcasts; everybody acks", {14}, broadcast_acked, false,
+       Worst::kWeak},
       {"broadcast_overlap", "broadcasts where two islands overlap", {14}, broadcast_overlap},
       {"wide_ignored", "pid 0xFFFF on the air; sinks do not forward it", {14}, wide_ignored},
+      {"wide_refused", "sinks refuse to send pid 0xFFFF, their own and from serial", {14},
+       wide_refused},
       {"wide_forwarded", "pid 0xFFFF on the air; each sink passes it on once", {14},
        wide_forwarded},
       {"wide_to_sink", "pid 0xFFFF sent to the sink, which passes it on", {14}, wide_to_sink},

@@ -28,7 +28,8 @@ void channels(Plan& plan, bool power_save, int change_percent) {
       if (!world.mote(0).joined() || !world.mote(1).joined()) return;
       const auto value = [&world] { return static_cast<float>(world.random().below(4096)) / 16; };
       const auto changes = [&] { return world.random().chance(change_percent); };
-      if (changes()) world.mote(0).write_value(0, world.random().below(3), value());
+      const std::size_t pos = world.random().below(3);
+      if (changes()) world.mote(0).write_value(0, pos, value());
       if (changes()) world.mote(0).write_value(1, 9, value());
       if (changes()) world.mote(1).write_value(1, 0, value());
       if (changes()) world.sink(0).write_value(0, 1, value());

@@ -1,6 +1,7 @@
 // Variants of acks, timeouts, sequence numbers and buffers.
 #include <algorithm>
 
+#include "conformance/legal/air.h"
 #include "conformance/legal/variants.h"
 #include "conformance/legal/world.h"
 
@@ -12,6 +13,16 @@ using rubicon::AmType;
 constexpr auto kMockup = static_cast<std::uint8_t>(rubicon::Component::kMockup);
 constexpr std::uint16_t kTesterAm = 66;
 
+/// What mote 3 sends between 3.0 and 3.5 s is lost, and it sends a reliable message then.
+void lose_a_message(Plan& plan) {
+  plan.losses.push_back([](World& world, const RadioFrame& frame, const Device&) {
+    return frame.src == 3 && world.now_us() > 3'000'000 && world.now_us() < 3'500'000;
+  });
+  plan.script.push_back({3'100'000, [](World& world) {
+    if (!world.mote(1).joined()) return;
+    world.mote(1).send(world.base(0).address(), kMockup, {0xA2, 1, 2, 3, 4, 5, 6, 7}, true);
+  }});
+}
 void ack_deployed(Plan& plan, Random&) { plan.chats = 25; }
 void ack_paper(Plan& plan, Random&) {
   plan.chats = 25;
@@ -27,6 +38,7 @@ void ack_timeout_short(Plan& plan, Random&) {
   plan.chats = 20;
   plan.foreign_chats = false;
   plan.net_loss_percent = 20;
+  lose_a_message(plan);
   plan.traits.ack_timeout_us = 400'000;
   plan.traits.app_resends = 2;
 }
@@ -36,6 +48,7 @@ void ack_timeout_long(Plan& plan, Random& random) {
   plan.end_us = 14'000'000;
 }
 void app_resends_new_seq(Plan& plan, Random&) {
+  lose_a_message(plan);
   plan.chats = 25;
   plan.net_loss_percent = 20;
   plan.traits.app_resends = 2;
@@ -82,6 +95,7 @@ Script patched(std::size_t index, std::size_t offset, std::uint8_t value) {
   };
 }
 void tester_reliable_dropped(Plan& plan, Random&) {
+  plan.chats = 0;
   plan.all_well_formed = false;
   plan.script.push_back({3'000'000, patched(0, 8, 2)});
   plan.script.push_back({4'000'000, patched(1, 8, 255)});
@@ -121,6 +135,10 @@ void host_nbytes(Plan& plan, Random&) {
 void seq_random(Plan& plan, Random&) { plan.traits.seq_mode = SeqMode::kRandom; }
 void seq_counting(Plan& plan, Random&) { plan.traits.seq_mode = SeqMode::kCounting; }
 void seq_near_end(Plan& plan, Random&) { plan.traits.seq_mode = SeqMode::kNearTheEnd; }
+void seq_ffff(Plan& plan, Random&) {
+  plan.traits.seq_mode = SeqMode::kNearTheEnd;
+  plan.traits.uses_ffff = true;
+}
 void answer_before_ack(Plan& plan, Random&) {
   plan.traits.answer_before_ack = true;
   for (std::int64_t time = 3'000'000; time < 6'000'000; time += 700'000) {
@@ -202,6 +220,8 @@ std::vector<Variant> transport_variants() {
       {"seq_counting", "counting sequence numbers", {17}, seq_counting, true},
       {"seq_near_end", "counting sequence numbers that step over 0xFFFF", {17}, seq_near_end,
        true},
+      {"seq_ffff", "counting sequence numbers that use 0xFFFF", {17}, seq_ffff, false,
+       Worst::kWeak},
       {"answer_before_ack", "the application's answer leaves before the ack", {25},
        answer_before_ack, true},
       {"message_to_nonmember", "messages to motes that have not joined are ignored", {18},

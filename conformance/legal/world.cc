@@ -146,8 +146,10 @@ void World::record_event(AppEvent event) { traffic_.events.push_back(std::move(e
 
 void World::finish() {
   auto& packets = traffic_.packets;
-  std::stable_sort(packets.begin(), packets.end(),
-                   [](const LegalPacket& a, const LegalPacket& b) { return a.time_us < b.time_us; });
+  const auto earlier = [](const LegalPacket& a, const LegalPacket& b) {
+    return a.time_us < b.time_us;
+  };
+  std::stable_sort(packets.begin(), packets.end(), earlier);
   std::erase_if(packets, [this](const LegalPacket& packet) {
     return packet.time_us < plan_.capture_from_us || packet.time_us > plan_.end_us;
   });

@@ -1,0 +1,211 @@
+// The generator: determinism, well-formed output, and that each variant shows what it says.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <fstream>
+#include <map>
+#include <set>
+
+#include "codec/containers/pcapng_reader.h"
+#include "codec/reflect/frame.h"
+#include "codec/reflect/registry.h"
+#include "conformance/legal/generate.h"
+#include "conformance/legal/seen.h"
+
+namespace rubric::legal {
+namespace {
+
+using rubicon::AmType;
+using rubicon::Component;
+
+constexpr std::uint64_t kSeeds = 6;
+constexpr std::uint64_t kMixedSeeds = 40;
+
+void for_each_traffic(const std::function<void(const Traffic&)>& check) {
+  for (const Variant& variant : variants()) {
+    for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+      SCOPED_TRACE(std::string(variant.name) + " seed " + std::to_string(seed));
+      check(generate(variant.name, seed));
+    }
+  }
+  for (std::uint64_t seed = 1; seed <= kMixedSeeds; ++seed) {
+    const Traffic traffic = generate("mixed", seed);
+    SCOPED_TRACE("mixed seed " + std::to_string(seed) + " of " +
+                 ::testing::PrintToString(traffic.variants));
+    check(traffic);
+  }
+}
+
+TEST(Legal, SameSeedSameTraffic) {
+  for (const char* name : {"usual", "inter_island_true", "mixed", "lossy"}) {
+    const Traffic once = generate(name, 7);
+    EXPECT_EQ(once.packets, generate(name, 7).packets) << name;
+    EXPECT_EQ(to_pcapng(once), to_pcapng(generate(name, 7))) << name;
+    EXPECT_NE(once.packets, generate(name, 8).packets) << name;
+  }
+}
+
+TEST(Legal, KnownBytes) {
+  // The same with every compiler and library. When the generator changes on purpose, take over the
+  // number that this prints.
+  std::uint64_t sum = 14695981039346656037u;
+  const auto add = [&sum](const Traffic& traffic) {
+    for (const char c : to_pcapng(traffic)) {
+      sum = (sum ^ static_cast<std::uint8_t>(c)) * 1099511628211u;
+    }
+  };
+  for (const Variant& variant : variants()) add(generate(variant.name, 1));
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) add(generate("mixed", seed));
+  EXPECT_EQ(sum, 8880216608600465631u);
+}
+
+TEST(Legal, UnknownNameIsRefused) {
+  EXPECT_THROW(generate("no_such_variant", 1), std::invalid_argument);
+}
+
+TEST(Legal, EachVariantShowsItsFeature) {
+  std::set<std::string> checked;
+  for (const auto* group : {&join_features(), &transport_features(), &other_features()}) {
+    for (const Feature& feature : *group) {
+      checked.insert(feature.variant);
+      for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+        const Traffic traffic = generate(feature.variant, seed);
+        EXPECT_TRUE(feature.shown(traffic, see(traffic))) << feature.variant << " seed " << seed;
+      }
+    }
+  }
+  std::set<std::string> all;
+  for (const Variant& variant : variants()) all.emplace(variant.name);
+  EXPECT_EQ(checked, all);
+  EXPECT_GE(all.size(), 26u);
+}
+
+TEST(Legal, FeaturesAreNotInCommonTraffic) {
+  // A feature that any traffic shows would prove nothing; those of the defaults are listed.
+  const std::set<std::string> common{"usual", "ack_deployed", "seq_random", "serial_whole"};
+  // These look at retries or channels, which common traffic may not have at all.
+  const auto elsewhere = [](std::string_view name) {
+    return name.substr(0, 6) == "timers" || name.substr(0, 4) == "syn_" || name == "busy_channel";
+  };
+  const Traffic traffic = generate("usual", 3);
+  const Frames frames = see(traffic);
+  for (const auto* group : {&transport_features(), &other_features()}) {
+    for (const Feature& feature : *group) {
+      if (common.count(feature.variant) != 0 || elsewhere(feature.variant)) continue;
+      EXPECT_FALSE(feature.shown(traffic, frames)) << feature.variant;
+    }
+  }
+}
+
+TEST(Legal, EveryOpenPointHasAVariantOrAReason) {
+  std::map<int, int> readings;
+  for (const Variant& variant : variants()) {
+    for (const int point : variant.points) {
+      EXPECT_TRUE(point >= 1 && point <= kOpenPoints) << variant.name;
+      ++readings[point];
+    }
+  }
+  for (const Unobservable& none : unobservable_points()) {
+    EXPECT_EQ(readings.count(none.point), 0u) << none.point;
+    EXPECT_FALSE(none.reason.empty());
+    ++readings[none.point];
+  }
+  for (int point = 1; point <= kOpenPoints; ++point) EXPECT_GE(readings[point], 1) << point;
+}
+
+TEST(Legal, ReadmeHasTheTable) {
+  std::ifstream in("conformance/legal/README.md");
+  const std::string readme{std::istreambuf_iterator<char>(in), {}};
+  for (const Variant& variant : variants()) {
+    std::string points;
+    for (const int point : variant.points) {
+      points += (points.empty() ? "" : ", ") + std::to_string(point);
+    }
+    const std::string row = "| `" + std::string(variant.name) + "` | " +
+                            (points.empty() ? "-" : points) + " | ";
+    EXPECT_THAT(readme, ::testing::HasSubstr(row + std::string(variant.summary)));
+  }
+}
+
+TEST(Legal, NamesAreUnique) {
+  std::set<std::string_view> names;
+  for (const Variant& variant : variants()) EXPECT_TRUE(names.insert(variant.name).second);
+}
+
+TEST(Legal, EveryFrameParses) {
+  const reflect::FrameDecoder decoder(*reflect::find_protocol("rubicon"));
+  for_each_traffic([&](const Traffic& traffic) {
+    std::size_t packets = 0;
+    std::size_t malformed = 0;
+    reflect::Frame frame;
+    auto reader = make_reader(InputFormat::kPcapng);
+    std::int64_t last_ns = 0;
+    auto on_packet = [&](const Packet& packet) {
+      decoder.decode(packet, frame);
+      ++packets;
+      if (frame.malformed()) ++malformed;
+      EXPECT_GE(packet.time_ns, last_ns);
+      last_ns = packet.time_ns;
+    };
+    const std::string file = to_pcapng(traffic);
+    reader->feed(Bytes(reinterpret_cast<const std::uint8_t*>(file.data()), file.size()),
+                 on_packet);
+    reader->finish(on_packet);
+    EXPECT_EQ(packets, traffic.packets.size());
+    EXPECT_GT(packets, 0u);
+    if (traffic.all_well_formed) {
+      EXPECT_EQ(malformed, 0u);
+    }
+    for (const Interface& interface : reader->interfaces()) {
+      EXPECT_EQ(interface.link_type, interface.name == "radio" ? 195 : 147);
+    }
+  });
+}
+
+TEST(Legal, ChecksTheRulesThatAreEasyToCheck) {
+  for_each_traffic([](const Traffic& traffic) {
+    std::set<std::uint16_t> testers;
+    for (const NodeInfo& node : traffic.nodes) {
+      if (node.role == Role::kTester) testers.insert(node.id);
+    }
+    const bool whole = traffic.cold_start && traffic.sniffer_complete && traffic.has_radio;
+    const Frames frames = see(traffic);
+    std::set<std::pair<std::uint16_t, std::uint16_t>> offered;  // Mote and number.
+    std::set<std::uint16_t> joined;
+    std::set<std::uint16_t> asked;  // Numbers of reliable messages.
+    for (const Seen& s : frames) {
+      if (!s.sum_ok || testers.count(s.am_src) != 0) continue;
+      if (s.radio && s.is(AmType::kJoinReply)) offered.insert({s.am_dst, s.join_seq()});
+      if (s.is(AmType::kAckJoin)) {
+        EXPECT_TRUE(!whole || offered.count({s.am_src, s.join_seq()}) != 0) << s.time_us;
+        joined.insert(s.am_src);
+      }
+      if (!s.net) continue;
+      EXPECT_TRUE(s.net->seq != kNoSeq || traffic.variant == "seq_ffff");
+      if (s.radio && s.am_src != kSinkAm) {
+        EXPECT_TRUE(!whole || joined.count(s.am_src) != 0) << s.time_us;
+        EXPECT_EQ(s.net->src.devid, s.am_src);
+      }
+      if (s.net->reliable) asked.insert(s.net->seq);
+      if (s.app(Component::kRubiconAck)) {
+        EXPECT_FALSE(s.net->reliable);
+        // Between base stations and over PEIS a message may not show on any interface here.
+        const bool local = s.net->src.pid == s.net->dest.pid;
+        EXPECT_TRUE(!whole || !traffic.has_serial || !local || asked.count(s.acked()) != 0);
+      }
+    }
+  });
+}
+
+TEST(Legal, TruthNamesTheNodes) {
+  const std::string json = to_truth_json(generate("three_islands", 1));
+  EXPECT_THAT(json, ::testing::HasSubstr("\"schema\": \"rubric.legal/1\""));
+  EXPECT_THAT(json, ::testing::HasSubstr(
+      "{\"node\": 101, \"role\": \"sink\", \"id\": 1, \"island\": 12, "
+      "\"interface\": \"serial:101\"}"));
+  EXPECT_THAT(to_truth_json(generate("host_loops_radiated", 1)),
+              ::testing::HasSubstr("\"worst\": \"weak\""));
+}
+
+}  // namespace
+}  // namespace rubric::legal
