@@ -16,6 +16,11 @@ ALLOWED = {
     "codec/generated": ["codec/runtime", "codec/generated", "codec/reflect/schema.h"],
     "codec/containers": ["codec/runtime", "codec/containers", "codec/generated/requirements.h"],
     "codec/reflect": ["codec"],
+    "conformance/machine": ["codec/runtime", "codec/generated", "conformance/machine",
+                            "conformance/generated/profiles.h"],
+    "conformance/trace": ["codec", "conformance/trace"],
+    # Legal traffic is written from the rules: it shares nothing with what it is a test of.
+    "conformance/legal": ["codec", "conformance/legal"],
     "conformance": ["codec", "conformance"],
     "fuzz": ["codec", "conformance", "spec/compiler", "fuzz", "tools"],
     "tools": ["codec", "conformance", "tools"],
@@ -24,6 +29,42 @@ SOURCES = {".cc", ".h", ".py", ".js", ".ksy", ".cmake", ".md", ".sh", ".yaml"}
 MAX_COLUMNS = 100
 MAX_LINES = 500
 INCLUDE = re.compile(r'#include "([^"]+)"')
+# A quotation of a rule beside the code that keeps it: `//= J4-SEQ: the sentence`, perhaps going on
+# in the next `//=` line.
+QUOTE = re.compile(r"\s*//= (.*)")
+QUOTE_START = re.compile(r"([A-Z][A-Z0-9-]*[A-Z0-9]): (.*)")
+
+
+def catalogue(root):
+    """The sentence of each rule."""
+    text = (root / "spec/requirements.yaml").read_text(encoding="utf-8")
+    pairs = re.findall(r'^- id: (\S+)\n(?:  .*\n)*?  sentence: "(.*)"$', text, re.M)
+    return dict(pairs)
+
+
+def quotes(lines):
+    """Each quotation with the number of its first line."""
+    found = []
+    going_on = False
+    for number, line in enumerate(lines, 1):
+        quote = QUOTE.match(line)
+        start = quote and QUOTE_START.match(quote[1])
+        if start:
+            found.append([number, start[1], start[2]])
+        elif quote and going_on:
+            found[-1][2] += " " + quote[1]
+        elif quote:
+            found.append([number, quote[1], ""])
+        going_on = quote is not None
+    return found
+
+
+def quote_breaches(path, lines, sentences):
+    for number, rule, text in quotes(lines):
+        if rule not in sentences:
+            yield f"{path}:{number}: the catalogue has no rule {rule}"
+        elif text != sentences[rule]:
+            yield f"{path}:{number}: {rule} says: {sentences[rule]}"
 
 
 def tracked(root):
@@ -43,12 +84,13 @@ def include_breaches(path, lines):
             yield f"{path}:{number}: {area} may not include {found[1]}"
 
 
-def breaches(root, path):
+def breaches(root, path, sentences):
     generated = "generated" in path.parts or "captures" in path.parts or "vectors" in path.parts
     if path.suffix not in SOURCES or path.name == "package-lock.json":
         return
     lines = (root / path).read_text(encoding="utf-8").splitlines()
     yield from include_breaches(path, lines)
+    yield from quote_breaches(path, lines if path.suffix in {".cc", ".h"} else [], sentences)
     code = path.suffix in {".cc", ".h", ".py", ".js"}
     for number, line in enumerate(lines, 1):
         # Prose in data files and tables in documents may run long.
@@ -65,7 +107,8 @@ def breaches(root, path):
 def main():
     root = pathlib.Path(sys.argv[1])
     files = tracked(root)
-    found = [b for path in files for b in breaches(root, path)]
+    sentences = catalogue(root)
+    found = [b for path in files for b in breaches(root, path, sentences)]
     for breach in found:
         print(breach)
     print(f"{len(files)} files, {len(found)} breaches")

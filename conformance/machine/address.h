@@ -30,7 +30,7 @@ struct Descriptor {
 
 enum class Role : std::uint8_t { kMote, kSink, kBaseStation };
 
-/// The lines of a node. A mote has a radio; a sink radio and serial line; a base station serial line
+/// A mote has a radio, a sink a radio and a serial line, a base station a serial line and PEIS.
 /// and PEIS.
 enum class Link : std::uint8_t { kRadio, kSerial, kPeis };
 

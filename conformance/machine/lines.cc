@@ -42,8 +42,8 @@ bool is_stale(const Node& node, const Buffered& frame) {
          node.now - join.accepted > node.profile().join_period_ticks;
 }
 
-//= J3-TIME: cur_time of a join_reply is the sink's clock in ms when it replies; between replies more
-//= than a second apart it grows.
+//= J3-TIME: cur_time of a join_reply is the sink's clock in ms when it replies; between replies
+//= more than a second apart it grows.
 // So one that waited for the radio tells the time at which it leaves.
 void set_time(std::uint8_t* join_reply, const Node& node) {
   store_be32(join_reply + kCurTimeOffset, clock_ms(node));

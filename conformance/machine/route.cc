@@ -21,7 +21,8 @@ bool for_own_device(const Router& router, Address dest) {
 Route mote_from_radio(const Router& router, Address dest) {
   //= J11-HEAR: A mote that is not a member ignores the net_msg that it hears.
   if (!router.member) return nowhere(req::kJ11Hear);
-  //= N5-FOREIGN: A mote ignores a net_msg whose dest.pid is another island.
+  //= N5-FOREIGN: A mote ignores a net_msg whose dest.pid is another island; 0xFFFF, every island,
+  //= may be delivered or ignored.
   if (!for_own_island(router, dest)) return nowhere(req::kN5Foreign);
   //= N5-OTHER: A mote ignores a net_msg of its own island whose devid is another mote or NULL.
   if (!for_own_device(router, dest)) return nowhere(req::kN5Other);

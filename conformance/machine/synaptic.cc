@@ -224,8 +224,8 @@ void tick_synaptic(Synaptic& synaptic, Address own, Ticks now, SynapticSends& se
     const bool changed = out.fresh;
     out.fresh = false;
     if (power_save && !changed) {
-      //= S3-UNCHANGED: In power-save mode a tick sends nothing when no value changed since the last
-      //= tick.
+      //= S3-UNCHANGED: In power-save mode a tick, but for the first after start, sends nothing when
+      //= no value changed since the last tick.
       actions.followed(req::kS3Unchanged);
     } else if (is_local(out, own)) {
       hand_over(out, synaptic.in, actions);

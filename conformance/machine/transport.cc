@@ -97,7 +97,7 @@ bool is_known_app(std::uint8_t app_id) {
 }
 
 bool must_ack(bool reliable, Address dest, std::uint8_t trans_id, std::uint8_t app_id) {
-  //= T2-UNRELIABLE: An unreliable message is never acked.
+  //= T2-UNRELIABLE: A message with reliable 0 is never acked.
   if (!reliable) return false;
   //= T2-LOOP: An ack is never acked.
   // Neither is synaptic data: acks are Connectionless's.

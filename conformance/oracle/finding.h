@@ -15,7 +15,7 @@ enum class Severity : std::uint8_t { kNote, kWeak, kStray, kInconclusive, kFail 
 /// Where in the given files something was seen.
 struct Place {
   std::uint32_t file = 0;          ///< Index among the files of the run.
-  std::uint64_t frame = 0;         ///< Number in its file, from 1; 0: no frame (an end, a whole run).
+  std::uint64_t frame = 0;         ///< Number in its file, from 1; 0: none (an end, a whole run).
   std::uint64_t offset_bytes = 0;  ///< Of the frame's record in its file; a line number in .rtr.
   std::int64_t time_us = -1;       ///< Since the first stamp of the run; -1: the file has no time.
 };

@@ -84,7 +84,8 @@ class Run {
       }
       base = found->second;
     }
-    return {base + ticks_of(scope_.tick, line.time.from), base + ticks_of(scope_.tick, line.time.to)};
+    return {base + ticks_of(scope_.tick, line.time.from),
+            base + ticks_of(scope_.tick, line.time.to)};
   }
 
   void matched(const Line& line, Ticks time) {
@@ -212,7 +213,9 @@ std::string explain(const CaseResult& result, const std::string& file_name) {
   std::string out;
   for (const Failure& failure : result.failures) {
     out += fmt::format("{}:{}: {}: ", file_name, failure.place.line, result.name);
-    out += failure.requirements.empty() ? "no rule" : fmt::format("{}", fmt::join(failure.requirements, " "));
+    out += failure.requirements.empty()
+               ? "no rule"
+               : fmt::format("{}", fmt::join(failure.requirements, " "));
     out += failure.weak ? " (weak)\n" : "\n";
     if (!failure.expected.empty()) out += fmt::format("  expected  {}\n", failure.expected);
     out += fmt::format("  but       {}\n", failure.text);

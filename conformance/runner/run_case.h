@@ -1,8 +1,8 @@
 // Works a golden trace on implementations: gives what its lines give, and holds what comes back
 // against what they ask for.
 //
-// Lines are worked in their order. `<` happens at its time, or at once if that has passed. `>` takes
-// the first output of that node and link, behind the one taken last, that matches and is in time.
+// Lines are worked in their order. `<` happens at its time, or at once if that has passed. `>`
+// takes the first output of that node and link, behind the one taken last, that matches in time.
 // `!>` forbids outputs that no `>` took; it is judged when the case is over. What no line names is
 // free.
 #pragma once

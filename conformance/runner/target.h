@@ -34,7 +34,7 @@ class Target {
   virtual void run_until(Ticks time) = 0;
   /// All outputs since reset, in their order.
   virtual const std::vector<Output>& outputs() const = 0;
-  /// While set, frames that ask for a link ack end when the runner gives SendDone, not by themselves.
+  /// While set, frames that ask for a link ack end when the runner gives SendDone, not before.
   virtual void hold_link_acks(bool hold) = 0;
 };
 
