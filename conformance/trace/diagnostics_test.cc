@@ -42,7 +42,7 @@ const Wrong kWrong[] = {
      "17: expected an AM address: a number, all, a variable or *, given 'x01'"},
     {"OpenBracket", "3 m5 > rA net_msg(dest=11:2", "18: '(' without its ')'"},
     {"BehindDots", "3 m5 > rA net_msg(... dest=11:2)", "23: expected ')' behind '...'"},
-    {"NoBlank", "3 m5 > rA net_msg(dest=\"a\"b)", "19: a quote within text is written \\\""},
+    {"QuoteInside", "3 m5 > rA net_msg(dest=\"a\"b\"c\")", "24: a quote within text is written \\\""},
     {"Path", "3 m5 > rA net_msg(.dest=11:2)",
      "19: expected a field's path, given '.dest'"},
     {"PathIndex", "3 m5 > rA net_msg(updates[01].value=1 ...)",
@@ -84,12 +84,12 @@ const Wrong kWrong[] = {
     {"Profile", "%profile mine", "10: expected paper or deployed, given 'mine'"},
     {"Tick", "%tick s", "7: expected binary_ms, ms or us, given 's'"},
     {"Seed", "%seed x", "7: expected a seed, a number"},
-    {"Note", "%note  ", "6: expected the text of the note"},
+    {"Note", "%note  ", "8: expected the text of the note"},
     {"NodeName", "%node ?", "7: expected a node's name"},
     {"NodeRole", "%node n robot", "9: expected mote, sink or base_station, given 'robot'"},
     {"NodeWord", "%node n mote id=1 id=2",
      "19: expected id=, island= or iut, each once, given 'id=2'"},
-    {"NodeId", "%node n mote id=65536", "16: expected a TinyOS id from 0 to 65535, given '65536'"},
+    {"NodeId", "%node n mote id=65536", "17: expected a TinyOS id from 0 to 65535, given '65536'"},
     {"NodeIsland", "%node n sink id=1 island=x",
      "26: expected an island from 0 to 65535, given 'x'"},
     {"LinkName", "%link", "6: expected a link's name"},
@@ -147,7 +147,7 @@ const Wrong kWrong[] = {
     {"GivenWithAnyFields", "0 m5 < rA join_reply(*)",
      "11: the fields of what is given are missing: join_reply(...)"},
     {"Positional", "0 m5 > rA join_reply(5 ...)", "22: fields of join_reply need their names: '5'"},
-    {"TooManyPositional", "0 m5 > app joined(11:5 success 3)", "31: joined has 2 fields"},
+    {"TooManyPositional", "0 m5 > app joined(11:5 success 3)", "32: joined has 2 fields"},
     {"UnknownField", "0 m5 > rA join_reply(sec_num=1 ...)",
      "22: join_reply has no field 'sec_num' (did you mean 'seq_num'?)"},
     {"AmbiguousField", "0 m5 > rA net_msg(devid=1 ...)",
@@ -187,7 +187,7 @@ const Wrong kWrong[] = {
      "17: '*' where a value has to be given"},
     {"UnboundGiven", "0 m5 < rA join_reply(seq_num=$q ...)", "22: no line above binds $q"},
     {"UnboundNot", "0 m5 > rA join_reply(seq_num=!$q ...)", "22: no line above binds $q"},
-    {"UnboundMustNot", "0 m5 !> rA join_request(seq_num=$q ...)", "24: no line above binds $q"},
+    {"UnboundMustNot", "0 m5 !> rA join_request(seq_num=$q ...)", "25: no line above binds $q"},
     {"MissingInCall", "0 m5 < app join(telosb_demo light)",
      "12: field 'actuators' of join is neither given nor left free by '...'"},
     {"MissingGiven", "0 m5 < rA join_reply(seq_num=1 mote_addr=5 cur_time=1)",
@@ -196,8 +196,7 @@ const Wrong kWrong[] = {
      "11: join_reply: island_addr: is missing: expected a number from 0 to 65535"},
     {"BodyOfAnother", "0 m5 < rA net_msg(dest=11:5 src=11:1 seq_num=1 trans_id=connless "
      "app_id=control_layer payload.body.net_id=3 ...)",
-     "78: net_msg: payload.body.net_id: is no field of serial_joined here, which has msg_type, "
-     "island_addr, mote_addr, mote_type, transducers, actuators"},
+     "11: net_msg: payload.body.island_addr: is missing: expected a number from 0 to 65535"},
     {"BytesOnApp", "0 m5 > app joined(*) | 00", "1: there are no frames on 'app'"},
     {"BytesNoPacket", "0 m5 > rA * | 0000010002010006",
      "1: the bytes are no packet: 00, AM destination, source, length, group, type, and as many "
@@ -207,7 +206,7 @@ const Wrong kWrong[] = {
     {"BytesOfAnother", "0 m5 > rA join_reply(*) | 0000010002010006 03",
      "11: the bytes say something else: message: expected join_reply, seen rssi_beacon"},
     {"BytesOfOthers", "0 m5 > rA am=2->3 rssi_beacon(anchor_id=3) | 0000010002010006 03",
-     "11: the bytes say something else: am destination: expected 3, seen 1"},
+     "19: the bytes say something else: am destination: expected 3, seen 1"},
 };
 
 class Diagnostics : public testing::TestWithParam<Wrong> {};

@@ -294,7 +294,7 @@ std::uint16_t destination(const Line& line, const Scope& scope) {
   return node->id.value_or(kAmAll);
 }
 
-// Who can have sent it: the src field says, else nodes of the other role that share an id.
+// Who can have sent it: the src field says, else nodes of the other role.
 std::uint16_t source(const Line& line, const Scope& scope, const AmFrame& frame) {
   const LinkKind link = scope.link(line.link).value_or(LinkKind::kRadio);
   if (line.op != Op::kGiven) {
@@ -305,14 +305,15 @@ std::uint16_t source(const Line& line, const Scope& scope, const AmFrame& frame)
   const auto src = seen.pair("src");
   if (link == LinkKind::kPeis && src) return src->first;
   if (link != LinkKind::kRadio) return 0;
-  const bool from_sink = seen.name == "join_reply";
   if (src) {
     const auto known = [&](const NodeHeader& one) { return one.id == src->second; };
     if (std::any_of(scope.nodes.begin(), scope.nodes.end(), known)) return src->second;
   }
+  // Sinks hear motes; what else a mote hears, its sink has sent.
+  const NodeHeader* hears = line.op == Op::kGiven ? scope.node(line.node) : nullptr;
   std::optional<std::uint16_t> found;
   for (const NodeHeader& one : scope.nodes) {
-    const bool fits = from_sink ? one.role == Role::kSink : one.role != Role::kBaseStation;
+    const bool fits = !hears || (hears->role == Role::kSink) == (one.role == Role::kMote);
     if (!fits || !one.id || one.name == line.node) continue;
     if (found && found != one.id) {
       throw TraceError(line.place,

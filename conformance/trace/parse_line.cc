@@ -134,6 +134,7 @@ FieldValue parse_field(Scanner& in) {
 void parse_fields(Scanner& in, Message& message) {
   message.form = Message::Form::kFields;
   const Place open = in.place();
+  in.advance(1);
   while (true) {
     in.skip_blanks();
     if (in.at_end()) throw LineError{open, "'(' without its ')'"};
@@ -208,7 +209,7 @@ Message parse_message(Scanner& in) {
     in.fail_at(name, "expected a message, given " + quoted(name));
   }
   message.name = name;
-  if (in.take('(')) parse_fields(in, message);
+  if (in.peek() == '(') parse_fields(in, message);
   return message;
 }
 

@@ -3,11 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <sstream>
 
 #include "conformance/trace/print.h"
-#include "conformance/trace/value_text.h"
 
 namespace rubric::trace {
 namespace {
@@ -158,7 +155,7 @@ TEST(Hostile, LongestLine) {
 
 TEST(Hostile, Bytes) {
   const std::string where = "t.rtr:2:3: a byte that is no UTF-8 text, or a control character\n";
-  for (const std::string bytes :
+  for (const std::string& bytes :
        {std::string("\0", 1), std::string("\x01"), std::string("\xFF"), std::string("\xC0\x80"),
         std::string("\xED\xA0\x80"), std::string("\xF4\x90\x80\x80"), std::string("\xE2\x82"),
         std::string("\x7F"), std::string("\x80"), std::string("\r\r")}) {
