@@ -5,6 +5,7 @@
 #include <fstream>
 #include <map>
 #include <set>
+#include <tuple>
 
 #include "codec/containers/pcapng_reader.h"
 #include "codec/reflect/frame.h"
@@ -20,6 +21,9 @@ using rubicon::Component;
 
 constexpr std::uint64_t kSeeds = 6;
 constexpr std::uint64_t kMixedSeeds = 40;
+constexpr std::int64_t kReplyUs = 300'000;
+constexpr std::int64_t kAckUs = 1'000'000;
+constexpr std::int64_t kSentAgainUs = 900'000;
 
 void for_each_traffic(const std::function<void(const Traffic&)>& check) {
   for (const Variant& variant : variants()) {
@@ -193,6 +197,33 @@ TEST(Legal, ChecksTheRulesThatAreEasyToCheck) {
         const bool local = s.net->src.pid == s.net->dest.pid;
         EXPECT_TRUE(!whole || !traffic.has_serial || !local || asked.count(s.acked()) != 0);
       }
+    }
+  });
+}
+
+TEST(Legal, AnswersComeInTime) {
+  for_each_traffic([](const Traffic& traffic) {
+    std::map<std::pair<std::uint16_t, std::uint16_t>, std::int64_t> asked;
+    std::map<std::tuple<std::uint16_t, std::uint16_t, std::uint16_t>, std::int64_t> sent;
+    if (!traffic.sniffer_complete) return;
+    for (const Seen& s : see(traffic)) {
+      if (!s.sum_ok) continue;
+      if (s.is(AmType::kJoin)) asked[{s.am_src, s.join_seq()}] = s.time_us;
+      if (s.is(AmType::kJoinReply) && asked.count({s.am_dst, s.join_seq()}) != 0) {
+        const std::int64_t after_us = s.time_us - asked[{s.am_dst, s.join_seq()}];
+        EXPECT_LE(after_us, kReplyUs) << s.time_us;
+      }
+      if (!s.net) continue;
+      const Address from = s.net->src;
+      const Address to = s.net->dest;
+      if (s.net->reliable) {
+        const auto [first, fresh] = sent.try_emplace({from.pid, from.devid, s.net->seq}, s.time_us);
+        if (!fresh && s.time_us - first->second > kSentAgainUs) first->second = s.time_us;
+      }
+      if (!s.app(Component::kRubiconAck) || traffic.worst == Worst::kWeak) continue;
+      const auto found = sent.find({to.pid, to.devid, s.acked()});
+      if (found == sent.end()) continue;
+      EXPECT_LE(s.time_us - found->second, kAckUs) << s.time_us;
     }
   });
 }
