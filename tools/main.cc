@@ -8,6 +8,7 @@
 #include "tools/encode.h"
 #include "tools/explain.h"
 #include "tools/messages.h"
+#include "tools/simulate.h"
 #include "tools/stats.h"
 
 namespace {
@@ -32,5 +33,6 @@ int main(int argc, char** argv) {
   rubric::tools::add_stats(app);
   rubric::tools::add_explain(app);
   rubric::tools::add_messages(app);
+  rubric::tools::add_simulate(app);
   return rubric::cli::parse_and_run(app, argc, argv);
 }

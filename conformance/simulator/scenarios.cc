@@ -147,9 +147,9 @@ Network timeline(const ScenarioOptions& options) {
   return builder.done();
 }
 
-// Paper: In-Hospital Transport Test-Bed. Ten anchors, six PIR motes and the robot's mote. A sink has
-// room for four input channels (S1-LIMIT) where this wants seven: the last three are refused, and
-// what comes for them is told as data of an unknown channel.
+// Paper: In-Hospital Transport Test-Bed. Ten anchors, six PIR motes and the robot's mote. A sink
+// has room for four input channels (S1-LIMIT) where this wants seven: the last three are refused,
+// and what comes for them is told as data of an unknown channel.
 Network hospital(const ScenarioOptions& options) {
   constexpr std::uint16_t kRobotId = 2;
   constexpr std::uint16_t kMotes = 7;
@@ -176,9 +176,9 @@ Network hospital(const ScenarioOptions& options) {
   return builder.done();
 }
 
-// Paper: the AAL test-bed. Twelve motes of a home and a bracelet. The bracelet goes out of reach and
-// comes back; one mote's battery is changed, and its sink, which still lists it, does not take it
-// again (J2-LISTED, decision 105); another fails for good.
+// Paper: the AAL test-bed. Twelve motes of a home and a bracelet. The bracelet goes out of reach
+// and comes back; one mote's battery is changed, and its sink, which still lists it, does not take
+// it again (J2-LISTED, decision 105); another fails for good.
 Network home(const ScenarioOptions& options) {
   constexpr std::uint16_t kFirst = 2;
   constexpr std::uint16_t kMotes = 12;
@@ -188,7 +188,6 @@ Network home(const ScenarioOptions& options) {
   builder.island('A', kIsland, air);
   for (std::uint16_t i = 0; i < kMotes; ++i) {
     Script script = joining(i * us_of(150), kStandard);
-    // A second apart from one another within a period of two.
     script.sends.push_back(updates(kLight | kTemp | kHumid, us_of(2000)));
     if (i == 4) script.cuts.push_back({us_of(6000), us_of(2000), false});
     if (i == 7) script.cuts.push_back({us_of(9000), -1, false});

@@ -58,7 +58,8 @@ class Serial {
   using Done = std::function<void(bool intact)>;
 
   End& end_of(NodeId node) { return node == plan_.sink ? sink_ : base_station_; }
-  Micros shift_out(bool to_sink, std::uint8_t kind, std::int32_t seq, const Shared& held, Done done);
+  Micros shift_out(bool to_sink, std::uint8_t kind, std::int32_t seq, const Shared& held,
+                   Done done);
   void try_host(const Shared& held);
   void confirm(std::uint8_t seq);
   void deliver(NodeId to, const Held& held, bool intact);

@@ -36,6 +36,7 @@ struct Statistics {
   std::uint64_t ack_failures = 0;
   std::uint64_t synaptic_new = 0;
   std::uint64_t synaptic_old = 0;
+  std::uint64_t synaptic_unknown = 0;
   friend bool operator==(const Statistics&, const Statistics&) = default;
 };
 

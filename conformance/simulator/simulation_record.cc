@@ -1,5 +1,4 @@
 // What a run came to, and who is told of it.
-#include <type_traits>
 #include <variant>
 
 #include "conformance/simulator/simulation.h"
@@ -21,8 +20,11 @@ void Simulation::count(const machine::Notice& notice) {
     ++(ack->success ? statistics_.acks : statistics_.ack_failures);
   }
   if (const auto* data = std::get_if<machine::SynDataReceived>(&notice)) {
-    if (data->status == machine::DataStatus::kNew) ++statistics_.synaptic_new;
-    if (data->status == machine::DataStatus::kOld) ++statistics_.synaptic_old;
+    switch (data->status) {
+      case machine::DataStatus::kNew: ++statistics_.synaptic_new; break;
+      case machine::DataStatus::kOld: ++statistics_.synaptic_old; break;
+      case machine::DataStatus::kUnknownChannel: ++statistics_.synaptic_unknown; break;
+    }
   }
 }
 

@@ -127,7 +127,8 @@ void TraceRecorder::given(Micros time_us, NodeId node, const machine::Event& eve
     add(trace::frame_line(ticks, names_[node].node, Op::kGiven, link_name(node, link),
                           kind_of(link), frame_of(heard->frame)));
   } else if (const auto* called = std::get_if<machine::Called>(&event)) {
-    add(trace::app_line(ticks, names_[node].node, Op::kGiven, kApp, events::from_call(called->call)));
+    trace::Message call = events::from_call(called->call);
+    add(trace::app_line(ticks, names_[node].node, Op::kGiven, kApp, std::move(call)));
   } else if (std::holds_alternative<machine::Reboot>(event)) {
     add(trace::app_line(ticks, names_[node].node, Op::kGiven, kPower, Message::named("reboot")));
   }
