@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
+#include <cstdlib>
 #include <string>
 
 #include "conformance/trace/check.h"
@@ -12,6 +13,8 @@ namespace rubric::trace {
 namespace {
 
 using rc::gen::inRange;
+
+const int kMoreCases = setenv("RC_PARAMS", "max_success=3000 max_size=200", 0);
 
 std::string pick(const std::vector<std::string>& from) { return *rc::gen::elementOf(from); }
 bool coin() { return *rc::gen::arbitrary<bool>(); }
@@ -205,8 +208,11 @@ File any_file() {
 }
 
 TEST(RoundTrip, AnyFile) {
-  EXPECT_TRUE(rc::check("parse(print(f)) == f", [] {
+  ASSERT_EQ(kMoreCases, 0);
+  std::size_t lines = 0;
+  EXPECT_TRUE(rc::check("parse(print(f)) == f", [&lines] {
     const File file = any_file();
+    for (const Case& one : file.cases) lines += one.lines().size();
     const std::string text = print(file);
     const Parsed parsed = parse_syntax(text, "f");
     RC_LOG() << text << parsed.errors();
@@ -216,6 +222,7 @@ TEST(RoundTrip, AnyFile) {
     // Whatever it says, checking it ends.
     parse(text, "f");
   }));
+  EXPECT_GT(lines, 1000u);  // The generator makes files worth printing.
 }
 
 TEST(RoundTrip, AnyText) {
