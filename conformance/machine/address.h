@@ -31,7 +31,6 @@ struct Descriptor {
 enum class Role : std::uint8_t { kMote, kSink, kBaseStation };
 
 /// A mote has a radio, a sink a radio and a serial line, a base station a serial line and PEIS.
-/// and PEIS.
 enum class Link : std::uint8_t { kRadio, kSerial, kPeis };
 
 }  // namespace rubric::machine
