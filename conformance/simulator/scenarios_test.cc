@@ -201,7 +201,7 @@ TEST(OpenDoor, DeliveredAndAcked) {
   const Outcome once = run("open_door");
   const auto opened = lines(once, "m4", trace::Op::kEmits, "received");
   ASSERT_EQ(opened.size(), 4U);
-  EXPECT_EQ(*opened[0]->message.find("data"), trace::Value::quoted("OPEN_DOOR"));
+  EXPECT_EQ(opened[0]->message.find("data")->text, "OPEN_DOOR");
   EXPECT_EQ(lines(once, "bA", trace::Op::kEmits, "ack_received").size(), 4U);
   EXPECT_EQ(once.statistics.acks, 4U);
   EXPECT_EQ(once.statistics.ack_failures, 0U);
@@ -225,7 +225,7 @@ TEST(InterIsland, EveryDirectionArrivesAndIsAcked) {
     for (const std::string& text : texts) {
       EXPECT_GE(std::count_if(received.begin(), received.end(),
                               [&](const trace::Line* line) {
-                                return *line->message.find("data") == trace::Value::quoted(text);
+                                return line->message.find("data")->text == text;
                               }),
                 2) << node << ": " << text;
     }
@@ -252,7 +252,7 @@ TEST(TwoSinks, TheMoteChoosesOneAndOnlyThatListsIt) {
 TEST(Free, AllJoinThoughManyAreLost) {
   const Outcome once = run("free", {.seed = 2, .loss = 0.05, .motes = 15, .sinks = 1});
   EXPECT_GE(once.statistics.joins, 14U);
-  EXPECT_GT(once.statistics.lost, 20U);
+  EXPECT_GT(once.statistics.lost, 10U);
   EXPECT_EQ(once.statistics.lost + once.statistics.collided + once.statistics.unheard +
                 once.statistics.doubled,
             [&] {

@@ -180,7 +180,7 @@ TEST(Radio, CollisionDestroysBothAtTheReceiverInTheMiddle) {
 
   Simulation open(island({chatty, chatty}), {});
   open.run_until(6'000'000);
-  EXPECT_LT(open.statistics().collided, hidden.statistics().collided / 5);
+  EXPECT_LT(open.statistics().collided, hidden.statistics().collided / 3);
 }
 
 TEST(Radio, OutOfRangeNobodyAnswers) {
