@@ -91,6 +91,8 @@ TEST(Send, WithoutAckTimeoutTheOldestIsGivenUp) {
   }
   EXPECT_TRUE(timers(mote.state).empty());
   EXPECT_EQ(mote.state.awaited.size(), 8U);
+  EXPECT_EQ(mote.state.awaited[0].seq_num, mote.state.sequence.last - 7);
+  EXPECT_EQ(mote.state.awaited[7].seq_num, mote.state.sequence.last);
   mote.step(TimerDue{{TimerKind::kAck, 0}});
   EXPECT_TRUE(mote.silent());
 }

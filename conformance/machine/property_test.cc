@@ -311,32 +311,5 @@ TEST(Property, AnythingInAnyOrder) {
   }
 }
 
-// The same content reached by two ways compares equal and hashes the same, whatever lies around it.
-TEST(Property, EqualStatesHashEqual) {
-  Device turned(mote_config(5));
-  for (int i = 0; i < 3; ++i) {  // Turns the circular buffers.
-    turned.step(LinkBusy{Link::kRadio, true});
-    turned.call(JoinIsland{kDescriptor});
-    turned.step(LinkBusy{Link::kRadio, false}).done();
-    turned.step(AppBusy{true});
-    turned.hear(join_reply(5, {kOther, 9}, 0, 0xABCD));
-    turned.step(AppBusy{false});
-    for (int k = 0; k < 5; ++k) turned.step(TimerDue{{TimerKind::kJoin, 0}}).done();
-  }
-  Device fresh(mote_config(5));
-  turned.state.sequence = fresh.state.sequence;
-  turned.state.join = fresh.state.join;
-  EXPECT_EQ(turned.state, fresh.state);
-  EXPECT_EQ(hash_value(turned.state), hash_value(fresh.state));
-  for (Device* node : {&turned, &fresh}) {
-    node->step(LinkBusy{Link::kRadio, true});
-    node->call(JoinIsland{kDescriptor});
-    node->step(AppBusy{true});
-    node->hear(join_reply(5, {kIsland, 5}, 0, node->state.join.seq_num));
-  }
-  EXPECT_EQ(turned.state, fresh.state);
-  EXPECT_EQ(hash_value(turned.state), hash_value(fresh.state));
-}
-
 }  // namespace
 }  // namespace rubric::machine

@@ -116,6 +116,15 @@ TEST(JoinStep, J8_WholeCallWithoutAnswer) {
   EXPECT_EQ(mote.state.join.seq_num, 2);  // J1-SEQ.
 }
 
+TEST(JoinStep, J1Seq_NotTheNumberOfTheCallBefore) {
+  Device mote(mote_config(5));
+  mote.call(JoinIsland{kDescriptor}).done();
+  for (int i = 0; i < 5; ++i) mote.join_timer().done();
+  mote.state.sequence.last = static_cast<std::uint16_t>(mote.state.join.seq_num - 1);
+  mote.call(JoinIsland{kDescriptor});
+  EXPECT_EQ(mote.state.join.seq_num, 2);
+}
+
 TEST(JoinStep, J8Period_RequestThatWaitsStandsForTheNext) {
   Device mote(mote_config(5));
   mote.step(LinkBusy{Link::kRadio, true});
@@ -301,6 +310,18 @@ TEST(Reboot, OnlyTheConfigurationStays) {
   sink.hear(set_island_id(kOther));
   sink.step(Reboot{});
   EXPECT_EQ(sink.state, start(sink_config()));
+}
+
+TEST(Reboot, DoesNotFreeALineThatSomebodyElseHas) {
+  Device sink(sink_config());
+  sink.step(LinkBusy{Link::kRadio, true}).step(LinkBusy{Link::kSerial, true});
+  sink.step(Reboot{});
+  sink.hear(join_request(5, 1, kDescriptor));
+  EXPECT_TRUE(sink.silent());
+  sink.call(Send{{kIsland, kNullDevid}, 10, false, {}});
+  EXPECT_TRUE(sink.actions.transmits().empty());
+  EXPECT_EQ(sink.step(LinkBusy{Link::kRadio, false}).only_frame().type, am::kJoinReply);
+  EXPECT_EQ(sink.step(LinkBusy{Link::kSerial, false}).only_frame().type, am::kNet);
 }
 
 TEST(Timers, AreThoseThatAreSet) {
