@@ -270,7 +270,8 @@ constexpr reflect::Requirement kRequirements[] = {
      "paper: The Network level; release 1.0 NetworkP",
      reflect::kRoleMote | reflect::kRoleSink | reflect::kRoleBaseStation, false, ""},
     {"N1-ROOM", "MUST", "network, send",
-     "send accepts a message of a member while the outgoing buffer has room.",
+     "send accepts a message of a member while the outgoing buffer has room, unless the "
+     "interface is off or as many acks are awaited as the node has room for.",
      "paper: The Network level; decision 122",
      reflect::kRoleMote | reflect::kRoleSink, false, ""},
     {"N1-FULL", "MUST", "network, send",
