@@ -46,6 +46,11 @@ std::string text_of(machine::Address address) {
   return "<" + part(address.pid, true) + ", " + part(address.devid, false) + ">";
 }
 
+std::string name_of(const Net& net) {
+  return "the message " + text_of(net.src) + " to " + text_of(net.dest) + " with number " +
+         number(net.seq_num);
+}
+
 std::string ms_text(std::int64_t us) {
   char text[40];
   std::snprintf(text, sizeof text, "%.2f ms", static_cast<double>(us) / 1000);

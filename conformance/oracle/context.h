@@ -65,6 +65,7 @@ struct Context {
 
 // Text.
 std::string text_of(machine::Address address);
+std::string name_of(const Net& net);  ///< "the message <..> to <..> with number 7"
 std::string ms_text(std::int64_t us);
 std::string number(std::uint64_t n);
 

@@ -3,8 +3,13 @@
 
 #include <algorithm>
 
+#include "conformance/machine/route.h"
+#include "conformance/machine/transport.h"
+#include "conformance/oracle/acks.h"
+#include "conformance/oracle/forward.h"
 #include "conformance/oracle/links.h"
 #include "conformance/oracle/mote_join.h"
+#include "conformance/oracle/sent.h"
 #include "conformance/oracle/sink_join.h"
 
 namespace rubric::oracle {
@@ -21,13 +26,18 @@ class Judge {
         findings_(options.deployed),
         context_(run, options, who_, findings_),
         motes_((setup(), context_), who_.devices.size()),
-        sinks_(context_) {}
+        sinks_(context_),
+        forwarding_(context_),
+        originals_(context_, who_.devices.size()),
+        acks_(context_, who_.devices.size()) {}
 
   Report judge() {
     Report report;
     for (std::uint32_t i = 0; i < run_.seen.size(); ++i) look(i);
     motes_.finish(run_.end_us);
     sinks_.finish(run_.end_us);
+    forwarding_.finish(run_.end_us);
+    acks_.finish();
     report.frames = frames_;
     report.facts = who_.facts;
     if (findings_.dropped() > 0) {
@@ -42,12 +52,16 @@ class Judge {
  private:
   void setup() {
     context_.sink_am = context_.profile().sink_id;
-    std::uint16_t sinks = 0;
+    mote_of_am_.assign(65536, kNobody);
     for (std::size_t i = 0; i < who_.devices.size(); ++i) {
       const Device& device = who_.devices[i];
-      if (device.role != Role::kSink || !device.known) continue;
+      const auto index = static_cast<std::uint16_t>(i);
+      if (!device.known) continue;
+      if (device.role == Role::kMote) mote_of_am_[device.am] = index;
+      if (device.role != Role::kSink) continue;
       context_.sink_am = device.am;
-      context_.only_sink = sinks++ == 0 ? static_cast<std::uint16_t>(i) : kNobody;
+      context_.only_sink = sink_devices_.empty() ? index : kNobody;
+      sink_devices_.push_back(index);
     }
     for (const KnownNode& node : context_.options.nodes) {
       if (node.role == Role::kSink) context_.sink_am = node.id;
@@ -85,9 +99,8 @@ class Judge {
     switch (seen.kind) {
       case Kind::kRadio:
         ++frames_;
-        if (mark.repeat) return;
-        if (mark.new_life && is(mark.device, Role::kMote)) motes_.begin_life(mark.device);
-        if (mark.new_life && is(mark.device, Role::kSink)) sinks_.begin_life(mark.device);
+        if (mark.repeat) return repeated(seen, mark);
+        if (mark.new_life) begin_life(mark.device);
         radio(index, seen, mark);
         break;
       case Kind::kSerial:
@@ -104,6 +117,26 @@ class Judge {
       case Kind::kDamaged:
         break;
     }
+  }
+
+  void begin_life(std::uint16_t device) {
+    if (is(device, Role::kMote)) motes_.begin_life(device);
+    if (is(device, Role::kSink)) sinks_.begin_life(device);
+    if (is(device, Role::kSink)) forwarding_.begin_life(device);
+    originals_.begin_life(device);
+    acks_.begin_life(device);
+  }
+
+  // The link's own repetition, or a log's line that says who received a frame.
+  void repeated(const Observation& seen, const Mark& mark) {
+    Net net;
+    if (seen.frame.type != kAmNet || !parse_net(seen.frame.payload, net)) return;
+    if (mark.receiver != kNobody) return acks_.surely(mark.receiver, net);
+    forwarding_.repeated_on_radio(net);
+    if (mote_of_am_[seen.frame.dest] != kNobody) {
+      acks_.repeated(mote_of_am_[seen.frame.dest], net);
+    }
+    for (const std::uint16_t sink : sink_devices_) acks_.repeated(sink, net);
   }
 
   // Who surely received a frame for the sinks' address.
@@ -125,6 +158,9 @@ class Judge {
         Reply reply;
         if (!parse_reply(seen.frame.payload, reply)) return;
         if (is(mark.device, Role::kSink)) sinks_.reply(mark.device, seen, reply);
+        if (is(mark.device, Role::kMote)) {
+          role_broken(req::kJ10Mote, "A mote sends a join_reply.", seen, mark.device);
+        }
         for (std::size_t i = 0; i < who_.devices.size(); ++i) {
           const Device& device = who_.devices[i];
           if (device.role != Role::kMote || !device.known || device.am != seen.frame.dest) continue;
@@ -137,13 +173,16 @@ class Judge {
         AckJoin ack;
         if (!parse_ack_join(seen.frame.payload, ack)) return;
         if (is(mark.device, Role::kMote)) motes_.ack_join(mark.device, seen, ack);
+        if (is(mark.device, Role::kSink)) {
+          role_broken(req::kJ10Sink, "A sink sends an ack_join.", seen, mark.device);
+        }
         sinks_.ack_join(mark.device, seen, ack, sure_sink(index));
         return;
       }
       case kAmNet: {
         Net net;
         if (!parse_net(seen.frame.payload, net)) return;
-        if (is(mark.device, Role::kMote)) motes_.net_msg(mark.device, seen, net);
+        radio_net(index, seen, mark, net);
         return;
       }
       default:
@@ -151,19 +190,139 @@ class Judge {
     }
   }
 
-  void serial(std::uint32_t, const Observation& seen, const Mark& mark) {
+  void role_broken(ReqId rule, const char* what, const Observation& seen, std::uint16_t device) {
+    context_.report(rule, Severity::kFail, seen.place, device,
+                    {what, "Join requests and their acks are for sinks, replies for motes.", {}});
+  }
+
+  void radio_net(std::uint32_t index, const Observation& seen, const Mark& mark, const Net& net) {
+    const std::uint16_t sender = mark.device;
+    if (is(sender, Role::kMote)) {
+      motes_.net_msg(sender, seen, net);
+      own_message(sender, seen, net, machine::Link::kRadio,
+                  motes_.address(sender).value_or(net.src));
+    } else if (is(sender, Role::kSink)) {
+      const Device& sink = who_.devices[sender];
+      if (net.src.devid == sink.am) {
+        own_message(sender, seen, net, machine::Link::kRadio,
+                    {sinks_.island(sender), sink.am});
+      } else {
+        acks_.showed_life(sender, seen.place.time_us);
+        forwarding_.sent_on_radio(sender, seen, net);
+      }
+    }
+    const std::uint16_t sure = sure_sink(index);
+    forwarding_.heard_on_radio(seen, sender, net, sure);
+    if (seen.frame.dest == machine::kAmBroadcast) {
+      for (std::size_t i = 0; i < who_.devices.size(); ++i) {
+        const auto node = static_cast<std::uint16_t>(i);
+        if (node != sender && is(node, Role::kMote)) mote_hears(node, seen, mark, net);
+      }
+    } else if (const std::uint16_t mote = mote_of_am_[seen.frame.dest];
+               mote != kNobody && mote != sender) {
+      mote_hears(mote, seen, mark, net);
+    }
+    for (const std::uint16_t sink : sink_devices_) {
+      const std::uint16_t am = who_.devices[sink].am;
+      if (sink == sender) continue;
+      if (seen.frame.dest != am && seen.frame.dest != machine::kAmBroadcast) continue;
+      hears(sink, {Role::kSink, {sinks_.island(sink), am}, true, context_.sink_am},
+            machine::Link::kRadio, seen, sender, net, sure == sink || mark.receiver == sink);
+    }
+    if (net.is_ack()) ack_comes(net);
+  }
+
+  // A message of the node's own.
+  void own_message(std::uint16_t node, const Observation& seen, const Net& net,
+                   machine::Link link, machine::Address own) {
+    acks_.showed_life(node, seen.place.time_us);
+    originals_.sent(node, seen, net, link, own);
+    if (net.is_ack()) acks_.sent(node, seen, net);
+  }
+
+  void mote_hears(std::uint16_t mote, const Observation& seen, const Mark& mark, const Net& net) {
+    const std::uint16_t am = who_.devices[mote].am;
+    const std::optional<machine::Address> own = motes_.address(mote);
+    // Its island is not known for sure: then anything for its devid may be for it.
+    const machine::Address presumed = own.value_or(machine::Address{net.dest.pid, am});
+    hears(mote, {Role::kMote, presumed, true, context_.sink_am}, machine::Link::kRadio, seen,
+          mark.device, net, mark.receiver == mote);
+  }
+
+  void hears(std::uint16_t node, const machine::Router& router, machine::Link from,
+             const Observation& seen, std::uint16_t sender, const Net& net, bool sure) {
+    if (router.own.pid == 0) return;  // A sink of which no island is known.
+    const machine::Route route = machine::route_received(router, from, net.dest, net.src);
+    if (!route.deliver && route.onward != machine::Route::Onward::kNowhere) return;
+    const ReqId forbidden = route.deliver ? ReqId::kNone : route.requirement;
+    acks_.arrived(node, seen, sender, net, forbidden, forbidden == req::kN6Other, sure);
+  }
+
+  // An ack counts at the originator of what it acks.
+  void ack_comes(const Net& ack) {
+    const std::int32_t acked = machine::acked_seq_num(ack.body());
+    if (acked < 0) return;
+    const auto seq_num = static_cast<std::uint16_t>(acked);
+    if (mote_of_am_[ack.dest.devid] != kNobody) {
+      originals_.ack_heard(mote_of_am_[ack.dest.devid], ack, seq_num);
+    }
+    for (const std::uint16_t sink : sink_devices_) {
+      const Device& device = who_.devices[sink];
+      if (sinks_.island(sink) != ack.dest.pid) continue;
+      if (ack.dest.devid == device.am) originals_.ack_heard(sink, ack, seq_num);
+      if (ack.dest.devid == machine::kNullDevid && device.partner != kNobody) {
+        originals_.ack_heard(device.partner, ack, seq_num);
+      }
+    }
+  }
+
+  void serial(std::uint32_t index, const Observation& seen, const Mark& mark) {
+    const std::uint16_t sink = seen.to_mote ? who_.devices[mark.device].partner : mark.device;
     if (const std::int32_t id = set_island_id(seen.frame); id >= 0 && seen.to_mote) {
-      const std::uint16_t sink = who_.devices[mark.device].partner;
-      sinks_.set_island(sink, static_cast<std::uint16_t>(id), seen.place);
+      const auto island = static_cast<std::uint16_t>(id);
+      sinks_.set_island(sink, island, seen.place);
+      forwarding_.set_island(sink, island, seen.place.time_us);
       return;
     }
     if (!seen.to_mote) sinks_.showed_life(mark.device, seen.place.time_us, true);
     Net net;
-    SerialJoined joined;
     if (seen.frame.type != kAmNet || !parse_net(seen.frame.payload, net)) return;
-    if (!seen.to_mote && parse_serial_joined(net, joined)) {
-      sinks_.report(mark.device, seen, net, joined);
+    if (seen.to_mote) {
+      down_serial(index, seen, mark, sink, net);
+    } else {
+      up_serial(seen, sink, net);
     }
+    if (net.is_ack()) ack_comes(net);
+  }
+
+  void up_serial(const Observation& seen, std::uint16_t sink, const Net& net) {
+    const Device& device = who_.devices[sink];
+    SerialJoined joined;
+    if (parse_serial_joined(net, joined)) return sinks_.report(sink, seen, net, joined);
+    acks_.showed_life(sink, seen.place.time_us);
+    const std::uint16_t island = sinks_.island(sink);
+    if (net.src == machine::Address{island, device.am}) {
+      own_message(sink, seen, net, machine::Link::kSerial, net.src);
+    } else {
+      forwarding_.sent_on_serial(sink, seen, net);
+    }
+    if (device.partner == kNobody) return;
+    hears(device.partner,
+          {Role::kBaseStation, {island, machine::kNullDevid}, true, context_.sink_am},
+          machine::Link::kSerial, seen, sink, net, false);
+  }
+
+  void down_serial(std::uint32_t index, const Observation& seen, const Mark& mark,
+                   std::uint16_t sink, const Net& net) {
+    const std::uint16_t island = sinks_.island(sink);
+    const machine::Address base{island, machine::kNullDevid};
+    if (net.src == base) own_message(mark.device, seen, net, machine::Link::kSerial, base);
+    const bool sure = serial_acked(run_, index) || mark.receiver == sink;
+    forwarding_.heard_on_serial(sink, mark.device, seen, net, sure);
+    const std::uint16_t am = who_.devices[sink].am;
+    if (net.dest.devid != am && net.dest.devid != machine::kBroadcastDevid) return;
+    hears(sink, {Role::kSink, {island, am}, true, context_.sink_am}, machine::Link::kSerial, seen,
+          mark.device, net, sure);
   }
 
   void stranger(const Observation& seen, std::uint16_t device) {
@@ -184,6 +343,10 @@ class Judge {
       if (is(device, Role::kMote)) motes_.told(device, seen, *joined);
     } else if (const auto* mote_joined = std::get_if<machine::MoteJoined>(seen.notice)) {
       if (is(device, Role::kSink)) sinks_.told(device, seen, *mote_joined);
+    } else if (const auto* received = std::get_if<machine::Received>(seen.notice)) {
+      acks_.delivered(device, seen, *received);
+    } else if (const auto* ack = std::get_if<machine::AckReceived>(seen.notice)) {
+      originals_.told(device, seen, *ack);
     }
   }
 
@@ -191,8 +354,13 @@ class Judge {
   Identity who_;
   Findings findings_;
   Context context_;
+  std::vector<std::uint16_t> mote_of_am_;
+  std::vector<std::uint16_t> sink_devices_;
   MoteJoins motes_;
   SinkJoins sinks_;
+  Forwarding forwarding_;
+  Originals originals_;
+  Acks acks_;
   std::uint64_t frames_ = 0;
 };
 

@@ -66,6 +66,14 @@ inline bool parse_net(Bytes bytes, Net& out) {
   return true;
 }
 
+/// The same addresses, reliable and number; and the same payload.
+inline bool same_message(const Net& a, const Net& b) {
+  return a.addresses() == b.addresses() && a.seq_num == b.seq_num && a.reliable == b.reliable;
+}
+inline bool same_payload(const Net& a, const Net& b) {
+  return a.nbytes == b.nbytes && equal(a.payload, b.payload);
+}
+
 inline machine::Descriptor parse_descriptor(const std::uint8_t* p) {
   return {p[0], p[3], load_be16(p + 1)};
 }

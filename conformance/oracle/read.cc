@@ -43,6 +43,7 @@ std::string_view RunStorage::keep(std::string_view text) {
 }
 
 struct RunReader::State {
+  ReadAs as;
   Run run;
   std::int64_t first_ns = std::numeric_limits<std::int64_t>::max();
   // One file in the reading.
@@ -96,13 +97,15 @@ struct RunReader::State {
     run.files.push_back(name);
     ReaderOptions options;
     options.interface_name = interface_name;
-    reader = make_reader(detect(start), options);
+    options.hex_framing = as.hex_framing;
+    reader = make_reader(as.format == InputFormat::kUnknown ? detect(start) : as.format, options);
     taps.clear();
     frames = 0;
   }
 };
 
-RunReader::RunReader() : state_(std::make_unique<State>()) {
+RunReader::RunReader(const ReadAs& as) : state_(std::make_unique<State>()) {
+  state_->as = as;
   state_->run.storage = std::make_shared<RunStorage>();
 }
 RunReader::~RunReader() = default;
@@ -161,7 +164,9 @@ Run RunReader::finish() {
   const std::int64_t first_us =
       state_->first_ns == std::numeric_limits<std::int64_t>::max() ? 0
                                                                     : state_->first_ns / kNsPerUs;
+  const ReadAs as = state_->as;
   state_ = std::make_unique<State>();
+  state_->as = as;
   state_->run.storage = std::make_shared<RunStorage>();
   for (Observation& seen : run.seen) {
     if (seen.place.time_us == std::numeric_limits<std::int64_t>::min()) {

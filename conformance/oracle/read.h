@@ -12,10 +12,16 @@
 
 namespace rubric::oracle {
 
+/// What captures are; .rtr logs are known by their first line in any case.
+struct ReadAs {
+  InputFormat format = InputFormat::kUnknown;  ///< kUnknown: found out from the content.
+  Framing hex_framing = Framing::kSf;          ///< What the lines of hex text are.
+};
+
 /// Collects files to one run. Damaged bytes are observed as such and never stop the reading.
 class RunReader {
  public:
-  RunReader();
+  explicit RunReader(const ReadAs& as = {});
   ~RunReader();
   RunReader(const RunReader&) = delete;
   RunReader& operator=(const RunReader&) = delete;

@@ -1,0 +1,85 @@
+// What sinks pass on: from the radio to their serial line and back.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "conformance/machine/route.h"
+#include "conformance/oracle/context.h"
+#include "conformance/oracle/ring.h"
+
+namespace rubric::oracle {
+
+/// A message that a sink may have got, on its way through.
+struct Passing {
+  Net net;
+  Place place;
+  std::uint64_t order = 0;       ///< Of arrival at the sink.
+  std::uint16_t sender = kNobody;
+  std::uint16_t am_dest = 0;     ///< Where the radio frame goes.
+  ReqId forbidden = ReqId::kNone;  ///< Passing it on breaks this rule.
+  bool weak = false;             ///< And that rule is a SHOULD.
+  bool owed = false;             ///< Surely received, to be passed on, and not yet complained about.
+  bool twin = false;             ///< Another one of the same content is around.
+  std::uint8_t copies = 1;       ///< Times that it may have been received.
+  std::uint8_t passed = 0;
+};
+
+class Forwarding {
+ public:
+  Forwarding(Context& context);
+
+  /// On the air, from somebody else, to the address of sinks or to all.
+  void heard_on_radio(const Observation& seen, std::uint16_t sender, const Net& net,
+                      std::uint16_t surely_received_by);
+  /// The link repeated the frame that `sender` sent last.
+  void repeated_on_radio(const Net& net);
+  /// Down the serial line of `sink`.
+  void heard_on_serial(std::uint16_t sink, std::uint16_t base, const Observation& seen,
+                       const Net& net, bool surely_received);
+  /// `sink` put a message on its serial line that is not its own.
+  void sent_on_serial(std::uint16_t sink, const Observation& seen, const Net& net);
+  /// `sink` sent a message by radio that is not its own.
+  void sent_on_radio(std::uint16_t sink, const Observation& seen, const Net& net);
+  /// The sink's island, from now on.
+  void set_island(std::uint16_t sink, std::uint16_t island, std::int64_t now_us);
+  void begin_life(std::uint16_t sink);
+  void finish(std::int64_t end_us);
+
+ private:
+  static constexpr std::size_t kRoom = 256;
+  static constexpr std::size_t kEarlyRoom = 16;
+
+  struct Line {
+    std::uint16_t sink = kNobody;
+    std::uint16_t am = 0;
+    std::uint16_t island = 0;
+    std::int64_t island_changed_us = -1'000'000'000;
+    bool serial = false;           ///< Its line is captured.
+    Ring<Passing, kRoom> up;       ///< From the radio.
+    Ring<Passing, kRoom> down;     ///< From serial.
+    Ring<Passing, kEarlyRoom> early;  ///< On serial before the radio stamp, by skew of the taps.
+    std::uint64_t order = 0;
+    std::uint64_t last_up = 0;     ///< The order of the latest that was passed on.
+    std::uint64_t last_down = 0;
+    std::uint32_t owed_up = 0;
+    std::uint32_t owed_down = 0;
+  };
+
+  Line* find(std::uint16_t sink);
+  void store(Ring<Passing, kRoom>& ring, const Passing& passing, std::uint32_t& owed);
+  void pass_up(Line& line, Passing& passing, const Observation& seen);
+  void pass_down(Line& line, Passing& passing, const Observation& seen, const Net& net);
+  void refuse_up(Line& line, const Observation& seen, const Net& net);
+  void refuse_down(Line& line, const Observation& seen, const Net& net);
+  void expire_early(Line& line, std::int64_t now_us);
+  void overdue_up(Line& line, std::int64_t now_us);
+  void overdue_down(Line& line, std::int64_t now_us);
+  void unheard(Line& line, const Passing& passing);
+  bool out_of_order(const Passing& passing, std::uint64_t& last);
+
+  Context& context_;
+  std::vector<Line> lines_;
+};
+
+}  // namespace rubric::oracle

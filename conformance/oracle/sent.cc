@@ -1,0 +1,212 @@
+#include "conformance/oracle/sent.h"
+
+#include "conformance/machine/route.h"
+#include "conformance/machine/transport.h"
+
+namespace rubric::oracle {
+namespace {
+
+using machine::Link;
+using machine::Role;
+using machine::Route;
+using rubicon::Component;
+
+constexpr std::int64_t kAtOnceUs = 50'000;
+constexpr std::size_t kFloatBytes = 4;
+
+bool known_trans(std::uint8_t trans_id) {
+  return trans_id == kTransConnless || trans_id == kTransSyn || trans_id == kTransAck;
+}
+
+}  // namespace
+
+Originals::Originals(Context& context, std::size_t devices)
+    : context_(context), sent_(devices), orders_(devices, 0), acks_(devices) {}
+
+void Originals::begin_life(std::uint16_t node) {
+  sent_[node].clear();
+  acks_[node].clear();
+}
+
+void Originals::sent(std::uint16_t node, const Observation& seen, const Net& net, Link link,
+                     machine::Address own) {
+  ++orders_[node];
+  judge_content(node, seen, net);
+  judge_address(node, seen, net, link, own);
+  judge_number(node, seen, net);
+  if (net.sound && net.trans_id == kTransSyn) judge_synaptic(node, seen, net);
+  Sent sent;
+  sent.net = net;
+  sent.place = seen.place;
+  sent.order = orders_[node];
+  sent_[node].push(sent);
+}
+
+void Originals::judge_content(std::uint16_t node, const Observation& seen, const Net& net) {
+  if (!net.sound) {
+    const bool range = net.nbytes < 2 || net.nbytes > kNetPayloadMax;
+    context_.report(range ? req::kWireNetNbytes : req::kWireNetPayload, Severity::kFail,
+                    seen.place, node,
+                    {"nbytes is " + number(net.nbytes) + " in a message of " +
+                         number(net.payload.size()) + " bytes.",
+                     "2 to 102, and no more than the message has.", {}});
+    return;
+  }
+  if (net.reliable > 1) {
+    context_.report(req::kWireNetReliable, Severity::kFail, seen.place, node,
+                    {"reliable is " + number(net.reliable) + ".", "0 or 1.", {}});
+  }
+  if (net.dest.pid == machine::kLocalPid) {
+    context_.report(req::kN3Local, Severity::kFail, seen.place, node,
+                    {"A message to " + text_of(net.dest) + " leaves the node.",
+                     "The own island's id in place of the local island.", {}});
+  }
+  if (net.seq_num == machine::kNoSeq) {
+    context_.report(req::kN12Error, Severity::kWeak, seen.place, node,
+                    {"A message has the number 0xFFFF, the error value of send.",
+                     "Another number.", {}});
+  }
+  if (!known_trans(net.trans_id)) {
+    context_.report(req::kT1Wrap, Severity::kNote, seen.place, node,
+                    {"A message has the unknown TRANSID " + number(net.trans_id) + ".",
+                     "CONNLESS, SYN_CHANNEL or RUBICON_ACK.", {}});
+  } else {
+    context_.findings.kept(req::kT1Wrap);
+  }
+}
+
+void Originals::judge_address(std::uint16_t node, const Observation& seen, const Net& net,
+                              Link link, machine::Address own) {
+  const Device& device = context_.device(node);
+  // Sent to the broadcast island everything is fine (decision 114); to oneself nothing is said.
+  if (net.dest.pid == machine::kBroadcastPid || net.dest.pid == machine::kLocalPid) return;
+  const Route route = machine::route_own({device.role, own, true, context_.sink_am}, net.dest);
+  if (device.role == Role::kSink && link == Link::kRadio && route.onward == Route::Onward::kSerial) {
+    context_.report(req::kN6Own, Severity::kFail, seen.place, node,
+                    {"The sink sends " + name_of(net) + " by radio.", "Over serial.", {}});
+    return;
+  }
+  if (link != Link::kRadio || route.onward != Route::Onward::kRadio) return;
+  if (seen.frame.dest == route.am_dest) {
+    context_.findings.kept(route.requirement);
+    return;
+  }
+  context_.report(route.requirement, Severity::kFail, seen.place, node,
+                  {"A message to " + text_of(net.dest) + " goes to AM address " +
+                       number(seen.frame.dest) + ".",
+                   "AM address " + number(route.am_dest) + ".", {}});
+}
+
+void Originals::judge_number(std::uint16_t node, const Observation& seen, const Net& net) {
+  const std::int64_t now = seen.place.time_us;
+  Ring<Sent, kRoom>& ring = sent_[node];
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const Sent& before = ring.newest(i);
+    if (before.net.seq_num != net.seq_num) continue;
+    const bool awaits = before.net.reliable == 1 && !before.acked && before.net.sound &&
+                        !before.net.broadcast() && before.net.trans_id == kTransConnless &&
+                        context_.run.has_time &&
+                        now - before.place.time_us <
+                            context_.options.ack_timeout_us - context_.early_us();
+    const bool same = same_message(before.net, net) && same_payload(before.net, net);
+    if (awaits) {
+      context_.report(same ? req::kT3Resend : req::kN12Reuse, Severity::kFail, seen.place, node,
+                      {(same ? "The reliable message with number " : "Number ") +
+                           number(net.seq_num) + (same ? " is sent" : " is used") + " again, " +
+                           ms_text(now - before.place.time_us) +
+                           " after the message with this number that awaits its ack.",
+                       same ? "Resending is the application's decision, with a number of its own."
+                            : "A number that no message awaits.",
+                       {}});
+      return;
+    }
+    // Twice in a row, at once: a number that came again by chance would not do that.
+    const bool at_once = same && i == 0 && before.order + 1 == orders_[node] &&
+                         context_.run.has_time && now - before.place.time_us < kAtOnceUs;
+    if (at_once) {
+      context_.report(req::kN2Once, Severity::kFail, seen.place, node,
+                      {"The same message, number " + number(net.seq_num) + ", is sent twice, " +
+                           ms_text(now - before.place.time_us) + " apart.",
+                       "Once.", {}});
+    }
+    return;
+  }
+  context_.findings.kept(req::kN12Reuse);
+}
+
+void Originals::judge_synaptic(std::uint16_t node, const Observation& seen, const Net& net) {
+  Said said;
+  said.expected = "SYN_CHANNEL, LEARNING or ESN_DATA, unreliable, one float for each of at most "
+                  "ten connections.";
+  const bool app = net.app_id == static_cast<std::uint8_t>(Component::kLearning) ||
+                   net.app_id == static_cast<std::uint8_t>(Component::kEsnData);
+  const std::size_t bytes = net.body().size();
+  if (net.reliable != 0) {
+    said.text = "Synaptic data is sent reliable.";
+  } else if (!app) {
+    said.text = "Synaptic data has the APPID " + number(net.app_id) + ".";
+  } else if (bytes == 0 || bytes % kFloatBytes != 0 ||
+             bytes / kFloatBytes > machine::kConnectionsMax) {
+    said.text = "Synaptic data has " + number(bytes) + " bytes of values.";
+  }
+  if (!said.text.empty()) {
+    context_.report(req::kS2Content, Severity::kFail, seen.place, node, std::move(said));
+  } else {
+    context_.findings.kept(req::kS2Content);
+  }
+  if (net.src == net.dest) {
+    context_.report(req::kS4Local, Severity::kFail, seen.place, node,
+                    {"Data of a channel from the node to itself is sent.",
+                     "A local channel hands its values over without sending.", {}});
+  }
+}
+
+void Originals::ack_heard(std::uint16_t node, const Net& ack, std::uint16_t acked) {
+  Ring<Sent, kRoom>& ring = sent_[node];
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    Sent& sent = ring.newest(i);
+    if (sent.net.seq_num == acked && sent.net.reliable == 1) sent.acked = true;
+  }
+  if (context_.device(node).application) acks_[node].push({ack, acked});
+}
+
+void Originals::told(std::uint16_t node, const Observation& seen,
+                     const machine::AckReceived& ack) {
+  const std::int64_t now = seen.place.time_us;
+  Ring<Sent, kRoom>& ring = sent_[node];
+  Sent* match = nullptr;
+  for (std::size_t i = 0; i < ring.size() && match == nullptr; ++i) {
+    Sent& sent = ring.newest(i);
+    if (sent.net.seq_num == ack.seq_num && sent.net.reliable == 1) match = &sent;
+  }
+  const std::string what = "receive_ack(" + std::string(ack.success ? "success" : "failure") +
+                           ", number " + number(ack.seq_num) + ")";
+  if (match == nullptr) {
+    context_.report(ack.success ? req::kT3Success : req::kT3Match,
+                    context_.without(node, context_.device(node).first_us, now), seen.place, node,
+                    {what + " although the node has sent no reliable message with that number.",
+                     "The number of the message that was acked.", {}});
+    return;
+  }
+  if (match->told++ > 0) {
+    context_.report(req::kT3Once, Severity::kFail, seen.place, node,
+                    {what + " again.", "One receive_ack for each message.", {}});
+    return;
+  }
+  const std::int64_t waited = now - match->place.time_us;
+  if (ack.success && !match->acked) {
+    context_.report(req::kT3Success, context_.without(kNobody, match->place.time_us, now),
+                    seen.place, node,
+                    {what + ", but no ack of it was heard.", "No receive_ack before the ack.", {}});
+  } else if (!ack.success && context_.run.has_time &&
+             waited < context_.options.ack_timeout_us - context_.early_us()) {
+    context_.report(req::kT3Timeout, Severity::kFail, seen.place, node,
+                    {what + " " + ms_text(waited) + " after the message.",
+                     "Not before the timeout, " + ms_text(context_.options.ack_timeout_us) + ".",
+                     {}});
+  } else {
+    context_.findings.kept(ack.success ? req::kT3Success : req::kT3Timeout);
+  }
+}
+
+}  // namespace rubric::oracle

@@ -1,0 +1,56 @@
+// What nodes send of their own: addressing, numbers, repetitions, synaptic data.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "conformance/oracle/context.h"
+#include "conformance/oracle/ring.h"
+
+namespace rubric::oracle {
+
+/// A message that a node has sent.
+struct Sent {
+  Net net;
+  Place place;
+  bool acked = false;       ///< Its ack reached the node, or may have.
+  std::uint8_t told = 0;    ///< receive_ack events, by a log.
+  std::uint32_t order = 0;  ///< Among the frames of the node.
+};
+
+class Originals {
+ public:
+  Originals(Context& context, std::size_t devices);
+
+  void begin_life(std::uint16_t node);
+  /// `node`, whose address is `own`, sends a message of its own over `link`.
+  void sent(std::uint16_t node, const Observation& seen, const Net& net, machine::Link link,
+            machine::Address own);
+  /// Any other frame of the node on the air.
+  void counted(std::uint16_t node) { ++orders_[node]; }
+  /// An ack of `number` is on the air to `node`, or down its serial line.
+  void ack_heard(std::uint16_t node, const Net& ack, std::uint16_t number);
+  /// receive_ack, by a log.
+  void told(std::uint16_t node, const Observation& seen, const machine::AckReceived& ack);
+
+ private:
+  static constexpr std::size_t kRoom = 32;
+
+  void judge_content(std::uint16_t node, const Observation& seen, const Net& net);
+  void judge_address(std::uint16_t node, const Observation& seen, const Net& net,
+                     machine::Link link, machine::Address own);
+  void judge_synaptic(std::uint16_t node, const Observation& seen, const Net& net);
+  void judge_number(std::uint16_t node, const Observation& seen, const Net& net);
+
+  Context& context_;
+  std::vector<Ring<Sent, kRoom>> sent_;
+  std::vector<std::uint32_t> orders_;
+  struct Ack {
+    Net net;
+    std::uint16_t number = 0;
+  };
+  std::vector<Ring<Ack, kRoom>> acks_;
+};
+
+}  // namespace rubric::oracle
