@@ -1,0 +1,52 @@
+// The set of states that were seen, by their fingerprints of 64 bits: eight bytes a place.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+
+namespace rubric::explorer {
+
+/// Open addressing; several threads insert at once without locks. It grows between, not during.
+class Visited {
+ public:
+  Visited() { allocate(std::size_t{1} << 18); }
+
+  /// Makes room for so many more. No thread may insert meanwhile.
+  void reserve(std::size_t more);
+  /// How many more fit without growing.
+  std::size_t room() const;
+  /// Brings the place of a fingerprint nearer, for an insert soon.
+  void prefetch(std::uint64_t fingerprint) const {
+    __builtin_prefetch(&slots_[fingerprint & mask_], 1, 1);
+  }
+  /// True: it was not there. `fingerprint` is not 0.
+  bool insert(std::uint64_t fingerprint) {
+    for (std::size_t i = fingerprint & mask_;; i = (i + 1) & mask_) {
+      std::uint64_t there = slots_[i].load(std::memory_order_relaxed);
+      if (there == fingerprint) return false;
+      if (there != 0) continue;
+      if (slots_[i].compare_exchange_strong(there, fingerprint, std::memory_order_relaxed)) {
+        return true;
+      }
+      if (there == fingerprint) return false;
+    }
+  }
+  /// Told after a batch, since counting each would cost more than inserting.
+  void add_to_size(std::size_t inserted) { size_ += inserted; }
+  std::size_t size() const { return size_; }
+  std::size_t memory_bytes() const { return (mask_ + 1) * sizeof(std::uint64_t); }
+
+ private:
+  struct Release {
+    std::size_t bytes;
+    void operator()(std::atomic<std::uint64_t>* slots) const;
+  };
+  void allocate(std::size_t slots);
+
+  std::unique_ptr<std::atomic<std::uint64_t>[], Release> slots_{nullptr, Release{0}};
+  std::size_t mask_ = 0;
+  std::size_t size_ = 0;
+};
+
+}  // namespace rubric::explorer
