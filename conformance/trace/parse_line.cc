@@ -1,5 +1,7 @@
 #include "conformance/trace/parse_line.h"
 
+#include <algorithm>
+
 #include "conformance/trace/value_text.h"
 
 namespace rubric::trace {
@@ -85,10 +87,11 @@ void parse_op(Scanner& in, Line& line) {
 Value am_side(Scanner& in, std::string_view text) {
   Value value;
   const std::string problem = read_value(text, value);
-  const bool fits = value.is(Value::Kind::kNumber) || value.is(Value::Kind::kAny) ||
+  const bool number = value.is(Value::Kind::kNumber) && !text.starts_with('-');
+  const bool fits = number || value.is(Value::Kind::kAny) ||
                     value.is(Value::Kind::kVariable) ||
                     (value.is(Value::Kind::kNames) && value.text == "all");
-  if (!problem.empty() || !fits) {
+  if (!problem.empty() || !fits || value.negated) {
     in.fail_at(text, "expected an AM address: a number, all, a variable or *, given " +
                          quoted(text));
   }
@@ -166,6 +169,12 @@ void parse_requirements(Scanner& in, Line& line) {
     const std::string_view word =
         in.until([](char c) { return c == ' ' || c == '\t' || c == ']' || c == '['; });
     if (word.empty()) in.fail("expected requirements and ']'");
+    const auto fits = [](char c) {
+      return (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-';
+    };
+    if (word[0] < 'A' || !std::all_of(word.begin(), word.end(), fits)) {
+      in.fail_at(word, "expected a requirement, as J4-SEQ, given " + quoted(word));
+    }
     line.requirements.emplace_back(word);
   }
 }
@@ -173,16 +182,18 @@ void parse_requirements(Scanner& in, Line& line) {
 void parse_bytes(Scanner& in, Line& line) {
   in.advance(1);
   const std::string_view text = trimmed(in.until([](char c) { return c == ';'; }));
-  std::string digits;
-  for (const char c : text) {
-    if (c != ' ' && c != '\t') digits += c;
+  // Blanks stand between bytes, not within one.
+  line.bytes.emplace();
+  for (std::size_t at = 0; at < text.size();) {
+    if (text[at] == ' ' || text[at] == '\t') {
+      ++at;
+    } else if (read_hex_bytes(text.substr(at, 2), *line.bytes)) {
+      at += 2;
+    } else {
+      in.fail_at(text, "expected bytes in hex behind '|'");
+    }
   }
-  Value value;
-  if (digits.empty() || !read_value('x' + digits, value).empty() ||
-      !value.is(Value::Kind::kBytes)) {
-    in.fail_at(text, "expected bytes in hex behind '|'");
-  }
-  line.bytes = value.text;
+  if (line.bytes->empty()) in.fail_at(text, "expected bytes in hex behind '|'");
 }
 
 // Nothing, or `; text`.
@@ -241,7 +252,8 @@ Case parse_case(Scanner& in) {
   Case one;
   in.skip_blanks();
   one.place = in.place();
-  const std::string_view name = in.word();
+  const std::string_view name =
+      in.until([](char c) { return c == ' ' || c == '\t' || c == ';'; });
   if (!is_dotted_name(name)) in.fail_at(name, "expected the name of a case");
   one.name = name;
   one.comment = parse_comment(in);

@@ -59,17 +59,6 @@ bool is_names(std::string_view text) {
   }
 }
 
-bool read_hex_bytes(std::string_view digits, std::string& out) {
-  if (digits.size() % 2 != 0) return false;
-  for (std::size_t i = 0; i < digits.size(); i += 2) {
-    const int high = hex_digit(digits[i]);
-    const int low = hex_digit(digits[i + 1]);
-    if (high < 0 || low < 0) return false;
-    out += static_cast<char>(high << 4 | low);
-  }
-  return true;
-}
-
 std::string read_quoted(std::string_view text, Value& out) {
   out.kind = Value::Kind::kText;
   if (text.size() < 2 || text.back() != '"') return "text without a closing quote";
@@ -188,6 +177,17 @@ std::string read_plain(std::string_view text, Value& out) {
 }
 
 }  // namespace
+
+bool read_hex_bytes(std::string_view digits, std::string& out) {
+  if (digits.size() % 2 != 0) return false;
+  for (std::size_t i = 0; i < digits.size(); i += 2) {
+    const int high = hex_digit(digits[i]);
+    const int low = hex_digit(digits[i + 1]);
+    if (high < 0 || low < 0) return false;
+    out += static_cast<char>(high << 4 | low);
+  }
+  return true;
+}
 
 bool read_integer(std::string_view text, std::int64_t& out) {
   const bool hex = text.starts_with("0x");

@@ -27,6 +27,8 @@ bool is_dotted_name(std::string_view text);
 /// Names joined by dots, each perhaps with an index: "payload.body.updates[0].value".
 bool is_path(std::string_view text);
 
+/// Appends the bytes of hex digits, two a byte, without blanks; false at anything else.
+bool read_hex_bytes(std::string_view digits, std::string& out);
 /// Two hex digits a byte.
 void put_hex(std::string_view bytes, std::string& out);
 
