@@ -2,11 +2,13 @@
 #include <CLI/CLI.hpp>
 #include <csignal>
 
+#include "tools/check.h"
 #include "tools/cli/usage.h"
 #include "tools/convert.h"
 #include "tools/decode.h"
 #include "tools/encode.h"
 #include "tools/explain.h"
+#include "tools/explore.h"
 #include "tools/messages.h"
 #include "tools/simulate.h"
 #include "tools/stats.h"
@@ -15,7 +17,7 @@ namespace {
 
 constexpr const char* kFooter =
     "Exit codes: 0 clean, 1 something malformed was found, 2 usage, 3 input cannot be read or\n"
-    "output cannot be written. 'rubric COMMAND --help' says more.";
+    "output cannot be written; check has others. 'rubric COMMAND --help' says more.";
 
 }  // namespace
 
@@ -32,7 +34,9 @@ int main(int argc, char** argv) {
   rubric::tools::add_convert(app);
   rubric::tools::add_stats(app);
   rubric::tools::add_explain(app);
+  rubric::tools::add_explore(app);
   rubric::tools::add_messages(app);
   rubric::tools::add_simulate(app);
+  rubric::tools::add_check(app);
   return rubric::cli::parse_and_run(app, argc, argv);
 }

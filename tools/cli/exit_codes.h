@@ -11,6 +11,16 @@ enum ExitCode : int {
   kExitInput = 3,      ///< Input cannot be read or output cannot be written.
 };
 
+/// Exit codes of the subcommands that give verdicts (check).
+enum VerdictCode : int {
+  kVerdictExpected = 0,      ///< Everything is as expected.
+  kVerdictFailed = 1,        ///< A failure that nobody expected, or an expectation not true.
+  kVerdictBroken = 2,        ///< The kit itself broke, or could not write what it found.
+  kVerdictInconclusive = 3,  ///< Nothing could be decided.
+  kVerdictUsage = 64,        ///< The command line or the expectation file makes no sense.
+  kVerdictInput = 66,        ///< Input cannot be read.
+};
+
 /// Ends the subcommand, from within its callback, with this code.
 [[noreturn]] void exit_with(int code);
 

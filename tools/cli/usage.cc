@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -31,11 +32,17 @@ std::vector<std::string> option_names(const CLI::App& app) {
   return names;
 }
 
+std::map<const CLI::App*, int>& usage_codes() {
+  static std::map<const CLI::App*, int> codes;
+  return codes;
+}
+
 int complain(const CLI::App& app, const std::string& what) {
   const std::string name =
       app.get_parent() ? app.get_parent()->get_name() + " " + app.get_name() : app.get_name();
   fmt::print(stderr, "{}: {}\nTry '{} --help'.\n", name, what, name);
-  return kExitUsage;
+  const auto code = usage_codes().find(&app);
+  return code == usage_codes().end() ? kExitUsage : code->second;
 }
 
 // The subcommand that was given, or the program itself.
@@ -65,6 +72,8 @@ int report(const CLI::App& app, const CLI::ParseError& error) {
 }
 
 }  // namespace
+
+void set_usage_exit_code(const CLI::App& command, int code) { usage_codes()[&command] = code; }
 
 void exit_with(int code) { throw CLI::RuntimeError(code); }
 

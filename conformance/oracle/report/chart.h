@@ -1,0 +1,16 @@
+// Sequence charts in text.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "conformance/oracle/report/scene.h"
+
+namespace rubric::report {
+
+/// One column a node, one row an observation, the observation `marked` with "<<<" behind it and a
+/// doubled arrow. Fits `width` where it can; each line behind `indent` blanks.
+std::string chart(const Scene& scene, const std::vector<std::size_t>& rows, std::size_t marked,
+                  std::size_t indent, std::size_t width);
+
+}  // namespace rubric::report

@@ -1,0 +1,198 @@
+#include "conformance/oracle/report/scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <tuple>
+
+#include "conformance/events/app_events.h"
+#include "conformance/oracle/message.h"
+#include "conformance/trace/concrete.h"
+#include "conformance/trace/print.h"
+
+namespace rubric::report {
+namespace {
+
+using machine::Role;
+using oracle::kNobody;
+using Kind = oracle::Observation::Kind;
+
+trace::Concrete decoded(const oracle::Observation& seen) {
+  const machine::Frame& frame = seen.frame;
+  trace::AmFrame am{frame.dest, frame.src, 0, frame.type, {}};
+  am.payload.assign(frame.payload.data(), frame.payload.data() + frame.payload.size());
+  return trace::decode(am, frame.link == machine::Link::kRadio    ? trace::LinkKind::kRadio
+                           : frame.link == machine::Link::kSerial ? trace::LinkKind::kSerial
+                                                                  : trace::LinkKind::kPeis);
+}
+
+// Without the outer parts of paths that nobody misses.
+void shorten(trace::Message& message) {
+  const auto tail = [](const std::string& path) { return path.substr(path.rfind('.') + 1); };
+  std::vector<std::string> tails;
+  for (const trace::FieldValue& field : message.fields) tails.push_back(tail(field.path));
+  for (std::size_t i = 0; i < tails.size(); ++i) {
+    std::string& path = message.fields[i].path;
+    if (std::count(tails.begin(), tails.end(), tails[i]) == 1) {
+      path = tails[i];
+    } else if (path.starts_with("payload.")) {
+      path.erase(0, std::string_view("payload.").size());
+    }
+  }
+}
+
+std::string value_of(const trace::Message& message, std::string_view path) {
+  const trace::Value* value = message.find(path);
+  if (!value) return {};
+  if (value->is(trace::Value::Kind::kNames)) return value->text;
+  return value->is(trace::Value::Kind::kNumber) ? std::to_string(value->number) : std::string();
+}
+
+std::string net_label(const trace::Message& message) {
+  const std::string trans = value_of(message, "payload.trans_id");
+  if (trans == "rubicon_ack") return "ack of " + value_of(message, "payload.body.seq_num");
+  const std::string app = value_of(message, "payload.app_id");
+  const std::string seq = value_of(message, "seq_num");
+  return fmt::format("{} {}", app.empty() ? message.name : app, seq);
+}
+
+std::string short_name(const oracle::Device& device) {
+  if (!device.known) return fmt::format("unknown {}", device.am);
+  if (device.role == Role::kMote) return fmt::format("mote {}", device.am);
+  if (device.role == Role::kBaseStation) return fmt::format("base {}", device.island);
+  return device.island == 0 ? fmt::format("sink #{}", device.am)
+                            : fmt::format("sink {}", device.island);
+}
+
+std::string address_text(std::uint16_t am) {
+  return am == 0xFFFF ? std::string("all") : fmt::format("address {}", am);
+}
+
+}  // namespace
+
+Scene::Scene(const oracle::Run& run, const oracle::Options& options)
+    : run_(run), who_(oracle::identify(run, options)) {
+  std::uint16_t first_island = 0;
+  for (const oracle::Device& device : who_.devices) {
+    const bool logged = names_.size() < run.nodes.size();
+    names_.push_back(logged ? device.name : short_name(device));
+    const bool motes = device.role == Role::kMote || device.island == 0;
+    if (!motes && (first_island == 0 || device.island < first_island)) first_island = device.island;
+  }
+  // Left: base station and sink of one island. Right: sinks before their base stations.
+  using Order = std::tuple<int, std::uint16_t, int, std::uint16_t, std::size_t>;
+  std::vector<Order> order;
+  for (std::size_t i = 0; i < who_.devices.size(); ++i) {
+    const oracle::Device& device = who_.devices[i];
+    const bool base = device.role == Role::kBaseStation;
+    const bool left = device.role != Role::kMote && device.island == first_island;
+    const int side = device.role == Role::kMote ? 1 : left ? 0 : 2;
+    order.emplace_back(side, device.role == Role::kMote ? std::uint16_t{0} : device.island,
+                       base == left ? 0 : 1, device.am, i);
+  }
+  std::sort(order.begin(), order.end());
+  ranks_.resize(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) ranks_[std::get<4>(order[i])] = i;
+}
+
+std::uint16_t Scene::node_named(const std::string& name) const {
+  for (std::size_t i = 0; i < who_.devices.size(); ++i) {
+    if (who_.devices[i].name == name) return static_cast<std::uint16_t>(i);
+  }
+  return kNobody;
+}
+
+void Scene::add_radio_receivers(std::size_t i, std::vector<std::uint16_t>& out) const {
+  const machine::Frame& frame = run_.seen[i].frame;
+  oracle::Net net;
+  oracle::AckJoin ack;
+  std::uint16_t island = 0;  // Of the sink that is meant, where the message says so.
+  if (frame.type == oracle::kAmNet && oracle::parse_net(frame.payload, net)) island = net.dest.pid;
+  if (frame.type == oracle::kAmAckJoin && oracle::parse_ack_join(frame.payload, ack)) {
+    island = ack.dest.pid;
+  }
+  const auto matches = [&](const oracle::Device& device, bool exactly) {
+    if (!device.known || device.role == Role::kBaseStation) return false;
+    if (frame.dest != 0xFFFF && frame.dest != device.am) return false;
+    return !exactly || device.role == Role::kMote || device.island == island;
+  };
+  for (const bool exactly : {true, false}) {
+    if (exactly && island == 0) continue;
+    for (std::size_t d = 0; d < who_.devices.size(); ++d) {
+      const auto node = static_cast<std::uint16_t>(d);
+      if (node != sender(i) && matches(who_.devices[d], exactly)) out.push_back(node);
+    }
+    if (!out.empty()) return;
+  }
+}
+
+std::vector<std::uint16_t> Scene::receivers(std::size_t i) const {
+  std::vector<std::uint16_t> out;
+  const oracle::Observation& seen = run_.seen[i];
+  const oracle::Mark& mark = who_.marks[i];
+  if (mark.receiver != kNobody) {
+    out.push_back(mark.receiver);
+  } else if (seen.kind == Kind::kRadio) {
+    add_radio_receivers(i, out);
+  } else if (seen.kind == Kind::kSerial && mark.device != kNobody &&
+             who_.devices[mark.device].partner != kNobody) {
+    out.push_back(who_.devices[mark.device].partner);
+  }
+  return out;
+}
+
+bool Scene::concerns(std::size_t i, std::uint16_t node) const {
+  if (sender(i) == node) return true;
+  const std::vector<std::uint16_t> to = receivers(i);
+  return std::find(to.begin(), to.end(), node) != to.end();
+}
+
+bool Scene::is_echo(std::size_t i) const {
+  return who_.marks[i].repeat || run_.seen[i].kind == Kind::kLinkAck;
+}
+
+std::string Scene::label(std::size_t i) const {
+  const oracle::Observation& seen = run_.seen[i];
+  if (seen.kind == Kind::kCall && seen.call) return events::from_call(*seen.call).name;
+  if (seen.kind == Kind::kNotice && seen.notice) return events::from_notice(*seen.notice).name;
+  if (seen.kind == Kind::kLinkAck) return fmt::format("link ack {}", seen.dsn);
+  if (seen.kind == Kind::kDamaged) return "damaged";
+  const trace::Message message = decoded(seen).message;
+  if (message.name == "net_msg") return net_label(message);
+  const std::string seq = value_of(message, "seq_num");
+  return seq.empty() ? message.name : message.name + " " + seq;
+}
+
+std::string Scene::message(std::size_t i) const {
+  const oracle::Observation& seen = run_.seen[i];
+  if (seen.kind == Kind::kCall && seen.call) return trace::print(events::from_call(*seen.call));
+  if (seen.kind == Kind::kNotice && seen.notice) {
+    return trace::print(events::from_notice(*seen.notice));
+  }
+  if (seen.kind == Kind::kLinkAck) return fmt::format("link acknowledgement of {}", seen.dsn);
+  if (seen.kind == Kind::kDamaged) {
+    return fmt::format("damaged, breaks {}", trace::requirement_text(seen.broken));
+  }
+  trace::Message message = decoded(seen).message;
+  shorten(message);
+  return trace::print(message);
+}
+
+std::string Scene::route(std::size_t i) const {
+  const oracle::Observation& seen = run_.seen[i];
+  const bool frame = seen.kind == Kind::kRadio || seen.kind == Kind::kSerial;
+  if (!frame) return sender(i) == kNobody ? std::string() : name(sender(i));
+  const std::string from = sender(i) != kNobody         ? name(sender(i))
+                           : seen.kind == Kind::kSerial ? "serial line"
+                                                        : address_text(seen.frame.src);
+  const std::vector<std::uint16_t> to = receivers(i);
+  std::string names;
+  for (const std::uint16_t node : to) names += (names.empty() ? "" : ", ") + name(node);
+  if (to.size() > 2) names = "all";
+  if (to.empty()) {
+    names = seen.kind == Kind::kSerial ? "serial line" : address_text(seen.frame.dest);
+  }
+  return from + " > " + names;
+}
+
+}  // namespace rubric::report

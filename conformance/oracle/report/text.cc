@@ -1,0 +1,323 @@
+#include "conformance/oracle/report/text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "codec/reflect/fault_text.h"
+#include "conformance/oracle/report/chart.h"
+#include "conformance/oracle/report/scene.h"
+#include "conformance/oracle/report/words.h"
+
+namespace rubric::report {
+namespace {
+
+using oracle::Finding;
+using oracle::kNobody;
+using oracle::Severity;
+
+constexpr std::size_t kFramesBefore = 3;
+constexpr std::size_t kFramesAfter = 2;
+constexpr std::size_t kLinesOfRule = 3;  // Of a rule and severity, without --verbose.
+constexpr std::string_view kIndent = "  ";
+
+class TextReport {
+ public:
+  TextReport(const Story& story, const TextOptions& options)
+      : story_(story),
+        options_(options),
+        windows_(story.run, story.options, options.judge) {}
+
+  std::string text() {
+    about_the_run();
+    std::vector<std::size_t> lines;  // Findings that get a line each.
+    std::set<std::pair<ReqId, std::string>> told;
+    const auto& findings = story_.report.findings;
+    for (std::size_t i = 0; i < findings.size(); ++i) {
+      const bool failed = findings[i].severity == Severity::kFail && !is_expected(i);
+      const bool first = failed && told.emplace(findings[i].requirement, findings[i].node).second;
+      if (first || options_.verbose) {
+        in_full(i);
+      } else {
+        lines.push_back(i);
+      }
+    }
+    in_lines(lines);
+    expectations();
+    sum();
+    return std::move(out_);
+  }
+
+ private:
+  bool is_expected(std::size_t i) const {
+    return story_.outcome.expected_by[i] != kUnexpected;
+  }
+
+  std::string painted(std::string_view style, std::string_view text) const {
+    return options_.color ? fmt::format("\033[{}m{}\033[0m", style, text) : std::string(text);
+  }
+
+  std::string_view style_of(Severity severity) const {
+    switch (severity) {
+      case Severity::kFail: return "1;31";
+      case Severity::kWeak: return "33";
+      case Severity::kInconclusive: return "35";
+      case Severity::kStray: return "36";
+      case Severity::kNote: return "2";
+    }
+    return "0";
+  }
+
+  // Like wrapped(), with the first letters in a style, which takes no room.
+  void styled_line(std::string_view style, std::string_view head, std::string_view rest) {
+    std::string lines = wrapped(kIndent, fmt::format("{} {}", head, rest), options_.width);
+    lines.erase(0, kIndent.size());
+    for (std::size_t at = lines.find("\n  "); at != lines.npos; at = lines.find("\n  ", at + 3)) {
+      lines.insert(at + 1, kIndent);
+    }
+    if (lines.starts_with(head)) lines.replace(0, head.size(), painted(style, head));
+    out_ += lines;
+  }
+
+  void about_the_run() {
+    std::string files;
+    for (const std::string& file : story_.run.files) files += (files.empty() ? "" : ", ") + file;
+    const oracle::Options& o = story_.options;
+    out_ += wrapped("", fmt::format("{}: {}, profile {}, sniffer {}, start {}", files,
+                                    counted(story_.report.frames, "frame"),
+                                    o.deployed ? "deployed" : "paper",
+                                    o.sniffer_complete ? "complete" : "unknown",
+                                    o.start_cold ? "cold" : "unknown"),
+                    options_.width);
+    for (const std::string& fact : story_.report.facts) {
+      out_ += wrapped(kIndent, fact, options_.width);
+    }
+    if (story_.report.frames == 0) {
+      out_ += wrapped(kIndent, "No frames of this protocol: there is nothing to judge.",
+                      options_.width);
+    }
+    if (!story_.run.has_time) {
+      out_ += wrapped(kIndent, "Some of it has no time stamps: rules about time are not judged.",
+                      options_.width);
+    }
+  }
+
+  std::string times_text(const Finding& finding) const {
+    if (finding.count < 2) return {};
+    std::string out = fmt::format(", {} times", finding.count);
+    if (finding.last.frame != 0) out += fmt::format(" up to frame {}", finding.last.frame);
+    return out;
+  }
+
+  std::string heading(std::size_t i) const {
+    const Finding& finding = story_.report.findings[i];
+    return fmt::format("{}  {}{}{}", trace_id(finding.requirement),
+                       finding.node.empty() ? std::string() : finding.node + ", ",
+                       place_text(story_.run, finding.place), times_text(finding));
+  }
+
+  static std::string_view trace_id(ReqId id) {
+    return id == ReqId::kNone ? std::string_view("(no rule)") : reflect::requirement(id).id;
+  }
+
+  std::string head(std::size_t i) const {
+    std::string name(severity_name(story_.report.findings[i].severity));
+    std::transform(name.begin(), name.end(), name.begin(),
+                   [](char c) { return static_cast<char>(c >= 'a' && c <= 'z' ? c - 32 : c); });
+    return is_expected(i) ? "EXPECTED " + name : name;
+  }
+
+  void field(std::string_view name, std::string_view text) {
+    if (text.empty()) return;
+    out_ += wrapped(fmt::format("{}{:<9} ", kIndent, name), text, options_.width);
+  }
+
+  void in_full(std::size_t i) {
+    const Finding& finding = story_.report.findings[i];
+    out_ += '\n';
+    styled_line(style_of(finding.severity), head(i), heading(i));
+    out_ += wrapped(kIndent, finding.text, options_.width);
+    const reflect::Requirement& rule = reflect::requirement(finding.requirement);
+    if (finding.requirement != ReqId::kNone) {
+      field("Rule:", fmt::format("{} ({} {}; {})", rule.sentence, rule.level, rule.id,
+                                 *rule.source == '\0' ? rule.clause : rule.source));
+    }
+    field("Allowed:", finding.expected);
+    if (is_expected(i)) {
+      field("Expected:",
+            story_.expected.expectations[story_.outcome.expected_by[i]].reason);
+    }
+    hypotheses(finding);
+    frames(finding);
+    replay(finding);
+  }
+
+  void hypotheses(const Finding& finding) {
+    if (finding.hypotheses.empty()) return;
+    const bool one = finding.hypotheses.size() == 1;
+    out_ += fmt::format("{}{}\n", kIndent,
+                        one ? "What could explain it:"
+                            : "What could explain it, the one that got furthest first:");
+    for (std::size_t h = 0; h < finding.hypotheses.size(); ++h) {
+      const oracle::Hypothesis& hypothesis = finding.hypotheses[h];
+      out_ += wrapped(fmt::format("{:>4}. ", h + 1), hypothesis.text, options_.width);
+      const std::string_view miss = h == 0 ? "nearest miss:" : "missed:";
+      if (!hypothesis.allowed.empty()) {
+        out_ += wrapped("      allowed next: ", hypothesis.allowed, options_.width);
+      }
+      if (!hypothesis.miss.empty()) {
+        out_ += wrapped(fmt::format("      {:<13} ", miss), hypothesis.miss, options_.width);
+      }
+    }
+  }
+
+  // The frame at the place, some before it and some after it that concern the same node.
+  std::vector<std::size_t> window(std::size_t at, std::uint16_t node) {
+    const auto chosen = [&](std::size_t i) {
+      return !scene_->is_echo(i) && (node == kNobody || scene_->concerns(i, node));
+    };
+    std::vector<std::size_t> rows;
+    for (std::size_t i = at; i > 0 && rows.size() < kFramesBefore; --i) {
+      if (chosen(i - 1)) rows.insert(rows.begin(), i - 1);
+    }
+    if (at >= story_.run.seen.size()) return rows;
+    rows.push_back(at);
+    const std::size_t full = rows.size() + kFramesAfter;
+    for (std::size_t i = at + 1; i < story_.run.seen.size() && rows.size() < full; ++i) {
+      if (chosen(i)) rows.push_back(i);
+    }
+    return rows;
+  }
+
+  void frames(const Finding& finding) {
+    if (!scene_) scene_.emplace(story_.run, story_.options);
+    const std::size_t all = story_.run.seen.size();
+    const std::size_t at = finding.place.frame == 0 ? all : index_of(story_.run, finding.place);
+    std::uint16_t node = scene_->node_named(finding.node);
+    if (node == kNobody && at < all) node = scene_->sender(at);
+    const std::vector<std::size_t> rows = window(at, node);
+    if (rows.empty()) return;
+    out_ += fmt::format("{}Frames{}:\n", kIndent,
+                        node == kNobody ? "" : " of " + scene_->name(node));
+    for (const std::size_t i : rows) {
+      const oracle::Place& place = story_.run.seen[i].place;
+      std::string where = fmt::format("{} {:>5}", i == at ? '>' : ' ', place.frame);
+      if (story_.run.files.size() > 1) where += fmt::format(" of {}", place.file + 1);
+      where += fmt::format("  offset {:<6}", place.offset_bytes);
+      const std::string time = seconds_text(place.time_us);
+      if (!time.empty()) where += fmt::format(" {:>10}", time);
+      out_ += wrapped(fmt::format("{}{}  ", kIndent, where),
+                      fmt::format("{}: {}", scene_->route(i), scene_->message(i)),
+                      options_.width);
+    }
+    out_ += '\n' + chart(*scene_, rows, at, kIndent.size() + 2, options_.width);
+  }
+
+  void replay(const Finding& finding) {
+    std::string ranges;
+    if (options_.judge) {
+      for (const FrameRange& range : windows_.around(finding)) {
+        ranges += " --frames " + range_text(range, story_.run.files.size());
+      }
+    }
+    // A command is copied whole, so it is not broken.
+    out_ += fmt::format("\n{}Again:    {}{}{}\n", kIndent, options_.command, options_.files,
+                        ranges);
+  }
+
+  // The rest: by severity, then by rule, a few of each.
+  void in_lines(const std::vector<std::size_t>& which) {
+    using Key = std::tuple<int, bool, ReqId>;
+    std::map<Key, std::vector<std::size_t>> groups;
+    for (const std::size_t i : which) {
+      const Finding& finding = story_.report.findings[i];
+      groups[{-static_cast<int>(finding.severity), is_expected(i), finding.requirement}].push_back(
+          i);
+    }
+    if (!groups.empty()) out_ += '\n';
+    for (const auto& [key, group] : groups) {
+      for (std::size_t n = 0; n < group.size(); ++n) {
+        const std::size_t i = group[n];
+        const Finding& finding = story_.report.findings[i];
+        if (n >= kLinesOfRule && group.size() > kLinesOfRule + 1) {
+          out_ += fmt::format("{}and {} more of {} (--verbose lists them)\n", kIndent,
+                              group.size() - n, trace_id(finding.requirement));
+          break;
+        }
+        std::string rest = fmt::format("{}: {}", heading(i), finding.text);
+        if (is_expected(i)) {
+          rest += fmt::format(" Expected: {}",
+                              story_.expected.expectations[story_.outcome.expected_by[i]].reason);
+        }
+        styled_line(style_of(finding.severity), head(i), rest);
+      }
+    }
+  }
+
+  void expectations() {
+    for (std::size_t e = 0; e < story_.outcome.results.size(); ++e) {
+      const ExpectationResult& result = story_.outcome.results[e];
+      const Expectation& one = story_.expected.expectations[e];
+      const std::string place = fmt::format("{}:{}", story_.expected.name, one.line);
+      if (result.came == Came::kStale) {
+        out_ += '\n';
+        styled_line("1;31", "STALE", fmt::format(
+            "{}: {} does not fail with \"{}\" any more. If that is meant, delete the expectation.",
+            place, trace_id(one.requirement), one.message));
+      } else if (result.came == Came::kOtherMessage) {
+        const Finding& finding = story_.report.findings[result.findings.front()];
+        out_ += '\n';
+        styled_line("1;31", "OTHER MESSAGE", fmt::format(
+            "{}: {} was expected to say \"{}\", but {} says: {}", place,
+            trace_id(one.requirement), one.message, place_text(story_.run, finding.place),
+            finding.text));
+      }
+    }
+  }
+
+  void sum() {
+    std::map<Severity, std::uint64_t> counts;
+    std::uint64_t expected = 0;
+    for (std::size_t i = 0; i < story_.report.findings.size(); ++i) {
+      const Severity severity = story_.report.findings[i].severity;
+      ++(is_expected(i) ? expected : counts[severity]);
+    }
+    const Outcome& outcome = story_.outcome;
+    std::string text = counted(counts[Severity::kFail], "failure");
+    if (!story_.expected.expectations.empty()) {
+      text += fmt::format(", {} expected, {} not true", counted(expected, "known failure"),
+                          counted(outcome.broken_expectations, "expectation"));
+    }
+    text += fmt::format(", {} weak, {} stray, {} inconclusive, {}; {} judged, {} exercised",
+                        counts[Severity::kWeak], counts[Severity::kStray],
+                        counts[Severity::kInconclusive], counted(counts[Severity::kNote], "note"),
+                        counted(story_.report.frames, "frame"),
+                        counted(story_.report.exercised.size(), "rule"));
+    std::string verdict(verdict_name(story_.report.verdict));
+    if (story_.report.verdict == oracle::Verdict::kFail && outcome.as_expected()) {
+      verdict += " as expected";
+    } else if (outcome.exit_code() == 3) {
+      verdict = "inconclusive, nothing could be judged";
+    }
+    const bool good = outcome.exit_code() == 0;
+    out_ += '\n';
+    styled_line(good ? "1;32" : "1;31", "Verdict:", fmt::format("{}: {}.", verdict, text));
+  }
+
+  const Story& story_;
+  const TextOptions& options_;
+  Windows windows_;
+  std::optional<Scene> scene_;  // Costs a pass, so only where there is something to show.
+  std::string out_;
+};
+
+}  // namespace
+
+std::string text_report(const Story& story, const TextOptions& options) {
+  return TextReport(story, options).text();
+}
+
+}  // namespace rubric::report

@@ -1,0 +1,34 @@
+// A report for people.
+#pragma once
+
+#include <string>
+
+#include "conformance/oracle/report/expect.h"
+#include "conformance/oracle/report/window.h"
+
+namespace rubric::report {
+
+/// All that a report is made of. Borrowed.
+struct Story {
+  const oracle::Run& run;
+  const oracle::Options& options;
+  const oracle::Report& report;
+  const ExpectationFile& expected;
+  const Outcome& outcome;
+};
+
+struct TextOptions {
+  std::size_t width = 100;
+  bool color = false;
+  bool verbose = false;        ///< Every finding in full.
+  /// The command that made this run, ready for a shell: program and options, and its files.
+  std::string command = "rubric check";
+  std::string files;
+  Judge judge;                 ///< Finds parts of the run that show a finding; empty: none.
+};
+
+/// What the run is, each failure in full (others of the same rule and node in a line), the rest in
+/// a line each, what became of expectations, and the sum.
+std::string text_report(const Story& story, const TextOptions& options);
+
+}  // namespace rubric::report
