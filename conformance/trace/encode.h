@@ -14,9 +14,9 @@ AmFrame encode(const Message& message, const Bindings& bindings = {});
 
 /// The frame of a line: its exact bytes if it has any, else its message with the addresses that
 /// `am=` says. Without `am=` a frame is for the node that it is given to, a join_request for all;
-/// its source is the devid of `src` if a node has that, else the one id that nodes of the other role
-/// have. Over PEIS islands stand in place of ids. Throws TraceError, also where no source can be
-/// told.
+/// its source is the devid of `src` if a node has that, else the one id that nodes of the other
+/// role have. Over PEIS islands stand in place of ids. Throws TraceError, also where no source can
+/// be told.
 AmFrame frame_of(const Line& line, const Scope& scope, const Bindings& bindings = {});
 
 /// Whether a message can be made of this pattern at all: variables, wildcards and ranges stand for

@@ -70,8 +70,8 @@ TEST(Grammar, ExamplesOfTheDocument) {
 
 // What the parser adds to the grammar: orders of numbers and sizes.
 bool is_limit(const std::string& errors) {
-  for (const char* limit : {"is empty", "ends before it begins", "digits, given", "a range of numbers",
-                            "from 0 to 65535"}) {
+  for (const char* limit : {"is empty", "ends before it begins", "digits, given",
+                            "a range of numbers", "from 0 to 65535"}) {
     if (errors.find(limit) != std::string::npos) return true;
   }
   return false;

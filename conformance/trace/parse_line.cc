@@ -87,11 +87,11 @@ void parse_op(Scanner& in, Line& line) {
 Value am_side(Scanner& in, std::string_view text) {
   Value value;
   const std::string problem = read_value(text, value);
-  const bool number = value.is(Value::Kind::kNumber) && !text.starts_with('-');
+  const bool number = value.is(Value::Kind::kNumber) && text.find('-') == std::string_view::npos;
   const bool fits = number || value.is(Value::Kind::kAny) ||
                     value.is(Value::Kind::kVariable) ||
                     (value.is(Value::Kind::kNames) && value.text == "all");
-  if (!problem.empty() || !fits || value.negated) {
+  if (!problem.empty() || !fits) {
     in.fail_at(text, "expected an AM address: a number, all, a variable or *, given " +
                          quoted(text));
   }

@@ -20,7 +20,8 @@ std::string pick(const std::vector<std::string>& from) { return *rc::gen::elemen
 bool coin() { return *rc::gen::arbitrary<bool>(); }
 
 std::string name() {
-  return pick({"a", "b", "m5", "sA", "q", "_x", "Z9", "led", "bit13", "nanny", "x", "lost", "case"});
+  return pick({"a", "b", "m5", "sA", "q", "_x", "Z9", "led", "bit13", "nanny", "x", "lost",
+               "case"});
 }
 std::string raw_bytes() {
   return *rc::gen::container<std::string>(rc::gen::map(
@@ -118,10 +119,11 @@ Time any_time() {
 }
 
 Value am_side() {
-  switch (*inRange(0, 4)) {
+  switch (*inRange(0, 5)) {
     case 0: return Value::any();
     case 1: return Value::variable(name());
     case 2: return Value::names("all");
+    case 3: return Value::but(Value::of(*inRange(0, 70000)));
     default: return Value::of(*inRange(0, 70000));
   }
 }
@@ -147,7 +149,9 @@ Header any_header() {
   switch (*inRange(0, 7)) {
     case 0: header.what = VersionHeader{}; break;
     case 1: header.what = ProfileHeader{pick({"paper", "deployed"})}; break;
-    case 2: header.what = TickHeader{*rc::gen::element(Tick::kBinaryMs, Tick::kMs, Tick::kUs)}; break;
+    case 2:
+      header.what = TickHeader{*rc::gen::element(Tick::kBinaryMs, Tick::kMs, Tick::kUs)};
+      break;
     case 3: {
       NodeHeader node{name(), *rc::gen::element(Role::kMote, Role::kSink, Role::kBaseStation),
                       {}, {}, coin()};

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <iterator>
+#include <unordered_map>
 
 #include "codec/generated/requirements_table.h"
 #include "codec/runtime/bytes.h"
@@ -288,11 +289,15 @@ std::string_view requirement_text(ReqId id) {
 }
 
 ReqId requirement_id(std::string_view text) {
-  if (text.empty()) return ReqId::kNone;
-  const auto* found = std::find_if(std::begin(kRequirements), std::end(kRequirements),
-                                   [&](const auto& one) { return text == one.id; });
-  if (found == std::end(kRequirements)) return ReqId::kNone;
-  return static_cast<ReqId>(found - std::begin(kRequirements));
+  static const std::unordered_map<std::string_view, ReqId> known = [] {
+    std::unordered_map<std::string_view, ReqId> all;
+    for (std::size_t i = 1; i < std::size(kRequirements); ++i) {
+      all.emplace(kRequirements[i].id, static_cast<ReqId>(i));
+    }
+    return all;
+  }();
+  const auto found = known.find(text);
+  return found == known.end() ? ReqId::kNone : found->second;
 }
 
 }  // namespace rubric::trace

@@ -104,7 +104,7 @@ struct Message {
   friend bool operator==(const Message&, const Message&) = default;
 };
 
-/// `am=2->1`: AM source and destination, each kNumber, kNames (`all`), kVariable or kAny.
+/// `am=2->1`: AM source and destination, each kNumber, kNames (`all`), kVariable or kAny; `!` too.
 struct AmAddresses {
   Value source;
   Value dest;
