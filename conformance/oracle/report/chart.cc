@@ -76,7 +76,7 @@ class Chart {
     gap = std::min(gap, kGapMax);
     left_ = scene_.name(columns_.front()).size() / 2;
     const std::size_t taken = indent_ + time_width_ + frame_width_ + 8 + left_;
-    const std::size_t room = width > taken + 12 ? width - taken - 12 : 0;
+    const std::size_t room = width > taken + 6 ? width - taken - 6 : 0;
     if (columns_.size() > 1) gap = std::min(gap, room / (columns_.size() - 1));
     gap_ = std::max(gap, kGapMin);
   }
@@ -112,7 +112,7 @@ class Chart {
     const std::size_t next = to > from ? from + 1 : from - 1;
     const std::size_t begin = std::min(at(from), at(next)) + 2;
     const std::size_t room = gap_ - 3;
-    if (label.size() + 2 > room) return false;
+    if (label.size() > room) return false;
     cells.replace(begin + (room - label.size()) / 2, label.size(), label);
     return true;
   }
@@ -140,7 +140,14 @@ class Chart {
         draw(cells, from, *side, i == marked_);
         labelled = labelled || put_label(cells, from, side->front(), label);
       }
-      if (left.empty() && right.empty()) cells[at(from)] = '*';
+      // To nobody that is known, or nothing that is sent.
+      const Kind kind = scene_.run().seen[i].kind;
+      const bool sent = kind == Kind::kRadio || kind == Kind::kSerial;
+      if (left.empty() && right.empty() && !(sent && from + 1 == columns_.size())) {
+        cells[at(from)] = '*';
+      } else if (left.empty() && right.empty()) {
+        cells += i == marked_ ? "==>" : "-->";
+      }
     }
     if (!labelled) cells += "  " + label;
     if (i == marked_) cells += "  <<<";

@@ -26,17 +26,24 @@ trace::Concrete decoded(const oracle::Observation& seen) {
                                                                   : trace::LinkKind::kPeis);
 }
 
-// Without the outer parts of paths that nobody misses.
+// The last `parts` parts of a path.
+std::string tail(const std::string& path, std::size_t parts) {
+  std::size_t at = path.size();
+  for (; parts > 0 && at != path.npos && at != 0; --parts) at = path.rfind('.', at - 1);
+  return at == path.npos || parts > 0 ? path : path.substr(at + 1);
+}
+
+// Paths no longer than it takes to tell them apart.
 void shorten(trace::Message& message) {
-  const auto tail = [](const std::string& path) { return path.substr(path.rfind('.') + 1); };
-  std::vector<std::string> tails;
-  for (const trace::FieldValue& field : message.fields) tails.push_back(tail(field.path));
-  for (std::size_t i = 0; i < tails.size(); ++i) {
-    std::string& path = message.fields[i].path;
-    if (std::count(tails.begin(), tails.end(), tails[i]) == 1) {
-      path = tails[i];
-    } else if (path.starts_with("payload.")) {
-      path.erase(0, std::string_view("payload.").size());
+  std::vector<std::string> paths;
+  for (const trace::FieldValue& field : message.fields) paths.push_back(field.path);
+  for (trace::FieldValue& field : message.fields) {
+    for (std::size_t parts = 1; parts < 5; ++parts) {
+      const std::string shorter = tail(field.path, parts);
+      const auto same = [&](const std::string& path) { return tail(path, parts) == shorter; };
+      if (std::count_if(paths.begin(), paths.end(), same) != 1) continue;
+      field.path = shorter;
+      break;
     }
   }
 }
@@ -111,16 +118,17 @@ void Scene::add_radio_receivers(std::size_t i, std::vector<std::uint16_t>& out) 
   if (frame.type == oracle::kAmAckJoin && oracle::parse_ack_join(frame.payload, ack)) {
     island = ack.dest.pid;
   }
-  const auto matches = [&](const oracle::Device& device, bool exactly) {
-    if (!device.known || device.role == Role::kBaseStation) return false;
+  // The sink of that island, else whoever has the address, else strangers that have it.
+  const auto matches = [&](const oracle::Device& device, bool exactly, bool known) {
+    if (device.known != known || device.role == Role::kBaseStation) return false;
     if (frame.dest != 0xFFFF && frame.dest != device.am) return false;
     return !exactly || device.role == Role::kMote || device.island == island;
   };
-  for (const bool exactly : {true, false}) {
+  for (const auto& [exactly, known] : {std::pair{true, true}, {false, true}, {false, false}}) {
     if (exactly && island == 0) continue;
     for (std::size_t d = 0; d < who_.devices.size(); ++d) {
       const auto node = static_cast<std::uint16_t>(d);
-      if (node != sender(i) && matches(who_.devices[d], exactly)) out.push_back(node);
+      if (node != sender(i) && matches(who_.devices[d], exactly, known)) out.push_back(node);
     }
     if (!out.empty()) return;
   }
@@ -147,6 +155,27 @@ bool Scene::concerns(std::size_t i, std::uint16_t node) const {
   return std::find(to.begin(), to.end(), node) != to.end();
 }
 
+std::vector<std::uint16_t> Scene::topic(std::size_t i) const {
+  const oracle::Observation& seen = run_.seen[i];
+  std::vector<std::uint16_t> out;
+  const auto add = [&](std::uint16_t id) {
+    const bool sink = std::any_of(who_.devices.begin(), who_.devices.end(), [id](const auto& d) {
+      return d.role == Role::kSink && d.am == id;
+    });
+    if (!sink && id != machine::kNullDevid && id != 0xFFFF) out.push_back(id);
+  };
+  if (seen.kind == Kind::kRadio) {
+    add(seen.frame.src);
+    add(seen.frame.dest);
+  }
+  oracle::Net net;
+  if (seen.frame.type == oracle::kAmNet && oracle::parse_net(seen.frame.payload, net)) {
+    add(net.src.devid);
+    add(net.dest.devid);
+  }
+  return out;
+}
+
 bool Scene::is_echo(std::size_t i) const {
   return who_.marks[i].repeat || run_.seen[i].kind == Kind::kLinkAck;
 }
@@ -158,6 +187,7 @@ std::string Scene::label(std::size_t i) const {
   if (seen.kind == Kind::kLinkAck) return fmt::format("link ack {}", seen.dsn);
   if (seen.kind == Kind::kDamaged) return "damaged";
   const trace::Message message = decoded(seen).message;
+  if (message.name == "am") return "malformed " + value_of(message, "type");
   if (message.name == "net_msg") return net_label(message);
   const std::string seq = value_of(message, "seq_num");
   return seq.empty() ? message.name : message.name + " " + seq;

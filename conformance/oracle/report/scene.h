@@ -28,6 +28,8 @@ class Scene {
   /// Whom it was for, all of them if that may be several.
   std::vector<std::uint16_t> receivers(std::size_t i) const;
   bool concerns(std::size_t i, std::uint16_t node) const;
+  /// The motes that it is about, by their numbers: ends of the frame or of the message within.
+  std::vector<std::uint16_t> topic(std::size_t i) const;
   /// The link's own repetition, a log's second line of the same, or an acknowledgement of the link.
   bool is_echo(std::size_t i) const;
 

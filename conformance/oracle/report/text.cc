@@ -71,26 +71,24 @@ class TextReport {
     return "0";
   }
 
-  // Like wrapped(), with the first letters in a style, which takes no room.
   void styled_line(std::string_view style, std::string_view head, std::string_view rest) {
-    std::string lines = wrapped(kIndent, fmt::format("{} {}", head, rest), options_.width);
-    lines.erase(0, kIndent.size());
-    for (std::size_t at = lines.find("\n  "); at != lines.npos; at = lines.find("\n  ", at + 3)) {
-      lines.insert(at + 1, kIndent);
-    }
-    if (lines.starts_with(head)) lines.replace(0, head.size(), painted(style, head));
-    out_ += lines;
+    const std::string line = fmt::format("{} {}", head, rest);
+    const std::string lines = wrapped("", line, options_.width, kIndent.size());
+    out_ += painted(style, head) + lines.substr(head.size());
   }
 
   void about_the_run() {
-    std::string files;
-    for (const std::string& file : story_.run.files) files += (files.empty() ? "" : ", ") + file;
+    for (std::size_t f = 0; f < story_.run.files.size(); ++f) {
+      const bool several = story_.run.files.size() > 1;
+      out_ += several ? fmt::format("{}. {}\n", f + 1, story_.run.files[f])
+                      : story_.run.files[f] + "\n";
+    }
     const oracle::Options& o = story_.options;
-    out_ += wrapped("", fmt::format("{}: {}, profile {}, sniffer {}, start {}", files,
-                                    counted(story_.report.frames, "frame"),
-                                    o.deployed ? "deployed" : "paper",
-                                    o.sniffer_complete ? "complete" : "unknown",
-                                    o.start_cold ? "cold" : "unknown"),
+    out_ += wrapped(kIndent, fmt::format("{}; profile {}, sniffer {}, start {}",
+                                         counted(story_.report.frames, "frame"),
+                                         o.deployed ? "deployed" : "paper",
+                                         o.sniffer_complete ? "complete" : "unknown",
+                                         o.start_cold ? "cold" : "unknown"),
                     options_.width);
     for (const std::string& fact : story_.report.facts) {
       out_ += wrapped(kIndent, fact, options_.width);
@@ -114,7 +112,7 @@ class TextReport {
 
   std::string heading(std::size_t i) const {
     const Finding& finding = story_.report.findings[i];
-    return fmt::format("{}  {}{}{}", trace_id(finding.requirement),
+    return fmt::format("{}, {}{}{}", trace_id(finding.requirement),
                        finding.node.empty() ? std::string() : finding.node + ", ",
                        place_text(story_.run, finding.place), times_text(finding));
   }
@@ -174,10 +172,16 @@ class TextReport {
     }
   }
 
-  // The frame at the place, some before it and some after it that concern the same node.
+  // The frame at the place, some before it and some after it that concern the same node, and of a
+  // sink's only those about the same motes.
   std::vector<std::size_t> window(std::size_t at, std::uint16_t node) {
+    std::vector<std::uint16_t> topic;
+    if (at < story_.run.seen.size()) topic = scene_->topic(at);
     const auto chosen = [&](std::size_t i) {
-      return !scene_->is_echo(i) && (node == kNobody || scene_->concerns(i, node));
+      if (scene_->is_echo(i) || (node != kNobody && !scene_->concerns(i, node))) return false;
+      const std::vector<std::uint16_t> other = scene_->topic(i);
+      return topic.empty() || std::find_first_of(topic.begin(), topic.end(), other.begin(),
+                                                 other.end()) != topic.end();
     };
     std::vector<std::size_t> rows;
     for (std::size_t i = at; i > 0 && rows.size() < kFramesBefore; --i) {
@@ -206,12 +210,10 @@ class TextReport {
       const oracle::Place& place = story_.run.seen[i].place;
       std::string where = fmt::format("{} {:>5}", i == at ? '>' : ' ', place.frame);
       if (story_.run.files.size() > 1) where += fmt::format(" of {}", place.file + 1);
-      where += fmt::format("  offset {:<6}", place.offset_bytes);
-      const std::string time = seconds_text(place.time_us);
-      if (!time.empty()) where += fmt::format(" {:>10}", time);
-      out_ += wrapped(fmt::format("{}{}  ", kIndent, where),
-                      fmt::format("{}: {}", scene_->route(i), scene_->message(i)),
-                      options_.width);
+      where += fmt::format("  offset {}", place.offset_bytes);
+      if (place.time_us >= 0) where += fmt::format(", {} s", seconds_text(place.time_us));
+      out_ += fmt::format("{}{}, {}\n", kIndent, where, scene_->route(i));
+      out_ += wrapped("             ", scene_->message(i), options_.width, 15);
     }
     out_ += '\n' + chart(*scene_, rows, at, kIndent.size() + 2, options_.width);
   }
@@ -291,10 +293,14 @@ class TextReport {
       text += fmt::format(", {} expected, {} not true", counted(expected, "known failure"),
                           counted(outcome.broken_expectations, "expectation"));
     }
-    text += fmt::format(", {} weak, {} stray, {} inconclusive, {}; {} judged, {} exercised",
-                        counts[Severity::kWeak], counts[Severity::kStray],
-                        counts[Severity::kInconclusive], counted(counts[Severity::kNote], "note"),
-                        counted(story_.report.frames, "frame"),
+    for (const Severity severity :
+         {Severity::kWeak, Severity::kStray, Severity::kInconclusive, Severity::kNote}) {
+      if (counts[severity] == 0) continue;
+      const bool note = severity == Severity::kNote;
+      text += ", " + (note ? counted(counts[severity], "note")
+                           : fmt::format("{} {}", counts[severity], severity_name(severity)));
+    }
+    text += fmt::format("; {} judged, {} exercised", counted(story_.report.frames, "frame"),
                         counted(story_.report.exercised.size(), "rule"));
     std::string verdict(verdict_name(story_.report.verdict));
     if (story_.report.verdict == oracle::Verdict::kFail && outcome.as_expected()) {

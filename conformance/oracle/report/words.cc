@@ -80,7 +80,8 @@ std::string counted(std::uint64_t number, std::string_view singular, std::string
   return fmt::format("{} {}", number, plural);
 }
 
-std::string wrapped(std::string_view first, std::string_view text, std::size_t width) {
+std::string wrapped(std::string_view first, std::string_view text, std::size_t width,
+                    std::size_t hang) {
   std::string out(first);
   std::size_t column = first.size();
   bool fresh = true;  // Nothing stands in this line yet.
@@ -92,8 +93,8 @@ std::string wrapped(std::string_view first, std::string_view text, std::size_t w
     text.remove_prefix(word.size());
     if (!fresh && column + 1 + word.size() > width) {
       out += '\n';
-      out.append(first.size(), ' ');
-      column = first.size();
+      out.append(hang, ' ');
+      column = hang;
       fresh = true;
     }
     if (!fresh) out += ' ', ++column;

@@ -24,8 +24,13 @@ std::string place_text(const oracle::Run& run, const oracle::Place& place);
 std::string counted(std::uint64_t number, std::string_view singular, std::string_view plural = {});
 
 /// Lines of at most `width` characters, broken at blanks, each with its end: the first behind
-/// `first`, the others behind as many blanks. A word that is longer stands alone.
-std::string wrapped(std::string_view first, std::string_view text, std::size_t width);
+/// `first`, the others behind `hang` blanks. A word that is longer stands alone.
+std::string wrapped(std::string_view first, std::string_view text, std::size_t width,
+                    std::size_t hang);
+/// The others behind as many blanks as `first` has characters.
+inline std::string wrapped(std::string_view first, std::string_view text, std::size_t width) {
+  return wrapped(first, text, width, first.size());
+}
 
 /// With quotes; bytes that are no UTF-8 become U+FFFD.
 std::string json_string(std::string_view text);
