@@ -47,8 +47,12 @@ class Radio {
   std::size_t add_station(std::optional<NodeId> node, std::uint16_t am_address);
   /// Takes a frame; the user waits for radio_sent() before the next.
   void send(std::size_t station, const machine::Frame& frame, bool link_ack);
-  /// The station forgets what it was going to send and awaits nothing any more.
-  void reset(std::size_t station) { ++stations_[station].life; stations_[station].awaited.reset(); }
+  /// The station starts anew: it forgets what it was going to send, and counts frames from 0.
+  void reset(std::size_t station) {
+    ++stations_[station].life;
+    stations_[station].dsn = 0;
+    stations_[station].awaited.reset();
+  }
 
  private:
   struct Station {
