@@ -15,18 +15,19 @@ void Acks::begin_life(std::uint16_t node) {
 }
 
 void Acks::arrived(std::uint16_t node, const Observation& seen, std::uint16_t sender,
-                   const Net& net, ReqId forbidden, bool weak, bool sure) {
+                   const Net& net, const Arrival& arrival) {
   Ring<Arrived, kRoom>& ring = arrived_[node];
   Arrived arrived;
   arrived.net = net;
   arrived.place = seen.place;
   arrived.sender = sender;
-  arrived.forbidden = net.sound ? forbidden : req::kN11Nbytes;
-  arrived.weak = weak;
-  arrived.must_ack = arrived.forbidden == ReqId::kNone &&
-                     machine::must_ack(net.reliable == 1, net.dest, net.trans_id, net.app_id);
-  arrived.sure = sure;
-  if (arrived.must_ack && sure) ++owed_[node];
+  arrived.forbidden = net.sound ? arrival.forbidden : req::kN11Nbytes;
+  arrived.weak = net.sound && arrival.weak;
+  arrived.ackable = arrived.forbidden == ReqId::kNone &&
+                    machine::must_ack(net.reliable == 1, net.dest, net.trans_id, net.app_id);
+  arrived.must_ack = arrived.ackable && !arrival.free;
+  arrived.sure = arrival.sure;
+  if (arrived.must_ack && arrived.sure) ++owed_[node];
   if (ring.full()) close(node, ring.oldest(0));
   ring.push(arrived);
 }
@@ -60,7 +61,7 @@ void Acks::sent(std::uint16_t node, const Observation& seen, const Net& ack) {
   Arrived* best = nullptr;
   const auto rank = [](const Arrived& a) {
     if (a.forbidden != ReqId::kNone) return 0;
-    if (a.net.reliable == 0 || a.net.trans_id != kTransConnless || a.net.broadcast()) return 1;
+    if (a.net.reliable != 1 || a.net.trans_id != kTransConnless || a.net.broadcast()) return 1;
     return a.acks < a.copies ? 3 : 2;
   };
   for (std::size_t i = 0; i < ring.size(); ++i) {
@@ -120,9 +121,10 @@ void Acks::refuse(std::uint16_t node, const Observation& seen, const Net& ack, s
     rule = req::kT2Loop;
     said.text = "It acks an ack, " + name_of(best->net) + ".";
     said.expected = "An ack is never acked.";
-  } else if (best->net.reliable == 0) {
+  } else if (best->net.reliable != 1) {
     rule = req::kT2Unreliable;
-    said.text = "It acks " + name_of(best->net) + ", which is unreliable.";
+    if (best->net.reliable > 1) severity = Severity::kWeak;  // Decision 112.
+    said.text = "It acks " + name_of(best->net) + ", whose reliable is " + number(best->net.reliable) + ".";
     said.expected = "An unreliable message is never acked.";
   } else if (best->net.broadcast()) {
     rule = req::kT2Broadcast;
@@ -181,8 +183,10 @@ void Acks::delivered(std::uint16_t node, const Observation& seen,
   }
   if (rank(*best) == 2) {
     ++best->delivered;
-    if (best->must_ack && !best->sure && best->acks == 0) ++owed_[node];
-    best->sure = true;  // So it did arrive.
+    const bool owed = best->must_ack && best->sure;
+    best->must_ack = best->must_ack || best->ackable;
+    best->sure = true;  // So it did arrive, and was taken.
+    if (best->must_ack && !owed && best->acks == 0) ++owed_[node];
     context_.findings.kept(req::kT1Deliver);
     if (best->must_ack) context_.findings.kept(req::kT2Deliver);
     return;

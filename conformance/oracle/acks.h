@@ -17,10 +17,19 @@ struct Arrived {
   ReqId forbidden = ReqId::kNone;  ///< Acking or delivering it breaks this rule.
   bool weak = false;
   bool must_ack = false;
+  bool ackable = false;            ///< Apart from `free`: reliable, and so on.
   bool sure = false;               ///< It surely arrived.
   std::uint8_t copies = 1;
   std::uint8_t acks = 0;
   std::uint8_t delivered = 0;
+};
+
+/// What is known of an arrival.
+struct Arrival {
+  ReqId forbidden = ReqId::kNone;  ///< Why the message must have no effect at the node.
+  bool weak = false;               ///< And that rule is a SHOULD.
+  bool sure = false;               ///< The node surely received it.
+  bool free = false;               ///< The node may ignore it.
 };
 
 class Acks {
@@ -28,9 +37,9 @@ class Acks {
   Acks(Context& context, std::size_t devices);
 
   void begin_life(std::uint16_t node);
-  /// A message comes to `node`; `forbidden`: why it must have no effect there.
+  /// A message comes to `node`.
   void arrived(std::uint16_t node, const Observation& seen, std::uint16_t sender, const Net& net,
-               ReqId forbidden, bool weak, bool sure);
+               const Arrival& arrival);
   void repeated(std::uint16_t node, const Net& net);
   /// A log says that the node received the message.
   void surely(std::uint16_t node, const Net& net);

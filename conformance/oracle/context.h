@@ -42,6 +42,9 @@ struct Context {
   /// The one sink on the air, or kNobody where there are none or several.
   std::uint16_t only_sink = kNobody;
 
+  std::vector<std::uint16_t> mote_of_am;  ///< The last known mote of each AM address.
+  std::vector<std::uint16_t> next_of_am;  ///< By device: another mote of the same address.
+
   static machine::Ticks ticks(std::int64_t us);
   std::int64_t us_of(std::uint32_t profile_ticks) const {
     return std::int64_t{profile_ticks} * 1'000'000 / profile().ticks_per_second;

@@ -86,10 +86,12 @@ void Forwarding::heard_on_radio(const Observation& seen, std::uint16_t sender, c
     const bool onward = route.onward == Route::Onward::kSerial;
     if (!net.sound) {
       passing.forbidden = req::kN11Nbytes;
-    } else if (!onward && !route.deliver) {
+    } else if (!onward && !route.deliver && net.dest.pid != machine::kBroadcastPid) {
       passing.forbidden = route.requirement;
+      passing.weak = route.requirement == req::kN6Other;
     }
-    passing.owed = onward && net.sound && surely_received_by == line.sink;
+    passing.owed = onward && net.sound && net.reliable <= 1 && net.src.pid == line.island &&
+                   surely_received_by == line.sink;
     // Seen on the serial line already, if the two taps' clocks differ.
     bool early = false;
     for (std::size_t i = 0; i < line.early.size(); ++i) {
@@ -108,12 +110,15 @@ void Forwarding::heard_on_radio(const Observation& seen, std::uint16_t sender, c
   }
 }
 
-void Forwarding::repeated_on_radio(const Net& net) {
+void Forwarding::repeated(const Net& net, std::uint16_t sink) {
   for (Line& line : lines_) {
-    for (std::size_t i = 0; i < std::min(line.up.size(), kTwinsLook); ++i) {
-      Passing& passing = line.up.newest(i);
+    if (sink != kNobody && line.sink != sink) continue;
+    Ring<Passing, kRoom>& ring = sink == kNobody ? line.up : line.down;
+    for (std::size_t i = 0; i < std::min(ring.size(), kTwinsLook); ++i) {
+      Passing& passing = ring.newest(i);
       if (!same_message(passing.net, net)) continue;
       if (passing.copies < 255) ++passing.copies;
+      passing.twin = true;
       break;
     }
   }
@@ -139,7 +144,8 @@ void Forwarding::heard_on_serial(std::uint16_t sink, std::uint16_t base, const O
     passing.forbidden = req::kN7Foreign;
     passing.weak = true;
   }
-  passing.owed = onward && net.sound && surely_received;
+  passing.owed = onward && net.sound && net.reliable <= 1 && surely_received &&
+                 net.dest.pid != machine::kBroadcastPid;
   store(line->down, passing, line->owed_down);
   const bool foreign = net.dest.pid != line->island && net.dest.pid != machine::kBroadcastPid;
   if (!foreign) return;
@@ -170,7 +176,8 @@ void Forwarding::pass_up(Line& line, Passing& passing, const Observation& seen) 
                   name_of(passing.net) + " to its base station.";
       said.expected = "It is ignored: neither its destination nor its source makes it this sink's.";
     }
-    context_.report(passing.forbidden, Severity::kFail, seen.place, line.sink, std::move(said));
+    context_.report(passing.forbidden, passing.weak ? Severity::kWeak : Severity::kFail,
+                    seen.place, line.sink, std::move(said));
   } else {
     context_.findings.kept(req::kN6Content);
     context_.findings.kept(req::kN6Once);
@@ -208,6 +215,13 @@ void Forwarding::sent_on_serial(std::uint16_t sink, const Observation& seen, con
 }
 
 void Forwarding::refuse_up(Line& line, const Observation& seen, const Net& net) {
+  for (std::size_t i = 0; i < std::min(line.down.size(), kTwinsLook); ++i) {
+    if (!same_message(line.down.newest(i).net, net)) continue;
+    context_.report(req::kN6Once, Severity::kFail, seen.place, line.sink,
+                    {"The sink hands " + name_of(net) + " back to its base station.",
+                     "What comes over serial does not go back over serial.", {}});
+    return;
+  }
   if (!context_.hears_radio || line.island == 0) return;
   for (std::size_t i = 0; i < line.up.size(); ++i) {
     Passing& passing = line.up.newest(i);

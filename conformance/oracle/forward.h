@@ -32,15 +32,19 @@ class Forwarding {
   /// On the air, from somebody else, to the address of sinks or to all.
   void heard_on_radio(const Observation& seen, std::uint16_t sender, const Net& net,
                       std::uint16_t surely_received_by);
-  /// The link repeated the frame that `sender` sent last.
-  void repeated_on_radio(const Net& net);
+  /// The link repeated the frame: on the air, or down the serial line of `sink`.
+  void repeated(const Net& net, std::uint16_t sink);
   /// Down the serial line of `sink`.
   void heard_on_serial(std::uint16_t sink, std::uint16_t base, const Observation& seen,
                        const Net& net, bool surely_received);
+  /// The same message came down the sink's serial line and was not yet radiated.
+  bool came_down(std::uint16_t sink, const Net& net);
   /// `sink` put a message on its serial line that is not its own.
   void sent_on_serial(std::uint16_t sink, const Observation& seen, const Net& net);
   /// `sink` sent a message by radio that is not its own.
   void sent_on_radio(std::uint16_t sink, const Observation& seen, const Net& net);
+  /// One of the sinks, no telling which, sent this by radio.
+  void somebody_sent(const Net& net);
   /// The sink's island, from now on.
   void set_island(std::uint16_t sink, std::uint16_t island, std::int64_t now_us);
   void begin_life(std::uint16_t sink);

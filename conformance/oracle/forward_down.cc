@@ -6,8 +6,8 @@
 namespace rubric::oracle {
 namespace {
 
-constexpr std::size_t kBurst = 3;            // More at once may overflow a buffer.
-constexpr std::int64_t kBurstUs = 250'000;
+constexpr std::size_t kBurst = 1;            // More may find a buffer full, or the node busy.
+constexpr std::int64_t kBurstUs = 500'000;
 
 }  // namespace
 
@@ -78,6 +78,29 @@ void Forwarding::sent_on_radio(std::uint16_t sink, const Observation& seen, cons
     return;
   }
   if (near != nullptr) refuse_down(*line, seen, net);
+}
+
+bool Forwarding::came_down(std::uint16_t sink, const Net& net) {
+  Line* const line = find(sink);
+  if (line == nullptr) return false;
+  for (std::size_t i = 0; i < line->down.size(); ++i) {
+    const Passing& passing = line->down.newest(i);
+    if (passing.passed < passing.copies && same_message(passing.net, net)) return true;
+  }
+  return false;
+}
+
+void Forwarding::somebody_sent(const Net& net) {
+  for (Line& line : lines_) {
+    for (std::size_t i = 0; i < line.down.size(); ++i) {
+      Passing& passing = line.down.newest(i);
+      if (!same_message(passing.net, net)) continue;
+      if (passing.owed) --line.owed_down;
+      passing.owed = false;
+      if (passing.copies < 255) ++passing.copies;  // It may have been another's.
+      break;
+    }
+  }
 }
 
 void Forwarding::refuse_down(Line& line, const Observation& seen, const Net& net) {

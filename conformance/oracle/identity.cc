@@ -15,12 +15,13 @@ using machine::Role;
 constexpr std::uint64_t kResumeFrames = 3;  // A stream that began elsewhere and goes on is a node.
 constexpr std::size_t kRecentFrames = 64;
 constexpr std::int64_t kSameFrameUs = 1'000'000;
+constexpr std::int64_t kSerialRepeatUs = 1'500'000;  // TinyOS hosts wait 1000 ms.
 
 // A serial line in the first pass.
 struct Line {
   std::uint16_t island = 0;   // Now.
   std::uint16_t first = 0;
-  bool set = false;           // By SET_ISLAND_ID, which outranks what is inferred.
+  std::uint32_t last_down = 0;  // The last packet to the sink that asked for confirmation, + 1.
 };
 
 class Identifier {
@@ -73,7 +74,23 @@ class Identifier {
       mark.device = streams_.assign(index, mark.repeat);  // A stream so far.
       return;
     }
-    if (seen.kind == Observation::Kind::kSerial) look_serial(seen);
+    if (seen.kind == Observation::Kind::kSerial) {
+      mark.repeat = repeats_serial(index);
+      look_serial(seen);
+    }
+  }
+
+  // A host sends a packet again, with the next number, while its confirmation does not come.
+  bool repeats_serial(std::uint32_t index) {
+    const Observation& seen = run_.seen[index];
+    if (!seen.to_mote || !seen.ack_request) return false;
+    Line& line = lines_[seen.tap];
+    const std::uint32_t before = line.last_down;
+    line.last_down = index + 1;
+    if (before == 0) return false;
+    const Observation& last = run_.seen[before - 1];
+    return last.frame.type == seen.frame.type && equal(last.frame.payload, seen.frame.payload) &&
+           seen.place.time_us - last.place.time_us <= kSerialRepeatUs;
   }
 
   void look_logged(std::uint32_t index) {
@@ -134,11 +151,12 @@ class Identifier {
       streams_.rename_island(line.island, island);
       if (line.first == 0) line.first = island;
       line.island = island;
-      line.set = true;
       return;
     }
     Net net;
-    if (line.island != 0 || seen.frame.type != kAmNet || !parse_net(seen.frame.payload, net)) {
+    if (seen.frame.type != kAmNet || !parse_net(seen.frame.payload, net)) return;
+    if (line.island != 0) {
+      if (seen.to_mote) streams_.heard_on_serial(net, line.island);
       return;
     }
     SerialJoined joined;
@@ -151,6 +169,7 @@ class Identifier {
       island = net.src.pid;
     }
     line.island = line.first = island;
+    if (seen.to_mote) streams_.heard_on_serial(net, island);
   }
 
   void remember_request(const Observation& seen) {
@@ -198,7 +217,9 @@ class Identifier {
       device.role = stream.sink ? Role::kSink : Role::kMote;
       device.island = stream.sink ? stream.first_island : std::uint16_t{0};
       device.judged = !is_tester(stream.am);
-      device.known = device.judged && before == kNobody && !answers_nothing(stream);
+      // A second mote with the same id, in another island, shows by going on beside the first.
+      const bool another = !stream.sink && stream.frames >= kResumeFrames;
+      device.known = device.judged && (before == kNobody || another) && !answers_nothing(stream);
       device.radio = true;
       device.frames = stream.frames;
       device.first_us = stream.first_us;
@@ -218,17 +239,22 @@ class Identifier {
     }
   }
 
-  // The device that a stream would belong to, were its DSNs to follow.
+  // The device that a stream would belong to, were its DSNs to follow: one that has ended before
+  // the stream begins, if there is any.
   std::uint16_t earlier_device(const Stream& stream) const {
+    std::uint16_t found = kNobody;
     for (std::size_t i = 0; i < out_.devices.size(); ++i) {
       const Device& device = out_.devices[i];
       if (!device.known || device.am != stream.am || device.role == Role::kBaseStation) continue;
       if ((device.role == Role::kSink) != stream.sink) continue;
       const bool same_island = device.island == stream.first_island || device.island == 0 ||
-                               stream.first_island == 0 || last_island(device) == stream.first_island;
-      if (!stream.sink || same_island) return static_cast<std::uint16_t>(i);
+                               stream.first_island == 0 ||
+                               last_island(device) == stream.first_island;
+      if (stream.sink && !same_island) continue;
+      if (follows(stream, static_cast<std::uint16_t>(i))) return static_cast<std::uint16_t>(i);
+      found = static_cast<std::uint16_t>(i);
     }
-    return kNobody;
+    return found;
   }
 
   // Of a sink's streams so far the last; SET_ISLAND_ID may have changed it.

@@ -52,12 +52,16 @@ class Judge {
  private:
   void setup() {
     context_.sink_am = context_.profile().sink_id;
-    mote_of_am_.assign(65536, kNobody);
+    context_.mote_of_am.assign(65536, kNobody);
+    context_.next_of_am.assign(who_.devices.size(), kNobody);
     for (std::size_t i = 0; i < who_.devices.size(); ++i) {
       const Device& device = who_.devices[i];
       const auto index = static_cast<std::uint16_t>(i);
       if (!device.known) continue;
-      if (device.role == Role::kMote) mote_of_am_[device.am] = index;
+      if (device.role == Role::kMote) {
+        context_.next_of_am[i] = context_.mote_of_am[device.am];
+        context_.mote_of_am[device.am] = index;
+      }
       if (device.role != Role::kSink) continue;
       context_.sink_am = device.am;
       context_.only_sink = sink_devices_.empty() ? index : kNobody;
@@ -105,6 +109,7 @@ class Judge {
         break;
       case Kind::kSerial:
         ++frames_;
+        if (mark.repeat) return repeated(seen, mark);
         if (mark.device != kNobody) serial(index, seen, mark);
         break;
       case Kind::kCall:
@@ -116,6 +121,14 @@ class Judge {
       case Kind::kLinkAck:
       case Kind::kDamaged:
         break;
+    }
+  }
+
+  template <class Call>
+  void for_motes(std::uint16_t am, Call call) const {
+    for (std::uint16_t mote = context_.mote_of_am[am]; mote != kNobody;
+         mote = context_.next_of_am[mote]) {
+      call(mote);
     }
   }
 
@@ -132,10 +145,10 @@ class Judge {
     Net net;
     if (seen.frame.type != kAmNet || !parse_net(seen.frame.payload, net)) return;
     if (mark.receiver != kNobody) return acks_.surely(mark.receiver, net);
-    forwarding_.repeated_on_radio(net);
-    if (mote_of_am_[seen.frame.dest] != kNobody) {
-      acks_.repeated(mote_of_am_[seen.frame.dest], net);
-    }
+    const bool serial = seen.kind == Kind::kSerial;
+    if (serial && mark.device == kNobody) return;
+    forwarding_.repeated(net, serial ? who_.devices[mark.device].partner : kNobody);
+    for_motes(seen.frame.dest, [&](std::uint16_t mote) { acks_.repeated(mote, net); });
     for (const std::uint16_t sink : sink_devices_) acks_.repeated(sink, net);
   }
 
@@ -161,18 +174,17 @@ class Judge {
         if (is(mark.device, Role::kMote)) {
           role_broken(req::kJ10Mote, "A mote sends a join_reply.", seen, mark.device);
         }
-        for (std::size_t i = 0; i < who_.devices.size(); ++i) {
-          const Device& device = who_.devices[i];
-          if (device.role != Role::kMote || !device.known || device.am != seen.frame.dest) continue;
-          const auto mote = static_cast<std::uint16_t>(i);
+        for_motes(seen.frame.dest, [&](std::uint16_t mote) {
           motes_.reply(mote, seen, index, reply, mark.receiver == mote);
-        }
+        });
         return;
       }
       case kAmAckJoin: {
         AckJoin ack;
         if (!parse_ack_join(seen.frame.payload, ack)) return;
-        if (is(mark.device, Role::kMote)) motes_.ack_join(mark.device, seen, ack);
+        if (is(mark.device, Role::kMote)) {
+          motes_.ack_join(mark.device, seen, ack, link_acked(run_, index));
+        }
         if (is(mark.device, Role::kSink)) {
           role_broken(req::kJ10Sink, "A sink sends an ack_join.", seen, mark.device);
         }
@@ -203,24 +215,28 @@ class Judge {
                   motes_.address(sender).value_or(net.src));
     } else if (is(sender, Role::kSink)) {
       const Device& sink = who_.devices[sender];
-      if (net.src.devid == sink.am) {
-        own_message(sender, seen, net, machine::Link::kRadio,
-                    {sinks_.island(sender), sink.am});
+      // A base station may hand its sink even the sink's own message (decision 126).
+      const bool own = net.src == machine::Address{sinks_.island(sender), sink.am};
+      if (own && !forwarding_.came_down(sender, net)) {
+        own_message(sender, seen, net, machine::Link::kRadio, net.src);
       } else {
         acks_.showed_life(sender, seen.place.time_us);
         forwarding_.sent_on_radio(sender, seen, net);
       }
     }
+    if (sender == kNobody && seen.frame.src == context_.sink_am) forwarding_.somebody_sent(net);
     const std::uint16_t sure = sure_sink(index);
     forwarding_.heard_on_radio(seen, sender, net, sure);
+    const auto hear = [&](std::uint16_t mote) {
+      if (mote != sender) mote_hears(mote, seen, mark, net);
+    };
     if (seen.frame.dest == machine::kAmBroadcast) {
       for (std::size_t i = 0; i < who_.devices.size(); ++i) {
         const auto node = static_cast<std::uint16_t>(i);
-        if (node != sender && is(node, Role::kMote)) mote_hears(node, seen, mark, net);
+        if (is(node, Role::kMote)) hear(node);
       }
-    } else if (const std::uint16_t mote = mote_of_am_[seen.frame.dest];
-               mote != kNobody && mote != sender) {
-      mote_hears(mote, seen, mark, net);
+    } else {
+      for_motes(seen.frame.dest, hear);
     }
     for (const std::uint16_t sink : sink_devices_) {
       const std::uint16_t am = who_.devices[sink].am;
@@ -254,8 +270,13 @@ class Judge {
     if (router.own.pid == 0) return;  // A sink of which no island is known.
     const machine::Route route = machine::route_received(router, from, net.dest, net.src);
     if (!route.deliver && route.onward != machine::Route::Onward::kNowhere) return;
-    const ReqId forbidden = route.deliver ? ReqId::kNone : route.requirement;
-    acks_.arrived(node, seen, sender, net, forbidden, forbidden == req::kN6Other, sure);
+    // Every island: taken or ignored, as a node likes (decision 114).
+    const bool free = route.deliver || net.dest.pid == machine::kBroadcastPid;
+    const ReqId forbidden = free ? ReqId::kNone : route.requirement;
+    // Straight from a foreign mote: likewise (decision 116).
+    const bool straight = from == machine::Link::kRadio && net.src.pid != net.dest.pid &&
+                          !is(sender, Role::kSink);
+    acks_.arrived(node, seen, sender, net, {forbidden, forbidden == req::kN6Other, sure, straight});
   }
 
   // An ack counts at the originator of what it acks.
@@ -263,9 +284,8 @@ class Judge {
     const std::int32_t acked = machine::acked_seq_num(ack.body());
     if (acked < 0) return;
     const auto seq_num = static_cast<std::uint16_t>(acked);
-    if (mote_of_am_[ack.dest.devid] != kNobody) {
-      originals_.ack_heard(mote_of_am_[ack.dest.devid], ack, seq_num);
-    }
+    for_motes(ack.dest.devid,
+              [&](std::uint16_t mote) { originals_.ack_heard(mote, ack, seq_num); });
     for (const std::uint16_t sink : sink_devices_) {
       const Device& device = who_.devices[sink];
       if (sinks_.island(sink) != ack.dest.pid) continue;
@@ -354,7 +374,6 @@ class Judge {
   Identity who_;
   Findings findings_;
   Context context_;
-  std::vector<std::uint16_t> mote_of_am_;
   std::vector<std::uint16_t> sink_devices_;
   MoteJoins motes_;
   SinkJoins sinks_;

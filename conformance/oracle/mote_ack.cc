@@ -50,7 +50,8 @@ ReqId MoteJoins::why_not_ack(const MoteHypothesis& h, const Observation& seen,
   return h.acks_seen > kAckJoinsMax ? req::kJ4Repeat : ReqId::kNone;
 }
 
-void MoteJoins::ack_join(std::uint16_t mote, const Observation& seen, const AckJoin& ack) {
+void MoteJoins::ack_join(std::uint16_t mote, const Observation& seen, const AckJoin& ack,
+                         bool confirmed) {
   MoteWatch& watch = motes_[mote];
   next_.clear();
   for (const MoteHypothesis& h : watch.set) {
@@ -66,6 +67,7 @@ void MoteJoins::ack_join(std::uint16_t mote, const Observation& seen, const AckJ
       next.unknown = false;
     }
     if (next.acks_seen < 255) ++next.acks_seen;
+    next.confirmed = next.confirmed || confirmed;
     next_.push_back(next);
   }
   if (next_.empty()) {
@@ -166,6 +168,7 @@ void MoteJoins::told(std::uint16_t mote, const Observation& seen, const machine:
     std::erase_if(watch.set, [&](const MoteHypothesis& h) {
       return !h.unknown && (h.join.phase != Phase::kMember || h.join.address != joined.address);
     });
+    for (MoteHypothesis& h : watch.set) h.told = true;
     if (!watch.set.empty()) {
       context_.findings.kept(req::kJ5Success);
       return;

@@ -49,19 +49,23 @@ bool MoteJoins::next_request(const MoteHypothesis& h, std::uint16_t id, std::int
   };
   context_.actions.clear();
   if (h.unknown || h.join.phase == Phase::kOutside) return fresh_call();
-  // A member asks again only if its own application was told FAIL, since no link ack came.
-  if (h.join.phase == Phase::kMember) {
-    return !h.sent && may_have_failed(h, now_us) && fresh_call();
-  }
+  // A mote that accepted, but had no link ack, may let its timer run on (decision 102).
+  if (h.join.phase == Phase::kMember && (h.sent || h.confirmed)) return false;
   const bool in_time = now_us - h.last_request_us >= context_.join_period_us() - context_.early_us();
   bool any = false;
   MoteHypothesis again = h;
+  again.join.phase = Phase::kJoining;
   if (in_time && machine::join_timer(again.join, join_context, context_.actions) ==
                      JoinSend::kRequest) {
     again.last_request_us = now_us;
     again.renumbered = h.renumbered || request.seq_num != h.join.seq_num;
     again.join.seq_num = request.seq_num;
     out.push_back(again);
+    if (h.join.phase == Phase::kMember) {  // It may also repeat its ack_join.
+      out.push_back(h);
+      out.back().last_request_us = now_us;
+      out.back().join.requests = again.join.requests;
+    }
     any = true;
   }
   if (request.seq_num != h.join.seq_num && may_have_failed(h, now_us)) any = fresh_call();
@@ -120,8 +124,7 @@ void MoteJoins::refuse_request(std::uint16_t mote, const Observation& seen,
   const std::int64_t period = context_.join_period_us();
   if (h.join.phase == Phase::kMember) {
     rule = req::kJ5Stop;
-    const bool proven = h.acks_seen > 0;
-    if (!proven) severity = Severity::kInconclusive;
+    if (!h.sent && !h.told) severity = Severity::kInconclusive;  // A link ack alone (decision 102).
     said.text = "A join_request with number " + number(request.seq_num) +
                 " although the mote has joined " + text_of(h.join.address) + ".";
     said.expected = "No join_request of a mote that is joined.";
@@ -204,7 +207,8 @@ void MoteJoins::keep(MoteWatch& watch, std::vector<MoteHypothesis>& next, std::u
              other.join.seq_num == h.join.seq_num && other.join.requests == h.join.requests &&
              other.join.address == h.join.address &&
              other.join.sink_devid == h.join.sink_devid && other.acks_seen == h.acks_seen &&
-             other.first_request_us == h.first_request_us;
+             other.first_request_us == h.first_request_us &&
+             other.confirmed == h.confirmed && other.sent == h.sent;
     });
     if (same == watch.set.end()) {
       watch.set.push_back(h);

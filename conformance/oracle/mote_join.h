@@ -21,6 +21,8 @@ struct MoteHypothesis {
   std::uint32_t reply = 0;        ///< Which observation that was.
   bool renumbered = false;        ///< Requests of this call had several numbers.
   std::uint8_t acks_seen = 0;     ///< ack_join on the air.
+  bool confirmed = false;         ///< The link acknowledged its ack_join; it may have heard that.
+  bool told = false;              ///< Its application was told SUCCESS.
   bool sent = false;              ///< It sent a net_msg, so in its own view it is a member.
 };
 
@@ -43,7 +45,7 @@ class MoteJoins {
   void request(std::uint16_t mote, const Observation& seen, const Request& request);
   void reply(std::uint16_t mote, const Observation& seen, std::uint32_t index, const Reply& reply,
              bool surely_received);
-  void ack_join(std::uint16_t mote, const Observation& seen, const AckJoin& ack);
+  void ack_join(std::uint16_t mote, const Observation& seen, const AckJoin& ack, bool confirmed);
   void net_msg(std::uint16_t mote, const Observation& seen, const Net& net);
   void called(std::uint16_t mote, const Observation& seen, const machine::JoinIsland& call);
   void told(std::uint16_t mote, const Observation& seen, const machine::Joined& joined);

@@ -110,7 +110,13 @@ void Originals::judge_number(std::uint16_t node, const Observation& seen, const 
                             context_.options.ack_timeout_us - context_.early_us();
     const bool same = same_message(before.net, net) && same_payload(before.net, net);
     if (awaits) {
-      context_.report(same ? req::kT3Resend : req::kN12Reuse, Severity::kFail, seen.place, node,
+      // An ack that nobody captured would have ended the wait.
+      const machine::Address dest = before.net.dest;
+      const std::uint16_t acker = dest.devid == context_.sink_am || dest.devid == machine::kNullDevid
+                                      ? context_.only_sink
+                                      : context_.mote_of_am[dest.devid];
+      context_.report(same ? req::kT3Resend : req::kN12Reuse,
+                      context_.without(acker, before.place.time_us, now), seen.place, node,
                       {(same ? "The reliable message with number " : "Number ") +
                            number(net.seq_num) + (same ? " is sent" : " is used") + " again, " +
                            ms_text(now - before.place.time_us) +
@@ -200,7 +206,10 @@ void Originals::told(std::uint16_t node, const Observation& seen,
                     {what + ", but no ack of it was heard.", "No receive_ack before the ack.", {}});
   } else if (!ack.success && context_.run.has_time &&
              waited < context_.options.ack_timeout_us - context_.early_us()) {
-    context_.report(req::kT3Timeout, Severity::kFail, seen.place, node,
+    // Only a stated timeout can be broken (decision 110).
+    const bool stated = context_.options.ack_timeout_us != Options{}.ack_timeout_us;
+    context_.report(req::kT3Timeout, stated ? Severity::kFail : Severity::kInconclusive, seen.place,
+                    node,
                     {what + " " + ms_text(waited) + " after the message.",
                      "Not before the timeout, " + ms_text(context_.options.ack_timeout_us) + ".",
                      {}});

@@ -226,14 +226,14 @@ void SinkJoins::judge_clock(SinkWatch& sink, const Observation& seen, const Repl
     const std::int64_t passed_ms = (now - sink.clock_us) / 1000;
     const std::int64_t grown_ms = static_cast<std::int32_t>(reply.time_ms - sink.clock_ms);
     // A clock in binary ms runs 2.4 % faster than one in ms.
-    const std::int64_t tolerated_ms = kOffMs + passed_ms / 20;
+    const std::int64_t most_ms = passed_ms + passed_ms * 24 / 1000 + kOffMs;
     Said said;
     said.text = "cur_time went from " + number(sink.clock_ms) + " to " + number(reply.time_ms) +
                 " while " + number(static_cast<std::uint64_t>(passed_ms)) + " ms passed.";
     said.expected = "Growth as time passes, within 1 s.";
     if (grown_ms == 0 && passed_ms >= kOffMs) {
       context_.report(req::kJ3Time, Severity::kFail, seen.place, sink.device, std::move(said));
-    } else if (std::abs(grown_ms - passed_ms) > tolerated_ms) {
+    } else if (grown_ms < passed_ms - kOffMs || grown_ms > most_ms) {
       context_.report(req::kJ3Time, Severity::kWeak, seen.place, sink.device, std::move(said));
     } else {
       context_.findings.kept(req::kJ3Time);

@@ -181,7 +181,11 @@ void SinkJoins::showed_life(std::uint16_t sink_device, std::int64_t now_us, bool
     --sink->debts;
     const auto owes = [](const SinkHypothesis& h) { return !h.unknown && h.owes_report; };
     if (!std::all_of(watch.set.begin(), watch.set.end(), owes)) continue;
-    context_.report(req::kJ6Report, Severity::kFail, watch.ack, sink->device,
+    // With a full list, even of members from before the capture, nothing is owed.
+    if (listed(*sink) >= context_.profile().members_max) continue;
+    context_.report(req::kJ6Report,
+                    context_.options.start_cold ? Severity::kFail : Severity::kInconclusive,
+                    watch.ack, sink->device,
                     {"The ack_join of mote " + number(am) +
                          " was received (the link acknowledged it), and no serial_joined followed "
                          "within " + ms_text(context_.options.response_us) +

@@ -18,7 +18,10 @@ constexpr int kNever = -1000;
 constexpr int kStrongIsland = 20;
 constexpr int kNextDsn = 6;
 constexpr int kNearDsn = 3;
-constexpr int kWeakIsland = 2;
+constexpr int kDestIsland = 3;  // Whose island a message is for, that sink should send it on.
+constexpr int kSrcIsland = 1;
+constexpr int kMoteIsland = 4;
+constexpr std::uint16_t kBothLines = 0xFFFF;
 
 }  // namespace
 
@@ -34,12 +37,24 @@ IslandHint Streams::hint_of(const machine::Frame& frame) const {
   Net net;
   if (frame.type == kAmJoinReply && parse_reply(frame.payload, reply)) {
     hint.strong = reply.island;
+  } else if (AckJoin ack; frame.type == kAmAckJoin && parse_ack_join(frame.payload, ack)) {
+    hint.mote = ack.src.pid;
   } else if (frame.type == kAmNet && parse_net(frame.payload, net)) {
-    if (net.src.devid == frame.src) {
+    hint.mote = net.src.pid;
+    // What another island's sink sent may be passed on; it looks like the sink's own.
+    if (net.src.devid == frame.src && net.src.pid == net.dest.pid) {
       hint.strong = net.src.pid;
+    } else if (net.src.devid == frame.src) {
+      hint.src = net.src.pid;
+      hint.dest = net.dest.pid;
     } else {
       if (net.src.devid == machine::kNullDevid) hint.src = net.src.pid;
-      if (net.dest.pid != machine::kBroadcastPid) hint.dest = net.dest.pid;
+      hint.dest = net.dest.pid;
+    }
+    if (net.dest.pid == machine::kBroadcastPid) hint.src = hint.dest = 0;  // Any sink's.
+    for (const Down& down : downs_) {
+      if (down.addresses != net.addresses() || down.seq_num != net.seq_num) continue;
+      hint.line = hint.line == 0 || hint.line == down.island ? down.island : kBothLines;
     }
   }
   return hint;
@@ -49,14 +64,20 @@ int Streams::score(const Stream& stream, const Observation& seen, const IslandHi
   const auto ahead = static_cast<std::uint8_t>(seen.dsn - stream.dsn);
   if (ahead == 0 || ahead > kGapMax) return kNever;
   int points = ahead == 1 ? kNextDsn : kNearDsn;
-  // Only sinks share an address, and a mote's address may change with its island.
-  if (!stream.sink || stream.island == 0) return points;
+  if (stream.island == 0) return points;
+  // Motes of two islands may have the same id; but one mote may also change its island.
+  if (!stream.sink) {
+    if (hint.mote == 0) return points;
+    points += hint.mote == stream.island ? kMoteIsland : -kMoteIsland;
+    return points > 0 ? points : kNever;
+  }
   if (hint.strong != 0 && hint.strong != stream.island) return kNever;
   if (hint.strong != 0) points += kStrongIsland;
   // From another island's base station to that island: the other sink's.
   if (hint.src != 0 && hint.src == hint.dest && hint.src != stream.island) return kNever;
-  if (hint.src == stream.island) points += kWeakIsland;
-  if (hint.dest == stream.island) points += kWeakIsland;
+  if (hint.src == stream.island) points += kSrcIsland;
+  if (hint.dest == stream.island) points += kDestIsland;
+  if (hint.line == stream.island && hint.line != 0) points += kStrongIsland;
   return points;
 }
 
@@ -67,6 +88,7 @@ std::uint16_t Streams::assign(std::uint32_t index, bool& repeat) {
   std::uint16_t best = kLast;
   int best_score = kNever;
   bool even = false;
+  int candidates = 0;
   int looked_at = 0;
   for (std::uint16_t i = first_of_[seen.frame.src]; i != kLast && looked_at < kLookMax;
        i = next_[i], ++looked_at) {
@@ -80,12 +102,20 @@ std::uint16_t Streams::assign(std::uint32_t index, bool& repeat) {
       return i;
     }
     const int points = score(stream, seen, hint);
+    if (points != kNever) ++candidates;
     even = points == best_score && points != kNever;
     if (points <= best_score) continue;
     best = i;
     best_score = points;
   }
   if (even) return kNobody;
+  // Which of several sinks sent what says nothing of an island, a DSN alone does not tell.
+  const bool told = hint.strong != 0 || hint.src != 0 || hint.dest != 0 || hint.mote != 0 ||
+                    (hint.line != 0 && hint.line != kBothLines);
+  if (candidates > 1 && (!told || (streams_[best].sink && hint.strong == 0 && hint.src == 0 &&
+                                   hint.dest == 0 && hint.line == 0))) {
+    return kNobody;
+  }
   if (best == kLast) return open(index, hint);
   Stream& stream = streams_[best];
   if (static_cast<std::uint8_t>(seen.dsn - stream.dsn) != 1) {
@@ -100,6 +130,7 @@ std::uint16_t Streams::assign(std::uint32_t index, bool& repeat) {
   stream.last_us = now;
   ++stream.frames;
   if (seen.frame.type == kAmJoin) stream.asked = true;
+  if (!stream.sink && hint.mote != 0) stream.island = hint.mote;
   if (seen.frame.type == kAmJoinReply && !stream.asked) stream.sink = true;
   if (stream.sink && stream.island == 0) {
     stream.first_island = stream.island = hint.strong != 0 ? hint.strong : hint.dest;
@@ -115,6 +146,7 @@ std::uint16_t Streams::open(std::uint32_t index, const IslandHint& hint) {
   stream.dsn = seen.dsn;
   stream.sink = (seen.frame.src == sink_am_ && seen.frame.type != kAmJoin) || seen.frame.type == kAmJoinReply;
   stream.joins = stream.asked = seen.frame.type == kAmJoin;
+  if (!stream.sink) stream.island = hint.mote;
   if (stream.sink) stream.first_island = stream.island = hint.strong != 0 ? hint.strong : hint.dest;
   stream.first = stream.last = index;
   stream.first_us = stream.last_us = seen.place.time_us;
@@ -124,6 +156,10 @@ std::uint16_t Streams::open(std::uint32_t index, const IslandHint& hint) {
   next_.push_back(first_of_[stream.am]);
   first_of_[stream.am] = made;
   return made;
+}
+
+void Streams::heard_on_serial(const Net& net, std::uint16_t island) {
+  if (island != 0) downs_[down_next_++ % downs_.size()] = {net.addresses(), net.seq_num, island};
 }
 
 void Streams::rename_island(std::uint16_t from, std::uint16_t to) {

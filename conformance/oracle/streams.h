@@ -1,10 +1,12 @@
 // Streams of DSNs: frames of one AM address that follow each other.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
 #include "conformance/oracle/identity.h"
+#include "conformance/oracle/message.h"
 
 namespace rubric::oracle {
 
@@ -13,6 +15,8 @@ struct IslandHint {
   std::uint16_t strong = 0;   ///< A reply's island, or the pid of the sink's own address.
   std::uint16_t src = 0;      ///< Of a message from a base station: its pid.
   std::uint16_t dest = 0;     ///< Of a message that is passed on: where it goes.
+  std::uint16_t mote = 0;     ///< Were it a mote's: its island.
+  std::uint16_t line = 0;     ///< Of the serial line down which the same message came lately.
 };
 
 struct Stream {
@@ -38,6 +42,8 @@ class Streams {
   /// The stream of observation `index`, a radio frame with DSN; kNobody: it could be of two.
   std::uint16_t assign(std::uint32_t index, bool& repeat);
   const std::vector<Stream>& all() const { return streams_; }
+  /// A base station hands the sink of `island` a message, which it may radiate.
+  void heard_on_serial(const Net& net, std::uint16_t island);
   std::uint16_t sink_am() const { return sink_am_; }
   /// A base station told the sink with frames of island `from` that it is now `to`.
   void rename_island(std::uint16_t from, std::uint16_t to);
@@ -46,6 +52,14 @@ class Streams {
   IslandHint hint_of(const machine::Frame& frame) const;
   int score(const Stream& stream, const Observation& seen, const IslandHint& hint) const;
   std::uint16_t open(std::uint32_t index, const IslandHint& hint);
+
+  struct Down {
+    std::uint64_t addresses = 0;
+    std::uint16_t seq_num = 0;
+    std::uint16_t island = 0;
+  };
+  std::array<Down, 16> downs_{};
+  std::size_t down_next_ = 0;
 
   static constexpr std::uint16_t kLast = 0xFFFF;
   const Run& run_;

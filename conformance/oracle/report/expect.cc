@@ -150,6 +150,7 @@ Outcome compare(const oracle::Run& run, const oracle::Options& options,
     decided = decided || failed || severity == Severity::kWeak;
   }
   out.nothing_judged = !decided;
+  out.verdict = decided ? report.verdict : oracle::Verdict::kInconclusive;
   return out;
 }
 

@@ -50,6 +50,8 @@ struct Outcome {
   std::uint64_t unexpected_failures = 0;
   std::uint64_t broken_expectations = 0;   ///< Stale, or with another message.
   bool nothing_judged = false;             ///< No rule had its chance to be broken.
+  /// The report's; inconclusive where nothing could be judged.
+  oracle::Verdict verdict = oracle::Verdict::kPass;
 
   bool as_expected() const { return unexpected_failures == 0 && broken_expectations == 0; }
   /// 0 as expected, 1 not, 3 nothing but inconclusive.

@@ -112,7 +112,7 @@ std::string json_report(const Story& story) {
   std::string out = fmt::format(
       "{{\"schema\":\"rubric.check/1\",\n\"verdict\":\"{}\",\n\"expected\":{},\n\"exit_code\":{},\n"
       "\"profile\":\"{}\",\n\"sniffer\":\"{}\",\n\"start\":\"{}\",\n",
-      verdict_name(story.report.verdict), story.outcome.as_expected(), story.outcome.exit_code(),
+      verdict_name(story.outcome.verdict), story.outcome.as_expected(), story.outcome.exit_code(),
       o.deployed ? "deployed" : "paper", o.sniffer_complete ? "complete" : "unknown",
       o.start_cold ? "cold" : "unknown");
   out += "\"files\":" + list(story.run.files, json_string) + ",\n";

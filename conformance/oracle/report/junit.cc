@@ -55,7 +55,7 @@ class Junit {
         "<properties>\n<property name=\"profile\" value=\"{}\"/>\n"
         "<property name=\"verdict\" value=\"{}\"/>\n"
         "<property name=\"frames\" value=\"{}\"/>\n</properties>\n",
-        story_.options.deployed ? "deployed" : "paper", verdict_name(story_.report.verdict),
+        story_.options.deployed ? "deployed" : "paper", verdict_name(story_.outcome.verdict),
         story_.report.frames);
     out += body_;
     if (!facts.empty()) out += "<system-out>" + xml_text(facts) + "</system-out>\n";

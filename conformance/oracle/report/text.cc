@@ -302,11 +302,11 @@ class TextReport {
     }
     text += fmt::format("; {} judged, {} exercised", counted(story_.report.frames, "frame"),
                         counted(story_.report.exercised.size(), "rule"));
-    std::string verdict(verdict_name(story_.report.verdict));
-    if (story_.report.verdict == oracle::Verdict::kFail && outcome.as_expected()) {
+    std::string verdict(verdict_name(outcome.verdict));
+    if (outcome.verdict == oracle::Verdict::kFail && outcome.as_expected()) {
       verdict += " as expected";
-    } else if (outcome.exit_code() == 3) {
-      verdict = "inconclusive, nothing could be judged";
+    } else if (outcome.nothing_judged) {
+      verdict += ", nothing could be judged";
     }
     const bool good = outcome.exit_code() == 0;
     out_ += '\n';
