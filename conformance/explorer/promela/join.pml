@@ -1,8 +1,8 @@
 /* The join protocol of the RUBICON Communication Layer, motes x sinks, for Debian's spin: a second
  * opinion on the explorer, written from the rules J1-J9 and sharing no code with the machine.
  *
- * The air between a mote and a sink keeps its order, holds one copy of a frame at a time, loses
- * frames (LOSS) and delivers some twice (DUPS at most). Time is abstract: a timer that is set may
+ * The air between a mote and a sink keeps its order (with REORDER an ack_join may overtake), holds
+ * one copy of a frame at a time, loses frames (LOSS) and delivers some twice (DUPS at most). Time is abstract: a timer that is set may
  * fire at any moment. Every run is finite, so that `eventually' means `before the end'.
  *
  * A flaw is a macro: ACCEPTS_WRONG_SEQ, ONE_PENDING_SEQ, JOINED_ON_LINK_ACK, NO_FAIL,
@@ -48,6 +48,7 @@ chan down[MOTES * SINKS] = [2] of { byte };             /* the sequence number o
 bool link_ack[MOTES];      /* on its way to the mote */
 byte dups = 0;
 bool healing = false;      /* faults have stopped */
+bool healed[MOTES];        /* and the mote has had its call since */
 bool over = false;         /* and everything that could happen has */
 
 mtype phase[MOTES] = kOutside;
@@ -57,6 +58,7 @@ bool open[MOTES];          /* a call without its terminal event */
 byte present[MOTES];       /* the number of the call's requests */
 byte sent[MOTES];          /* its requests */
 byte heard[MOTES];         /* islands that answered the present number, as bits */
+byte chosen[MOTES];        /* islands that it acked in this call, as bits */
 byte acked[MOTES];         /* islands that the mote ever acked, as bits */
 byte view[MOTES] = NOBODY; /* the island that the application was told of */
 byte replied[MOTES * SINKS];  /* the number answered last */
@@ -102,6 +104,8 @@ inline send_ack(m, s, number) {
   sending = true;
   link_ack[m] = false;
   acked[m] = acked[m] | (1 << s);
+  if :: chosen[m] != 0 && chosen[m] != (1 << s) -> bad_island = true :: else fi;
+  chosen[m] = chosen[m] | (1 << s);
   if :: number != present[m] || !((heard[m] >> s) & 1) -> bad_ack = true :: else fi;
   to_sinks(m, kAckJoin, number, s)
 }
@@ -166,7 +170,8 @@ proctype Mote(byte m) {
   bool sending = false;
 end:
   do
-  :: atomic { phase[m] == kOutside && !open[m] && (calls < CALLS || (healing && !over)) ->
+  :: atomic { phase[m] == kOutside && !open[m] && (calls < CALLS || (healing && !healed[m])) ->
+       if :: healing -> healed[m] = true :: else fi;
        phase[m] = kJoining;
        seq = SEQ(m, calls);
        calls++;
@@ -175,6 +180,7 @@ end:
        present[m] = seq;
        sent[m] = 0;
        heard[m] = 0;
+       chosen[m] = 0;
        send_request(m) }
   :: atomic { phase[m] == kJoining && (!healing || timeout) ->
        if
@@ -259,6 +265,10 @@ end:
   :: atomic { DUPLICATE && nempty(up[PAIR(0, s)]) ->
               dups++; up[PAIR(0, s)]?<kind, number, to>; hear(s, 0, kind, number, to);
               kind = kRequest; number = 0; to = 0 }
+#ifdef REORDER
+  :: atomic { up[PAIR(0, s)]??kAckJoin, number, to -> hear(s, 0, kAckJoin, number, to);
+              number = 0; to = 0 }
+#endif
 #if MOTES > 1
   :: atomic { up[PAIR(1, s)]?kind, number, to -> hear(s, 1, kind, number, to);
               kind = kRequest; number = 0; to = 0 }

@@ -1,0 +1,360 @@
+#include "tools/explore.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "conformance/explorer/counterexample.h"
+#include "conformance/explorer/search.h"
+#include "conformance/flaws/flaws.h"
+#include "conformance/generated/profiles.h"
+#include "conformance/trace/print.h"
+#include "tools/cli/exit_codes.h"
+#include "tools/cli/suggest.h"
+#include "tools/cli/usage.h"
+#include "tools/layout/json_text.h"
+
+namespace rubric::tools {
+namespace {
+
+using explorer::Mask;
+using explorer::Progress;
+using explorer::Result;
+using explorer::Scope;
+using layout::json_string;
+
+struct Options {
+  explorer::Options network;
+  std::string profile = "paper";
+  std::string flaw;
+  std::string scope = "join";
+  std::string format = "text";
+  std::string out;
+  std::string weakness_out;
+  std::vector<std::string> properties;
+  bool reboot = false;
+  unsigned requests = 0;  // 0: as the profile says.
+  unsigned acks = 0;
+};
+
+std::string footer() {
+  std::string text = "Properties:\n";
+  for (const auto& p : explorer::properties()) {
+    text += fmt::format("  {:<19} {}\n", p.name, p.sentence);
+  }
+  text += "Flaws of release 1.0:\n";
+  for (const auto& flaw : flaws::all()) {
+    text += fmt::format("  {:<19} {}\n", flaw.name, flaw.description);
+  }
+  return text +
+         "Time is abstract: a timer that is set may fire at any moment. Where nothing is broken,\n"
+         "the run also fails if something that must be possible was never reached.\n"
+         "Exit codes: 0 all properties hold, 1 one is broken or something was never reached, 2 the\n"
+         "trace cannot be written, 3 a limit was met first, 64 usage.";
+}
+
+[[noreturn]] void usage(const std::string& what) { throw CLI::ValidationError(what); }
+
+template <class Table>
+[[noreturn]] void unknown(const char* what, const std::string& word, const Table& table) {
+  std::vector<std::string> names;
+  for (const auto& entry : table) names.emplace_back(entry.name);
+  usage(fmt::format("unknown {} '{}'{}", what, word, cli::did_you_mean(word, names)));
+}
+
+// What the options' words mean.
+explorer::Options resolve(const Options& options) {
+  explorer::Options network = options.network;
+  const auto profile =
+      std::find_if(machine::kProfiles.begin(), machine::kProfiles.end(),
+                   [&](const auto& p) { return p.name == options.profile; });
+  if (profile == machine::kProfiles.end()) {
+    unknown("profile", options.profile, machine::kProfiles);
+  }
+  network.profile = profile->profile;
+  if (options.requests != 0) {
+    network.profile.join_requests_max = static_cast<std::uint8_t>(options.requests);
+  }
+  if (options.acks != 0) network.profile.ack_join_max = static_cast<std::uint8_t>(options.acks);
+  network.scope = options.scope == "full" ? Scope::kFull : Scope::kJoin;
+  if (network.motes + network.sinks > static_cast<int>(explorer::kNodesMax)) {
+    usage(fmt::format("at most {} motes and sinks together", explorer::kNodesMax));
+  }
+  if (options.reboot) network.reboots = std::max<std::uint8_t>(network.reboots, 1);
+  // Every message that is heard again is answered by a new number: without a limit there is no end.
+  const bool endless = network.scope == Scope::kFull && network.dup && network.dups == 0;
+  if (endless) network.dups = 1;
+  if (!options.flaw.empty()) {
+    const flaws::Flaw* const flaw = flaws::find(options.flaw);
+    if (flaw == nullptr) unknown("flaw", options.flaw, flaws::all());
+    if (flaw->seen == flaws::Seen::kTime) {
+      usage(fmt::format("flaw {} shows only where time runs; time is abstract here", flaw->name));
+    }
+    if (flaw->seen == flaws::Seen::kMessages && network.scope != Scope::kFull) {
+      usage(fmt::format("flaw {} shows only in messages: give --scope full", flaw->name));
+    }
+    network.step = flaw->step;
+  }
+  if (!options.properties.empty()) network.properties = 0;
+  for (const std::string& name : options.properties) {
+    const auto property = explorer::property_named(name);
+    if (!property) unknown("property", name, explorer::properties());
+    network.properties |= explorer::bit(*property);
+  }
+  return network;
+}
+
+// The names in a mask, in their order.
+template <class Table, class Key>
+std::vector<std::string> names_in(Mask mask, const Table& table, Key key) {
+  std::vector<std::string> names;
+  for (const auto& entry : table) {
+    if ((mask & explorer::bit(key(entry))) != 0) names.emplace_back(entry.name);
+  }
+  return names;
+}
+std::vector<std::string> property_names(Mask mask) {
+  return names_in(mask, explorer::properties(), [](const auto& p) { return p.property; });
+}
+std::vector<std::string> goal_names(Mask mask) {
+  return names_in(mask, explorer::goals(), [](const auto& g) { return g.goal; });
+}
+
+struct Verdict {
+  const char* text = "";
+  int exit_code = cli::kVerdictExpected;
+  Mask never = 0;  ///< Goals that should have been reached.
+};
+
+Verdict judge(const explorer::Options& network, const Result& result) {
+  Verdict verdict;
+  if (result.violation) return {"broken", cli::kVerdictFailed, 0};
+  if (!result.complete) return {"inconclusive", cli::kVerdictInconclusive, 0};
+  verdict.never = explorer::expected_goals(network) & ~result.goals;
+  if (verdict.never != 0) return {"vacuous", cli::kVerdictFailed, verdict.never};
+  return {"holds", cli::kVerdictExpected, 0};
+}
+
+// That two different states have the same fingerprint, and one is so left out: at most this.
+double omission_probability(std::uint64_t states) {
+  const auto n = static_cast<double>(states);
+  return n * n / 2 / 18446744073709551616.0;
+}
+
+std::string first_broken(const Result& result) {
+  return property_names(result.violation->violated).front();
+}
+
+void print_text(const Result& result, const Verdict& verdict, std::FILE* out) {
+  const Progress& p = result.progress;
+  fmt::print(out, "states       {}\ntransitions  {}\ndepth        {}\n", p.states, p.transitions,
+             p.depth);
+  const double seconds = std::max(p.seconds, 1e-9);
+  fmt::print(out, "time         {:.2f} s: {:.2f} million states/s, {:.2f} million transitions/s\n",
+             p.seconds, static_cast<double>(p.states) / seconds / 1e6,
+             static_cast<double>(p.transitions) / seconds / 1e6);
+  fmt::print(out, "memory       {:.1f} MB, {} bytes a state; {} states of single nodes, {} frames\n",
+             static_cast<double>(result.memory_bytes) / 1e6, result.memory_per_state_bytes,
+             result.node_states, result.frames);
+  fmt::print(out, "left out     a state at most with probability {:.1e}\n",
+             omission_probability(p.states));
+  const std::vector<std::string> reached = goal_names(result.goals);
+  fmt::print(out, "reached      ");
+  for (std::size_t i = 0; i < reached.size(); ++i) fmt::print(out, "{}{}", i ? ", " : "", reached[i]);
+  fmt::print(out, "\n");
+  if (result.known_weak_states != 0) {
+    fmt::print(out,
+               "known        in {} states at rest a rebooted mote cannot join, since its sink still "
+               "lists it\n             (spec/membership.md)\n",
+               result.known_weak_states);
+  }
+  for (const auto& goal : explorer::goals()) {
+    if ((verdict.never & explorer::bit(goal.goal)) == 0) continue;
+    fmt::print(out, "never        {}: {}\n", goal.name, goal.sentence);
+  }
+  if (result.violation) {
+    for (const auto& property : explorer::properties()) {
+      if ((result.violation->violated & explorer::bit(property.property)) == 0) continue;
+      fmt::print(out, "broken       {}: {}\n", property.name, property.sentence);
+    }
+  }
+  fmt::print(out, "verdict      {}{}{}\n", verdict.text, *result.limit ? ": " : "", result.limit);
+}
+
+std::string json_list(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + json_string(name);
+  return "[" + text + "]";
+}
+
+void print_json(const Options& options, const Result& result, const Verdict& verdict,
+                const std::string& trace, std::FILE* out) {
+  const Progress& p = result.progress;
+  const Mask broken = result.violation ? result.violation->violated : 0;
+  fmt::print(out, "{{\"schema\": \"rubric-explore-1\", \"verdict\": \"{}\",\n", verdict.text);
+  fmt::print(out, " \"profile\": {}, \"flaw\": {}, \"limit\": {},\n", json_string(options.profile),
+             options.flaw.empty() ? "null" : json_string(options.flaw),
+             *result.limit ? json_string(result.limit) : "null");
+  fmt::print(out, " \"broken\": {},\n \"reached\": {},\n \"never\": {},\n",
+             json_list(property_names(broken)), json_list(goal_names(result.goals)),
+             json_list(goal_names(verdict.never)));
+  fmt::print(out, " \"states\": {}, \"transitions\": {}, \"depth\": {}, \"seconds\": {:.3f},\n",
+             p.states, p.transitions, p.depth, p.seconds);
+  fmt::print(out, " \"memory_bytes\": {}, \"memory_per_state_bytes\": {},\n", result.memory_bytes,
+             result.memory_per_state_bytes);
+  fmt::print(out, " \"node_states\": {}, \"frames\": {}, \"known_weak_states\": {},\n",
+             result.node_states, result.frames, result.known_weak_states);
+  fmt::print(out, " \"omission_probability\": {:e}, \"trace\": {}}}\n",
+             omission_probability(p.states), trace.empty() ? "null" : json_string(trace));
+}
+
+// False, having said why, when the file does not take the text. "-" is stdout.
+bool write_file(const std::string& path, const std::string& text) {
+  std::FILE* const file = path == "-" ? stdout : std::fopen(path.c_str(), "wb");
+  bool good = file != nullptr && std::fwrite(text.data(), 1, text.size(), file) == text.size();
+  const int error = errno;
+  if (file != nullptr && (file == stdout ? std::fflush(file) : std::fclose(file)) != 0) {
+    good = false;
+  }
+  if (!good) fmt::print(stderr, "rubric: cannot write {}: {}\n", path, std::strerror(error));
+  return good;
+}
+
+// A line on stderr that is drawn over, twice a second; nothing where that is no terminal.
+class ProgressLine {
+ public:
+  explicit ProgressLine(bool wanted) : active_(wanted && isatty(2) != 0) {}
+  void show(const Progress& p) {
+    if (!active_ || p.seconds < next_) return;
+    next_ = p.seconds + 0.5;
+    drawn_ = true;
+    fmt::print(stderr, "\rdepth {}, {:.1f} million states, {:.1f} million waiting, {:.0f} s \033[K",
+               p.depth, static_cast<double>(p.states) / 1e6, static_cast<double>(p.waiting) / 1e6,
+               p.seconds);
+  }
+  void clear() {
+    if (drawn_) fmt::print(stderr, "\r\033[K");
+  }
+
+ private:
+  bool active_;
+  bool drawn_ = false;
+  double next_ = 1;
+};
+
+std::string trace_text(explorer::Nodes& nodes, const Options& options, const explorer::Path& path,
+                       const std::string& name) {
+  std::string note = fmt::format("Found by rubric explore: {} motes, {} sinks, profile {}",
+                                 nodes.options().motes, nodes.options().sinks, options.profile);
+  if (!options.flaw.empty()) note += ", flaw " + options.flaw;
+  return trace::print(explorer::counterexample(nodes, path, {options.profile, name, note}));
+}
+
+void run(const Options& options) {
+  const auto nodes = std::make_unique<explorer::Nodes>(resolve(options));
+  ProgressLine line(options.format == "text");
+  const Result result =
+      explorer::explore(*nodes, [&](const Progress& progress) { line.show(progress); });
+  line.clear();
+  const Verdict verdict = judge(nodes->options(), result);
+  std::string text;
+  if (result.violation) {
+    text = trace_text(*nodes, options, *result.violation, "explore." + first_broken(result));
+  }
+  bool good = true;
+  const bool json = options.format == "json";
+  const bool in_file = !options.out.empty() && options.out != "-";
+  if (!text.empty() && in_file) good = write_file(options.out, text);
+  if (result.known_weakness && !options.weakness_out.empty()) {
+    const std::string weakness =
+        trace_text(*nodes, options, *result.known_weakness, "explore.known_weakness");
+    good = write_file(options.weakness_out, weakness) && good;
+  }
+  if (json) {
+    print_json(options, result, verdict, text, stdout);
+  } else {
+    // A trace on stdout stands alone there, so that it can be given on.
+    const bool shares = !text.empty() && !in_file;
+    print_text(result, verdict, shares ? stderr : stdout);
+    if (shares) good = write_file("-", text) && good;
+  }
+  if (!good) cli::exit_with(cli::kVerdictBroken);
+  if (verdict.exit_code != cli::kVerdictExpected) cli::exit_with(verdict.exit_code);
+}
+
+void add_faults(CLI::App& sub, Options& options) {
+  explorer::Options& n = options.network;
+  sub.add_flag("--loss", n.loss, "Frames and link acks may be lost");
+  sub.add_flag("--dup", n.dup, "Frames may be heard again");
+  sub.add_flag("--reorder", n.reorder, "Frames of one sender may overtake each other");
+  sub.add_flag("--collide", n.collide, "Frames may destroy each other");
+  sub.add_flag("--reboot", options.reboot, "Each mote may lose its memory once");
+  sub.add_flag("--prompt", n.prompt, "No frame outlives a timer");
+  sub.add_flag("--busy", n.busy, "The end of each transmission is a step of its own");
+  sub.add_option("--dups", n.dups, "Frames heard again in all; 0: any number (scope full: 1)")
+      ->check(CLI::Range(0, 200));
+  sub.add_option("--in-flight", n.in_flight, "Copies of one frame in flight")
+      ->check(CLI::Range(1, 4))
+      ->capture_default_str();
+}
+
+void add_bounds(CLI::App& sub, Options& options) {
+  explorer::Options& n = options.network;
+  sub.add_option("--calls", n.calls, "Calls of joinIsland, each mote")
+      ->check(CLI::Range(1, 8))
+      ->capture_default_str();
+  sub.add_option("--sends", n.sends, "Messages of each node, in full scope")
+      ->check(CLI::Range(0, 4))
+      ->capture_default_str();
+  sub.add_option("--requests", options.requests, "join_requests of a call; default: the profile's")
+      ->check(CLI::Range(1, 20));
+  sub.add_option("--acks", options.acks, "ack_joins of a join; default: the profile's")
+      ->check(CLI::Range(1, 20));
+  sub.add_option("--max-states", n.states_max, "Stop, inconclusive, at so many; 0: never")
+      ->capture_default_str();
+  sub.add_flag("--exact", n.exact, "Keep apart states that differ in nothing that matters");
+  n.threads = std::max(1U, std::thread::hardware_concurrency());
+  sub.add_option("--threads", n.threads, "How many")->check(CLI::Range(1, 64))->capture_default_str();
+}
+
+}  // namespace
+
+void add_explore(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* sub = app.add_subcommand("explore", "Try everything that can happen in a small network");
+  sub->footer(footer());
+  cli::set_usage_exit_code(*sub, cli::kVerdictUsage);
+  const int motes_max = static_cast<int>(explorer::kMotesMax);
+  const int sinks_max = static_cast<int>(explorer::kSinksMax);
+  sub->add_option("--motes", options->network.motes, "How many")
+      ->check(CLI::Range(1, motes_max))
+      ->capture_default_str();
+  sub->add_option("--sinks", options->network.sinks, "How many, all in range of all motes")
+      ->check(CLI::Range(1, sinks_max))
+      ->capture_default_str();
+  add_faults(*sub, *options);
+  sub->add_option("--scope", options->scope, "join: joins alone; full: and messages of members")
+      ->check(CLI::IsMember({"join", "full"}))
+      ->capture_default_str();
+  sub->add_option("--property", options->properties, "Only these; default: all");
+  sub->add_option("--flaw", options->flaw, "Put this flaw of release 1.0 around the machine");
+  sub->add_option("--profile", options->profile, "paper or deployed")->capture_default_str();
+  add_bounds(*sub, *options);
+  sub->add_option("--format", options->format, "text or json")
+      ->check(CLI::IsMember({"text", "json"}))
+      ->capture_default_str();
+  sub->add_option("--out", options->out, "File for the shortest trace; default stdout");
+  sub->add_option("--out-known", options->weakness_out, "File for the shortest way to a known weakness");
+  sub->callback([options] { run(*options); });
+}
+
+}  // namespace rubric::tools
