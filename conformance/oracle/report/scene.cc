@@ -48,6 +48,23 @@ void shorten(trace::Message& message) {
   }
 }
 
+// Words too long to be read, hex above all, end in dots.
+std::string without_long_words(const std::string& text) {
+  constexpr std::size_t kLongest = 64;
+  constexpr std::size_t kKept = 48;
+  std::string out;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find(' ', at), text.size());
+    const bool is_long = end - at > kLongest;
+    const bool closes = is_long && text[end - 1] == ')';
+    out += is_long ? text.substr(at, kKept) + "..." : text.substr(at, end - at);
+    if (closes) out += ')';
+    if (end < text.size()) out += ' ';
+    at = end + 1;
+  }
+  return out;
+}
+
 std::string value_of(const trace::Message& message, std::string_view path) {
   const trace::Value* value = message.find(path);
   if (!value) return {};
@@ -205,7 +222,7 @@ std::string Scene::message(std::size_t i) const {
   }
   trace::Message message = decoded(seen).message;
   shorten(message);
-  return trace::print(message);
+  return without_long_words(trace::print(message));
 }
 
 std::string Scene::route(std::size_t i) const {
