@@ -5,6 +5,12 @@
 #include "conformance/machine/transport.h"
 
 namespace rubric::oracle {
+namespace {
+
+constexpr std::size_t kCrowd = 2;
+constexpr std::int64_t kAroundUs = 100'000;
+
+}  // namespace
 
 Acks::Acks(Context& context, std::size_t devices)
     : context_(context), arrived_(devices), owed_(devices, 0) {}
@@ -217,8 +223,14 @@ void Acks::showed_life(std::uint16_t node, std::int64_t now_us) {
     const bool by_radio = device.role == machine::Role::kMote ||
                           (device.role == machine::Role::kSink &&
                            arrived.net.src.devid != machine::kNullDevid);
+    std::size_t around = 0;  // Many at once may have found a buffer full (decision 122).
+    for (std::size_t k = 0; k < ring.size(); ++k) {
+      const std::int64_t apart = ring.oldest(k).place.time_us - arrived.place.time_us;
+      if (apart > -kAroundUs && apart < kAroundUs) ++around;
+    }
     const Severity severity =
-        by_radio ? context_.without(node, arrived.place.time_us, now_us) : Severity::kFail;
+        around > kCrowd ? Severity::kInconclusive
+        : by_radio ? context_.without(node, arrived.place.time_us, now_us) : Severity::kFail;
     context_.report(req::kT2Ack, severity, arrived.place, node,
                     {"It surely received " + name_of(arrived.net) +
                          ", reliable, and sent no ack within " +

@@ -79,6 +79,7 @@ class Forwarding {
   void expire_early(Line& line, std::int64_t now_us);
   void overdue_up(Line& line, std::int64_t now_us);
   void overdue_down(Line& line, std::int64_t now_us);
+  bool crowded(Line& line, std::int64_t time_us);
   void unheard(Line& line, const Passing& passing);
   bool out_of_order(const Passing& passing, std::uint64_t& last);
 

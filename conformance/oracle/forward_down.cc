@@ -6,8 +6,6 @@
 namespace rubric::oracle {
 namespace {
 
-constexpr std::size_t kBurst = 1;            // More may find a buffer full, or the node busy.
-constexpr std::int64_t kBurstUs = 500'000;
 
 }  // namespace
 
@@ -90,6 +88,20 @@ bool Forwarding::came_down(std::uint16_t sink, const Net& net) {
   return false;
 }
 
+// So much came around that time that a buffer may have been full (decision 122).
+bool Forwarding::crowded(Line& line, std::int64_t time_us) {
+  constexpr std::size_t kCrowd = 2;
+  constexpr std::int64_t kAroundUs = 100'000;
+  std::size_t around = 0;
+  for (Ring<Passing, kRoom>* ring : {&line.up, &line.down}) {
+    for (std::size_t i = 0; i < ring->size(); ++i) {
+      const std::int64_t apart = ring->oldest(i).place.time_us - time_us;
+      if (apart > -kAroundUs && apart < kAroundUs) ++around;
+    }
+  }
+  return around > kCrowd;
+}
+
 void Forwarding::somebody_sent(const Net& net) {
   for (Line& line : lines_) {
     for (std::size_t i = 0; i < line.down.size(); ++i) {
@@ -136,14 +148,9 @@ void Forwarding::overdue_up(Line& line, std::int64_t now_us) {
     if (!passing.owed || now_us - passing.place.time_us <= context_.options.response_us) continue;
     passing.owed = false;
     --line.owed_up;
-    std::size_t around = 0;
-    for (std::size_t k = 0; k < line.up.size(); ++k) {
-      const std::int64_t apart = line.up.oldest(k).place.time_us - passing.place.time_us;
-      if (apart > -kBurstUs && apart < kBurstUs) ++around;
-    }
     const bool own_island = passing.net.dest.pid == line.island;
     context_.report(own_island ? req::kN6Forward : req::kN6Route,
-                    around > kBurst ? Severity::kInconclusive : Severity::kFail, passing.place,
+                    crowded(line, passing.place.time_us) ? Severity::kInconclusive : Severity::kFail, passing.place,
                     line.sink,
                     {"The sink received " + name_of(passing.net) +
                          " (the link acknowledged it) and did not put it on its serial line, though "
@@ -159,13 +166,8 @@ void Forwarding::overdue_down(Line& line, std::int64_t now_us) {
     if (!passing.owed || now_us - passing.place.time_us <= context_.options.response_us) continue;
     passing.owed = false;
     --line.owed_down;
-    std::size_t around = 0;
-    for (std::size_t k = 0; k < line.down.size(); ++k) {
-      const std::int64_t apart = line.down.oldest(k).place.time_us - passing.place.time_us;
-      if (apart > -kBurstUs && apart < kBurstUs) ++around;
-    }
     const Severity severity = context_.without(line.sink, passing.place.time_us, now_us);
-    context_.report(req::kN7Radio, around > kBurst ? Severity::kInconclusive : severity,
+    context_.report(req::kN7Radio, crowded(line, passing.place.time_us) ? Severity::kInconclusive : severity,
                     passing.place, line.sink,
                     {"The sink confirmed " + name_of(passing.net) +
                          " on its serial line and did not radiate it, though it sent other frames "

@@ -99,11 +99,20 @@ class Identifier {
     const std::uint16_t node = logged(seen.node);
     if (!seen.received) {
       mark.device = node;
+      if (seen.kind == Observation::Kind::kRadio && node != kNobody) {
+        Device& device = out_.devices[node];  // A log has all that its node sent.
+        device.radio = true;
+        device.first_us = run_.start_us;
+        device.last_us = run_.end_us;
+        ++device.frames;
+      }
+      if (seen.kind == Observation::Kind::kSerial) look_serial(seen);
       if (seen.kind == Observation::Kind::kRadio || seen.kind == Observation::Kind::kSerial) {
         recent_[recent_next_++ % kRecentFrames] = index + 1;
       }
       return;
     }
+    if (seen.kind == Observation::Kind::kSerial) look_serial(seen);
     mark.receiver = node;
     for (const std::uint32_t before : recent_) {
       if (before == 0) continue;
@@ -323,7 +332,11 @@ class Identifier {
   void settle(std::uint32_t index) {
     const Observation& seen = run_.seen[index];
     Mark& mark = out_.marks[index];
-    if (!seen.node.empty()) return;
+    if (!seen.node.empty()) {
+      const bool given = seen.kind == Observation::Kind::kSerial && mark.receiver != kNobody;
+      if (given && mark.device == kNobody) mark.device = out_.devices[mark.receiver].partner;
+      return;
+    }
     if (seen.kind == Observation::Kind::kSerial || seen.kind == Observation::Kind::kLinkAck) {
       if (seen.tap >= out_.sink_of_tap.size()) return;
       const std::uint16_t sink = out_.sink_of_tap[seen.tap];

@@ -118,6 +118,9 @@ class Judge {
       case Kind::kNotice:
         if (mark.device != kNobody) told(seen, mark.device);
         break;
+      case Kind::kReboot:
+        if (mark.device != kNobody) begin_life(mark.device);
+        break;
       case Kind::kLinkAck:
       case Kind::kDamaged:
         break;
@@ -274,8 +277,10 @@ class Judge {
     const bool free = route.deliver || net.dest.pid == machine::kBroadcastPid;
     const ReqId forbidden = free ? ReqId::kNone : route.requirement;
     // Straight from a foreign mote: likewise (decision 116).
-    const bool straight = from == machine::Link::kRadio && net.src.pid != net.dest.pid &&
-                          !is(sender, Role::kSink);
+    // So is what a base station hands its sink for another island's (decision 126).
+    const bool radio = from == machine::Link::kRadio;
+    const bool straight = net.dest.pid != router.own.pid ||
+                          (radio && net.src.pid != net.dest.pid && !is(sender, Role::kSink));
     acks_.arrived(node, seen, sender, net, {forbidden, forbidden == req::kN6Other, sure, straight});
   }
 

@@ -23,6 +23,7 @@ struct Observation {
     kDamaged,   ///< Bytes that are no frame (bad CRC and the like): heard by nobody.
     kCall,      ///< An application's call, from a .rtr log.
     kNotice,    ///< What an application was told, from a .rtr log.
+    kReboot,    ///< The node lost its memory, by a .rtr log.
   };
   Kind kind = Kind::kRadio;
   bool to_mote = false;        ///< Serial: towards the sink. Without direction flags see Tap.

@@ -15,6 +15,7 @@ namespace rubric::oracle {
 namespace {
 
 constexpr std::int64_t kNsPerUs = 1000;
+constexpr std::int64_t kUntimed = std::numeric_limits<std::int64_t>::min();
 constexpr std::size_t kChunkBytes = 1024 * 1024;
 constexpr std::size_t kLookBytes = 4096;  // Enough to tell a format.
 
@@ -45,7 +46,6 @@ std::string_view RunStorage::keep(std::string_view text) {
 struct RunReader::State {
   ReadAs as;
   Run run;
-  std::int64_t first_ns = std::numeric_limits<std::int64_t>::max();
   // One file in the reading.
   std::unique_ptr<Reader> reader;
   std::vector<std::uint32_t> taps;  // Of the reader's interfaces.
@@ -77,12 +77,7 @@ struct RunReader::State {
     seen.place.file = static_cast<std::uint32_t>(run.files.size() - 1);
     seen.place.frame = frames;
     seen.place.offset_bytes = packet.offset_bytes;
-    if (packet.time_ns != kNoTime) {
-      first_ns = std::min(first_ns, packet.time_ns);
-      seen.place.time_us = packet.time_ns / kNsPerUs;
-    } else {
-      seen.place.time_us = std::numeric_limits<std::int64_t>::min();
-    }
+    seen.place.time_us = packet.time_ns == kNoTime ? kUntimed : packet.time_ns / kNsPerUs;
     if (seen.kind == Observation::Kind::kSerial) {
       seen.to_mote = packet.direction == Direction::kUnknown ? looks_towards_sink(seen.frame)
                                                              : packet.direction ==
@@ -161,19 +156,24 @@ bool RunReader::add_file(const std::string& path, std::string& error) {
 
 Run RunReader::finish() {
   Run run = std::move(state_->run);
-  const std::int64_t first_us =
-      state_->first_ns == std::numeric_limits<std::int64_t>::max() ? 0
-                                                                    : state_->first_ns / kNsPerUs;
-  const ReadAs as = state_->as;
   state_ = std::make_unique<State>();
-  state_->as = as;
   state_->run.storage = std::make_shared<RunStorage>();
+  // A log counts from the start of its run. Captures of simulated networks do, too; those of real
+  // ones have stamps of this century, and then the log is taken to begin with the capture.
+  constexpr std::int64_t kTenYearsUs = 315'360'000'000'000;
+  constexpr std::int64_t kNone = std::numeric_limits<std::int64_t>::max();
+  std::int64_t first_us = kNone;
+  for (const Observation& seen : run.seen) {
+    const std::int64_t time = seen.place.time_us;
+    if (seen.node.empty() && time != kUntimed) first_us = std::min(first_us, time);
+  }
+  const std::int64_t logs_us = first_us != kNone && first_us > kTenYearsUs ? first_us : 0;
   for (Observation& seen : run.seen) {
-    if (seen.place.time_us == std::numeric_limits<std::int64_t>::min()) {
-      seen.place.time_us = -1;
-    } else if (seen.node.empty()) {  // A log's times count from its own start.
-      seen.place.time_us -= first_us;
-    }
+    if (!seen.node.empty()) seen.place.time_us += logs_us;
+    if (seen.place.time_us != kUntimed) first_us = std::min(first_us, seen.place.time_us);
+  }
+  for (Observation& seen : run.seen) {
+    seen.place.time_us = seen.place.time_us == kUntimed ? -1 : seen.place.time_us - first_us;
   }
   merge(run);
   return run;

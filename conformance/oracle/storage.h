@@ -19,6 +19,7 @@ struct RunStorage {
 
   std::deque<machine::Call> calls;
   std::deque<machine::Notice> notices;
+  std::vector<std::shared_ptr<const void>> owned;  ///< What calls and notices borrow from.
 
  private:
   static constexpr std::size_t kBlockBytes = 256 * 1024;

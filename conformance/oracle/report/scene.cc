@@ -75,7 +75,12 @@ std::string value_of(const trace::Message& message, std::string_view path) {
 std::string net_label(const trace::Message& message) {
   const std::string trans = value_of(message, "payload.trans_id");
   if (trans == "rubicon_ack") return "ack of " + value_of(message, "payload.body.seq_num");
-  const std::string app = value_of(message, "payload.app_id");
+  std::string app = value_of(message, "payload.app_id");
+  if (app == "control_layer") {  // The layer's own messages have names of their own.
+    for (const char* path : {"payload.body.type", "payload.body.msg_type"}) {
+      if (const std::string name = value_of(message, path); !name.empty()) app = name;
+    }
+  }
   const std::string seq = value_of(message, "seq_num");
   return fmt::format("{} {}", app.empty() ? message.name : app, seq);
 }

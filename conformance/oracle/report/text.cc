@@ -213,7 +213,16 @@ class TextReport {
       where += fmt::format("  offset {}", place.offset_bytes);
       if (place.time_us >= 0) where += fmt::format(", {} s", seconds_text(place.time_us));
       out_ += fmt::format("{}{}, {}\n", kIndent, where, scene_->route(i));
-      out_ += wrapped("             ", scene_->message(i), options_.width, 15);
+      constexpr std::string_view kDeep = "             ";
+      const std::string message = scene_->message(i);
+      // The frame in question in full, a line of the others.
+      if (i == at || kDeep.size() + message.size() <= options_.width) {
+        out_ += wrapped(kDeep, message, options_.width, kDeep.size() + 2);
+      } else {
+        const std::size_t room = options_.width - kDeep.size() - 3;
+        const std::size_t end = std::min(message.rfind(' ', room), room);
+        out_ += fmt::format("{}{}...\n", kDeep, message.substr(0, end));
+      }
     }
     out_ += '\n' + chart(*scene_, rows, at, kIndent.size() + 2, options_.width);
   }
