@@ -1,0 +1,47 @@
+// Holds mutants against golden traces: which trace finds it, and by which rule.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "conformance/mutants/mutant.h"
+#include "conformance/runner/run_case.h"
+#include "conformance/trace/parse.h"
+
+namespace rubric::mutants {
+
+/// A golden trace in its file.
+struct CaseRef {
+  const trace::Parsed* file;
+  const trace::Case* one;
+};
+
+/// The golden traces, and what the machine did in each.
+class Golden {
+ public:
+  /// All .rtr files below the folder. Throws std::runtime_error.
+  explicit Golden(const std::string& folder);
+
+  const std::vector<CaseRef>& cases() const { return cases_; }
+
+ private:
+  std::vector<trace::Parsed> files_;
+  std::vector<CaseRef> cases_;
+};
+
+struct Found {
+  bool killed = false;
+  bool named = false;   ///< A failing line names one of the mutant's rules, or it names none.
+  std::string by;       ///< The trace that killed it; the one that named its rule, if any.
+  std::string lines;    ///< What failed there.
+};
+
+/// Works the case on it. Everything but a pass kills: the machine itself passes.
+runner::CaseResult run(const CaseRef& ref, const runner::SubjectFactory& make);
+/// Tries the cases, those first that name one of the rules, until one kills it by such a rule.
+Found hunt(const Golden& golden, const Mutant& mutant);
+/// All of them, on so many threads.
+std::vector<Found> hunt_all(const Golden& golden, const Mutants& mutants, unsigned threads);
+
+}  // namespace rubric::mutants

@@ -1,0 +1,208 @@
+// Mistakes with channels that are local, unknown, stopped or disposed; and all named mutants.
+#include <algorithm>
+#include <utility>
+
+#include "conformance/flaws/flaws.h"
+#include "conformance/machine/synaptic.h"
+#include "conformance/mutants/fields.h"
+#include "conformance/mutants/mutant.h"
+
+namespace rubric::mutants {
+namespace {
+
+using machine::Channel;
+using machine::ChannelId;
+using machine::DisposeChannel;
+using machine::StartChannel;
+using machine::StopAllChannels;
+using machine::StopChannel;
+using machine::SynDataReceived;
+using machine::TimerKind;
+
+bool has(const machine::Synaptic& synaptic, ChannelId id) {
+  const auto is = [id](const Channel& channel) { return channel.id == id; };
+  return std::any_of(synaptic.in.begin(), synaptic.in.end(), is) ||
+         std::any_of(synaptic.out.begin(), synaptic.out.end(), is);
+}
+
+void sends_local(Moment& moment) {
+  moment.honest();
+  if (!moment.timer(TimerKind::kSynaptic) || moment.state.radio.sending) return;
+  for (const Channel& channel : moment.state.synaptic.out) {
+    if (!channel.started || channel.peer != own(moment)) continue;
+    Transmit& frame = moment.send(Link::kRadio, am::kNet, channel.peer.devid, req::kS4Local);
+    frame.size_bytes = 18;
+    put(frame, net::kDestPid, channel.peer.pid);
+    put(frame, net::kDestDevid, channel.peer.devid);
+    frame.payload[net::kNbytes] = 6;
+    frame.payload[net::kTransId] = component::kSynChannel;
+    frame.payload[net::kAppId] = component::kEsnData;
+    return;
+  }
+}
+
+void drops_local(Moment& moment) {
+  const machine::Synaptic before = moment.state.synaptic;
+  moment.honest();
+  if (!moment.timer(TimerKind::kSynaptic)) return;
+  for (const Channel& out : before.out) {
+    for (std::size_t i = 0; i < before.in.size(); ++i) {
+      if (before.in[i].id == out.id) {
+        moment.state.synaptic.in[i].value_bits = before.in[i].value_bits;
+      }
+    }
+  }
+}
+
+// Data of a channel that nobody has created end up in the first one.
+void stores_unknown(Moment& moment) {
+  const Frame* const frame = moment.heard(am::kNet);
+  auto& inputs = moment.state.synaptic.in;
+  const bool data = frame != nullptr && is_net(*frame) && !inputs.empty() &&
+                    frame->payload[net::kTransId] == component::kSynChannel;
+  const std::uint16_t devid = data ? get(*frame, net::kSrcDevid) : std::uint16_t{0};
+  const bool known = data && has(moment.state.synaptic,
+                                 machine::channel_id(devid, own(moment).devid));
+  moment.honest();
+  if (!data || known || frame->payload.size() < net::kBody + 4) return;
+  inputs[0].value_bits[0] = load_le32(frame->payload.data() + net::kBody);
+  inputs[0].fresh = true;
+}
+
+void add_local_and_unknown(Mutants& out) {
+  out.push_back({"local_data_on_the_air", "A channel from a node to itself sends a frame.",
+                 {req::kS4Local}, always(sends_local)});
+  out.push_back({"local_data_lost", "A channel from a node to itself hands nothing over.",
+                 {req::kS4Local}, always(drops_local)});
+  out.push_back({"unknown_channel_stored", "Data of an unknown channel go to the first one.",
+                 {req::kS5Unknown}, always(stores_unknown)});
+  out.push_back({"unknown_channel_silent", "Data of an unknown channel are not reported.",
+                 {req::kS5Unknown}, on_told_of<SynDataReceived>([](Moment&, SynDataReceived& data) {
+                   const bool unknown = data.status == machine::DataStatus::kUnknownChannel;
+                   return unknown ? Fate::kDrop : Fate::kKeep;
+                 })});
+  out.push_back({"unknown_channel_new", "Data of an unknown channel are reported as new.",
+                 {req::kS5Unknown}, on_told_of<SynDataReceived>([](Moment&, SynDataReceived& data) {
+                   if (data.status == machine::DataStatus::kUnknownChannel) {
+                     data.status = machine::DataStatus::kNew;
+                   }
+                   return Fate::kKeep;
+                 })});
+}
+
+template <class Call>
+StepMaker refuses_silently(ReqId requirement) {
+  return [requirement]() -> Step {
+    return [requirement](Moment& moment) {
+      if (moment.called<Call>() == nullptr) return moment.honest();
+      moment.nothing();
+      moment.actions.notify(machine::OperationResult{true}, requirement);
+    };
+  };
+}
+
+void starts_at_creation(Moment& moment) {
+  const auto* create = moment.called<machine::CreateChannel>();
+  moment.honest();
+  if (create == nullptr) return;
+  const std::uint16_t devid = own(moment).devid;
+  const bool out = create->direction == machine::Direction::kOut;
+  const ChannelId id = out ? machine::channel_id(devid, create->peer.devid)
+                           : machine::channel_id(create->peer.devid, devid);
+  if (!has(moment.state.synaptic, id)) return;
+  Actions silent;
+  machine::step(moment.state, moment.now, machine::Called{StartChannel{id}}, silent);
+}
+
+void add_ends(Mutants& out) {
+  out.push_back({"stopped_channel_goes_on", "stop_syn_channel changes nothing.",
+                 {req::kS6Stopped}, refuses_silently<StopChannel>(req::kS6Stopped)});
+  out.push_back({"stop_all_goes_on", "stop_all_syn_channels changes nothing.", {req::kS6Stopped},
+                 refuses_silently<StopAllChannels>(req::kS6Stopped)});
+  out.push_back({"starts_at_creation", "A channel runs from its creation on.", {req::kS6Stopped},
+                 always(starts_at_creation)});
+  out.push_back({"stop_stops_all", "stop_syn_channel stops every channel.",
+                 {req::kS6Others}, always([](Moment& moment) {
+                   if (moment.called<StopChannel>() == nullptr) return moment.honest();
+                   moment.honest(machine::Called{StopAllChannels{}});
+                 })});
+  out.push_back({"disposed_channel_goes_on", "Disposing a channel changes nothing (release 1.0).",
+                 {req::kS6Disposed}, refuses_silently<DisposeChannel>(req::kS6Disposed)});
+  out.push_back({"disposed_channel_keeps_its_place",
+                 "Disposing a channel stops it, and keeps its place.", {req::kS6Disposed},
+                 always([](Moment& moment) {
+                   const DisposeChannel* const dispose = moment.called<DisposeChannel>();
+                   if (dispose == nullptr) return moment.honest();
+                   moment.honest(machine::Called{StopChannel{dispose->id}});
+                 })});
+  out.push_back({"dispose_takes_all", "Disposing a channel disposes of every one.",
+                 {req::kS6Disposed, req::kS6Others, req::kS2Send}, always([](Moment& moment) {
+                   const bool disposes = moment.called<DisposeChannel>() != nullptr;
+                   moment.honest();
+                   if (!disposes) return;
+                   moment.state.synaptic.out.clear();
+                   moment.state.synaptic.in.clear();
+                 })});
+  out.push_back({"start_shifts_the_clock", "Starting a channel begins the clock anew for all.",
+                 {req::kS6Clock, req::kS2Send, req::kS2Phase}, always([](Moment& moment) {
+                   moment.honest();
+                   auto& synaptic = moment.state.synaptic;
+                   if (moment.called<StartChannel>() != nullptr && synaptic.due != 0) {
+                     synaptic.due = moment.now + synaptic.period_ticks +
+                                    (own(moment).devid - 1U) * 30U;
+                   }
+                 })});
+  out.push_back({"start_all_starts_outputs", "start_all_syn_channels starts no input.",
+                 {req::kS2Signal}, always([](Moment& moment) {
+                   const machine::Synaptic before = moment.state.synaptic;
+                   moment.honest();
+                   if (moment.called<machine::StartAllChannels>() == nullptr) return;
+                   for (std::size_t i = 0; i < before.in.size(); ++i) {
+                     moment.state.synaptic.in[i].started = before.in[i].started;
+                   }
+                 })});
+}
+
+void append(Mutants& out, const Mutants& more) { out.insert(out.end(), more.begin(), more.end()); }
+
+// Those of release 1.0 are steps without a memory.
+Mutants release_mutants() {
+  Mutants out;
+  for (const flaws::Flaw& flaw : flaws::all()) {
+    Mutant mutant{flaw.name, flaw.description, {}, [step = flaw.step]() -> Step {
+                    return [step](Moment& moment) {
+                      step(moment.state, moment.now, moment.event, moment.actions);
+                    };
+                  }};
+    for (const ReqId requirement : flaw.requirements) {
+      if (requirement != ReqId::kNone) mutant.requirements.push_back(requirement);
+    }
+    out.push_back(std::move(mutant));
+  }
+  return out;
+}
+
+}  // namespace
+
+Mutants channel_life_mutants() {
+  Mutants out;
+  add_local_and_unknown(out);
+  add_ends(out);
+  return out;
+}
+
+Mutants named_mutants() {
+  Mutants out;
+  append(out, release_mutants());
+  append(out, mote_join_mutants());
+  append(out, sink_join_mutants());
+  append(out, network_mutants());
+  append(out, island_mutants());
+  append(out, control_mutants());
+  append(out, transport_mutants());
+  append(out, synaptic_mutants());
+  append(out, channel_life_mutants());
+  return out;
+}
+
+}  // namespace rubric::mutants

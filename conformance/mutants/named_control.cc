@@ -1,0 +1,189 @@
+// Mistakes with switches, malformed messages and sequence numbers.
+#include <algorithm>
+
+#include "conformance/mutants/fields.h"
+#include "conformance/mutants/mutant.h"
+
+namespace rubric::mutants {
+namespace {
+
+using machine::Send;
+using machine::SendResult;
+using machine::SetInterface;
+
+// Both lines seem to be on for this step.
+void as_if_on(Moment& moment) {
+  const bool radio = moment.state.radio.on;
+  const bool serial = moment.state.serial.on;
+  moment.state.radio.on = moment.state.serial.on = true;
+  moment.honest();
+  if (moment.called<SetInterface>() != nullptr) return;
+  moment.state.radio.on = radio;
+  moment.state.serial.on = serial;
+}
+
+void add_switches(Mutants& out) {
+  out.push_back({"interface_off_still_sends", "An interface that is off sends.", {req::kN10Off},
+                 always([](Moment& moment) {
+                   if (moment.called<Send>() != nullptr) return as_if_on(moment);
+                   moment.honest();
+                 })});
+  out.push_back({"interface_off_still_hears", "An interface that is off receives.",
+                 {req::kN10Off}, always([](Moment& moment) {
+                   if (moment.heard() != nullptr) return as_if_on(moment);
+                   moment.honest();
+                 })});
+  out.push_back({"interface_off_sends_synaptic", "Timers send on a radio that is off.",
+                 {req::kN10Off, req::kN2Queue}, always([](Moment& moment) {
+                   if (std::holds_alternative<machine::TimerDue>(moment.event)) {
+                     return as_if_on(moment);
+                   }
+                   moment.honest();
+                 })});
+  out.push_back({"off_for_good", "An interface that was off never comes on again.",
+                 {req::kN10On}, always([](Moment& moment) {
+                   const SetInterface* const set = moment.called<SetInterface>();
+                   if (set == nullptr || !set->on) return moment.honest();
+                   moment.nothing();
+                   moment.actions.notify(machine::OperationResult{true}, req::kN10On);
+                 })});
+  out.push_back({"switches_crossed", "Switching the radio off switches the serial line.",
+                 {req::kN10Off}, always([](Moment& moment) {
+                   const SetInterface* const set = moment.called<SetInterface>();
+                   if (set == nullptr) return moment.honest();
+                   SetInterface other = *set;
+                   other.link = set->link == Link::kRadio ? Link::kSerial : Link::kRadio;
+                   moment.honest(machine::Called{other});
+                 })});
+  out.push_back({"interface_state_constant", "The state of an interface is told as on.",
+                 {req::kN10State},
+                 on_told_of<machine::InterfaceState>([](Moment&, machine::InterfaceState& told) {
+                   told.on = true;
+                   return Fate::kKeep;
+                 })});
+  out.push_back({"interface_state_inverted", "The state of an interface is told as its opposite.",
+                 {req::kN10State},
+                 on_told_of<machine::InterfaceState>([](Moment&, machine::InterfaceState& told) {
+                   told.on = !told.on;
+                   return Fate::kKeep;
+                 })});
+}
+
+// What nbytes promises stands in old memory.
+struct Memory {
+  std::array<std::uint8_t, machine::kAmPayloadMax> bytes{};
+};
+
+void trusts_nbytes(Moment& moment, Memory& memory) {
+  const Frame* const frame = moment.heard(am::kNet);
+  if (frame == nullptr || frame->payload.size() < 12) return moment.honest();
+  const std::size_t size = std::min<std::size_t>(frame->payload.size(), machine::kAmPayloadMax);
+  std::copy_n(frame->payload.begin(), size, memory.bytes.begin());
+  const std::size_t promised = std::min<std::size_t>(memory.bytes[net::kNbytes], 102);
+  Forged& forged = moment.forge(*frame);
+  forged.bytes = memory.bytes;
+  forged.bytes[net::kNbytes] = static_cast<std::uint8_t>(promised);
+  forged.resize(std::max(size, 12 + promised));
+  moment.honest(machine::Heard{forged.frame});
+}
+
+void add_malformed(Mutants& out) {
+  out.push_back({"nbytes_trusted", "A node reads as many bytes as nbytes promises.",
+                 {req::kN11Nbytes}, remembering<Memory>(trusts_nbytes)});
+  out.push_back({"nbytes_cut_to_what_came", "A node mends an nbytes that promises too much.",
+                 {req::kN11Nbytes}, on_heard([](Moment&, Forged& forged) {
+                   if (forged.frame.type != am::kNet || forged.size() < 14) return true;
+                   const std::size_t came = std::min<std::size_t>(forged.size() - 12, 102);
+                   std::uint8_t& nbytes = forged.bytes[net::kNbytes];
+                   if (nbytes > came) nbytes = static_cast<std::uint8_t>(came);
+                   return true;
+                 })});
+  out.push_back({"nbytes_below_2_is_empty", "A message without APPID is taken as an empty one.",
+                 {req::kN11Nbytes}, on_heard([](Moment&, Forged& forged) {
+                   const bool net = forged.frame.type == am::kNet && forged.size() >= 12;
+                   if (!net || forged.bytes[net::kNbytes] >= 2) return true;
+                   forged.bytes[net::kNbytes] = 2;
+                   forged.bytes[net::kTransId] = component::kConnless;
+                   forged.bytes[net::kAppId] = 5;
+                   forged.resize(14);
+                   return true;
+                 })});
+  out.push_back({"malformed_kills", "After a malformed message a node hears no more.",
+                 {req::kN11Next}, remembering<bool>([](Moment& moment, bool& dead) {
+                   if (dead && moment.heard() != nullptr) return moment.nothing();
+                   moment.honest();
+                   for (const Action& action : moment.actions.all()) {
+                     dead = dead || (action.what == Action::What::kIgnored &&
+                                     action.requirement == req::kN11Nbytes);
+                   }
+                 })});
+  out.push_back({"malformed_eats_the_next", "The message after a malformed one is lost.",
+                 {req::kN11Next}, remembering<bool>([](Moment& moment, bool& skip) {
+                   const Frame* const frame = moment.heard(am::kNet);
+                   const bool good = frame != nullptr && is_net(*frame) &&
+                                     frame->payload[net::kNbytes] + 12U <= frame->payload.size();
+                   if (skip && good) {
+                     skip = false;
+                     return moment.nothing();
+                   }
+                   moment.honest();
+                   for (const Action& action : moment.actions.all()) {
+                     skip = skip || (action.what == Action::What::kIgnored &&
+                                     action.requirement == req::kN11Nbytes);
+                   }
+                 })});
+  out.push_back({"longest_message_dropped", "A node takes 101 bytes for the most.",
+                 {req::kN11Next, req::kT1Deliver}, on_heard([](Moment&, Forged& forged) {
+                   return !is_net(forged.frame) || forged.bytes[net::kNbytes] < 102;
+                 })});
+}
+
+// A number for what send was given, in the message, in the result and among the awaited.
+void renumber(Moment& moment, std::uint16_t number) {
+  const std::size_t before = moment.state.awaited.size();
+  moment.honest();
+  if (moment.called<Send>() == nullptr) return;
+  auto& awaited = moment.state.awaited;
+  if (awaited.size() > before) awaited[awaited.size() - 1].seq_num = number;
+  moment.rewrite([&](const Action& action) {
+    if (action.what == Action::What::kTransmit) {
+      Transmit frame = moment.sent(action);
+      if (is_net(frame)) put(frame, net::kSeqNum, number);
+      return moment.keep(action, frame);
+    }
+    if (action.what != Action::What::kNotify) return moment.keep(action);
+    Notice notice = moment.told(action);
+    auto* const result = std::get_if<SendResult>(&notice);
+    if (result != nullptr && result->seq_num != machine::kNoSeq) result->seq_num = number;
+    moment.keep(action, notice);
+  });
+}
+
+void add_numbers(Mutants& out) {
+  out.push_back({"awaited_number_reused", "Every message has number 7.", {req::kN12Reuse},
+                 always([](Moment& moment) { renumber(moment, 7); })});
+  out.push_back({"number_for_each_destination",
+                 "Numbers count for each destination, from 1, and collide.", {req::kN12Reuse},
+                 remembering<std::vector<std::uint16_t>>(
+                     [](Moment& moment, std::vector<std::uint16_t>& counts) {
+                       const Send* const send = moment.called<Send>();
+                       if (send == nullptr) return moment.honest();
+                       counts.resize(0x10000);
+                       renumber(moment, ++counts[send->dest.devid]);
+                     })});
+  out.push_back({"error_value_used", "Messages have number 0xFFFF.",
+                 {req::kN12Error, req::kN12Reuse},
+                 always([](Moment& moment) { renumber(moment, machine::kNoSeq); })});
+}
+
+}  // namespace
+
+Mutants control_mutants() {
+  Mutants out;
+  add_switches(out);
+  add_malformed(out);
+  add_numbers(out);
+  return out;
+}
+
+}  // namespace rubric::mutants

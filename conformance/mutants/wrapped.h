@@ -1,0 +1,157 @@
+// A node made by wrapping the machine's step: what it hears, what it does and what it remembers may
+// be changed between the machine and the world, the machine itself never.
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "conformance/runner/subject.h"
+
+namespace rubric::mutants {
+
+using machine::Action;
+using machine::Actions;
+using machine::Event;
+using machine::Frame;
+using machine::Link;
+using machine::Notice;
+using machine::Role;
+using machine::State;
+using machine::Ticks;
+using machine::Transmit;
+
+/// An output that is held back.
+struct Held {
+  Ticks due = 0;
+  Action action;
+  Transmit transmit;
+  Notice notice;
+  std::vector<std::uint8_t> data;  ///< Of Received.
+};
+
+/// A frame whose bytes and addresses may be changed. It lasts until the next step.
+struct Forged {
+  Frame frame;
+  std::array<std::uint8_t, machine::kAmPayloadMax> bytes{};
+
+  void resize(std::size_t size_bytes) { frame.payload = Bytes(bytes.data(), size_bytes); }
+  std::size_t size() const { return frame.payload.size(); }
+};
+
+/// What a wrapped node keeps between steps.
+struct Body {
+  State state;
+  Forged forged;
+  std::deque<Held> held;
+  std::vector<std::vector<std::uint8_t>> data;  ///< That this step's notices point at.
+};
+
+/// One step, in the hands of a wrapper.
+class Moment {
+ public:
+  Moment(Body& body, Ticks at, const Event& what, Actions& out)
+      : state(body.state), now(at), event(what), actions(out), body_(body) {}
+
+  State& state;
+  const Ticks now;
+  const Event& event;
+  Actions& actions;
+
+  /// What the machine does.
+  void honest() { machine::step(state, now, event, actions); }
+  /// What the machine would do if something else happened.
+  void honest(const Event& other) { machine::step(state, now, other, actions); }
+  void nothing() { actions.clear(); }
+
+  bool is(Role role) const { return state.config.role == role; }
+  /// The frame that is heard, of that type if one is given; or null.
+  const Frame* heard() const;
+  const Frame* heard(std::uint8_t am_type) const;
+  template <class T>
+  const T* called() const {
+    const auto* call = std::get_if<machine::Called>(&event);
+    return call == nullptr ? nullptr : std::get_if<T>(&call->call);
+  }
+  bool timer(machine::TimerKind kind) const {
+    const auto* due = std::get_if<machine::TimerDue>(&event);
+    return due != nullptr && due->timer.kind == kind;
+  }
+  /// A copy of a frame, to be changed and heard in its place.
+  Forged& forge(const Frame& frame);
+
+  /// Gives `edit(action)` each action of this step; what it does not keep() is dropped. Valid for
+  /// reading inside: sent(action) and told(action).
+  template <class Edit>
+  void rewrite(Edit edit) {
+    honest_ = actions;
+    actions.clear();
+    for (const Action& action : honest_.all()) edit(action);
+  }
+  const Transmit& sent(const Action& action) const { return honest_.transmit_of(action); }
+  const Notice& told(const Action& action) const { return honest_.notice_of(action); }
+  void keep(const Action& action);
+  void keep(const Action& action, const Transmit& changed);
+  void keep(const Action& action, const Notice& changed);
+  /// Keeps it for later.
+  void hold(const Action& action, Ticks ticks);
+
+  /// Adds a frame that the machine does not send, as if the line were free.
+  Transmit& send(Link link, std::uint8_t am_type, std::uint16_t dest, ReqId requirement);
+
+ private:
+  Body& body_;
+  Actions honest_;
+};
+
+/// One step of a wrapper; what it remembers is its own.
+using Step = std::function<void(Moment&)>;
+/// Makes a wrapper that has not seen anything yet.
+using StepMaker = std::function<Step()>;
+
+/// The machine with a wrapper around its step.
+class Wrapped : public runner::Subject {
+ public:
+  explicit Wrapped(StepMaker make) : make_(std::move(make)) {}
+  void start(const machine::Config& config) override;
+  void step(Ticks now, const Event& event, Actions& actions) override;
+  runner::DueTimers timers() const override;
+
+ private:
+  void release(Ticks now, Actions& actions);
+
+  StepMaker make_;
+  Step step_;
+  Body body_;
+};
+
+runner::SubjectFactory wrapped(StepMaker make);
+
+// Wrappers by what they meddle with.
+
+enum class Fate : std::uint8_t { kKeep, kDrop, kTwice };
+
+/// Nothing to remember.
+StepMaker always(void (*step)(Moment&));
+/// Changes, drops or doubles what is sent.
+using SentEdit = std::function<Fate(Moment&, const Action&, Transmit&)>;
+StepMaker on_sent(SentEdit edit);
+/// Changes, drops or doubles what the application is told.
+using ToldEdit = std::function<Fate(Moment&, const Action&, Notice&)>;
+StepMaker on_told(ToldEdit edit);
+/// Changes what is heard; false: it is not heard at all.
+using HeardEdit = std::function<bool(Moment&, Forged&)>;
+StepMaker on_heard(HeardEdit edit);
+/// Another profile in force.
+StepMaker with_profile(std::function<void(machine::Profile&)> edit);
+
+template <class T>
+StepMaker on_told_of(std::function<Fate(Moment&, T&)> edit) {
+  return on_told([edit](Moment& moment, const Action&, Notice& notice) {
+    T* const told = std::get_if<T>(&notice);
+    return told == nullptr ? Fate::kKeep : edit(moment, *told);
+  });
+}
+
+}  // namespace rubric::mutants
