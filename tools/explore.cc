@@ -1,6 +1,7 @@
 #include "tools/explore.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -58,8 +59,8 @@ std::string footer() {
   return text +
          "Time is abstract: a timer that is set may fire at any moment. Where nothing is broken,\n"
          "the run also fails if something that must be possible was never reached.\n"
-         "Exit codes: 0 all properties hold, 1 one is broken or something was never reached, 2 the\n"
-         "trace cannot be written, 3 a limit was met first, 64 usage.";
+         "Exit codes: 0 all properties hold, 1 one is broken or something was never reached,\n"
+         "2 the trace cannot be written, 3 a limit was met first, 64 usage.";
 }
 
 [[noreturn]] void usage(const std::string& what) { throw CLI::ValidationError(what); }
@@ -162,19 +163,16 @@ void print_text(const Result& result, const Verdict& verdict, std::FILE* out) {
   fmt::print(out, "time         {:.2f} s: {:.2f} million states/s, {:.2f} million transitions/s\n",
              p.seconds, static_cast<double>(p.states) / seconds / 1e6,
              static_cast<double>(p.transitions) / seconds / 1e6);
-  fmt::print(out, "memory       {:.1f} MB, {} bytes a state; {} states of single nodes, {} frames\n",
-             static_cast<double>(result.memory_bytes) / 1e6, result.memory_per_state_bytes,
-             result.node_states, result.frames);
+  fmt::print(out, "memory       {:.1f} MB, {} bytes a state; ",
+             static_cast<double>(result.memory_bytes) / 1e6, result.memory_per_state_bytes);
+  fmt::print(out, "{} states of single nodes, {} frames\n", result.node_states, result.frames);
   fmt::print(out, "left out     a state at most with probability {:.1e}\n",
              omission_probability(p.states));
-  const std::vector<std::string> reached = goal_names(result.goals);
-  fmt::print(out, "reached      ");
-  for (std::size_t i = 0; i < reached.size(); ++i) fmt::print(out, "{}{}", i ? ", " : "", reached[i]);
-  fmt::print(out, "\n");
+  fmt::print(out, "reached      {}\n", fmt::join(goal_names(result.goals), ", "));
   if (result.known_weak_states != 0) {
     fmt::print(out,
-               "known        in {} states at rest a rebooted mote cannot join, since its sink still "
-               "lists it\n             (spec/membership.md)\n",
+               "known        in {} states at rest a rebooted mote cannot join, since its sink\n"
+               "             still lists it (spec/membership.md)\n",
                result.known_weak_states);
   }
   for (const auto& goal : explorer::goals()) {
@@ -323,14 +321,17 @@ void add_bounds(CLI::App& sub, Options& options) {
       ->capture_default_str();
   sub.add_flag("--exact", n.exact, "Keep apart states that differ in nothing that matters");
   n.threads = std::max(1U, std::thread::hardware_concurrency());
-  sub.add_option("--threads", n.threads, "How many")->check(CLI::Range(1, 64))->capture_default_str();
+  sub.add_option("--threads", n.threads, "How many")
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str();
 }
 
 }  // namespace
 
 void add_explore(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  CLI::App* sub = app.add_subcommand("explore", "Try everything that can happen in a small network");
+  CLI::App* sub =
+      app.add_subcommand("explore", "Try everything that can happen in a small network");
   sub->footer(footer());
   cli::set_usage_exit_code(*sub, cli::kVerdictUsage);
   const int motes_max = static_cast<int>(explorer::kMotesMax);
@@ -353,7 +354,8 @@ void add_explore(CLI::App& app) {
       ->check(CLI::IsMember({"text", "json"}))
       ->capture_default_str();
   sub->add_option("--out", options->out, "File for the shortest trace; default stdout");
-  sub->add_option("--out-known", options->weakness_out, "File for the shortest way to a known weakness");
+  sub->add_option("--out-known", options->weakness_out,
+                  "File for the shortest way to a known weakness");
   sub->callback([options] { run(*options); });
 }
 

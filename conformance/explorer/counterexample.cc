@@ -119,7 +119,8 @@ class Walk {
   void given_call(const Actor& actor, const Event& event) {
     const auto* called = std::get_if<machine::Called>(&event);
     if (called != nullptr) {
-      out_.add(trace::app_line(now_, actor.name, Op::kGiven, kApp, events::from_call(called->call)));
+      Message call = events::from_call(called->call);
+      out_.add(trace::app_line(now_, actor.name, Op::kGiven, kApp, std::move(call)));
     } else if (std::holds_alternative<machine::Reboot>(event)) {
       out_.add(trace::app_line(now_, actor.name, Op::kGiven, "power", Message::named("reboot")));
     }

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Holds spin's verdicts on join.pml against those of `rubric explore`: without a flaw and with each,
-property by property, the two must agree.
+"""Holds spin's verdicts on join.pml against those of `rubric explore`: without a flaw and with
+each, property by property, the two must agree.
 
 Usage: spin_test.py RUBRIC [PROPERTY...]. Needs Debian's spin and gcc. Prints the table: `.` holds
 for both, the network's sizes where both find it broken; a disagreement names who says what.

@@ -1,0 +1,119 @@
+#!/usr/bin/env python3
+"""Tests of `rubric explore` as a program: verdicts, exit codes, both formats, where traces go.
+
+Usage: explore_test.py RUBRIC.
+"""
+
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+RUBRIC = str(pathlib.Path(sys.argv.pop(1)).resolve())
+FAULTS = ["--loss", "--dup"]
+# A flaw, a network in which it shows, and the property that its first trace breaks.
+FLAWS = [("accepts_wrong_seq", ["--calls", "2"], "joined_after_reply"),
+         ("one_pending_seq", ["--motes", "2"], "admitted"),
+         ("joined_on_link_ack", ["--calls", "2"], "ack_right_seq"),
+         ("no_fail", [], "one_terminal"),
+         ("seven_requests", [], "requests_bounded"),
+         ("acks_wrong_seq", ["--calls", "2"], "ack_right_seq"),
+         ("answers_members", ["--reorder"], "listed_silent"),
+         ("no_ack_timeout", ["--scope", "full"], "reliable_ends"),
+         ("misread_acks", ["--scope", "full"], "ack_counts")]
+
+
+def explore(*words):
+    return subprocess.run([RUBRIC, "explore", *words], stdout=subprocess.PIPE, text=True,
+                          stderr=subprocess.PIPE, timeout=300)
+
+
+class Explore(unittest.TestCase):
+    def test_says_what_it_found(self):
+        done = explore("--motes", "1", "--sinks", "2", *FAULTS)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        for line in ("states       517", "transitions  3577", "depth        11", "bytes a state",
+                     "million states/s", "left out", "second_offer", "verdict      holds"):
+            self.assertIn(line, done.stdout)
+        self.assertEqual(done.stderr, "")  # No progress where stderr is no terminal.
+
+    def test_each_flaw_is_found(self):
+        for flaw, network, broken in FLAWS:
+            with self.subTest(flaw=flaw):
+                done = explore(*network, *FAULTS, "--flaw", flaw, "--format", "json")
+                self.assertEqual(done.returncode, 1, done.stderr)
+                found = json.loads(done.stdout)
+                self.assertEqual(found["verdict"], "broken")
+                self.assertEqual(found["broken"][0], broken)
+                self.assertEqual(found["flaw"], flaw)
+                self.assertTrue(found["trace"].startswith("%rtr 1"))
+                honest = explore(*network, *FAULTS, "--format", "json")
+                self.assertEqual(honest.returncode, 0, honest.stdout)
+                self.assertIsNone(json.loads(honest.stdout)["trace"])
+
+    def test_a_trace_on_stdout_stands_alone(self):
+        done = explore(*FAULTS, "--flaw", "no_fail")
+        self.assertEqual(done.returncode, 1)
+        self.assertTrue(done.stdout.startswith("%rtr 1"))
+        self.assertIn("verdict      broken", done.stderr)
+
+    def test_a_trace_goes_to_its_file(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "broken.rtr"
+            done = explore(*FAULTS, "--flaw", "no_fail", "--out", str(path))
+            self.assertEqual(done.returncode, 1)
+            self.assertIn("verdict      broken", done.stdout)
+            self.assertIn("case explore.one_terminal", path.read_text())
+        done = explore(*FAULTS, "--flaw", "no_fail", "--out", f"{folder}/none/x")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("cannot write", done.stderr)
+
+    def test_only_the_asked_properties_count(self):
+        words = ["--calls", "2", *FAULTS, "--flaw", "joined_on_link_ack", "--format", "json"]
+        done = explore(*words, "--property", "joined_after_reply")
+        self.assertEqual(json.loads(done.stdout)["broken"], ["joined_after_reply"])
+        done = explore(*words, "--property", "one_report", "--property", "queues_bounded")
+        self.assertEqual(done.returncode, 0, done.stdout)
+
+    def test_the_known_weakness_is_told_and_breaks_nothing(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "known.rtr"
+            done = explore(*FAULTS, "--reboot", "--calls", "2", "--out-known", str(path))
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn("spec/membership.md", done.stdout)
+            text = path.read_text()
+            self.assertIn("reboot", text)
+            self.assertIn("case explore.known_weakness", text)
+
+    def test_what_was_never_reached_fails(self):
+        # A mote that misreads every ack breaks nothing of this; but no message ends in success.
+        done = explore("--scope", "full", "--loss", "--flaw", "misread_acks", "--property",
+                       "one_report", "--format", "json")
+        self.assertEqual(done.returncode, 1)
+        found = json.loads(done.stdout)
+        self.assertEqual((found["verdict"], found["never"]), ("vacuous", ["acked"]))
+
+    def test_a_limit_is_inconclusive(self):
+        done = explore("--motes", "2", *FAULTS, "--max-states", "500")
+        self.assertEqual(done.returncode, 3)
+        self.assertIn("verdict      inconclusive: as many states", done.stdout)
+
+    def test_usage(self):
+        for words, text in [(["--flaw", "no_fial"], "did you mean 'no_fail'"),
+                            (["--property", "one_terminl"], "did you mean 'one_terminal'"),
+                            (["--flaw", "time_of_boot"], "time is abstract"),
+                            (["--flaw", "misread_acks"], "--scope full"),
+                            (["--profile", "papr"], "did you mean 'paper'"),
+                            (["--motes", "9"], "--motes"),
+                            (["--motes", "4", "--sinks", "4"], "at most 6"),
+                            (["--lss"], "did you mean '--loss'")]:
+            with self.subTest(words=words):
+                done = explore(*words)
+                self.assertEqual(done.returncode, 64, done.stderr)
+                self.assertIn(text, done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
