@@ -130,7 +130,8 @@ void Acks::refuse(std::uint16_t node, const Observation& seen, const Net& ack, s
   } else if (best->net.reliable != 1) {
     rule = req::kT2Unreliable;
     if (best->net.reliable > 1) severity = Severity::kWeak;  // Decision 112.
-    said.text = "It acks " + name_of(best->net) + ", whose reliable is " + number(best->net.reliable) + ".";
+    said.text = "It acks " + name_of(best->net) + ", whose reliable is " +
+                number(best->net.reliable) + ".";
     said.expected = "An unreliable message is never acked.";
   } else if (best->net.broadcast()) {
     rule = req::kT2Broadcast;

@@ -46,7 +46,9 @@ Forwarding::Line* Forwarding::find(std::uint16_t sink) {
 void Forwarding::set_island(std::uint16_t sink, std::uint16_t island, std::int64_t now_us) {
   Line* const line = find(sink);
   if (line == nullptr) return;
-  if (line->island != island) line->island_changed_us = now_us;
+  if (line->island == island) return;
+  line->island_changed_us = now_us;
+  line->last_island = line->island;
   line->island = island;
 }
 
@@ -166,6 +168,10 @@ void Forwarding::pass_up(Line& line, Passing& passing, const Observation& seen) 
     const bool changing = std::abs(passing.place.time_us - line.island_changed_us) < kIslandSlackUs;
     if (changing) return;
     Said said;
+    const Net& net = passing.net;
+    const bool stale = line.last_island != 0 && (net.dest.pid == line.last_island ||
+                                                 net.src.pid == line.last_island);
+    if (passing.forbidden == req::kN6Collision && stale) passing.forbidden = req::kN9Set;
     if (passing.forbidden == req::kN11Nbytes) {
       said.text = "The sink forwards " + name_of(passing.net) + ", whose nbytes is " +
                   number(passing.net.nbytes) + " while " + number(passing.net.payload.size()) +

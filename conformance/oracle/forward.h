@@ -19,7 +19,7 @@ struct Passing {
   std::uint16_t am_dest = 0;     ///< Where the radio frame goes.
   ReqId forbidden = ReqId::kNone;  ///< Passing it on breaks this rule.
   bool weak = false;             ///< And that rule is a SHOULD.
-  bool owed = false;             ///< Surely received, to be passed on, and not yet complained about.
+  bool owed = false;             ///< Surely received, and not yet passed on.
   bool twin = false;             ///< Another one of the same content is around.
   std::uint8_t copies = 1;       ///< Times that it may have been received.
   std::uint8_t passed = 0;
@@ -58,6 +58,7 @@ class Forwarding {
     std::uint16_t sink = kNobody;
     std::uint16_t am = 0;
     std::uint16_t island = 0;
+    std::uint16_t last_island = 0;  ///< Before SET_ISLAND_ID.
     std::int64_t island_changed_us = -1'000'000'000;
     bool serial = false;           ///< Its line is captured.
     Ring<Passing, kRoom> up;       ///< From the radio.

@@ -130,8 +130,8 @@ void Forwarding::refuse_down(Line& line, const Observation& seen, const Net& net
     return;
   }
   said.text = "The sink radiates " + name_of(net) + ", reliable " + number(net.reliable) +
-              ", nbytes " + number(net.nbytes) + ", with another content than came over serial: to " +
-              text_of(best->net.dest) + ", reliable " + number(best->net.reliable) + ", nbytes " +
+              ", nbytes " + number(net.nbytes) + ", with another content than came over serial: to " + text_of(best->net.dest) +
+              ", reliable " + number(best->net.reliable) + ", nbytes " +
               number(best->net.nbytes) + ".";
   said.expected = "Addresses, reliable, number, nbytes and payload as they came.";
   context_.report(req::kN7Content, Severity::kFail, seen.place, line.sink, std::move(said));
@@ -150,11 +150,12 @@ void Forwarding::overdue_up(Line& line, std::int64_t now_us) {
     --line.owed_up;
     const bool own_island = passing.net.dest.pid == line.island;
     context_.report(own_island ? req::kN6Forward : req::kN6Route,
-                    crowded(line, passing.place.time_us) ? Severity::kInconclusive : Severity::kFail, passing.place,
-                    line.sink,
+                    crowded(line, passing.place.time_us) ? Severity::kInconclusive
+                                                         : Severity::kFail,
+                    passing.place, line.sink,
                     {"The sink received " + name_of(passing.net) +
-                         " (the link acknowledged it) and did not put it on its serial line, though "
-                         "it sent other frames later.",
+                         " (the link acknowledged it) and did not put it on its serial line, "
+                         "though it sent other frames later.",
                      "A forward within " + ms_text(context_.options.response_us) + ".", {}});
   }
 }
@@ -166,9 +167,10 @@ void Forwarding::overdue_down(Line& line, std::int64_t now_us) {
     if (!passing.owed || now_us - passing.place.time_us <= context_.options.response_us) continue;
     passing.owed = false;
     --line.owed_down;
-    const Severity severity = context_.without(line.sink, passing.place.time_us, now_us);
-    context_.report(req::kN7Radio, crowded(line, passing.place.time_us) ? Severity::kInconclusive : severity,
-                    passing.place, line.sink,
+    const Severity severity = crowded(line, passing.place.time_us)
+                                  ? Severity::kInconclusive
+                                  : context_.without(line.sink, passing.place.time_us, now_us);
+    context_.report(req::kN7Radio, severity, passing.place, line.sink,
                     {"The sink confirmed " + name_of(passing.net) +
                          " on its serial line and did not radiate it, though it sent other frames "
                          "later.",

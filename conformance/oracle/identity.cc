@@ -36,7 +36,7 @@ class Identifier {
     resolve_streams();
     resolve_lines();
     for (std::uint32_t i = 0; i < run_.seen.size(); ++i) settle(i);
-    name_all();
+    name_devices(run_, out_);
     return std::move(out_);
   }
 
@@ -350,32 +350,6 @@ class Identifier {
     mark.new_life = starts_life_[stream] && streams_.all()[stream].first == index;
   }
 
-  void name_all() {
-    for (Device& device : out_.devices) {
-      const std::string id = std::to_string(device.am);
-      const std::string island = std::to_string(device.island);
-      if (!device.known) {
-        device.name = "unknown sender with address " + id;
-      } else if (device.role == Role::kMote) {
-        device.name = "mote " + id;
-      } else if (device.role == Role::kSink) {
-        device.name = device.island == 0 ? "sink " + id : "sink of island " + island;
-      } else {
-        device.name = "base station of island " + island;
-      }
-      std::string fact = device.name + ":";
-      if (device.radio) fact += " " + std::to_string(device.frames) + " frames on the air,";
-      for (const std::uint32_t tap : device.taps) fact += " serial line " + run_.taps[tap].name + ",";
-      if (device.application) fact += " application log,";
-      if (!device.holes.empty()) {
-        fact += " " + std::to_string(device.holes.size()) + " gaps in its DSNs,";
-      }
-      if (!device.judged) fact += " not under test,";
-      fact.pop_back();
-      out_.facts.push_back(fact);
-    }
-  }
-
   const Run& run_;
   const Options& options_;
   Streams streams_;
@@ -390,18 +364,6 @@ class Identifier {
 };
 
 }  // namespace
-
-bool Identity::maybe_unseen(std::uint16_t device, std::int64_t from_us, std::int64_t to_us,
-                            const Options& options) const {
-  if (options.sniffer_complete) return false;
-  if (device == kNobody) return true;
-  const Device& d = devices[device];
-  if (!d.radio || from_us < d.first_us || to_us > d.last_us) return true;
-  for (const auto& [begin, end] : d.holes) {
-    if (begin <= to_us && end >= from_us) return true;
-  }
-  return false;
-}
 
 Identity identify(const Run& run, const Options& options) { return Identifier(run, options).run(); }
 

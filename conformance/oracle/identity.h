@@ -51,6 +51,9 @@ struct Identity {
                     const Options& options) const;
 };
 
+/// Gives each device its name and says in `facts` what is known of it.
+void name_devices(const Run& run, Identity& out);
+
 Identity identify(const Run& run, const Options& options);
 
 }  // namespace rubric::oracle

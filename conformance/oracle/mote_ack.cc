@@ -43,7 +43,8 @@ ReqId MoteJoins::why_not_ack(const MoteHypothesis& h, const Observation& seen,
   }
   if (seen.frame.dest != context_.sink_am) return req::kJ4Content;
   if (h.acks_seen == 0 || !context_.run.has_time) return ReqId::kNone;
-  const std::int64_t last = std::max(h.last_request_us, h.accepted_us + context_.options.response_us);
+  const std::int64_t last =
+      std::max(h.last_request_us, h.accepted_us + context_.options.response_us);
   if (seen.place.time_us > last + context_.join_period_us() + context_.early_us()) {
     return req::kJ4Repeat;
   }
@@ -102,7 +103,8 @@ void MoteJoins::refuse_ack(std::uint16_t mote, const Observation& seen, const Ac
     said.expected = "Repeats within one join period (" + ms_text(context_.join_period_us()) +
                     "), at most 20.";
   } else if (h.join.phase == Phase::kMember) {
-    said.text = "ack_join has " + ack_text(ack) + ", to AM address " + number(seen.frame.dest) + ".";
+    said.text = "ack_join has " + ack_text(ack) + ", to AM address " +
+                number(seen.frame.dest) + ".";
     said.expected = ack_text(expected_ack(h)) + ", to AM address " + number(context_.sink_am) + ".";
   } else {
     // It acks what it should not have accepted; of what, the last replies may tell.
@@ -115,8 +117,8 @@ void MoteJoins::refuse_ack(std::uint16_t mote, const Observation& seen, const Ac
     said.text = "ack_join with " + ack_text(ack);
     if (recent) {
       said.text += ", " + ms_text(now - watch.wrong_place.time_us) +
-                   " after a reply with number " + number(watch.wrong_reply->seq_num) + ", island " +
-                   number(watch.wrong_reply->island);
+                   " after a reply with number " + number(watch.wrong_reply->seq_num) +
+                   ", island " + number(watch.wrong_reply->island);
     } else {
       said.text += ", but no reply was heard that it could accept";
     }
@@ -138,6 +140,7 @@ void MoteJoins::refuse_ack(std::uint16_t mote, const Observation& seen, const Ac
   }
   MoteHypothesis unknown;
   unknown.unknown = true;
+  unknown.unaccepted = severity == Severity::kFail && h.join.phase == Phase::kJoining;
   watch.set.assign(1, unknown);
 }
 
@@ -166,6 +169,7 @@ void MoteJoins::told(std::uint16_t mote, const Observation& seen, const machine:
   }
   if (joined.success) {
     std::erase_if(watch.set, [&](const MoteHypothesis& h) {
+      if (h.unaccepted) return true;
       return !h.unknown && (h.join.phase != Phase::kMember || h.join.address != joined.address);
     });
     for (MoteHypothesis& h : watch.set) h.told = true;
@@ -178,8 +182,10 @@ void MoteJoins::told(std::uint16_t mote, const Observation& seen, const machine:
     said.text = "joined(" + text_of(joined.address) + ", SUCCESS) is signalled" +
                 (member ? ", but the reply gave " + text_of(h.join.address) + "."
                         : " before a reply was accepted.");
-    said.expected = member ? "The address of the reply." : "Nothing, or FAIL after the last request.";
-    const bool wrong = watch.wrong_reply.has_value() && joined.address.devid != context_.device(mote).am;
+    said.expected =
+        member ? "The address of the reply." : "Nothing, or FAIL after the last request.";
+    const bool foreign = joined.address.devid != context_.device(mote).am;
+    const bool wrong = h.unaccepted || (watch.wrong_reply.has_value() && foreign);
     context_.report(member ? req::kJ5Success : req::kJ5Accept,
                     member || wrong ? Severity::kFail
                                     : context_.without(kNobody, h.first_request_us, now),

@@ -51,7 +51,8 @@ bool MoteJoins::next_request(const MoteHypothesis& h, std::uint16_t id, std::int
   if (h.unknown || h.join.phase == Phase::kOutside) return fresh_call();
   // A mote that accepted, but had no link ack, may let its timer run on (decision 102).
   if (h.join.phase == Phase::kMember && (h.sent || h.confirmed)) return false;
-  const bool in_time = now_us - h.last_request_us >= context_.join_period_us() - context_.early_us();
+  const std::int64_t least_us = context_.join_period_us() - context_.early_us();
+  const bool in_time = now_us - h.last_request_us >= least_us;
   bool any = false;
   MoteHypothesis again = h;
   again.join.phase = Phase::kJoining;
@@ -263,7 +264,8 @@ void MoteJoins::net_msg(std::uint16_t mote, const Observation& seen, const Net& 
     said.hypotheses.push_back({sentence(*it), allows(*it),
                                "A net_msg from " + text_of(net.src) + " came."});
   }
-  const MoteHypothesis& h = before.back();
+  const MoteHypothesis h_before = before.back();
+  const MoteHypothesis& h = h_before;
   const bool member = h.join.phase == Phase::kMember;
   if (member) {
     said.text = "A net_msg with src " + text_of(net.src) + " from a mote whose address is " +
@@ -285,6 +287,7 @@ void MoteJoins::net_msg(std::uint16_t mote, const Observation& seen, const Net& 
   next.acks_seen = 1;
   next.sent = true;
   set.assign(1, next);
+  if (member) set.push_back(h_before);  // Perhaps only this message was wrong.
 }
 
 std::optional<machine::Address> MoteJoins::address(std::uint16_t mote) const {

@@ -22,6 +22,7 @@ struct MoteHypothesis {
   bool renumbered = false;        ///< Requests of this call had several numbers.
   std::uint8_t acks_seen = 0;     ///< ack_join on the air.
   bool confirmed = false;         ///< The link acknowledged its ack_join; it may have heard that.
+  bool unaccepted = false;        ///< It acked what it could not accept.
   bool told = false;              ///< Its application was told SUCCESS.
   bool sent = false;              ///< It sent a net_msg, so in its own view it is a member.
 };

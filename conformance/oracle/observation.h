@@ -86,7 +86,7 @@ struct Run {
   std::shared_ptr<RunStorage> storage;
   std::vector<Tap> taps;
   std::vector<Observation> seen;   ///< In order of cause: see merge() in read.h.
-  std::int64_t start_us = 0;       ///< Of the capture, where its file says so; else the first stamp.
+  std::int64_t start_us = 0;       ///< The first stamp.
   std::int64_t end_us = 0;
   bool has_time = true;            ///< Raw bytes carry none: timing rules are inconclusive.
 };

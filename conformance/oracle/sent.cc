@@ -81,7 +81,8 @@ void Originals::judge_address(std::uint16_t node, const Observation& seen, const
   // Sent to the broadcast island everything is fine (decision 114); to oneself nothing is said.
   if (net.dest.pid == machine::kBroadcastPid || net.dest.pid == machine::kLocalPid) return;
   const Route route = machine::route_own({device.role, own, true, context_.sink_am}, net.dest);
-  if (device.role == Role::kSink && link == Link::kRadio && route.onward == Route::Onward::kSerial) {
+  const bool up = route.onward == Route::Onward::kSerial;
+  if (device.role == Role::kSink && link == Link::kRadio && up) {
     context_.report(req::kN6Own, Severity::kFail, seen.place, node,
                     {"The sink sends " + name_of(net) + " by radio.", "Over serial.", {}});
     return;
@@ -112,9 +113,8 @@ void Originals::judge_number(std::uint16_t node, const Observation& seen, const 
     if (awaits) {
       // An ack that nobody captured would have ended the wait.
       const machine::Address dest = before.net.dest;
-      const std::uint16_t acker = dest.devid == context_.sink_am || dest.devid == machine::kNullDevid
-                                      ? context_.only_sink
-                                      : context_.mote_of_am[dest.devid];
+      const bool by_sink = dest.devid == context_.sink_am || dest.devid == machine::kNullDevid;
+      const std::uint16_t acker = by_sink ? context_.only_sink : context_.mote_of_am[dest.devid];
       context_.report(same ? req::kT3Resend : req::kN12Reuse,
                       context_.without(acker, before.place.time_us, now), seen.place, node,
                       {(same ? "The reliable message with number " : "Number ") +

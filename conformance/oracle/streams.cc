@@ -71,8 +71,9 @@ int Streams::score(const Stream& stream, const Observation& seen, const IslandHi
     points += hint.mote == stream.island ? kMoteIsland : -kMoteIsland;
     return points > 0 ? points : kNever;
   }
-  if (hint.strong != 0 && hint.strong != stream.island) return kNever;
-  if (hint.strong != 0) points += kStrongIsland;
+  const bool stale = hint.strong != 0 && hint.strong == stream.last_island;
+  if (hint.strong != 0 && hint.strong != stream.island && !stale) return kNever;
+  if (hint.strong != 0 && !stale) points += kStrongIsland;
   // From another island's base station to that island: the other sink's.
   if (hint.src != 0 && hint.src == hint.dest && hint.src != stream.island) return kNever;
   if (hint.src == stream.island) points += kSrcIsland;
@@ -144,7 +145,8 @@ std::uint16_t Streams::open(std::uint32_t index, const IslandHint& hint) {
   Stream stream;
   stream.am = seen.frame.src;
   stream.dsn = seen.dsn;
-  stream.sink = (seen.frame.src == sink_am_ && seen.frame.type != kAmJoin) || seen.frame.type == kAmJoinReply;
+  stream.sink = seen.frame.type == kAmJoinReply ||
+                (seen.frame.src == sink_am_ && seen.frame.type != kAmJoin);
   stream.joins = stream.asked = seen.frame.type == kAmJoin;
   if (!stream.sink) stream.island = hint.mote;
   if (stream.sink) stream.first_island = stream.island = hint.strong != 0 ? hint.strong : hint.dest;
@@ -165,7 +167,9 @@ void Streams::heard_on_serial(const Net& net, std::uint16_t island) {
 void Streams::rename_island(std::uint16_t from, std::uint16_t to) {
   if (from == 0) return;
   for (Stream& stream : streams_) {
-    if (stream.sink && stream.island == from) stream.island = to;
+    if (!stream.sink || stream.island != from || from == to) continue;
+    stream.last_island = from;
+    stream.island = to;
   }
 }
 

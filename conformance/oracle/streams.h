@@ -27,6 +27,7 @@ struct Stream {
   bool asked = false;                ///< It sent a join_request.
   std::uint16_t island = 0;          ///< Now; may change by SET_ISLAND_ID.
   std::uint16_t first_island = 0;
+  std::uint16_t last_island = 0;     ///< Before SET_ISLAND_ID.
   std::uint32_t first = 0;           ///< Observations.
   std::uint32_t last = 0;
   std::int64_t first_us = 0;

@@ -21,6 +21,7 @@ using oracle::Severity;
 
 constexpr std::size_t kFramesBefore = 3;
 constexpr std::size_t kFramesAfter = 2;
+constexpr std::size_t kFactLines = 6;    // More are run together.
 constexpr std::size_t kLinesOfRule = 3;  // Of a rule and severity, without --verbose.
 constexpr std::string_view kIndent = "  ";
 
@@ -90,8 +91,14 @@ class TextReport {
                                          o.sniffer_complete ? "complete" : "unknown",
                                          o.start_cold ? "cold" : "unknown"),
                     options_.width);
-    for (const std::string& fact : story_.report.facts) {
-      out_ += wrapped(kIndent, fact, options_.width);
+    std::string all;
+    for (const std::string& fact : story_.report.facts) all += (all.empty() ? "" : "; ") + fact;
+    if (story_.report.facts.size() > kFactLines) {
+      out_ += wrapped(kIndent, all, options_.width);
+    } else {
+      for (const std::string& fact : story_.report.facts) {
+        out_ += wrapped(kIndent, fact, options_.width);
+      }
     }
     if (story_.report.frames == 0) {
       out_ += wrapped(kIndent, "No frames of this protocol: there is nothing to judge.",

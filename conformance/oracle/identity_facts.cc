@@ -1,0 +1,50 @@
+// What the first pass found out, in words; and what the sniffer may have missed.
+#include <string>
+
+#include "conformance/oracle/identity.h"
+
+namespace rubric::oracle {
+
+using machine::Role;
+
+void name_devices(const Run& run, Identity& out) {
+  for (Device& device : out.devices) {
+    const std::string id = std::to_string(device.am);
+    const std::string island = std::to_string(device.island);
+    if (!device.known) {
+      device.name = "unknown sender with address " + id;
+    } else if (device.role == Role::kMote) {
+      device.name = "mote " + id;
+    } else if (device.role == Role::kSink) {
+      device.name = device.island == 0 ? "sink " + id : "sink of island " + island;
+    } else {
+      device.name = "base station of island " + island;
+    }
+    std::string fact = device.name + ":";
+    if (device.radio) fact += " " + std::to_string(device.frames) + " frames on the air,";
+    for (const std::uint32_t tap : device.taps) {
+      fact += " serial line " + run.taps[tap].name + ",";
+    }
+    if (device.application) fact += " application log,";
+    if (!device.holes.empty()) {
+      fact += " " + std::to_string(device.holes.size()) + " gaps in its DSNs,";
+    }
+    if (!device.judged) fact += " not under test,";
+    fact.pop_back();
+    out.facts.push_back(fact);
+  }
+}
+
+bool Identity::maybe_unseen(std::uint16_t device, std::int64_t from_us, std::int64_t to_us,
+                            const Options& options) const {
+  if (options.sniffer_complete) return false;
+  if (device == kNobody) return true;
+  const Device& d = devices[device];
+  if (!d.radio || from_us < d.first_us || to_us > d.last_us) return true;
+  for (const auto& [begin, end] : d.holes) {
+    if (begin <= to_us && end >= from_us) return true;
+  }
+  return false;
+}
+
+}  // namespace rubric::oracle

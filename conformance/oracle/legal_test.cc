@@ -1,0 +1,73 @@
+// Legal traffic, made by a generator that knows the rules and not this oracle: nothing may fail.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <string>
+
+#include "codec/generated/requirements_table.h"
+#include "conformance/legal/generate.h"
+#include "conformance/legal/output.h"
+#include "conformance/oracle/judge.h"
+#include "conformance/oracle/read.h"
+
+namespace rubric::oracle {
+namespace {
+
+constexpr std::uint64_t kSeeds = 4;
+constexpr std::uint64_t kMixedSeeds = 60;
+
+struct Count {
+  std::uint64_t runs = 0;
+  std::uint64_t frames = 0;
+  std::uint64_t fails = 0;
+};
+
+void judge_one(const legal::Traffic& traffic, const Options& options, Count& count) {
+  RunReader reader;
+  std::string error;
+  ASSERT_TRUE(reader.add_bytes(traffic.variant, legal::pcapng(traffic), error)) << error;
+  const oracle::Run run = reader.finish();
+  const Report report = judge(run, options);
+  ++count.runs;
+  count.frames += report.frames;
+  for (const Finding& finding : report.findings) {
+    const bool fails = finding.severity == Severity::kFail;
+    count.fails += fails ? 1 : 0;
+    EXPECT_FALSE(fails) << traffic.variant << " seed " << traffic.seed << " frame "
+                        << finding.place.frame << ": "
+                        << kRequirements[static_cast<std::size_t>(finding.requirement)].id << " "
+                        << finding.text;
+  }
+}
+
+void judge_both(const std::string& variant, std::uint64_t seed, Count& count) {
+  const legal::Traffic traffic = legal::generate(variant, seed);
+  Options options;
+  for (const legal::NodeInfo& node : traffic.nodes) {
+    if (node.role == legal::Role::kTester) options.testers.push_back(node.id);
+  }
+  // Where a host sends malformed messages on purpose it is the tester.
+  if (!traffic.all_well_formed) options.testers.push_back(0);
+  judge_one(traffic, options, count);
+  options.sniffer_complete = traffic.sniffer_complete;
+  options.start_cold = traffic.cold_start;
+  judge_one(traffic, options, count);
+}
+
+TEST(Legal, NothingFails) {
+  Count count;
+  for (const legal::Variant& variant : legal::variants()) {
+    for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) judge_both(variant.name, seed, count);
+  }
+  const std::uint64_t variants = legal::variants().size();
+  for (std::uint64_t seed = 1; seed <= kMixedSeeds; ++seed) judge_both("mixed", seed, count);
+  std::printf("%llu legal variants, %llu judgements, %llu frames, %llu false alarms\n",
+              static_cast<unsigned long long>(variants),
+              static_cast<unsigned long long>(count.runs),
+              static_cast<unsigned long long>(count.frames),
+              static_cast<unsigned long long>(count.fails));
+  EXPECT_GE(variants, 20U);
+}
+
+}  // namespace
+}  // namespace rubric::oracle
