@@ -230,7 +230,8 @@ void Acks::showed_life(std::uint16_t node, std::int64_t now_us) {
       if (apart > -kAroundUs && apart < kAroundUs) ++around;
     }
     const Severity severity =
-        around > kCrowd ? Severity::kInconclusive
+        around > kCrowd || context_.who.damaged(arrived.place.time_us, now_us)
+            ? Severity::kInconclusive
         : by_radio ? context_.without(node, arrived.place.time_us, now_us) : Severity::kFail;
     context_.report(req::kT2Ack, severity, arrived.place, node,
                     {"It surely received " + name_of(arrived.net) +

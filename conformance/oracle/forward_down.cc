@@ -150,8 +150,10 @@ void Forwarding::overdue_up(Line& line, std::int64_t now_us) {
     --line.owed_up;
     const bool own_island = passing.net.dest.pid == line.island;
     context_.report(own_island ? req::kN6Forward : req::kN6Route,
-                    crowded(line, passing.place.time_us) ? Severity::kInconclusive
-                                                         : Severity::kFail,
+                    crowded(line, passing.place.time_us) ||
+                            context_.who.damaged(passing.place.time_us, now_us)
+                        ? Severity::kInconclusive
+                        : Severity::kFail,
                     passing.place, line.sink,
                     {"The sink received " + name_of(passing.net) +
                          " (the link acknowledged it) and did not put it on its serial line, "

@@ -69,7 +69,9 @@ class Identifier {
     const Observation& seen = run_.seen[index];
     Mark& mark = out_.marks[index];
     if (!seen.node.empty()) return look_logged(index);
+    if (seen.kind == Observation::Kind::kDamaged) out_.damaged_us.push_back(seen.place.time_us);
     if (seen.kind == Observation::Kind::kRadio) {
+      out_.hears_radio = true;
       if (seen.frame.type == kAmJoin) remember_request(seen);
       mark.device = streams_.assign(index, mark.repeat);  // A stream so far.
       return;
@@ -99,6 +101,7 @@ class Identifier {
     const std::uint16_t node = logged(seen.node);
     if (!seen.received) {
       mark.device = node;
+      if (seen.kind == Observation::Kind::kRadio) out_.hears_radio = true;
       if (seen.kind == Observation::Kind::kRadio && node != kNobody) {
         Device& device = out_.devices[node];  // A log has all that its node sent.
         device.radio = true;

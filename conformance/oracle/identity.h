@@ -45,7 +45,12 @@ struct Identity {
   std::vector<Mark> marks;                ///< One for each observation.
   std::vector<std::uint16_t> sink_of_tap; ///< kNobody: a tap on the air, or of an unknown sink.
   std::vector<std::string> facts;
+  std::vector<std::int64_t> damaged_us;   ///< When bytes came that are no frame; they were one.
 
+  bool hears_radio = false;               ///< Some radio frame was seen at all.
+
+  /// Whether such bytes came between these times.
+  bool damaged(std::int64_t from_us, std::int64_t to_us) const;
   /// Whether a frame of `device` between these times could have escaped the sniffer.
   bool maybe_unseen(std::uint16_t device, std::int64_t from_us, std::int64_t to_us,
                     const Options& options) const;

@@ -1,4 +1,5 @@
 // What the first pass found out, in words; and what the sniffer may have missed.
+#include <algorithm>
 #include <string>
 
 #include "conformance/oracle/identity.h"
@@ -35,8 +36,14 @@ void name_devices(const Run& run, Identity& out) {
   }
 }
 
+bool Identity::damaged(std::int64_t from_us, std::int64_t to_us) const {
+  const auto first = std::lower_bound(damaged_us.begin(), damaged_us.end(), from_us);
+  return first != damaged_us.end() && *first <= to_us;
+}
+
 bool Identity::maybe_unseen(std::uint16_t device, std::int64_t from_us, std::int64_t to_us,
                             const Options& options) const {
+  if (!hears_radio || damaged(from_us, to_us)) return true;
   if (options.sniffer_complete) return false;
   if (device == kNobody) return true;
   const Device& d = devices[device];

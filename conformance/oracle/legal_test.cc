@@ -6,7 +6,7 @@
 
 #include "codec/generated/requirements_table.h"
 #include "conformance/legal/generate.h"
-#include "conformance/legal/output.h"
+#include "conformance/legal/variants.h"
 #include "conformance/oracle/judge.h"
 #include "conformance/oracle/read.h"
 
@@ -25,7 +25,7 @@ struct Count {
 void judge_one(const legal::Traffic& traffic, const Options& options, Count& count) {
   RunReader reader;
   std::string error;
-  ASSERT_TRUE(reader.add_bytes(traffic.variant, legal::pcapng(traffic), error)) << error;
+  ASSERT_TRUE(reader.add_bytes(traffic.variant, legal::to_pcapng(traffic), error)) << error;
   const oracle::Run run = reader.finish();
   const Report report = judge(run, options);
   ++count.runs;
@@ -57,7 +57,7 @@ void judge_both(const std::string& variant, std::uint64_t seed, Count& count) {
 TEST(Legal, NothingFails) {
   Count count;
   for (const legal::Variant& variant : legal::variants()) {
-    for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) judge_both(variant.name, seed, count);
+    for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) judge_both(std::string(variant.name), seed, count);
   }
   const std::uint64_t variants = legal::variants().size();
   for (std::uint64_t seed = 1; seed <= kMixedSeeds; ++seed) judge_both("mixed", seed, count);

@@ -148,8 +148,9 @@ void SinkJoins::refuse_report(SinkWatch& sink, PairWatch& watch, const Place& at
   const std::uint16_t mote = device_of(mote_am);
   ReqId rule = req::kJ6Add;
   const bool has_ack = watch.ack.frame != 0;
-  Severity severity = context_.without(
-      mote, has_ack ? watch.ack.time_us : context_.run.start_us, at.time_us);
+  std::int64_t since = has_ack ? watch.ack.time_us : context_.run.start_us;
+  if (has_ack && watch.asked) since = std::min(since, watch.request.time_us);
+  Severity severity = context_.without(mote, since, at.time_us);
   if (!has_ack && !context_.options.start_cold) severity = Severity::kInconclusive;
   if (h.member) {
     rule = req::kJ6Repeat;
@@ -184,7 +185,10 @@ void SinkJoins::showed_life(std::uint16_t sink_device, std::int64_t now_us, bool
     // With a full list, even of members from before the capture, nothing is owed.
     if (listed(*sink) >= context_.profile().members_max) continue;
     context_.report(req::kJ6Report,
-                    context_.options.start_cold ? Severity::kFail : Severity::kInconclusive,
+                    context_.options.start_cold &&
+                            !context_.who.damaged(watch.ack.time_us, now_us)
+                        ? Severity::kFail
+                        : Severity::kInconclusive,
                     watch.ack, sink->device,
                     {"The ack_join of mote " + number(am) +
                          " was received (the link acknowledged it), and no serial_joined followed "

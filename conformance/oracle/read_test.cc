@@ -1,0 +1,117 @@
+#include "conformance/oracle/read.h"
+
+#include <gtest/gtest.h>
+
+#include "conformance/oracle/identity.h"
+#include "conformance/oracle/judge.h"
+#include "conformance/oracle/message.h"
+
+namespace rubric::oracle {
+namespace {
+
+constexpr const char* kFirmware = "spec/captures/firmware/";
+
+oracle::Run must_read(const std::vector<std::string>& files) {
+  std::string error;
+  std::optional<oracle::Run> run = read(files, error);
+  EXPECT_TRUE(run) << error;
+  return run ? std::move(*run) : oracle::Run{};
+}
+
+TEST(Read, TapsAndNumbersOfACapture) {
+  const oracle::Run run = must_read({std::string(kFirmware) + "c_two_islands.pcapng"});
+  ASSERT_EQ(run.taps.size(), 3U);
+  ASSERT_FALSE(run.seen.empty());
+  const Observation& first = run.seen.front();
+  EXPECT_EQ(first.kind, Observation::Kind::kSerial);
+  EXPECT_TRUE(first.to_mote);
+  EXPECT_TRUE(first.ack_request);
+  EXPECT_EQ(first.place.frame, 1U);
+  EXPECT_EQ(first.place.time_us, 0);
+  EXPECT_EQ(run.seen[1].kind, Observation::Kind::kLinkAck);
+  EXPECT_TRUE(run.has_time);
+}
+
+TEST(Read, TwoSinksOfOneAddressAreTwoDevices) {
+  const oracle::Run run = must_read({std::string(kFirmware) + "c_two_islands.pcapng"});
+  const Identity who = identify(run, Options{});
+  std::vector<std::uint16_t> islands;
+  for (const Device& device : who.devices) {
+    EXPECT_TRUE(device.known) << device.name;
+    if (device.role != machine::Role::kSink) continue;
+    islands.push_back(device.island);
+    EXPECT_EQ(device.taps.size(), 1U);
+    EXPECT_TRUE(device.radio);
+  }
+  EXPECT_EQ(islands, (std::vector<std::uint16_t>{11, 12}));
+}
+
+TEST(Read, ADamagedSerialFrameIsHeardByNobody) {
+  const oracle::Run run =
+      must_read({std::string(kFirmware) + "h10_hdlc_escape_and_bad_serial.pcapng"});
+  int damaged = 0;
+  for (const Observation& seen : run.seen) {
+    if (seen.kind != Observation::Kind::kDamaged) continue;
+    ++damaged;
+    EXPECT_EQ(seen.broken, req::kWireSerialCrc);
+  }
+  EXPECT_EQ(damaged, 1);
+}
+
+TEST(Read, FilesOfOneRunShareTheirClock) {
+  const std::string log = "conformance/oracle/testdata/b_reliable.app.rtr";
+  const oracle::Run run = must_read({std::string(kFirmware) + "b_reliable.pcapng", log});
+  ASSERT_EQ(run.nodes.size(), 3U);
+  for (std::size_t i = 1; i < run.seen.size(); ++i) {
+    EXPECT_LE(run.seen[i - 1].place.time_us, run.seen[i].place.time_us);
+  }
+  // moteJoined stands between ack_join and serial_joined.
+  std::int64_t ack_us = 0, told_us = 0, report_us = 0;
+  for (const Observation& seen : run.seen) {
+    const bool serial = seen.kind == Observation::Kind::kSerial;
+    if (seen.frame.type == kAmAckJoin && ack_us == 0) ack_us = seen.place.time_us;
+    if (seen.kind == Observation::Kind::kNotice && told_us == 0) told_us = seen.place.time_us;
+    if (serial && report_us == 0) report_us = seen.place.time_us;
+  }
+  EXPECT_LT(ack_us, told_us);
+  EXPECT_LT(told_us, report_us);
+}
+
+TEST(Read, WhatCannotBeReadSaysWhy) {
+  std::string error;
+  EXPECT_FALSE(read({"no/such/file.pcapng"}, error));
+  EXPECT_NE(error.find("no/such/file.pcapng"), std::string::npos);
+  RunReader reader;
+  EXPECT_FALSE(reader.add_bytes("x", "%rtr 1\nnonsense", error));
+  EXPECT_NE(error.find("x:2"), std::string::npos) << error;
+}
+
+TEST(Read, ALogAloneIsARun) {
+  constexpr const char* kLog = R"(%rtr 1  %profile paper  %tick us
+%node m2 mote id=2
+%node sA sink id=1 island=11
+
+case log
+   @0 m2 < app join(type=1 transducers=1 actuators=1)
+   @1000 m2 > rA am=2->1 join_request(seq_num=5 mote_type=1 transducers=1 actuators=1)
+   @200000 m2 > rA am=2->1 join_request(seq_num=5 mote_type=1 transducers=1 actuators=1)
+)";
+  RunReader reader;
+  std::string error;
+  ASSERT_TRUE(reader.add_bytes("log", kLog, error)) << error;
+  const oracle::Run run = reader.finish();
+  Options options;
+  options.start_cold = true;
+  const Report report = judge(run, options);
+  bool early = false;
+  for (const Finding& finding : report.findings) {
+    if (finding.severity != Severity::kFail) continue;
+    EXPECT_EQ(finding.requirement, req::kJ8Period) << finding.text;
+    EXPECT_EQ(finding.place.offset_bytes, 8U);  // The line.
+    early = true;
+  }
+  EXPECT_TRUE(early);
+}
+
+}  // namespace
+}  // namespace rubric::oracle
