@@ -278,11 +278,19 @@ constexpr reflect::Requirement kRequirements[] = {
      "When the outgoing buffer is full send returns 0xFFFF and that message is never sent.",
      "paper: The Network level; release 1.0 NetworkP",
      reflect::kRoleMote | reflect::kRoleSink, true, ""},
+    {"N1-SIZE", "MUST", "network, send",
+     "send refuses more than 100 bytes of application data.",
+     "paper: Memory Occupation; release 1.0",
+     reflect::kRoleMote | reflect::kRoleSink | reflect::kRoleBaseStation, true, ""},
     {"N2-QUEUE", "MUST", "network, buffers",
      "A message that send accepted while the radio or the serial line was busy is sent when "
      "the line is free again.",
      "paper: The Network level",
      reflect::kRoleMote | reflect::kRoleSink, false, ""},
+    {"N2-BUSY", "MUST", "network, buffers",
+     "While a line is busy nothing is sent on it.",
+     "paper: The Network level",
+     reflect::kRoleMote | reflect::kRoleSink, true, ""},
     {"N2-ORDER", "MUST", "network, buffers",
      "Messages leave each line in the order in which they were accepted for it.",
      "paper: The Network level",
@@ -317,6 +325,10 @@ constexpr reflect::Requirement kRequirements[] = {
      "its sink.",
      "paper: The Inter-Island Connectivity",
      reflect::kRoleMote, true, ""},
+    {"N4-SELF", "SHOULD", "network, addressing",
+     "A node refuses a message whose dest is the node itself.",
+     "decision 131",
+     reflect::kRoleMote | reflect::kRoleSink | reflect::kRoleBaseStation, true, ""},
     {"N5-DELIVER", "MUST", "network, mote",
      "A mote delivers a net_msg, sent or sent on by a node of its island, whose dest is its "
      "island and its own devid or the broadcast devid.",
@@ -332,13 +344,13 @@ constexpr reflect::Requirement kRequirements[] = {
      "paper: The Topology and the Routing of the Ecology",
      reflect::kRoleMote, true, ""},
     {"N6-DELIVER", "MUST", "network, sink",
-     "A sink delivers a net_msg from the radio whose dest is its island and its own devid "
-     "or the broadcast devid.",
+     "A sink delivers a net_msg from the radio, sent by a node of its island, whose dest is "
+     "its island and its own devid or the broadcast devid.",
      "paper: Island Collision Resolution and Safe Join",
      reflect::kRoleSink, false, ""},
     {"N6-FORWARD", "MUST", "network, sink",
-     "A sink forwards a net_msg from the radio with dest <its island, NULL> to its base "
-     "station over serial.",
+     "A sink forwards a net_msg from the radio, sent by a node of its island, with dest "
+     "<its island, NULL> to its base station over serial.",
      "paper: The Network level",
      reflect::kRoleSink, false, ""},
     {"N6-ROUTE", "MUST", "network, sink",
@@ -356,8 +368,9 @@ constexpr reflect::Requirement kRequirements[] = {
      "paper: The Inter-Island Connectivity; release 1.0 NetworkP",
      reflect::kRoleSink, true, ""},
     {"N6-ONCE", "MUST", "network, sink",
-     "A sink forwards each received message once.",
-     "paper: The Inter-Island Connectivity",
+     "A sink forwards each received message once, and sends none that came by serial back "
+     "over serial.",
+     "paper: The Inter-Island Connectivity; decision 126",
      reflect::kRoleSink, true, ""},
     {"N6-OTHER", "SHOULD", "network, sink",
      "A sink does not deliver a net_msg of its island for another mote to its own "
@@ -369,7 +382,8 @@ constexpr reflect::Requirement kRequirements[] = {
      "paper: The Inter-Island Connectivity",
      reflect::kRoleSink, false, ""},
     {"N7-DELIVER", "MUST", "network, sink",
-     "A sink delivers a net_msg from serial whose devid is its own or the broadcast devid.",
+     "A sink delivers a net_msg from serial for its island whose devid is its own or the "
+     "broadcast devid.",
      "release 1.0 NetworkP",
      reflect::kRoleSink, false, ""},
     {"N7-RADIO", "MUST", "network, sink",
@@ -416,8 +430,8 @@ constexpr reflect::Requirement kRequirements[] = {
      "release 1.0 NetworkP",
      reflect::kRoleSink, false, ""},
     {"N9-OTHER", "MUST", "network, island id",
-     "A config message of another type changes nothing.",
-     "release 1.0 NetworkP",
+     "A config message of another type, or with a reserved island id, changes nothing.",
+     "release 1.0 NetworkP; decision 132",
      reflect::kRoleSink, true, ""},
     {"N9-MEMBERS", "SHOULD", "network, island id",
      "A sink whose island id changes forgets its members.",
@@ -497,8 +511,8 @@ constexpr reflect::Requirement kRequirements[] = {
      "paper: Component Management",
      reflect::kRoleSink, true, ""},
     {"J3-TIME", "MUST", "join, sink",
-     "cur_time of a join_reply is the sink's clock in ms when it replies; between replies "
-     "more than a second apart it grows.",
+     "cur_time of a join_reply is the sink's clock in ms when it replies; it does not stand "
+     "still for a second or more between replies.",
      "paper: Component Management; decision 119",
      reflect::kRoleSink, true,
      "cur_time is the time of boot and never changes."},
@@ -534,6 +548,11 @@ constexpr reflect::Requirement kRequirements[] = {
     {"J4-JOINED", "MUST", "join, mote",
      "A mote that is joined, or has no request outstanding, ignores a join_reply.",
      "paper: Component Management",
+     reflect::kRoleMote, true, ""},
+    {"J4-ADDRESS", "SHOULD", "join, mote",
+     "A mote ignores a join_reply whose mote_addr is not its own TinyOS id or whose "
+     "island_addr is reserved.",
+     "decision 132",
      reflect::kRoleMote, true, ""},
     {"J4-CLOCK", "MUST", "join, mote",
      "A mote that accepts a join_reply sets its clock to cur_time.",
@@ -581,6 +600,15 @@ constexpr reflect::Requirement kRequirements[] = {
     {"J6-ISLAND", "MUST", "join, sink",
      "A sink ignores an ack_join whose dest.pid is not its island.",
      "paper: Island Collision Resolution and Safe Join",
+     reflect::kRoleSink, true, ""},
+    {"J6-SENDER", "SHOULD", "join, sink",
+     "A sink ignores an ack_join whose dest.devid is not its own, or whose src is not "
+     "<dest.pid, the AM source>.",
+     "decision 132",
+     reflect::kRoleSink, true, ""},
+    {"J6-ONLY", "MUST", "join, sink",
+     "A sink adds a mote to its list, announces and reports it only on an ack_join.",
+     "paper: Component Management",
      reflect::kRoleSink, true, ""},
     {"J6-REPORT", "MUST", "join, sink",
      "A sink reports each new member to its base station with one serial_joined.",
@@ -678,8 +706,7 @@ constexpr reflect::Requirement kRequirements[] = {
      "An ack has TRANSID RUBICON_ACK, the APPID and the sequence number of the message, is "
      "unreliable, and goes to the message's source.",
      "paper: Rubicon ACK; decision 108",
-     reflect::kRoleMote | reflect::kRoleSink | reflect::kRoleBaseStation, true,
-     "The ack carries a learning_notification (type, number, code)."},
+     reflect::kRoleMote | reflect::kRoleSink | reflect::kRoleBaseStation, true, ""},
     {"T2-DELIVER", "MUST", "transport, acks",
      "A reliable message is delivered to the application as well; a repeated one at least "
      "once.",
@@ -688,6 +715,10 @@ constexpr reflect::Requirement kRequirements[] = {
     {"T2-UNRELIABLE", "MUST", "transport, acks",
      "A message with reliable 0 is never acked.",
      "paper: Rubicon ACK",
+     reflect::kRoleMote | reflect::kRoleSink | reflect::kRoleBaseStation, true, ""},
+    {"T2-TWO", "SHOULD", "transport, acks",
+     "A message whose reliable is neither 0 nor 1 is not acked.",
+     "decision 112",
      reflect::kRoleMote | reflect::kRoleSink | reflect::kRoleBaseStation, true, ""},
     {"T2-LOOP", "MUST", "transport, acks",
      "An ack is never acked.",
@@ -746,9 +777,9 @@ constexpr reflect::Requirement kRequirements[] = {
      "release 1.0 SynapticChannelsP",
      reflect::kRoleMote | reflect::kRoleSink, false, ""},
     {"S1-LIMIT", "MUST", "synaptic, operations",
-     "Creation beyond four channels of a direction, or ten connections of a channel, is "
-     "refused and changes nothing.",
-     "paper: Memory Occupation; release 1.0",
+     "Creation beyond the stated number of channels of a direction (four unless the node "
+     "says otherwise), or ten connections of a channel, is refused and changes nothing.",
+     "paper: Memory Occupation; release 1.0; decision 129",
      reflect::kRoleMote | reflect::kRoleSink, true, ""},
     {"S1-WRITE", "MUST", "synaptic, operations",
      "write_output_value sets the value at pos, which the next tick sends; a pos outside "
@@ -760,18 +791,34 @@ constexpr reflect::Requirement kRequirements[] = {
      "channel is refused.",
      "paper: Synaptic Communication",
      reflect::kRoleMote | reflect::kRoleSink, false, ""},
+    {"S1-START", "MUST", "synaptic, operations",
+     "start_syn_channel starts that channel: its values are sent, or its data signalled, "
+     "from the next tick on.",
+     "paper: Synaptic Communication",
+     reflect::kRoleMote | reflect::kRoleSink, false, ""},
+    {"S1-ALL", "MUST", "synaptic, operations",
+     "start_all_syn_channels and stop_all_syn_channels start and stop every channel of the "
+     "node.",
+     "paper: Synaptic Communication",
+     reflect::kRoleMote | reflect::kRoleSink, false, ""},
+    {"S1-MODE", "MUST", "synaptic, operations",
+     "The mode given at creation, reliable or power-save, is the one in which the channel "
+     "sends.",
+     "paper: Synaptic Communication",
+     reflect::kRoleMote | reflect::kRoleSink, false,
+     "Release 1.0 has no power-save mode."},
     {"S1-CLOCK", "MUST", "synaptic, operations",
      "set_time_step sets the period of the clock, 500 ms by default.",
      "paper: Synaptic Communication",
      reflect::kRoleMote | reflect::kRoleSink, false, ""},
     {"S2-SEND", "MUST", "synaptic, clock",
-     "At each tick every started output channel in reliable mode sends its values to its "
-     "destination.",
+     "At each tick every started output channel in reliable mode, but for a channel to "
+     "itself, sends its values to its destination.",
      "paper: Synaptic Communication",
      reflect::kRoleMote | reflect::kRoleSink, false, ""},
     {"S2-CONTENT", "MUST", "synaptic, clock",
-     "Synaptic data has TRANSID SYN_CHANNEL and one little-endian binary32 for each "
-     "connection, in order, unreliable.",
+     "Synaptic data has TRANSID SYN_CHANNEL, APPID LEARNING or ESN_DATA, and one "
+     "little-endian binary32 for each connection, in order, unreliable.",
      "paper: Synaptic Communication; decision 120",
      reflect::kRoleMote | reflect::kRoleSink, true, ""},
     {"S2-TICK", "MUST", "synaptic, clock",
