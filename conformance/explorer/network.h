@@ -16,7 +16,7 @@ struct Copy {
   std::uint32_t bits = 0;
 
   static Copy of(FrameId frame, std::size_t sender) {
-    return {static_cast<std::uint32_t>(frame << 8 | sender)};
+    return {static_cast<std::uint32_t>(std::size_t{frame} << 8 | sender)};
   }
   FrameId frame() const { return static_cast<FrameId>(bits >> 8); }
   std::size_t sender() const { return bits & 0xFF; }

@@ -23,8 +23,11 @@ std::uint64_t mix(std::uint64_t hash, std::uint64_t value) {
 std::uint64_t hash_of(const NodeState& node) {
   const Monitor& m = node.monitor;
   std::uint64_t hash = machine::hash_value(node.state);
-  hash = mix(hash, std::uint64_t{m.calls} << 32 | m.reboots << 16 | m.sends << 8 | m.requests);
-  hash = mix(hash, std::uint64_t{m.present_seq} << 32 | m.heard << 16 | m.chosen << 8 | m.view);
+  const auto pack = [](std::uint64_t a, std::uint64_t b, std::uint64_t c, std::uint64_t d) {
+    return a << 32 | b << 16 | c << 8 | d;
+  };
+  hash = mix(hash, pack(m.calls, m.reboots, m.sends, m.requests));
+  hash = mix(hash, pack(m.present_seq, m.heard, m.chosen, m.view));
   return mix(hash, std::uint64_t{m.on_air} << 8 | m.acked_ever);
 }
 
