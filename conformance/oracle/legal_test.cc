@@ -57,7 +57,9 @@ void judge_both(const std::string& variant, std::uint64_t seed, Count& count) {
 TEST(Legal, NothingFails) {
   Count count;
   for (const legal::Variant& variant : legal::variants()) {
-    for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) judge_both(std::string(variant.name), seed, count);
+    for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+      judge_both(std::string(variant.name), seed, count);
+    }
   }
   const std::uint64_t variants = legal::variants().size();
   for (std::uint64_t seed = 1; seed <= kMixedSeeds; ++seed) judge_both("mixed", seed, count);

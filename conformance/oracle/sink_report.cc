@@ -148,8 +148,9 @@ void SinkJoins::refuse_report(SinkWatch& sink, PairWatch& watch, const Place& at
   const std::uint16_t mote = device_of(mote_am);
   ReqId rule = req::kJ6Add;
   const bool has_ack = watch.ack.frame != 0;
-  std::int64_t since = has_ack ? watch.ack.time_us : context_.run.start_us;
-  if (has_ack && watch.asked) since = std::min(since, watch.request.time_us);
+  // The request to which the ack belongs may have escaped as well.
+  std::int64_t since = context_.run.start_us;
+  if (has_ack && watch.asked) since = std::min(watch.ack.time_us, watch.request.time_us);
   Severity severity = context_.without(mote, since, at.time_us);
   if (!has_ack && !context_.options.start_cold) severity = Severity::kInconclusive;
   if (h.member) {
