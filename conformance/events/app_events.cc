@@ -289,6 +289,8 @@ std::optional<machine::Event> to_state(const Concrete& message, trace::LinkKind 
     return machine::SendDone{*link, in.number<std::uint8_t>() != 0};
   } else if (in.named("reboot")) {
     return machine::Reboot{};
+  } else if (in.named("off")) {
+    return machine::PowerOff{};
   }
   return std::nullopt;
 }

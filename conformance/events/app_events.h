@@ -17,7 +17,7 @@ trace::Message from_notice(const machine::Notice& notice);
 /// `message`, which must outlive it. Nothing if it is no call.
 std::optional<machine::Call> to_call(const trace::Concrete& message);
 std::optional<machine::Notice> to_notice(const trace::Concrete& message);
-/// busy, idle, linkack and reboot; `link` is the link of the line, kApp for the application.
+/// busy, idle, linkack, reboot and off; `link` is the link of the line, kApp for the application.
 std::optional<machine::Event> to_state(const trace::Concrete& message, trace::LinkKind link);
 
 /// The machine's line of that kind; nothing for app and power.

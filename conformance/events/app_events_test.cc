@@ -64,6 +64,12 @@ TEST(ToState, KnowsWhatIsBusy) {
   const auto done = to_state(parsed("linkack(acked=0)"), trace::LinkKind::kRadio);
   ASSERT_TRUE(done);
   EXPECT_FALSE(std::get<machine::SendDone>(*done).acked);
+  const auto off = to_state(parsed("off"), trace::LinkKind::kPower);
+  ASSERT_TRUE(off);
+  EXPECT_TRUE(std::holds_alternative<machine::PowerOff>(*off));
+  const auto on = to_state(parsed("reboot"), trace::LinkKind::kPower);
+  ASSERT_TRUE(on);
+  EXPECT_TRUE(std::holds_alternative<machine::Reboot>(*on));
   EXPECT_FALSE(to_state(parsed("joined(11:5 success)"), trace::LinkKind::kApp));
 }
 

@@ -73,8 +73,10 @@ struct SendDone { Link link = Link::kRadio; bool acked = true; };  ///< The last
 struct LinkBusy { Link link = Link::kRadio; bool busy = false; };  ///< Somebody else has the line.
 struct AppBusy { bool busy = false; };  ///< While busy, what arrives is queued.
 struct Reboot {};                       ///< Memory is lost; the configuration stays.
+struct PowerOff {};                     ///< The same, and nothing has an effect until Reboot.
 
-using Event = std::variant<Heard, Called, TimerDue, SendDone, LinkBusy, AppBusy, Reboot>;
+using Event = std::variant<Heard, Called, TimerDue, SendDone, LinkBusy, AppBusy, Reboot,
+                           PowerOff>;
 
 // What the application is told; results of calls among it.
 struct Joined { Address address; bool success = false; };

@@ -42,7 +42,7 @@ void add(Hasher& hasher, const Profile& p) {
   const unsigned switches = (p.join_fail_signalled ? 1u : 0u) | (p.listed_ignored ? 2u : 0u);
   hasher.add(p.join_requests_max, p.ack_join_max, p.members_max, p.sink_id);
   hasher.add(p.response_ticks, p.early_ticks, p.synaptic_phase_ticks,
-             static_cast<std::uint16_t>(switches));
+             static_cast<std::uint16_t>(switches | unsigned{p.channels_max} << 8));
 }
 
 void add(Hasher& hasher, const Config& config) {
@@ -70,7 +70,7 @@ void add(Hasher& hasher, const BoundedList<Admission, kRoom>& list) {
   }
 }
 
-void add(Hasher& hasher, const BoundedList<Channel, kChannelsMax>& channels) {
+void add(Hasher& hasher, const BoundedList<Channel, kChannelsRoom>& channels) {
   hasher.add(std::uint64_t{channels.size()});
   for (const Channel& channel : channels) {
     const unsigned flags = static_cast<unsigned>(channel.mode) | (channel.started ? 2u : 0u) |
@@ -109,7 +109,7 @@ std::uint64_t hash_value(const State& state) {
   Hasher hasher;
   add(hasher, state.config);
   hasher.add(std::uint64_t{state.clock_offset_ms} << 32 | std::uint64_t{state.island} << 16 |
-             (state.app_busy ? 1u : 0u));
+             (state.app_busy ? 1u : 0u) | (state.off ? 2u : 0u));
   hasher.add(state.sequence.last, state.sequence.random ? std::uint16_t{1} : std::uint16_t{0});
   add(hasher, state.join);
   add(hasher, state.sink.members);

@@ -222,10 +222,13 @@ void report_joined(Node& node, Address member, const Descriptor& descriptor) {
 void tick(Node& node) {
   State& state = node.state;
   SynapticSends sends;
+  // A send has two labels at most (N3-LOCAL, and sent or queued), a signal one.
+  static_assert(3 * kChannelsRoom <= Actions::kActionsMax);
+  static_assert(kChannelsRoom <= Actions::kNoticesMax);
   tick_synaptic(state.synaptic, own_address(state), node.now, sends, node.actions);
   for (const SynapticSend& send : sends) {
-    //= S2-CONTENT: Synaptic data has TRANSID SYN_CHANNEL and one little-endian binary32 for each
-    //= connection, in order, unreliable.
+    //= S2-CONTENT: Synaptic data has TRANSID SYN_CHANNEL, APPID LEARNING or ESN_DATA, and one
+    //= little-endian binary32 for each connection, in order, unreliable.
     std::uint8_t floats[4 * kConnectionsMax];
     for (std::size_t i = 0; i < send.size; ++i) store_le32(floats + 4 * i, send.value_bits[i]);
     const Bytes data(floats, std::size_t{4} * send.size);

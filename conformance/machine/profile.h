@@ -20,6 +20,7 @@ struct Profile {
   std::uint8_t members_max = 20;             ///< Of a sink's list; at most kMembersMax.
   std::uint8_t sink_id = 1;                  ///< AM address and devid of every sink.
   std::uint16_t ack_timeout_ticks = 1000;    ///< Of a reliable message; 0: there is none.
+  std::uint8_t channels_max = 4;             ///< Of a direction; at most kChannelsRoom.
   std::uint16_t synaptic_period_ticks = 500; ///< Until set_time_step.
   std::uint8_t synaptic_phase_ticks = 30;    ///< (devid - 1) times this before a mote's clock.
   std::uint16_t response_ticks = 300;        ///< How long a reply, an ack, a forward may take.

@@ -157,7 +157,8 @@ void happen(Random& random, const State& state, Happening& now) {
       now.frame = some_frame(random, state);
       now.event = Heard{now.frame.frame()};
   }
-  if (one_in(random, 300)) now.event = Reboot{};
+  if (one_in(random, 300) || (state.off && one_in(random, 4))) now.event = Reboot{};
+  if (one_in(random, 400)) now.event = PowerOff{};
 }
 
 // What must hold after every step, and what the steps so far have added up to.
@@ -173,13 +174,17 @@ struct Watch {
 
   void check(const State& before, const Event& event, const Device& node) {
     const State& state = node.state;
-    const bool reboot = std::holds_alternative<Reboot>(event);
+    const bool reboot =
+        std::holds_alternative<Reboot>(event) || std::holds_alternative<PowerOff>(event);
     const auto* called = std::get_if<Called>(&event);
-    if (called != nullptr && std::holds_alternative<JoinIsland>(called->call)) ++open_calls;
+    const bool calls = called != nullptr && !before.off;
+    if (calls && std::holds_alternative<JoinIsland>(called->call)) ++open_calls;
     if (reboot) open_calls = 0;
     const bool joining = state.join.phase == Phase::kJoining;
     if (joining && before.join.phase != Phase::kJoining) requests = 0;
     check_notices(node);
+    const bool without = before.off && !std::holds_alternative<Reboot>(event);
+    must(!without || (state.off && node.silent()), "without power nothing happens (N10-OFF)");
     if (!reboot) check_membership(before.join, event, state.join);
     for (const Transmit& frame : node.actions.transmits()) check_frame(state, frame);
     check_bounds(state);
@@ -246,6 +251,8 @@ struct Watch {
     must(state.app_busy || in == 0, "nothing waits for an idle application (N2-IN-ORDER)");
     must(state.awaited.size() <= kAwaitedMax, "awaited acks");
     must(state.sink.members.size() <= state.config.profile.members_max, "members");
+    const std::size_t channels = state.config.profile.channels_max;
+    must(state.synaptic.out.size() <= channels && state.synaptic.in.size() <= channels, "channels");
     const bool idle = state.radio.on && !state.radio.sending && !state.radio.taken;
     must(!idle || state.radio.out.empty(), "nothing waits for a free line (N2-QUEUE)");
   }

@@ -16,7 +16,8 @@ namespace rubric::machine {
 constexpr std::size_t kMembersMax = 20;   ///< Of an island, in a sink's list (release 1.0).
 constexpr std::size_t kPendingMax = 20;   ///< Joins that a sink has answered and not seen acked.
 constexpr std::size_t kAwaitedMax = 8;    ///< Reliable messages whose ack is awaited at once.
-constexpr std::size_t kChannelsMax = 4;   ///< Of each direction. (paper: Memory Occupation)
+/// Of each direction, at most; Profile::channels_max says how many a node has (decision 129).
+constexpr std::size_t kChannelsRoom = 8;
 constexpr std::size_t kConnectionsMax = 10;
 
 /// What does not change while a node runs.
@@ -119,8 +120,8 @@ struct Channel {
 
 /// Synaptic channels of a node and their one clock.
 struct Synaptic {
-  BoundedList<Channel, kChannelsMax> out;
-  BoundedList<Channel, kChannelsMax> in;
+  BoundedList<Channel, kChannelsRoom> out;
+  BoundedList<Channel, kChannelsRoom> in;
   std::uint16_t period_ticks = 0;
   Ticks due = 0;  ///< Next tick; 0 while no channel is started.
   friend bool operator==(const Synaptic&, const Synaptic&) = default;
@@ -131,6 +132,7 @@ struct State {
   Config config;
   std::uint16_t island = 0;      ///< Of a sink or a base station now.
   std::uint32_t clock_offset_ms = 0;  ///< Own clock = time since start + this.
+  bool off = false;              ///< Without power, until Reboot; all else is as at start.
   bool app_busy = false;
   Sequence sequence;
   JoinMote join;

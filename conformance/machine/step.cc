@@ -35,15 +35,35 @@ void app_busy(Node& node, bool busy) {
 }
 
 // Memory is lost; who else uses the lines does not care.
-void reboot(Node& node) {
-  State& state = node.state;
+void lose_memory(State& state) {
   const bool radio_taken = state.radio.taken;
   const bool serial_taken = state.serial.taken;
   state = start(Config(state.config));
   state.radio.taken = radio_taken;
   state.serial.taken = serial_taken;
+}
+
+void reboot(Node& node) {
+  State& state = node.state;
+  lose_memory(state);
   state.clock_offset_ms = 0 - ms_of(node);
   node.actions.followed(ReqId::kNone);
+}
+
+void power_off(Node& node) {
+  lose_memory(node.state);
+  node.state.off = true;
+  //= N10-OFF: An interface that is switched off sends nothing and receives nothing.
+  node.actions.followed(req::kN10Off);
+}
+
+// What others do on a line goes on without the node.
+void without_power(Node& node, const Event& event) {
+  if (const auto* busy = std::get_if<LinkBusy>(&event)) {
+    if (busy->link == Link::kRadio) node.state.radio.taken = busy->busy;
+    if (busy->link == Link::kSerial) node.state.serial.taken = busy->busy;
+  }
+  node.actions.ignored(req::kN10Off);
 }
 
 }  // namespace
@@ -62,13 +82,15 @@ State start(const Config& config) {
 void step(State& state, Ticks now, const Event& event, Actions& actions) {
   actions.clear();
   Node node{state, now, actions};
+  if (std::holds_alternative<Reboot>(event)) return reboot(node);
+  if (state.off) return without_power(node, event);
   if (const auto* heard = std::get_if<Heard>(&event)) return hear(node, heard->frame);
   if (const auto* called = std::get_if<Called>(&event)) return call(node, called->call);
   if (const auto* timer = std::get_if<TimerDue>(&event)) return timer_due(node, timer->timer);
   if (const auto* done = std::get_if<SendDone>(&event)) return send_done(node, *done);
   if (const auto* busy = std::get_if<LinkBusy>(&event)) return line_busy(node, *busy);
   if (const auto* busy = std::get_if<AppBusy>(&event)) return app_busy(node, busy->busy);
-  reboot(node);
+  power_off(node);
 }
 
 BoundedList<DueTimer, 2 + kAwaitedMax> timers(const State& state) {

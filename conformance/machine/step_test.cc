@@ -290,38 +290,27 @@ TEST(IslandId, NobodyElseMayTell) {
   }
 }
 
-TEST(Reboot, OnlyTheConfigurationStays) {
-  Device mote = member(5);
-  mote.call(Send{{kIsland, 1}, 10, true, {}});
-  mote.now = 4096;
-  mote.step(Reboot{});
-  EXPECT_TRUE(mote.silent());
-  EXPECT_EQ(mote.state.join, JoinMote{});
-  EXPECT_TRUE(mote.state.awaited.empty());
-  EXPECT_TRUE(timers(mote.state).empty());
-  EXPECT_EQ(mote.call(GetClock{}).notice<Clock>().ms, 0U);
-  mote.done();  // Of the frame that was on the air.
-  EXPECT_TRUE(mote.silent());
-  mote.call(JoinIsland{kDescriptor});
-  EXPECT_EQ(mote.state.join.seq_num, mote.state.config.first_seq);
-
-  Device sink(sink_config());
-  list_member(sink, 5);
-  sink.hear(set_island_id(kOther));
-  sink.step(Reboot{});
-  EXPECT_EQ(sink.state, start(sink_config()));
-}
-
-TEST(Reboot, DoesNotFreeALineThatSomebodyElseHas) {
-  Device sink(sink_config());
-  sink.step(LinkBusy{Link::kRadio, true}).step(LinkBusy{Link::kSerial, true});
-  sink.step(Reboot{});
-  sink.hear(join_request(5, 1, kDescriptor));
-  EXPECT_TRUE(sink.silent());
-  sink.call(Send{{kIsland, kNullDevid}, 10, false, {}});
-  EXPECT_TRUE(sink.actions.transmits().empty());
-  EXPECT_EQ(sink.step(LinkBusy{Link::kRadio, false}).only_frame().type, am::kJoinReply);
-  EXPECT_EQ(sink.step(LinkBusy{Link::kSerial, false}).only_frame().type, am::kNet);
+TEST(SynapticTick, EightOutputsAndEightInputsAtOnce) {
+  Config config = sink_config();
+  config.profile.channels_max = kChannelsRoom;
+  Device sink(config);
+  for (std::uint16_t devid = 2; devid < 2 + kChannelsRoom; ++devid) {
+    const Address peer{kLocalPid, devid};
+    sink.call(CreateChannel{Direction::kOut, peer, kConnectionsMax, Mode::kReliable});
+    sink.call(CreateChannel{Direction::kIn, peer, kConnectionsMax, Mode::kReliable});
+  }
+  sink.call(StartAllChannels{});
+  sink.now = sink.state.synaptic.due;
+  sink.step(TimerDue{{TimerKind::kSynaptic, 0}});
+  EXPECT_EQ(sink.actions.transmits().size(), 1U);
+  EXPECT_EQ(sink.actions.notices().size(), kChannelsRoom);
+  // One is being sent and four wait; the others find the buffer full.
+  EXPECT_TRUE(sink.state.radio.out.full());
+  std::size_t refused = 0;
+  for (const Action& action : sink.actions.all()) {
+    refused += action.requirement == req::kN1Full ? 1 : 0;
+  }
+  EXPECT_EQ(refused, kChannelsRoom - 5);
 }
 
 TEST(Timers, AreThoseThatAreSet) {

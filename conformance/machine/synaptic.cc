@@ -6,7 +6,7 @@
 namespace rubric::machine {
 namespace {
 
-using ChannelList = BoundedList<Channel, kChannelsMax>;
+using ChannelList = BoundedList<Channel, kChannelsRoom>;
 
 constexpr std::size_t kFloatBytes = 4;
 
@@ -77,9 +77,10 @@ struct Caller {
     ChannelList& list = out ? synaptic.out : synaptic.in;
     Channel* const existing = find(list, id);
     const std::size_t before = existing == nullptr ? 0 : existing->size;
-    const bool room = existing != nullptr || !list.full();
-    //= S1-LIMIT: Creation beyond four channels of a direction, or ten connections of a channel, is
-    //= refused and changes nothing.
+    const std::size_t room_for = std::min<std::size_t>(config.profile.channels_max, kChannelsRoom);
+    const bool room = existing != nullptr || list.size() < room_for;
+    //= S1-LIMIT: Creation beyond the stated number of channels of a direction (four unless the node
+    //= says otherwise), or ten connections of a channel, is refused and changes nothing.
     if (!room || call.size == 0 || before + call.size > kConnectionsMax) {
       return actions.notify(ChannelResult{id, false}, req::kS1Limit);
     }

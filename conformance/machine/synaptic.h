@@ -21,7 +21,7 @@ struct SynapticSend {
   std::array<std::uint32_t, kConnectionsMax> value_bits;
   ReqId requirement = ReqId::kNone;
 };
-using SynapticSends = BoundedList<SynapticSend, kChannelsMax>;
+using SynapticSends = BoundedList<SynapticSend, kChannelsRoom>;
 /// The clock ticks: S2, S3, S4, S6. Sets the next tick.
 void tick_synaptic(Synaptic& synaptic, Address own, Ticks now, SynapticSends& sends,
                    Actions& actions);

@@ -52,6 +52,21 @@ TEST_F(SynapticTest, S1_Limit_FourChannelsOfEachDirection) {
   EXPECT_TRUE(create_in(1, {11, 13}));  // Enlarging needs no place.
 }
 
+TEST_F(SynapticTest, S1_Limit_AsManyChannelsAsTheNodeSays) {
+  for (const int stated : {1, 2, 7, 8, 255}) {
+    synaptic_ = {};
+    config_.profile.channels_max = static_cast<std::uint8_t>(stated);
+    std::size_t created = 0;
+    for (std::uint16_t devid = 10; devid < 30; ++devid) {
+      created += create_out(1, Mode::kReliable, {11, devid}) ? 1 : 0;
+      EXPECT_EQ(create_in(1, {11, devid}), create_in(1, {11, devid})) << devid;
+    }
+    EXPECT_EQ(created, std::min(static_cast<std::size_t>(stated), kChannelsRoom)) << stated;
+    EXPECT_EQ(synaptic_.in.size(), created);
+    EXPECT_EQ(rule(), req::kS1Limit);
+  }
+}
+
 TEST_F(SynapticTest, S1_Write_RefusesWhatIsNotThere) {
   create_out(2);
   create_in(2);

@@ -54,6 +54,8 @@ machine::Config config_of(const trace::Scope& scope, const trace::NodeHeader& no
   config.id = node.id.value_or(0);
   config.island = node.island.value_or(0);
   config.profile = scope.profile == "deployed" ? machine::kDeployed : machine::kPaper;
+  static_assert(trace::kChannelsMax == machine::kChannelsRoom);
+  config.profile.channels_max = node.channels.value_or(config.profile.channels_max);
   config.first_seq = static_cast<std::uint16_t>(1000 + 257 * scope.seed);
   return config;
 }

@@ -33,7 +33,10 @@ void SubjectTarget::give(Ticks now, const Event& event) {
   if (const auto* done = std::get_if<machine::SendDone>(&event)) {
     std::erase_if(endings_, [&](const Ending& ending) { return ending.link == done->link; });
   }
-  if (std::holds_alternative<machine::Reboot>(event)) endings_.clear();
+  if (std::holds_alternative<machine::Reboot>(event) ||
+      std::holds_alternative<machine::PowerOff>(event)) {
+    endings_.clear();
+  }
   step(now, event);
 }
 

@@ -27,11 +27,11 @@ struct SerialFrame {
 class Recorder {
  public:
   virtual ~Recorder() = default;
-  /// Before node steps: Heard, Called, Reboot. (Timers and SendDone are the node's own affair.)
+  /// Before node steps: Heard, Called, Reboot, PowerOff. (Timers and SendDone are the node's own
+  /// affair.)
   virtual void given(Micros, NodeId, const machine::Event&) {}
   /// After it stepped.
   virtual void did(Micros, NodeId, const machine::Actions&) {}
-  virtual void power(Micros, NodeId, bool /*on*/) {}
   virtual void mishap(Micros, NodeId /*receiver*/, Mishap, const machine::Frame&) {}
   /// The end of an asked-for link acknowledgement: it came, or it did not.
   virtual void link_ack(Micros, NodeId, bool /*acked*/) {}

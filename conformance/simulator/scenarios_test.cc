@@ -166,12 +166,21 @@ TEST(Hospital, ReliableChannelsBringNewDataEachTick) {
   const Outcome once = run("hospital");
   const Statistics& s = once.statistics;
   EXPECT_EQ(s.joins, 7U);
-  // A sink takes four input channels (S1-LIMIT), the robot's first; three are refused.
-  EXPECT_EQ(once.states[0].synaptic.in.size(), 4U);
+  // The sink states eight channels (decision 129): the robot's and six more bring their data.
+  EXPECT_NE(once.rtr.find("%node sA sink id=1 island=11 channels=8 iut\n"), std::string::npos);
+  EXPECT_EQ(once.states[0].synaptic.in.size(), 7U);
   EXPECT_EQ(once.states[0].synaptic.in[0].size, 10);
-  EXPECT_GT(s.synaptic_new, 60U);
+  EXPECT_TRUE(lines(once, "sA", trace::Op::kEmits, "channel_result").size() == 7U);
+  std::set<std::string> fresh;
+  for (const trace::Line* line : lines(once, "sA", trace::Op::kEmits, "syn_data")) {
+    const trace::Message& message = line->message;
+    if (*message.find("status") != trace::Value::names("new")) continue;
+    fresh.insert(trace::print(message));
+  }
+  EXPECT_EQ(fresh.size(), 7U);
+  EXPECT_GT(s.synaptic_new, 105U);
   EXPECT_LT(s.synaptic_old, s.synaptic_new / 5);
-  EXPECT_GT(s.synaptic_unknown, 30U);
+  EXPECT_EQ(s.synaptic_unknown, 0U);
   // Ten anchors, twice a second, for ten seconds; the robot misses few.
   const auto beacons = lines(once, "m2", trace::Op::kGiven, "rssi_beacon");
   EXPECT_GT(beacons.size(), 190U);
@@ -182,6 +191,7 @@ TEST(Home, ThirteenJoinAndOneIsLeftOutAfterItsReboot) {
   const Outcome once = run("home");
   EXPECT_EQ(once.statistics.joins, 13U);
   EXPECT_EQ(once.states[0].sink.members.size(), 13U);
+  EXPECT_EQ(lines(once, "m6", trace::Op::kGiven, "off").size(), 1U);
   EXPECT_EQ(lines(once, "m6", trace::Op::kGiven, "reboot").size(), 1U);
   const auto ends = lines(once, "m6", trace::Op::kEmits, "joined");
   ASSERT_GE(ends.size(), 2U);
@@ -194,6 +204,10 @@ TEST(Home, ThirteenJoinAndOneIsLeftOutAfterItsReboot) {
   }
   EXPECT_TRUE(seconds.count(5) == 1 && seconds.count(8) == 0 && seconds.count(13) == 1);
   // The mote that fails for good is not heard of again.
+  const auto off = lines(once, "m9", trace::Op::kGiven, "off");
+  ASSERT_EQ(off.size(), 1U);
+  EXPECT_EQ(off[0]->time.from, 9000);
+  EXPECT_TRUE(lines(once, "m9", trace::Op::kGiven, "reboot").empty());
   EXPECT_LE(lines(once, "m9", trace::Op::kEmits, "net_msg").back()->time.from, 9000);
 }
 

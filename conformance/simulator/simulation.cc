@@ -116,7 +116,6 @@ void Simulation::boot(NodeId id) {
   Node& node = *nodes_[id];
   node.on = true;
   if (node.started) {
-    power(queue_.now(), id, true);
     step(id, machine::Reboot{});
   } else {
     node.state = machine::start(network_.nodes[id].config);
@@ -129,11 +128,11 @@ void Simulation::boot(NodeId id) {
 
 void Simulation::turn_off(NodeId id, Micros on_after_us) {
   Node& node = *nodes_[id];
+  step(id, machine::PowerOff{});
   node.on = false;
   ++node.life;
   if (node.radio != nullptr) node.radio->reset(*node.station);
   if (node.serial != nullptr) node.serial->reset(id);
-  power(queue_.now(), id, false);
   if (on_after_us >= 0) queue_.after(on_after_us, [this, id] { boot(id); });
 }
 

@@ -68,7 +68,6 @@ class Simulation final : RadioUser, SerialUser, Recorder {
   // Recorder: counts, and tells all recorders.
   void given(Micros time_us, NodeId node, const machine::Event& event) override;
   void did(Micros time_us, NodeId node, const machine::Actions& actions) override;
-  void power(Micros time_us, NodeId node, bool on) override;
   void mishap(Micros time_us, NodeId node, Mishap what, const machine::Frame& frame) override;
   void link_ack(Micros time_us, NodeId node, bool acked) override;
   void on_air(Micros time_us, std::size_t radio, Bytes frame) override;

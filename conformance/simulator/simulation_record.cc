@@ -37,10 +37,6 @@ void Simulation::did(Micros time_us, NodeId node, const machine::Actions& action
   for (Recorder* recorder : recorders_) recorder->did(time_us, node, actions);
 }
 
-void Simulation::power(Micros time_us, NodeId node, bool on) {
-  for (Recorder* recorder : recorders_) recorder->power(time_us, node, on);
-}
-
 void Simulation::mishap(Micros time_us, NodeId node, Mishap what, const machine::Frame& frame) {
   switch (what) {
     case Mishap::kLost: ++statistics_.lost; break;

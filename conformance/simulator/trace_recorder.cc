@@ -65,6 +65,9 @@ trace::Header header_of(const NodePlan& plan) {
   node.role = role_of(plan.config.role);
   if (plan.config.role != machine::Role::kBaseStation) node.id = plan.config.id;
   if (plan.config.role != machine::Role::kMote) node.island = plan.config.island;
+  if (plan.config.profile.channels_max != machine::Profile{}.channels_max) {
+    node.channels = plan.config.profile.channels_max;
+  }
   node.iut = true;
   trace::Header header;
   header.what = node;
@@ -131,6 +134,8 @@ void TraceRecorder::given(Micros time_us, NodeId node, const machine::Event& eve
     add(trace::app_line(ticks, names_[node].node, Op::kGiven, kApp, std::move(call)));
   } else if (std::holds_alternative<machine::Reboot>(event)) {
     add(trace::app_line(ticks, names_[node].node, Op::kGiven, kPower, Message::named("reboot")));
+  } else if (std::holds_alternative<machine::PowerOff>(event)) {
+    add(trace::app_line(ticks, names_[node].node, Op::kGiven, kPower, Message::named("off")));
   }
 }
 
@@ -152,13 +157,6 @@ void TraceRecorder::did(Micros time_us, NodeId node, const machine::Actions& act
     if (!rule.empty()) line.requirements.emplace_back(rule);
     add(std::move(line));
   }
-}
-
-// A trace knows reboots; that a node is off until then, or for good, it says in a comment.
-void TraceRecorder::power(Micros, NodeId node, bool on) {
-  if (on) return;
-  file_.cases.front().items.emplace_back(
-      trace::Comment{';', true, " " + names_[node].node + " has no power from here on"});
 }
 
 void TraceRecorder::mishap(Micros time_us, NodeId node, Mishap what, const machine::Frame& frame) {

@@ -17,7 +17,6 @@ class TraceRecorder final : public Recorder {
 
   void given(Micros time_us, NodeId node, const machine::Event& event) override;
   void did(Micros time_us, NodeId node, const machine::Actions& actions) override;
-  void power(Micros time_us, NodeId node, bool on) override;
   void mishap(Micros time_us, NodeId node, Mishap what, const machine::Frame& frame) override;
   void link_ack(Micros time_us, NodeId node, bool acked) override;
 

@@ -154,6 +154,7 @@ constexpr AppMessage kAppMessages[] = {
     app::message("idle", AppWhat::kState),
     app::message("linkack", AppWhat::kRadio, app::kLinkAck),
     app::message("reboot", AppWhat::kPower),
+    app::message("off", AppWhat::kPower),
     app::message(kFrameName, AppWhat::kFrame, app::kFrame),
 };
 

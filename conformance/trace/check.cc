@@ -102,6 +102,7 @@ class FileCheck {
       report_(place, "a mote has no island of its own: " + quoted(node.name) + " joins one");
     }
     if (node.id && base) report_(place, "a base station has no TinyOS id");
+    if (node.channels && base) report_(place, "a base station has no synaptic channels");
   }
 
   void link_nodes(const std::vector<Item>& items, const Scope& scope) {

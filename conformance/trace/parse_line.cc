@@ -277,6 +277,15 @@ std::uint16_t small_number(Scanner& in, std::string_view text, const char* what)
   return static_cast<std::uint16_t>(number);
 }
 
+std::uint8_t channel_count(Scanner& in, std::string_view text) {
+  std::int64_t number = 0;
+  if (!read_integer(text, number) || number < 1 || number > kChannelsMax) {
+    in.fail_at(text, "expected a number of channels from 1 to " + std::to_string(kChannelsMax) +
+                         ", given " + quoted(text));
+  }
+  return static_cast<std::uint8_t>(number);
+}
+
 NodeHeader parse_node(Scanner& in) {
   NodeHeader node;
   std::string_view word = header_word(in);
@@ -297,8 +306,10 @@ NodeHeader parse_node(Scanner& in) {
       node.id = small_number(in, word.substr(3), "a TinyOS id");
     } else if (word.starts_with("island=") && !node.island) {
       node.island = small_number(in, word.substr(7), "an island");
+    } else if (word.starts_with("channels=") && !node.channels) {
+      node.channels = channel_count(in, word.substr(9));
     } else {
-      in.fail_at(word, "expected id=, island= or iut, each once, given " + quoted(word));
+      in.fail_at(word, "expected id=, island=, channels= or iut, each once, given " + quoted(word));
     }
   }
   return node;

@@ -40,6 +40,7 @@ struct HeaderText {
     out += "%node " + h.name + ' ' + std::string(role_text(h.role));
     if (h.id) out += " id=" + std::to_string(*h.id);
     if (h.island) out += " island=" + std::to_string(*h.island);
+    if (h.channels) out += " channels=" + std::to_string(*h.channels);
     if (h.iut) out += " iut";
   }
   void operator()(const LinkHeader& h) const {

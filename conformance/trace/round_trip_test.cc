@@ -157,6 +157,7 @@ Header any_header() {
                       {}, {}, coin()};
       if (coin()) node.id = *rc::gen::arbitrary<std::uint16_t>();
       if (coin()) node.island = *rc::gen::arbitrary<std::uint16_t>();
+      if (coin()) node.channels = static_cast<std::uint8_t>(*inRange(1, kChannelsMax + 1));
       header.what = node;
       break;
     }

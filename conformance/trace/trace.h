@@ -201,12 +201,17 @@ struct TickHeader {
   Tick tick = Tick::kBinaryMs;
   friend bool operator==(const TickHeader&, const TickHeader&) = default;
 };
+/// Synaptic channels of a direction that a node may state (decision 129).
+constexpr std::uint8_t kChannelsMax = 8;
+
 struct NodeHeader {
   std::string name;
   Role role = Role::kMote;
   std::optional<std::uint16_t> id;      ///< TinyOS id; motes and sinks have one.
   std::optional<std::uint16_t> island;  ///< Of sinks and base stations when they start.
   bool iut = false;                     ///< Under test.
+  /// Synaptic channels of each direction, from 1 to kChannelsMax; else the profile says (S1-LIMIT).
+  std::optional<std::uint8_t> channels = {};
   friend bool operator==(const NodeHeader&, const NodeHeader&) = default;
 };
 struct LinkHeader {

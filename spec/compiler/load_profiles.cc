@@ -25,6 +25,7 @@ constexpr std::array kFields{
     ProfileField{"members_max", 1, 20, false},
     ProfileField{"sink_id", 1, kU8, false},
     ProfileField{"ack_timeout_ticks", 0, kU16, false},
+    ProfileField{"channels_max", 1, 8, false},
     ProfileField{"synaptic_period_ticks", 1, kU16, false},
     ProfileField{"synaptic_phase_ticks", 0, kU8, false},
     ProfileField{"response_ticks", 1, kU16, false},

@@ -22,13 +22,17 @@ using rubric::machine::kPaper;
 
 TEST(Profiles, HaveEveryMemberOfTheStruct) {
   // As many names as members, else this does not compile: then profile_fields() lacks one, too.
-  const auto [a, b, c, d, e, f, g, h, i, j, k, l, m] = kPaper;
-  EXPECT_EQ(profile_fields().size(), 13U);
+  const auto [a, b, c, d, e, f, g, h, i, j, k, l, m, n] = kPaper;
+  EXPECT_EQ(profile_fields().size(), 14U);
   EXPECT_EQ(a, 1024);
-  EXPECT_EQ(m, 30);
+  EXPECT_EQ(n, 30);
   for (const ProfileField& field : profile_fields()) {
-    if (field.name != "members_max") continue;
-    EXPECT_EQ(field.max, std::int64_t{rubric::machine::kMembersMax});
+    if (field.name == "members_max") {
+      EXPECT_EQ(field.max, std::int64_t{rubric::machine::kMembersMax});
+    }
+    if (field.name == "channels_max") {
+      EXPECT_EQ(field.max, std::int64_t{rubric::machine::kChannelsRoom});
+    }
   }
 }
 
