@@ -153,7 +153,8 @@ oracle::ReadAs read_as(const std::string& format) {
   return {};
 }
 
-[[noreturn]] void unreadable(const std::string& what) {
+[[noreturn]] void unreadable(std::string what) {
+  while (what.ends_with('\n')) what.pop_back();  // Of a trace it may be a list of lines.
   fmt::print(stderr, "rubric check: {}\n", what);
   cli::exit_with(cli::kVerdictInput);
 }

@@ -90,22 +90,40 @@ class Text(Folder):
         for file in capture_files():
             for more in [[], ["--profile", "deployed"], ["--sniffer", "complete"],
                          ["--start", "cold", "--sniffer", "complete"]]:
-                out = check(*more, file)[1]
-                parts = re.split(r"^(?=FAIL )", out, flags=re.M)[1:]
-                for part in parts:
-                    again = re.search(r"^  Again:    rubric (.*)$", part, re.M)
-                    if not again:
-                        continue  # A line of its own below the first of its rule.
-                    heading = part.replace("\n ", "")
-                    rule, node, frame = re.match(
-                        r"FAIL (\S+), (?:(.*), )?frame (\d+)\b", heading).groups()
-                    code, text, err = rubric(*shlex.split(again[1]), "--format", "json")
-                    self.assertEqual((code, err), (1, ""), again[1])
-                    found = {(f["requirement"], f["node"], f["frame"])
-                             for f in failures(json.loads(text))}
-                    self.assertIn((rule, node, int(frame)), found, again[1])
-                    ran += 1
+                ran += self.run_again(check(*more, file)[1])
         self.assertGreater(ran, 5)
+
+    def test_again_of_a_log(self):
+        log = self.folder / "run.rtr"
+        rubric("simulate", "--scenario", "timeline", "--out-rtr", log)
+        complete = ["--sniffer", "complete", "--start", "cold"]
+        rules = {f["requirement"] for f in failures(as_json(*complete, log))}
+        self.assertNotIn("J4-JOINED", rules)
+        # The second mote's reply was never sent, yet it acknowledges it.
+        lines = log.read_text().splitlines(keepends=True)
+        silent = self.write("silent reply.rtr", "".join(
+            line for line in lines if "join_reply(" not in line or "mote_addr=4" not in line))
+        code, out, _ = check(*complete, silent)
+        self.assertEqual(code, 1)
+        self.assertIn("FAIL J4-JOINED, mote 4, ", out)
+        self.assertGreater(self.run_again(out), 0)
+
+    def run_again(self, out):
+        """Runs the command below each failure in full; how many there were."""
+        ran = 0
+        for part in re.split(r"^(?=FAIL )", out, flags=re.M)[1:]:
+            again = re.search(r"^  Again:    rubric (.*)$", part, re.M)
+            if not again:
+                continue  # A line of its own below the first of its rule.
+            heading = part.replace("\n ", "")
+            rule, node, frame = re.match(
+                r"FAIL (\S+), (?:(.*?), )?frame (\d+)\b", heading).groups()
+            code, text, err = rubric(*shlex.split(again[1]), "--format", "json")
+            self.assertEqual((code, err), (1, ""), again[1])
+            found = {(f["requirement"], f["node"], f["frame"]) for f in failures(json.loads(text))}
+            self.assertIn((rule, node, int(frame)), found, again[1])
+            ran += 1
+        return ran
 
     def test_width(self):
         for width in (60, 100, 140):

@@ -103,8 +103,7 @@ Scene::Scene(const oracle::Run& run, const oracle::Options& options)
     : run_(run), who_(oracle::identify(run, options)) {
   std::uint16_t first_island = 0;
   for (const oracle::Device& device : who_.devices) {
-    const bool logged = names_.size() < run.nodes.size();
-    names_.push_back(logged ? device.name : short_name(device));
+    names_.push_back(short_name(device));
     const bool motes = device.role == Role::kMote || device.island == 0;
     if (!motes && (first_island == 0 || device.island < first_island)) first_island = device.island;
   }

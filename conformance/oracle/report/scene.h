@@ -16,7 +16,7 @@ class Scene {
 
   const oracle::Run& run() const { return run_; }
   std::size_t nodes() const { return who_.devices.size(); }
-  /// "mote 2", "sink 11" (its island), "base 11", "unknown 7", or the name that a log gives.
+  /// "mote 2", "sink 11" (its island), "sink #1" (its address), "base 11", "unknown 7".
   const std::string& name(std::uint16_t node) const { return names_[node]; }
   /// The node that a finding names; kNobody for others.
   std::uint16_t node_named(const std::string& name) const;
