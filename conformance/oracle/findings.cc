@@ -73,4 +73,22 @@ std::vector<std::pair<ReqId, std::uint64_t>> Findings::exercised() const {
   return out;
 }
 
+Verdict verdict_of(const std::vector<Finding>& findings) {
+  Severity worst = Severity::kNote;
+  for (const Finding& finding : findings) worst = std::max(worst, finding.severity);
+  switch (worst) {
+    case Severity::kNote:
+      return Verdict::kPass;
+    case Severity::kWeak:
+      return Verdict::kWeak;
+    case Severity::kStray:
+      return Verdict::kStray;
+    case Severity::kInconclusive:
+      return Verdict::kInconclusive;
+    case Severity::kFail:
+      break;
+  }
+  return Verdict::kFail;
+}
+
 }  // namespace rubric::oracle

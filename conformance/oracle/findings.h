@@ -45,4 +45,7 @@ class Findings {
   std::array<std::uint64_t, kRequirementsMax> kept_{};
 };
 
+/// The gravest of them; a note leaves a pass.
+Verdict verdict_of(const std::vector<Finding>& findings);
+
 }  // namespace rubric::oracle

@@ -130,8 +130,9 @@ void Forwarding::refuse_down(Line& line, const Observation& seen, const Net& net
     return;
   }
   said.text = "The sink radiates " + name_of(net) + ", reliable " + number(net.reliable) +
-              ", nbytes " + number(net.nbytes) + ", with another content than came over serial: to " +
-              text_of(best->net.dest) + ", reliable " + number(best->net.reliable) + ", nbytes " +
+              ", nbytes " + number(net.nbytes) +
+              ", with another content than came over serial: to " + text_of(best->net.dest) +
+              ", reliable " + number(best->net.reliable) + ", nbytes " +
               number(best->net.nbytes) + ".";
   said.expected = "Addresses, reliable, number, nbytes and payload as they came.";
   context_.report(req::kN7Content, Severity::kFail, seen.place, line.sink, std::move(said));

@@ -11,6 +11,7 @@
 #include "conformance/oracle/mote_join.h"
 #include "conformance/oracle/sent.h"
 #include "conformance/oracle/sink_join.h"
+#include "conformance/oracle/synaptic_watch.h"
 
 namespace rubric::oracle {
 namespace {
@@ -29,7 +30,8 @@ class Judge {
         sinks_(context_),
         forwarding_(context_),
         originals_(context_, who_.devices.size()),
-        acks_(context_, who_.devices.size()) {}
+        acks_(context_, who_.devices.size()),
+        synaptic_(context_, who_.devices.size()) {}
 
   Report judge() {
     Report report;
@@ -73,24 +75,6 @@ class Judge {
     for (const Tap& tap : run_.taps) {
       context_.hears_radio = context_.hears_radio || tap.link == machine::Link::kRadio;
     }
-  }
-
-  static Verdict verdict_of(const std::vector<Finding>& findings) {
-    Severity worst = Severity::kNote;
-    for (const Finding& finding : findings) worst = std::max(worst, finding.severity);
-    switch (worst) {
-      case Severity::kNote:
-        return Verdict::kPass;
-      case Severity::kWeak:
-        return Verdict::kWeak;
-      case Severity::kStray:
-        return Verdict::kStray;
-      case Severity::kInconclusive:
-        return Verdict::kInconclusive;
-      case Severity::kFail:
-        break;
-    }
-    return Verdict::kFail;
   }
 
   bool is(std::uint16_t device, Role role) const {
@@ -141,6 +125,7 @@ class Judge {
     if (is(device, Role::kSink)) forwarding_.begin_life(device);
     originals_.begin_life(device);
     acks_.begin_life(device);
+    synaptic_.begin_life(device);
   }
 
   // The link's own repetition, or a log's line that says who received a frame.
@@ -257,6 +242,7 @@ class Judge {
     acks_.showed_life(node, seen.place.time_us);
     originals_.sent(node, seen, net, link, own);
     if (net.is_ack()) acks_.sent(node, seen, net);
+    if (net.sound && net.trans_id == kTransSyn) synaptic_.sent(node, seen, net);
   }
 
   void mote_hears(std::uint16_t mote, const Observation& seen, const Mark& mark, const Net& net) {
@@ -360,7 +346,12 @@ class Judge {
   void called(const Observation& seen, std::uint16_t device) {
     if (const auto* join = std::get_if<machine::JoinIsland>(seen.call)) {
       if (is(device, Role::kMote)) motes_.called(device, seen, *join);
+      return;
     }
+    const Device& d = who_.devices[device];
+    const machine::Address sinks_own{sinks_.island(device), d.am};
+    const machine::Address motes_own = motes_.address(device).value_or(machine::Address{0, d.am});
+    synaptic_.called(device, seen, d.role == Role::kSink ? sinks_own : motes_own);
   }
 
   void told(const Observation& seen, std::uint16_t device) {
@@ -385,6 +376,7 @@ class Judge {
   Forwarding forwarding_;
   Originals originals_;
   Acks acks_;
+  SynapticWatch synaptic_;
   std::uint64_t frames_ = 0;
 };
 
