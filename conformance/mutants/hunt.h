@@ -1,6 +1,7 @@
 // Holds mutants against golden traces: which trace finds it, and by which rule.
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -43,5 +44,14 @@ runner::CaseResult run(const CaseRef& ref, const runner::SubjectFactory& make);
 Found hunt(const Golden& golden, const Mutant& mutant);
 /// All of them, on so many threads.
 std::vector<Found> hunt_all(const Golden& golden, const Mutants& mutants, unsigned threads);
+
+/// A mutant that no golden trace may be asked to find, and why. In names `*` stands for anything.
+struct Equivalent {
+  const char* name;
+  const char* reason;
+};
+std::span<const Equivalent> equivalents();
+/// The entry for a mutant of this name, or null.
+const Equivalent* find_equivalent(std::string_view name);
 
 }  // namespace rubric::mutants

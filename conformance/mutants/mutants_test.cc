@@ -1,32 +1,135 @@
 // The golden traces find every broken machine.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstring>
 #include <set>
 #include <thread>
 
-#include "conformance/mutants/hunt.h"
+#include "codec/generated/requirements_table.h"
+#include "conformance/mutants/generated.h"
 
 namespace rubric::mutants {
 namespace {
+
+constexpr std::size_t kNamedLeast = 60;
+
+struct Hunted {
+  Mutants mutants;
+  std::vector<Found> found;
+};
 
 const Golden& golden() {
   static const Golden cases("conformance/cases");
   return cases;
 }
 
-unsigned threads() { return std::max(1U, std::min(4U, std::thread::hardware_concurrency())); }
+Hunted hunted(Mutants mutants) {
+  const unsigned threads = std::clamp(std::thread::hardware_concurrency(), 1U, 4U);
+  std::vector<Found> found = hunt_all(golden(), mutants, threads);
+  return {std::move(mutants), std::move(found)};
+}
+const Hunted& named() {
+  static const Hunted all = hunted(named_mutants());
+  return all;
+}
+const Hunted& generated() {
+  static const Hunted all = hunted(generated_mutants(golden()));
+  return all;
+}
+
+// A survivor must be listed with its reason, and what is listed must survive.
+void expect_found(const Hunted& all) {
+  for (std::size_t i = 0; i < all.mutants.size(); ++i) {
+    const Mutant& mutant = all.mutants[i];
+    const Equivalent* const listed = find_equivalent(mutant.name);
+    if (all.found[i].killed) {
+      EXPECT_EQ(listed, nullptr) << mutant.name << " is listed as equivalent (" << listed->name
+                                 << "), but found by " << all.found[i].by;
+    } else {
+      EXPECT_NE(listed, nullptr) << "no golden trace finds " << mutant.name << ": "
+                                 << mutant.breaks;
+    }
+  }
+}
+
+TEST(Mutants, MachineItselfPasses) {
+  for (const CaseRef& ref : golden().cases()) {
+    const auto machine = run(ref, [] { return std::make_unique<runner::Machine>(); });
+    EXPECT_EQ(machine.verdict, runner::CaseVerdict::kPass)
+        << runner::explain(machine, ref.file->file_name);
+    // Nor does a wrapper that changes nothing.
+    const auto idle = run(ref, wrapped(always([](Moment& moment) {
+                            moment.honest();
+                            moment.rewrite([&](const Action& action) { moment.keep(action); });
+                          })));
+    EXPECT_EQ(idle.verdict, runner::CaseVerdict::kPass)
+        << runner::explain(idle, ref.file->file_name);
+  }
+}
+
+TEST(Mutants, NamedOnesAreFound) { expect_found(named()); }
+TEST(Mutants, GeneratedOnesAreFound) { expect_found(generated()); }
 
 TEST(Mutants, NamedOnesAreFoundByTheirRule) {
-  const Mutants mutants = named_mutants();
-  const std::vector<Found> found = hunt_all(golden(), mutants, threads());
-  std::size_t killed = 0;
-  for (std::size_t i = 0; i < mutants.size(); ++i) {
-    killed += found[i].killed;
-    EXPECT_TRUE(found[i].killed) << mutants[i].name << ": " << mutants[i].breaks;
-    EXPECT_TRUE(!found[i].killed || found[i].named)
-        << mutants[i].name << " is found, but not by a rule of its own:\n" << found[i].lines;
+  for (std::size_t i = 0; i < named().mutants.size(); ++i) {
+    const Found& found = named().found[i];
+    EXPECT_TRUE(!found.killed || found.named)
+        << named().mutants[i].name << " is found, but by no rule of its own:\n" << found.lines;
   }
-  std::printf("%zu of %zu\n", killed, mutants.size());
+}
+
+TEST(Mutants, NamesAreUnique) {
+  std::set<std::string> names;
+  for (const Mutant& mutant : named().mutants) {
+    EXPECT_TRUE(names.insert(mutant.name).second) << mutant.name;
+    EXPECT_FALSE(mutant.requirements.empty()) << mutant.name;
+    EXPECT_TRUE(mutant.breaks.ends_with('.')) << mutant.name;
+  }
+  EXPECT_GE(names.size(), kNamedLeast);
+}
+
+// Every MUST of the behaviour has its mutant.
+TEST(Mutants, EveryRuleIsBroken) {
+  std::set<ReqId> broken;
+  for (const Mutant& mutant : named().mutants) {
+    broken.insert(mutant.requirements.begin(), mutant.requirements.end());
+  }
+  for (std::size_t i = 1; i < std::size(kRequirements); ++i) {
+    const bool behaviour = std::strncmp(kRequirements[i].id, "WIRE-", 5) != 0;
+    if (!behaviour) continue;
+    EXPECT_TRUE(broken.contains(static_cast<ReqId>(i))) << kRequirements[i].id;
+  }
+}
+
+TEST(Mutants, EveryEquivalentIsAMutant) {
+  std::set<std::string_view> used;
+  for (const Hunted* all : {&named(), &generated()}) {
+    for (const Mutant& mutant : all->mutants) {
+      if (const auto* listed = find_equivalent(mutant.name)) used.insert(listed->name);
+    }
+  }
+  for (const Equivalent& one : equivalents()) EXPECT_TRUE(used.contains(one.name)) << one.name;
+}
+
+TEST(Mutants, Score) {
+  std::size_t killed = 0;
+  std::size_t equivalent = 0;
+  for (const Hunted* all : {&named(), &generated()}) {
+    for (std::size_t i = 0; i < all->mutants.size(); ++i) {
+      killed += all->found[i].killed;
+      equivalent += !all->found[i].killed && find_equivalent(all->mutants[i].name) != nullptr;
+    }
+  }
+  const std::size_t count = named().mutants.size() + generated().mutants.size();
+  const double score = 100.0 * static_cast<double>(killed) /
+                       static_cast<double>(count - equivalent);
+  std::printf("mutants: %zu named, %zu generated; killed %zu; equivalent %zu; score %.1f %%\n",
+              named().mutants.size(), generated().mutants.size(), killed, equivalent, score);
+  for (const std::string& rule : never_accepted(golden())) {
+    std::printf("not turned into acceptance: %s\n", rule.c_str());
+  }
+  EXPECT_EQ(killed + equivalent, count);
 }
 
 }  // namespace

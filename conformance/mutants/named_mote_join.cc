@@ -141,6 +141,13 @@ void add_acceptance(Mutants& out) {
                    }
                    moment.honest();
                  })});
+  out.push_back({"reply_for_another_accepted", "mote_addr of a reply is not looked at.",
+                 {req::kJ4Address}, on_heard([](Moment& moment, Forged& forged) {
+                   if (is_reply_for(moment, forged.frame)) {
+                     put(forged, join_reply::kMote, moment.state.config.id);
+                   }
+                   return true;
+                 })});
   out.push_back({"clock_not_set", "A mote that joins keeps its own clock.", {req::kJ4Clock},
                  always([](Moment& moment) {
                    const std::uint32_t offset = moment.state.clock_offset_ms;

@@ -134,7 +134,7 @@ void add_buffers(Mutants& out) {
                    moment.honest();
                  })});
   out.push_back({"busy_radio_sends", "A node sends although the radio is busy.",
-                 {req::kN2Queue, req::kN2Order}, always([](Moment& moment) {
+                 {req::kN2Busy, req::kN2Queue, req::kN2Order}, always([](Moment& moment) {
                    const bool taken = moment.state.radio.taken;
                    if (moment.called<Send>() != nullptr) moment.state.radio.taken = false;
                    moment.honest();
@@ -183,7 +183,35 @@ void add_buffers(Mutants& out) {
                  })});
 }
 
+// To a neighbour of that name.
+void radiates_to_itself(Moment& moment) {
+  const Send* const send = moment.called<Send>();
+  if (send == nullptr || send->dest != own(moment) || moment.is(Role::kBaseStation)) {
+    return moment.honest();
+  }
+  Send other = *send;
+  other.dest.devid = 0x0777;
+  moment.honest(machine::Called{other});
+  moment.rewrite([&](const Action& action) {
+    if (action.what != Action::What::kTransmit) return moment.keep(action);
+    Transmit frame = moment.sent(action);
+    frame.dest = own(moment).devid;
+    put(frame, net::kDestDevid, own(moment).devid);
+    moment.keep(action, frame);
+  });
+}
+
 void add_addressing(Mutants& out) {
+  out.push_back({"sends_to_itself", "A node radiates what it sends to itself.", {req::kN4Self},
+                 always(radiates_to_itself)});
+  out.push_back({"long_data_cut", "send cuts more than 100 bytes and sends the rest.",
+                 {req::kN1Size}, always([](Moment& moment) {
+                   const Send* const send = moment.called<Send>();
+                   if (send == nullptr || send->data.size() <= 100) return moment.honest();
+                   Send cut = *send;
+                   cut.data = cut.data.first(100);
+                   moment.honest(machine::Called{cut});
+                 })});
   out.push_back({"local_island_left", "dest.pid 0xFFFE goes on the air as it is.", {req::kN3Local},
                  on_sent([](Moment& moment, const Action&, Transmit& frame) {
                    const Send* const send = moment.called<Send>();

@@ -133,7 +133,7 @@ void add_list(Mutants& out) {
                  "An ack_join that finds the list full pushes the oldest member out.",
                  {req::kJ3Overwrite, req::kJ6Add}, always(late_ack_pushes_out)});
   out.push_back({"listed_at_request", "A sink lists a mote that has asked, before its ack_join.",
-                 {req::kJ3Reply, req::kJ6Add}, always(lists_at_request)});
+                 {req::kJ3Reply, req::kJ6Add, req::kJ6Only}, always(lists_at_request)});
   out.push_back({"pending_join_overwritten", "A sink remembers one join, the newest.",
                  {req::kJ9Interleave, req::kJ6Add}, always([](Moment& moment) {
                    moment.honest();
@@ -178,7 +178,16 @@ void add_acks(Mutants& out) {
                  {req::kJ6Island}, on_heard([](Moment& moment, Forged& forged) {
                    if (forged.frame.type == am::kAckJoin) {
                      put(forged, ack_join::kDestPid, moment.state.island);
+                     put(forged, ack_join::kSrcPid, moment.state.island);
                    }
+                   return true;
+                 })});
+  out.push_back({"ack_join_of_any_sender", "A sink does not compare an ack_join with its AM source.",
+                 {req::kJ6Sender}, on_heard([](Moment& moment, Forged& forged) {
+                   if (forged.frame.type != am::kAckJoin || forged.size() < 14) return true;
+                   put(forged, ack_join::kDestDevid, own(moment).devid);
+                   put(forged, ack_join::kSrcPid, get(forged, ack_join::kDestPid));
+                   forged.frame.src = get(forged, ack_join::kSrcDevid);
                    return true;
                  })});
   out.push_back({"mote_joined_twice", "A repeated ack_join is one more join.",
@@ -220,7 +229,7 @@ void add_acks(Mutants& out) {
                    return Fate::kKeep;
                  })});
   out.push_back({"reported_at_request", "A sink reports a mote when it asks.",
-                 {req::kJ6Report, req::kJ6Add}, always([](Moment& moment) {
+                 {req::kJ6Only, req::kJ6Report, req::kJ6Add}, always([](Moment& moment) {
                    moment.honest();
                    const Frame* const request = moment.heard(am::kJoin);
                    if (request == nullptr || !moment.is(Role::kSink)) return;

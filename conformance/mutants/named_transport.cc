@@ -197,6 +197,12 @@ void add_needless_acks(Mutants& out) {
                    }
                    return true;
                  })});
+  out.push_back({"every_flag_but_0_acked", "Any value of reliable but 0 is taken for true.",
+                 {req::kT2Two}, on_heard([](Moment& moment, Forged& forged) {
+                   const bool ours = is_for_us(moment, forged.frame);
+                   if (ours && forged.bytes[net::kReliable] > 1) forged.bytes[net::kReliable] = 1;
+                   return true;
+                 })});
   out.push_back({"synaptic_data_acked", "Synaptic data that say reliable are acked.",
                  {req::kT2Loop, req::kT2Ack}, always([](Moment& moment) {
                    moment.honest();

@@ -1,0 +1,84 @@
+// Mutants that the golden traces cannot tell from a correct node, or may not: what they change is
+// free, or cannot be seen.
+#include <array>
+
+#include "conformance/mutants/hunt.h"
+
+namespace rubric::mutants {
+namespace {
+
+constexpr const char* kSerialAm =
+    "TinyOS's serial stack looks at no AM address, and no rule asks for one there.";
+constexpr const char* kSerialNbytes =
+    "On the serial line nbytes may count stale bytes behind the payload (N6-CONTENT).";
+constexpr const char* kFreeNumber =
+    "What awaits no ack may have any number (decision 117).";
+constexpr const char* kAckCode =
+    "Any code in an ack is right: it says how the message was handled (decision 108).";
+constexpr const char* kResultTwice =
+    "The result of a call is what a function returns: an attachment that tells it twice says nothing "
+    "of the node.";
+constexpr const char* kFailAddress = "No rule says which address joined(FAIL) tells.";
+constexpr const char* kRefusedId = "No rule says which id a refused creation tells.";
+constexpr const char* kWhileOff =
+    "Whether send refuses or queues while the interface is off is free, and a trace has no "
+    "alternatives: it cannot hold what send then told against what it did.";
+constexpr const char* kOrigin =
+    "Where a sink's clock begins is free, and a second is allowed for (decision 119).";
+
+constexpr std::array kEquivalents{
+    Equivalent{"* by serial: am.dest", kSerialAm},
+    Equivalent{"* by serial: am.src", kSerialAm},
+    Equivalent{"plus one: J6-REPORT * by serial: nbytes", kSerialNbytes},
+    Equivalent{"plus one: N6-* by serial: nbytes", kSerialNbytes},
+    Equivalent{"plus one: T2-ACK * by serial: nbytes", kSerialNbytes},
+    Equivalent{"* J6-REPORT net_msg serial_joined by serial: seq_num", kFreeNumber},
+    Equivalent{"* synaptic_data by radio: seq_num", kFreeNumber},
+    Equivalent{"* synaptic_data by serial: seq_num", kFreeNumber},
+    Equivalent{"* T2-ACK net_msg rubicon_ack by *: seq_num", kFreeNumber},
+    Equivalent{"* T2-ACK net_msg rubicon_ack by *: payload.body.ack", kAckCode},
+    Equivalent{"double: send N9-SET config", "The same island id a second time changes nothing."},
+    Equivalent{"double: tell J11-SEND send_result", kResultTwice},
+    Equivalent{"double: tell N10-OFF send_result", kResultTwice},
+    Equivalent{"double: tell N9-SET op_result", kResultTwice},
+    Equivalent{"double: tell S2-SIGNAL op_result", kResultTwice},
+    Equivalent{"double: tell J4-CLOCK clock", kResultTwice},
+    Equivalent{"plus one: tell J4-CLOCK clock: ms", kOrigin},
+    Equivalent{"* J3-REPLY join_reply by radio: cur_time", kOrigin},
+    Equivalent{"* tell J8-FAIL joined: address.*", kFailAddress},
+    Equivalent{"* tell J8-JOINED joined: address.*", kFailAddress},
+    Equivalent{"* tell S1-LIMIT channel_result: channel.*", kRefusedId},
+    Equivalent{"* tell N10-OFF send_result: seq_num", kWhileOff},
+    Equivalent{"accept: WIRE-NET-RELIABLE mote reliable 1",
+               "To take another value of reliable for true is an honest reading (decision 112)."},
+    Equivalent{"accept: S6-STOPPED mote channels started",
+               "It keeps what comes for a stopped channel, but signals nothing: that is free."},
+    Equivalent{"accept: J3-OVERWRITE sink place made in the list",
+               "The list is as full as before, so the member that was pushed out gets no answer "
+               "either way; and a list may be longer than 20 (decision 107)."},
+    Equivalent{"late_ack_takes_a_members_place",
+               "As `accept: J3-OVERWRITE sink place made in the list`, by another way."},
+};
+
+bool fits(std::string_view pattern, std::string_view name) {
+  const std::size_t star = pattern.find('*');
+  if (star == std::string_view::npos) return pattern == name;
+  if (name.substr(0, star) != pattern.substr(0, star)) return false;
+  for (std::size_t i = star; i <= name.size(); ++i) {
+    if (fits(pattern.substr(star + 1), name.substr(i))) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::span<const Equivalent> equivalents() { return kEquivalents; }
+
+const Equivalent* find_equivalent(std::string_view name) {
+  for (const Equivalent& one : kEquivalents) {
+    if (fits(one.name, name)) return &one;
+  }
+  return nullptr;
+}
+
+}  // namespace rubric::mutants
