@@ -40,9 +40,11 @@ inline constexpr Profile kDeployed{
     .response_ticks = 300,
     .early_ticks = 30,
 };
-inline constexpr std::array<AcceptedDifference, 7> kDeployedAccepted{{
+inline constexpr std::array<AcceptedDifference, 9> kDeployedAccepted{{
     {req::kJ3Time,
      "cur_time is the time of the sink's boot and is the same in every join_reply."},
+    {req::kJ3Drift,
+     "cur_time is the time of the sink's boot, however much time has passed."},
     {req::kJ8Fail,
      "A joinIsland call without success ends without joined(FAIL)."},
     {req::kT3Timeout,
@@ -53,6 +55,8 @@ inline constexpr std::array<AcceptedDifference, 7> kDeployedAccepted{{
      "Status old is never signalled."},
     {req::kS3Unchanged,
      "There is no power-save mode: every tick sends, whether or not a value changed."},
+    {req::kS1Mode,
+     "A channel created in power-save mode sends in reliable mode."},
     {req::kS6Disposed,
      "Disposing a channel changes nothing: it goes on, and keeps its place."},
 }};

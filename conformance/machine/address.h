@@ -9,6 +9,7 @@ namespace rubric::machine {
 constexpr std::uint16_t kBroadcastPid = 0xFFFF;
 constexpr std::uint16_t kLocalPid = 0xFFFE;  ///< Replaced by the own island before sending.
 constexpr std::uint16_t kBroadcastDevid = 0xFFFF;
+constexpr std::uint16_t kLocalDevid = 0xFFFE;  ///< The node itself.
 constexpr std::uint16_t kNullDevid = 0xFFFD;  ///< Not for a mote: for the island's PC or robot.
 constexpr std::uint16_t kAmBroadcast = 0xFFFF;
 constexpr std::uint16_t kNoSeq = 0xFFFF;  ///< What send returns when it refuses.
@@ -19,6 +20,9 @@ struct Address {
   std::uint16_t devid = 0;
   friend auto operator<=>(const Address&, const Address&) = default;
 };
+
+/// Island ids and devids that name no one island or mote. (decision 132)
+constexpr bool is_reserved(std::uint16_t id) { return id >= kNullDevid; }
 
 /// What a mote tells of itself when it joins.
 struct Descriptor {

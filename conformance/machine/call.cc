@@ -38,7 +38,8 @@ struct Caller {
   }
 
   void operator()(const Send& call) {
-    ReqId refused = req::kWireNetNbytes;
+    //= N1-SIZE: send refuses more than 100 bytes of application data.
+    ReqId refused = req::kN1Size;
     std::uint16_t seq_num = kNoSeq;
     if (call.data.size() <= kAppDataMax) {
       const OwnMessage message{call.dest, component::kConnless, call.app_id, call.reliable,
@@ -69,6 +70,7 @@ struct Caller {
 
   void operator()(const SetIslandId& call) {
     if (node.config().role != Role::kBaseStation) return result(false, req::kN9Set);
+    if (is_reserved(call.island)) return result(false, req::kN9Other);
     const Header header{Link::kSerial, am::kConfig, node.profile().sink_id, req::kN9Set, false};
     const ReqId refusal = line_refusal(node.state, Link::kSerial);
     if (refusal != ReqId::kNone) return result(false, refusal);
@@ -96,7 +98,7 @@ struct Caller {
 
   void synaptic(const Notice& refusal) {
     if (node.config().role == Role::kBaseStation) {
-      return node.actions.notify(refusal, req::kS1Limit);
+      return node.actions.notify(refusal, ReqId::kNone);
     }
     call_synaptic(node.state.synaptic, node.config(), own_address(node.state), node.now, whole,
                   node.actions);

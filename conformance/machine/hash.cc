@@ -88,8 +88,8 @@ template <std::size_t kRoom>
 void add(Hasher& hasher, const BoundedQueue<Buffered, kRoom>& queue) {
   for (std::size_t i = 0; i < queue.size(); ++i) {
     const Buffered& frame = queue[i];
-    hasher.add(frame.dest, frame.src, frame.type,
-               frame.link_ack ? std::uint16_t{1} : std::uint16_t{0});
+    const unsigned type = frame.type | (frame.link_ack ? 0x100u : 0u);
+    hasher.add(frame.dest, frame.src, static_cast<std::uint16_t>(type), frame.awaited);
     hasher.add(frame.bytes());
   }
 }
@@ -114,6 +114,7 @@ std::uint64_t hash_value(const State& state) {
   add(hasher, state.join);
   add(hasher, state.sink.members);
   add(hasher, state.sink.pending);
+  add(hasher, state.sink.unreported);
   hasher.add(std::uint64_t{state.awaited.size()});
   for (const Awaited& awaited : state.awaited) {
     hasher.add(awaited.dest, {awaited.seq_num, awaited.app_id});
@@ -121,7 +122,8 @@ std::uint64_t hash_value(const State& state) {
   }
   add(hasher, state.synaptic.out);
   add(hasher, state.synaptic.in);
-  hasher.add(std::uint64_t{state.synaptic.due} << 32 | state.synaptic.period_ticks);
+  hasher.add(std::uint64_t{state.synaptic.due} << 32 | state.synaptic.phase_ticks);
+  hasher.add(state.synaptic.period_ticks, std::uint16_t{0});
   add(hasher, state.radio);
   add(hasher, state.serial);
   for (std::size_t i = 0; i < state.waiting.size(); ++i) {

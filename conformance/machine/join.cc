@@ -40,6 +40,7 @@ bool admit(JoinSink& sink, const JoinContext& context, std::size_t pending, Acti
     sink.members.push(admission);
   }
   sink.pending.erase(pending);
+  //= J6-ONLY: A sink adds a mote to its list, announces and reports it only on an ack_join.
   const Address address{context.island, admission.devid};
   actions.notify(MoteJoined{address, admission.descriptor}, req::kJ6Add);
   return true;

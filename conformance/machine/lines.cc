@@ -6,6 +6,7 @@
 #include "codec/generated/rubicon/join_reply.h"
 #include "codec/generated/rubicon/join_request.h"
 #include "conformance/machine/messages.h"
+#include "conformance/machine/transport.h"
 
 namespace rubric::machine {
 namespace {
@@ -27,8 +28,10 @@ std::uint16_t am_source(const State& state, Link link) {
   return link == Link::kPeis ? state.island : 0;
 }
 
-// A join_request's period counts from when it is on the air.
-void left(Node& node, Link link, std::uint8_t type) {
+// The period of a join_request, and the timeout of a reliable message, count from when the line has
+// it.
+void left(Node& node, Link link, std::uint8_t type, std::uint16_t awaited) {
+  if (awaited != kNoSeq) start_ack_timer(node.state.awaited, node.profile(), node.now, awaited);
   JoinMote& join = node.state.join;
   if (link != Link::kRadio || type != am::kJoin || join.phase != JoinMote::Phase::kJoining) return;
   //= J8-PERIOD: A join_request follows the one before it no earlier than the join timeout.
@@ -42,8 +45,8 @@ bool is_stale(const Node& node, const Buffered& frame) {
          node.now - join.accepted > node.profile().join_period_ticks;
 }
 
-//= J3-TIME: cur_time of a join_reply is the sink's clock in ms when it replies; between replies
-//= more than a second apart it grows.
+//= J3-TIME: cur_time of a join_reply is the sink's clock in ms when it replies; it does not stand
+//= still for a second or more between replies.
 // So one that waited for the radio tells the time at which it leaves.
 void set_time(std::uint8_t* join_reply, const Node& node) {
   store_be32(join_reply + kCurTimeOffset, clock_ms(node));
@@ -51,6 +54,7 @@ void set_time(std::uint8_t* join_reply, const Node& node) {
 
 template <std::size_t kRoom>
 void flush_line(Node& node, Interface<kRoom>& line, Link link) {
+  //= N2-BUSY: While a line is busy nothing is sent on it.
   while (line.on && !line.sending && !line.taken && !line.out.empty()) {
     const Buffered& frame = line.out.front();
     if (is_stale(node, frame)) {
@@ -70,7 +74,7 @@ void flush_line(Node& node, Interface<kRoom>& line, Link link) {
     if (frame.type == am::kJoinReply) set_time(transmit.payload.data(), node);
     line.sending = true;
     line.sending_ack_join = frame.type == am::kAckJoin;
-    left(node, link, frame.type);
+    left(node, link, frame.type, frame.awaited);
     line.out.pop();
     node.actions.followed(req::kN2Order);
   }
@@ -93,7 +97,7 @@ Place put_on_line(Node& node, Interface<kRoom>& line, const Header& header) {
   if (!line.sending && !line.taken && line.out.empty()) {
     line.sending = true;
     line.sending_ack_join = header.type == am::kAckJoin;
-    left(node, header.link, header.type);
+    left(node, header.link, header.type, header.awaited);
     return transmit_now(node, header);
   }
   node.actions.followed(req::kN2Queue);
@@ -102,6 +106,7 @@ Place put_on_line(Node& node, Interface<kRoom>& line, const Header& header) {
   frame.src = am_source(node.state, header.link);
   frame.type = header.type;
   frame.link_ack = header.link_ack;
+  frame.awaited = header.awaited;
   frame.requirement = header.requirement;
   return {frame.payload.data(), &frame.size_bytes};
 }
@@ -130,7 +135,10 @@ Place put(Node& node, const Header& header) {
     node.actions.ignored(refusal);
     return {};
   }
-  if (header.link == Link::kPeis) return transmit_now(node, header);
+  if (header.link == Link::kPeis) {
+    left(node, header.link, header.type, header.awaited);
+    return transmit_now(node, header);
+  }
   return with_line(node.state, header.link,
                    [&](auto& line) { return put_on_line(node, line, header); });
 }

@@ -13,6 +13,7 @@ struct Header {
   std::uint16_t dest = 0;
   ReqId requirement = ReqId::kNone;
   bool link_ack = false;
+  std::uint16_t awaited = kNoSeq;  ///< Its number, if its ack is awaited once it has left.
 };
 
 /// Where the payload of an accepted frame goes, so that it is written once and in its place.

@@ -92,13 +92,92 @@ TEST(Outgoing, ForwardThatFindsNoPlaceIsLostAndSaidSo) {
   EXPECT_EQ(sink.state, before);
 }
 
-TEST(Outgoing, LostReportChangesNothingElse) {
+TEST(Outgoing, J6Report_WaitsUntilTheLineIsOn) {
   Device sink(sink_config());
   sink.call(SetInterface{Link::kSerial, false});
   sink.hear(join_request(5, 100, kDescriptor)).done();
   sink.hear(ack_join({kIsland, 1}, {kIsland, 5}, 100, kDescriptor));
-  EXPECT_EQ(sink.labels(), (std::vector{told(req::kJ6Add), ignored(req::kN10Off)}));
+  EXPECT_EQ(sink.labels(), (std::vector{told(req::kJ6Add), followed(req::kJ6Report)}));
   EXPECT_NE(find_member(sink.state.sink, 5), nullptr);
+  sink.call(SetInterface{Link::kSerial, true});
+  EXPECT_EQ(sink.only_frame().type, am::kNet);
+}
+
+// Two forwards wait, so there is no room for the reports of two new members.
+TEST(Outgoing, J6Report_WaitsForRoomAndIsMadeOnce) {
+  Device sink(sink_config());
+  OwnFrame up = heard(1, 1);
+  up.payload = net_msg({{kIsland, kNullDevid}, {kIsland, 5}});
+  for (int i = 0; i < 3; ++i) sink.hear(up);
+  constexpr std::uint16_t kMotes[] = {6, 7};
+  for (const std::uint16_t devid : kMotes) {
+    sink.hear(join_request(devid, 100, kDescriptor)).done();
+    sink.hear(ack_join({kIsland, 1}, {kIsland, devid}, 100, kDescriptor));
+    EXPECT_EQ(sink.labels(), (std::vector{told(req::kJ6Add), followed(req::kJ6Report)}));
+    sink.hear(ack_join({kIsland, 1}, {kIsland, devid}, 100, kDescriptor));
+    EXPECT_EQ(sink.labels(), (std::vector{ignored(req::kJ6Repeat)}));
+  }
+  std::vector<std::uint16_t> reported;
+  for (int i = 0; i < 4; ++i) {
+    const auto message = rubicon::NetMsgView::parse(sink.done(Link::kSerial).only_frame().bytes());
+    ASSERT_TRUE(message);
+    if (i >= 2) reported.push_back(address_of(message->src()).devid);
+  }
+  EXPECT_EQ(reported, (std::vector<std::uint16_t>{6, 7}));
+  EXPECT_TRUE(sink.done(Link::kSerial).silent());
+  EXPECT_TRUE(sink.state.sink.unreported.empty());
+}
+
+TEST(Outgoing, J6Report_OfAnOldIslandIsForgotten) {
+  Device sink(sink_config());
+  OwnFrame up = heard(1, 1);
+  up.payload = net_msg({{kIsland, kNullDevid}, {kIsland, 5}});
+  for (int i = 0; i < 3; ++i) sink.hear(up);
+  sink.hear(join_request(6, 100, kDescriptor)).done();
+  sink.hear(ack_join({kIsland, 1}, {kIsland, 6}, 100, kDescriptor));
+  EXPECT_EQ(sink.state.sink.unreported.size(), 1U);
+  sink.hear(set_island_id(kOther));
+  EXPECT_TRUE(sink.state.sink.unreported.empty());
+  sink.done(Link::kSerial).done(Link::kSerial).done(Link::kSerial);
+  EXPECT_TRUE(sink.silent());
+}
+
+// The time of a reliable message begins when the line has it.
+TEST(Outgoing, T3Timeout_WaitingForTheRadioDoesNotCount) {
+  Device mote = member(5);
+  mote.step(LinkBusy{Link::kRadio, true});
+  mote.now = 100;
+  mote.call(Send{{kIsland, 6}, 10, true, {}});
+  const std::uint16_t seq_num = mote.notice<SendResult>().seq_num;
+  EXPECT_TRUE(timers(mote.state).empty());
+  mote.now = 1100;
+  mote.step(TimerDue{{TimerKind::kAck, 0}});
+  EXPECT_EQ(mote.labels(), (std::vector{ignored(req::kT3Once)}));
+  mote.now = 5000;
+  EXPECT_EQ(mote.step(LinkBusy{Link::kRadio, false}).only_frame().type, am::kNet);
+  ASSERT_EQ(timers(mote.state).size(), 1U);
+  EXPECT_EQ(timers(mote.state)[0].due, 6000U);
+  mote.now = 6000;
+  mote.step(TimerDue{{TimerKind::kAck, 0}});
+  EXPECT_EQ(mote.notice<AckReceived>().seq_num, seq_num);
+  EXPECT_FALSE(mote.notice<AckReceived>().success);
+}
+
+// A forwarded message with the number of an own one that waits does not start its time.
+TEST(Outgoing, T3Timeout_ForwardsStartNobodysTime) {
+  Device sink(sink_config());
+  sink.step(LinkBusy{Link::kRadio, true});
+  OwnFrame down = heard(1, 1);
+  down.link = Link::kSerial;
+  down.payload = net_msg({{kIsland, 5}, {kOther, 6}, true, sink.state.config.first_seq});
+  sink.hear(down);
+  sink.call(Send{{kIsland, 6}, 10, true, {}});
+  EXPECT_EQ(sink.notice<SendResult>().seq_num, sink.state.config.first_seq);
+  sink.step(LinkBusy{Link::kRadio, false});
+  EXPECT_EQ(sink.only_frame().dest, 5);
+  EXPECT_TRUE(timers(sink.state).empty());
+  EXPECT_EQ(sink.done().only_frame().dest, 6);
+  EXPECT_EQ(timers(sink.state).size(), 1U);
 }
 
 TEST(Outgoing, SendDoneOfNothingIsIgnored) {

@@ -104,6 +104,10 @@ void hear_connless(Node& node, rubicon::NetMsgView message, std::uint8_t app_id,
   if (!must_ack(reliable, dest, component::kConnless, app_id)) {
     return actions.followed(req::kT2Broadcast);
   }
+  //= T2-ACK: A reliable Connectionless message to the node itself, with an APPID that it knows, is
+  //= answered by an ack.
+  // Not one for another island's sink, which is delivered by its devid (decision 126).
+  if (dest != own_address(node.state)) return actions.followed(req::kT2Ack);
   send_ack(node, src, app_id, message.seq_num());
 }
 
@@ -164,14 +168,13 @@ std::uint16_t send_own(Node& node, const OwnMessage& message, ReqId& refused) {
   const std::uint16_t seq_num = next_seq_num(state.sequence, state.awaited);
   const bool plain = message.requirement == ReqId::kNone;
   const ReqId requirement = plain ? route.requirement : message.requirement;
-  const Place place = put(node, {link, am::kNet, route.am_dest, requirement, false});
+  if (message.reliable) await_ack(state.awaited, seq_num, message.app_id, dest);
+  const std::uint16_t awaited = message.reliable ? seq_num : kNoSeq;
+  const Place place = put(node, {link, am::kNet, route.am_dest, requirement, false, awaited});
   //= N1-SRC: What a node sends on behalf of its applications carries the node's own address as src;
   //= a base station's src is <its island, NULL>.
   fill_net_msg(place, link, {dest, router.own, message.reliable, seq_num}, message.trans_id,
                message.app_id, message.data);
-  if (message.reliable) {
-    await_ack(state.awaited, node.profile(), node.now, seq_num, message.app_id, dest);
-  }
   return seq_num;
 }
 
@@ -183,6 +186,7 @@ void hear_net_msg(Node& node, Link from, Bytes bytes) {
   if (!message) {
     //= N11-NBYTES: A net_msg whose nbytes is over 102, under 2, or more than arrived is dropped: no
     //= delivery, no ack, no forward.
+    //= T2-TWO: A message whose reliable is neither 0 nor 1 is not acked.
     const ReqId rule = message.error().requirement;
     return node.actions.ignored(rule == req::kWireNetReliable ? rule : req::kN11Nbytes);
   }
@@ -199,15 +203,23 @@ void hear_net_msg(Node& node, Link from, Bytes bytes) {
   }
 }
 
-void report_joined(Node& node, Address member, const Descriptor& descriptor) {
+void report_joined(Node& node, const Admission& member) {
+  State& state = node.state;
   //= J6-REPORT: A sink reports each new member to its base station with one serial_joined.
+  // Nobody would ask for it again, so it must not be lost where there is no room.
+  if (line_refusal(state, Link::kSerial) != ReqId::kNone) {
+    auto& owed = state.sink.unreported;
+    if (owed.full()) owed.erase(0);  // Some mote joined again and again; its last report stays.
+    owed.push(member);
+    return node.actions.followed(req::kJ6Report);
+  }
   const Place place = put(node, {Link::kSerial, am::kNet, kAmBroadcast, req::kJ6Report, false});
-  if (!place) return;
-  const rubicon::MoteDesc wire = wire_of(descriptor);
+  const Address address{state.island, member.devid};
+  const rubicon::MoteDesc wire = wire_of(member.descriptor);
   rubicon::SerialJoined joined;
   joined.msg_type = rubicon::AmType::kSerialJoined;
-  joined.island_addr = member.pid;
-  joined.mote_addr = member.devid;
+  joined.island_addr = address.pid;
+  joined.mote_addr = address.devid;
   joined.mote_type = wire.mote_type;
   joined.transducers = wire.transducers;
   joined.actuators = wire.actuators;
@@ -215,8 +227,17 @@ void report_joined(Node& node, Address member, const Descriptor& descriptor) {
   rubicon::SerialJoinedLayout::store(joined, body);
   //= J6-CONTENT: serial_joined carries the member's address and descriptor in an unreliable net_msg
   //= from <island, mote> to <island, NULL>, TRANSID CONNLESS, APPID CONTROL_LAYER.
-  fill_net_msg(place, Link::kSerial, {{member.pid, kNullDevid}, member, false, 0},
+  fill_net_msg(place, Link::kSerial, {{address.pid, kNullDevid}, address, false, 0},
                component::kConnless, component::kControlLayer, body);
+}
+
+void report_owed(Node& node) {
+  auto& owed = node.state.sink.unreported;
+  while (!owed.empty() && line_refusal(node.state, Link::kSerial) == ReqId::kNone) {
+    const Admission member = owed[0];
+    owed.erase(0);
+    report_joined(node, member);
+  }
 }
 
 void tick(Node& node) {
@@ -237,7 +258,9 @@ void tick(Node& node) {
              {send.dest, component::kSynChannel, component::kEsnData, false, data,
               send.requirement},
              refused);
-    if (refused != ReqId::kNone) node.actions.ignored(refused);
+    if (refused == ReqId::kNone) continue;
+    node.actions.ignored(refused);
+    keep_change(state.synaptic, send.id);
   }
 }
 
@@ -252,6 +275,7 @@ void set_island(Node& node, std::uint16_t island) {
   //= N9-MEMBERS: A sink whose island id changes forgets its members.
   state.sink.members.clear();
   state.sink.pending.clear();
+  state.sink.unreported.clear();
   forget_waiting(state, am::kJoinReply);  // They offer the island that is no more.
   node.actions.followed(req::kN9Members);
 }

@@ -52,8 +52,26 @@ TEST(Send, LargestGoesAndLargerIsRefused) {
   mote.call(Send{{kIsland, 6}, 10, false, {data.data(), 101}});
   EXPECT_TRUE(mote.actions.transmits().empty());
   EXPECT_EQ(mote.notice<SendResult>().seq_num, kNoSeq);
+  EXPECT_EQ(mote.labels(), (std::vector{told(req::kN1Size)}));
   mote.call(Send{{kIsland, 6}, 10, false, {data.data(), 100}});
   EXPECT_EQ(mote.only_payload().size(), 114U);
+}
+
+TEST(Send, N4Self_IsRefusedByEveryRole) {
+  for (Device node : {member(5), Device(sink_config()), Device(base_config())}) {
+    const State before = node.state;
+    const std::uint16_t own = own_address(before).devid;
+    for (const std::uint16_t pid : {kIsland, kLocalPid}) {
+      for (const std::uint16_t devid : {own, kLocalDevid}) {
+        node.call(Send{{pid, devid}, 10, true, kOpenDoor});
+        EXPECT_EQ(node.labels(), (std::vector{told(req::kN4Self)}));
+        EXPECT_EQ(node.notice<SendResult>().seq_num, kNoSeq);
+        EXPECT_EQ(node.state, before);
+      }
+    }
+    node.call(Send{{kOther, own}, 10, false, kOpenDoor});
+    EXPECT_EQ(node.actions.transmits().size(), 1U);
+  }
 }
 
 TEST(Send, J11_NoMemberNoMessage) {
@@ -131,6 +149,24 @@ TEST(Receive, T2_BroadcastIsDeliveredAndNotAcked) {
   mote.hear(on_radio(kAmBroadcast, {{kIsland, kBroadcastDevid}, {kIsland, 6}, true}));
   EXPECT_EQ(mote.labels(), (std::vector{followed(req::kN5Deliver), told(req::kT2Deliver),
                                         followed(req::kT2Broadcast)}));
+}
+
+// By its devid a sink delivers what came by serial for another island's sink; it is not its to ack.
+TEST(Receive, T2Ack_NotForAnotherIslandsSink) {
+  Device sink(sink_config());
+  sink.hear(on_serial({{kOther, 1}, {13, kNullDevid}, true}));
+  EXPECT_EQ(sink.notice<Received>().src, (Address{13, kNullDevid}));
+  EXPECT_TRUE(sink.actions.transmits().empty());
+  sink.hear(on_serial({{kIsland, 1}, {13, kNullDevid}, true}));
+  EXPECT_EQ(sink.only_frame().link, Link::kSerial);
+}
+
+// Somebody sent in its name.
+TEST(Receive, N4Self_NoAckToItself) {
+  Device mote = member(5);
+  mote.hear(on_radio(5, {{kIsland, 5}, {kIsland, 5}, true}));
+  EXPECT_TRUE(mote.actions.transmits().empty());
+  EXPECT_EQ(mote.labels().back(), ignored(req::kN4Self));
 }
 
 TEST(Receive, T1_UnknownIsDropped) {
@@ -229,7 +265,7 @@ TEST(Receive, UnknownAmTypesAreIgnored) {
       OwnFrame frame = on_radio(kAmBroadcast, {{kIsland, kBroadcastDevid}, {kIsland, 6}});
       frame.link = base ? Link::kSerial : Link::kRadio;
       frame.type = static_cast<std::uint8_t>(type);
-      EXPECT_EQ(node.hear(frame).labels(), (std::vector{ignored(req::kT1Unknown)})) << type;
+      EXPECT_EQ(node.hear(frame).labels(), (std::vector{ignored(ReqId::kNone)})) << type;
     }
   }
 }
@@ -321,6 +357,29 @@ TEST(Synaptic, J11Send_NoDataWithoutMembership) {
   mote.call(StartAllChannels{});
   mote.step(TimerDue{{TimerKind::kSynaptic, 0}});
   EXPECT_EQ(mote.labels(), (std::vector{ignored(req::kJ11Send)}));
+}
+
+TEST(Synaptic, S3Changed_ChangeSurvivesARadioThatIsOff) {
+  Device mote = member(2);
+  mote.call(CreateChannel{Direction::kOut, {kIsland, 1}, 1, Mode::kPowerSave}).call(
+      StartAllChannels{});
+  const auto tick = [&mote] {
+    mote.now = mote.state.synaptic.due;
+    mote.step(TimerDue{{TimerKind::kSynaptic, 0}});
+    return mote.actions.transmits().size();
+  };
+  EXPECT_EQ(tick(), 1U);
+  mote.done();
+  mote.call(WriteOutput{0x0002'0001, 0, 1.5F});
+  mote.call(SetInterface{Link::kRadio, false});
+  EXPECT_EQ(tick(), 0U);
+  EXPECT_EQ(mote.labels(), (std::vector{ignored(req::kN10Off)}));
+  mote.call(SetInterface{Link::kRadio, true});
+  EXPECT_EQ(tick(), 1U);
+  EXPECT_EQ(mote.labels(), (std::vector{sent(req::kS3Changed)}));
+  mote.done();
+  EXPECT_EQ(tick(), 0U);  // Told once.
+  EXPECT_EQ(mote.labels(), (std::vector{followed(req::kS3Unchanged)}));
 }
 
 TEST(Synaptic, BaseStationHasNone) {

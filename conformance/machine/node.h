@@ -61,8 +61,10 @@ struct OwnMessage {
 std::uint16_t send_own(Node& node, const OwnMessage& message, ReqId& refused);
 /// A net_msg that was heard.
 void hear_net_msg(Node& node, Link from, Bytes bytes);
-/// A sink tells its base station of a new member. (J6)
-void report_joined(Node& node, Address member, const Descriptor& descriptor);
+/// A sink tells its base station of a new member, or remembers that it has to. (J6)
+void report_joined(Node& node, const Admission& member);
+/// Reports that found the serial line full or off, and now find room.
+void report_owed(Node& node);
 /// The synaptic clock ticks.
 void tick(Node& node);
 /// A sink's or base station's island changes. (N9)

@@ -16,14 +16,28 @@ TEST(Reboot, OnlyTheConfigurationStays) {
   EXPECT_EQ(mote.call(GetClock{}).notice<Clock>().ms, 0U);
   mote.done();  // Of the frame that was on the air.
   EXPECT_TRUE(mote.silent());
+  const std::uint16_t last = mote.state.sequence.last;
   mote.call(JoinIsland{kDescriptor});
-  EXPECT_EQ(mote.state.join.seq_num, mote.state.config.first_seq);
+  EXPECT_EQ(mote.state.join.seq_num, last + 1);
 
   Device sink(sink_config());
   list_member(sink, 5);
   sink.hear(set_island_id(kOther));
   sink.step(Reboot{});
   EXPECT_EQ(sink.state, start(sink_config()));
+}
+
+// Numbers go on: what answers a request of before must not fit the request after.
+TEST(Reboot, J4Seq_ReplyToARequestOfBeforeIsIgnored) {
+  for (const bool powered_off : {false, true}) {
+    Device mote(mote_config(5));
+    mote.call(JoinIsland{kDescriptor}).done();
+    const OwnFrame late = join_reply(5, {kIsland, 5}, 0, mote.state.join.seq_num);
+    if (powered_off) mote.step(PowerOff{});
+    mote.step(Reboot{}).call(JoinIsland{kDescriptor}).done();
+    EXPECT_EQ(mote.hear(late).labels(), (std::vector{ignored(req::kJ4Seq)}));
+    EXPECT_EQ(mote.state.join.phase, JoinMote::Phase::kJoining);
+  }
 }
 
 TEST(Reboot, DoesNotFreeALineThatSomebodyElseHas) {
@@ -49,6 +63,7 @@ TEST(PowerOff, NothingHasAnEffectUntilReboot) {
   EXPECT_TRUE(timers(mote.state).empty());
   State off = start(mote_config(5));
   off.off = true;
+  off.sequence = mote.state.sequence;
   EXPECT_EQ(mote.state, off);
   const auto nothing = [&] {
     EXPECT_TRUE(mote.silent());

@@ -66,7 +66,11 @@ OwnFrame some_frame(Random& random, const State& state) {
       frame = join_reply(some_devid(random), {some_pid(random), 5}, random(), seq_num);
       break;
     case 2:
-      frame = ack_join(some_address(random), some_address(random), seq_num, what);
+      frame = ack_join({state.island, state.config.id}, {state.island, some_devid(random)}, seq_num,
+                       what);
+      if (one_in(random, 4)) {
+        frame = ack_join(some_address(random), some_address(random), seq_num, what);
+      }
       break;
     case 3:
       frame = config(one_in(random, 3) ? 10 : 3, some_pid(random));
@@ -255,6 +259,8 @@ struct Watch {
     must(state.synaptic.out.size() <= channels && state.synaptic.in.size() <= channels, "channels");
     const bool idle = state.radio.on && !state.radio.sending && !state.radio.taken;
     must(!idle || state.radio.out.empty(), "nothing waits for a free line (N2-QUEUE)");
+    const bool room = state.serial.on && !state.serial.out.full();
+    must(!room || state.sink.unreported.empty(), "a report that has room is made (J6-REPORT)");
   }
 
   void check_uniqueness(const State& state) {

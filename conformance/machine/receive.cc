@@ -18,6 +18,10 @@ void hear_join_request(Node& node, const Frame& frame) {
   if (!is_sink(node)) return node.actions.ignored(req::kJ10Mote);
   const auto request = rubicon::JoinRequestView::parse(frame.payload);
   if (!request) return node.actions.ignored(request.error().requirement);
+  // No mote has such a TinyOS id, so none could be told in a reply. (decision 132)
+  if (is_reserved(frame.src) || frame.src == node.config().id) {
+    return node.actions.ignored(req::kJ3Address);
+  }
   const Descriptor descriptor = descriptor_of(request->mote_desc());
   const bool answer = hear_request(node.state.sink, join_context(node), frame.src,
                                    request->seq_num(), descriptor, node.actions);
@@ -31,6 +35,11 @@ void hear_join_reply(Node& node, const Frame& frame) {
   if (!reply) return node.actions.ignored(reply.error().requirement);
   State& state = node.state;
   const Address offered{reply->island_addr(), reply->mote_addr()};
+  //= J4-ADDRESS: A mote ignores a join_reply whose mote_addr is not its own TinyOS id or whose
+  //= island_addr is reserved.
+  if (offered.devid != node.config().id || is_reserved(offered.pid)) {
+    return node.actions.ignored(req::kJ4Address);
+  }
   const JoinSend send = hear_reply(state.join, join_context(node), offered, reply->seq_num(),
                                    frame.src, node.actions);
   if (send != JoinSend::kAck) return;
@@ -47,19 +56,22 @@ void hear_ack_join(Node& node, const Frame& frame) {
   const auto ack = rubicon::AckJoinView::parse(frame.payload);
   if (!ack) return node.actions.ignored(ack.error().requirement);
   const Address src = address_of(ack->src());
+  const Address dest = address_of(ack->dest());
+  //= J6-SENDER: A sink ignores an ack_join whose dest.devid is not its own, or whose src is not
+  //= <dest.pid, the AM source>.
+  const bool sound = dest.devid == node.config().id && src == Address{dest.pid, frame.src};
+  if (dest.pid == node.state.island && !sound) return node.actions.ignored(req::kJ6Sender);
   const bool joined =
-      hear_ack_join(node.state.sink, join_context(node), address_of(ack->dest()), src,
-                    ack->seq_num(), descriptor_of(ack->mote_desc()), node.actions);
-  if (!joined) return;
-  const Admission* const member = find_member(node.state.sink, src.devid);
-  report_joined(node, {node.state.island, src.devid}, member->descriptor);
+      hear_ack_join(node.state.sink, join_context(node), dest, src, ack->seq_num(),
+                    descriptor_of(ack->mote_desc()), node.actions);
+  if (joined) report_joined(node, *find_member(node.state.sink, src.devid));
 }
 
 void hear_config(Node& node, const Frame& frame) {
   const auto config = rubicon::ConfigView::parse(frame.payload);
   if (!config) return node.actions.ignored(config.error().requirement);
-  //= N9-OTHER: A config message of another type changes nothing.
-  if (config->type() != rubicon::CommandCode::kSetIslandId) {
+  //= N9-OTHER: A config message of another type, or with a reserved island id, changes nothing.
+  if (config->type() != rubicon::CommandCode::kSetIslandId || is_reserved(config->value())) {
     return node.actions.ignored(req::kN9Other);
   }
   set_island(node, config->value());
@@ -86,7 +98,7 @@ void handle(Node& node, const Frame& frame) {
     case am::kConfig:
       return hear_config(node, frame);
     default:
-      return node.actions.ignored(req::kT1Unknown);
+      return node.actions.ignored(ReqId::kNone);
   }
 }
 
@@ -125,6 +137,7 @@ void wait(Node& node, Interface<kRoom>& line, const Frame& frame) {
   buffered.src = frame.src;
   buffered.type = frame.type;
   buffered.link_ack = false;
+  buffered.awaited = kNoSeq;
   buffered.size_bytes = static_cast<std::uint8_t>(frame.payload.size());
   std::copy_n(frame.payload.data(), frame.payload.size(), buffered.payload.begin());
   node.state.waiting.push() = frame.link;
@@ -142,10 +155,8 @@ void handle_first(Node& node, Interface<kRoom>& line, Link link) {
 
 void hear(Node& node, const Frame& frame) {
   if (!is_for_us(node, frame)) return;
-  //= T1-UNKNOWN: A message with an unknown TRANSID or APPID is dropped without harm.
-  // So is one of an unknown AM type.
   if (!is_known_type(node.config().role, frame.link, frame.type)) {
-    return node.actions.ignored(req::kT1Unknown);
+    return node.actions.ignored(ReqId::kNone);
   }
   if (frame.payload.size() > kAmPayloadMax) return node.actions.ignored(req::kWireAmLength);
   if (!node.state.app_busy || frame.link == Link::kPeis) return handle(node, frame);

@@ -47,8 +47,10 @@ Route sink_from_radio(const Router& router, Address dest, Address src) {
 
 Route sink_from_serial(const Router& router, Address dest) {
   const bool here = for_own_island(router, dest);
-  // A message of its base station for its base station has come the wrong way.
-  if (here && dest.devid == kNullDevid) return nowhere(req::kN7Radio);
+  //= N6-ONCE: A sink forwards each received message once, and sends none that came by serial back
+  //= over serial.
+  // So a message of its base station for its base station has come the wrong way.
+  if (here && dest.devid == kNullDevid) return nowhere(req::kN6Once);
   Route route;
   //= N7-FOREIGN: A sink does not send a net_msg from serial for another island on the radio.
   if (!here) route.requirement = req::kN7Foreign;
@@ -78,19 +80,20 @@ Route base_station_received(const Router& router, Link from, Address dest) {
     route.delivered = req::kN8Deliver;
   }
   if (dest.devid == kNullDevid) return route;
-  if (from_sink || dest.pid == kBroadcastPid) {  // Sent back it would go round for ever.
-    route.requirement = route.deliver ? ReqId::kNone : req::kN8Loop;
-    return route;
-  }
+  // Sent back it would go round for ever.
+  if (from_sink || dest.pid == kBroadcastPid) return route;
   route.onward = Onward::kSerial;
   route.am_dest = router.sink_am;
   route.requirement = req::kN8Incoming;
   return route;
 }
 
+bool is_self(const Router& router, Address dest) {
+  return dest.pid == router.own.pid &&
+         (dest.devid == router.own.devid || dest.devid == kLocalDevid);
+}
+
 Route mote_own(const Router& router, Address dest) {
-  //= J11-SEND: A mote that is not a member sends no net_msg.
-  if (!router.member) return nowhere(req::kJ11Send);
   const bool in_island = for_own_island(router, dest) && dest.devid != kNullDevid;
   //= N4-SINK: A mote sends a net_msg for another island, or with devid NULL, to the AM address of
   //= its sink.
@@ -115,6 +118,10 @@ Route route_received(const Router& router, Link from, Address dest, Address src)
 Route route_own(const Router& router, Address dest) {
   Route route;
   const bool here = for_own_island(router, dest);
+  //= J11-SEND: A mote that is not a member sends no net_msg.
+  if (!router.member) return nowhere(req::kJ11Send);
+  //= N4-SELF: A node refuses a message whose dest is the node itself.
+  if (is_self(router, dest)) return nowhere(req::kN4Self);
   switch (router.role) {
     case Role::kMote:
       route = mote_own(router, dest);
@@ -130,7 +137,7 @@ Route route_own(const Router& router, Address dest) {
       //= N8-PEIS: A base station sends a message for another island, its own or its sink's, through
       //= PEIS to that island's base station.
       if (!here) return onward(Onward::kPeis, dest.pid, req::kN8Peis);
-      if (dest.devid == kNullDevid) return nowhere(req::kN8Serial);  // To itself.
+      if (dest.devid == kNullDevid) return nowhere(req::kN4Self);  // Of every island: its own, too.
       route = onward(Onward::kSerial, router.sink_am, req::kN8Serial);
       break;
   }

@@ -137,7 +137,7 @@ TEST(RouteReceived, SinkOnSerial) {
   const Route mine = up(req::kN7Deliver);
   const Route both = radio(kAmBroadcast, req::kN7Radio, req::kN7Deliver);
   const Route onto_air = radio(kOtherDevid, req::kN7Radio);
-  const Route back = no(req::kN7Radio);
+  const Route back = no(req::kN6Once);
   const Route foreign = no(req::kN7Foreign);
   const Route foreign_devid = up(req::kN7Deliver, req::kN7Foreign);
   for (const Address src : kSources) {
@@ -150,7 +150,7 @@ TEST(RouteReceived, SinkOnSerial) {
 
 TEST(RouteReceived, BaseStationOnSerial) {
   const Route mine = up(req::kN8Deliver);
-  const Route loop = no(req::kN8Loop);
+  const Route loop = no(ReqId::kNone);
   const Route abroad = peis(kForeignIsland, req::kN8Peis);
   for (const Address src : kSources) {
     expect_received(router(Role::kBaseStation), Link::kSerial, src,
@@ -169,7 +169,7 @@ TEST(RouteReceived, BaseStationOnPeis) {
     expect_received(router(Role::kBaseStation), Link::kPeis, src,
                     table({mine, down, both, mine,       //
                            loop, loop, loop, loop,       //
-                           mine, loop, mine, mine}));
+                           mine, no(ReqId::kNone), mine, mine}));
   }
 }
 
@@ -186,13 +186,14 @@ TEST(RouteReceived, LinesThatANodeDoesNotHave) {
 }
 
 TEST(RouteOwn, Mote) {
-  const Route self = radio(5, req::kN4Mote);
+  const Route self = no(req::kN4Self);
   const Route direct = radio(kOtherDevid, req::kN4Mote);
   const Route everyone = radio(kAmBroadcast, req::kN4Mote);
   const Route sink = radio(kSinkAm, req::kN4Sink);
   expect_own(router(Role::kMote), table({self, direct, everyone, sink,     //
                                          sink, sink, sink, sink,           //
                                          everyone, everyone, everyone, sink}));
+  EXPECT_EQ(route_own(router(Role::kMote), {kIsland, kLocalDevid}).requirement, req::kN4Self);
 }
 
 TEST(RouteOwn, MoteThatIsNoMemberSendsNothing) {
@@ -202,7 +203,7 @@ TEST(RouteOwn, MoteThatIsNoMemberSendsNothing) {
 }
 
 TEST(RouteOwn, Sink) {
-  const Route self = radio(1, req::kN4Mote);
+  const Route self = no(req::kN4Self);
   const Route direct = radio(kOtherDevid, req::kN4Mote);
   const Route everyone = radio(kAmBroadcast, req::kN4Mote);
   const Route pc = serial(kAmBroadcast, req::kN6Own);
@@ -212,7 +213,7 @@ TEST(RouteOwn, Sink) {
 }
 
 TEST(RouteOwn, BaseStation) {
-  const Route self = no(req::kN8Serial);
+  const Route self = no(req::kN4Self);
   const Route down = serial(kSinkAm, req::kN8Serial);
   const Route abroad = peis(kForeignIsland, req::kN8Peis);
   expect_own(router(Role::kBaseStation), table({self, down, down, self,             //

@@ -59,6 +59,7 @@ struct Admission {
 struct JoinSink {
   BoundedList<Admission, kMembersMax> members;
   BoundedList<Admission, kPendingMax> pending;  ///< Oldest first.
+  BoundedList<Admission, kMembersMax> unreported;  ///< Members whose report waits for the line.
   friend bool operator==(const JoinSink&, const JoinSink&) = default;
 };
 
@@ -67,7 +68,7 @@ struct Awaited {
   std::uint16_t seq_num = 0;
   std::uint8_t app_id = 0;
   Address dest;
-  Ticks due = 0;
+  Ticks due = 0;  ///< When its time is over; 0: it waits for the line, or there is no timeout.
   friend bool operator==(const Awaited&, const Awaited&) = default;
 };
 
@@ -85,12 +86,13 @@ struct Buffered {
   std::uint8_t type = 0;
   std::uint8_t size_bytes = 0;
   bool link_ack = false;
+  std::uint16_t awaited = kNoSeq;    ///< Its number, if it is the node's own and awaits its ack.
   ReqId requirement = ReqId::kNone;  ///< Why it was sent.
   std::array<std::uint8_t, kAmPayloadMax> payload;
   Bytes bytes() const { return {payload.data(), size_bytes}; }
   friend bool operator==(const Buffered& a, const Buffered& b) {
     return a.dest == b.dest && a.src == b.src && a.type == b.type && a.link_ack == b.link_ack &&
-           equal(a.bytes(), b.bytes());
+           a.awaited == b.awaited && equal(a.bytes(), b.bytes());
   }
 };
 
@@ -124,6 +126,7 @@ struct Synaptic {
   BoundedList<Channel, kChannelsRoom> in;
   std::uint16_t period_ticks = 0;
   Ticks due = 0;  ///< Next tick; 0 while no channel is started.
+  Ticks phase_ticks = 0;  ///< By which the clock's first tick is late; 0 from that tick on.
   friend bool operator==(const Synaptic&, const Synaptic&) = default;
 };
 

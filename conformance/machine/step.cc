@@ -34,11 +34,14 @@ void app_busy(Node& node, bool busy) {
   if (!busy) handle_waiting(node);
 }
 
-// Memory is lost; who else uses the lines does not care.
+// Memory is lost; who else uses the lines does not care. Numbers go on, as those of a mote that
+// draws them at random would be others: a late reply must not fit its next request.
 void lose_memory(State& state) {
   const bool radio_taken = state.radio.taken;
   const bool serial_taken = state.serial.taken;
+  const Sequence sequence = state.sequence;
   state = start(Config(state.config));
+  state.sequence = sequence;
   state.radio.taken = radio_taken;
   state.serial.taken = serial_taken;
 }
@@ -66,6 +69,16 @@ void without_power(Node& node, const Event& event) {
   node.actions.ignored(req::kN10Off);
 }
 
+void take(Node& node, const Event& event) {
+  if (const auto* heard = std::get_if<Heard>(&event)) return hear(node, heard->frame);
+  if (const auto* called = std::get_if<Called>(&event)) return call(node, called->call);
+  if (const auto* timer = std::get_if<TimerDue>(&event)) return timer_due(node, timer->timer);
+  if (const auto* done = std::get_if<SendDone>(&event)) return send_done(node, *done);
+  if (const auto* busy = std::get_if<LinkBusy>(&event)) return line_busy(node, *busy);
+  if (const auto* busy = std::get_if<AppBusy>(&event)) return app_busy(node, busy->busy);
+  power_off(node);
+}
+
 }  // namespace
 
 State start(const Config& config) {
@@ -84,13 +97,8 @@ void step(State& state, Ticks now, const Event& event, Actions& actions) {
   Node node{state, now, actions};
   if (std::holds_alternative<Reboot>(event)) return reboot(node);
   if (state.off) return without_power(node, event);
-  if (const auto* heard = std::get_if<Heard>(&event)) return hear(node, heard->frame);
-  if (const auto* called = std::get_if<Called>(&event)) return call(node, called->call);
-  if (const auto* timer = std::get_if<TimerDue>(&event)) return timer_due(node, timer->timer);
-  if (const auto* done = std::get_if<SendDone>(&event)) return send_done(node, *done);
-  if (const auto* busy = std::get_if<LinkBusy>(&event)) return line_busy(node, *busy);
-  if (const auto* busy = std::get_if<AppBusy>(&event)) return app_busy(node, busy->busy);
-  power_off(node);
+  take(node, event);
+  report_owed(node);
 }
 
 BoundedList<DueTimer, 2 + kAwaitedMax> timers(const State& state) {
@@ -100,6 +108,7 @@ BoundedList<DueTimer, 2 + kAwaitedMax> timers(const State& state) {
   }
   if (state.config.profile.ack_timeout_ticks != 0) {
     for (std::size_t i = 0; i < state.awaited.size(); ++i) {
+      if (state.awaited[i].due == 0) continue;  // It has not left.
       set.push({state.awaited[i].due, {TimerKind::kAck, static_cast<std::uint8_t>(i)}});
     }
   }

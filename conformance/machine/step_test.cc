@@ -199,6 +199,49 @@ TEST(JoinStep, J10_RolesIgnoreWhatIsNotTheirs) {
             (std::vector{ignored(req::kJ10Sink)}));
 }
 
+TEST(JoinStep, J3Address_NobodyHasAReservedIdOrTheSinks) {
+  const std::uint16_t nobodys[] = {0xFFFF, 0xFFFE, 0xFFFD, 1};
+  for (const std::uint16_t from : nobodys) {
+    Device sink(sink_config());
+    const State before = sink.state;
+    sink.hear(join_request(from, 100, kDescriptor));
+    EXPECT_EQ(sink.labels(), (std::vector{ignored(req::kJ3Address)})) << from;
+    EXPECT_EQ(sink.state, before);
+  }
+}
+
+TEST(JoinStep, J4Address_OffersOfWhatTheMoteIsNot) {
+  Device mote(mote_config(5));
+  mote.call(JoinIsland{kDescriptor}).done();
+  const State before = mote.state;
+  const Address offers[] = {{kIsland, 6},       {kIsland, 0xFFFF}, {kIsland, kNullDevid},
+                            {kBroadcastPid, 5}, {kLocalPid, 5},    {0xFFFD, 5}};
+  for (const Address& offer : offers) {
+    mote.hear(join_reply(5, offer, 0, mote.state.join.seq_num));
+    EXPECT_EQ(mote.labels(), (std::vector{ignored(req::kJ4Address)})) << offer.pid;
+    EXPECT_EQ(mote.state, before);
+  }
+  mote.hear(join_reply(5, {kIsland, 5}, 0, mote.state.join.seq_num));
+  EXPECT_EQ(mote.state.join.phase, Phase::kMember);
+}
+
+TEST(JoinStep, J6Sender_AckJoinThatContradictsItsFrame) {
+  Device sink(sink_config());
+  sink.hear(join_request(5, 100, kDescriptor)).done();
+  const State before = sink.state;
+  OwnFrame other_dest = ack_join({kIsland, 2}, {kIsland, 5}, 100, kDescriptor);
+  other_dest.dest = 1;
+  OwnFrame other_source = ack_join({kIsland, 1}, {kIsland, 5}, 100, kDescriptor);
+  other_source.src = 6;
+  const OwnFrame other_island = ack_join({kIsland, 1}, {kOther, 5}, 100, kDescriptor);
+  for (const OwnFrame& frame : {other_dest, other_source, other_island}) {
+    EXPECT_EQ(sink.hear(frame).labels(), (std::vector{ignored(req::kJ6Sender)}));
+    EXPECT_EQ(sink.state, before);
+  }
+  sink.hear(ack_join({kIsland, 1}, {kIsland, 5}, 100, kDescriptor));
+  EXPECT_NE(find_member(sink.state.sink, 5), nullptr);
+}
+
 TEST(JoinStep, ShortJoinMessagesAreIgnored) {
   Device sink(sink_config());
   Device mote(mote_config(5));
@@ -266,6 +309,24 @@ TEST(IslandId, N9Other_OtherConfigChangesNothing) {
   cut.payload.pop_back();
   EXPECT_EQ(sink.hear(cut).labels(), (std::vector{ignored(req::kWireConfig)}));
   EXPECT_EQ(sink.state, before);
+}
+
+TEST(IslandId, N9Other_ReservedIslandsAreNotTaken) {
+  constexpr std::uint16_t kReserved[] = {0xFFFD, 0xFFFE, 0xFFFF};
+  for (const std::uint16_t island : kReserved) {
+    Device sink(sink_config());
+    list_member(sink, 5);
+    const State before = sink.state;
+    EXPECT_EQ(sink.hear(set_island_id(island)).labels(), (std::vector{ignored(req::kN9Other)}));
+    EXPECT_EQ(sink.state, before);
+    Device base(base_config());
+    base.call(SetIslandId{island});
+    EXPECT_EQ(base.labels(), (std::vector{told(req::kN9Other)}));
+    EXPECT_FALSE(base.notice<OperationResult>().success);
+    EXPECT_EQ(base.state.island, kIsland);
+  }
+  Device sink(sink_config());
+  EXPECT_EQ(sink.hear(set_island_id(0xFFFC)).labels()[0], followed(req::kN9Set));
 }
 
 TEST(IslandId, BaseStationTellsItsSink) {

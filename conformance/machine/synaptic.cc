@@ -29,10 +29,16 @@ bool any_started(const Synaptic& synaptic) {
          std::any_of(synaptic.in.begin(), synaptic.in.end(), started);
 }
 
+// Ids hold no island, but peers do. (decision 130)
+bool is_in_island(const Channel& channel, Address own, std::uint16_t pid) {
+  const auto island = [own](std::uint16_t p) { return p == kLocalPid ? own.pid : p; };
+  return island(channel.peer.pid) == island(pid);
+}
+
 // A channel from a node to itself. Every sink is mote 1 of its island, so the devid alone says too
 // little.
-bool is_local(const Channel& out, Address own) {
-  return out.peer.devid == own.devid && (out.peer.pid == own.pid || out.peer.pid == kLocalPid);
+bool is_local(const Channel& channel, Address own) {
+  return channel.peer.devid == own.devid && is_in_island(channel, own, own.pid);
 }
 
 // One call on the channels of one node.
@@ -50,16 +56,17 @@ struct Caller {
   void begin_clock() {
     //= S6-CLOCK: Starting a channel again does not shift the clock of the others.
     if (synaptic.due != 0) return actions.followed(req::kS6Clock);
-    Ticks phase = 0;
+    synaptic.phase_ticks = 0;
     //= S2-PHASE: A mote's clock starts shifted by (devid - 1) * 30 ms.
     if (config.role == Role::kMote && own.devid > 1) {
-      phase = static_cast<Ticks>(own.devid - 1) * config.profile.synaptic_phase_ticks;
+      synaptic.phase_ticks =
+          static_cast<Ticks>(own.devid - 1) * config.profile.synaptic_phase_ticks;
       actions.followed(req::kS2Phase);
     }
-    synaptic.due = now + phase + synaptic.period_ticks;
+    synaptic.due = now + synaptic.phase_ticks + synaptic.period_ticks;
   }
   void end_clock() {
-    if (!any_started(synaptic)) synaptic.due = 0;
+    if (!any_started(synaptic)) synaptic.due = synaptic.phase_ticks = 0;
   }
 
   // An output sends at its first tick in either mode. An input has nothing new yet.
@@ -84,6 +91,12 @@ struct Caller {
     if (!room || call.size == 0 || before + call.size > kConnectionsMax) {
       return actions.notify(ChannelResult{id, false}, req::kS1Limit);
     }
+    //= S1-ID: Creating a channel returns its id: source devid in the upper, destination devid in
+    //= the lower 16 bits.
+    // So one to the same devid in another island would be taken for this one.
+    if (existing != nullptr && !is_in_island(*existing, own, call.peer.pid)) {
+      return actions.notify(ChannelResult{id, false}, req::kS1Id);
+    }
     if (existing != nullptr) {  // Peer and mode stay those of its creation.
       existing->size = static_cast<std::uint8_t>(before + call.size);
       return actions.notify(ChannelResult{id, true}, req::kS1Enlarge);
@@ -91,6 +104,8 @@ struct Caller {
     Channel channel;
     channel.id = id;
     channel.peer = call.peer;
+    //= S1-MODE: The mode given at creation, reliable or power-save, is the one in which the channel
+    //= sends.
     channel.mode = call.mode;
     channel.size = call.size;
     list.push(channel);
@@ -108,10 +123,12 @@ struct Caller {
     Channel* const out = find(synaptic.out, call.id);
     Channel* const in = find(synaptic.in, call.id);
     if (out == nullptr && in == nullptr) return result(false, req::kS6Disposed);
+    //= S1-START: start_syn_channel starts that channel: its values are sent, or its data signalled,
+    //= from the next tick on.
     if (out != nullptr) start(*out, true);
     if (in != nullptr) start(*in, false);
     begin_clock();
-    result(true, out != nullptr ? req::kS2Send : req::kS2Signal);
+    result(true, req::kS1Start);
   }
 
   void operator()(const StopChannel& call) {
@@ -126,17 +143,19 @@ struct Caller {
   }
 
   void operator()(const StartAllChannels&) {
+    //= S1-ALL: start_all_syn_channels and stop_all_syn_channels start and stop every channel of the
+    //= node.
     for (Channel& channel : synaptic.out) start(channel, true);
     for (Channel& channel : synaptic.in) start(channel, false);
     if (any_started(synaptic)) begin_clock();
-    result(true, req::kS2Send);
+    result(true, req::kS1All);
   }
 
   void operator()(const StopAllChannels&) {
     for (Channel& channel : synaptic.out) stop(channel);
     for (Channel& channel : synaptic.in) stop(channel);
     end_clock();
-    result(true, req::kS6Stopped);
+    result(true, req::kS1All);
   }
 
   void operator()(const WriteOutput& call) {
@@ -165,7 +184,7 @@ struct Caller {
     if (call.ticks == 0) return result(false, req::kS1Clock);
     //= S1-CLOCK: set_time_step sets the period of the clock, 500 ms by default.
     synaptic.period_ticks = call.ticks;
-    if (synaptic.due != 0) synaptic.due = now + call.ticks;
+    if (synaptic.due != 0) synaptic.due = now + synaptic.phase_ticks + call.ticks;
     result(true, req::kS1Clock);
   }
 
@@ -176,11 +195,12 @@ struct Caller {
 };
 
 // The other end of a channel from a node to itself.
-void hand_over(const Channel& out, ChannelList& inputs, Actions& actions) {
+void hand_over(const Channel& out, ChannelList& inputs, Address own, Actions& actions) {
   //= S4-LOCAL: A channel from a node to itself hands its values over at the tick without sending
   //= anything.
   Channel* const in = find(inputs, out.id);
-  if (in == nullptr || !in->started) return actions.ignored(req::kS4Local);
+  const bool takes = in != nullptr && in->started && is_local(*in, own);
+  if (!takes) return actions.ignored(req::kS4Local);
   std::copy_n(out.value_bits.begin(), std::min(in->size, out.size), in->value_bits.begin());
   in->fresh = true;
   actions.followed(req::kS4Local);
@@ -199,9 +219,9 @@ void call_synaptic(Synaptic& synaptic, const Config& config, Address own, Ticks 
 }
 
 void hear_synaptic(Synaptic& synaptic, Address own, Address src, Bytes floats, Actions& actions) {
-  const ChannelId id = channel_id(src.devid, own.devid);  // An id holds no island.
+  const ChannelId id = channel_id(src.devid, own.devid);
   Channel* const in = find(synaptic.in, id);
-  if (in == nullptr) {
+  if (in == nullptr || !is_in_island(*in, own, src.pid)) {
     //= S5-UNKNOWN: Data for an unknown channel is reported by its status and not stored.
     return actions.notify(SynDataReceived{id, DataStatus::kUnknownChannel}, req::kS5Unknown);
   }
@@ -229,10 +249,12 @@ void tick_synaptic(Synaptic& synaptic, Address own, Ticks now, SynapticSends& se
       //= no value changed since the last tick.
       actions.followed(req::kS3Unchanged);
     } else if (is_local(out, own)) {
-      hand_over(out, synaptic.in, actions);
+      hand_over(out, synaptic.in, own, actions);
     } else {
+      //= S2-SEND: At each tick every started output channel in reliable mode, but for a channel to
+      //= itself, sends its values to its destination.
       const ReqId requirement = power_save ? req::kS3Changed : req::kS2Send;
-      sends.push({out.peer, out.size, out.value_bits, requirement});
+      sends.push({out.id, out.peer, out.size, out.value_bits, requirement});
     }
   }
   for (Channel& in : synaptic.in) {
@@ -245,6 +267,15 @@ void tick_synaptic(Synaptic& synaptic, Address own, Ticks now, SynapticSends& se
   }
   //= S2-TICK: A channel sends at most once a tick, and ticks are no closer than the clock's period.
   synaptic.due = now + synaptic.period_ticks;
+  synaptic.phase_ticks = 0;
+}
+
+void keep_change(Synaptic& synaptic, ChannelId id) {
+  //= S3-CHANGED: In power-save mode a tick sends all values when any of them changed since the last
+  //= tick.
+  // The receiver would not know of the change before the next one.
+  Channel* const out = find(synaptic.out, id);
+  if (out != nullptr) out->fresh = true;
 }
 
 }  // namespace rubric::machine

@@ -16,6 +16,7 @@ void hear_synaptic(Synaptic& synaptic, Address own, Address src, Bytes floats, A
 
 /// What a tick wants sent.
 struct SynapticSend {
+  ChannelId id = 0;
   Address dest;
   std::uint8_t size = 0;
   std::array<std::uint32_t, kConnectionsMax> value_bits;
@@ -25,5 +26,8 @@ using SynapticSends = BoundedList<SynapticSend, kChannelsRoom>;
 /// The clock ticks: S2, S3, S4, S6. Sets the next tick.
 void tick_synaptic(Synaptic& synaptic, Address own, Ticks now, SynapticSends& sends,
                    Actions& actions);
+
+/// What a tick wanted sent was refused: a later tick sends it. (S3-CHANGED)
+void keep_change(Synaptic& synaptic, ChannelId id);
 
 }  // namespace rubric::machine

@@ -26,12 +26,29 @@ TEST_F(SynapticClock, S2_Phase_OfMotesOnly) {
   }
 }
 
+TEST_F(SynapticClock, S2_Phase_StaysWhenTheStepIsSetBeforeTheFirstTick) {
+  own_.devid = 4;
+  create_out(1);
+  call(StartChannel{id_});
+  now_ += 50;
+  call(SetTimeStep{200});
+  EXPECT_EQ(synaptic_.due, now_ + 90 + 200);
+  tick();
+  EXPECT_EQ(synaptic_.due, now_ + 200);
+  now_ += 50;
+  call(SetTimeStep{300});
+  EXPECT_EQ(synaptic_.due, now_ + 300);
+  call(StopAllChannels{});
+  call(StartAllChannels{});
+  EXPECT_EQ(synaptic_.due, now_ + 90 + 300);
+}
+
 TEST_F(SynapticClock, S2_Send_EveryTickUnchangedOrNot) {
   create_out(3);
   write(kToSink, 0, 1.0F);
   write(kToSink, 2, -2.5F);
   EXPECT_TRUE(call(StartChannel{kToSink}));
-  EXPECT_EQ(rule(), req::kS2Send);
+  EXPECT_EQ(rule(), req::kS1Start);
   for (int i = 0; i < 3; ++i) {
     EXPECT_TRUE(tick().empty());
     ASSERT_EQ(sends_.size(), 1U);
@@ -78,7 +95,7 @@ TEST_F(SynapticClock, S2_Tick_WithoutClockNothingHappens) {
 TEST_F(SynapticClock, S2_Signal_NewThenOld) {
   create_in(1);
   EXPECT_TRUE(call(StartChannel{kFromPeer}));
-  EXPECT_EQ(rule(), req::kS2Signal);
+  EXPECT_EQ(rule(), req::kS1Start);
   EXPECT_EQ(tick(), (std::vector<Signal>{{kFromPeer, DataStatus::kOld}}));
   EXPECT_EQ(rule(), req::kS3Old);
   hear(kPeer, {42});
@@ -167,6 +184,31 @@ TEST_F(SynapticClock, S4_Local_WithoutInputNothingIsSent) {
   EXPECT_TRUE(tick().empty());
   EXPECT_TRUE(sends_.empty());
   EXPECT_EQ(rule(), req::kS4Local);
+}
+
+TEST_F(SynapticClock, S3_Changed_RefusedChangeGoesWithTheNextTick) {
+  create_out(1, Mode::kPowerSave);
+  create_out(1, Mode::kPowerSave, {11, 8});
+  call(StartAllChannels{});
+  tick();
+  ASSERT_EQ(sends_.size(), 2U);
+  keep_change(synaptic_, sends_[1].id);
+  tick();
+  ASSERT_EQ(sends_.size(), 1U);
+  EXPECT_EQ(sends_[0].dest.devid, 8);
+  tick();
+  EXPECT_TRUE(sends_.empty());
+}
+
+// Its id is that of the channel to itself, but the other end is elsewhere.
+TEST_F(SynapticClock, S4_Local_InputFromAnotherIslandTakesNothing) {
+  create_out(1, Mode::kReliable, kOwn);
+  create_in(1, {12, kOwn.devid});
+  EXPECT_EQ(id_, kLocal);
+  write(kLocal, 0, 1.0F);
+  call(StartAllChannels{});
+  EXPECT_EQ(tick(), (std::vector<Signal>{{kLocal, DataStatus::kOld}}));
+  EXPECT_EQ(read_bits(kLocal, 0), 0U);
 }
 
 TEST_F(SynapticClock, S4_SinkOfAnotherIslandIsNotLocal) {

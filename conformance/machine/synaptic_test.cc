@@ -12,6 +12,50 @@ TEST_F(SynapticTest, S1_Id_SourceAboveDestination) {
   EXPECT_EQ(id_, kFromPeer);
 }
 
+TEST_F(SynapticTest, S1_Id_HoldsNoIsland) {
+  EXPECT_TRUE(create_out(3));
+  EXPECT_TRUE(create_in(3));
+  const Synaptic before = synaptic_;
+  EXPECT_FALSE(create_out(1, Mode::kReliable, {12, kSink.devid}));
+  EXPECT_EQ(rule(), req::kS1Id);
+  EXPECT_FALSE(create_in(1, {12, kPeer.devid}));
+  EXPECT_TRUE(synaptic_ == before);
+  EXPECT_TRUE(create_in(1, {kLocalPid, kPeer.devid}));  // The same island by its other name.
+  EXPECT_EQ(rule(), req::kS1Enlarge);
+}
+
+// Between two sinks both directions have one id: one call meets both. (decision 130)
+TEST_F(SynapticTest, S1_Start_BothEndsOfOneId) {
+  own_ = kSink;
+  config_.role = Role::kSink;
+  EXPECT_TRUE(create_out(1, Mode::kReliable, {12, 1}));
+  const ChannelId out = id_;
+  EXPECT_TRUE(create_in(1, {12, 1}));
+  EXPECT_EQ(id_, out);
+  EXPECT_TRUE(call(StartChannel{out}));
+  EXPECT_EQ(rule(), req::kS1Start);
+  EXPECT_TRUE(synaptic_.out[0].started && synaptic_.in[0].started);
+  EXPECT_TRUE(call(StopChannel{out}));
+  EXPECT_FALSE(synaptic_.out[0].started || synaptic_.in[0].started);
+  EXPECT_TRUE(call(DisposeChannel{out}));
+  EXPECT_TRUE(synaptic_.out.empty() && synaptic_.in.empty());
+}
+
+TEST_F(SynapticTest, S5_Unknown_SameMoteOfAnotherIsland) {
+  create_in(1);
+  create_in(1, {kLocalPid, 6});
+  call(StartAllChannels{});
+  const Synaptic before = synaptic_;
+  for (const std::uint16_t devid : {kPeer.devid, std::uint16_t{6}}) {
+    hear({12, devid}, {1});
+    EXPECT_EQ(rule(), req::kS5Unknown);
+    EXPECT_TRUE(synaptic_ == before);
+    hear({11, devid}, {1});
+    EXPECT_EQ(rule(), req::kS1Read);
+    synaptic_ = before;
+  }
+}
+
 TEST_F(SynapticTest, S1_Enlarge_CreatingAgainAddsConnections) {
   EXPECT_TRUE(create_out(3));
   write(kToSink, 2, 1.5F);
@@ -212,6 +256,7 @@ TEST_F(SynapticTest, S6_Others_StopOneStopAll) {
   ASSERT_EQ(sends_.size(), 1U);
   EXPECT_EQ(sends_[0].dest.devid, 8);
   EXPECT_TRUE(call(StopAllChannels{}));
+  EXPECT_EQ(rule(), req::kS1All);
   EXPECT_EQ(synaptic_.due, 0U);
   EXPECT_TRUE(call(StopAllChannels{}));
 }

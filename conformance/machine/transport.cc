@@ -22,12 +22,16 @@ std::uint16_t xorshift(std::uint16_t x) {
 
 }  // namespace
 
-void await_ack(AwaitedList& list, const Profile& profile, Ticks now, std::uint16_t seq_num,
-               std::uint8_t app_id, Address dest) {
-  if (list.full()) return;
+void await_ack(AwaitedList& list, std::uint16_t seq_num, std::uint8_t app_id, Address dest) {
+  if (!list.full()) list.push({seq_num, app_id, dest, 0});
+}
+
+void start_ack_timer(AwaitedList& list, const Profile& profile, Ticks now, std::uint16_t seq_num) {
   // Without a timeout the ack is awaited for ever, as release 1.0 does: due 0 is no timer.
-  const Ticks due = profile.ack_timeout_ticks == 0 ? 0 : now + profile.ack_timeout_ticks;
-  list.push({seq_num, app_id, dest, due});
+  if (profile.ack_timeout_ticks == 0) return;
+  for (Awaited& awaited : list) {
+    if (awaited.seq_num == seq_num) awaited.due = now + profile.ack_timeout_ticks;
+  }
 }
 
 void hear_ack(AwaitedList& list, Address from, std::uint8_t app_id, std::uint16_t seq_num,
@@ -49,7 +53,9 @@ void hear_ack(AwaitedList& list, Address from, std::uint8_t app_id, std::uint16_
 }
 
 void ack_timeout(AwaitedList& list, std::size_t index, Actions& actions) {
-  if (index >= list.size()) return actions.ignored(req::kT3Once);
+  //= T3-TIMEOUT: A reliable message without its ack is signalled as receive_ack(failure) when its
+  //= timeout expires, not before.
+  if (index >= list.size() || list[index].due == 0) return actions.ignored(req::kT3Once);
   const Awaited awaited = list[index];
   list.erase(index);
   actions.notify(AckReceived{awaited.app_id, awaited.seq_num, false}, req::kT3Timeout);

@@ -8,9 +8,10 @@ namespace rubric::machine {
 
 using AwaitedList = BoundedList<Awaited, kAwaitedMax>;
 
-/// A reliable message leaves: its ack is awaited from now on. Not when the list is full.
-void await_ack(AwaitedList& list, const Profile& profile, Ticks now, std::uint16_t seq_num,
-               std::uint8_t app_id, Address dest);
+/// A reliable message is accepted: its ack is awaited. Not when the list is full.
+void await_ack(AwaitedList& list, std::uint16_t seq_num, std::uint8_t app_id, Address dest);
+/// It leaves: its time begins. (decision 110)
+void start_ack_timer(AwaitedList& list, const Profile& profile, Ticks now, std::uint16_t seq_num);
 /// An ack arrives: T3-SUCCESS, T3-MATCH, T3-ONCE, T3-SENDER.
 void hear_ack(AwaitedList& list, Address from, std::uint8_t app_id, std::uint16_t seq_num,
               Actions& actions);

@@ -16,6 +16,13 @@ constexpr std::uint8_t kControl = 10;
 constexpr std::uint8_t kMockup = 5;
 constexpr std::uint8_t kConnless = 3;
 
+// A reliable message that the line took at once.
+void sent(AwaitedList& list, const Profile& profile, Ticks now, std::uint16_t seq_num,
+          std::uint8_t app_id, Address dest) {
+  await_ack(list, seq_num, app_id, dest);
+  start_ack_timer(list, profile, now, seq_num);
+}
+
 struct AckCase {
   const char* name;
   Address dest;          // Of the message.
@@ -46,7 +53,7 @@ class HearAck : public testing::TestWithParam<AckCase> {};
 TEST_P(HearAck, CountsOrChangesNothing) {
   const AckCase& c = GetParam();
   AwaitedList list;
-  await_ack(list, Profile{}, 50, 100, kControl, c.dest);
+  sent(list, Profile{}, 50, 100, kControl, c.dest);
   const AwaitedList before = list;
   Actions actions;
   hear_ack(list, c.from, c.app_id, c.seq_num, actions);
@@ -71,7 +78,7 @@ INSTANTIATE_TEST_SUITE_P(Transport, HearAck, testing::ValuesIn(kAcks),
 
 TEST(Awaited, T3_Once_DuplicateAndTimeoutAfterAckChangeNothing) {
   AwaitedList list;
-  await_ack(list, Profile{}, 0, 7, kControl, kMote4);
+  sent(list, Profile{}, 0, 7, kControl, kMote4);
   Actions actions;
   hear_ack(list, kMote4, kControl, 7, actions);
   EXPECT_EQ(actions.notices().size(), 1U);
@@ -84,7 +91,7 @@ TEST(Awaited, T3_Once_DuplicateAndTimeoutAfterAckChangeNothing) {
 
 TEST(Awaited, T3_Once_LateAckChangesNothing) {
   AwaitedList list;
-  await_ack(list, Profile{}, 0, 7, kControl, kMote4);
+  sent(list, Profile{}, 0, 7, kControl, kMote4);
   Actions actions;
   ack_timeout(list, 0, actions);
   ASSERT_EQ(actions.notices().size(), 1U);
@@ -96,7 +103,7 @@ TEST(Awaited, T3_Timeout_IsFailureAfterTheProfilesTime) {
   AwaitedList list;
   Profile profile;
   profile.ack_timeout_ticks = 640;
-  await_ack(list, profile, 1000, 7, kControl, kMote4);
+  sent(list, profile, 1000, 7, kControl, kMote4);
   EXPECT_EQ(list[0].due, 1640U);
   Actions actions;
   ack_timeout(list, 0, actions);
@@ -113,7 +120,7 @@ TEST(Awaited, T3_Timeout_NoneInAProfileWithout) {
   AwaitedList list;
   Profile profile;
   profile.ack_timeout_ticks = 0;
-  await_ack(list, profile, 1000, 7, kControl, kMote4);
+  sent(list, profile, 1000, 7, kControl, kMote4);
   EXPECT_EQ(list[0].due, 0U);
 }
 
@@ -121,7 +128,7 @@ TEST(Awaited, T4_Several_EachAckEndsTheMessageItNames) {
   AwaitedList list;
   for (std::uint16_t i = 0; i < 4; ++i) {
     const auto devid = static_cast<std::uint16_t>(4 + i);
-    await_ack(list, Profile{}, i, static_cast<std::uint16_t>(100 + i), kControl, {11, devid});
+    sent(list, Profile{}, i, static_cast<std::uint16_t>(100 + i), kControl, {11, devid});
   }
   Actions actions;
   hear_ack(list, {11, 6}, kControl, 102, actions);
@@ -145,7 +152,7 @@ TEST(Awaited, T4_Several_EachAckEndsTheMessageItNames) {
 TEST(Awaited, FullListKeepsWhatItHas) {
   AwaitedList list;
   for (std::uint16_t i = 0; i < kAwaitedMax + 1; ++i) {
-    await_ack(list, Profile{}, 0, i, kControl, kMote4);
+    sent(list, Profile{}, 0, i, kControl, kMote4);
   }
   EXPECT_EQ(list.size(), kAwaitedMax);
   EXPECT_FALSE(is_awaited(list, kAwaitedMax));
@@ -162,9 +169,9 @@ TEST(Sequence, N12_Error_CountingSkipsTheErrorValue) {
 
 TEST(Sequence, N12_Reuse_CountingSkipsAwaitedNumbers) {
   AwaitedList list;
-  await_ack(list, Profile{}, 0, 6, kControl, kMote4);
-  await_ack(list, Profile{}, 0, 7, kControl, kMote4);
-  await_ack(list, Profile{}, 0, 9, kControl, kMote4);
+  sent(list, Profile{}, 0, 6, kControl, kMote4);
+  sent(list, Profile{}, 0, 7, kControl, kMote4);
+  sent(list, Profile{}, 0, 9, kControl, kMote4);
   Sequence sequence{5, false};
   EXPECT_EQ(next_seq_num(sequence, list), 8);
   EXPECT_EQ(next_seq_num(sequence, list), 10);
@@ -184,7 +191,7 @@ TEST(Sequence, N12_Reuse_RandomSkipsAwaitedNumbers) {
   const AwaitedList none;
   AwaitedList list;
   for (std::size_t i = 0; i < kAwaitedMax; ++i) {
-    await_ack(list, Profile{}, 0, next_seq_num(ahead, none), kControl, kMote4);
+    sent(list, Profile{}, 0, next_seq_num(ahead, none), kControl, kMote4);
   }
   const std::uint16_t free = next_seq_num(ahead, none);
   Sequence sequence{77, true};
