@@ -144,6 +144,13 @@ const Output* NodeLog::take(const trace::Line& line, const Window& window,
   return nullptr;
 }
 
+void NodeLog::allow(const trace::Line& line, const Window& window,
+                    const trace::Bindings& bindings) {
+  if (const Output* output = forbidden(line, window, bindings)) {
+    seen_[static_cast<std::size_t>(output - target_->outputs().data())].taken = true;
+  }
+}
+
 const Output* NodeLog::forbidden(const trace::Line& line, const Window& window,
                                  const trace::Bindings& bindings) const {
   const std::vector<Output>& outputs = target_->outputs();

@@ -33,6 +33,8 @@ class NodeLog {
             const trace::Bindings& bindings);
   /// The output that a `>` line takes, and binds; null: none so far.
   const Output* take(const trace::Line& line, const Window& window, trace::Bindings& bindings);
+  /// A `?>` line takes the first output in its window that no line has taken, in whatever order.
+  void allow(const trace::Line& line, const Window& window, const trace::Bindings& bindings);
   /// The first output that breaks a `!>` line, or null.
   const Output* forbidden(const trace::Line& line, const Window& window,
                           const trace::Bindings& bindings) const;

@@ -53,7 +53,7 @@ class Run {
   }
 
  private:
-  struct Forbidden {
+  struct Pending {  // Looked at when the case is over.
     const Line* line;
     Window window;
   };
@@ -113,7 +113,7 @@ class Run {
     const Window window = window_of(line);
     NodeLog* node = node_of(line);
     if (!node) {  // Faults of a link, and what nodes do that are not under test: for the reader.
-      if (line.op != Op::kMustNot) matched(line, window.from);
+      if (line.op != Op::kMustNot && line.op != Op::kMay) matched(line, window.from);
       return true;
     }
     switch (line.op) {
@@ -124,6 +124,9 @@ class Run {
         return expect(*node, line, window, result);
       case Op::kMustNot:
         forbidden_.push_back({&line, window});
+        return true;
+      case Op::kMay:
+        allowed_.push_back({&line, window});
         return true;
       default:
         return true;
@@ -159,10 +162,13 @@ class Run {
 
   void judge_forbidden(CaseResult& result) {
     Ticks end = now_;
-    for (const Forbidden& one : forbidden_) end = std::max(end, one.window.to);
+    for (const Pending& one : forbidden_) end = std::max(end, one.window.to);
     while (const auto next = next_until(end)) run_until(*next);
     run_until(end);
-    for (const Forbidden& one : forbidden_) {
+    for (const Pending& one : allowed_) {
+      node_of(*one.line)->allow(*one.line, one.window, bindings_);
+    }
+    for (const Pending& one : forbidden_) {
       const Output* output = node_of(*one.line)->forbidden(*one.line, one.window, bindings_);
       if (!output) continue;
       fail(result, *one.line, output->time,
@@ -196,7 +202,8 @@ class Run {
   const trace::Case& case_;
   const trace::Scope scope_;
   std::vector<NodeLog> nodes_;
-  std::vector<Forbidden> forbidden_;
+  std::vector<Pending> forbidden_;
+  std::vector<Pending> allowed_;
   std::map<std::string, Ticks, std::less<>> labels_;
   trace::Bindings bindings_;
   Ticks previous_ = 0;

@@ -3,8 +3,8 @@
 //
 // Lines are worked in their order. `<` happens at its time, or at once if that has passed. `>`
 // takes the first output of that node and link, behind the one taken last, that matches in time.
-// `!>` forbids outputs that no `>` took; it is judged when the case is over. What no line names is
-// free.
+// `?>` takes one output more, if there is one, when the case is over; `!>` forbids outputs that no
+// line took, and is judged after that. What no line names is free.
 #pragma once
 
 #include <cstdint>

@@ -168,6 +168,9 @@ class FileCheck {
     if (line.op == Op::kMustNot) {
       report_(line.place, "label " + quoted(line.label) + " at what does not happen");
     }
+    if (line.op == Op::kMay) {
+      report_(line.place, "label " + quoted(line.label) + " at what need not happen");
+    }
     const auto [at, fresh] = labels.emplace(line.label, line.place);
     if (!fresh) {
       report_(line.place, "label " + quoted(line.label) + " stands already in line " +

@@ -26,7 +26,8 @@ std::string leaf_misfit(const Value& value, const Domain& domain) {
              (number && value.number >= domain.min && value.number <= domain.max);
       break;
     case Value::Kind::kRange:
-      fits = number && value.number >= domain.min && value.max <= domain.max;
+      fits = number && (!value.text.empty() ||
+                        (value.number >= domain.min && value.max <= domain.max));
       break;
     case Value::Kind::kReal: fits = domain.kind == Domain::Kind::kReal; break;
     case Value::Kind::kNames: fits = number && domain.number_of(value.text).has_value(); break;
@@ -209,10 +210,14 @@ class MessageCheck {
 
   void variables(const Value& value, Place place) {
     for (const Value& item : value.items) variables(item, place);
+    const bool range = value.is(Value::Kind::kRange) && !value.text.empty();
+    if (range && !must_be_whole() && !bound_.contains(value.text)) {
+      fail(place, "no line above binds $" + value.text);
+    }
     if (!value.is(Value::Kind::kVariable) || bound_.contains(value.text)) return;
     const bool here = std::find(binds_.begin(), binds_.end(), value.text) != binds_.end();
     if (here) return;
-    if (value.negated || must_be_whole() || line_.op == Op::kMustNot) {
+    if (value.negated || must_be_whole() || line_.op == Op::kMustNot || line_.op == Op::kMay) {
       fail(place, "no line above binds $" + value.text);
     } else {
       binds_.push_back(value.text);
@@ -248,7 +253,8 @@ class MessageCheck {
     Line line = line_;
     line.bytes.reset();
     const auto soften = [](Value& value) {
-      if (value.is(Value::Kind::kVariable)) value = Value::any();
+      const bool range = value.is(Value::Kind::kRange) && !value.text.empty();
+      if (range || value.is(Value::Kind::kVariable)) value = Value::any();
     };
     for (FieldValue& one : line.message.fields) {
       for (Value& item : one.value.items) soften(item);

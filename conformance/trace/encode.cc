@@ -65,8 +65,9 @@ class Builder {
 
   // Some value that the pattern allows.
   static Value sample(const Value& value, const Slot& slot) {
-    if (value.is(Value::Kind::kRange)) return Value::of(value.number);
-    if (!value.is(Value::Kind::kAny) && !value.is(Value::Kind::kVariable)) {
+    const bool range = value.is(Value::Kind::kRange);
+    if (range && value.text.empty()) return Value::of(value.number);
+    if (!range && !value.is(Value::Kind::kAny) && !value.is(Value::Kind::kVariable)) {
       Value copy = value;
       Slot item;
       item.domain = slot.kind == Slot::Kind::kList ? slot.domain : Domain::devid();

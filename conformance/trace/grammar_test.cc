@@ -98,7 +98,7 @@ TEST(Grammar, WhatItDerivesParses) {
 // A character changed here and there: neither accepts what the other refuses.
 TEST(Grammar, RefusesWhatTheParserRefuses) {
   std::mt19937 random(2);
-  const std::string characters = " ()[]!*.=:;|%$@+-<>\"x0aJ_\\";
+  const std::string characters = " ()[]!?*.=:;|%$@+-<>\"x0aJ_\\";
   const std::vector<std::string> lines = lines_of(examples()[0] + examples()[1]);
   int refused = 0;
   for (int i = 0; i < 30000; ++i) {

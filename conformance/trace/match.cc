@@ -82,7 +82,8 @@ class Matcher {
   std::string describe(const Value& want) const {
     std::string text = value_text(want);
     const auto add = [&](const Value& value) {
-      if (!value.is(Value::Kind::kVariable)) return;
+      const bool range = value.is(Value::Kind::kRange) && !value.text.empty();
+      if (!range && !value.is(Value::Kind::kVariable)) return;
       const Value* bound = bindings_.find(value.text);
       text += bound ? " ($" + value.text + " = " + value_text(*bound) + ")"
                     : " ($" + value.text + " is not bound)";
@@ -127,7 +128,16 @@ class Matcher {
 
   bool is(const Value& want, const Leaf& leaf) {
     if (want.is(Value::Kind::kVariable)) return bound(want, leaf.value());
+    if (want.is(Value::Kind::kRange) && !want.text.empty()) return near(want, leaf);
     return same(want, leaf) != want.negated;
+  }
+
+  // A range that is counted from what a variable is bound to; with nothing bound it never matches.
+  bool near(const Value& want, const Leaf& leaf) const {
+    const Value* base = bindings_.find(want.text);
+    if (!base || !base->is(Value::Kind::kNumber)) return false;
+    return same(Value::range(base->number + want.number, base->number + want.max), leaf) !=
+           want.negated;
   }
 
   // The first use binds.

@@ -30,8 +30,8 @@ struct Match {
 };
 
 /// Holds `seen` against the message of a line, its AM addresses and exact bytes. Time, node and
-/// link are not looked at. Only where all matches are variables bound that were not yet; `!$q` with
-/// nothing bound to q never matches.
+/// link are not looked at. Only where all matches are variables bound that were not yet; `!$q` and
+/// `$q+1..$q+2` with nothing bound to q never match.
 Match match(const Line& line, const Concrete& seen, Bindings& bindings);
 /// The message alone.
 Match match(const Message& pattern, const Concrete& seen, Bindings& bindings);

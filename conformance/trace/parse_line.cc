@@ -69,7 +69,7 @@ void parse_op(Scanner& in, Line& line) {
   const std::string who = take_name(in, "a node or a link", true);
   in.skip_blanks();
   const std::string_view op = in.word();
-  for (const Op known : {Op::kGiven, Op::kEmits, Op::kMustNot, Op::kLost, Op::kDup}) {
+  for (const Op known : {Op::kGiven, Op::kEmits, Op::kMustNot, Op::kMay, Op::kLost, Op::kDup}) {
     if (op != op_text(known)) continue;
     line.op = known;
     if (is_fault(known)) {
@@ -80,8 +80,8 @@ void parse_op(Scanner& in, Line& line) {
     }
     return;
   }
-  if (op.empty()) in.fail("expected <, >, !>, lost or dup");
-  in.fail_at(op, "expected <, >, !>, lost or dup, given " + quoted(op));
+  if (op.empty()) in.fail("expected <, >, !>, ?>, lost or dup");
+  in.fail_at(op, "expected <, >, !>, ?>, lost or dup, given " + quoted(op));
 }
 
 Value am_side(Scanner& in, std::string_view text) {

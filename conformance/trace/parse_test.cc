@@ -117,7 +117,7 @@ TEST(Parse, LinksByTheirNames) {
 TEST(Parse, AllMistakesAtOnceInOrderOfPlace) {
   EXPECT_EQ(line_errors("0 m5 < app jion()\n\n  5 m9 ? rA\n1 m5 > rA *\n2 m9 !> rA *\n"),
             "t.rtr:5:12: unknown message 'jion' (did you mean 'join'?)\n"
-            "t.rtr:7:8: expected <, >, !>, lost or dup, given '?'\n"
+            "t.rtr:7:8: expected <, >, !>, ?>, lost or dup, given '?'\n"
             "t.rtr:9:1: no %node 'm9'\n");
 }
 

@@ -43,6 +43,7 @@ Value scalar() {
     case 2: {
       const std::int64_t least = *inRange(-300, 300);
       value = Value::range(least, least + *inRange(0, 300));
+      if (coin()) value.text = name();
       break;
     }
     case 3: value = Value::real(*rc::gen::arbitrary<float>()); break;
@@ -132,7 +133,8 @@ Line any_line() {
   Line line;
   if (coin()) line.label = name();
   line.time = any_time();
-  line.op = *rc::gen::element(Op::kGiven, Op::kEmits, Op::kMustNot, Op::kLost, Op::kDup);
+  line.op = *rc::gen::element(Op::kGiven, Op::kEmits, Op::kMustNot, Op::kMay, Op::kLost,
+                              Op::kDup);
   if (!is_fault(line.op)) line.node = pick({"m5", "*", "5", "a.b-c", "power"});
   line.link = pick({"rA", "serA", "peis", "app", "*", "power"});
   if (coin()) line.am = AmAddresses{am_side(), am_side()};

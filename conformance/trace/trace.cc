@@ -60,6 +60,12 @@ Value Value::range(std::int64_t min, std::int64_t max) {
   return value;
 }
 
+Value Value::range(std::string_view variable, std::int64_t min, std::int64_t max) {
+  Value value = range(min, max);
+  value.text = variable;
+  return value;
+}
+
 Value Value::real(float number) {
   if (std::isnan(number)) return of_kind(Kind::kReal, "nan");
   if (std::isinf(number)) return of_kind(Kind::kReal, number < 0 ? "-inf" : "inf");
@@ -159,6 +165,7 @@ std::string_view op_text(Op op) {
     case Op::kGiven: return "<";
     case Op::kEmits: return ">";
     case Op::kMustNot: return "!>";
+    case Op::kMay: return "?>";
     case Op::kLost: return "lost";
     case Op::kDup: return "dup";
   }

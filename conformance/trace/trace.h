@@ -29,7 +29,8 @@ struct Value {
   enum class Kind : std::uint8_t {
     kAny,       ///< `*`
     kNumber,    ///< `7`, `-7`, `0x1f`
-    kRange,     ///< `5..9`: a number from `number` to `max`
+    kRange,     ///< `5..9`: a number from `number` to `max`; `$t+5..$t+9`: `text` names t, and both
+                ///< are counted from what it is bound to
     kReal,      ///< `0.5`, `nan`, `-inf`; `text` as it is written
     kNames,     ///< `temp`, `light|temp`; `text`: an enumerator, or bits of a mask
     kBytes,     ///< `x0a0b`; `text` holds the bytes themselves
@@ -51,6 +52,8 @@ struct Value {
   static Value any() { return {}; }
   static Value of(std::int64_t number);
   static Value range(std::int64_t min, std::int64_t max);
+  /// From min to max beyond what the variable is bound to.
+  static Value range(std::string_view variable, std::int64_t min, std::int64_t max);
   /// As short as binary32 allows.
   static Value real(float number);
   /// "temp" or "light|temp".
@@ -134,6 +137,7 @@ enum class Op : std::uint8_t {
   kGiven,    ///< `<`: given to the node.
   kEmits,    ///< `>`: the node must emit it.
   kMustNot,  ///< `!>`: the node must not emit it.
+  kMay,      ///< `?>`: the node may emit it, once for each such line; `!>` lines do not see it.
   kLost,     ///< The link loses it.
   kDup,      ///< The link doubles it.
 };

@@ -132,6 +132,34 @@ std::string read_number(std::string_view text, Value& out) {
          std::string(text) + "'";
 }
 
+// `$t+5` or `$t-5`.
+bool read_shift(std::string_view text, std::string& name, std::int64_t& shift) {
+  const std::size_t sign = text.find_first_of("+-");
+  if (!text.starts_with('$') || sign == std::string_view::npos) return false;
+  name = text.substr(1, sign - 1);
+  const std::string_view digits = text.substr(sign + 1);
+  if (!is_name(name) || digits.empty() || !is_digit(digits[0]) || digits.starts_with("0x") ||
+      !read_integer(digits, shift)) {
+    return false;
+  }
+  if (text[sign] == '-') shift = -shift;
+  return true;
+}
+
+// `$t+5..$t+9`
+std::string read_shifted(std::string_view text, Value& out) {
+  const std::string quoted = "'" + std::string(text) + "'";
+  const std::size_t at = text.find("..");
+  out.kind = Value::Kind::kRange;
+  std::string second;
+  if (!read_shift(text.substr(0, at), out.text, out.number) ||
+      !read_shift(text.substr(at + 2), second, out.max)) {
+    return "expected a range of numbers, as $t+5..$t+9, given " + quoted;
+  }
+  if (second != out.text) return "a range of numbers from one variable to another: " + quoted;
+  return out.number <= out.max ? "" : "the range " + quoted + " is empty";
+}
+
 std::string read_plain(std::string_view text, Value& out) {
   using Kind = Value::Kind;
   const std::string quoted = "'" + std::string(text) + "'";
@@ -147,6 +175,7 @@ std::string read_plain(std::string_view text, Value& out) {
     out.kind = Kind::kAddress;
     return read_pair(text, at, 1, out);
   }
+  if (text[0] == '$' && text.find("..") != std::string_view::npos) return read_shifted(text, out);
   if (text[0] == '$') {
     out.kind = Kind::kVariable;
     out.text = text.substr(1);
@@ -279,6 +308,16 @@ void put_integer(std::int64_t number, bool hex, std::string& out) {
   out.append(text, result.ptr);
 }
 
+// An end of a range, perhaps counted from a variable.
+void put_bound(std::string_view variable, std::int64_t number, std::string& out) {
+  if (!variable.empty()) {
+    out += '$';
+    out += variable;
+    if (number >= 0) out += '+';
+  }
+  put_integer(number, false, out);
+}
+
 void put_quoted(std::string_view text, std::string& out) {
   out += '"';
   for (const char c : text) {
@@ -309,9 +348,9 @@ void put_value(const Value& value, std::string& out) {
     case Value::Kind::kAny: out += '*'; return;
     case Value::Kind::kNumber: return put_integer(value.number, value.hex, out);
     case Value::Kind::kRange:
-      put_integer(value.number, false, out);
+      put_bound(value.text, value.number, out);
       out += "..";
-      return put_integer(value.max, false, out);
+      return put_bound(value.text, value.max, out);
     case Value::Kind::kReal:
     case Value::Kind::kNames: out += value.text; return;
     case Value::Kind::kBytes: out += 'x'; return put_hex(value.text, out);
