@@ -72,7 +72,7 @@ struct TimerDue { Timer timer; };       ///< The driver says when; see timers().
 struct SendDone { Link link = Link::kRadio; bool acked = true; };  ///< The last transmission ended.
 struct LinkBusy { Link link = Link::kRadio; bool busy = false; };  ///< Somebody else has the line.
 struct AppBusy { bool busy = false; };  ///< While busy, what arrives is queued.
-struct Reboot {};                       ///< Memory is lost; the configuration stays.
+struct Reboot {};                       ///< Memory is lost but for the last sequence number.
 struct PowerOff {};                     ///< The same, and nothing has an effect until Reboot.
 
 using Event = std::variant<Heard, Called, TimerDue, SendDone, LinkBusy, AppBusy, Reboot,
