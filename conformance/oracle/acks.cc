@@ -128,8 +128,9 @@ void Acks::refuse(std::uint16_t node, const Observation& seen, const Net& ack, s
     said.text = "It acks an ack, " + name_of(best->net) + ".";
     said.expected = "An ack is never acked.";
   } else if (best->net.reliable != 1) {
-    rule = req::kT2Unreliable;
-    if (best->net.reliable > 1) severity = Severity::kWeak;  // Decision 112.
+    const bool flag = best->net.reliable == 0;  // Other values: decision 112.
+    rule = flag ? req::kT2Unreliable : req::kT2Two;
+    if (!flag) severity = Severity::kWeak;
     said.text = "It acks " + name_of(best->net) + ", whose reliable is " +
                 number(best->net.reliable) + ".";
     said.expected = "An unreliable message is never acked.";

@@ -234,7 +234,7 @@ void SinkJoins::judge_clock(SinkWatch& sink, const Observation& seen, const Repl
     if (grown_ms == 0 && passed_ms >= kOffMs) {
       context_.report(req::kJ3Time, Severity::kFail, seen.place, sink.device, std::move(said));
     } else if (grown_ms < passed_ms - kOffMs || grown_ms > most_ms) {
-      context_.report(req::kJ3Time, Severity::kWeak, seen.place, sink.device, std::move(said));
+      context_.report(req::kJ3Drift, Severity::kWeak, seen.place, sink.device, std::move(said));
     } else {
       context_.findings.kept(req::kJ3Time);
     }
