@@ -11,12 +11,12 @@ constexpr const char* kSerialAm =
     "TinyOS's serial stack looks at no AM address, and no rule asks for one there.";
 constexpr const char* kSerialNbytes =
     "On the serial line nbytes may count stale bytes behind the payload (N6-CONTENT).";
-constexpr const char* kFreeNumber =
-    "What awaits no ack may have any number (decision 117).";
+constexpr const char* kFreeNumber = "What awaits no ack may have any number (decision 117).";
 constexpr const char* kAckCode =
     "Any code in an ack is right: it says how the message was handled (decision 108).";
 constexpr const char* kResultTwice =
-    "The result of a call is what a function returns: an attachment that tells it twice says nothing "
+    "The result of a call is what a function returns: an attachment that tells it twice says "
+    "nothing "
     "of the node.";
 constexpr const char* kFailAddress = "No rule says which address joined(FAIL) tells.";
 constexpr const char* kRefusedId = "No rule says which id a refused creation tells.";
@@ -72,7 +72,9 @@ bool fits(std::string_view pattern, std::string_view name) {
 
 }  // namespace
 
-std::span<const Equivalent> equivalents() { return kEquivalents; }
+std::span<const Equivalent> equivalents() {
+  return kEquivalents;
+}
 
 const Equivalent* find_equivalent(std::string_view name) {
   for (const Equivalent& one : kEquivalents) {

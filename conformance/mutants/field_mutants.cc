@@ -114,8 +114,8 @@ void change(trace::Leaf& leaf, Change how) {
   } else if (how == Change::kPlusOne) {
     leaf.number += leaf.number == leaf.domain.max ? -1 : 1;
   } else {
-    leaf.number = leaf.number > leaf.domain.max / 2 ? leaf.number - leaf.domain.max / 2
-                                                    : leaf.domain.max;
+    leaf.number =
+        leaf.number > leaf.domain.max / 2 ? leaf.number - leaf.domain.max / 2 : leaf.domain.max;
   }
 }
 
@@ -175,7 +175,8 @@ Anatomy anatomy(const Transmit& frame) {
   }
   parts.places.push_back({"am.dest", 0, 2, false});
   parts.places.push_back({"am.src", 0, 2, false});
-  if (decoded.has_payload) collect(decoded.decoded, decoded.payload_node, "", header_bytes(frame.link), parts.places);
+  if (decoded.has_payload)
+    collect(decoded.decoded, decoded.payload_node, "", header_bytes(frame.link), parts.places);
   return parts;
 }
 
@@ -203,12 +204,16 @@ Mutants field_mutants(const Golden& golden) {
   for (const Change how : {Change::kPlusOne, Change::kHighBit}) {
     const char* const name = how == Change::kPlusOne ? "plus one: " : "high bit: ";
     for (const Field& field : sent) {
-      out.push_back({name + field.kind + ": " + field.path, "A field is something else.", {},
+      out.push_back({name + field.kind + ": " + field.path,
+                     "A field is something else.",
+                     {},
                      changed_frame(field.kind, field.path, how)});
     }
     for (const Field& field : told) {
       if (how == Change::kHighBit && yes_or_no.contains(field)) continue;
-      out.push_back({name + field.kind + ": " + field.path, "A field is something else.", {},
+      out.push_back({name + field.kind + ": " + field.path,
+                     "A field is something else.",
+                     {},
                      changed_notice(field.kind, field.path, how)});
     }
   }

@@ -62,7 +62,9 @@ inline void put(Forged& forged, std::size_t offset, unsigned value) {
 }
 
 /// A net_msg with TRANSID and APPID.
-inline bool is_net(const Transmit& frame) { return frame.type == am::kNet; }
+inline bool is_net(const Transmit& frame) {
+  return frame.type == am::kNet;
+}
 inline bool is_net(const Frame& frame) {
   return frame.type == am::kNet && frame.payload.size() >= net::kBody;
 }
@@ -87,7 +89,9 @@ inline bool is_forward(const Moment& moment, const Transmit& frame) {
 }
 
 /// The address under which a node is reached now.
-inline machine::Address own(const Moment& moment) { return machine::own_address(moment.state); }
+inline machine::Address own(const Moment& moment) {
+  return machine::own_address(moment.state);
+}
 inline bool is_member(const Moment& moment) {
   return moment.state.join.phase == machine::JoinMote::Phase::kMember;
 }
@@ -121,7 +125,8 @@ inline StepMaker sent_field(std::uint8_t am_type, std::size_t offset,
   });
 }
 /// Ignores no such frame: makes it acceptable first.
-inline StepMaker mended(bool (*wrong)(const Moment&, const Frame&), void (*mend)(Moment&, Forged&)) {
+inline StepMaker mended(bool (*wrong)(const Moment&, const Frame&),
+                        void (*mend)(Moment&, Forged&)) {
   return on_heard([=](Moment& moment, Forged& forged) {
     if (wrong(moment, forged.frame)) mend(moment, forged);
     return true;

@@ -27,7 +27,9 @@ class Watched : public runner::Machine {
   const Witness& see_;
 };
 
-std::string text(ReqId requirement) { return std::string(trace::requirement_text(requirement)); }
+std::string text(ReqId requirement) {
+  return std::string(trace::requirement_text(requirement));
+}
 
 StepMaker at_kind(const std::string& kind, void (*act)(Moment&, const Action&)) {
   return [=]() -> Step {
@@ -138,14 +140,18 @@ Mutants action_mutants(const Golden& golden) {
   kinds.erase("");
   Mutants out;
   for (const std::string& kind : kinds) {
-    out.push_back({"drop: " + kind, "It does not happen.", {},
-                   at_kind(kind, [](Moment&, const Action&) {})});
-    out.push_back({"double: " + kind, "It happens twice.", {},
+    out.push_back(
+        {"drop: " + kind, "It does not happen.", {}, at_kind(kind, [](Moment&, const Action&) {})});
+    out.push_back({"double: " + kind,
+                   "It happens twice.",
+                   {},
                    at_kind(kind, [](Moment& moment, const Action& action) {
                      moment.keep(action);
                      moment.keep(action);
                    })});
-    out.push_back({"delay: " + kind, "It happens a period later.", {},
+    out.push_back({"delay: " + kind,
+                   "It happens a period later.",
+                   {},
                    at_kind(kind, [](Moment& moment, const Action& action) {
                      moment.hold(action, kPeriodTicks);
                    })});
@@ -159,7 +165,9 @@ Mutants acceptance_mutants(const Golden& golden) {
     for (const std::size_t i : found) {
       const std::string name = "accept: " + text(ignored.requirement) + " " +
                                kRoles[static_cast<int>(ignored.role)] + " " + mends()[i].name;
-      out.push_back({name, "What the rule ignores is accepted.", {},
+      out.push_back({name,
+                     "What the rule ignores is accepted.",
+                     {},
                      only(ignored.role, accepting(ignored.requirement, i))});
     }
   }

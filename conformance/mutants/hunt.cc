@@ -23,9 +23,8 @@ bool names(const std::vector<std::string>& requirements, const Mutant& mutant) {
 
 bool speaks_of(const trace::Case& one, const Mutant& mutant) {
   const auto lines = one.lines();
-  return std::any_of(lines.begin(), lines.end(), [&](const trace::Line* line) {
-    return names(line->requirements, mutant);
-  });
+  return std::any_of(lines.begin(), lines.end(),
+                     [&](const trace::Line* line) { return names(line->requirements, mutant); });
 }
 
 // False: go on with the next case.
@@ -34,9 +33,8 @@ bool judge(const CaseRef& ref, const Mutant& mutant, Found& found) {
   if (result.verdict == CaseVerdict::kPass) return false;
   const bool named =
       mutant.requirements.empty() ||
-      std::any_of(result.failures.begin(), result.failures.end(), [&](const auto& failure) {
-        return names(failure.requirements, mutant);
-      });
+      std::any_of(result.failures.begin(), result.failures.end(),
+                  [&](const auto& failure) { return names(failure.requirements, mutant); });
   if (!found.killed || named) {
     found.by = ref.one->name;
     found.lines = runner::explain(result, ref.file->file_name);
@@ -50,7 +48,11 @@ bool judge(const CaseRef& ref, const Mutant& mutant, Found& found) {
 
 Golden::Golden(const std::string& folder) : files_(runner::load_cases(folder)) {
   for (const trace::Parsed& file : files_) {
-    for (const trace::Case& one : file.file.cases) cases_.push_back({&file, &one});
+    for (const trace::Case& one : file.file.cases) {
+      const CaseRef ref{&file, &one};
+      const CaseResult result = run(ref, [] { return std::make_unique<runner::Machine>(); });
+      (result.verdict == CaseVerdict::kPass ? cases_ : broken_).push_back(ref);
+    }
   }
 }
 

@@ -18,24 +18,29 @@ struct CaseRef {
   const trace::Case* one;
 };
 
-/// The golden traces, and what the machine did in each.
+/// The golden traces.
 class Golden {
  public:
   /// All .rtr files below the folder. Throws std::runtime_error.
   explicit Golden(const std::string& folder);
 
+  /// Those that the machine passes: no other can tell a mutant from it.
   const std::vector<CaseRef>& cases() const { return cases_; }
+  /// Those that it does not pass.
+  const std::vector<CaseRef>& broken() const { return broken_; }
+  const std::vector<trace::Parsed>& files() const { return files_; }
 
  private:
   std::vector<trace::Parsed> files_;
   std::vector<CaseRef> cases_;
+  std::vector<CaseRef> broken_;
 };
 
 struct Found {
   bool killed = false;
-  bool named = false;   ///< A failing line names one of the mutant's rules, or it names none.
-  std::string by;       ///< The trace that killed it; the one that named its rule, if any.
-  std::string lines;    ///< What failed there.
+  bool named = false;  ///< A failing line names one of the mutant's rules, or it names none.
+  std::string by;      ///< The trace that killed it; the one that named its rule, if any.
+  std::string lines;   ///< What failed there.
 };
 
 /// Works the case on it. Everything but a pass kills: the machine itself passes.

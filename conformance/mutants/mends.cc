@@ -168,8 +168,7 @@ bool place_made(Moment& moment) {
 
 bool ack_join_number_fits(Moment& moment) {
   return hear_changed(moment, am::kAckJoin, 14, [&](Forged& forged) {
-    const auto* asked =
-        machine::find_pending(moment.state.sink, get(forged, ack_join::kSrcDevid));
+    const auto* asked = machine::find_pending(moment.state.sink, get(forged, ack_join::kSrcDevid));
     if (asked == nullptr) return false;
     put(forged, ack_join::kSeqNum, asked->seq_num);
     return true;
@@ -199,8 +198,12 @@ bool as_role(Moment& moment, Role role) {
   moment.state.config.role = honest;
   return true;
 }
-bool as_a_sink(Moment& moment) { return as_role(moment, Role::kSink); }
-bool as_a_mote(Moment& moment) { return as_role(moment, Role::kMote); }
+bool as_a_sink(Moment& moment) {
+  return as_role(moment, Role::kSink);
+}
+bool as_a_mote(Moment& moment) {
+  return as_role(moment, Role::kMote);
+}
 
 bool as_a_joining_mote(Moment& moment) {
   const Frame* const frame = moment.heard(am::kJoinReply);
@@ -298,8 +301,7 @@ bool accepted_just_now(Moment& moment) {
 bool island_of_the_frame(Moment& moment) {
   const Frame* const frame = moment.heard(am::kNet);
   if (frame == nullptr || !is_net(*frame) || moment.is(Role::kMote)) return false;
-  const std::uint16_t honest =
-      std::exchange(moment.state.island, get(*frame, net::kDestPid));
+  const std::uint16_t honest = std::exchange(moment.state.island, get(*frame, net::kDestPid));
   moment.honest();
   moment.state.island = honest;
   return true;
@@ -342,6 +344,8 @@ constexpr std::array kMends{
 
 }  // namespace
 
-std::span<const Mend> mends() { return kMends; }
+std::span<const Mend> mends() {
+  return kMends;
+}
 
 }  // namespace rubric::mutants

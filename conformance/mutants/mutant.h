@@ -1,5 +1,5 @@
-// Broken machines: each is the machine with a wrapper that makes one mistake. The golden traces must
-// find every one of them.
+// Broken machines: each is the machine with a wrapper that makes one mistake. The golden traces
+// must find every one of them.
 #pragma once
 
 #include <string>
@@ -20,13 +20,13 @@ struct Mutant {
 using Mutants = std::vector<Mutant>;
 
 /// Mistakes that people make, by the family of the rule that they break. Names are unique.
-Mutants network_mutants();    ///< N1 to N5.
-Mutants island_mutants();     ///< N6 to N9.
-Mutants control_mutants();    ///< N10 to N12.
-Mutants mote_join_mutants();  ///< J, at motes.
-Mutants sink_join_mutants();  ///< J, at sinks.
-Mutants transport_mutants();  ///< T.
-Mutants synaptic_mutants();   ///< S1 to S3.
+Mutants network_mutants();       ///< N1 to N5.
+Mutants island_mutants();        ///< N6 to N9.
+Mutants control_mutants();       ///< N10 to N12.
+Mutants mote_join_mutants();     ///< J, at motes.
+Mutants sink_join_mutants();     ///< J, at sinks.
+Mutants transport_mutants();     ///< T.
+Mutants synaptic_mutants();      ///< S1 to S3.
 Mutants channel_life_mutants();  ///< S4 to S6.
 /// All of these, and the flaws of release 1.0 (conformance/flaws).
 Mutants named_mutants();

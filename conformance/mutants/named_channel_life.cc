@@ -61,8 +61,8 @@ void stores_unknown(Moment& moment) {
   const bool data = frame != nullptr && is_net(*frame) && !inputs.empty() &&
                     frame->payload[net::kTransId] == component::kSynChannel;
   const std::uint16_t devid = data ? get(*frame, net::kSrcDevid) : std::uint16_t{0};
-  const bool known = data && has(moment.state.synaptic,
-                                 machine::channel_id(devid, own(moment).devid));
+  const bool known =
+      data && has(moment.state.synaptic, machine::channel_id(devid, own(moment).devid));
   moment.honest();
   if (!data || known || frame->payload.size() < net::kBody + 4) return;
   inputs[0].value_bits[0] = load_le32(frame->payload.data() + net::kBody);
@@ -70,19 +70,29 @@ void stores_unknown(Moment& moment) {
 }
 
 void add_local_and_unknown(Mutants& out) {
-  out.push_back({"local_data_on_the_air", "A channel from a node to itself sends a frame.",
-                 {req::kS4Local}, always(sends_local)});
-  out.push_back({"local_data_lost", "A channel from a node to itself hands nothing over.",
-                 {req::kS4Local}, always(drops_local)});
-  out.push_back({"unknown_channel_stored", "Data of an unknown channel go to the first one.",
-                 {req::kS5Unknown}, always(stores_unknown)});
-  out.push_back({"unknown_channel_silent", "Data of an unknown channel are not reported.",
-                 {req::kS5Unknown}, on_told_of<SynDataReceived>([](Moment&, SynDataReceived& data) {
+  out.push_back({"local_data_on_the_air",
+                 "A channel from a node to itself sends a frame.",
+                 {req::kS4Local},
+                 always(sends_local)});
+  out.push_back({"local_data_lost",
+                 "A channel from a node to itself hands nothing over.",
+                 {req::kS4Local},
+                 always(drops_local)});
+  out.push_back({"unknown_channel_stored",
+                 "Data of an unknown channel go to the first one.",
+                 {req::kS5Unknown},
+                 always(stores_unknown)});
+  out.push_back({"unknown_channel_silent",
+                 "Data of an unknown channel are not reported.",
+                 {req::kS5Unknown},
+                 on_told_of<SynDataReceived>([](Moment&, SynDataReceived& data) {
                    const bool unknown = data.status == machine::DataStatus::kUnknownChannel;
                    return unknown ? Fate::kDrop : Fate::kKeep;
                  })});
-  out.push_back({"unknown_channel_new", "Data of an unknown channel are reported as new.",
-                 {req::kS5Unknown}, on_told_of<SynDataReceived>([](Moment&, SynDataReceived& data) {
+  out.push_back({"unknown_channel_new",
+                 "Data of an unknown channel are reported as new.",
+                 {req::kS5Unknown},
+                 on_told_of<SynDataReceived>([](Moment&, SynDataReceived& data) {
                    if (data.status == machine::DataStatus::kUnknownChannel) {
                      data.status = machine::DataStatus::kNew;
                    }
@@ -115,45 +125,62 @@ void starts_at_creation(Moment& moment) {
 }
 
 void add_ends(Mutants& out) {
-  out.push_back({"stopped_channel_goes_on", "stop_syn_channel changes nothing.",
-                 {req::kS6Stopped}, refuses_silently<StopChannel>(req::kS6Stopped)});
-  out.push_back({"stop_all_goes_on", "stop_all_syn_channels changes nothing.", {req::kS6Stopped},
+  out.push_back({"stopped_channel_goes_on",
+                 "stop_syn_channel changes nothing.",
+                 {req::kS6Stopped},
+                 refuses_silently<StopChannel>(req::kS6Stopped)});
+  out.push_back({"stop_all_goes_on",
+                 "stop_all_syn_channels changes nothing.",
+                 {req::kS6Stopped},
                  refuses_silently<StopAllChannels>(req::kS6Stopped)});
-  out.push_back({"starts_at_creation", "A channel runs from its creation on.", {req::kS6Stopped},
+  out.push_back({"starts_at_creation",
+                 "A channel runs from its creation on.",
+                 {req::kS6Stopped},
                  always(starts_at_creation)});
-  out.push_back({"stop_stops_all", "stop_syn_channel stops every channel.",
-                 {req::kS6Others}, always([](Moment& moment) {
+  out.push_back({"stop_stops_all",
+                 "stop_syn_channel stops every channel.",
+                 {req::kS6Others},
+                 always([](Moment& moment) {
                    if (moment.called<StopChannel>() == nullptr) return moment.honest();
                    moment.honest(machine::Called{StopAllChannels{}});
                  })});
-  out.push_back({"disposed_channel_goes_on", "Disposing a channel changes nothing (release 1.0).",
-                 {req::kS6Disposed}, refuses_silently<DisposeChannel>(req::kS6Disposed)});
+  out.push_back({"disposed_channel_goes_on",
+                 "Disposing a channel changes nothing (release 1.0).",
+                 {req::kS6Disposed},
+                 refuses_silently<DisposeChannel>(req::kS6Disposed)});
   out.push_back({"disposed_channel_keeps_its_place",
-                 "Disposing a channel stops it, and keeps its place.", {req::kS6Disposed},
+                 "Disposing a channel stops it, and keeps its place.",
+                 {req::kS6Disposed},
                  always([](Moment& moment) {
                    const DisposeChannel* const dispose = moment.called<DisposeChannel>();
                    if (dispose == nullptr) return moment.honest();
                    moment.honest(machine::Called{StopChannel{dispose->id}});
                  })});
-  out.push_back({"dispose_takes_all", "Disposing a channel disposes of every one.",
-                 {req::kS6Disposed, req::kS6Others, req::kS2Send}, always([](Moment& moment) {
+  out.push_back({"dispose_takes_all",
+                 "Disposing a channel disposes of every one.",
+                 {req::kS6Disposed, req::kS6Others, req::kS2Send},
+                 always([](Moment& moment) {
                    const bool disposes = moment.called<DisposeChannel>() != nullptr;
                    moment.honest();
                    if (!disposes) return;
                    moment.state.synaptic.out.clear();
                    moment.state.synaptic.in.clear();
                  })});
-  out.push_back({"start_shifts_the_clock", "Starting a channel begins the clock anew for all.",
-                 {req::kS6Clock, req::kS2Send, req::kS2Phase}, always([](Moment& moment) {
+  out.push_back({"start_shifts_the_clock",
+                 "Starting a channel begins the clock anew for all.",
+                 {req::kS6Clock, req::kS2Send, req::kS2Phase},
+                 always([](Moment& moment) {
                    moment.honest();
                    auto& synaptic = moment.state.synaptic;
                    if (moment.called<StartChannel>() != nullptr && synaptic.due != 0) {
-                     synaptic.due = moment.now + synaptic.period_ticks +
-                                    (own(moment).devid - 1U) * 30U;
+                     synaptic.due =
+                         moment.now + synaptic.period_ticks + (own(moment).devid - 1U) * 30U;
                    }
                  })});
-  out.push_back({"start_all_starts_outputs", "start_all_syn_channels starts no input.",
-                 {req::kS2Signal}, always([](Moment& moment) {
+  out.push_back({"start_all_starts_outputs",
+                 "start_all_syn_channels starts no input.",
+                 {req::kS2Signal},
+                 always([](Moment& moment) {
                    const machine::Synaptic before = moment.state.synaptic;
                    moment.honest();
                    if (moment.called<machine::StartAllChannels>() == nullptr) return;
@@ -163,7 +190,9 @@ void add_ends(Mutants& out) {
                  })});
 }
 
-void append(Mutants& out, const Mutants& more) { out.insert(out.end(), more.begin(), more.end()); }
+void append(Mutants& out, const Mutants& more) {
+  out.insert(out.end(), more.begin(), more.end());
+}
 
 // Those of release 1.0 are steps without a memory.
 Mutants release_mutants() {

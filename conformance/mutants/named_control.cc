@@ -23,45 +23,57 @@ void as_if_on(Moment& moment) {
 }
 
 void add_switches(Mutants& out) {
-  out.push_back({"interface_off_still_sends", "An interface that is off sends.", {req::kN10Off},
+  out.push_back({"interface_off_still_sends",
+                 "An interface that is off sends.",
+                 {req::kN10Off},
                  always([](Moment& moment) {
                    if (moment.called<Send>() != nullptr) return as_if_on(moment);
                    moment.honest();
                  })});
-  out.push_back({"interface_off_still_hears", "An interface that is off receives.",
-                 {req::kN10Off}, always([](Moment& moment) {
+  out.push_back({"interface_off_still_hears",
+                 "An interface that is off receives.",
+                 {req::kN10Off},
+                 always([](Moment& moment) {
                    if (moment.heard() != nullptr) return as_if_on(moment);
                    moment.honest();
                  })});
-  out.push_back({"interface_off_sends_synaptic", "Timers send on a radio that is off.",
-                 {req::kN10Off, req::kN2Queue}, always([](Moment& moment) {
+  out.push_back({"interface_off_sends_synaptic",
+                 "Timers send on a radio that is off.",
+                 {req::kN10Off, req::kN2Queue},
+                 always([](Moment& moment) {
                    if (std::holds_alternative<machine::TimerDue>(moment.event)) {
                      return as_if_on(moment);
                    }
                    moment.honest();
                  })});
-  out.push_back({"off_for_good", "An interface that was off never comes on again.",
-                 {req::kN10On}, always([](Moment& moment) {
+  out.push_back({"off_for_good",
+                 "An interface that was off never comes on again.",
+                 {req::kN10On},
+                 always([](Moment& moment) {
                    const SetInterface* const set = moment.called<SetInterface>();
                    if (set == nullptr || !set->on) return moment.honest();
                    moment.nothing();
                    moment.actions.notify(machine::OperationResult{true}, req::kN10On);
                  })});
-  out.push_back({"switches_crossed", "Switching the radio off switches the serial line.",
-                 {req::kN10Off}, always([](Moment& moment) {
+  out.push_back({"switches_crossed",
+                 "Switching the radio off switches the serial line.",
+                 {req::kN10Off},
+                 always([](Moment& moment) {
                    const SetInterface* const set = moment.called<SetInterface>();
                    if (set == nullptr) return moment.honest();
                    SetInterface other = *set;
                    other.link = set->link == Link::kRadio ? Link::kSerial : Link::kRadio;
                    moment.honest(machine::Called{other});
                  })});
-  out.push_back({"interface_state_constant", "The state of an interface is told as on.",
+  out.push_back({"interface_state_constant",
+                 "The state of an interface is told as on.",
                  {req::kN10State},
                  on_told_of<machine::InterfaceState>([](Moment&, machine::InterfaceState& told) {
                    told.on = true;
                    return Fate::kKeep;
                  })});
-  out.push_back({"interface_state_inverted", "The state of an interface is told as its opposite.",
+  out.push_back({"interface_state_inverted",
+                 "The state of an interface is told as its opposite.",
                  {req::kN10State},
                  on_told_of<machine::InterfaceState>([](Moment&, machine::InterfaceState& told) {
                    told.on = !told.on;
@@ -88,18 +100,24 @@ void trusts_nbytes(Moment& moment, Memory& memory) {
 }
 
 void add_malformed(Mutants& out) {
-  out.push_back({"nbytes_trusted", "A node reads as many bytes as nbytes promises.",
-                 {req::kN11Nbytes}, remembering<Memory>(trusts_nbytes)});
-  out.push_back({"nbytes_cut_to_what_came", "A node mends an nbytes that promises too much.",
-                 {req::kN11Nbytes}, on_heard([](Moment&, Forged& forged) {
+  out.push_back({"nbytes_trusted",
+                 "A node reads as many bytes as nbytes promises.",
+                 {req::kN11Nbytes},
+                 remembering<Memory>(trusts_nbytes)});
+  out.push_back({"nbytes_cut_to_what_came",
+                 "A node mends an nbytes that promises too much.",
+                 {req::kN11Nbytes},
+                 on_heard([](Moment&, Forged& forged) {
                    if (forged.frame.type != am::kNet || forged.size() < 14) return true;
                    const std::size_t came = std::min<std::size_t>(forged.size() - 12, 102);
                    std::uint8_t& nbytes = forged.bytes[net::kNbytes];
                    if (nbytes > came) nbytes = static_cast<std::uint8_t>(came);
                    return true;
                  })});
-  out.push_back({"nbytes_below_2_is_empty", "A message without APPID is taken as an empty one.",
-                 {req::kN11Nbytes}, on_heard([](Moment&, Forged& forged) {
+  out.push_back({"nbytes_below_2_is_empty",
+                 "A message without APPID is taken as an empty one.",
+                 {req::kN11Nbytes},
+                 on_heard([](Moment&, Forged& forged) {
                    const bool net = forged.frame.type == am::kNet && forged.size() >= 12;
                    if (!net || forged.bytes[net::kNbytes] >= 2) return true;
                    forged.bytes[net::kNbytes] = 2;
@@ -108,8 +126,10 @@ void add_malformed(Mutants& out) {
                    forged.resize(14);
                    return true;
                  })});
-  out.push_back({"malformed_kills", "After a malformed message a node hears no more.",
-                 {req::kN11Next}, remembering<bool>([](Moment& moment, bool& dead) {
+  out.push_back({"malformed_kills",
+                 "After a malformed message a node hears no more.",
+                 {req::kN11Next},
+                 remembering<bool>([](Moment& moment, bool& dead) {
                    if (dead && moment.heard() != nullptr) return moment.nothing();
                    moment.honest();
                    for (const Action& action : moment.actions.all()) {
@@ -117,8 +137,10 @@ void add_malformed(Mutants& out) {
                                      action.requirement == req::kN11Nbytes);
                    }
                  })});
-  out.push_back({"malformed_eats_the_next", "The message after a malformed one is lost.",
-                 {req::kN11Next}, remembering<bool>([](Moment& moment, bool& skip) {
+  out.push_back({"malformed_eats_the_next",
+                 "The message after a malformed one is lost.",
+                 {req::kN11Next},
+                 remembering<bool>([](Moment& moment, bool& skip) {
                    const Frame* const frame = moment.heard(am::kNet);
                    const bool good = frame != nullptr && is_net(*frame) &&
                                      frame->payload[net::kNbytes] + 12U <= frame->payload.size();
@@ -132,8 +154,10 @@ void add_malformed(Mutants& out) {
                                      action.requirement == req::kN11Nbytes);
                    }
                  })});
-  out.push_back({"longest_message_dropped", "A node takes 101 bytes for the most.",
-                 {req::kN11Next, req::kT1Deliver}, on_heard([](Moment&, Forged& forged) {
+  out.push_back({"longest_message_dropped",
+                 "A node takes 101 bytes for the most.",
+                 {req::kN11Next, req::kT1Deliver},
+                 on_heard([](Moment&, Forged& forged) {
                    return !is_net(forged.frame) || forged.bytes[net::kNbytes] < 102;
                  })});
 }
@@ -160,10 +184,13 @@ void renumber(Moment& moment, std::uint16_t number) {
 }
 
 void add_numbers(Mutants& out) {
-  out.push_back({"awaited_number_reused", "Every message has number 7.", {req::kN12Reuse},
+  out.push_back({"awaited_number_reused",
+                 "Every message has number 7.",
+                 {req::kN12Reuse},
                  always([](Moment& moment) { renumber(moment, 7); })});
   out.push_back({"number_for_each_destination",
-                 "Numbers count for each destination, from 1, and collide.", {req::kN12Reuse},
+                 "Numbers count for each destination, from 1, and collide.",
+                 {req::kN12Reuse},
                  remembering<std::vector<std::uint16_t>>(
                      [](Moment& moment, std::vector<std::uint16_t>& counts) {
                        const Send* const send = moment.called<Send>();
@@ -171,7 +198,8 @@ void add_numbers(Mutants& out) {
                        counts.resize(0x10000);
                        renumber(moment, ++counts[send->dest.devid]);
                      })});
-  out.push_back({"error_value_used", "Messages have number 0xFFFF.",
+  out.push_back({"error_value_used",
+                 "Messages have number 0xFFFF.",
                  {req::kN12Error, req::kN12Reuse},
                  always([](Moment& moment) { renumber(moment, machine::kNoSeq); })});
 }

@@ -31,36 +31,46 @@ bool is_reply_for(const Moment& moment, const Frame& frame) {
 // Request.
 
 void add_requests(Mutants& out) {
-  out.push_back({"request_without_descriptor", "A mote's join_request has an empty descriptor.",
-                 {req::kJ1Request}, on_sent([](Moment&, const Action&, Transmit& frame) {
+  out.push_back({"request_without_descriptor",
+                 "A mote's join_request has an empty descriptor.",
+                 {req::kJ1Request},
+                 on_sent([](Moment&, const Action&, Transmit& frame) {
                    if (frame.type == am::kJoin) {
                      std::fill_n(frame.payload.begin() + join_request::kMoteType, 4, 0);
                    }
                    return Fate::kKeep;
                  })});
-  out.push_back({"request_transducers_cut", "The transducers of a join_request are cut to a byte.",
+  out.push_back({"request_transducers_cut",
+                 "The transducers of a join_request are cut to a byte.",
                  {req::kJ1Request},
                  sent_field(am::kJoin, join_request::kTransducers,
                             [](const Moment&, unsigned v) { return v & 0xFF; })});
-  out.push_back({"request_transducers_swapped", "The transducers have the wrong byte order.",
+  out.push_back({"request_transducers_swapped",
+                 "The transducers have the wrong byte order.",
                  {req::kJ1Request},
                  sent_field(am::kJoin, join_request::kTransducers,
                             [](const Moment&, unsigned v) { return v >> 8 | (v & 0xFF) << 8; })});
-  out.push_back({"request_broadcast", "A join_request goes to everybody.", {req::kJ1Dest, req::kJ1Request},
+  out.push_back({"request_broadcast",
+                 "A join_request goes to everybody.",
+                 {req::kJ1Dest, req::kJ1Request},
                  on_sent([](Moment&, const Action&, Transmit& frame) {
                    if (frame.type == am::kJoin) frame.dest = machine::kAmBroadcast;
                    return Fate::kKeep;
                  })});
-  out.push_back({"request_also_to_another_sink", "A join_request goes to a second address, too.",
-                 {req::kJ1Dest}, always([](Moment& moment) {
+  out.push_back({"request_also_to_another_sink",
+                 "A join_request goes to a second address, too.",
+                 {req::kJ1Dest},
+                 always([](Moment& moment) {
                    moment.honest();
                    if (moment.called<JoinIsland>() == nullptr || !is_joining(moment)) return;
                    send_request(moment).dest = 2;
                  })});
-  out.push_back({"same_number_for_each_call", "Every joinIsland call uses the same number.",
-                 {req::kJ1Seq}, always([](Moment& moment) {
-                   const bool again = moment.called<JoinIsland>() != nullptr &&
-                                      moment.state.join.requests != 0;
+  out.push_back({"same_number_for_each_call",
+                 "Every joinIsland call uses the same number.",
+                 {req::kJ1Seq},
+                 always([](Moment& moment) {
+                   const bool again =
+                       moment.called<JoinIsland>() != nullptr && moment.state.join.requests != 0;
                    const std::uint16_t before = moment.state.join.seq_num;
                    moment.honest();
                    if (!again) return;
@@ -72,59 +82,75 @@ void add_requests(Mutants& out) {
                      moment.keep(action, frame);
                    });
                  })});
-  out.push_back({"joins_uncalled", "A mote that hears a sink's join_reply asks to join by itself.",
-                 {req::kJ1Called}, always([](Moment& moment) {
+  out.push_back({"joins_uncalled",
+                 "A mote that hears a sink's join_reply asks to join by itself.",
+                 {req::kJ1Called},
+                 always([](Moment& moment) {
                    moment.honest();
                    const Frame* const reply = moment.heard(am::kJoinReply);
                    if (reply == nullptr || !moment.is(Role::kMote)) return;
                    if (moment.state.join.phase == Phase::kOutside) send_request(moment);
                  })});
-  out.push_back({"request_twice", "Each join_request is sent twice.", {req::kJ8Period, req::kJ1Request},
-                 double_sent([](const Moment&, const Transmit& frame) {
-                   return frame.type == am::kJoin;
-                 })});
+  out.push_back(
+      {"request_twice",
+       "Each join_request is sent twice.",
+       {req::kJ8Period, req::kJ1Request},
+       double_sent([](const Moment&, const Transmit& frame) { return frame.type == am::kJoin; })});
 }
 
 // Acceptance.
 
 void add_acceptance(Mutants& out) {
-  out.push_back({"no_ack_join", "A mote that accepts a reply does not ack it.", {req::kJ4Ack},
-                 drop_sent([](const Moment&, const Transmit& frame) {
-                   return frame.type == am::kAckJoin;
-                 })});
-  out.push_back({"ack_join_other_number", "ack_join carries the number plus one.",
+  out.push_back(
+      {"no_ack_join",
+       "A mote that accepts a reply does not ack it.",
+       {req::kJ4Ack},
+       drop_sent([](const Moment&, const Transmit& frame) { return frame.type == am::kAckJoin; })});
+  out.push_back({"ack_join_other_number",
+                 "ack_join carries the number plus one.",
                  {req::kJ4Content, req::kJ4Ack},
                  sent_field(am::kAckJoin, ack_join::kSeqNum,
                             [](const Moment&, unsigned v) { return v + 1; })});
-  out.push_back({"ack_join_swaps_addresses", "Source and destination of ack_join are swapped.",
-                 {req::kJ4Content}, on_sent([](Moment&, const Action&, Transmit& frame) {
+  out.push_back({"ack_join_swaps_addresses",
+                 "Source and destination of ack_join are swapped.",
+                 {req::kJ4Content},
+                 on_sent([](Moment&, const Action&, Transmit& frame) {
                    if (frame.type != am::kAckJoin) return Fate::kKeep;
                    std::swap_ranges(frame.payload.begin(), frame.payload.begin() + 4,
                                     frame.payload.begin() + ack_join::kSrcPid);
                    return Fate::kKeep;
                  })});
-  out.push_back({"ack_join_without_island", "The source of ack_join has no island yet.",
-                 {req::kJ4Content}, sent_field(am::kAckJoin, ack_join::kSrcPid,
-                                               [](const Moment&, unsigned) { return 0U; })});
-  out.push_back({"ack_join_old_descriptor", "ack_join has a descriptor without transducers.",
-                 {req::kJ4Content}, sent_field(am::kAckJoin, ack_join::kTransducers,
-                                               [](const Moment&, unsigned) { return 0U; })});
-  out.push_back({"ack_join_broadcast", "ack_join goes to everybody.", {req::kJ4Content, req::kJ4Ack},
+  out.push_back(
+      {"ack_join_without_island",
+       "The source of ack_join has no island yet.",
+       {req::kJ4Content},
+       sent_field(am::kAckJoin, ack_join::kSrcPid, [](const Moment&, unsigned) { return 0U; })});
+  out.push_back({"ack_join_old_descriptor",
+                 "ack_join has a descriptor without transducers.",
+                 {req::kJ4Content},
+                 sent_field(am::kAckJoin, ack_join::kTransducers,
+                            [](const Moment&, unsigned) { return 0U; })});
+  out.push_back({"ack_join_broadcast",
+                 "ack_join goes to everybody.",
+                 {req::kJ4Content, req::kJ4Ack},
                  on_sent([](Moment&, const Action&, Transmit& frame) {
                    if (frame.type == am::kAckJoin) frame.dest = machine::kAmBroadcast;
                    return Fate::kKeep;
                  })});
   out.push_back({"wrong_seq_accepted_and_acked_as_it_is",
                  "A mote that is joining takes any number, and adopts it.",
-                 {req::kJ4Seq, req::kJ5Accept}, always([](Moment& moment) {
+                 {req::kJ4Seq, req::kJ5Accept},
+                 always([](Moment& moment) {
                    const Frame* const frame = moment.heard();
                    if (frame != nullptr && is_reply_for(moment, *frame) && is_joining(moment)) {
                      moment.state.join.seq_num = get(*frame, join_reply::kSeqNum);
                    }
                    moment.honest();
                  })});
-  out.push_back({"reply_accepted_by_a_member", "A member that hears a reply changes its island.",
-                 {req::kJ4Joined, req::kJ7One, req::kJ7Choice}, always([](Moment& moment) {
+  out.push_back({"reply_accepted_by_a_member",
+                 "A member that hears a reply changes its island.",
+                 {req::kJ4Joined, req::kJ7One, req::kJ7Choice},
+                 always([](Moment& moment) {
                    const Frame* const frame = moment.heard();
                    if (frame != nullptr && is_reply_for(moment, *frame) && is_member(moment)) {
                      moment.state.join.phase = Phase::kJoining;
@@ -132,8 +158,10 @@ void add_acceptance(Mutants& out) {
                    }
                    moment.honest();
                  })});
-  out.push_back({"reply_accepted_outside", "A mote without a request accepts a reply.",
-                 {req::kJ4Joined, req::kJ5Accept, req::kJ1Called}, always([](Moment& moment) {
+  out.push_back({"reply_accepted_outside",
+                 "A mote without a request accepts a reply.",
+                 {req::kJ4Joined, req::kJ5Accept, req::kJ1Called},
+                 always([](Moment& moment) {
                    const Frame* const frame = moment.heard();
                    if (frame != nullptr && is_reply_for(moment, *frame) && !is_member(moment)) {
                      moment.state.join.phase = Phase::kJoining;
@@ -141,14 +169,18 @@ void add_acceptance(Mutants& out) {
                    }
                    moment.honest();
                  })});
-  out.push_back({"reply_for_another_accepted", "mote_addr of a reply is not looked at.",
-                 {req::kJ4Address}, on_heard([](Moment& moment, Forged& forged) {
+  out.push_back({"reply_for_another_accepted",
+                 "mote_addr of a reply is not looked at.",
+                 {req::kJ4Address},
+                 on_heard([](Moment& moment, Forged& forged) {
                    if (is_reply_for(moment, forged.frame)) {
                      put(forged, join_reply::kMote, moment.state.config.id);
                    }
                    return true;
                  })});
-  out.push_back({"clock_not_set", "A mote that joins keeps its own clock.", {req::kJ4Clock},
+  out.push_back({"clock_not_set",
+                 "A mote that joins keeps its own clock.",
+                 {req::kJ4Clock},
                  always([](Moment& moment) {
                    const std::uint32_t offset = moment.state.clock_offset_ms;
                    moment.honest();
@@ -156,21 +188,25 @@ void add_acceptance(Mutants& out) {
                      moment.state.clock_offset_ms = offset;
                    }
                  })});
-  out.push_back({"clock_stands", "A mote's clock stays at cur_time.", {req::kJ4Clock},
+  out.push_back({"clock_stands",
+                 "A mote's clock stays at cur_time.",
+                 {req::kJ4Clock},
                  on_told([](Moment& moment, const Action&, Notice& notice) {
                    auto* const clock = std::get_if<machine::Clock>(&notice);
                    const bool set = moment.is(Role::kMote) && is_member(moment);
                    if (clock != nullptr && set) {
-                     clock->ms = moment.state.clock_offset_ms +
-                                 moment.state.join.accepted * 1000 / 1024;
+                     clock->ms =
+                         moment.state.clock_offset_ms + moment.state.join.accepted * 1000 / 1024;
                    }
                    return Fate::kKeep;
                  })});
-  out.push_back({"two_islands", "A member acks the reply of a second island, too.",
-                 {req::kJ7Choice, req::kJ4Joined}, always([](Moment& moment) {
+  out.push_back({"two_islands",
+                 "A member acks the reply of a second island, too.",
+                 {req::kJ7Choice, req::kJ4Joined},
+                 always([](Moment& moment) {
                    const Frame* const frame = moment.heard();
-                   const bool second = frame != nullptr && is_reply_for(moment, *frame) &&
-                                       is_member(moment);
+                   const bool second =
+                       frame != nullptr && is_reply_for(moment, *frame) && is_member(moment);
                    const machine::JoinMote before = moment.state.join;
                    if (second) {
                      moment.state.join.phase = Phase::kJoining;
@@ -196,26 +232,29 @@ void repeats_late(Moment& moment, Confirmed& memory) {
   for (const Transmit& frame : moment.actions.transmits()) {
     if (frame.type == am::kAckJoin) memory.ack = frame;
   }
-  const bool asked = moment.called<machine::GetClock>() != nullptr ||
-                     moment.heard(am::kNet) != nullptr;
+  const bool asked =
+      moment.called<machine::GetClock>() != nullptr || moment.heard(am::kNet) != nullptr;
   if (memory.ack.type != am::kAckJoin || !asked) return;
   moment.actions.transmit(req::kJ4Repeat) = memory.ack;
 }
 
 void add_repeats(Mutants& out) {
-  out.push_back({"ack_join_repeated_too_often", "An unconfirmed ack_join is sent thirty times.",
-                 {req::kJ4Repeat, req::kJ4Few}, with_profile([](machine::Profile& profile) {
-                   profile.ack_join_max = 30;
-                 })});
-  out.push_back({"ack_join_repeated_changed", "The repeats of ack_join have other numbers.",
-                 {req::kJ4Repeat}, on_sent([](Moment& moment, const Action&, Transmit& frame) {
+  out.push_back({"ack_join_repeated_too_often",
+                 "An unconfirmed ack_join is sent thirty times.",
+                 {req::kJ4Repeat, req::kJ4Few},
+                 with_profile([](machine::Profile& profile) { profile.ack_join_max = 30; })});
+  out.push_back({"ack_join_repeated_changed",
+                 "The repeats of ack_join have other numbers.",
+                 {req::kJ4Repeat},
+                 on_sent([](Moment& moment, const Action&, Transmit& frame) {
                    if (frame.type == am::kAckJoin && moment.state.join.acks > 1) {
                      put(frame, ack_join::kSeqNum,
                          get(frame, ack_join::kSeqNum) + unsigned{moment.state.join.acks});
                    }
                    return Fate::kKeep;
                  })});
-  out.push_back({"ack_join_repeated_late", "A member sends its ack_join again much later.",
+  out.push_back({"ack_join_repeated_late",
+                 "A member sends its ack_join again much later.",
                  {req::kJ4Repeat, req::kJ4Joined, req::kJ7Choice, req::kJ8Joined},
                  remembering<Confirmed>(repeats_late)});
 }
@@ -224,57 +263,75 @@ void add_repeats(Mutants& out) {
 
 void succeeds_twice(Moment& moment) {
   const auto* done = std::get_if<machine::SendDone>(&moment.event);
-  const bool confirmed = done != nullptr && done->acked && is_member(moment) &&
-                         moment.state.radio.sending_ack_join;
+  const bool confirmed =
+      done != nullptr && done->acked && is_member(moment) && moment.state.radio.sending_ack_join;
   moment.honest();
   if (confirmed) moment.actions.notify(Joined{own(moment), true}, req::kJ5Once);
 }
 
 void add_ends(Mutants& out) {
-  out.push_back({"joined_with_own_id_only", "joined(SUCCESS) tells an address without the island.",
-                 {req::kJ5Success}, on_told_of<Joined>([](Moment&, Joined& joined) {
+  out.push_back({"joined_with_own_id_only",
+                 "joined(SUCCESS) tells an address without the island.",
+                 {req::kJ5Success},
+                 on_told_of<Joined>([](Moment&, Joined& joined) {
                    if (joined.success) joined.address.pid = 0;
                    return Fate::kKeep;
                  })});
-  out.push_back({"joined_silently", "joined(SUCCESS) is never signalled.",
-                 {req::kJ5Success, req::kJ5Once}, on_told_of<Joined>([](Moment&, Joined& joined) {
+  out.push_back({"joined_silently",
+                 "joined(SUCCESS) is never signalled.",
+                 {req::kJ5Success, req::kJ5Once},
+                 on_told_of<Joined>([](Moment&, Joined& joined) {
                    return joined.success ? Fate::kDrop : Fate::kKeep;
                  })});
-  out.push_back({"joined_twice", "joined(SUCCESS) comes at acceptance and at the link ack.",
-                 {req::kJ5Once}, always(succeeds_twice)});
-  out.push_back({"joined_at_once", "A mote calls itself joined when it has asked.",
-                 {req::kJ5Accept}, always([](Moment& moment) {
-                   moment.honest();
-                   if (moment.called<JoinIsland>() == nullptr || !is_joining(moment)) return;
-                   moment.actions.notify(Joined{{11, moment.state.config.id}, true},
-                                         req::kJ5Accept);
-                 })});
-  out.push_back({"member_keeps_asking", "The join timer of a member runs on and asks again.",
-                 {req::kJ5Stop}, always([](Moment& moment) {
+  out.push_back({"joined_twice",
+                 "joined(SUCCESS) comes at acceptance and at the link ack.",
+                 {req::kJ5Once},
+                 always(succeeds_twice)});
+  out.push_back(
+      {"joined_at_once",
+       "A mote calls itself joined when it has asked.",
+       {req::kJ5Accept},
+       always([](Moment& moment) {
+         moment.honest();
+         if (moment.called<JoinIsland>() == nullptr || !is_joining(moment)) return;
+         moment.actions.notify(Joined{{11, moment.state.config.id}, true}, req::kJ5Accept);
+       })});
+  out.push_back({"member_keeps_asking",
+                 "The join timer of a member runs on and asks again.",
+                 {req::kJ5Stop},
+                 always([](Moment& moment) {
                    moment.honest();
                    if (moment.heard(am::kNet) != nullptr && is_member(moment)) send_request(moment);
                    if (moment.called<JoinIsland>() != nullptr && is_member(moment)) {
                      send_request(moment);
                    }
                  })});
-  out.push_back({"fail_twice", "joined(FAIL) is signalled twice.", {req::kJ5Once},
+  out.push_back({"fail_twice",
+                 "joined(FAIL) is signalled twice.",
+                 {req::kJ5Once},
                  on_told_of<Joined>([](Moment&, Joined& joined) {
                    return joined.success ? Fate::kKeep : Fate::kTwice;
                  })});
-  out.push_back({"fail_as_success", "A call that had no success ends in joined(SUCCESS).",
-                 {req::kJ8Fail, req::kJ5Accept}, on_told_of<Joined>([](Moment&, Joined& joined) {
+  out.push_back({"fail_as_success",
+                 "A call that had no success ends in joined(SUCCESS).",
+                 {req::kJ8Fail, req::kJ5Accept},
+                 on_told_of<Joined>([](Moment&, Joined& joined) {
                    joined.success = true;
                    return Fate::kKeep;
                  })});
-  out.push_back({"member_joins_again", "joinIsland of a member leaves the island and asks anew.",
-                 {req::kJ8Joined}, always([](Moment& moment) {
+  out.push_back({"member_joins_again",
+                 "joinIsland of a member leaves the island and asks anew.",
+                 {req::kJ8Joined},
+                 always([](Moment& moment) {
                    if (moment.called<JoinIsland>() != nullptr && is_member(moment)) {
                      moment.state.join.phase = Phase::kOutside;
                    }
                    moment.honest();
                  })});
-  out.push_back({"member_join_is_success", "joinIsland of a member ends in joined(SUCCESS).",
-                 {req::kJ8Joined}, on_told_of<Joined>([](Moment& moment, Joined& joined) {
+  out.push_back({"member_join_is_success",
+                 "joinIsland of a member ends in joined(SUCCESS).",
+                 {req::kJ8Joined},
+                 on_told_of<Joined>([](Moment& moment, Joined& joined) {
                    if (moment.called<JoinIsland>() != nullptr && is_member(moment)) {
                      joined.success = true;
                    }
@@ -285,33 +342,45 @@ void add_ends(Mutants& out) {
 // The timer.
 
 void add_timer(Mutants& out) {
-  out.push_back({"no_retry", "A mote asks once, and then waits for the end.", {req::kJ8Retry},
+  out.push_back({"no_retry",
+                 "A mote asks once, and then waits for the end.",
+                 {req::kJ8Retry},
                  drop_sent([](const Moment& moment, const Transmit& frame) {
                    return frame.type == am::kJoin && moment.timer(TimerKind::kJoin);
                  })});
-  out.push_back({"one_retry_too_many", "A mote sends six join_requests.", {req::kJ8Limit},
+  out.push_back({"one_retry_too_many",
+                 "A mote sends six join_requests.",
+                 {req::kJ8Limit},
                  with_profile([](machine::Profile& profile) { ++profile.join_requests_max; })});
-  out.push_back({"two_retries_too_few", "A mote gives up after three join_requests.",
+  out.push_back({"two_retries_too_few",
+                 "A mote gives up after three join_requests.",
                  {req::kJ8Fail, req::kJ8Retry},
                  with_profile([](machine::Profile& profile) { profile.join_requests_max = 3; })});
-  out.push_back({"timer_too_short", "The join timer takes 400 ticks.", {req::kJ8Period},
+  out.push_back({"timer_too_short",
+                 "The join timer takes 400 ticks.",
+                 {req::kJ8Period},
                  with_profile([](machine::Profile& profile) { profile.join_period_ticks = 400; })});
-  out.push_back({"timer_too_long", "The join timer takes a second and a half.",
-                 {req::kJ8Retry, req::kJ8Fail},
-                 with_profile([](machine::Profile& profile) { profile.join_period_ticks = 1500; })});
-  out.push_back({"retries_for_ever", "A mote asks until somebody answers.",
+  out.push_back(
+      {"timer_too_long",
+       "The join timer takes a second and a half.",
+       {req::kJ8Retry, req::kJ8Fail},
+       with_profile([](machine::Profile& profile) { profile.join_period_ticks = 1500; })});
+  out.push_back({"retries_for_ever",
+                 "A mote asks until somebody answers.",
                  {req::kJ8Limit, req::kJ8Fail},
                  with_profile([](machine::Profile& profile) { profile.join_requests_max = 200; })});
-  out.push_back({"fail_early", "joined(FAIL) comes with the first expiry, and the retries go on.",
-                 {req::kJ8Fail, req::kJ5Once}, always([](Moment& moment) {
-                   moment.honest();
-                   const bool first = moment.timer(TimerKind::kJoin) && is_joining(moment) &&
-                                      moment.state.join.requests == 2;
-                   if (first) {
-                     moment.actions.notify(Joined{{0, moment.state.config.id}, false},
-                                           req::kJ8Fail);
-                   }
-                 })});
+  out.push_back(
+      {"fail_early",
+       "joined(FAIL) comes with the first expiry, and the retries go on.",
+       {req::kJ8Fail, req::kJ5Once},
+       always([](Moment& moment) {
+         moment.honest();
+         const bool first = moment.timer(TimerKind::kJoin) && is_joining(moment) &&
+                            moment.state.join.requests == 2;
+         if (first) {
+           moment.actions.notify(Joined{{0, moment.state.config.id}, false}, req::kJ8Fail);
+         }
+       })});
 }
 
 // Others' business, and life outside.
@@ -332,8 +401,10 @@ void stale_address(Moment& moment, machine::Address& first) {
 }
 
 void add_outside(Mutants& out) {
-  out.push_back({"mote_answers_requests", "A mote answers the join_request of another mote.",
-                 {req::kJ10Mote}, always([](Moment& moment) {
+  out.push_back({"mote_answers_requests",
+                 "A mote answers the join_request of another mote.",
+                 {req::kJ10Mote},
+                 always([](Moment& moment) {
                    moment.honest();
                    const Frame* const request = moment.heard(am::kJoin);
                    if (request == nullptr || !moment.is(Role::kMote)) return;
@@ -342,15 +413,19 @@ void add_outside(Mutants& out) {
                    reply.size_bytes = 10;
                    put(reply, join_reply::kMote, request->src);
                  })});
-  out.push_back({"mote_lists_members", "A mote signals moteJoined for an ack_join.",
-                 {req::kJ10Mote}, always([](Moment& moment) {
+  out.push_back({"mote_lists_members",
+                 "A mote signals moteJoined for an ack_join.",
+                 {req::kJ10Mote},
+                 always([](Moment& moment) {
                    moment.honest();
                    const Frame* const ack = moment.heard(am::kAckJoin);
                    if (ack == nullptr || !moment.is(Role::kMote)) return;
                    moment.actions.notify(machine::MoteJoined{{11, ack->src}, {}}, req::kJ10Mote);
                  })});
-  out.push_back({"sends_outside", "A mote that has not joined sends from island 0.",
-                 {req::kJ11Send}, always([](Moment& moment) {
+  out.push_back({"sends_outside",
+                 "A mote that has not joined sends from island 0.",
+                 {req::kJ11Send},
+                 always([](Moment& moment) {
                    const bool outside = moment.is(Role::kMote) && !is_member(moment) &&
                                         moment.called<machine::Send>() != nullptr;
                    const Phase before = moment.state.join.phase;
@@ -358,23 +433,26 @@ void add_outside(Mutants& out) {
                    moment.honest();
                    if (outside) moment.state.join.phase = before;
                  })});
-  out.push_back({"hears_outside", "A mote that has not joined takes what names its devid.",
-                 {req::kJ11Hear}, always([](Moment& moment) {
-                   const Frame* const frame = moment.heard();
-                   const bool outside = moment.is(Role::kMote) && !is_member(moment) &&
-                                        frame != nullptr && is_net(*frame);
-                   const machine::JoinMote before = moment.state.join;
-                   if (outside) {
-                     moment.state.join.phase = Phase::kMember;
-                     moment.state.join.address = {get(*frame, net::kDestPid),
-                                                  moment.state.config.id};
-                   }
-                   moment.honest();
-                   if (outside) moment.state.join = before;
-                 })});
+  out.push_back(
+      {"hears_outside",
+       "A mote that has not joined takes what names its devid.",
+       {req::kJ11Hear},
+       always([](Moment& moment) {
+         const Frame* const frame = moment.heard();
+         const bool outside =
+             moment.is(Role::kMote) && !is_member(moment) && frame != nullptr && is_net(*frame);
+         const machine::JoinMote before = moment.state.join;
+         if (outside) {
+           moment.state.join.phase = Phase::kMember;
+           moment.state.join.address = {get(*frame, net::kDestPid), moment.state.config.id};
+         }
+         moment.honest();
+         if (outside) moment.state.join = before;
+       })});
   out.push_back({"stale_address_kept",
                  "A mote that joins another island after a reboot sends from its old address.",
-                 {req::kN1Src, req::kJ7One}, remembering<machine::Address>(stale_address)});
+                 {req::kN1Src, req::kJ7One},
+                 remembering<machine::Address>(stale_address)});
 }
 
 }  // namespace

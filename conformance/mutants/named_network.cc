@@ -47,50 +47,66 @@ void reverse(Queue& queue) {
 }
 
 void add_sending(Mutants& out) {
-  out.push_back({"signed_by_the_sink", "What a mote sends has its sink as the source.",
-                 {req::kN1Src}, on_sent([](Moment& moment, const Action&, Transmit& frame) {
+  out.push_back({"signed_by_the_sink",
+                 "What a mote sends has its sink as the source.",
+                 {req::kN1Src},
+                 on_sent([](Moment& moment, const Action&, Transmit& frame) {
                    if (is_send(moment, frame)) put(frame, net::kSrcDevid, 1);
                    return Fate::kKeep;
                  })});
-  out.push_back({"signed_without_island", "What a node sends has source island 0.", {req::kN1Src},
+  out.push_back({"signed_without_island",
+                 "What a node sends has source island 0.",
+                 {req::kN1Src},
                  on_sent([](Moment& moment, const Action&, Transmit& frame) {
                    if (is_send(moment, frame)) put(frame, net::kSrcPid, 0);
                    return Fate::kKeep;
                  })});
-  out.push_back({"base_station_is_device_0", "A base station signs with devid 0.", {req::kN1Src},
+  out.push_back({"base_station_is_device_0",
+                 "A base station signs with devid 0.",
+                 {req::kN1Src},
                  on_sent([](Moment& moment, const Action&, Transmit& frame) {
                    if (is_send(moment, frame) && moment.is(Role::kBaseStation)) {
                      put(frame, net::kSrcDevid, 0);
                    }
                    return Fate::kKeep;
                  })});
-  out.push_back({"send_returns_another_number", "send returns the number of the next message.",
-                 {req::kN1Seq}, on_told_of<SendResult>([](Moment&, SendResult& result) {
+  out.push_back({"send_returns_another_number",
+                 "send returns the number of the next message.",
+                 {req::kN1Seq},
+                 on_told_of<SendResult>([](Moment&, SendResult& result) {
                    if (result.seq_num != machine::kNoSeq) ++result.seq_num;
                    return Fate::kKeep;
                  })});
-  out.push_back({"no_outgoing_buffer", "send refuses while the radio is busy.",
-                 {req::kN1Room, req::kN1Seq, req::kN2Queue}, always([](Moment& moment) {
+  out.push_back({"no_outgoing_buffer",
+                 "send refuses while the radio is busy.",
+                 {req::kN1Room, req::kN1Seq, req::kN2Queue},
+                 always([](Moment& moment) {
                    if (send_on_busy_radio(moment) == nullptr) return moment.honest();
                    moment.nothing();
                    moment.actions.notify(SendResult{machine::kNoSeq}, req::kN1Room);
                  })});
-  out.push_back({"buffer_of_two", "The outgoing radio buffer has two places.",
-                 {req::kN1Room, req::kN1Seq, req::kN2Queue}, always([](Moment& moment) {
-                   const bool refuse = send_on_busy_radio(moment) != nullptr &&
-                                       moment.state.radio.out.size() >= 2;
+  out.push_back({"buffer_of_two",
+                 "The outgoing radio buffer has two places.",
+                 {req::kN1Room, req::kN1Seq, req::kN2Queue},
+                 always([](Moment& moment) {
+                   const bool refuse =
+                       send_on_busy_radio(moment) != nullptr && moment.state.radio.out.size() >= 2;
                    if (!refuse) return moment.honest();
                    moment.nothing();
                    moment.actions.notify(SendResult{machine::kNoSeq}, req::kN1Room);
                  })});
-  out.push_back({"full_buffer_loses_the_oldest", "A full outgoing buffer loses its oldest message.",
-                 {req::kN1Full, req::kN1Seq, req::kN2Queue, req::kN2Once}, always([](Moment& moment) {
+  out.push_back({"full_buffer_loses_the_oldest",
+                 "A full outgoing buffer loses its oldest message.",
+                 {req::kN1Full, req::kN1Seq, req::kN2Queue, req::kN2Once},
+                 always([](Moment& moment) {
                    auto& queue = moment.state.radio.out;
                    if (moment.called<Send>() != nullptr && queue.full()) queue.pop();
                    moment.honest();
                  })});
-  out.push_back({"refused_and_sent", "A message that send refuses is sent all the same.",
-                 {req::kN1Full}, remembering<Transmit>(sends_refused)});
+  out.push_back({"refused_and_sent",
+                 "A message that send refuses is sent all the same.",
+                 {req::kN1Full},
+                 remembering<Transmit>(sends_refused)});
 }
 
 // Queues are changed before the machine empties them.
@@ -104,50 +120,66 @@ bool application_frees(const Moment& moment) {
 }
 
 void add_buffers(Mutants& out) {
-  out.push_back({"queued_lost", "What was queued for the radio is lost.", {req::kN2Queue},
+  out.push_back({"queued_lost",
+                 "What was queued for the radio is lost.",
+                 {req::kN2Queue},
                  always([](Moment& moment) {
                    if (line_frees(moment)) moment.state.radio.out.clear();
                    moment.honest();
                  })});
-  out.push_back({"serial_queue_lost", "What was queued for the serial line is lost.",
-                 {req::kN2Queue}, always([](Moment& moment) {
+  out.push_back({"serial_queue_lost",
+                 "What was queued for the serial line is lost.",
+                 {req::kN2Queue},
+                 always([](Moment& moment) {
                    if (line_frees(moment)) moment.state.serial.out.clear();
                    moment.honest();
                  })});
-  out.push_back({"buffer_order_broken", "The outgoing buffer is a stack.", {req::kN2Order, req::kN2Queue},
+  out.push_back({"buffer_order_broken",
+                 "The outgoing buffer is a stack.",
+                 {req::kN2Order, req::kN2Queue},
                  always([](Moment& moment) {
                    auto& queue = moment.state.radio.out;
                    if (line_frees(moment) && !queue.empty()) reverse(queue);
                    moment.honest();
                  })});
-  out.push_back({"queued_twice", "What was queued is sent twice.", {req::kN2Once, req::kN2Order},
+  out.push_back({"queued_twice",
+                 "What was queued is sent twice.",
+                 {req::kN2Once, req::kN2Order},
                  always([](Moment& moment) {
                    auto& queue = moment.state.radio.out;
                    const bool room = !queue.empty() && !queue.full();
                    if (line_frees(moment) && room) queue.push() = queue[queue.size() - 1];
                    moment.honest();
                  })});
-  out.push_back({"queued_cut", "A message loses its last byte in the outgoing buffer.",
-                 {req::kN2Once, req::kN2Queue}, always([](Moment& moment) {
+  out.push_back({"queued_cut",
+                 "A message loses its last byte in the outgoing buffer.",
+                 {req::kN2Once, req::kN2Queue},
+                 always([](Moment& moment) {
                    auto& queue = moment.state.radio.out;
                    if (line_frees(moment) && !queue.empty()) --queue.front().size_bytes;
                    moment.honest();
                  })});
-  out.push_back({"busy_radio_sends", "A node sends although the radio is busy.",
-                 {req::kN2Busy, req::kN2Queue, req::kN2Order}, always([](Moment& moment) {
+  out.push_back({"busy_radio_sends",
+                 "A node sends although the radio is busy.",
+                 {req::kN2Busy, req::kN2Queue, req::kN2Order},
+                 always([](Moment& moment) {
                    const bool taken = moment.state.radio.taken;
                    if (moment.called<Send>() != nullptr) moment.state.radio.taken = false;
                    moment.honest();
                    if (moment.called<Send>() != nullptr) moment.state.radio.taken = taken;
                  })});
-  out.push_back({"incoming_order_broken", "What came while the application was busy is a stack.",
-                 {req::kN2InOrder}, always([](Moment& moment) {
+  out.push_back({"incoming_order_broken",
+                 "What came while the application was busy is a stack.",
+                 {req::kN2InOrder},
+                 always([](Moment& moment) {
                    auto& queue = moment.state.radio.in;
                    if (application_frees(moment) && !queue.empty()) reverse(queue);
                    moment.honest();
                  })});
-  out.push_back({"incoming_lost", "What came while the application was busy is lost.",
-                 {req::kN2InOrder, req::kN2InFull}, always([](Moment& moment) {
+  out.push_back({"incoming_lost",
+                 "What came while the application was busy is lost.",
+                 {req::kN2InOrder, req::kN2InFull},
+                 always([](Moment& moment) {
                    if (application_frees(moment)) {
                      moment.state.radio.in.clear();
                      moment.state.serial.in.clear();
@@ -155,7 +187,9 @@ void add_buffers(Mutants& out) {
                    }
                    moment.honest();
                  })});
-  out.push_back({"incoming_twice", "What waited longest is handled twice.", {req::kN2InOrder},
+  out.push_back({"incoming_twice",
+                 "What waited longest is handled twice.",
+                 {req::kN2InOrder},
                  always([](Moment& moment) {
                    auto& queue = moment.state.radio.in;
                    const bool room = !queue.empty() && !queue.full();
@@ -165,8 +199,10 @@ void add_buffers(Mutants& out) {
                    }
                    moment.honest();
                  })});
-  out.push_back({"incoming_overwritten", "A full incoming buffer loses its oldest message.",
-                 {req::kN2InFull}, always([](Moment& moment) {
+  out.push_back({"incoming_overwritten",
+                 "A full incoming buffer loses its oldest message.",
+                 {req::kN2InFull},
+                 always([](Moment& moment) {
                    const Frame* const frame = moment.heard();
                    auto& queue = moment.state.radio.in;
                    if (frame != nullptr && moment.state.app_busy && queue.full()) {
@@ -175,8 +211,10 @@ void add_buffers(Mutants& out) {
                    }
                    moment.honest();
                  })});
-  out.push_back({"incoming_full_for_good", "A node whose incoming buffer was full hears no more.",
-                 {req::kN2InFull}, remembering<bool>([](Moment& moment, bool& full) {
+  out.push_back({"incoming_full_for_good",
+                 "A node whose incoming buffer was full hears no more.",
+                 {req::kN2InFull},
+                 remembering<bool>([](Moment& moment, bool& full) {
                    if (full && moment.heard() != nullptr) return moment.nothing();
                    moment.honest();
                    full = full || moment.state.radio.in.full();
@@ -202,49 +240,65 @@ void radiates_to_itself(Moment& moment) {
 }
 
 void add_addressing(Mutants& out) {
-  out.push_back({"sends_to_itself", "A node radiates what it sends to itself.", {req::kN4Self},
+  out.push_back({"sends_to_itself",
+                 "A node radiates what it sends to itself.",
+                 {req::kN4Self},
                  always(radiates_to_itself)});
-  out.push_back({"long_data_cut", "send cuts more than 100 bytes and sends the rest.",
-                 {req::kN1Size}, always([](Moment& moment) {
+  out.push_back({"long_data_cut",
+                 "send cuts more than 100 bytes and sends the rest.",
+                 {req::kN1Size},
+                 always([](Moment& moment) {
                    const Send* const send = moment.called<Send>();
                    if (send == nullptr || send->data.size() <= 100) return moment.honest();
                    Send cut = *send;
                    cut.data = cut.data.first(100);
                    moment.honest(machine::Called{cut});
                  })});
-  out.push_back({"local_island_left", "dest.pid 0xFFFE goes on the air as it is.", {req::kN3Local},
+  out.push_back({"local_island_left",
+                 "dest.pid 0xFFFE goes on the air as it is.",
+                 {req::kN3Local},
                  on_sent([](Moment& moment, const Action&, Transmit& frame) {
                    const Send* const send = moment.called<Send>();
                    const bool local = send != nullptr && send->dest.pid == machine::kLocalPid;
                    if (local && is_net(frame)) put(frame, net::kDestPid, machine::kLocalPid);
                    return Fate::kKeep;
                  })});
-  out.push_back({"local_island_is_0", "dest.pid 0xFFFE becomes island 0.", {req::kN3Local},
+  out.push_back({"local_island_is_0",
+                 "dest.pid 0xFFFE becomes island 0.",
+                 {req::kN3Local},
                  on_sent([](Moment& moment, const Action&, Transmit& frame) {
                    const Send* const send = moment.called<Send>();
                    const bool local = send != nullptr && send->dest.pid == machine::kLocalPid;
                    if (local && is_net(frame)) put(frame, net::kDestPid, 0);
                    return Fate::kKeep;
                  })});
-  out.push_back({"all_by_the_sink", "A mote sends everything to its sink.", {req::kN4Mote},
+  out.push_back({"all_by_the_sink",
+                 "A mote sends everything to its sink.",
+                 {req::kN4Mote},
                  on_sent([](Moment& moment, const Action&, Transmit& frame) {
                    if (moment.is(Role::kMote) && is_net(frame)) frame.dest = 1;
                    return Fate::kKeep;
                  })});
-  out.push_back({"all_broadcast", "Every net_msg goes on the air as a broadcast.",
-                 {req::kN4Mote, req::kN4Sink}, on_sent([](Moment&, const Action&, Transmit& frame) {
+  out.push_back({"all_broadcast",
+                 "Every net_msg goes on the air as a broadcast.",
+                 {req::kN4Mote, req::kN4Sink},
+                 on_sent([](Moment&, const Action&, Transmit& frame) {
                    const bool radio = frame.link == Link::kRadio && is_net(frame);
                    if (radio) frame.dest = machine::kAmBroadcast;
                    return Fate::kKeep;
                  })});
-  out.push_back({"broadcast_by_the_sink", "A mote's broadcast goes to its sink.", {req::kN4Mote, req::kN2Queue},
+  out.push_back({"broadcast_by_the_sink",
+                 "A mote's broadcast goes to its sink.",
+                 {req::kN4Mote, req::kN2Queue},
                  on_sent([](Moment& moment, const Action&, Transmit& frame) {
                    const bool all = is_net(frame) && frame.dest == machine::kAmBroadcast;
                    if (all && moment.is(Role::kMote)) frame.dest = 1;
                    return Fate::kKeep;
                  })});
-  out.push_back({"devid_is_am_address", "A mote sends to the devid, whatever the island.",
-                 {req::kN4Sink}, on_sent([](Moment& moment, const Action&, Transmit& frame) {
+  out.push_back({"devid_is_am_address",
+                 "A mote sends to the devid, whatever the island.",
+                 {req::kN4Sink},
+                 on_sent([](Moment& moment, const Action&, Transmit& frame) {
                    if (moment.is(Role::kMote) && is_net(frame)) {
                      frame.dest = get(frame, net::kDestDevid);
                    }
@@ -253,39 +307,50 @@ void add_addressing(Mutants& out) {
 }
 
 bool delivers(const Moment& moment, const Frame& frame) {
-  return is_net(frame) && frame.link == Link::kRadio && moment.is(Role::kMote) &&
-         is_member(moment);
+  return is_net(frame) && frame.link == Link::kRadio && moment.is(Role::kMote) && is_member(moment);
 }
 
 void add_motes(Mutants& out) {
-  out.push_back({"no_broadcast_heard", "A mote takes no broadcast.", {req::kN5Deliver},
+  out.push_back({"no_broadcast_heard",
+                 "A mote takes no broadcast.",
+                 {req::kN5Deliver},
                  on_heard([](Moment& moment, Forged& forged) {
                    return !delivers(moment, forged.frame) ||
                           get(forged, net::kDestDevid) != machine::kBroadcastDevid;
                  })});
-  out.push_back({"source_island_filtered", "A mote ignores what comes from another island.",
-                 {req::kN5Deliver}, on_heard([](Moment& moment, Forged& forged) {
+  out.push_back({"source_island_filtered",
+                 "A mote ignores what comes from another island.",
+                 {req::kN5Deliver},
+                 on_heard([](Moment& moment, Forged& forged) {
                    return !delivers(moment, forged.frame) ||
                           get(forged, net::kSrcPid) == own(moment).pid;
                  })});
-  out.push_back({"sink_only_heard", "A mote takes only what its sink sends.", {req::kN5Deliver},
+  out.push_back({"sink_only_heard",
+                 "A mote takes only what its sink sends.",
+                 {req::kN5Deliver},
                  on_heard([](Moment& moment, Forged& forged) {
                    return !delivers(moment, forged.frame) || forged.frame.src == 1;
                  })});
-  out.push_back({"foreign_island_delivered", "A mote looks at the devid alone.",
-                 {req::kN5Foreign}, on_heard([](Moment& moment, Forged& forged) {
+  out.push_back({"foreign_island_delivered",
+                 "A mote looks at the devid alone.",
+                 {req::kN5Foreign},
+                 on_heard([](Moment& moment, Forged& forged) {
                    if (delivers(moment, forged.frame)) put(forged, net::kDestPid, own(moment).pid);
                    return true;
                  })});
-  out.push_back({"others_messages_delivered", "A mote takes what is for another mote.",
-                 {req::kN5Other}, on_heard([](Moment& moment, Forged& forged) {
+  out.push_back({"others_messages_delivered",
+                 "A mote takes what is for another mote.",
+                 {req::kN5Other},
+                 on_heard([](Moment& moment, Forged& forged) {
                    const bool other = delivers(moment, forged.frame) &&
                                       get(forged, net::kDestDevid) < machine::kNullDevid;
                    if (other) put(forged, net::kDestDevid, own(moment).devid);
                    return true;
                  })});
-  out.push_back({"null_devid_delivered", "A mote takes what is for the base station.",
-                 {req::kN5Other}, on_heard([](Moment& moment, Forged& forged) {
+  out.push_back({"null_devid_delivered",
+                 "A mote takes what is for the base station.",
+                 {req::kN5Other},
+                 on_heard([](Moment& moment, Forged& forged) {
                    const bool null = delivers(moment, forged.frame) &&
                                      get(forged, net::kDestDevid) == machine::kNullDevid;
                    if (null) put(forged, net::kDestDevid, own(moment).devid);

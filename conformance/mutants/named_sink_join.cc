@@ -10,25 +10,33 @@ namespace {
 
 using machine::MoteJoined;
 
-constexpr std::size_t kReportedMote = net::kBody + 3;         // In serial_joined.
+constexpr std::size_t kReportedMote = net::kBody + 3;  // In serial_joined.
 constexpr std::size_t kReportedTransducers = net::kBody + 6;
 
-bool is_reply(const Moment&, const Transmit& frame) { return frame.type == am::kJoinReply; }
+bool is_reply(const Moment&, const Transmit& frame) {
+  return frame.type == am::kJoinReply;
+}
 bool is_report(const Moment& moment, const Transmit& frame) {
   return frame.link == Link::kSerial && is_net(frame) && moment.heard(am::kAckJoin) != nullptr;
 }
 
 void add_replies(Mutants& out) {
-  out.push_back({"join_not_answered", "A sink answers no join_request.", {req::kJ3Reply},
+  out.push_back({"join_not_answered",
+                 "A sink answers no join_request.",
+                 {req::kJ3Reply},
                  drop_sent(is_reply)});
-  out.push_back({"reply_twice", "A sink sends each join_reply twice.", {req::kJ3Once},
+  out.push_back({"reply_twice",
+                 "A sink sends each join_reply twice.",
+                 {req::kJ3Once},
                  double_sent(is_reply)});
-  out.push_back({"reply_unasked", "A sink offers its island to whoever sends a net_msg.",
-                 {req::kJ3Once}, always([](Moment& moment) {
+  out.push_back({"reply_unasked",
+                 "A sink offers its island to whoever sends a net_msg.",
+                 {req::kJ3Once},
+                 always([](Moment& moment) {
                    moment.honest();
                    const Frame* const frame = moment.heard(am::kNet);
-                   const bool room = moment.actions.transmits().size() + 2 <=
-                                     Actions::kTransmitsMax;
+                   const bool room =
+                       moment.actions.transmits().size() + 2 <= Actions::kTransmitsMax;
                    if (frame == nullptr || !moment.is(Role::kSink) || !room) return;
                    Transmit& reply =
                        moment.send(Link::kRadio, am::kJoinReply, frame->src, req::kJ3Once);
@@ -36,8 +44,10 @@ void add_replies(Mutants& out) {
                    put(reply, join_reply::kIsland, moment.state.island);
                    put(reply, join_reply::kMote, frame->src);
                  })});
-  out.push_back({"reply_to_an_ack_join", "A sink answers ack_join with another join_reply.",
-                 {req::kJ3Once}, always([](Moment& moment) {
+  out.push_back({"reply_to_an_ack_join",
+                 "A sink answers ack_join with another join_reply.",
+                 {req::kJ3Once},
+                 always([](Moment& moment) {
                    moment.honest();
                    const Frame* const frame = moment.heard(am::kAckJoin);
                    if (frame == nullptr || !moment.is(Role::kSink)) return;
@@ -47,26 +57,35 @@ void add_replies(Mutants& out) {
                    put(reply, join_reply::kIsland, moment.state.island);
                    put(reply, join_reply::kMote, frame->src);
                  })});
-  out.push_back({"reply_other_number", "A join_reply carries the number plus one.", {req::kJ3Seq, req::kJ3Reply},
+  out.push_back({"reply_other_number",
+                 "A join_reply carries the number plus one.",
+                 {req::kJ3Seq, req::kJ3Reply},
                  sent_field(am::kJoinReply, join_reply::kSeqNum,
                             [](const Moment&, unsigned v) { return v + 1; })});
-  out.push_back({"reply_number_swapped", "The number of a join_reply has the wrong byte order.",
-                 {req::kJ3Seq}, sent_field(am::kJoinReply, join_reply::kSeqNum,
-                                           [](const Moment&, unsigned v) {
-                                             return v >> 8 | (v & 0xFF) << 8;
-                                           })});
-  out.push_back({"reply_offers_the_sinks_devid", "mote_addr of a join_reply is the sink's own.",
-                 {req::kJ3Address}, sent_field(am::kJoinReply, join_reply::kMote,
-                                               [](const Moment&, unsigned) { return 1U; })});
-  out.push_back({"reply_offers_island_0", "island_addr of a join_reply is 0.", {req::kJ3Address},
+  out.push_back({"reply_number_swapped",
+                 "The number of a join_reply has the wrong byte order.",
+                 {req::kJ3Seq},
+                 sent_field(am::kJoinReply, join_reply::kSeqNum,
+                            [](const Moment&, unsigned v) { return v >> 8 | (v & 0xFF) << 8; })});
+  out.push_back(
+      {"reply_offers_the_sinks_devid",
+       "mote_addr of a join_reply is the sink's own.",
+       {req::kJ3Address},
+       sent_field(am::kJoinReply, join_reply::kMote, [](const Moment&, unsigned) { return 1U; })});
+  out.push_back({"reply_offers_island_0",
+                 "island_addr of a join_reply is 0.",
+                 {req::kJ3Address},
                  sent_field(am::kJoinReply, join_reply::kIsland,
                             [](const Moment&, unsigned) { return 0U; })});
-  out.push_back({"reply_broadcast", "A join_reply goes to everybody.", {req::kJ3Dest},
+  out.push_back({"reply_broadcast",
+                 "A join_reply goes to everybody.",
+                 {req::kJ3Dest},
                  on_sent([](Moment&, const Action&, Transmit& frame) {
                    if (frame.type == am::kJoinReply) frame.dest = machine::kAmBroadcast;
                    return Fate::kKeep;
                  })});
-  out.push_back({"cur_time_in_seconds", "cur_time of a join_reply is in seconds.",
+  out.push_back({"cur_time_in_seconds",
+                 "cur_time of a join_reply is in seconds.",
                  {req::kJ3Drift, req::kJ3Time},
                  on_sent([](Moment&, const Action&, Transmit& frame) {
                    if (frame.type != am::kJoinReply) return Fate::kKeep;
@@ -74,8 +93,10 @@ void add_replies(Mutants& out) {
                    store_be32(time, load_be32(time) / 1000);
                    return Fate::kKeep;
                  })});
-  out.push_back({"cur_time_constant", "cur_time of a join_reply is always 12345.",
-                 {req::kJ3Time}, on_sent([](Moment&, const Action&, Transmit& frame) {
+  out.push_back({"cur_time_constant",
+                 "cur_time of a join_reply is always 12345.",
+                 {req::kJ3Time},
+                 on_sent([](Moment&, const Action&, Transmit& frame) {
                    if (frame.type != am::kJoinReply) return Fate::kKeep;
                    store_be32(frame.payload.data() + join_reply::kTime, 12345);
                    return Fate::kKeep;
@@ -124,36 +145,51 @@ void lists_at_request(Moment& moment) {
 }
 
 void add_list(Mutants& out) {
-  out.push_back({"full_list_answers", "A sink with a full list answers a mote that is not in it.",
-                 {req::kJ3Full}, always(answers_when_full)});
+  out.push_back({"full_list_answers",
+                 "A sink with a full list answers a mote that is not in it.",
+                 {req::kJ3Full},
+                 always(answers_when_full)});
   out.push_back({"newcomer_takes_a_members_place",
                  "A sink with a full list forgets its oldest member for a newcomer's request.",
-                 {req::kJ3Overwrite, req::kJ3Full}, always(take_a_members_place)});
+                 {req::kJ3Overwrite, req::kJ3Full},
+                 always(take_a_members_place)});
   out.push_back({"late_ack_takes_a_members_place",
                  "An ack_join that finds the list full pushes the oldest member out.",
-                 {req::kJ3Overwrite, req::kJ6Add}, always(late_ack_pushes_out)});
-  out.push_back({"listed_at_request", "A sink lists a mote that has asked, before its ack_join.",
-                 {req::kJ3Reply, req::kJ6Add, req::kJ6Only}, always(lists_at_request)});
-  out.push_back({"pending_join_overwritten", "A sink remembers one join, the newest.",
-                 {req::kJ9Interleave, req::kJ6Add}, always([](Moment& moment) {
+                 {req::kJ3Overwrite, req::kJ6Add},
+                 always(late_ack_pushes_out)});
+  out.push_back({"listed_at_request",
+                 "A sink lists a mote that has asked, before its ack_join.",
+                 {req::kJ3Reply, req::kJ6Add, req::kJ6Only},
+                 always(lists_at_request)});
+  out.push_back({"pending_join_overwritten",
+                 "A sink remembers one join, the newest.",
+                 {req::kJ9Interleave, req::kJ6Add},
+                 always([](Moment& moment) {
                    moment.honest();
                    auto& pending = moment.state.sink.pending;
                    while (pending.size() > 1) pending.erase(0);
                  })});
-  out.push_back({"one_join_at_a_time", "A sink does not answer while another join is open.",
-                 {req::kJ9Interleave, req::kJ3Reply}, on_heard([](Moment& moment, Forged& forged) {
+  out.push_back({"one_join_at_a_time",
+                 "A sink does not answer while another join is open.",
+                 {req::kJ9Interleave, req::kJ3Reply},
+                 on_heard([](Moment& moment, Forged& forged) {
                    const auto& pending = moment.state.sink.pending;
                    return forged.frame.type != am::kJoin || pending.empty() ||
                           pending[0].devid == forged.frame.src;
                  })});
-  out.push_back({"descriptors_mixed", "A sink keeps one descriptor, that of the newest request.",
-                 {req::kJ9Interleave}, always([](Moment& moment) {
+  out.push_back({"descriptors_mixed",
+                 "A sink keeps one descriptor, that of the newest request.",
+                 {req::kJ9Interleave},
+                 always([](Moment& moment) {
                    moment.honest();
                    auto& pending = moment.state.sink.pending;
-                   for (auto& one : pending) one.descriptor = pending[pending.size() - 1].descriptor;
+                   for (auto& one : pending)
+                     one.descriptor = pending[pending.size() - 1].descriptor;
                  })});
-  out.push_back({"answers_once", "A sink answers a mote's second request no more.",
-                 {req::kJ3Reply}, on_heard([](Moment& moment, Forged& forged) {
+  out.push_back({"answers_once",
+                 "A sink answers a mote's second request no more.",
+                 {req::kJ3Reply},
+                 on_heard([](Moment& moment, Forged& forged) {
                    return forged.frame.type != am::kJoin ||
                           machine::find_pending(moment.state.sink, forged.frame.src) == nullptr;
                  })});
@@ -162,36 +198,45 @@ void add_list(Mutants& out) {
 // ack_join.
 
 void add_acks(Mutants& out) {
-  out.push_back({"ack_join_ignored", "A sink lists nobody.", {req::kJ6Add},
-                 on_heard([](Moment&, Forged& forged) {
-                   return forged.frame.type != am::kAckJoin;
-                 })});
-  out.push_back({"ack_join_any_number", "A sink takes ack_join with any number.", {req::kJ6Seq},
+  out.push_back(
+      {"ack_join_ignored",
+       "A sink lists nobody.",
+       {req::kJ6Add},
+       on_heard([](Moment&, Forged& forged) { return forged.frame.type != am::kAckJoin; })});
+  out.push_back({"ack_join_any_number",
+                 "A sink takes ack_join with any number.",
+                 {req::kJ6Seq},
                  on_heard([](Moment& moment, Forged& forged) {
                    if (forged.frame.type != am::kAckJoin) return true;
-                   const auto* asked = machine::find_pending(
-                       moment.state.sink, get(forged, ack_join::kSrcDevid));
+                   const auto* asked =
+                       machine::find_pending(moment.state.sink, get(forged, ack_join::kSrcDevid));
                    if (asked != nullptr) put(forged, ack_join::kSeqNum, asked->seq_num);
                    return true;
                  })});
-  out.push_back({"ack_join_of_any_island", "A sink takes ack_join for another island.",
-                 {req::kJ6Island}, on_heard([](Moment& moment, Forged& forged) {
+  out.push_back({"ack_join_of_any_island",
+                 "A sink takes ack_join for another island.",
+                 {req::kJ6Island},
+                 on_heard([](Moment& moment, Forged& forged) {
                    if (forged.frame.type == am::kAckJoin) {
                      put(forged, ack_join::kDestPid, moment.state.island);
                      put(forged, ack_join::kSrcPid, moment.state.island);
                    }
                    return true;
                  })});
-  out.push_back({"ack_join_of_any_sender", "A sink does not compare an ack_join with its AM source.",
-                 {req::kJ6Sender}, on_heard([](Moment& moment, Forged& forged) {
+  out.push_back({"ack_join_of_any_sender",
+                 "A sink does not compare an ack_join with its AM source.",
+                 {req::kJ6Sender},
+                 on_heard([](Moment& moment, Forged& forged) {
                    if (forged.frame.type != am::kAckJoin || forged.size() < 14) return true;
                    put(forged, ack_join::kDestDevid, own(moment).devid);
                    put(forged, ack_join::kSrcPid, get(forged, ack_join::kDestPid));
                    forged.frame.src = get(forged, ack_join::kSrcDevid);
                    return true;
                  })});
-  out.push_back({"mote_joined_twice", "A repeated ack_join is one more join.",
-                 {req::kJ6Repeat}, always([](Moment& moment) {
+  out.push_back({"mote_joined_twice",
+                 "A repeated ack_join is one more join.",
+                 {req::kJ6Repeat},
+                 always([](Moment& moment) {
                    const Frame* const ack = moment.heard(am::kAckJoin);
                    auto& sink = moment.state.sink;
                    if (ack != nullptr && moment.is(Role::kSink) && !sink.pending.full()) {
@@ -200,36 +245,50 @@ void add_acks(Mutants& out) {
                    }
                    moment.honest();
                  })});
-  out.push_back({"mote_joined_silently", "A sink tells its application of no member.",
-                 {req::kJ6Add}, on_told_of<MoteJoined>([](Moment&, MoteJoined&) {
-                   return Fate::kDrop;
-                 })});
-  out.push_back({"mote_joined_without_descriptor", "moteJoined has an empty descriptor.",
-                 {req::kJ6Add}, on_told_of<MoteJoined>([](Moment&, MoteJoined& joined) {
+  out.push_back({"mote_joined_silently",
+                 "A sink tells its application of no member.",
+                 {req::kJ6Add},
+                 on_told_of<MoteJoined>([](Moment&, MoteJoined&) { return Fate::kDrop; })});
+  out.push_back({"mote_joined_without_descriptor",
+                 "moteJoined has an empty descriptor.",
+                 {req::kJ6Add},
+                 on_told_of<MoteJoined>([](Moment&, MoteJoined& joined) {
                    joined.descriptor = {};
                    return Fate::kKeep;
                  })});
-  out.push_back({"not_reported", "A sink tells its base station of no member.", {req::kJ6Report, req::kJ6Content},
+  out.push_back({"not_reported",
+                 "A sink tells its base station of no member.",
+                 {req::kJ6Report, req::kJ6Content},
                  drop_sent(is_report)});
-  out.push_back({"reported_twice", "A sink reports a member twice.",
-                 {req::kJ6Report, req::kJ6Repeat}, double_sent(is_report)});
-  out.push_back({"serial_joined_with_wrong_descriptor", "serial_joined has no transducers.",
-                 {req::kJ6Content}, on_sent([](Moment& moment, const Action&, Transmit& frame) {
+  out.push_back({"reported_twice",
+                 "A sink reports a member twice.",
+                 {req::kJ6Report, req::kJ6Repeat},
+                 double_sent(is_report)});
+  out.push_back({"serial_joined_with_wrong_descriptor",
+                 "serial_joined has no transducers.",
+                 {req::kJ6Content},
+                 on_sent([](Moment& moment, const Action&, Transmit& frame) {
                    if (is_report(moment, frame)) put(frame, kReportedTransducers, 0);
                    return Fate::kKeep;
                  })});
-  out.push_back({"serial_joined_of_the_sink", "serial_joined names the sink as the new member.",
-                 {req::kJ6Content}, on_sent([](Moment& moment, const Action&, Transmit& frame) {
+  out.push_back({"serial_joined_of_the_sink",
+                 "serial_joined names the sink as the new member.",
+                 {req::kJ6Content},
+                 on_sent([](Moment& moment, const Action&, Transmit& frame) {
                    if (is_report(moment, frame)) put(frame, kReportedMote, 1);
                    return Fate::kKeep;
                  })});
-  out.push_back({"serial_joined_signed_by_the_sink", "serial_joined has the sink as its source.",
-                 {req::kJ6Content}, on_sent([](Moment& moment, const Action&, Transmit& frame) {
+  out.push_back({"serial_joined_signed_by_the_sink",
+                 "serial_joined has the sink as its source.",
+                 {req::kJ6Content},
+                 on_sent([](Moment& moment, const Action&, Transmit& frame) {
                    if (is_report(moment, frame)) put(frame, net::kSrcDevid, 1);
                    return Fate::kKeep;
                  })});
-  out.push_back({"reported_at_request", "A sink reports a mote when it asks.",
-                 {req::kJ6Only, req::kJ6Report, req::kJ6Add}, always([](Moment& moment) {
+  out.push_back({"reported_at_request",
+                 "A sink reports a mote when it asks.",
+                 {req::kJ6Only, req::kJ6Report, req::kJ6Add},
+                 always([](Moment& moment) {
                    moment.honest();
                    const Frame* const request = moment.heard(am::kJoin);
                    if (request == nullptr || !moment.is(Role::kSink)) return;
@@ -245,8 +304,10 @@ void add_acks(Mutants& out) {
                    report.payload[net::kAppId] = component::kControlLayer;
                    report.payload[net::kBody] = 16;
                  })});
-  out.push_back({"sink_becomes_a_member", "A sink that hears a join_reply acks it.",
-                 {req::kJ10Sink}, always([](Moment& moment) {
+  out.push_back({"sink_becomes_a_member",
+                 "A sink that hears a join_reply acks it.",
+                 {req::kJ10Sink},
+                 always([](Moment& moment) {
                    moment.honest();
                    const Frame* const reply = moment.heard(am::kJoinReply);
                    if (reply == nullptr || !moment.is(Role::kSink)) return;
@@ -254,8 +315,10 @@ void add_acks(Mutants& out) {
                        moment.send(Link::kRadio, am::kAckJoin, reply->src, req::kJ10Sink);
                    ack.size_bytes = 14;
                  })});
-  out.push_back({"sink_takes_the_island_of_a_reply", "A sink adopts the island of a join_reply.",
-                 {req::kJ10Sink, req::kJ3Address}, always([](Moment& moment) {
+  out.push_back({"sink_takes_the_island_of_a_reply",
+                 "A sink adopts the island of a join_reply.",
+                 {req::kJ10Sink, req::kJ3Address},
+                 always([](Moment& moment) {
                    moment.honest();
                    const Frame* const reply = moment.heard(am::kJoinReply);
                    if (reply != nullptr && moment.is(Role::kSink)) {

@@ -21,21 +21,29 @@ template <class Call>
 bool is_call(const Moment& moment) {
   return moment.called<Call>() != nullptr;
 }
-bool is_tick(const Moment& moment) { return moment.timer(TimerKind::kSynaptic); }
+bool is_tick(const Moment& moment) {
+  return moment.timer(TimerKind::kSynaptic);
+}
 
 void add_operations(Mutants& out) {
-  out.push_back({"channel_id_swapped", "A channel's id has its ends swapped.", {req::kS1Id},
+  out.push_back({"channel_id_swapped",
+                 "A channel's id has its ends swapped.",
+                 {req::kS1Id},
                  on_told_of<ChannelResult>([](Moment&, ChannelResult& result) {
                    result.id = result.id >> 16 | result.id << 16;
                    return Fate::kKeep;
                  })});
-  out.push_back({"channel_id_of_bytes", "A channel's id holds devids cut to a byte.", {req::kS1Id},
+  out.push_back({"channel_id_of_bytes",
+                 "A channel's id holds devids cut to a byte.",
+                 {req::kS1Id},
                  on_told_of<ChannelResult>([](Moment&, ChannelResult& result) {
                    result.id &= 0x00FF'00FF;
                    return Fate::kKeep;
                  })});
-  out.push_back({"enlarging_refused", "Creating a channel that exists is refused.",
-                 {req::kS1Enlarge}, always([](Moment& moment) {
+  out.push_back({"enlarging_refused",
+                 "Creating a channel that exists is refused.",
+                 {req::kS1Enlarge},
+                 always([](Moment& moment) {
                    const CreateChannel* const create = moment.called<CreateChannel>();
                    if (create == nullptr) return moment.honest();
                    const machine::Synaptic before = moment.state.synaptic;
@@ -47,8 +55,10 @@ void add_operations(Mutants& out) {
                    moment.nothing();
                    moment.actions.notify(ChannelResult{0, false}, req::kS1Enlarge);
                  })});
-  out.push_back({"enlarging_replaces_the_size", "Creating a channel again sets its size.",
-                 {req::kS1Enlarge, req::kS1Limit}, always([](Moment& moment) {
+  out.push_back({"enlarging_replaces_the_size",
+                 "Creating a channel again sets its size.",
+                 {req::kS1Enlarge, req::kS1Limit},
+                 always([](Moment& moment) {
                    const CreateChannel* const create = moment.called<CreateChannel>();
                    moment.honest();
                    if (create == nullptr) return;
@@ -59,7 +69,9 @@ void add_operations(Mutants& out) {
                      if (channel.peer == create->peer) channel.size = create->size;
                    }
                  })});
-  out.push_back({"channel_limit_ignored", "A fifth channel replaces the first.", {req::kS1Limit},
+  out.push_back({"channel_limit_ignored",
+                 "A fifth channel replaces the first.",
+                 {req::kS1Limit},
                  always([](Moment& moment) {
                    const CreateChannel* const create = moment.called<CreateChannel>();
                    if (create != nullptr) {
@@ -69,16 +81,20 @@ void add_operations(Mutants& out) {
                    }
                    moment.honest();
                  })});
-  out.push_back({"connection_limit_cut", "More than ten connections are created as ten.",
-                 {req::kS1Limit}, always([](Moment& moment) {
+  out.push_back({"connection_limit_cut",
+                 "More than ten connections are created as ten.",
+                 {req::kS1Limit},
+                 always([](Moment& moment) {
                    const CreateChannel* const create = moment.called<CreateChannel>();
                    if (create == nullptr) return moment.honest();
                    CreateChannel cut = *create;
                    cut.size = std::min<std::uint8_t>(cut.size, 10);
                    moment.honest(machine::Called{cut});
                  })});
-  out.push_back({"refusal_costs_the_size", "A refused enlargement makes the channel ten wide.",
-                 {req::kS1Limit}, always([](Moment& moment) {
+  out.push_back({"refusal_costs_the_size",
+                 "A refused enlargement makes the channel ten wide.",
+                 {req::kS1Limit},
+                 always([](Moment& moment) {
                    moment.honest();
                    const CreateChannel* const create = moment.called<CreateChannel>();
                    if (create == nullptr || moment.actions.notices().empty()) return;
@@ -91,33 +107,42 @@ void add_operations(Mutants& out) {
                      if (channel.peer == create->peer) channel.size = 10;
                    }
                  })});
-  out.push_back({"write_at_the_next_place", "write_output_value writes at pos + 1.",
-                 {req::kS1Write, req::kS2Content, req::kS2Send}, always([](Moment& moment) {
+  out.push_back({"write_at_the_next_place",
+                 "write_output_value writes at pos + 1.",
+                 {req::kS1Write, req::kS2Content, req::kS2Send},
+                 always([](Moment& moment) {
                    const auto* write = moment.called<machine::WriteOutput>();
                    if (write == nullptr) return moment.honest();
                    machine::WriteOutput other = *write;
                    ++other.pos;
                    moment.honest(machine::Called{other});
                  })});
-  out.push_back({"write_lost", "write_output_value does nothing.",
-                 {req::kS1Write, req::kS3Changed, req::kS2Content}, always([](Moment& moment) {
+  out.push_back({"write_lost",
+                 "write_output_value does nothing.",
+                 {req::kS1Write, req::kS3Changed, req::kS2Content},
+                 always([](Moment& moment) {
                    if (!is_call<machine::WriteOutput>(moment)) return moment.honest();
                    moment.nothing();
                    moment.actions.notify(machine::OperationResult{true}, req::kS1Write);
                  })});
-  out.push_back({"read_at_place_0", "read_input_value reads the first place.", {req::kS1Read, req::kS1Enlarge},
+  out.push_back({"read_at_place_0",
+                 "read_input_value reads the first place.",
+                 {req::kS1Read, req::kS1Enlarge},
                  always([](Moment& moment) {
                    const auto* read = moment.called<machine::ReadInput>();
                    if (read == nullptr) return moment.honest();
                    moment.honest(machine::Called{machine::ReadInput{read->id, 0}});
                  })});
-  out.push_back({"read_past_the_end", "read_input_value tells 0 behind the end.",
+  out.push_back({"read_past_the_end",
+                 "read_input_value tells 0 behind the end.",
                  {req::kS1Read, req::kS1Limit},
                  on_told_of<InputValue>([](Moment&, InputValue& value) {
                    value.success = true;
                    return Fate::kKeep;
                  })});
-  out.push_back({"read_swapped", "Values are read in network order.", {req::kS1Read, req::kS1Enlarge},
+  out.push_back({"read_swapped",
+                 "Values are read in network order.",
+                 {req::kS1Read, req::kS1Enlarge},
                  on_heard([](Moment&, Forged& forged) {
                    const bool data = is_net(forged.frame) &&
                                      forged.bytes[net::kTransId] == component::kSynChannel;
@@ -128,14 +153,18 @@ void add_operations(Mutants& out) {
                    }
                    return true;
                  })});
-  out.push_back({"time_step_ignored", "set_time_step changes nothing.", {req::kS1Clock},
+  out.push_back({"time_step_ignored",
+                 "set_time_step changes nothing.",
+                 {req::kS1Clock},
                  always([](Moment& moment) {
                    if (!is_call<machine::SetTimeStep>(moment)) return moment.honest();
                    moment.nothing();
                    moment.actions.notify(machine::OperationResult{true}, req::kS1Clock);
                  })});
-  out.push_back({"default_step_of_a_second", "The clock's default period is 1000 ticks.",
-                 {req::kS1Clock, req::kS2Send, req::kS2Signal}, always([](Moment& moment) {
+  out.push_back({"default_step_of_a_second",
+                 "The clock's default period is 1000 ticks.",
+                 {req::kS1Clock, req::kS2Send, req::kS2Signal},
+                 always([](Moment& moment) {
                    auto& period = moment.state.synaptic.period_ticks;
                    if (period == 500) period = 1000;
                    moment.honest();
@@ -165,7 +194,9 @@ void new_on_arrival(Moment& moment) {
 }
 
 void add_ticks(Mutants& out) {
-  out.push_back({"first_channel_only", "A tick sends the first channel only.", {req::kS2Send, req::kS1Limit},
+  out.push_back({"first_channel_only",
+                 "A tick sends the first channel only.",
+                 {req::kS2Send, req::kS1Limit},
                  always([](Moment& moment) {
                    auto& channels = moment.state.synaptic.out;
                    if (!is_tick(moment) || channels.empty()) return moment.honest();
@@ -179,14 +210,17 @@ void add_ticks(Mutants& out) {
                      channels[i].started = started[i];
                    }
                  })});
-  out.push_back({"reliable_sends_changes_only", "A reliable channel sends only what changed.",
-                 {req::kS2Send, req::kS2Content, req::kS1Limit}, always([](Moment& moment) {
+  out.push_back({"reliable_sends_changes_only",
+                 "A reliable channel sends only what changed.",
+                 {req::kS2Send, req::kS2Content, req::kS1Limit},
+                 always([](Moment& moment) {
                    for (Channel& channel : moment.state.synaptic.out) {
                      channel.mode = machine::Mode::kPowerSave;
                    }
                    moment.honest();
                  })});
-  out.push_back({"floats_in_network_order", "Synaptic data are big-endian.",
+  out.push_back({"floats_in_network_order",
+                 "Synaptic data are big-endian.",
                  {req::kS2Content, req::kS1Write, req::kS1Enlarge},
                  on_sent([](Moment&, const Action&, Transmit& frame) {
                    if (!is_synaptic(frame)) return Fate::kKeep;
@@ -195,7 +229,8 @@ void add_ticks(Mutants& out) {
                    }
                    return Fate::kKeep;
                  })});
-  out.push_back({"values_in_reverse", "The values of a channel are in reverse order.",
+  out.push_back({"values_in_reverse",
+                 "The values of a channel are in reverse order.",
                  {req::kS2Content, req::kS1Write, req::kS1Enlarge, req::kS3Changed},
                  on_sent([](Moment&, const Action&, Transmit& frame) {
                    if (!is_synaptic(frame)) return Fate::kKeep;
@@ -206,39 +241,57 @@ void add_ticks(Mutants& out) {
                    }
                    return Fate::kKeep;
                  })});
-  out.push_back({"synaptic_reliable", "Synaptic data ask to be acked.", {req::kS2Content},
+  out.push_back({"synaptic_reliable",
+                 "Synaptic data ask to be acked.",
+                 {req::kS2Content},
                  on_sent([](Moment&, const Action&, Transmit& frame) {
                    if (is_synaptic(frame)) frame.payload[net::kReliable] = 1;
                    return Fate::kKeep;
                  })});
-  out.push_back({"synaptic_of_another_app", "Synaptic data have APPID MOCKUP.", {req::kS2Content},
+  out.push_back({"synaptic_of_another_app",
+                 "Synaptic data have APPID MOCKUP.",
+                 {req::kS2Content},
                  on_sent([](Moment&, const Action&, Transmit& frame) {
                    if (is_synaptic(frame)) frame.payload[net::kAppId] = 5;
                    return Fate::kKeep;
                  })});
-  out.push_back({"sends_twice_a_tick", "Each channel sends again 100 ticks after the tick.",
-                 {req::kS2Tick}, always(two_sends)});
-  out.push_back({"clock_too_fast", "The clock's period is 100 ticks short.", {req::kS2Tick, req::kS1Clock},
+  out.push_back({"sends_twice_a_tick",
+                 "Each channel sends again 100 ticks after the tick.",
+                 {req::kS2Tick},
+                 always(two_sends)});
+  out.push_back({"clock_too_fast",
+                 "The clock's period is 100 ticks short.",
+                 {req::kS2Tick, req::kS1Clock},
                  always([](Moment& moment) {
                    moment.honest();
                    if (is_tick(moment)) moment.state.synaptic.due -= 100;
                  })});
-  out.push_back({"phase_missing", "All motes tick in the same moment.", {req::kS2Phase},
-                 with_profile([](machine::Profile& profile) { profile.synaptic_phase_ticks = 0; })});
-  out.push_back({"signals_on_arrival", "Data are signalled when they come, and not at the tick.",
-                 {req::kS2Signal, req::kS2Tick}, always(new_on_arrival)});
-  out.push_back({"silent_without_data", "A tick without new data is not signalled.",
+  out.push_back(
+      {"phase_missing",
+       "All motes tick in the same moment.",
+       {req::kS2Phase},
+       with_profile([](machine::Profile& profile) { profile.synaptic_phase_ticks = 0; })});
+  out.push_back({"signals_on_arrival",
+                 "Data are signalled when they come, and not at the tick.",
+                 {req::kS2Signal, req::kS2Tick},
+                 always(new_on_arrival)});
+  out.push_back({"silent_without_data",
+                 "A tick without new data is not signalled.",
                  {req::kS2Signal, req::kS3Old},
                  on_told_of<SynDataReceived>([](Moment&, SynDataReceived& data) {
                    return data.status == DataStatus::kOld ? Fate::kDrop : Fate::kKeep;
                  })});
-  out.push_back({"always_new", "Every tick says that data are new.", {req::kS3Old, req::kS2Signal},
+  out.push_back({"always_new",
+                 "Every tick says that data are new.",
+                 {req::kS3Old, req::kS2Signal},
                  on_told_of<SynDataReceived>([](Moment&, SynDataReceived& data) {
                    if (data.status == DataStatus::kOld) data.status = DataStatus::kNew;
                    return Fate::kKeep;
                  })});
-  out.push_back({"old_values_forgotten", "A tick without new data clears the values.",
-                 {req::kS3Old}, always([](Moment& moment) {
+  out.push_back({"old_values_forgotten",
+                 "A tick without new data clears the values.",
+                 {req::kS3Old},
+                 always([](Moment& moment) {
                    if (is_tick(moment)) {
                      for (Channel& channel : moment.state.synaptic.in) {
                        if (!channel.fresh) channel.value_bits.fill(0);
@@ -246,13 +299,17 @@ void add_ticks(Mutants& out) {
                    }
                    moment.honest();
                  })});
-  out.push_back({"power_save_sends_unchanged", "In power-save mode every tick sends.",
-                 {req::kS3Unchanged}, always([](Moment& moment) {
+  out.push_back({"power_save_sends_unchanged",
+                 "In power-save mode every tick sends.",
+                 {req::kS3Unchanged},
+                 always([](Moment& moment) {
                    for (Channel& channel : moment.state.synaptic.out) channel.fresh = true;
                    moment.honest();
                  })});
-  out.push_back({"rewritten_counts_as_changed", "A value that is written again counts as changed.",
-                 {req::kS3Unchanged}, always([](Moment& moment) {
+  out.push_back({"rewritten_counts_as_changed",
+                 "A value that is written again counts as changed.",
+                 {req::kS3Unchanged},
+                 always([](Moment& moment) {
                    const auto* write = moment.called<machine::WriteOutput>();
                    moment.honest();
                    if (write == nullptr) return;
@@ -260,16 +317,20 @@ void add_ticks(Mutants& out) {
                      if (channel.id == write->id) channel.fresh = true;
                    }
                  })});
-  out.push_back({"first_tick_silent", "In power-save mode the first tick sends nothing.",
-                 {req::kS3First, req::kS3Changed}, always([](Moment& moment) {
+  out.push_back({"first_tick_silent",
+                 "In power-save mode the first tick sends nothing.",
+                 {req::kS3First, req::kS3Changed},
+                 always([](Moment& moment) {
                    moment.honest();
                    const bool starts = is_call<machine::StartChannel>(moment) ||
                                        is_call<machine::StartAllChannels>(moment);
                    if (!starts) return;
                    for (Channel& channel : moment.state.synaptic.out) channel.fresh = false;
                  })});
-  out.push_back({"change_of_place_0_only", "In power-save mode only the first value is watched.",
-                 {req::kS3Changed}, always([](Moment& moment) {
+  out.push_back({"change_of_place_0_only",
+                 "In power-save mode only the first value is watched.",
+                 {req::kS3Changed},
+                 always([](Moment& moment) {
                    const auto* write = moment.called<machine::WriteOutput>();
                    const machine::Synaptic before = moment.state.synaptic;
                    moment.honest();

@@ -24,24 +24,31 @@ bool is_for_us(const Moment& moment, const Frame& frame) {
 }
 
 void add_delivery(Mutants& out) {
-  out.push_back({"no_trans_id", "A message of an application has TRANSID 0.", {req::kT1Wrap, req::kN1Seq},
+  out.push_back({"no_trans_id",
+                 "A message of an application has TRANSID 0.",
+                 {req::kT1Wrap, req::kN1Seq},
                  on_sent([](Moment& moment, const Action&, Transmit& frame) {
                    if (is_send(moment, frame)) frame.payload[net::kTransId] = 0;
                    return Fate::kKeep;
                  })});
-  out.push_back({"app_id_of_another", "A message of an application has APPID APPLICATION_MD.",
-                 {req::kT1Wrap}, on_sent([](Moment& moment, const Action&, Transmit& frame) {
+  out.push_back({"app_id_of_another",
+                 "A message of an application has APPID APPLICATION_MD.",
+                 {req::kT1Wrap},
+                 on_sent([](Moment& moment, const Action&, Transmit& frame) {
                    if (is_send(moment, frame)) frame.payload[net::kAppId] = 8;
                    return Fate::kKeep;
                  })});
-  out.push_back({"ids_swapped", "TRANSID and APPID are in the wrong order.", {req::kT1Wrap},
+  out.push_back({"ids_swapped",
+                 "TRANSID and APPID are in the wrong order.",
+                 {req::kT1Wrap},
                  on_sent([](Moment& moment, const Action&, Transmit& frame) {
                    if (is_send(moment, frame)) {
                      std::swap(frame.payload[net::kTransId], frame.payload[net::kAppId]);
                    }
                    return Fate::kKeep;
                  })});
-  out.push_back({"delivered_with_ids", "What is delivered begins with TRANSID and APPID.",
+  out.push_back({"delivered_with_ids",
+                 "What is delivered begins with TRANSID and APPID.",
                  {req::kT1Deliver, req::kN5Deliver, req::kN6Deliver},
                  on_told_of<Received>([](Moment& moment, Received& received) {
                    const Frame* const frame = moment.heard(am::kNet);
@@ -49,7 +56,8 @@ void add_delivery(Mutants& out) {
                    if (whole) received.data = frame->payload.from(net::kTransId);
                    return Fate::kKeep;
                  })});
-  out.push_back({"delivered_without_last_byte", "The last byte of a delivered message is lost.",
+  out.push_back({"delivered_without_last_byte",
+                 "The last byte of a delivered message is lost.",
                  {req::kT1Deliver, req::kN5Deliver},
                  on_told_of<Received>([](Moment&, Received& received) {
                    if (!received.data.empty()) {
@@ -57,37 +65,47 @@ void add_delivery(Mutants& out) {
                    }
                    return Fate::kKeep;
                  })});
-  out.push_back({"delivered_to_one_application", "Everything is delivered to MOCKUP.",
-                 {req::kT1Deliver}, on_told_of<Received>([](Moment&, Received& received) {
+  out.push_back({"delivered_to_one_application",
+                 "Everything is delivered to MOCKUP.",
+                 {req::kT1Deliver},
+                 on_told_of<Received>([](Moment&, Received& received) {
                    received.app_id = 5;
                    return Fate::kKeep;
                  })});
-  out.push_back({"delivered_from_the_sink", "Every message seems to come from the sink.",
+  out.push_back({"delivered_from_the_sink",
+                 "Every message seems to come from the sink.",
                  {req::kT1Deliver, req::kN5Deliver, req::kN6Deliver},
                  on_told_of<Received>([](Moment& moment, Received& received) {
                    received.src = {own(moment).pid, 1};
                    return Fate::kKeep;
                  })});
-  out.push_back({"delivered_twice", "Every message is delivered twice.",
+  out.push_back({"delivered_twice",
+                 "Every message is delivered twice.",
                  {req::kT1Deliver, req::kT2Deliver, req::kN5Deliver, req::kN2InOrder},
                  on_told_of<Received>([](Moment&, Received&) { return Fate::kTwice; })});
-  out.push_back({"unknown_app_delivered", "A message for an unknown APPID is delivered to MOCKUP.",
-                 {req::kT1Unknown}, on_heard([](Moment&, Forged& forged) {
-                   const bool connless = is_net(forged.frame) &&
-                                         forged.bytes[net::kTransId] == component::kConnless;
+  out.push_back({"unknown_app_delivered",
+                 "A message for an unknown APPID is delivered to MOCKUP.",
+                 {req::kT1Unknown},
+                 on_heard([](Moment&, Forged& forged) {
+                   const bool connless =
+                       is_net(forged.frame) && forged.bytes[net::kTransId] == component::kConnless;
                    std::uint8_t& app_id = forged.bytes[net::kAppId];
                    if (connless && !machine::is_known_app(app_id)) app_id = 5;
                    return true;
                  })});
-  out.push_back({"unknown_trans_delivered", "An unknown TRANSID is taken for CONNLESS.",
-                 {req::kT1Unknown}, on_heard([](Moment&, Forged& forged) {
+  out.push_back({"unknown_trans_delivered",
+                 "An unknown TRANSID is taken for CONNLESS.",
+                 {req::kT1Unknown},
+                 on_heard([](Moment&, Forged& forged) {
                    if (is_net(forged.frame) && forged.bytes[net::kTransId] > 13) {
                      forged.bytes[net::kTransId] = component::kConnless;
                    }
                    return true;
                  })});
-  out.push_back({"unknown_kills", "After an unknown TRANSID or APPID a node hears no more.",
-                 {req::kT1Unknown}, remembering<bool>([](Moment& moment, bool& dead) {
+  out.push_back({"unknown_kills",
+                 "After an unknown TRANSID or APPID a node hears no more.",
+                 {req::kT1Unknown},
+                 remembering<bool>([](Moment& moment, bool& dead) {
                    if (dead && moment.heard(am::kNet) != nullptr) return moment.nothing();
                    moment.honest();
                    for (const Action& action : moment.actions.all()) {
@@ -99,10 +117,12 @@ void add_delivery(Mutants& out) {
 
 void add_acks(Mutants& out) {
   out.push_back({"no_ack", "A node never acks.", {req::kT2Ack}, drop_sent(is_ack_sent)});
-  out.push_back({"ack_twice", "A node sends each ack twice.", {req::kT2Once},
-                 double_sent(is_ack_sent)});
-  out.push_back({"ack_late", "An ack comes after the sender's timeout.",
-                 {req::kT2Prompt, req::kT2Ack}, always([](Moment& moment) {
+  out.push_back(
+      {"ack_twice", "A node sends each ack twice.", {req::kT2Once}, double_sent(is_ack_sent)});
+  out.push_back({"ack_late",
+                 "An ack comes after the sender's timeout.",
+                 {req::kT2Prompt, req::kT2Ack},
+                 always([](Moment& moment) {
                    moment.honest();
                    moment.rewrite([&](const Action& action) {
                      const bool sent = action.what == Action::What::kTransmit;
@@ -112,44 +132,60 @@ void add_acks(Mutants& out) {
                      moment.hold(action, 1200);
                    });
                  })});
-  out.push_back({"ack_other_number", "An ack names the number plus one.", {req::kT2Content, req::kT2Ack},
+  out.push_back({"ack_other_number",
+                 "An ack names the number plus one.",
+                 {req::kT2Content, req::kT2Ack},
                  on_sent([](Moment&, const Action&, Transmit& frame) {
                    if (is_ack(frame)) put(frame, net::kAckedSeq, get(frame, net::kAckedSeq) + 1U);
                    return Fate::kKeep;
                  })});
-  out.push_back({"ack_number_swapped", "The number in an ack has the wrong byte order.",
-                 {req::kT2Content, req::kT2Ack}, on_sent([](Moment&, const Action&, Transmit& frame) {
+  out.push_back({"ack_number_swapped",
+                 "The number in an ack has the wrong byte order.",
+                 {req::kT2Content, req::kT2Ack},
+                 on_sent([](Moment&, const Action&, Transmit& frame) {
                    if (is_ack(frame)) {
                      std::swap(frame.payload[net::kAckedSeq], frame.payload[net::kAckedSeq + 1]);
                    }
                    return Fate::kKeep;
                  })});
-  out.push_back({"ack_reliable", "An ack asks to be acked.", {req::kT2Content},
+  out.push_back({"ack_reliable",
+                 "An ack asks to be acked.",
+                 {req::kT2Content},
                  on_sent([](Moment&, const Action&, Transmit& frame) {
                    if (is_ack(frame)) frame.payload[net::kReliable] = 1;
                    return Fate::kKeep;
                  })});
-  out.push_back({"ack_as_plain_message", "An ack has TRANSID CONNLESS.", {req::kT2Content, req::kT2Ack},
+  out.push_back({"ack_as_plain_message",
+                 "An ack has TRANSID CONNLESS.",
+                 {req::kT2Content, req::kT2Ack},
                  on_sent([](Moment&, const Action&, Transmit& frame) {
                    if (is_ack(frame)) frame.payload[net::kTransId] = component::kConnless;
                    return Fate::kKeep;
                  })});
-  out.push_back({"ack_without_app", "An ack has APPID RUBICON_ACK.", {req::kT2Content},
+  out.push_back({"ack_without_app",
+                 "An ack has APPID RUBICON_ACK.",
+                 {req::kT2Content},
                  on_sent([](Moment&, const Action&, Transmit& frame) {
                    if (is_ack(frame)) frame.payload[net::kAppId] = component::kRubiconAck;
                    return Fate::kKeep;
                  })});
-  out.push_back({"ack_to_the_sink", "An ack goes to the sink, whoever sent the message.",
-                 {req::kT2Content, req::kT2Ack}, on_sent([](Moment&, const Action&, Transmit& frame) {
+  out.push_back({"ack_to_the_sink",
+                 "An ack goes to the sink, whoever sent the message.",
+                 {req::kT2Content, req::kT2Ack},
+                 on_sent([](Moment&, const Action&, Transmit& frame) {
                    if (is_ack(frame)) put(frame, net::kDestDevid, 1);
                    return Fate::kKeep;
                  })});
-  out.push_back({"acked_not_delivered", "A reliable message is acked and lost.", {req::kT2Deliver},
+  out.push_back({"acked_not_delivered",
+                 "A reliable message is acked and lost.",
+                 {req::kT2Deliver},
                  on_told([](Moment&, const Action& action, Notice&) {
                    return action.requirement == req::kT2Deliver ? Fate::kDrop : Fate::kKeep;
                  })});
-  out.push_back({"acks_the_first_only", "A number that was acked before is not acked again.",
-                 {req::kT2Ack}, remembering<std::vector<std::uint16_t>>(
+  out.push_back({"acks_the_first_only",
+                 "A number that was acked before is not acked again.",
+                 {req::kT2Ack},
+                 remembering<std::vector<std::uint16_t>>(
                      [](Moment& moment, std::vector<std::uint16_t>& acked) {
                        moment.honest();
                        moment.rewrite([&](const Action& action) {
@@ -166,7 +202,9 @@ void add_acks(Mutants& out) {
 
 // What must not be acked is acked: as if it were reliable, plain, or for this node alone.
 void add_needless_acks(Mutants& out) {
-  out.push_back({"unreliable_acked", "An unreliable message is acked.", {req::kT2Unreliable},
+  out.push_back({"unreliable_acked",
+                 "An unreliable message is acked.",
+                 {req::kT2Unreliable},
                  on_heard([](Moment& moment, Forged& forged) {
                    if (is_for_us(moment, forged.frame) && !is_ack(forged.frame)) {
                      forged.bytes[net::kReliable] = 1;
@@ -187,24 +225,29 @@ void add_needless_acks(Mutants& out) {
                    ack.payload[net::kBody] = 23;
                    put(ack, net::kAckedSeq, get(*frame, net::kSeqNum));
                  })});
-  out.push_back({"broadcast_acked", "A reliable broadcast is acked by each who hears it.",
-                 {req::kT2Broadcast}, on_heard([](Moment& moment, Forged& forged) {
+  out.push_back({"broadcast_acked",
+                 "A reliable broadcast is acked by each who hears it.",
+                 {req::kT2Broadcast},
+                 on_heard([](Moment& moment, Forged& forged) {
                    const bool broadcast = is_net(forged.frame) &&
                                           get(forged, net::kDestDevid) == machine::kBroadcastDevid;
-                   if (broadcast && forged.bytes[net::kReliable] == 1 &&
-                       moment.is(Role::kMote)) {
+                   if (broadcast && forged.bytes[net::kReliable] == 1 && moment.is(Role::kMote)) {
                      put(forged, net::kDestDevid, own(moment).devid);
                    }
                    return true;
                  })});
-  out.push_back({"every_flag_but_0_acked", "Any value of reliable but 0 is taken for true.",
-                 {req::kT2Two}, on_heard([](Moment& moment, Forged& forged) {
+  out.push_back({"every_flag_but_0_acked",
+                 "Any value of reliable but 0 is taken for true.",
+                 {req::kT2Two},
+                 on_heard([](Moment& moment, Forged& forged) {
                    const bool ours = is_for_us(moment, forged.frame);
                    if (ours && forged.bytes[net::kReliable] > 1) forged.bytes[net::kReliable] = 1;
                    return true;
                  })});
-  out.push_back({"synaptic_data_acked", "Synaptic data that say reliable are acked.",
-                 {req::kT2Loop, req::kT2Ack}, always([](Moment& moment) {
+  out.push_back({"synaptic_data_acked",
+                 "Synaptic data that say reliable are acked.",
+                 {req::kT2Loop, req::kT2Ack},
+                 always([](Moment& moment) {
                    moment.honest();
                    const Frame* const frame = moment.heard(am::kNet);
                    const bool asked = frame != nullptr && is_net(*frame) &&
@@ -245,7 +288,9 @@ void keeps_awaiting(Moment& moment) {
 }
 
 void add_sender(Mutants& out) {
-  out.push_back({"ack_of_any_number_counts", "Any ack ends the oldest message.", {req::kT3Match},
+  out.push_back({"ack_of_any_number_counts",
+                 "Any ack ends the oldest message.",
+                 {req::kT3Match},
                  on_heard([](Moment& moment, Forged& forged) {
                    const auto& awaited = moment.state.awaited;
                    if (is_ack(forged.frame) && is_for_us(moment, forged.frame) &&
@@ -254,8 +299,10 @@ void add_sender(Mutants& out) {
                    }
                    return true;
                  })});
-  out.push_back({"late_ack_counts", "An ack that nobody awaits is signalled all the same.",
-                 {req::kT3Once, req::kT3Match}, always([](Moment& moment) {
+  out.push_back({"late_ack_counts",
+                 "An ack that nobody awaits is signalled all the same.",
+                 {req::kT3Once, req::kT3Match},
+                 always([](Moment& moment) {
                    moment.honest();
                    moment.rewrite([&](const Action& action) {
                      moment.keep(action);
@@ -268,8 +315,10 @@ void add_sender(Mutants& out) {
                                            req::kT3Match);
                    });
                  })});
-  out.push_back({"ack_of_another_sender_counts", "The sender of an ack is not looked at.",
-                 {req::kT3Sender}, on_heard([](Moment& moment, Forged& forged) {
+  out.push_back({"ack_of_another_sender_counts",
+                 "The sender of an ack is not looked at.",
+                 {req::kT3Sender},
+                 on_heard([](Moment& moment, Forged& forged) {
                    if (!is_ack(forged.frame)) return true;
                    for (const auto& awaited : moment.state.awaited) {
                      if (awaited.seq_num != get(forged, net::kAckedSeq)) continue;
@@ -278,8 +327,10 @@ void add_sender(Mutants& out) {
                    }
                    return true;
                  })});
-  out.push_back({"ack_of_another_app_counts", "The APPID of an ack is not looked at.",
-                 {req::kT3Sender}, on_heard([](Moment& moment, Forged& forged) {
+  out.push_back({"ack_of_another_app_counts",
+                 "The APPID of an ack is not looked at.",
+                 {req::kT3Sender},
+                 on_heard([](Moment& moment, Forged& forged) {
                    if (!is_ack(forged.frame)) return true;
                    for (const auto& awaited : moment.state.awaited) {
                      if (awaited.seq_num == get(forged, net::kAckedSeq)) {
@@ -288,49 +339,73 @@ void add_sender(Mutants& out) {
                    }
                    return true;
                  })});
-  out.push_back({"success_silent", "A good ack is not signalled.", {req::kT3Success},
+  out.push_back({"success_silent",
+                 "A good ack is not signalled.",
+                 {req::kT3Success},
                  on_told_of<AckReceived>([](Moment&, AckReceived& ack) {
                    return ack.success ? Fate::kDrop : Fate::kKeep;
                  })});
-  out.push_back({"success_as_failure", "A good ack is signalled as failure.", {req::kT3Success},
+  out.push_back({"success_as_failure",
+                 "A good ack is signalled as failure.",
+                 {req::kT3Success},
                  on_told_of<AckReceived>([](Moment&, AckReceived& ack) {
                    ack.success = false;
                    return Fate::kKeep;
                  })});
-  out.push_back({"knows_one_body_of_acks", "An ack in the paper's form is not understood.",
-                 {req::kT3Success}, on_heard([](Moment&, Forged& forged) {
+  out.push_back({"knows_one_body_of_acks",
+                 "An ack in the paper's form is not understood.",
+                 {req::kT3Success},
+                 on_heard([](Moment&, Forged& forged) {
                    return !is_net(forged.frame) || forged.bytes[net::kNbytes] != 4 ||
                           forged.bytes[net::kTransId] != component::kRubiconAck;
                  })});
-  out.push_back({"knows_the_papers_acks_only", "An ack in the deployed form is not understood.",
-                 {req::kT3Success}, on_heard([](Moment&, Forged& forged) {
+  out.push_back({"knows_the_papers_acks_only",
+                 "An ack in the deployed form is not understood.",
+                 {req::kT3Success},
+                 on_heard([](Moment&, Forged& forged) {
                    return !is_net(forged.frame) || forged.bytes[net::kNbytes] != 6 ||
                           forged.bytes[net::kTransId] != component::kRubiconAck;
                  })});
-  out.push_back({"ack_timeout_short", "A message is given up after 200 ticks.", {req::kT3Timeout},
+  out.push_back({"ack_timeout_short",
+                 "A message is given up after 200 ticks.",
+                 {req::kT3Timeout},
                  with_profile([](machine::Profile& profile) { profile.ack_timeout_ticks = 200; })});
-  out.push_back({"ack_timeout_long", "A message is given up after 2000 ticks.", {req::kT3Timeout},
-                 with_profile([](machine::Profile& profile) { profile.ack_timeout_ticks = 2000; })});
-  out.push_back({"timeout_silent", "A message without its ack ends in silence.",
+  out.push_back(
+      {"ack_timeout_long",
+       "A message is given up after 2000 ticks.",
+       {req::kT3Timeout},
+       with_profile([](machine::Profile& profile) { profile.ack_timeout_ticks = 2000; })});
+  out.push_back({"timeout_silent",
+                 "A message without its ack ends in silence.",
                  {req::kT3Timeout, req::kT3Once},
                  on_told_of<AckReceived>([](Moment&, AckReceived& ack) {
                    return ack.success ? Fate::kKeep : Fate::kDrop;
                  })});
-  out.push_back({"timeout_twice", "A failure is signalled twice.", {req::kT3Once, req::kT3Timeout},
+  out.push_back({"timeout_twice",
+                 "A failure is signalled twice.",
+                 {req::kT3Once, req::kT3Timeout},
                  on_told_of<AckReceived>([](Moment&, AckReceived& ack) {
                    return ack.success ? Fate::kKeep : Fate::kTwice;
                  })});
-  out.push_back({"timeout_after_success", "The timeout runs on after the ack.", {req::kT3Once},
+  out.push_back({"timeout_after_success",
+                 "The timeout runs on after the ack.",
+                 {req::kT3Once},
                  always(keeps_awaiting)});
-  out.push_back({"sends_again", "A message without its ack is sent again.", {req::kT3Resend},
+  out.push_back({"sends_again",
+                 "A message without its ack is sent again.",
+                 {req::kT3Resend},
                  remembering<Transmit>(sends_again)});
-  out.push_back({"second_outstanding_message_lost", "The second reliable message replaces the first.",
-                 {req::kT4Several, req::kT3Timeout}, always(one_awaited)});
-  out.push_back({"one_outstanding_at_a_time", "A second reliable message is refused.",
-                 {req::kT4Several, req::kN1Room}, always([](Moment& moment) {
+  out.push_back({"second_outstanding_message_lost",
+                 "The second reliable message replaces the first.",
+                 {req::kT4Several, req::kT3Timeout},
+                 always(one_awaited)});
+  out.push_back({"one_outstanding_at_a_time",
+                 "A second reliable message is refused.",
+                 {req::kT4Several, req::kN1Room},
+                 always([](Moment& moment) {
                    const Send* const send = moment.called<Send>();
-                   const bool second = send != nullptr && send->reliable &&
-                                       !moment.state.awaited.empty();
+                   const bool second =
+                       send != nullptr && send->reliable && !moment.state.awaited.empty();
                    if (!second) return moment.honest();
                    moment.nothing();
                    moment.actions.notify(machine::SendResult{machine::kNoSeq}, req::kT4Several);

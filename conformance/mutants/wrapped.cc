@@ -46,18 +46,10 @@ Forged& Moment::forge(const Frame& frame) {
 void Moment::keep(const Action& action) {
   if (!has_room(actions, action)) return;
   switch (action.what) {
-    case Action::What::kTransmit:
-      actions.transmit(action.requirement) = sent(action);
-      break;
-    case Action::What::kNotify:
-      actions.notify(told(action), action.requirement);
-      break;
-    case Action::What::kFollowed:
-      actions.followed(action.requirement);
-      break;
-    case Action::What::kIgnored:
-      actions.ignored(action.requirement);
-      break;
+    case Action::What::kTransmit: actions.transmit(action.requirement) = sent(action); break;
+    case Action::What::kNotify: actions.notify(told(action), action.requirement); break;
+    case Action::What::kFollowed: actions.followed(action.requirement); break;
+    case Action::What::kIgnored: actions.ignored(action.requirement); break;
   }
 }
 
@@ -111,9 +103,8 @@ void Wrapped::step(Ticks now, const Event& event, Actions& actions) {
 
 runner::DueTimers Wrapped::timers() const {
   runner::DueTimers timers = machine::timers(body_.state);
-  const auto soonest =
-      std::min_element(body_.held.begin(), body_.held.end(),
-                       [](const Held& a, const Held& b) { return a.due < b.due; });
+  const auto soonest = std::min_element(body_.held.begin(), body_.held.end(),
+                                        [](const Held& a, const Held& b) { return a.due < b.due; });
   // The machine never has all its timers set: who joins awaits no acks.
   if (soonest != body_.held.end() && !timers.full()) {
     timers.push({soonest->due, {machine::TimerKind::kSynaptic, kWakeUp}});
