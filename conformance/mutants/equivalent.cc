@@ -23,6 +23,8 @@ constexpr const char* kRefusedId = "No rule says which id a refused creation tel
 constexpr const char* kWhileOff =
     "Whether send refuses or queues while the interface is off is free, and a trace has no "
     "alternatives: it cannot hold what send then told against what it did.";
+constexpr const char* kRepeats =
+    "Whether and how often ack_join is repeated is free, up to a bound (decision 102).";
 constexpr const char* kOrigin =
     "Where a sink's clock begins is free, and a second is allowed for (decision 119).";
 
@@ -41,7 +43,6 @@ constexpr std::array kEquivalents{
     Equivalent{"double: tell J11-SEND send_result", kResultTwice},
     Equivalent{"double: tell N10-OFF send_result", kResultTwice},
     Equivalent{"double: tell N9-SET op_result", kResultTwice},
-    Equivalent{"double: tell S2-SIGNAL op_result", kResultTwice},
     Equivalent{"double: tell J4-CLOCK clock", kResultTwice},
     Equivalent{"plus one: tell J4-CLOCK clock: ms", kOrigin},
     Equivalent{"* J3-REPLY join_reply by radio: cur_time", kOrigin},
@@ -49,15 +50,25 @@ constexpr std::array kEquivalents{
     Equivalent{"* tell J8-JOINED joined: address.*", kFailAddress},
     Equivalent{"* tell S1-LIMIT channel_result: channel.*", kRefusedId},
     Equivalent{"* tell N10-OFF send_result: seq_num", kWhileOff},
-    Equivalent{"accept: WIRE-NET-RELIABLE mote reliable 1",
-               "To take another value of reliable for true is an honest reading (decision 112)."},
     Equivalent{"accept: S6-STOPPED mote channels started",
                "It keeps what comes for a stopped channel, but signals nothing: that is free."},
-    Equivalent{"accept: J3-OVERWRITE sink place made in the list",
+    Equivalent{"late_ack_takes_a_members_place",
                "The list is as full as before, so the member that was pushed out gets no answer "
                "either way; and a list may be longer than 20 (decision 107)."},
-    Equivalent{"late_ack_takes_a_members_place",
-               "As `accept: J3-OVERWRITE sink place made in the list`, by another way."},
+    Equivalent{"double: send J4-ACK ack_join", kRepeats},
+    Equivalent{"drop: send J4-REPEAT ack_join", kRepeats},
+    Equivalent{
+        "delay: tell J8-FAIL joined",
+        "Five timers that are each a little late end a call as late as that (decision 128)."},
+    Equivalent{"double: tell N1-SIZE send_result", kResultTwice},
+    Equivalent{"double: tell N4-SELF send_result", kResultTwice},
+    Equivalent{
+        "* N6-OWN net_msg by serial: payload.payload",
+        "Stale bytes may follow on the serial line, so that cases compare bodies that can be "
+        "told from them, those of demo messages."},
+    Equivalent{"plus one: N8-INCOMING net_msg rubicon_ack by serial: nbytes", kSerialNbytes},
+    Equivalent{"* tell J11-SEND send_result: seq_num",
+               "A mote may keep what is sent before it joins, and tell its number (decision 118)."},
 };
 
 bool fits(std::string_view pattern, std::string_view name) {

@@ -12,7 +12,7 @@
 namespace rubric::mutants {
 namespace {
 
-constexpr Ticks kPeriodTicks = 500;
+constexpr Ticks kPeriodTicks = 1000;  // Of the ack timeout; two of the join timer and the clock.
 
 class Watched : public runner::Machine {
  public:

@@ -37,10 +37,11 @@ void slow_acks(Moment& moment) {
 
 void add_times(Variants& out) {
   out.push_back({"slow_100", "Everything that follows from a frame takes 100 ticks (125).",
-                 always(slow<100>)});
+                 always(slow<100>), true});
   out.push_back({"slow_250", "Everything that follows from a frame takes 250 ticks (125).",
-                 always(slow<250>)});
-  out.push_back({"slow_acks", "Acks take 200 ticks, deliveries none (125).", always(slow_acks)});
+                 always(slow<250>), true});
+  out.push_back(
+      {"slow_acks", "Acks take 200 ticks, deliveries none (125).", always(slow_acks), true});
   out.push_back({"join_timer_2_percent_slow", "The join timer takes 510 ticks (128).",
                  with_profile([](machine::Profile& p) { p.join_period_ticks = 510; })});
   out.push_back({"ack_timer_2_percent_slow", "The ack timeout takes 1020 ticks (110, 128).",
@@ -109,8 +110,10 @@ void add_joins(Variants& out) {
 }
 
 // The paper's form of an ack: the number alone.
-Fate short_ack(Moment&, const Action&, Transmit& frame) {
-  if (!is_ack(frame) || frame.payload[net::kNbytes] != 6) return Fate::kKeep;
+Fate short_ack(Moment& moment, const Action&, Transmit& frame) {
+  const bool mine = is_ack(frame) && get(frame, net::kSrcDevid) == own(moment).devid &&
+                    get(frame, net::kSrcPid) == own(moment).pid;
+  if (!mine || frame.payload[net::kNbytes] != 6) return Fate::kKeep;
   put(frame, net::kBody, get(frame, net::kAckedSeq));
   frame.payload[net::kNbytes] = 4;
   const bool serial = frame.link == Link::kSerial;

@@ -166,6 +166,14 @@ void add_ends(Mutants& out) {
                    moment.state.synaptic.out.clear();
                    moment.state.synaptic.in.clear();
                  })});
+  out.push_back({"start_does_nothing",
+                 "start_syn_channel says yes and starts nothing.",
+                 {req::kS1Start, req::kS2Send, req::kS2Signal},
+                 refuses_silently<StartChannel>(req::kS1Start)});
+  out.push_back({"start_all_does_nothing",
+                 "start_all_syn_channels says yes and starts nothing.",
+                 {req::kS1All, req::kS2Send, req::kS2Signal},
+                 refuses_silently<machine::StartAllChannels>(req::kS1All)});
   out.push_back({"start_shifts_the_clock",
                  "Starting a channel begins the clock anew for all.",
                  {req::kS6Clock, req::kS2Send, req::kS2Phase},

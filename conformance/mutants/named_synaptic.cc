@@ -212,7 +212,7 @@ void add_ticks(Mutants& out) {
                  })});
   out.push_back({"reliable_sends_changes_only",
                  "A reliable channel sends only what changed.",
-                 {req::kS2Send, req::kS2Content, req::kS1Limit},
+                 {req::kS1Mode, req::kS2Send, req::kS2Content, req::kS1Limit},
                  always([](Moment& moment) {
                    for (Channel& channel : moment.state.synaptic.out) {
                      channel.mode = machine::Mode::kPowerSave;
