@@ -5,6 +5,7 @@
 #include "tools/check.h"
 #include "tools/cli/usage.h"
 #include "tools/convert.h"
+#include "tools/coverage.h"
 #include "tools/decode.h"
 #include "tools/encode.h"
 #include "tools/explain.h"
@@ -38,5 +39,6 @@ int main(int argc, char** argv) {
   rubric::tools::add_messages(app);
   rubric::tools::add_simulate(app);
   rubric::tools::add_check(app);
+  rubric::tools::add_coverage(app);
   return rubric::cli::parse_and_run(app, argc, argv);
 }

@@ -1,0 +1,77 @@
+#!/usr/bin/env python3
+"""Every rule has its case, and `rubric coverage` would say so if one had not.
+
+Usage: coverage_test.py RUBRIC PROJECT_FOLDER
+"""
+
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+RUBRIC = sys.argv[1]
+CASES = pathlib.Path(sys.argv[2]) / "conformance/cases"
+
+ONE_CASE = """%rtr 1
+%profile paper
+%node m5 mote id=5 iut
+case x.request
+   0      m5 < app join(telosb_demo light led)
+   0..300 m5 > rA  join_request(*)  [{}]
+"""
+
+
+def coverage(folder, *options):
+    return subprocess.run([RUBRIC, "coverage", "--cases", str(folder), *options],
+                          capture_output=True, text=True, check=False)
+
+
+class Coverage(unittest.TestCase):
+    def one_case(self, rule):
+        with tempfile.TemporaryDirectory() as folder:
+            (pathlib.Path(folder) / "x.rtr").write_text(ONE_CASE.format(rule), encoding="utf-8")
+            return coverage(folder, "--format", "json")
+
+    def test_every_must_has_a_case(self):
+        done = coverage(CASES)
+        problems = [line for line in done.stdout.splitlines() if line.startswith("problem")]
+        self.assertEqual((done.returncode, problems), (0, []), done.stderr)
+
+    def test_json_says_the_same(self):
+        report = json.loads(coverage(CASES, "--format", "json").stdout)
+        self.assertEqual(report["schema"], "rubric-coverage/1")
+        self.assertEqual(report["problems"], [])
+        rules = {rule["id"]: rule for rule in report["rules"]}
+        self.assertEqual(len(rules), report["totals"]["rules"])
+        self.assertGreater(rules["J4-SEQ"]["negative"], 0)
+        self.assertGreater(rules["J4-SEQ"]["ignores"], 0)
+        self.assertTrue(rules["J4-SEQ"]["explored"])
+        self.assertGreater(rules["J4-SEQ"]["mutants"], 0)
+        self.assertGreater(report["wire"]["MUST"], 0)
+        for rule in report["rules"]:
+            self.assertGreater(rule["mutants"], 0, rule["id"])
+
+    def test_a_missing_case_is_a_problem(self):
+        done = self.one_case("J1-REQUEST")
+        problems = json.loads(done.stdout)["problems"]
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("J8-RETRY is a MUST without a case", problems)
+        self.assertIn("J1-SEQ forbids, but no case attempts it", problems)
+        self.assertNotIn("J1-REQUEST is a MUST without a case", problems)
+
+    def test_an_orphan_is_a_problem(self):
+        done = self.one_case("J99-NOTHING")
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn("J99-NOTHING", done.stdout + done.stderr)
+
+    def test_no_cases_are_an_error(self):
+        with tempfile.TemporaryDirectory() as folder:
+            done = coverage(folder)
+        self.assertEqual(done.returncode, 66)
+        self.assertIn("no .rtr file", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
