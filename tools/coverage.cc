@@ -114,6 +114,7 @@ void explore(Coverage& coverage) {
   join.step = seen_step;
   join.sinks = 2;
   join.loss = join.dup = true;
+  join.calls = 2;  // So that replies to the first meet the second.
   explorer::Options full;
   full.step = seen_step;
   full.scope = explorer::Scope::kFull;
