@@ -4,6 +4,31 @@
 
 namespace rubric::oracle {
 
+void Context::look_up() {
+  sink_am = profile().sink_id;
+  mote_of_am.assign(65536, kNobody);
+  next_of_am.assign(who.devices.size(), kNobody);
+  for (std::size_t i = 0; i < who.devices.size(); ++i) {
+    const Device& device = who.devices[i];
+    const auto index = static_cast<std::uint16_t>(i);
+    if (!device.known) continue;
+    if (device.role == machine::Role::kMote) {
+      next_of_am[i] = mote_of_am[device.am];
+      mote_of_am[device.am] = index;
+    }
+    if (device.role != machine::Role::kSink) continue;
+    sink_am = device.am;
+    only_sink = sinks.empty() ? index : kNobody;
+    sinks.push_back(index);
+  }
+  for (const KnownNode& node : options.nodes) {
+    if (node.role == machine::Role::kSink) sink_am = node.id;
+  }
+  for (const Tap& tap : run.taps) {
+    hears_radio = hears_radio || tap.link == machine::Link::kRadio;
+  }
+}
+
 machine::Ticks Context::ticks(std::int64_t us) {
   return static_cast<machine::Ticks>(us * 1024 / 1'000'000);
 }
@@ -34,6 +59,13 @@ void Context::report(ReqId requirement, Severity severity, const Place& at, std:
     if (!d.known && severity > Severity::kNote) finding.severity = Severity::kStray;
   }
   findings.add(std::move(finding));
+}
+
+void Context::report_stranger(const Observation& seen, std::uint16_t node) {
+  report(ReqId::kNone, Severity::kStray, seen.place, node,
+         {"A frame from AM address " + number(seen.frame.src) +
+              " whose DSN follows none of that address's.",
+          "Frames of nodes that the run shows.", {}});
 }
 
 std::string text_of(machine::Address address) {

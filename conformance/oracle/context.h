@@ -42,8 +42,17 @@ struct Context {
   /// The one sink on the air, or kNobody where there are none or several.
   std::uint16_t only_sink = kNobody;
 
+  std::vector<std::uint16_t> sinks;       ///< Known ones.
   std::vector<std::uint16_t> mote_of_am;  ///< The last known mote of each AM address.
   std::vector<std::uint16_t> next_of_am;  ///< By device: another mote of the same address.
+
+  /// Fills in all of these. Before anything else.
+  void look_up();
+  /// Calls `call` with each known mote of that address.
+  template <class Call>
+  void for_motes(std::uint16_t am, Call call) const {
+    for (std::uint16_t mote = mote_of_am[am]; mote != kNobody; mote = next_of_am[mote]) call(mote);
+  }
 
   static machine::Ticks ticks(std::int64_t us);
   std::int64_t us_of(std::uint32_t profile_ticks) const {
@@ -64,6 +73,8 @@ struct Context {
   /// Judges device `node` at `at`. Nothing is said of testers; of unknown senders at most kStray.
   void report(ReqId requirement, Severity severity, const Place& at, std::uint16_t node,
               Said said);
+  /// A frame of an unknown sender.
+  void report_stranger(const Observation& seen, std::uint16_t node);
 };
 
 // Text.

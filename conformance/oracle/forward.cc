@@ -76,6 +76,9 @@ void Forwarding::heard_on_radio(const Observation& seen, std::uint16_t sender, c
                                 std::uint16_t surely_received_by) {
   for (Line& line : lines_) {
     if (line.sink == sender || !line.serial || line.island == 0) continue;
+    // A sink whose log has what it was given hears nothing else, and that in its own order.
+    const bool sure = surely_received_by == line.sink;
+    if (context_.device(line.sink).hearing ? !sure : seen.received) continue;
     if (seen.frame.dest != line.am && seen.frame.dest != machine::kAmBroadcast) continue;
     const Route route =
         machine::route_received({Role::kSink, {line.island, line.am}, true, context_.sink_am},
@@ -93,7 +96,7 @@ void Forwarding::heard_on_radio(const Observation& seen, std::uint16_t sender, c
       passing.weak = route.requirement == req::kN6Other;
     }
     passing.owed = onward && net.sound && net.reliable <= 1 && net.src.pid == line.island &&
-                   surely_received_by == line.sink;
+                   sure;
     // Seen on the serial line already, if the two taps' clocks differ.
     bool early = false;
     for (std::size_t i = 0; i < line.early.size(); ++i) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 #include <string>
 
 #include "conformance/oracle/message.h"
@@ -53,6 +54,7 @@ class Identifier {
     device.island = node.island;
     device.judged = node.under_test;
     device.application = node.application;
+    device.hearing = node.hearing;
     device.name = node.name;
     add(device);
   }
@@ -125,6 +127,7 @@ class Identifier {
           seen.place.time_us - sent.place.time_us <= kSameFrameUs) {
         mark.repeat = true;
         mark.device = out_.marks[before - 1].device;
+        mark.again = !given_.insert({before, node}).second;
         return;
       }
     }
@@ -362,6 +365,7 @@ class Identifier {
   std::vector<bool> starts_life_;
   std::array<std::uint32_t, kRecentFrames> recent_{};  // Observation + 1.
   std::size_t recent_next_ = 0;
+  std::set<std::pair<std::uint32_t, std::uint16_t>> given_;  // Frames of recent_, to whom.
   std::array<std::pair<std::uint16_t, std::uint16_t>, 256> requests_{};
   std::size_t request_next_ = 0;
 };

@@ -21,6 +21,7 @@ struct Device {
   bool known = true;             ///< False: an unknown sender; what it does is a stimulus.
   bool judged = true;            ///< False: the user or a log says that it is no node under test.
   bool application = false;      ///< A log has its application's calls and events.
+  bool hearing = false;          ///< A log has all that its radio was given.
   bool radio = false;            ///< It was heard on the air.
   std::string name;
   std::uint16_t partner = kNobody;   ///< The base station of a sink and the other way round.
@@ -37,6 +38,7 @@ struct Mark {
   std::uint16_t device = kNobody;    ///< Who sent it (called, was told).
   std::uint16_t receiver = kNobody;  ///< Of a line of a log that gives a node something.
   bool repeat = false;               ///< The link's own repetition, or a log's second line of it.
+  bool again = false;                ///< By a log the receiver was given the same frame before.
   bool new_life = false;             ///< The first frame behind a reboot.
 };
 

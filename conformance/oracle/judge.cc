@@ -26,7 +26,7 @@ class Judge {
         who_(identify(run, options)),
         findings_(options.deployed),
         context_(run, options, who_, findings_),
-        motes_((setup(), context_), who_.devices.size()),
+        motes_((context_.look_up(), context_), who_.devices.size()),
         sinks_(context_),
         forwarding_(context_),
         originals_(context_, who_.devices.size()),
@@ -38,6 +38,7 @@ class Judge {
     for (std::uint32_t i = 0; i < run_.seen.size(); ++i) look(i);
     motes_.finish(run_.end_us);
     sinks_.finish(run_.end_us);
+    originals_.finish(run_.end_us);
     forwarding_.finish(run_.end_us);
     acks_.finish();
     report.frames = frames_;
@@ -52,31 +53,6 @@ class Judge {
   }
 
  private:
-  void setup() {
-    context_.sink_am = context_.profile().sink_id;
-    context_.mote_of_am.assign(65536, kNobody);
-    context_.next_of_am.assign(who_.devices.size(), kNobody);
-    for (std::size_t i = 0; i < who_.devices.size(); ++i) {
-      const Device& device = who_.devices[i];
-      const auto index = static_cast<std::uint16_t>(i);
-      if (!device.known) continue;
-      if (device.role == Role::kMote) {
-        context_.next_of_am[i] = context_.mote_of_am[device.am];
-        context_.mote_of_am[device.am] = index;
-      }
-      if (device.role != Role::kSink) continue;
-      context_.sink_am = device.am;
-      context_.only_sink = sink_devices_.empty() ? index : kNobody;
-      sink_devices_.push_back(index);
-    }
-    for (const KnownNode& node : context_.options.nodes) {
-      if (node.role == Role::kSink) context_.sink_am = node.id;
-    }
-    for (const Tap& tap : run_.taps) {
-      context_.hears_radio = context_.hears_radio || tap.link == machine::Link::kRadio;
-    }
-  }
-
   bool is(std::uint16_t device, Role role) const {
     return device != kNobody && who_.devices[device].known && who_.devices[device].role == role;
   }
@@ -87,13 +63,13 @@ class Judge {
     switch (seen.kind) {
       case Kind::kRadio:
         ++frames_;
-        if (mark.repeat) return repeated(seen, mark);
+        if (mark.repeat) return repeated(index, seen, mark);
         if (mark.new_life) begin_life(mark.device);
         radio(index, seen, mark);
         break;
       case Kind::kSerial:
         ++frames_;
-        if (mark.repeat) return repeated(seen, mark);
+        if (mark.repeat) return repeated(index, seen, mark);
         if (mark.device != kNobody) serial(index, seen, mark);
         break;
       case Kind::kCall:
@@ -111,14 +87,6 @@ class Judge {
     }
   }
 
-  template <class Call>
-  void for_motes(std::uint16_t am, Call call) const {
-    for (std::uint16_t mote = context_.mote_of_am[am]; mote != kNobody;
-         mote = context_.next_of_am[mote]) {
-      call(mote);
-    }
-  }
-
   void begin_life(std::uint16_t device) {
     if (is(device, Role::kMote)) motes_.begin_life(device);
     if (is(device, Role::kSink)) sinks_.begin_life(device);
@@ -129,24 +97,38 @@ class Judge {
   }
 
   // The link's own repetition, or a log's line that says who received a frame.
-  void repeated(const Observation& seen, const Mark& mark) {
+  void repeated(std::uint32_t index, const Observation& seen, const Mark& mark) {
+    if (seen.kind == Kind::kRadio && mark.receiver != kNobody) joins_heard(index, seen, mark);
     Net net;
     if (seen.frame.type != kAmNet || !parse_net(seen.frame.payload, net)) return;
-    if (mark.receiver != kNobody) return acks_.surely(mark.receiver, net);
+    if (mark.receiver != kNobody) return surely(seen, mark, net);
     const bool serial = seen.kind == Kind::kSerial;
     if (serial && mark.device == kNobody) return;
     forwarding_.repeated(net, serial ? who_.devices[mark.device].partner : kNobody);
-    for_motes(seen.frame.dest, [&](std::uint16_t mote) { acks_.repeated(mote, net); });
-    for (const std::uint16_t sink : sink_devices_) acks_.repeated(sink, net);
+    context_.for_motes(seen.frame.dest, [&](std::uint16_t mote) { acks_.repeated(mote, net); });
+    for (const std::uint16_t sink : context_.sinks) acks_.repeated(sink, net);
+  }
+
+  // A log's line that gives a node a message that is known from its sender.
+  void surely(const Observation& seen, const Mark& mark, const Net& net) {
+    acks_.surely(mark.receiver, net);
+    if (net.is_ack()) originals_.ack_given(mark.receiver, net, seen.place.time_us);
+    if (seen.kind == Kind::kRadio) {
+      forwarding_.heard_on_radio(seen, mark.device, net, mark.receiver);
+    }
+    if (mark.again) acks_.repeated(mark.receiver, net);
   }
 
   // Who surely received a frame for the sinks' address.
   std::uint16_t sure_sink(std::uint32_t index) const {
+    if (who_.marks[index].receiver != kNobody) return who_.marks[index].receiver;
     return context_.only_sink != kNobody && link_acked(run_, index) ? context_.only_sink : kNobody;
   }
 
   void radio(std::uint32_t index, const Observation& seen, const Mark& mark) {
-    if (mark.device != kNobody && !who_.devices[mark.device].known) stranger(seen, mark.device);
+    if (mark.device != kNobody && !who_.devices[mark.device].known) {
+      context_.report_stranger(seen, mark.device);
+    }
     switch (seen.frame.type) {
       case kAmJoin: {
         Request request;
@@ -162,9 +144,7 @@ class Judge {
         if (is(mark.device, Role::kMote)) {
           role_broken(req::kJ10Mote, "A mote sends a join_reply.", seen, mark.device);
         }
-        for_motes(seen.frame.dest, [&](std::uint16_t mote) {
-          motes_.reply(mote, seen, index, reply, mark.receiver == mote);
-        });
+        replied(index, seen, mark, reply);
         return;
       }
       case kAmAckJoin: {
@@ -188,6 +168,30 @@ class Judge {
       default:
         return;
     }
+  }
+
+  // A log's line that gives a node a join message that is known from its sender.
+  void joins_heard(std::uint32_t index, const Observation& seen, const Mark& mark) {
+    Request request;
+    Reply reply;
+    AckJoin ack;
+    if (seen.frame.type == kAmJoin && parse_request(seen.frame.payload, request)) {
+      sinks_.request(kNobody, seen, request, mark.receiver);
+    } else if (seen.frame.type == kAmJoinReply && parse_reply(seen.frame.payload, reply)) {
+      replied(index, seen, mark, reply);
+    } else if (seen.frame.type == kAmAckJoin && parse_ack_join(seen.frame.payload, ack)) {
+      sinks_.ack_join(kNobody, seen, ack, mark.receiver);
+    }
+  }
+
+  // Motes whose log has what they were given hear nothing else.
+  void replied(std::uint32_t index, const Observation& seen, const Mark& mark,
+               const Reply& reply) {
+    context_.for_motes(seen.frame.dest, [&](std::uint16_t mote) {
+      const bool given = mark.receiver == mote;
+      if (who_.devices[mote].hearing ? !given : seen.received) return;
+      motes_.reply(mote, seen, index, reply, given);
+    });
   }
 
   void role_broken(ReqId rule, const char* what, const Observation& seen, std::uint16_t device) {
@@ -224,9 +228,9 @@ class Judge {
         if (is(node, Role::kMote)) hear(node);
       }
     } else {
-      for_motes(seen.frame.dest, hear);
+      context_.for_motes(seen.frame.dest, hear);
     }
-    for (const std::uint16_t sink : sink_devices_) {
+    for (const std::uint16_t sink : context_.sinks) {
       const std::uint16_t am = who_.devices[sink].am;
       if (sink == sender) continue;
       if (seen.frame.dest != am && seen.frame.dest != machine::kAmBroadcast) continue;
@@ -234,6 +238,9 @@ class Judge {
             machine::Link::kRadio, seen, sender, net, sure == sink || mark.receiver == sink);
     }
     if (net.is_ack()) ack_comes(net);
+    if (net.is_ack() && mark.receiver != kNobody) {
+      originals_.ack_given(mark.receiver, net, seen.place.time_us);
+    }
   }
 
   // A message of the node's own.
@@ -275,9 +282,9 @@ class Judge {
     const std::int32_t acked = machine::acked_seq_num(ack.body());
     if (acked < 0) return;
     const auto seq_num = static_cast<std::uint16_t>(acked);
-    for_motes(ack.dest.devid,
+    context_.for_motes(ack.dest.devid,
               [&](std::uint16_t mote) { originals_.ack_heard(mote, ack, seq_num); });
-    for (const std::uint16_t sink : sink_devices_) {
+    for (const std::uint16_t sink : context_.sinks) {
       const Device& device = who_.devices[sink];
       if (sinks_.island(sink) != ack.dest.pid) continue;
       if (ack.dest.devid == device.am) originals_.ack_heard(sink, ack, seq_num);
@@ -309,7 +316,10 @@ class Judge {
   void up_serial(const Observation& seen, std::uint16_t sink, const Net& net) {
     const Device& device = who_.devices[sink];
     SerialJoined joined;
-    if (parse_serial_joined(net, joined)) return sinks_.report(sink, seen, net, joined);
+    if (parse_serial_joined(net, joined)) {
+      sinks_.report(sink, seen, net, joined);
+      return base_station_hears(sink, seen, net);
+    }
     acks_.showed_life(sink, seen.place.time_us);
     const std::uint16_t island = sinks_.island(sink);
     if (net.src == machine::Address{island, device.am}) {
@@ -317,9 +327,14 @@ class Judge {
     } else {
       forwarding_.sent_on_serial(sink, seen, net);
     }
-    if (device.partner == kNobody) return;
-    hears(device.partner,
-          {Role::kBaseStation, {island, machine::kNullDevid}, true, context_.sink_am},
+    base_station_hears(sink, seen, net);
+  }
+
+  void base_station_hears(std::uint16_t sink, const Observation& seen, const Net& net) {
+    const std::uint16_t base = who_.devices[sink].partner;
+    if (base == kNobody) return;
+    hears(base,
+          {Role::kBaseStation, {sinks_.island(sink), machine::kNullDevid}, true, context_.sink_am},
           machine::Link::kSerial, seen, sink, net, false);
   }
 
@@ -334,13 +349,6 @@ class Judge {
     if (net.dest.devid != am && net.dest.devid != machine::kBroadcastDevid) return;
     hears(sink, {Role::kSink, {island, am}, true, context_.sink_am}, machine::Link::kSerial, seen,
           mark.device, net, sure);
-  }
-
-  void stranger(const Observation& seen, std::uint16_t device) {
-    context_.report(ReqId::kNone, Severity::kStray, seen.place, device,
-                    {"A frame from AM address " + number(seen.frame.src) +
-                         " whose DSN follows none of that address's.",
-                     "Frames of nodes that the run shows.", {}});
   }
 
   void called(const Observation& seen, std::uint16_t device) {
@@ -370,7 +378,6 @@ class Judge {
   Identity who_;
   Findings findings_;
   Context context_;
-  std::vector<std::uint16_t> sink_devices_;
   MoteJoins motes_;
   SinkJoins sinks_;
   Forwarding forwarding_;

@@ -23,7 +23,7 @@ struct Observation {
     kDamaged,   ///< Bytes that are no frame (bad CRC and the like): heard by nobody.
     kCall,      ///< An application's call, from a .rtr log.
     kNotice,    ///< What an application was told, from a .rtr log.
-    kReboot,    ///< The node lost its memory, by a .rtr log.
+    kReboot,    ///< The node lost its memory or its power, by a .rtr log.
   };
   Kind kind = Kind::kRadio;
   bool to_mote = false;        ///< Serial: towards the sink. Without direction flags see Tap.
@@ -75,6 +75,7 @@ struct LoggedNode {
   std::uint16_t island = 0;   ///< 0: not said.
   bool under_test = true;     ///< Where a log marks some nodes as under test the others are not.
   bool application = false;   ///< The log has its application's calls and events.
+  bool hearing = false;       ///< The log has what its radio was given.
 };
 
 /// Holds what observations point to.

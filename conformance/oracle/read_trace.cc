@@ -33,6 +33,7 @@ class LogReader {
 
   void read() {
     bool marked = false;
+    bool applications = false;
     for (const trace::NodeHeader& header : scope_.nodes) marked = marked || header.iut;
     for (const trace::NodeHeader& header : scope_.nodes) {
       LoggedNode node;
@@ -42,15 +43,30 @@ class LogReader {
       node.island = header.island.value_or(0);
       node.under_test = !marked || header.iut;
       for (const Line* line : lines_) {
-        const bool app = scope_.link(line->link) == LinkKind::kApp;
-        node.application = node.application || (app && line->node == header.name);
+        if (line->node != header.name) continue;
+        const std::optional<LinkKind> link = scope_.link(line->link);
+        node.application = node.application || link == LinkKind::kApp;
+        node.hearing = node.hearing || (link == LinkKind::kRadio && line->op == Op::kGiven &&
+                                        !is_state(*line));
       }
       run_.nodes.push_back(node);
+      applications = applications || node.application;
+    }
+    // A log that has applications and what a radio was given has that node's application as well,
+    // though it may never have been told anything.
+    for (LoggedNode& node : run_.nodes) {
+      node.application = node.application || (applications && node.hearing);
     }
     for (const Line* line : lines_) take(*line);
   }
 
  private:
+  // News of the line itself, not a frame.
+  static bool is_state(const Line& line) {
+    const std::string& name = line.message.name;
+    return name == "linkack" || name == "busy" || name == "idle";
+  }
+
   std::int64_t time_of(const Line& line) {
     std::int64_t ticks = line.time.from;
     if (line.time.base == trace::Time::Base::kPrevious) ticks += last_ticks_;
@@ -73,9 +89,7 @@ class LogReader {
     seen.node = run_.storage->keep(std::string_view(line.node));
     seen.received = line.op == Op::kGiven;
     const bool frames = *kind == LinkKind::kRadio || *kind == LinkKind::kSerial;
-    const bool state = line.message.name == "linkack" || line.message.name == "busy" ||
-                       line.message.name == "idle";
-    if (frames && !state) {
+    if (frames && !is_state(line)) {
       take_frame(line, *kind, seen);
     } else if (*kind == LinkKind::kApp || *kind == LinkKind::kPower) {
       take_news(line, *kind, seen);
@@ -112,7 +126,8 @@ class LogReader {
     seen.tap = tap_of("app", machine::Link::kRadio);
     RunStorage& storage = *run_.storage;
     if (const auto state = events::to_state(*message, kind)) {
-      if (!std::holds_alternative<machine::Reboot>(*state)) return;
+      const bool reboot = std::holds_alternative<machine::Reboot>(*state);
+      if (!reboot && !std::holds_alternative<machine::PowerOff>(*state)) return;
       seen.kind = Observation::Kind::kReboot;
       seen.received = false;
     } else if (const auto call = events::to_call(*message); call && seen.received) {

@@ -12,6 +12,7 @@ using machine::Route;
 using rubicon::Component;
 
 constexpr std::int64_t kAtOnceUs = 50'000;
+constexpr std::int64_t kTimeouts = 2;  // After so many of the stated ones there is no event.
 constexpr std::size_t kFloatBytes = 4;
 
 bool known_trans(std::uint8_t trans_id) {
@@ -39,6 +40,7 @@ void Originals::sent(std::uint16_t node, const Observation& seen, const Net& net
   sent.net = net;
   sent.place = seen.place;
   sent.order = orders_[node];
+  if (sent_[node].full()) close(node, sent_[node].size() - 1, seen.place.time_us);
   sent_[node].push(sent);
 }
 
@@ -176,6 +178,53 @@ void Originals::ack_heard(std::uint16_t node, const Net& ack, std::uint16_t acke
   if (context_.device(node).application) acks_[node].push({ack, acked});
 }
 
+void Originals::ack_given(std::uint16_t node, const Net& ack, std::int64_t now_us) {
+  const std::int32_t acked = machine::acked_seq_num(ack.body());
+  Ring<Sent, kRoom>& ring = sent_[node];
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    Sent& sent = ring.newest(i);
+    const bool matches = sent.net.seq_num == acked && sent.net.reliable == 1 &&
+                         sent.net.src == ack.dest && sent.net.dest == ack.src &&
+                         sent.net.app_id == ack.app_id;
+    if (matches && sent.given_us < 0) sent.given_us = now_us;
+  }
+}
+
+void Originals::close(std::uint16_t node, std::size_t newest, std::int64_t now_us) {
+  Ring<Sent, kRoom>& ring = sent_[node];
+  const Sent& sent = ring.newest(newest);
+  if (!context_.device(node).application || !context_.run.has_time || sent.told > 0) return;
+  const bool awaits = sent.net.reliable == 1 && sent.net.sound && !sent.net.broadcast() &&
+                      sent.net.trans_id == kTransConnless;
+  if (!awaits || context_.profile().ack_timeout_ticks == 0) return;
+  for (std::size_t i = 0; i < newest; ++i) {  // Sent again by its application: one event for both.
+    if (ring.newest(i).net.seq_num == sent.net.seq_num) return;
+  }
+  const std::int64_t response_us = context_.options.response_us;
+  if (sent.given_us >= 0 && now_us - sent.given_us > response_us) {
+    context_.report(req::kT3Success, Severity::kFail, sent.place, node,
+                    {"The node was given the ack of " + name_of(sent.net) + " " +
+                         ms_text(sent.given_us - sent.place.time_us) +
+                         " after it, and its application is told nothing.",
+                     "receive_ack(success).", {}});
+    return;
+  }
+  // An unstated timeout may be longer than what is assumed (decision 110); for ever it is not.
+  const std::int64_t waited = now_us - sent.place.time_us;
+  if (waited <= kTimeouts * context_.options.ack_timeout_us + response_us) return;
+  context_.report(req::kT3Once, Severity::kFail, sent.place, node,
+                  {"No receive_ack for " + name_of(sent.net) + " in " + ms_text(waited) + ".",
+                   "receive_ack(failure) at the timeout, or receive_ack(success) before.", {}});
+}
+
+void Originals::finish(std::int64_t end_us) {
+  for (std::size_t node = 0; node < sent_.size(); ++node) {
+    for (std::size_t i = sent_[node].size(); i-- > 0;) {
+      close(static_cast<std::uint16_t>(node), i, end_us);
+    }
+  }
+}
+
 void Originals::told(std::uint16_t node, const Observation& seen,
                      const machine::AckReceived& ack) {
   const std::int64_t now = seen.place.time_us;
@@ -188,8 +237,13 @@ void Originals::told(std::uint16_t node, const Observation& seen,
   const std::string what = "receive_ack(" + std::string(ack.success ? "success" : "failure") +
                            ", number " + number(ack.seq_num) + ")";
   if (match == nullptr) {
+    // What a base station sends to other islands goes where no log and no tap is read.
+    const Device& device = context_.device(node);
     context_.report(ack.success ? req::kT3Success : req::kT3Match,
-                    context_.without(node, context_.device(node).first_us, now), seen.place, node,
+                    device.role == Role::kBaseStation
+                        ? Severity::kInconclusive
+                        : context_.without(node, device.first_us, now),
+                    seen.place, node,
                     {what + " although the node has sent no reliable message with that number.",
                      "The number of the message that was acked.", {}});
     return;
@@ -200,7 +254,12 @@ void Originals::told(std::uint16_t node, const Observation& seen,
     return;
   }
   const std::int64_t waited = now - match->place.time_us;
-  if (ack.success && !match->acked) {
+  const std::int64_t since_ack = match->given_us < 0 ? 0 : now - match->given_us;
+  if (!ack.success && since_ack > context_.options.response_us) {
+    context_.report(req::kT3Success, Severity::kFail, seen.place, node,
+                    {what + ", " + ms_text(now - match->given_us) + " after its ack had come.",
+                     "receive_ack(success) when the ack came.", {}});
+  } else if (ack.success && !match->acked) {
     context_.report(req::kT3Success, context_.without(kNobody, match->place.time_us, now),
                     seen.place, node,
                     {what + ", but no ack of it was heard.", "No receive_ack before the ack.", {}});

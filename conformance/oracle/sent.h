@@ -15,6 +15,7 @@ struct Sent {
   Net net;
   Place place;
   bool acked = false;       ///< Its ack reached the node, or may have.
+  std::int64_t given_us = -1;  ///< When its ack surely reached the node, by a log.
   std::uint8_t told = 0;    ///< receive_ack events, by a log.
   std::uint32_t order = 0;  ///< Among the frames of the node.
 };
@@ -31,12 +32,17 @@ class Originals {
   void counted(std::uint16_t node) { ++orders_[node]; }
   /// An ack of `number` is on the air to `node`, or down its serial line.
   void ack_heard(std::uint16_t node, const Net& ack, std::uint16_t number);
+  /// By a log the node was given this ack.
+  void ack_given(std::uint16_t node, const Net& ack, std::int64_t now_us);
   /// receive_ack, by a log.
   void told(std::uint16_t node, const Observation& seen, const machine::AckReceived& ack);
+  void finish(std::int64_t end_us);
 
  private:
   static constexpr std::size_t kRoom = 32;
 
+  /// The message will not be looked at any more: did its application hear of its end?
+  void close(std::uint16_t node, std::size_t newest, std::int64_t now_us);
   void judge_content(std::uint16_t node, const Observation& seen, const Net& net);
   void judge_address(std::uint16_t node, const Observation& seen, const Net& net,
                      machine::Link link, machine::Address own);

@@ -81,6 +81,12 @@ void SinkJoins::set_island(std::uint16_t sink, std::uint16_t island, const Place
   watch->debts = 0;
 }
 
+// A sink whose log has what it was given hears nothing else.
+bool SinkJoins::hears(const Device& device, const Observation& seen, bool sure) const {
+  if (!device.known || seen.frame.dest != device.am) return false;
+  return device.hearing ? sure : !seen.received;
+}
+
 JoinSink list_of(const SinkHypothesis& h) {
   JoinSink list;
   if (h.member) list.members.push(*h.member);
@@ -103,9 +109,12 @@ void SinkJoins::request(std::uint16_t mote_device, const Observation& seen,
   }
   for (SinkWatch& sink : sinks_) {
     const Device& device = context_.device(sink.device);
-    if (!device.known || seen.frame.dest != device.am) continue;
-    PairWatch& watch = pair(sink, am);
     const bool sure = surely_received_by == sink.device;
+    if (!hears(device, seen, sure)) continue;
+    PairWatch& watch = pair(sink, am);
+    const bool full = listed(sink) >= context_.profile().members_max;  // Then it may be silent.
+    watch.request_listed = sure && std::all_of(watch.set.begin(), watch.set.end(),
+                                               [](const auto& h) { return h.member.has_value(); });
     next_.clear();
     for (const SinkHypothesis& h : watch.set) {
       SinkHypothesis heard = h;
@@ -115,7 +124,7 @@ void SinkJoins::request(std::uint16_t mote_device, const Observation& seen,
           list, context_.join_context(device.am, sink.island, seen.place.time_us), am,
           request.seq_num, request.descriptor, context_.actions);
       take_list(list, heard);
-      if (!sure || h.unknown) next_.push_back(h);
+      if (!sure || h.unknown || full) next_.push_back(h);
       if (answers) {
         heard.unknown = false;
         if (heard.owed == heard.owed_seq.size()) {
@@ -273,7 +282,7 @@ void SinkJoins::refuse_reply(SinkWatch& sink, PairWatch& watch, const Observatio
                 "request (" + number(reply.seq_num) + ").";
     said.expected = "A reply to the AM address that asked.";
   } else if (h.member && watch.asked && reply.seq_num == watch.request_seq &&
-             watch.answered_seq != reply.seq_num) {
+             (watch.request_listed || watch.answered_seq != reply.seq_num)) {
     rule = req::kJ2Listed;
     severity = Severity::kFail;
     said.text = "join_reply to mote " + number(am) + ", which the sink has reported as a member.";

@@ -40,6 +40,7 @@ struct PairWatch {
   Place ack;                           ///< The last ack_join to this sink.
   ReqId ignored_ack = ReqId::kNone;    ///< Why the last one must have been ignored.
   bool report_due = false;             ///< Surely owed since `ack`, and not yet complained about.
+  bool request_listed = false;         ///< The last request surely came while it was listed.
 };
 
 struct SinkWatch {
@@ -99,6 +100,9 @@ class SinkJoins {
     std::uint16_t sink = kNobody;
   };
   void close_unanswered(std::uint16_t mote_am, Unanswered& unanswered);
+  void unannounced(const SinkWatch& sink, std::uint16_t mote_am, const PairWatch& watch,
+                   std::int64_t end_us);
+  bool hears(const Device& device, const Observation& seen, bool sure) const;
 
   Context& context_;
   std::vector<SinkWatch> sinks_;

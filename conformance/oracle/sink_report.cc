@@ -12,9 +12,9 @@ void SinkJoins::ack_join(std::uint16_t, const Observation& seen, const AckJoin& 
                          std::uint16_t surely_received_by) {
   for (SinkWatch& sink : sinks_) {
     const Device& device = context_.device(sink.device);
-    if (!device.known || seen.frame.dest != device.am) continue;
-    PairWatch& watch = pair(sink, ack.src.devid);
     const bool sure = surely_received_by == sink.device;
+    if (!hears(device, seen, sure)) continue;
+    PairWatch& watch = pair(sink, ack.src.devid);
     next_.clear();
     bool admitted = false;
     bool all_admit = true;
@@ -200,7 +200,26 @@ void SinkJoins::showed_life(std::uint16_t sink_device, std::int64_t now_us, bool
   }
 }
 
-void SinkJoins::finish(std::int64_t) {
+// By a log the sink surely got the ack_join, and its application was told nothing of it.
+void SinkJoins::unannounced(const SinkWatch& sink, std::uint16_t mote_am, const PairWatch& watch,
+                            std::int64_t end_us) {
+  const Device& device = context_.device(sink.device);
+  if (!device.hearing || !device.application || !context_.run.has_time || watch.set.empty()) return;
+  if (end_us <= watch.ack.time_us + context_.options.response_us) return;
+  const auto owes = [](const SinkHypothesis& h) { return !h.unknown && h.owes_notice; };
+  if (!std::all_of(watch.set.begin(), watch.set.end(), owes)) return;
+  if (listed(sink) > context_.profile().members_max) return;
+  context_.report(req::kJ6Add, Severity::kFail, watch.ack, sink.device,
+                  {"The sink was given the ack_join of mote " + number(mote_am) +
+                       " with the number that it had answered, and does not list the mote: no "
+                       "moteJoined followed within " + ms_text(context_.options.response_us) + ".",
+                   "moteJoined for the new member.", {}});
+}
+
+void SinkJoins::finish(std::int64_t end_us) {
+  for (const SinkWatch& sink : sinks_) {
+    for (const auto& [am, watch] : sink.motes) unannounced(sink, am, watch, end_us);
+  }
   std::vector<std::uint16_t> open;
   for (auto& [am, unanswered] : unanswered_) {
     if (unanswered.open) open.push_back(am);

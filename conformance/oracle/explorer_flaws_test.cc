@@ -1,0 +1,101 @@
+// The explorer's shortest traces of the named flaws: the oracle must come to the same verdict.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "codec/generated/requirements_table.h"
+#include "conformance/explorer/counterexample.h"
+#include "conformance/explorer/search.h"
+#include "conformance/flaws/flaws.h"
+#include "conformance/generated/profiles.h"
+#include "conformance/oracle/judge.h"
+#include "conformance/oracle/read.h"
+#include "conformance/trace/print.h"
+
+namespace rubric::oracle {
+namespace {
+
+using explorer::Property;
+
+struct Flawed {
+  const char* flaw;
+  std::uint8_t motes;
+  Property property;
+  bool reorder = false;
+};
+
+explorer::Options network_of(const Flawed& flawed, const flaws::Flaw& flaw) {
+  explorer::Options options;
+  options.profile = machine::kPaper;
+  options.motes = flawed.motes;
+  options.calls = 2;
+  options.loss = options.dup = true;
+  options.reorder = flawed.reorder;
+  options.properties = explorer::bit(flawed.property);
+  options.step = flaw.step;
+  if (flaw.seen == flaws::Seen::kMessages) {
+    options.scope = explorer::Scope::kFull;
+    options.dup = false;
+  }
+  return options;
+}
+
+std::string text_of(const Report& report) {
+  std::string text;
+  for (const Finding& finding : report.findings) {
+    text += std::string(kRequirements[static_cast<std::size_t>(finding.requirement)].id) + " " +
+            std::to_string(static_cast<int>(finding.severity)) + " line " +
+            std::to_string(finding.place.offset_bytes) + " " + finding.node + ": " + finding.text +
+            "\n";
+  }
+  return text;
+}
+
+Report judge_text(const std::string& text) {
+  RunReader reader;
+  std::string error;
+  EXPECT_TRUE(reader.add_bytes("counterexample.rtr", text, error)) << error;
+  Options options;
+  options.sniffer_complete = options.start_cold = true;
+  return judge(reader.finish(), options);
+}
+
+class ExplorerFlaws : public testing::TestWithParam<Flawed> {};
+
+TEST_P(ExplorerFlaws, FailByARequirementOfTheFlaw) {
+  const flaws::Flaw* const flaw = flaws::find(GetParam().flaw);
+  ASSERT_NE(flaw, nullptr);
+  const auto nodes = std::make_unique<explorer::Nodes>(network_of(GetParam(), *flaw));
+  const explorer::Result result = explorer::explore(*nodes);
+  ASSERT_TRUE(result.violation.has_value());
+  const std::string text =
+      trace::print(explorer::counterexample(*nodes, *result.violation, {"paper", "explore.x", ""}));
+  const Report report = judge_text(text);
+  EXPECT_EQ(report.verdict, Verdict::kFail) << text;
+  bool named = false;
+  for (const Finding& finding : report.findings) {
+    const auto& broken = flaw->requirements;
+    named = named || (finding.severity == Severity::kFail &&
+                      std::find(broken.begin(), broken.end(), finding.requirement) != broken.end());
+  }
+  EXPECT_TRUE(named) << text << text_of(report);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, ExplorerFlaws,
+    testing::Values(Flawed{"accepts_wrong_seq", 1, Property::kJoinedAfterReply},
+                    Flawed{"one_pending_seq", 2, Property::kAdmitted},
+                    Flawed{"joined_on_link_ack", 1, Property::kJoinedAfterReply},
+                    Flawed{"no_fail", 1, Property::kOneTerminal},
+                    Flawed{"seven_requests", 1, Property::kRequestsBounded},
+                    Flawed{"acks_wrong_seq", 1, Property::kAckRightSeq},
+                    Flawed{"answers_members", 1, Property::kListedSilent, true},
+                    Flawed{"no_ack_timeout", 1, Property::kReliableEnds},
+                    Flawed{"misread_acks", 1, Property::kAckCounts}),
+    [](const auto& param) { return std::string(param.param.flaw); });
+
+}  // namespace
+}  // namespace rubric::oracle
