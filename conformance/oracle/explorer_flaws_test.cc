@@ -63,12 +63,9 @@ Report judge_text(const std::string& text) {
   return judge(reader.finish(), options);
 }
 
-class ExplorerFlaws : public testing::TestWithParam<Flawed> {};
-
-TEST_P(ExplorerFlaws, FailByARequirementOfTheFlaw) {
-  const flaws::Flaw* const flaw = flaws::find(GetParam().flaw);
-  ASSERT_NE(flaw, nullptr);
-  const auto nodes = std::make_unique<explorer::Nodes>(network_of(GetParam(), *flaw));
+// The shortest trace there is must fail by a rule that the flaw is said to break.
+void expect_failure(const explorer::Options& options, const flaws::Flaw& flaw) {
+  const auto nodes = std::make_unique<explorer::Nodes>(options);
   const explorer::Result result = explorer::explore(*nodes);
   ASSERT_TRUE(result.violation.has_value());
   const std::string text =
@@ -77,11 +74,35 @@ TEST_P(ExplorerFlaws, FailByARequirementOfTheFlaw) {
   EXPECT_EQ(report.verdict, Verdict::kFail) << text;
   bool named = false;
   for (const Finding& finding : report.findings) {
-    const auto& broken = flaw->requirements;
+    const auto& broken = flaw.requirements;
     named = named || (finding.severity == Severity::kFail &&
                       std::find(broken.begin(), broken.end(), finding.requirement) != broken.end());
   }
   EXPECT_TRUE(named) << text << text_of(report);
+}
+
+class ExplorerFlaws : public testing::TestWithParam<Flawed> {};
+
+TEST_P(ExplorerFlaws, FailByARequirementOfTheFlaw) {
+  const flaws::Flaw* const flaw = flaws::find(GetParam().flaw);
+  ASSERT_NE(flaw, nullptr);
+  expect_failure(network_of(GetParam(), *flaw), *flaw);
+}
+
+// As the program looks for them: whatever breaks first.
+TEST_P(ExplorerFlaws, FailWhateverPropertyBreaksFirst) {
+  const flaws::Flaw* const flaw = flaws::find(GetParam().flaw);
+  ASSERT_NE(flaw, nullptr);
+  explorer::Options options = network_of(GetParam(), *flaw);
+  options.properties = explorer::Options{}.properties;
+  for (std::uint8_t motes = GetParam().motes; motes <= 2; ++motes) {
+    for (std::uint8_t sinks = 1; sinks <= 2; ++sinks) {
+      options.motes = motes;
+      options.sinks = sinks;
+      SCOPED_TRACE(std::to_string(motes) + " motes, " + std::to_string(sinks) + " sinks");
+      expect_failure(options, *flaw);
+    }
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(
