@@ -25,16 +25,17 @@ void append_crc(Octets& record) {
 }
 
 Octets am_packet(std::uint16_t dest, std::uint8_t type, const Octets& payload) {
-  Octets out(8);
+  constexpr std::size_t kHeaderBytes = 8;
+  Octets out(kHeaderBytes + payload.size());
   tinyos::AmHeader header;
   header.dispatch = tinyos::Dispatch::kActiveMessage;
   header.dest = dest;
   header.length = static_cast<std::uint8_t>(payload.size());
   header.type = type;
-  const auto written = tinyos::write(header, MutableBytes(out.data(), out.size()));
+  const auto written = tinyos::write(header, MutableBytes(out.data(), kHeaderBytes));
   assert(written);
   (void)written;
-  out.insert(out.end(), payload.begin(), payload.end());
+  std::copy(payload.begin(), payload.end(), out.begin() + kHeaderBytes);
   return out;
 }
 
