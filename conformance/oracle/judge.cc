@@ -296,6 +296,7 @@ class Judge {
 
   void serial(std::uint32_t index, const Observation& seen, const Mark& mark) {
     const std::uint16_t sink = seen.to_mote ? who_.devices[mark.device].partner : mark.device;
+    if (sink == kNobody) return;  // Of the sink nothing is known: a part of a run, say.
     if (const std::int32_t id = set_island_id(seen.frame); id >= 0 && seen.to_mote) {
       const auto island = static_cast<std::uint16_t>(id);
       sinks_.set_island(sink, island, seen.place);

@@ -436,7 +436,9 @@ TEST(Log, EveryFramePrintsAndComesBack) {
     one.src = next();
     one.dest = static_cast<std::uint16_t>(next() << 8 | next());
     one.payload.resize(next() % 115);
-    for (std::uint8_t& byte : one.payload) byte = next() % 3 ? next() % 12 : next();
+    for (std::uint8_t& byte : one.payload) {
+      byte = static_cast<std::uint8_t>(next() % 3 != 0 ? next() % 12 : next());
+    }
     const LinkKind link = i % 2 ? LinkKind::kRadio : LinkKind::kSerial;
     const std::string node = i % 2 ? "m5" : "sA";
     const std::string name = i % 2 ? "rA" : "serA";
