@@ -40,9 +40,12 @@ constexpr const char* kFooter =
     "  rubric check capture.pcapng --sink 1=11 --sniffer complete --start cold\n"
     "  rubric check sniffer.pcap sink.serial.bin app.rtr --format junit --out result.xml\n"
     "  rubric check capture.pcapng --expect known.yaml\n"
-    "Exit codes, which differ from those of other subcommands: 0 as expected (weak findings,\n"
-    "strays and notes included), 1 a failure that nobody expected, or an expectation that is not\n"
-    "true, 2 the kit broke, 3 nothing but inconclusive, 64 usage, 66 input cannot be read.";
+    "The same line or air may be in one file only; beside a capture a log has application lines.\n"
+    "Frames count from 1, times from the first one. PEIS messages of a log are not read.\n"
+    "Exit codes: 0 as expected (weak findings, strays, notes and what stays inconclusive beside\n"
+    "decided things included), 1 a failure that nobody expected, or an expectation that is not\n"
+    "true, 2 the kit broke or could not write, 3 nothing could be decided, 64 usage,\n"
+    "66 input cannot be read.";
 
 struct CheckOptions {
   std::vector<std::string> files;

@@ -19,6 +19,7 @@
 #include "conformance/explorer/search.h"
 #include "conformance/mutants/generated.h"
 #include "tools/cli/exit_codes.h"
+#include "tools/cli/usage.h"
 #include "tools/layout/json_text.h"
 
 namespace rubric::tools {
@@ -48,13 +49,6 @@ struct Coverage {
   std::size_t cases = 0;
   std::vector<std::string> problems;
 };
-
-// Rules that forbid, and need no negative line.
-struct Exception {
-  ReqId requirement;
-  const char* reason;
-};
-constexpr std::array<Exception, 0> kNoNegative{};
 
 bool is_wire(std::size_t i) {
   return std::strncmp(kRequirements[i].id, "WIRE-", 5) == 0;
@@ -131,12 +125,9 @@ void judge(Coverage& coverage) {
     if (is_wire(i)) continue;
     const reflect::Requirement& rule = kRequirements[i];
     const Touch& touch = coverage.rules[i];
-    const bool excused = std::any_of(kNoNegative.begin(), kNoNegative.end(), [&](const auto& one) {
-      return static_cast<std::size_t>(one.requirement) == i;
-    });
     if (is_must(i) && touch.positive.empty() && touch.negative.empty()) {
       coverage.problems.push_back(fmt::format("{} is a MUST without a case", rule.id));
-    } else if (rule.forbids && touch.negative.empty() && !excused) {
+    } else if (rule.forbids && touch.negative.empty()) {
       coverage.problems.push_back(fmt::format("{} forbids, but no case attempts it", rule.id));
     }
   }
@@ -217,7 +208,7 @@ std::string text_of(const Coverage& coverage) {
 }
 
 std::string json_of(const Coverage& coverage) {
-  std::string out = "{\"schema\":\"rubric-coverage/1\",\"rules\":[";
+  std::string out = "{\"schema\":\"rubric.coverage/1\",\"rules\":[";
   const char* comma = "";
   for (std::size_t i = 1; i < kRules; ++i) {
     if (is_wire(i)) continue;
@@ -282,6 +273,7 @@ void add_coverage(CLI::App& app) {
   sub->add_option("--format", options->format, "text or json")
       ->check(CLI::IsMember({"text", "json"}))
       ->capture_default_str();
+  cli::set_usage_exit_code(*sub, cli::kVerdictUsage);
   sub->callback([options] {
     const int code = run(*options);
     if (code != cli::kVerdictExpected) cli::exit_with(code);

@@ -41,7 +41,7 @@ class Coverage(unittest.TestCase):
 
     def test_json_says_the_same(self):
         report = json.loads(coverage(CASES, "--format", "json").stdout)
-        self.assertEqual(report["schema"], "rubric-coverage/1")
+        self.assertEqual(report["schema"], "rubric.coverage/1")
         self.assertEqual(report["problems"], [])
         rules = {rule["id"]: rule for rule in report["rules"]}
         self.assertEqual(len(rules), report["totals"]["rules"])

@@ -198,7 +198,7 @@ void print_json(const Options& options, const Result& result, const Verdict& ver
                 const std::string& trace, std::FILE* out) {
   const Progress& p = result.progress;
   const Mask broken = result.violation ? result.violation->violated : 0;
-  fmt::print(out, "{{\"schema\": \"rubric-explore-1\", \"verdict\": \"{}\",\n", verdict.text);
+  fmt::print(out, "{{\"schema\": \"rubric.explore/1\", \"verdict\": \"{}\",\n", verdict.text);
   fmt::print(out, " \"profile\": {}, \"flaw\": {}, \"limit\": {},\n", json_string(options.profile),
              options.flaw.empty() ? "null" : json_string(options.flaw),
              *result.limit ? json_string(result.limit) : "null");
@@ -347,7 +347,9 @@ void add_explore(CLI::App& app) {
       ->check(CLI::IsMember({"join", "full"}))
       ->capture_default_str();
   sub->add_option("--property", options->properties, "Only these; default: all");
-  sub->add_option("--flaw", options->flaw, "Put this flaw of release 1.0 around the machine");
+  sub->add_option("--flaw", options->flaw,
+                  "Put this flaw of release 1.0 around the machine; what needs an old reply shows "
+                  "with --calls 2, what needs messages with --scope full");
   sub->add_option("--profile", options->profile, "paper or deployed")->capture_default_str();
   add_bounds(*sub, *options);
   sub->add_option("--format", options->format, "text or json")

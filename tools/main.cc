@@ -18,7 +18,8 @@ namespace {
 
 constexpr const char* kFooter =
     "Exit codes: 0 clean, 1 something malformed was found, 2 usage, 3 input cannot be read or\n"
-    "output cannot be written; check has others. 'rubric COMMAND --help' says more.";
+    "output cannot be written; check, explore and coverage give verdicts and have others.\n"
+    "'rubric COMMAND --help' says more.";
 
 }  // namespace
 

@@ -250,12 +250,6 @@ bool Network::heals(const World& world, bool& weak) {
   return healing.succeeds(world, weak);
 }
 
-bool Network::is_known_weak(const World& world) {
-  bool weak = false;
-  heals(world, weak);
-  return weak;
-}
-
 Mask Network::goals(const World& world) const {
   const Options& options = nodes_.options();
   Mask reached = 0;

@@ -117,7 +117,6 @@ class Network {
   bool overflowed() const { return overflowed_; }
   /// States at rest from which a mote cannot join, since it has rebooted and its sink lists it.
   std::uint64_t known_weak() const { return known_weak_; }
-  bool is_known_weak(const World& world);
 
   std::size_t pack(const World& world, std::uint8_t* out) const;
   std::size_t unpack(const std::uint8_t* bytes, World& world) const;

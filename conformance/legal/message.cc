@@ -126,14 +126,6 @@ Octets demo_data_body(std::uint16_t reading) {
   return written(out);
 }
 
-Octets read_updates_body(std::uint16_t period_ms, std::uint16_t transducers) {
-  rubicon::ReadUpdates out;
-  out.type = rubicon::AmType::kReadUpdates;
-  out.sampling_rate = period_ms;
-  out.transducers = rubicon::TransducerMask(transducers);
-  return written(out);
-}
-
 Octets ack_body_deployed(std::uint16_t seq) {
   rubicon::RubiconAck out;
   out.type = rubicon::AmType::kLearningNotification;

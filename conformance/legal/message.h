@@ -53,7 +53,6 @@ Octets app_msg(rubicon::Component trans, std::uint8_t app, const Octets& body);
 Octets updates_body(const std::vector<std::pair<std::uint16_t, std::uint16_t>>& pairs);
 Octets demo_body(std::uint16_t transducers, std::uint16_t period_ms);
 Octets demo_data_body(std::uint16_t reading);
-Octets read_updates_body(std::uint16_t period_ms, std::uint16_t transducers);
 Octets ack_body_deployed(std::uint16_t seq);
 Octets ack_body_paper(std::uint16_t seq);
 Octets synaptic_body(const std::vector<float>& values);

@@ -65,9 +65,7 @@ void SerialLine::to_host(std::uint8_t am_type, const Octets& payload) {
       content(tinyos::SerialKind::kPacketNoack, -1, am_packet(kAllNodes, am_type, payload));
   const std::int64_t end_us = reserve(out_busy_until_us_, record.size());
   world_.capture_serial(end_us, interface_, Direction::kOutbound, record);
-  ++waiting_to_host_;
   world_.scheduler().at(end_us, [this, am_type, payload] {
-    --waiting_to_host_;
     host_->serial_heard(am_type, payload);
   });
 }

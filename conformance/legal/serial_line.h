@@ -23,7 +23,6 @@ class SerialLine {
     sink_ = sink;
     host_ = host;
   }
-  std::size_t waiting_to_host() const { return waiting_to_host_; }
 
   void to_host(std::uint8_t am_type, const Octets& payload);
   void to_mote(std::uint8_t am_type, const Octets& payload);
@@ -50,7 +49,6 @@ class SerialLine {
   std::uint8_t next_serial_seq_;
   std::int64_t out_busy_until_us_ = 0;
   std::int64_t in_busy_until_us_ = 0;
-  std::size_t waiting_to_host_ = 0;
 };
 
 }  // namespace rubric::legal

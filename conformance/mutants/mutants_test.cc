@@ -12,7 +12,7 @@
 namespace rubric::mutants {
 namespace {
 
-constexpr std::size_t kNamedLeast = 60;
+constexpr std::size_t kNamedLeast = 250;
 
 struct Hunted {
   Mutants mutants;

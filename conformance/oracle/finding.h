@@ -39,6 +39,6 @@ struct Finding {
   Place last;                ///< Of the last repeat.
 };
 
-enum class Verdict : std::uint8_t { kPass, kWeak, kStray, kInconclusive, kFail, kError };
+enum class Verdict : std::uint8_t { kPass, kWeak, kStray, kInconclusive, kFail };
 
 }  // namespace rubric::oracle

@@ -8,6 +8,15 @@ namespace rubric::oracle {
 
 using machine::Role;
 
+namespace {
+
+// "1 frame", "2 frames".
+std::string counted(std::uint64_t n, const std::string& what) {
+  return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
+}
+
+}  // namespace
+
 void name_devices(const Run& run, Identity& out) {
   for (Device& device : out.devices) {
     const std::string id = std::to_string(device.am);
@@ -22,13 +31,13 @@ void name_devices(const Run& run, Identity& out) {
       device.name = "base station of island " + island;
     }
     std::string fact = device.name + ":";
-    if (device.radio) fact += " " + std::to_string(device.frames) + " frames on the air,";
+    if (device.radio) fact += " " + counted(device.frames, "frame") + " on the air,";
     for (const std::uint32_t tap : device.taps) {
       fact += " serial line " + run.taps[tap].name + ",";
     }
     if (device.application) fact += " application log,";
     if (!device.holes.empty()) {
-      fact += " " + std::to_string(device.holes.size()) + " gaps in its DSNs,";
+      fact += " " + counted(device.holes.size(), "gap") + " in its DSNs,";
     }
     if (!device.judged) fact += " not under test,";
     fact.pop_back();

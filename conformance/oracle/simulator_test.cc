@@ -2,6 +2,7 @@
 // fail.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <string>
 #include <utility>
@@ -75,6 +76,37 @@ void print(const char* what, const Count& count) {
               static_cast<unsigned long long>(count.judgements),
               static_cast<unsigned long long>(count.frames),
               static_cast<unsigned long long>(count.fails));
+}
+
+// Any part of a run can be judged, also one in which half of the nodes are not seen.
+TEST(Simulated, PartsOfRunsAreJudged) {
+  std::size_t parts = 0;
+  for (const simulator::Scenario& scenario : simulator::scenarios()) {
+    simulator::Network network = simulator::make_network(scenario, {});
+    simulator::TraceRecorder log(network, scenario.name);
+    simulator::CaptureRecorder capture(network);
+    simulator::Simulation simulation(std::move(network), {&capture, &log});
+    simulation.run_until(scenario.length_us);
+    for (const std::string& bytes : {trace::print(log.file()), capture.finish()}) {
+      RunReader reader;
+      std::string error;
+      ASSERT_TRUE(reader.add_bytes(scenario.name, bytes, error)) << error;
+      const oracle::Run whole = reader.finish();
+      for (const std::size_t length : {1U, 15U}) {
+        for (std::size_t from = 0; from < whole.seen.size(); from += length) {
+          oracle::Run part = whole;
+          const std::size_t to = std::min(whole.seen.size(), from + length);
+          part.seen.assign(whole.seen.begin() + static_cast<std::ptrdiff_t>(from),
+                           whole.seen.begin() + static_cast<std::ptrdiff_t>(to));
+          merge(part);
+          const Report report = judge(part, {});
+          EXPECT_LE(report.frames, length);
+          ++parts;
+        }
+      }
+    }
+  }
+  EXPECT_GT(parts, 1000U);
 }
 
 TEST(Simulated, ScenariosHaveNoFail) {

@@ -8,6 +8,10 @@
 namespace rubric::runner {
 
 std::vector<trace::Parsed> load_cases(const std::filesystem::path& folder) {
+  if (!std::filesystem::is_directory(folder)) {
+    throw std::runtime_error(folder.string() + ": no such folder; golden traces are in " +
+                             "conformance/cases of the project");
+  }
   std::vector<std::filesystem::path> paths;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
     if (entry.path().extension() == ".rtr") paths.push_back(entry.path());

@@ -23,7 +23,7 @@ TEST(GoldenCases, TheMachinePassesAll) {
       ++cases;
     }
   }
-  EXPECT_GT(cases, 50);
+  EXPECT_GT(cases, 270);
   std::printf("%d golden traces\n", cases);
 }
 

@@ -123,11 +123,6 @@ Message&& Message::with(std::string_view path, Value value) && {
   with(path, std::move(value));
   return std::move(*this);
 }
-Message&& Message::and_more() && {
-  form = Form::kFields;
-  open = true;
-  return std::move(*this);
-}
 
 const Value* Message::find(std::string_view path) const {
   for (const FieldValue& field : fields) {

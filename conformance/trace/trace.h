@@ -96,11 +96,10 @@ struct Message {
   Place place;
 
   static Message any() { return {}; }
-  /// Add fields with `with`; closed until `and_more`.
+  /// Add fields with `with`.
   static Message named(std::string_view name);
   Message&& with(std::string_view path, Value value) &&;
   Message& with(std::string_view path, Value value) &;
-  Message&& and_more() &&;
 
   /// The value given for exactly this path, or null.
   const Value* find(std::string_view path) const;

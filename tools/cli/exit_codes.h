@@ -11,7 +11,7 @@ enum ExitCode : int {
   kExitInput = 3,      ///< Input cannot be read or output cannot be written.
 };
 
-/// Exit codes of the subcommands that give verdicts (check).
+/// Exit codes of the subcommands that give verdicts: check, explore, coverage.
 enum VerdictCode : int {
   kVerdictExpected = 0,      ///< Everything is as expected.
   kVerdictFailed = 1,        ///< A failure that nobody expected, or an expectation not true.

@@ -54,7 +54,6 @@ std::string_view verdict_name(oracle::Verdict verdict) {
     case oracle::Verdict::kStray: return "stray";
     case oracle::Verdict::kInconclusive: return "inconclusive";
     case oracle::Verdict::kFail: return "fail";
-    case oracle::Verdict::kError: return "error";
   }
   return "error";
 }

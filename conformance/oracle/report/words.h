@@ -12,7 +12,7 @@ namespace rubric::report {
 
 /// "fail", "weak", "stray", "inconclusive", "note"; stable, as programs read them.
 std::string_view severity_name(oracle::Severity severity);
-/// "pass", "weak", "stray", "inconclusive", "fail", "error".
+/// "pass", "weak", "stray", "inconclusive", "fail".
 std::string_view verdict_name(oracle::Verdict verdict);
 
 /// "3.842100"; empty without a time.
