@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "codec/generated/requirements_table.h"
+#include "codec/reflect/fault_text.h"
 
 namespace rubric::runner {
 
@@ -17,7 +17,7 @@ bool is_weak(const trace::Line& line) {
          std::all_of(line.requirements.begin(), line.requirements.end(), [](const auto& name) {
            const ReqId id = trace::requirement_id(name);
            return id != ReqId::kNone &&
-                  std::string_view(kRequirements[static_cast<int>(id)].level) == "SHOULD";
+                  std::string_view(reflect::requirement(id).level) == "SHOULD";
          });
 }
 

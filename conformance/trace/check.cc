@@ -8,11 +8,10 @@
 #include "codec/generated/requirements_table.h"
 #include "conformance/trace/check_message.h"
 #include "conformance/trace/print.h"
+#include "conformance/trace/value_text.h"
 
 namespace rubric::trace {
 namespace {
-
-std::string quoted(std::string_view text) { return "'" + std::string(text) + "'"; }
 
 /// Ids and families ("J4" of "J4-SEQ") that the catalogue has.
 const std::unordered_set<std::string>& known_requirements() {

@@ -11,8 +11,6 @@
 namespace rubric::trace {
 namespace {
 
-std::string quoted(std::string_view text) { return "'" + std::string(text) + "'"; }
-
 // What is wrong with a value for what a path leads to, or nothing.
 
 std::string leaf_misfit(const Value& value, const Domain& domain) {

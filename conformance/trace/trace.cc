@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "codec/generated/requirements_table.h"
+#include "codec/reflect/fault_text.h"
 #include "codec/runtime/bytes.h"
 
 namespace rubric::trace {
@@ -286,8 +287,7 @@ std::optional<LinkKind> Scope::link(std::string_view name) const {
 }
 
 std::string_view requirement_text(ReqId id) {
-  const auto index = static_cast<std::size_t>(id);
-  return index < std::size(kRequirements) ? kRequirements[index].id : "";
+  return reflect::requirement(id).id;
 }
 
 ReqId requirement_id(std::string_view text) {

@@ -291,6 +291,8 @@ std::string read_value(std::string_view text, Value& out) {
   return problem;
 }
 
+std::string quoted(std::string_view text) { return "'" + std::string(text) + "'"; }
+
 void put_hex(std::string_view bytes, std::string& out) {
   for (const char c : bytes) {
     const auto byte = static_cast<unsigned char>(c);

@@ -29,6 +29,9 @@ bool is_path(std::string_view text);
 
 /// Appends the bytes of hex digits, two a byte, without blanks; false at anything else.
 bool read_hex_bytes(std::string_view digits, std::string& out);
+/// In single quotes, as diagnostics show words.
+std::string quoted(std::string_view text);
+
 /// Two hex digits a byte.
 void put_hex(std::string_view bytes, std::string& out);
 
