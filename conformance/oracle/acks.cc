@@ -67,7 +67,8 @@ void Acks::sent(std::uint16_t node, const Observation& seen, const Net& ack) {
   Arrived* best = nullptr;
   const auto rank = [](const Arrived& a) {
     if (a.forbidden != ReqId::kNone) return 0;
-    if (a.net.reliable != 1 || a.net.trans_id != kTransConnless || a.net.broadcast()) return 1;
+    const bool connless = a.net.trans_id == component::kConnless;
+    if (a.net.reliable != 1 || !connless || a.net.broadcast()) return 1;
     return a.acks < a.copies ? 3 : 2;
   };
   for (std::size_t i = 0; i < ring.size(); ++i) {
@@ -139,7 +140,7 @@ void Acks::refuse(std::uint16_t node, const Observation& seen, const Net& ack, s
     severity = Severity::kWeak;
     said.text = "It acks the broadcast " + number(best->net.seq_num) + ".";
     said.expected = "A broadcast is not acked.";
-  } else if (best->net.trans_id != kTransConnless) {
+  } else if (best->net.trans_id != component::kConnless) {
     rule = req::kT2Content;
     said.text = "It acks " + name_of(best->net) + ", whose TRANSID is " +
                 number(best->net.trans_id) + ".";

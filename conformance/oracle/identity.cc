@@ -74,7 +74,7 @@ class Identifier {
     if (seen.kind == Observation::Kind::kDamaged) out_.damaged_us.push_back(seen.place.time_us);
     if (seen.kind == Observation::Kind::kRadio) {
       out_.hears_radio = true;
-      if (seen.frame.type == kAmJoin) remember_request(seen);
+      if (seen.frame.type == am::kJoin) remember_request(seen);
       mark.device = streams_.assign(index, mark.repeat);  // A stream so far.
       return;
     }
@@ -169,7 +169,7 @@ class Identifier {
       return;
     }
     Net net;
-    if (seen.frame.type != kAmNet || !parse_net(seen.frame.payload, net)) return;
+    if (seen.frame.type != am::kNet || !parse_net(seen.frame.payload, net)) return;
     if (line.island != 0) {
       if (seen.to_mote) streams_.heard_on_serial(net, line.island);
       return;
@@ -198,7 +198,7 @@ class Identifier {
     if (!stream.sink || stream.frames != 1) return false;
     const machine::Frame& frame = run_.seen[stream.first].frame;
     Reply reply;
-    if (frame.type != kAmJoinReply || !parse_reply(frame.payload, reply)) return false;
+    if (frame.type != am::kJoinReply || !parse_reply(frame.payload, reply)) return false;
     return std::find(requests_.begin(), requests_.end(),
                      std::pair{frame.dest, reply.seq_num}) == requests_.end();
   }

@@ -100,7 +100,7 @@ class Judge {
   void repeated(std::uint32_t index, const Observation& seen, const Mark& mark) {
     if (seen.kind == Kind::kRadio && mark.receiver != kNobody) joins_heard(index, seen, mark);
     Net net;
-    if (seen.frame.type != kAmNet || !parse_net(seen.frame.payload, net)) return;
+    if (seen.frame.type != am::kNet || !parse_net(seen.frame.payload, net)) return;
     if (mark.receiver != kNobody) return surely(seen, mark, net);
     const bool serial = seen.kind == Kind::kSerial;
     if (serial && mark.device == kNobody) return;
@@ -130,14 +130,14 @@ class Judge {
       context_.report_stranger(seen, mark.device);
     }
     switch (seen.frame.type) {
-      case kAmJoin: {
+      case am::kJoin: {
         Request request;
         if (!parse_request(seen.frame.payload, request)) return;
         if (is(mark.device, Role::kMote)) motes_.request(mark.device, seen, request);
         sinks_.request(mark.device, seen, request, sure_sink(index));
         return;
       }
-      case kAmJoinReply: {
+      case am::kJoinReply: {
         Reply reply;
         if (!parse_reply(seen.frame.payload, reply)) return;
         if (is(mark.device, Role::kSink)) sinks_.reply(mark.device, seen, reply);
@@ -147,7 +147,7 @@ class Judge {
         replied(index, seen, mark, reply);
         return;
       }
-      case kAmAckJoin: {
+      case am::kAckJoin: {
         AckJoin ack;
         if (!parse_ack_join(seen.frame.payload, ack)) return;
         if (is(mark.device, Role::kMote)) {
@@ -159,7 +159,7 @@ class Judge {
         sinks_.ack_join(mark.device, seen, ack, sure_sink(index));
         return;
       }
-      case kAmNet: {
+      case am::kNet: {
         Net net;
         if (!parse_net(seen.frame.payload, net)) return;
         radio_net(index, seen, mark, net);
@@ -175,11 +175,11 @@ class Judge {
     Request request;
     Reply reply;
     AckJoin ack;
-    if (seen.frame.type == kAmJoin && parse_request(seen.frame.payload, request)) {
+    if (seen.frame.type == am::kJoin && parse_request(seen.frame.payload, request)) {
       sinks_.request(kNobody, seen, request, mark.receiver);
-    } else if (seen.frame.type == kAmJoinReply && parse_reply(seen.frame.payload, reply)) {
+    } else if (seen.frame.type == am::kJoinReply && parse_reply(seen.frame.payload, reply)) {
       replied(index, seen, mark, reply);
-    } else if (seen.frame.type == kAmAckJoin && parse_ack_join(seen.frame.payload, ack)) {
+    } else if (seen.frame.type == am::kAckJoin && parse_ack_join(seen.frame.payload, ack)) {
       sinks_.ack_join(kNobody, seen, ack, mark.receiver);
     }
   }
@@ -249,7 +249,7 @@ class Judge {
     acks_.showed_life(node, seen.place.time_us);
     originals_.sent(node, seen, net, link, own);
     if (net.is_ack()) acks_.sent(node, seen, net);
-    if (net.sound && net.trans_id == kTransSyn) synaptic_.sent(node, seen, net);
+    if (net.sound && net.trans_id == component::kSynChannel) synaptic_.sent(node, seen, net);
   }
 
   void mote_hears(std::uint16_t mote, const Observation& seen, const Mark& mark, const Net& net) {
@@ -305,7 +305,7 @@ class Judge {
     }
     if (!seen.to_mote) sinks_.showed_life(mark.device, seen.place.time_us, true);
     Net net;
-    if (seen.frame.type != kAmNet || !parse_net(seen.frame.payload, net)) return;
+    if (seen.frame.type != am::kNet || !parse_net(seen.frame.payload, net)) return;
     if (seen.to_mote) {
       down_serial(index, seen, mark, sink, net);
     } else {

@@ -80,7 +80,7 @@ const Fault kFaults[] = {
        Payload p;
        put16(p, 300);
        put(p, kDescriptor);
-       s.radio(400, 4, 7, kAmJoin, p);
+       s.radio(400, 4, 7, am::kJoin, p);
      }},
     {"request_too_early", "J8-PERIOD",
      [](Script& s) { s.request(400, 4, 300).request(850, 4, 300); }},
@@ -106,7 +106,7 @@ const Fault kFaults[] = {
        s.dsn[12 * 65536U + 1] = s.dsn[11 * 65536U + 1];
        Payload p;
        for (const std::uint32_t v : {11U, 5U, 0U, 410U, 300U}) put16(p, v);
-       s.radio(410, 1, 4, kAmJoinReply, p, 11);
+       s.radio(410, 1, 4, am::kJoinReply, p, 11);
      }},
     {"clock_stands_still", "J3-TIME",
      [](Script& s) { s.request(1400, 4, 300).reply(1410, 11, 4, 300, 110); }},
@@ -231,11 +231,11 @@ const Fault kFaults[] = {
      }},
     {"island_not_taken", "N9-SET N9-SET",
      [](Script& s) {
-       s.serial(400, true, kAmConfig, {10, 0, 21});
+       s.serial(400, true, am::kConfig, {10, 0, 21});
        s.request(420, 4, 300);
        Payload p;
        for (const std::uint32_t v : {11U, 4U, 0U, 430U, 300U}) put16(p, v);
-       s.radio(430, 1, 4, kAmJoinReply, p, 11);
+       s.radio(430, 1, 4, am::kJoinReply, p, 11);
      }},
     // Acks.
     {"unreliable_acked", "T2-UNRELIABLE",
@@ -294,7 +294,7 @@ const Fault kFaults[] = {
     {"reliable_synaptic_data", "S2-CONTENT",
      [](Script& s) {
        NetFields net = reliable({11, 2}, {11, 3}, 5);
-       net.trans_id = kTransSyn;
+       net.trans_id = component::kSynChannel;
        net.app_id = 11;
        net.body = {0, 0, 0, 0};
        s.net(420, 2, 3, net);
@@ -303,7 +303,7 @@ const Fault kFaults[] = {
      [](Script& s) {
        NetFields net = reliable({11, 2}, {11, 3}, 5);
        net.reliable = 0;
-       net.trans_id = kTransSyn;
+       net.trans_id = component::kSynChannel;
        net.app_id = 11;
        net.body = {0, 0, 0};
        s.net(420, 2, 3, net);

@@ -8,17 +8,12 @@
 #include "codec/runtime/bytes.h"
 #include "conformance/machine/address.h"
 #include "conformance/machine/event.h"
+#include "conformance/machine/messages.h"
 
 namespace rubric::oracle {
 
-constexpr std::uint8_t kAmJoin = static_cast<std::uint8_t>(rubicon::AmType::kJoin);
-constexpr std::uint8_t kAmJoinReply = static_cast<std::uint8_t>(rubicon::AmType::kJoinReply);
-constexpr std::uint8_t kAmAckJoin = static_cast<std::uint8_t>(rubicon::AmType::kAckJoin);
-constexpr std::uint8_t kAmNet = static_cast<std::uint8_t>(rubicon::AmType::kNet);
-constexpr std::uint8_t kAmConfig = static_cast<std::uint8_t>(rubicon::AmType::kConfig);
-constexpr std::uint8_t kTransSyn = static_cast<std::uint8_t>(rubicon::Component::kSynChannel);
-constexpr std::uint8_t kTransConnless = static_cast<std::uint8_t>(rubicon::Component::kConnless);
-constexpr std::uint8_t kTransAck = static_cast<std::uint8_t>(rubicon::Component::kRubiconAck);
+namespace am = machine::am;
+namespace component = machine::component;
 
 constexpr std::size_t kNetHeaderBytes = 12;
 constexpr std::uint8_t kNetPayloadMax = 102;
@@ -36,7 +31,7 @@ struct Net {
   Bytes payload;              ///< nbytes of it where sound, else what came.
   Bytes body() const { return payload.from(2); }
 
-  bool is_ack() const { return sound && trans_id == kTransAck; }
+  bool is_ack() const { return sound && trans_id == component::kRubiconAck; }
   bool broadcast() const {
     return dest.pid == machine::kBroadcastPid || dest.devid == machine::kBroadcastDevid;
   }
@@ -126,7 +121,7 @@ struct SerialJoined {
 inline bool parse_serial_joined(const Net& net, SerialJoined& out) {
   constexpr auto kControl = static_cast<std::uint8_t>(rubicon::Component::kControlLayer);
   constexpr auto kJoined = static_cast<std::uint8_t>(rubicon::AmType::kSerialJoined);
-  if (!net.sound || net.trans_id != kTransConnless || net.app_id != kControl) return false;
+  if (!net.sound || net.trans_id != component::kConnless || net.app_id != kControl) return false;
   const Bytes body = net.body();
   if (body.size() < 9 || body[0] != kJoined) return false;
   const std::uint8_t* const p = body.data();
@@ -137,7 +132,7 @@ inline bool parse_serial_joined(const Net& net, SerialJoined& out) {
 
 /// The island id that a SET_ISLAND_ID config message sets; -1: another message.
 inline std::int32_t set_island_id(const machine::Frame& frame) {
-  if (frame.type != kAmConfig || frame.payload.size() < 3) return -1;
+  if (frame.type != am::kConfig || frame.payload.size() < 3) return -1;
   constexpr auto kSet = static_cast<std::uint8_t>(rubicon::CommandCode::kSetIslandId);
   return frame.payload[0] == kSet ? load_be16(frame.payload.data() + 1) : -1;
 }

@@ -69,7 +69,7 @@ TEST(Read, FilesOfOneRunShareTheirClock) {
   std::int64_t ack_us = 0, told_us = 0, report_us = 0;
   for (const Observation& seen : run.seen) {
     const bool serial = seen.kind == Observation::Kind::kSerial;
-    if (seen.frame.type == kAmAckJoin && ack_us == 0) ack_us = seen.place.time_us;
+    if (seen.frame.type == am::kAckJoin && ack_us == 0) ack_us = seen.place.time_us;
     if (seen.kind == Observation::Kind::kNotice && told_us == 0) told_us = seen.place.time_us;
     if (serial && report_us == 0) report_us = seen.place.time_us;
   }

@@ -16,7 +16,8 @@ constexpr std::int64_t kTimeouts = 2;  // After so many of the stated ones there
 constexpr std::size_t kFloatBytes = 4;
 
 bool known_trans(std::uint8_t trans_id) {
-  return trans_id == kTransConnless || trans_id == kTransSyn || trans_id == kTransAck;
+  return trans_id == component::kConnless || trans_id == component::kSynChannel ||
+         trans_id == component::kRubiconAck;
 }
 
 }  // namespace
@@ -35,7 +36,7 @@ void Originals::sent(std::uint16_t node, const Observation& seen, const Net& net
   judge_content(node, seen, net);
   judge_address(node, seen, net, link, own);
   judge_number(node, seen, net);
-  if (net.sound && net.trans_id == kTransSyn) judge_synaptic(node, seen, net);
+  if (net.sound && net.trans_id == component::kSynChannel) judge_synaptic(node, seen, net);
   Sent sent;
   sent.net = net;
   sent.place = seen.place;
@@ -107,7 +108,7 @@ void Originals::judge_number(std::uint16_t node, const Observation& seen, const 
     const Sent& before = ring.newest(i);
     if (before.net.seq_num != net.seq_num) continue;
     const bool awaits = before.net.reliable == 1 && !before.acked && before.net.sound &&
-                        !before.net.broadcast() && before.net.trans_id == kTransConnless &&
+                        !before.net.broadcast() && before.net.trans_id == component::kConnless &&
                         context_.run.has_time &&
                         now - before.place.time_us <
                             context_.options.ack_timeout_us - context_.early_us();
@@ -195,7 +196,7 @@ void Originals::close(std::uint16_t node, std::size_t newest, std::int64_t now_u
   const Sent& sent = ring.newest(newest);
   if (!context_.device(node).application || !context_.run.has_time || sent.told > 0) return;
   const bool awaits = sent.net.reliable == 1 && sent.net.sound && !sent.net.broadcast() &&
-                      sent.net.trans_id == kTransConnless;
+                      sent.net.trans_id == component::kConnless;
   if (!awaits || context_.profile().ack_timeout_ticks == 0) return;
   for (std::size_t i = 0; i < newest; ++i) {  // Sent again by its application: one event for both.
     if (ring.newest(i).net.seq_num == sent.net.seq_num) return;

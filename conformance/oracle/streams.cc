@@ -35,11 +35,11 @@ IslandHint Streams::hint_of(const machine::Frame& frame) const {
   IslandHint hint;
   Reply reply;
   Net net;
-  if (frame.type == kAmJoinReply && parse_reply(frame.payload, reply)) {
+  if (frame.type == am::kJoinReply && parse_reply(frame.payload, reply)) {
     hint.strong = reply.island;
-  } else if (AckJoin ack; frame.type == kAmAckJoin && parse_ack_join(frame.payload, ack)) {
+  } else if (AckJoin ack; frame.type == am::kAckJoin && parse_ack_join(frame.payload, ack)) {
     hint.mote = ack.src.pid;
-  } else if (frame.type == kAmNet && parse_net(frame.payload, net)) {
+  } else if (frame.type == am::kNet && parse_net(frame.payload, net)) {
     hint.mote = net.src.pid;
     // What another island's sink sent may be passed on; it looks like the sink's own.
     if (net.src.devid == frame.src && net.src.pid == net.dest.pid) {
@@ -130,9 +130,9 @@ std::uint16_t Streams::assign(std::uint32_t index, bool& repeat) {
   stream.last = index;
   stream.last_us = now;
   ++stream.frames;
-  if (seen.frame.type == kAmJoin) stream.asked = true;
+  if (seen.frame.type == am::kJoin) stream.asked = true;
   if (!stream.sink && hint.mote != 0) stream.island = hint.mote;
-  if (seen.frame.type == kAmJoinReply && !stream.asked) stream.sink = true;
+  if (seen.frame.type == am::kJoinReply && !stream.asked) stream.sink = true;
   if (stream.sink && stream.island == 0) {
     stream.first_island = stream.island = hint.strong != 0 ? hint.strong : hint.dest;
   }
@@ -145,9 +145,9 @@ std::uint16_t Streams::open(std::uint32_t index, const IslandHint& hint) {
   Stream stream;
   stream.am = seen.frame.src;
   stream.dsn = seen.dsn;
-  stream.sink = seen.frame.type == kAmJoinReply ||
-                (seen.frame.src == sink_am_ && seen.frame.type != kAmJoin);
-  stream.joins = stream.asked = seen.frame.type == kAmJoin;
+  stream.sink = seen.frame.type == am::kJoinReply ||
+                (seen.frame.src == sink_am_ && seen.frame.type != am::kJoin);
+  stream.joins = stream.asked = seen.frame.type == am::kJoin;
   if (!stream.sink) stream.island = hint.mote;
   if (stream.sink) stream.first_island = stream.island = hint.strong != 0 ? hint.strong : hint.dest;
   stream.first = stream.last = index;

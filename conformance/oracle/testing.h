@@ -37,7 +37,7 @@ struct NetFields {
   std::uint8_t reliable = 0;
   std::uint16_t seq_num = 0;
   Payload body = {7, 7};
-  std::uint8_t trans_id = kTransConnless;
+  std::uint8_t trans_id = component::kConnless;
   std::uint8_t app_id = 5;
   int nbytes = -1;  ///< -1: as it must be.
   std::size_t size = 0;  ///< Of the whole, filled with zeros; 0: as it must be.
@@ -68,7 +68,7 @@ struct NetFields {
     out.dest = src;
     out.src = dest;
     out.seq_num = own_seq_num;
-    out.trans_id = kTransAck;
+    out.trans_id = component::kRubiconAck;
     out.app_id = app_id;
     out.body = {23, static_cast<std::uint8_t>(seq_num >> 8), static_cast<std::uint8_t>(seq_num), 0};
     return out;
@@ -122,7 +122,7 @@ class Script {
     Payload out;
     put16(out, seq_num);
     put(out, descriptor);
-    return radio(ms, mote, 1, kAmJoin, out, mote_key);
+    return radio(ms, mote, 1, am::kJoin, out, mote_key);
   }
   Script& reply(double ms, std::uint16_t island, std::uint16_t mote, std::uint16_t seq_num,
                 std::uint32_t time_ms, std::uint16_t am_dest = 0) {
@@ -132,7 +132,7 @@ class Script {
     put16(out, time_ms >> 16);
     put16(out, time_ms & 0xFFFF);
     put16(out, seq_num);
-    return radio(ms, 1, am_dest == 0 ? mote : am_dest, kAmJoinReply, out, island);
+    return radio(ms, 1, am_dest == 0 ? mote : am_dest, am::kJoinReply, out, island);
   }
   Script& ack_join(double ms, std::uint16_t island, std::uint16_t mote, std::uint16_t seq_num,
                    const machine::Descriptor& descriptor = kDescriptor) {
@@ -141,7 +141,7 @@ class Script {
     put(out, machine::Address{island, mote});
     put16(out, seq_num);
     put(out, descriptor);
-    return radio(ms, mote, 1, kAmAckJoin, out, mote_key, true);
+    return radio(ms, mote, 1, am::kAckJoin, out, mote_key, true);
   }
   Script& joined(double ms, std::uint16_t island, std::uint16_t mote, std::uint32_t tap = 1,
                  const machine::Descriptor& descriptor = kDescriptor) {
@@ -152,7 +152,7 @@ class Script {
     net.body = {16};
     put(net.body, machine::Address{island, mote});
     put(net.body, descriptor);
-    return serial(ms, false, kAmNet, net.forwarded().bytes(), tap);
+    return serial(ms, false, am::kNet, net.forwarded().bytes(), tap);
   }
   /// A whole join: request, reply, ack_join, report.
   Script& join(double ms, std::uint16_t island, std::uint16_t mote, std::uint16_t seq_num,
@@ -164,13 +164,13 @@ class Script {
   }
   Script& net(double ms, std::uint16_t src, std::uint16_t dest, const NetFields& fields,
               std::uint16_t island = 0) {
-    return radio(ms, src, dest, kAmNet, fields.bytes(), island);
+    return radio(ms, src, dest, am::kNet, fields.bytes(), island);
   }
   Script& up(double ms, const NetFields& fields, std::uint32_t tap = 1) {
-    return serial(ms, false, kAmNet, fields.bytes(), tap);
+    return serial(ms, false, am::kNet, fields.bytes(), tap);
   }
   Script& down(double ms, const NetFields& fields, std::uint32_t tap = 1) {
-    return serial(ms, true, kAmNet, fields.bytes(), tap);
+    return serial(ms, true, am::kNet, fields.bytes(), tap);
   }
 
   Run run;

@@ -135,8 +135,10 @@ void Scene::add_radio_receivers(std::size_t i, std::vector<std::uint16_t>& out) 
   oracle::Net net;
   oracle::AckJoin ack;
   std::uint16_t island = 0;  // Of the sink that is meant, where the message says so.
-  if (frame.type == oracle::kAmNet && oracle::parse_net(frame.payload, net)) island = net.dest.pid;
-  if (frame.type == oracle::kAmAckJoin && oracle::parse_ack_join(frame.payload, ack)) {
+  if (frame.type == oracle::am::kNet && oracle::parse_net(frame.payload, net)) {
+    island = net.dest.pid;
+  }
+  if (frame.type == oracle::am::kAckJoin && oracle::parse_ack_join(frame.payload, ack)) {
     island = ack.dest.pid;
   }
   // The sink of that island, else whoever has the address, else strangers that have it.
@@ -190,7 +192,7 @@ std::vector<std::uint16_t> Scene::topic(std::size_t i) const {
     add(seen.frame.dest);
   }
   oracle::Net net;
-  if (seen.frame.type == oracle::kAmNet && oracle::parse_net(seen.frame.payload, net)) {
+  if (seen.frame.type == oracle::am::kNet && oracle::parse_net(seen.frame.payload, net)) {
     add(net.src.devid);
     add(net.dest.devid);
   }
