@@ -48,7 +48,8 @@ struct NetFields {
     put(out, src);
     out.push_back(reliable);
     put16(out, seq_num);
-    out.push_back(static_cast<std::uint8_t>(nbytes < 0 ? body.size() + 2 : nbytes));
+    const std::size_t stated = nbytes < 0 ? body.size() + 2 : static_cast<std::size_t>(nbytes);
+    out.push_back(static_cast<std::uint8_t>(stated));
     out.push_back(trans_id);
     out.push_back(app_id);
     out.insert(out.end(), body.begin(), body.end());
