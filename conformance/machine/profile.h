@@ -4,10 +4,9 @@
 
 #include <cstdint>
 
-namespace rubric::machine {
+#include "conformance/machine/ticks.h"
 
-/// Virtual time in ticks of the profile: binary milliseconds, 1024 to the second.
-using Ticks = std::uint32_t;
+namespace rubric::machine {
 
 /// One dialect. Defaults are those of the paper's profile.
 struct Profile {

@@ -8,8 +8,7 @@
 namespace rubric::runner {
 
 Ticks ticks_of(trace::Tick unit, std::int64_t time) {
-  const std::int64_t per_second = trace::ticks_per_second(unit);
-  return static_cast<Ticks>(time * 1024 / per_second);
+  return machine::ticks_of(time, trace::ticks_per_second(unit));
 }
 
 bool is_weak(const trace::Line& line) {

@@ -18,7 +18,7 @@ Ticks transmission_ticks(Link link, std::size_t payload_bytes) {
   const std::size_t serial_us = (payload_bytes + 13) * 87;   // Flags, header, CRC; 10 bits a byte.
   if (link == Link::kPeis) return 1;
   const std::size_t us = link == Link::kRadio ? radio_us : serial_us;
-  return static_cast<Ticks>((us * 1024 + 999'999) / 1'000'000);
+  return machine::ticks_to_hold(static_cast<machine::Micros>(us));
 }
 
 void SubjectTarget::reset(const machine::Config& config) {

@@ -107,13 +107,6 @@ Script sending(ScriptedSend send) {
   return script;
 }
 
-TEST(Time, TicksAreBinaryMilliseconds) {
-  EXPECT_EQ(us_of(1024), kUsPerSecond);
-  EXPECT_EQ(us_of(500), 488'282);
-  for (machine::Ticks ticks = 0; ticks < 5000; ++ticks) EXPECT_EQ(ticks_of(us_of(ticks)), ticks);
-  EXPECT_EQ(ticks_of(us_of(500) - 1), 499U);
-}
-
 TEST(EventQueue, TimeThenOrderOfAsking) {
   EventQueue queue;
   std::string order;

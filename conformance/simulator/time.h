@@ -1,25 +1,14 @@
-// Virtual time. The simulator counts microseconds, the nodes binary milliseconds.
+// The machine's units of time: the simulator counts microseconds since the start of the run, its
+// nodes ticks.
 #pragma once
 
-#include <cstdint>
-
-#include "conformance/machine/profile.h"
+#include "conformance/machine/ticks.h"
 
 namespace rubric::simulator {
 
-/// Since the start of the run.
-using Micros = std::int64_t;
-
-inline constexpr Micros kUsPerSecond = 1'000'000;
-inline constexpr Micros kTicksPerSecond = 1024;
-
-/// The tick that has begun at `us`.
-constexpr machine::Ticks ticks_of(Micros us) {
-  return static_cast<machine::Ticks>(us * kTicksPerSecond / kUsPerSecond);
-}
-/// The first microsecond of a tick: ticks_of(us_of(t)) == t.
-constexpr Micros us_of(machine::Ticks ticks) {
-  return (ticks * kUsPerSecond + kTicksPerSecond - 1) / kTicksPerSecond;
-}
+using machine::kUsPerSecond;
+using machine::Micros;
+using machine::ticks_of;
+using machine::us_of;
 
 }  // namespace rubric::simulator
