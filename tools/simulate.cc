@@ -126,8 +126,8 @@ void add_simulate(CLI::App& app) {
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
   sub->add_option("--dup", options->network.duplication,
-                  "Probability that a receiver gets a radio frame twice; a capture shows it once, "
-                  "so that only the log can be judged")
+                  "Probability that a receiver gets a radio frame twice: the sender's link repeats "
+                  "it on the air")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
   sub->add_option("--seconds", options->seconds, "How long; default: as the scenario says")

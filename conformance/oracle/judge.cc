@@ -98,7 +98,7 @@ class Judge {
 
   // The link's own repetition, or a log's line that says who received a frame.
   void repeated(std::uint32_t index, const Observation& seen, const Mark& mark) {
-    if (seen.kind == Kind::kRadio && mark.receiver != kNobody) joins_heard(index, seen, mark);
+    if (seen.kind == Kind::kRadio) joins_heard(index, seen, mark);
     Net net;
     if (seen.frame.type != am::kNet || !parse_net(seen.frame.payload, net)) return;
     if (mark.receiver != kNobody) return surely(seen, mark, net);
@@ -170,7 +170,8 @@ class Judge {
     }
   }
 
-  // A log's line that gives a node a join message that is known from its sender.
+  // A join message that is known from its sender: a log's line that gives it to a node, or the
+  // link's repetition, which a node may have heard in place of the first or as well.
   void joins_heard(std::uint32_t index, const Observation& seen, const Mark& mark) {
     Request request;
     Reply reply;

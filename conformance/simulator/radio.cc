@@ -12,7 +12,7 @@ constexpr Micros kCongestionBackoffUs[] = {305, 2'410};
 constexpr Micros kTurnaroundUs = 192;       // From listening to sending. (IEEE 802.15.4, 6.4.1)
 constexpr Micros kLinkAckUs[] = {192, 2'500};  // The acknowledgement is software's.
 constexpr Micros kLinkAckWaitUs = 8'000;
-constexpr Micros kDoubleUs[] = {500, 20'000};  // How long after a frame its double comes.
+constexpr Micros kDoubleUs[] = {500, 20'000};  // How long after a frame the link repeats it.
 
 constexpr std::uint16_t kFcfData = 0x8841;  // Short addresses in one PAN.
 constexpr std::uint16_t kFcfDataAck = 0x8861;
@@ -128,8 +128,34 @@ void Radio::begin(const Shared& frame) {
 void Radio::end(const Shared& frame) {
   std::erase(air_, frame);
   stations_[frame->sender].sending = false;
-  if (!frame->is_ack) sent(frame);
-  for (const Reception& reception : frame->receptions) receive(*frame, reception);
+  if (!frame->is_ack && !may_double()) sent(frame);
+  std::vector<std::size_t> twice;
+  for (const Reception& reception : frame->receptions) {
+    if (receive(*frame, reception)) twice.push_back(reception.station);
+  }
+  if (frame->is_ack || !may_double()) return;
+  if (twice.empty() || frame->again) return sent(frame);
+  repeat(frame, std::move(twice));
+}
+
+bool Radio::may_double() const {
+  const auto doubles = [](const RadioPlan::LinkFaults& link) {
+    return link.faults.duplication > 0;
+  };
+  return plan_.faults.duplication > 0 ||
+         std::any_of(plan_.link_faults.begin(), plan_.link_faults.end(), doubles);
+}
+
+// A receiver gets a frame twice because the sender's link, which missed the acknowledgement, sends
+// it twice. For the sender that is one transmission.
+void Radio::repeat(const Shared& frame, std::vector<std::size_t> had_it) {
+  auto copy = std::make_shared<OnAir>(*frame);
+  copy->am.payload = Bytes(copy->bytes.data(), copy->bytes.size()).from(kHeaderBytes);
+  copy->receptions.clear();
+  copy->again = true;
+  copy->had_it = std::move(had_it);
+  const Micros wait = frame->asks_ack ? kLinkAckWaitUs : 0;
+  try_channel(copy, wait + random_.between(kDoubleUs[0], kDoubleUs[1]));
 }
 
 // The sender's side of the end of a frame.
@@ -152,48 +178,45 @@ void Radio::finish(std::size_t station, bool acked) {
   user_.radio_sent(*from.node, acked);
 }
 
-void Radio::receive(const OnAir& frame, const Reception& reception) {
+bool Radio::receive(const OnAir& frame, const Reception& reception) {
   Station& to = stations_[reception.station];
   if (frame.is_ack) {
     const bool awaited = to.awaited == frame.dsn;
-    if (!awaited || reception.destroyed || !user_.listens(*to.node)) return;
+    if (!awaited || reception.destroyed || !user_.listens(*to.node)) return false;
     if (!random_.chance(faults(stations_[frame.sender], to).loss)) {
       finish(reception.station, true);
     }
-    return;
+    return false;
   }
   const bool broadcast = frame.am.dest == machine::kAmBroadcast;
-  if (!broadcast && frame.am.dest != to.am_address) return;
-  const auto mishap = [&](Mishap what) {
+  if (!broadcast && frame.am.dest != to.am_address) return false;
+  const auto missed = [&](Mishap what) {
     recorder_.mishap(queue_.now(), *to.node, what, frame.am);
+    return false;
   };
-  if (!user_.listens(*to.node)) return mishap(Mishap::kUnheard);
-  if (reception.destroyed) return mishap(Mishap::kCollided);
+  if (!user_.listens(*to.node)) return missed(Mishap::kUnheard);
+  if (reception.destroyed) return missed(Mishap::kCollided);
   const Faults& faults_here = faults(stations_[frame.sender], to);
-  if (random_.chance(faults_here.loss)) return mishap(Mishap::kLost);
+  if (random_.chance(faults_here.loss)) return missed(Mishap::kLost);
   if (frame.asks_ack && !broadcast) answer(frame, reception.station);
   auto copy = std::make_shared<OnAir>(frame);
   copy->am.payload = Bytes(copy->bytes.data(), copy->bytes.size()).from(kHeaderBytes);
   const Micros delay = random_.between(0, faults_here.delay_max_us);
   if (delay == 0) {
-    deliver(copy, to);
+    deliver(copy, reception.station);
   } else {
-    queue_.after(delay, [this, copy, station = reception.station] {
-      deliver(copy, stations_[station]);
-    });
+    queue_.after(delay, [this, copy, station = reception.station] { deliver(copy, station); });
   }
-  if (!random_.chance(faults_here.duplication)) return;
-  queue_.after(delay + random_.between(kDoubleUs[0], kDoubleUs[1]),
-               [this, copy, station = reception.station] {
-    const Station& late = stations_[station];
-    if (!user_.listens(*late.node)) return;
-    recorder_.mishap(queue_.now(), *late.node, Mishap::kDoubled, copy->am);
-    deliver(copy, stations_[station]);
-  });
+  return random_.chance(faults_here.duplication);
 }
 
-void Radio::deliver(const Shared& frame, Station& to) {
-  if (user_.listens(*to.node)) user_.heard(*to.node, frame->am);
+void Radio::deliver(const Shared& frame, std::size_t station) {
+  const Station& to = stations_[station];
+  if (!user_.listens(*to.node)) return;
+  if (std::count(frame->had_it.begin(), frame->had_it.end(), station) > 0) {
+    recorder_.mishap(queue_.now(), *to.node, Mishap::kDoubled, frame->am);
+  }
+  user_.heard(*to.node, frame->am);
 }
 
 // The link acknowledgement of a frame, with its number and without listening first.

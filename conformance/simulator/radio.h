@@ -76,6 +76,8 @@ class Radio {
     bool is_ack = false;
     bool asks_ack = false;
     std::uint64_t life = 0;           ///< The sender's.
+    bool again = false;               ///< The link's own repetition: the same bytes, the same DSN.
+    std::vector<std::size_t> had_it;  ///< Stations that got it before it was repeated.
     std::vector<Reception> receptions;
   };
   using Shared = std::shared_ptr<OnAir>;
@@ -86,8 +88,11 @@ class Radio {
   void try_channel(const Shared& frame, Micros backoff_us);
   void begin(const Shared& frame);
   void end(const Shared& frame);
-  void receive(const OnAir& frame, const Reception& reception);
-  void deliver(const Shared& frame, Station& to);
+  bool may_double() const;
+  void repeat(const Shared& frame, std::vector<std::size_t> had_it);
+  /// True where the receiver got the frame and is to get it twice.
+  bool receive(const OnAir& frame, const Reception& reception);
+  void deliver(const Shared& frame, std::size_t station);
   void answer(const OnAir& frame, std::size_t station);
   void sent(const Shared& frame);
   void finish(std::size_t station, bool acked);

@@ -216,6 +216,27 @@ TEST(Radio, DuplicatesArriveAndCount) {
   EXPECT_EQ(s.received, 3U);   // serial_joined once (J6-REPEAT), the message each time (T2-ONCE).
 }
 
+// A sniffer sees what the receivers get: every frame twice in a row, byte for byte.
+TEST(Radio, DuplicatesAreOnTheAir) {
+  Network network = island({sending(once({11, 1}, true, 500'000))});
+  network.radios[0].faults.duplication = 1;
+  Notes notes;
+  Simulation simulation(std::move(network), {&notes});
+  simulation.run_until(3'000'000);
+  constexpr std::size_t kLinkAckBytes = 3;
+  std::erase_if(notes.air, [](const auto& frame) { return frame.bytes.size() == kLinkAckBytes; });
+  ASSERT_GE(notes.air.size(), 10U);
+  EXPECT_EQ(notes.air.size() % 2, 0U);
+  for (std::size_t i = 0; i + 1 < notes.air.size(); i += 2) {
+    EXPECT_EQ(notes.air[i].bytes, notes.air[i + 1].bytes) << i;
+    const Micros apart_us = notes.air[i + 1].time_us - notes.air[i].time_us;
+    EXPECT_GT(apart_us, air_us(notes.air[i].bytes.size()));
+    EXPECT_LT(apart_us, 50'000);
+    if (i > 0) EXPECT_NE(notes.air[i].bytes[2], notes.air[i - 1].bytes[2]);  // The DSN.
+  }
+  EXPECT_EQ(simulation.statistics().radio_frames, notes.air.size());
+}
+
 TEST(Radio, DelayIsWithinItsBound) {
   Network network = island({Script{}});
   network.radios[0].faults.delay_max_us = 40'000;
