@@ -76,9 +76,10 @@ std::string NodeLog::link_name(const Output& output) const {
   return output.is_frame ? link_names_.at(output.frame.link) : "app";
 }
 
-void NodeLog::run_until(Ticks time) {
-  target_->run_until(time);
+Ticks NodeLog::run_until(Ticks time) {
+  const Ticks reached = target_->run_until(time);
   read_outputs();
+  return reached;
 }
 
 void NodeLog::read_outputs() {

@@ -27,7 +27,7 @@ class NodeLog {
   const Target& target() const { return *target_; }
   const std::vector<LoggedLine>& log() const { return log_; }
 
-  void run_until(Ticks time);
+  Ticks run_until(Ticks time);
   /// A `<` line. Throws trace::TraceError.
   void give(const trace::Line& line, Ticks now, const trace::Scope& scope,
             const trace::Bindings& bindings);

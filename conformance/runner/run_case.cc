@@ -26,28 +26,32 @@ constexpr Ticks kLateTicks = 1500;  // How far beyond its time a missing output 
 class Run {
  public:
   Run(const trace::File& file, const trace::Case& one, const TargetFactory& make)
-      : case_(one), scope_(trace::scope_of(file, one)) {
-    for (const trace::NodeHeader& header : scope_.nodes) {
-      if (header.iut) add_node(header, make);
-    }
-  }
+      : case_(one), scope_(trace::scope_of(file, one)), make_(make), place_(one.place) {}
 
   CaseResult finish() {
     CaseResult result;
     result.name = case_.name;
     try {
-      if (nodes_.empty()) throw std::runtime_error("no node of this case is under test");
+      start();
       for (const Line* line : case_.lines()) {
+        place_ = line->place;
         if (!work(*line, result)) break;
       }
       judge_forbidden(result);
+      if (!unseen_.empty() && result.verdict < CaseVerdict::kInconclusive) {
+        result.verdict = CaseVerdict::kInconclusive;
+        result.reason = unseen_;
+      }
+    } catch (const Unsupported& error) {
+      result.failures.clear();
+      result.verdict = CaseVerdict::kSkip;
+      result.reason = error.what();
     } catch (const trace::TraceError& error) {
-      result.failures.push_back({error.place(), {}, false, now_, "", error.what()});
-      result.verdict = CaseVerdict::kError;
+      broken(result, error.place(), error.what());
     } catch (const std::exception& error) {
-      result.failures.push_back({case_.place, {}, false, now_, "", error.what()});
-      result.verdict = CaseVerdict::kError;
+      broken(result, place_, error.what());
     }
+    result.length = now_;
     write_log(result);
     return result;
   }
@@ -58,8 +62,15 @@ class Run {
     Window window;
   };
 
-  void add_node(const trace::NodeHeader& header, const TargetFactory& make) {
-    NodeLog& node = nodes_.emplace_back(scope_, case_, header, make(header));
+  void start() {
+    for (const trace::NodeHeader& header : scope_.nodes) {
+      if (header.iut) add_node(header);
+    }
+    if (nodes_.empty()) throw std::runtime_error("no node of this case is under test");
+  }
+
+  void add_node(const trace::NodeHeader& header) {
+    NodeLog& node = nodes_.emplace_back(scope_, case_, header, make_(header));
     node.target().reset(config_of(scope_, header));
     for (const Line* line : case_.lines()) {
       if (line->node == header.name && line->message.name == "linkack") ++node.link_acks_to_come;
@@ -93,19 +104,27 @@ class Run {
     if (!line.label.empty()) labels_[line.label] = time;
   }
 
-  void run_until(Ticks time) {
-    now_ = std::max(now_, time);
-    for (NodeLog& node : nodes_) node.run_until(now_);
-  }
-
-  // The next time at which a node does something by itself, if that is not after `end`.
-  std::optional<Ticks> next_until(Ticks end) const {
-    std::optional<Ticks> soonest;
+  // Lets time pass to `end`, or to the first instant at which a node may emit something. One node
+  // stops there by itself; several go on together.
+  void pass(Ticks end) {
+    Ticks to = std::max(end, now_);
+    if (nodes_.size() == 1) {
+      now_ = std::max(now_, nodes_[0].run_until(to));
+      return;
+    }
     for (const NodeLog& node : nodes_) {
       const auto next = node.target().next();
-      if (next && *next <= end) soonest = std::min(*next, soonest.value_or(*next));
+      if (next) to = std::min(to, std::max(*next, now_));
     }
-    return soonest;
+    for (NodeLog& node : nodes_) {
+      while (node.run_until(to) < to) {
+      }
+    }
+    now_ = to;
+  }
+  void pass_all(Ticks end) {
+    do pass(end);
+    while (now_ < end);
   }
 
   // False when the case cannot go on.
@@ -116,6 +135,7 @@ class Run {
       if (line.op != Op::kMustNot && line.op != Op::kMay) matched(line, window.from);
       return true;
     }
+    if (!is_seen(*node, line)) return pass_over(line);
     switch (line.op) {
       case Op::kGiven:
         give(*node, line, window.from);
@@ -133,50 +153,80 @@ class Run {
     }
   }
 
+  bool is_seen(const NodeLog& node, const Line& line) const {
+    const Reach reach = node.target().reach();
+    switch (scope_.link(line.link).value_or(trace::LinkKind::kAny)) {
+      case trace::LinkKind::kRadio: return reach.radio;
+      case trace::LinkKind::kSerial: return reach.serial;
+      case trace::LinkKind::kPeis: return reach.peis;
+      case trace::LinkKind::kApp:
+      case trace::LinkKind::kPower: return reach.app;
+      case trace::LinkKind::kAny: return true;
+    }
+    return true;
+  }
+
+  // A line of which the target shows nothing. False when the case cannot go on without it.
+  bool pass_over(const Line& line) {
+    const bool needed = line.op == Op::kGiven || line.op == Op::kEmits;
+    if (unseen_.empty() || needed) {
+      unseen_ = fmt::format("line {}: the target does not show {}", line.place.line, line.link);
+    }
+    return !needed;
+  }
+
   void give(NodeLog& node, const Line& line, Ticks time) {
-    while (const auto next = next_until(time)) run_until(*next);
-    run_until(time);
+    pass_all(time);
     node.give(line, now_, scope_, bindings_);
     matched(line, now_);
   }
 
   bool expect(NodeLog& node, const Line& line, const Window& window, CaseResult& result) {
+    const Tolerance tolerance = node.target().tolerance();
+    const Window wide{window.from - std::min(window.from, tolerance.early),
+                      window.to + tolerance.late};
     while (true) {
-      if (const Output* output = node.take(line, window, bindings_)) {
+      if (const Output* output = node.take(line, wide, bindings_)) {
         matched(line, output->time);
         return true;
       }
-      const auto next = next_until(window.to);
-      if (!next) break;
-      run_until(*next);
+      if (now_ >= wide.to) break;
+      pass(wide.to);
     }
-    run_until(window.to);
-    if (const Output* output = node.take(line, window, bindings_)) {
-      matched(line, output->time);
-      return true;
-    }
-    while (const auto next = next_until(window.to + kLateTicks)) run_until(*next);
-    fail(result, line, window.to, node.nearest_miss(line, window, bindings_));
+    pass_all(wide.to + kLateTicks);
+    fail(result, line, wide.to, node.nearest_miss(line, wide, bindings_));
     return false;
+  }
+
+  // What a `!>` line forbids for sure, where the target's times are not exact.
+  static Window narrowed(const Window& window, const Tolerance& tolerance) {
+    return {window.from + tolerance.late, window.to - std::min(window.to, tolerance.early)};
   }
 
   void judge_forbidden(CaseResult& result) {
     Ticks end = now_;
     for (const Pending& one : forbidden_) end = std::max(end, one.window.to);
-    while (const auto next = next_until(end)) run_until(*next);
-    run_until(end);
+    pass_all(end);
     for (const Pending& one : allowed_) {
       node_of(*one.line)->allow(*one.line, one.window, bindings_);
     }
     for (const Pending& one : forbidden_) {
-      const Output* output = node_of(*one.line)->forbidden(*one.line, one.window, bindings_);
+      NodeLog& node = *node_of(*one.line);
+      const Window window = narrowed(one.window, node.target().tolerance());
+      const Output* output = node.forbidden(*one.line, window, bindings_);
       if (!output) continue;
       fail(result, *one.line, output->time,
            fmt::format("at {} it emitted {}", output->time,
-                       node_of(*one.line)->text_of(*output)));
+                       node.text_of(*output)));
     }
     std::stable_sort(result.failures.begin(), result.failures.end(),
                      [](const Failure& a, const Failure& b) { return a.time < b.time; });
+  }
+
+  void broken(CaseResult& result, trace::Place place, const char* why) {
+    result.failures.push_back({place, {}, false, now_, "", why});
+    result.verdict = CaseVerdict::kError;
+    result.reason = why;
   }
 
   void fail(CaseResult& result, const Line& line, Ticks time, std::string text) {
@@ -201,6 +251,9 @@ class Run {
 
   const trace::Case& case_;
   const trace::Scope scope_;
+  const TargetFactory& make_;
+  trace::Place place_;   // Of the line that is worked.
+  std::string unseen_;   // The first line of which the target shows nothing.
   std::vector<NodeLog> nodes_;
   std::vector<Pending> forbidden_;
   std::vector<Pending> allowed_;
@@ -211,6 +264,18 @@ class Run {
 };
 
 }  // namespace
+
+std::string_view verdict_text(CaseVerdict verdict) {
+  switch (verdict) {
+    case CaseVerdict::kPass: return "pass";
+    case CaseVerdict::kWeak: return "weak";
+    case CaseVerdict::kInconclusive: return "inconclusive";
+    case CaseVerdict::kFail: return "fail";
+    case CaseVerdict::kError: return "error";
+    case CaseVerdict::kSkip: return "skip";
+  }
+  return "";
+}
 
 CaseResult run_case(const trace::File& file, const trace::Case& one, const TargetFactory& make) {
   return Run(file, one, make).finish();

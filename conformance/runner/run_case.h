@@ -11,6 +11,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "conformance/runner/target.h"
@@ -18,8 +19,11 @@
 
 namespace rubric::runner {
 
-/// In this order of gravity. kError: the case itself makes no sense here, or the target broke.
-enum class CaseVerdict : std::uint8_t { kPass, kWeak, kFail, kError };
+/// Up to kError in the order of gravity. kInconclusive: nothing was broken, but the target does not
+/// let all of it be seen; kError: the case itself makes no sense here, or the target broke;
+/// kSkip: the target says that it cannot do what the case needs.
+enum class CaseVerdict : std::uint8_t { kPass, kWeak, kInconclusive, kFail, kError, kSkip };
+std::string_view verdict_text(CaseVerdict verdict);
 
 /// A line that was not kept.
 struct Failure {
@@ -35,6 +39,8 @@ struct CaseResult {
   std::string name;
   CaseVerdict verdict = CaseVerdict::kPass;
   std::vector<Failure> failures;
+  std::string reason;       ///< Why it is inconclusive, skipped or an error.
+  Ticks length = 0;         ///< Virtual time that passed.
   trace::Case log;  ///< Everything that was given and came back.
 };
 

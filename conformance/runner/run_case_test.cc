@@ -14,18 +14,21 @@ class Ticker : public Target {
  public:
   explicit Ticker(std::vector<Ticks> times) : times_(std::move(times)) {}
   void reset(const machine::Config&) override {}
-  void give(Ticks now, const machine::Event&) override { run_until(now); }
+  void give(Ticks now, const machine::Event&) override {
+    while (run_until(now) < now) {
+    }
+  }
   std::optional<Ticks> next() const override {
     if (done_ == times_.size()) return std::nullopt;
     return times_[done_];
   }
-  void run_until(Ticks time) override {
-    for (; done_ < times_.size() && times_[done_] <= time; ++done_) {
-      Output output;
-      output.time = times_[done_];
-      output.notice = machine::Clock{times_[done_]};
-      outputs_.push_back(output);
-    }
+  Ticks run_until(Ticks time) override {
+    if (done_ == times_.size() || times_[done_] > time) return time;
+    Output output;
+    output.time = times_[done_++];
+    output.notice = machine::Clock{output.time};
+    outputs_.push_back(output);
+    return output.time;
   }
   const std::vector<Output>& outputs() const override { return outputs_; }
   void hold_link_acks(bool) override {}

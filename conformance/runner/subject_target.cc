@@ -26,10 +26,13 @@ void SubjectTarget::reset(const machine::Config& config) {
   outputs_.clear();
   labels_.clear();
   endings_.clear();
+  instant_ = 0;
+  steps_at_instant_ = 0;
 }
 
 void SubjectTarget::give(Ticks now, const Event& event) {
-  run_until(now);
+  while (run_until(now) < now) {
+  }
   if (const auto* done = std::get_if<machine::SendDone>(&event)) {
     std::erase_if(endings_, [&](const Ending& ending) { return ending.link == done->link; });
   }
@@ -48,28 +51,33 @@ std::optional<Ticks> SubjectTarget::next() const {
   return soonest;
 }
 
-void SubjectTarget::run_until(Ticks time) {
-  Ticks instant = 0;
-  int steps = 0;
+Ticks SubjectTarget::run_until(Ticks time) {
+  const std::size_t before = outputs_.size();
   while (const auto soonest = next()) {
-    if (*soonest > time) return;
-    steps = *soonest == instant ? steps + 1 : 0;
-    instant = *soonest;
-    if (steps > kStepsAtOnceMax) return;
-    const auto ending = std::find_if(endings_.begin(), endings_.end(), [&](const Ending& one) {
-      return one.due == *soonest;
-    });
-    if (ending != endings_.end()) {
-      const Link link = ending->link;
-      endings_.erase(ending);
-      step(*soonest, machine::SendDone{link, true});
-      continue;
-    }
-    for (const machine::DueTimer& timer : subject_->timers()) {
-      if (timer.due != *soonest) continue;
-      step(*soonest, machine::TimerDue{timer.timer});
-      break;
-    }
+    const bool emitted = outputs_.size() > before;
+    if (*soonest > time || (emitted && *soonest > instant_)) return emitted ? instant_ : time;
+    steps_at_instant_ = *soonest == instant_ ? steps_at_instant_ + 1 : 0;
+    instant_ = *soonest;
+    if (steps_at_instant_ > kStepsAtOnceMax) return time;
+    let_happen(instant_);
+  }
+  return outputs_.size() > before ? instant_ : time;
+}
+
+// The first thing that is due now.
+void SubjectTarget::let_happen(Ticks now) {
+  const auto ending = std::find_if(endings_.begin(), endings_.end(),
+                                   [&](const Ending& one) { return one.due == now; });
+  if (ending != endings_.end()) {
+    const Link link = ending->link;
+    endings_.erase(ending);
+    step(now, machine::SendDone{link, true});
+    return;
+  }
+  for (const machine::DueTimer& timer : subject_->timers()) {
+    if (timer.due != now) continue;
+    step(now, machine::TimerDue{timer.timer});
+    return;
   }
 }
 

@@ -21,7 +21,7 @@ class SubjectTarget : public Target {
   void reset(const machine::Config& config) override;
   void give(Ticks now, const machine::Event& event) override;
   std::optional<Ticks> next() const override;
-  void run_until(Ticks time) override;
+  Ticks run_until(Ticks time) override;
   const std::vector<Output>& outputs() const override { return outputs_; }
   void hold_link_acks(bool hold) override { hold_link_acks_ = hold; }
 
@@ -34,6 +34,7 @@ class SubjectTarget : public Target {
     Ticks due = 0;
     machine::Link link = machine::Link::kRadio;
   };
+  void let_happen(Ticks now);
   void step(Ticks now, const machine::Event& event);
   void collect(Ticks now);
 
@@ -43,6 +44,8 @@ class SubjectTarget : public Target {
   std::vector<machine::Action> labels_;
   std::vector<Ending> endings_;  // Of transmissions under way, at most one a line.
   bool hold_link_acks_ = false;
+  Ticks instant_ = 0;
+  int steps_at_instant_ = 0;
 };
 
 }  // namespace rubric::runner

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -22,20 +23,51 @@ struct Output {
   ReqId requirement = ReqId::kNone;    ///< The rule that the implementation names; often none.
 };
 
+/// The target broke: it died, hangs, or says what makes no sense. An error of the case.
+class TargetBroken : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+/// The target says that it cannot do this. The case is skipped.
+class Unsupported : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// What a target lets the runner see and do. A node behind a serial line shows only that.
+struct Reach {
+  bool radio = true;
+  bool serial = true;
+  bool peis = true;
+  bool app = true;    ///< Calls, events, power, and whether lines are busy.
+};
+
+/// How far from the tick a target's times may be. Zeros: its clock is turned by the runner.
+struct Tolerance {
+  Ticks early = 0;
+  Ticks late = 0;
+};
+
+/// All but the accessors may throw TargetBroken and Unsupported.
 class Target {
  public:
   virtual ~Target() = default;
+  /// A node that has just started, at tick 0.
   virtual void reset(const machine::Config& config) = 0;
   /// An event from outside. Time does not go backwards.
   virtual void give(Ticks now, const machine::Event& event) = 0;
-  /// When it will next do something on its own, if ever.
+  /// Before when it surely does nothing on its own, unless it is given something; nothing: never.
   virtual std::optional<Ticks> next() const = 0;
-  /// Lets everything happen that is due up to and including `time`.
-  virtual void run_until(Ticks time) = 0;
+  /// Lets time pass up to and including `time`, but stops at the first instant at which it emits
+  /// something, when all of that instant is done. Returns the instant that is reached.
+  virtual Ticks run_until(Ticks time) = 0;
   /// All outputs since reset, in their order.
   virtual const std::vector<Output>& outputs() const = 0;
   /// While set, frames that ask for a link ack end when the runner gives SendDone, not before.
   virtual void hold_link_acks(bool hold) = 0;
+
+  virtual Reach reach() const { return {}; }
+  virtual Tolerance tolerance() const { return {}; }
 };
 
 }  // namespace rubric::runner
