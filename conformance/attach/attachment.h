@@ -1,0 +1,47 @@
+// An implementation under test as the suite sees it, wherever it runs: a child process that speaks
+// rct/1 (PORTING.md), a Serial Forwarder, a serial line, or this very process.
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "conformance/runner/target.h"
+
+namespace rubric::attach {
+
+struct Identity {
+  std::string name;
+  std::string version;
+  std::vector<machine::Role> roles;  ///< That it can play.
+  bool real_time = false;            ///< Its clock cannot be turned.
+};
+
+class Attachment {
+ public:
+  virtual ~Attachment() = default;
+
+  /// Starts it if need be. Throws runner::TargetBroken.
+  virtual const Identity& identity() = 0;
+  /// The target of one node of one case, to be destroyed when the case is over. A case with several
+  /// nodes asks for several at once. What broke in an earlier case is started anew. Throws
+  /// runner::TargetBroken.
+  virtual std::unique_ptr<runner::Target> target() = 0;
+  /// Sends something that nobody can know and returns what is wrong with the answer; empty: it was
+  /// refused, as it must be. Nothing to ask, nothing wrong.
+  virtual std::string honesty() = 0;
+  /// What the implementation wrote to its standard error since the last call, its last 64 KiB.
+  virtual std::string take_stderr() = 0;
+};
+
+struct Options {
+  std::chrono::milliseconds step_timeout{5000};  ///< Of wall-clock time for the answer to a command.
+};
+
+/// By what the user wrote: `machine`, `sf-server:PORT`, `sf:HOST:PORT`, `serial:DEVICE[:BAUD]`, else
+/// a shell command that speaks rct/1. Starts nothing yet. Throws std::invalid_argument where the
+/// text makes no sense.
+std::unique_ptr<Attachment> attach(const std::string& target, const Options& options);
+
+}  // namespace rubric::attach
