@@ -129,8 +129,9 @@ std::vector<oracle::KnownNode> known_nodes(const CheckOptions& options) {
   return out;
 }
 
-std::int64_t microseconds(const std::optional<double>& ms, std::int64_t otherwise) {
-  return ms ? static_cast<std::int64_t>(std::llround(*ms * 1000)) : otherwise;
+std::optional<std::int64_t> microseconds(const std::optional<double>& ms) {
+  if (!ms) return std::nullopt;
+  return static_cast<std::int64_t>(std::llround(*ms * 1000));
 }
 
 oracle::Options oracle_options(const CheckOptions& options) {
@@ -138,9 +139,9 @@ oracle::Options oracle_options(const CheckOptions& options) {
   out.deployed = options.profile == "deployed";
   out.sniffer_complete = options.sniffer == "complete";
   out.start_cold = options.start == "cold";
-  out.response_us = microseconds(options.response_ms, out.response_us);
-  out.ack_timeout_us = microseconds(options.ack_timeout_ms, out.ack_timeout_us);
-  out.skew_us = microseconds(options.skew_ms, out.skew_us);
+  out.response_us = microseconds(options.response_ms);
+  out.ack_timeout_us = microseconds(options.ack_timeout_ms);
+  out.skew_us = microseconds(options.skew_ms).value_or(out.skew_us);
   out.nodes = known_nodes(options);
   for (const std::string& text : options.testers) out.testers.push_back(address("--tester", text));
   return out;
@@ -275,29 +276,6 @@ std::string report_text(const CheckOptions& options, const report::Story& story,
   return report::text_report(story, text);
 }
 
-// Writes it all to a file, or to stdout for "-".
-void write(const std::string& path, const std::string& text) {
-  std::FILE* file = nullptr;
-  const auto fail = [&](const char* reason) {
-    fmt::print(stderr, "rubric check: cannot write {}: {}\n", path == "-" ? "stdout" : path,
-               reason);
-    cli::exit_with(cli::kVerdictBroken);
-  };
-  if (path == "-") {
-    cli::Output output;
-    output.buffer().append(text);
-    output.flush();
-    std::string reason;
-    if (output.failed(&reason)) fail(reason.c_str());
-    return;
-  }
-  file = std::fopen(path.c_str(), "wb");
-  if (!file) fail(std::strerror(errno));
-  const bool written = std::fwrite(text.data(), 1, text.size(), file) == text.size();
-  const bool closed = std::fclose(file) == 0;
-  if (!written || !closed) fail(std::strerror(errno));
-}
-
 int run(const CheckOptions& options) {
   oracle::Options judged = oracle_options(options);
   const std::vector<report::FrameRange> ranges = frame_ranges(options);
@@ -311,8 +289,9 @@ int run(const CheckOptions& options) {
   const oracle::Report found = oracle::judge(part, judged);
   const report::Outcome outcome = report::compare(part, judged, found, expected);
   const report::Story story{part, judged, found, expected, outcome};
-  write(options.out, report_text(options, story, options.out == "-" ? STDOUT_FILENO : -1));
-  return outcome.exit_code();
+  const int terminal = options.out == "-" ? STDOUT_FILENO : -1;
+  const bool written = cli::write_file(options.out, report_text(options, story, terminal));
+  return written ? outcome.exit_code() : cli::kVerdictBroken;
 }
 
 void add_options(CLI::App& command, CheckOptions& options) {
@@ -341,10 +320,12 @@ void add_options(CLI::App& command, CheckOptions& options) {
                      "cold: nothing had happened before the first frame; else unknown")
       ->check(CLI::IsMember({"cold", "unknown"}))
       ->capture_default_str();
-  command.add_option("--response", options.response_ms, "ms until a node must have reacted (300)")
+  command.add_option("--response", options.response_ms,
+                     "ms until a node must have reacted (the profile's 300 ticks, 293 ms)")
       ->check(CLI::Range(0.0, 3.6e6));
   command.add_option("--ack-timeout", options.ack_timeout_ms,
-                     "ms until a reliable message has timed out (976.563)")
+                     "ms until a reliable message has timed out (the profile's 1000 ticks, "
+                     "976.6 ms)")
       ->check(CLI::Range(0.0, 3.6e6));
   command.add_option("--skew", options.skew_ms, "ms between the clocks of two taps, at most (50)")
       ->check(CLI::Range(0.0, 3.6e6));

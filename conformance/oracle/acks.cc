@@ -90,10 +90,10 @@ void Acks::sent(std::uint16_t node, const Observation& seen, const Net& ack) {
     return;
   }
   const std::int64_t took = now - best->place.time_us;
-  if (context_.run.has_time && took > context_.options.ack_timeout_us) {
+  if (context_.run.has_time && took > context_.ack_timeout_us()) {
     context_.report(req::kT2Prompt, Severity::kWeak, seen.place, node,
                     {"The ack of " + name_of(best->net) + " comes after " + ms_text(took) + ".",
-                     "Before the sender's timeout, " + ms_text(context_.options.ack_timeout_us) +
+                     "Before the sender's timeout, " + ms_text(context_.ack_timeout_us()) +
                          ".",
                      {}});
   }
@@ -223,7 +223,7 @@ void Acks::showed_life(std::uint16_t node, std::int64_t now_us) {
   for (std::size_t i = 0; i < ring.size(); ++i) {
     Arrived& arrived = ring.newest(i);
     if (!arrived.must_ack || !arrived.sure || arrived.acks > 0) continue;
-    if (now_us - arrived.place.time_us <= context_.options.response_us) continue;
+    if (now_us - arrived.place.time_us <= context_.response_us()) continue;
     --owed_[node];
     arrived.must_ack = false;
     const Device& device = context_.device(node);
@@ -243,7 +243,7 @@ void Acks::showed_life(std::uint16_t node, std::int64_t now_us) {
     context_.report(req::kT2Ack, severity, arrived.place, node,
                     {"It surely received " + name_of(arrived.net) +
                          ", reliable, and sent no ack within " +
-                         ms_text(context_.options.response_us) +
+                         ms_text(context_.response_us()) +
                          ", though it sent other frames later.",
                      "An ack.", {}});
   }

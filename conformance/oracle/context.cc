@@ -29,8 +29,11 @@ void Context::look_up() {
   }
 }
 
-machine::Ticks Context::ticks(std::int64_t us) {
-  return static_cast<machine::Ticks>(us * 1024 / 1'000'000);
+std::int64_t Context::ack_timeout_us() const {
+  if (options.ack_timeout_us) return *options.ack_timeout_us;
+  // A profile without one says what its nodes do, not how long others wait (decision 110).
+  const std::uint16_t own = profile().ack_timeout_ticks;
+  return machine::us_of(own != 0 ? own : machine::Profile{}.ack_timeout_ticks);
 }
 
 Severity Context::without(std::uint16_t cause, std::int64_t from_us, std::int64_t to_us) const {

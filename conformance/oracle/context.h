@@ -9,6 +9,7 @@
 
 #include "conformance/machine/actions.h"
 #include "conformance/machine/join.h"
+#include "conformance/machine/ticks.h"
 #include "conformance/oracle/findings.h"
 #include "conformance/oracle/identity.h"
 #include "conformance/oracle/message.h"
@@ -54,15 +55,15 @@ struct Context {
     for (std::uint16_t mote = mote_of_am[am]; mote != kNobody; mote = next_of_am[mote]) call(mote);
   }
 
-  static machine::Ticks ticks(std::int64_t us);
-  std::int64_t us_of(std::uint32_t profile_ticks) const {
-    return std::int64_t{profile_ticks} * 1'000'000 / profile().ticks_per_second;
+  std::int64_t early_us() const { return machine::us_of(profile().early_ticks); }
+  std::int64_t join_period_us() const { return machine::us_of(profile().join_period_ticks); }
+  std::int64_t response_us() const {
+    return options.response_us.value_or(machine::us_of(profile().response_ticks));
   }
-  std::int64_t early_us() const { return us_of(profile().early_ticks); }
-  std::int64_t join_period_us() const { return us_of(profile().join_period_ticks); }
+  std::int64_t ack_timeout_us() const;
   machine::JoinContext join_context(std::uint16_t id, std::uint16_t island,
                                     std::int64_t now_us) const {
-    return {profile(), id, island, 0, ticks(now_us)};
+    return {profile(), id, island, 0, machine::ticks_of(now_us)};
   }
 
   /// How grave "X without an earlier Y of `cause`" is: kFail only where no Y can have escaped.

@@ -146,7 +146,7 @@ void Forwarding::overdue_up(Line& line, std::int64_t now_us) {
   if (!context_.run.has_time) return;
   for (std::size_t i = 0; i < line.up.size(); ++i) {
     Passing& passing = line.up.oldest(i);
-    if (!passing.owed || now_us - passing.place.time_us <= context_.options.response_us) continue;
+    if (!passing.owed || now_us - passing.place.time_us <= context_.response_us()) continue;
     passing.owed = false;
     --line.owed_up;
     const bool own_island = passing.net.dest.pid == line.island;
@@ -159,7 +159,7 @@ void Forwarding::overdue_up(Line& line, std::int64_t now_us) {
                     {"The sink received " + name_of(passing.net) +
                          " (the link acknowledged it) and did not put it on its serial line, "
                          "though it sent other frames later.",
-                     "A forward within " + ms_text(context_.options.response_us) + ".", {}});
+                     "A forward within " + ms_text(context_.response_us()) + ".", {}});
   }
 }
 
@@ -167,7 +167,7 @@ void Forwarding::overdue_down(Line& line, std::int64_t now_us) {
   if (!context_.run.has_time) return;
   for (std::size_t i = 0; i < line.down.size(); ++i) {
     Passing& passing = line.down.oldest(i);
-    if (!passing.owed || now_us - passing.place.time_us <= context_.options.response_us) continue;
+    if (!passing.owed || now_us - passing.place.time_us <= context_.response_us()) continue;
     passing.owed = false;
     --line.owed_down;
     const Severity severity = crowded(line, passing.place.time_us)
@@ -178,7 +178,7 @@ void Forwarding::overdue_down(Line& line, std::int64_t now_us) {
                          " on its serial line and did not radiate it, though it sent other frames "
                          "later.",
                      "A radio frame to " + number(passing.am_dest) + " within " +
-                         ms_text(context_.options.response_us) + ".",
+                         ms_text(context_.response_us()) + ".",
                      {}});
   }
 }

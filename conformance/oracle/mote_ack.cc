@@ -44,7 +44,7 @@ ReqId MoteJoins::why_not_ack(const MoteHypothesis& h, const Observation& seen,
   if (seen.frame.dest != context_.sink_am) return req::kJ4Content;
   if (h.acks_seen == 0 || !context_.run.has_time) return ReqId::kNone;
   const std::int64_t last =
-      std::max(h.last_request_us, h.accepted_us + context_.options.response_us);
+      std::max(h.last_request_us, h.accepted_us + context_.response_us());
   if (seen.place.time_us > last + context_.join_period_us() + context_.early_us()) {
     return req::kJ4Repeat;
   }
@@ -194,7 +194,7 @@ void MoteJoins::told(std::uint16_t mote, const Observation& seen, const machine:
     return;
   }
   // FAIL at once is right for a call while joined (J8-JOINED) or while another call runs.
-  const bool refused = watch.call && now - watch.called_us <= context_.options.response_us;
+  const bool refused = watch.call && now - watch.called_us <= context_.response_us();
   const auto fits = [&](const MoteHypothesis& h) {
     return h.unknown || h.join.phase == Phase::kOutside || may_have_failed(h, now);
   };
@@ -223,7 +223,7 @@ void MoteJoins::finish(std::int64_t end_us) {
     }
     const MoteHypothesis& h = watch.set[0];
     const std::int64_t expiries = context_.profile().join_requests_max * context_.join_period_us();
-    const std::int64_t last = h.first_request_us + expiries + context_.options.response_us;
+    const std::int64_t last = h.first_request_us + expiries + context_.response_us();
     if (h.unknown || h.join.phase != Phase::kJoining || end_us <= last) continue;
     if (watch.calls_logged && watch.joined_calls == 0) continue;  // It was told.
     Place at;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -60,8 +61,10 @@ struct Options {
   bool deployed = false;          ///< The profile.
   bool sniffer_complete = false;  ///< Every frame on the air was captured.
   bool start_cold = false;        ///< Nothing had happened before the first frame.
-  std::int64_t response_us = 300'000;   ///< Stated response time (decision 125).
-  std::int64_t ack_timeout_us = 976'563; ///< Stated ack timeout (decision 110).
+  /// Stated response time (decision 125); unstated, the profile's.
+  std::optional<std::int64_t> response_us;
+  /// Stated ack timeout (decision 110); unstated, the profile's; where it has none, the paper's.
+  std::optional<std::int64_t> ack_timeout_us;
   std::int64_t skew_us = 50'000;        ///< Bound of the skew between the stamps of two taps.
   std::vector<KnownNode> nodes;
   std::vector<std::uint16_t> testers;   ///< AM addresses of senders that are no node under test.

@@ -111,7 +111,7 @@ void Originals::judge_number(std::uint16_t node, const Observation& seen, const 
                         !before.net.broadcast() && before.net.trans_id == component::kConnless &&
                         context_.run.has_time &&
                         now - before.place.time_us <
-                            context_.options.ack_timeout_us - context_.early_us();
+                            context_.ack_timeout_us() - context_.early_us();
     const bool same = same_message(before.net, net) && same_payload(before.net, net);
     if (awaits) {
       // An ack that nobody captured would have ended the wait.
@@ -201,7 +201,7 @@ void Originals::close(std::uint16_t node, std::size_t newest, std::int64_t now_u
   for (std::size_t i = 0; i < newest; ++i) {  // Sent again by its application: one event for both.
     if (ring.newest(i).net.seq_num == sent.net.seq_num) return;
   }
-  const std::int64_t response_us = context_.options.response_us;
+  const std::int64_t response_us = context_.response_us();
   if (sent.given_us >= 0 && now_us - sent.given_us > response_us) {
     context_.report(req::kT3Success, Severity::kFail, sent.place, node,
                     {"The node was given the ack of " + name_of(sent.net) + " " +
@@ -212,7 +212,7 @@ void Originals::close(std::uint16_t node, std::size_t newest, std::int64_t now_u
   }
   // An unstated timeout may be longer than what is assumed (decision 110); for ever it is not.
   const std::int64_t waited = now_us - sent.place.time_us;
-  if (waited <= kTimeouts * context_.options.ack_timeout_us + response_us) return;
+  if (waited <= kTimeouts * context_.ack_timeout_us() + response_us) return;
   context_.report(req::kT3Once, Severity::kFail, sent.place, node,
                   {"No receive_ack for " + name_of(sent.net) + " in " + ms_text(waited) + ".",
                    "receive_ack(failure) at the timeout, or receive_ack(success) before.", {}});
@@ -256,7 +256,7 @@ void Originals::told(std::uint16_t node, const Observation& seen,
   }
   const std::int64_t waited = now - match->place.time_us;
   const std::int64_t since_ack = match->given_us < 0 ? 0 : now - match->given_us;
-  if (!ack.success && since_ack > context_.options.response_us) {
+  if (!ack.success && since_ack > context_.response_us()) {
     context_.report(req::kT3Success, Severity::kFail, seen.place, node,
                     {what + ", " + ms_text(now - match->given_us) + " after its ack had come.",
                      "receive_ack(success) when the ack came.", {}});
@@ -265,13 +265,13 @@ void Originals::told(std::uint16_t node, const Observation& seen,
                     seen.place, node,
                     {what + ", but no ack of it was heard.", "No receive_ack before the ack.", {}});
   } else if (!ack.success && context_.run.has_time &&
-             waited < context_.options.ack_timeout_us - context_.early_us()) {
+             waited < context_.ack_timeout_us() - context_.early_us()) {
     // Only a stated timeout can be broken (decision 110).
-    const bool stated = context_.options.ack_timeout_us != Options{}.ack_timeout_us;
+    const bool stated = context_.options.ack_timeout_us.has_value();
     context_.report(req::kT3Timeout, stated ? Severity::kFail : Severity::kInconclusive, seen.place,
                     node,
                     {what + " " + ms_text(waited) + " after the message.",
-                     "Not before the timeout, " + ms_text(context_.options.ack_timeout_us) + ".",
+                     "Not before the timeout, " + ms_text(context_.ack_timeout_us()) + ".",
                      {}});
   } else {
     context_.findings.kept(ack.success ? req::kT3Success : req::kT3Timeout);

@@ -178,7 +178,7 @@ void SinkJoins::showed_life(std::uint16_t sink_device, std::int64_t now_us, bool
   SinkWatch* const sink = find(sink_device);
   if (sink == nullptr || sink->debts == 0 || !on_serial || !context_.run.has_time) return;
   for (auto& [am, watch] : sink->motes) {
-    if (!watch.report_due || now_us <= watch.ack.time_us + context_.options.response_us) continue;
+    if (!watch.report_due || now_us <= watch.ack.time_us + context_.response_us()) continue;
     watch.report_due = false;
     --sink->debts;
     const auto owes = [](const SinkHypothesis& h) { return !h.unknown && h.owes_report; };
@@ -193,7 +193,7 @@ void SinkJoins::showed_life(std::uint16_t sink_device, std::int64_t now_us, bool
                     watch.ack, sink->device,
                     {"The ack_join of mote " + number(am) +
                          " was received (the link acknowledged it), and no serial_joined followed "
-                         "within " + ms_text(context_.options.response_us) +
+                         "within " + ms_text(context_.response_us()) +
                          ", though the sink sent other frames later.",
                      "One serial_joined for the new member.", {}});
     for (SinkHypothesis& h : watch.set) h.owes_report = false;
@@ -205,14 +205,14 @@ void SinkJoins::unannounced(const SinkWatch& sink, std::uint16_t mote_am, const 
                             std::int64_t end_us) {
   const Device& device = context_.device(sink.device);
   if (!device.hearing || !device.application || !context_.run.has_time || watch.set.empty()) return;
-  if (end_us <= watch.ack.time_us + context_.options.response_us) return;
+  if (end_us <= watch.ack.time_us + context_.response_us()) return;
   const auto owes = [](const SinkHypothesis& h) { return !h.unknown && h.owes_notice; };
   if (!std::all_of(watch.set.begin(), watch.set.end(), owes)) return;
   if (listed(sink) > context_.profile().members_max) return;
   context_.report(req::kJ6Add, Severity::kFail, watch.ack, sink.device,
                   {"The sink was given the ack_join of mote " + number(mote_am) +
                        " with the number that it had answered, and does not list the mote: no "
-                       "moteJoined followed within " + ms_text(context_.options.response_us) + ".",
+                       "moteJoined followed within " + ms_text(context_.response_us()) + ".",
                    "moteJoined for the new member.", {}});
 }
 

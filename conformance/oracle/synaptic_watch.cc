@@ -43,7 +43,8 @@ void SynapticWatch::called(std::uint16_t device, const Observation& seen, machin
   config.profile = context_.profile();
   const machine::Synaptic before = node.channels;
   context_.actions.clear();
-  machine::call_synaptic(node.channels, config, own, Context::ticks(seen.place.time_us), *seen.call,
+  machine::call_synaptic(node.channels, config, own, machine::ticks_of(seen.place.time_us),
+                         *seen.call,
                          context_.actions);
   note(node, before, seen.place.time_us);
 }
@@ -84,7 +85,7 @@ void SynapticWatch::sent(std::uint16_t device, const Observation& seen, const Ne
   if (out == nullptr) return;  // Created before the log began.
   const machine::Channel* const channel = oracle::find(node.channels, out->id);
   // What was in the outgoing buffer may still leave.
-  if (out->silent_us >= 0 && now - out->silent_us > context_.options.response_us) {
+  if (out->silent_us >= 0 && now - out->silent_us > context_.response_us()) {
     context_.report(out->disposed ? req::kS6Disposed : req::kS6Stopped, Severity::kFail, seen.place,
                     device,
                     {"Data of the channel to " + text_of(net.dest) + ", " +
@@ -101,12 +102,12 @@ void SynapticWatch::sent(std::uint16_t device, const Observation& seen, const Ne
                      "One value for each connection.", {}});
   }
   const std::int64_t least =
-      context_.us_of(node.channels.period_ticks) - context_.early_us();
+      machine::us_of(node.channels.period_ticks) - context_.early_us();
   const bool steady = out->sent_us >= 0 && node.step_us < out->sent_us;
   if (steady && now - out->sent_us < least) {
     context_.report(req::kS2Tick, Severity::kFail, seen.place, device,
                     {"Data of one channel " + ms_text(now - out->sent_us) + " apart.",
-                     "At least a period, " + ms_text(context_.us_of(node.channels.period_ticks)) +
+                     "At least a period, " + ms_text(machine::us_of(node.channels.period_ticks)) +
                          ".",
                      {}});
   } else if (out->sent_us >= 0) {
@@ -114,7 +115,7 @@ void SynapticWatch::sent(std::uint16_t device, const Observation& seen, const Ne
   }
   const bool saves = channel->mode == machine::Mode::kPowerSave;
   // A write just before the last data may have missed its tick.
-  const bool changed = out->written_us >= out->sent_us - context_.options.response_us;
+  const bool changed = out->written_us >= out->sent_us - context_.response_us();
   if (saves && out->sent_us >= 0 && !changed) {
     context_.report(req::kS3Unchanged, Severity::kFail, seen.place, device,
                     {"A power-save channel sends although nothing was written for " +
