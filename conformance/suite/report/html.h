@@ -1,0 +1,18 @@
+// A run of the suite for people: a folder with one self-contained page, and beside it each case's
+// log and capture.
+#pragma once
+
+#include <filesystem>
+
+#include "conformance/suite/report/json.h"
+#include "conformance/suite/result.h"
+
+namespace rubric::suite {
+
+/// Writes DIR/index.html and DIR/cases/IMPLEMENTATION/CASE.{rtr,pcapng}; makes the folders. With
+/// `earlier` the page says which verdicts changed since. Throws std::runtime_error with the path
+/// that could not be written.
+void write_html_report(const SuiteRun& run, const EarlierRun* earlier,
+                       const std::filesystem::path& folder);
+
+}  // namespace rubric::suite

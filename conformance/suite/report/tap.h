@@ -1,0 +1,14 @@
+// A run of the suite as Test Anything Protocol, version 13.
+#pragma once
+
+#include <string>
+
+#include "conformance/suite/result.h"
+
+namespace rubric::suite {
+
+/// A test point for each case of each implementation, failures with a YAML block; expected
+/// failures are "# TODO", what was skipped or not decided is "# SKIP".
+std::string tap_report(const SuiteRun& run);
+
+}  // namespace rubric::suite
