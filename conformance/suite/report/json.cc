@@ -1,0 +1,160 @@
+#include "conformance/suite/report/json.h"
+
+#include <stdexcept>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "conformance/suite/report/words.h"
+#include "conformance/trace/print.h"
+#include "conformance/trace/trace.h"
+
+namespace rubric::suite {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kSchema = "rubric.test/1";
+
+Json ids(const std::vector<ReqId>& requirements) {
+  Json out = Json::array();
+  for (const ReqId id : requirements) out.push_back(trace::requirement_text(id));
+  return out;
+}
+
+Json roles(const std::vector<machine::Role>& all) {
+  Json out = Json::array();
+  for (const machine::Role role : all) out.push_back(role_text(role));
+  return out;
+}
+
+Json counts(const VerdictCounts& counted) {
+  Json out = Json::object();
+  for (const runner::CaseVerdict verdict : kVerdicts) {
+    const auto found = counted.find(verdict);
+    out[std::string(runner::verdict_text(verdict))] = found == counted.end() ? 0 : found->second;
+  }
+  return out;
+}
+
+Json failure(const runner::Failure& one) {
+  return {{"requirements", one.requirements},
+          {"weak", one.weak},
+          {"line", one.place.line},
+          {"time_ticks", one.time},
+          {"expected", one.expected},
+          {"text", one.text}};
+}
+
+Json case_run(const CaseRun& one) {
+  Json failures = Json::array();
+  for (const runner::Failure& each : one.result.failures) failures.push_back(failure(each));
+  Json log = Json::array();
+  for (const trace::Line* line : one.result.log.lines()) log.push_back(trace::print(*line));
+  return {{"name", one.name},
+          {"file", one.file},
+          {"comment", one.comment},
+          {"roles", roles(one.roles)},
+          {"requirements", ids(one.requirements)},
+          {"repeat", one.repeat},
+          {"verdict", runner::verdict_text(one.result.verdict)},
+          {"unexpected", one.unexpected()},
+          {"expectation", expectation_text(one.expectation)},
+          {"expected_reason", one.expected_reason},
+          {"reason", one.result.reason},
+          {"length_ticks", one.result.length},
+          {"wall_ms", one.wall_ms},
+          {"failures", std::move(failures)},
+          {"stderr", one.stderr_text},
+          {"log", std::move(log)}};
+}
+
+Json requirement(const RequirementSummary& one) {
+  return {{"id", trace::requirement_text(one.requirement)},
+          {"cases", counts(one.cases)},
+          {"broken", one.broken}};
+}
+
+Json implementation(const ImplementationRun& run) {
+  Json cases = Json::array();
+  for (const CaseRun& one : run.cases) cases.push_back(case_run(one));
+  Json requirements = Json::array();
+  for (const RequirementSummary& one : by_requirement(run)) requirements.push_back(requirement(one));
+  return {{"target", run.target},
+          {"name", run.identity.name},
+          {"version", run.identity.version},
+          {"roles", roles(run.identity.roles)},
+          {"real_time", run.identity.real_time},
+          {"dishonest", run.dishonest},
+          {"wall_ms", run.wall_ms},
+          {"counts", counts(count(run))},
+          {"cases", std::move(cases)},
+          {"requirements", std::move(requirements)}};
+}
+
+const Json& member(const Json& object, const char* key, const std::string& place) {
+  if (!object.is_object() || !object.contains(key)) {
+    throw std::runtime_error(fmt::format("{}: there is no \"{}\"", place, key));
+  }
+  return object[key];
+}
+
+std::string text_of(const Json& object, const char* key, const std::string& place) {
+  const Json& value = member(object, key, place);
+  if (!value.is_string()) throw std::runtime_error(fmt::format("{}: {} is no text", place, key));
+  return value.get<std::string>();
+}
+
+const Json& list_of(const Json& object, const char* key, const std::string& place) {
+  const Json& value = member(object, key, place);
+  if (!value.is_array()) throw std::runtime_error(fmt::format("{}: {} is no list", place, key));
+  return value;
+}
+
+}  // namespace
+
+std::string json_report(const SuiteRun& run) {
+  Json implementations = Json::array();
+  for (const ImplementationRun& one : run.implementations) {
+    implementations.push_back(implementation(one));
+  }
+  Json stale = Json::array();
+  for (const StaleExpectation& one : run.stale) {
+    stale.push_back({{"place", one.place}, {"text", one.text}});
+  }
+  const Json out = {{"schema", kSchema},
+                    {"profile", run.profile},
+                    {"seed", run.seed},
+                    {"shard", run.shard},
+                    {"implementations", std::move(implementations)},
+                    {"stale", std::move(stale)}};
+  // What an implementation wrote to its standard error need not be UTF-8.
+  return out.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+EarlierRun read_json_report(std::string_view text) {
+  Json all;
+  try {
+    all = Json::parse(text);
+  } catch (const Json::parse_error& error) {
+    throw std::runtime_error(fmt::format("byte {}: this is no JSON", error.byte));
+  }
+  const std::string schema = text_of(all, "schema", "the report");
+  if (schema != kSchema) {
+    throw std::runtime_error(fmt::format("schema is \"{}\"; this reads {}", schema, kSchema));
+  }
+  EarlierRun earlier;
+  std::size_t i = 0;
+  for (const Json& one : list_of(all, "implementations", "the report")) {
+    const std::string place = fmt::format("implementations[{}]", i++);
+    const std::string name = text_of(one, "name", place);
+    std::size_t k = 0;
+    for (const Json& each : list_of(one, "cases", place)) {
+      const std::string where = fmt::format("{}.cases[{}]", place, k++);
+      earlier.verdicts[{name, text_of(each, "name", where)}] = text_of(each, "verdict", where);
+    }
+  }
+  return earlier;
+}
+
+}  // namespace rubric::suite

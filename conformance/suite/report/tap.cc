@@ -1,0 +1,63 @@
+#include "conformance/suite/report/tap.h"
+
+#include <fmt/format.h>
+
+#include "conformance/suite/report/words.h"
+
+namespace rubric::suite {
+namespace {
+
+using runner::CaseVerdict;
+
+// In a line of its own, where a hash would begin a directive and a line end another line.
+std::string plain(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '#') out += '\\';
+    out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+  }
+  return out;
+}
+
+std::string block(const CaseRun& one) {
+  std::string out = fmt::format("  ---\n  verdict: {}\n  file: {}\n  details: |\n",
+                                runner::verdict_text(one.result.verdict), one.file);
+  const std::string text = in_full(one);
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    out += "    " + text.substr(at, end - at) + "\n";
+    at = end + 1;
+  }
+  return out + "  ...\n";
+}
+
+std::string directive(const CaseRun& one) {
+  if (one.expectation == Expectation::kAsExpected) return " # TODO " + plain(one.expected_reason);
+  if (one.result.verdict == CaseVerdict::kSkip || one.result.verdict == CaseVerdict::kInconclusive) {
+    return fmt::format(" # SKIP {}: {}", runner::verdict_text(one.result.verdict),
+                       plain(one.result.reason));
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string tap_report(const SuiteRun& run) {
+  std::string points;
+  std::size_t number = 0;
+  for (std::size_t i = 0; i < run.implementations.size(); ++i) {
+    const std::string name = implementation_name(run, i);
+    for (const CaseRun& one : run.implementations[i].cases) {
+      const bool failed = one.unexpected() || one.expectation == Expectation::kAsExpected;
+      points += fmt::format("{} {} - {}: {}{}\n", failed ? "not ok" : "ok", ++number, plain(name),
+                            plain(case_name(one)), directive(one));
+      if (failed || one.result.verdict == CaseVerdict::kWeak) points += block(one);
+    }
+  }
+  for (const StaleExpectation& one : run.stale) {
+    points += fmt::format("not ok {} - {}: {}\n", ++number, plain(one.place), plain(one.text));
+  }
+  return fmt::format("TAP version 13\n1..{}\n", number) + points;
+}
+
+}  // namespace rubric::suite

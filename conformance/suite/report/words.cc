@@ -1,0 +1,116 @@
+#include "conformance/suite/report/words.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "codec/reflect/fault_text.h"
+#include "conformance/trace/trace.h"
+
+namespace rubric::suite {
+namespace {
+
+std::string base_name(const ImplementationRun& run) {
+  const attach::Identity& identity = run.identity;
+  if (identity.name.empty()) return run.target;
+  return identity.version.empty() ? identity.name : identity.name + " " + identity.version;
+}
+
+// For a shell: as it is where nothing in it is special.
+std::string quoted(const std::string& text) {
+  constexpr std::string_view kPlain = "_-./:=,@+%";
+  const bool plain = !text.empty() && std::all_of(text.begin(), text.end(), [&](char c) {
+    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+           kPlain.find(c) != std::string_view::npos;
+  });
+  if (plain) return text;
+  std::string out = "'";
+  for (const char c : text) {
+    if (c == '\'') {
+      out += "'\\''";
+    } else {
+      out += c;
+    }
+  }
+  return out + "'";
+}
+
+std::string rules_of(const runner::Failure& failure) {
+  if (failure.requirements.empty()) return "no rule";
+  return fmt::format("{}", fmt::join(failure.requirements, " "));
+}
+
+}  // namespace
+
+std::string_view role_text(machine::Role role) {
+  return trace::role_text(static_cast<trace::Role>(role));
+}
+
+std::string_view expectation_text(Expectation expectation) {
+  switch (expectation) {
+    case Expectation::kNone: return "none";
+    case Expectation::kAsExpected: return "as_expected";
+    case Expectation::kOtherwise: return "otherwise";
+    case Expectation::kUnexpectedPass: return "unexpected_pass";
+  }
+  return "none";
+}
+
+std::string implementation_name(const SuiteRun& run, std::size_t index) {
+  const std::string name = base_name(run.implementations[index]);
+  std::size_t before = 0;
+  std::size_t all = 0;
+  for (std::size_t i = 0; i < run.implementations.size(); ++i) {
+    if (base_name(run.implementations[i]) != name) continue;
+    ++all;
+    if (i < index) ++before;
+  }
+  return all == 1 ? name : fmt::format("{} #{}", name, before + 1);
+}
+
+std::string case_name(const CaseRun& one) {
+  return one.repeat == 0 ? one.name : fmt::format("{}#{}", one.name, one.repeat + 1);
+}
+
+std::string headline(const CaseRun& one) {
+  if (one.expectation == Expectation::kUnexpectedPass) {
+    return "it passes, but was expected to fail: " + one.expected_reason;
+  }
+  if (one.result.failures.empty()) return one.result.reason;
+  const runner::Failure& first = one.result.failures.front();
+  std::string out = fmt::format("{}: {}", rules_of(first), first.text);
+  if (one.result.failures.size() > 1) {
+    out += fmt::format(" (and {} more)", one.result.failures.size() - 1);
+  }
+  return out;
+}
+
+std::string in_full(const CaseRun& one) {
+  std::string out;
+  for (const runner::Failure& failure : one.result.failures) {
+    out += fmt::format("{}:{}: {}{}\n", one.file, failure.place.line, rules_of(failure),
+                       failure.weak ? " (SHOULD)" : "");
+    for (const std::string& name : failure.requirements) {
+      const ReqId id = trace::requirement_id(name);
+      if (id == ReqId::kNone) continue;
+      const reflect::Requirement& rule = reflect::requirement(id);
+      out += fmt::format("  {} ({}): {}\n", rule.id, rule.level, rule.sentence);
+    }
+    if (!failure.expected.empty()) out += fmt::format("  expected  {}\n", failure.expected);
+    out += fmt::format("  but       {}\n", failure.text);
+  }
+  if (one.result.failures.empty() && !one.result.reason.empty()) out += one.result.reason + "\n";
+  if (!one.stderr_text.empty()) out += "standard error:\n" + one.stderr_text + "\n";
+  return out;
+}
+
+std::string replay_command(const SuiteRun& run, const ImplementationRun& implementation,
+                           const CaseRun& one) {
+  std::string out = fmt::format("rubric test --target {} --cases {}", quoted(implementation.target),
+                                quoted(one.name));
+  if (run.profile != "paper") out += " --profile " + run.profile;
+  if (run.seed != 0) out += fmt::format(" --seed {}", run.seed);
+  return out;
+}
+
+}  // namespace rubric::suite

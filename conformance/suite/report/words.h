@@ -1,0 +1,34 @@
+// Words that every report of a suite shares.
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+
+#include "conformance/suite/result.h"
+
+namespace rubric::suite {
+
+inline constexpr std::array kVerdicts = {
+    runner::CaseVerdict::kPass, runner::CaseVerdict::kWeak, runner::CaseVerdict::kInconclusive,
+    runner::CaseVerdict::kFail, runner::CaseVerdict::kError, runner::CaseVerdict::kSkip};
+
+/// "mote", "sink", "base_station".
+std::string_view role_text(machine::Role role);
+/// "none", "as_expected", "otherwise", "unexpected_pass"; stable, as programs read them.
+std::string_view expectation_text(Expectation expectation);
+
+/// "mote 1.0": unique among the implementations of a run, by a number behind it if need be.
+std::string implementation_name(const SuiteRun& run, std::size_t index);
+/// "j4.accept", and "j4.accept#2" of a repeated case.
+std::string case_name(const CaseRun& one);
+/// In one line: the first failure, or why there is no verdict.
+std::string headline(const CaseRun& one);
+/// Rules with their sentences, the lines that were not kept, what happened instead, and the standard
+/// error of what broke.
+std::string in_full(const CaseRun& one);
+/// The command that runs just this case again.
+std::string replay_command(const SuiteRun& run, const ImplementationRun& implementation,
+                           const CaseRun& one);
+
+}  // namespace rubric::suite
