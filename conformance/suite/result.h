@@ -25,16 +25,19 @@ struct CaseRun {
   std::string name;                    ///< "j4.accept".
   std::string file;                    ///< "conformance/cases/j4.rtr".
   std::string comment;                 ///< The mistake that it catches, as the file says it.
-  std::vector<machine::Role> roles;    ///< Of its nodes under test.
+  std::vector<trace::NodeHeader> nodes;  ///< All, with their names in the log.
+  std::vector<machine::Role> roles;    ///< Of its nodes under test, each once.
   std::vector<ReqId> requirements;     ///< That its lines name, each once.
   std::uint32_t repeat = 0;            ///< Counted from 0 where --repeat asks for more than one.
+  std::uint64_t seed = 0;              ///< That its nodes began with.
   runner::CaseResult result;           ///< With failures and log.
   Expectation expectation = Expectation::kNone;
   std::string expected_reason;         ///< From the file.
   double wall_ms = 0;
   std::string stderr_text;             ///< Of the implementation while it broke.
 
-  /// Neither pass nor expected: it makes the run fail.
+  /// It makes the run fail: an error, a failure that the file does not have just so, or a pass of
+  /// what was to fail.
   bool unexpected() const;
 };
 
@@ -47,7 +50,8 @@ struct ImplementationRun {
   double wall_ms = 0;
 };
 
-/// An entry of the file of expected failures that no case used, or that names what there is not.
+/// An entry of the file of expected failures that is not true: it names what there is not, or its
+/// case passes or fails otherwise.
 struct StaleExpectation {
   std::string place;  ///< "file:line".
   std::string text;
@@ -55,11 +59,16 @@ struct StaleExpectation {
 
 struct SuiteRun {
   std::string profile = "paper";
-  std::uint64_t seed = 0;
+  std::uint64_t seed = 0;     ///< Of the cases that state none; each repeat has one more.
   std::string shard;          ///< "2/8", or empty.
+  std::vector<std::string> traces;  ///< Files and folders of the user; none: the kit's own cases.
   std::vector<ImplementationRun> implementations;
   std::vector<StaleExpectation> stale;
 };
+
+/// 0 as expected, 1 an unexpected failure or an expectation that is not true, 2 an error or a
+/// dishonest implementation, 3 nothing was decided.
+int exit_code(const SuiteRun& run);
 
 using VerdictCounts = std::map<runner::CaseVerdict, std::size_t>;
 VerdictCounts count(const ImplementationRun& run);
@@ -73,5 +82,15 @@ struct RequirementSummary {
 };
 /// Of every rule that a case of the run names, in the catalogue's order.
 std::vector<RequirementSummary> by_requirement(const ImplementationRun& run);
+
+/// How the rules of behaviour went, those of the wire apart: each counts once.
+struct RuleTotals {
+  std::size_t all = 0;     ///< In the catalogue.
+  std::size_t kept = 0;    ///< A case that names it passed, and none broke it.
+  std::size_t broken = 0;
+  std::size_t undecided = 0;  ///< Cases name it, but they ended before it was decided.
+  std::size_t untried = 0;    ///< No case names it that was run.
+};
+RuleTotals rule_totals(const ImplementationRun& run);
 
 }  // namespace rubric::suite
