@@ -90,7 +90,7 @@ void Acks::sent(std::uint16_t node, const Observation& seen, const Net& ack) {
     return;
   }
   const std::int64_t took = now - best->place.time_us;
-  if (context_.run.has_time && took > context_.ack_timeout_us()) {
+  if (took > context_.ack_timeout_us()) {
     context_.report(req::kT2Prompt, Severity::kWeak, seen.place, node,
                     {"The ack of " + name_of(best->net) + " comes after " + ms_text(took) + ".",
                      "Before the sender's timeout, " + ms_text(context_.ack_timeout_us()) +
@@ -218,7 +218,7 @@ void Acks::delivered(std::uint16_t node, const Observation& seen,
 }
 
 void Acks::showed_life(std::uint16_t node, std::int64_t now_us) {
-  if (owed_[node] == 0 || !context_.run.has_time) return;
+  if (owed_[node] == 0 || now_us < 0) return;
   Ring<Arrived, kRoom>& ring = arrived_[node];
   for (std::size_t i = 0; i < ring.size(); ++i) {
     Arrived& arrived = ring.newest(i);

@@ -1,8 +1,19 @@
 #include "conformance/oracle/context.h"
 
 #include <cstdio>
+#include <optional>
+
+#include "codec/generated/requirements_table.h"
 
 namespace rubric::oracle {
+namespace {
+
+bool is_of(ReqId requirement, std::string_view group) {
+  return std::string_view(kRequirements[static_cast<std::size_t>(requirement)].id)
+      .starts_with(group);
+}
+
+}  // namespace
 
 void Context::look_up() {
   sink_am = profile().sink_id;
@@ -27,6 +38,32 @@ void Context::look_up() {
   for (const Tap& tap : run.taps) {
     hears_radio = hears_radio || tap.link == machine::Link::kRadio;
   }
+  if (run.has_time) return;
+  untimed_taps.resize(run.taps.size());
+  std::optional<std::int64_t> order;  // A file without stamps, or all that have some.
+  for (const Observation& seen : run.seen) {
+    const std::int64_t its = seen.place.timed() ? -1 : std::int64_t{seen.place.file};
+    unordered = unordered || (order && *order != its);
+    order = its;
+    if (its >= 0) untimed_taps[seen.tap] = true;
+  }
+}
+
+bool Context::rests_on_order(ReqId requirement, const Place& at, std::uint16_t node) const {
+  // A frame that breaks a rule of the format breaks it at any time.
+  if (!unordered || is_of(requirement, "WIRE-")) return false;
+  if (!at.timed()) return true;
+  if (node == kNobody) return false;
+  // Replies to requests are on the air alone.
+  if (is_of(requirement, "J3-") || is_of(requirement, "J10-")) return false;
+  const Device& d = device(node);
+  const Device& lines = d.role == machine::Role::kBaseStation && d.partner != kNobody
+                            ? device(d.partner)
+                            : d;
+  for (const std::uint32_t tap : lines.taps) {
+    if (untimed_taps[tap]) return true;
+  }
+  return false;
 }
 
 std::int64_t Context::ack_timeout_us() const {
@@ -60,6 +97,10 @@ void Context::report(ReqId requirement, Severity severity, const Place& at, std:
     if (!d.judged) return;
     finding.node = d.name;
     if (!d.known && severity > Severity::kNote) finding.severity = Severity::kStray;
+  }
+  const bool blames = finding.severity == Severity::kFail || finding.severity == Severity::kWeak;
+  if (blames && rests_on_order(requirement, at, node)) {
+    finding.severity = Severity::kInconclusive;
   }
   findings.add(std::move(finding));
 }

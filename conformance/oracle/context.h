@@ -47,6 +47,10 @@ struct Context {
   std::vector<std::uint16_t> mote_of_am;  ///< The last known mote of each AM address.
   std::vector<std::uint16_t> next_of_am;  ///< By device: another mote of the same address.
 
+  /// Files are in no known order to each other, as raw bytes beside a capture with stamps are.
+  bool unordered = false;
+  std::vector<bool> untimed_taps;         ///< Where unordered: those with frames without a stamp.
+
   /// Fills in all of these. Before anything else.
   void look_up();
   /// Calls `call` with each known mote of that address.
@@ -74,6 +78,8 @@ struct Context {
   /// Judges device `node` at `at`. Nothing is said of testers; of unknown senders at most kStray.
   void report(ReqId requirement, Severity severity, const Place& at, std::uint16_t node,
               Said said);
+  /// Whether a finding of this kind rests on an order that nobody knows.
+  bool rests_on_order(ReqId requirement, const Place& at, std::uint16_t node) const;
   /// A frame of an unknown sender.
   void report_stranger(const Observation& seen, std::uint16_t node);
 };

@@ -143,7 +143,7 @@ void Forwarding::refuse_down(Line& line, const Observation& seen, const Net& net
 
 // Surely received, and the sink has shown life long after: it will not come any more.
 void Forwarding::overdue_up(Line& line, std::int64_t now_us) {
-  if (!context_.run.has_time) return;
+  if (now_us < 0) return;
   for (std::size_t i = 0; i < line.up.size(); ++i) {
     Passing& passing = line.up.oldest(i);
     if (!passing.owed || now_us - passing.place.time_us <= context_.response_us()) continue;
@@ -164,7 +164,7 @@ void Forwarding::overdue_up(Line& line, std::int64_t now_us) {
 }
 
 void Forwarding::overdue_down(Line& line, std::int64_t now_us) {
-  if (!context_.run.has_time) return;
+  if (now_us < 0) return;
   for (std::size_t i = 0; i < line.down.size(); ++i) {
     Passing& passing = line.down.oldest(i);
     if (!passing.owed || now_us - passing.place.time_us <= context_.response_us()) continue;

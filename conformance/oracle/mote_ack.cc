@@ -42,7 +42,7 @@ ReqId MoteJoins::why_not_ack(const MoteHypothesis& h, const Observation& seen,
                                                                          : req::kJ4Content;
   }
   if (seen.frame.dest != context_.sink_am) return req::kJ4Content;
-  if (h.acks_seen == 0 || !context_.run.has_time) return ReqId::kNone;
+  if (h.acks_seen == 0 || !seen.place.timed()) return ReqId::kNone;
   const std::int64_t last =
       std::max(h.last_request_us, h.accepted_us + context_.response_us());
   if (seen.place.time_us > last + context_.join_period_us() + context_.early_us()) {
@@ -214,7 +214,6 @@ void MoteJoins::told(std::uint16_t mote, const Observation& seen, const machine:
 }
 
 void MoteJoins::finish(std::int64_t end_us) {
-  if (!context_.run.has_time) return;
   for (std::size_t i = 0; i < motes_.size(); ++i) {
     const MoteWatch& watch = motes_[i];
     const Device& device = context_.device(static_cast<std::uint16_t>(i));
@@ -225,6 +224,7 @@ void MoteJoins::finish(std::int64_t end_us) {
     const std::int64_t expiries = context_.profile().join_requests_max * context_.join_period_us();
     const std::int64_t last = h.first_request_us + expiries + context_.response_us();
     if (h.unknown || h.join.phase != Phase::kJoining || end_us <= last) continue;
+    if (h.first_request_us < 0) continue;  // Nobody knows how long it has been.
     if (watch.calls_logged && watch.joined_calls == 0) continue;  // It was told.
     Place at;
     at.time_us = h.first_request_us;

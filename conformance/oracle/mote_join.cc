@@ -90,7 +90,7 @@ void MoteJoins::request(std::uint16_t mote, const Observation& seen, const Reque
                     {"A join_request without a joinIsland call.", "Silence.", {}});
   }
   next_.clear();
-  if (!context_.run.has_time) {  // Any number of periods may lie between two frames.
+  if (!seen.place.timed()) {  // Any number of periods may lie between two frames.
     MoteHypothesis asked;
     asked.join.phase = Phase::kJoining;
     asked.join.requests = 1;

@@ -92,7 +92,9 @@ struct Run {
   std::vector<Observation> seen;   ///< In order of cause: see merge() in read.h.
   std::int64_t start_us = 0;       ///< The first stamp.
   std::int64_t end_us = 0;
-  bool has_time = true;            ///< Raw bytes carry none: timing rules are inconclusive.
+  /// Everything has a stamp. Raw bytes carry none: no rule about their times is judged, and where
+  /// other files are beside them nothing that rests on the order between the two fails.
+  bool has_time = true;
 };
 
 /// The whole answer.

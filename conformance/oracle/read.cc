@@ -200,7 +200,9 @@ void merge(Run& run) {
   }
   run.has_time = run.seen.empty() || time_of(run.seen.back()) != kLast;
   run.start_us = run.seen.empty() ? 0 : std::max<std::int64_t>(0, run.seen.front().place.time_us);
-  run.end_us = run.has_time && !run.seen.empty() ? run.seen.back().place.time_us : run.start_us;
+  const auto last = std::find_if(run.seen.rbegin(), run.seen.rend(),
+                                 [](const Observation& seen) { return seen.place.timed(); });
+  run.end_us = last == run.seen.rend() ? run.start_us : last->place.time_us;
 }
 
 bool looks_towards_sink(const machine::Frame& frame) {

@@ -109,7 +109,7 @@ void Originals::judge_number(std::uint16_t node, const Observation& seen, const 
     if (before.net.seq_num != net.seq_num) continue;
     const bool awaits = before.net.reliable == 1 && !before.acked && before.net.sound &&
                         !before.net.broadcast() && before.net.trans_id == component::kConnless &&
-                        context_.run.has_time &&
+                        seen.place.timed() && before.place.timed() &&
                         now - before.place.time_us <
                             context_.ack_timeout_us() - context_.early_us();
     const bool same = same_message(before.net, net) && same_payload(before.net, net);
@@ -131,7 +131,8 @@ void Originals::judge_number(std::uint16_t node, const Observation& seen, const 
     }
     // Twice in a row, at once: a number that came again by chance would not do that.
     const bool at_once = same && i == 0 && before.order + 1 == orders_[node] &&
-                         context_.run.has_time && now - before.place.time_us < kAtOnceUs;
+                         seen.place.timed() && before.place.timed() &&
+                         now - before.place.time_us < kAtOnceUs;
     if (at_once) {
       context_.report(req::kN2Once, Severity::kFail, seen.place, node,
                       {"The same message, number " + number(net.seq_num) + ", is sent twice, " +
@@ -194,7 +195,7 @@ void Originals::ack_given(std::uint16_t node, const Net& ack, std::int64_t now_u
 void Originals::close(std::uint16_t node, std::size_t newest, std::int64_t now_us) {
   Ring<Sent, kRoom>& ring = sent_[node];
   const Sent& sent = ring.newest(newest);
-  if (!context_.device(node).application || !context_.run.has_time || sent.told > 0) return;
+  if (!context_.device(node).application || !sent.place.timed() || sent.told > 0) return;
   const bool awaits = sent.net.reliable == 1 && sent.net.sound && !sent.net.broadcast() &&
                       sent.net.trans_id == component::kConnless;
   if (!awaits || context_.profile().ack_timeout_ticks == 0) return;
@@ -264,7 +265,7 @@ void Originals::told(std::uint16_t node, const Observation& seen,
     context_.report(req::kT3Success, context_.without(kNobody, match->place.time_us, now),
                     seen.place, node,
                     {what + ", but no ack of it was heard.", "No receive_ack before the ack.", {}});
-  } else if (!ack.success && context_.run.has_time &&
+  } else if (!ack.success && seen.place.timed() && match->place.timed() &&
              waited < context_.ack_timeout_us() - context_.early_us()) {
     // Only a stated timeout can be broken (decision 110).
     const bool stated = context_.options.ack_timeout_us.has_value();

@@ -231,7 +231,7 @@ void SinkJoins::reply(std::uint16_t sink_device, const Observation& seen, const 
 void SinkJoins::judge_clock(SinkWatch& sink, const Observation& seen, const Reply& reply) {
   constexpr std::int64_t kOffMs = 1000;
   const std::int64_t now = seen.place.time_us;
-  if (sink.has_clock && context_.run.has_time) {
+  if (sink.has_clock && seen.place.timed() && sink.clock_us >= 0) {
     const std::int64_t passed_ms = (now - sink.clock_us) / 1000;
     const std::int64_t grown_ms = static_cast<std::int32_t>(reply.time_ms - sink.clock_ms);
     // A clock in binary ms runs 2.4 % faster than one in ms.

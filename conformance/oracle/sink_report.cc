@@ -176,7 +176,7 @@ void SinkJoins::refuse_report(SinkWatch& sink, PairWatch& watch, const Place& at
 
 void SinkJoins::showed_life(std::uint16_t sink_device, std::int64_t now_us, bool on_serial) {
   SinkWatch* const sink = find(sink_device);
-  if (sink == nullptr || sink->debts == 0 || !on_serial || !context_.run.has_time) return;
+  if (sink == nullptr || sink->debts == 0 || !on_serial || now_us < 0) return;
   for (auto& [am, watch] : sink->motes) {
     if (!watch.report_due || now_us <= watch.ack.time_us + context_.response_us()) continue;
     watch.report_due = false;
@@ -204,7 +204,7 @@ void SinkJoins::showed_life(std::uint16_t sink_device, std::int64_t now_us, bool
 void SinkJoins::unannounced(const SinkWatch& sink, std::uint16_t mote_am, const PairWatch& watch,
                             std::int64_t end_us) {
   const Device& device = context_.device(sink.device);
-  if (!device.hearing || !device.application || !context_.run.has_time || watch.set.empty()) return;
+  if (!device.hearing || !device.application || !watch.ack.timed() || watch.set.empty()) return;
   if (end_us <= watch.ack.time_us + context_.response_us()) return;
   const auto owes = [](const SinkHypothesis& h) { return !h.unknown && h.owes_notice; };
   if (!std::all_of(watch.set.begin(), watch.set.end(), owes)) return;

@@ -79,7 +79,7 @@ void SynapticWatch::note(Node& node, const machine::Synaptic& before, std::int64
 
 void SynapticWatch::sent(std::uint16_t device, const Observation& seen, const Net& net) {
   Node& node = nodes_[device];
-  if (!node.logged || !context_.run.has_time) return;
+  if (!node.logged || !seen.place.timed()) return;
   const std::int64_t now = seen.place.time_us;
   Out* const out = find(node, machine::channel_id(net.src.devid, net.dest.devid));
   if (out == nullptr) return;  // Created before the log began.
