@@ -194,7 +194,7 @@ class Run {
       pass(wide.to);
     }
     pass_all(wide.to + kLateTicks);
-    fail(result, line, wide.to, node.nearest_miss(line, wide, bindings_));
+    fail(result, line, window, wide.to, node.nearest_miss(line, wide, bindings_));
     return false;
   }
 
@@ -215,7 +215,7 @@ class Run {
       const Window window = narrowed(one.window, node.target().tolerance());
       const Output* output = node.forbidden(*one.line, window, bindings_);
       if (!output) continue;
-      fail(result, *one.line, output->time,
+      fail(result, *one.line, one.window, output->time,
            fmt::format("at {} it emitted {}", output->time,
                        node.text_of(*output)));
     }
@@ -224,14 +224,16 @@ class Run {
   }
 
   void broken(CaseResult& result, trace::Place place, const char* why) {
-    result.failures.push_back({place, {}, false, now_, "", why});
+    result.failures.push_back({place, {}, false, now_, "", why, now_, now_, false});
     result.verdict = CaseVerdict::kError;
     result.reason = why;
   }
 
-  void fail(CaseResult& result, const Line& line, Ticks time, std::string text) {
-    Failure failure{line.place, line.requirements, is_weak(line), time, trace::print(line),
-                    std::move(text)};
+  void fail(CaseResult& result, const Line& line, const Window& window, Ticks time,
+            std::string text) {
+    Failure failure{line.place,  line.requirements, is_weak(line),
+                    time,        trace::print(line), std::move(text),
+                    window.from, window.to,          line.op == Op::kMustNot};
     result.verdict = std::max(result.verdict,
                               failure.weak ? CaseVerdict::kWeak : CaseVerdict::kFail);
     result.failures.push_back(std::move(failure));

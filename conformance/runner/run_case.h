@@ -33,6 +33,9 @@ struct Failure {
   Ticks time = 0;                         ///< Of the output that breaks it, or the end of its time.
   std::string expected;                   ///< The line.
   std::string text;                       ///< What happened instead, with the nearest miss.
+  Ticks from = 0;                         ///< The line's time, since the start of the case.
+  Ticks to = 0;
+  bool forbidden = false;                 ///< The line says what must not be emitted.
 };
 
 struct CaseResult {

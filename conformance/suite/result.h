@@ -30,6 +30,7 @@ struct CaseRun {
   std::vector<ReqId> requirements;     ///< That its lines name, each once.
   std::uint32_t repeat = 0;            ///< Counted from 0 where --repeat asks for more than one.
   std::uint64_t seed = 0;              ///< That its nodes began with.
+  std::string profile;                 ///< "paper" or "deployed": what they were told to keep to.
   runner::CaseResult result;           ///< With failures and log.
   Expectation expectation = Expectation::kNone;
   std::string expected_reason;         ///< From the file.
@@ -58,7 +59,7 @@ struct StaleExpectation {
 };
 
 struct SuiteRun {
-  std::string profile = "paper";
+  std::string profile = "paper";  ///< Of the cases that state none, or of all, if one was asked for.
   std::uint64_t seed = 0;     ///< Of the cases that state none; each repeat has one more.
   std::string shard;          ///< "2/8", or empty.
   std::vector<std::string> traces;  ///< Files and folders of the user; none: the kit's own cases.

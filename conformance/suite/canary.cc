@@ -1,0 +1,73 @@
+#include "conformance/suite/canary.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "conformance/runner/run_case.h"
+#include "conformance/suite/cases.h"
+
+namespace rubric::suite {
+namespace {
+
+// A mote that is told that it joined though nobody replied; a sink and a base station that say what
+// nobody gave them. Numbers and bytes are such that nobody says them by chance.
+constexpr const char* kCanaries = R"rtr(%rtr 1
+%profile paper
+
+case canary.mote
+%node m5 mote id=5 iut
+%node sA sink id=1 island=11
+a: 0        m5 < app  join(telosb_demo light led)
+   a+0..100 m5 > app  joined(10053:5 success)
+
+case canary.sink
+%node sA sink id=1 island=11 iut
+   0..100   sA > serA net_msg(dest=11:null src=11:77 seq_num=0xca9a payload.payload=xca9a ...)
+
+case canary.base_station
+%node bA base_station island=11 iut
+   0..100   bA > serA net_msg(dest=11:77 src=11:null seq_num=0xca9a payload.payload=xca9a ...)
+)rtr";
+
+bool plays(const attach::Identity& identity, machine::Role role) {
+  return std::find(identity.roles.begin(), identity.roles.end(), role) != identity.roles.end();
+}
+
+std::string try_canary(const SuiteCase& one, attach::Attachment& attachment) {
+  using runner::CaseVerdict;
+  const runner::CaseResult result = runner::run_case(
+      one.file->file, *one.one, [&](const trace::NodeHeader&) { return attachment.target(); });
+  switch (result.verdict) {
+    case CaseVerdict::kPass:
+    case CaseVerdict::kWeak:
+      return fmt::format("{} has to fail, for nothing causes what it asks for, but it passed",
+                         one.blank.name);
+    case CaseVerdict::kError:  // What breaks here breaks in the cases too, and is shown there.
+    case CaseVerdict::kInconclusive:
+    case CaseVerdict::kSkip:
+    case CaseVerdict::kFail:
+      return {};
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string dishonesty(attach::Attachment& attachment) {
+  try {
+    const attach::Identity& identity = attachment.identity();
+    if (identity.roles.empty()) return "it plays no role";
+    if (std::string wrong = attachment.honesty(); !wrong.empty()) return wrong;
+    const Cases canaries = Cases::of_text(kCanaries, "canaries");
+    for (const SuiteCase& one : canaries.all()) {
+      if (!plays(identity, one.blank.roles.front())) continue;
+      if (std::string wrong = try_canary(one, attachment); !wrong.empty()) return wrong;
+    }
+  } catch (const runner::TargetBroken& broken) {
+    return broken.what();
+  }
+  return {};
+}
+
+}  // namespace rubric::suite

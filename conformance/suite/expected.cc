@@ -1,0 +1,198 @@
+#include "conformance/suite/expected.h"
+
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "codec/generated/requirements_table.h"
+#include "conformance/generated/profiles.h"
+#include "conformance/suite/select.h"
+
+namespace rubric::suite {
+namespace {
+
+using runner::CaseVerdict;
+using runner::Failure;
+
+constexpr const char* kNoRule = "none";
+
+struct Mistake {
+  std::uint32_t line;
+  std::string text;
+};
+
+std::uint32_t line_of(const YAML::Mark& mark) { return static_cast<std::uint32_t>(mark.line + 1); }
+
+std::string scalar(const YAML::Node& node, const std::string& key) {
+  if (!node.IsScalar() || node.Scalar().empty()) {
+    throw Mistake{line_of(node.Mark()), key + ": expected a text"};
+  }
+  return node.Scalar();
+}
+
+void check_value(const std::string& key, const std::string& value, std::uint32_t line) {
+  if (key == "requirement" && value != kNoRule &&
+      std::none_of(std::begin(kRequirements), std::end(kRequirements),
+                   [&](const reflect::Requirement& rule) { return is_of(rule.id, value); })) {
+    throw Mistake{line, fmt::format("no requirement is called '{}'; '{}' is for lines that name "
+                                    "none", value, kNoRule)};
+  }
+  if (key == "profile" && !machine::find_profile(value)) {
+    throw Mistake{line, fmt::format("profile is paper or deployed, not '{}'", value)};
+  }
+}
+
+ExpectedFailure read_one(const YAML::Node& node) {
+  ExpectedFailure one;
+  one.line = line_of(node.Mark());
+  if (!node.IsMap()) throw Mistake{one.line, "expected case, requirement, message and reason"};
+  std::map<std::string, std::string*> keys = {
+      {"case", &one.cases},     {"requirement", &one.requirement}, {"message", &one.message},
+      {"reason", &one.reason},  {"target", &one.target},           {"profile", &one.profile}};
+  std::set<std::string> seen;
+  for (const auto& entry : node) {
+    const std::string key = scalar(entry.first, "key");
+    const std::uint32_t line = line_of(entry.first.Mark());
+    const auto known = keys.find(key);
+    if (known == keys.end()) {
+      throw Mistake{line, "unknown key '" + key +
+                              "'; known are case, requirement, message, reason, target, profile"};
+    }
+    if (!seen.insert(key).second) throw Mistake{line, key + " stands here twice"};
+    *known->second = scalar(entry.second, key);
+    check_value(key, *known->second, line);
+  }
+  for (const char* key : {"case", "requirement", "message", "reason"}) {
+    if (!seen.contains(key)) throw Mistake{one.line, fmt::format("{} is missing", key)};
+  }
+  return one;
+}
+
+bool is_about(const ExpectedFailure& one, const ImplementationRun& implementation,
+              const CaseRun& run) {
+  if (!is_like(one.cases, run.name)) return false;
+  if (!one.profile.empty() && one.profile != run.profile) return false;
+  return one.target.empty() || is_like(one.target, implementation.target) ||
+         is_like(one.target, implementation.identity.name);
+}
+
+bool has_message(const ExpectedFailure& one, const Failure& failure) {
+  return failure.text.find(one.message) != std::string::npos ||
+         failure.expected.find(one.message) != std::string::npos;
+}
+
+bool has_rule(const ExpectedFailure& one, const Failure& failure) {
+  if (one.requirement == kNoRule) return failure.requirements.empty();
+  return std::any_of(failure.requirements.begin(), failure.requirements.end(),
+                     [&](const std::string& rule) { return is_of(rule, one.requirement); });
+}
+
+bool is_so(const ExpectedFailure& one, const CaseRun& run) {
+  return std::any_of(run.result.failures.begin(), run.result.failures.end(),
+                     [&](const Failure& f) { return has_rule(one, f) && has_message(one, f); });
+}
+
+// What the profile accepts instead of every rule that the line names; null if it does not.
+const char* accepted(const machine::NamedProfile* profile, const Failure& failure) {
+  const char* sentence = nullptr;
+  for (const std::string& rule : failure.requirements) {
+    const char* found = nullptr;
+    for (const machine::AcceptedDifference& one : profile->accepted) {
+      if (trace::requirement_id(rule) == one.requirement) found = one.sentence;
+    }
+    if (!found) return nullptr;
+    if (!sentence) sentence = found;
+  }
+  return sentence;
+}
+
+bool is_decided(const CaseRun& one) {
+  return one.result.verdict <= CaseVerdict::kWeak || one.result.verdict == CaseVerdict::kFail;
+}
+
+std::string why_untrue(const ExpectedFailure& entry, const CaseRun& one) {
+  const std::string was = fmt::format("{} was expected to break {} with \"{}\"", one.name,
+                                      entry.requirement, entry.message);
+  if (one.result.failures.empty()) {
+    return was + ", but passes. If that is meant, delete the expectation.";
+  }
+  const Failure& first = one.result.failures.front();
+  return fmt::format("{}, but line {} of {} says: {}", was, first.place.line, one.file, first.text);
+}
+
+}  // namespace
+
+ExpectedFailures parse_expected(std::string_view text, const std::string& name) {
+  ExpectedFailures out{name, {}};
+  try {
+    const YAML::Node root = YAML::Load(std::string(text));
+    if (!root.IsSequence()) throw Mistake{1, "expected a list of expected failures"};
+    for (const YAML::Node& node : root) out.entries.push_back(read_one(node));
+  } catch (const Mistake& mistake) {
+    throw std::runtime_error(fmt::format("{}:{}: {}", name, mistake.line, mistake.text));
+  } catch (const YAML::Exception& broken) {
+    throw std::runtime_error(fmt::format("{}:{}: {}", name, line_of(broken.mark), broken.msg));
+  }
+  return out;
+}
+
+void expect(const ExpectedFailures& expected, const ImplementationRun& implementation,
+            CaseRun& one) {
+  if (!is_decided(one)) return;
+  std::vector<const ExpectedFailure*> entries;
+  for (const ExpectedFailure& entry : expected.entries) {
+    if (is_about(entry, implementation, one)) entries.push_back(&entry);
+  }
+  const machine::NamedProfile* dialect = machine::find_profile(one.profile);
+  bool all_known = true;  // Each failure that is no SHOULD.
+  for (const Failure& failure : one.result.failures) {
+    const char* reason = dialect ? accepted(dialect, failure) : nullptr;
+    for (const ExpectedFailure* entry : entries) {
+      if (has_rule(*entry, failure) && has_message(*entry, failure)) reason = entry->reason.c_str();
+    }
+    if (reason && one.expected_reason.empty()) one.expected_reason = reason;
+    all_known = all_known && (reason || failure.weak);
+  }
+  const bool all_true = std::all_of(entries.begin(), entries.end(),
+                                    [&](const auto* entry) { return is_so(*entry, one); });
+  const bool passed = one.result.failures.empty();
+  if (passed && entries.empty()) return;
+  if (passed) {
+    one.expectation = Expectation::kUnexpectedPass;
+    one.expected_reason = entries.front()->reason;
+  } else if (!all_true) {
+    one.expectation = Expectation::kOtherwise;
+    if (one.expected_reason.empty()) one.expected_reason = entries.front()->reason;
+  } else if (!one.expected_reason.empty()) {
+    one.expectation = all_known ? Expectation::kAsExpected : Expectation::kOtherwise;
+  }
+}
+
+std::vector<StaleExpectation> untrue(const ExpectedFailures& expected, const SuiteRun& run,
+                                     const Cases& all) {
+  std::vector<StaleExpectation> out;
+  for (const ExpectedFailure& entry : expected.entries) {
+    const std::string place = fmt::format("{}:{}", expected.name, entry.line);
+    const bool exists = std::any_of(all.all().begin(), all.all().end(), [&](const SuiteCase& one) {
+      return is_like(entry.cases, one.blank.name);
+    });
+    if (!exists) {
+      out.push_back({place, fmt::format("no case is called '{}'", entry.cases)});
+      continue;
+    }
+    for (const ImplementationRun& implementation : run.implementations) {
+      for (const CaseRun& one : implementation.cases) {
+        if (!is_about(entry, implementation, one)) continue;
+        if (is_decided(one) && !is_so(entry, one)) out.push_back({place, why_untrue(entry, one)});
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace rubric::suite

@@ -1,0 +1,163 @@
+#include "conformance/suite/run.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <mutex>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "conformance/suite/canary.h"
+
+namespace rubric::suite {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using runner::CaseVerdict;
+
+double ms_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+// A case needs all roles of its nodes under test. Empty: it has them.
+std::string missing_role(const CaseRun& one, const attach::Identity& identity) {
+  for (const machine::Role role : one.roles) {
+    const auto& roles = identity.roles;
+    if (std::find(roles.begin(), roles.end(), role) != roles.end()) continue;
+    std::string plays;
+    for (const machine::Role other : roles) {
+      if (!plays.empty()) plays += " and ";
+      plays += trace::role_text(static_cast<trace::Role>(other));
+    }
+    return fmt::format("it plays no {}, only {}",
+                       trace::role_text(static_cast<trace::Role>(role)), plays);
+  }
+  return {};
+}
+
+// Puts `what` in place of the header of its kind, wherever one stands.
+template <class Kind>
+bool replace_header(std::vector<trace::Item>& items, const Kind& what) {
+  bool found = false;
+  for (trace::Item& item : items) {
+    auto* header = std::get_if<trace::Header>(&item);
+    if (!header || !std::holds_alternative<Kind>(header->what)) continue;
+    header->what = what;
+    found = true;
+  }
+  return found;
+}
+
+bool states_seed(const std::vector<trace::Item>& items) {
+  return std::any_of(items.begin(), items.end(), [](const trace::Item& item) {
+    const auto* header = std::get_if<trace::Header>(&item);
+    return header && std::holds_alternative<trace::SeedHeader>(header->what);
+  });
+}
+
+// Works the cases of a plan, each repeat for itself, on several attachments.
+class Work {
+ public:
+  Work(const Plan& plan, const Watcher& watcher, ImplementationRun& run)
+      : plan_(plan), watcher_(watcher), run_(run) {
+    run_.cases.resize(plan.cases.size() * plan.repeats);
+    done_.resize(run_.cases.size());
+  }
+
+  void on(attach::Attachment& attachment) {
+    for (std::size_t i = next_++; i < run_.cases.size(); i = next_++) {
+      const std::uint32_t repeat = static_cast<std::uint32_t>(i % plan_.repeats);
+      std::optional<std::uint64_t> seed = plan_.seed;
+      if (repeat > 0) seed = seed.value_or(0) + repeat;
+      CaseRun one = run_one(plan_.cases[i / plan_.repeats], attachment, plan_.profile, seed);
+      one.repeat = repeat;
+      expect(plan_.expected, run_, one);
+      const std::lock_guard lock(mutex_);
+      run_.cases[i] = std::move(one);
+      done_[i] = true;
+      for (; told_ < done_.size() && done_[told_]; ++told_) {
+        if (watcher_.worked) watcher_.worked(run_.cases[told_]);
+      }
+    }
+  }
+
+ private:
+  const Plan& plan_;
+  const Watcher& watcher_;
+  ImplementationRun& run_;
+  std::atomic<std::size_t> next_ = 0;
+  std::mutex mutex_;
+  std::vector<bool> done_;
+  std::size_t told_ = 0;
+};
+
+}  // namespace
+
+CaseRun run_one(const SuiteCase& one, attach::Attachment& attachment, const std::string& profile,
+                std::optional<std::uint64_t> seed) {
+  CaseRun out = one.blank;
+  const auto start = Clock::now();
+  out.result.name = out.name;
+  trace::File head;  // The case stands for itself.
+  head.head = one.file->file.head;
+  trace::Case itself = *one.one;
+  if (!profile.empty() && !replace_header(itself.items, trace::ProfileHeader{profile}) &&
+      !replace_header(head.head, trace::ProfileHeader{profile})) {
+    head.header({trace::ProfileHeader{profile}, {}, {}});
+  }
+  if (!profile.empty()) out.profile = profile;
+  if (seed && !states_seed(itself.items) && !states_seed(head.head)) {
+    head.header({trace::SeedHeader{*seed}, {}, {}});
+    out.seed = *seed;
+  }
+  try {
+    const std::string missing = missing_role(out, attachment.identity());
+    if (missing.empty()) {
+      out.result = runner::run_case(
+          head, itself, [&](const trace::NodeHeader&) { return attachment.target(); });
+    } else {
+      out.result.verdict = CaseVerdict::kSkip;
+      out.result.reason = missing;
+    }
+  } catch (const std::exception& error) {  // It did not start again.
+    out.result.verdict = CaseVerdict::kError;
+    out.result.reason = error.what();
+  }
+  std::string text = attachment.take_stderr();
+  const bool wrong = out.result.verdict == CaseVerdict::kFail ||
+                     out.result.verdict == CaseVerdict::kError;
+  if (wrong) out.stderr_text = std::move(text);
+  out.wall_ms = ms_since(start);
+  return out;
+}
+
+ImplementationRun run(const std::string& target, const MakeAttachment& make, const Plan& plan,
+                      const Watcher& watcher) {
+  const auto start = Clock::now();
+  ImplementationRun out;
+  out.target = target;
+  const std::unique_ptr<attach::Attachment> first = make();
+  out.dishonest = dishonesty(*first);
+  if (out.dishonest.empty()) {
+    out.identity = first->identity();
+    first->take_stderr();
+  }
+  if (watcher.started) watcher.started(out);
+  if (!out.dishonest.empty()) return out;
+  Work work(plan, watcher, out);
+  std::vector<std::thread> others;
+  const unsigned jobs = out.identity.real_time ? 1 : plan.jobs;
+  for (unsigned i = 1; i < jobs; ++i) {
+    others.emplace_back([&] {
+      const std::unique_ptr<attach::Attachment> mine = make();
+      work.on(*mine);
+    });
+  }
+  work.on(*first);
+  for (std::thread& one : others) one.join();
+  out.wall_ms = ms_since(start);
+  return out;
+}
+
+}  // namespace rubric::suite
