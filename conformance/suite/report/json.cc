@@ -57,6 +57,7 @@ Json case_run(const CaseRun& one) {
           {"roles", roles(one.roles)},
           {"requirements", ids(one.requirements)},
           {"repeat", one.repeat},
+          {"seed", one.seed},
           {"verdict", runner::verdict_text(one.result.verdict)},
           {"unexpected", one.unexpected()},
           {"expectation", expectation_text(one.expectation)},
@@ -126,6 +127,8 @@ std::string json_report(const SuiteRun& run) {
                     {"profile", run.profile},
                     {"seed", run.seed},
                     {"shard", run.shard},
+                    {"traces", run.traces},
+                    {"exit_code", exit_code(run)},
                     {"implementations", std::move(implementations)},
                     {"stale", std::move(stale)}};
   // What an implementation wrote to its standard error need not be UTF-8.

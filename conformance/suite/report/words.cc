@@ -109,7 +109,8 @@ std::string replay_command(const SuiteRun& run, const ImplementationRun& impleme
   std::string out = fmt::format("rubric test --target {} --cases {}", quoted(implementation.target),
                                 quoted(one.name));
   if (run.profile != "paper") out += " --profile " + run.profile;
-  if (run.seed != 0) out += fmt::format(" --seed {}", run.seed);
+  if (one.seed != 0) out += fmt::format(" --seed {}", one.seed);
+  for (const std::string& path : run.traces) out += " " + quoted(path);
   return out;
 }
 
