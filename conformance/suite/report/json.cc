@@ -154,7 +154,8 @@ EarlierRun read_json_report(std::string_view text) {
     std::size_t k = 0;
     for (const Json& each : list_of(one, "cases", place)) {
       const std::string where = fmt::format("{}.cases[{}]", place, k++);
-      earlier.verdicts[{name, text_of(each, "name", where)}] = text_of(each, "verdict", where);
+      const std::string case_name = text_of(each, "name", where);
+      earlier.verdicts[{name, case_name}] = text_of(each, "verdict", where);
     }
   }
   return earlier;

@@ -13,7 +13,8 @@ namespace rubric::suite {
 /// One JSON object and a line end. All keys are always there.
 std::string json_report(const SuiteRun& run);
 
-/// What an earlier run said, as far as a comparison needs it: verdicts by implementation and case.
+/// What an earlier run said, as far as a comparison needs it: verdicts by name of implementation,
+/// whatever its version, and case; the last of repeated ones.
 struct EarlierRun {
   std::map<std::pair<std::string, std::string>, std::string> verdicts;
 };

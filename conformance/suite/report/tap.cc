@@ -22,7 +22,10 @@ std::string plain(std::string_view text) {
 std::string block(const CaseRun& one) {
   std::string out = fmt::format("  ---\n  verdict: {}\n  file: {}\n  details: |\n",
                                 runner::verdict_text(one.result.verdict), one.file);
-  const std::string text = in_full(one);
+  std::string text = in_full(one);
+  if (one.expectation == Expectation::kUnexpectedPass) {
+    text = "expected to fail: " + one.expected_reason + "\n" + text;
+  }
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
     out += "    " + text.substr(at, end - at) + "\n";
