@@ -1,0 +1,71 @@
+// The records on the second UART of a board on the test bench, where the radio chip and the
+// application would be: length (of tag and body), tag, body. Numbers are big-endian. The board
+// answers each record with kIdle when it has handled it; until then the bench sends no other.
+#pragma once
+
+#include <stddef.h>
+#include <stdint.h>
+
+namespace rubric {
+namespace firmware {
+
+/// From the bench to the board.
+enum class ToBoard : uint8_t {
+  kSetup = 1,   ///< id u16, island u16, channels u8, last sequence number u16, keep it u8.
+  kRadio,       ///< A packet (dispatch byte, AM header, payload) that the radio hears.
+  kRadioSent,   ///< link ack u8: the last transmission has ended.
+  kBusy,        ///< line u8 (0 radio, 1 serial, 2 application), busy u8.
+  kCall,        ///< CallCode, arguments.
+  kRestart,     ///< Reset the processor; unanswered but by kHello.
+};
+
+/// From the board to the bench.
+enum class FromBoard : uint8_t {
+  kHello = 1,  ///< After a reset: sink u8, channels u8, bytes of a node u16.
+  kReady,      ///< The clock has started.
+  kRadio,      ///< link ack asked for u8, a packet for the radio.
+  kEvent,      ///< EventCode, arguments.
+  kIdle,       ///< records u8 and packets u8 handled so far, Idle flags u8, next timer u32 (ticks).
+};
+
+/// Flags of kIdle.
+enum : uint8_t { kIdleTimerRuns = 1, kIdleSerialSends = 2 };
+
+constexpr size_t kRecordMax = 125;  ///< Tag and body: the longest holds a whole packet.
+
+/// Arguments as PORTING.md has them: addresses and channels are two u16, reals u32, data the rest.
+enum class CallCode : uint8_t {
+  kJoin = 1,
+  kSend,
+  kInterface,
+  kGetInterface,
+  kCreateOut,
+  kCreateIn,
+  kDispose,
+  kStart,
+  kStop,
+  kStartAll,
+  kStopAll,
+  kWriteOutput,
+  kReadInput,
+  kSetTimeStep,
+  kSetIslandId,
+  kGetClock,
+};
+
+enum class EventCode : uint8_t {
+  kJoined = 1,
+  kMoteJoined,
+  kReceived,
+  kAckReceived,
+  kSynData,
+  kSendResult,
+  kChannelResult,
+  kOpResult,
+  kInputValue,
+  kInterfaceState,
+  kClock,
+};
+
+}  // namespace firmware
+}  // namespace rubric

@@ -1,0 +1,140 @@
+#include "conformance/adapters/firmware/host/avr_board.h"
+
+#include <cstdarg>
+#include <cstdio>
+#include <cstring>
+
+#include <fmt/format.h>
+
+extern "C" {
+#include <simavr/avr_uart.h>
+#include <simavr/sim_avr.h>
+#include <simavr/sim_cycle_timers.h>
+#include <simavr/sim_elf.h>
+}
+
+namespace rubric::firmware {
+namespace {
+
+constexpr Instant kLinkBaud = 460'800;
+constexpr Instant kSerialBaud = 115'200;
+constexpr Instant kBitsPerByte = 10;
+
+void log_to_stderr(avr_t*, const int level, const char* format, std::va_list arguments) {
+  if (level > LOG_ERROR) return;
+  std::vfprintf(stderr, format, arguments);
+}
+
+}  // namespace
+
+// What simavr calls.
+struct AvrBoard::Callbacks {
+  static void output(avr_irq_t*, std::uint32_t value, void* parameter) {
+    auto& uart = *static_cast<Uart*>(parameter);
+    Listener* const listener = uart.board->listener_;
+    if (listener == nullptr) return;
+    const auto byte = static_cast<std::uint8_t>(value);
+    if (uart.is_link) {
+      listener->link_byte(byte);
+    } else {
+      listener->serial_byte(byte);
+    }
+  }
+  // A byte at a time, as the line carries them.
+  static avr_cycle_count_t feed(avr_t*, avr_cycle_count_t when, void* parameter) {
+    auto& uart = *static_cast<Uart*>(parameter);
+    uart.feeding = !uart.waiting.empty();
+    if (!uart.feeding) return 0;
+    const std::uint8_t byte = uart.waiting.front();
+    uart.waiting.pop_front();
+    avr_raise_irq(uart.input, byte);
+    return when + uart.instants_per_byte;
+  }
+  static avr_cycle_count_t end(avr_t*, avr_cycle_count_t, void* parameter) {
+    static_cast<AvrBoard*>(parameter)->stopped_ = true;
+    return 0;
+  }
+  // It would sleep in real time.
+  static void sleep(avr_t*, avr_cycle_count_t) {}
+};
+
+AvrBoard::AvrBoard(std::string elf_file) : elf_file_(std::move(elf_file)) {
+  avr_global_logger_set(log_to_stderr);
+  link_.board = serial_.board = this;
+  link_.is_link = true;
+  link_.instants_per_byte = kInstantsPerSecond * kBitsPerByte / kLinkBaud;
+  serial_.instants_per_byte = kInstantsPerSecond * kBitsPerByte / kSerialBaud;
+}
+
+AvrBoard::~AvrBoard() { discard(); }
+
+void AvrBoard::discard() {
+  if (avr_ == nullptr) return;
+  avr_terminate(avr_);
+  std::free(avr_);
+  avr_ = nullptr;
+}
+
+void AvrBoard::connect(Uart& uart, char name) {
+  std::uint32_t flags = 0;  // It would print what is sent, and sleep where firmware waits.
+  avr_ioctl(avr_, AVR_IOCTL_UART_SET_FLAGS(name), &flags);
+  uart.input = avr_io_getirq(avr_, AVR_IOCTL_UART_GETIRQ(name), UART_IRQ_INPUT);
+  avr_irq_t* const output = avr_io_getirq(avr_, AVR_IOCTL_UART_GETIRQ(name), UART_IRQ_OUTPUT);
+  avr_irq_register_notify(output, Callbacks::output, &uart);
+  uart.waiting.clear();
+  uart.feeding = false;
+}
+
+void AvrBoard::power_on() {
+  discard();
+  elf_firmware_t firmware;
+  std::memset(&firmware, 0, sizeof(firmware));
+  if (elf_read_firmware(elf_file_.c_str(), &firmware) != 0) {
+    throw BoardBroken(fmt::format("cannot load {}", elf_file_));
+  }
+  std::strncpy(firmware.mmcu, "atmega128", sizeof(firmware.mmcu) - 1);
+  firmware.frequency = static_cast<std::uint32_t>(kInstantsPerSecond);
+  avr_ = avr_make_mcu_by_name(firmware.mmcu);
+  if (avr_ == nullptr) throw BoardBroken("simavr has no atmega128");
+  avr_init(avr_);
+  avr_load_firmware(avr_, &firmware);
+  avr_->sleep = Callbacks::sleep;
+  avr_->log = LOG_ERROR;
+  std::free(firmware.flash);
+  connect(link_, '1');
+  connect(serial_, '0');
+}
+
+void AvrBoard::restart(Instant now) {
+  avr_->cycle = std::max<Instant>(avr_->cycle, now);
+  avr_reset(avr_);
+  connect(link_, '1');
+  connect(serial_, '0');
+}
+
+Instant AvrBoard::now() const { return avr_->cycle; }
+
+void AvrBoard::put(Uart& uart, Bytes bytes) {
+  uart.waiting.insert(uart.waiting.end(), bytes.begin(), bytes.end());
+  if (uart.feeding) return;
+  uart.feeding = true;
+  avr_cycle_timer_register(avr_, 1, Callbacks::feed, &uart);
+}
+
+void AvrBoard::put_link(Bytes bytes) { put(link_, bytes); }
+void AvrBoard::put_serial(Bytes bytes) { put(serial_, bytes); }
+
+void AvrBoard::run(Instant end, Listener& listener) {
+  if (end <= avr_->cycle) return;
+  listener_ = &listener;
+  stopped_ = false;
+  avr_cycle_timer_register(avr_, end - avr_->cycle, Callbacks::end, this);
+  while (!stopped_) {
+    const int state = avr_run(avr_);
+    if (state == cpu_Done || state == cpu_Crashed) throw BoardBroken("the processor has stopped");
+  }
+  avr_cycle_timer_cancel(avr_, Callbacks::end, this);
+  listener_ = nullptr;
+}
+
+}  // namespace rubric::firmware

@@ -1,0 +1,57 @@
+// An ATmega128 in libsimavr. Its time is virtual: it passes while run() says so.
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <string>
+
+#include "conformance/adapters/firmware/host/board.h"
+
+struct avr_t;
+struct avr_irq_t;
+
+namespace rubric::firmware {
+
+class AvrBoard : public SimulatedBoard {
+ public:
+  /// Throws BoardBroken when the file is no ELF file that could be loaded.
+  explicit AvrBoard(std::string elf_file);
+  ~AvrBoard() override;
+  AvrBoard(const AvrBoard&) = delete;
+  AvrBoard& operator=(const AvrBoard&) = delete;
+
+  void power_on() override;
+  void restart(Instant now) override;
+  Instant now() const override;
+  void run(Instant end, Listener& listener) override;
+  void stop() override { stopped_ = true; }
+  void put_link(Bytes bytes) override;
+  void put_serial(Bytes bytes) override;
+  bool serial_is_idle() const override { return serial_.waiting.empty(); }
+
+ private:
+  // What is on its way to one of the processor's UARTs.
+  struct Uart {
+    AvrBoard* board = nullptr;
+    bool is_link = false;
+    Instant instants_per_byte = 0;
+    avr_irq_t* input = nullptr;
+    std::deque<std::uint8_t> waiting;
+    bool feeding = false;
+  };
+  struct Callbacks;
+
+  void connect(Uart& uart, char name);
+  void put(Uart& uart, Bytes bytes);
+  void discard();
+
+  std::string elf_file_;
+  avr_t* avr_ = nullptr;
+  Listener* listener_ = nullptr;
+  Uart link_;
+  Uart serial_;
+  bool stopped_ = false;
+  Instant end_ = 0;
+};
+
+}  // namespace rubric::firmware

@@ -1,0 +1,247 @@
+#include "conformance/adapters/firmware/host/bridge.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace rubric::firmware {
+namespace {
+
+constexpr Instant kBootMax = 2 * kInstantsPerSecond;
+// How long a board may leave a serial packet without a sign before the bench gives it up: it was
+// switched off, or had no room.
+constexpr Instant kSerialPatience = 40 * kInstantsPerTick;
+constexpr std::size_t kPacketMax = kRecordMax - 1;
+constexpr std::size_t kPacketHeaderBytes = 8;
+
+// Preamble, header and FCS besides the payload, at 250 kbit/s.
+Instant air_time(std::size_t packet_bytes) {
+  const std::size_t us = (packet_bytes - kPacketHeaderBytes + 19) * 32;
+  return us * kInstantsPerSecond / 1'000'000;
+}
+
+}  // namespace
+
+Tick Bridge::tick_of(Instant instant) const { return (instant - zero_) / kInstantsPerTick; }
+
+Tick Bridge::tick() const { return tick_of(off_ ? off_now_ : board_.now()); }
+
+Firmware Bridge::greet() {
+  board_.power_on();
+  greeted_ = ready_ = off_ = in_flight_ = false;
+  incoming_.clear();
+  queue_.clear();
+  const Instant end = board_.now() + kBootMax;
+  while (!greeted_ && board_.now() < end) board_.run(end, *this);
+  if (!greeted_) throw BoardBroken("the firmware does not say hello");
+  return firmware_;
+}
+
+void Bridge::start(const NodeSetup& setup) {
+  setup_ = setup;
+  this->setup(false);
+  const Instant end = board_.now() + kBootMax;
+  while (!ready_ && board_.now() < end) board_.run(end, *this);
+  if (!ready_) throw BoardBroken("the firmware does not start its node");
+  zero_ = clock_zero_;
+  last_tick_ = 0;
+  lines_.clear();
+}
+
+void Bridge::setup(bool keep_seq_num) {
+  ByteVector body(8);
+  store_be16(body.data(), setup_.id);
+  store_be16(body.data() + 2, setup_.island);
+  body[4] = setup_.channels;
+  store_be16(body.data() + 5, setup_.last_seq_num);
+  body[7] = keep_seq_num ? 1 : 0;
+  record(ToBoard::kSetup, Bytes(body.data(), body.size()));
+}
+
+void Bridge::record(ToBoard tag, Bytes body) {
+  ByteVector bytes{static_cast<std::uint8_t>(1 + body.size()), static_cast<std::uint8_t>(tag)};
+  bytes.insert(bytes.end(), body.begin(), body.end());
+  queue_.push_back(std::move(bytes));
+  send_next();
+}
+
+void Bridge::send_next() {
+  if (in_flight_ || queue_.empty() || !greeted_) return;
+  board_.put_link(Bytes(queue_.front().data(), queue_.front().size()));
+  queue_.pop_front();
+  in_flight_ = true;
+  ++sent_records_;
+}
+
+void Bridge::hear_radio(Bytes packet) {
+  if (off_ || packet.size() < kPacketHeaderBytes || packet.size() > kPacketMax) return;
+  record(ToBoard::kRadio, packet);
+}
+
+void Bridge::hear_serial(Bytes packet) {
+  if (off_) return;
+  ByteVector frame(hdlc_frame_room(kSerialAfterHeaderMax + 2));
+  const auto size =
+      write_serial_packet_ack(serial_seq_++, packet, MutableBytes(frame.data(), frame.size()));
+  if (!size) return;  // Longer than a frame may be.
+  board_.put_serial(Bytes(frame.data(), *size));
+  fed_serial_ = board_.now();
+  ++sent_packets_;
+}
+
+void Bridge::call(Bytes call_record) {
+  if (!off_) record(ToBoard::kCall, call_record);
+}
+
+void Bridge::link_ack(bool acked) {
+  if (chip_.has_frame && chip_.on_air && chip_.wants_ack) end_transmission(acked);
+}
+
+void Bridge::busy(std::uint8_t line, bool busy) {
+  if (!off_) {
+    const std::uint8_t body[] = {line, static_cast<std::uint8_t>(busy)};
+    record(ToBoard::kBusy, body);
+  }
+  if (line == 0) {
+    chip_.channel_busy = busy;
+    if (!busy && chip_.has_frame && !chip_.on_air) transmit();
+  } else if (line == 1) {
+    serial_busy_ = busy;
+    while (!busy && !held_.empty()) {
+      const ByteVector& packet = held_.front();
+      emit("serial " + hex_of_bytes(Bytes(packet.data(), packet.size())));
+      held_.pop_front();
+    }
+  }
+}
+
+void Bridge::power_off() {
+  off_now_ = off_ ? off_now_ : board_.now();
+  off_ = true;
+  ready_ = greeted_ = in_flight_ = false;
+  chip_.has_frame = false;
+  held_.clear();
+  queue_.clear();
+}
+
+// Who else uses the lines goes on.
+void Bridge::reboot() {
+  power_off();
+  off_ = false;
+  board_.restart(off_now_);
+  incoming_.clear();
+  reported_ = Reported();
+  sent_records_ = sent_packets_ = 0;
+  setup(true);
+  if (chip_.channel_busy) busy(0, true);
+  if (serial_busy_) busy(1, true);
+}
+
+Tick Bridge::run(Tick end) {
+  const Instant until = zero_ + (end + 1) * kInstantsPerTick;
+  last_tick_ = std::max(last_tick_, std::min(tick(), end));
+  if (off_) {
+    off_now_ = std::max(off_now_, until);
+    return end;
+  }
+  while (lines_.empty() && board_.now() < until) {
+    const bool transmission_ends = chip_.has_frame && chip_.on_air && !chip_.wants_ack;
+    board_.run(transmission_ends ? std::min(until, chip_.end) : until, *this);
+    if (transmission_ends && chip_.has_frame && board_.now() >= chip_.end) end_transmission(true);
+  }
+  return lines_.empty() ? end : std::min(end, std::max(last_tick_, tick()));
+}
+
+bool Bridge::serial_is_quiet() const {
+  if ((reported_.flags & kIdleSerialSends) != 0 || !board_.serial_is_idle()) return false;
+  return reported_.packets == sent_packets_ || board_.now() > fed_serial_ + kSerialPatience;
+}
+
+std::optional<Tick> Bridge::next() const {
+  if (off_) return std::nullopt;
+  const Tick soon = std::max(tick(), last_tick_ + 1);
+  if (!ready_ || in_flight_ || !queue_.empty() || !serial_is_quiet()) return soon;
+  std::optional<Tick> next;
+  if ((reported_.flags & kIdleTimerRuns) != 0) {
+    // The node's tick may begin shortly before the bench's.
+    const Tick due = tick_of(clock_zero_ + reported_.due * kInstantsPerTick);
+    next = due > 0 ? due - 1 : 0;
+  }
+  if (chip_.has_frame && chip_.on_air && !chip_.wants_ack) {
+    next = std::min(tick_of(chip_.end), next.value_or(tick_of(chip_.end)));
+  }
+  return next ? std::max(*next, soon) : next;
+}
+
+std::vector<std::string> Bridge::take_lines() { return std::exchange(lines_, {}); }
+
+void Bridge::emit(std::string line) {
+  const Tick now = std::max(last_tick_, tick());
+  last_tick_ = now;
+  lines_.push_back(fmt::format("{} {} {}", line.starts_with("up") ? "up" : "tx", now,
+                               line.starts_with("up ") ? line.substr(3) : line));
+  board_.stop();
+}
+
+void Bridge::transmit() {
+  chip_.on_air = true;
+  chip_.end = board_.now() + air_time(chip_.packet.size());
+  emit(fmt::format("radio {}{}", hex_of_bytes(Bytes(chip_.packet.data(), chip_.packet.size())),
+                   chip_.wants_ack ? " linkack" : ""));
+}
+
+void Bridge::end_transmission(bool acked) {
+  chip_.has_frame = chip_.on_air = false;
+  const std::uint8_t body[] = {static_cast<std::uint8_t>(acked)};
+  record(ToBoard::kRadioSent, body);
+}
+
+void Bridge::link_byte(std::uint8_t byte) {
+  incoming_.push_back(byte);
+  if (incoming_.size() < std::size_t{1} + incoming_[0]) return;
+  const ByteVector record = std::exchange(incoming_, {});
+  handle(Bytes(record.data() + 1, record.size() - 1));
+}
+
+void Bridge::handle(Bytes record) {
+  if (record.empty()) throw BoardBroken("the firmware sends an empty record");
+  const Bytes body = record.from(1);
+  switch (static_cast<FromBoard>(record[0])) {
+    case FromBoard::kHello:
+      firmware_ = {body[0] != 0, body[1], load_be16(body.data() + 2)};
+      greeted_ = true;
+      sent_records_ = 0;
+      board_.stop();
+      return send_next();
+    case FromBoard::kReady:
+      ready_ = true;
+      clock_zero_ = board_.now();
+      return board_.stop();
+    case FromBoard::kRadio:
+      chip_.packet.assign(body.begin() + 1, body.end());
+      chip_.wants_ack = body[0] != 0;
+      chip_.has_frame = true;
+      chip_.on_air = false;
+      if (!chip_.channel_busy) transmit();
+      return;
+    case FromBoard::kEvent:
+      return emit("up " + event_text(body));
+    case FromBoard::kIdle:
+      reported_ = {body[0], body[1], body[2], load_be32(body.data() + 3)};
+      if (reported_.records == sent_records_) in_flight_ = false;
+      return send_next();
+  }
+  throw BoardBroken(fmt::format("the firmware sends a record of kind {}", record[0]));
+}
+
+void Bridge::serial_byte(std::uint8_t byte) {
+  if (deframer_.push(byte) != HdlcEvent::kFrame) return;
+  const Bytes content = deframer_.content();
+  if (content[0] != kSerialPacketNoAck) return;  // A confirmation.
+  const Bytes packet = content.from(1);
+  if (serial_busy_) return held_.emplace_back(packet.begin(), packet.end()), void();
+  emit("serial " + hex_of_bytes(packet));
+}
+
+}  // namespace rubric::firmware

@@ -1,0 +1,61 @@
+// What a node needs of its hardware, and what it tells its application. A port to a board
+// implements these four and calls the node when something happens (node.h).
+#pragma once
+
+#include "codec/runtime/bytes.h"
+#include "conformance/adapters/firmware/node/types.h"
+
+namespace rubric {
+namespace firmware {
+
+/// A radio chip, which takes one frame at a time and minds the channel itself.
+class Radio {
+ public:
+  /// Takes a copy of `payload` and sends it as soon as the channel is free. With `link_ack` the
+  /// receiver's radio is asked to confirm it. Node::radio_sent says when it is over; until then
+  /// the node sends no other.
+  virtual void send(uint16_t dest, uint8_t am_type, Bytes payload, bool link_ack) = 0;
+  /// Saves power while off; what it is sending may end.
+  virtual void set_on(bool on) = 0;
+
+ protected:
+  ~Radio() = default;
+};
+
+/// A serial line that carries whole packets (dispatch byte, AM header, payload).
+class SerialLine {
+ public:
+  /// Borrows `packet` until Node::serial_sent is called.
+  virtual void send(Bytes packet) = 0;
+  /// While off nothing is received or confirmed; what it is sending may end.
+  virtual void set_on(bool on) = 0;
+
+ protected:
+  ~SerialLine() = default;
+};
+
+class Clock {
+ public:
+  /// 1024 to the second, from when the node started.
+  virtual Ticks now() const = 0;
+
+ protected:
+  ~Clock() = default;
+};
+
+/// News for the application. It may call the node from here.
+class Application {
+ public:
+  virtual void joined(Address address, bool success) = 0;
+  virtual void mote_joined(Address address, const Descriptor& descriptor) = 0;
+  /// `data` is valid until this returns.
+  virtual void received(Address src, uint8_t app_id, Bytes data) = 0;
+  virtual void ack_received(uint8_t app_id, uint16_t seq_num, bool success) = 0;
+  virtual void syn_data_received(ChannelId channel, DataStatus status) = 0;
+
+ protected:
+  ~Application() = default;
+};
+
+}  // namespace firmware
+}  // namespace rubric

@@ -1,0 +1,22 @@
+// Between the codec's enumerators and the numbers of frames.
+#pragma once
+
+#include "codec/generated/rubicon/enums.h"
+
+namespace rubric {
+namespace firmware {
+
+constexpr uint8_t number(rubicon::AmType type) { return static_cast<uint8_t>(type); }
+constexpr uint8_t number(rubicon::Component component) { return static_cast<uint8_t>(component); }
+
+constexpr uint8_t kAmJoin = number(rubicon::AmType::kJoin);
+constexpr uint8_t kAmJoinReply = number(rubicon::AmType::kJoinReply);
+constexpr uint8_t kAmAckJoin = number(rubicon::AmType::kAckJoin);
+constexpr uint8_t kAmNet = number(rubicon::AmType::kNet);
+constexpr uint8_t kAmConfig = number(rubicon::AmType::kConfig);
+
+constexpr size_t kNetHeaderBytes = 12;
+constexpr size_t kAppHeaderBytes = 2;
+
+}  // namespace firmware
+}  // namespace rubric
