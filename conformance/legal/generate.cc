@@ -54,12 +54,13 @@ Traffic generate(std::string_view variant, std::uint64_t seed) {
   traffic.seed = seed;
   for (const Variant* part : chosen) {
     traffic.variants.emplace_back(part->name);
-    traffic.points.insert(traffic.points.end(), part->points.begin(), part->points.end());
+    traffic.decisions.insert(traffic.decisions.end(), part->decisions.begin(),
+                             part->decisions.end());
     traffic.worst = std::max(traffic.worst, part->worst);
   }
-  std::sort(traffic.points.begin(), traffic.points.end());
-  traffic.points.erase(std::unique(traffic.points.begin(), traffic.points.end()),
-                       traffic.points.end());
+  std::sort(traffic.decisions.begin(), traffic.decisions.end());
+  traffic.decisions.erase(std::unique(traffic.decisions.begin(), traffic.decisions.end()),
+                          traffic.decisions.end());
   return traffic;
 }
 

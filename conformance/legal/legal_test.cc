@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <set>
@@ -101,33 +102,47 @@ TEST(Legal, FeaturesAreNotInCommonTraffic) {
   }
 }
 
-TEST(Legal, EveryOpenPointHasAVariantOrAReason) {
-  std::map<int, int> readings;
+std::string readme() {
+  std::ifstream in("conformance/legal/README.md");
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+// Numbers of the decisions about open points of the protocol, 101 and on.
+std::set<int> decisions() {
+  std::set<int> numbers;
+  for (const auto& entry : std::filesystem::directory_iterator("spec/decisions")) {
+    const std::string name = entry.path().filename().string();
+    if (name.substr(0, 2) == "01") numbers.insert(std::stoi(name.substr(0, 4)));
+  }
+  return numbers;
+}
+
+TEST(Legal, EveryDecisionHasAVariantOrAReason) {
+  std::set<int> covered;
   for (const Variant& variant : variants()) {
-    for (const int point : variant.points) {
-      EXPECT_TRUE(point >= 1 && point <= kOpenPoints) << variant.name;
-      ++readings[point];
-    }
+    covered.insert(variant.decisions.begin(), variant.decisions.end());
   }
-  for (const Unobservable& none : unobservable_points()) {
-    EXPECT_EQ(readings.count(none.point), 0u) << none.point;
+  std::set<int> all = covered;
+  for (const WithoutVariant& none : without_variant()) {
+    EXPECT_TRUE(all.insert(none.decision).second) << none.decision;
     EXPECT_FALSE(none.reason.empty());
-    ++readings[none.point];
   }
-  for (int point = 1; point <= kOpenPoints; ++point) EXPECT_GE(readings[point], 1) << point;
+  EXPECT_EQ(all, decisions());
+  const std::string sentence = "cover " + std::to_string(covered.size()) + " of the " +
+                               std::to_string(decisions().size()) + " decisions";
+  EXPECT_THAT(readme(), ::testing::HasSubstr(sentence));
 }
 
 TEST(Legal, ReadmeHasTheTable) {
-  std::ifstream in("conformance/legal/README.md");
-  const std::string readme{std::istreambuf_iterator<char>(in), {}};
+  const std::string text = readme();
   for (const Variant& variant : variants()) {
-    std::string points;
-    for (const int point : variant.points) {
-      points += (points.empty() ? "" : ", ") + std::to_string(point);
+    std::string numbers;
+    for (const int decision : variant.decisions) {
+      numbers += (numbers.empty() ? "" : ", ") + std::to_string(decision);
     }
     const std::string row = "| `" + std::string(variant.name) + "` | " +
-                            (points.empty() ? "-" : points) + " | ";
-    EXPECT_THAT(readme, ::testing::HasSubstr(row + std::string(variant.summary)));
+                            (numbers.empty() ? "-" : numbers) + " | ";
+    EXPECT_THAT(text, ::testing::HasSubstr(row + std::string(variant.summary)));
   }
 }
 

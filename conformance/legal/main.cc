@@ -17,12 +17,13 @@ constexpr int kCannotWrite = 3;
 
 void list() {
   for (const Variant& variant : variants()) {
-    fmt::print("{:<27} {:<9} {}{}\n", variant.name,
-               variant.points.empty() ? "-" : fmt::format("{}", fmt::join(variant.points, ",")),
+    fmt::print("{:<27} {:<11} {}{}\n", variant.name,
+               variant.decisions.empty() ? "-"
+                                         : fmt::format("{}", fmt::join(variant.decisions, ",")),
                variant.summary, variant.worst == Worst::kWeak ? " (weak)" : "");
   }
-  for (const Unobservable& none : unobservable_points()) {
-    fmt::print("point {} has none: {}\n", none.point, none.reason);
+  for (const WithoutVariant& none : without_variant()) {
+    fmt::print("decision {} has none: {}\n", none.decision, none.reason);
   }
 }
 
@@ -57,7 +58,7 @@ int main(int argc, char** argv) {
   app.add_option("--count", count, "Networks of each variant, with seeds that count up")
       ->capture_default_str();
   app.add_option("--out", folder, "Folder for NAME-SEED.pcapng, .json and .app.jsonl");
-  app.add_flag("--list", only_list, "Print the variants with their open points");
+  app.add_flag("--list", only_list, "Print the variants with the decisions they are readings of");
   app.footer("Exit codes: 0 written, 2 usage, 3 cannot be written.");
   try {
     app.parse(argc, argv);

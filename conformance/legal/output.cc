@@ -69,11 +69,12 @@ std::string to_truth_json(const Traffic& traffic) {
   }
   return fmt::format(
       "{{\n  \"schema\": \"rubric.legal/1\",\n  \"variant\": \"{}\",\n  \"variants\": [{}],\n"
-      "  \"points\": [{}],\n  \"seed\": {},\n  \"profile\": \"paper\",\n  \"worst\": \"{}\",\n"
+      "  \"decisions\": [{}],\n  \"seed\": {},\n  \"profile\": \"paper\",\n  \"worst\": \"{}\",\n"
       "  \"options\": {{\"sniffer\": \"{}\", \"start\": \"{}\", \"radio\": {}, \"serial\": {}, "
       "\"well_formed\": {}}},\n  \"packets\": {},\n  \"nodes\": [\n{}\n  ]\n}}\n",
-      traffic.variant, fmt::join(quoted(traffic.variants), ", "), fmt::join(traffic.points, ", "),
-      traffic.seed, traffic.worst == Worst::kPass ? "pass" : "weak",
+      traffic.variant, fmt::join(quoted(traffic.variants), ", "),
+      fmt::join(traffic.decisions, ", "), traffic.seed,
+      traffic.worst == Worst::kPass ? "pass" : "weak",
       traffic.sniffer_complete ? "complete" : "unknown", traffic.cold_start ? "cold" : "unknown",
       traffic.has_radio, traffic.has_serial, traffic.all_well_formed, traffic.packets.size(),
       nodes);

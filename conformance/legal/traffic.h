@@ -56,7 +56,7 @@ enum class Worst : std::uint8_t { kPass, kWeak };
 struct Traffic {
   std::string variant;                ///< As asked for.
   std::vector<std::string> variants;  ///< What is in it; several for `mixed`.
-  std::vector<int> points;            ///< Open points of which it shows a reading.
+  std::vector<int> decisions;         ///< Of spec/decisions: those that it is a reading of.
   std::uint64_t seed = 0;
   Worst worst = Worst::kPass;
   bool sniffer_complete = true;

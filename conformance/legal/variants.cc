@@ -9,8 +9,13 @@
 namespace rubric::legal {
 namespace {
 
-constexpr Unobservable kUnobservable[] = {
-    {24, "No message tells that a node leaves; mote_leaves shows a mote that falls silent."},
+constexpr std::string_view kLater = "It is younger than these variants.";
+constexpr WithoutVariant kWithout[] = {
+    {124, "No message tells that a node leaves; mote_leaves shows a mote that falls silent."},
+    {129, "How many channels a node can have is its own affair; no capture shows one refused."},
+    {130, kLater},
+    {131, kLater},
+    {132, kLater},
 };
 
 void usual(Plan&, Random&) {}
@@ -51,7 +56,7 @@ Loss lose(rubicon::AmType type, std::uint16_t src, std::int64_t until_us) {
   };
 }
 
-std::span<const Unobservable> unobservable_points() { return kUnobservable; }
+std::span<const WithoutVariant> without_variant() { return kWithout; }
 
 const std::vector<Variant>& variants() {
   static const std::vector<Variant> all = [] {

@@ -14,7 +14,7 @@ namespace rubric::legal {
 struct Variant {
   std::string_view name;
   std::string_view summary;
-  std::vector<int> points;      ///< Open points of which it is a reading.
+  std::vector<int> decisions;   ///< Of spec/decisions, 101 to 132: those that it is a reading of.
   void (*configure)(Plan& plan, Random& random);
   bool mixes = false;           ///< May be part of `mixed`.
   Worst worst = Worst::kPass;
@@ -24,13 +24,12 @@ struct Variant {
 const std::vector<Variant>& variants();
 const Variant* find_variant(std::string_view name);
 
-/// An open point of which no variant can show a reading, and why.
-struct Unobservable {
-  int point;
+/// A decision of which no variant shows a reading, and why.
+struct WithoutVariant {
+  int decision;
   std::string_view reason;
 };
-std::span<const Unobservable> unobservable_points();
-inline constexpr int kOpenPoints = 28;
+std::span<const WithoutVariant> without_variant();
 
 /// One island, a sink, three motes with readings, some messages in every direction.
 Plan common_plan(Random& random);

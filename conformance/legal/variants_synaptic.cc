@@ -86,16 +86,16 @@ void faster_clock(Plan& plan, Random&) {
 
 std::vector<Variant> synaptic_variants() {
   return {
-      {"syn_esn_data", "synaptic channels, APPID ESN_DATA", {20}, esn_data, true},
-      {"syn_learning", "synaptic channels, APPID LEARNING", {20}, learning},
-      {"syn_constant", "reliable mode: values that do not change are sent all the same", {20},
+      {"syn_esn_data", "synaptic channels, APPID ESN_DATA", {120}, esn_data, true},
+      {"syn_learning", "synaptic channels, APPID LEARNING", {120}, learning},
+      {"syn_constant", "reliable mode: values that do not change are sent all the same", {120},
        constant},
-      {"syn_power_save", "power-save mode: ticks without a change send nothing", {20}, power_save},
-      {"syn_stop_restart", "one channel stops and starts again; the others keep time", {21},
+      {"syn_power_save", "power-save mode: ticks without a change send nothing", {120}, power_save},
+      {"syn_stop_restart", "one channel stops and starts again; the others keep time", {121},
        stop_restart},
-      {"syn_restart_power_save", "power-save mode: the first tick after a start sends", {20, 21},
+      {"syn_restart_power_save", "power-save mode: the first tick after a start sends", {120, 121},
        restart_power_save},
-      {"syn_restart_shifts", "starting a channel again begins the clock anew", {21},
+      {"syn_restart_shifts", "starting a channel again begins the clock anew", {121},
        restart_shifts, false, Worst::kWeak},
       {"syn_no_phase_shift", "the clock starts without a phase shift", {}, no_phase_shift, false,
        Worst::kWeak},
