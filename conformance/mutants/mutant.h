@@ -23,9 +23,11 @@ using Mutants = std::vector<Mutant>;
 Mutants network_mutants();       ///< N1 to N5.
 Mutants island_mutants();        ///< N6 to N9.
 Mutants control_mutants();       ///< N10 to N12.
-Mutants mote_join_mutants();     ///< J, at motes.
+Mutants mote_join_mutants();     ///< J, at motes: requests, timer, ends.
+Mutants mote_accept_mutants();   ///< J, at motes: replies and their ack_join.
 Mutants sink_join_mutants();     ///< J, at sinks.
-Mutants transport_mutants();     ///< T.
+Mutants delivery_mutants();      ///< T1, T2: to and from applications.
+Mutants transport_mutants();     ///< T2 to T4: acks.
 Mutants synaptic_mutants();      ///< S1 to S3.
 Mutants channel_life_mutants();  ///< S4 to S6.
 /// All of these, and the flaws of release 1.0 (conformance/flaws).

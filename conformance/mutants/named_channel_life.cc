@@ -232,10 +232,12 @@ Mutants named_mutants() {
   Mutants out;
   append(out, release_mutants());
   append(out, mote_join_mutants());
+  append(out, mote_accept_mutants());
   append(out, sink_join_mutants());
   append(out, network_mutants());
   append(out, island_mutants());
   append(out, control_mutants());
+  append(out, delivery_mutants());
   append(out, transport_mutants());
   append(out, synaptic_mutants());
   append(out, channel_life_mutants());

@@ -1,4 +1,4 @@
-// Mistakes in Connectionless and Rubicon ACK.
+// Mistakes in Rubicon ACK: which messages are acked, how, and what their sender makes of it.
 #include <algorithm>
 
 #include "conformance/machine/transport.h"
@@ -9,7 +9,6 @@ namespace rubric::mutants {
 namespace {
 
 using machine::AckReceived;
-using machine::Received;
 using machine::Send;
 using machine::TimerKind;
 
@@ -21,98 +20,6 @@ bool is_ack_sent(const Moment& moment, const Transmit& frame) {
 bool is_for_us(const Moment& moment, const Frame& frame) {
   return is_net(frame) && get(frame, net::kDestPid) == own(moment).pid &&
          get(frame, net::kDestDevid) == own(moment).devid;
-}
-
-void add_delivery(Mutants& out) {
-  out.push_back({"no_trans_id",
-                 "A message of an application has TRANSID 0.",
-                 {req::kT1Wrap, req::kN1Seq},
-                 on_sent([](Moment& moment, const Action&, Transmit& frame) {
-                   if (is_send(moment, frame)) frame.payload[net::kTransId] = 0;
-                   return Fate::kKeep;
-                 })});
-  out.push_back({"app_id_of_another",
-                 "A message of an application has APPID APPLICATION_MD.",
-                 {req::kT1Wrap},
-                 on_sent([](Moment& moment, const Action&, Transmit& frame) {
-                   if (is_send(moment, frame)) frame.payload[net::kAppId] = 8;
-                   return Fate::kKeep;
-                 })});
-  out.push_back({"ids_swapped",
-                 "TRANSID and APPID are in the wrong order.",
-                 {req::kT1Wrap},
-                 on_sent([](Moment& moment, const Action&, Transmit& frame) {
-                   if (is_send(moment, frame)) {
-                     std::swap(frame.payload[net::kTransId], frame.payload[net::kAppId]);
-                   }
-                   return Fate::kKeep;
-                 })});
-  out.push_back({"delivered_with_ids",
-                 "What is delivered begins with TRANSID and APPID.",
-                 {req::kT1Deliver, req::kN5Deliver, req::kN6Deliver},
-                 on_told_of<Received>([](Moment& moment, Received& received) {
-                   const Frame* const frame = moment.heard(am::kNet);
-                   const bool whole = frame != nullptr && is_net(*frame);
-                   if (whole) received.data = frame->payload.from(net::kTransId);
-                   return Fate::kKeep;
-                 })});
-  out.push_back({"delivered_without_last_byte",
-                 "The last byte of a delivered message is lost.",
-                 {req::kT1Deliver, req::kN5Deliver},
-                 on_told_of<Received>([](Moment&, Received& received) {
-                   if (!received.data.empty()) {
-                     received.data = received.data.first(received.data.size() - 1);
-                   }
-                   return Fate::kKeep;
-                 })});
-  out.push_back({"delivered_to_one_application",
-                 "Everything is delivered to MOCKUP.",
-                 {req::kT1Deliver},
-                 on_told_of<Received>([](Moment&, Received& received) {
-                   received.app_id = 5;
-                   return Fate::kKeep;
-                 })});
-  out.push_back({"delivered_from_the_sink",
-                 "Every message seems to come from the sink.",
-                 {req::kT1Deliver, req::kN5Deliver, req::kN6Deliver},
-                 on_told_of<Received>([](Moment& moment, Received& received) {
-                   received.src = {own(moment).pid, 1};
-                   return Fate::kKeep;
-                 })});
-  out.push_back({"delivered_twice",
-                 "Every message is delivered twice.",
-                 {req::kT1Deliver, req::kT2Deliver, req::kN5Deliver, req::kN2InOrder},
-                 on_told_of<Received>([](Moment&, Received&) { return Fate::kTwice; })});
-  out.push_back({"unknown_app_delivered",
-                 "A message for an unknown APPID is delivered to MOCKUP.",
-                 {req::kT1Unknown},
-                 on_heard([](Moment&, Forged& forged) {
-                   const bool connless =
-                       is_net(forged.frame) && forged.bytes[net::kTransId] == component::kConnless;
-                   std::uint8_t& app_id = forged.bytes[net::kAppId];
-                   if (connless && !machine::is_known_app(app_id)) app_id = 5;
-                   return true;
-                 })});
-  out.push_back({"unknown_trans_delivered",
-                 "An unknown TRANSID is taken for CONNLESS.",
-                 {req::kT1Unknown},
-                 on_heard([](Moment&, Forged& forged) {
-                   if (is_net(forged.frame) && forged.bytes[net::kTransId] > 13) {
-                     forged.bytes[net::kTransId] = component::kConnless;
-                   }
-                   return true;
-                 })});
-  out.push_back({"unknown_kills",
-                 "After an unknown TRANSID or APPID a node hears no more.",
-                 {req::kT1Unknown},
-                 remembering<bool>([](Moment& moment, bool& dead) {
-                   if (dead && moment.heard(am::kNet) != nullptr) return moment.nothing();
-                   moment.honest();
-                   for (const Action& action : moment.actions.all()) {
-                     dead = dead || (action.what == Action::What::kIgnored &&
-                                     action.requirement == req::kT1Unknown);
-                   }
-                 })});
 }
 
 void add_acks(Mutants& out) {
@@ -416,7 +323,6 @@ void add_sender(Mutants& out) {
 
 Mutants transport_mutants() {
   Mutants out;
-  add_delivery(out);
   add_acks(out);
   add_needless_acks(out);
   add_sender(out);
