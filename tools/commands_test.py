@@ -292,10 +292,18 @@ class Explain(unittest.TestCase):
         text = {}
         for rule, negative, name in sorted(rules):
             if rule not in text:
-                text[rule] = rubric("explain", rule)[1].decode().split("Cases:")[1]
+                text[rule] = rubric("explain", rule, "--cases")[1].decode().split("Cases:")[1]
             positives, _, negatives = text[rule].partition("negative:")
             found = negatives if negative else positives
             self.assertIn(name, re.findall(r"(\S+) \(", " ".join(found.split())), rule)
+
+    def test_long_lists_of_cases_are_cut(self):
+        out = rubric("explain", "J4-SEQ")[1].decode()
+        more = re.search(r"(\d+) more: rubric explain J4-SEQ --cases", " ".join(out.split()))
+        whole = rubric("explain", "J4-SEQ", "--cases")[1].decode()
+        self.assertNotIn(" more: ", whole)
+        self.assertGreater(whole.count(".rtr"), int(more[1]))
+        self.assertLess(len(out.splitlines()), 20)
 
     def test_frames(self):
         code, out, _ = rubric("explain", *CONFIG_PACKET.decode().split())
@@ -312,6 +320,8 @@ class Explain(unittest.TestCase):
         for args, says in [(["net_mesg"], "did you mean 'net_msg'?"),
                            (["NET_MSG"], "did you mean 'net_msg'?"),
                            (["J4-SEK"], "did you mean 'J4-SEQ'?"),
+                           (["N99"], "groups of rules are J1, "),
+                           (["j4-none"], "rules of J4 are J4-ACK, "),
                            (["WIRES"], "did you mean 'WIRE'?"),
                            (["99887766"], "begin like no frame"),
                            (["--framing", "sf", "xyz"], "expected hex digits"),
@@ -319,6 +329,21 @@ class Explain(unittest.TestCase):
             code, out, err = rubric("explain", *args)
             self.assertEqual((code, out), (2, b""), args)
             self.assertIn(says, err)
+
+
+class Simulate(unittest.TestCase):
+    def test_a_seed_has_no_sign(self):
+        for seed in ("-1", "0x7", "1.5"):
+            code, _, err = rubric("simulate", "--seconds", "1", "--seed", seed)
+            self.assertEqual(code, 2, seed)
+            self.assertIn(f"--seed: expected a number of 0 or more, given '{seed}'", err)
+        self.assertEqual(rubric("simulate", "--seconds", "1", "--seed", str(2**64 - 1))[0], 0)
+
+    def test_output_that_cannot_be_written(self):
+        for target, why in (("/nonexistent/log.rtr", "No such file"), ("/dev/full", "No space")):
+            code, _, err = rubric("simulate", "--seconds", "1", "--out-rtr", target)
+            self.assertEqual(code, 3)
+            self.assertIn(f"rubric: cannot write {target}: {why}", err)
 
 
 class Messages(unittest.TestCase):

@@ -18,14 +18,15 @@
 #include "codec/generated/requirements_table.h"
 #include "conformance/explorer/search.h"
 #include "conformance/mutants/generated.h"
+#include "conformance/report/text.h"
 #include "tools/cli/exit_codes.h"
+#include "tools/cli/output.h"
 #include "tools/cli/usage.h"
-#include "tools/layout/json_text.h"
 
 namespace rubric::tools {
 namespace {
 
-using layout::json_string;
+using report::json_string;
 
 constexpr std::size_t kRules = std::size(kRequirements);
 
@@ -250,8 +251,7 @@ int run(const Options& options) {
     return cli::kVerdictInput;
   }
   const std::string text = options.format == "json" ? json_of(coverage) : text_of(coverage);
-  std::fwrite(text.data(), 1, text.size(), stdout);
-  if (std::fflush(stdout) != 0) return cli::kVerdictBroken;
+  if (!cli::write_file("-", text)) return cli::kVerdictBroken;
   return coverage.problems.empty() ? cli::kVerdictExpected : cli::kVerdictFailed;
 }
 

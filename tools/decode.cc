@@ -131,6 +131,7 @@ class Decode {
     const bool noted = options_.strict && frame_.decoded.note_count() != 0;
     malformed_ = malformed_ || frame_.malformed() || noted;
     record_.index = index_++;
+    record_.number = source.number;
     record_.frame = &frame_;
     record_.interface_name = source.interface_name;
     record_.time_ns = packet.time_ns;

@@ -1,6 +1,7 @@
 #include "tools/explain.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
@@ -11,10 +12,10 @@
 #include "codec/generated/tinyos/tables.h"
 #include "codec/reflect/fault_text.h"
 #include "codec/reflect/registry.h"
+#include "codec/reflect/suggest.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/input.h"
 #include "tools/cli/output.h"
-#include "tools/cli/suggest.h"
 #include "tools/layout/explain_frame.h"
 #include "tools/layout/explain_rule.h"
 #include "tools/layout/explain_type.h"
@@ -29,6 +30,7 @@ struct Options {
   cli::InputOptions input;  // The protocol, and the message that bytes are.
   std::vector<std::string> words;
   std::string framing = "auto";
+  bool all_cases = false;
 };
 
 constexpr const char* kFooter =
@@ -43,12 +45,13 @@ std::vector<const Protocol*> layers(const Protocol& protocol) {
 }
 
 // Empty if nothing has this name.
-std::string explain_name(const Protocol& protocol, const std::string& name) {
+std::string explain_name(const Protocol& protocol, const std::string& name, bool all_cases) {
   std::string out;
   const auto add = [&](std::string text) { out += (out.empty() ? "" : "\n") + std::move(text); };
   std::vector<const Protocol*> all = reflect::protocols();
   all.push_back(&tinyos::tables::kProtocol);
-  for (const ReqId rule : layout::rules_named(name)) add(layout::explain_rule(all, rule));
+  const auto list = all_cases ? layout::CaseList::kWhole : layout::CaseList::kShort;
+  for (const ReqId rule : layout::rules_named(name)) add(layout::explain_rule(all, rule, list));
   for (const Protocol* layer : layers(protocol)) {
     if (const reflect::Type* type = reflect::find_type(*layer, name)) {
       add(layout::explain_type(*layer, *type));
@@ -87,14 +90,34 @@ std::string in_case(std::string text, int (*to_case)(int)) {
   return text;
 }
 
+// What rules there are, for a name that looks like one's: those of its group, else the groups.
+std::string rules_like(const std::string& name) {
+  const std::string group = in_case(name.substr(0, name.find('-')), std::toupper);
+  const bool letter_and_number = group.size() > 1 && std::isalpha(group[0]) != 0 &&
+                                 std::all_of(group.begin() + 1, group.end(), [](unsigned char c) {
+                                   return std::isdigit(c) != 0;
+                                 });
+  const std::vector<std::string> groups = layout::rule_groups();
+  std::vector<std::string> rules;
+  for (const ReqId rule : layout::rules_named(group)) {
+    rules.emplace_back(reflect::requirement(rule).id);
+  }
+  if (group != "WIRE" && !rules.empty()) {
+    return fmt::format("; rules of {} are {}", group, fmt::join(rules, ", "));
+  }
+  if (!letter_and_number) return "";
+  return fmt::format("; groups of rules are {}", fmt::join(groups, ", "));
+}
+
 [[noreturn]] void nothing_of(const std::string& name, const Protocol& protocol) {
   const std::vector<std::string> names = all_names(protocol);
-  std::string hint = cli::did_you_mean(name, names);
-  if (hint.empty()) hint = cli::did_you_mean(in_case(name, std::tolower), names);
-  if (hint.empty()) hint = cli::did_you_mean(in_case(name, std::toupper), names);
+  std::string hint = reflect::did_you_mean(name, names);
+  if (hint.empty()) hint = reflect::did_you_mean(in_case(name, std::tolower), names);
+  if (hint.empty()) hint = reflect::did_you_mean(in_case(name, std::toupper), names);
   throw CLI::ValidationError(
-      "X", fmt::format("nothing is called '{}'{}; 'rubric messages' lists the messages", name,
-                       hint));
+      "X", fmt::format("nothing is called '{}'{}{}; 'rubric messages' lists the messages, "
+                       "'rubric coverage' the rules of behaviour",
+                       name, hint, rules_like(name)));
 }
 
 bool parse_frame(const std::vector<std::string>& words, std::vector<std::uint8_t>& bytes) {
@@ -127,10 +150,10 @@ int run(const Options& options) {
   std::string text;
   int code = cli::kExitClean;
   std::vector<std::uint8_t> bytes;
-  if (!as_bytes) text = explain_name(protocol, options.words.front());
+  if (!as_bytes) text = explain_name(protocol, options.words.front(), options.all_cases);
   if (!text.empty()) {
     for (std::size_t i = 1; i < options.words.size(); ++i) {
-      const std::string more = explain_name(protocol, options.words[i]);
+      const std::string more = explain_name(protocol, options.words[i], options.all_cases);
       if (more.empty()) nothing_of(options.words[i], protocol);
       text += '\n' + more;
     }
@@ -163,6 +186,7 @@ void add_explain(CLI::App& app) {
                   "byte), radio (802.15.4)")
       ->check(CLI::IsMember({"auto", "sf", "hdlc", "radio"}))
       ->capture_default_str();
+  sub->add_flag("--cases", options->all_cases, "All golden traces that name a rule, however many");
   sub->callback([options] {
     const int code = run(*options);
     if (code != cli::kExitClean) cli::exit_with(code);

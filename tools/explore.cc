@@ -5,24 +5,24 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <cstdio>
-#include <cstring>
 #include <memory>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "codec/reflect/suggest.h"
 #include "conformance/explorer/counterexample.h"
 #include "conformance/explorer/search.h"
 #include "conformance/flaws/flaws.h"
 #include "conformance/generated/profiles.h"
+#include "conformance/report/text.h"
 #include "conformance/trace/print.h"
 #include "tools/cli/exit_codes.h"
-#include "tools/cli/suggest.h"
+#include "tools/cli/input.h"
+#include "tools/cli/output.h"
 #include "tools/cli/usage.h"
-#include "tools/layout/json_text.h"
 
 namespace rubric::tools {
 namespace {
@@ -31,7 +31,8 @@ using explorer::Mask;
 using explorer::Progress;
 using explorer::Result;
 using explorer::Scope;
-using layout::json_string;
+using report::json_string;
+using report::json_string_or_null;
 
 struct Options {
   explorer::Options network;
@@ -60,27 +61,26 @@ std::string footer() {
          "Time is abstract: a timer that is set may fire at any moment. Where nothing is broken,\n"
          "the run also fails if something that must be possible was never reached.\n"
          "Exit codes: 0 all properties hold, 1 one is broken or something was never reached,\n"
-         "2 the trace cannot be written, 3 a limit was met first, 64 usage.";
+         "2 the trace cannot be written, 3 a limit was met first or the flaw never acted,\n"
+         "64 usage.";
 }
 
-[[noreturn]] void usage(const std::string& what) { throw CLI::ValidationError(what); }
+[[noreturn]] void usage(const std::string& what) {
+  throw CLI::ValidationError(what);
+}
 
 template <class Table>
 [[noreturn]] void unknown(const char* what, const std::string& word, const Table& table) {
   std::vector<std::string> names;
   for (const auto& entry : table) names.emplace_back(entry.name);
-  usage(fmt::format("unknown {} '{}'{}", what, word, cli::did_you_mean(word, names)));
+  usage(fmt::format("unknown {} '{}'{}", what, word, reflect::did_you_mean(word, names)));
 }
 
 // What the options' words mean.
 explorer::Options resolve(const Options& options) {
   explorer::Options network = options.network;
-  const auto profile =
-      std::find_if(machine::kProfiles.begin(), machine::kProfiles.end(),
-                   [&](const auto& p) { return p.name == options.profile; });
-  if (profile == machine::kProfiles.end()) {
-    unknown("profile", options.profile, machine::kProfiles);
-  }
+  const machine::NamedProfile* const profile = machine::find_profile(options.profile);
+  if (profile == nullptr) unknown("profile", options.profile, machine::kProfiles);
   network.profile = profile->profile;
   if (options.requests != 0) {
     network.profile.join_requests_max = static_cast<std::uint8_t>(options.requests);
@@ -133,16 +133,38 @@ std::vector<std::string> goal_names(Mask mask) {
 struct Verdict {
   const char* text = "";
   int exit_code = cli::kVerdictExpected;
-  Mask never = 0;  ///< Goals that should have been reached.
+  Mask never = 0;     ///< Goals that should have been reached.
+  std::string limit;  ///< Why nothing was decided.
 };
 
-Verdict judge(const explorer::Options& network, const Result& result) {
-  Verdict verdict;
-  if (result.violation) return {"broken", cli::kVerdictFailed, 0};
-  if (!result.complete) return {"inconclusive", cli::kVerdictInconclusive, 0};
-  verdict.never = explorer::expected_goals(network) & ~result.goals;
-  if (verdict.never != 0) return {"vacuous", cli::kVerdictFailed, verdict.never};
-  return {"holds", cli::kVerdictExpected, 0};
+// What could be given so that more happens in the network.
+std::string ways_to_widen(const explorer::Options& network) {
+  std::vector<std::string> ways;
+  const auto way = [&](bool open, const char* words) {
+    if (open) ways.emplace_back(words);
+  };
+  way(!network.loss, "--loss");
+  way(!network.dup, "--dup");
+  way(!network.reorder, "--reorder");
+  way(network.calls < 2, "--calls 2");
+  way(network.motes < 2, "--motes 2");
+  way(network.sinks < 2, "--sinks 2");
+  way(network.scope != Scope::kFull, "--scope full");
+  if (ways.empty()) return "a larger network";
+  return fmt::format("{}", fmt::join(ways, ", "));
+}
+
+Verdict judge(const Options& options, const explorer::Options& network, const Result& result) {
+  if (result.violation) return {"broken", cli::kVerdictFailed, 0, {}};
+  if (!result.complete) return {"inconclusive", cli::kVerdictInconclusive, 0, result.limit};
+  if (!options.flaw.empty() && !result.step_acted) {
+    return {"inconclusive", cli::kVerdictInconclusive, 0,
+            fmt::format("flaw {} never acted in this network; widen it by some of: {}",
+                        options.flaw, ways_to_widen(network))};
+  }
+  const Mask never = explorer::expected_goals(network) & ~result.goals;
+  if (never != 0) return {"vacuous", cli::kVerdictFailed, never, {}};
+  return {"holds", cli::kVerdictExpected, 0, {}};
 }
 
 // That two different states have the same fingerprint, and one is so left out: at most this.
@@ -155,37 +177,42 @@ std::string first_broken(const Result& result) {
   return property_names(result.violation->violated).front();
 }
 
-void print_text(const Result& result, const Verdict& verdict, std::FILE* out) {
+std::string text_of(const Result& result, const Verdict& verdict) {
   const Progress& p = result.progress;
-  fmt::print(out, "states       {}\ntransitions  {}\ndepth        {}\n", p.states, p.transitions,
-             p.depth);
   const double seconds = std::max(p.seconds, 1e-9);
-  fmt::print(out, "time         {:.2f} s: {:.2f} million states/s, {:.2f} million transitions/s\n",
-             p.seconds, static_cast<double>(p.states) / seconds / 1e6,
-             static_cast<double>(p.transitions) / seconds / 1e6);
-  fmt::print(out, "memory       {:.1f} MB, {} bytes a state; ",
-             static_cast<double>(result.memory_bytes) / 1e6, result.memory_per_state_bytes);
-  fmt::print(out, "{} states of single nodes, {} frames\n", result.node_states, result.frames);
-  fmt::print(out, "left out     a state at most with probability {:.1e}\n",
-             omission_probability(p.states));
-  fmt::print(out, "reached      {}\n", fmt::join(goal_names(result.goals), ", "));
+  std::string out = fmt::format("states       {}\ntransitions  {}\ndepth        {}\n", p.states,
+                                p.transitions, p.depth);
+  const auto to = std::back_inserter(out);
+  fmt::format_to(to,
+                 "time         {:.2f} s: {:.2f} million states/s, {:.2f} million transitions/s\n",
+                 p.seconds, static_cast<double>(p.states) / seconds / 1e6,
+                 static_cast<double>(p.transitions) / seconds / 1e6);
+  fmt::format_to(to,
+                 "memory       {:.1f} MB, {} bytes a state; {} states of single nodes, "
+                 "{} frames\n",
+                 static_cast<double>(result.memory_bytes) / 1e6, result.memory_per_state_bytes,
+                 result.node_states, result.frames);
+  fmt::format_to(to, "left out     a state at most with probability {:.1e}\n",
+                 omission_probability(p.states));
+  fmt::format_to(to, "reached      {}\n", fmt::join(goal_names(result.goals), ", "));
   if (result.known_weak_states != 0) {
-    fmt::print(out,
-               "known        in {} states at rest a rebooted mote cannot join, since its sink\n"
-               "             still lists it (spec/membership.md)\n",
-               result.known_weak_states);
+    fmt::format_to(to,
+                   "known        in {} states at rest a rebooted mote cannot join, since its sink\n"
+                   "             still lists it (spec/membership.md)\n",
+                   result.known_weak_states);
   }
   for (const auto& goal : explorer::goals()) {
     if ((verdict.never & explorer::bit(goal.goal)) == 0) continue;
-    fmt::print(out, "never        {}: {}\n", goal.name, goal.sentence);
+    fmt::format_to(to, "never        {}: {}\n", goal.name, goal.sentence);
   }
-  if (result.violation) {
-    for (const auto& property : explorer::properties()) {
-      if ((result.violation->violated & explorer::bit(property.property)) == 0) continue;
-      fmt::print(out, "broken       {}: {}\n", property.name, property.sentence);
-    }
+  for (const auto& property : explorer::properties()) {
+    const Mask broken = result.violation ? result.violation->violated : 0;
+    if ((broken & explorer::bit(property.property)) == 0) continue;
+    fmt::format_to(to, "broken       {}: {}\n", property.name, property.sentence);
   }
-  fmt::print(out, "verdict      {}{}{}\n", verdict.text, *result.limit ? ": " : "", result.limit);
+  fmt::format_to(to, "verdict      {}{}{}\n", verdict.text, verdict.limit.empty() ? "" : ": ",
+                 verdict.limit);
+  return out;
 }
 
 std::string json_list(const std::vector<std::string>& names) {
@@ -194,37 +221,24 @@ std::string json_list(const std::vector<std::string>& names) {
   return "[" + text + "]";
 }
 
-void print_json(const Options& options, const Result& result, const Verdict& verdict,
-                const std::string& trace, std::FILE* out) {
+std::string json_of(const Options& options, const Result& result, const Verdict& verdict,
+                    const std::string& trace) {
   const Progress& p = result.progress;
   const Mask broken = result.violation ? result.violation->violated : 0;
-  fmt::print(out, "{{\"schema\": \"rubric.explore/1\", \"verdict\": \"{}\",\n", verdict.text);
-  fmt::print(out, " \"profile\": {}, \"flaw\": {}, \"limit\": {},\n", json_string(options.profile),
-             options.flaw.empty() ? "null" : json_string(options.flaw),
-             *result.limit ? json_string(result.limit) : "null");
-  fmt::print(out, " \"broken\": {},\n \"reached\": {},\n \"never\": {},\n",
-             json_list(property_names(broken)), json_list(goal_names(result.goals)),
-             json_list(goal_names(verdict.never)));
-  fmt::print(out, " \"states\": {}, \"transitions\": {}, \"depth\": {}, \"seconds\": {:.3f},\n",
-             p.states, p.transitions, p.depth, p.seconds);
-  fmt::print(out, " \"memory_bytes\": {}, \"memory_per_state_bytes\": {},\n", result.memory_bytes,
-             result.memory_per_state_bytes);
-  fmt::print(out, " \"node_states\": {}, \"frames\": {}, \"known_weak_states\": {},\n",
-             result.node_states, result.frames, result.known_weak_states);
-  fmt::print(out, " \"omission_probability\": {:e}, \"trace\": {}}}\n",
-             omission_probability(p.states), trace.empty() ? "null" : json_string(trace));
-}
-
-// False, having said why, when the file does not take the text. "-" is stdout.
-bool write_file(const std::string& path, const std::string& text) {
-  std::FILE* const file = path == "-" ? stdout : std::fopen(path.c_str(), "wb");
-  bool good = file != nullptr && std::fwrite(text.data(), 1, text.size(), file) == text.size();
-  const int error = errno;
-  if (file != nullptr && (file == stdout ? std::fflush(file) : std::fclose(file)) != 0) {
-    good = false;
-  }
-  if (!good) fmt::print(stderr, "rubric: cannot write {}: {}\n", path, std::strerror(error));
-  return good;
+  return fmt::format(
+      "{{\"schema\": \"rubric.explore/1\", \"verdict\": \"{}\",\n"
+      " \"profile\": {}, \"flaw\": {}, \"limit\": {},\n"
+      " \"broken\": {},\n \"reached\": {},\n \"never\": {},\n"
+      " \"states\": {}, \"transitions\": {}, \"depth\": {}, \"seconds\": {:.3f},\n"
+      " \"memory_bytes\": {}, \"memory_per_state_bytes\": {},\n"
+      " \"node_states\": {}, \"frames\": {}, \"known_weak_states\": {},\n"
+      " \"omission_probability\": {:e}, \"trace\": {}}}\n",
+      verdict.text, json_string(options.profile), json_string_or_null(options.flaw),
+      json_string_or_null(verdict.limit), json_list(property_names(broken)),
+      json_list(goal_names(result.goals)), json_list(goal_names(verdict.never)), p.states,
+      p.transitions, p.depth, p.seconds, result.memory_bytes, result.memory_per_state_bytes,
+      result.node_states, result.frames, result.known_weak_states, omission_probability(p.states),
+      json_string_or_null(trace));
 }
 
 // A line on stderr that is drawn over, twice a second; nothing where that is no terminal.
@@ -263,27 +277,28 @@ void run(const Options& options) {
   const Result result =
       explorer::explore(*nodes, [&](const Progress& progress) { line.show(progress); });
   line.clear();
-  const Verdict verdict = judge(nodes->options(), result);
+  const Verdict verdict = judge(options, nodes->options(), result);
   std::string text;
   if (result.violation) {
     text = trace_text(*nodes, options, *result.violation, "explore." + first_broken(result));
   }
   bool good = true;
-  const bool json = options.format == "json";
   const bool in_file = !options.out.empty() && options.out != "-";
-  if (!text.empty() && in_file) good = write_file(options.out, text);
+  if (!text.empty() && in_file) good = cli::write_file(options.out, text);
   if (result.known_weakness && !options.weakness_out.empty()) {
     const std::string weakness =
         trace_text(*nodes, options, *result.known_weakness, "explore.known_weakness");
-    good = write_file(options.weakness_out, weakness) && good;
+    good = cli::write_file(options.weakness_out, weakness) && good;
   }
-  if (json) {
-    print_json(options, result, verdict, text, stdout);
+  // A trace on stdout stands alone there, so that it can be given on.
+  const bool trace_alone = options.format == "text" && !text.empty() && !in_file;
+  if (options.format == "json") {
+    good = cli::write_file("-", json_of(options, result, verdict, text)) && good;
+  } else if (trace_alone) {
+    fmt::print(stderr, "{}", text_of(result, verdict));
+    good = cli::write_file("-", text) && good;
   } else {
-    // A trace on stdout stands alone there, so that it can be given on.
-    const bool shares = !text.empty() && !in_file;
-    print_text(result, verdict, shares ? stderr : stdout);
-    if (shares) good = write_file("-", text) && good;
+    good = cli::write_file("-", text_of(result, verdict)) && good;
   }
   if (!good) cli::exit_with(cli::kVerdictBroken);
   if (verdict.exit_code != cli::kVerdictExpected) cli::exit_with(verdict.exit_code);
@@ -318,6 +333,7 @@ void add_bounds(CLI::App& sub, Options& options) {
   sub.add_option("--acks", options.acks, "ack_joins of a join; default: the profile's")
       ->check(CLI::Range(1, 20));
   sub.add_option("--max-states", n.states_max, "Stop, inconclusive, at so many; 0: never")
+      ->check(cli::whole_number())
       ->capture_default_str();
   sub.add_flag("--exact", n.exact, "Keep apart states that differ in nothing that matters");
   n.threads = std::max(1U, std::thread::hardware_concurrency());

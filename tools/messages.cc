@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <memory>
 
+#include "conformance/report/text.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/input.h"
 #include "tools/cli/output.h"
-#include "tools/layout/json_text.h"
 #include "tools/layout/reach.h"
 #include "tools/layout/table.h"
 #include "tools/layout/type_text.h"
@@ -17,7 +17,7 @@
 namespace rubric::tools {
 namespace {
 
-using layout::json_string;
+using report::json_string;
 using layout::Reach;
 using reflect::Protocol;
 using reflect::Type;
@@ -78,8 +78,8 @@ std::string json(const Reach& reach) {
   }
   std::string out = fmt::format(R"({{"in":{},"field":{})", json_string(reach.parent->id),
                                 json_string(reach.field->name));
-  out += ",\"if\":" + layout::json_string_or_null(reach.condition);
-  out += ",\"key\":" + layout::json_string_or_null(reach.key);
+  out += ",\"if\":" + report::json_string_or_null(reach.condition);
+  out += ",\"key\":" + report::json_string_or_null(reach.key);
   return out + fmt::format(R"(,"values":[{}],"otherwise":{}}})", fmt::join(reach.values, ","),
                            reach.otherwise);
 }

@@ -2,9 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <memory>
 #include <optional>
 #include <string>
@@ -17,6 +15,8 @@
 #include "conformance/simulator/trace_recorder.h"
 #include "conformance/trace/print.h"
 #include "tools/cli/exit_codes.h"
+#include "tools/cli/input.h"
+#include "tools/cli/output.h"
 
 namespace rubric::tools {
 namespace {
@@ -46,19 +46,6 @@ std::string footer() {
          "  rubric simulate --scenario timeline --out-pcapng run.pcapng --out-rtr run.rtr\n"
          "  rubric simulate --motes 12 --sinks 2 --loss 0.1 --seed 7 --seconds 60 --out-rtr -\n"
          "Exit codes: 0 done, 2 usage, 3 output cannot be written.";
-}
-
-// False, having said why, when the file does not take the text. "-" is stdout.
-bool write_file(const std::string& path, const std::string& text) {
-  std::FILE* const file = path == "-" ? stdout : std::fopen(path.c_str(), "wb");
-  bool good = file != nullptr;
-  if (good) good = std::fwrite(text.data(), 1, text.size(), file) == text.size();
-  if (file != nullptr && std::fflush(file) != 0) good = false;
-  const int error = errno;
-  if (file != nullptr && file != stdout && std::fclose(file) != 0) good = false;
-  if (good || (file == stdout && error == EPIPE)) return true;
-  fmt::print(stderr, "rubric: cannot write {}: {}\n", path, std::strerror(error));
-  return false;
 }
 
 std::string summary(const Statistics& s) {
@@ -91,8 +78,8 @@ void run(const Options& options) {
   simulator::Simulation simulation(std::move(network), recorders);
   simulation.run_until(length_us);
   bool good = true;
-  if (log) good = write_file(options.rtr, trace::print(log->file()));
-  if (capture) good = write_file(options.pcapng, capture->finish()) && good;
+  if (log) good = cli::write_file(options.rtr, trace::print(log->file()));
+  if (capture) good = cli::write_file(options.pcapng, capture->finish()) && good;
   const bool taken = options.rtr == "-" || options.pcapng == "-";
   fmt::print(taken ? stderr : stdout, "{}", summary(simulation.statistics()));
   if (!good) cli::exit_with(cli::kExitInput);
@@ -120,6 +107,7 @@ void add_simulate(CLI::App& app) {
                     ->check(CLI::Range(std::size_t{0}, kSinksMax))
                     ->capture_default_str();
   sub->add_option("--seed", options->network.seed, "Decides all that is left to chance")
+      ->check(cli::whole_number())
       ->capture_default_str();
   sub->add_option("--loss", options->network.loss,
                   "Probability that a receiver misses a radio frame")

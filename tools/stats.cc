@@ -34,7 +34,7 @@ int run(const Options& options) {
   const cli::InputResult result =
       cli::read_packets(options.input, [&](const Packet& packet, const cli::Source& source) {
         decoder.decode(packet, frame);
-        counters.take(frame, {source.file, source.interface_name, index++});
+        counters.take(frame, {source.file, source.interface_name, index++, source.number});
         return true;
       });
   cli::Output output;

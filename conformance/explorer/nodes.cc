@@ -130,10 +130,37 @@ machine::Event Nodes::event_of(const machine::State& state, const Monitor& monit
   }
 }
 
+// The same state, the same frames, and the same history by what the application was told.
+bool Nodes::same_as_machine(const NodeState& before, const machine::Event& event,
+                            const NodeState& after, const machine::Actions& actions) const {
+  NodeState honest = before;
+  machine::Actions right;
+  machine::step(honest.state, 0, event, right);
+  const auto same_frame = [](const machine::Transmit& a, const machine::Transmit& b) {
+    return key_of(a) == key_of(b);
+  };
+  if (honest.state != after.state ||
+      !std::equal(right.transmits().begin(), right.transmits().end(), actions.transmits().begin(),
+                  actions.transmits().end(), same_frame)) {
+    return false;
+  }
+  Noted noted;
+  NodeState given = before;
+  observe(honest.monitor, {options_, before.state, event, right, honest.state}, noted);
+  Noted given_noted;
+  observe(given.monitor, {options_, before.state, event, actions, after.state}, given_noted);
+  return honest.monitor == given.monitor && noted.violated == given_noted.violated &&
+         noted.goals == given_noted.goals;
+}
+
 void Nodes::step(NodeState& node, const machine::Event& event, Outcome& outcome) {
-  const machine::State before = node.state;
+  const NodeState old = node;
+  const machine::State& before = old.state;
   machine::Actions actions;
   options_.step(node.state, 0, event, actions);
+  if (options_.step != machine::step && !step_acted_) {
+    step_acted_ = !same_as_machine(old, event, node, actions);
+  }
   const auto* done = std::get_if<machine::SendDone>(&event);
   if (done != nullptr && done->link == Link::kRadio) node.monitor.on_air = 0;
   Noted noted;

@@ -94,6 +94,9 @@ class Nodes {
   std::size_t states() const { return states_.size(); }
   std::size_t frames() const { return frames_.size() - 1; }
   std::size_t memory_bytes() const;
+  /// Whether the given step ever did something that the machine's own would not have done, as far
+  /// as anybody could see it. False where the two are the same.
+  bool step_acted() const { return step_acted_; }
   /// Whether a table is full: then outcomes are not to be trusted and the search has to stop.
   bool full() const { return full_; }
 
@@ -109,6 +112,8 @@ class Nodes {
   };
   Outcome compute(NodeId node, std::uint32_t what);
   void step(NodeState& node, const machine::Event& event, Outcome& outcome);
+  bool same_as_machine(const NodeState& before, const machine::Event& event, const NodeState& after,
+                       const machine::Actions& actions) const;
   NodeId intern(const NodeState& node);
   FrameId intern(const machine::Transmit& frame);
   NodeFacts facts_of(const NodeState& node) const;
@@ -123,6 +128,7 @@ class Nodes {
   std::unordered_map<std::uint64_t, std::size_t> memo_;
   std::array<NodeId, kNodesMax> initial_{};
   bool full_ = false;
+  bool step_acted_ = false;
 };
 
 /// A thread's own way to the outcomes, without locks for those that it has asked for before.

@@ -274,6 +274,7 @@ class Search {
       const Find& f = worker->weaknesses.front();
       result.known_weakness = path_to(workers_[f.link.thread]->links[f.link.index], 0);
     }
+    result.step_acted = nodes_.step_acted();
     result.node_states = nodes_.states();
     result.frames = nodes_.frames();
     std::size_t links = 0;

@@ -27,6 +27,7 @@ struct Path {
 
 struct Result {
   Progress progress;
+  bool step_acted = false;       ///< The given step once differed from the machine's.
   bool complete = false;         ///< Every state was reached.
   const char* limit = "";        ///< Why not, where it is not for a violation.
   std::optional<Path> violation; ///< A shortest one.

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <span>
+#include <string_view>
 
 #include "codec/generated/requirements.h"
 #include "conformance/machine/profile.h"
@@ -88,5 +89,13 @@ inline constexpr std::array<NamedProfile, 2> kProfiles{{
      "The norm: the paper, with the readings of spec/decisions where it is silent.",
      kPaper, kPaperAccepted},
 }};
+
+/// The profile of this name; null if there is none.
+constexpr const NamedProfile* find_profile(std::string_view name) {
+  for (const NamedProfile& one : kProfiles) {
+    if (name == one.name) return &one;
+  }
+  return nullptr;
+}
 
 }  // namespace rubric::machine

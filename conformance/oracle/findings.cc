@@ -1,7 +1,6 @@
 #include "conformance/oracle/findings.h"
 
 #include <algorithm>
-#include <string_view>
 #include <tuple>
 
 #include "conformance/generated/profiles.h"
@@ -10,11 +9,8 @@ namespace rubric::oracle {
 namespace {
 
 const machine::NamedProfile& named(bool deployed) {
-  const std::string_view name = deployed ? "deployed" : "paper";
-  for (const machine::NamedProfile& profile : machine::kProfiles) {
-    if (profile.name == name) return profile;
-  }
-  return machine::kProfiles.front();
+  static_assert(machine::find_profile("deployed") && machine::find_profile("paper"));
+  return *machine::find_profile(deployed ? "deployed" : "paper");
 }
 
 }  // namespace

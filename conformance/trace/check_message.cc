@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "codec/reflect/suggest.h"
 #include "conformance/trace/encode.h"
 #include "conformance/trace/match.h"
 #include "conformance/trace/substitute.h"
@@ -92,7 +93,7 @@ class MessageCheck {
       std::vector<std::string> known;
       for (const auto& [name, one] : Schema::get().shapes()) known.push_back(name);
       fail(message.place, "unknown message " + quoted(message.name) +
-                              did_you_mean(message.name, known));
+                              reflect::did_you_mean(message.name, known));
     }
     if (!failed_) bytes();
     for (std::string& name : binds_) bound_.insert(std::move(name));

@@ -1,9 +1,8 @@
 #include "conformance/trace/substitute.h"
 
-#include <algorithm>
 #include <cstdlib>
-#include <numeric>
 
+#include "codec/reflect/suggest.h"
 #include "codec/runtime/bytes.h"
 #include "conformance/trace/value_text.h"
 
@@ -35,20 +34,6 @@ std::int64_t plain_number(const Domain& domain, const Value& value, Place place)
   }
   throw TraceError(place,
                    "expected " + domain.expectation() + ", given '" + value_text(value) + "'");
-}
-
-std::size_t distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t corner = row[0]++;
-    for (std::size_t k = 0; k < b.size(); ++k) {
-      const std::size_t above = row[k + 1];
-      row[k + 1] = std::min({above + 1, row[k] + 1, corner + (a[i] == b[k] ? 0 : 1)});
-      corner = above;
-    }
-  }
-  return row[b.size()];
 }
 
 }  // namespace
@@ -110,7 +95,8 @@ FieldValue with_path(const FieldValue& field, const Shape& shape, std::size_t& p
   if (candidates.empty()) {
     for (const auto& [path, slots] : shape.slots) candidates.push_back(path);
     for (const auto& [tail, paths] : shape.tails) candidates.push_back(tail);
-    text = shape.name + " has no field '" + field.path + "'" + did_you_mean(field.path, candidates);
+    text = shape.name + " has no field '" + field.path + "'" +
+           reflect::did_you_mean(field.path, candidates);
   } else {
     for (const std::string& one : candidates) text += (&one == &candidates[0] ? "" : ", ") + one;
   }
@@ -125,21 +111,6 @@ std::vector<FieldValue> with_paths(const Message& message, const Shape& shape) {
     fields.push_back(with_path(field, shape, position));
   }
   return fields;
-}
-
-std::string did_you_mean(std::string_view word, const std::vector<std::string>& known) {
-  constexpr std::size_t kLongest = 64;
-  if (word.size() > kLongest) return {};
-  std::string_view best;
-  std::size_t least = word.size() / 3 + 2;
-  for (const std::string& one : known) {
-    const std::size_t d = distance(word, one);
-    if (d < least || (d == least && !best.empty() && one < best)) {
-      least = d;
-      best = one;
-    }
-  }
-  return best.empty() ? "" : " (did you mean '" + std::string(best) + "'?)";
 }
 
 }  // namespace rubric::trace

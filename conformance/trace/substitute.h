@@ -25,7 +25,4 @@ FieldValue with_path(const FieldValue& field, const Shape& shape, std::size_t& p
 /// All fields of a message.
 std::vector<FieldValue> with_paths(const Message& message, const Shape& shape);
 
-/// " (did you mean 'x'?)" for the closest of the known words, or nothing.
-std::string did_you_mean(std::string_view word, const std::vector<std::string>& known);
-
 }  // namespace rubric::trace

@@ -14,6 +14,7 @@ constexpr std::string_view kFile = R"(<<banner>>
 
 #include <array>
 #include <span>
+#include <string_view>
 
 <<includes>>
 
@@ -38,6 +39,14 @@ struct NamedProfile {
 inline constexpr std::array<NamedProfile, <<count>>> kProfiles{{
     <<entries>>
 }};
+
+/// The profile of this name; null if there is none.
+constexpr const NamedProfile* find_profile(std::string_view name) {
+  for (const NamedProfile& one : kProfiles) {
+    if (name == one.name) return &one;
+  }
+  return nullptr;
+}
 
 }  // namespace rubric::machine
 )";

@@ -13,8 +13,8 @@
 #include "codec/containers/reader.h"
 #include "codec/reflect/fault_text.h"
 #include "codec/reflect/registry.h"
+#include "codec/reflect/suggest.h"
 #include "tools/cli/progress.h"
-#include "tools/cli/suggest.h"
 
 namespace rubric::cli {
 namespace {
@@ -116,6 +116,7 @@ class Run {
     for (std::size_t i = 0; i < files_.size() && !result_.stopped; ++i) {
       source_.file = files_[i];
       source_.file_index = i;
+      source_.number = 0;
       try {
         one();
       } catch (const std::system_error& error) {
@@ -216,6 +217,7 @@ class Run {
       complain(fmt::format("damaged at byte {}: {}", packet.offset_bytes,
                            reflect::fault_sentence(packet.error.fault)));
     }
+    ++source_.number;
     if (!on_packet_(packet, source_)) result_.stopped = true;
   }
 
@@ -233,6 +235,10 @@ std::vector<std::string> protocol_names() {
   std::vector<std::string> names;
   for (const reflect::Protocol* protocol : reflect::protocols()) names.emplace_back(protocol->id);
   return names;
+}
+
+bool is_digits(const std::string& text) {
+  return !text.empty() && text.find_first_not_of("0123456789") == text.npos;
 }
 
 }  // namespace
@@ -258,10 +264,17 @@ CLI::Validator given() {
   return {check, ""};
 }
 
+CLI::Validator whole_number() {
+  const auto check = [](const std::string& text) {
+    if (is_digits(text)) return std::string();
+    return fmt::format("expected a number of 0 or more, given '{}'", text);
+  };
+  return {check, ""};
+}
+
 CLI::Validator at_least_one() {
   const auto check = [](const std::string& text) {
-    const bool digits = !text.empty() && text.find_first_not_of("0123456789") == text.npos;
-    if (digits && text.find_first_not_of('0') != text.npos) return std::string();
+    if (is_digits(text) && text.find_first_not_of('0') != text.npos) return std::string();
     return fmt::format("expected a number of 1 or more, given '{}'", text);
   };
   return {check, ""};
@@ -270,8 +283,9 @@ CLI::Validator at_least_one() {
 const reflect::Protocol& chosen_protocol(const InputOptions& options) {
   const reflect::Protocol* protocol = reflect::find_protocol(options.spec);
   if (protocol) return *protocol;
-  throw CLI::ValidationError("--spec", fmt::format("unknown protocol '{}'{}", options.spec,
-                                                   did_you_mean(options.spec, protocol_names())));
+  throw CLI::ValidationError("--spec",
+                             fmt::format("unknown protocol '{}'{}", options.spec,
+                                         reflect::did_you_mean(options.spec, protocol_names())));
 }
 
 const reflect::Type* chosen_message(const InputOptions& options,
@@ -287,9 +301,8 @@ const reflect::Type* chosen_message(const InputOptions& options,
   if (type) return type;
   std::vector<std::string> names;
   for (int i = 0; i < protocol.type_count; ++i) names.emplace_back(protocol.types[i]->name);
-  throw CLI::ValidationError("--as",
-                             fmt::format("unknown message '{}'{}", options.as_message,
-                                         did_you_mean(options.as_message, names)));
+  throw CLI::ValidationError("--as", fmt::format("unknown message '{}'{}", options.as_message,
+                                                 reflect::did_you_mean(options.as_message, names)));
 }
 
 InputResult read_packets(const InputOptions& options, const OnPacket& on_packet,

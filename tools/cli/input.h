@@ -28,6 +28,8 @@ void add_input_options(CLI::App& app, InputOptions& options);
 CLI::Validator given();
 /// Checks for a whole number of 1 or more.
 CLI::Validator at_least_one();
+/// Checks for a whole number of 0 or more: CLI11 alone takes -1 for the greatest that there is.
+CLI::Validator whole_number();
 
 /// The protocol that --spec names; CLI::ValidationError with the nearest name if there is none.
 const reflect::Protocol& chosen_protocol(const InputOptions& options);
@@ -39,6 +41,7 @@ const reflect::Type* chosen_message(const InputOptions& options,
 struct Source {
   std::string_view file;            ///< As given; "-" is stdin.
   std::size_t file_index = 0;       ///< Counts from 0.
+  std::uint64_t number = 0;         ///< Of the packet in its file, from 1.
   std::string_view format;          ///< As for --input-format, after detection.
   std::string_view interface_name;  ///< Empty if the packet's interface has no name.
 };

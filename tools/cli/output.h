@@ -1,5 +1,5 @@
-// Standard output through one big buffer. A reader that closed the pipe is no error: it has seen
-// enough.
+// Standard output through one big buffer, and files written whole. A reader that closed the pipe is
+// no error: it has seen enough.
 #pragma once
 
 #include <string>
@@ -36,5 +36,9 @@ class Output {
   bool closed_ = false;
   format::Buffer buffer_;
 };
+
+/// Writes all of `text` to the file, or to stdout for "-". False, having said why on stderr, if
+/// that fails.
+bool write_file(const std::string& path, std::string_view text);
 
 }  // namespace rubric::cli

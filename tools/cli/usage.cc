@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "codec/reflect/suggest.h"
 #include "tools/cli/exit_codes.h"
-#include "tools/cli/suggest.h"
 
 namespace rubric::cli {
 namespace {
@@ -59,7 +59,7 @@ int complain_about_extras(const CLI::App& app) {
   const std::string bare = word.substr(0, word.find('='));
   if (word.starts_with('-')) {
     return complain(where, fmt::format("unknown option {}{}", bare,
-                                       did_you_mean(bare, option_names(where))));
+                                       reflect::did_you_mean(bare, option_names(where))));
   }
   return complain(where, fmt::format("unexpected argument '{}'", word));
 }
@@ -82,7 +82,7 @@ int parse_and_run(CLI::App& app, int argc, char** argv) {
   if (argc > 1 && argv[1][0] != '-' &&
       std::find(commands.begin(), commands.end(), argv[1]) == commands.end()) {
     return complain(app, fmt::format("unknown command '{}'{}", argv[1],
-                                     did_you_mean(argv[1], commands)));
+                                     reflect::did_you_mean(argv[1], commands)));
   }
   try {
     app.parse(argc, argv);

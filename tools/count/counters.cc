@@ -135,7 +135,8 @@ bool Counters::is_repeated(const Frame& frame, const Origin& origin) {
 
 void Counters::take(const Frame& frame, const Origin& origin) {
   const Packet& packet = *frame.packet;
-  const Place place{std::string(origin.file), origin.index, packet.offset_bytes, packet.time_ns};
+  const Place place{std::string(origin.file), origin.index, origin.number, packet.offset_bytes,
+                    packet.time_ns};
   if (place.file != all_.last.file) last_sequence_.clear();
   pair_ = pair_label(frame);
   const bool repeated = is_repeated(frame, origin);

@@ -14,7 +14,8 @@ namespace rubric::count {
 /// A frame's place, to find it again with `rubric decode`.
 struct Place {
   std::string file;
-  std::uint64_t index = 0;   ///< As in `rubric decode`.
+  std::uint64_t index = 0;   ///< Among all frames, from 0, as in `rubric decode --format jsonl`.
+  std::uint64_t number = 0;  ///< In the file, from 1, as in the text of `rubric decode`.
   std::uint64_t offset = 0;  ///< In the file, in bytes.
   std::int64_t time_ns = kNoTime;
 };
@@ -46,7 +47,8 @@ struct FaultCount {
 struct Origin {
   std::string_view file;
   std::string_view interface_name;
-  std::uint64_t index = 0;
+  std::uint64_t index = 0;   ///< Among all frames, from 0.
+  std::uint64_t number = 0;  ///< In the file, from 1.
 };
 
 class Counters {

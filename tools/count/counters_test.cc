@@ -27,7 +27,8 @@ class Feed {
     packet.bytes = Bytes(bytes.data(), bytes.size());
     packet.time_ns = time_ns;
     decoder_.decode(packet, frame_);
-    counters.take(frame_, {file, interface_name, index_++});
+    counters.take(frame_, {file, interface_name, index_, index_ + 1});
+    ++index_;
   }
   Counters counters;
 

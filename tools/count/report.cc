@@ -6,15 +6,15 @@
 #include <vector>
 
 #include "codec/reflect/fault_text.h"
+#include "conformance/report/text.h"
 #include "tools/format/put.h"
-#include "tools/layout/json_text.h"
 #include "tools/layout/table.h"
 
 namespace rubric::count {
 namespace {
 
-using layout::json_string;
-using layout::json_string_or_null;
+using report::json_string;
+using report::json_string_or_null;
 
 using NamedFlow = std::pair<std::string, const Flow*>;
 
@@ -39,7 +39,7 @@ std::string short_seconds(std::int64_t ns) {
 }
 
 std::string place_text(const Place& place) {
-  return fmt::format("frame {} at {} s, byte {} of {}", place.index, seconds(place.time_ns),
+  return fmt::format("frame {} at {} s, byte {} of {}", place.number, seconds(place.time_ns),
                      place.offset, place.file);
 }
 
@@ -59,13 +59,18 @@ std::string flows_text(const char* heading, const Counters::Flows& flows) {
 }
 
 std::string faults_text(const Counters& counters) {
-  layout::Table table({"fault", "rule", "frames", "first frame", "sentence"});
+  layout::Table table({"fault", "rule", "frames", "first frame", "of file", "sentence"});
   table.align_right(2);
   table.align_right(3);
-  for (const auto& [key, count] : counters.faults()) {
+  const auto& faults = counters.faults();
+  const bool one_file = std::all_of(faults.begin(), faults.end(), [&](const auto& fault) {
+    return fault.second.first.file == counters.all().last.file;
+  });
+  for (const auto& [key, count] : faults) {
     const reflect::Requirement& rule = reflect::requirement(key.second);
     table.add({std::string(reflect::fault_name(key.first)), rule.id,
-               std::to_string(count.frames), std::to_string(count.first.index), rule.sentence});
+               std::to_string(count.frames), std::to_string(count.first.number),
+               one_file ? "" : count.first.file, rule.sentence});
   }
   return table.empty() ? std::string{} : '\n' + table.text_within(layout::kColumns);
 }

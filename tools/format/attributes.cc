@@ -94,6 +94,8 @@ void fault_names(const Protocol&, Names& names) {
 constexpr Attribute kAttributes[] = {
     {"index", [](const Record& r, Visitor v) {
        return integer(v, static_cast<std::int64_t>(r.index)); }, nullptr, false},
+    {"number", [](const Record& r, Visitor v) {
+       return integer(v, static_cast<std::int64_t>(r.number)); }, nullptr, false},
     {"offset", [](const Record& r, Visitor v) {
        return integer(v, static_cast<std::int64_t>(r.packet().offset_bytes)); }, nullptr, false},
     {"time", [](const Record& r, Visitor v) { return time(v, r.time_ns); }, nullptr, false},

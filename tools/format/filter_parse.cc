@@ -4,7 +4,7 @@
 #include <charconv>
 #include <optional>
 
-#include "tools/cli/suggest.h"
+#include "codec/reflect/suggest.h"
 #include "tools/format/filter.h"
 
 namespace rubric::format {
@@ -303,7 +303,7 @@ class FilterParser {
       } else if (token_.kind == TokenKind::kWord) {
         const std::string name(token_.text);
         if (std::find(bits.begin(), bits.end(), name) == bits.end()) {
-          fail(fmt::format("unknown bit '{}'{}", name, cli::did_you_mean(name, bits)));
+          fail(fmt::format("unknown bit '{}'{}", name, reflect::did_you_mean(name, bits)));
         }
         term.mask_bits.push_back(name);
       } else {
@@ -366,7 +366,7 @@ class FilterParser {
       return true;
     } catch (const PathError& error) {
       if (names.empty()) fail(error.what());
-      const std::string hint = cli::did_you_mean(name, names);
+      const std::string hint = reflect::did_you_mean(name, names);
       fail(fmt::format("{} is never '{}'{}", left.text(), name, hint));
     }
   }

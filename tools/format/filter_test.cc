@@ -20,6 +20,7 @@ class FilterOfUpdates : public testing::Test {
  protected:
   FilterOfUpdates() : sample_(kUpdates, Framing::kHdlc) {
     sample_.record.index = 12;
+    sample_.record.number = 3;
     sample_.record.time_ns = 1'500'000'000;
     sample_.record.interface_name = "serial:1";
     sample_.packet.direction = Direction::kOutbound;
@@ -41,6 +42,7 @@ TEST_F(FilterOfUpdates, compares_attributes) {
       {"interface==serial:1", true},       {"interface=='serial:2'", false},
       {"interface!=\"serial:2\"", true},   {"index==12", true},
       {"index<12", false},                 {"index<=12", true},
+      {"number==3", true},                 {"number==12", false},
       {"index>11", true},                  {"index>=13", false},
       {"time==1.5", true},                 {"time>1.4999", true},
       {"am.type==28", true},               {"am.type==0x1c", true},

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "codec/reflect/fault_text.h"
+#include "conformance/report/text.h"
 #include "tools/format/put.h"
 
 namespace rubric::format {
@@ -115,7 +116,7 @@ char* put_stale_and_raw(char* at, const Decoded& decoded) {
 void append_text_member(Buffer& out, std::string_view key, std::string_view text) {
   out.append(key);
   char* at = out.reserve(6 * text.size() + 2);
-  out.commit(put_json_string(at, text));
+  out.commit(report::put_json_string(at, text));
 }
 
 void append_uint(Buffer& out, std::uint64_t value) {
@@ -186,7 +187,7 @@ void JsonlFormatter::print(const Record& record, Buffer& out) {
   at = record.time_ns == kNoTime ? put(at, "null") : put_time(at, record.time_ns);
   at = put(at, ",\"interface\":");
   at = record.interface_name.empty() ? put(at, "null")
-                                     : put_json_string(at, record.interface_name);
+                                     : report::put_json_string(at, record.interface_name);
   switch (packet.direction) {
     case Direction::kInbound: at = put(at, ",\"direction\":\"inbound\""); break;
     case Direction::kOutbound: at = put(at, ",\"direction\":\"outbound\""); break;

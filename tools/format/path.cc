@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include "tools/cli/suggest.h"
+#include "codec/reflect/suggest.h"
 #include "tools/format/json_nodes.h"
 #include "tools/format/message_types.h"
 
@@ -70,7 +70,7 @@ Path::Path(std::string_view text, const Protocol& protocol) : text_(text), proto
   }
   const std::vector<std::string> known = known_names(protocol);
   const auto refuse = [&](const std::string& word) {
-    throw PathError(fmt::format("unknown name '{}'{}", word, cli::did_you_mean(word, known)));
+    throw PathError(fmt::format("unknown name '{}'{}", word, reflect::did_you_mean(word, known)));
   };
   if (components_.size() > kMaxComponents) throw PathError("path is too long");
   std::set<const Type*> elements;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "conformance/report/text.h"
 #include "tools/format/put.h"
 
 namespace rubric::format {
@@ -38,7 +39,7 @@ void append_bits(const reflect::MaskTable& mask, std::int64_t value, Buffer& out
 void append_harmless(std::string_view text, Buffer& out) {
   while (!text.empty()) {
     const auto c = static_cast<unsigned char>(text[0]);
-    const std::size_t length = utf8_length(text);
+    const std::size_t length = report::utf8_length(text);
     // U+0080 to U+009F are control characters too.
     const bool control = c < 0x20 || c == 0x7f ||
                          (length == 2 && c == 0xc2 && static_cast<unsigned char>(text[1]) < 0xa0);

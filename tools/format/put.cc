@@ -59,25 +59,6 @@ char* put_real(char* at, T value) {
   return std::to_chars(at, at + kMaxFloatChars, value).ptr;
 }
 
-bool continues(std::string_view text, std::size_t i) {
-  return (static_cast<std::uint8_t>(text[i]) & 0xc0) == 0x80;
-}
-
-char* put_escape(char* at, std::uint8_t c) {
-  switch (c) {
-    case '"': return put(at, "\\\"");
-    case '\\': return put(at, "\\\\");
-    case '\n': return put(at, "\\n");
-    case '\r': return put(at, "\\r");
-    case '\t': return put(at, "\\t");
-    default: break;
-  }
-  at = put(at, "\\u00");
-  *at++ = kHexDigits[c >> 4];
-  *at++ = kHexDigits[c & 15];
-  return at;
-}
-
 }  // namespace
 
 char* put_long_uint(char* at, std::uint64_t value) {
@@ -123,41 +104,5 @@ char* put_time(char* at, std::int64_t time_ns) {
 }
 
 char* put_hex(char* at, Bytes bytes) { return kPutHex(at, bytes); }
-
-std::size_t utf8_length(std::string_view text) {
-  if (text.empty()) return 0;
-  const auto first = static_cast<std::uint8_t>(text[0]);
-  if (first < 0x80) return 1;
-  if (first < 0xc2 || first > 0xf4) return 0;
-  const std::size_t length = first < 0xe0 ? 2 : first < 0xf0 ? 3 : 4;
-  if (text.size() < length) return 0;
-  for (std::size_t i = 1; i < length; ++i) {
-    if (!continues(text, i)) return 0;
-  }
-  const auto second = static_cast<std::uint8_t>(text[1]);
-  // Longer than needed, surrogates, beyond U+10FFFF.
-  if (first == 0xe0 && second < 0xa0) return 0;
-  if (first == 0xed && second > 0x9f) return 0;
-  if (first == 0xf0 && second < 0x90) return 0;
-  if (first == 0xf4 && second > 0x8f) return 0;
-  return length;
-}
-
-char* put_json_string(char* at, std::string_view text) {
-  *at++ = '"';
-  while (!text.empty()) {
-    const auto c = static_cast<std::uint8_t>(text[0]);
-    if (c < 0x20 || c == '"' || c == '\\' || c == 0x7f) {
-      at = put_escape(at, c);
-      text.remove_prefix(1);
-      continue;
-    }
-    const std::size_t length = utf8_length(text);
-    at = length ? put(at, text.substr(0, length)) : put(at, "\xef\xbf\xbd");
-    text.remove_prefix(length ? length : 1);
-  }
-  *at++ = '"';
-  return at;
-}
 
 }  // namespace rubric::format

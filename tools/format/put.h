@@ -75,11 +75,4 @@ char* put_time(char* at, std::int64_t time_ns);
 /// Two lower-case hex digits a byte.
 char* put_hex(char* at, Bytes bytes);
 
-/// `text` as a JSON string with quotes. Bytes that are not UTF-8 become U+FFFD. Needs room for
-/// 6 * text.size() + 2 characters.
-char* put_json_string(char* at, std::string_view text);
-
-/// Length of the UTF-8 sequence that `text` begins with; 0 if it begins with none.
-std::size_t utf8_length(std::string_view text);
-
 }  // namespace rubric::format

@@ -81,24 +81,6 @@ TEST(Put, hex_of_every_length) {
   }
 }
 
-TEST(Put, json_strings_are_valid_whatever_comes) {
-  const auto text = [](std::string_view value) {
-    return text_of([&](char* at) { return put_json_string(at, value); });
-  };
-  EXPECT_EQ(text("serial:1"), "\"serial:1\"");
-  EXPECT_EQ(text("a\"b\\c\n\x01\x7f"), "\"a\\\"b\\\\c\\n\\u0001\\u007f\"");
-  EXPECT_EQ(text("\xc3\xa4\xe2\x82\xac\xf0\x9f\x98\x80"),
-            "\"\xc3\xa4\xe2\x82\xac\xf0\x9f\x98\x80\"");
-  constexpr std::string_view kReplaced = "\"\xef\xbf\xbd\"";
-  for (const std::string_view bad : {"\xff", "\xc3", "\x80", "\xc0", "\xf5"}) {
-    EXPECT_EQ(text(bad), kReplaced);
-  }
-  EXPECT_EQ(utf8_length("\xc0\xaf"), 0U);          // Longer than needed.
-  EXPECT_EQ(utf8_length("\xed\xa0\x80"), 0U);      // A surrogate.
-  EXPECT_EQ(utf8_length("\xf4\x90\x80\x80"), 0U);  // Beyond U+10FFFF.
-  EXPECT_EQ(utf8_length("\xe2\x82"), 0U);          // Cut.
-}
-
 TEST(Buffer, grows_and_keeps_what_it_holds) {
   Buffer buffer(4);
   std::string expected;

@@ -12,6 +12,7 @@ namespace rubric::format {
 /// A decoded frame with what only the run knows of it. Borrowed: valid during the call.
 struct Record {
   std::uint64_t index = 0;              ///< Counts the frames of all inputs from 0.
+  std::uint64_t number = 1;             ///< Of the frame in its file, from 1, as in `rubric check`.
   std::string_view interface_name;      ///< Empty: the input names none.
   std::int64_t time_ns = kNoTime;       ///< As --time wants it; kNoTime: not shown.
   const reflect::Frame* frame = nullptr;

@@ -165,7 +165,7 @@ void TextFormatter::print(const Record& record, Buffer& out) {
   const Frame& frame = *record.frame;
   const bool malformed = frame.malformed();
   styled.put(malformed ? Style::kError : Style::kDim,
-             fmt::format("{}{:>5} ", malformed ? '!' : ' ', record.index));
+             fmt::format("{}{:>5} ", malformed ? '!' : ' ', record.number));
   if (record.time_ns != kNoTime) append_time(record.time_ns, out);
   if (options_.fields.empty()) {
     append_origin(record, out);
@@ -183,7 +183,7 @@ void TextFormatter::print(const Record& record, Buffer& out) {
     append_notes(record, styled);
   } else {
     for (const Path& path : options_.fields) {
-      if (path.text() == "index" || path.text() == "time") continue;
+      if (path.text() == "number" || path.text() == "time") continue;
       styled.put(Style::kDim, path.text() + "=");
       append_plain_values(path, record, nodes_, out);
       out.append(' ');

@@ -21,7 +21,8 @@ std::string print(const Sample& sample, TextOptions options = {}) {
 
 TEST(Text, is_a_line_a_frame) {
   Sample sample(kUpdates, Framing::kHdlc);
-  sample.record.index = 6;
+  sample.record.index = 60;
+  sample.record.number = 6;
   sample.record.time_ns = 526'298'000;
   sample.record.interface_name = "serial:1";
   sample.packet.direction = Direction::kOutbound;

@@ -33,14 +33,21 @@ std::string roles_text(const Requirement& rule) {
   return fmt::format("{}", fmt::join(roles, ", "));
 }
 
-std::string cases_text(ReqId id, std::string_view title, bool negative,
+std::string cases_text(ReqId id, std::string_view title, bool negative, CaseList list,
                        std::span<const cases::CaseUse> uses) {
+  constexpr std::size_t kFew = 4;
   std::vector<std::string> names;
   for (const cases::CaseUse& use : uses) {
     if (use.requirement != id || use.negative != negative) continue;
     names.push_back(fmt::format("{}{}({})", use.name, kFirmBlank, use.file));
   }
   if (names.empty()) return "";
+  if (list == CaseList::kShort && names.size() > kFew + 1) {
+    const std::size_t more = names.size() - kFew;
+    names.resize(kFew);
+    names.push_back(
+        fmt::format("{} more: rubric explain {} --cases", more, reflect::requirement(id).id));
+  }
   return wrapped(fmt::format("{}: {}", title, fmt::join(names, ", ")), 4);
 }
 
@@ -72,7 +79,7 @@ std::vector<std::string> rule_groups() {
 }
 
 std::string explain_rule(const std::vector<const reflect::Protocol*>& protocols, ReqId id,
-                         std::span<const cases::CaseUse> uses,
+                         CaseList list, std::span<const cases::CaseUse> uses,
                          std::span<const machine::NamedProfile> profiles) {
   const Requirement& rule = reflect::requirement(id);
   std::string out = fmt::format("{}: {}, {}\n", rule.id, rule.level, rule.clause);
@@ -92,8 +99,8 @@ std::string explain_rule(const std::vector<const reflect::Protocol*>& protocols,
     }
   }
   out += used_by(protocols, [id](const reflect::Field& f) { return f.requirement == id; });
-  const std::string cases = cases_text(id, "positive", false, uses) +
-                            cases_text(id, "negative", true, uses);
+  const std::string cases = cases_text(id, "positive", false, list, uses) +
+                            cases_text(id, "negative", true, list, uses);
   if (!cases.empty()) return out + "  Cases:\n" + cases;
   return rule.roles == 0 ? out : out + "  Cases: none\n";  // Rules of the wire have vectors.
 }

@@ -135,7 +135,7 @@ TEST(Explain, EveryTypeEnumAndMask) {
 }
 
 TEST(Explain, Requirement) {
-  EXPECT_EQ(explain_rule({&kRubicon}, ReqId::kWireNetNbytes, {}),
+  EXPECT_EQ(explain_rule({&kRubicon}, ReqId::kWireNetNbytes, CaseList::kShort, {}),
             "WIRE-NET-NBYTES: MUST, wire, messages\n"
             "  nbytes counts TRANSID, APPID and the application payload, so it is 2 to 102.\n"
             "  Source: paper: Memory Occupation; release 1.0\n"
@@ -147,7 +147,7 @@ TEST(Explain, RuleOfBehaviour) {
                                  {"j4.wrong_seq", "a.rtr", req::kJ4Seq, true},
                                  {"j4.right_seq", "b.rtr", req::kJ4Seq, false},
                                  {"j4.old_seq", "b.rtr", req::kJ4Seq, true}};
-  EXPECT_EQ(explain_rule({&kRubicon}, req::kJ4Seq, uses),
+  EXPECT_EQ(explain_rule({&kRubicon}, req::kJ4Seq, CaseList::kShort, uses),
             "J4-SEQ: MUST, join, mote\n"
             "  A mote ignores a join_reply whose sequence number is not that of its outstanding "
             "request.\n"
@@ -159,11 +159,26 @@ TEST(Explain, RuleOfBehaviour) {
             "  Cases:\n"
             "    positive: j4.right_seq (b.rtr)\n"
             "    negative: j4.wrong_seq (a.rtr), j4.old_seq (b.rtr)\n");
-  const std::string text = explain_rule({&kRubicon}, req::kJ8Fail, {});
+  const std::string text = explain_rule({&kRubicon}, req::kJ8Fail, CaseList::kShort, {});
   EXPECT_THAT(text, HasSubstr("  For: mote\n"));
   EXPECT_THAT(text, HasSubstr("  Accepted by --profile deployed: A joinIsland call without"));
   EXPECT_THAT(text, testing::EndsWith("  Cases: none\n"));
   EXPECT_THAT(explain_rule({}, req::kT2Loop, {}), HasSubstr("For: mote, sink, base station;"));
+}
+
+TEST(Explain, ManyCasesAreShortenedUnlessAskedFor) {
+  const auto cases_of = [](std::size_t count, CaseList list) {
+    const std::vector<cases::CaseUse> uses(count, {"j4.old", "a.rtr", req::kJ4Seq, true});
+    const std::string text = explain_rule({}, req::kJ4Seq, list, uses);
+    return text.substr(text.find("  Cases:"));
+  };
+  const std::string one = "j4.old (a.rtr)";
+  const std::string four = one + ", " + one + ", " + one + ", " + one;
+  EXPECT_EQ(cases_of(5, CaseList::kShort), "  Cases:\n    negative: " + four + ", " + one + "\n");
+  EXPECT_EQ(cases_of(6, CaseList::kShort),
+            "  Cases:\n    negative: " + four + ", 2 more: rubric\n    explain J4-SEQ --cases\n");
+  EXPECT_EQ(cases_of(6, CaseList::kWhole),
+            "  Cases:\n    negative: " + four + ", " + one + ",\n    " + one + "\n");
 }
 
 TEST(Explain, RulesByIdAndGroup) {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "conformance/report/text.h"
+
 namespace rubric::layout {
 namespace {
 
@@ -94,24 +96,8 @@ std::string Table::with_last_below(std::size_t columns, std::size_t indent) cons
 }
 
 std::string wrapped(const std::string& text, std::size_t indent, std::size_t columns) {
-  std::string out;
-  std::string line(indent, ' ');
-  std::size_t at = 0;
-  while (at < text.size()) {
-    const std::size_t begin = text.find_first_not_of(" \n", at);
-    if (begin == std::string::npos) break;
-    std::size_t end = text.find_first_of(" \n", begin);
-    if (end == std::string::npos) end = text.size();
-    const std::string word = text.substr(begin, end - begin);
-    if (line.size() > indent && line.size() + 1 + word.size() > columns) {
-      out += line + '\n';
-      line.assign(indent, ' ');
-    }
-    if (line.size() > indent) line += ' ';
-    line += word;
-    at = end;
-  }
-  if (line.size() > indent) out += line + '\n';
+  if (text.find_first_not_of(" \n") == std::string::npos) return {};
+  std::string out = report::wrapped(std::string(indent, ' '), text, columns);
   std::replace(out.begin(), out.end(), kFirmBlank, ' ');
   return out;
 }

@@ -40,7 +40,8 @@ inline constexpr std::size_t kColumns = 110;
 /// A blank where wrapped() does not break.
 inline constexpr char kFirmBlank = '\x1f';
 
-/// `text` in lines of at most `columns` characters, broken at blanks, each behind `indent` blanks.
+/// `text` in lines of at most `columns` characters, broken at blanks, each behind `indent` blanks;
+/// no line if it says nothing.
 std::string wrapped(const std::string& text, std::size_t indent = 0, std::size_t columns = 100);
 
 }  // namespace rubric::layout

@@ -22,10 +22,6 @@ std::string time_json(std::int64_t time_us) {
   return text.empty() ? "null" : text;
 }
 
-std::string string_or_null(std::string_view text) {
-  return text.empty() ? "null" : json_string(text);
-}
-
 // "[" items "]", each item in a line of its own.
 template <class Items, class ToText>
 std::string list(const Items& items, ToText to_text) {
@@ -59,12 +55,13 @@ std::string finding_json(const Story& story, std::size_t i) {
       "{{\"requirement\":{},\"level\":{},\"sentence\":{},\"severity\":\"{}\",\"time\":{},"
       "\"file\":{},\"frame\":{},\"offset\":{},\"node\":{},\"text\":{},\"expected\":{},"
       "\"count\":{},\"last_frame\":{},\"known\":{},\"hypotheses\":{}}}",
-      string_or_null(rule.id), string_or_null(rule.level), string_or_null(rule.sentence),
-      severity_name(finding.severity), time_json(finding.place.time_us),
+      json_string_or_null(rule.id), json_string_or_null(rule.level),
+      json_string_or_null(rule.sentence), severity_name(finding.severity),
+      time_json(finding.place.time_us),
       finding.place.file < files.size() ? json_string(files[finding.place.file]) : "null",
       number_or_null(finding.place.frame),
       has_frame ? std::to_string(finding.place.offset_bytes) : "null",
-      string_or_null(finding.node), json_string(finding.text), json_string(finding.expected),
+      json_string_or_null(finding.node), json_string(finding.text), json_string(finding.expected),
       finding.count, number_or_null(finding.last.frame),
       is_expected ? json_string(story.expected.expectations[by].reason) : "null",
       hypotheses_json(finding));

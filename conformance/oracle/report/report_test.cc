@@ -72,33 +72,6 @@ ExpectationFile expecting(const std::string& text) {
   return file;
 }
 
-// Words.
-
-TEST(Words, WrapAtBlanks) {
-  EXPECT_EQ(wrapped("- ", "one two three", 9), "- one two\n  three\n");
-  EXPECT_EQ(wrapped("", "one two", 3, 4), "one\n    two\n");
-  EXPECT_EQ(wrapped("", "muchlongerthanthat a", 5), "muchlongerthanthat\na\n");
-  EXPECT_EQ(wrapped("  ", "", 9), "\n");
-}
-
-TEST(Words, JsonStrings) {
-  EXPECT_EQ(json_string("a\"b\\c\n\x01"), "\"a\\\"b\\\\c\\n\\u0001\"");
-  EXPECT_EQ(json_string("\xC3\xA4"), "\"\xC3\xA4\"");
-  EXPECT_EQ(json_string("\xFFx\xC3"), "\"\xEF\xBF\xBDx\xEF\xBF\xBD\"");
-  EXPECT_EQ(json_string("\xED\xA0\x80"), "\"\xEF\xBF\xBD\xEF\xBF\xBD\xEF\xBF\xBD\"");
-}
-
-TEST(Words, XmlText) {
-  EXPECT_EQ(xml_text("<a b=\"c\">&\n"), "&lt;a b=&quot;c&quot;&gt;&amp;\n");
-  EXPECT_EQ(xml_text(std::string_view("\0\x1B", 2)), "\xEF\xBF\xBD\xEF\xBF\xBD");
-  EXPECT_EQ(xml_text("]]>"), "]]&gt;");
-}
-
-TEST(Words, Times) {
-  EXPECT_EQ(seconds_text(3'842'100), "3.842100");
-  EXPECT_EQ(seconds_text(-1), "");
-}
-
 // Expectations.
 
 struct BadFile {
