@@ -18,6 +18,7 @@ struct Identity {
   bool real_time = false;            ///< Its clock cannot be turned.
 };
 
+/// For one thread. Targets must be gone before it.
 class Attachment {
  public:
   virtual ~Attachment() = default;
@@ -31,9 +32,13 @@ class Attachment {
   /// Sends something that nobody can know and returns what is wrong with the answer; empty: it was
   /// refused, as it must be. Nothing to ask, nothing wrong.
   virtual std::string honesty() = 0;
-  /// What the implementation wrote to its standard error since the last call, its last 64 KiB.
+  /// What the implementation wrote to its standard error since the last call, its last 64 KiB; the
+  /// notes of an adapter are among it.
   virtual std::string take_stderr() = 0;
 };
+
+/// Who the reference machine says that it is.
+Identity machine_identity();
 
 struct Options {
   std::chrono::milliseconds step_timeout{5000};  ///< Of wall-clock time for the answer to a command.

@@ -1,0 +1,54 @@
+// The reference machine gives every golden trace the same behind rct/1 as in this process.
+#include <gtest/gtest.h>
+
+#include "conformance/attach/attachment.h"
+#include "conformance/runner/case_files.h"
+#include "conformance/runner/run_case.h"
+#include "conformance/trace/print.h"
+
+namespace rubric::attach {
+namespace {
+
+std::string log_of(const runner::CaseResult& result) {
+  std::string out;
+  for (const trace::Line* line : result.log.lines()) {
+    trace::put_line(*line, out);
+    out += '\n';
+  }
+  return out;
+}
+
+TEST(MachineAdapter, DoesWhatTheMachineDoesInEveryGoldenTrace) {
+  const auto here = attach("machine", {});
+  const auto there = attach(RUBRIC_MACHINE_ADAPTER, {});
+  std::size_t cases = 0;
+  for (const trace::Parsed& file : runner::load_cases("conformance/cases")) {
+    for (const trace::Case& one : file.file.cases) {
+      const auto run = [&](Attachment& attachment) {
+        return runner::run_case(file.file, one,
+                                [&](const trace::NodeHeader&) { return attachment.target(); });
+      };
+      const runner::CaseResult expected = run(*here);
+      const runner::CaseResult result = run(*there);
+      EXPECT_EQ(result.verdict, runner::CaseVerdict::kPass)
+          << runner::explain(result, file.file_name) << result.reason;
+      EXPECT_EQ(log_of(result), log_of(expected)) << one.name;
+      ++cases;
+    }
+  }
+  EXPECT_GT(cases, 250U);
+  EXPECT_EQ(there->honesty(), "");
+  EXPECT_EQ(there->take_stderr(), "");
+}
+
+TEST(MachineAdapter, SaysWhoItIs) {
+  const Identity machine = attach("machine", {})->identity();
+  const Identity adapter = attach(RUBRIC_MACHINE_ADAPTER, {})->identity();
+  EXPECT_EQ(adapter.name, machine.name);
+  EXPECT_EQ(adapter.version, machine.version);
+  EXPECT_EQ(adapter.roles, machine.roles);
+  EXPECT_FALSE(adapter.real_time);
+}
+
+}  // namespace
+}  // namespace rubric::attach

@@ -1,0 +1,73 @@
+// The reference machine behind rct/1, or a broken or unusual one: a first implementation to attach,
+// and what a suite is tried on.
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "conformance/attach/serve.h"
+#include "conformance/mutants/generated.h"
+#include "conformance/mutants/legal.h"
+#include "conformance/runner/subject_target.h"
+
+namespace rubric {
+namespace {
+
+struct Which {
+  std::string mutant;
+  std::string legal;
+  std::string cases;
+};
+
+template <class All>
+mutants::StepMaker find(const All& all, const std::string& name) {
+  const auto found = std::find_if(all.begin(), all.end(),
+                                  [&](const auto& one) { return one.name == name; });
+  return found == all.end() ? mutants::StepMaker() : found->step;
+}
+
+std::unique_ptr<runner::Subject> make_subject(const Which& which) {
+  if (which.mutant.empty() && which.legal.empty()) return std::make_unique<runner::Machine>();
+  mutants::StepMaker step = which.mutant.empty()
+                                ? find(mutants::legal_variants(), which.legal)
+                                : find(mutants::named_mutants(), which.mutant);
+  if (!step && !which.mutant.empty() && !which.cases.empty()) {
+    step = find(mutants::generated_mutants(mutants::Golden(which.cases)), which.mutant);
+  }
+  if (!step) throw std::runtime_error("no machine is called " + which.mutant + which.legal);
+  return std::make_unique<mutants::Wrapped>(step);
+}
+
+int run(const Which& which) {
+  attach::Identity identity = attach::machine_identity();
+  if (!which.mutant.empty() || !which.legal.empty()) {
+    identity.name = "broken_or_unusual";
+    identity.version = which.mutant + which.legal;
+    std::replace(identity.version.begin(), identity.version.end(), ' ', '_');
+  }
+  runner::SubjectTarget target(make_subject(which));
+  return attach::serve(target, identity, stdin, stdout);
+}
+
+}  // namespace
+}  // namespace rubric
+
+int main(int argc, char** argv) {
+  CLI::App app("The reference machine as an adapter: rct/1 on standard input and output.");
+  rubric::Which which;
+  auto* const mutant = app.add_option("--mutant", which.mutant, "A broken machine, by its name");
+  app.add_option("--legal", which.legal, "An unusual machine that keeps the rules, by its name")
+      ->excludes(mutant);
+  app.add_option("--cases", which.cases,
+                 "Golden traces; mutants that are generated from them can be named, too");
+  CLI11_PARSE(app, argc, argv);
+  try {
+    return rubric::run(which);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "rubric_machine_adapter: %s\n", error.what());
+    return 64;
+  }
+}

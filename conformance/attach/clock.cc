@@ -1,0 +1,43 @@
+#include "conformance/attach/clock.h"
+
+#include <algorithm>
+#include <thread>
+
+namespace rubric::attach {
+namespace {
+
+using runner::Ticks;
+using std::chrono::microseconds;
+
+constexpr microseconds kMeasured{200'000};
+constexpr microseconds kNap{1000};
+constexpr Ticks kEarlyTicks = 2;
+
+microseconds worst_delay() {
+  using Steady = RealClock::Steady;
+  microseconds worst{0};
+  for (const auto end = Steady::now() + kMeasured; Steady::now() < end;) {
+    const auto wanted = Steady::now() + kNap;
+    std::this_thread::sleep_until(wanted);
+    worst = std::max(worst, std::chrono::duration_cast<microseconds>(Steady::now() - wanted));
+  }
+  return worst;
+}
+
+}  // namespace
+
+Ticks RealClock::now() const {
+  const auto passed = std::chrono::duration_cast<microseconds>(Steady::now() - start_);
+  return machine::ticks_of(passed.count());
+}
+
+RealClock::Steady::time_point RealClock::begin_of(Ticks ticks) const {
+  return start_ + microseconds(machine::us_of(ticks));
+}
+
+runner::Tolerance tolerance_of_this_host() {
+  static const microseconds delay = worst_delay();
+  return {kEarlyTicks, machine::ticks_to_hold(2 * delay.count()) + 1};
+}
+
+}  // namespace rubric::attach

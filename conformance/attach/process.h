@@ -1,0 +1,82 @@
+// A child process that is talked to line by line, under a watchdog. Whatever it does - dies, hangs,
+// floods, closes its pipes - no call here takes longer than its deadline, and no process is left.
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace rubric::attach {
+
+using SteadyTime = std::chrono::steady_clock::time_point;
+using Milliseconds = std::chrono::milliseconds;
+
+/// All but the accessors throw runner::TargetBroken with what the process did wrong: "ended with
+/// status 3", "was killed by signal 9", "gave no answer within 5000 ms". SIGPIPE is ignored in this
+/// process from the first one on. Not for several threads at once.
+class Process {
+ public:
+  static constexpr std::size_t kLineBytesMax = 65535;    ///< Without the line feed.
+  static constexpr std::size_t kStderrBytesMax = 65536;  ///< Its last ones are kept.
+
+  /// Runs `/bin/sh -c command` as the leader of a process group of its own.
+  static std::unique_ptr<Process> run(const std::string& command);
+  /// Runs `body` in a copy of this process and ends that with the status which it returns. Only
+  /// where no other thread may hold a lock.
+  static std::unique_ptr<Process> copy(const std::function<int(int in_fd, int out_fd)>& body);
+
+  Process(const Process&) = delete;
+  Process& operator=(const Process&) = delete;
+  /// Kills its whole group, if it still runs.
+  ~Process();
+
+  /// Writes all of `text`.
+  void write(std::string_view text, SteadyTime deadline);
+  /// The next line of its standard output, without the line feed.
+  std::string read_line(SteadyTime deadline);
+  /// Whether it has written something that was not read.
+  bool has_output();
+  /// The last of what it wrote to its standard error since the last call.
+  std::string take_stderr();
+
+  /// Closes its standard input and gives it `grace` to end; then it is killed. True when it ended
+  /// by itself with status 0.
+  bool end(Milliseconds grace);
+  /// Ends the whole group, and waits until the process is gone. Its standard error can be taken
+  /// afterwards.
+  void kill();
+
+ private:
+  struct Pipe {
+    int read_fd = -1;
+    int write_fd = -1;
+  };
+  struct Pipes {
+    Pipe in, out, err;
+  };
+  static Pipes open_pipes();
+  static void close_pipes(Pipes& pipes);
+  Process(pid_t pid, Pipes pipes);
+
+  bool wait_for_pipes(bool want_write, SteadyTime deadline);
+  void drain_output();
+  void drain_stderr();
+  bool exited(Milliseconds within);
+  [[noreturn]] void ended_early();
+
+  pid_t pid_ = -1;      // -1: gone, and waited for.
+  int status_ = 0;      // When it is gone.
+  int in_fd_ = -1;      // Its standard input, written here; -1: closed.
+  int out_fd_ = -1;
+  int err_fd_ = -1;
+  std::string output_;  // Read and not yet handed out, from out_at_ on.
+  std::size_t out_at_ = 0;
+  std::string stderr_;
+};
+
+}  // namespace rubric::attach

@@ -1,0 +1,62 @@
+#include "conformance/attach/rct_attachment.h"
+
+#include <utility>
+
+#include "conformance/attach/clock.h"
+
+namespace rubric::attach {
+
+const Identity& RctAttachment::identity() {
+  if (identity_.name.empty()) give_back(take());
+  return identity_;
+}
+
+std::unique_ptr<runner::Target> RctAttachment::target() {
+  std::unique_ptr<RctClient> client = take();
+  return std::make_unique<RctTarget>(
+      std::move(client), tolerance_,
+      [this](std::unique_ptr<RctClient> used) { give_back(std::move(used)); });
+}
+
+std::string RctAttachment::honesty() {
+  std::unique_ptr<RctClient> client = take();
+  std::string wrong = client->honesty();
+  give_back(std::move(client));
+  return wrong;
+}
+
+std::string RctAttachment::take_stderr() {
+  for (const auto& client : idle_) keep_stderr(*client);
+  return std::exchange(stderr_, {});
+}
+
+std::unique_ptr<RctClient> RctAttachment::take() {
+  if (!idle_.empty()) {
+    std::unique_ptr<RctClient> client = std::move(idle_.back());
+    idle_.pop_back();
+    return client;
+  }
+  auto client = std::make_unique<RctClient>(start_(), options_.step_timeout);
+  try {
+    identity_ = client->hello();
+  } catch (const runner::TargetBroken&) {
+    keep_stderr(*client);
+    throw;
+  }
+  if (identity_.real_time) tolerance_ = tolerance_of_this_host();
+  return client;
+}
+
+void RctAttachment::give_back(std::unique_ptr<RctClient> client) {
+  keep_stderr(*client);
+  if (!client->broken()) idle_.push_back(std::move(client));
+}
+
+void RctAttachment::keep_stderr(RctClient& client) {
+  stderr_ += client.take_stderr();
+  if (stderr_.size() > Process::kStderrBytesMax) {
+    stderr_.erase(0, stderr_.size() - Process::kStderrBytesMax);
+  }
+}
+
+}  // namespace rubric::attach

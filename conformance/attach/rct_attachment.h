@@ -1,0 +1,41 @@
+// Processes that speak rct/1, kept for re-use.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "conformance/attach/rct_target.h"
+
+namespace rubric::attach {
+
+/// Starts a process. Throws runner::TargetBroken.
+using Starter = std::function<std::unique_ptr<Process>()>;
+
+/// Each target is a process of its own, and goes back to the pool when it is whole. Targets must
+/// not outlive it.
+class RctAttachment : public Attachment {
+ public:
+  RctAttachment(Starter start, const Options& options)
+      : start_(std::move(start)), options_(options) {}
+
+  const Identity& identity() override;
+  std::unique_ptr<runner::Target> target() override;
+  std::string honesty() override;
+  std::string take_stderr() override;
+
+ private:
+  std::unique_ptr<RctClient> take();
+  void give_back(std::unique_ptr<RctClient> client);
+  void keep_stderr(RctClient& client);
+
+  Starter start_;
+  Options options_;
+  Identity identity_;
+  runner::Tolerance tolerance_;
+  std::vector<std::unique_ptr<RctClient>> idle_;
+  std::string stderr_;
+};
+
+}  // namespace rubric::attach

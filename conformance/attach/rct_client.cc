@@ -1,0 +1,106 @@
+#include "conformance/attach/rct_client.h"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace rubric::attach {
+namespace {
+
+using runner::TargetBroken;
+using std::chrono::steady_clock;
+
+constexpr Milliseconds kGrace{500};          // From `bye` to the end.
+constexpr std::size_t kNotesBytesMax = 65536;  // The last ones are kept.
+
+}  // namespace
+
+RctClient::~RctClient() {
+  if (broken_) return;
+  try {
+    process_->write("bye\n", steady_clock::now() + kGrace);
+    process_->end(kGrace);
+  } catch (const TargetBroken&) {  // Its end is the process's destruction.
+  }
+}
+
+const Identity& RctClient::hello() {
+  if (greeted_) return identity_;
+  Asked asked;
+  asked.command = fmt::format("hello rct/{}", kRctVersion);
+  asked.closing = "hello";
+  try {
+    identity_ = read_hello(converse(asked, Milliseconds(0)).closing());
+  } catch (const runner::Unsupported& error) {
+    give_up();
+    throw TargetBroken(fmt::format("unsupported: {}", error.what()));
+  } catch (const TargetBroken&) {
+    give_up();
+    throw;
+  }
+  greeted_ = true;
+  return identity_;
+}
+
+Answer RctClient::ask(const Asked& asked, Milliseconds longer) {
+  return converse(asked, longer).answer();
+}
+
+std::string RctClient::honesty() {
+  Asked asked;
+  asked.command = "frobnicate 17 radio";
+  asked.closing = "unsupported";
+  try {
+    converse(asked, Milliseconds(0));
+  } catch (const runner::Unsupported&) {
+    return {};
+  } catch (const TargetBroken& error) {
+    return error.what();
+  }
+  return "";
+}
+
+void RctClient::give_up() {
+  broken_ = true;
+  process_->kill();
+}
+
+std::string RctClient::take_stderr() { return std::exchange(notes_, {}) + process_->take_stderr(); }
+
+AnswerReader RctClient::converse(const Asked& asked, Milliseconds longer) {
+  if (broken_) throw TargetBroken("it broke before");
+  const SteadyTime deadline = steady_clock::now() + step_timeout_ + longer;
+  AnswerReader reader(asked);
+  bool reading = false;  // Lines, whose errors tell their number.
+  try {
+    if (process_->has_output()) {
+      const std::string line = process_->read_line(deadline);
+      throw TargetBroken(fmt::format("{} bytes came without a command, before it", line.size()));
+    }
+    process_->write(asked.command + '\n', deadline);
+    while (true) {
+      const std::string line = process_->read_line(deadline);
+      reading = true;
+      const bool closed = reader.take(line);
+      reading = false;
+      if (closed) break;
+    }
+  } catch (const TargetBroken& error) {
+    give_up();
+    keep_notes(reader);
+    if (reading) throw;
+    throw TargetBroken(fmt::format("`{}`: {}", asked.command, error.what()));
+  } catch (const runner::Unsupported&) {
+    keep_notes(reader);
+    throw;
+  }
+  keep_notes(reader);
+  return reader;
+}
+
+void RctClient::keep_notes(const AnswerReader& reader) {
+  for (const std::string& note : reader.answer().notes) notes_ += "note " + note + '\n';
+  if (notes_.size() > kNotesBytesMax) notes_.erase(0, notes_.size() - kNotesBytesMax);
+}
+
+}  // namespace rubric::attach

@@ -1,0 +1,53 @@
+// A node behind rct/1 on the runner's clock.
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "conformance/attach/rct_client.h"
+
+namespace rubric::attach {
+
+/// Without a `next` line an adapter is asked again after so many ticks when several nodes go on
+/// together.
+constexpr Ticks kUnknownNextTicks = 5;
+
+class RctTarget : public runner::Target {
+ public:
+  /// `give_back` gets the client when the target is destroyed.
+  using GiveBack = std::function<void(std::unique_ptr<RctClient>)>;
+  RctTarget(std::unique_ptr<RctClient> client, runner::Tolerance tolerance, GiveBack give_back)
+      : client_(std::move(client)), tolerance_(tolerance), give_back_(std::move(give_back)) {}
+  ~RctTarget() override { give_back_(std::move(client_)); }
+
+  void reset(const machine::Config& config) override;
+  void give(Ticks now, const machine::Event& event) override;
+  std::optional<Ticks> next() const override;
+  Ticks run_until(Ticks time) override;
+  const std::vector<Output>& outputs() const override { return outputs_; }
+  void hold_link_acks(bool hold) override { hold_link_acks_ = hold; }
+  runner::Tolerance tolerance() const override { return tolerance_; }
+
+ private:
+  /// Asks, and keeps what comes. Returns the instant of `done`.
+  Ticks ask(std::string command, Ticks time, bool passes_time);
+  Ticks let_pass(Ticks time);
+  bool quiet_until(Ticks time) const;
+
+  std::unique_ptr<RctClient> client_;
+  runner::Tolerance tolerance_;
+  GiveBack give_back_;
+  std::vector<Output> outputs_;
+  std::deque<Ticks> link_acks_;    // When the transmissions that ask for one end.
+  bool hold_link_acks_ = false;
+  Ticks now_ = 0;                  // Everything before it is done,
+  bool settled_ = false;           // and everything at it.
+  bool knows_next_ = false;
+  std::optional<Ticks> next_;      // If it is known.
+  std::size_t at_instant_ = 0;     // Outputs of the last instant.
+};
+
+}  // namespace rubric::attach
