@@ -11,6 +11,7 @@
 
 #include "spec/compiler/emit.h"
 #include "spec/compiler/emit_cpp.h"
+#include "spec/compiler/emit_java.h"
 #include "spec/compiler/load.h"
 
 namespace {
@@ -19,7 +20,7 @@ enum Exit { kOk = 0, kDiagnostics = 1, kUsage = 2, kCannotReadOrWrite = 3 };
 
 const std::vector<std::string> kEmitters{"cpp",        "tables",   "requirements", "protocols",
                                          "dictionary", "messages", "profiles",     "cases",
-                                         "doc"};
+                                         "java",       "doc"};
 
 struct Options {
   std::string requirements = "spec/requirements.yaml";
@@ -47,6 +48,7 @@ rubricc::GeneratedFiles emit(const Options& options, const rubricc::Model& model
     if (wants(options, "dictionary")) append(out, rubricc::emit_dictionary(*spec));
     if (wants(options, "messages")) append(out, rubricc::emit_messages(*spec));
     if (wants(options, "cpp")) append(out, rubricc::emit_cpp(*spec));
+    if (wants(options, "java")) append(out, rubricc::emit_java(*spec));
   }
   if (wants(options, "requirements")) {
     append(out, rubricc::emit_requirements(model, options.requirements));

@@ -11,6 +11,7 @@
 
 #include "spec/compiler/emit.h"
 #include "spec/compiler/emit_cpp.h"
+#include "spec/compiler/emit_java.h"
 #include "spec/compiler/load.h"
 
 namespace rubricc {
@@ -95,6 +96,7 @@ TEST(Mutations, AreReportedOrCompiled) {
         EXPECT_FALSE(emit_messages(*spec).empty());
         EXPECT_FALSE(emit_dictionary(*spec).empty());
         EXPECT_FALSE(emit_cpp(*spec).empty());
+        EXPECT_FALSE(emit_java(*spec).empty());
       }
       EXPECT_FALSE(emit_doc(model).empty());
     }

@@ -1,0 +1,79 @@
+package rubric.basestation;
+
+import java.util.Locale;
+
+/** What a base station does: a frame that it puts on a line, or news for the application. */
+public sealed interface Action {
+  /** The rule that it follows, such as "T2-ACK". */
+  String rule();
+
+  /**
+   * A frame to put on a line now.
+   *
+   * @param awaits the number of the reliable message that it is, else SequenceNumbers.NONE
+   */
+  record Transmit(Frame frame, int awaits, String rule) implements Action {}
+
+  /** News for the application. toString() is its text in traces. */
+  sealed interface Notice extends Action {}
+
+  /** The result of send: the number that the message carries, 0xFFFF if it was refused. */
+  record SendResult(int seqNum, String rule) implements Notice {
+    @Override
+    public String toString() {
+      return "send_result(" + seqNum + ")";
+    }
+  }
+
+  /** A message for an application. */
+  record Received(Address src, int appId, byte[] data, String rule) implements Notice {
+    @Override
+    public String toString() {
+      return "received(" + src + " " + appId + " x" + Hex.of(data) + ")";
+    }
+  }
+
+  /** How a reliable message ended. */
+  record AckReceived(int appId, int seqNum, boolean success, String rule) implements Notice {
+    @Override
+    public String toString() {
+      return "ack_received(" + appId + " " + seqNum + " " + text(success) + ")";
+    }
+  }
+
+  /** The result of a call that returns nothing else. */
+  record OperationResult(boolean success, String rule) implements Notice {
+    @Override
+    public String toString() {
+      return "op_result(" + text(success) + ")";
+    }
+  }
+
+  /** Whether an interface is switched on. */
+  record InterfaceState(Link link, boolean on, String rule) implements Notice {
+    @Override
+    public String toString() {
+      return "interface_state(" + link + " " + (on ? 1 : 0) + ")";
+    }
+  }
+
+  /** The station's clock in milliseconds. */
+  record Clock(long ms, String rule) implements Notice {
+    @Override
+    public String toString() {
+      return String.format(Locale.ROOT, "clock(%d)", ms);
+    }
+  }
+
+  /** The result of joinIsland, which a base station refuses: it is where it belongs. */
+  record Joined(Address address, boolean success, String rule) implements Notice {
+    @Override
+    public String toString() {
+      return "joined(" + address + " " + text(success) + ")";
+    }
+  }
+
+  private static String text(boolean success) {
+    return success ? "success" : "fail";
+  }
+}

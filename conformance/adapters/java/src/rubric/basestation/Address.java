@@ -1,0 +1,30 @@
+package rubric.basestation;
+
+import rubric.wire.rubicon.Devid;
+import rubric.wire.rubicon.Pid;
+import rubric.wire.rubicon.RAddr;
+
+/** An island and a device in it. (paper: The RUBICON Addressing Scheme) */
+public record Address(int pid, int devid) {
+  static Address of(RAddr wire) {
+    return new Address(wire.pid(), wire.devid());
+  }
+
+  RAddr.Writer toWire() {
+    return new RAddr.Writer().pid(pid).devid(devid);
+  }
+
+  boolean isBroadcast() {
+    return pid == Pid.BROADCAST || devid == Devid.BROADCAST;
+  }
+
+  /** Whether an island or devid names no one island or mote. (decision 132) */
+  static boolean isReserved(int id) {
+    return id >= Pid.PROXY;
+  }
+
+  @Override
+  public String toString() {
+    return pid + ":" + devid;
+  }
+}

@@ -1,0 +1,36 @@
+package rubric.basestation;
+
+import java.nio.ByteBuffer;
+import java.util.Arrays;
+import rubric.wire.Wire;
+import rubric.wire.WireException;
+import rubric.wire.tinyos.AmHeader;
+
+/**
+ * An active message on a line. Over PEIS dest and src are islands.
+ *
+ * @param payload what arrived, which may be less than the header promised
+ */
+public record Frame(Link link, int dest, int src, int type, byte[] payload) {
+  /** The packet of the serial forwarder: dispatch byte, header, payload. */
+  public byte[] toPacket() {
+    final AmHeader.Writer header =
+        new AmHeader.Writer().dest(dest).src(src).length(payload.length).type(type);
+    final ByteBuffer out = ByteBuffer.allocate(AmHeader.MAX_SIZE_BYTES + payload.length);
+    try {
+      header.writeTo(out);
+    } catch (WireException e) { // Payloads of ours are not that long.
+      throw new IllegalStateException(e);
+    }
+    return out.put(payload).array();
+  }
+
+  /** A packet as it came from `link`; bytes behind its length are left out. */
+  public static Frame parse(Link link, byte[] packet) throws WireException {
+    final AmHeader header = AmHeader.parse(ByteBuffer.wrap(packet));
+    final byte[] behind = Wire.copy(header.stale());
+    final int size = Math.min(header.length(), behind.length);
+    return new Frame(link, header.dest(), header.src(), header.type(),
+        Arrays.copyOf(behind, size));
+  }
+}
