@@ -1,0 +1,127 @@
+#include "tools/diff.h"
+
+#include <cstdio>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "conformance/suite/cases.h"
+#include "conformance/suite/select.h"
+#include "tools/cli/exit_codes.h"
+#include "tools/cli/output.h"
+#include "tools/cli/usage.h"
+#include "tools/player.h"
+
+namespace rubric::tools {
+namespace {
+
+struct Options {
+  std::vector<std::string> traces;
+  std::vector<std::string> targets;
+  std::vector<std::string> profiles;
+  suite::Selection selection;
+  std::string out = "-";
+  double timeout_seconds = 5;
+};
+
+constexpr const char* kFooter =
+    "Two implementations differ where one keeps a line of a golden trace that the other breaks;\n"
+    "freedom within the rules is no difference. Each trace that tells them apart is made as small\n"
+    "as it can be, and the shortest is printed.\n"
+    "Examples:\n"
+    "  rubric diff --target ./old_mote --target ./new_mote\n"
+    "  rubric diff --target machine --target machine --profile paper --profile deployed\n"
+    "Exit codes: 0 no difference, 1 they differ, 2 the kit or an implementation broke,\n"
+    "3 no case could be compared, 64 usage, 66 a trace cannot be read.";
+
+void compare(const Options& options) {
+  if (options.targets.size() != 2) throw CLI::ValidationError("--target has to stand twice");
+  if (!options.profiles.empty() && options.profiles.size() != 2) {
+    throw CLI::ValidationError("--profile has to stand twice, once for each target");
+  }
+  const suite::Cases cases =
+      options.traces.empty() ? suite::Cases::own() : suite::Cases::of(options.traces);
+  std::vector<std::unique_ptr<AttachedPlayer>> players;
+  for (std::size_t i = 0; i < 2; ++i) {
+    players.push_back(std::make_unique<AttachedPlayer>(
+        options.targets[i], options.timeout_seconds,
+        options.profiles.empty() ? std::string() : options.profiles[i]));
+  }
+  std::vector<trace::File> files;
+  for (const suite::SuiteCase& each : suite::select(cases, options.selection)) {
+    trace::File& file = files.emplace_back();
+    file.head = each.file->file.head;
+    file.cases.push_back(*each.one);
+  }
+  std::vector<const trace::File*> pointers;
+  for (const trace::File& file : files) pointers.push_back(&file);
+  const shrink::DifferenceSearch found =
+      shrink::find_difference(pointers, players[0]->player(), players[1]->player());
+  if (found.compared == 0) {
+    std::fputs("no case could be worked on both\n", stderr);
+    cli::exit_with(cli::kVerdictInconclusive);
+  }
+  fmt::print(stderr, "{} cases compared, {} differ\n", found.compared, found.different.size());
+  for (const std::string& name : found.different) fmt::print(stderr, "  {}\n", name);
+  if (!found.shortest) {
+    if (found.different.empty()) return;
+    throw runner::TargetBroken("they differ by chance only: not twice in the same case");
+  }
+  const shrink::Difference& difference = *found.shortest;
+  const std::string text =
+      shrunk_text(difference.shrunk, difference.case_name + ".difference",
+                  {fmt::format("A, {}: {}", players[0]->name(), outcome_text(difference.a)),
+                   fmt::format("B, {}: {}", players[1]->name(), outcome_text(difference.b))});
+  if (!cli::write_file(options.out, text)) cli::exit_with(cli::kVerdictBroken);
+  cli::exit_with(cli::kVerdictFailed);
+}
+
+void run(const Options& options) {
+  try {
+    compare(options);
+  } catch (const std::invalid_argument& error) {
+    throw CLI::ValidationError(error.what());
+  } catch (const runner::TargetBroken& error) {
+    fmt::print(stderr, "rubric diff: {}\n", error.what());
+    cli::exit_with(cli::kVerdictBroken);
+  } catch (const std::runtime_error& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    cli::exit_with(cli::kVerdictInput);
+  }
+}
+
+}  // namespace
+
+void add_diff(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* sub =
+      app.add_subcommand("diff", "Find the shortest trace on which two implementations differ");
+  sub->footer(kFooter);
+  sub->add_option("traces", options->traces,
+                  "Golden traces and folders of them; default: those of the kit")
+      ->type_name("TRACE");
+  sub->add_option("--target", options->targets, "An implementation, as in rubric test; twice")
+      ->required()
+      ->expected(1)
+      ->take_all();
+  sub->add_option("--profile", options->profiles, "Dialect of each target; default: as traces say")
+      ->check(CLI::IsMember({"paper", "deployed"}))
+      ->expected(1)
+      ->take_all();
+  sub->add_option("--cases", options->selection.globs, "Only cases with such names")->expected(1)
+      ->take_all();
+  sub->add_option("--requirement", options->selection.requirements,
+                  "Only cases that name this rule, or one of this family")->expected(1)->take_all();
+  sub->add_option("--out", options->out, "Where the trace goes; - is stdout")
+      ->capture_default_str();
+  sub->add_option("--timeout", options->timeout_seconds, "Seconds for an answer")
+      ->check(CLI::Range(0.01, 3600.0))
+      ->capture_default_str();
+  cli::set_usage_exit_code(*sub, cli::kVerdictUsage);
+  sub->callback([options] { run(*options); });
+}
+
+}  // namespace rubric::tools

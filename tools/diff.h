@@ -1,0 +1,10 @@
+// rubric diff: the shortest trace on which two implementations, or two profiles, differ.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace rubric::tools {
+
+void add_diff(CLI::App& app);
+
+}  // namespace rubric::tools

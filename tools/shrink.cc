@@ -1,0 +1,129 @@
+#include "tools/shrink.h"
+
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "conformance/suite/cases.h"
+#include "tools/cli/exit_codes.h"
+#include "tools/cli/output.h"
+#include "tools/cli/usage.h"
+#include "tools/player.h"
+
+namespace rubric::tools {
+namespace {
+
+using runner::CaseResult;
+using runner::CaseVerdict;
+
+struct Options {
+  std::string trace;
+  std::string target;
+  std::string case_name;
+  std::string profile;
+  std::string out = "-";
+  double timeout_seconds = 5;
+};
+
+constexpr const char* kFooter =
+    "The result fails by the same rule, and the reference machine passes it if it passes the\n"
+    "original; without any one of its lines it would not. It is a golden trace of its own.\n"
+    "Examples:\n"
+    "  rubric shrink j4.rtr --target './my_adapter' --case j4.wrong_seq --out small.rtr\n"
+    "  rubric test --target './my_adapter' small.rtr\n"
+    "Exit codes: 0 done, 2 the kit or the implementation broke, 3 nothing fails, 64 usage,\n"
+    "66 the trace cannot be read.";
+
+bool fails(const CaseResult& result) {
+  return result.verdict == CaseVerdict::kFail || result.verdict == CaseVerdict::kError;
+}
+bool passes(const CaseResult& result) {
+  return result.verdict == CaseVerdict::kPass || result.verdict == CaseVerdict::kWeak;
+}
+
+struct Failing {
+  const suite::SuiteCase* one;
+  CaseResult result;
+};
+
+std::optional<Failing> find_failing(const suite::Cases& cases, const std::string& name,
+                                    const shrink::Player& player) {
+  for (const suite::SuiteCase& each : cases.all()) {
+    if (!name.empty() && each.one->name != name) continue;
+    CaseResult result = runner::run_case(each.file->file, *each.one, player.make);
+    if (fails(result)) return Failing{&each, std::move(result)};
+  }
+  return std::nullopt;
+}
+
+void shrink_it(const Options& options) {
+  const suite::Cases cases = suite::Cases::of({options.trace});
+  if (!options.case_name.empty() && !cases.find(options.case_name)) {
+    throw CLI::ValidationError(options.trace + " has no case " + options.case_name);
+  }
+  AttachedPlayer attached(options.target, options.timeout_seconds, options.profile);
+  AttachedPlayer machine("machine", options.timeout_seconds, "");
+  const shrink::Player player = attached.player();
+  const auto found = find_failing(cases, options.case_name, player);
+  if (!found) {
+    std::fputs("nothing fails: there is nothing to shrink\n", stderr);
+    cli::exit_with(cli::kVerdictInconclusive);
+  }
+  const trace::File& file = found->one->file->file;
+  std::optional<shrink::Player> reference = machine.player();
+  if (!passes(runner::run_case(file, *found->one->one, reference->make))) reference.reset();
+  const auto shows = shrink::fails_alike(found->result, player, reference);
+  const shrink::Shrunk shrunk = shrink::shrink(file, *found->one->one, shows);
+  const std::string& name = found->one->one->name;
+  if (shrunk.lines_before == 0) {
+    throw runner::TargetBroken(name + " does not fail in the same way twice; is a seed ignored?");
+  }
+  const CaseResult last = shrink::play(shrunk.file, player);
+  const std::string text =
+      shrunk_text(shrunk, name + ".shrunk",
+                  {fmt::format("{} of the {} lines of {}.", shrunk.lines, shrunk.lines_before, name),
+                   fmt::format("On {}: {}", attached.name(), outcome_text(last))});
+  if (!cli::write_file(options.out, text)) cli::exit_with(cli::kVerdictBroken);
+  fmt::print(stderr, "{}: {} lines shrank to {} in {} runs\n{}\n", name, shrunk.lines_before,
+             shrunk.lines, shrunk.tried, outcome_text(last));
+}
+
+void run(const Options& options) {
+  try {
+    shrink_it(options);
+  } catch (const std::invalid_argument& error) {
+    throw CLI::ValidationError(error.what());
+  } catch (const runner::TargetBroken& error) {
+    fmt::print(stderr, "rubric shrink: {}\n", error.what());
+    cli::exit_with(cli::kVerdictBroken);
+  } catch (const std::runtime_error& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    cli::exit_with(cli::kVerdictInput);
+  }
+}
+
+}  // namespace
+
+void add_shrink(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* sub = app.add_subcommand("shrink", "Make a failing trace as small as it can be");
+  sub->footer(kFooter);
+  sub->add_option("trace", options->trace, "A .rtr file")->required()->type_name("TRACE");
+  sub->add_option("--target", options->target, "The implementation, as in rubric test")->required();
+  sub->add_option("--case", options->case_name, "Which case; default: the first that fails");
+  sub->add_option("--profile", options->profile, "Dialect; default: as the trace says")
+      ->check(CLI::IsMember({"paper", "deployed"}));
+  sub->add_option("--out", options->out, "Where the new trace goes; - is stdout")
+      ->capture_default_str();
+  sub->add_option("--timeout", options->timeout_seconds, "Seconds for an answer")
+      ->check(CLI::Range(0.01, 3600.0))
+      ->capture_default_str();
+  cli::set_usage_exit_code(*sub, cli::kVerdictUsage);
+  sub->callback([options] { run(*options); });
+}
+
+}  // namespace rubric::tools
