@@ -12,6 +12,9 @@ constexpr Instant kBootMax = 2 * kInstantsPerSecond;
 // How long a board may leave a serial packet without a sign before the bench gives it up: it was
 // switched off, or had no room.
 constexpr Instant kSerialPatience = 40 * kInstantsPerTick;
+// A tick of the node begins that much later than one of the bench, so that what the node does when
+// its tick begins falls into the same tick of the bench.
+constexpr Instant kNodeIsLate = kInstantsPerTick / 8;
 constexpr std::size_t kPacketMax = kRecordMax - 1;
 constexpr std::size_t kPacketHeaderBytes = 8;
 
@@ -44,7 +47,7 @@ void Bridge::start(const NodeSetup& setup) {
   const Instant end = board_.now() + kBootMax;
   while (!ready_ && board_.now() < end) board_.run(end, *this);
   if (!ready_) throw BoardBroken("the firmware does not start its node");
-  zero_ = clock_zero_;
+  zero_ = clock_zero_ - kNodeIsLate;
   last_tick_ = 0;
   lines_.clear();
 }
@@ -138,19 +141,29 @@ void Bridge::reboot() {
   if (serial_busy_) busy(1, true);
 }
 
+// Stops also when a line comes.
+void Bridge::run_until(Instant end) {
+  const bool transmission_ends = chip_.has_frame && chip_.on_air && !chip_.wants_ack;
+  board_.run(transmission_ends ? std::min(end, chip_.end) : end, *this);
+  if (transmission_ends && chip_.has_frame && board_.now() >= chip_.end) end_transmission(true);
+}
+
+void Bridge::advance(Tick now) {
+  const Instant end = zero_ + now * kInstantsPerTick;
+  last_tick_ = std::max(last_tick_, now);
+  if (off_) off_now_ = std::max(off_now_, end);
+  while (!off_ && board_.now() < end) run_until(end);
+}
+
 Tick Bridge::run(Tick end) {
   const Instant until = zero_ + (end + 1) * kInstantsPerTick;
-  last_tick_ = std::max(last_tick_, std::min(tick(), end));
   if (off_) {
     off_now_ = std::max(off_now_, until);
     return end;
   }
-  while (lines_.empty() && board_.now() < until) {
-    const bool transmission_ends = chip_.has_frame && chip_.on_air && !chip_.wants_ack;
-    board_.run(transmission_ends ? std::min(until, chip_.end) : until, *this);
-    if (transmission_ends && chip_.has_frame && board_.now() >= chip_.end) end_transmission(true);
-  }
-  return lines_.empty() ? end : std::min(end, std::max(last_tick_, tick()));
+  while (lines_.empty() && board_.now() < until) run_until(until);
+  last_tick_ = std::max(last_tick_, lines_.empty() ? end : std::min(end, tick()));
+  return last_tick_;
 }
 
 bool Bridge::serial_is_quiet() const {
@@ -164,9 +177,7 @@ std::optional<Tick> Bridge::next() const {
   if (!ready_ || in_flight_ || !queue_.empty() || !serial_is_quiet()) return soon;
   std::optional<Tick> next;
   if ((reported_.flags & kIdleTimerRuns) != 0) {
-    // The node's tick may begin shortly before the bench's.
-    const Tick due = tick_of(clock_zero_ + reported_.due * kInstantsPerTick);
-    next = due > 0 ? due - 1 : 0;
+    next = tick_of(clock_zero_ + reported_.due * kInstantsPerTick);
   }
   if (chip_.has_frame && chip_.on_air && !chip_.wants_ack) {
     next = std::min(tick_of(chip_.end), next.value_or(tick_of(chip_.end)));

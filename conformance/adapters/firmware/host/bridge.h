@@ -41,7 +41,10 @@ class Bridge : private Listener {
   /// The node starts; this is tick 0.
   void start(const NodeSetup& setup);
 
-  // What happens, in virtual time at the present tick.
+  /// Runs up to the beginning of tick `now`; lines that this brings have that time.
+  void advance(Tick now);
+
+  // What happens, at the present tick.
   void hear_radio(Bytes packet);
   void hear_serial(Bytes packet);
   void call(Bytes call_record);
@@ -80,6 +83,7 @@ class Bridge : private Listener {
   void setup(bool keep_seq_num);
   void record(ToBoard tag, Bytes body);
   void send_next();
+  void run_until(Instant end);
   void emit(std::string line);
   void transmit();
   void end_transmission(bool acked);

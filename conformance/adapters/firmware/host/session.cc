@@ -33,6 +33,7 @@ class Session {
     const Tick now = number_of(words[1], 0xFFFFFFFF);
     if (command == "until") return done(std::max(bridge_->run(now), last_));
     last_ = std::max(last_, now);
+    bridge_->advance(now);
     if (!happen(command, words)) throw Unsupported(fmt::format("there is no {}", command));
     return done(now);
   }

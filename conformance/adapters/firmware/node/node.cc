@@ -145,23 +145,28 @@ void Node::tick() {
   const Address own = address();
   for (uint8_t i = 0; i < channels_.out_count(); ++i) {
     Channel& channel = channels_.out(i);
-    if (!channels_.takes_part(channel)) continue;
-    if (channels_.is_local(channel, own)) {
-      channels_.hand_over(channel, own);
-      continue;
-    }
-    //= S2-SEND: At each tick every started output channel in reliable mode, but for a channel to
-    //= itself, sends its values to its destination.
-    //= S2-CONTENT: Synaptic data has TRANSID SYN_CHANNEL, APPID LEARNING or ESN_DATA, and one
-    //= little-endian binary32 for each connection, in order, unreliable.
-    const Address dest = {channel.peer_pid, static_cast<uint16_t>(channel.id)};
-    const uint16_t sent = send_own({dest, number(rubicon::Component::kSynChannel),
-                                    number(rubicon::Component::kEsnData), false,
-                                    Bytes(channel.values, size_t{4} * channel.size)});
-    // Refused for lack of room: the receiver would not know of a change before the next one.
-    if (sent == kNoSeq) channel.fresh = true;
+    if (!channels_.is_local(channel, own)) continue;
+    if (channels_.takes_part(channel)) channels_.hand_over(channel, own);
   }
   channels_.signal_inputs(application_);
+  for (uint8_t i = 0; i < channels_.out_count(); ++i) {
+    Channel& channel = channels_.out(i);
+    if (channels_.is_local(channel, own) || !channels_.takes_part(channel)) continue;
+    send_values(channel);
+  }
+}
+
+void Node::send_values(Channel& channel) {
+  //= S2-SEND: At each tick every started output channel in reliable mode, but for a channel to
+  //= itself, sends its values to its destination.
+  //= S2-CONTENT: Synaptic data has TRANSID SYN_CHANNEL, APPID LEARNING or ESN_DATA, and one
+  //= little-endian binary32 for each connection, in order, unreliable.
+  const Address dest = {channel.peer_pid, static_cast<uint16_t>(channel.id)};
+  const uint16_t sent = send_own({dest, number(rubicon::Component::kSynChannel),
+                                  number(rubicon::Component::kEsnData), false,
+                                  Bytes(channel.values, size_t{4} * channel.size)});
+  // Refused for lack of room: the receiver would not know of a change before the next one.
+  if (sent == kNoSeq) channel.fresh = true;
 }
 
 }  // namespace firmware

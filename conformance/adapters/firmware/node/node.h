@@ -115,6 +115,7 @@ class Node {
   bool route_own(Address& dest, Route& route) const;
   uint16_t send_own(const OwnMessage& own);
   void tick();
+  void send_values(Channel& channel);
 
   // lines.cc
   Message* take_place(Line line);
