@@ -32,8 +32,16 @@ void Context::look_up() {
     only_sink = sinks.empty() ? index : kNobody;
     sinks.push_back(index);
   }
-  for (const KnownNode& node : options.nodes) {
-    if (node.role == machine::Role::kSink) sink_am = node.id;
+  const Given given(options);
+  const std::uint16_t said = given.sink_am().value_or(sink_am);
+  if (mote_of_am[said] == kNobody) sink_am = said;
+  for (const Contradiction& one : who.contradictions) {
+    std::uint16_t node = who.marks[one.index].device;
+    if (node != kNobody && device(node).role == machine::Role::kBaseStation) {
+      node = device(node).partner;
+    }
+    report(one.requirement, Severity::kInconclusive, run.seen[one.index].place, node,
+           {one.text, one.expected, {}});
   }
   for (const Tap& tap : run.taps) {
     hears_radio = hears_radio || tap.link == machine::Link::kRadio;

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "conformance/oracle/message.h"
+#include "conformance/oracle/serial_lines.h"
 #include "conformance/oracle/streams.h"
 
 namespace rubric::oracle {
@@ -16,28 +17,26 @@ using machine::Role;
 constexpr std::uint64_t kResumeFrames = 3;  // A stream that began elsewhere and goes on is a node.
 constexpr std::size_t kRecentFrames = 64;
 constexpr std::int64_t kSameFrameUs = 1'000'000;
-constexpr std::int64_t kSerialRepeatUs = 1'500'000;  // TinyOS hosts wait 1000 ms.
-
-// A serial line in the first pass.
-struct Line {
-  std::uint16_t island = 0;   // Now.
-  std::uint16_t first = 0;
-  std::uint32_t last_down = 0;  // The last packet to the sink that asked for confirmation, + 1.
-};
 
 class Identifier {
  public:
   Identifier(const Run& run, const Options& options)
-      : run_(run), options_(options), streams_(run, options), lines_(run.taps.size()) {}
+      : run_(run),
+        options_(options),
+        given_(options),
+        streams_(run, options),
+        lines_(run, given_, streams_) {}
 
   Identity run() {
     out_.marks.resize(run_.seen.size());
+    out_.facts = run_.facts;
     for (const LoggedNode& node : run_.nodes) add_logged(node);
     for (std::uint32_t i = 0; i < run_.seen.size(); ++i) look(i);
     resolve_streams();
     resolve_lines();
     for (std::uint32_t i = 0; i < run_.seen.size(); ++i) settle(i);
     name_devices(run_, out_);
+    compare_with_given();
     return std::move(out_);
   }
 
@@ -75,26 +74,14 @@ class Identifier {
     if (seen.kind == Observation::Kind::kRadio) {
       out_.hears_radio = true;
       if (seen.frame.type == am::kJoin) remember_request(seen);
+      roles_.look(seen.frame, index);
       mark.device = streams_.assign(index, mark.repeat);  // A stream so far.
       return;
     }
     if (seen.kind == Observation::Kind::kSerial) {
-      mark.repeat = repeats_serial(index);
-      look_serial(seen);
+      mark.repeat = lines_.repeats(index);
+      lines_.look(index);
     }
-  }
-
-  // A host sends a packet again, with the next number, while its confirmation does not come.
-  bool repeats_serial(std::uint32_t index) {
-    const Observation& seen = run_.seen[index];
-    if (!seen.to_mote || !seen.ack_request) return false;
-    Line& line = lines_[seen.tap];
-    const std::uint32_t before = line.last_down;
-    line.last_down = index + 1;
-    if (before == 0) return false;
-    const Observation& last = run_.seen[before - 1];
-    return last.frame.type == seen.frame.type && equal(last.frame.payload, seen.frame.payload) &&
-           seen.place.time_us - last.place.time_us <= kSerialRepeatUs;
   }
 
   void look_logged(std::uint32_t index) {
@@ -111,13 +98,13 @@ class Identifier {
         device.last_us = run_.end_us;
         ++device.frames;
       }
-      if (seen.kind == Observation::Kind::kSerial) look_serial(seen);
+      if (seen.kind == Observation::Kind::kSerial) lines_.look(index);
       if (seen.kind == Observation::Kind::kRadio || seen.kind == Observation::Kind::kSerial) {
         recent_[recent_next_++ % kRecentFrames] = index + 1;
       }
       return;
     }
-    if (seen.kind == Observation::Kind::kSerial) look_serial(seen);
+    if (seen.kind == Observation::Kind::kSerial) lines_.look(index);
     mark.receiver = node;
     for (const std::uint32_t before : recent_) {
       if (before == 0) continue;
@@ -127,7 +114,7 @@ class Identifier {
           seen.place.time_us - sent.place.time_us <= kSameFrameUs) {
         mark.repeat = true;
         mark.device = out_.marks[before - 1].device;
-        mark.again = !given_.insert({before, node}).second;
+        mark.again = !handed_.insert({before, node}).second;
         return;
       }
     }
@@ -155,36 +142,6 @@ class Identifier {
       }
     }
     return kNobody;
-  }
-
-  // A line's island: from SET_ISLAND_ID, serial_joined or the source of what passes, never from
-  // where it goes.
-  void look_serial(const Observation& seen) {
-    Line& line = lines_[seen.tap];
-    if (const std::int32_t id = set_island_id(seen.frame); id >= 0 && seen.to_mote) {
-      const auto island = static_cast<std::uint16_t>(id);
-      streams_.rename_island(line.island, island);
-      if (line.first == 0) line.first = island;
-      line.island = island;
-      return;
-    }
-    Net net;
-    if (seen.frame.type != am::kNet || !parse_net(seen.frame.payload, net)) return;
-    if (line.island != 0) {
-      if (seen.to_mote) streams_.heard_on_serial(net, line.island);
-      return;
-    }
-    SerialJoined joined;
-    std::uint16_t island = 0;
-    if (!seen.to_mote && parse_serial_joined(net, joined)) {
-      island = joined.address.pid;
-    } else if (seen.to_mote ? net.src.devid == machine::kNullDevid
-                            : net.src.devid == streams_.sink_am() ||
-                                  net.dest == machine::Address{net.src.pid, machine::kNullDevid}) {
-      island = net.src.pid;
-    }
-    line.island = line.first = island;
-    if (seen.to_mote) streams_.heard_on_serial(net, island);
   }
 
   void remember_request(const Observation& seen) {
@@ -215,42 +172,88 @@ class Identifier {
     for (std::size_t i = 0; i < streams.size(); ++i) {
       const Stream& stream = streams[i];
       const std::uint16_t before = earlier_device(stream);
-      if (before != kNobody && follows(stream, before)) {
-        Device& device = out_.devices[before];
-        starts_life_[i] = device.radio && (stream.joins || stream.sink);
-        if (device.radio) device.holes.emplace_back(device.last_us, stream.first_us);
-        device.holes.insert(device.holes.end(), stream.holes.begin(), stream.holes.end());
-        if (!device.radio) device.first_us = stream.first_us;
-        device.last_us = stream.last_us;
-        device.frames += stream.frames;
-        device.radio = true;
+      // A second mote with the same id, in another island, shows by going on beside the first.
+      const bool another = role_of(stream) == Role::kMote && stream.frames >= kResumeFrames;
+      const bool named = given_.names(stream.am, stream.plain_island);
+      const bool goes_on = before != kNobody && follows(stream, before);
+      if (goes_on || (before != kNobody && named && !another)) {
+        starts_life_[i] = goes_on && out_.devices[before].radio && (stream.joins || stream.sink);
+        take_stream(out_.devices[before], stream);
         device_of_stream_[i] = before;
         continue;
       }
       Device device;
       device.am = stream.am;
-      device.role = stream.sink ? Role::kSink : Role::kMote;
+      device.role = role_of(stream);
       device.island = stream.sink ? stream.first_island : std::uint16_t{0};
       device.judged = !is_tester(stream.am);
-      // A second mote with the same id, in another island, shows by going on beside the first.
-      const bool another = !stream.sink && stream.frames >= kResumeFrames;
-      device.known = device.judged && (before == kNobody || another) && !answers_nothing(stream);
-      device.radio = true;
-      device.frames = stream.frames;
-      device.first_us = stream.first_us;
-      device.last_us = stream.last_us;
-      device.holes = stream.holes;
-      apply_known(device);
+      device.known = device.judged && (named || ((before == kNobody || another) &&
+                                                 !answers_nothing(stream)));
+      take_stream(device, stream);
       device_of_stream_[i] = add(device);
     }
   }
 
-  void apply_known(Device& device) {
-    for (const KnownNode& node : options_.nodes) {
-      if (node.id != device.am) continue;
-      device.role = node.role;
-      if (node.role != Role::kSink || node.island == 0) continue;
-      if (device.island == 0) device.island = node.island;
+  static void take_stream(Device& device, const Stream& stream) {
+    if (device.radio) {
+      device.holes.emplace_back(std::min(device.last_us, stream.first_us),
+                                std::max(device.last_us, stream.first_us));
+    } else {
+      device.first_us = stream.first_us;
+    }
+    device.holes.insert(device.holes.end(), stream.holes.begin(), stream.holes.end());
+    device.last_us = std::max(device.last_us, stream.last_us);
+    device.frames += stream.frames;
+    device.radio = true;
+  }
+
+  Role role_of(const Stream& stream) const {
+    return roles_.role_of(stream.am, stream.sink ? Role::kSink : Role::kMote);
+  }
+
+  // A log's header is believed, too.
+  void compare_logged_with_given(std::vector<Shown>& shown) {
+    if (given_.empty()) return;
+    for (std::uint16_t node = 0; node < run_.nodes.size(); ++node) {
+      const LoggedNode& logged = run_.nodes[node];
+      const auto mark = std::find_if(out_.marks.begin(), out_.marks.end(),
+                                     [&](const Mark& m) { return m.device == node; });
+      if (logged.role == Role::kBaseStation || mark == out_.marks.end()) continue;
+      const auto index = static_cast<std::uint32_t>(mark - out_.marks.begin());
+      const Role said = given_.role(logged.id).value_or(logged.role);
+      if (said != logged.role) {
+        out_.contradictions.push_back(role_contradiction(logged.id, said, logged.role, index));
+      } else if (logged.role == Role::kSink && logged.island != 0) {
+        shown.push_back({logged.id, logged.island, index});
+      }
+    }
+  }
+
+  // What the user says of nodes, beside what was found.
+  void compare_with_given() {
+    for (const KnownNode& node : given_.nodes()) {
+      const bool seen = std::any_of(out_.devices.begin(), out_.devices.end(), [&](const auto& d) {
+        return d.am == node.id && d.known && d.role != Role::kBaseStation;
+      });
+      if (!seen && node.role != Role::kBaseStation) {
+        out_.facts.push_back("AM address " + std::to_string(node.id) +
+                             ", given: no frame of it");
+      }
+    }
+    roles_.contradict(out_.contradictions);
+    std::vector<Shown> shown = lines_.shown();
+    compare_logged_with_given(shown);
+    for (std::size_t i = 0; i < streams_.all().size(); ++i) {
+      const Stream& stream = streams_.all()[i];
+      const std::uint16_t device = device_of_stream_[i];
+      if (stream.plain == 0 || !out_.devices[device].known) continue;
+      if (out_.devices[device].role != Role::kSink) continue;
+      shown.push_back({stream.am, stream.plain_island, stream.plain - 1});
+    }
+    std::sort(shown.begin(), shown.end(),
+              [](const Shown& a, const Shown& b) { return a.index < b.index; });
+    for (Contradiction& one : island_contradictions(run_, given_, shown)) {
+      out_.contradictions.push_back(std::move(one));
     }
   }
 
@@ -261,7 +264,7 @@ class Identifier {
     for (std::size_t i = 0; i < out_.devices.size(); ++i) {
       const Device& device = out_.devices[i];
       if (!device.known || device.am != stream.am || device.role == Role::kBaseStation) continue;
-      if ((device.role == Role::kSink) != stream.sink) continue;
+      if (device.role != role_of(stream)) continue;
       const bool same_island = device.island == stream.first_island || device.island == 0 ||
                                stream.first_island == 0 ||
                                last_island(device) == stream.first_island;
@@ -291,22 +294,15 @@ class Identifier {
 
   void resolve_lines() {
     out_.sink_of_tap.assign(run_.taps.size(), kNobody);
-    for (std::uint32_t tap = 0; tap < lines_.size(); ++tap) {
+    for (std::uint32_t tap = 0; tap < run_.taps.size(); ++tap) {
       if (run_.taps[tap].link != machine::Link::kSerial) continue;
-      const Line& line = lines_[tap];
+      const SerialLine& line = lines_.at(tap);
       if (line.island == 0) continue;
-      std::uint16_t sink = kNobody;
-      for (std::size_t i = 0; i < out_.devices.size(); ++i) {
-        const Device& device = out_.devices[i];
-        if (!device.known || device.role != Role::kSink) continue;
-        if (device.island == line.island || device.island == line.first) {
-          sink = static_cast<std::uint16_t>(i);
-          break;
-        }
-      }
+      std::uint16_t sink = sink_of(line);
       if (sink == kNobody) {
         Device device;
-        device.am = streams_.sink_am();
+        const std::uint16_t am = streams_.sink_am();
+        device.am = roles_.role_of(am, Role::kSink) == Role::kSink ? am : machine::Profile{}.sink_id;
         device.role = Role::kSink;
         device.island = line.first;
         sink = add(device);
@@ -315,6 +311,20 @@ class Identifier {
       out_.sink_of_tap[tap] = sink;
       if (out_.devices[sink].partner == kNobody) add_base_station(sink, line.first);
     }
+  }
+
+  std::uint16_t sink_of(const SerialLine& line) const {
+    std::uint16_t only = kNobody;
+    std::size_t sinks = 0;
+    for (std::size_t i = 0; i < out_.devices.size(); ++i) {
+      const Device& device = out_.devices[i];
+      if (!device.known || device.role != Role::kSink) continue;
+      only = static_cast<std::uint16_t>(i);
+      if (device.island == line.island || device.island == line.first) return only;
+      ++sinks;
+    }
+    // Of the one sink in sight, whatever island was given of it.
+    return line.given && sinks == 1 ? only : kNobody;
   }
 
   void add_base_station(std::uint16_t sink, std::uint16_t island) {
@@ -358,14 +368,16 @@ class Identifier {
 
   const Run& run_;
   const Options& options_;
+  const Given given_;
+  GivenRoles roles_{given_};
   Streams streams_;
-  std::vector<Line> lines_;
+  SerialLines lines_;
   Identity out_;
   std::vector<std::uint16_t> device_of_stream_;
   std::vector<bool> starts_life_;
   std::array<std::uint32_t, kRecentFrames> recent_{};  // Observation + 1.
   std::size_t recent_next_ = 0;
-  std::set<std::pair<std::uint32_t, std::uint16_t>> given_;  // Frames of recent_, to whom.
+  std::set<std::pair<std::uint32_t, std::uint16_t>> handed_;  // Frames of recent_, to whom.
   std::array<std::pair<std::uint16_t, std::uint16_t>, 256> requests_{};
   std::size_t request_next_ = 0;
 };

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "conformance/oracle/given.h"
 #include "conformance/oracle/observation.h"
 
 namespace rubric::oracle {
@@ -47,6 +48,7 @@ struct Identity {
   std::vector<Mark> marks;                ///< One for each observation.
   std::vector<std::uint16_t> sink_of_tap; ///< kNobody: a tap on the air, or of an unknown sink.
   std::vector<std::string> facts;
+  std::vector<Contradiction> contradictions;  ///< Of what the user says.
   std::vector<std::int64_t> damaged_us;   ///< When bytes came that are no frame; they were one.
 
   bool hears_radio = false;               ///< Some radio frame was seen at all.

@@ -89,6 +89,7 @@ struct Run {
   std::vector<LoggedNode> nodes;
   std::shared_ptr<RunStorage> storage;
   std::vector<Tap> taps;
+  std::vector<std::string> facts;  ///< What the reading found out, a sentence each.
   std::vector<Observation> seen;   ///< In order of cause: see merge() in read.h.
   std::int64_t start_us = 0;       ///< The first stamp.
   std::int64_t end_us = 0;

@@ -25,11 +25,8 @@ constexpr std::uint16_t kBothLines = 0xFFFF;
 
 }  // namespace
 
-Streams::Streams(const Run& run, const Options& options) : run_(run), first_of_(65536, kLast) {
-  for (const KnownNode& node : options.nodes) {
-    if (node.role == machine::Role::kSink) sink_am_ = node.id;
-  }
-}
+Streams::Streams(const Run& run, const Options& options)
+    : run_(run), given_(options), sink_am_(given_.sink_am().value_or(machine::Profile{}.sink_id)), first_of_(65536, kLast) {}
 
 IslandHint Streams::hint_of(const machine::Frame& frame) const {
   IslandHint hint;
@@ -72,7 +69,8 @@ int Streams::score(const Stream& stream, const Observation& seen, const IslandHi
     return points > 0 ? points : kNever;
   }
   const bool stale = hint.strong != 0 && hint.strong == stream.last_island;
-  if (hint.strong != 0 && hint.strong != stream.island && !stale) return kNever;
+  const bool other = hint.strong != 0 && hint.strong != stream.island && !stale;
+  if (other) return stream.given ? points : kNever;  // Rather than two sinks, one given wrongly.
   if (hint.strong != 0 && !stale) points += kStrongIsland;
   // From another island's base station to that island: the other sink's.
   if (hint.src != 0 && hint.src == hint.dest && hint.src != stream.island) return kNever;
@@ -133,10 +131,26 @@ std::uint16_t Streams::assign(std::uint32_t index, bool& repeat) {
   if (seen.frame.type == am::kJoin) stream.asked = true;
   if (!stream.sink && hint.mote != 0) stream.island = hint.mote;
   if (seen.frame.type == am::kJoinReply && !stream.asked) stream.sink = true;
-  if (stream.sink && stream.island == 0) {
-    stream.first_island = stream.island = hint.strong != 0 ? hint.strong : hint.dest;
-  }
+  if (stream.sink) guess_island(stream, index, hint);
   return best;
+}
+
+// What a frame says plainly comes before what the user says, and that before what it suggests.
+void Streams::guess_island(Stream& stream, std::uint32_t index, const IslandHint& hint) const {
+  if (hint.strong != 0 && hint.strong != stream.last_island && stream.plain == 0) {
+    stream.plain = index + 1;
+    stream.plain_island = hint.strong;
+    if (stream.given) stream.island = 0;
+    stream.given = false;
+  }
+  if (stream.island != 0) return;
+  const std::uint16_t said = given_.only_island(stream.am);
+  const bool taken = std::any_of(streams_.begin(), streams_.end(), [&](const Stream& other) {
+    return other.am == stream.am && other.island == said;
+  });
+  stream.given = hint.strong == 0 && said != 0 && !taken;
+  stream.island = hint.strong != 0 ? hint.strong : stream.given ? said : hint.dest;
+  stream.first_island = stream.island;
 }
 
 std::uint16_t Streams::open(std::uint32_t index, const IslandHint& hint) {
@@ -145,11 +159,16 @@ std::uint16_t Streams::open(std::uint32_t index, const IslandHint& hint) {
   Stream stream;
   stream.am = seen.frame.src;
   stream.dsn = seen.dsn;
-  stream.sink = seen.frame.type == am::kJoinReply ||
-                (seen.frame.src == sink_am_ && seen.frame.type != am::kJoin);
+  const std::optional<machine::Role> said = given_.role(stream.am);
+  const bool usual = stream.am == sink_am_ || stream.am == machine::Profile{}.sink_id;
+  const bool named = said ? *said == machine::Role::kSink : usual;
+  stream.sink = seen.frame.type == am::kJoinReply || (named && seen.frame.type != am::kJoin);
   stream.joins = stream.asked = seen.frame.type == am::kJoin;
-  if (!stream.sink) stream.island = hint.mote;
-  if (stream.sink) stream.first_island = stream.island = hint.strong != 0 ? hint.strong : hint.dest;
+  if (stream.sink) {
+    guess_island(stream, index, hint);
+  } else {
+    stream.island = hint.mote;
+  }
   stream.first = stream.last = index;
   stream.first_us = stream.last_us = seen.place.time_us;
   stream.frames = 1;
@@ -158,6 +177,10 @@ std::uint16_t Streams::open(std::uint32_t index, const IslandHint& hint) {
   next_.push_back(first_of_[stream.am]);
   first_of_[stream.am] = made;
   return made;
+}
+
+bool Streams::has_sink() const {
+  return std::any_of(streams_.begin(), streams_.end(), [](const Stream& s) { return s.sink; });
 }
 
 void Streams::heard_on_serial(const Net& net, std::uint16_t island) {
@@ -170,6 +193,7 @@ void Streams::rename_island(std::uint16_t from, std::uint16_t to) {
     if (!stream.sink || stream.island != from || from == to) continue;
     stream.last_island = from;
     stream.island = to;
+    stream.given = false;
   }
 }
 

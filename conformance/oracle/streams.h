@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "conformance/oracle/given.h"
 #include "conformance/oracle/identity.h"
 #include "conformance/oracle/message.h"
 
@@ -25,6 +26,9 @@ struct Stream {
   bool sink = false;
   bool joins = false;                ///< Its first frame was a join_request.
   bool asked = false;                ///< It sent a join_request.
+  bool given = false;                ///< Its island is what the user says, so far.
+  std::uint32_t plain = 0;           ///< The first observation that shows its island, + 1; 0: none.
+  std::uint16_t plain_island = 0;    ///< There.
   std::uint16_t island = 0;          ///< Now; may change by SET_ISLAND_ID.
   std::uint16_t first_island = 0;
   std::uint16_t last_island = 0;     ///< Before SET_ISLAND_ID.
@@ -46,11 +50,13 @@ class Streams {
   /// A base station hands the sink of `island` a message, which it may radiate.
   void heard_on_serial(const Net& net, std::uint16_t island);
   std::uint16_t sink_am() const { return sink_am_; }
+  bool has_sink() const;
   /// A base station told the sink with frames of island `from` that it is now `to`.
   void rename_island(std::uint16_t from, std::uint16_t to);
 
  private:
   IslandHint hint_of(const machine::Frame& frame) const;
+  void guess_island(Stream& stream, std::uint32_t index, const IslandHint& hint) const;
   int score(const Stream& stream, const Observation& seen, const IslandHint& hint) const;
   std::uint16_t open(std::uint32_t index, const IslandHint& hint);
 
@@ -64,7 +70,8 @@ class Streams {
 
   static constexpr std::uint16_t kLast = 0xFFFF;
   const Run& run_;
-  std::uint16_t sink_am_ = 1;
+  const Given given_;
+  std::uint16_t sink_am_;
   std::vector<Stream> streams_;
   std::vector<std::uint16_t> next_;      // Of the same address.
   std::vector<std::uint16_t> first_of_;  // By AM address.

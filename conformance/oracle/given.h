@@ -1,0 +1,82 @@
+// What the user says of nodes, and what is said where the run shows something else.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "conformance/oracle/observation.h"
+
+namespace rubric::oracle {
+
+/// `--node`, `--sink`. Names no node at all where nothing is given.
+class Given {
+ public:
+  explicit Given(const Options& options) : nodes_(options.nodes) {}
+
+  bool empty() const { return nodes_.empty(); }
+  const std::vector<KnownNode>& nodes() const { return nodes_; }
+  /// Of the node with this AM address.
+  std::optional<machine::Role> role(std::uint16_t am) const;
+  /// The one island that is given of sinks with this address; 0: none, or several.
+  std::uint16_t only_island(std::uint16_t am) const;
+  /// The one island that is given of any sink; 0: none, or several.
+  std::uint16_t only_island() const;
+  /// Whether a node of this address is given which may be one of that island. 0: of any.
+  bool names(std::uint16_t am, std::uint16_t island) const;
+  /// The AM address of sinks, where one is given.
+  std::optional<std::uint16_t> sink_am() const;
+
+ private:
+  const std::vector<KnownNode>& nodes_;
+};
+
+/// The run shows something else of a node than the user says. The run is believed.
+struct Contradiction {
+  std::uint32_t index = 0;     ///< The observation that shows it.
+  ReqId requirement = ReqId::kNone;  ///< What the node breaks if the user is right.
+  std::string text;
+  std::string expected;
+};
+
+/// A node of `role` was given, and it does only what nodes of `shown` do.
+Contradiction role_contradiction(std::uint16_t am, machine::Role role, machine::Role shown,
+                                 std::uint32_t index);
+
+/// Holds given roles against what nodes do in joins.
+class GivenRoles {
+ public:
+  explicit GivenRoles(const Given& given) : given_(given) {}
+
+  /// Learns from a radio frame, observation `index`.
+  void look(const machine::Frame& frame, std::uint32_t index);
+  /// As given, unless all that the address does in joins is for the other role; a base station has
+  /// no radio. `guess` where nothing is given. After all frames were looked at.
+  machine::Role role_of(std::uint16_t am, machine::Role guess) const;
+  void contradict(std::vector<Contradiction>& out) const;
+
+ private:
+  struct Joins {
+    std::uint32_t as_mote = 0;  ///< Its first observation, + 1.
+    std::uint32_t as_sink = 0;
+  };
+  static bool overruled(const Joins& joins, machine::Role said);
+
+  const Given& given_;
+  std::map<std::uint16_t, Joins> joins_;  // By AM address; only given ones.
+};
+
+/// A frame that shows a sink's island.
+struct Shown {
+  std::uint16_t am = 0;
+  std::uint16_t island = 0;
+  std::uint32_t index = 0;
+};
+
+/// What the islands that sinks show say against the given ones. `shown` in order of the run.
+std::vector<Contradiction> island_contradictions(const Run& run, const Given& given,
+                                                 const std::vector<Shown>& shown);
+
+}  // namespace rubric::oracle

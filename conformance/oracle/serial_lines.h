@@ -1,0 +1,40 @@
+// Serial lines in the first pass: whose they are.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "conformance/oracle/given.h"
+#include "conformance/oracle/streams.h"
+
+namespace rubric::oracle {
+
+struct SerialLine {
+  std::uint16_t island = 0;     ///< Now; 0: not known.
+  std::uint16_t first = 0;
+  bool given = false;           ///< By the user; nothing on the line has shown it so far.
+  bool used = false;            ///< Some net_msg came.
+  std::uint32_t last_down = 0;  ///< The last packet to the sink that asked for confirmation, + 1.
+};
+
+class SerialLines {
+ public:
+  SerialLines(const Run& run, const Given& given, Streams& streams);
+
+  /// Learns from observation `index`, a serial one.
+  void look(std::uint32_t index);
+  /// Whether it is the host's repetition: the same packet with the next number, while its
+  /// confirmation does not come.
+  bool repeats(std::uint32_t index);
+  const SerialLine& at(std::uint32_t tap) const { return lines_[tap]; }
+  /// What lines showed of islands.
+  const std::vector<Shown>& shown() const { return shown_; }
+
+ private:
+  const Run& run_;
+  Streams& streams_;
+  std::vector<SerialLine> lines_;  // By tap.
+  std::vector<Shown> shown_;
+};
+
+}  // namespace rubric::oracle
