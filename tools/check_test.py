@@ -84,6 +84,17 @@ class Text(Folder):
             self.assertEqual(out, path.read_text(),
                              f"{path}; renew with tools/check_test.py RUBRIC --regenerate")
 
+    def test_a_frame_has_the_number_that_decode_shows(self):
+        seen = 0
+        for file in capture_files():
+            out = rubric("decode", "--format", "csv", "--fields", "number,offset", file)[1]
+            offsets = dict(line.split(",") for line in out.splitlines()[1:])
+            for finding in as_json(file)["findings"]:
+                if finding["frame"] is not None:
+                    self.assertEqual(offsets[str(finding["frame"])], str(finding["offset"]), file)
+                    seen += 1
+        self.assertGreater(seen, 20)
+
     def test_again_shows_the_same_finding(self):
         """Every command below a failure, as it stands there."""
         ran = 0

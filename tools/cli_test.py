@@ -158,6 +158,16 @@ class Output(unittest.TestCase):
         self.assertEqual([line["index"] for line in both], list(range(len(both))))
         self.assertEqual(both[len(first)]["framing"], "radio")
 
+    def test_numbers_count_in_each_file_from_1(self):
+        of_serial, of_join = len(lines(decode(SERIAL))), len(lines(decode(JOIN)))
+        numbers = [int(line[1:].split()[0]) for line in lines(decode(SERIAL, JOIN))]
+        self.assertEqual(numbers, [*range(1, of_serial + 1), *range(1, of_join + 1)])
+        # Before any filter, so that a frame keeps its number.
+        (line,) = lines(decode(JOIN, "--filter", "number==3"))
+        self.assertEqual(line, lines(decode(JOIN))[2])
+        (line,) = lines(decode(JOIN, "--filter", "number==3", "--fields", "number,index"))
+        self.assertEqual(line.split()[::2], ["3", "index=2"])  # The time between.
+
     def test_hex_text_of_either_case(self):
         sent = "00 FF FF 00 00 03 00 25 0A 00 0C\n"
         for text in (sent, sent.lower(), sent.replace(" ", "")):

@@ -1,5 +1,5 @@
 // The .rtr text trace as plain values: golden trace, log of a run, input of the offline checker,
-// counterexample, seed of a fuzzer. Grammar and meaning: spec/trace/README.md.
+// counterexample. Grammar and meaning: spec/trace/README.md.
 #pragma once
 
 #include <cstdint>

@@ -36,7 +36,7 @@ TEST(Text, is_a_line_a_frame) {
 TEST(Text, shows_structures_masks_and_units) {
   const std::string join = print(Sample(kJoinRequest, Framing::kBare, "join_request"));
   EXPECT_EQ(join,
-            "     0 bare   join_request            seq_num=50421 mote_desc{mote_type=telosb_demo "
+            "     1 bare   join_request            seq_num=50421 mote_desc{mote_type=telosb_demo "
             "transducers=light|temp|humid|bit13 actuators=led}\n");
   TextOptions units;
   units.units = true;
@@ -47,7 +47,7 @@ TEST(Text, shows_structures_masks_and_units) {
 TEST(Text, marks_what_is_malformed) {
   const Sample sample("00 ffff 0000 0e 00 1c 000b fffd 000b 0002 02 0001 02 030a");
   EXPECT_EQ(print(sample),
-            "!    0 sf   0>bcast net_msg                 dest=11:null src=11:2 "
+            "!    1 sf   0>bcast net_msg                 dest=11:null src=11:2 "
             "!! out_of_range at 16: reliable is 2, allowed are 0 to 1\n"
             "        WIRE-NET-RELIABLE MUST: The reliable field of a network message is 0 or 1.\n");
 }
@@ -65,7 +65,7 @@ TEST(Text, selects_fields) {
   TextOptions options;
   options.fields = parse_paths("src.devid,updates.value,cur_time", rubicon());
   EXPECT_EQ(print(Sample(kUpdates), std::move(options)),
-            "     0 src.devid=2 updates.value=302 6402 1202 cur_time=\n");
+            "     1 src.devid=2 updates.value=302 6402 1202 cur_time=\n");
 }
 
 TEST(Text, colours_and_keeps_the_words) {

@@ -45,8 +45,11 @@ std::string cases_text(ReqId id, std::string_view title, bool negative, CaseList
   if (list == CaseList::kShort && names.size() > kFew + 1) {
     const std::size_t more = names.size() - kFew;
     names.resize(kFew);
-    names.push_back(
-        fmt::format("{} more: rubric explain {} --cases", more, reflect::requirement(id).id));
+    std::string others = fmt::format("{} more: ", more);
+    for (const char c : fmt::format("rubric explain {} --cases", reflect::requirement(id).id)) {
+      others += c == ' ' ? kFirmBlank : c;  // To be copied from one line.
+    }
+    names.push_back(std::move(others));
   }
   return wrapped(fmt::format("{}: {}", title, fmt::join(names, ", ")), 4);
 }

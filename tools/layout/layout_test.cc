@@ -176,7 +176,7 @@ TEST(Explain, ManyCasesAreShortenedUnlessAskedFor) {
   const std::string four = one + ", " + one + ", " + one + ", " + one;
   EXPECT_EQ(cases_of(5, CaseList::kShort), "  Cases:\n    negative: " + four + ", " + one + "\n");
   EXPECT_EQ(cases_of(6, CaseList::kShort),
-            "  Cases:\n    negative: " + four + ", 2 more: rubric\n    explain J4-SEQ --cases\n");
+            "  Cases:\n    negative: " + four + ", 2 more:\n    rubric explain J4-SEQ --cases\n");
   EXPECT_EQ(cases_of(6, CaseList::kWhole),
             "  Cases:\n    negative: " + four + ", " + one + ",\n    " + one + "\n");
 }
