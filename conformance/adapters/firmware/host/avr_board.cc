@@ -1,7 +1,9 @@
 #include "conformance/adapters/firmware/host/avr_board.h"
 
+#include <algorithm>
 #include <cstdarg>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 
 #include <fmt/format.h>

@@ -35,7 +35,7 @@ class SimulatedBoard {
   virtual ~SimulatedBoard() = default;
   /// New firmware, its memory cleared; it has not run yet.
   virtual void power_on() = 0;
-  /// Runs it from its start again at `now`; memory is kept.
+  /// Runs it from its start again at `now`; memory is kept. What it was sending may be cut off.
   virtual void restart(Instant now) = 0;
   virtual Instant now() const = 0;
   /// Until `end`, or until a listener calls stop().

@@ -210,9 +210,16 @@ void Bridge::end_transmission(bool acked) {
 
 void Bridge::link_byte(std::uint8_t byte) {
   incoming_.push_back(byte);
+  if (!greeted_ && !is_greeting()) incoming_.clear();  // The rest of what a reset cut off.
+  if (incoming_.empty()) return;
   if (incoming_.size() < std::size_t{1} + incoming_[0]) return;
   const ByteVector record = std::exchange(incoming_, {});
   handle(Bytes(record.data() + 1, record.size() - 1));
+}
+
+bool Bridge::is_greeting() const {
+  constexpr std::uint8_t kStart[] = {5, static_cast<std::uint8_t>(FromBoard::kHello)};
+  return incoming_[0] == kStart[0] && (incoming_.size() < 2 || incoming_[1] == kStart[1]);
 }
 
 void Bridge::handle(Bytes record) {

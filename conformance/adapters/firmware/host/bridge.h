@@ -80,6 +80,7 @@ class Bridge : private Listener {
   void link_byte(std::uint8_t byte) override;
   void serial_byte(std::uint8_t byte) override;
   void handle(Bytes record);
+  bool is_greeting() const;
   void setup(bool keep_seq_num);
   void record(ToBoard tag, Bytes body);
   void send_next();

@@ -1,0 +1,145 @@
+#include "conformance/adapters/firmware/host/qemu_board.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "conformance/adapters/firmware/bench/records.h"
+
+namespace rubric::firmware {
+namespace {
+
+using std::chrono::nanoseconds;
+
+// What the emulator finds open.
+constexpr int kSerialInEmulator = 3;
+constexpr int kLinkInEmulator = 4;
+// A record that is under way must be handled before the next one.
+constexpr std::chrono::milliseconds kRecordTime{20};
+
+nanoseconds duration_of(Instant instant) {
+  return nanoseconds(static_cast<std::int64_t>(
+      static_cast<double>(instant) * 1e9 / static_cast<double>(kInstantsPerSecond)));
+}
+
+// Ours, and the emulator's.
+std::array<int, 2> socket_pair() {
+  std::array<int, 2> pair{};
+  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, pair.data()) != 0) {
+    throw BoardBroken(std::strerror(errno));
+  }
+  return pair;
+}
+
+// In the child. Descriptors may be in each other's places, so both move out of the way first.
+void give_descriptors(int serial, int link) {
+  const int serial_copy = fcntl(serial, F_DUPFD, 10);
+  const int link_copy = fcntl(link, F_DUPFD, 10);
+  dup2(serial_copy, kSerialInEmulator);
+  dup2(link_copy, kLinkInEmulator);
+  close(serial_copy);
+  close(link_copy);
+  const int null = open("/dev/null", O_RDWR);
+  dup2(null, STDIN_FILENO);
+  dup2(null, STDOUT_FILENO);
+}
+
+}  // namespace
+
+QemuBoard::QemuBoard(std::string qemu, std::string elf_file)
+    : qemu_(std::move(qemu)), elf_file_(std::move(elf_file)) {}
+
+QemuBoard::~QemuBoard() { end_emulator(); }
+
+void QemuBoard::end_emulator() {
+  if (emulator_ < 0) return;
+  kill(emulator_, SIGKILL);
+  waitpid(emulator_, nullptr, 0);
+  close(link_);
+  close(serial_);
+  emulator_ = link_ = serial_ = -1;
+}
+
+void QemuBoard::power_on() {
+  end_emulator();
+  const auto serial = socket_pair();
+  const auto link = socket_pair();
+  const std::string serial_device = fmt::format("socket,id=serial,fd={}", kSerialInEmulator);
+  const std::string link_device = fmt::format("socket,id=link,fd={}", kLinkInEmulator);
+  emulator_ = fork();
+  if (emulator_ < 0) throw BoardBroken(std::strerror(errno));
+  if (emulator_ == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    give_descriptors(serial[1], link[1]);
+    execlp(qemu_.c_str(), qemu_.c_str(), "-M", "lm3s6965evb", "-display", "none", "-monitor",
+           "none", "-chardev", serial_device.c_str(), "-serial", "chardev:serial", "-chardev",
+           link_device.c_str(), "-serial", "chardev:link", "-kernel", elf_file_.c_str(), nullptr);
+    _exit(127);
+  }
+  close(serial[1]);
+  close(link[1]);
+  serial_ = serial[0];
+  link_ = link[0];
+}
+
+// Memory is kept, so the emulator goes on and the firmware resets its processor.
+void QemuBoard::restart(Instant) {
+  std::this_thread::sleep_for(kRecordTime);
+  const std::uint8_t record[] = {1, static_cast<std::uint8_t>(ToBoard::kRestart)};
+  put_link(record);
+}
+
+Instant QemuBoard::now() const {
+  const auto passed = std::chrono::duration_cast<nanoseconds>(Steady::now() - begin_);
+  return static_cast<Instant>(static_cast<double>(passed.count()) * 1e-9 *
+                              static_cast<double>(kInstantsPerSecond));
+}
+
+void QemuBoard::put(int descriptor, Bytes bytes) {
+  while (!bytes.empty()) {
+    const ssize_t sent = send(descriptor, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+    if (sent < 0 && errno == EINTR) continue;
+    if (sent <= 0) throw BoardBroken("the emulator has gone");
+    bytes = bytes.from(static_cast<std::size_t>(sent));
+  }
+}
+
+template <class Take>
+void QemuBoard::read_some(int descriptor, Take take) {
+  std::array<std::uint8_t, 256> bytes{};
+  const ssize_t size = recv(descriptor, bytes.data(), bytes.size(), MSG_DONTWAIT);
+  if (size < 0 && (errno == EAGAIN || errno == EINTR)) return;
+  if (size <= 0) throw BoardBroken(fmt::format("{} has ended", qemu_));
+  for (ssize_t i = 0; i < size; ++i) take(bytes[static_cast<std::size_t>(i)]);
+}
+
+void QemuBoard::run(Instant end, Listener& listener) {
+  stopped_ = false;
+  while (!stopped_) {
+    const auto left = begin_ + duration_of(end) - Steady::now();
+    if (left <= nanoseconds(0)) return;
+    const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(left);
+    const timespec wait{seconds.count(), static_cast<long>((left - seconds).count())};
+    std::array<pollfd, 2> waited{{{link_, POLLIN, 0}, {serial_, POLLIN, 0}}};
+    if (ppoll(waited.data(), waited.size(), &wait, nullptr) <= 0) continue;
+    if (waited[0].revents != 0) {
+      read_some(link_, [&](std::uint8_t byte) { listener.link_byte(byte); });
+    }
+    if (waited[1].revents != 0) {
+      read_some(serial_, [&](std::uint8_t byte) { listener.serial_byte(byte); });
+    }
+  }
+}
+
+}  // namespace rubric::firmware

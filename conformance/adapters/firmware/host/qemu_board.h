@@ -1,0 +1,49 @@
+// An LM3S6965 in qemu-system-arm. Its time is real.
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <string>
+
+#include "conformance/adapters/firmware/host/board.h"
+
+namespace rubric::firmware {
+
+class QemuBoard : public SimulatedBoard {
+ public:
+  /// `qemu` is the emulator, by name or path.
+  QemuBoard(std::string qemu, std::string elf_file);
+  ~QemuBoard() override;
+  QemuBoard(const QemuBoard&) = delete;
+  QemuBoard& operator=(const QemuBoard&) = delete;
+
+  void power_on() override;
+  void restart(Instant now) override;
+  Instant now() const override;
+  void run(Instant end, Listener& listener) override;
+  void stop() override { stopped_ = true; }
+  void put_link(Bytes bytes) override { put(link_, bytes); }
+  void put_serial(Bytes bytes) override { put(serial_, bytes); }
+  bool serial_is_idle() const override { return true; }  // Its UART is not held up by bits.
+  /// To wait for bytes from the serial line together with others.
+  int serial_descriptor() const { return serial_; }
+
+ private:
+  using Steady = std::chrono::steady_clock;
+
+  void put(int descriptor, Bytes bytes);
+  template <class Take>
+  void read_some(int descriptor, Take take);
+  void end_emulator();
+
+  std::string qemu_;
+  std::string elf_file_;
+  Steady::time_point begin_ = Steady::now();
+  pid_t emulator_ = -1;
+  int link_ = -1;
+  int serial_ = -1;
+  bool stopped_ = false;
+};
+
+}  // namespace rubric::firmware
