@@ -1,37 +1,34 @@
 #include "tools/check.h"
 
 #include <fmt/format.h>
-#include <sys/ioctl.h>
 #include <unistd.h>
 
-#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "conformance/oracle/duplicates.h"
 #include "conformance/oracle/judge.h"
 #include "conformance/oracle/read.h"
 #include "conformance/oracle/report/json.h"
 #include "conformance/oracle/report/junit.h"
 #include "conformance/oracle/report/text.h"
+#include "conformance/report/shell.h"
 #include "tools/cli/color.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/input.h"
 #include "tools/cli/output.h"
+#include "tools/cli/terminal.h"
+#include "tools/cli/text_file.h"
 #include "tools/cli/usage.h"
 #include "tools/record/packet_output.h"
 
 namespace rubric::tools {
 namespace {
-
-constexpr std::size_t kColumnsMin = 60;
-constexpr std::size_t kColumnsMax = 120;
-constexpr std::size_t kColumnsDefault = 100;
 
 constexpr const char* kFooter =
     "All files are one run: taps of the same network, and .rtr logs with what applications did.\n"
@@ -40,11 +37,15 @@ constexpr const char* kFooter =
     "  rubric check capture.pcapng --sink 1=11 --sniffer complete --start cold\n"
     "  rubric check sniffer.pcap sink.serial.bin app.rtr --format junit --out result.xml\n"
     "  rubric check capture.pcapng --expect known.yaml\n"
-    "The same line or air may be in one file only; beside a capture a log has application lines.\n"
+    "What two files both have of one air or line is judged once; files of one air or line that\n"
+    "disagree are refused (66). Beside a capture a log has application lines.\n"
+    "A node that --node or --sink names is never an unknown sender, and what they say wins over\n"
+    "guesses. What the run plainly shows wins over them, and that is said as inconclusive.\n"
     "Frames count from 1, times from the first one. PEIS messages of a log are not read.\n"
     "Exit codes: 0 as expected (weak findings, strays, notes and what stays inconclusive beside\n"
     "decided things included), 1 a failure that nobody expected, or an expectation that is not\n"
-    "true, 2 the kit broke or could not write, 3 nothing could be decided, 64 usage,\n"
+    "true, 2 the kit broke or could not write, 3 nothing but inconclusive: no rule was found\n"
+    "kept or broken, 64 usage,\n"
     "66 input cannot be read.";
 
 struct CheckOptions {
@@ -165,15 +166,9 @@ oracle::ReadAs read_as(const std::string& format) {
 
 // The whole of a file, or of stdin for "-"; ends the program where that cannot be read.
 std::string text_of_file(const std::string& path) {
-  std::FILE* const file = path == "-" ? stdin : std::fopen(path.c_str(), "rb");
-  if (!file) unreadable(fmt::format("{}: {}", path, std::strerror(errno)));
   std::string out;
-  char chunk[65536];
-  for (std::size_t n = 0; (n = std::fread(chunk, 1, sizeof chunk, file)) > 0;) out.append(chunk, n);
-  const bool broken = std::ferror(file) != 0;
-  const int reason = errno;
-  if (file != stdin) std::fclose(file);
-  if (broken) unreadable(fmt::format("{}: {}", path, std::strerror(reason)));
+  std::string error;
+  if (!cli::read_file(path, out, error)) unreadable(error);
   return out;
 }
 
@@ -226,22 +221,11 @@ report::ExpectationFile expectations(const std::string& path) {
   return file;
 }
 
-// As a shell takes it.
-std::string quoted(const std::string& word) {
-  const bool plain = !word.empty() &&
-                     word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                                            "0123456789_-./=:,+@%") == word.npos;
-  if (plain) return word;
-  std::string out = "'";
-  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return out + "'";
-}
-
 // The options that a verdict depends on, so that the command can be given again.
 std::string command_of(const CheckOptions& options) {
   std::string out = "rubric check";
   const auto add = [&](const char* name, const std::string& value) {
-    out += fmt::format(" {} {}", name, quoted(value));
+    out += fmt::format(" {} {}", name, report::shell_word(value));
   };
   if (options.profile != "paper") add("--profile", options.profile);
   for (const std::string& node : options.nodes) add("--node", node);
@@ -256,22 +240,15 @@ std::string command_of(const CheckOptions& options) {
   return out;
 }
 
-std::size_t columns(const CheckOptions& options, int fd) {
-  if (options.width != 0) return options.width;
-  winsize size{};
-  if (::ioctl(fd, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return kColumnsDefault;
-  return std::min(std::max<std::size_t>(size.ws_col, kColumnsMin), kColumnsMax);
-}
-
 std::string report_text(const CheckOptions& options, const report::Story& story, int fd) {
   if (options.format == "json") return report::json_report(story);
   if (options.format == "junit") return report::junit_report(story);
   report::TextOptions text;
-  text.width = columns(options, fd);
+  text.width = cli::columns(options.width, fd);
   text.color = cli::use_color(options.color, fd);
   text.verbose = options.verbose;
   text.command = command_of(options);
-  for (const std::string& file : options.files) text.files += " " + quoted(file);
+  for (const std::string& file : options.files) text.files += " " + report::shell_word(file);
   text.judge = oracle::judge;
   return report::text_report(story, text);
 }
@@ -284,8 +261,8 @@ int run(const CheckOptions& options) {
   }
   const report::ExpectationFile expected = expectations(options.expect);
   oracle::Run whole = read_run(options);
-  const oracle::Run part =
-      ranges.empty() ? std::move(whole) : report::part_of(whole, ranges, judged);
+  oracle::Run part = ranges.empty() ? std::move(whole) : report::part_of(whole, ranges, judged);
+  if (std::string error; !oracle::drop_duplicates(part, judged, error)) unreadable(error);
   const oracle::Report found = oracle::judge(part, judged);
   const report::Outcome outcome = report::compare(part, judged, found, expected);
   const report::Story story{part, judged, found, expected, outcome};
@@ -339,7 +316,7 @@ void add_options(CLI::App& command, CheckOptions& options) {
       ->capture_default_str();
   command.add_flag("--verbose", options.verbose, "Text: every finding in full");
   command.add_option("--width", options.width, "Text: columns (those of the terminal, else 100)")
-      ->check(CLI::Range(kColumnsMin, std::size_t{1000}));
+      ->check(CLI::Range(cli::kColumnsMin, std::size_t{1000}));
   cli::add_color_option(command, options.color);
   for (const char* name : {"--node", "--sink", "--tester", "--frames"}) {
     command.get_option(name)->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);

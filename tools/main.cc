@@ -13,12 +13,13 @@
 #include "tools/messages.h"
 #include "tools/simulate.h"
 #include "tools/stats.h"
+#include "tools/test.h"
 
 namespace {
 
 constexpr const char* kFooter =
     "Exit codes: 0 clean, 1 something malformed was found, 2 usage, 3 input cannot be read or\n"
-    "output cannot be written; check, explore and coverage give verdicts and have others.\n"
+    "output cannot be written; check, test, explore and coverage give verdicts and have others.\n"
     "'rubric COMMAND --help' says more.";
 
 }  // namespace
@@ -40,6 +41,7 @@ int main(int argc, char** argv) {
   rubric::tools::add_messages(app);
   rubric::tools::add_simulate(app);
   rubric::tools::add_check(app);
+  rubric::tools::add_test(app);
   rubric::tools::add_coverage(app);
   return rubric::cli::parse_and_run(app, argc, argv);
 }

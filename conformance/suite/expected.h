@@ -11,7 +11,7 @@ namespace rubric::suite {
 
 struct ExpectedFailure {
   std::string cases;        ///< A name, or a glob: each of them fails so.
-  std::string requirement;  ///< That the failing line names, "J4-SEQ" or "J4"; "none": it names none.
+  std::string requirement;  ///< That the failing line names: "J4-SEQ", "J4"; or "none".
   std::string message;      ///< Part of the line that is not kept, or of what happened instead.
   std::string reason;
   std::string target;       ///< A glob for the target or the implementation's name; empty: any.
@@ -29,8 +29,8 @@ struct ExpectedFailures {
 ExpectedFailures parse_expected(std::string_view text, const std::string& name);
 
 /// Sets the expectation of a case that was worked. Failures are expected that an entry has, or that
-/// break only rules in which the case's profile accepts a difference. `implementation` needs target and
-/// identity.
+/// break only rules in which the case's profile accepts a difference. `implementation` needs target
+/// and identity.
 void expect(const ExpectedFailures& expected, const ImplementationRun& implementation,
             CaseRun& one);
 

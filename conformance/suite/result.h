@@ -59,7 +59,7 @@ struct StaleExpectation {
 };
 
 struct SuiteRun {
-  std::string profile = "paper";  ///< Of the cases that state none, or of all, if one was asked for.
+  std::string profile = "paper";  ///< That the user asked for.
   std::uint64_t seed = 0;     ///< Of the cases that state none; each repeat has one more.
   std::string shard;          ///< "2/8", or empty.
   std::vector<std::string> traces;  ///< Files and folders of the user; none: the kit's own cases.

@@ -21,8 +21,8 @@ std::optional<Shard> parse_shard(std::string_view text);
 /// What all has to hold of a case; empty lists ask for nothing.
 struct Selection {
   std::vector<std::string> globs;         ///< Its name is like one of them.
-  std::vector<std::string> requirements;  ///< It names one of them: "J4-SEQ", or "J4" for all of J4.
-  std::optional<machine::Role> role;      ///< A node of this role is under test.
+  std::vector<std::string> requirements;  ///< It names one: "J4-SEQ", or "J4" for all of J4.
+  std::optional<machine::Role> role;      ///< Of a node under test.
   Shard shard;                            ///< Of what is left: every n-th case.
 };
 

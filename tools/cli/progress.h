@@ -1,8 +1,9 @@
-// A progress bar on stderr for inputs that take long.
+// A progress bar on stderr for work that takes long.
 #pragma once
 
 #include <chrono>
 #include <cstdint>
+#include <string>
 
 namespace rubric::cli {
 
@@ -10,13 +11,15 @@ namespace rubric::cli {
 /// the work takes a second.
 class Progress {
  public:
-  /// `total_bytes` of all input; 0 where it is not known.
-  Progress(std::uint64_t total_bytes, bool wanted);
+  enum class Unit : std::uint8_t { kBytes, kCases };
+
+  /// `total` of all input; 0 where it is not known.
+  Progress(std::uint64_t total, bool wanted, Unit unit = Unit::kBytes);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  void advance(std::uint64_t bytes);
+  void advance(std::uint64_t units);
   /// Takes the bar away, so that a message can stand in its place.
   void clear();
 
@@ -25,10 +28,13 @@ class Progress {
 
   void draw(Clock::time_point now);
 
+  std::string rate(double seconds) const;
+
+  Unit unit_;
   bool active_;
   bool drawn_ = false;
-  std::uint64_t total_bytes_;
-  std::uint64_t done_bytes_ = 0;
+  std::uint64_t total_;
+  std::uint64_t done_ = 0;
   Clock::time_point start_;
   Clock::time_point next_;
 };

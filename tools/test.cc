@@ -1,0 +1,325 @@
+#include "tools/test.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "conformance/suite/report/github.h"
+#include "conformance/suite/report/json.h"
+#include "conformance/suite/report/junit.h"
+#include "conformance/suite/report/tap.h"
+#include "conformance/suite/run.h"
+#include "conformance/suite/select.h"
+#include "conformance/suite/text/text.h"
+#include "tools/cli/color.h"
+#include "tools/cli/exit_codes.h"
+#include "tools/cli/input.h"
+#include "tools/cli/output.h"
+#include "tools/cli/progress.h"
+#include "tools/cli/terminal.h"
+#include "tools/cli/text_file.h"
+#include "tools/cli/usage.h"
+
+namespace rubric::tools {
+namespace {
+
+using Milliseconds = std::chrono::milliseconds;
+
+constexpr const char* kFooter =
+    "A target is a command that speaks rct/1 (conformance/PORTING.md), or machine: the reference\n"
+    "machine in this program. Without TRACES it is tried with the kit's own golden traces, which\n"
+    "the program carries with it.\n"
+    "Examples:\n"
+    "  rubric test --target ./my_adapter\n"
+    "  rubric test --target 'python3 mote.py' --role mote --requirement J --quiet\n"
+    "  rubric test --target ./a --target ./b --jobs 4 --expect known.yaml --report out\n"
+    "  rubric test --list --requirement J4-SEQ\n"
+    "Before a case is worked each implementation has to refuse an unknown command, and to fail\n"
+    "cases that nobody can pass.\n"
+    "Exit codes: 0 as expected (weak results and skipped cases included), 1 a failure that nobody\n"
+    "expected, or an expectation that is not true, 2 an implementation or the kit broke, or was\n"
+    "not honest, 3 nothing was decided, 64 usage, 66 traces cannot be read.";
+
+struct TestOptions {
+  std::vector<std::string> traces;
+  std::vector<std::string> targets;
+  suite::Selection selection;
+  std::string profile;
+  std::string role;
+  std::string shard;
+  std::optional<std::uint64_t> seed;
+  std::uint32_t repeats = 1;
+  unsigned jobs = 1;
+  double timeout_s = 5;
+  std::string expect;
+  std::string format = "text";
+  std::string out = "-";
+  std::string report;
+  std::string color = "auto";
+  std::size_t width = 0;
+  bool list = false;
+  bool quiet = false;
+  bool verbose = false;
+};
+
+[[noreturn]] void unreadable(std::string what) {
+  while (what.ends_with('\n')) what.pop_back();
+  fmt::print(stderr, "rubric test: {}\n", what);
+  cli::exit_with(cli::kVerdictInput);
+}
+
+suite::Cases read_cases(const TestOptions& options) {
+  if (options.traces.empty()) return suite::Cases::own();
+  try {
+    return suite::Cases::of(options.traces);
+  } catch (const std::runtime_error& error) {
+    unreadable(error.what());
+  }
+}
+
+suite::ExpectedFailures read_expected(const TestOptions& options) {
+  if (options.expect.empty()) return {};
+  std::string text;
+  std::string error;
+  if (!cli::read_file(options.expect, text, error)) unreadable(error);
+  try {
+    return suite::parse_expected(text, options.expect);
+  } catch (const std::runtime_error& mistake) {
+    throw CLI::ValidationError("--expect", mistake.what());
+  }
+}
+
+std::vector<suite::SuiteCase> selected(const TestOptions& options, const suite::Cases& cases) {
+  suite::Selection selection = options.selection;
+  if (options.role == "mote") selection.role = machine::Role::kMote;
+  if (options.role == "sink") selection.role = machine::Role::kSink;
+  if (options.role == "base_station") selection.role = machine::Role::kBaseStation;
+  if (!options.shard.empty()) {
+    const auto shard = suite::parse_shard(options.shard);
+    if (!shard) {
+      throw CLI::ValidationError(
+          "--shard", fmt::format("expected I/N as in 2/8, given '{}'", options.shard));
+    }
+    selection.shard = *shard;
+  }
+  try {
+    return suite::select(cases, selection);
+  } catch (const std::invalid_argument& error) {
+    throw CLI::ValidationError("selection", error.what());
+  }
+}
+
+std::string list_text(const std::vector<suite::SuiteCase>& cases) {
+  std::string out;
+  for (const suite::SuiteCase& one : cases) {
+    std::string roles;
+    for (const machine::Role role : one.blank.roles) {
+      if (!roles.empty()) roles += '+';
+      roles += trace::role_text(static_cast<trace::Role>(role));
+    }
+    out += fmt::format("{:<40} {:<12} {}", one.blank.name, roles, fmt::join(one.rules, " "));
+    out.erase(out.find_last_not_of(' ') + 1);
+    out += '\n';
+  }
+  return out;
+}
+
+// Text appears as it is made, on a terminal each line at once; in a file when it is whole.
+class Text {
+ public:
+  Text(const TestOptions& options, bool wanted)
+      : wanted_(wanted), to_stdout_(options.out == "-"), at_once_(isatty(STDOUT_FILENO) == 1) {}
+
+  void add(const std::string& text) {
+    if (!wanted_) return;
+    if (!to_stdout_) {
+      whole_ += text;
+      return;
+    }
+    output_.buffer().append(text);
+    if (at_once_) output_.flush(); else output_.drain();
+  }
+  bool finish(const TestOptions& options) {
+    if (!wanted_) return true;
+    if (!to_stdout_) return cli::write_file(options.out, whole_);
+    output_.flush();
+    std::string why;
+    if (!output_.failed(&why)) return true;
+    fmt::print(stderr, "rubric test: cannot write stdout: {}\n", why);
+    return false;
+  }
+
+ private:
+  bool wanted_;
+  bool to_stdout_;
+  bool at_once_;
+  cli::Output output_;
+  std::string whole_;
+};
+
+suite::SuiteRun work(const TestOptions& options, const suite::Cases& cases, suite::Plan plan,
+                     const suite::TextOptions& how, Text& text) {
+  suite::SuiteRun all;
+  all.traces = options.traces;
+  all.shard = options.shard;
+  all.seed = options.seed.value_or(0);
+  if (!options.profile.empty()) all.profile = options.profile;
+  const attach::Options attached{
+      Milliseconds(static_cast<std::int64_t>(options.timeout_s * 1000))};
+  const std::size_t worked = plan.cases.size() * plan.repeats;
+  cli::Progress progress(worked * options.targets.size(), true, cli::Progress::Unit::kCases);
+  for (const std::string& target : options.targets) {
+    const auto make = [&] { return attach::attach(target, attached); };
+    suite::Watcher watcher;
+    watcher.started = [&](const suite::ImplementationRun& run) {
+      text.add((all.implementations.empty() ? "" : "\n") +
+               suite::opening_text(all, run, worked, how));
+    };
+    watcher.worked = [&](const suite::CaseRun& one) {
+      text.add(suite::case_text(one, how));
+      progress.advance(1);
+    };
+    all.implementations.push_back(suite::run(target, make, plan, watcher));
+    const suite::ImplementationRun& run = all.implementations.back();
+    text.add(suite::story_text(all, run, how) + suite::totals_text(run, how));
+  }
+  all.stale = suite::untrue(plan.expected, all, cases);
+  text.add(suite::closing_text(all, how));
+  return all;
+}
+
+bool write_formats(const TestOptions& options, const suite::SuiteRun& run) {
+  bool good = true;
+  if (options.format == "json") good = cli::write_file(options.out, suite::json_report(run));
+  if (options.format == "junit") good = cli::write_file(options.out, suite::junit_report(run));
+  if (options.format == "tap") good = cli::write_file(options.out, suite::tap_report(run));
+  const char* actions = std::getenv("GITHUB_ACTIONS");
+  if (actions && std::string_view(actions) == "true") {
+    fmt::print(stderr, "{}", suite::github_annotations(run));
+  }
+  if (options.report.empty()) return good;
+  std::filesystem::create_directories(options.report);
+  const std::string folder = options.report + "/";
+  good = cli::write_file(folder + "report.json", suite::json_report(run)) && good;
+  good = cli::write_file(folder + "junit.xml", suite::junit_report(run)) && good;
+  return cli::write_file(folder + "report.tap", suite::tap_report(run)) && good;
+}
+
+int run(const TestOptions& options) {
+  const suite::Cases cases = read_cases(options);
+  suite::Plan plan;
+  plan.expected = read_expected(options);
+  plan.cases = selected(options, cases);
+  if (options.list) {
+    return cli::write_file(options.out, list_text(plan.cases)) ? cli::kVerdictExpected
+                                                               : cli::kVerdictBroken;
+  }
+  if (options.targets.empty()) throw CLI::RequiredError("--target");
+  for (const std::string& target : options.targets) {
+    try {
+      attach::attach(target, {});
+    } catch (const std::invalid_argument& error) {
+      throw CLI::ValidationError("--target", fmt::format("'{}': {}", target, error.what()));
+    }
+  }
+  plan.profile = options.profile;
+  plan.seed = options.seed;
+  plan.repeats = options.repeats;
+  plan.jobs = options.jobs != 0 ? options.jobs : std::max(1U, std::thread::hardware_concurrency());
+  const int fd = options.out == "-" ? STDOUT_FILENO : -1;
+  suite::TextOptions how;
+  how.width = cli::columns(options.width, fd);
+  how.color = cli::use_color(options.color, fd);
+  how.quiet = options.quiet;
+  how.verbose = options.verbose;
+  Text text(options, options.format == "text");
+  const suite::SuiteRun all = work(options, cases, std::move(plan), how, text);
+  const bool told = text.finish(options);
+  return write_formats(options, all) && told ? suite::exit_code(all) : cli::kVerdictBroken;
+}
+
+void add_selection(CLI::App& command, TestOptions& options) {
+  command.add_option("TRACES", options.traces,
+                     "Golden traces, .rtr files or folders of them (the kit's own)");
+  command.add_option("--cases", options.selection.globs, "Cases whose names are like this: 'j4.*'")
+      ->check(cli::given());
+  command.add_option("--requirement", options.selection.requirements,
+                     "Cases that try this rule or family: J4-SEQ, J4, J")
+      ->check(cli::given());
+  command.add_option("--role", options.role, "Cases with a node of this role under test")
+      ->check(CLI::IsMember({"mote", "sink", "base_station"}));
+  command.add_option("--shard", options.shard, "I/N: the Ith of N parts of the cases")
+      ->check(cli::given());
+  command.add_flag("--list", options.list, "Print names, roles and rules of the cases");
+}
+
+void add_options(CLI::App& command, TestOptions& options) {
+  command.add_option("--target", options.targets,
+                     "An implementation: a command, or machine; again for another one")
+      ->check(cli::given());
+  add_selection(command, options);
+  command.add_option("--profile", options.profile,
+                     "paper or deployed, whatever the traces say: what nodes are told to keep to")
+      ->check(CLI::IsMember({"paper", "deployed"}));
+  command.add_option("--seed", options.seed, "Of what is random in nodes, where a trace has none");
+  command.add_option("--repeat", options.repeats, "Each case so often, each time with the next seed")
+      ->check(cli::at_least_one())
+      ->capture_default_str();
+  command.add_option("--jobs", options.jobs, "Cases at once, each on a process of its own; 0: cores")
+      ->check(CLI::Range(0, 256))
+      ->capture_default_str();
+  command.add_option("--timeout", options.timeout_s, "Seconds that a step may take")
+      ->check(CLI::Range(0.01, 3600.0))
+      ->capture_default_str();
+  command.add_option("--expect", options.expect, "Known failures with their reasons, as YAML")
+      ->check(cli::given());
+  command.add_option("--format", options.format, "text, json (rubric.test/1), junit or tap")
+      ->check(CLI::IsMember({"text", "json", "junit", "tap"}))
+      ->capture_default_str();
+  command.add_option("--out", options.out, "Write to this file; - is stdout")
+      ->check(cli::given())
+      ->capture_default_str();
+  command.add_option("--report", options.report, "Write all reports into this folder")
+      ->check(cli::given());
+  command.add_flag("--quiet", options.quiet, "Text: no lines for cases that are as expected");
+  command.add_flag("--verbose", options.verbose, "Text: every failure in full");
+  command.add_option("--width", options.width, "Text: columns (those of the terminal, else 100)")
+      ->check(CLI::Range(cli::kColumnsMin, std::size_t{1000}));
+  cli::add_color_option(command, options.color);
+  for (const char* name : {"--target", "--cases", "--requirement"}) {
+    command.get_option(name)->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  }
+}
+
+}  // namespace
+
+void add_test(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("test", "Try implementations with golden traces");
+  auto options = std::make_shared<TestOptions>();
+  add_options(*command, *options);
+  command->footer(kFooter);
+  cli::set_usage_exit_code(*command, cli::kVerdictUsage);
+  command->callback([options] {
+    int code = cli::kVerdictBroken;
+    try {
+      code = run(*options);
+    } catch (const CLI::Error&) {
+      throw;
+    } catch (const std::exception& error) {
+      fmt::print(stderr, "rubric test: {}\n", error.what());
+    }
+    cli::exit_with(code);
+  });
+}
+
+}  // namespace rubric::tools
