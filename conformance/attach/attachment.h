@@ -41,11 +41,14 @@ class Attachment {
 Identity machine_identity();
 
 struct Options {
-  std::chrono::milliseconds step_timeout{5000};  ///< Of wall-clock time for the answer to a command.
+  /// Wall-clock time for the answer to a command.
+  std::chrono::milliseconds step_timeout{5000};
+  /// The same for the first one, `hello`, while an interpreter or an emulator starts.
+  std::chrono::milliseconds start_timeout{20000};
 };
 
-/// By what the user wrote: `machine`, `sf-server:PORT`, `sf:HOST:PORT`, `serial:DEVICE[:BAUD]`, else
-/// a shell command that speaks rct/1. Starts nothing yet. Throws std::invalid_argument where the
+/// By what the user wrote: `machine`, `sf-server:PORT`, `sf:HOST:PORT`, `serial:DEVICE[:BAUD]`,
+/// `serial:tcp:HOST:PORT`, else a shell command that speaks rct/1. Starts nothing yet. Throws std::invalid_argument where the
 /// text makes no sense.
 std::unique_ptr<Attachment> attach(const std::string& target, const Options& options);
 

@@ -41,6 +41,8 @@ class Process {
   std::string read_line(SteadyTime deadline);
   /// Whether it has written something that was not read.
   bool has_output();
+  /// Whether its standard output was seen to end.
+  bool closed() const { return out_fd_ < 0; }
   /// The last of what it wrote to its standard error since the last call.
   std::string take_stderr();
 

@@ -36,7 +36,8 @@ bool is_family(std::string_view text) {
 }  // namespace
 
 void AnswerReader::fail(const std::string& what) const {
-  throw TargetBroken(fmt::format("line {} of the answer to `{}`: {}", lines_, asked_.command, what));
+  throw TargetBroken(
+      fmt::format("line {} of the answer to `{}`: {}", lines_, asked_.command, what));
 }
 
 bool AnswerReader::take(std::string_view line) {

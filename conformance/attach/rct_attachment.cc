@@ -31,12 +31,13 @@ std::string RctAttachment::take_stderr() {
 }
 
 std::unique_ptr<RctClient> RctAttachment::take() {
-  if (!idle_.empty()) {
+  while (!idle_.empty()) {
     std::unique_ptr<RctClient> client = std::move(idle_.back());
     idle_.pop_back();
-    return client;
+    if (client->fit()) return client;
+    keep_stderr(*client);
   }
-  auto client = std::make_unique<RctClient>(start_(), options_.step_timeout);
+  auto client = std::make_unique<RctClient>(start_(), options_);
   try {
     identity_ = client->hello();
   } catch (const runner::TargetBroken&) {
@@ -49,7 +50,7 @@ std::unique_ptr<RctClient> RctAttachment::take() {
 
 void RctAttachment::give_back(std::unique_ptr<RctClient> client) {
   keep_stderr(*client);
-  if (!client->broken()) idle_.push_back(std::move(client));
+  if (client->fit()) idle_.push_back(std::move(client));
 }
 
 void RctAttachment::keep_stderr(RctClient& client) {

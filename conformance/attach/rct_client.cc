@@ -30,7 +30,7 @@ const Identity& RctClient::hello() {
   asked.command = fmt::format("hello rct/{}", kRctVersion);
   asked.closing = "hello";
   try {
-    identity_ = read_hello(converse(asked, Milliseconds(0)).closing());
+    identity_ = read_hello(converse(asked, options_.start_timeout).closing());
   } catch (const runner::Unsupported& error) {
     give_up();
     throw TargetBroken(fmt::format("unsupported: {}", error.what()));
@@ -43,7 +43,7 @@ const Identity& RctClient::hello() {
 }
 
 Answer RctClient::ask(const Asked& asked, Milliseconds longer) {
-  return converse(asked, longer).answer();
+  return converse(asked, options_.step_timeout + longer).answer();
 }
 
 std::string RctClient::honesty() {
@@ -51,7 +51,7 @@ std::string RctClient::honesty() {
   asked.command = "frobnicate 17 radio";
   asked.closing = "unsupported";
   try {
-    converse(asked, Milliseconds(0));
+    converse(asked, options_.step_timeout);
   } catch (const runner::Unsupported&) {
     return {};
   } catch (const TargetBroken& error) {
@@ -65,18 +65,17 @@ void RctClient::give_up() {
   process_->kill();
 }
 
+bool RctClient::fit() { return !broken_ && !process_->has_output() && !process_->closed(); }
+
 std::string RctClient::take_stderr() { return std::exchange(notes_, {}) + process_->take_stderr(); }
 
-AnswerReader RctClient::converse(const Asked& asked, Milliseconds longer) {
+AnswerReader RctClient::converse(const Asked& asked, Milliseconds timeout) {
   if (broken_) throw TargetBroken("it broke before");
-  const SteadyTime deadline = steady_clock::now() + step_timeout_ + longer;
+  const SteadyTime deadline = steady_clock::now() + timeout;
   AnswerReader reader(asked);
   bool reading = false;  // Lines, whose errors tell their number.
   try {
-    if (process_->has_output()) {
-      const std::string line = process_->read_line(deadline);
-      throw TargetBroken(fmt::format("{} bytes came without a command, before it", line.size()));
-    }
+    if (process_->has_output()) throw TargetBroken("something was written before it was asked");
     process_->write(asked.command + '\n', deadline);
     while (true) {
       const std::string line = process_->read_line(deadline);
@@ -85,6 +84,7 @@ AnswerReader RctClient::converse(const Asked& asked, Milliseconds longer) {
       reading = false;
       if (closed) break;
     }
+    if (process_->has_output()) throw TargetBroken("something is written behind the closing line");
   } catch (const TargetBroken& error) {
     give_up();
     keep_notes(reader);

@@ -13,8 +13,8 @@ namespace rubric::attach {
 /// afterwards throws it too. runner::Unsupported does no harm.
 class RctClient {
  public:
-  RctClient(std::unique_ptr<Process> process, Milliseconds step_timeout)
-      : process_(std::move(process)), step_timeout_(step_timeout) {}
+  RctClient(std::unique_ptr<Process> process, const Options& options)
+      : process_(std::move(process)), options_(options) {}
   /// Says `bye`, and kills what does not go.
   ~RctClient();
 
@@ -27,17 +27,18 @@ class RctClient {
 
   /// Kills it: it cannot be believed any more.
   void give_up();
-  bool broken() const { return broken_; }
+  /// Whether it waits for the next command, as far as one can see.
+  bool fit();
   const Identity& identity() const { return identity_; }
   /// Of standard error, and its notes.
   std::string take_stderr();
 
  private:
-  AnswerReader converse(const Asked& asked, Milliseconds longer);
+  AnswerReader converse(const Asked& asked, Milliseconds timeout);
   void keep_notes(const AnswerReader& reader);
 
   std::unique_ptr<Process> process_;
-  Milliseconds step_timeout_;
+  Options options_;
   Identity identity_;
   bool greeted_ = false;
   bool broken_ = false;

@@ -1,0 +1,124 @@
+"""An adapter that is good but for one fault.
+
+Usage: faulty_adapter.py FAULT FLAG ADAPTER. Passes everything to the program ADAPTER, until the
+fault happens. Removes the file FLAG, which says that this run is to be the faulty one.
+"""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+
+FAULT, FLAG, ADAPTER = sys.argv[1:]
+HELLO = {
+    "newer_version": "hello rct/2 thing 1 roles=mote time=virtual",
+    "no_version": "hello thing 1 roles=mote",
+    "no_roles": "hello rct/1 thing 1 time=virtual",
+    "unknown_role": "hello rct/1 thing 1 roles=mote,toaster",
+    "no_name": "hello rct/1",
+    "http": "HTTP/1.1 400 Bad Request",
+    "refused_hello": "unsupported hello",
+}
+
+
+def put(data):
+    sys.stdout.buffer.write(data)
+    sys.stdout.buffer.flush()
+
+
+def sleep():
+    time.sleep(1000)
+
+
+def flood(line):
+    while True:
+        put(line * 1000)
+
+
+def ignore_term():
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)
+    sleep()
+
+
+def leave_child():
+    """Ends, while a child keeps standard output open."""
+    if os.fork() == 0:
+        sleep()
+    os._exit(0)
+
+
+def last_words():
+    sys.stderr.write("out of cheese\n")
+    sys.stderr.flush()
+    os._exit(3)
+
+
+def close_output():
+    os.close(1)
+    sleep()
+
+
+def close_input():
+    put(b"done 0\n")
+    os.close(0)
+    sleep()
+
+
+FAULTS = {
+    "killed": lambda: os.kill(os.getpid(), signal.SIGKILL),
+    "crashed": os.abort,
+    "stopped": lambda: os.kill(os.getpid(), signal.SIGSTOP),
+    "hung": sleep,
+    "hung_ignoring_sigterm": ignore_term,
+    "half_a_line": lambda: (put(b"don"), sleep()),
+    "half_a_line_then_end": lambda: (put(b"don"), os._exit(0)),
+    "long_line": lambda: (put(b"x" * 10_000_000 + b"\n"), sleep()),
+    "endless_line": lambda: flood(b"x"),
+    "not_utf8": lambda: put(b"note \xc3\x28\n"),
+    "nul_bytes": lambda: put(b"done\0 0\n"),
+    "carriage_return": lambda: put(b"done 0\r\n"),
+    "exit_with_words": last_words,
+    "exit_0": lambda: os._exit(0),
+    "child_keeps_output": leave_child,
+    "closed_output": close_output,
+    "closed_input": close_input,
+    "garbage": lambda: put(b"lorem ipsum dolor\n"),
+    "empty_line": lambda: put(b"\n"),
+    "endless_notes": lambda: flood(b"note again\n"),
+    "endless_frames": lambda: flood(b"tx 0 radio 000001000506000e03e802000701\n"),
+    "done_before_its_time": lambda: put(b"done 99999999\n"),
+    "bad_hex": lambda: put(b"tx 0 radio 0000zz\n"),
+    "ready_again": lambda: put(b"ready\n"),
+    "unknown_event": lambda: put(b"up 0 exploded(1)\n"),
+}
+
+
+def main():
+    os.remove(FLAG)
+    inner = subprocess.Popen([ADAPTER], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+    for line in sys.stdin.buffer:
+        word = line.split()[0]
+        if FAULT in HELLO and word == b"hello":
+            put(HELLO[FAULT].encode() + b"\n")
+            continue
+        if word in (b"call", b"rx") and FAULT in FAULTS:
+            FAULTS[FAULT]()
+            sleep()
+        inner.stdin.write(line)
+        inner.stdin.flush()
+        answer = b""
+        closed = False
+        while not closed:
+            one = inner.stdout.readline()
+            answer += one
+            closed = one.split()[:1][0] in (b"hello", b"ready", b"done", b"unsupported")
+        if FAULT == "unasked" and word == b"call":
+            answer += b"up 0 op_result(success)\n"
+        if FAULT == "noisy" and word == b"call":
+            sys.stderr.write("noise\n" * 200_000 + "the last words\n")
+            sys.stderr.flush()
+        put(answer)
+
+
+main()
