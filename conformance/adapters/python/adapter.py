@@ -42,7 +42,7 @@ class Adapter:
 
     # What the runner asks for. The answer is the closing line.
 
-    def answer(self, command, *words):
+    def answer(self, command="", *words):
         if command == "hello":
             return "hello rct/1 rubric_python_mote 1.0 roles=mote time=virtual"
         if command == "reset":
@@ -54,7 +54,8 @@ class Adapter:
         self.pass_time(int(words[0]), command == "until")
         if self.mote or command == "power":
             action(*words[1:])
-        print("next", self.mote.due() if self.mote else "-")
+        due = self.due()
+        print("next", "-" if due is None else due)
         return f"done {self.now}"
 
     def reset(self, role, *arguments):
@@ -69,14 +70,22 @@ class Adapter:
         self.mote = Mote(self, int(self.settings["id"]), int(self.settings["channels"]),
                          self.number, self.now)
 
+    def due(self):
+        return self.mote.due() if self.mote else None
+
     def pass_time(self, until, stop_at_output):
-        while self.mote and self.mote.due() <= until and not (stop_at_output and self.wrote):
-            self.now = self.mote.now = self.mote.due()
+        while not (stop_at_output and self.wrote):
+            due = self.due()
+            if due is None or due > until:
+                self.set_time(until)
+                return
+            self.set_time(due)
             self.mote.run_due()
-        if not (stop_at_output and self.wrote):
-            self.now = until
-            if self.mote:
-                self.mote.now = until
+
+    def set_time(self, now):
+        self.now = now
+        if self.mote:
+            self.mote.now = now
 
     def on_until(self):
         pass

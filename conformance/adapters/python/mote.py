@@ -78,8 +78,8 @@ class Channel:
 
 
 class Mote:
-    """`world.tx(line, packet)` puts a packet on a line that is free; `world.up(name, ...)` tells the
-    application. The methods call_NAME are the calls of the application."""
+    """`world.tx(line, packet)` puts a packet on a line that is free; `world.up(name, ...)` tells
+    the application. The methods call_NAME are the calls of the application."""
 
     def __init__(self, world, device, channels, number, now):
         self.world, self.device, self.room = world, device, channels

@@ -1,0 +1,21 @@
+// rubric new-adapter: writes a working adapter of rct/1, to be filled with an implementation.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string_view>
+#include <vector>
+
+namespace rubric::tools {
+
+struct SkeletonFile {
+  std::string_view language;
+  std::string_view name;
+  std::string_view text;
+};
+/// The files of tools/skeletons, which the program carries with it.
+const std::vector<SkeletonFile>& skeleton_files();
+
+/// Adds the subcommand.
+void add_new_adapter(CLI::App& app);
+
+}  // namespace rubric::tools

@@ -1,0 +1,112 @@
+#!/usr/bin/env python3
+"""Each adapter that `rubric new-adapter` writes is built, run and spoken to.
+
+Usage: new_adapter_test.py RUBRIC
+"""
+
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+RUBRIC = str(pathlib.Path(sys.argv.pop(1)).resolve())
+
+SKELETONS = {
+    "python": ([], ["python3", "adapter.py"], "mote"),
+    "cpp": (["g++", "-std=c++17", "-Wall", "-Wextra", "-Wshadow", "-Wconversion", "-Werror",
+             "-o", "my_node", "adapter.cc"], ["./my_node"], "mote"),
+    "java": (["javac", "-Xlint:all", "-Werror", "Adapter.java", "MyNode.java", "World.java"],
+             ["java", "-cp", ".", "Adapter"], "base_station"),
+}
+# A command, and the lines of its answer: exact ones, and beginnings where they end in "...".
+CONVERSATION = [
+    ("until 5", ["unsupported ..."]),    # Nothing was reset yet.
+    ("hello rct/1", ["hello rct/1 my_..."]),
+    ("no_such_command 7", ["unsupported ..."]),
+    ("reset nobody id=5 island=11 channels=4 seed=0 profile=paper", ["unsupported ..."]),
+    ("reset ROLE id=5 island=11 channels=4 seed=3 profile=paper", ["ready"]),
+    ("call 0 get_clock()", ["up 0 clock(0)", "next -", "done 0"]),
+    ("until 1024", ["next -", "done 1024"]),
+    ("call 1024 get_clock()", ["up 1024 clock(1000)", "next -", "done 1024"]),
+    ("call 1024 send(dest=11:2 app_id=5 reliable=1 data=x0a0b)", ["unsupported call send"]),
+    ("no_such_command", ["unsupported ..."]),
+    ("rx 1030 radio 0000050001030022010203", ["next -", "done 1030"]),
+    ("line 1040 radio busy", ["next -", "done 1040"]),
+    ("linkack 1050 1", ["next -", "done 1050"]),
+    ("power 1060 off", ["next -", "done 1060"]),
+    ("call 1070 get_clock()", ["next -", "done 1070"]),    # Nobody is there.
+    ("power 1080 reboot", ["next -", "done 1080"]),
+    ("call 2104 get_clock()", ["up 2104 clock(1000)", "next -", "done 2104"]),
+    ("reset ROLE id=6 island=12 channels=8 seed=0 profile=deployed", ["ready"]),
+    ("call 0 get_clock()", ["up 0 clock(0)", "next -", "done 0"]),
+]
+
+
+def is_as(expected, line):
+    return line.startswith(expected[:-3]) if expected.endswith("...") else line == expected
+
+
+class NewAdapter(unittest.TestCase):
+    def write(self, language, folder):
+        return subprocess.run([RUBRIC, "new-adapter", language, "--out", folder],
+                              capture_output=True, text=True)
+
+    def speak(self, command, folder, role):
+        child = subprocess.Popen(command, cwd=folder, stdin=subprocess.PIPE,
+                                 stdout=subprocess.PIPE, text=True)
+        for given, answer in CONVERSATION:
+            child.stdin.write(given.replace("ROLE", role) + "\n")
+            child.stdin.flush()
+            for expected in answer:
+                line = child.stdout.readline().rstrip("\n")
+                self.assertTrue(is_as(expected, line), f"{given}: {line!r}, not {expected!r}")
+        rest, _ = child.communicate("bye\n", timeout=20)
+        self.assertEqual((rest, child.returncode), ("", 0))
+
+    def test_each_language(self):
+        for language, (build, run, role) in SKELETONS.items():
+            with self.subTest(language), tempfile.TemporaryDirectory() as folder:
+                out = folder + "/new/adapter"
+                written = self.write(language, out)
+                self.assertEqual((written.returncode, written.stderr), (0, ""))
+                self.assertIn("rubric test --target", written.stdout)
+                text = "".join(file.read_text() for file in pathlib.Path(out).iterdir())
+                self.assertIn("TODO", text)
+                if build:
+                    subprocess.run(build, cwd=out, check=True)
+                self.speak(run, out, role)
+                self.try_suite(run, out)
+
+    def try_suite(self, run, folder):
+        """Every case is skipped, since the node can do nothing, or fails; nothing breaks."""
+        tried = subprocess.run([RUBRIC, "test", "--target", " ".join(run), "--requirement", "J",
+                                "--format", "tap"], cwd=folder, capture_output=True, text=True)
+        self.assertIn("# SKIP", tried.stdout)
+        self.assertNotIn("error", tried.stdout.lower())
+        self.assertIn(tried.returncode, (0, 1, 3), tried.stdout + tried.stderr)
+
+    def test_overwrites_nothing(self):
+        with tempfile.TemporaryDirectory() as folder:
+            mine = pathlib.Path(folder) / "my_node.h"
+            mine.write_text("mine")
+            written = self.write("cpp", folder)
+            self.assertEqual(written.returncode, 3)
+            self.assertIn("my_node.h: it exists", written.stderr)
+            self.assertEqual(mine.read_text(), "mine")
+            self.assertEqual([mine], list(pathlib.Path(folder).iterdir()))
+
+    def test_mistakes(self):
+        self.assertEqual(self.write("cobol", "x").returncode, 2)
+        self.assertFalse(pathlib.Path("x").exists())
+        with tempfile.NamedTemporaryFile() as file:
+            written = self.write("python", file.name + "/deep")
+            self.assertEqual(written.returncode, 3)
+            self.assertIn("cannot write", written.stderr)
+
+
+if __name__ == "__main__":
+    if shutil.which("javac") is None:
+        sys.exit("javac is missing; tools/install-packages test installs it")
+    unittest.main()
