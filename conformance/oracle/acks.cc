@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "conformance/machine/transport.h"
+#include "conformance/oracle/peis_watch.h"
 
 namespace rubric::oracle {
 namespace {
@@ -183,8 +184,8 @@ void Acks::delivered(std::uint16_t node, const Observation& seen,
   if (best == nullptr) {
     // What comes to a base station from other islands passes by where no log and no tap is read.
     const Device& device = context_.device(node);
-    const bool by_peis =
-        device.role == machine::Role::kBaseStation && received.src.pid != device.island;
+    const bool by_peis = device.role == machine::Role::kBaseStation &&
+                         received.src.pid != device.island && !logs_peis(context_.run, node);
     context_.report(req::kT1Deliver,
                     by_peis ? Severity::kInconclusive
                             : context_.without(kNobody, context_.run.start_us, seen.place.time_us),
@@ -253,6 +254,7 @@ void Acks::close(std::uint16_t node, Arrived& arrived) {
   if (!arrived.must_ack || arrived.acks > 0) return;
   if (arrived.sure && owed_[node] > 0) --owed_[node];
   arrived.must_ack = false;
+  if (context_.device(node).hearing && !arrived.sure) return;  // A log says what arrived.
   context_.report(req::kT2Ack, Severity::kInconclusive, arrived.place, node,
                   {"No ack of " + name_of(arrived.net) + "; nothing proves that it arrived.",
                    "An ack, if it arrived.", {}});

@@ -215,6 +215,9 @@ void Forwarding::sent_on_serial(std::uint16_t sink, const Observation& seen, con
     ++passing.passed;
     if (passing.owed) --line->owed_up;
     passing.owed = false;
+    if (net.sound && passing.net.sound && net.nbytes > passing.net.nbytes) {
+      line->stale.add(seen.place, passing.net.nbytes, net.nbytes);
+    }
     pass_up(*line, passing, seen);
     if (line->owed_up > 0) overdue_up(*line, now);
     return;
@@ -293,6 +296,7 @@ void Forwarding::unheard(Line& line, const Passing& early) {
 void Forwarding::finish(std::int64_t end_us) {
   for (Line& line : lines_) {
     expire_early(line, end_us + context_.options.skew_us + 1);
+    note_stale(context_, line.sink, req::kN6Content, line.stale, "On the serial line nbytes says ");
   }
 }
 

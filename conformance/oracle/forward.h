@@ -7,6 +7,7 @@
 #include "conformance/machine/route.h"
 #include "conformance/oracle/context.h"
 #include "conformance/oracle/ring.h"
+#include "conformance/oracle/stale.h"
 
 namespace rubric::oracle {
 
@@ -69,6 +70,7 @@ class Forwarding {
     std::uint64_t last_down = 0;
     std::uint32_t owed_up = 0;
     std::uint32_t owed_down = 0;
+    Stale stale;                   ///< On its serial line.
   };
 
   Line* find(std::uint16_t sink);

@@ -52,6 +52,8 @@ class MoteJoins {
   void told(std::uint16_t mote, const Observation& seen, const machine::Joined& joined);
   void finish(std::int64_t end_us);
 
+  const std::vector<MoteHypothesis>& set(std::uint16_t mote) const { return motes_[mote].set; }
+
   /// The own address where every hypothesis agrees on it.
   std::optional<machine::Address> address(std::uint16_t mote) const;
 

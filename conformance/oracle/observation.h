@@ -23,6 +23,7 @@ struct Observation {
     kSerial,    ///< An active message on a serial line; time_us is the end of the frame.
     kDamaged,   ///< Bytes that are no frame (bad CRC and the like): heard by nobody.
     kCall,      ///< An application's call, from a .rtr log.
+    kPeis,      ///< A message given to PEIS, or by it to a base station, from a .rtr log.
     kNotice,    ///< What an application was told, from a .rtr log.
     kReboot,    ///< The node lost its memory or its power, by a .rtr log.
   };
@@ -79,6 +80,8 @@ struct LoggedNode {
   bool under_test = true;     ///< Where a log marks some nodes as under test the others are not.
   bool application = false;   ///< The log has its application's calls and events.
   bool hearing = false;       ///< The log has what its radio was given.
+  bool peis = false;          ///< The log has its lines of PEIS.
+  bool busy = false;          ///< A line of it, or its application, was busy for some time.
 };
 
 /// Holds what observations point to.

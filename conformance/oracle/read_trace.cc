@@ -48,6 +48,8 @@ class LogReader {
         node.application = node.application || link == LinkKind::kApp;
         node.hearing = node.hearing || (link == LinkKind::kRadio && line->op == Op::kGiven &&
                                         !is_state(*line));
+        node.busy = node.busy || line->message.name == "busy";
+        node.peis = node.peis || link == LinkKind::kPeis;
       }
       run_.nodes.push_back(node);
       applications = applications || node.application;
@@ -88,7 +90,7 @@ class LogReader {
     seen.place.time_us = time_us;
     seen.node = run_.storage->keep(std::string_view(line.node));
     seen.received = line.op == Op::kGiven;
-    const bool frames = *kind == LinkKind::kRadio || *kind == LinkKind::kSerial;
+    const bool frames = *kind != LinkKind::kApp && *kind != LinkKind::kPower;
     if (frames && !is_state(line)) {
       take_frame(line, *kind, seen);
     } else if (*kind == LinkKind::kApp || *kind == LinkKind::kPower) {
@@ -99,8 +101,11 @@ class LogReader {
   void take_frame(const Line& line, LinkKind kind, Observation& seen) {
     const trace::AmFrame frame = trace::frame_of(line, scope_);
     const bool radio = kind == LinkKind::kRadio;
-    seen.kind = radio ? Observation::Kind::kRadio : Observation::Kind::kSerial;
-    seen.frame.link = radio ? machine::Link::kRadio : machine::Link::kSerial;
+    seen.frame.link = events::to_link(kind).value_or(machine::Link::kSerial);
+    const bool peis = kind == LinkKind::kPeis;
+    seen.kind = radio  ? Observation::Kind::kRadio
+                : peis ? Observation::Kind::kPeis
+                       : Observation::Kind::kSerial;
     seen.frame.dest = frame.dest;
     seen.frame.src = frame.src;
     seen.frame.type = frame.type;
@@ -108,7 +113,8 @@ class LogReader {
     seen.tap = tap_of(line.link, seen.frame.link);
     const trace::NodeHeader* const node = scope_.node(line.node);
     const bool sink = node != nullptr && node->role == trace::Role::kSink;
-    if (!radio) seen.to_mote = sink == seen.received;  // Given to a sink, or sent by its host.
+    // Given to a sink, or sent by its host.
+    if (kind == LinkKind::kSerial) seen.to_mote = sink == seen.received;
     run_.seen.push_back(seen);
   }
 

@@ -2,6 +2,7 @@
 
 #include "conformance/machine/route.h"
 #include "conformance/machine/transport.h"
+#include "conformance/oracle/peis_watch.h"
 
 namespace rubric::oracle {
 namespace {
@@ -23,7 +24,7 @@ bool known_trans(std::uint8_t trans_id) {
 }  // namespace
 
 Originals::Originals(Context& context, std::size_t devices)
-    : context_(context), sent_(devices), orders_(devices, 0), acks_(devices) {}
+    : context_(context), sent_(devices), orders_(devices, 0), stale_(devices), acks_(devices) {}
 
 void Originals::begin_life(std::uint16_t node) {
   sent_[node].clear();
@@ -54,6 +55,10 @@ void Originals::judge_content(std::uint16_t node, const Observation& seen, const
                          number(net.payload.size()) + " bytes.",
                      "2 to 102, and no more than the message has.", {}});
     return;
+  }
+  const std::size_t came = seen.frame.payload.size() - kNetHeaderBytes;
+  if (seen.kind == Observation::Kind::kRadio && came > net.nbytes) {
+    stale_[node].add(seen.place, net.nbytes, came);
   }
   if (net.reliable > 1) {
     context_.report(req::kWireNetReliable, Severity::kFail, seen.place, node,
@@ -224,7 +229,22 @@ void Originals::finish(std::int64_t end_us) {
     for (std::size_t i = sent_[node].size(); i-- > 0;) {
       close(static_cast<std::uint16_t>(node), i, end_us);
     }
+    note_stale(context_, static_cast<std::uint16_t>(node), req::kWireNetPayload, stale_[node],
+               "On the air a message has ");
   }
+}
+
+// Whether an ack that fits the message in everything was heard.
+bool Originals::rightly_acked(std::uint16_t node, const Net& message) {
+  Ring<Ack, kRoom>& ring = acks_[node];
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const Ack& ack = ring.newest(i);
+    if (ack.number == message.seq_num && ack.net.src == message.dest &&
+        ack.net.app_id == message.app_id) {
+      return true;
+    }
+  }
+  return ring.size() == 0;
 }
 
 void Originals::told(std::uint16_t node, const Observation& seen,
@@ -242,7 +262,7 @@ void Originals::told(std::uint16_t node, const Observation& seen,
     // What a base station sends to other islands goes where no log and no tap is read.
     const Device& device = context_.device(node);
     context_.report(ack.success ? req::kT3Success : req::kT3Match,
-                    device.role == Role::kBaseStation
+                    device.role == Role::kBaseStation && !logs_peis(context_.run, node)
                         ? Severity::kInconclusive
                         : context_.without(node, device.first_us, now),
                     seen.place, node,
@@ -261,6 +281,17 @@ void Originals::told(std::uint16_t node, const Observation& seen,
     context_.report(req::kT3Success, Severity::kFail, seen.place, node,
                     {what + ", " + ms_text(now - match->given_us) + " after its ack had come.",
                      "receive_ack(success) when the ack came.", {}});
+  } else if (ack.success && match->acked && !rightly_acked(node, match->net)) {
+    const std::uint16_t acker = context_.mote_of_am[match->net.dest.devid];
+    const bool mote = context_.without(acker, match->place.time_us, now) == Severity::kFail &&
+                      acker != kNobody;
+    const bool sure = context_.device(node).hearing || mote || context_.options.sniffer_complete;
+    context_.report(req::kT3Sender, sure ? Severity::kWeak : Severity::kInconclusive, seen.place,
+                    node,
+                    {what + ", but every ack with that number came from another node than " +
+                         text_of(match->net.dest) + " or for another APPID than " +
+                         number(match->net.app_id) + ".",
+                     "An ack counts from the message's destination, with its APPID.", {}});
   } else if (ack.success && !match->acked) {
     context_.report(req::kT3Success, context_.without(kNobody, match->place.time_us, now),
                     seen.place, node,

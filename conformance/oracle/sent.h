@@ -7,6 +7,7 @@
 
 #include "conformance/oracle/context.h"
 #include "conformance/oracle/ring.h"
+#include "conformance/oracle/stale.h"
 
 namespace rubric::oracle {
 
@@ -47,11 +48,13 @@ class Originals {
   void judge_address(std::uint16_t node, const Observation& seen, const Net& net,
                      machine::Link link, machine::Address own);
   void judge_synaptic(std::uint16_t node, const Observation& seen, const Net& net);
+  bool rightly_acked(std::uint16_t node, const Net& message);
   void judge_number(std::uint16_t node, const Observation& seen, const Net& net);
 
   Context& context_;
   std::vector<Ring<Sent, kRoom>> sent_;
   std::vector<std::uint32_t> orders_;
+  std::vector<Stale> stale_;  ///< On the air.
   struct Ack {
     Net net;
     std::uint16_t number = 0;

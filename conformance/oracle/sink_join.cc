@@ -147,6 +147,9 @@ void SinkJoins::request(std::uint16_t mote_device, const Observation& seen,
 void SinkJoins::close_unanswered(std::uint16_t mote_am, Unanswered& unanswered) {
   if (!unanswered.open) return;
   unanswered.open = false;
+  // Logs of all sinks say who received it.
+  const auto hearing = [&](const SinkWatch& sink) { return context_.device(sink.device).hearing; };
+  if (!sinks_.empty() && std::all_of(sinks_.begin(), sinks_.end(), hearing)) return;
   for (SinkWatch& sink : sinks_) {  // A sink that lists it is right not to answer.
     const PairWatch& watch = pair(sink, mote_am);
     const auto may_list = [](const SinkHypothesis& h) { return h.member.has_value(); };

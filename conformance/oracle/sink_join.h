@@ -71,6 +71,8 @@ class SinkJoins {
   /// The sink sent something at this time: what it owed since long it will not send any more.
   void showed_life(std::uint16_t sink, std::int64_t now_us, bool on_serial);
   void finish(std::int64_t end_us);
+  /// Somebody else waits for the answer to the mote's last request.
+  void settled(std::uint16_t mote_am) { unanswered_[mote_am].open = false; }
 
   /// The sink's island now; 0: not known.
   std::uint16_t island(std::uint16_t sink) const;

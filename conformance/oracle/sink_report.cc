@@ -29,10 +29,13 @@ void SinkJoins::ack_join(std::uint16_t, const Observation& seen, const AckJoin& 
       if (open && !heard.pending) heard.pending = accepted;
       JoinSink list = list_of(heard);
       context_.actions.clear();
-      const bool admits = machine::hear_ack_join(
+      const bool stranger = ack.dest.devid != device.am || ack.src.devid != seen.frame.src ||
+                            ack.src.pid != ack.dest.pid;
+      const bool admits = !stranger && machine::hear_ack_join(
           list, context_.join_context(device.am, sink.island, seen.place.time_us), ack.dest,
           ack.src, ack.seq_num, ack.descriptor, context_.actions);
       take_list(list, heard);
+      if (stranger) ignored = req::kJ6Sender;
       if (!admits && !context_.actions.all().empty()) {
         ignored = context_.actions.all()[0].requirement;
       }
@@ -157,6 +160,13 @@ void SinkJoins::refuse_report(SinkWatch& sink, PairWatch& watch, const Place& at
     rule = req::kJ6Repeat;
     said.text = what + " of mote " + number(mote_am) + " again, without a new join.";
     said.expected = "One " + what + " for each join; a repeated ack_join changes nothing.";
+  } else if (watch.ignored_ack == req::kJ6Sender) {
+    rule = req::kJ6Sender;
+    if (severity == Severity::kFail) severity = Severity::kWeak;
+    said.text = what + " of mote " + number(mote_am) +
+                ", whose only ack_join is not for this sink's devid, or not from <its island, its "
+                "AM source>.";
+    said.expected = "That ack_join is ignored.";
   } else if (watch.ignored_ack == req::kJ6Seq || watch.ignored_ack == req::kJ6Island) {
     rule = watch.ignored_ack;
     said.text = what + " of mote " + number(mote_am) + ", whose only ack_join had " +

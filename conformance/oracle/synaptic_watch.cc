@@ -41,12 +41,14 @@ void SynapticWatch::called(std::uint16_t device, const Observation& seen, machin
   config.role = context_.device(device).role;
   config.id = context_.device(device).am;
   config.profile = context_.profile();
+  settle(device, seen.place.time_us);
   const machine::Synaptic before = node.channels;
   context_.actions.clear();
   machine::call_synaptic(node.channels, config, own, machine::ticks_of(seen.place.time_us),
                          *seen.call,
                          context_.actions);
   note(node, before, seen.place.time_us);
+  note_inputs(node, before, seen.place.time_us);
 }
 
 // What a call changed: channels that began, ended, or got another value.
@@ -61,17 +63,31 @@ void SynapticWatch::note(Node& node, const machine::Synaptic& before, std::int64
     out->disposed = false;
     const machine::Channel* const old = oracle::find(before, channel.id);
     const bool ran = old != nullptr && old->started;
+    const bool others = std::any_of(node.outs.begin(), node.outs.end(), [&](const Out& other) {
+      return other.id != channel.id && other.begun_us >= 0;
+    });
+    if (channel.started && !ran && others) {
+      node.restart_us = now_us;
+      node.shifted = false;
+    }
     if (channel.started && !ran) {
+      out->begun_us = out->waits_us = now_us;
+      out->ticks = {};
       out->silent_us = out->sent_us = -1;
       out->written_us = now_us;  // The first tick sends in either mode.
     }
-    if (!channel.started && (ran || old == nullptr)) out->silent_us = now_us;
-    if (old != nullptr && old->value_bits != channel.value_bits) out->written_us = now_us;
+    if (!channel.started && (ran || old == nullptr)) {
+      out->silent_us = now_us;
+      out->begun_us = -1;
+    }
+    if (old == nullptr || old->value_bits == channel.value_bits) continue;
+    out->written_us = out->wrote_us = now_us;
   }
   for (const machine::Channel& old : before.out) {
     if (oracle::find(node.channels, old.id) != nullptr) continue;
     if (Out* const out = find(node, old.id)) {
       out->silent_us = now_us;
+      out->begun_us = out->wrote_us = -1;
       out->disposed = true;
     }
   }
@@ -83,7 +99,18 @@ void SynapticWatch::sent(std::uint16_t device, const Observation& seen, const Ne
   const std::int64_t now = seen.place.time_us;
   Out* const out = find(node, machine::channel_id(net.src.devid, net.dest.devid));
   if (out == nullptr) return;  // Created before the log began.
+  settle(device, now);
+  out->ticks.add(now);
+  if (net.src != net.dest) judge_grid(device, seen, out->ticks);
+  out->waits_us = now;
   const machine::Channel* const channel = oracle::find(node.channels, out->id);
+  // A write just before the data may have missed its tick; then they have the values before it.
+  bool current = true;
+  for (std::size_t i = 0; channel != nullptr && i < channel->size; ++i) {
+    current = current && 4 * i + 4 <= net.body().size() &&
+              load_le32(net.body().data() + 4 * i) == channel->value_bits[i];
+  }
+  if (current || out->wrote_us < now - context_.response_us()) out->wrote_us = -1;
   // What was in the outgoing buffer may still leave.
   if (out->silent_us >= 0 && now - out->silent_us > context_.response_us()) {
     context_.report(out->disposed ? req::kS6Disposed : req::kS6Stopped, Severity::kFail, seen.place,

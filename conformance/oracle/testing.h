@@ -36,7 +36,7 @@ struct NetFields {
   machine::Address src;
   std::uint8_t reliable = 0;
   std::uint16_t seq_num = 0;
-  Payload body = {7, 7};
+  Payload body = Payload(2, 7);
   std::uint8_t trans_id = component::kConnless;
   std::uint8_t app_id = 5;
   int nbytes = -1;  ///< -1: as it must be.

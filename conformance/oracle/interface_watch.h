@@ -1,0 +1,49 @@
+// Interfaces that applications switch, where a log has their calls.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "conformance/oracle/context.h"
+
+namespace rubric::oracle {
+
+class InterfaceWatch {
+ public:
+  InterfaceWatch(Context& context, std::size_t devices) : context_(context), nodes_(devices) {}
+
+  void begin_life(std::uint16_t node);
+  void called(std::uint16_t node, const Observation& seen);
+  void told(std::uint16_t node, const Observation& seen);
+  /// `node` sends a frame over `link`.
+  void sent(std::uint16_t node, const Observation& seen);
+  /// It sends a message of its own.
+  void own_message(std::uint16_t node, std::uint16_t seq_num);
+  /// Whether the interface was off, and for so long that nothing came before it was.
+  bool off(std::uint16_t node, machine::Link link, std::int64_t now_us) const;
+  void finish(std::int64_t end_us);
+
+ private:
+  struct Interface {
+    std::optional<bool> on;         ///< Nothing: a node that runs since before the log.
+    std::int64_t changed_us = 0;
+    bool again = false;             ///< Switched on again, and not yet seen to send.
+  };
+  struct Node {
+    std::array<Interface, 2> interfaces;  ///< Radio and serial.
+    bool begun = false;
+    bool sends = false;             ///< send was called since, and its result is awaited.
+    std::optional<std::uint16_t> awaited;  ///< The number of a message accepted since then.
+    Place accepted;
+  };
+
+  Node& look(std::uint16_t node);
+  static Interface* find(Node& node, machine::Link link);
+
+  Context& context_;
+  std::vector<Node> nodes_;
+};
+
+}  // namespace rubric::oracle

@@ -1,0 +1,40 @@
+// Logs made by hand, for tests: what was given to nodes and what they did, line by line.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "codec/generated/requirements_table.h"
+#include "conformance/oracle/judge.h"
+#include "conformance/oracle/read.h"
+
+namespace rubric::oracle {
+
+inline Report judge_log(const std::string& log) {
+  RunReader reader;
+  std::string error;
+  EXPECT_TRUE(reader.add_bytes("log", log, error)) << error;
+  const oracle::Run run = reader.finish();
+  Options options;
+  options.start_cold = true;
+  return judge(run, options);
+}
+
+/// The rules that are found, in order, with a severity of at least `least`.
+inline std::string found(const std::string& log, Severity least) {
+  std::string out;
+  for (const Finding& finding : judge_log(log).findings) {
+    if (finding.severity < least) continue;
+    out += std::string(out.empty() ? "" : " ") +
+           kRequirements[static_cast<std::size_t>(finding.requirement)].id;
+  }
+  return out;
+}
+
+/// One line at so many ms.
+inline std::string at(int ms, const std::string& rest) {
+  return "   @" + std::to_string(ms) + " " + rest + "\n";
+}
+
+}  // namespace rubric::oracle
