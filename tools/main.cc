@@ -7,10 +7,13 @@
 #include "tools/convert.h"
 #include "tools/coverage.h"
 #include "tools/decode.h"
+#include "tools/diff.h"
 #include "tools/encode.h"
 #include "tools/explain.h"
 #include "tools/explore.h"
 #include "tools/messages.h"
+#include "tools/new_adapter.h"
+#include "tools/shrink.h"
 #include "tools/simulate.h"
 #include "tools/stats.h"
 #include "tools/test.h"
@@ -42,6 +45,9 @@ int main(int argc, char** argv) {
   rubric::tools::add_simulate(app);
   rubric::tools::add_check(app);
   rubric::tools::add_test(app);
+  rubric::tools::add_shrink(app);
+  rubric::tools::add_diff(app);
+  rubric::tools::add_new_adapter(app);
   rubric::tools::add_coverage(app);
   return rubric::cli::parse_and_run(app, argc, argv);
 }
