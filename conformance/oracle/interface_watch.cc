@@ -32,6 +32,7 @@ void InterfaceWatch::called(std::uint16_t device, const Observation& seen) {
     // A mote's messages all leave by radio.
     const Interface& radio = node.interfaces[0];
     node.sends = context_.device(device).role == machine::Role::kMote && radio.again;
+    node.left.reset();
     return;
   }
   const auto* const set = std::get_if<machine::SetInterface>(seen.call);
@@ -47,7 +48,10 @@ void InterfaceWatch::called(std::uint16_t device, const Observation& seen) {
 void InterfaceWatch::told(std::uint16_t device, const Observation& seen) {
   Node& node = look(device);
   if (const auto* result = std::get_if<machine::SendResult>(seen.notice)) {
-    if (node.sends && result->seq_num != machine::kNoSeq && !node.awaited) {
+    if (node.sends && node.left == result->seq_num) {  // It left before the call returned.
+      node.interfaces[0].again = false;
+      context_.findings.kept(req::kN10On);
+    } else if (node.sends && result->seq_num != machine::kNoSeq && !node.awaited) {
       node.awaited = result->seq_num;
       node.accepted = seen.place;
     }
@@ -85,6 +89,7 @@ void InterfaceWatch::sent(std::uint16_t device, const Observation& seen) {
 
 void InterfaceWatch::own_message(std::uint16_t device, std::uint16_t seq_num) {
   Node& node = nodes_[device];
+  if (node.sends) node.left = seq_num;
   if (node.awaited != seq_num) return;
   node.awaited.reset();
   node.interfaces[0].again = false;

@@ -35,6 +35,7 @@ class InterfaceWatch {
     std::array<Interface, 2> interfaces;  ///< Radio and serial.
     bool begun = false;
     bool sends = false;             ///< send was called since, and its result is awaited.
+    std::optional<std::uint16_t> left;     ///< The number of a message that left since the call.
     std::optional<std::uint16_t> awaited;  ///< The number of a message accepted since then.
     Place accepted;
   };

@@ -54,6 +54,9 @@ TEST(InterfaceWatch, OffIsDeaf) {
 
 TEST(InterfaceWatch, OnSendsAgain) {
   EXPECT_EQ(all(kOff + kOn + send(600) + m2(605, kToPc) + end(1000)), "");
+  const std::string call = m2(600, "< app send(dest=11:null app_id=5 reliable=0 data=xbeef)");
+  const std::string result = m2(600, "> app send_result(seq_num=119)");
+  EXPECT_EQ(all(kOff + kOn + call + m2(600, kToPc) + result + end(1000)), "");
   EXPECT_EQ(all(kOff + kOn + send(600) + end(1000)), "N10-ON");
   EXPECT_EQ(all(kOff + kOn + send(600) + end(700)), "");
 }
