@@ -1,6 +1,6 @@
 // A node on a Cortex-M3, an LM3S6965 at its 12.5 MHz after reset: UART 0 is the serial line at
-// 115200 baud, UART 1 the test bench's link at 460800 baud, SysTick the clock. Timer 0 wakes the processor once
-// a tick; should a wake come late, as emulators have it, no time is lost.
+// 115200 baud, UART 1 the test bench's link at 460800 baud, SysTick the clock. Timer 0 wakes the
+// processor once a tick; should a wake come late, as in emulators, no time is lost.
 #include "conformance/adapters/firmware/arm/registers.h"
 #include "conformance/adapters/firmware/bench/bench.h"
 

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 
 #include <fmt/format.h>
 
@@ -23,6 +24,12 @@ constexpr Instant kLinkBaud = 921'600;
 constexpr Instant kLinkSlowness = 2;
 constexpr Instant kSerialBaud = 115'200;
 constexpr Instant kBitsPerByte = 10;
+// What a line carries for the time of a byte where there is none.
+constexpr std::uint16_t kSilence = 0x100;
+// In that many bytes' time simavr's UART catches up with the line: it hands over a byte not before a
+// byte's time after the last was taken.
+constexpr std::size_t kSilenceBehindFrame = 48;
+constexpr std::uint8_t kUntouched = 0xA5;  // What memory holds when the power comes.
 
 void log_to_stderr(avr_t*, const int level, const char* format, std::va_list arguments) {
   if (level > LOG_ERROR) return;
@@ -49,9 +56,9 @@ struct AvrBoard::Callbacks {
     auto& uart = *static_cast<Uart*>(parameter);
     uart.feeding = !uart.waiting.empty();
     if (!uart.feeding) return 0;
-    const std::uint8_t byte = uart.waiting.front();
+    const std::uint16_t byte = uart.waiting.front();
     uart.waiting.pop_front();
-    avr_raise_irq(uart.input, byte);
+    if (byte != kSilence) avr_raise_irq(uart.input, byte);
     return when + uart.instants_per_byte;
   }
   static avr_cycle_count_t end(avr_t*, avr_cycle_count_t, void* parameter) {
@@ -91,6 +98,9 @@ void AvrBoard::connect(Uart& uart, char name) {
 
 void AvrBoard::power_on() {
   discard();
+  if (std::ifstream(elf_file_).get() != 0x7F) {  // simavr loads what is not there without a word.
+    throw BoardBroken(fmt::format("{} cannot be read, or is no ELF file", elf_file_));
+  }
   elf_firmware_t firmware;
   std::memset(&firmware, 0, sizeof(firmware));
   if (elf_read_firmware(elf_file_.c_str(), &firmware) != 0) {
@@ -105,6 +115,7 @@ void AvrBoard::power_on() {
   avr_->sleep = Callbacks::sleep;
   avr_->log = LOG_ERROR;
   std::free(firmware.flash);
+  std::fill(avr_->data + avr_->ioend + 1, avr_->data + avr_->ramend + 1, kUntouched);
   connect(link_, '1');
   connect(serial_, '0');
 }
@@ -114,6 +125,16 @@ void AvrBoard::restart(Instant now) {
   avr_reset(avr_);
   connect(link_, '1');
   connect(serial_, '0');
+}
+
+std::size_t AvrBoard::untouched_ram_bytes() const {
+  std::size_t longest = 0;
+  std::size_t run = 0;
+  for (std::size_t i = avr_->ioend + std::size_t{1}; i <= avr_->ramend; ++i) {
+    run = avr_->data[i] == kUntouched ? run + 1 : 0;
+    longest = std::max(longest, run);
+  }
+  return longest;
 }
 
 Instant AvrBoard::now() const { return avr_->cycle; }
@@ -126,7 +147,10 @@ void AvrBoard::put(Uart& uart, Bytes bytes) {
 }
 
 void AvrBoard::put_link(Bytes bytes) { put(link_, bytes); }
-void AvrBoard::put_serial(Bytes bytes) { put(serial_, bytes); }
+void AvrBoard::put_serial(Bytes bytes) {
+  put(serial_, bytes);
+  serial_.waiting.insert(serial_.waiting.end(), kSilenceBehindFrame, kSilence);
+}
 
 void AvrBoard::run(Instant end, Listener& listener) {
   if (end <= avr_->cycle) return;

@@ -28,6 +28,8 @@ class AvrBoard : public SimulatedBoard {
   void put_link(Bytes bytes) override;
   void put_serial(Bytes bytes) override;
   bool serial_is_idle() const override { return serial_.waiting.empty(); }
+  /// Bytes between the data and the deepest that the stack has been since power_on.
+  std::size_t untouched_ram_bytes() const;
 
  private:
   // What is on its way to one of the processor's UARTs.
@@ -36,7 +38,7 @@ class AvrBoard : public SimulatedBoard {
     bool is_link = false;
     Instant instants_per_byte = 0;
     avr_irq_t* input = nullptr;
-    std::deque<std::uint8_t> waiting;
+    std::deque<std::uint16_t> waiting;  ///< Bytes, and silence.
     bool feeding = false;
   };
   struct Callbacks;

@@ -13,8 +13,8 @@ using namespace rubric::firmware;
 constexpr const char* kUsage =
     "usage: firmware_arm ELF...\n"
     "       firmware_arm --serial-device ISLAND ELF\n"
-    "Speaks rct/1; starts the ELF file whose role and channels are asked for. Or starts a sink and\n"
-    "prints the name of a device, which is its serial line until standard input ends.\n"
+    "Speaks rct/1; starts the ELF file whose role and channels are asked for. Or starts a sink\n"
+    "and prints the name of a device, which is its serial line until standard input ends.\n"
     "The emulator is $QEMU_SYSTEM_ARM, else qemu-system-arm.\n";
 
 std::string emulator() {
