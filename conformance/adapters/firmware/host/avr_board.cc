@@ -26,8 +26,8 @@ constexpr Instant kSerialBaud = 115'200;
 constexpr Instant kBitsPerByte = 10;
 // What a line carries for the time of a byte where there is none.
 constexpr std::uint16_t kSilence = 0x100;
-// In that many bytes' time simavr's UART catches up with the line: it hands over a byte not before a
-// byte's time after the last was taken.
+// In that many bytes' time simavr's UART catches up with the line: it hands over a byte not before
+// a byte's time after the last was taken.
 constexpr std::size_t kSilenceBehindFrame = 48;
 constexpr std::uint8_t kUntouched = 0xA5;  // What memory holds when the power comes.
 
@@ -87,10 +87,12 @@ void AvrBoard::discard() {
 }
 
 void AvrBoard::connect(Uart& uart, char name) {
+  const auto set_flags = static_cast<std::uint32_t>(AVR_IOCTL_UART_SET_FLAGS(name));
+  const auto get_irq = static_cast<std::uint32_t>(AVR_IOCTL_UART_GETIRQ(name));
   std::uint32_t flags = 0;  // It would print what is sent, and sleep where firmware waits.
-  avr_ioctl(avr_, AVR_IOCTL_UART_SET_FLAGS(name), &flags);
-  uart.input = avr_io_getirq(avr_, AVR_IOCTL_UART_GETIRQ(name), UART_IRQ_INPUT);
-  avr_irq_t* const output = avr_io_getirq(avr_, AVR_IOCTL_UART_GETIRQ(name), UART_IRQ_OUTPUT);
+  avr_ioctl(avr_, set_flags, &flags);
+  uart.input = avr_io_getirq(avr_, get_irq, UART_IRQ_INPUT);
+  avr_irq_t* const output = avr_io_getirq(avr_, get_irq, UART_IRQ_OUTPUT);
   avr_irq_register_notify(output, Callbacks::output, &uart);
   uart.waiting.clear();
   uart.feeding = false;

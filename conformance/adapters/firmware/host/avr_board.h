@@ -53,7 +53,6 @@ class AvrBoard : public SimulatedBoard {
   Uart link_;
   Uart serial_;
   bool stopped_ = false;
-  Instant end_ = 0;
 };
 
 }  // namespace rubric::firmware

@@ -32,7 +32,7 @@ struct NodeSetup {
   std::uint16_t last_seq_num = 0;
 };
 
-class Bridge : private Listener {
+class Bridge final : private Listener {
  public:
   explicit Bridge(SimulatedBoard& board) : board_(board) {}
 
