@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -174,8 +175,9 @@ suite::SuiteRun work(const TestOptions& options, const suite::Cases& cases, suit
   all.shard = options.shard;
   all.seed = options.seed.value_or(0);
   if (!options.profile.empty()) all.profile = options.profile;
-  const attach::Options attached{
-      Milliseconds(static_cast<std::int64_t>(options.timeout_s * 1000))};
+  attach::Options attached;
+  attached.step_timeout = Milliseconds(static_cast<std::int64_t>(options.timeout_s * 1000));
+  attached.start_timeout = std::max(attached.start_timeout, attached.step_timeout);
   const std::size_t worked = plan.cases.size() * plan.repeats;
   cli::Progress progress(worked * options.targets.size(), true, cli::Progress::Unit::kCases);
   for (const std::string& target : options.targets) {

@@ -55,17 +55,22 @@ std::string try_canary(const SuiteCase& one, attach::Attachment& attachment) {
 }  // namespace
 
 std::string dishonesty(attach::Attachment& attachment) {
+  const char* doing = "it does not start";
   try {
     const attach::Identity& identity = attachment.identity();
     if (identity.roles.empty()) return "it plays no role";
-    if (std::string wrong = attachment.honesty(); !wrong.empty()) return wrong;
+    doing = "it does not refuse a command that nobody knows";
+    if (const std::string wrong = attachment.honesty(); !wrong.empty()) {
+      return fmt::format("{}: {}", doing, wrong);
+    }
+    doing = "it breaks at a case that has to fail";
     const Cases canaries = Cases::of_text(kCanaries, "canaries");
     for (const SuiteCase& one : canaries.all()) {
       if (!plays(identity, one.blank.roles.front())) continue;
       if (std::string wrong = try_canary(one, attachment); !wrong.empty()) return wrong;
     }
   } catch (const runner::TargetBroken& broken) {
-    return broken.what();
+    return fmt::format("{}: {}", doing, broken.what());
   }
   return {};
 }

@@ -97,7 +97,8 @@ bool is_so(const ExpectedFailure& one, const CaseRun& run) {
                      [&](const Failure& f) { return has_rule(one, f) && has_message(one, f); });
 }
 
-// What the profile accepts instead of every rule that the line names; null if it does not.
+// What the profile accepts instead; null if it does not. One reason is enough not to emit what a
+// line asks for; what a line forbids has to be accepted by each rule that forbids it.
 const char* accepted(const machine::NamedProfile* profile, const Failure& failure) {
   const char* sentence = nullptr;
   for (const std::string& rule : failure.requirements) {
@@ -105,7 +106,7 @@ const char* accepted(const machine::NamedProfile* profile, const Failure& failur
     for (const machine::AcceptedDifference& one : profile->accepted) {
       if (trace::requirement_id(rule) == one.requirement) found = one.sentence;
     }
-    if (!found) return nullptr;
+    if (!found && failure.forbidden) return nullptr;
     if (!sentence) sentence = found;
   }
   return sentence;

@@ -47,6 +47,7 @@ struct ImplementationRun {
   std::string target;         ///< As the user wrote it.
   attach::Identity identity;
   std::string dishonest;      ///< Why nothing else was run; mostly empty.
+  std::string stderr_text;    ///< What it wrote to its standard error then.
   std::vector<CaseRun> cases; ///< In the order of files and cases.
   double wall_ms = 0;
 };

@@ -139,9 +139,11 @@ ImplementationRun run(const std::string& target, const MakeAttachment& make, con
   out.target = target;
   const std::unique_ptr<attach::Attachment> first = make();
   out.dishonest = dishonesty(*first);
+  const std::string said = first->take_stderr();
   if (out.dishonest.empty()) {
     out.identity = first->identity();
-    first->take_stderr();
+  } else {
+    out.stderr_text = said;
   }
   if (watcher.started) watcher.started(out);
   if (!out.dishonest.empty()) return out;

@@ -72,7 +72,11 @@ class Stage {
                                       [](const trace::NodeHeader& node) { return node.iut; });
     app_ = tested == 1;
     if (app_) names_.emplace_back("app");
-    for (const trace::NodeHeader& node : nodes_) names_.push_back(node.name);
+    for (const bool under_test : {true, false}) {  // The others beside whom they talk to.
+      for (const trace::NodeHeader& node : nodes_) {
+        if (node.iut == under_test) names_.push_back(node.name);
+      }
+    }
   }
 
   const std::vector<std::string>& names() const { return names_; }
@@ -91,6 +95,7 @@ class Stage {
     std::vector<std::size_t> peers;
     if (frame) {
       peers = peers_of(line, given ? line.am->source : line.am->dest);
+      if (given && peers.size() > 1) keep_of_island(line, peers);
     } else if (app_ && line.link == "app") {
       peers = {0};
     }
@@ -107,6 +112,11 @@ class Stage {
 
   static std::string label(const Line& line) {
     std::string out = line.message.name;
+    const trace::Value* kind = line.message.find("payload.trans_id");
+    if (kind && kind->text == "rubicon_ack") {
+      const trace::Value* number = line.message.find("payload.body.seq_num");
+      return number ? "ack of " + trace::value_text(*number) : "ack";
+    }
     for (const trace::FieldValue& field : line.message.fields) {
       const bool number = field.path == "seq_num" || field.path.ends_with(".seq_num");
       if (!number && field.path != "result" && field.path != "acked") continue;
@@ -140,6 +150,19 @@ class Stage {
       }
     }
     return out;
+  }
+
+  // Sinks share an address: of several senders the one whose island the message names.
+  void keep_of_island(const Line& line, std::vector<std::size_t>& senders) const {
+    const trace::Value* island = line.message.find("island_addr");
+    const trace::Value* src = line.message.find("src");
+    if (!island && src && src->items.size() == 2) island = &src->items[0];
+    if (!island || !island->is(trace::Value::Kind::kNumber)) return;
+    std::erase_if(senders, [&](std::size_t c) {
+      return std::none_of(nodes_.begin(), nodes_.end(), [&](const trace::NodeHeader& node) {
+        return node.name == names_[c] && node.island && *node.island == island->number;
+      });
+    });
   }
 
   static bool is_meant(std::optional<std::uint16_t> id, const trace::Value& address) {

@@ -22,7 +22,7 @@ using runner::CaseVerdict;
 using runner::Failure;
 
 constexpr std::string_view kIndent = "  ";
-constexpr std::size_t kNameColumns = 44;
+constexpr std::size_t kNameColumns = 40;
 constexpr std::size_t kErrorLines = 12;  // Of what an implementation wrote to its standard error.
 
 std::string painted(const TextOptions& options, std::string_view style, std::string_view text) {
@@ -142,8 +142,8 @@ class Story {
         if (options_.verbose) in_full(one); else weak_.push_back(&one);
       }
     }
-    in_lines("", brief_);
-    in_lines("", weak_);
+    in_lines(brief_);
+    in_lines(weak_);
     by_reason(CaseVerdict::kInconclusive);
     by_reason(CaseVerdict::kSkip);
     return std::move(out_);
@@ -176,15 +176,25 @@ class Story {
       out_ += field("Broke:", one.result.reason, options_);
       if (line > 0) out_ += field("", fmt::format("at line {} of {}", line, one.file), options_);
     } else {
-      for (const Failure& failure : one.result.failures) {
-        if (!failure.weak || one.result.verdict == CaseVerdict::kWeak || options_.verbose) {
-          out_ += failure_text(one, failure, options_);
-        }
-      }
+      failures(one);
     }
     surroundings(one);
     out_ += error_text(one.stderr_text, options_);
     out_ += fmt::format("{}Again:    {}\n", kIndent, replay_command(run_, implementation_, one));
+  }
+
+  void failures(const CaseRun& one) {
+    bool first = true;
+    for (const Failure& failure : one.result.failures) {
+      if (first || options_.verbose) {
+        out_ += failure_text(one, failure, options_);
+      } else {
+        out_ += field("Also:", fmt::format("line {} [{}]: {}", failure.place.line,
+                                           fmt::join(failure.requirements, " "), failure.text),
+                      options_);
+      }
+      first = false;
+    }
   }
 
   void surroundings(const CaseRun& one) {
@@ -196,7 +206,7 @@ class Story {
     out_ += '\n' + chart_around(one, failure, 2 * kIndent.size(), options_.width);
   }
 
-  void in_lines(std::string_view, const std::vector<const CaseRun*>& cases) {
+  void in_lines(const std::vector<const CaseRun*>& cases) {
     if (!cases.empty()) out_ += '\n';
     for (const CaseRun* one : cases) {
       std::string rest = fmt::format("{}: {}", case_name(*one), headline(*one));
@@ -239,12 +249,6 @@ std::string roles_text(const std::vector<machine::Role>& roles) {
   return out;
 }
 
-std::string rules_text(const RuleTotals& rules) {
-  const std::size_t tried = rules.all - rules.untried;
-  return fmt::format("{} of {} rules tried: {} kept, {} broken, {} undecided", tried, rules.all,
-                     rules.kept, rules.broken, rules.undecided);
-}
-
 std::string broken_text(const ImplementationRun& implementation) {
   std::string out;
   for (const RequirementSummary& rule : by_requirement(implementation)) {
@@ -262,8 +266,9 @@ std::string opening_text(const SuiteRun& run, const ImplementationRun& implement
   const attach::Identity& who = implementation.identity;
   if (!implementation.dishonest.empty()) {
     return styled(options, "1;31", "REFUSED",
-                  fmt::format("{}: {}. None of its answers would be believed; nothing was run.",
-                              implementation.target, implementation.dishonest));
+                  fmt::format("{}: {}. No answer of it could be believed, so nothing was run.",
+                              implementation.target, implementation.dishonest)) +
+           error_text(implementation.stderr_text, options);
   }
   std::string out = fmt::format("{} {} plays {}", who.name, who.version, roles_text(who.roles));
   if (who.real_time) out += " in real time";
@@ -309,12 +314,15 @@ std::string totals_text(const ImplementationRun& implementation, const TextOptio
     if (!out.empty()) out += ", ";
     out += fmt::format("{} {}", found->second, runner::verdict_text(verdict));
   }
-  out += fmt::format("; {}", rules_text(rule_totals(implementation)));
+  const RuleTotals rules = rule_totals(implementation);
+  out = wrapped("", fmt::format("{}: {} in {:.2f} s", implementation.identity.name, out,
+                                implementation.wall_ms / 1000), options.width, kIndent.size());
+  out += wrapped(kIndent, fmt::format("Of {} rules {} tried: {} kept, {} broken, {} not decided.",
+                                      rules.all, rules.all - rules.untried, rules.kept,
+                                      rules.broken, rules.undecided), options.width);
   const std::string broken = broken_text(implementation);
-  if (!broken.empty()) out += fmt::format(" ({})", broken);
-  out += fmt::format("; {:.2f} s", implementation.wall_ms / 1000);
-  return '\n' + wrapped("", implementation.identity.name + ": " + out, options.width,
-                        kIndent.size());
+  if (!broken.empty()) out += wrapped(fmt::format("{}Broken: ", kIndent), broken, options.width);
+  return '\n' + out;
 }
 
 std::string closing_text(const SuiteRun& run, const TextOptions& options) {

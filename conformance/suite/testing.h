@@ -1,0 +1,68 @@
+// Implementations in this process, for tests of the suite.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "conformance/attach/attachment.h"
+#include "conformance/runner/subject_target.h"
+#include "conformance/suite/run.h"
+
+namespace rubric::suite::testing {
+
+/// The machine behind a target that a test may change.
+using Wrap = std::function<std::unique_ptr<runner::Target>()>;
+
+inline std::unique_ptr<runner::Target> machine_target() {
+  return std::make_unique<runner::SubjectTarget>(std::make_unique<runner::Machine>());
+}
+
+class FakeAttachment : public attach::Attachment {
+ public:
+  attach::Identity who = attach::machine_identity();
+  Wrap make = machine_target;
+  std::string honest;       ///< What honesty() says.
+  std::string says;         ///< To its standard error, at each target.
+  bool starts = true;
+  int* targets = nullptr;   ///< Counts.
+
+  const attach::Identity& identity() override {
+    if (!starts) throw runner::TargetBroken("no such program");
+    return who;
+  }
+  std::unique_ptr<runner::Target> target() override {
+    if (targets) ++*targets;
+    stderr_ += says;
+    return make();
+  }
+  std::string honesty() override { return honest; }
+  std::string take_stderr() override { return std::exchange(stderr_, {}); }
+
+ private:
+  std::string stderr_;
+};
+
+/// Says what it is told to, whatever it is given.
+class Parrot : public runner::SubjectTarget {
+ public:
+  explicit Parrot(std::vector<runner::Output> says)
+      : SubjectTarget(std::make_unique<runner::Machine>()), says_(std::move(says)) {}
+  const std::vector<runner::Output>& outputs() const override { return says_; }
+
+ private:
+  std::vector<runner::Output> says_;
+};
+
+/// Breaks when it is given something.
+class Breaking : public runner::SubjectTarget {
+ public:
+  Breaking() : SubjectTarget(std::make_unique<runner::Machine>()) {}
+  void give(runner::Ticks, const machine::Event&) override {
+    throw runner::TargetBroken("killed by signal 11");
+  }
+};
+
+}  // namespace rubric::suite::testing
