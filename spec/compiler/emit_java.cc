@@ -128,12 +128,14 @@ std::string about(const Layout& layout, const Spec& spec) {
   std::string text = type.name + ".";
   if (!type.doc.empty()) text += " " + type.doc;
   if (!type.doc_ref.empty()) text += " (" + type.doc_ref + ")";
-  std::string out = "//   " + padded("byte", 6) + padded("field", 20) + padded("type", 24) + "rule\n";
+  std::string out = "//   " + padded("byte", 6) + padded("field", 20) + padded("type", 24);
+  out += "rule\n";
   for (const FieldLayout& l : layout.fields) {
     const Field& f = *l.field;
     const std::string at = f.fixed_offset < 0 ? "-" : std::to_string(f.fixed_offset);
     const std::string rule = f.requirement.empty() ? "-" : f.requirement;
-    out += "//   " + padded(at, 6) + padded(f.id, 20) + padded(type_text(l, spec), 24) + rule + "\n";
+    out += "//   " + padded(at, 6) + padded(f.id, 20) + padded(type_text(l, spec), 24);
+    out += rule + "\n";
   }
   return out + javadoc(text, 0);
 }

@@ -18,7 +18,9 @@ return out;
 )";
 
 const char kStructs[] = R"(final List<<element>> out = new ArrayList<>();
-for (int i = 0; i < <<count>>; ++i) out.add(new <<class>>(part(range(<<at?>>i * <<unit>>, <<unit>>))));
+for (int i = 0; i < <<count>>; ++i) {
+  out.add(new <<class>>(part(range(<<at?>>i * <<unit>>, <<unit>>))));
+}
 return out;
 )";
 
@@ -172,9 +174,8 @@ std::string count_of(const FieldLayout& l, const std::string& at) {
   const Field& f = *l.field;
   if (l.fixed_count) return std::to_string(l.capacity);
   if (f.repeat == RepeatKind::kCount) return print_size(*f.count, loads_from("bytes"));
-  const std::string bytes = f.extent == ExtentKind::kSize ? "(" + delimited(l, loads_from("bytes")) + ")"
-                            : at == "0"                   ? "bytes.limit()"
-                                                          : "(bytes.limit() - (" + at + "))";
+  std::string bytes = at == "0" ? "bytes.limit()" : "(bytes.limit() - (" + at + "))";
+  if (f.extent == ExtentKind::kSize) bytes = "(" + delimited(l, loads_from("bytes")) + ")";
   return l.unit == 1 ? bytes : bytes + " / " + std::to_string(l.unit);
 }
 
@@ -266,7 +267,8 @@ std::string group_getter(const Group& group, const Spec& spec) {
   std::string doc = "What " + over.id + " holds, or null where nothing says it.";
   std::string body;
   if (group.interpretation) {
-    doc = "What the bytes of " + over.id + " mean: the first interpretation that they fit, or null.";
+    doc = "What the bytes of " + over.id +
+          " mean: the first interpretation that they fit, or null.";
     std::string tries;
     for (const Field* f : group.fields) tries += interpretation(*f, spec, f == group.fields[0]);
     body = fill(kInterpretations, {{"overlaid", held}, {"tries", tries}});

@@ -73,7 +73,9 @@ Member member_of(const FieldLayout& l, const Spec& spec) {
   if (is_bytes(l)) return {"byte[]", fixed ? "new byte[" + size + "]" : "{}", "value.clone()"};
   if (f.kind == ValueKind::kStruct) {
     const std::string writer = class_of(*f.type, spec) + ".Writer";
-    if (l.shape == Shape::kStructs) return {"List<" + writer + ">", "List.of()", "List.copyOf(value)"};
+    if (l.shape == Shape::kStructs) {
+      return {"List<" + writer + ">", "List.of()", "List.copyOf(value)"};
+    }
     return {writer, "new " + writer + "()", "value"};
   }
   const std::string number = number_type(f);

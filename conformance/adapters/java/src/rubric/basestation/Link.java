@@ -2,7 +2,7 @@ package rubric.basestation;
 
 import java.util.Locale;
 
-/** A line between nodes, in the order of the numbers that calls use. A base station has no radio. */
+/** A line between nodes, in the order of their numbers in calls. A base station has no radio. */
 public enum Link {
   RADIO,
   SERIAL,

@@ -51,7 +51,8 @@ final class VectorFile {
     final String text = keys.get("fault");
     if (text == null) return null;
     for (final String part : text.substring(1, text.length() - 1).split(",")) {
-      if (part.strip().startsWith(member + ": ")) return part.strip().substring(member.length() + 2);
+      final String one = part.strip();
+      if (one.startsWith(member + ": ")) return one.substring(member.length() + 2);
     }
     throw new IOException(name + ": the fault has no " + member);
   }

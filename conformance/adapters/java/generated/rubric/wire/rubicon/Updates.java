@@ -60,8 +60,9 @@ public final class Updates extends WireView {
   /** From byte 2. The pairs. */
   public List<TransducerUpdate> updates() {
     final List<TransducerUpdate> out = new ArrayList<>();
-    for (int i = 0; i < Wire.u1(bytes, 1); ++i) out.add(new TransducerUpdate(part(range(2 + i * 4,
-        4))));
+    for (int i = 0; i < Wire.u1(bytes, 1); ++i) {
+      out.add(new TransducerUpdate(part(range(2 + i * 4, 4))));
+    }
     return out;
   }
 

@@ -14,7 +14,8 @@ public final class OddTest {
 
   public static void main(String[] args) throws WireException {
     // count 3: flags are there, (7 - 3) * 2 + 1 = 9 numbers.
-    final Writer_ all = Writer_.parse(bytes("fbff 03 ffffffff 01020304 ff02ff02ff02ff02ff 3fc00000"));
+    final Writer_ all =
+        Writer_.parse(bytes("fbff 03 ffffffff 01020304 ff02ff02ff02ff02ff 3fc00000"));
     expect("Writer{value=-5, count=3, flags=4294967295, out=String_{byte=1, get_class=2, import=3, "
         + "size_bytes_2=4}, in=[-1, 2, -1, 2, -1, 2, -1, 2, -1], rest=[1.5]}",
         all.toString().replace("Writer_{", "Writer{"));
