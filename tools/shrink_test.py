@@ -1,0 +1,82 @@
+"""rubric shrink and rubric diff on broken machines behind rct/1."""
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+RUBRIC = sys.argv.pop(1)
+MACHINE = sys.argv.pop(1)
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+CASE = ROOT / "conformance/cases/j4.rtr"
+BROKEN = f"{MACHINE} --mutant wrong_seq_accepted_and_acked_as_it_is"
+
+
+def run(*words):
+    done = subprocess.run([RUBRIC, *words], capture_output=True, text=True, cwd=ROOT, timeout=120,
+                          check=False)
+    return done.returncode, done.stdout, done.stderr
+
+
+class Shrink(unittest.TestCase):
+    def test_a_failing_trace_becomes_a_smaller_golden_trace(self):
+        with tempfile.TemporaryDirectory() as folder:
+            small = f"{folder}/small.rtr"
+            code, out, err = run("shrink", str(CASE), "--target", BROKEN, "--out", small)
+            self.assertEqual((code, out), (0, ""), err)
+            text = pathlib.Path(small).read_text(encoding="utf-8")
+            self.assertIn("case j4.wrong_seq.shrunk", text)
+            lines = [line for line in text.splitlines() if " m5 " in line and line[0] != ";"]
+            self.assertLess(len(lines), 8, text)
+            code, out, err = run("test", "--target", BROKEN, small)
+            self.assertEqual(code, 1, out + err)
+            self.assertIn("J4-SEQ", out)
+            code, out, err = run("test", "--target", "machine", small)
+            self.assertEqual(code, 0, out + err)
+
+    def test_nothing_to_shrink(self):
+        code, _, err = run("shrink", str(CASE), "--target", "machine")
+        self.assertEqual(code, 3)
+        self.assertIn("nothing fails", err)
+
+    def test_unknown_case(self):
+        code, _, err = run("shrink", str(CASE), "--target", "machine", "--case", "j4.no")
+        self.assertEqual(code, 64)
+        self.assertIn("has no case j4.no", err)
+
+    def test_unreadable(self):
+        code, _, err = run("shrink", "nowhere.rtr", "--target", "machine")
+        self.assertEqual(code, 66, err)
+
+    def test_a_target_that_is_none(self):
+        code, _, err = run("shrink", str(CASE), "--target", "exit 3", "--timeout", "2")
+        self.assertEqual(code, 2, err)
+
+
+class Diff(unittest.TestCase):
+    def test_a_mutant_and_the_machine(self):
+        code, out, err = run("diff", "--target", "machine", "--target", BROKEN, "--requirement", "J4")
+        self.assertEqual(code, 1, err)
+        self.assertIn(".difference", out)
+        self.assertIn("; A, ", out)
+        self.assertIn("; B, ", out)
+
+    def test_the_profiles(self):
+        code, out, err = run("diff", "--target", "machine", "--target", "machine", "--profile",
+                             "paper", "--profile", "deployed", "--requirement", "J8")
+        self.assertEqual(code, 1, err)
+        self.assertIn("J8", out)
+
+    def test_a_thing_and_itself(self):
+        code, out, err = run("diff", "--target", "machine", "--target", MACHINE, "--cases", "j*")
+        self.assertEqual((code, out), (0, ""), err)
+        self.assertIn("0 differ", err)
+
+    def test_one_target_is_not_enough(self):
+        code, _, err = run("diff", "--target", "machine")
+        self.assertEqual(code, 64)
+        self.assertIn("twice", err)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=1)
