@@ -2,11 +2,19 @@
 
 #include <fmt/format.h>
 
+#include "conformance/attach/forwarder.h"
+#include "conformance/attach/line_target.h"
 #include "conformance/attach/rct_attachment.h"
+#include "conformance/attach/serial.h"
 #include "conformance/runner/subject_target.h"
 
 namespace rubric::attach {
 namespace {
+
+using machine::Role;
+
+constexpr std::uint32_t kForwarderBaud = 57600;  // Nobody tells; the slower of the common ones.
+constexpr std::uint32_t kSerialBaud = 115200;
 
 /// The reference machine in this process.
 class MachineAttachment : public Attachment {
@@ -22,16 +30,78 @@ class MachineAttachment : public Attachment {
   const Identity identity_ = machine_identity();
 };
 
+// Takes `prefix` off the text.
+bool cut(std::string_view& text, std::string_view prefix) {
+  if (!text.starts_with(prefix)) return false;
+  text.remove_prefix(prefix.size());
+  return true;
+}
+bool cut_end(std::string_view& text, std::string_view end) {
+  if (!text.ends_with(end)) return false;
+  text.remove_suffix(end.size());
+  return true;
+}
+
+LineNode real_node(const char* name, Role role, std::uint32_t baud) {
+  return {{name, "-", {role}, true}, false, baud};
+}
+
+std::unique_ptr<Attachment> forwarder_server(std::string_view text, const Options& options) {
+  LineNode node = real_node("base_station_at_forwarder", Role::kBaseStation, kForwarderBaud);
+  node.restarts = cut_end(text, ":restart");
+  auto listener = std::make_shared<Listener>(read_host_port(text));
+  auto line = std::make_unique<ForwarderLine>(
+      [listener](SteadyTime deadline) { return listener->accept(deadline); });
+  return std::make_unique<LineAttachment>(std::move(line), std::move(node), options);
+}
+
+std::unique_ptr<Attachment> forwarder_client(std::string_view text, const Options& options) {
+  const HostPort at = read_host_port(text);
+  auto line = std::make_unique<ForwarderLine>(
+      [at](SteadyTime deadline) { return connect_tcp(at, deadline); });
+  return std::make_unique<LineAttachment>(
+      std::move(line), real_node("sink_behind_forwarder", Role::kSink, kForwarderBaud), options);
+}
+
+std::unique_ptr<Attachment> serial_line(std::string_view text, const Options& options) {
+  std::uint32_t baud = kSerialBaud;
+  SerialLine::Connect connect;
+  if (cut(text, "tcp:")) {
+    const HostPort at = read_host_port(text);
+    connect = [at](SteadyTime deadline) { return connect_tcp(at, deadline); };
+  } else {
+    if (const std::size_t colon = text.rfind(':'); colon != std::string_view::npos) {
+      const std::string_view word = text.substr(colon + 1);
+      const auto known = baud_of(word);
+      if (!known) throw std::invalid_argument(fmt::format("'{}' is no speed or platform", word));
+      baud = *known;
+      text = text.substr(0, colon);
+    }
+    if (text.empty()) throw std::invalid_argument("serial: lacks its device");
+    connect = [path = std::string(text), baud](SteadyTime) {
+      return open_serial_device(path, baud);
+    };
+  }
+  return std::make_unique<LineAttachment>(std::make_unique<SerialLine>(std::move(connect)),
+                                          real_node("sink_on_serial_line", Role::kSink, baud),
+                                          options);
+}
+
 }  // namespace
 
 Identity machine_identity() {
-  return {"rubric_machine", "1",
-          {machine::Role::kMote, machine::Role::kSink, machine::Role::kBaseStation}, false};
+  return {"rubric_machine", "1", {Role::kMote, Role::kSink, Role::kBaseStation}, false};
 }
 
 std::unique_ptr<Attachment> attach(const std::string& target, const Options& options) {
-  if (target.empty()) throw std::invalid_argument("a target has a name or is a command");
+  if (target.find_first_not_of(" \t\n") == std::string::npos) {
+    throw std::invalid_argument("a target has a name or is a command");
+  }
+  std::string_view text = target;
   if (target == "machine") return std::make_unique<MachineAttachment>();
+  if (cut(text, "sf-server:")) return forwarder_server(text, options);
+  if (cut(text, "sf:")) return forwarder_client(text, options);
+  if (cut(text, "serial:")) return serial_line(text, options);
   return std::make_unique<RctAttachment>([target] { return Process::run(target); }, options);
 }
 

@@ -11,7 +11,7 @@ using std::chrono::microseconds;
 
 constexpr microseconds kMeasured{200'000};
 constexpr microseconds kNap{1000};
-constexpr Ticks kEarlyTicks = 2;
+constexpr Ticks kLeastTicks = 10;
 
 microseconds worst_delay() {
   using Steady = RealClock::Steady;
@@ -26,9 +26,9 @@ microseconds worst_delay() {
 
 }  // namespace
 
-Ticks RealClock::now() const {
-  const auto passed = std::chrono::duration_cast<microseconds>(Steady::now() - start_);
-  return machine::ticks_of(passed.count());
+Ticks RealClock::tick_of(Steady::time_point moment) const {
+  const auto passed = std::chrono::duration_cast<microseconds>(moment - start_);
+  return machine::ticks_of(std::max<std::int64_t>(passed.count(), 0));
 }
 
 RealClock::Steady::time_point RealClock::begin_of(Ticks ticks) const {
@@ -37,7 +37,8 @@ RealClock::Steady::time_point RealClock::begin_of(Ticks ticks) const {
 
 runner::Tolerance tolerance_of_this_host() {
   static const microseconds delay = worst_delay();
-  return {kEarlyTicks, machine::ticks_to_hold(2 * delay.count()) + 1};
+  const Ticks ticks = std::max(kLeastTicks, machine::ticks_to_hold(2 * delay.count()) + 1);
+  return {ticks, ticks};
 }
 
 }  // namespace rubric::attach

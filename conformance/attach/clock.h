@@ -13,7 +13,9 @@ class RealClock {
   using Steady = std::chrono::steady_clock;
 
   void start() { start_ = Steady::now(); }
-  runner::Ticks now() const;
+  runner::Ticks now() const { return tick_of(Steady::now()); }
+  /// Of a moment that is not before the start; else 0.
+  runner::Ticks tick_of(Steady::time_point moment) const;
   /// When this tick begins.
   Steady::time_point begin_of(runner::Ticks ticks) const;
 
@@ -21,9 +23,9 @@ class RealClock {
   Steady::time_point start_ = Steady::now();
 };
 
-/// Measured once, in the first 200 ms that it is asked for: how much later than asked for this
-/// host wakes a sleeping thread, at worst, twice that and a tick for the rounding. Early: two
-/// ticks, since a node's crystal and ours differ.
+/// Measured once, in the first 200 ms that it is asked for: twice the worst delay with which this
+/// host wakes a sleeping thread, at least 10 ticks. Early as well as late: times are compared with
+/// others that were taken late.
 runner::Tolerance tolerance_of_this_host();
 
 }  // namespace rubric::attach

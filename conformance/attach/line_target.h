@@ -1,0 +1,84 @@
+// A real node of which one sees its serial line, in real time.
+//
+// A node cannot be started anew through its line. What reset does instead:
+// - the line is opened if it is not, and what comes is dropped until nothing comes for 60 ms;
+// - a sink is told another island and then that of the case, by which it forgets its members (N9);
+// - where the attachment says `restart`, the connection of an earlier case is closed first, and one
+//   waits for the node to connect again: for a base station that is started anew by a script.
+// All else stays as the case before left it: sequence numbers, acks that are awaited, channels. The
+// id of a sink must be 1, and a base station's island that of the cases, 11.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "conformance/attach/attachment.h"
+#include "conformance/attach/clock.h"
+#include "conformance/attach/packet_line.h"
+
+namespace rubric::attach {
+
+/// Who is behind a line, and how far away.
+struct LineNode {
+  Identity identity;         ///< With the one role that it plays.
+  bool restarts = false;     ///< It connects anew, and is new then, when its connection closes.
+  std::uint32_t baud = 115200;
+};
+
+class LineTarget : public runner::Target {
+ public:
+  /// `line`, `node` and `notes` must outlive it.
+  LineTarget(PacketLine& line, const LineNode& node, const Options& options, std::string& notes)
+      : line_(line), node_(node), options_(options), notes_(notes) {}
+
+  void reset(const machine::Config& config) override;
+  void give(runner::Ticks now, const machine::Event& event) override;
+  std::optional<runner::Ticks> next() const override;
+  runner::Ticks run_until(runner::Ticks time) override;
+  const std::vector<runner::Output>& outputs() const override { return outputs_; }
+  void hold_link_acks(bool) override {}
+  runner::Reach reach() const override { return {false, true, false, false}; }
+  /// Of this host, and the time that a stimulus and its answer take on the serial line.
+  runner::Tolerance tolerance() const override;
+
+ private:
+  void send(const machine::Frame& frame);
+  void set_island(std::uint16_t island);
+  void let_settle();
+  bool take(const TimedPacket& packet);
+  SteadyTime step_deadline() const;
+
+  PacketLine& line_;
+  const LineNode& node_;
+  const Options options_;
+  std::string& notes_;
+  RealClock clock_;
+  std::vector<runner::Output> outputs_;
+  runner::Ticks now_ = 0;
+};
+
+class LineAttachment : public Attachment {
+ public:
+  LineAttachment(std::unique_ptr<PacketLine> line, LineNode node, const Options& options)
+      : line_(std::move(line)), node_(std::move(node)), options_(options) {}
+
+  const Identity& identity() override;
+  /// One at a time: runner::Unsupported where a case has several nodes.
+  std::unique_ptr<runner::Target> target() override;
+  std::string honesty() override { return {}; }
+  std::string take_stderr() override;
+
+ private:
+  void open();
+
+  std::unique_ptr<PacketLine> line_;
+  LineNode node_;
+  Options options_;
+  std::string notes_;
+  bool opened_ = false;          // Once, at least.
+  bool used_ = false;
+  std::weak_ptr<int> in_use_;    // By the target that holds it.
+};
+
+}  // namespace rubric::attach

@@ -1,0 +1,54 @@
+// The serial line of a mote, as a device or through TCP: framed as TEP 113 has it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "codec/runtime/hdlc.h"
+#include "conformance/attach/packet_line.h"
+#include "conformance/attach/stream.h"
+
+namespace rubric::attach {
+
+/// Bits per second of a number or of a platform's name (telosb, micaz, ...), if there is such a
+/// speed.
+std::optional<std::uint32_t> baud_of(std::string_view text);
+
+/// Opens a terminal device, raw and at this speed. Throws runner::TargetBroken.
+ByteStream open_serial_device(const std::string& path, std::uint32_t baud);
+
+/// Packets are sent as hosts do it: each is confirmed by the node, and sent again if it is not.
+class SerialLine : public PacketLine {
+ public:
+  static constexpr Milliseconds kAckWait{1000};
+  static constexpr int kTries = 3;
+
+  using Connect = std::function<ByteStream(SteadyTime deadline)>;
+  explicit SerialLine(Connect connect) : connect_(std::move(connect)) {}
+
+  void open(SteadyTime deadline) override;
+  void close() override;
+  void send(const std::vector<std::uint8_t>& packet, SteadyTime deadline) override;
+  std::optional<TimedPacket> receive(SteadyTime deadline) override;
+
+ private:
+  bool read_some(SteadyTime deadline);
+  void frame(Bytes content);
+  void put(const std::uint8_t* bytes, std::size_t size);
+  [[noreturn]] void broken(const std::string& why);
+
+  Connect connect_;
+  ByteStream stream_;
+  std::array<std::uint8_t, kSerialAfterHeaderMax + 2> room_{};
+  HdlcDeframer deframer_{MutableBytes(room_.data(), room_.size())};
+  std::deque<TimedPacket> packets_;
+  std::optional<std::uint8_t> confirmed_;  // The last number that the node confirmed.
+  std::uint8_t seq_ = 14;                  // As TinyOS hosts begin.
+  bool synchronised_ = false;              // What comes before the first good frame is noise.
+};
+
+}  // namespace rubric::attach

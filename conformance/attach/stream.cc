@@ -1,0 +1,196 @@
+#include "conformance/attach/stream.h"
+
+#include <fcntl.h>
+#include <netdb.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <chrono>
+#include <cstring>
+#include <memory>
+#include <stdexcept>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "conformance/runner/target.h"
+
+namespace rubric::attach {
+namespace {
+
+using runner::TargetBroken;
+using std::chrono::steady_clock;
+
+constexpr Milliseconds kRetry{50};
+constexpr const char* kThisHost = "127.0.0.1";
+
+// Whether the descriptor is ready before the deadline; interruptions do not count.
+bool wait_for(int fd, short events, SteadyTime deadline) {
+  while (true) {
+    const auto left = std::chrono::ceil<Milliseconds>(deadline - steady_clock::now());
+    const int left_ms = static_cast<int>(std::clamp<std::int64_t>(left.count(), 0, 1'000'000));
+    pollfd one{fd, events, 0};
+    const int ready = ::poll(&one, 1, left_ms);
+    if (ready > 0) return true;
+    if (ready < 0 && errno != EINTR) throw TargetBroken(std::strerror(errno));
+    if (left_ms == 0) return false;
+  }
+}
+
+bool would_block(int error) { return error == EAGAIN || error == EWOULDBLOCK || error == EINTR; }
+
+struct FreeAddresses {
+  void operator()(addrinfo* list) const { ::freeaddrinfo(list); }
+};
+using Addresses = std::unique_ptr<addrinfo, FreeAddresses>;
+
+Addresses addresses_of(const HostPort& at) {
+  addrinfo hints{};
+  hints.ai_socktype = SOCK_STREAM;
+  addrinfo* found = nullptr;
+  const int error = ::getaddrinfo(at.host.c_str(), std::to_string(at.port).c_str(), &hints, &found);
+  if (error != 0) throw TargetBroken(fmt::format("{}: {}", at.host, ::gai_strerror(error)));
+  return Addresses(found);
+}
+
+Descriptor socket_for(const addrinfo& address) {
+  return Descriptor(::socket(address.ai_family,
+                             address.ai_socktype | SOCK_CLOEXEC | SOCK_NONBLOCK,
+                             address.ai_protocol));
+}
+
+ByteStream stream_of(Descriptor connection) {
+  const int on = 1;  // Packets are short and each is waited for.
+  ::setsockopt(connection.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+  return ByteStream(std::move(connection));
+}
+
+// 0, or what went wrong.
+int connect_once(const Descriptor& connection, const addrinfo& address, SteadyTime deadline) {
+  if (!connection.is_open()) return errno;
+  if (::connect(connection.get(), address.ai_addr, address.ai_addrlen) == 0) return 0;
+  if (errno != EINPROGRESS && errno != EINTR) return errno;
+  if (!wait_for(connection.get(), POLLOUT, deadline)) return ETIMEDOUT;
+  int error = 0;
+  socklen_t size = sizeof error;
+  ::getsockopt(connection.get(), SOL_SOCKET, SO_ERROR, &error, &size);
+  return error;
+}
+
+}  // namespace
+
+Descriptor& Descriptor::operator=(Descriptor&& other) noexcept {
+  std::swap(fd_, other.fd_);
+  return *this;
+}
+
+void Descriptor::close() {
+  if (fd_ >= 0) ::close(fd_);
+  fd_ = -1;
+}
+
+ByteStream::ByteStream(Descriptor descriptor) : descriptor_(std::move(descriptor)) {
+  const int fd = descriptor_.get();
+  ::fcntl(fd, F_SETFL, ::fcntl(fd, F_GETFL) | O_NONBLOCK);
+}
+
+void ByteStream::write(Bytes bytes, SteadyTime deadline) {
+  std::size_t sent = 0;
+  while (sent < bytes.size()) {
+    if (!is_open()) throw TargetBroken("the line is closed");
+    const std::uint8_t* const from = bytes.data() + sent;
+    const int fd = descriptor_.get();
+    ssize_t count = ::send(fd, from, bytes.size() - sent, MSG_NOSIGNAL);
+    if (count < 0 && errno == ENOTSOCK) count = ::write(fd, from, bytes.size() - sent);
+    if (count >= 0) {
+      sent += static_cast<std::size_t>(count);
+    } else if (!would_block(errno)) {
+      const int error = errno;
+      close();
+      throw TargetBroken(fmt::format("the line broke: {}", std::strerror(error)));
+    } else if (!wait_for(fd, POLLOUT, deadline)) {
+      throw TargetBroken("the line takes no more bytes");
+    }
+  }
+}
+
+std::size_t ByteStream::read(MutableBytes out, SteadyTime deadline) {
+  while (true) {
+    if (!is_open()) throw TargetBroken("the line is closed");
+    const ssize_t count = ::read(descriptor_.get(), out.data(), out.size());
+    if (count > 0) return static_cast<std::size_t>(count);
+    if (count == 0 || !would_block(errno)) {
+      const std::string why = count == 0 ? "the other end closed it" : std::strerror(errno);
+      close();
+      throw TargetBroken("the line broke: " + why);
+    }
+    if (!wait_for(descriptor_.get(), POLLIN, deadline)) return 0;
+  }
+}
+
+HostPort read_host_port(std::string_view text) {
+  HostPort out;
+  const std::size_t colon = text.rfind(':');
+  out.host = colon == std::string_view::npos ? kThisHost : text.substr(0, colon);
+  const std::string_view port = colon == std::string_view::npos ? text : text.substr(colon + 1);
+  const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), out.port);
+  if (error != std::errc() || end != port.data() + port.size() || out.port == 0 ||
+      out.host.empty()) {
+    throw std::invalid_argument(fmt::format("'{}' is no HOST:PORT", text));
+  }
+  return out;
+}
+
+ByteStream connect_tcp(const HostPort& to, SteadyTime deadline) {
+  while (true) {
+    int error = 0;
+    const Addresses all = addresses_of(to);
+    for (const addrinfo* one = all.get(); one; one = one->ai_next) {
+      Descriptor connection = socket_for(*one);
+      error = connect_once(connection, *one, deadline);
+      if (error == 0) return stream_of(std::move(connection));
+    }
+    if (steady_clock::now() + kRetry >= deadline) {
+      throw TargetBroken(
+          fmt::format("cannot connect to {}:{}: {}", to.host, to.port, std::strerror(error)));
+    }
+    std::this_thread::sleep_for(kRetry);
+  }
+}
+
+void Listener::listen() {
+  int error = 0;
+  const Addresses all = addresses_of(at_);
+  for (const addrinfo* one = all.get(); one; one = one->ai_next) {
+    Descriptor made = socket_for(*one);
+    const int on = 1;
+    ::setsockopt(made.get(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
+    if (::bind(made.get(), one->ai_addr, one->ai_addrlen) == 0 && ::listen(made.get(), 4) == 0) {
+      descriptor_ = std::move(made);
+      return;
+    }
+    error = errno;
+  }
+  throw TargetBroken(
+      fmt::format("cannot listen at {}:{}: {}", at_.host, at_.port, std::strerror(error)));
+}
+
+ByteStream Listener::accept(SteadyTime deadline) {
+  if (!descriptor_.is_open()) listen();
+  while (true) {
+    const int fd = ::accept4(descriptor_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
+    if (fd >= 0) return stream_of(Descriptor(fd));
+    if (!would_block(errno) && errno != ECONNABORTED) throw TargetBroken(std::strerror(errno));
+    if (!wait_for(descriptor_.get(), POLLIN, deadline)) {
+      throw TargetBroken(fmt::format("nobody connects to {}:{}", at_.host, at_.port));
+    }
+  }
+}
+
+}  // namespace rubric::attach

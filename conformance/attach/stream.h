@@ -1,0 +1,74 @@
+// Bytes to and from a socket or a device, under deadlines.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "codec/runtime/bytes.h"
+#include "conformance/attach/process.h"
+
+namespace rubric::attach {
+
+/// Owns a descriptor. -1: it is not open.
+class Descriptor {
+ public:
+  Descriptor() = default;
+  explicit Descriptor(int fd) : fd_(fd) {}
+  Descriptor(Descriptor&& other) noexcept : fd_(other.fd_) { other.fd_ = -1; }
+  Descriptor& operator=(Descriptor&& other) noexcept;
+  ~Descriptor() { close(); }
+
+  int get() const { return fd_; }
+  bool is_open() const { return fd_ >= 0; }
+  void close();
+
+ private:
+  int fd_ = -1;
+};
+
+/// Both throw runner::TargetBroken: when the other end is gone, and `write` when the time is over.
+class ByteStream {
+ public:
+  ByteStream() = default;
+  /// Of a descriptor that does not block from now on.
+  explicit ByteStream(Descriptor descriptor);
+
+  void write(Bytes bytes, SteadyTime deadline);
+  /// How many bytes there are now, at most out.size(); 0 when the time is over first.
+  std::size_t read(MutableBytes out, SteadyTime deadline);
+
+  bool is_open() const { return descriptor_.is_open(); }
+  void close() { descriptor_.close(); }
+
+ private:
+  Descriptor descriptor_;
+};
+
+/// An Internet address as the user wrote it.
+struct HostPort {
+  std::string host;
+  std::uint16_t port = 0;
+};
+/// "HOST:PORT", or a port alone, which is on this host. Throws std::invalid_argument.
+HostPort read_host_port(std::string_view text);
+
+/// Tries until `deadline`. Throws runner::TargetBroken.
+ByteStream connect_tcp(const HostPort& to, SteadyTime deadline);
+
+/// A port that others connect to.
+class Listener {
+ public:
+  /// Takes the port when it is first asked for a connection.
+  explicit Listener(HostPort at) : at_(std::move(at)) {}
+  /// The next connection. Throws runner::TargetBroken when nobody comes before `deadline`.
+  ByteStream accept(SteadyTime deadline);
+
+ private:
+  void listen();
+
+  HostPort at_;
+  Descriptor descriptor_;
+};
+
+}  // namespace rubric::attach
