@@ -96,7 +96,7 @@ def broken_rules(report):
     for case in cases_of(report):
         for failure in case["failures"] if case["verdict"] in ("fail", "weak") else []:
             for rule in failure["requirements"]:
-                rules.setdefault(rule, []).append(case["name"])
+                rules.setdefault(rule, {})[case["name"]] = True
     return rules
 
 
@@ -135,7 +135,7 @@ def main():
             code, report = bench.try_copy(bug)
             complaint = judge(bug, code, report)
             wrong += bool(complaint)
-            by = ", ".join(broken_rules(report).get(bug["requirement"], [])[:3])
+            by = ", ".join(list(broken_rules(report).get(bug["requirement"], {}))[:3])
             print(f"{bug['name']}: {complaint or bug['requirement'] + ' in ' + by}", flush=True)
     except (Mistake, OSError, ValueError) as mistake:
         print(f"seeded_bugs_test.py: {mistake}", file=sys.stderr)

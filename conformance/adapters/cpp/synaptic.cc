@@ -1,6 +1,7 @@
 #include "conformance/adapters/cpp/synaptic.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "codec/runtime/bytes.h"
 
@@ -15,11 +16,14 @@ ChannelId channel_id(std::uint16_t source, std::uint16_t destination) {
 
 }  // namespace
 
-Synaptic::Channel* Synaptic::find(Direction direction, ChannelId id) {
-  for (Channel& channel : channels_) {
+const Synaptic::Channel* Synaptic::find(Direction direction, ChannelId id) const {
+  for (const Channel& channel : channels_) {
     if (channel.direction == direction && channel.id == id) return &channel;
   }
   return nullptr;
+}
+Synaptic::Channel* Synaptic::find(Direction direction, ChannelId id) {
+  return const_cast<Channel*>(std::as_const(*this).find(direction, id));
 }
 
 std::optional<ChannelId> Synaptic::create(Direction direction, Address own, Address peer,
@@ -114,7 +118,7 @@ bool Synaptic::write(ChannelId id, std::size_t pos, float value) {
 }
 
 std::optional<float> Synaptic::read(ChannelId id, std::size_t pos) const {
-  const Channel* channel = const_cast<Synaptic*>(this)->find(Direction::kIn, id);
+  const Channel* channel = find(Direction::kIn, id);
   if (!channel || pos >= channel->values.size()) return {};
   return channel->values[pos];
 }

@@ -51,6 +51,7 @@ class Synaptic {
     bool started = false;
     bool fresh = false;  ///< Not yet sent, or not yet signalled.
   };
+  const Channel* find(Direction direction, ChannelId id) const;
   Channel* find(Direction direction, ChannelId id);
   void begin(Channel& channel, Ticks now);
   void rest();
