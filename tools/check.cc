@@ -319,7 +319,7 @@ void add_options(CLI::App& command, CheckOptions& options) {
       ->check(CLI::Range(cli::kColumnsMin, std::size_t{1000}));
   cli::add_color_option(command, options.color);
   for (const char* name : {"--node", "--sink", "--tester", "--frames"}) {
-    command.get_option(name)->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    command.get_option(name)->allow_extra_args(false);  // One at a time: files may follow.
   }
 }
 

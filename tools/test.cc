@@ -273,11 +273,13 @@ void add_options(CLI::App& command, TestOptions& options) {
   command.add_option("--profile", options.profile,
                      "paper or deployed, whatever the traces say: what nodes are told to keep to")
       ->check(CLI::IsMember({"paper", "deployed"}));
-  command.add_option("--seed", options.seed, "Of what is random in nodes, where a trace has none");
-  command.add_option("--repeat", options.repeats, "Each case so often, each time with the next seed")
+  command.add_option("--seed", options.seed, "Of what is random in nodes, where a trace has none")
+      ->check(cli::whole_number());
+  command.add_option("--repeat", options.repeats,
+                     "Each case so often, each time with the next seed")
       ->check(cli::at_least_one())
       ->capture_default_str();
-  command.add_option("--jobs", options.jobs, "Cases at once, each on a process of its own; 0: cores")
+  command.add_option("--jobs", options.jobs, "Cases at once, on a process each; 0: cores")
       ->check(CLI::Range(0, 256))
       ->capture_default_str();
   command.add_option("--timeout", options.timeout_s, "Seconds that a step may take")
@@ -299,7 +301,7 @@ void add_options(CLI::App& command, TestOptions& options) {
       ->check(CLI::Range(cli::kColumnsMin, std::size_t{1000}));
   cli::add_color_option(command, options.color);
   for (const char* name : {"--target", "--cases", "--requirement"}) {
-    command.get_option(name)->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    command.get_option(name)->allow_extra_args(false);  // One at a time.
   }
 }
 

@@ -1,5 +1,5 @@
-# cmake -DFOLDER=conformance/cases -DOUT=embedded_cases.cc -P embed_cases.cmake: the golden traces as
-# C++ text, so that the program needs no files of its own where it is installed.
+# cmake -DFOLDER=conformance/cases -DOUT=embedded_cases.cc -P embed_cases.cmake: the golden traces
+# as C++ text, so that the program needs no files of its own where it is installed.
 file(GLOB_RECURSE names RELATIVE ${FOLDER} ${FOLDER}/*.rtr)
 list(SORT names)
 set(text "// Generated from conformance/cases when the program is built.

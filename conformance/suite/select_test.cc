@@ -57,7 +57,8 @@ TEST(Selection, ByName) {
   EXPECT_THAT(names({}), ElementsAre("a.mote", "a.sink", "b.both"));
   EXPECT_THAT(names({{"a.*"}, {}, {}, {}}), ElementsAre("a.mote", "a.sink"));
   EXPECT_THAT(names({{"?.both", "a.mote"}, {}, {}, {}}), ElementsAre("a.mote", "b.both"));
-  EXPECT_THAT(complaint({{"a.moat"}, {}, {}, {}}), HasSubstr("no case is called 'a.moat' (did you"));
+  EXPECT_THAT(complaint({{"a.moat"}, {}, {}, {}}),
+              HasSubstr("no case is called 'a.moat' (did you mean 'a.mote'?)"));
   EXPECT_THAT(complaint({{"a.*", "c.*"}, {}, {}, {}}), HasSubstr("'c.*'"));
 }
 

@@ -23,6 +23,7 @@ using runner::Failure;
 
 constexpr std::string_view kIndent = "  ";
 constexpr std::size_t kNameColumns = 40;
+constexpr std::size_t kAlso = 4;         // Further lines of a case that were not kept.
 constexpr std::size_t kErrorLines = 12;  // Of what an implementation wrote to its standard error.
 
 std::string painted(const TextOptions& options, std::string_view style, std::string_view text) {
@@ -138,7 +139,7 @@ class Story {
       if (one.result.verdict == CaseVerdict::kError || one.result.verdict == CaseVerdict::kFail ||
           one.expectation != Expectation::kNone) {
         tell(one);
-      } else if (one.result.verdict == CaseVerdict::kWeak) {
+      } else if (one.result.verdict == CaseVerdict::kWeak && !options_.quiet) {
         if (options_.verbose) in_full(one); else weak_.push_back(&one);
       }
     }
@@ -160,6 +161,7 @@ class Story {
   void tell(const CaseRun& one) {
     const bool known = one.expectation == Expectation::kAsExpected;
     const bool first = !known && told_.insert(kind_of(one)).second;
+    if (known && options_.quiet) return;
     if (first || options_.verbose) in_full(one); else brief_.push_back(&one);
   }
 
@@ -184,16 +186,19 @@ class Story {
   }
 
   void failures(const CaseRun& one) {
-    bool first = true;
-    for (const Failure& failure : one.result.failures) {
-      if (first || options_.verbose) {
+    const std::vector<Failure>& all = one.result.failures;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const Failure& failure = all[i];
+      if (i == 0 || options_.verbose) {
         out_ += failure_text(one, failure, options_);
-      } else {
+      } else if (i <= kAlso) {
         out_ += field("Also:", fmt::format("line {} [{}]: {}", failure.place.line,
                                            fmt::join(failure.requirements, " "), failure.text),
                       options_);
       }
-      first = false;
+    }
+    if (all.size() > kAlso + 1 && !options_.verbose) {
+      out_ += field("", fmt::format("and {} lines more", all.size() - kAlso - 1), options_);
     }
   }
 
