@@ -49,7 +49,8 @@ def plant(bug, tree):
     text = path.read_text(encoding="utf-8")
     found = text.count(bug["old"])
     if found != 1:
-        raise Mistake(f"{bug['name']}: the old text stands {found} times in {bug['file']}, not once")
+        raise Mistake(f"{bug['name']}: in {bug['file']} the old text stands {found} times, "
+                      "not once")
     if bug["new"] == bug["old"]:
         raise Mistake(f"{bug['name']}: changes nothing")
     path.write_text(text.replace(bug["old"], bug["new"]), encoding="utf-8")
