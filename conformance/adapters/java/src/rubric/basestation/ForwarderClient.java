@@ -27,8 +27,8 @@ public final class ForwarderClient {
 
   /** What happens, in the order in which it happened; handled by one thread. */
   private interface Event {
-    /** Returns what follows, or null where the connection has ended. */
-    List<Action> happen(long now);
+    /** Returns what follows, or null where the connection has ended; throws where it broke. */
+    List<Action> happen(long now) throws IOException;
   }
 
   private final BlockingQueue<Event> events = new LinkedBlockingQueue<>();
@@ -122,10 +122,12 @@ public final class ForwarderClient {
         final byte[] one = packet;
         events.add(now -> hear(one, now));
       }
+      events.add(now -> null);
     } catch (IOException e) {
-      System.err.println("ForwarderClient: " + e.getMessage());
+      events.add(now -> {
+        throw e;
+      });
     }
-    events.add(now -> null);
   }
 
   private List<Action> hear(byte[] packet, long now) {
