@@ -43,9 +43,9 @@ class AvrBoard : public SimulatedBoard {
   };
   struct Callbacks;
 
+  void load();
   void connect(Uart& uart, char name);
   void put(Uart& uart, Bytes bytes);
-  void discard();
 
   std::string elf_file_;
   avr_t* avr_ = nullptr;

@@ -32,9 +32,14 @@ Tick Bridge::tick() const { return tick_of(off_ ? off_now_ : board_.now()); }
 
 Firmware Bridge::greet() {
   board_.power_on();
-  greeted_ = ready_ = off_ = in_flight_ = false;
+  greeted_ = ready_ = off_ = in_flight_ = serial_busy_ = false;
   incoming_.clear();
   queue_.clear();
+  held_.clear();
+  chip_ = Chip();
+  reported_ = Reported();
+  sent_records_ = sent_packets_ = 0;
+  deframer_ = HdlcDeframer(content_);
   const Instant end = board_.now() + kBootMax;
   while (!greeted_ && board_.now() < end) board_.run(end, *this);
   if (!greeted_) throw BoardBroken("the firmware does not say hello");

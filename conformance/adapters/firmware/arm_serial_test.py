@@ -1,0 +1,117 @@
+#!/usr/bin/env python3
+"""A sink in QEMU, seen through its serial line alone, as a base station has it.
+
+Usage: arm_serial_test.py FIRMWARE_ARM SINK_ELF
+"""
+
+import os
+import select
+import struct
+import subprocess
+import sys
+import termios
+import time
+import tty
+
+PATIENCE_S = 20  # For a machine that is busy with other tests.
+FLAG, ESCAPE = 0x7E, 0x7D
+ACK, PACKET_ACK, PACKET_NOACK = 0x43, 0x44, 0x45
+CONNLESS, MOCKUP, RUBICON_ACK = 3, 5, 9
+PC = 0xFFFD
+
+
+def crc16(data):
+    crc = 0
+    for byte in data:
+        crc ^= byte << 8
+        for _ in range(8):
+            crc = crc << 1 & 0xFFFF ^ (0x1021 if crc & 0x8000 else 0)
+    return crc
+
+
+def frame(content):
+    content += struct.pack("<H", crc16(content))
+    out = bytearray([FLAG])
+    for byte in content:
+        out += bytes([ESCAPE, byte ^ 0x20]) if byte in (FLAG, ESCAPE) else bytes([byte])
+    return bytes(out + bytes([FLAG]))
+
+
+def contents(stream):
+    """Of the intact frames in `stream`."""
+    for part in stream.split(bytes([FLAG])):
+        out, escaped = bytearray(), False
+        for byte in part:
+            if byte == ESCAPE:
+                escaped = True
+            else:
+                out.append(byte ^ 0x20 if escaped else byte)
+                escaped = False
+        if len(out) >= 4 and crc16(out[:-2]) == struct.unpack("<H", out[-2:])[0]:
+            yield bytes(out[:-2])
+
+
+def net_packet(dest, src, reliable, seq, body):
+    net = struct.pack(">HHHHBHB", *dest, *src, reliable, seq, len(body)) + body
+    return struct.pack(">BHHBBB", 0, 1, 0, len(net), 0, 28) + net
+
+
+def hear_until(line, wanted):
+    """The first content that `wanted` accepts."""
+    stream, end = b"", time.monotonic() + PATIENCE_S
+    while time.monotonic() < end:
+        if select.select([line], [], [], 0.1)[0]:
+            stream += os.read(line, 4096)
+            for content in contents(stream):
+                if wanted(content):
+                    return content
+    raise SystemExit(f"not heard: {wanted.__doc__}; but {stream.hex()}")
+
+
+def is_confirmation(content):
+    """the confirmation of the packet"""
+    return content == bytes([ACK, 14])
+
+
+def is_rubicon_ack(content):
+    """the rubicon ack of the message"""
+    if content[0] != PACKET_NOACK or len(content) != 1 + 8 + 114:
+        return False
+    net = content[9:]
+    dest, src, body = struct.unpack(">HH", net[:4]), struct.unpack(">HH", net[4:8]), net[12:]
+    return dest == (12, PC) and src == (12, 1) and body[0] == RUBICON_ACK and body[1] == MOCKUP \
+        and struct.unpack(">H", body[3:5]) == (77,)
+
+
+def talk(line):
+    """A new island id, and a reliable message that is acked from there."""
+    config = struct.pack(">BHHBBBBH", 0, 1, 0, 3, 0, 37, 10, 12)
+    os.write(line, frame(bytes([PACKET_NOACK]) + config))
+    message = net_packet((12, 1), (12, PC), 1, 77, bytes([CONNLESS, MOCKUP, FLAG, ESCAPE]))
+    os.write(line, frame(bytes([PACKET_NOACK]) + message[:-1]))  # Cut short, so dropped.
+    os.write(line, frame(bytes([PACKET_ACK, 14]) + message))
+    hear_until(line, is_confirmation)
+    # The confirmation may have come with the ack in one piece, so ask once more.
+    os.write(line, frame(bytes([PACKET_ACK, 15]) + message))
+    hear_until(line, is_rubicon_ack)
+
+
+def main():
+    program = subprocess.Popen(sys.argv[1:2] + ["--serial-device", "11"] + sys.argv[2:3],
+                               stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    try:
+        device = program.stdout.readline().strip()
+        if not device:
+            raise SystemExit("no device")
+        line = os.open(device, os.O_RDWR | os.O_NOCTTY)
+        tty.setraw(line, termios.TCSANOW)
+        talk(line)
+        print(f"{device}: confirmed, moved to island 12, acked")
+    finally:
+        program.stdin.close()
+        program.wait(PATIENCE_S)
+    return program.returncode
+
+
+if __name__ == "__main__":
+    sys.exit(main())
