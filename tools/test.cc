@@ -66,6 +66,7 @@ struct TestOptions {
   std::string format = "text";
   std::string out = "-";
   std::string report;
+  std::string compare;
   std::string color = "auto";
   std::size_t width = 0;
   bool list = false;
@@ -97,6 +98,18 @@ suite::ExpectedFailures read_expected(const TestOptions& options) {
     return suite::parse_expected(text, options.expect);
   } catch (const std::runtime_error& mistake) {
     throw CLI::ValidationError("--expect", mistake.what());
+  }
+}
+
+std::optional<suite::EarlierRun> read_earlier(const TestOptions& options) {
+  if (options.compare.empty()) return std::nullopt;
+  std::string text;
+  std::string error;
+  if (!cli::read_file(options.compare, text, error)) unreadable(error);
+  try {
+    return suite::read_json_report(text);
+  } catch (const std::runtime_error& mistake) {
+    unreadable(fmt::format("{}: {}", options.compare, mistake.what()));
   }
 }
 
@@ -169,6 +182,7 @@ class Text {
 };
 
 suite::SuiteRun work(const TestOptions& options, const suite::Cases& cases, suite::Plan plan,
+                     const std::optional<suite::EarlierRun>& earlier,
                      const suite::TextOptions& how, Text& text) {
   suite::SuiteRun all;
   all.traces = options.traces;
@@ -196,6 +210,7 @@ suite::SuiteRun work(const TestOptions& options, const suite::Cases& cases, suit
     text.add(suite::story_text(all, run, how) + suite::totals_text(run, how));
   }
   all.stale = suite::untrue(plan.expected, all, cases);
+  if (earlier) text.add(suite::changes_text(all, *earlier, options.compare, how));
   text.add(suite::closing_text(all, how));
   return all;
 }
@@ -222,6 +237,7 @@ int run(const TestOptions& options) {
   suite::Plan plan;
   plan.expected = read_expected(options);
   plan.cases = selected(options, cases);
+  const std::optional<suite::EarlierRun> earlier = read_earlier(options);
   if (options.list) {
     return cli::write_file(options.out, list_text(plan.cases)) ? cli::kVerdictExpected
                                                                : cli::kVerdictBroken;
@@ -244,8 +260,9 @@ int run(const TestOptions& options) {
   how.color = cli::use_color(options.color, fd);
   how.quiet = options.quiet;
   how.verbose = options.verbose;
+  how.times = options.verbose || (fd >= 0 && isatty(fd) == 1);
   Text text(options, options.format == "text");
-  const suite::SuiteRun all = work(options, cases, std::move(plan), how, text);
+  const suite::SuiteRun all = work(options, cases, std::move(plan), earlier, how, text);
   const bool told = text.finish(options);
   return write_formats(options, all) && told ? suite::exit_code(all) : cli::kVerdictBroken;
 }
@@ -294,6 +311,9 @@ void add_options(CLI::App& command, TestOptions& options) {
       ->check(cli::given())
       ->capture_default_str();
   command.add_option("--report", options.report, "Write all reports into this folder")
+      ->check(cli::given());
+  command.add_option("--compare", options.compare,
+                     "An earlier report.json: say whose verdict has changed")
       ->check(cli::given());
   command.add_flag("--quiet", options.quiet, "Text: no lines for cases that are as expected");
   command.add_flag("--verbose", options.verbose, "Text: every failure in full");

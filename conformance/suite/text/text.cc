@@ -320,14 +320,45 @@ std::string totals_text(const ImplementationRun& implementation, const TextOptio
     out += fmt::format("{} {}", found->second, runner::verdict_text(verdict));
   }
   const RuleTotals rules = rule_totals(implementation);
-  out = wrapped("", fmt::format("{}: {} in {:.2f} s", implementation.identity.name, out,
-                                implementation.wall_ms / 1000), options.width, kIndent.size());
+  if (options.times) out += fmt::format(" in {:.2f} s", implementation.wall_ms / 1000);
+  out = wrapped("", fmt::format("{}: {}.", implementation.identity.name, out), options.width,
+                kIndent.size());
   out += wrapped(kIndent, fmt::format("Of {} rules {} tried: {} kept, {} broken, {} not decided.",
                                       rules.all, rules.all - rules.untried, rules.kept,
                                       rules.broken, rules.undecided), options.width);
   const std::string broken = broken_text(implementation);
   if (!broken.empty()) out += wrapped(fmt::format("{}Broken: ", kIndent), broken, options.width);
   return '\n' + out;
+}
+
+std::string changes_text(const SuiteRun& run, const EarlierRun& earlier, const std::string& name,
+                         const TextOptions& options) {
+  constexpr std::size_t kShown = 30;
+  std::vector<std::string> changes;
+  std::size_t unknown = 0;
+  for (const ImplementationRun& implementation : run.implementations) {
+    for (const CaseRun& one : implementation.cases) {
+      if (one.repeat != 0) continue;
+      const auto was = earlier.verdicts.find({implementation.identity.name, one.name});
+      const std::string_view is = runner::verdict_text(one.result.verdict);
+      if (was == earlier.verdicts.end()) {
+        ++unknown;
+      } else if (was->second != is) {
+        changes.push_back(fmt::format("{}: {} was {}, is {}", implementation.identity.name,
+                                      one.name, was->second, is));
+      }
+    }
+  }
+  std::string out = '\n' + wrapped("", fmt::format(
+      "Since {}: {} with another verdict, {} that it does not have.", name,
+      counted(changes.size(), "case"), counted(unknown, "case")), options.width, kIndent.size());
+  for (std::size_t i = 0; i < changes.size() && (i < kShown || options.verbose); ++i) {
+    out += wrapped(kIndent, changes[i], options.width);
+  }
+  if (changes.size() > kShown && !options.verbose) {
+    out += fmt::format("{}and {} more\n", kIndent, changes.size() - kShown);
+  }
+  return out;
 }
 
 std::string closing_text(const SuiteRun& run, const TextOptions& options) {

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "conformance/suite/report/json.h"
 #include "conformance/suite/result.h"
 
 namespace rubric::suite {
@@ -12,6 +13,7 @@ struct TextOptions {
   bool color = false;
   bool quiet = false;    ///< Only what makes the run fail has a line.
   bool verbose = false;  ///< Each failure in full, not the first of each rule alone.
+  bool times = false;    ///< Says how long it took. Without, the same run gives the same text.
 };
 
 /// Who is tested, and with how many cases; or why nothing is.
@@ -25,6 +27,9 @@ std::string story_text(const SuiteRun& run, const ImplementationRun& implementat
                        const TextOptions& options);
 /// Counts, rules and times of an implementation.
 std::string totals_text(const ImplementationRun& implementation, const TextOptions& options);
+/// Cases whose verdict is another than in an earlier run; `name` is what the user calls that.
+std::string changes_text(const SuiteRun& run, const EarlierRun& earlier, const std::string& name,
+                         const TextOptions& options);
 /// Expectations that are not true, and how the run ends.
 std::string closing_text(const SuiteRun& run, const TextOptions& options);
 
