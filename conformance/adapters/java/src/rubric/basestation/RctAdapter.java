@@ -79,6 +79,7 @@ public final class RctAdapter {
       if (equals > 0) options.put(word.substring(0, equals), word.substring(equals + 1));
     }
     final int island = Integer.parseInt(options.getOrDefault("island", "0"));
+    if (island < 0 || island > 65535) throw new IllegalArgumentException("island " + island);
     final long seed = Long.parseUnsignedLong(options.getOrDefault("seed", "0"));
     station = new BaseStation(island, (int) (1000 + 257 * (seed & 0xffff)));
     now = 0;

@@ -174,6 +174,7 @@ public final class VectorsTest {
   }
 
   private void expect(String what, Object expected, Object found) {
-    if (!expected.equals(found)) failures.add(what + ": " + found + ", not " + expected);
+    if (expected.equals(found)) return;
+    failures.add(what + ": " + text(found) + ", not " + text(expected));
   }
 }

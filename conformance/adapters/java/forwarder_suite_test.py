@@ -1,0 +1,75 @@
+#!/usr/bin/env python3
+"""The suite at the base station's serial line alone: `rubric test --target sf-server:PORT`.
+
+Most cases need to see the application or PEIS too, so they stay undecided; but none may fail. With
+a mistake that shows on the line (one of bugs.json) some have to, by its rule.
+
+Usage: forwarder_suite_test.py RUBRIC JAVAC JAVA
+"""
+
+import json
+import pathlib
+import shutil
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+
+HERE = pathlib.Path(__file__).resolve().parent
+MISTAKE = "reads_numbers_backwards"
+
+
+def free_port():
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        return server.getsockname()[1]
+
+
+def build(javac, folder, mistake):
+    tree = folder / (mistake or "good")
+    shutil.copytree(HERE, tree)
+    for bug in json.loads((HERE / "bugs.json").read_text(encoding="utf-8")):
+        if bug["name"] == mistake:
+            path = tree / bug["file"]
+            text = path.read_text(encoding="utf-8")
+            assert text.count(bug["old"]) == 1
+            path.write_text(text.replace(bug["old"], bug["new"]), encoding="utf-8")
+    subprocess.run([HERE / "build.sh", javac, tree, tree / "classes"], check=True)
+    return tree / "classes"
+
+
+def run(rubric, java, classes, report):
+    """The cases of the report; the station connects as soon as somebody listens."""
+    port = free_port()
+    tested = subprocess.Popen([rubric, "test", "--target", f"sf-server:{port}", "--role",
+                               "base_station", "--format", "json", "--out", str(report)])
+    station = [java, "-cp", str(classes), "rubric.basestation.ForwarderClient",
+               f"127.0.0.1:{port}", "11"]
+    while tested.poll() is None:
+        subprocess.run(station, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                       stderr=subprocess.DEVNULL)
+        time.sleep(0.1)
+    implementation, = json.loads(report.read_text(encoding="utf-8"))["implementations"]
+    return implementation["cases"]
+
+
+def main():
+    rubric, javac, java = sys.argv[1:]
+    with tempfile.TemporaryDirectory() as scratch:
+        folder = pathlib.Path(scratch)
+        wrong = 0
+        for mistake in ("", MISTAKE):
+            cases = run(rubric, java, build(javac, folder, mistake), folder / "report.json")
+            count = {v: sum(c["verdict"] == v for c in cases) for v in
+                     {c["verdict"] for c in cases}}
+            rules = {r for c in cases for f in c["failures"] for r in f["requirements"]}
+            tried = count.get("pass", 0) + count.get("inconclusive", 0) + count.get("fail", 0)
+            found = "T2-CONTENT" in rules
+            good = found if mistake else count.keys() <= {"pass", "inconclusive", "skip"}
+            wrong += not good or tried < 30
+            print(mistake or "as it is", count, " ".join(sorted(rules)), flush=True)
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
