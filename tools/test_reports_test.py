@@ -1,0 +1,208 @@
+#!/usr/bin/env python3
+"""`rubric test` as CI jobs meet it: expected failures, reports, exit codes.
+
+Usage: test_reports_test.py RUBRIC in the project's folder.
+"""
+
+import json
+import os
+import pty
+import subprocess
+import unittest
+import xml.etree.ElementTree
+
+from test_testing import CASES, HONEST, RUBRIC, Folder, rubric, test
+
+
+class Expectations(Folder):
+    ENTRY = "- case: j8.%s\n  requirement: J8\n  message: %s\n  reason: It is in a hurry.\n"
+
+    def failing(self):
+        report = json.loads(test("--target", self.impatient_mote(), "--requirement", "J8",
+                                 "--format", "json")[1])
+        return {c["name"]: c["failures"] for c in report["implementations"][0]["cases"]
+                if c["verdict"] == "fail"}
+
+    def against(self, text):
+        return test("--target", self.impatient_mote(), "--requirement", "J8", "--expect",
+                    self.write("known.yaml", text))
+
+    def test_known(self):
+        entries = "".join(
+            "- case: %s\n  requirement: %s\n  message: %s\n  reason: It is in a hurry.\n" %
+            (name, one["requirements"][0], json.dumps(one["text"]))
+            for name, failures in self.failing().items() for one in failures)
+        code, out, err = self.against(entries)
+        self.assertEqual((code, err), (0, ""))
+        self.assertIn("EXPECTED FAIL ", out)
+        self.assertIn("It is in a hurry.", out)
+        self.assertNotRegex(out, r"(?m)^FAIL ")
+        changed = entries.replace("reason:", "profile: deployed\n  reason:", 1)
+        self.assertEqual(self.against(changed)[0], 1)
+
+    def test_not_true(self):
+        code, out, _ = self.against(
+            "- {case: j8.gone, requirement: J8, message: x, reason: y}\n")
+        self.assertEqual(code, 1)
+        self.assertIn("NOT TRUE ", out)
+        self.assertIn("known.yaml:1: no case is called 'j8.gone'", " ".join(out.split()))
+        name = next(iter(self.failing()))
+        code, out, _ = self.against(
+            f"\n- {{case: {name}, requirement: J8, message: of other words, reason: y}}\n")
+        self.assertEqual(code, 1)
+        self.assertIn("known.yaml:2:", out)
+        code, out, _ = test("--target", "machine", "--cases", name, "--expect",
+                            self.folder / "known.yaml")
+        self.assertEqual(code, 1)
+        self.assertIn(f"pass         {name}", out)
+        self.assertIn("was expected to fail", out)
+        self.assertIn("1 expectation not true", out)
+
+    def test_files_that_make_no_sense(self):
+        code, _, err = self.against("- case: x\n")
+        self.assertEqual(code, 64)
+        self.assertIn("known.yaml:1: requirement is missing", err)
+        code, _, err = test("--target", "machine", "--expect", self.folder / "none.yaml")
+        self.assertEqual(code, 66)
+        self.assertIn("No such file or directory", err)
+
+
+class Formats(Folder):
+    def test_json(self):
+        code, out, err = test("--target", "machine", "--format", "json")
+        self.assertEqual((code, err), (0, ""))
+        report = json.loads(out)
+        self.assertEqual(report["schema"], "rubric.test/1")
+        self.assertEqual(len(report["implementations"][0]["cases"]), CASES)
+
+    def test_junit_and_tap(self):
+        out = test("--target", HONEST, "--format", "junit")[1]
+        root = xml.etree.ElementTree.fromstring(out)
+        cases = list(root.iter("testcase"))
+        self.assertEqual(len(cases), CASES)
+        self.assertEqual(len({c.get("name") for c in cases}), CASES)
+        out = test("--target", HONEST, "--format", "tap")[1]
+        self.assertIn("TAP version 13", out)
+        self.assertIn(f"1..{CASES}", out)
+
+    def test_out_and_report(self):
+        target = ["--target", "machine", "--cases", "j4.*"]
+        path = self.folder / "out.txt"
+        code, out, _ = test(*target, "--out", path)
+        self.assertEqual((code, out), (0, ""))
+        self.assertEqual(path.read_text(), test(*target)[1])
+        code, _, _ = test(*target, "--report", self.folder / "a" / "b")
+        self.assertEqual(code, 0)
+        report = json.loads((self.folder / "a" / "b" / "report.json").read_text())
+        self.assertEqual(report["schema"], "rubric.test/1")
+        xml.etree.ElementTree.parse(self.folder / "a" / "b" / "junit.xml")
+        code, _, err = test(*target, "--out", "/dev/full")
+        self.assertEqual(code, 2)
+        self.assertIn("/dev/full", err)
+        code, _, err = test(*target, "--report", "/dev/null/x")
+        self.assertEqual(code, 2)
+        self.assertNotEqual(err, "")
+
+    def test_compare(self):
+        """What changed since an earlier run."""
+        args = ["--requirement", "J8", "--role", "mote"]
+        test("--target", HONEST, *args, "--report", self.folder / "before")
+        before = self.folder / "before" / "report.json"
+        code, out, _ = test("--target", self.impatient_mote(), *args, "--compare", before)
+        self.assertEqual(code, 1)
+        self.assertIn(f"Since {before}: ", " ".join(out.split()))
+        self.assertRegex(out, r"rubric_python_mote: j8\.\w+ was pass, is fail")
+        out = test("--target", HONEST, *args, "--compare", before)[1]
+        self.assertIn("0 cases with another verdict, 0 cases that it does not have.",
+                      " ".join(out.split()))
+        for text, says in [("{", "no JSON"), ("{}", "schema")]:
+            code, _, err = test("--target", HONEST, "--compare", self.write("x.json", text))
+            self.assertEqual(code, 66)
+            self.assertIn(says, err)
+
+    def test_times_on_terminals_and_when_asked_for(self):
+        args = ["--target", "machine", "--cases", "j4.few"]
+        self.assertNotRegex(test(*args)[1], r"in [0-9.]+ s\.")
+        self.assertRegex(test(*args, "--verbose")[1], r"1 pass in [0-9.]+ s\.")
+
+    def test_annotations_in_actions(self):
+        _, _, err = test("--target", self.impatient_mote(), "--requirement", "J8",
+                         env={"GITHUB_ACTIONS": "true"})
+        self.assertIn("::error file=conformance/cases/j8.rtr,line=", err)
+
+    def test_colours_only_on_terminals(self):
+        args = ["test", "--target", "machine", "--cases", "j4.*"]
+        self.assertNotIn("\033", rubric(*args)[1])
+        self.assertIn("\033[32mpass\033[0m", rubric(*args, "--color", "always")[1])
+        for env, coloured in [({"TERM": "xterm", "NO_COLOR": ""}, True),
+                              ({"TERM": "xterm", "NO_COLOR": "1"}, False)]:
+            ours, theirs = pty.openpty()
+            with subprocess.Popen([RUBRIC, *args], stdout=theirs,
+                                  env={**os.environ, **env}) as process:
+                os.close(theirs)
+                out = b""
+                try:
+                    while part := os.read(ours, 65536):
+                        out += part
+                except OSError:
+                    pass  # The other end has closed.
+            os.close(ours)
+            self.assertEqual(process.returncode, 0)
+            self.assertEqual(b"\033[" in out, coloured, env)
+
+
+class Usage(Folder):
+    def test_list(self):
+        code, out, err = test("--list", "--requirement", "J4-SEQ")
+        self.assertEqual((code, err), (0, ""))
+        self.assertRegex(out, r"(?m)^j4\.wrong_seq +mote +.*J4-SEQ")
+        for line in out.splitlines():
+            self.assertIn("J4-SEQ", line)
+        self.assertEqual(len(test("--list")[1].splitlines()), CASES)
+        self.assertRegex(test("--list", "--role", "sink")[1], r"(?m)^home\.network +mote\+sink\+")
+
+    def test_usage(self):
+        for args, says in [
+            ([], "--target is required"),
+            (["--target", ""], "--target"),
+            (["--target", "machine", "--cases", "j4.acept"], "did you mean 'j4.accept'?"),
+            (["--target", "machine", "--requirement", "J44"], "no rule is called 'J44'"),
+            (["--target", "machine", "--requirement", "WIRE-PCAP"], "no case tries WIRE-PCAP"),
+            (["--target", "machine", "--cases", "j4.*", "--role", "base_station"], "no case has"),
+            (["--target", "machine", "--role", "moat"], "--role"),
+            (["--target", "machine", "--profile", "papr"], "--profile"),
+            (["--target", "machine", "--shard", "3/2"], "expected I/N as in 2/8"),
+            (["--target", "machine", "--cases", "j4.few", "--shard", "2/2"], "has no case"),
+            (["--target", "machine", "--repeat", "0"], "--repeat"),
+            (["--target", "machine", "--jobs", "-1"], "--jobs"),
+            (["--target", "machine", "--seed", "-1"], "--seed"),
+            (["--target", "machine", "--timeout", "0"], "--timeout"),
+            (["--target", "machine", "--format", "html"], "--format"),
+            (["--targt", "machine"], "did you mean '--target'?"),
+        ]:
+            code, out, err = test(*args)
+            self.assertEqual((code, out), (64, ""), args)
+            self.assertIn(says, err)
+
+    def test_unreadable(self):
+        empty = self.folder / "empty"
+        empty.mkdir()
+        for traces, says in [
+            (self.folder / "none.rtr", "no such file or folder"),
+            (empty, "no .rtr file"),
+            (self.write("bad.rtr", "%rtr 1\ncase x\n  0 m5 < app jion()\n"), "bad.rtr:3:"),
+            (self.write("iut.rtr", "%rtr 1\n%node m5 mote id=5\ncase x\n"), "no node under test"),
+        ]:
+            code, out, err = test("--target", "machine", traces)
+            self.assertEqual((code, out), (66, ""), traces)
+            self.assertIn(says, err)
+
+    def test_help(self):
+        code, out, _ = test("--help")
+        self.assertEqual(code, 0)
+        for words in ["64 usage", "66 traces cannot be read", "--expect", "--shard"]:
+            self.assertIn(words, out)
+
+
+if __name__ == "__main__":
+    unittest.main()

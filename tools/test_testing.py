@@ -1,0 +1,89 @@
+"""What the tests of `rubric test` share: the program, and implementations that misbehave."""
+
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+RUBRIC = os.path.abspath(sys.argv.pop(1))
+MOTE = pathlib.Path("conformance/adapters/python")
+HONEST = f"python3 {MOTE}/adapter.py"
+CASES = sum(line.startswith("case ") for path in pathlib.Path("conformance/cases").rglob("*.rtr")
+            for line in path.read_text().splitlines())
+
+# An adapter that does nothing, and breaks as its first argument says.
+FAKE = '''
+import os, sys, time
+how = sys.argv[1]
+for line in sys.stdin:
+    words = line.split()
+    if words[0] == "hello":
+        if how == "silent_start": time.sleep(60)
+        print("hello rct/1 fake 1.0 roles=" + (sys.argv[2] if len(sys.argv) > 2 else "mote")
+              + " time=virtual")
+    elif words[0] == "reset":
+        print("ready")
+    elif words[0] == "bye":
+        break
+    elif words[0] not in ("rx", "call", "linkack", "line", "power", "until"):
+        print("done 0" if how == "yes_man" else "unsupported what is that")
+    elif words[0] == "call" and words[2].startswith("join(") and how == "liar":
+        print("up %s joined(10053:5 success)" % words[1])
+        print("done " + words[1])
+    elif words[0] == "call" and how == "unable":
+        print("unsupported no calls")
+    elif words[0] == "call" and how == "dies":
+        print("out of memory \\x1b[31m at 0x1234", file=sys.stderr, flush=True)
+        os.abort()
+    elif words[0] == "call" and how == "hangs":
+        time.sleep(60)
+    elif words[0] == "call" and how == "babbles":
+        print("hi there")
+    else:
+        print("done " + words[1])
+    sys.stdout.flush()
+'''
+
+
+def rubric(*args, env=None, cwd=None):
+    """Exit code, stdout, stderr as text."""
+    done = subprocess.run([RUBRIC, *map(str, args)], capture_output=True, cwd=cwd, check=False,
+                          env={**os.environ, "GITHUB_ACTIONS": "", **(env or {})})
+    return done.returncode, done.stdout.decode(), done.stderr.decode()
+
+
+def test(*args, **more):
+    return rubric("test", *args, **more)
+
+
+class Folder(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.fake_program = self.write("fake.py", FAKE)
+
+    def write(self, name, text):
+        path = self.folder / name
+        path.write_text(text)
+        return path
+
+    def fake(self, how, roles="mote"):
+        return f"exec python3 {self.fake_program} {how} {roles}"
+
+    def mote_with(self, old, new):
+        """The Python mote with another text in it."""
+        folder = self.folder / "mote"
+        folder.mkdir(exist_ok=True)
+        for name in ("adapter.py", "mote.py"):
+            text = (MOTE / name).read_text()
+            if name == "mote.py":
+                self.assertIn(old, text)
+                text = text.replace(old, new)
+            (folder / name).write_text(text)
+        return f"exec python3 {folder}/adapter.py"
+
+    def impatient_mote(self):
+        return self.mote_with("JOIN_PERIOD = 500", "JOIN_PERIOD = 450")
