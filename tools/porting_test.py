@@ -25,6 +25,7 @@ TEXT = PORTING.read_text(encoding="utf-8")
 ADAPTER = ROOT / "conformance/adapters/python"
 
 
+RENEW = f"Renew with: python3 tools/porting_test.py {RUBRIC} . --regenerate"
 FENCED = re.compile(r"^```([^\n]*)\n(.*?)^```\n", re.M | re.S)
 
 
@@ -74,7 +75,7 @@ def regenerate():
 class Porting(unittest.TestCase):
     def test_loop_is_that_of_the_adapter(self):
         self.assertIn("def answer", loop())
-        self.assertEqual([loop()], blocks("python"))
+        self.assertEqual([loop()], blocks("python"), RENEW)
 
     def test_conversations(self):
         conversations = re.findall(r"^    > hello.*\n(?:    [<>] .*\n)+", TEXT, re.M)
@@ -90,7 +91,7 @@ class Porting(unittest.TestCase):
 
     def test_failure(self):
         shown = [without_times(text) for text in blocks("") if text.startswith("$ rubric test")]
-        self.assertEqual([without_times(failure())], shown)
+        self.assertEqual([without_times(failure())], shown, RENEW)
 
     def test_known_failures(self):
         known = [block for block in blocks("yaml") if block.startswith("- case")]
