@@ -25,33 +25,34 @@ using std::chrono::steady_clock;
 
 constexpr Options kOptions{Milliseconds(4000), Milliseconds(5000)};
 
-// What a serial line alone shows of a sink and of a base station.
+// Short ones; conformance/cases/serial_line.rtr has the whole of it.
+constexpr const char* kData = "payload.trans_id=connless payload.app_id=mockup payload.payload=x01";
+constexpr const char* kAck =
+    "payload.trans_id=rubicon_ack payload.app_id=mockup payload.body.seq_num";
 constexpr const char* kCases = R"(%rtr 1
 %profile paper
 
 case sink.ack
 %node sA sink id=1 island=11 iut
-a: 20       sA <  serA am=0->1 net_msg(dest=11:1 src=11:null reliable=1 seq_num=0xb0d3 payload.trans_id=connless payload.app_id=mockup payload.payload=x0102)
-   a+0..300 sA >  serA net_msg(dest=11:null src=11:1 reliable=0 payload.trans_id=rubicon_ack payload.app_id=mockup payload.body.seq_num=0xb0d3 ...)  [T2-ACK]
+a: 20       sA <  serA am=0->1 net_msg(dest=11:1 src=11:null reliable=1 seq_num=7 {0})
+   a+0..300 sA >  serA net_msg(dest=11:null src=11:1 reliable=0 {1}=7 ...)  [T2-ACK]
    a+0..400 sA !> serA *  [T2-ONCE]
 
 case sink.new_island
 %node sA sink id=1 island=11 iut
    20       sA <  serA am=0->1 config(type=set_island_id value=12)
-a: 310      sA <  serA am=0->1 net_msg(dest=11:1 src=11:null reliable=1 seq_num=7 payload.trans_id=connless payload.app_id=mockup payload.payload=x0102)
-   a+0..290 sA !> serA *  [N9-SET]
-b: a+300    sA <  serA am=0->1 net_msg(dest=12:1 src=12:null reliable=1 seq_num=8 payload.trans_id=connless payload.app_id=mockup payload.payload=x0102)
-   b+0..300 sA >  serA net_msg(dest=12:null src=12:1 payload.trans_id=rubicon_ack payload.body.seq_num=8 ...)  [N9-SET]
+a: 310      sA <  serA am=0->1 net_msg(dest=12:1 src=12:null reliable=1 seq_num=8 {0})
+   a+0..300 sA >  serA net_msg(dest=12:null src=12:1 reliable=0 {1}=8 ...)  [N9-SET]
 
 case sink.app
 %node sA sink id=1 island=11 iut
-a: 20       sA <  serA am=0->1 net_msg(dest=11:1 src=11:null reliable=0 seq_num=9 payload.trans_id=connless payload.app_id=mockup payload.payload=x0102)
-   a+0..300 sA >  app  received(src=11:null app_id=mockup data=x0102)  [T1-DELIVER]
+a: 20       sA <  serA am=0->1 net_msg(dest=11:1 src=11:null reliable=0 seq_num=9 {0})
+   a+0..300 sA >  app  received(src=11:null app_id=mockup data=x01)  [T1-DELIVER]
 
 case base_station.ack
 %node bA base_station island=11 iut
-a: 20       bA <  serA am=0->0xffff net_msg(dest=11:null src=11:5 reliable=1 seq_num=77 payload.trans_id=connless payload.app_id=mockup payload.payload=x0102)
-   a+0..300 bA >  serA net_msg(dest=11:5 src=11:null reliable=0 payload.trans_id=rubicon_ack payload.app_id=mockup payload.body.seq_num=77 ...)  [T2-ACK]
+a: 20       bA <  serA am=0->all net_msg(dest=11:null src=11:5 reliable=1 seq_num=77 {0})
+   a+0..300 bA >  serA net_msg(dest=11:5 src=11:null reliable=0 {1}=77 ...)  [T2-ACK]
    a+0..400 bA !> serA *  [T2-ONCE]
 
 case two_nodes
@@ -65,7 +66,8 @@ case mote.silent
 )";
 
 const trace::Parsed& cases() {
-  static const trace::Parsed parsed = trace::parse(kCases, "serial_line.rtr");
+  static const std::string text = fmt::format(fmt::runtime(kCases), kData, kAck);
+  static const trace::Parsed parsed = trace::parse(text, "serial_line.rtr");
   return parsed;
 }
 
@@ -101,7 +103,8 @@ machine::Config config_of(machine::Role role, std::uint16_t island) {
 
 std::unique_ptr<PacketLine> forwarder_at(std::uint16_t port) {
   auto listener = std::make_shared<Listener>(HostPort{"127.0.0.1", port});
-  return std::make_unique<ForwarderLine>([listener](SteadyTime by) { return listener->accept(by); });
+  return std::make_unique<ForwarderLine>(
+      [listener](SteadyTime by) { return listener->accept(by); });
 }
 std::unique_ptr<PacketLine> forwarder_to(std::uint16_t port) {
   return std::make_unique<ForwarderLine>(
@@ -301,6 +304,28 @@ TEST(RealTime, TextThatMakesNoSense) {
         "serial::115200", "serial:tcp:host", "serial:/dev/tty:115201"}) {
     EXPECT_THROW(attach(target, {}), std::invalid_argument) << target;
   }
+}
+
+// All golden traces that a serial line alone can decide.
+TEST(RealTime, GoldenTracesOfALine) {
+  const std::uint16_t port = free_port();
+  const RealNode sink(forwarder_at(port), config_of(machine::Role::kSink, 3));
+  const auto attachment = attach(fmt::format("sf:127.0.0.1:{}", port), kOptions);
+  std::size_t passed = 0;
+  std::size_t skipped = 0;
+  for (const trace::Parsed& file : runner::load_cases("conformance/cases")) {
+    if (!file.file_name.ends_with("serial_line.rtr")) continue;
+    for (const trace::Case& one : file.file.cases) {
+      const runner::CaseResult result = runner::run_case(
+          file.file, one, [&](const trace::NodeHeader&) { return attachment->target(); });
+      passed += result.verdict == CaseVerdict::kPass;
+      skipped += result.verdict == CaseVerdict::kSkip;
+      EXPECT_LT(result.verdict == CaseVerdict::kSkip ? CaseVerdict::kPass : result.verdict,
+                CaseVerdict::kInconclusive) << runner::explain(result, file.file_name);
+    }
+  }
+  EXPECT_GE(passed, 2U);   // A sink's,
+  EXPECT_GE(skipped, 2U);  // and a base station's.
 }
 
 TEST(RealTime, ToleranceIsMeasured) {

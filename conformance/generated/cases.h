@@ -17,7 +17,7 @@ struct CaseUse {
 };
 
 /// By file, then as they stand there; each case once for a rule and a sign.
-inline constexpr std::array<CaseUse, 1201> kCaseUses{{
+inline constexpr std::array<CaseUse, 1214> kCaseUses{{
     {"j1.request", "conformance/cases/j1.rtr", req::kJ1Request, false},
     {"j1.request", "conformance/cases/j1.rtr", req::kJ1Dest, true},
     {"j1.request", "conformance/cases/j1.rtr", req::kJ1Request, true},
@@ -1287,6 +1287,19 @@ inline constexpr std::array<CaseUse, 1201> kCaseUses{{
     {"two_sinks.lost_reply", "conformance/cases/scenarios/two_sinks.rtr", req::kJ6Island, true},
     {"two_sinks.lost_reply", "conformance/cases/scenarios/two_sinks.rtr", req::kN5Foreign, true},
     {"two_sinks.lost_reply", "conformance/cases/scenarios/two_sinks.rtr", req::kJ7One, true},
+    {"t2.sink_line", "conformance/cases/serial_line.rtr", req::kT2Ack, false},
+    {"t2.sink_line", "conformance/cases/serial_line.rtr", req::kT2Content, false},
+    {"t2.sink_line", "conformance/cases/serial_line.rtr", req::kT2Once, true},
+    {"t2.sink_line", "conformance/cases/serial_line.rtr", req::kT2Unreliable, true},
+    {"t2.sink_line", "conformance/cases/serial_line.rtr", req::kT2Broadcast, true},
+    {"n9.sink_line", "conformance/cases/serial_line.rtr", req::kN9Set, false},
+    {"n9.sink_line", "conformance/cases/serial_line.rtr", req::kN9Other, false},
+    {"t2.base_station_line", "conformance/cases/serial_line.rtr", req::kT2Ack, false},
+    {"t2.base_station_line", "conformance/cases/serial_line.rtr", req::kT2Content, false},
+    {"t2.base_station_line", "conformance/cases/serial_line.rtr", req::kT2Once, true},
+    {"t2.base_station_line", "conformance/cases/serial_line.rtr", req::kT2Unreliable, true},
+    {"t2.base_station_line", "conformance/cases/serial_line.rtr", req::kT2Broadcast, true},
+    {"t1.base_station_line", "conformance/cases/serial_line.rtr", req::kT1Unknown, true},
     {"t1.wrap", "conformance/cases/t1.rtr", req::kN1Seq, false},
     {"t1.wrap", "conformance/cases/t1.rtr", req::kT1Wrap, false},
     {"t1.wrap", "conformance/cases/t1.rtr", req::kN1Src, false},

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "conformance/events/app_events.h"
+#include "conformance/runner/dependence.h"
 #include "conformance/runner/expectation.h"
 #include "conformance/runner/node_log.h"
 #include "conformance/trace/encode.h"
@@ -168,7 +169,8 @@ class Run {
 
   // A line of which the target shows nothing. False when the case cannot go on without it.
   bool pass_over(const Line& line) {
-    const bool needed = line.op == Op::kGiven || line.op == Op::kEmits;
+    const bool needed = line.op == Op::kGiven ||
+                        (line.op == Op::kEmits && is_needed_later(case_, line));
     if (unseen_.empty() || needed) {
       unseen_ = fmt::format("line {}: the target does not show {}", line.place.line, line.link);
     }
