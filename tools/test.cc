@@ -141,9 +141,10 @@ std::string list_text(const std::vector<suite::SuiteCase>& cases) {
       if (!roles.empty()) roles += '+';
       roles += trace::role_text(static_cast<trace::Role>(role));
     }
-    out += fmt::format("{:<40} {:<12} {}", one.blank.name, roles, fmt::join(one.rules, " "));
-    out.erase(out.find_last_not_of(' ') + 1);
-    out += '\n';
+    std::string line = fmt::format("{:<40} {:<12}", one.blank.name, roles);
+    for (const std::string& rule : one.rules) line += ' ' + rule;
+    line.erase(line.find_last_not_of(' ') + 1);
+    out += line + '\n';
   }
   return out;
 }

@@ -22,8 +22,8 @@ struct SequenceRow {
   bool marked = false;             ///< "<<<" stands behind it, and its arrow is doubled.
 };
 
-/// One column a node, one row an event. `|` is a node's time line, `*` what goes to nobody known, or
-/// comes from nobody known.
+/// One column a node, one row an event. `|` is a node's time line, `*` what goes to nobody known,
+/// or comes from nobody known.
 struct Sequence {
   std::vector<std::string> columns;
   std::string number_title = "frame";
