@@ -259,6 +259,7 @@ void Bridge::handle(Bytes record) {
 }
 
 void Bridge::serial_byte(std::uint8_t byte) {
+  if (serial_tap_) serial_tap_(byte);
   if (deframer_.push(byte) != HdlcEvent::kFrame) return;
   const Bytes content = deframer_.content();
   if (content[0] != kSerialPacketNoAck) return;  // A confirmation.

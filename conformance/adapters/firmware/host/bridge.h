@@ -60,6 +60,8 @@ class Bridge final : private Listener {
   /// Lines `tx ...` and `up ...` since the last call.
   std::vector<std::string> take_lines();
   Tick tick() const;
+  /// Gets the bytes of the serial line as well.
+  void set_serial_tap(std::function<void(std::uint8_t)> tap) { serial_tap_ = std::move(tap); }
 
  private:
   struct Chip {  // The radio.
@@ -114,6 +116,7 @@ class Bridge final : private Listener {
   std::deque<ByteVector> held_;  ///< Serial packets that ended after the line was taken.
   std::uint8_t content_[300] = {};
   HdlcDeframer deframer_{content_};
+  std::function<void(std::uint8_t)> serial_tap_;
   std::vector<std::string> lines_;
 };
 

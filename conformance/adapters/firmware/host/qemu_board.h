@@ -26,8 +26,6 @@ class QemuBoard : public SimulatedBoard {
   void put_link(Bytes bytes) override { put(link_, bytes); }
   void put_serial(Bytes bytes) override { put(serial_, bytes); }
   bool serial_is_idle() const override { return true; }  // Its UART is not held up by bits.
-  /// To wait for bytes from the serial line together with others.
-  int serial_descriptor() const { return serial_; }
 
  private:
   using Steady = std::chrono::steady_clock;

@@ -45,17 +45,9 @@ class Device {
   int slave_ = -1;
 };
 
-// False at the end of `from`.
-bool carry(int from, int to) {
-  std::array<char, 512> bytes{};
-  const ssize_t size = read(from, bytes.data(), bytes.size());
-  if (size <= 0) return false;
-  for (ssize_t done = 0; done < size;) {
-    const ssize_t sent = write(to, bytes.data() + done, static_cast<std::size_t>(size - done));
-    if (sent <= 0) return false;
-    done += sent;
-  }
-  return true;
+bool has_bytes(int descriptor) {
+  pollfd waited{descriptor, POLLIN, 0};
+  return poll(&waited, 1, 0) > 0;
 }
 
 }  // namespace
@@ -69,16 +61,20 @@ int serve_serial_device(QemuBoard& board, std::uint16_t island) {
   setup.island = island;
   bridge.start(setup);
   const Device device;
+  bridge.set_serial_tap([&](std::uint8_t byte) {
+    if (write(device.master(), &byte, 1) != 1) throw BoardBroken(std::strerror(errno));
+  });
   std::cout << device.name() << std::endl;
   while (true) {
-    std::array<pollfd, 3> waited{{{STDIN_FILENO, POLLIN, 0},
-                                  {device.master(), POLLIN, 0},
-                                  {board.serial_descriptor(), POLLIN, 0}}};
-    if (poll(waited.data(), waited.size(), -1) < 0 && errno != EINTR) return 1;
-    std::array<char, 64> ignored{};
-    if (waited[0].revents != 0 && read(STDIN_FILENO, ignored.data(), ignored.size()) <= 0) return 0;
-    if (waited[1].revents != 0 && !carry(device.master(), board.serial_descriptor())) return 1;
-    if (waited[2].revents != 0 && !carry(board.serial_descriptor(), device.master())) return 1;
+    std::array<std::uint8_t, 512> bytes{};
+    if (has_bytes(STDIN_FILENO) && read(STDIN_FILENO, bytes.data(), bytes.size()) <= 0) return 0;
+    if (has_bytes(device.master())) {
+      const ssize_t size = read(device.master(), bytes.data(), bytes.size());
+      if (size <= 0) return 1;
+      board.put_serial(Bytes(bytes.data(), static_cast<std::size_t>(size)));
+    }
+    bridge.run(bridge.tick() + 1);  // A tick or two of real time.
+    bridge.take_lines();
   }
 }
 

@@ -6,7 +6,8 @@
 namespace rubric::firmware {
 
 /// Starts the node as a sink of `island`, writes the device's name to standard output and carries
-/// bytes until standard input ends. The sink's radio hears nobody. Returns the exit status.
+/// bytes until standard input ends. The sink's radio sends, but
+/// hears nobody. Returns the exit status.
 int serve_serial_device(QemuBoard& board, std::uint16_t island);
 
 }  // namespace rubric::firmware
