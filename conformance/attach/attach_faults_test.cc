@@ -162,14 +162,47 @@ TEST_F(AttachFaults, EndBetweenCasesIsNoFaultOfTheNext) {
 
 TEST_F(AttachFaults, HonestyIsAsked) {
   const auto dishonest = attach(
-      "echo 'hello rct/1 yes_man 1 roles=mote'; while read -r line; do "
-      "case $line in hello*) ;; bye) exit;; *) echo done 0;; esac; done", {});
+      "while read -r line; do case $line in hello*) echo hello rct/1 yes_man 1 roles=mote;; "
+      "bye) exit;; *) echo done 0;; esac; done", {});
   EXPECT_EQ(dishonest->identity().name, "yes_man");
   EXPECT_EQ(dishonest->honesty(),
             "line 1 of the answer to `frobnicate 17 radio`: expected `unsupported`, given "
             "'done 0'");
   EXPECT_EQ(attach(RUBRIC_MACHINE_ADAPTER, {})->honesty(), "");
   EXPECT_EQ(attach("machine", {})->honesty(), "");
+}
+
+// Time that did not pass is no silence.
+TEST_F(AttachFaults, RealTimeIsOurs) {
+  const auto jumper = attach(
+      "while read -r word time rest; do case $word in "
+      "hello) echo hello rct/1 jumper 1 roles=mote time=real;; reset) echo ready;; bye) exit;; "
+      "until) echo done $time;; *) echo done $time;; esac; done", {});
+  const trace::Parsed silent = trace::parse(
+      "%rtr 1\n%node m5 mote id=5 iut\ncase silent\n @0..3000 m5 !> rA * [J1-CALLED]\n", "a.rtr");
+  const auto before = std::chrono::steady_clock::now();
+  const CaseResult result =
+      runner::run_case(silent.file, silent.file.cases.at(0),
+                       [&](const trace::NodeHeader&) { return jumper->target(); });
+  EXPECT_EQ(result.verdict, CaseVerdict::kError);
+  EXPECT_NE(result.reason.find("it says that 3000 ticks have passed"), std::string::npos)
+      << result.reason;
+  EXPECT_LT(std::chrono::steady_clock::now() - before, kFaultMax);
+}
+
+// The machine's sleepless relative: answers when the time has come.
+TEST_F(AttachFaults, RealTimeAdapterIsWaitedFor) {
+  const auto patient = attach(
+      "while read -r word time rest; do case $word in "
+      "hello) echo hello rct/1 patient 1 roles=mote time=real;; reset) echo ready;; bye) exit;; "
+      "until) sleep 1.1; echo done $time;; *) echo done $time;; esac; done",
+      {milliseconds(500), milliseconds(20000)});  // Beside the time that is to pass.
+  const trace::Parsed silent = trace::parse(
+      "%rtr 1\n%node m5 mote id=5 iut\ncase silent\n @0..1024 m5 !> rA * [J1-CALLED]\n", "a.rtr");
+  const CaseResult result =
+      runner::run_case(silent.file, silent.file.cases.at(0),
+                       [&](const trace::NodeHeader&) { return patient->target(); });
+  EXPECT_EQ(result.verdict, CaseVerdict::kPass) << result.reason;
 }
 
 TEST_F(AttachFaults, RolesThatItDoesNotPlayAreSkipped) {

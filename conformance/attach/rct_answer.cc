@@ -183,7 +183,12 @@ void AnswerReader::done(Words words) {
   if (answer_.next && *answer_.next < at) {
     fail(fmt::format("next at {}, which is before {}", *answer_.next, at));
   }
-  if (asked_.real_time) return;
+  if (asked_.real_time) {
+    if (asked_.passes_time && silent && at < asked_.to) {
+      fail(fmt::format("done at {}, when nothing was written and {} has not come", at, asked_.to));
+    }
+    return;
+  }
   const Ticks expected = asked_.passes_time && !silent ? least : asked_.to;
   if (at != expected) fail(fmt::format("done at {}, expected {}", at, expected));
 }

@@ -171,6 +171,10 @@ TEST(RctAnswer, RealTimeGoesOn) {
   EXPECT_EQ(wrong_with(asked, {"up 120 op_result(1)", "up 310 op_result(1)", "done 311"}), "");
   EXPECT_EQ(wrong_with(asked, {"up 120 op_result(1)", "done 119"}),
             "line 2 of the answer to `until 300`: done at 119, when 120 has passed");
+  EXPECT_EQ(wrong_with(asked, {"up 120 op_result(1)", "done 120"}), "");
+  EXPECT_EQ(wrong_with(asked, {"done 299"}),
+            "line 1 of the answer to `until 300`: done at 299, when nothing was written and 300 has "
+            "not come");
 }
 
 }  // namespace

@@ -17,6 +17,7 @@ using runner::TargetBroken;
 using runner::Unsupported;
 
 constexpr std::size_t kOutputsAtOnceMax = 1000;  // Of an instant.
+constexpr Ticks kClockSlackTicks = 50;
 
 // 257 has an inverse: the seed that makes this first number, as runner::config_of takes it.
 constexpr std::uint16_t seed_of(std::uint16_t first_seq) {
@@ -86,6 +87,7 @@ void RctTarget::reset(const machine::Config& config) {
                               config.profile.channels_max, seed_of(config.first_seq),
                               profile_of(config.profile));
   asked.closing = "ready";
+  clock_.start();
   client_->ask(asked);
 }
 
@@ -163,10 +165,20 @@ Ticks RctTarget::ask(std::string command, Ticks time, bool passes_time) {
     link_acks_.push_back(output.time + runner::transmission_ticks(frame.link, frame.size_bytes));
   }
   now_ = answer.done;
+  if (asked.real_time) compare_clocks(asked.command);
   settled_ = passes_time;
   knows_next_ = answer.has_next;
   next_ = answer.next;
   return now_;
+}
+
+// A clock that is ahead would have us believe in a silence that nobody heard.
+void RctTarget::compare_clocks(const std::string& command) {
+  const Ticks passed = clock_.now();
+  if (now_ <= passed + passed / 4 + tolerance_.late + kClockSlackTicks) return;
+  client_->give_up();
+  throw TargetBroken(fmt::format("`{}`: it says that {} ticks have passed since `reset`, not {}",
+                                 command, now_, passed));
 }
 
 }  // namespace rubric::attach

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "conformance/attach/clock.h"
 #include "conformance/attach/rct_client.h"
 
 namespace rubric::attach {
@@ -36,10 +37,12 @@ class RctTarget : public runner::Target {
   Ticks ask(std::string command, Ticks time, bool passes_time);
   Ticks let_pass(Ticks time);
   bool quiet_until(Ticks time) const;
+  void compare_clocks(const std::string& command);
 
   std::unique_ptr<RctClient> client_;
   runner::Tolerance tolerance_;
   GiveBack give_back_;
+  RealClock clock_;                // Since reset; of what runs in real time.
   std::vector<Output> outputs_;
   std::deque<Ticks> link_acks_;    // When the transmissions that ask for one end.
   bool hold_link_acks_ = false;
