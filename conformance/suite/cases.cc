@@ -42,6 +42,7 @@ SuiteCase suite_case(const trace::Parsed& file, const trace::Case& one) {
   out.blank.file = file.file_name;
   out.blank.comment = comment_of(one);
   out.blank.nodes = scope.nodes;
+  out.blank.links = scope.links;
   out.blank.seed = scope.seed;
   out.blank.profile = scope.profile;
   for (const trace::NodeHeader& node : scope.nodes) {

@@ -26,6 +26,7 @@ struct CaseRun {
   std::string file;                    ///< "conformance/cases/j4.rtr".
   std::string comment;                 ///< The mistake that it catches, as the file says it.
   std::vector<trace::NodeHeader> nodes;  ///< All, with their names in the log.
+  std::vector<trace::LinkHeader> links;  ///< Those whose names do not say of what kind they are.
   std::vector<machine::Role> roles;    ///< Of its nodes under test, each once.
   std::vector<ReqId> requirements;     ///< That its lines name, each once.
   std::uint32_t repeat = 0;            ///< Counted from 0 where --repeat asks for more than one.

@@ -1,6 +1,7 @@
 #include "conformance/suite/text/scene.h"
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -8,7 +9,7 @@
 
 #include "conformance/report/sequence.h"
 #include "conformance/report/text.h"
-#include "conformance/trace/parse.h"
+#include "conformance/suite/report/log_lines.h"
 #include "conformance/trace/print.h"
 #include "conformance/trace/value_text.h"
 
@@ -28,19 +29,7 @@ struct Row {
   bool marked = false;
 };
 
-std::optional<Line> line_of(const runner::Failure& failure) {
-  const trace::Parsed parsed =
-      trace::parse_syntax("%rtr 1\ncase x\n" + failure.expected + "\n", "expected");
-  if (parsed.file.cases.empty() || parsed.file.cases[0].lines().empty()) return std::nullopt;
-  return *parsed.file.cases[0].lines()[0];
-}
-
 runner::Ticks time_of(const Line& line) { return static_cast<runner::Ticks>(line.time.from); }
-
-// What the failure's text says of an output: "rA ack_join(seq_num=7 ...)".
-std::string words_of(const Line& line) {
-  return line.link + " " + trace::print(line.message);
-}
 
 std::vector<Row> rows_around(const CaseRun& one, const runner::Failure& failure) {
   const std::vector<const Line*> lines = one.result.log.lines();
@@ -49,9 +38,7 @@ std::vector<Row> rows_around(const CaseRun& one, const runner::Failure& failure)
   for (std::size_t i = 0; i < lines.size() && !breaks; ++i) {
     if (time_of(*lines[i]) > failure.time) break;
     at = i + 1;
-    breaks = failure.forbidden && lines[i]->op == Op::kEmits &&
-             time_of(*lines[i]) == failure.time &&
-             failure.text.ends_with(words_of(*lines[i]));
+    breaks = is_broken_by(failure, *lines[i]);
   }
   std::vector<Row> rows;
   for (std::size_t i = at - std::min(at, kBefore); i < at; ++i) {
@@ -62,6 +49,19 @@ std::vector<Row> rows_around(const CaseRun& one, const runner::Failure& failure)
     rows.push_back({lines[i], false});
   }
   return rows;
+}
+
+// With the last names of paths, where these are enough: "led" for "mote_desc.led".
+trace::Message with_short_paths(trace::Message message) {
+  const auto tail = [](const trace::FieldValue& field) {
+    return field.path.substr(field.path.rfind('.') + 1);
+  };
+  std::map<std::string, int> counts;
+  for (const trace::FieldValue& field : message.fields) ++counts[tail(field)];
+  for (trace::FieldValue& field : message.fields) {
+    if (counts[tail(field)] == 1) field.path = tail(field);
+  }
+  return message;
 }
 
 // The nodes of a case as columns, and among whom a line passes.
@@ -88,14 +88,13 @@ class Stage {
 
   report::SequenceRow row(const Line& line) const {
     report::SequenceRow row;
-    row.label = label(line);
+    row.label = short_text(line.message);
     const std::size_t node = column(line.node);
     const bool given = line.op == Op::kGiven;
     const bool frame = line.am.has_value();
     std::vector<std::size_t> peers;
     if (frame) {
-      peers = peers_of(line, given ? line.am->source : line.am->dest);
-      if (given && peers.size() > 1) keep_of_island(line, peers);
+      for (const std::size_t i : peers_of(nodes_, line)) peers.push_back(column(nodes_[i].name));
     } else if (app_ && line.link == "app") {
       peers = {0};
     }
@@ -110,67 +109,7 @@ class Stage {
     return row;
   }
 
-  static std::string label(const Line& line) {
-    std::string out = line.message.name;
-    const trace::Value* kind = line.message.find("payload.trans_id");
-    if (kind && kind->text == "rubicon_ack") {
-      const trace::Value* number = line.message.find("payload.body.seq_num");
-      return number ? "ack of " + trace::value_text(*number) : "ack";
-    }
-    for (const trace::FieldValue& field : line.message.fields) {
-      const bool number = field.path == "seq_num" || field.path.ends_with(".seq_num");
-      if (!number && field.path != "result" && field.path != "acked") continue;
-      if (field.value.is(trace::Value::Kind::kNames)) return out + " " + field.value.text;
-      if (!field.value.is(trace::Value::Kind::kNumber)) continue;
-      return out + " " + std::to_string(field.value.number);
-    }
-    return out;
-  }
-
  private:
-  // Nodes that an AM address (an island, over PEIS) stands for, as seen from the line's node.
-  std::vector<std::size_t> peers_of(const Line& line, const trace::Value& address) const {
-    std::vector<std::size_t> out;
-    const bool serial = line.link.starts_with("ser");
-    const bool peis = line.link == "peis";
-    const trace::NodeHeader* self = nullptr;
-    for (const trace::NodeHeader& node : nodes_) {
-      if (node.name == line.node) self = &node;
-    }
-    for (const trace::NodeHeader& node : nodes_) {
-      if (&node == self || !self) continue;
-      const bool base = node.role == trace::Role::kBaseStation;
-      if (serial) {
-        const bool other = base != (self->role == trace::Role::kBaseStation);
-        if (other && node.role != trace::Role::kMote && node.island == self->island) {
-          out.push_back(column(node.name));
-        }
-      } else if (base == peis && is_meant(peis ? node.island : node.id, address)) {
-        out.push_back(column(node.name));
-      }
-    }
-    return out;
-  }
-
-  // Sinks share an address: of several senders the one whose island the message names.
-  void keep_of_island(const Line& line, std::vector<std::size_t>& senders) const {
-    const trace::Value* island = line.message.find("island_addr");
-    const trace::Value* src = line.message.find("src");
-    if (!island && src && src->items.size() == 2) island = &src->items[0];
-    if (!island || !island->is(trace::Value::Kind::kNumber)) return;
-    std::erase_if(senders, [&](std::size_t c) {
-      return std::none_of(nodes_.begin(), nodes_.end(), [&](const trace::NodeHeader& node) {
-        return node.name == names_[c] && node.island && *node.island == island->number;
-      });
-    });
-  }
-
-  static bool is_meant(std::optional<std::uint16_t> id, const trace::Value& address) {
-    if (address.is(trace::Value::Kind::kNames)) return address.text == "all";
-    if (!address.is(trace::Value::Kind::kNumber)) return false;
-    return address.number == trace::kAmAll || (id && *id == address.number);
-  }
-
   const std::vector<trace::NodeHeader>& nodes_;
   std::vector<std::string> names_;
   bool app_ = false;
@@ -189,7 +128,7 @@ std::string log_around(const CaseRun& one, const runner::Failure& failure, std::
   for (const Row& row : rows_around(one, failure)) {
     const std::string head = std::string(indent, ' ') + (row.marked ? "> " : "  ");
     if (!row.line) {
-      const std::optional<Line> asked = line_of(failure);
+      const std::optional<Line> asked = asked_line(failure);
       out += report::wrapped(
           head + fmt::format("{:<9} ", window_text(failure)),
           failure.forbidden || !asked
@@ -207,7 +146,7 @@ std::string log_around(const CaseRun& one, const runner::Failure& failure, std::
     out += report::wrapped(
         head + fmt::format("{:<9} ", fmt::format("@{}", line.time.from)),
         fmt::format("{} {} {} {}{}", line.node, trace::op_text(line.op), line.link, am,
-                    trace::print(line.message)),
+                    trace::print(with_short_paths(line.message))),
         width);
   }
   return out;
@@ -225,7 +164,7 @@ std::string chart_around(const CaseRun& one, const runner::Failure& failure, std
       drawn = stage.row(*row.line);
       drawn.number = std::to_string(row.line->time.from);
     } else {
-      const std::optional<Line> asked = line_of(failure);
+      const std::optional<Line> asked = asked_line(failure);
       if (asked) drawn.from = stage.column(asked->node);
       drawn.number = std::to_string(failure.to);
       drawn.label = asked ? "no " + asked->message.name : "here";
