@@ -7,7 +7,6 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -16,6 +15,7 @@
 #include <vector>
 
 #include "conformance/suite/report/github.h"
+#include "conformance/suite/report/html.h"
 #include "conformance/suite/report/json.h"
 #include "conformance/suite/report/junit.h"
 #include "conformance/suite/report/tap.h"
@@ -216,7 +216,18 @@ suite::SuiteRun work(const TestOptions& options, const suite::Cases& cases, suit
   return all;
 }
 
-bool write_formats(const TestOptions& options, const suite::SuiteRun& run) {
+// Everything into one folder: the page with what belongs to it, and what programs read.
+bool write_folder(const TestOptions& options, const suite::SuiteRun& run,
+                  const std::optional<suite::EarlierRun>& earlier) {
+  suite::write_html_report(run, earlier ? &*earlier : nullptr, options.report);
+  const std::string folder = options.report + "/";
+  bool good = cli::write_file(folder + "report.json", suite::json_report(run));
+  good = cli::write_file(folder + "junit.xml", suite::junit_report(run)) && good;
+  return cli::write_file(folder + "report.tap", suite::tap_report(run)) && good;
+}
+
+bool write_formats(const TestOptions& options, const suite::SuiteRun& run,
+                   const std::optional<suite::EarlierRun>& earlier) {
   bool good = true;
   if (options.format == "json") good = cli::write_file(options.out, suite::json_report(run));
   if (options.format == "junit") good = cli::write_file(options.out, suite::junit_report(run));
@@ -225,20 +236,15 @@ bool write_formats(const TestOptions& options, const suite::SuiteRun& run) {
   if (actions && std::string_view(actions) == "true") {
     fmt::print(stderr, "{}", suite::github_annotations(run));
   }
-  if (options.report.empty()) return good;
-  std::filesystem::create_directories(options.report);
-  const std::string folder = options.report + "/";
-  good = cli::write_file(folder + "report.json", suite::json_report(run)) && good;
-  good = cli::write_file(folder + "junit.xml", suite::junit_report(run)) && good;
-  return cli::write_file(folder + "report.tap", suite::tap_report(run)) && good;
+  return (options.report.empty() || write_folder(options, run, earlier)) && good;
 }
 
 int run(const TestOptions& options) {
   const suite::Cases cases = read_cases(options);
   suite::Plan plan;
   plan.expected = read_expected(options);
-  plan.cases = selected(options, cases);
   const std::optional<suite::EarlierRun> earlier = read_earlier(options);
+  plan.cases = selected(options, cases);
   if (options.list) {
     return cli::write_file(options.out, list_text(plan.cases)) ? cli::kVerdictExpected
                                                                : cli::kVerdictBroken;
@@ -265,7 +271,8 @@ int run(const TestOptions& options) {
   Text text(options, options.format == "text");
   const suite::SuiteRun all = work(options, cases, std::move(plan), earlier, how, text);
   const bool told = text.finish(options);
-  return write_formats(options, all) && told ? suite::exit_code(all) : cli::kVerdictBroken;
+  const bool written = write_formats(options, all, earlier);
+  return written && told ? suite::exit_code(all) : cli::kVerdictBroken;
 }
 
 void add_selection(CLI::App& command, TestOptions& options) {
@@ -311,10 +318,11 @@ void add_options(CLI::App& command, TestOptions& options) {
   command.add_option("--out", options.out, "Write to this file; - is stdout")
       ->check(cli::given())
       ->capture_default_str();
-  command.add_option("--report", options.report, "Write all reports into this folder")
+  command.add_option("--report", options.report,
+                     "Write index.html and all other reports into this folder")
       ->check(cli::given());
   command.add_option("--compare", options.compare,
-                     "An earlier report.json: say whose verdict has changed")
+                     "report.json of an earlier run: say which verdicts have changed")
       ->check(cli::given());
   command.add_flag("--quiet", options.quiet, "Text: no lines for cases that are as expected");
   command.add_flag("--verbose", options.verbose, "Text: every failure in full");
