@@ -96,6 +96,7 @@ class Formats(Folder):
         report = json.loads((self.folder / "a" / "b" / "report.json").read_text())
         self.assertEqual(report["schema"], "rubric.test/1")
         xml.etree.ElementTree.parse(self.folder / "a" / "b" / "junit.xml")
+        self.assertIn("j4.wrong_seq", (self.folder / "a" / "b" / "index.html").read_text())
         code, _, err = test(*target, "--out", "/dev/full")
         self.assertEqual(code, 2)
         self.assertIn("/dev/full", err)
