@@ -115,6 +115,14 @@ void QemuBoard::put(int descriptor, Bytes bytes) {
   }
 }
 
+// The emulator takes bytes as fast as they come; firmware for a line of 115200 baud does not.
+void QemuBoard::put_serial(Bytes bytes) {
+  constexpr nanoseconds kByteTime{10'000'000'000 / 115'200};
+  std::this_thread::sleep_until(serial_free_);
+  serial_free_ = Steady::now() + kByteTime * static_cast<int>(bytes.size());
+  put(serial_, bytes);
+}
+
 template <class Take>
 void QemuBoard::read_some(int descriptor, Take take) {
   std::array<std::uint8_t, 256> bytes{};

@@ -24,7 +24,7 @@ class QemuBoard : public SimulatedBoard {
   void run(Instant end, Listener& listener) override;
   void stop() override { stopped_ = true; }
   void put_link(Bytes bytes) override { put(link_, bytes); }
-  void put_serial(Bytes bytes) override { put(serial_, bytes); }
+  void put_serial(Bytes bytes) override;
   bool serial_is_idle() const override { return true; }  // Its UART is not held up by bits.
 
  private:
@@ -41,6 +41,7 @@ class QemuBoard : public SimulatedBoard {
   pid_t emulator_ = -1;
   int link_ = -1;
   int serial_ = -1;
+  Steady::time_point serial_free_ = begin_;  ///< When a line would have carried what it was given.
   bool stopped_ = false;
 };
 
