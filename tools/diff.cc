@@ -82,6 +82,8 @@ void compare(const Options& options) {
 void run(const Options& options) {
   try {
     compare(options);
+  } catch (const CLI::Error&) {  // An exit code that was chosen.
+    throw;
   } catch (const std::invalid_argument& error) {
     throw CLI::ValidationError(error.what());
   } catch (const runner::TargetBroken& error) {

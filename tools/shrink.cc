@@ -95,6 +95,8 @@ void shrink_it(const Options& options) {
 void run(const Options& options) {
   try {
     shrink_it(options);
+  } catch (const CLI::Error&) {  // An exit code that was chosen.
+    throw;
   } catch (const std::invalid_argument& error) {
     throw CLI::ValidationError(error.what());
   } catch (const runner::TargetBroken& error) {

@@ -105,7 +105,7 @@ class TextReport {
                       options_.width);
     }
     if (!story_.run.has_time) {
-      out_ += wrapped(kIndent, "Some of it has no time stamps: rules about time are not judged.",
+      out_ += wrapped(kIndent, "What has no time stamps is not judged by rules about time.",
                       options_.width);
     }
   }

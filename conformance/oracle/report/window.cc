@@ -71,9 +71,13 @@ oracle::Run part_of(const oracle::Run& run, const std::vector<FrameRange>& range
     }
   }
   if (begins_later) options.start_cold = false;
-  if (out.seen.empty() || !run.has_time) return out;
-  if (begins_later) out.start_us = std::max<std::int64_t>(0, out.seen.front().place.time_us);
-  if (ends_earlier) out.end_us = std::max(out.start_us, out.seen.back().place.time_us);
+  // What has no time says nothing of when the part begins and ends.
+  const auto timed = [](const oracle::Observation& seen) { return seen.place.timed(); };
+  const auto first = std::find_if(out.seen.begin(), out.seen.end(), timed);
+  if (first == out.seen.end()) return out;
+  const auto last = std::find_if(out.seen.rbegin(), out.seen.rend(), timed);
+  if (begins_later) out.start_us = first->place.time_us;
+  if (ends_earlier) out.end_us = std::max(out.start_us, last->place.time_us);
   return out;
 }
 
