@@ -103,7 +103,7 @@ uint16_t Node::send_own(const OwnMessage& own) {
   uint8_t* const body = message->room() + kNetHeaderBytes;
   body[0] = own.trans_id;
   body[1] = own.app_id;
-  memcpy(body + kAppHeaderBytes, own.data.data(), own.data.size());
+  if (!own.data.empty()) memcpy(body + kAppHeaderBytes, own.data.data(), own.data.size());
   rubicon::NetMsg wire;
   wire.dest = wire_of(dest);
   //= N1-SRC: What a node sends on behalf of its applications carries the node's own address as src;
