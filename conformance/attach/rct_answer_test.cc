@@ -173,8 +173,8 @@ TEST(RctAnswer, RealTimeGoesOn) {
             "line 2 of the answer to `until 300`: done at 119, when 120 has passed");
   EXPECT_EQ(wrong_with(asked, {"up 120 op_result(1)", "done 120"}), "");
   EXPECT_EQ(wrong_with(asked, {"done 299"}),
-            "line 1 of the answer to `until 300`: done at 299, when nothing was written and 300 has "
-            "not come");
+            "line 1 of the answer to `until 300`: done at 299, when nothing was written and 300 "
+            "has not come");
 }
 
 }  // namespace
