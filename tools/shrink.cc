@@ -85,7 +85,8 @@ void shrink_it(const Options& options) {
   const CaseResult last = shrink::play(shrunk.file, player);
   const std::string text =
       shrunk_text(shrunk, name + ".shrunk",
-                  {fmt::format("{} of the {} lines of {}.", shrunk.lines, shrunk.lines_before, name),
+                  {fmt::format("{} of the {} lines of {}.", shrunk.lines, shrunk.lines_before,
+                               name),
                    fmt::format("On {}: {}", attached.name(), outcome_text(last))});
   if (!cli::write_file(options.out, text)) cli::exit_with(cli::kVerdictBroken);
   fmt::print(stderr, "{}: {} lines shrank to {} in {} runs\n{}\n", name, shrunk.lines_before,

@@ -55,7 +55,8 @@ class Shrink(unittest.TestCase):
 
 class Diff(unittest.TestCase):
     def test_a_mutant_and_the_machine(self):
-        code, out, err = run("diff", "--target", "machine", "--target", BROKEN, "--requirement", "J4")
+        code, out, err = run("diff", "--target", "machine", "--target", BROKEN,
+                             "--requirement", "J4")
         self.assertEqual(code, 1, err)
         self.assertIn(".difference", out)
         self.assertIn("; A, ", out)

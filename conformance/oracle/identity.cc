@@ -302,7 +302,8 @@ class Identifier {
       if (sink == kNobody) {
         Device device;
         const std::uint16_t am = streams_.sink_am();
-        device.am = roles_.role_of(am, Role::kSink) == Role::kSink ? am : machine::Profile{}.sink_id;
+        const bool is_sink = roles_.role_of(am, Role::kSink) == Role::kSink;
+        device.am = is_sink ? am : machine::Profile{}.sink_id;
         device.role = Role::kSink;
         device.island = line.first;
         sink = add(device);

@@ -45,7 +45,8 @@ std::optional<Run> read(const std::vector<std::string>& files, std::string& erro
 /// Orders by time what several taps saw; what came at the same time keeps the order of its file,
 /// and files the order in which they were given. Radio stamps are starts of frames and serial
 /// stamps their ends, so a cause stands before what it caused as long as the taps share a clock.
-/// What has no time stands behind what has, makes has_time false, and says nothing of the run's end.
+/// What has no time stands behind what has, makes has_time false, and says nothing of the run's
+/// end.
 void merge(Run& run);
 
 /// Which way a frame on a serial line goes where the capture does not say: a sink's frames carry

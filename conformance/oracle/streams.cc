@@ -26,7 +26,10 @@ constexpr std::uint16_t kBothLines = 0xFFFF;
 }  // namespace
 
 Streams::Streams(const Run& run, const Options& options)
-    : run_(run), given_(options), sink_am_(given_.sink_am().value_or(machine::Profile{}.sink_id)), first_of_(65536, kLast) {}
+    : run_(run),
+      given_(options),
+      sink_am_(given_.sink_am().value_or(machine::Profile{}.sink_id)),
+      first_of_(65536, kLast) {}
 
 IslandHint Streams::hint_of(const machine::Frame& frame) const {
   IslandHint hint;

@@ -92,7 +92,9 @@ DifferenceSearch find_difference(const std::vector<const trace::File*>& files, c
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& x, const Candidate& y) { return x.lines < y.lines; });
   candidates.resize(std::min(candidates.size(), shrunk_max));
-  const StillShows shows = [&](const trace::File& file) { return differ(play(file, a), play(file, b)); };
+  const StillShows shows = [&](const trace::File& file) {
+    return differ(play(file, a), play(file, b));
+  };
   for (const Candidate& candidate : candidates) {
     Shrunk shrunk = shrink(*candidate.file, *candidate.one, shows);
     if (shrunk.lines_before == 0) continue;  // It differed by chance.

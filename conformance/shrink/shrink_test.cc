@@ -68,7 +68,8 @@ TEST(Shrink, KeepsWhatItIsAskedFor) {
   });
   EXPECT_EQ(out.lines_before, 5u);
   EXPECT_EQ(out.lines, 1u);
-  EXPECT_EQ(trace::print(*out.file.cases[0].lines()[0]), "      0          m5  <  app  join(telosb_demo 3 1)");
+  EXPECT_EQ(trace::print(*out.file.cases[0].lines()[0]),
+            "      0          m5  <  app  join(telosb_demo 3 1)");
   EXPECT_EQ(out.file.cases[0].name, "x");
   EXPECT_TRUE(trace::check(out.file).empty());
 }
@@ -81,8 +82,8 @@ TEST(Shrink, WhatDoesNotShowItStaysAsItWas) {
   EXPECT_EQ(out.lines, file.file.cases[0].lines().size());
 }
 
-// Every named mutant of the join: its first failing case shrinks to one that still fails alike, that
-// the machine passes, and that no line can be taken from.
+// Every named mutant of the join: its first failing case shrinks to one that still fails alike,
+// that the machine passes, and that no line can be taken from.
 TEST(Shrink, FailuresOfMutants) {
   std::size_t before = 0;
   std::size_t after = 0;

@@ -2,9 +2,9 @@
  * opinion on the explorer, written from the rules J1-J9 and sharing no code with the machine.
  *
  * The air between a mote and a sink keeps its order (with REORDER an ack_join may overtake), holds
- * one copy of a frame at a time, loses frames (LOSS) and delivers some twice (DUPS at most). Time is
- * abstract: a timer that is set may fire at any moment. Every run is finite, so that `eventually'
- * means `before the end'.
+ * one copy of a frame at a time, loses frames (LOSS) and delivers some twice (DUPS at most). Time
+ * is abstract: a timer that is set may fire at any moment. Every run is finite, so that
+ * `eventually' means `before the end'.
  *
  * A flaw is a macro: ACCEPTS_WRONG_SEQ, ONE_PENDING_SEQ, JOINED_ON_LINK_ACK, NO_FAIL,
  * SEVEN_REQUESTS, ANSWERS_MEMBERS, ACKS_WRONG_SEQ. The properties stand at the end, by the names

@@ -80,7 +80,9 @@ Json implementation(const ImplementationRun& run) {
   Json cases = Json::array();
   for (const CaseRun& one : run.cases) cases.push_back(case_run(one));
   Json requirements = Json::array();
-  for (const RequirementSummary& one : by_requirement(run)) requirements.push_back(requirement(one));
+  for (const RequirementSummary& one : by_requirement(run)) {
+    requirements.push_back(requirement(one));
+  }
   return {{"target", run.target},
           {"name", run.identity.name},
           {"version", run.identity.version},

@@ -35,7 +35,7 @@ std::string outcome(const CaseRun& one, Sums& sums) {
     ++sums.skipped;
     return fmt::format("<skipped message=\"known: {}\"/>\n", xml_text(one.expected_reason));
   }
-  if (one.result.verdict == CaseVerdict::kSkip || one.result.verdict == CaseVerdict::kInconclusive) {
+  if (is_undecided(one)) {
     ++sums.skipped;
     return fmt::format("<skipped message=\"{}: {}\"/>\n",
                        runner::verdict_text(one.result.verdict), message);
@@ -47,9 +47,9 @@ std::string outcome(const CaseRun& one, Sums& sums) {
 std::string testcase(const std::string& class_name, const CaseRun& one, Sums& sums) {
   ++sums.tests;
   const std::string inside = outcome(one, sums);
-  std::string out = fmt::format("<testcase classname=\"{}\" name=\"{}\" file=\"{}\" time=\"{:.3f}\"",
-                                xml_text(class_name), xml_text(case_name(one)), xml_text(one.file),
-                                one.wall_ms / 1000);
+  std::string out = fmt::format(
+      "<testcase classname=\"{}\" name=\"{}\" file=\"{}\" time=\"{:.3f}\"", xml_text(class_name),
+      xml_text(case_name(one)), xml_text(one.file), one.wall_ms / 1000);
   return inside.empty() ? out + "/>\n" : out + ">\n" + inside + "</testcase>\n";
 }
 

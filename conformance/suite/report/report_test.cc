@@ -104,8 +104,8 @@ TEST(Report, AnnotationsAreTheGravestFirstAndEscaped) {
   run.implementations[0].cases = {one("x", CaseVerdict::kFail)};
   run.implementations[0].cases[0].result.failures[0].text = "50%\nof it";
   EXPECT_EQ(github_annotations(run),
-            "::error file=conformance/cases/j4.rtr,line=12,title=x on a%2Cb%3Ac 0.3::J4-SEQ: 50%25%0A"
-            "of it\n");
+            "::error file=conformance/cases/j4.rtr,line=12,title=x on a%2Cb%3Ac 0.3::J4-SEQ: 50%25"
+            "%0Aof it\n");
 }
 
 TEST(Report, AtMostTenAnnotations) {

@@ -36,7 +36,7 @@ std::string block(const CaseRun& one) {
 
 std::string directive(const CaseRun& one) {
   if (one.expectation == Expectation::kAsExpected) return " # TODO " + plain(one.expected_reason);
-  if (one.result.verdict == CaseVerdict::kSkip || one.result.verdict == CaseVerdict::kInconclusive) {
+  if (is_undecided(one)) {
     return fmt::format(" # SKIP {}: {}", runner::verdict_text(one.result.verdict),
                        plain(one.result.reason));
   }

@@ -1,10 +1,9 @@
 #include "conformance/suite/report/words.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
 
 #include "codec/reflect/fault_text.h"
+#include "conformance/report/shell.h"
 #include "conformance/trace/trace.h"
 
 namespace rubric::suite {
@@ -14,25 +13,6 @@ std::string base_name(const ImplementationRun& run) {
   const attach::Identity& identity = run.identity;
   if (identity.name.empty()) return run.target;
   return identity.version.empty() ? identity.name : identity.name + " " + identity.version;
-}
-
-// For a shell: as it is where nothing in it is special.
-std::string quoted(const std::string& text) {
-  constexpr std::string_view kPlain = "_-./:=,@+%";
-  const bool plain = !text.empty() && std::all_of(text.begin(), text.end(), [&](char c) {
-    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
-           kPlain.find(c) != std::string_view::npos;
-  });
-  if (plain) return text;
-  std::string out = "'";
-  for (const char c : text) {
-    if (c == '\'') {
-      out += "'\\''";
-    } else {
-      out += c;
-    }
-  }
-  return out + "'";
 }
 
 std::string rules_of(const runner::Failure& failure) {
@@ -72,6 +52,11 @@ std::string case_name(const CaseRun& one) {
   return one.repeat == 0 ? one.name : fmt::format("{}#{}", one.name, one.repeat + 1);
 }
 
+bool is_undecided(const CaseRun& one) {
+  return one.result.verdict == runner::CaseVerdict::kSkip ||
+         one.result.verdict == runner::CaseVerdict::kInconclusive;
+}
+
 std::string headline(const CaseRun& one) {
   if (one.expectation == Expectation::kUnexpectedPass) {
     return "it passes, but was expected to fail: " + one.expected_reason;
@@ -106,11 +91,11 @@ std::string in_full(const CaseRun& one) {
 
 std::string replay_command(const SuiteRun& run, const ImplementationRun& implementation,
                            const CaseRun& one) {
-  std::string out = fmt::format("rubric test --target {} --cases {}", quoted(implementation.target),
-                                quoted(one.name));
+  std::string out = "rubric test --target " + report::shell_word(implementation.target) +
+                    " --cases " + report::shell_word(one.name);
   if (run.profile != "paper") out += " --profile " + run.profile;
   if (one.seed != 0) out += fmt::format(" --seed {}", one.seed);
-  for (const std::string& path : run.traces) out += " " + quoted(path);
+  for (const std::string& path : run.traces) out += " " + report::shell_word(path);
   return out;
 }
 

@@ -22,10 +22,12 @@ std::string_view expectation_text(Expectation expectation);
 std::string implementation_name(const SuiteRun& run, std::size_t index);
 /// "j4.accept", and "j4.accept#2" of a repeated case.
 std::string case_name(const CaseRun& one);
+/// Skipped or inconclusive.
+bool is_undecided(const CaseRun& one);
 /// In one line: the first failure, or why there is no verdict.
 std::string headline(const CaseRun& one);
-/// Rules with their sentences, the lines that were not kept, what happened instead, and the standard
-/// error of what broke.
+/// Rules with their sentences, the lines that were not kept, what happened instead, and the
+/// standard error of what broke.
 std::string in_full(const CaseRun& one);
 /// The command that runs just this case again.
 std::string replay_command(const SuiteRun& run, const ImplementationRun& implementation,
