@@ -136,7 +136,7 @@ class Data {
     const std::vector<const Line*> lines = one.result.log.lines();
     Json failures = Json::array();
     for (const runner::Failure& each : one.result.failures) {
-      failures.push_back(failure(each, lines));
+      failures.push_back(failure(each, one.nodes, lines));
     }
     return {{"implementation", i},
             {"repeat", one.repeat},
@@ -155,7 +155,7 @@ class Data {
             {"replay", replay_command(run_, implementation, one)},
             {"rtr", links_[i][index].rtr},
             {"pcapng", links_[i][index].pcapng},
-            {"nodes", nodes(one)},
+            {"nodes", nodes_of(one)},
             {"failures", std::move(failures)},
             {"log", log(one, lines)}};
   }
@@ -166,7 +166,8 @@ class Data {
     return found == earlier_->verdicts.end() ? std::string() : found->second;
   }
 
-  Json failure(const runner::Failure& one, const std::vector<const Line*>& lines) {
+  Json failure(const runner::Failure& one, const std::vector<trace::NodeHeader>& nodes,
+               const std::vector<const Line*>& lines) {
     const std::optional<Line> asked = asked_line(one);
     Json row = -1;
     for (std::size_t i = 0; i < lines.size() && row == -1; ++i) {
@@ -188,10 +189,11 @@ class Data {
             {"node", asked ? asked->node : ""},
             {"link", asked ? asked->link : ""},
             {"short", asked ? short_text(asked->message) : ""},
+            {"peers", asked ? peers_of(nodes, *asked) : std::vector<std::size_t>()},
             {"row", row}};
   }
 
-  static Json nodes(const CaseRun& one) {
+  static Json nodes_of(const CaseRun& one) {
     Json out = Json::array();
     for (const trace::NodeHeader& node : one.nodes) {
       Json added = {{"name", node.name},

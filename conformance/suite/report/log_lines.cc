@@ -35,6 +35,13 @@ void keep_of_island(const std::vector<NodeHeader>& nodes, const Line& line,
   });
 }
 
+// AM addresses of a serial line say nothing, and what stands behind a message neither.
+bool is_same(const Line& before, const Line& line) {
+  return before.link == line.link && before.node != line.node && before.am &&
+         (line.link.starts_with("ser") || *before.am == *line.am) &&
+         before.message == line.message;
+}
+
 }  // namespace
 
 std::vector<std::size_t> peers_of(const std::vector<NodeHeader>& nodes, const Line& line) {
@@ -103,8 +110,7 @@ std::vector<std::size_t> first_seen(const std::vector<const Line*>& lines) {
       const Line& before = *lines[k];
       const std::int64_t ago = line.time.from - before.time.from;
       if (ago > kOnItsWayTicks) break;
-      if (before.link != line.link || before.node == line.node || before.bytes != line.bytes ||
-          out[k] != kNoLine || (before.op == Op::kGiven && ago > 0)) {
+      if (out[k] != kNoLine || (before.op == Op::kGiven && ago > 0) || !is_same(before, line)) {
         continue;
       }
       if (std::any_of(given.begin(), given.end(), [&](const auto& one) {

@@ -16,16 +16,16 @@ function showCase(name, label, number) {
     h('p', { class: 'comment' }, one.comment),
     h('div', { class: 'columns' },
       h('div', {},
-        run.failures.map((failure) => failureView(failure, run)),
+        failuresView(run),
         !run.failures.length && run.reason &&
           h('section', { class: 'failure is-' + run.verdict }, h('h3', {}, 'Why'),
             h('p', {}, run.reason)),
         run.stderr && [h('h3', {}, 'Standard error'),
           h('pre', { tabindex: '0', class: 'stderr' }, run.stderr)],
         h('h3', {}, 'What happened'),
-        caseChart(run, log.pick)),
+        caseChart(run, log.pick),
+        h('h3', {}, 'Log'), log.element),
       h('aside', { 'aria-label': 'About this case' }, aboutCase(one, run))),
-    h('h3', {}, 'Log'), log.element,
     h('h3', {}, 'The case'), source(one, run));
 }
 
@@ -57,7 +57,7 @@ function aboutCase(one, run) {
     ['Profile', run.profile],
     ['Seed', run.seed === '0' ? '' : run.seed],
     ['Length', `${run.length_ticks} ticks (${(run.length_ticks / 1024).toFixed(3)} s)`],
-    ['Took', `${run.wall_ms.toFixed(1)} ms`],
+    ['Took', run.wall_ms < 0.1 ? 'below 0.1 ms' : `${run.wall_ms.toFixed(1)} ms`],
     ['Again', h('code', { class: 'command' }, run.replay)],
     ['Files', [run.rtr && h('a', { href: run.rtr }, 'log (.rtr)'), ' ',
       run.pcapng && h('a', { href: run.pcapng }, 'capture (.pcapng)')].filter(Boolean)],
@@ -68,23 +68,35 @@ function aboutCase(one, run) {
   ]);
 }
 
-const seconds = (ticks) => (ticks / 1024).toFixed(3) + ' s';
+// The first in full; more of them often say the same.
+function failuresView(run) {
+  const [first, ...rest] = run.failures;
+  return [first && failureView(first, run),
+    rest.length > 0 && h('details', { class: 'rest' },
+      h('summary', {}, count(rest.length, 'more line') + ' of the case that ' +
+        (rest.length === 1 ? 'was' : 'were') + ' not kept'),
+      rest.map((failure) => failureView(failure, run)))];
+}
+
+const ms = (ticks) => (ticks * 1000 / 1024).toFixed(1);
 
 function failureView(failure, run) {
   const when = failure.from === failure.to ? `at tick ${failure.from}`
     : `from tick ${failure.from} to ${failure.to}`;
+  const real = failure.from === failure.to ? ms(failure.from)
+    : `${ms(failure.from)} to ${ms(failure.to)}`;
   const asked = failure.expected !== '';
   return h('section', { class: 'failure' + (failure.weak ? ' is-weak' : '') +
       (run.verdict === 'error' ? ' is-error' : '') },
   h('h3', {}, failure.rules.length
     ? failure.rules.map((id, i) => [i ? ' ' : '', ruleLink(id)]) : 'No rule',
   failure.weak && h('span', { class: 'flag' }, 'SHOULD')),
-  failure.rules.map((id) => data.rules[id] && h('p', {}, data.rules[id].sentence)),
+  failure.rules.map((id) => ruleOf(id) && h('p', {}, ruleOf(id).sentence)),
   h('dl', { class: 'facts' },
     asked && h('div', {},
       h('dt', {}, failure.forbidden ? 'Forbidden' : 'Expected'),
       h('dd', {}, h('code', {}, failure.expected),
-        h('div', { class: 'soft' }, `${when} (${seconds(failure.from)}), line ${failure.line} of `,
+        h('div', { class: 'soft' }, `${when} (${real} ms), line ${failure.line} of `,
           h('code', {}, data.cases.find((one) => one.runs.includes(run)).file)))),
     h('div', {}, h('dt', {}, 'But'), h('dd', { class: 'but' }, failure.text))));
 }

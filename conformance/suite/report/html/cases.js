@@ -2,6 +2,8 @@
 
 const kNoFilter = { text: '', verdict: 'all', role: 'all', family: 'all' };
 const filter = { ...kNoFilter };
+const kChoices = { verdict: ['unexpected', 'changed', ...kVerdicts],
+  role: ['mote', 'sink', 'base_station'], family: families };
 const kRulesShown = 4;
 
 const wordsOf = (one) => [one.name, one.comment, one.rules.join(' '),
@@ -33,7 +35,10 @@ function casesHash(state) {
 
 function readFilter(query) {
   const given = new URLSearchParams(query);
-  for (const key of Object.keys(kNoFilter)) filter[key] = given.get(key) ?? kNoFilter[key];
+  for (const key of Object.keys(kNoFilter)) {
+    const value = given.get(key) ?? '';
+    filter[key] = key === 'text' || kChoices[key].includes(value) ? value : kNoFilter[key];
+  }
 }
 
 function bar(counts, total) {
@@ -64,7 +69,7 @@ function tile(implementation) {
       `${counts[name]} ${name}`)]);
   return h('li', {},
     h('h3', {}, implementation.label),
-    h('div', { class: 'soft mono target' }, implementation.target),
+    h('div', { class: 'soft mono target', title: implementation.target }, implementation.target),
     bar(counts, total),
     h('div', {}, implementation.dishonest ? 'Not believed: ' + implementation.dishonest
       : words.length ? words : 'nothing was run'),
@@ -150,7 +155,8 @@ function showCases(query) {
     h('ul', { class: 'tiles' }, data.implementations.map(tile)),
     ...[stale()].filter(Boolean),
     filters(changed), caption,
-    scroll('Matrix of cases', h('table', { id: 'matrix' },
+    scroll('Matrix of cases', h('table', { id: 'matrix',
+      class: data.implementations.length > 1 ? 'many' : 'one' },
       h('thead', {}, h('tr', {}, h('th', { scope: 'col' }, 'Case'),
         data.implementations.map((one) => h('th', { scope: 'col' }, one.label)),
         h('th', { scope: 'col' }, 'Rules'))),

@@ -55,7 +55,8 @@ function withFailures(rows, run, hasAppLane) {
     const missing = failure.expected !== '';
     const at = rows.findIndex((row) => row.time > failure.time);
     const named = run.nodes.some((node) => node.name === failure.node);
-    const to = failure.link === 'app' && hasAppLane ? appLane(failure.node) : null;
+    const peer = failure.peers.length ? run.nodes[failure.peers[0]].name : null;
+    const to = failure.link === 'app' && hasAppLane ? appLane(failure.node) : peer;
     rows.splice(at < 0 ? rows.length : at, 0, { marked: true, missing: true, time: failure.to,
       node: failure.node, link: failure.link,
       short: missing ? 'no ' + failure.short : cut(failure.text, 60),
@@ -103,10 +104,10 @@ function caseChart(run, pick) {
 
 // The heads of the lanes stay in sight while the rest scrolls.
 function sequence(rows, lanes, { words, figure, pick }) {
-  const gap = figure ? 230 : Math.max(110, Math.min(200, 700 / lanes.length));
+  const gap = figure ? 330 : Math.max(110, Math.min(200, 700 / lanes.length));
   const left = kTimeWidth + (figure ? 90 : Math.max(kStub + 14, gap / 2));
   const x = new Map(lanes.map((lane, i) => [lane.key, left + i * gap]));
-  const end = left + (lanes.length - 1) * gap + (figure ? 90 : gap / 2);
+  const end = left + (lanes.length - 1) * gap + (figure ? 90 : 50);
   const width = end + (figure ? 0 : kTextWidth);
   const step = figure ? kRowFigure : kRow;
   const height = rows.length * step + 14;
@@ -142,7 +143,7 @@ function drawRow(row, at) {
     group.append(s('text', { class: 'dim', x: kTimeWidth - 12, y: y + 4, 'text-anchor': 'end' },
       row.time));
   }
-  for (const arrow of row.arrows) group.append(...drawArrow(arrow, x, y));
+  for (const arrow of inSteps(row.arrows, x)) group.append(...drawArrow(arrow, x, y));
   if (figure) {
     const ends = row.arrows.flatMap((one) => [x.get(one.from), x.get(one.to)])
       .filter((value) => value !== undefined);
@@ -161,8 +162,20 @@ function drawRow(row, at) {
   return group;
 }
 
+// One that goes to several lanes goes from each to the next.
+function inSteps(arrows, x) {
+  const starts = new Map();
+  return [...arrows].sort((a, b) => Math.abs(x.get(a.to) - x.get(a.from)) -
+    Math.abs(x.get(b.to) - x.get(b.from))).map((one) => {
+    const way = one.from + Math.sign(x.get(one.to) - x.get(one.from));
+    const start = starts.get(way);
+    if (!one.lost) starts.set(way, x.get(one.to));
+    return { ...one, start };
+  });
+}
+
 function drawArrow(arrow, x, y) {
-  let from = x.get(arrow.from);
+  let from = arrow.start ?? x.get(arrow.from);
   let to = x.get(arrow.to);
   if (arrow.app) {  // To or from an application that has no lane, or something done to the node.
     if (arrow.app === '<') from = to - kStub;

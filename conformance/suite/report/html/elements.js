@@ -46,11 +46,14 @@ const cut = (text, size) => text.length > size ? text.slice(0, size - 1) + '\u20
 const hashOf = (...parts) => '#/' + parts.map(encodeURIComponent).join('/');
 const caseHash = (name, run) =>
   hashOf('case', name, data.implementations[run.implementation].label, run.repeat + 1);
+const ruleOf = (id) => Object.hasOwn(data.rules, id) ? data.rules[id] : null;
 const ruleLink = (id) =>
-  data.rules[id] ? h('a', { class: 'mono', href: hashOf('rule', id) }, id)
+  ruleOf(id) ? h('a', { class: 'mono', href: hashOf('rule', id) }, id)
     : h('span', { class: 'mono' }, id);
 const familyOf = (id) => id.split('-')[0];
 const families = [...new Set(Object.keys(data.rules).map(familyOf))];
+const isCompared = data.implementations.map((_, i) => data.cases.some((one) =>
+  one.runs.some((run) => run.implementation === i && run.earlier !== '')));
 const isChanged = (run) => run.earlier !== '' && run.earlier !== run.verdict;
 
 // ---- Verdicts.
@@ -63,7 +66,7 @@ function flagsOf(run) {
   if (run.expectation === 'unexpected_pass') flags.push('was to fail');
   if (run.expectation === 'otherwise') flags.push('not as known');
   if (isChanged(run)) flags.push('was ' + run.earlier);
-  if (data.earlier && run.earlier === '') flags.push('new');
+  if (run.earlier === '' && isCompared[run.implementation]) flags.push('new');
   return flags;
 }
 

@@ -69,10 +69,25 @@ function joinFigure(run) {
     if (notice) break;
   }
   const shown = rows.slice(from, end + 1).filter((row) => isOf(row) || sinks.has(row.node))
-    .map((row) => ({ ...row, label: row.frame === undefined ? cut(row.text, 34) : row.short }));
+    .map((row) => ({ ...row, label: figureLabel(row) }));
   const lanes = lanesOf(shown, run.nodes, (node) => node.role === 'mote' ? 'left' : 'right');
   return sequence(shown, lanes, { figure: true, words: `The join of ${mote}, ` +
     count(shown.length, 'message') + ': ' + shown.map((row) => row.label).join(', ') });
+}
+
+// "joined(11:2, success)"; of frames what the join is about.
+function figureLabel(row) {
+  const word = wordOf(row);
+  const fields = [...row.text.matchAll(/([\w.]+)=([^\s()]+)/g)];
+  const wanted = { join_request: ['mote_type', 'seq_num'], ack_join: ['src', 'seq_num'],
+    join_reply: ['island_addr', 'mote_addr', 'seq_num'] }[word];
+  const shown = wanted
+    ? wanted.map((name) => fields.find((field) =>
+      field[1].split('.').pop() === name)).filter(Boolean)
+      .map(([, name, value]) => ({ seq_num: 'seq ', island_addr: 'island ',
+        mote_addr: 'mote ' }[name] || '') + value)
+    : fields.map((field) => field[2]);
+  return cut(`${word}(${shown.join(', ')})`, 43);
 }
 
 const kLane = 44;

@@ -64,7 +64,7 @@ function showRules() {
 }
 
 function showRule(id) {
-  const rule = data.rules[id];
+  const rule = ruleOf(id);
   if (!rule) return showMissing('rule', id);
   const many = data.implementations.length > 1;
   main.replaceChildren(
