@@ -9,7 +9,7 @@ const kHead = 34;
 const kTimeWidth = 76;
 const kStub = 30;
 const kRowsMax = 400;
-const kTextWidth = 460;
+const kTextWidth = 400;
 
 const appLane = (node) => 'app of ' + node;
 
@@ -81,6 +81,11 @@ function lanesOf(rows, nodes, appsOf) {
     }
     if (place === 'right' && used.has(app)) lanes.push({ key: app, text: 'application' });
   }
+  for (const name of used) {  // Whoever the case does not know has a lane too.
+    if (name && !lanes.some((lane) => lane.key === name)) {
+      lanes.push({ key: name, text: cut(name, 16) });
+    }
+  }
   return lanes;
 }
 
@@ -104,7 +109,7 @@ function caseChart(run, pick) {
 
 // The heads of the lanes stay in sight while the rest scrolls.
 function sequence(rows, lanes, { words, figure, pick }) {
-  const gap = figure ? 330 : Math.max(110, Math.min(200, 700 / lanes.length));
+  const gap = figure ? 330 : Math.max(72, Math.min(200, 600 / lanes.length));
   const left = kTimeWidth + (figure ? 90 : Math.max(kStub + 14, gap / 2));
   const x = new Map(lanes.map((lane, i) => [lane.key, left + i * gap]));
   const end = left + (lanes.length - 1) * gap + (figure ? 90 : 50);
@@ -124,12 +129,15 @@ function sequence(rows, lanes, { words, figure, pick }) {
       heads.append(s('text', { class: 'dim small', x: at, y: 28, 'text-anchor': 'middle' },
         lane.role));
     }
-    body.append(s('line', { class: lane.iut ? 'life iut' : 'life', x1: at, x2: at, y1: 0,
-      y2: height }));
   }
   rows.forEach((row, i) => body.append(drawRow(row, {
     y: i * step + (figure ? step - 10 : step / 2 + 3), step, x, end, width, figure, pick,
     before: i > 0 ? rows[i - 1].time : -1 })));
+  for (const lane of lanes) {  // Above the bands of rows.
+    const at = x.get(lane.key);
+    body.append(s('line', { class: lane.iut ? 'life iut' : 'life', x1: at, x2: at, y1: 0,
+      y2: height }));
+  }
   return h('div', { class: 'sequence' }, heads, body);
 }
 

@@ -1,0 +1,130 @@
+'use strict';
+// The page in a real Chromium, from file://: what it shows, what it does, that everybody can use
+// it, and that nothing it is told gets out of its place.
+// Usage: node browser_test.js SAMPLE [SHOTS]: SAMPLE writes a report into a folder; into SHOTS go
+// pictures of the views.
+const assert = require('node:assert');
+const { execFileSync } = require('node:child_process');
+const fs = require('node:fs');
+const os = require('node:os');
+const path = require('node:path');
+const url = require('node:url');
+const { chromium } = require('playwright-core');
+const { views } = require('./views.js');
+const { checks } = require('./checks.js');
+
+const kFlags = ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run',
+  '--disable-background-networking', '--disable-component-update', '--disable-sync'];
+const kLoadMsMax = 3000;
+const kCasesMin = 500;
+
+// A page that keeps account of everything that must not happen.
+async function open(browser, scheme, shape = { width: 1400, height: 950 }) {
+  const context = await browser.newContext({ colorScheme: scheme, viewport: shape });
+  await context.addInitScript(() => {
+    window.violations = [];
+    document.addEventListener('securitypolicyviolation', (event) =>
+      window.violations.push(`${event.violatedDirective} ${event.blockedURI}`));
+  });
+  const page = await context.newPage();
+  const breaches = [];
+  page.on('console', (message) => breaches.push('console: ' + message.text()));
+  page.on('pageerror', (error) => breaches.push('error: ' + error.stack));
+  page.on('request', (request) => {
+    const wanted = request.url().split('#')[0];
+    if (wanted !== page.home && !wanted.startsWith('data:')) breaches.push('request: ' + wanted);
+  });
+  page.clean = async () => {
+    const violations = await page.evaluate(() => window.violations);
+    assert.deepStrictEqual([...breaches, ...violations], []);
+  };
+  return page;
+}
+
+async function go(page, hash) {
+  await page.goto(page.home + hash);
+  await page.evaluate(() => new Promise((done) => requestAnimationFrame(done)));
+}
+
+async function loadTime(page) {
+  const started = process.hrtime.bigint();
+  await page.goto(page.home);
+  await page.waitForFunction((least) =>
+    document.querySelectorAll('#matrix tbody tr').length >= least, kCasesMin);
+  const ms = Number(process.hrtime.bigint() - started) / 1e6;
+  const rows = await page.locator('#matrix tbody tr').count();
+  console.log(`ok   ${rows} cases are there after ${ms.toFixed(0)} ms`);
+  assert.ok(ms < kLoadMsMax, `it took ${ms.toFixed(0)} ms to load`);
+}
+
+// Every view in both colours: no violation of accessibility, nothing wider than the window.
+async function everyView(browser, home, shots) {
+  const axe = require('axe-core').source;
+  for (const scheme of ['light', 'dark']) {
+    const page = await open(browser, scheme);
+    page.home = home;
+    for (const [name, hash, prepare] of views) {
+      await go(page, hash);
+      if (prepare) await prepare(page);
+      await page.evaluate(axe);
+      const found = await page.evaluate(() => window.axe.run(document, { resultTypes:
+        ['violations'] }));
+      assert.deepStrictEqual(found.violations.map((one) =>
+        `${one.id}: ${one.nodes.map((node) => node.html).join(' ')}`), [], `${name}, ${scheme}`);
+      assert.ok(found.passes.length > 10, 'axe looked at next to nothing');
+      if (shots) await page.screenshot({ path: path.join(shots, `${name}-${scheme}.png`) });
+    }
+    await page.clean();
+    await page.context().close();
+    console.log(`ok   axe: 0 violations in ${views.length} views, ${scheme}`);
+  }
+}
+
+async function main() {
+  const [sample, shots] = process.argv.slice(2);
+  if (!sample) throw new Error('usage: node browser_test.js SAMPLE [SHOTS]');
+  const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'report-'));
+  const browser = await chromium.launch({ executablePath: '/usr/bin/chromium', headless: true,
+    args: kFlags });
+  let failed = 0;
+  try {
+    execFileSync(sample, [folder], { stdio: 'inherit' });
+    const home = url.pathToFileURL(path.join(folder, 'index.html')).href;
+    const whole = [
+      ['loads in time', async () => {
+        const page = await open(browser, 'light');
+        page.home = home;
+        await loadTime(page);
+        await page.clean();
+      }],
+      ['every view', () => everyView(browser, home, shots)],
+      ...checks.map(([name, check, options = {}]) => [name, async () => {
+        const page = await open(browser, options.scheme || 'light', options.shape);
+        page.home = home;
+        page.folder = folder;
+        await check(page, (hash) => go(page, hash));
+        await page.clean();
+        await page.context().close();
+      }]),
+    ];
+    for (const [name, check] of whole) {
+      try {
+        await check();
+        console.log('ok   ' + name);
+      } catch (error) {
+        ++failed;
+        console.log(`FAIL ${name}\n${error.stack}`);
+      }
+    }
+  } finally {
+    await browser.close();
+    fs.rmSync(folder, { recursive: true });
+  }
+  console.log(failed ? `${failed} failed` : 'all passed');
+  process.exit(failed ? 1 : 0);
+}
+
+main().catch((error) => {
+  console.error(error);
+  process.exit(1);
+});
