@@ -7,7 +7,7 @@
 
 namespace rubric::suite {
 
-/// Its log as a trace: what `rubric check` judges, and a golden trace that asks for just this.
+/// Its log as a trace that asks for just this.
 std::string case_rtr(const CaseRun& one);
 
 /// Its frames as a pcapng file: radio as 802.15.4 with FCS, each serial line on an interface of its

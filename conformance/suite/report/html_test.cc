@@ -171,6 +171,17 @@ TEST(CaseFiles, LogsAreReadAgain) {
   }
 }
 
+// Whoever passed a case passes its own log.
+TEST(CaseFiles, LogsAreGoldenTraces) {
+  for (const CaseRun& each : whole().implementations[0].cases) {
+    const Cases again = Cases::of_text(case_rtr(each), each.name);
+    testing::FakeAttachment machine;
+    const CaseRun second = run_one(again.all().at(0), machine, "", std::nullopt);
+    EXPECT_EQ(second.result.verdict, runner::CaseVerdict::kPass)
+        << runner::explain(second.result, each.name);
+  }
+}
+
 struct Captured {
   std::map<std::string, std::size_t> packets;  // By interface.
   std::size_t bad = 0;
