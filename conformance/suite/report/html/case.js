@@ -89,7 +89,8 @@ function failureView(failure, run) {
   return h('section', { class: 'failure' + (failure.weak ? ' is-weak' : '') +
       (run.verdict === 'error' ? ' is-error' : '') },
   h('h3', {}, failure.rules.length
-    ? failure.rules.map((id, i) => [i ? ' ' : '', ruleLink(id)]) : 'No rule',
+    ? failure.rules.map((id, i) => [i ? ' ' : '', ruleLink(id)])
+    : asked ? 'A line without a rule' : 'It broke',
   failure.weak && h('span', { class: 'flag' }, 'SHOULD')),
   failure.rules.map((id) => ruleOf(id) && h('p', {}, ruleOf(id).sentence)),
   h('dl', { class: 'facts' },
@@ -98,7 +99,7 @@ function failureView(failure, run) {
       h('dd', {}, h('code', {}, failure.expected),
         h('div', { class: 'soft' }, `${when} (${real} ms), line ${failure.line} of `,
           h('code', {}, data.cases.find((one) => one.runs.includes(run)).file)))),
-    h('div', {}, h('dt', {}, 'But'), h('dd', { class: 'but' }, failure.text))));
+    h('div', {}, h('dt', {}, asked ? 'But' : 'How'), h('dd', { class: 'but' }, failure.text))));
 }
 
 // ---- Every line of the log, frames with their bytes.

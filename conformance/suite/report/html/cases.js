@@ -71,7 +71,8 @@ function tile(implementation) {
     h('h3', {}, implementation.label),
     h('div', { class: 'soft mono target', title: implementation.target }, implementation.target),
     bar(counts, total),
-    h('div', {}, implementation.dishonest ? 'Not believed: ' + implementation.dishonest
+    h('div', {}, implementation.dishonest
+      ? [h('span', { class: verdictClass('error') }, 'refused'), ' ', implementation.dishonest]
       : words.length ? words : 'nothing was run'),
     total > 0 && h('div', { class: 'soft' }, ruleWords(implementation.rules)),
     h('div', { class: 'soft' },

@@ -59,7 +59,7 @@ function withFailures(rows, run, hasAppLane) {
     const to = failure.link === 'app' && hasAppLane ? appLane(failure.node) : peer;
     rows.splice(at < 0 ? rows.length : at, 0, { marked: true, missing: true, time: failure.to,
       node: failure.node, link: failure.link,
-      short: missing ? 'no ' + failure.short : cut(failure.text, 60),
+      short: missing ? 'no ' + failure.short : 'it broke',
       text: missing ? failure.expected : failure.text,
       arrows: named && missing
         ? [{ from: failure.node, to, lost: true, app: failure.link === 'app' && '>' }] : [] });
