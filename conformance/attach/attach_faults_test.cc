@@ -54,6 +54,8 @@ const Fault kFaults[] = {
     {"bad_hex", "'0000zz' is no even number of hex digits"},
     {"ready_again", "expected tx, up, next, note or `done`, given 'ready'"},
     {"unknown_event", "'exploded' is no message"},
+    {"false_next", "it wrote something at 500 after `next -`"},
+    {"refuses_time", "unsupported `until 0`: time"},
     {"unasked", "something is written behind the closing line"},
     {"newer_version", "speaks version 2 of the protocol"},
     {"no_version", "is no version, such as rct/1"},

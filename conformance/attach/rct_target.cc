@@ -126,20 +126,21 @@ Ticks RctTarget::run_until(Ticks time) {
   return let_pass(time);
 }
 
-bool RctTarget::quiet_until(Ticks time) const {
-  if (settled_ && time <= now_) return true;
-  return knows_next_ && (!next_ || *next_ > time);
-}
-
-// As run_until, but for link acks.
+// As run_until, but for link acks. Silence is what the adapter says when it is asked, not what it
+// has foretold; and what it has foretold has to be so.
 Ticks RctTarget::let_pass(Ticks time) {
   time = std::max(time, now_);
-  if (quiet_until(time) && !client_->identity().real_time) {
-    now_ = time;
-    settled_ = true;
-    return now_;
+  if (settled_ && time <= now_) return now_;
+  const bool foretold = knows_next_;
+  const std::optional<Ticks> next = next_;
+  const std::size_t before = outputs_.size();
+  ask(fmt::format("until {}", time), time, true);
+  if (foretold && outputs_.size() > before && (!next || outputs_[before].time < *next)) {
+    client_->give_up();
+    throw TargetBroken(fmt::format("it wrote something at {} after `next {}`",
+                                   outputs_[before].time, next ? std::to_string(*next) : "-"));
   }
-  return ask(fmt::format("until {}", time), time, true);
+  return now_;
 }
 
 Ticks RctTarget::ask(std::string command, Ticks time, bool passes_time) {
@@ -150,7 +151,7 @@ Ticks RctTarget::ask(std::string command, Ticks time, bool passes_time) {
   asked.passes_time = passes_time;
   asked.real_time = client_->identity().real_time;
   const bool waits = asked.real_time && time > now_;
-  const Answer answer = client_->ask(asked, ms_of(waits ? time - now_ : 0));
+  const Answer answer = answer_to(asked, ms_of(waits ? time - now_ : 0));
   for (const Output& output : answer.outputs) {
     const bool same = !outputs_.empty() && outputs_.back().time == output.time;
     at_instant_ = same ? at_instant_ + 1 : 1;
@@ -170,6 +171,16 @@ Ticks RctTarget::ask(std::string command, Ticks time, bool passes_time) {
   knows_next_ = answer.has_next;
   next_ = answer.next;
   return now_;
+}
+
+Answer RctTarget::answer_to(const Asked& asked, Milliseconds more) {
+  try {
+    return client_->ask(asked, more);
+  } catch (const Unsupported& error) {
+    if (!asked.passes_time) throw;
+    client_->give_up();  // Whoever has started lets time pass.
+    throw TargetBroken(std::string("unsupported ") + error.what());
+  }
 }
 
 // A clock that is ahead would have us believe in a silence that nobody heard.

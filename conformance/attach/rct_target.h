@@ -35,8 +35,8 @@ class RctTarget : public runner::Target {
  private:
   /// Asks, and keeps what comes. Returns the instant of `done`.
   Ticks ask(std::string command, Ticks time, bool passes_time);
+  Answer answer_to(const Asked& asked, Milliseconds more);
   Ticks let_pass(Ticks time);
-  bool quiet_until(Ticks time) const;
   void compare_clocks(const std::string& command);
 
   std::unique_ptr<RctClient> client_;

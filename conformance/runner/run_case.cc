@@ -44,8 +44,11 @@ class Run {
         result.reason = unseen_;
       }
     } catch (const Unsupported& error) {
-      result.failures.clear();
-      result.verdict = CaseVerdict::kSkip;
+      judge_what_came(result);
+      if (result.verdict < CaseVerdict::kFail) {
+        result.failures.clear();
+        result.verdict = CaseVerdict::kSkip;
+      }
       result.reason = error.what();
     } catch (const trace::TraceError& error) {
       broken(result, error.place(), error.what());
@@ -209,6 +212,29 @@ class Run {
     Ticks end = now_;
     for (const Pending& one : forbidden_) end = std::max(end, one.window.to);
     pass_all(end);
+    judge_outputs(result);
+  }
+
+  // Nothing more is to be had of the target; what it has done is done. Of the lines that were not
+  // reached those that forbid count where their window is known, and the others may have had what
+  // came.
+  void judge_what_came(CaseResult& result) {
+    bool reached = true;
+    for (const Line* line : case_.lines()) {
+      if (!reached && node_of(*line)) {
+        const bool known = line->time.base == trace::Time::Base::kStart ||
+                           (line->time.base == trace::Time::Base::kLabel &&
+                            labels_.find(line->time.label) != labels_.end());
+        const Window window = known ? window_of(*line) : Window{0, now_};
+        if (known && line->op == Op::kMustNot) forbidden_.push_back({line, window});
+        if (line->op == Op::kEmits || line->op == Op::kMay) allowed_.push_back({line, window});
+      }
+      if (line->place.line == place_.line) reached = false;
+    }
+    judge_outputs(result);
+  }
+
+  void judge_outputs(CaseResult& result) {
     for (const Pending& one : allowed_) {
       node_of(*one.line)->allow(*one.line, one.window, bindings_);
     }

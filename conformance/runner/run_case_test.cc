@@ -125,6 +125,44 @@ INSTANTIATE_TEST_SUITE_P(All, Rows, testing::Values(
       CaseVerdict::kFail, "at 30 it came before one that was to come first"}),
   [](const auto& row) { return std::string(row.param.name); });
 
+// A Ticker that takes no calls.
+class Refuser : public Ticker {
+ public:
+  using Ticker::Ticker;
+  void give(Ticks now, const machine::Event& event) override {
+    Ticker::give(now, event);
+    throw Unsupported("calls");
+  }
+};
+
+CaseResult refused(const std::string& lines, std::vector<Ticks> times) {
+  const trace::Parsed parsed = trace::parse(
+      "%rtr 1\n%profile paper\n%node m5 mote id=5 iut\ncase x\n" + lines, "x.rtr");
+  EXPECT_EQ(parsed.errors(), "");
+  return run_case(parsed.file, parsed.file.cases.at(0), [&](const trace::NodeHeader&) {
+    return std::make_unique<Refuser>(times);
+  });
+}
+
+TEST(RunCase, WhatIsUnsupportedIsSkipped) {
+  const CaseResult result =
+      refused("@90 m5 < app get_clock()\n0..50 m5 > app clock(ms=30)\n@0..90 m5 !> app *\n", {30});
+  EXPECT_EQ(result.verdict, CaseVerdict::kSkip) << explain(result, "x.rtr");
+  EXPECT_EQ(result.reason, "calls");
+}
+
+TEST(RunCase, WhatWasBrokenBeforeStaysBroken) {
+  for (const char* lines :
+       {"@0..90 m5 !> app clock(*) [J4-SEQ]\n@90 m5 < app get_clock()\n",
+        "@90 m5 < app get_clock()\n@0..80 m5 !> app clock(*) [J4-SEQ]\n"}) {
+    const CaseResult result = refused(lines, {30});
+    EXPECT_EQ(result.verdict, CaseVerdict::kFail) << lines;
+    ASSERT_EQ(result.failures.size(), 1u);
+    EXPECT_EQ(result.failures[0].text, "at 30 it emitted app clock(ms=30)");
+    EXPECT_EQ(result.reason, "calls");
+  }
+}
+
 TEST(RunCase, NothingUnderTestIsAnError) {
   const trace::Parsed parsed =
       trace::parse("%rtr 1\n%profile paper\n%node m5 mote id=5\ncase x\n", "x.rtr");
