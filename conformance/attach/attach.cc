@@ -1,11 +1,13 @@
 #include <stdexcept>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "conformance/attach/forwarder.h"
 #include "conformance/attach/line_target.h"
 #include "conformance/attach/rct_attachment.h"
 #include "conformance/attach/serial.h"
+#include "conformance/flaws/flaws.h"
 #include "conformance/runner/subject_target.h"
 
 namespace rubric::attach {
@@ -16,19 +18,47 @@ using machine::Role;
 constexpr std::uint32_t kForwarderBaud = 57600;  // Nobody tells; the slower of the common ones.
 constexpr std::uint32_t kSerialBaud = 115200;
 
-/// The reference machine in this process.
+/// With a fault of release 1.0 around it.
+class FlawedMachine : public runner::Machine {
+ public:
+  explicit FlawedMachine(flaws::StepFunction flawed) : step_(flawed) {}
+  void step(machine::Ticks now, const machine::Event& event, machine::Actions& actions) override {
+    step_(state_, now, event, actions);
+  }
+
+ private:
+  flaws::StepFunction step_;
+};
+
+/// The reference machine in this process, perhaps with a fault.
 class MachineAttachment : public Attachment {
  public:
+  explicit MachineAttachment(const flaws::Flaw* flaw) : flaw_(flaw) {
+    if (flaw) identity_.version = flaw->name;
+  }
   const Identity& identity() override { return identity_; }
   std::unique_ptr<runner::Target> target() override {
-    return std::make_unique<runner::SubjectTarget>(std::make_unique<runner::Machine>());
+    if (!flaw_) {
+      return std::make_unique<runner::SubjectTarget>(std::make_unique<runner::Machine>());
+    }
+    return std::make_unique<runner::SubjectTarget>(std::make_unique<FlawedMachine>(flaw_->step));
   }
   std::string honesty() override { return {}; }
   std::string take_stderr() override { return {}; }
 
  private:
-  const Identity identity_ = machine_identity();
+  const flaws::Flaw* flaw_;
+  Identity identity_ = machine_identity();
 };
+
+std::unique_ptr<Attachment> flawed_machine(std::string_view name) {
+  const flaws::Flaw* flaw = flaws::find(name);
+  if (flaw) return std::make_unique<MachineAttachment>(flaw);
+  std::vector<std::string> names;
+  for (const flaws::Flaw& one : flaws::all()) names.emplace_back(one.name);
+  throw std::invalid_argument(fmt::format("the machine has no flaw '{}'; it knows {}", name,
+                                          fmt::join(names, ", ")));
+}
 
 // Takes `prefix` off the text.
 bool cut(std::string_view& text, std::string_view prefix) {
@@ -98,7 +128,8 @@ std::unique_ptr<Attachment> attach(const std::string& target, const Options& opt
     throw std::invalid_argument("a target has a name or is a command");
   }
   std::string_view text = target;
-  if (target == "machine") return std::make_unique<MachineAttachment>();
+  if (target == "machine") return std::make_unique<MachineAttachment>(nullptr);
+  if (cut(text, "machine:")) return flawed_machine(text);
   if (cut(text, "sf-server:")) return forwarder_server(text, options);
   if (cut(text, "sf:")) return forwarder_client(text, options);
   if (cut(text, "serial:")) return serial_line(text, options);

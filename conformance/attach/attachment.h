@@ -47,9 +47,9 @@ struct Options {
   std::chrono::milliseconds start_timeout{20000};
 };
 
-/// By what the user wrote: `machine`, `sf-server:PORT`, `sf:HOST:PORT`, `serial:DEVICE[:BAUD]`,
-/// `serial:tcp:HOST:PORT`, else a shell command that speaks rct/1. Starts nothing yet. Throws
-/// std::invalid_argument where the text makes no sense.
+/// By what the user wrote: `machine`, `machine:FLAW` (conformance/flaws), `sf-server:PORT`,
+/// `sf:HOST:PORT`, `serial:DEVICE[:BAUD]`, `serial:tcp:HOST:PORT`, else a shell command that speaks
+/// rct/1. Starts nothing yet. Throws std::invalid_argument where the text makes no sense.
 std::unique_ptr<Attachment> attach(const std::string& target, const Options& options);
 
 }  // namespace rubric::attach

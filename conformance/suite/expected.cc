@@ -20,6 +20,8 @@ using runner::CaseVerdict;
 using runner::Failure;
 
 constexpr const char* kNoRule = "none";
+constexpr const char* kOfProfile =
+    "The numbers and switches of the profile say so: the reference machine does it as well.";
 
 struct Mistake {
   std::uint32_t line;
@@ -153,6 +155,10 @@ void expect(const ExpectedFailures& expected, const ImplementationRun& implement
   bool all_known = true;  // Each failure that is no SHOULD.
   for (const Failure& failure : one.result.failures) {
     const char* reason = dialect ? accepted(dialect, failure) : nullptr;
+    const auto& lines = one.lines_of_profile;
+    if (!reason && std::find(lines.begin(), lines.end(), failure.place.line) != lines.end()) {
+      reason = kOfProfile;
+    }
     for (const ExpectedFailure* entry : entries) {
       if (has_rule(*entry, failure) && has_message(*entry, failure)) reason = entry->reason.c_str();
     }

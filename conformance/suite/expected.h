@@ -29,7 +29,8 @@ struct ExpectedFailures {
 ExpectedFailures parse_expected(std::string_view text, const std::string& name);
 
 /// Sets the expectation of a case that was worked. Failures are expected that an entry has, or that
-/// break only rules in which the case's profile accepts a difference. `implementation` needs target
+/// break only rules in which the case's profile accepts a difference, or lines that the reference
+/// machine breaks as well when it plays that profile. `implementation` needs target
 /// and identity.
 void expect(const ExpectedFailures& expected, const ImplementationRun& implementation,
             CaseRun& one);

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "conformance/runner/subject_target.h"
 #include "conformance/suite/canary.h"
 
 namespace rubric::suite {
@@ -92,6 +93,16 @@ class Work {
   std::size_t told_ = 0;
 };
 
+std::vector<std::uint32_t> lines_of_profile(const trace::File& head, const trace::Case& one) {
+  const runner::CaseResult result =
+      runner::run_case(head, one, [](const trace::NodeHeader&) {
+        return std::make_unique<runner::SubjectTarget>(std::make_unique<runner::Machine>());
+      });
+  std::vector<std::uint32_t> lines;
+  for (const runner::Failure& failure : result.failures) lines.push_back(failure.place.line);
+  return lines;
+}
+
 }  // namespace
 
 CaseRun run_one(const SuiteCase& one, attach::Attachment& attachment, const std::string& profile,
@@ -116,6 +127,8 @@ CaseRun run_one(const SuiteCase& one, attach::Attachment& attachment, const std:
     if (missing.empty()) {
       out.result = runner::run_case(
           head, itself, [&](const trace::NodeHeader&) { return attachment.target(); });
+      const bool failed = out.result.verdict == CaseVerdict::kFail;
+      if (failed && out.profile != "paper") out.lines_of_profile = lines_of_profile(head, itself);
     } else {
       out.result.verdict = CaseVerdict::kSkip;
       out.result.reason = missing;
