@@ -33,8 +33,8 @@ struct CaseRun {
   std::uint64_t seed = 0;              ///< That its nodes began with.
   std::string profile;                 ///< "paper" or "deployed": what they were told to keep to.
   runner::CaseResult result;           ///< With failures and log.
-  /// Lines that the reference machine does not keep either when it plays this profile: golden traces
-  /// are the paper's.
+  /// Lines that the reference machine does not keep either when it plays this profile: golden
+  /// traces are the paper's.
   std::vector<std::uint32_t> lines_of_profile;
   Expectation expectation = Expectation::kNone;
   std::string expected_reason;         ///< From the file.

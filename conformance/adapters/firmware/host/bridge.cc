@@ -167,7 +167,10 @@ Tick Bridge::run(Tick end) {
     return end;
   }
   while (lines_.empty() && board_.now() < until) run_until(until);
-  last_tick_ = std::max(last_tick_, lines_.empty() ? end : std::min(end, tick()));
+  const Tick reached = lines_.empty() ? end : std::min(end, tick());
+  const Instant behind = zero_ + (reached + 1) * kInstantsPerTick;
+  while (board_.now() < behind) run_until(behind);  // All of that tick.
+  last_tick_ = std::max(last_tick_, reached);
   return last_tick_;
 }
 
@@ -178,7 +181,7 @@ bool Bridge::serial_is_quiet() const {
 
 std::optional<Tick> Bridge::next() const {
   if (off_) return std::nullopt;
-  const Tick soon = std::max(tick(), last_tick_ + 1);
+  const Tick soon = std::max(tick(), last_tick_);
   if (!ready_ || in_flight_ || !queue_.empty() || !serial_is_quiet()) return soon;
   std::optional<Tick> next;
   if ((reported_.flags & kIdleTimerRuns) != 0) {

@@ -31,11 +31,14 @@ class Session {
     if (bridge_ == nullptr) throw Unsupported("before reset");
     if (words.size() < 2) throw Unsupported("a command without time");
     const Tick now = number_of(words[1], 0xFFFFFFFF);
-    if (command == "until") return done(std::max(bridge_->run(now), last_));
+    if (command == "until") {
+      const Tick reached = std::max(bridge_->run(now), last_);
+      return done(reached, reached + 1);
+    }
     last_ = std::max(last_, now);
     bridge_->advance(now);
     if (!happen(command, words)) throw Unsupported(fmt::format("there is no {}", command));
-    return done(now);
+    return done(now, now);  // What it does about it may come at this tick yet.
   }
 
  private:
@@ -129,12 +132,12 @@ class Session {
   }
 
   // Lines of the board carry times that may have passed since; rct/1 wants them in order.
-  std::string done(Tick time) {
+  std::string done(Tick time, Tick next_min) {
     last_ = std::max(last_, time);
     std::string text;
     for (const std::string& line : bridge_->take_lines()) text += line + "\n";
     const auto next = bridge_->next();
-    text += next ? fmt::format("next {}\n", std::max(*next, last_ + 1)) : "next -\n";
+    text += next ? fmt::format("next {}\n", std::max(*next, next_min)) : "next -\n";
     return text + fmt::format("done {}\n", time);
   }
 
