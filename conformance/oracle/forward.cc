@@ -58,6 +58,16 @@ void Forwarding::begin_life(std::uint16_t sink) {
   line->up.clear();
   line->down.clear();
   line->owed_up = line->owed_down = 0;
+  line->off = false;
+}
+
+void Forwarding::serial_set(std::uint16_t sink, bool on) {
+  Line* const line = find(sink);
+  if (line == nullptr) return;
+  line->off = !on;
+  if (on) return;
+  for (std::size_t i = 0; i < line->up.size(); ++i) line->up.newest(i).owed = false;
+  line->owed_up = 0;
 }
 
 void Forwarding::store(Ring<Passing, kRoom>& ring, const Passing& passing, std::uint32_t& owed) {
@@ -95,8 +105,8 @@ void Forwarding::heard_on_radio(const Observation& seen, std::uint16_t sender, c
       passing.forbidden = route.requirement;
       passing.weak = route.requirement == req::kN6Other;
     }
-    passing.owed = onward && net.sound && net.reliable <= 1 && net.src.pid == line.island &&
-                   sure;
+    passing.owed = onward && !line.off && net.sound && net.reliable <= 1 &&
+                   net.src.pid == line.island && sure;
     // Seen on the serial line already, if the two taps' clocks differ.
     bool early = false;
     for (std::size_t i = 0; i < line.early.size(); ++i) {

@@ -44,6 +44,8 @@ class Forwarding {
   void sent_on_serial(std::uint16_t sink, const Observation& seen, const Net& net);
   /// `sink` sent a message by radio that is not its own.
   void sent_on_radio(std::uint16_t sink, const Observation& seen, const Net& net);
+  /// The sink's serial line is switched on or off; meanwhile it owes nothing there.
+  void serial_set(std::uint16_t sink, bool on);
   /// One of the sinks, no telling which, sent this by radio.
   void somebody_sent(const Net& net);
   /// The sink's island, from now on.
@@ -61,6 +63,7 @@ class Forwarding {
     std::uint16_t island = 0;
     std::uint16_t last_island = 0;  ///< Before SET_ISLAND_ID.
     std::int64_t island_changed_us = -1'000'000'000;
+    bool off = false;  // Its serial line, by its application.
     bool serial = false;           ///< Its line is captured.
     Ring<Passing, kRoom> up;       ///< From the radio.
     Ring<Passing, kRoom> down;     ///< From serial.
@@ -84,6 +87,7 @@ class Forwarding {
   void overdue_down(Line& line, std::int64_t now_us);
   bool crowded(Line& line, std::int64_t time_us);
   void unheard(Line& line, const Passing& passing);
+  bool busy(const Line& line, std::int64_t came_us) const;
   bool out_of_order(const Passing& passing, std::uint64_t& last);
 
   Context& context_;

@@ -88,6 +88,15 @@ bool Forwarding::came_down(std::uint16_t sink, const Net& net) {
   return false;
 }
 
+// By its log one of the sink's lines was busy while it should have passed this on.
+bool Forwarding::busy(const Line& line, std::int64_t came_us) const {
+  if (line.sink >= context_.run.nodes.size()) return false;
+  const auto& times = context_.run.nodes[line.sink].busy_us;
+  return std::any_of(times.begin(), times.end(), [&](const auto& time) {
+    return time.first <= came_us + context_.response_us() && time.second >= came_us;
+  });
+}
+
 // So much came around that time that a buffer may have been full (decision 122).
 bool Forwarding::crowded(Line& line, std::int64_t time_us) {
   constexpr std::size_t kCrowd = 2;
@@ -149,6 +158,7 @@ void Forwarding::overdue_up(Line& line, std::int64_t now_us) {
     if (!passing.owed || now_us - passing.place.time_us <= context_.response_us()) continue;
     passing.owed = false;
     --line.owed_up;
+    if (busy(line, passing.place.time_us)) continue;
     const bool own_island = passing.net.dest.pid == line.island;
     context_.report(own_island ? req::kN6Forward : req::kN6Route,
                     crowded(line, passing.place.time_us) ||
@@ -170,6 +180,7 @@ void Forwarding::overdue_down(Line& line, std::int64_t now_us) {
     if (!passing.owed || now_us - passing.place.time_us <= context_.response_us()) continue;
     passing.owed = false;
     --line.owed_down;
+    if (busy(line, passing.place.time_us)) continue;
     const Severity severity = crowded(line, passing.place.time_us)
                                   ? Severity::kInconclusive
                                   : context_.without(line.sink, passing.place.time_us, now_us);

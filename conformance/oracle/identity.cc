@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <set>
 #include <string>
 
@@ -88,6 +89,8 @@ class Identifier {
     const Observation& seen = run_.seen[index];
     Mark& mark = out_.marks[index];
     const std::uint16_t node = logged(seen.node);
+    const bool serial = seen.kind == Observation::Kind::kSerial && node != kNobody;
+    if (serial && run_.nodes[node].role == Role::kSink) logged_sink_[seen.tap] = node;
     if (!seen.received) {
       mark.device = node;
       if (seen.kind == Observation::Kind::kRadio) out_.hears_radio = true;
@@ -109,8 +112,7 @@ class Identifier {
     for (const std::uint32_t before : recent_) {
       if (before == 0) continue;
       const Observation& sent = run_.seen[before - 1];
-      if (sent.kind == seen.kind && sent.frame.src == seen.frame.src &&
-          sent.frame.type == seen.frame.type && equal(sent.frame.payload, seen.frame.payload) &&
+      if (sent.kind == seen.kind && same_content(sent.frame, seen.frame) &&
           seen.place.time_us - sent.place.time_us <= kSameFrameUs) {
         mark.repeat = true;
         mark.device = out_.marks[before - 1].device;
@@ -118,16 +120,18 @@ class Identifier {
         return;
       }
     }
-    if (seen.kind == Observation::Kind::kRadio) mark.device = logged_sender(seen.frame);
+    if (seen.kind == Observation::Kind::kRadio) mark.device = logged_sender(seen.frame, node);
     if (seen.kind == Observation::Kind::kSerial) mark.device = base_station_of(node);
   }
 
-  // Who of the log's nodes a frame that was given to another comes from, if that is certain.
-  std::uint16_t logged_sender(const machine::Frame& frame) const {
+  // Who of the log's nodes a frame given to `receiver` comes from, if that is certain. Of a
+  // marked node the log has all that it sent, and this is none of it.
+  std::uint16_t logged_sender(const machine::Frame& frame, std::uint16_t receiver) const {
     std::uint16_t found = kNobody;
     for (std::size_t i = 0; i < run_.nodes.size(); ++i) {
       const LoggedNode& node = run_.nodes[i];
-      if (node.role == Role::kBaseStation || node.id != frame.src) continue;
+      if (node.role == Role::kBaseStation || node.id != frame.src || i == receiver) continue;
+      if (run_.marked && node.under_test) continue;
       if (found != kNobody) return kNobody;
       found = static_cast<std::uint16_t>(i);
     }
@@ -186,8 +190,8 @@ class Identifier {
       device.am = stream.am;
       device.role = role_of(stream);
       device.island = stream.sink ? stream.first_island : std::uint16_t{0};
-      device.judged = !is_tester(stream.am);
-      device.known = device.judged && (named || ((before == kNobody || another) &&
+      device.judged = !run_.marked && !is_tester(stream.am);
+      device.known = !is_tester(stream.am) && (named || ((before == kNobody || another) &&
                                                  !answers_nothing(stream)));
       take_stream(device, stream);
       device_of_stream_[i] = add(device);
@@ -297,8 +301,9 @@ class Identifier {
     for (std::uint32_t tap = 0; tap < run_.taps.size(); ++tap) {
       if (run_.taps[tap].link != machine::Link::kSerial) continue;
       const SerialLine& line = lines_.at(tap);
-      if (line.island == 0) continue;
-      std::uint16_t sink = sink_of(line);
+      const auto owner = logged_sink_.find(tap);
+      if (line.island == 0 && owner == logged_sink_.end()) continue;
+      std::uint16_t sink = owner == logged_sink_.end() ? sink_of(line) : owner->second;
       if (sink == kNobody) {
         Device device;
         const std::uint16_t am = streams_.sink_am();
@@ -306,11 +311,15 @@ class Identifier {
         device.am = is_sink ? am : machine::Profile{}.sink_id;
         device.role = Role::kSink;
         device.island = line.first;
+        device.judged = !run_.marked;
         sink = add(device);
       }
+      const bool logs = owner != logged_sink_.end();
+      const std::uint16_t said = logs ? out_.devices[sink].island : std::uint16_t{0};
       out_.devices[sink].taps.push_back(tap);
       out_.sink_of_tap[tap] = sink;
-      if (out_.devices[sink].partner == kNobody) add_base_station(sink, line.first);
+      const std::uint16_t its = said != 0 ? said : line.first;
+      if (out_.devices[sink].partner == kNobody) add_base_station(sink, its);
     }
   }
 
@@ -341,7 +350,7 @@ class Identifier {
     base.role = Role::kBaseStation;
     base.island = island;
     base.partner = sink;
-    base.judged = !is_tester(0);  // A host's AM source is 0.
+    base.judged = !run_.marked && !is_tester(0);  // A host's AM source is 0.
     const std::uint16_t made = add(base);
     out_.devices[sink].partner = made;
   }
@@ -374,6 +383,7 @@ class Identifier {
   Streams streams_;
   SerialLines lines_;
   Identity out_;
+  std::map<std::uint32_t, std::uint16_t> logged_sink_;  // By tap: who uses it, by a log.
   std::vector<std::uint16_t> device_of_stream_;
   std::vector<bool> starts_life_;
   std::array<std::uint32_t, kRecentFrames> recent_{};  // Observation + 1.

@@ -77,6 +77,12 @@ bool InterfaceWatch::off(std::uint16_t device, Link link, std::int64_t now_us) c
          now_us - interface.changed_us > context_.early_us();
 }
 
+bool InterfaceWatch::switched_off(std::uint16_t device, Link link) const {
+  if (link == Link::kPeis) return false;
+  const Interface& interface = nodes_[device].interfaces[link == Link::kRadio ? 0 : 1];
+  return interface.on.has_value() && !*interface.on;
+}
+
 void InterfaceWatch::sent(std::uint16_t device, const Observation& seen) {
   // What was on its way when the interface was switched off may still end.
   if (!context_.run.has_time || !off(device, seen.frame.link, seen.place.time_us)) return;

@@ -23,6 +23,8 @@ class InterfaceWatch {
   void own_message(std::uint16_t node, std::uint16_t seq_num);
   /// Whether the interface was off, and for so long that nothing came before it was.
   bool off(std::uint16_t node, machine::Link link, std::int64_t now_us) const;
+  /// Whether it is switched off; what was on its way just then may still have come.
+  bool switched_off(std::uint16_t node, machine::Link link) const;
   void finish(std::int64_t end_us);
 
  private:

@@ -23,6 +23,7 @@ void Judge::repeated(std::uint32_t index, const Observation& seen, const Mark& m
 
 // A log's line that gives a node a message that is known from its sender.
 void Judge::surely(const Observation& seen, const Mark& mark, const Net& net) {
+  if (interfaces_.switched_off(mark.receiver, seen.frame.link)) return;
   acks_.surely(mark.receiver, net);
   if (seen.kind == Kind::kRadio) synaptic_.given(mark.receiver, seen, net);
   if (net.is_ack()) originals_.ack_given(mark.receiver, net, seen.place.time_us);
@@ -112,7 +113,8 @@ void Judge::hears(std::uint16_t node, const machine::Router& router, machine::Li
   const bool radio = from == machine::Link::kRadio;
   const bool straight = net.dest.pid != router.own.pid ||
                         (radio && net.src.pid != net.dest.pid && !is(sender, Role::kSink));
-  acks_.arrived(node, seen, sender, net, {forbidden, forbidden == req::kN6Other, sure, straight});
+  acks_.arrived(node, seen, sender, net, {forbidden, forbidden == req::kN6Other,
+                                        sure && !interfaces_.switched_off(node, from), straight});
   if (sure && !off && route.deliver) synaptic_.given(node, seen, net);
 }
 
@@ -145,6 +147,7 @@ void Judge::serial(std::uint32_t index, const Observation& seen, const Mark& mar
     return;
   }
   if (const std::int32_t id = set_island_id(seen.frame); id >= 0 && seen.to_mote) {
+    if (interfaces_.switched_off(sink, machine::Link::kSerial)) return;  // It hears nothing.
     const auto island = static_cast<std::uint16_t>(id);
     sinks_.set_island(sink, island, seen.place);
     forwarding_.set_island(sink, island, seen.place.time_us);
@@ -193,7 +196,9 @@ void Judge::down_serial(std::uint32_t index, const Observation& seen, const Mark
   const machine::Address base{island, machine::kNullDevid};
   if (net.src == base) own_message(mark.device, seen, net, machine::Link::kSerial, base);
   if (net.src != base && !seen.received) peis_.went_down(mark.device, seen, net);
-  const bool sure = serial_acked(run_, index) || mark.receiver == sink;
+  const bool deaf = interfaces_.switched_off(sink, machine::Link::kSerial) ||
+                    interfaces_.switched_off(sink, machine::Link::kRadio);
+  const bool sure = !deaf && (serial_acked(run_, index) || mark.receiver == sink);
   forwarding_.heard_on_serial(sink, mark.device, seen, net, sure);
   const std::uint16_t am = who_.devices[sink].am;
   if (net.dest.devid != am && net.dest.devid != machine::kBroadcastDevid) return;

@@ -73,6 +73,18 @@ inline machine::Descriptor parse_descriptor(const std::uint8_t* p) {
   return {p[0], p[3], load_be16(p + 1)};
 }
 
+/// The same message of one sender on one link, whatever stands behind its content: an underlying
+/// buffer may be longer.
+inline bool same_content(const machine::Frame& a, const machine::Frame& b) {
+  if (a.src != b.src || a.type != b.type) return false;
+  Net one;
+  Net other;
+  const bool sound = a.type == am::kNet && parse_net(a.payload, one) && one.sound &&
+                     parse_net(b.payload, other) && other.sound;
+  return sound ? same_message(one, other) && same_payload(one, other)
+               : equal(a.payload, b.payload);
+}
+
 struct Request {
   std::uint16_t seq_num = 0;
   machine::Descriptor descriptor;
@@ -130,11 +142,14 @@ inline bool parse_serial_joined(const Net& net, SerialJoined& out) {
   return true;
 }
 
-/// The island id that a SET_ISLAND_ID config message sets; -1: another message.
+/// The island id that a SET_ISLAND_ID config message sets; -1: another message, or none
+/// that a sink can have.
 inline std::int32_t set_island_id(const machine::Frame& frame) {
   if (frame.type != am::kConfig || frame.payload.size() < 3) return -1;
   constexpr auto kSet = static_cast<std::uint8_t>(rubicon::CommandCode::kSetIslandId);
-  return frame.payload[0] == kSet ? load_be16(frame.payload.data() + 1) : -1;
+  const std::uint16_t island = load_be16(frame.payload.data() + 1);
+  const bool usable = island != machine::kLocalPid && island != machine::kBroadcastPid;
+  return frame.payload[0] == kSet && usable ? island : -1;
 }
 
 }  // namespace rubric::oracle

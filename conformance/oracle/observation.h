@@ -82,6 +82,7 @@ struct LoggedNode {
   bool hearing = false;       ///< The log has what its radio was given.
   bool peis = false;          ///< The log has its lines of PEIS.
   bool busy = false;          ///< A line of it, or its application, was busy for some time.
+  std::vector<std::pair<std::int64_t, std::int64_t>> busy_us;  ///< From when to when.
 };
 
 /// Holds what observations point to.
@@ -90,6 +91,8 @@ struct RunStorage;
 struct Run {
   std::vector<std::string> files;
   std::vector<LoggedNode> nodes;
+  /// A log marks nodes as under test: the trace plays everybody else.
+  bool marked = false;
   std::shared_ptr<RunStorage> storage;
   std::vector<Tap> taps;
   std::vector<std::string> facts;  ///< What the reading found out, a sentence each.

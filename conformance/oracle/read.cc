@@ -175,6 +175,12 @@ Run RunReader::finish() {
   for (Observation& seen : run.seen) {
     seen.place.time_us = seen.place.time_us == kUntimed ? -1 : seen.place.time_us - first_us;
   }
+  for (LoggedNode& node : run.nodes) {
+    for (auto& [from, to] : node.busy_us) {
+      from += logs_us - first_us;
+      if (to != kNone) to += logs_us - first_us;
+    }
+  }
   merge(run);
   return run;
 }

@@ -51,9 +51,10 @@ class LogReader {
         node.busy = node.busy || line->message.name == "busy";
         node.peis = node.peis || link == LinkKind::kPeis;
       }
-      run_.nodes.push_back(node);
-      applications = applications || node.application;
+      run_.nodes.push_back(std::move(node));
+      applications = applications || run_.nodes.back().application;
     }
+    run_.marked = run_.marked || marked;
     // A log that has applications and what a radio was given has that node's application as well,
     // though it may never have been told anything.
     for (LoggedNode& node : run_.nodes) {
@@ -81,6 +82,7 @@ class LogReader {
   void take(const Line& line) {
     const std::int64_t time_us = time_of(line);
     if (line.op != Op::kGiven && line.op != Op::kEmits) return;
+    if (line.op == Op::kGiven) take_busy(line, time_us);
     const std::optional<LinkKind> kind = scope_.link(line.link);
     if (!kind || line.node == "*") return;
     Observation seen;
@@ -95,6 +97,17 @@ class LogReader {
       take_frame(line, *kind, seen);
     } else if (*kind == LinkKind::kApp || *kind == LinkKind::kPower) {
       take_news(line, *kind, seen);
+    }
+  }
+
+  // One state for all its lines: what follows only has to wait for the longest.
+  void take_busy(const Line& line, std::int64_t time_us) {
+    const bool busy = line.message.name == "busy";
+    if (!busy && line.message.name != "idle") return;
+    for (LoggedNode& node : run_.nodes) {
+      if (node.name != line.node) continue;
+      if (busy) node.busy_us.emplace_back(time_us, INT64_MAX);
+      if (!busy && !node.busy_us.empty()) node.busy_us.back().second = time_us;
     }
   }
 

@@ -84,7 +84,9 @@ void SynapticWatch::given(std::uint16_t device, const Observation& seen, const N
   Node& node = nodes_[device];
   if (!node.logged || !net.sound || net.trans_id != component::kSynChannel) return;
   In* const in = find_in(node, machine::channel_id(net.src.devid, net.dest.devid));
-  if (in == nullptr || in->begun_us < 0) return;
+  if (in == nullptr) return;
+  in->before = in->before || in->begun_us < 0;
+  if (in->begun_us < 0) return;
   in->data_us[in->data_next++ % in->data_us.size()] = seen.place.time_us;
 }
 
@@ -113,7 +115,9 @@ void SynapticWatch::told(std::uint16_t device, const Observation& seen,
     return std::any_of(in->data_us.begin(), in->data_us.end(),
                        [&](std::int64_t at) { return at >= 0 && at >= from && at <= to; });
   };
-  if (knows && fresh && !came(since - response, now)) {
+  // Of data that came before the start the first signal may speak.
+  const bool early = in->before && in->told_us < in->begun_us;
+  if (knows && fresh && !early && !came(since - response, now)) {
     context_.report(req::kS3Old, Severity::kFail, seen.place, device,
                     {"synData_received has status new, though no data came for " +
                          ms_text(now - since + response) + ".",
@@ -126,6 +130,7 @@ void SynapticWatch::told(std::uint16_t device, const Observation& seen,
     context_.findings.kept(fresh ? req::kS2Signal : req::kS3Old);
   }
   in->told_us = in->waits_us = now;
+  in->before = false;
   in->ticks.add(now);
   judge_grid(device, seen, in->ticks);
 }

@@ -58,6 +58,7 @@ class SynapticWatch {
     std::int64_t waits_us = -1;    ///< Silence counts from here.
     std::array<std::int64_t, 4> data_us{-1, -1, -1, -1};  ///< The last data that it was given.
     std::uint8_t data_next = 0;
+    bool before = false;           ///< Data came while it did not run; it may count, or not.
     Ticks ticks;
   };
   struct Node {
