@@ -29,8 +29,8 @@ struct Options {
 
 constexpr const char* kFooter =
     "Two implementations differ where one keeps a line of a golden trace that the other breaks;\n"
-    "freedom within the rules is no difference. Each trace that tells them apart is made as small\n"
-    "as it can be, and the shortest is printed.\n"
+    "freedom within the rules is no difference. The eight smallest traces that tell them apart are\n"
+    "made as small as they can be, and the shortest is printed.\n"
     "Examples:\n"
     "  rubric diff --target ./old_mote --target ./new_mote\n"
     "  rubric diff --target machine --target machine --profile paper --profile deployed\n"
@@ -64,7 +64,8 @@ void compare(const Options& options) {
     std::fputs("no case could be worked on both\n", stderr);
     cli::exit_with(cli::kVerdictInconclusive);
   }
-  fmt::print(stderr, "{} cases compared, {} differ\n", found.compared, found.different.size());
+  fmt::print(stderr, "{} cases compared, {} differ, {} that one of them cannot play\n",
+             found.compared, found.different.size(), found.skipped);
   for (const std::string& name : found.different) fmt::print(stderr, "  {}\n", name);
   if (!found.shortest) {
     if (found.different.empty()) return;

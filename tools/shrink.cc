@@ -54,7 +54,7 @@ std::optional<Failing> find_failing(const suite::Cases& cases, const std::string
                                     const shrink::Player& player) {
   for (const suite::SuiteCase& each : cases.all()) {
     if (!name.empty() && each.one->name != name) continue;
-    CaseResult result = runner::run_case(each.file->file, *each.one, player.make);
+    CaseResult result = shrink::play(shrink::only(each.file->file, *each.one), player);
     if (fails(result)) return Failing{&each, std::move(result)};
   }
   return std::nullopt;
@@ -75,7 +75,7 @@ void shrink_it(const Options& options) {
   }
   const trace::File& file = found->one->file->file;
   std::optional<shrink::Player> reference = machine.player();
-  if (!passes(runner::run_case(file, *found->one->one, reference->make))) reference.reset();
+  if (!passes(shrink::play(shrink::only(file, *found->one->one), *reference))) reference.reset();
   const auto shows = shrink::fails_alike(found->result, player, reference);
   const shrink::Shrunk shrunk = shrink::shrink(file, *found->one->one, shows);
   const std::string& name = found->one->one->name;

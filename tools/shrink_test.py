@@ -34,6 +34,20 @@ class Shrink(unittest.TestCase):
             code, out, err = run("test", "--target", "machine", small)
             self.assertEqual(code, 0, out + err)
 
+    def test_what_is_made_holds_whatever_number_comes_first(self):
+        with tempfile.TemporaryDirectory() as folder:
+            small = f"{folder}/small.rtr"
+            self.assertEqual(run("shrink", str(CASE), "--target", BROKEN, "--out", small)[0], 0)
+            for seed in ["0", "58392", "58647"]:
+                code, out, err = run("test", "--target", "machine", "--seed", seed, small)
+                self.assertEqual(code, 0, out + err)
+
+    def test_profile(self):
+        code, out, err = run("shrink", str(ROOT / "conformance/cases/j8.rtr"), "--target",
+                             "machine", "--profile", "deployed", "--case", "j8.at_most_five")
+        self.assertEqual(code, 0, err)
+        self.assertIn("[J8-LIMIT", out)
+
     def test_nothing_to_shrink(self):
         code, _, err = run("shrink", str(CASE), "--target", "machine")
         self.assertEqual(code, 3)

@@ -15,30 +15,34 @@ struct Candidate {
   std::size_t lines;
 };
 
-bool broke(const CaseResult& result) {
-  return result.verdict == CaseVerdict::kFail || result.verdict == CaseVerdict::kError;
-}
+bool broke(const CaseResult& result) { return result.verdict == CaseVerdict::kFail; }
 bool kept(const CaseResult& result) {
   return result.verdict == CaseVerdict::kPass || result.verdict == CaseVerdict::kWeak;
 }
 
-trace::File with_profile(trace::File file, const std::string& profile) {
-  if (profile.empty()) return file;
+// First numbers as they come, 0 and 65535: see runner::config_of.
+constexpr std::uint64_t kSeeds[] = {0, 58392, 58647};
+
+// Puts `what` in place of the headers of its kind, or adds one.
+template <class Kind>
+trace::File with(trace::File file, const Kind& what) {
+  bool found = false;
   for (auto* items : {&file.head, &file.cases[0].items}) {
     for (trace::Item& item : *items) {
       auto* header = std::get_if<trace::Header>(&item);
-      auto* named = header ? std::get_if<trace::ProfileHeader>(&header->what) : nullptr;
-      if (named) named->name = profile;
+      if (!header || !std::holds_alternative<Kind>(header->what)) continue;
+      header->what = what;
+      found = true;
     }
   }
+  if (!found) file.header({what, {}, {}});
   return file;
 }
 
-trace::File only(const trace::File& file, const trace::Case& one) {
-  trace::File out;
-  out.head = file.head;
-  out.cases.push_back(one);
-  return out;
+bool keeps(const trace::File& file, const Player& reference) {
+  return std::all_of(std::begin(kSeeds), std::end(kSeeds), [&](std::uint64_t seed) {
+    return kept(play(seed == 0 ? file : with(file, trace::SeedHeader{seed}), reference));
+  });
 }
 
 bool names_all(const CaseResult& result, const std::vector<std::string>& wanted) {
@@ -52,8 +56,16 @@ bool names_all(const CaseResult& result, const std::vector<std::string>& wanted)
 
 }  // namespace
 
+trace::File only(const trace::File& file, const trace::Case& one) {
+  trace::File out;
+  out.head = file.head;
+  out.cases.push_back(one);
+  return out;
+}
+
 CaseResult play(const trace::File& file, const Player& player) {
-  const trace::File asked = with_profile(file, player.profile);
+  const trace::File asked =
+      player.profile.empty() ? file : with(file, trace::ProfileHeader{player.profile});
   return runner::run_case(asked, asked.cases.at(0), player.make);
 }
 
@@ -65,7 +77,7 @@ StillShows fails_alike(const CaseResult& first, const Player& player,
   return [=](const trace::File& file) {
     const CaseResult result = play(file, player);
     if (result.verdict != verdict || !names_all(result, wanted)) return false;
-    return !reference || kept(play(file, *reference));
+    return !reference || keeps(file, *reference);
   };
 }
 
@@ -82,7 +94,14 @@ DifferenceSearch find_difference(const std::vector<const trace::File*>& files, c
       const trace::File alone = only(*file, one);
       const CaseResult of_a = play(alone, a);
       const CaseResult of_b = play(alone, b);
-      if (of_a.verdict == CaseVerdict::kSkip || of_b.verdict == CaseVerdict::kSkip) continue;
+      for (const CaseResult* result : {&of_a, &of_b}) {
+        if (result->verdict != CaseVerdict::kError) continue;
+        throw runner::TargetBroken(one.name + ": " + result->reason);
+      }
+      if (of_a.verdict == CaseVerdict::kSkip || of_b.verdict == CaseVerdict::kSkip) {
+        ++search.skipped;
+        continue;
+      }
       ++search.compared;
       if (!differ(of_a, of_b)) continue;
       search.different.push_back(one.name);

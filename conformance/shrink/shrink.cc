@@ -45,6 +45,12 @@ trace::File alone(const trace::File& file, const trace::Case& one) {
   return out;
 }
 
+bool names_variable(const trace::Value& value) {
+  const bool range_of = value.is(trace::Value::Kind::kRange) && !value.text.empty();
+  return value.is(trace::Value::Kind::kVariable) || range_of ||
+         std::any_of(value.items.begin(), value.items.end(), names_variable);
+}
+
 class Shrinker {
  public:
   Shrinker(trace::File file, const StillShows& still_shows)
@@ -148,6 +154,8 @@ class Shrinker {
       try_edit(i, [f](Line& one) {
         auto& fields = one.message.fields;
         if (fields[f].path.empty()) return;  // Its place among the others is its name.
+        // Zero may be just what the variable stands for, or just what it does not.
+        if (one.op == Op::kGiven && names_variable(fields[f].value)) return;
         fields.erase(fields.begin() + static_cast<std::ptrdiff_t>(f));
         one.message.open = true;
       });
