@@ -29,8 +29,8 @@ struct Options {
 
 constexpr const char* kFooter =
     "Two implementations differ where one keeps a line of a golden trace that the other breaks;\n"
-    "freedom within the rules is no difference. The eight smallest traces that tell them apart are\n"
-    "made as small as they can be, and the shortest is printed.\n"
+    "freedom within the rules is no difference. The eight smallest traces that tell them apart\n"
+    "are made as small as they can be, and the shortest is printed.\n"
     "Examples:\n"
     "  rubric diff --target ./old_mote --target ./new_mote\n"
     "  rubric diff --target machine --target machine --profile paper --profile deployed\n"

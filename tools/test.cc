@@ -37,9 +37,15 @@ namespace {
 using Milliseconds = std::chrono::milliseconds;
 
 constexpr const char* kFooter =
-    "A target is a command that speaks rct/1 (conformance/PORTING.md), or machine: the reference\n"
-    "machine in this program. Without TRACES it is tried with the kit's own golden traces, which\n"
-    "the program carries with it.\n"
+    "A target is a command that speaks rct/1, a real node at its own line, or the reference\n"
+    "machine in this program (conformance/PORTING.md):\n"
+    "  './my_adapter --fast'     started as a child process\n"
+    "  machine, machine:no_fail  the machine, or with a flaw (see rubric explore --help)\n"
+    "  sf-server:PORT            a base station that connects to a Serial Forwarder: to us\n"
+    "  sf:HOST:PORT              a sink behind a Serial Forwarder\n"
+    "  serial:DEVICE[:BAUD]      a sink at a serial line; serial:tcp:HOST:PORT at an emulator's\n"
+    "Without TRACES it is tried with the kit's own golden traces, which the program carries with\n"
+    "it.\n"
     "Examples:\n"
     "  rubric test --target ./my_adapter\n"
     "  rubric test --target 'python3 mote.py' --role mote --requirement J --quiet\n"
@@ -302,7 +308,7 @@ void add_options(CLI::App& command, TestOptions& options) {
       ->check(cli::whole_number());
   command.add_option("--repeat", options.repeats,
                      "Each case so often, each time with the next seed")
-      ->check(cli::at_least_one())
+      ->check(CLI::Range(1, 10000))
       ->capture_default_str();
   command.add_option("--jobs", options.jobs, "Cases at once, on a process each; 0: cores")
       ->check(CLI::Range(0, 256))

@@ -30,6 +30,7 @@ constexpr std::size_t kReadBytes = 65536;
 constexpr Milliseconds kDeathWait{300};  // From a closed pipe to the end of the process behind it.
 constexpr Milliseconds kTermWait{100};   // For an orderly end of what is not needed any more.
 constexpr Milliseconds kPause{1};
+constexpr int kShellSignals = 128;  // A shell adds this to the signal that ended its child.
 
 void ignore_broken_pipes() {
   static const bool done = [] {
@@ -61,7 +62,12 @@ std::string status_text(int status) {
     return fmt::format("was killed by signal {} ({})", WTERMSIG(status),
                        ::strsignal(WTERMSIG(status)));
   }
-  return fmt::format("ended with status {}", WEXITSTATUS(status));
+  const int code = WEXITSTATUS(status);
+  if (code <= kShellSignals || code > kShellSignals + 64) {
+    return fmt::format("ended with status {}", code);
+  }
+  return fmt::format("ended with status {} (as of signal {}, {}, behind a shell)", code,
+                     code - kShellSignals, ::strsignal(code - kShellSignals));
 }
 
 }  // namespace

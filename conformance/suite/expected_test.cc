@@ -112,6 +112,13 @@ TEST(Expected, FamiliesGlobsAndLinesWithoutRule) {
   EXPECT_EQ(hold(entry("j4.accept", "none"), failed({failure({}, "nothing")})).exit_code, 0);
 }
 
+TEST(Expected, AnEmptyFileKnowsOfNothing) {
+  for (const char* text : {"", "# all mended\n"}) {
+    EXPECT_EQ(hold(text, failed({})).exit_code, 0);
+    EXPECT_EQ(hold(text, failed({kAck})).exit_code, 1);
+  }
+}
+
 TEST(Expected, NamesNoCase) {
   const Outcome out = hold("- {case: j4.gone, requirement: J4, message: x, reason: y}",
                            failed({}));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <exception>
 #include <mutex>
 #include <thread>
 
@@ -163,14 +164,26 @@ ImplementationRun run(const std::string& target, const MakeAttachment& make, con
   Work work(plan, watcher, out);
   std::vector<std::thread> others;
   const unsigned jobs = out.identity.real_time ? 1 : plan.jobs;
+  std::vector<std::exception_ptr> broken(jobs);  // What a job could not go on after.
   for (unsigned i = 1; i < jobs; ++i) {
-    others.emplace_back([&] {
-      const std::unique_ptr<attach::Attachment> mine = make();
-      work.on(*mine);
+    others.emplace_back([&, i] {
+      try {
+        const std::unique_ptr<attach::Attachment> mine = make();
+        work.on(*mine);
+      } catch (...) {
+        broken[i] = std::current_exception();
+      }
     });
   }
-  work.on(*first);
+  try {
+    work.on(*first);
+  } catch (...) {
+    broken[0] = std::current_exception();
+  }
   for (std::thread& one : others) one.join();
+  for (const std::exception_ptr& one : broken) {
+    if (one) std::rethrow_exception(one);
+  }
   out.wall_ms = ms_since(start);
   return out;
 }

@@ -43,15 +43,30 @@ std::string github_annotations(const SuiteRun& run, std::size_t max) {
   std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
     return a.one->result.verdict > b.one->result.verdict;
   });
-  std::string out;
-  for (std::size_t i = 0; i < std::min(max, entries.size()); ++i) {
-    const CaseRun& one = *entries[i].one;
+  std::vector<std::string> lines;
+  for (std::size_t i = 0; i < run.implementations.size(); ++i) {
+    const std::string& dishonest = run.implementations[i].dishonest;
+    if (dishonest.empty()) continue;
+    lines.push_back(fmt::format("::error title={} is refused::{}\n",
+                                escaped(implementation_name(run, i), true),
+                                escaped(dishonest, false)));
+  }
+  for (const StaleExpectation& one : run.stale) {
+    const std::size_t colon = one.place.rfind(':');  // "file:line".
+    lines.push_back(fmt::format("::error file={},line={},title=expectation that is not true::{}\n",
+                                escaped(one.place.substr(0, colon), true),
+                                one.place.substr(colon + 1), escaped(one.text, false)));
+  }
+  for (const Entry& entry : entries) {
+    const CaseRun& one = *entry.one;
     const auto& failures = one.result.failures;
     const std::uint32_t line = failures.empty() ? 1 : std::max(1u, failures[0].place.line);
-    out += fmt::format("::error file={},line={},title={}::{}\n", escaped(one.file, true), line,
-                       escaped(case_name(one) + " on " + entries[i].implementation, true),
-                       escaped(headline(one), false));
+    lines.push_back(fmt::format("::error file={},line={},title={}::{}\n", escaped(one.file, true),
+                                line, escaped(case_name(one) + " on " + entry.implementation, true),
+                                escaped(headline(one), false)));
   }
+  std::string out;
+  for (std::size_t i = 0; i < std::min(max, lines.size()); ++i) out += lines[i];
   return out;
 }
 

@@ -7,8 +7,8 @@
 
 namespace rubric::suite {
 
-/// `::error` lines for the gravest unexpected results, at most `max` of them, each at its line of
-/// the golden trace.
+/// At most `max` `::error` lines: implementations that are refused, expectations that are not true,
+/// and the gravest unexpected results, each at its line of the golden trace.
 std::string github_annotations(const SuiteRun& run, std::size_t max = 10);
 
 }  // namespace rubric::suite

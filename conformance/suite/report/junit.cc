@@ -1,5 +1,7 @@
 #include "conformance/suite/report/junit.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "conformance/report/text.h"
@@ -17,6 +19,12 @@ struct Sums {
   std::size_t errors = 0;
   std::size_t skipped = 0;
 };
+
+// Readers split at the last dot.
+std::string class_name_of(std::string name) {
+  std::replace(name.begin(), name.end(), '.', '_');
+  return "rubric." + name;
+}
 
 std::string outcome(const CaseRun& one, Sums& sums) {
   const std::string message = xml_text(headline(one));
@@ -82,6 +90,7 @@ std::string junit_report(const SuiteRun& run) {
   for (std::size_t i = 0; i < run.implementations.size(); ++i) {
     const ImplementationRun& one = run.implementations[i];
     const std::string name = implementation_name(run, i);
+    const std::string class_name = class_name_of(name);
     Sums sums;
     std::string body;
     if (!one.dishonest.empty()) {
@@ -89,9 +98,9 @@ std::string junit_report(const SuiteRun& run) {
       ++sums.errors;
       body += fmt::format("<testcase classname=\"{0}\" name=\"honesty\" time=\"0\">\n"
                           "<error type=\"error\" message=\"{1}\"/>\n</testcase>\n",
-                          xml_text("rubric." + name), xml_text(one.dishonest));
+                          xml_text(class_name), xml_text(one.dishonest));
     }
-    for (const CaseRun& each : one.cases) body += testcase("rubric." + name, each, sums);
+    for (const CaseRun& each : one.cases) body += testcase(class_name, each, sums);
     out += suite_element("rubric test: " + name, one.wall_ms, sums, body);
   }
   return out + stale_suite(run) + "</testsuites>\n";

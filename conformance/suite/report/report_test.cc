@@ -77,7 +77,7 @@ TEST(Report, TapHasAPointForEachCaseAndExpectation) {
             "not ok 4 - tiny 0.3: a.error\n"
             "  ---\n  verdict: error\n  file: conformance/cases/j4.rtr\n  details: |\n"
             "    conformance/cases/j4.rtr:3: no rule\n      but       it died\n"
-            "    standard error:\n    panic: <b>&\x01\xFF\n    # second: 50%\n"
+            "    standard error:\n    panic: <b>&\\x01\\xff\n    # second: 50%\n"
             "  ...\n"
             "ok 5 - tiny 0.3: a.skip # SKIP skip: no base station\n"
             "not ok 6 - tiny 0.3: a.known # TODO issue \\#7\n"
@@ -94,7 +94,9 @@ TEST(Report, TapHasAPointForEachCaseAndExpectation) {
 }
 
 TEST(Report, AnnotationsAreTheGravestFirstAndEscaped) {
-  EXPECT_EQ(github_annotations(every_kind(), 2),
+  EXPECT_EQ(github_annotations(every_kind(), 3),
+            "::error file=known.yaml,line=9,title=expectation that is not true::no case is called "
+            "z.z\n"
             "::error file=conformance/cases/j4.rtr,line=3,title=a.error on tiny 0.3::no rule: it "
             "died\n"
             "::error file=conformance/cases/j4.rtr,line=12,title=a.fail on tiny 0.3::J4-SEQ: at 7 "
@@ -103,9 +105,22 @@ TEST(Report, AnnotationsAreTheGravestFirstAndEscaped) {
   run.implementations[0].identity.name = "a,b:c";
   run.implementations[0].cases = {one("x", CaseVerdict::kFail)};
   run.implementations[0].cases[0].result.failures[0].text = "50%\nof it";
+  run.stale.clear();
   EXPECT_EQ(github_annotations(run),
             "::error file=conformance/cases/j4.rtr,line=12,title=x on a%2Cb%3Ac 0.3::J4-SEQ: 50%25"
             "%0Aof it\n");
+}
+
+TEST(Report, ARefusedImplementationIsNoSuccess) {
+  SuiteRun run = every_kind();
+  run.stale.clear();
+  run.implementations[0].cases.clear();
+  run.implementations[0].dishonest = "it passes everything";
+  EXPECT_EQ(tap_report(run),
+            "TAP version 13\n1..1\nnot ok 1 - tiny 0.3: refused: it passes everything\n");
+  EXPECT_EQ(github_annotations(run), "::error title=tiny 0.3 is refused::it passes everything\n");
+  EXPECT_NE(junit_report(run).find("<error type=\"error\" message=\"it passes everything\"/>"),
+            std::string::npos);
 }
 
 TEST(Report, AtMostTenAnnotations) {
@@ -134,10 +149,10 @@ TEST(Report, NamesAreUniqueWhereACaseIsRepeatedOrAnImplementationStandsTwice) {
   run.implementations.push_back(run.implementations[0]);
   run.stale.clear();
   const std::string xml = junit_report(run);
-  for (const char* name : {"classname=\"rubric.tiny 0.3 #1\" name=\"x\"",
-                           "classname=\"rubric.tiny 0.3 #1\" name=\"x#2\"",
-                           "classname=\"rubric.tiny 0.3 #2\" name=\"x\"",
-                           "classname=\"rubric.tiny 0.3 #2\" name=\"x#2\""}) {
+  for (const char* name : {"classname=\"rubric.tiny 0_3 #1\" name=\"x\"",
+                           "classname=\"rubric.tiny 0_3 #1\" name=\"x#2\"",
+                           "classname=\"rubric.tiny 0_3 #2\" name=\"x\"",
+                           "classname=\"rubric.tiny 0_3 #2\" name=\"x#2\""}) {
     const std::size_t at = xml.find(name);
     ASSERT_NE(at, std::string::npos) << name << '\n' << xml;
     EXPECT_EQ(xml.find(name, at + 1), std::string::npos);

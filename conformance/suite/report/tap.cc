@@ -1,7 +1,10 @@
 #include "conformance/suite/report/tap.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
+#include "conformance/report/text.h"
 #include "conformance/suite/report/words.h"
 
 namespace rubric::suite {
@@ -9,12 +12,28 @@ namespace {
 
 using runner::CaseVerdict;
 
-// In a line of its own, where a hash would begin a directive and a line end another line.
+// Readable as UTF-8, whatever an implementation wrote: other bytes and controls as \x1f.
+std::string clean(std::string_view text) {
+  std::string out;
+  while (!text.empty()) {
+    const std::size_t length = report::utf8_length(text);
+    const auto first = static_cast<unsigned char>(text.front());
+    if (length == 0 || first < 0x20 || first == 0x7F) {
+      out += fmt::format("\\x{:02x}", first);
+    } else {
+      out += text.substr(0, length);
+    }
+    text.remove_prefix(std::max<std::size_t>(length, 1));
+  }
+  return out;
+}
+
+// In a line of its own, where a hash would begin a directive.
 std::string plain(std::string_view text) {
   std::string out;
-  for (const char c : text) {
+  for (const char c : clean(text)) {
     if (c == '#') out += '\\';
-    out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+    out += c;
   }
   return out;
 }
@@ -28,7 +47,7 @@ std::string block(const CaseRun& one) {
   }
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
-    out += "    " + text.substr(at, end - at) + "\n";
+    out += "    " + clean(std::string_view(text).substr(at, end - at)) + "\n";
     at = end + 1;
   }
   return out + "  ...\n";
@@ -50,6 +69,11 @@ std::string tap_report(const SuiteRun& run) {
   std::size_t number = 0;
   for (std::size_t i = 0; i < run.implementations.size(); ++i) {
     const std::string name = implementation_name(run, i);
+    const std::string& dishonest = run.implementations[i].dishonest;
+    if (!dishonest.empty()) {
+      points += fmt::format("not ok {} - {}: refused: {}\n", ++number, plain(name),
+                            plain(dishonest));
+    }
     for (const CaseRun& one : run.implementations[i].cases) {
       const bool failed = one.unexpected() || one.expectation == Expectation::kAsExpected;
       points += fmt::format("{} {} - {}: {}{}\n", failed ? "not ok" : "ok", ++number, plain(name),
