@@ -22,9 +22,9 @@ if(RUBRIC_SANITIZE)
   target_link_options(rubric_options INTERFACE -fsanitize=${RUBRIC_SANITIZE})
 endif()
 
-if(RUBRIC_FUZZ)
+if(RUBRIC_FUZZ AND RUBRIC_FUZZ_ENGINE STREQUAL "-fsanitize=fuzzer")
+  # Other engines bring their instrumentation with their compiler.
   target_compile_options(rubric_options INTERFACE -fsanitize=fuzzer-no-link)
-  target_link_options(rubric_options INTERFACE -fsanitize=fuzzer-no-link)
 endif()
 
 # rubric_library(NAME SOURCES a.cc ... [DEPS lib ...]): a static library.
@@ -90,10 +90,35 @@ function(rubric_benchmark name)
   target_link_libraries(${name} PRIVATE rubric_options ${arg_DEPS} benchmark::benchmark_main)
 endfunction()
 
-# rubric_fuzzer(NAME SOURCES x_fuzz.cc ... [DEPS lib ...]): a libFuzzer program (clang only).
+# rubric_fuzzer(NAME [MUTATOR lib] [DICT protocol] [MAX_LEN bytes] [SMOKE_RUNS n] [SEEDS folder ...]
+#   [DEPS lib ...]): the fuzz target targets/NAME_fuzz.cc. With RUBRIC_FUZZ a program for the
+# engine. With tests, built by any compiler, a replay of the corpus: corpora/NAME, if it is there,
+# and SEEDS, folders of the project. What the scripts in fuzz/ must know goes to the build folder's
+# fuzz_targets.tsv: name, dictionary or -, max_len, smoke runs, folders of the corpus.
 function(rubric_fuzzer name)
-  cmake_parse_arguments(arg "" "" "SOURCES;DEPS" ${ARGN})
-  add_executable(${name} ${arg_SOURCES})
-  target_link_libraries(${name} PRIVATE rubric_options ${arg_DEPS})
-  target_link_options(${name} PRIVATE -fsanitize=fuzzer)
+  cmake_parse_arguments(arg "" "MUTATOR;DICT;MAX_LEN;SMOKE_RUNS" "SEEDS;DEPS" ${ARGN})
+  set(target ${name}_fuzz)
+  set(libraries rubric_options rubric_fuzz_support ${arg_MUTATOR} ${arg_DEPS})
+  set(corpus ${arg_SEEDS})
+  if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/corpora/${name})
+    list(PREPEND corpus fuzz/corpora/${name})
+  endif()
+  foreach(default "DICT;-" "MAX_LEN;4096" "SMOKE_RUNS;20000")
+    list(POP_FRONT default option)
+    if(NOT arg_${option})
+      set(arg_${option} ${default})
+    endif()
+  endforeach()
+  list(JOIN corpus " " folders)
+  file(APPEND ${PROJECT_BINARY_DIR}/fuzz_targets.tsv
+    "${name}\t${arg_DICT}\t${arg_MAX_LEN}\t${arg_SMOKE_RUNS}\t${folders}\n")
+  if(RUBRIC_FUZZ)
+    add_executable(${target} targets/${target}.cc)
+    target_link_libraries(${target} PRIVATE ${libraries} ${RUBRIC_FUZZ_ENGINE})
+  endif()
+  if(RUBRIC_TESTS)
+    add_executable(${target}_replay targets/${target}.cc support/replay_main.cc)
+    target_link_libraries(${target}_replay PRIVATE ${libraries})
+    rubric_script_test(${target}_replay COMMAND ${target}_replay ${corpus})
+  endif()
 endfunction()

@@ -1,4 +1,4 @@
-#include "fuzz/message_mutator.h"
+#include "fuzz/mutators/message_mutator.h"
 
 #include <algorithm>
 #include <cstring>
@@ -8,6 +8,7 @@
 #include "codec/containers/link_record.h"
 #include "codec/containers/writer.h"
 #include "codec/generated/rubicon/messages.h"
+#include "fuzz/support/mutate_bytes.h"
 
 namespace rubric::fuzz {
 namespace {
@@ -127,8 +128,6 @@ Buffer MessageMaker::framed(Format format) {
 
 }  // namespace rubric::fuzz
 
-extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t max_size);
-
 /// Every fourth time a frame of a message stands in place of some of the input; else libFuzzer does
 /// what it does. It cannot guess a check sum or five bytes that must agree.
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
@@ -136,7 +135,9 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
   using namespace rubric;
   constexpr std::size_t kHead = 2;  // Format and split, see decode_fuzz.cc.
   fuzz::MessageMaker maker(rubicon::messages::kRoutes, seed);
-  if (max_size < kHead || maker.below(4) != 0) return LLVMFuzzerMutate(data, size, max_size);
+  if (max_size < kHead || maker.below(4) != 0) {
+    return fuzz::mutate_bytes(data, size, max_size, seed);
+  }
   std::vector<std::uint8_t> input(data, data + size);
   if (size < kHead) {
     input.assign(kHead, 0x80);

@@ -2,26 +2,25 @@
 // and what decodes lies within the packet.
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 
 #include "codec/containers/reader.h"
 #include "codec/reflect/frame.h"
 #include "codec/reflect/registry.h"
+#include "fuzz/support/require.h"
 
 namespace {
 
-void require(bool holds) {
-  if (!holds) std::abort();
-}
+using rubric::fuzz::require;
 
 void check_nodes(const rubric::reflect::Decoded& decoded) {
   for (std::size_t i = 0; i < decoded.node_count(); ++i) {
     const rubric::reflect::Node& node = decoded[i];
-    require(node.offset + node.size <= decoded.bytes.size());
-    require(node.end > i && node.end <= decoded.node_count());
+    require(node.offset + node.size <= decoded.bytes.size(), "a field lies within the packet");
+    require(node.end > i && node.end <= decoded.node_count(), "nodes are nested");
   }
   for (std::size_t i = 0; i < decoded.stale_count(); ++i) {
-    require(decoded.stale()[i].offset + decoded.stale()[i].size <= decoded.bytes.size());
+    require(decoded.stale()[i].offset + decoded.stale()[i].size <= decoded.bytes.size(),
+            "stale bytes lie within the packet");
   }
 }
 

@@ -1,0 +1,13 @@
+// The engine's own mutation of bytes, for the structure-aware mutators that fall back on it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace rubric::fuzz {
+
+/// Changes data[0, size) in place and returns the new size, at most `max_size`. By libFuzzer where
+/// it is linked; else, under AFL++ or in a replay, a few random changes made from `seed`.
+std::size_t mutate_bytes(std::uint8_t* data, std::size_t size, std::size_t max_size, unsigned seed);
+
+}  // namespace rubric::fuzz
