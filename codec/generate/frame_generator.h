@@ -1,0 +1,59 @@
+// Makes frames of a protocol's messages from its tables: valid ones, and ones with a single fault
+// that is known. For fuzzers, ours and other people's.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "codec/containers/packet.h"
+#include "codec/generate/random.h"
+#include "codec/reflect/schema.h"
+#include "codec/runtime/result.h"
+
+namespace rubric::generate {
+
+/// A frame, and what a decoder must say of it.
+struct Generated {
+  Framing framing = Framing::kSf;      ///< kSf for the serial line, kRadio for the air.
+  std::vector<std::uint8_t> bytes;     ///< As Packet::bytes.
+  const reflect::Route* route = nullptr;  ///< To which message it leads, or nearly leads.
+  /// By construction, not by asking a decoder: Fault::kNone where the frame is valid. The offset
+  /// counts from bytes[0].
+  Error error{Fault::kNone, 0, ReqId::kNone};
+  std::string what;  ///< "valid", or what is wrong: "join_request.type is 7, allowed are 1 to 5".
+  bool valid() const { return error.fault == Fault::kNone; }
+};
+
+/// Frames of one protocol. The same seed gives the same frames.
+class FrameGenerator {
+ public:
+  FrameGenerator(const reflect::Protocol& protocol, const reflect::RouteTable& routes,
+                 std::uint64_t seed)
+      : protocol_(protocol), routes_(routes), random_(seed) {}
+
+  const reflect::RouteTable& routes() const { return routes_; }
+  Random& random() { return random_; }
+
+  /// A valid frame that leads to the message of that route: every field within what its rule
+  /// allows, bounds and reserved values more often than chance has them; sizes and counts agree.
+  Generated valid(const reflect::Route& route);
+  /// The same with one rule broken: a field just outside what is allowed, a count that lies, bytes
+  /// missing at the end, a length byte off by one, ... Falls back on a valid frame only for a
+  /// message that no change of one thing makes invalid.
+  Generated near_valid(const reflect::Route& route);
+
+ private:
+  const reflect::Protocol& protocol_;
+  const reflect::RouteTable& routes_;
+  Random random_;
+};
+
+/// Changes a field of `bytes`, a frame of that framing, in place, by its type: another allowed value,
+/// a bound, a neighbour, a bit, an element more or less of an array; lengths and counts around it are
+/// repaired, so that what was valid mostly stays so. False, and nothing changed, where nothing of
+/// the frame can be read. `max_size` in bytes.
+bool change_field(const reflect::Protocol& protocol, Framing framing,
+                  std::vector<std::uint8_t>& bytes, std::size_t max_size, Random& random);
+
+}  // namespace rubric::generate
