@@ -75,4 +75,10 @@ std::string dishonesty(attach::Attachment& attachment) {
   return {};
 }
 
+void require_honest(attach::Attachment& attachment, const std::string& target) {
+  if (const std::string wrong = dishonesty(attachment); !wrong.empty()) {
+    throw runner::TargetBroken(fmt::format("{}: {}", target, wrong));
+  }
+}
+
 }  // namespace rubric::suite

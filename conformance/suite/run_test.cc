@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "conformance/suite/canary.h"
 #include "conformance/suite/select.h"
 #include "conformance/suite/testing.h"
 #include "conformance/trace/print.h"
@@ -110,6 +111,19 @@ TEST(Honesty, AnswersToNonsense) {
     one.honest = "it said done";
   }), plan());
   EXPECT_THAT(run.dishonest, HasSubstr("a command that nobody knows: it said done"));
+}
+
+TEST(Honesty, CanBeRequired) {
+  FakeAttachment honest;
+  require_honest(honest, "./a");
+  FakeAttachment liar;
+  liar.make = parrot;
+  try {
+    require_honest(liar, "./b");
+    FAIL() << "it passed a canary";
+  } catch (const runner::TargetBroken& error) {
+    EXPECT_THAT(error.what(), HasSubstr("./b: canary.mote has to fail"));
+  }
 }
 
 TEST(Honesty, WhatDoesNotStart) {
