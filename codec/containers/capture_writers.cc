@@ -12,6 +12,7 @@ namespace {
 using namespace pcapng;
 
 constexpr std::uint64_t kNsPerSecond = 1'000'000'000;
+constexpr std::int64_t kPcapTimeNsMax = 4'294'967'295'999'999'999;  // Seconds have 32 bits.
 constexpr std::uint8_t kResolutionNs = 9;  // if_tsresol: 10^-9 seconds.
 
 void put16(std::uint64_t value, std::string& out) {
@@ -53,6 +54,17 @@ void close_block(std::size_t begin, std::string& out) {
   out.replace(begin + 4, length.size(), length);
 }
 
+std::uint16_t radio_link_type(const Packet& packet) {
+  const Fault fault = packet.error.fault;
+  // A TAP header that was understood is no longer there, one that was not is all there is.
+  const bool header_gone =
+      packet.link_type == kLinkRadioTap && packet.error.requirement != req::kWireRadioTap;
+  // A malformed frame stays under the type that it was malformed by.
+  if (fault != Fault::kNone && packet.link_type != 0 && !header_gone) return packet.link_type;
+  const bool has_fcs = packet.fcs != kAbsent || fault == Fault::kTooShort;
+  return has_fcs ? kLinkRadioFcs : kLinkRadioNoFcs;
+}
+
 std::string_view option_text(std::string_view text) {
   return text.substr(0, std::min<std::size_t>(text.size(), 0xFFFF));
 }
@@ -66,9 +78,7 @@ std::uint16_t link_type_of(const Packet& packet) {
     case Framing::kSf:
       return kLinkSf;
     case Framing::kRadio:
-      // A malformed frame stays under the type that it was malformed by.
-      if (packet.error.fault != Fault::kNone && packet.link_type != 0) return packet.link_type;
-      return packet.fcs == kAbsent ? kLinkRadioNoFcs : kLinkRadioFcs;
+      return radio_link_type(packet);
     case Framing::kBare:
       break;
   }
@@ -95,7 +105,8 @@ void PcapWriter::begin(std::string& out) {
 
 bool PcapWriter::write(const Packet& packet, std::string_view, std::string& out) {
   if (link_type_of(packet) != link_type_) return false;
-  const auto ns = static_cast<std::uint64_t>(std::max<std::int64_t>(packet.time_ns, 0));
+  const auto ns = static_cast<std::uint64_t>(
+      std::clamp<std::int64_t>(packet.time_ns, 0, kPcapTimeNsMax));
   put32(ns / kNsPerSecond, out);
   put32(ns % kNsPerSecond, out);
   const std::size_t lengths = out.size();

@@ -1,25 +1,65 @@
-// Property: no spec, however broken, crashes or hangs the compiler; one that it accepts is emitted.
+// Property: no spec, however broken, crashes or hangs the compiler; mistakes are shown at places
+// within it; one that is accepted is emitted in every form, the same each time.
 #include <cstddef>
 #include <cstdint>
 #include <string>
 
+#include "fuzz/support/embedded_files.h"
+#include "fuzz/support/places.h"
+#include "fuzz/support/require.h"
 #include "spec/compiler/emit.h"
 #include "spec/compiler/emit_cpp.h"
+#include "spec/compiler/emit_java.h"
 #include "spec/compiler/load.h"
 
+namespace {
+
+using rubric::fuzz::require;
+
+constexpr const char* kInput = "spec/wire/input.ksy";
+
+// The input beside the specs that it may import, and the catalogue that it may quote.
+void load(const std::string& text, rubricc::Model& model, rubricc::Diagnostics& diagnostics) {
+  for (const char* name : {"spec/requirements.yaml", "spec/wire/tinyos.ksy"}) {
+    const std::string content = rubric::fuzz::embedded_file(name);
+    if (name == std::string("spec/requirements.yaml")) {
+      rubricc::load_requirements_text(name, content, model, diagnostics);
+    } else {
+      rubricc::load_spec_text(name, content, model, diagnostics);
+    }
+  }
+  rubricc::load_spec_text(kInput, text, model, diagnostics);
+  rubricc::check_model(model, diagnostics);
+}
+
+std::string emitted(const rubricc::Model& model) {
+  std::string out;
+  const auto add = [&out](const rubricc::GeneratedFiles& files) {
+    require(!files.empty(), "an emitter has something to say");
+    for (const auto& file : files) out += file.path + '\n' + file.text;
+  };
+  for (const auto& spec : model.specs) {
+    if (spec->file != kInput) continue;
+    add(rubricc::emit_tables(*spec));
+    add(rubricc::emit_dictionary(*spec));
+    add(rubricc::emit_messages(*spec));
+    add(rubricc::emit_cpp(*spec));
+    add(rubricc::emit_java(*spec));
+  }
+  add(rubricc::emit_doc(model));
+  for (const auto& file : rubricc::emit_protocols(model)) out += file.text;
+  return out;
+}
+
+}  // namespace
+
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string text(reinterpret_cast<const char*>(data), size);
   rubricc::Model model;
   rubricc::Diagnostics diagnostics;
-  const std::string text(reinterpret_cast<const char*>(data), size);
-  rubricc::load_spec_text("input.ksy", text, model, diagnostics);
-  rubricc::check_model(model, diagnostics);
+  load(text, model, diagnostics);
+  rubric::fuzz::places_are_within(diagnostics, kInput, text);
   if (!diagnostics.empty()) return 0;
-  for (const auto& spec : model.specs) {
-    rubricc::emit_tables(*spec);
-    rubricc::emit_dictionary(*spec);
-    rubricc::emit_messages(*spec);
-    rubricc::emit_cpp(*spec);
-  }
-  rubricc::emit_doc(model);
+  require(emitted(model) == emitted(model), "what is emitted depends on the spec alone");
   return 0;
 }

@@ -1,0 +1,14 @@
+// The deframer's rules as a plain program, one byte after the other, to hold the fast one against.
+#pragma once
+
+#include <vector>
+
+#include "codec/containers/testing.h"
+
+namespace rubric::fuzz {
+
+/// What a HdlcReader must make of the whole of `stream`. Written from TEP 113, section 3.1, and the
+/// rules in hdlc_reader.h and serial_frame.h; shares no code with the reader.
+std::vector<testing::Kept> plain_deframe(Bytes stream);
+
+}  // namespace rubric::fuzz

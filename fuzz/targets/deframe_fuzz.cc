@@ -1,0 +1,75 @@
+// Property: any split of a serial line's bytes, on every path of this processor, gives the frames,
+// places and faults that a plain byte-by-byte deframer finds, the mote's deframer agrees on what is
+// whole, and what is written from them reads back as the same.
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "codec/containers/hdlc_reader.h"
+#include "codec/containers/serial_frame.h"
+#include "codec/runtime/hdlc.h"
+#include "fuzz/support/plain_deframer.h"
+#include "fuzz/support/readers.h"
+#include "fuzz/support/require.h"
+
+namespace {
+
+using namespace rubric;
+using fuzz::Kept;
+using fuzz::require;
+
+// What a mote with a buffer of any size would say of the frames that a flag ends.
+void check_mote(Bytes stream, const std::vector<Kept>& wanted) {
+  std::array<std::uint8_t, kHdlcKeptMax> buffer;
+  HdlcDeframer deframer(MutableBytes(buffer.data(), buffer.size()));
+  std::size_t next = 0;
+  for (const std::uint8_t byte : stream) {
+    const HdlcEvent event = deframer.push(byte);
+    if (event == HdlcEvent::kNone) continue;
+    require(next < wanted.size(), "the mote's deframer finds no frame more");
+    const Kept& frame = wanted[next++];
+    const bool sound = frame.packet.error.fault == Fault::kNone;
+    require((event == HdlcEvent::kFrame) == sound, "the mote's deframer agrees on what is sound");
+    if (!sound) {
+      require(deframer.error() == frame.packet.error, "the mote's deframer finds the same fault");
+      continue;
+    }
+    std::string content;
+    append_serial_content(frame.get(), content);
+    content.resize(content.size() - kSerialCrcBytes);
+    require(equal(deframer.content(), testing::view(content)), "the mote's frames hold the same");
+  }
+  const bool rest = !wanted.empty() && wanted.back().packet.error.fault == Fault::kCut;
+  require(next + rest == wanted.size(), "the mote's deframer misses no frame");
+}
+
+void check_writer(const std::vector<Kept>& packets) {
+  HdlcWriter writer;
+  std::string written;
+  std::vector<Kept> wanted;
+  for (const Kept& kept : packets) {
+    if (kept.packet.dropped_bytes != 0) continue;  // It cannot be written whole.
+    require(writer.write(kept.get(), written), "every packet of a serial line can be written");
+    wanted.push_back(fuzz::placeless(kept));
+  }
+  HdlcReader reader;
+  std::vector<Kept> again = testing::read_all(reader, testing::view(written));
+  for (Kept& kept : again) kept = fuzz::placeless(kept);
+  fuzz::require_same(again, wanted, "what is written reads back as the same");
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const Bytes stream(data, size);
+  const std::vector<Kept> wanted = fuzz::plain_deframe(stream);
+  for (const CpuPath path : {CpuPath::kPortable, CpuPath::kVector, CpuPath::kWide}) {
+    if (!cpu_has(path)) continue;
+    const auto make = [path] { return std::make_unique<HdlcReader>(ReaderOptions{}, path); };
+    fuzz::require_same(fuzz::read_in_any_pieces(make, stream), wanted,
+                       "the reader finds what a plain deframer finds");
+  }
+  check_mote(stream, wanted);
+  check_writer(wanted);
+  return 0;
+}

@@ -1,0 +1,62 @@
+// Property: of any text a filter expression is made or refused at a place within the text; what is
+// made says of every frame the same twice, and the opposite under `!`.
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "fuzz/support/require.h"
+#include "tools/format/filter.h"
+#include "tools/format/testing.h"
+
+namespace {
+
+using namespace rubric;
+using format::Filter;
+using format::FilterError;
+using format::Sample;
+using fuzz::require;
+
+const std::vector<const Sample*>& frames() {
+  static const std::vector<const Sample*> all = {
+      new Sample(format::kUpdates),
+      new Sample(format::kUpdates, Framing::kHdlc),
+      new Sample("00 ffff 0000 02 00 0b 0001", Framing::kSf),
+      new Sample("4188 07 2200 0100 0200 3f 1c 000b 0001 000b 0002 01 0007 03 1002 0a"
+                 "0001 0002", Framing::kRadio),
+      new Sample("0200 07", Framing::kRadio),
+      new Sample("", Framing::kSf),
+      new Sample(format::kJoinRequest, Framing::kBare, "join_request"),
+      new Sample("8002 0001 3f000000 7fc00000 ff800000", Framing::kBare, "synaptic_data")};
+  return all;
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  try {
+    const Filter filter(text, format::rubicon());
+    // A level deeper it may be too deep.
+    const std::string opposite = "!(" + std::string(text) + ")";
+    const std::string doubled = "(" + std::string(text) + ") && (" + std::string(text) + ")";
+    try {
+      const Filter denied(opposite, format::rubicon());
+      const Filter both(doubled, format::rubicon());
+      for (const Sample* frame : frames()) {
+        const bool holds = filter.matches(frame->record);
+        require(denied.matches(frame->record) != holds, "`!` is the opposite");
+        require(both.matches(frame->record) == holds, "a and a is a");
+      }
+    } catch (const FilterError& error) {
+      require(std::string_view(error.what()).find("deep") != std::string_view::npos ||
+                  std::string_view(error.what()).find("longer") != std::string_view::npos,
+              error.what());
+    }
+  } catch (const FilterError& error) {
+    require(error.position() <= text.size(), "a mistake stands within the text");
+    require(!error.explain(text).empty(), "a mistake is explained");
+  }
+  return 0;
+}

@@ -1,0 +1,107 @@
+// Property: a captured record of any radio link type is taken apart as a plain reading of 802.15.4
+// does it, FCS and addresses included, and what is appended from it reads back as the same.
+#include <cstddef>
+#include <cstdint>
+
+#include "codec/containers/link_record.h"
+#include "codec/reflect/frame.h"
+#include "codec/reflect/registry.h"
+#include "fuzz/support/input.h"
+#include "fuzz/support/readers.h"
+#include "fuzz/support/require.h"
+
+namespace {
+
+using namespace rubric;
+using fuzz::Kept;
+using fuzz::require;
+
+// IEEE 802.15.4-2006, section 7.2.1.9: bits in the order of sending, the least significant first.
+int plain_fcs(const std::string& bytes) {
+  unsigned sum = 0;
+  for (const char c : bytes) {
+    for (unsigned bit = 0; bit < 8; ++bit) {
+      const unsigned in = static_cast<std::uint8_t>(c) >> bit & 1u;
+      const bool feedback = ((sum ^ in) & 1u) != 0;
+      sum = sum >> 1 ^ (feedback ? 0x8408u : 0u);
+    }
+  }
+  return static_cast<int>(sum);
+}
+
+void check_sum(const Kept& kept, std::size_t record_size) {
+  const Packet& packet = kept.packet;
+  require(packet.framing == Framing::kRadio, "a radio record holds a radio frame");
+  require(kept.bytes.size() + (packet.fcs == kAbsent ? 0 : 2) <= record_size,
+          "a frame lies within its record");
+  const Fault fault = packet.error.fault;
+  if (packet.fcs == kAbsent || (fault != Fault::kNone && fault != Fault::kFcs)) return;
+  require((plain_fcs(kept.bytes) == packet.fcs) == (fault == Fault::kNone),
+          "a frame is sound where its FCS is that of its bytes");
+}
+
+unsigned little(const Kept& kept, std::size_t at) {
+  const auto low = static_cast<std::uint8_t>(kept.bytes[at]);
+  return static_cast<unsigned>(static_cast<std::uint8_t>(kept.bytes[at + 1])) << 8 | low;
+}
+
+// IEEE 802.15.4-2006, section 7.2.1.1, by the fields of the frame control.
+void check_addresses(const Kept& kept, const reflect::Frame& frame) {
+  require(frame.mac.present == (kept.bytes.size() >= 3), "three bytes have control and number");
+  if (kept.bytes.size() < 9) return require(!frame.mac.has_addresses, "addresses need nine bytes");
+  const unsigned control = little(kept, 0);
+  const bool data = (control & 7u) == 1;
+  const bool secured = (control >> 3 & 1u) != 0;
+  const bool one_pan = (control >> 6 & 1u) != 0;
+  const bool short_dest = (control >> 10 & 3u) == 2;
+  const bool short_src = (control >> 14 & 3u) == 2;
+  const bool usual = data && !secured && one_pan && short_dest && short_src;
+  require(frame.mac.has_addresses == usual, "short addresses of one PAN are read, others not");
+  if (!usual) return require(!frame.am.present, "only data frames carry active messages");
+  require(frame.mac.destpan == little(kept, 3) && frame.mac.dest == little(kept, 5) &&
+              frame.mac.src == little(kept, 7),
+          "addresses stand behind the sequence number");
+  if (kept.bytes.size() < 10) return;
+  const bool network = kept.bytes[9] == 0x3F;
+  const std::size_t type_at = network ? 10 : 9;
+  require(frame.am.present == (kept.bytes.size() > type_at), "an AM type makes an active message");
+  if (!frame.am.present) return;
+  require(frame.am.type == static_cast<std::uint8_t>(kept.bytes[type_at]) &&
+              frame.am.length == kept.bytes.size() - type_at - 1,
+          "type and length of the active message");
+}
+
+void check_append(const Kept& kept) {
+  const Packet packet = kept.get();
+  std::string record;
+  append_record(packet, record);
+  Packet again;
+  decode_record(testing::view(record), record.size() + packet.dropped_bytes, link_type_of(packet),
+                req::kWirePcap, again);
+  Kept wanted = fuzz::placeless(kept);
+  wanted.packet.link_type = link_type_of(packet);
+  fuzz::require_same({fuzz::placeless(Kept(again))}, {wanted}, "a record reads back as the same");
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  constexpr std::uint16_t kLinks[] = {kLinkRadioFcs, kLinkRadioNoFcs, kLinkRadioTap};
+  fuzz::Input input(data, size);
+  const std::uint16_t link_type = kLinks[input.below(std::size(kLinks))];
+  // Mostly a record is captured whole.
+  const std::size_t missing = input.u8() % 8 == 7 ? 1 + input.u8() : 0;
+  const Bytes record = input.rest();
+  Packet packet;
+  decode_record(record, record.size() + missing, link_type, req::kWirePcap, packet);
+  require(packet.offset_bytes + packet.bytes.size() <= record.size(), "a frame lies in its record");
+  const Kept kept(packet);
+  check_sum(kept, record.size());
+  check_append(kept);
+
+  static const reflect::FrameDecoder decoder(*reflect::find_protocol("rubicon"));
+  static reflect::Frame frame;
+  decoder.decode(packet, frame);
+  check_addresses(kept, frame);
+  return 0;
+}

@@ -1,0 +1,76 @@
+// Property: of any bytes every structure's parse takes just what write makes again, and the
+// reflection tables find the same fault at the same place by the same rule, or the same values.
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "codec/codec_test/every_view.h"
+#include "codec/generated/oscilloscope/tables.h"
+#include "codec/generated/rubicon/tables.h"
+#include "codec/generated/tinyos/tables.h"
+#include "codec/reflect/compare_view.h"
+#include "fuzz/support/require.h"
+
+namespace {
+
+using namespace rubric;
+using fuzz::require;
+
+template <class View>
+void written_again(const View& view) {
+  const typename View::Value value = view.to_value();
+  std::vector<std::uint8_t> out(view.bytes().size());
+  const auto written = write(value, MutableBytes(out.data(), out.size()));
+  require(written.has_value(), "write takes what parse took, and needs no more room");
+  require(equal(*written, view.bytes()), "write makes the same bytes");
+  const Result<View> again = View::parse(*written);
+  require(again && *again == view && again->stale().empty(), "parse takes what write made");
+  require(again->to_value() == value, "parse gives the value back");
+  if (out.empty()) return;
+  const auto small = write(value, MutableBytes(out.data(), out.size() - 1));
+  require(!small && small.error().fault == Fault::kNoRoom, "write does with no less room");
+}
+
+template <class View>
+void check(Bytes bytes, const reflect::Type& type) {
+  static reflect::Decoded decoded;
+  const Result<View> view = View::parse(bytes);
+  reflect::decode(type, bytes, reflect::Tail::kStale, true, decoded);
+  require(decoded.error == view.error(), "the tables find the same fault");
+  if (!view) {
+    require(view.error().offset_bytes <= bytes.size(), "a fault lies within the bytes");
+    return;
+  }
+  reflect::ViewComparer comparer(decoded);
+  comparer.structure(*view, 0);
+  require(comparer.difference().empty(), comparer.difference().c_str());
+  written_again(*view);
+}
+
+struct Structure {
+  const reflect::Type* type;
+  void (*check)(Bytes bytes, const reflect::Type& type);
+};
+
+std::vector<Structure> all_structures() {
+  std::vector<Structure> out;
+  for_each_view_of_all([&out]<class View>(const std::string& name, ViewTag<View>) {
+    const std::size_t dot = name.find('.');
+    for (const reflect::Protocol* protocol :
+         {&tinyos::tables::kProtocol, &rubicon::tables::kProtocol,
+          &oscilloscope::tables::kProtocol}) {
+      if (name.substr(0, dot) != protocol->id) continue;
+      out.push_back({reflect::find_type(*protocol, name.substr(dot + 1)), &check<View>});
+    }
+  });
+  return out;
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const std::vector<Structure> structures = all_structures();
+  for (const Structure& one : structures) one.check(Bytes(data, size), *one.type);
+  return 0;
+}
