@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "codec/containers/packet.h"
+#include "codec/generate/draft.h"
 #include "codec/generate/random.h"
 #include "codec/reflect/schema.h"
 #include "codec/runtime/result.h"
@@ -18,6 +19,9 @@ struct Generated {
   Framing framing = Framing::kSf;      ///< kSf for the serial line, kRadio for the air.
   std::vector<std::uint8_t> bytes;     ///< As Packet::bytes.
   const reflect::Route* route = nullptr;  ///< To which message it leads, or nearly leads.
+  /// Of a valid frame: the messages that it is, from the outermost in. Where the route's message
+  /// always holds others, these follow it.
+  std::vector<const reflect::Type*> path;
   /// By construction, not by asking a decoder: Fault::kNone where the frame is valid. The offset
   /// counts from bytes[0].
   Error error{Fault::kNone, 0, ReqId::kNone};
@@ -25,7 +29,8 @@ struct Generated {
   bool valid() const { return error.fault == Fault::kNone; }
 };
 
-/// Frames of one protocol. The same seed gives the same frames.
+/// Frames of one protocol. The same seed gives the same frames, whatever the machine. Throws
+/// std::logic_error for a route that no frame of the protocol can take.
 class FrameGenerator {
  public:
   FrameGenerator(const reflect::Protocol& protocol, const reflect::RouteTable& routes,
@@ -42,6 +47,8 @@ class FrameGenerator {
   /// missing at the end, a length byte off by one, ... Falls back on a valid frame only for a
   /// message that no change of one thing makes invalid.
   Generated near_valid(const reflect::Route& route);
+  /// The valid frame with what each of its bytes is.
+  Draft draft(const reflect::Route& route);
 
  private:
   const reflect::Protocol& protocol_;

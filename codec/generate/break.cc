@@ -1,0 +1,236 @@
+#include "codec/generate/break.h"
+
+#include <algorithm>
+
+#include "codec/generate/values.h"
+#include "codec/reflect/decode.h"
+#include "codec/reflect/encode_number.h"
+
+namespace rubric::generate {
+namespace {
+
+using reflect::Field;
+using reflect::Type;
+using std::to_string;
+
+constexpr std::uint32_t kMacHeaderBytes = 9;
+
+/// One frame being broken.
+class Breaker {
+ public:
+  Breaker(const Draft& draft, std::size_t max_bytes, const Type* short_radio, Random& random,
+          Broken& out)
+      : draft_(draft),
+        size_(static_cast<std::uint32_t>(draft.bytes.size())),
+        max_bytes_(max_bytes),
+        short_radio_(short_radio),
+        random_(random),
+        out_(out) {
+    out_ = Broken{draft.bytes, {Fault::kNone, 0, ReqId::kNone}, {}};
+  }
+
+  bool value() {
+    const auto part = pick([&](const Part& p) {
+      // By the numbers of its own a radio frame's carrier is told from the others.
+      const bool shape = draft_.radio && p.scope == 0;
+      return p.kind == PartKind::kNumber && !shape &&
+             p.field->valid.kind != reflect::ValidKind::kAny;
+    });
+    if (part == kNone) return false;
+    const Part& p = draft_.parts[part];
+    std::int64_t number = 0;
+    if (!refused_value(*p.field, random_, number)) return false;
+    store(p, number);
+    const bool range = p.field->valid.kind == reflect::ValidKind::kRange;
+    return fault(range ? Fault::kOutOfRange : Fault::kUnexpected, p.at, *p.field,
+                 name(p) + ": " + reflect::number_problem(*p.field, number));
+  }
+
+  bool cut() { return cut_at(place_of_cut(), {}, ""); }
+
+  bool cut_repaired() {
+    const std::uint32_t at = place_of_cut();
+    std::vector<std::uint32_t> around;
+    for (std::uint32_t i = 0; i < draft_.parts.size(); ++i) {
+      const Part& p = draft_.parts[i];
+      if (p.kind != PartKind::kRoom || p.measure == kNone || !p.hard) continue;
+      if (p.at > at || p.at + p.size <= at) continue;
+      if (!is_allowed(*number_of(p).field, at - p.at)) break;
+      around.push_back(i);
+    }
+    if (around.empty()) return false;
+    around.resize(1 + random_.below(around.size()));
+    std::string repaired;
+    for (const std::uint32_t i : around) {
+      const Part& p = draft_.parts[i];
+      store(number_of(p), at - p.at);
+      repaired += ", " + name(number_of(p)) + " agrees";
+    }
+    return cut_at(at, around, repaired);
+  }
+
+  bool more() {
+    const std::uint32_t part = pick([&](const Part& p) { return counts(p); });
+    if (part == kNone) return false;
+    const Part& p = draft_.parts[part];
+    const Part& measure = number_of(p);
+    const std::uint32_t limit = draft_.limit(p.scope);
+    const std::int64_t least = (limit - p.at) / p.element_bytes + 1;
+    const std::int64_t most = allowed(*measure.field).max;
+    if (least > most) return false;
+    const std::int64_t number = random_.chance(0.6) ? least : random_.between(least, most);
+    if (!is_allowed(*measure.field, number)) return false;
+    return lie(measure, number, [&] {
+      return fault(Fault::kTruncated, limit, *p.field, name(measure) + " is " +
+                   to_string(number) + ", but " + name(p) + " has " + counted(p));
+    });
+  }
+
+  bool less() {
+    const std::uint32_t part = pick([&](const Part& p) {
+      return p.kind == PartKind::kRoom && counts(p) && p.size > 0 && is_last(p);
+    });
+    if (part == kNone) return false;
+    const Part& p = draft_.parts[part];
+    const Part& measure = number_of(p);
+    const std::int64_t least = std::max<std::int64_t>(0, allowed(*measure.field).min);
+    const std::int64_t most = std::int64_t{p.size} - 1;
+    if (least > most) return false;
+    const std::int64_t number = random_.chance(0.5) ? most : random_.between(least, most);
+    if (!is_allowed(*measure.field, number)) return false;
+    const auto end = static_cast<std::uint32_t>(p.at + number);
+    const std::uint32_t first = draft_.first_cut(end, part + 1, p.last_inside, {});
+    const std::string text = name(measure) + " is " + to_string(number) + ", but " + name(p) +
+                             " has " + counted(p);
+    if (first != kNone) {
+      return lie(measure, number, [&] {
+        return fault(Fault::kTruncated, end, *draft_.parts[first].field,
+                     text + "; " + name(draft_.parts[first]) + " needs more");
+      });
+    }
+    // Bytes behind the end of an inner part are stale; behind that of the frame they are too many.
+    if (p.scope != 0) return false;
+    return lie(measure, number,
+               [&] { return fault(Fault::kTrailing, end, *p.field, text); });
+  }
+
+  bool trailing() {
+    const Type& carrier = *draft_.scopes[0].type;
+    if (carrier.field_count == 0 || size_ >= max_bytes_) return false;
+    for (const Part& p : draft_.parts) {
+      if (p.scope == 0 && p.open) return false;
+    }
+    const std::size_t bytes = 1 + random_.below(std::min<std::size_t>(max_bytes_ - size_, 12));
+    for (std::size_t i = 0; i < bytes; ++i) out_.bytes.push_back(any_byte(random_));
+    return fault(Fault::kTrailing, size_, carrier.fields[carrier.field_count - 1],
+                 to_string(bytes) + " more than the frame has");
+  }
+
+ private:
+  const Part& number_of(const Part& p) const { return draft_.parts[p.measure]; }
+  std::string name(const Part& p) const {
+    return std::string(draft_.scopes[p.scope].type->name) + "." + p.field->name;
+  }
+  static std::string counted(const Part& p) {
+    const std::uint32_t count = p.size / p.element_bytes;
+    const char* const unit = p.kind == PartKind::kArray && p.element_bytes != 1 ? "element" : "byte";
+    return to_string(count) + " " + unit + (count == 1 ? "" : "s");
+  }
+
+  /// A number alone says the size of this part, and it is the first of which it does.
+  bool counts(const Part& p) const {
+    if (p.measure == kNone) return false;
+    for (const Part& other : draft_.parts) {
+      if (&other == &p) return true;
+      if (other.measure == p.measure) return false;
+    }
+    return false;
+  }
+  bool is_last(const Part& p) const {
+    const Type& type = *draft_.scopes[p.scope].type;
+    return p.field == &type.fields[type.field_count - 1];
+  }
+
+  /// One of the parts that a decoder insists on and that fit; kNone if there is none.
+  template <class Fits>
+  std::uint32_t pick(const Fits& fits) {
+    std::uint32_t chosen = kNone;
+    std::size_t met = 0;
+    for (std::uint32_t i = 0; i < draft_.parts.size(); ++i) {
+      if (!draft_.parts[i].hard || !fits(draft_.parts[i])) continue;
+      if (random_.below(++met) == 0) chosen = i;
+    }
+    return chosen;
+  }
+
+  void store(const Part& p, std::int64_t number) {
+    reflect::store_number(*p.field, number, out_.bytes.data() + p.at);
+  }
+  template <class Then>
+  bool lie(const Part& measure, std::int64_t number, const Then& then) {
+    store(measure, number);
+    return then();
+  }
+
+  bool fault(Fault fault, std::uint32_t at, const Field& field, std::string what) {
+    out_.error = Error{fault, at, field.requirement};
+    out_.what = std::move(what);
+    return true;
+  }
+
+  // At least a byte is left; an empty frame is a fault of the framing.
+  std::uint32_t place_of_cut() {
+    if (size_ < 2) return size_;
+    if (random_.chance(0.25)) return size_ - 1;
+    const Part& p = draft_.parts[random_.below(draft_.parts.size())];
+    if (random_.chance(0.3) && p.at > 0 && p.at < size_) return p.at;
+    return 1 + static_cast<std::uint32_t>(random_.below(size_ - 1));
+  }
+
+  bool cut_at(std::uint32_t at, const std::vector<std::uint32_t>& repaired,
+              const std::string& more) {
+    if (at >= size_) return false;
+    const auto parts = static_cast<std::uint32_t>(draft_.parts.size());
+    const std::uint32_t first = draft_.first_cut(at, 0, parts, repaired);
+    if (first == kNone) return false;  // Only stale bytes are gone.
+    out_.bytes.resize(at);
+    const Part& p = draft_.parts[first];
+    const Field* field = p.field;
+    std::string lacks = name(p);
+    if (draft_.radio && at == kMacHeaderBytes && short_radio_) {
+      for (int i = 0; i < short_radio_->field_count; ++i) {
+        if (short_radio_->fields[i].fixed_offset != static_cast<std::int32_t>(at)) continue;
+        field = &short_radio_->fields[i];
+        lacks = std::string(short_radio_->name) + "." + field->name;
+      }
+    }
+    return fault(Fault::kTruncated, at, *field,
+                 "cut to " + to_string(at) + " of " + to_string(size_) + " bytes" + more + "; " +
+                     lacks + " needs more");
+  }
+
+  const Draft& draft_;
+  const std::uint32_t size_;
+  const std::size_t max_bytes_;
+  const Type* short_radio_;
+  Random& random_;
+  Broken& out_;
+};
+
+}  // namespace
+
+bool break_one(const Draft& draft, Breakage how, std::size_t max_bytes, const Type* short_radio,
+               Random& random, Broken& out) {
+  Breaker breaker(draft, max_bytes, short_radio, random, out);
+  switch (how) {
+    case Breakage::kValue: return breaker.value();
+    case Breakage::kCut: return breaker.cut();
+    case Breakage::kCutRepaired: return breaker.cut_repaired();
+    case Breakage::kMore: return breaker.more();
+    case Breakage::kLess: return breaker.less();
+    case Breakage::kTrailing: return breaker.trailing();
+  }
+  return false;
+}
+
+}  // namespace rubric::generate

@@ -1,0 +1,81 @@
+#include "codec/generate/frame_generator.h"
+
+#include <stdexcept>
+#include <utility>
+
+#include "codec/containers/link_record.h"
+#include "codec/generate/break.h"
+#include "codec/generate/frame_writer.h"
+#include "codec/reflect/decode.h"
+
+namespace rubric::generate {
+namespace {
+
+constexpr int kTries = 200;
+constexpr int kBreakTries = 60;
+constexpr std::size_t kFcsBytes = 2;
+// TinyOS's serial line has room for this many bytes with kind, sequence number and CRC around.
+constexpr std::size_t kSerialBytesMax = 252;
+
+bool is_radio(const reflect::Route& route) {
+  return std::string_view(route.carrier).starts_with("radio");
+}
+
+std::size_t most_bytes(bool radio) { return radio ? kRadioFrameMax - kFcsBytes : kSerialBytesMax; }
+
+// Tries the ways in any order; few messages can be broken in all.
+bool break_somehow(const Draft& draft, std::size_t max_bytes, const reflect::Type* short_radio,
+                   Random& random, Broken& out) {
+  Breakage ways[kBreakages];
+  for (std::size_t i = 0; i < kBreakages; ++i) ways[i] = static_cast<Breakage>(i);
+  for (std::size_t left = kBreakages; left > 0; --left) {
+    std::swap(ways[random.below(left)], ways[left - 1]);
+    if (break_one(draft, ways[left - 1], max_bytes, short_radio, random, out)) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+Draft FrameGenerator::draft(const reflect::Route& route) {
+  const reflect::Type* carrier = reflect::find_carrier(protocol_, route.carrier);
+  const bool radio = is_radio(route);
+  for (int i = 0; carrier && i < kTries; ++i) {
+    FrameWriter writer(route, radio, most_bytes(radio), random_);
+    if (writer.write(*carrier)) return std::move(writer.draft());
+  }
+  throw std::logic_error("no frame of " + std::string(protocol_.id) + " leads to " +
+                         route.type->name + " on " + route.carrier);
+}
+
+Generated FrameGenerator::valid(const reflect::Route& route) {
+  Draft made = draft(route);
+  Generated out;
+  out.framing = made.radio ? Framing::kRadio : Framing::kSf;
+  out.bytes = std::move(made.bytes);
+  out.path = std::move(made.path);
+  out.route = &route;
+  out.what = "valid";
+  return out;
+}
+
+Generated FrameGenerator::near_valid(const reflect::Route& route) {
+  const bool radio = is_radio(route);
+  const reflect::Type* const short_radio =
+      radio ? reflect::find_carrier(protocol_, "radio_i") : nullptr;
+  Broken broken;
+  for (int i = 0; i < kBreakTries; ++i) {
+    const Draft made = draft(route);
+    if (!break_somehow(made, most_bytes(radio), short_radio, random_, broken)) continue;
+    Generated out;
+    out.framing = radio ? Framing::kRadio : Framing::kSf;
+    out.bytes = std::move(broken.bytes);
+    out.route = &route;
+    out.error = broken.error;
+    out.what = std::move(broken.what);
+    return out;
+  }
+  return valid(route);
+}
+
+}  // namespace rubric::generate
