@@ -6,6 +6,7 @@
 #include "conformance/attach/forwarder.h"
 #include "conformance/attach/line_target.h"
 #include "conformance/attach/rct_attachment.h"
+#include "conformance/attach/rct_text.h"
 #include "conformance/attach/serial.h"
 #include "conformance/flaws/flaws.h"
 #include "conformance/runner/subject_target.h"
@@ -72,12 +73,23 @@ bool cut_end(std::string_view& text, std::string_view end) {
   return true;
 }
 
-LineNode real_node(const char* name, Role role, std::uint32_t baud) {
-  return {{name, "-", {role}, true}, false, baud};
+LineNode real_node(Role role, const char* where, std::uint32_t baud) {
+  LineNode node;
+  node.identity = {fmt::format("{}_{}", role_word(role), where), "-", {role}, true};
+  node.baud = baud;
+  return node;
+}
+
+// Takes the role off that may stand at the end of what is no server.
+Role cut_role(std::string_view& text) {
+  if (cut_end(text, ":mote")) return Role::kMote;
+  cut_end(text, ":sink");
+  return Role::kSink;
 }
 
 std::unique_ptr<Attachment> forwarder_server(std::string_view text, const Options& options) {
-  LineNode node = real_node("base_station_at_forwarder", Role::kBaseStation, kForwarderBaud);
+  LineNode node = real_node(Role::kBaseStation, "at_forwarder", kForwarderBaud);
+  node.comes_to_us = true;
   node.restarts = cut_end(text, ":restart");
   auto listener = std::make_shared<Listener>(read_host_port(text));
   auto line = std::make_unique<ForwarderLine>(
@@ -86,14 +98,16 @@ std::unique_ptr<Attachment> forwarder_server(std::string_view text, const Option
 }
 
 std::unique_ptr<Attachment> forwarder_client(std::string_view text, const Options& options) {
+  const Role role = cut_role(text);
   const HostPort at = read_host_port(text);
   auto line = std::make_unique<ForwarderLine>(
       [at](SteadyTime deadline) { return connect_tcp(at, deadline); });
   return std::make_unique<LineAttachment>(
-      std::move(line), real_node("sink_behind_forwarder", Role::kSink, kForwarderBaud), options);
+      std::move(line), real_node(role, "behind_forwarder", kForwarderBaud), options);
 }
 
 std::unique_ptr<Attachment> serial_line(std::string_view text, const Options& options) {
+  const Role role = cut_role(text);
   std::uint32_t baud = kSerialBaud;
   SerialLine::Connect connect;
   if (cut(text, "tcp:")) {
@@ -113,8 +127,7 @@ std::unique_ptr<Attachment> serial_line(std::string_view text, const Options& op
     };
   }
   return std::make_unique<LineAttachment>(std::make_unique<SerialLine>(std::move(connect)),
-                                          real_node("sink_on_serial_line", Role::kSink, baud),
-                                          options);
+                                          real_node(role, "on_serial_line", baud), options);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "conformance/attach/attachment.h"
+#include "conformance/attach/process_testing.h"
 #include "conformance/runner/case_files.h"
 #include "conformance/runner/run_case.h"
 
@@ -86,6 +87,17 @@ class AttachFaults : public testing::Test {
                               fault, flag(), RUBRIC_MACHINE_ADAPTER),
                   {kStepTimeout, milliseconds(20000)});
   }
+  // Has an adapter do what nobody asks for, and waits until it is done.
+  void do_it_now(std::string_view fault) const {
+    std::ofstream(flag() + ".now") << "1";
+    pid_t pid = 0;
+    EXPECT_TRUE(comes([&] { return bool(std::ifstream(flag() + ".done") >> pid); }));
+    if (fault == "ends_unasked") {
+      EXPECT_TRUE(comes([&] { return is_dead(pid); }));
+    }
+    std::filesystem::remove(flag() + ".now");
+    std::filesystem::remove(flag() + ".done");
+  }
   CaseResult run(Attachment& attachment) const {
     return runner::run_case(file_.file, *file_.file.find("j1.request"),
                             [&](const trace::NodeHeader&) { return attachment.target(); });
@@ -151,7 +163,7 @@ TEST_F(AttachFaults, CommandThatDoesNotRun) {
 }
 
 TEST_F(AttachFaults, EndBetweenCasesIsNoFaultOfTheNext) {
-  const auto attachment = attach(RUBRIC_MACHINE_ADAPTER, {});
+  const auto attachment = attach("exec " RUBRIC_MACHINE_ADAPTER, {});
   EXPECT_EQ(run(*attachment).verdict, CaseVerdict::kPass);
   siginfo_t info{};  // Its only child.
   std::ifstream children(fmt::format("/proc/self/task/{}/children", ::getpid()));
@@ -159,7 +171,49 @@ TEST_F(AttachFaults, EndBetweenCasesIsNoFaultOfTheNext) {
   ASSERT_TRUE(children >> child);
   ASSERT_EQ(::kill(child, SIGKILL), 0);
   ASSERT_EQ(::waitid(P_PID, static_cast<id_t>(child), &info, WEXITED | WNOWAIT), 0);
+  EXPECT_TRUE(attachment->take_mishaps().empty());
   EXPECT_EQ(run(*attachment).verdict, CaseVerdict::kPass);
+  const std::vector<Mishap> mishaps = attachment->take_mishaps();  // But it is told.
+  ASSERT_EQ(mishaps.size(), 1U);
+  EXPECT_EQ(mishaps[0].text, "was killed by signal 9 (Killed)");
+  EXPECT_TRUE(mishaps[0].broke);
+  attachment->finish();
+  EXPECT_TRUE(attachment->take_mishaps().empty());
+}
+
+// An adapter that passes the case, and does something where nothing is asked.
+TEST_F(AttachFaults, WhatHappensOutsideOfCasesIsTold) {
+  struct Odd {
+    const char* fault;
+    const char* text;
+    bool broke;
+  };
+  const Odd odd[] = {
+      {"speaks_unasked", "wrote 'note by the way'", true},
+      {"half_a_line_unasked", "did not end its line of 4 bytes in time", true},
+      {"ends_unasked", "ended with status 7", true},
+      {"bad_status_at_bye", "ended with status 7", false},
+      {"killed_at_bye", "was killed by signal 9 (Killed)", false},
+      {"speaks_at_bye", "wrote something, and nobody had asked", false},
+      {"hangs_at_bye", "did not end within 600 ms", false},
+  };
+  for (const Odd& one : odd) {
+    SCOPED_TRACE(one.fault);
+    raise_flag();
+    const auto attachment = adapter(one.fault);
+    EXPECT_EQ(run(*attachment).verdict, CaseVerdict::kPass);
+    if (one.broke) do_it_now(one.fault);
+    attachment->finish();
+    const std::vector<Mishap> mishaps = attachment->take_mishaps();
+    ASSERT_EQ(mishaps.size(), 1U);
+    EXPECT_EQ(mishaps[0].text, one.text);
+    EXPECT_EQ(mishaps[0].broke, one.broke);
+    EXPECT_EQ(mishaps[0].stderr_text, "last words\n");
+    EXPECT_EQ(run(*attachment).verdict, CaseVerdict::kPass) << "it can be started again";
+    attachment->finish();
+    EXPECT_TRUE(attachment->take_mishaps().empty());
+  }
+  EXPECT_TRUE(no_child_is_left());
 }
 
 TEST_F(AttachFaults, HonestyIsAsked) {

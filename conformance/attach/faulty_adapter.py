@@ -1,7 +1,8 @@
 """An adapter that is good but for one fault.
 
 Usage: faulty_adapter.py FAULT FLAG ADAPTER. Passes everything to the program ADAPTER, until the
-fault happens. Removes the file FLAG, which says that this run is to be the faulty one.
+fault happens. Removes the file FLAG, which says that this run is to be the faulty one. What it does
+when nothing is asked it does once there is a file FLAG.now, and says so by its process id in FLAG.done.
 """
 
 import os
@@ -9,6 +10,7 @@ import re
 import signal
 import subprocess
 import sys
+import threading
 import time
 
 FAULT, FLAG, ADAPTER = sys.argv[1:]
@@ -94,9 +96,36 @@ FAULTS = {
     "unknown_event": lambda: put(b"up 0 exploded(1)\n"),
 }
 
+UNASKED = {
+    "speaks_unasked": lambda: put(b"note by the way\n"),
+    "half_a_line_unasked": lambda: put(b"note"),
+    "ends_unasked": lambda: None,
+}
+AT_BYE = {
+    "bad_status_at_bye": lambda: os._exit(7),
+    "killed_at_bye": lambda: os.kill(os.getpid(), signal.SIGKILL),
+    "speaks_at_bye": lambda: put(b"done\n"),
+    "hangs_at_bye": sleep,
+}
+
+
+def act_unasked():
+    while not os.path.exists(FLAG + ".now"):
+        time.sleep(0.002)
+    sys.stderr.write("last words\n")
+    sys.stderr.flush()
+    UNASKED[FAULT]()
+    with open(FLAG + ".done.new", "w") as file:
+        file.write(str(os.getpid()))
+    os.rename(FLAG + ".done.new", FLAG + ".done")
+    if FAULT == "ends_unasked":
+        os._exit(7)
+
 
 def main():
     os.remove(FLAG)
+    if FAULT in UNASKED:
+        threading.Thread(target=act_unasked, daemon=True).start()
     inner = subprocess.Popen([ADAPTER], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
     for line in sys.stdin.buffer:
         word = line.split()[0]
@@ -109,8 +138,14 @@ def main():
         if word == b"until" and FAULT == "refuses_time":
             put(b"unsupported time\n")
             continue
+        if word == b"bye" and FAULT in AT_BYE:
+            sys.stderr.write("last words\n")
+            sys.stderr.flush()
+            AT_BYE[FAULT]()
         inner.stdin.write(line)
         inner.stdin.flush()
+        if word == b"bye":
+            sys.exit(inner.wait())
         answer = b""
         closed = False
         while not closed:

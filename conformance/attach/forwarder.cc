@@ -1,51 +1,29 @@
 #include "conformance/attach/forwarder.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
-
-#include "conformance/runner/target.h"
 
 namespace rubric::attach {
 namespace {
-
-using runner::TargetBroken;
 
 constexpr std::uint8_t kMagic = 'U';
 constexpr std::uint8_t kVersion = ' ';  // There is none below it.
 
 }  // namespace
 
-void ForwarderLine::open(SteadyTime deadline) {
-  if (stream_.is_open()) {
-    try {
-      while (read_more(std::chrono::steady_clock::now())) {
-      }
-      return;
-    } catch (const TargetBroken&) {  // It has gone since.
-    }
-  }
+void ForwarderLine::begin(SteadyTime deadline) {
   bytes_.clear();
-  stream_ = connect_(deadline);
-  shake_hands(deadline);
-}
-
-void ForwarderLine::close() { stream_.close(); }
-
-void ForwarderLine::shake_hands(SteadyTime deadline) {
   //= WIRE-SF-HANDSHAKE: A serial forwarder stream begins with the byte 0x55 and a version byte
   //= from each side.
   const std::uint8_t hello[] = {kMagic, kVersion};
-  stream_.write(Bytes(hello, sizeof hello), deadline);
+  put(Bytes(hello, sizeof hello), deadline);
   while (bytes_.size() < sizeof hello) {
-    if (read_more(deadline)) continue;
-    close();
-    throw TargetBroken("the other end does not begin a serial forwarder's connection");
+    if (!read_some(deadline)) {
+      broken("the other end does not begin a serial forwarder's connection");
+    }
   }
   if (bytes_[0] != kMagic || bytes_[1] < kVersion) {
-    close();
-    throw TargetBroken(fmt::format("the other end is no serial forwarder's: it begins with "
-                                   "{:02x} {:02x}, not with 55 20", bytes_[0], bytes_[1]));
+    broken(fmt::format("the other end is no serial forwarder's: it begins with {:02x} {:02x}, not "
+                       "with 55 20", bytes_[0], bytes_[1]));
   }
   bytes_.erase(bytes_.begin(), bytes_.begin() + sizeof hello);
 }
@@ -53,7 +31,7 @@ void ForwarderLine::shake_hands(SteadyTime deadline) {
 void ForwarderLine::send(const std::vector<std::uint8_t>& packet, SteadyTime deadline) {
   std::vector<std::uint8_t> out{static_cast<std::uint8_t>(packet.size())};
   out.insert(out.end(), packet.begin(), packet.end());
-  stream_.write(Bytes(out.data(), out.size()), deadline);
+  put(Bytes(out.data(), out.size()), deadline);
 }
 
 std::optional<TimedPacket> ForwarderLine::receive(SteadyTime deadline) {
@@ -61,24 +39,16 @@ std::optional<TimedPacket> ForwarderLine::receive(SteadyTime deadline) {
   //= from the dispatch byte on.
   while (bytes_.empty() || bytes_.size() < std::size_t{1} + bytes_[0]) {
     if (!bytes_.empty() && bytes_[0] == 0) break;
-    if (!read_more(deadline)) return std::nullopt;
+    if (!read_some(deadline)) return std::nullopt;
   }
   const std::size_t size = bytes_[0];
-  if (size == 0) {
-    close();
-    throw TargetBroken("a serial forwarder packet of no bytes");
-  }
+  if (size == 0) broken("a serial forwarder packet of no bytes");
   const auto end = bytes_.begin() + static_cast<std::ptrdiff_t>(size) + 1;
   TimedPacket packet{std::chrono::steady_clock::now(), {bytes_.begin() + 1, end}};
   bytes_.erase(bytes_.begin(), end);
   return packet;
 }
 
-bool ForwarderLine::read_more(SteadyTime deadline) {
-  std::uint8_t room[4096];
-  const std::size_t count = stream_.read(MutableBytes(room, sizeof room), deadline);
-  bytes_.insert(bytes_.end(), room, room + count);
-  return count > 0;
-}
+void ForwarderLine::take(Bytes bytes) { bytes_.insert(bytes_.end(), bytes.begin(), bytes.end()); }
 
 }  // namespace rubric::attach

@@ -1,31 +1,24 @@
 // A TinyOS serial forwarder over TCP, either end of it.
 #pragma once
 
-#include <deque>
-#include <functional>
+#include <optional>
+#include <vector>
 
-#include "conformance/attach/packet_line.h"
-#include "conformance/attach/stream.h"
+#include "conformance/attach/stream_line.h"
 
 namespace rubric::attach {
 
-class ForwarderLine : public PacketLine {
+class ForwarderLine : public StreamLine {
  public:
-  /// Makes the connection before a deadline, or throws runner::TargetBroken.
-  using Connect = std::function<ByteStream(SteadyTime deadline)>;
-  explicit ForwarderLine(Connect connect) : connect_(std::move(connect)) {}
+  using StreamLine::StreamLine;
 
-  void open(SteadyTime deadline) override;
-  void close() override;
   void send(const std::vector<std::uint8_t>& packet, SteadyTime deadline) override;
   std::optional<TimedPacket> receive(SteadyTime deadline) override;
 
  private:
-  bool read_more(SteadyTime deadline);
-  void shake_hands(SteadyTime deadline);
+  void begin(SteadyTime deadline) override;
+  void take(Bytes bytes) override;
 
-  Connect connect_;
-  ByteStream stream_;
   std::vector<std::uint8_t> bytes_;  // Read and not yet a whole packet.
 };
 

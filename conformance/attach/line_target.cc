@@ -47,7 +47,7 @@ void LineTarget::reset(const machine::Config& config) {
     throw Unsupported(fmt::format("the id of the sink cannot be set to {}", config.id));
   }
   line_.open(step_deadline());
-  let_settle();
+  if (!is_mote()) let_settle();  // Of a mote nothing is looked at.
   if (role == machine::Role::kSink) {
     set_island(config.island == 1 ? 2 : 1);
     set_island(config.island);
@@ -108,6 +108,7 @@ Ticks LineTarget::run_until(Ticks time) {
 
 // False when it is none of the node's.
 bool LineTarget::take(const TimedPacket& packet) {
+  if (is_mote()) return false;
   if (packet.bytes.empty() || packet.bytes[0] != 0) {
     notes_ += fmt::format("a packet of dispatch {:02x}, which is no active message, is ignored\n",
                           packet.bytes.empty() ? 0 : packet.bytes[0]);
@@ -166,9 +167,9 @@ std::unique_ptr<runner::Target> LineAttachment::target() {
   return std::make_unique<UsedLineTarget>(*line_, node_, options_, notes_, std::move(use));
 }
 
-// Where it does not start now nobody waits that long.
+// Only what starts and then comes by itself is waited for that long.
 void LineAttachment::open() {
-  const bool starts = !opened_ || node_.restarts;
+  const bool starts = node_.comes_to_us && (!opened_ || node_.restarts);
   line_->open(steady_clock::now() + (starts ? options_.start_timeout : options_.step_timeout));
   opened_ = true;
 }

@@ -7,6 +7,9 @@
 //   waits for the node to connect again: for a base station that is started anew by a script.
 // All else stays as the case before left it: sequence numbers, acks that are awaited, channels. The
 // id of a sink must be 1, and a base station's island that of the cases, 11.
+//
+// A mote says all that the rules know by radio. Nothing can be judged at its serial line, whatever
+// comes there (what debugs it, say), so nothing of it is shown; but that the line holds is seen.
 #pragma once
 
 #include <memory>
@@ -22,6 +25,7 @@ namespace rubric::attach {
 /// Who is behind a line, and how far away.
 struct LineNode {
   Identity identity;         ///< With the one role that it plays.
+  bool comes_to_us = false;  ///< It opens the connection, when it has started.
   bool restarts = false;     ///< It connects anew, and is new then, when its connection closes.
   std::uint32_t baud = 115200;
 };
@@ -38,11 +42,12 @@ class LineTarget : public runner::Target {
   runner::Ticks run_until(runner::Ticks time) override;
   const std::vector<runner::Output>& outputs() const override { return outputs_; }
   void hold_link_acks(bool) override {}
-  runner::Reach reach() const override { return {false, true, false, false}; }
+  runner::Reach reach() const override { return {false, !is_mote(), false, false}; }
   /// Of this host, and the time that a stimulus and its answer take on the serial line.
   runner::Tolerance tolerance() const override;
 
  private:
+  bool is_mote() const { return node_.identity.roles.front() == machine::Role::kMote; }
   void send(const machine::Frame& frame);
   void set_island(std::uint16_t island);
   void let_settle();

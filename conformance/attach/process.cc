@@ -16,6 +16,7 @@
 
 #include <fmt/format.h>
 
+#include "conformance/attach/groups.h"
 #include "conformance/runner/target.h"
 
 extern char** environ;
@@ -95,6 +96,7 @@ void Process::close_pipes(Pipes& pipes) {
 }
 
 std::unique_ptr<Process> Process::run(const std::string& command) {
+  GroupStart start;
   Pipes pipes = open_pipes();
   posix_spawn_file_actions_t files;
   ::posix_spawn_file_actions_init(&files);
@@ -125,10 +127,11 @@ std::unique_ptr<Process> Process::run(const std::string& command) {
     close_pipes(pipes);
     cannot_start(error);
   }
-  return std::unique_ptr<Process>(new Process(pid, pipes));
+  return std::unique_ptr<Process>(new Process(pid, start.started(pid), pipes));
 }
 
 std::unique_ptr<Process> Process::copy(const std::function<int(int, int)>& body) {
+  GroupStart start;
   Pipes pipes = open_pipes();
   const pid_t pid = ::fork();
   if (pid < 0) {
@@ -138,6 +141,7 @@ std::unique_ptr<Process> Process::copy(const std::function<int(int, int)>& body)
   }
   if (pid == 0) {
     ::setpgid(0, 0);
+    start.in_child();
     ::dup2(pipes.err.write_fd, STDERR_FILENO);
     close_fd(pipes.in.write_fd);
     close_fd(pipes.out.read_fd);
@@ -145,11 +149,12 @@ std::unique_ptr<Process> Process::copy(const std::function<int(int, int)>& body)
     ::_exit(body(pipes.in.read_fd, pipes.out.write_fd));
   }
   ::setpgid(pid, pid);  // Whoever comes first: it must be so before it is killed.
-  return std::unique_ptr<Process>(new Process(pid, pipes));
+  return std::unique_ptr<Process>(new Process(pid, start.started(pid), pipes));
 }
 
-Process::Process(pid_t pid, Pipes pipes)
+Process::Process(pid_t pid, std::size_t place, Pipes pipes)
     : pid_(pid),
+      place_(place),
       in_fd_(pipes.in.write_fd),
       out_fd_(pipes.out.read_fd),
       err_fd_(pipes.err.read_fd) {
@@ -287,11 +292,14 @@ void Process::ended_early() {
   throw TargetBroken(text);
 }
 
-bool Process::end(Milliseconds grace) {
+std::string Process::end(Milliseconds grace) {
   close_fd(in_fd_);
-  const bool itself = pid_ >= 0 && exited(grace);
+  const bool itself = pid_ < 0 || exited(grace);
+  const bool spoke = has_output();
   kill();
-  return itself && WIFEXITED(status_) && WEXITSTATUS(status_) == 0;
+  if (!itself) return fmt::format("did not end within {} ms", grace.count());
+  if (!WIFEXITED(status_) || WEXITSTATUS(status_) != 0) return status_text(status_);
+  return spoke ? "wrote something, and nobody had asked" : "";
 }
 
 void Process::kill() {
@@ -302,6 +310,7 @@ void Process::kill() {
       exited(kTermWait);
     }
     ::kill(-pid_, SIGKILL);
+    forget_group(place_);
     while (::waitpid(pid_, &status_, 0) < 0 && errno == EINTR) {
     }
     pid_ = -1;

@@ -18,7 +18,8 @@ using Milliseconds = std::chrono::milliseconds;
 
 /// All but the accessors throw runner::TargetBroken with what the process did wrong: "ended with
 /// status 3", "was killed by signal 9", "gave no answer within 5000 ms". SIGPIPE is ignored in this
-/// process from the first one on. Not for several threads at once.
+/// process from the first one on. Not for several threads at once. Signals that end this process
+/// end its children too where end_groups_on_signals() was called.
 class Process {
  public:
   static constexpr std::size_t kLineBytesMax = 65535;    ///< Without the line feed.
@@ -46,9 +47,9 @@ class Process {
   /// The last of what it wrote to its standard error since the last call.
   std::string take_stderr();
 
-  /// Closes its standard input and gives it `grace` to end; then it is killed. True when it ended
-  /// by itself with status 0.
-  bool end(Milliseconds grace);
+  /// Closes its standard input and gives it `grace` to end; then it is killed. Returns what was
+  /// wrong with its end; empty: it ended by itself, silently, with status 0.
+  std::string end(Milliseconds grace);
   /// Ends the whole group, and waits until the process is gone. Its standard error can be taken
   /// afterwards.
   void kill();
@@ -63,7 +64,7 @@ class Process {
   };
   static Pipes open_pipes();
   static void close_pipes(Pipes& pipes);
-  Process(pid_t pid, Pipes pipes);
+  Process(pid_t pid, std::size_t place, Pipes pipes);
 
   bool wait_for_pipes(bool want_write, SteadyTime deadline);
   void drain_output();
@@ -72,6 +73,7 @@ class Process {
   [[noreturn]] void ended_early();
 
   pid_t pid_ = -1;      // -1: gone, and waited for.
+  std::size_t place_;   // Of its group, while it is not gone.
   int status_ = 0;      // When it is gone.
   int in_fd_ = -1;      // Its standard input, written here; -1: closed.
   int out_fd_ = -1;

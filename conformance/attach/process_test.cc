@@ -5,11 +5,8 @@
 #include <unistd.h>
 
 #include <csignal>
-#include <fstream>
-#include <thread>
 
-#include <fmt/format.h>
-
+#include "conformance/attach/process_testing.h"
 #include "conformance/runner/target.h"
 
 namespace rubric::attach {
@@ -30,14 +27,6 @@ std::string broken_by(Action action) {
   return "";
 }
 
-// Gone, or dead and not yet waited for by whoever inherited it.
-bool is_dead(pid_t pid) {
-  std::ifstream file(fmt::format("/proc/{}/stat", pid));
-  std::string word;
-  std::string state;
-  return !(file >> word >> word >> state) || state == "Z";
-}
-
 TEST(Process, LinesGoBothWays) {
   const auto cat = Process::run("cat");
   cat->write("one\ntwo\n", in(5000));
@@ -46,7 +35,7 @@ TEST(Process, LinesGoBothWays) {
   EXPECT_EQ(cat->read_line(in(5000)), "two");
   EXPECT_FALSE(cat->has_output());
   EXPECT_FALSE(cat->closed());
-  EXPECT_TRUE(cat->end(Milliseconds(5000)));
+  EXPECT_EQ(cat->end(Milliseconds(5000)), "");
 }
 
 TEST(Process, LongestLine) {
@@ -80,17 +69,18 @@ TEST(Process, WholeGroupIsKilled) {
   const int child = std::stoi(parent->read_line(in(5000)));
   EXPECT_FALSE(is_dead(child));
   parent->kill();
-  const auto deadline = in(3000);
-  while (!is_dead(child) && steady_clock::now() < deadline) {
-    std::this_thread::sleep_for(Milliseconds(5));
-  }
-  EXPECT_TRUE(is_dead(child));
+  EXPECT_TRUE(comes([&] { return is_dead(child); }));
 }
 
 TEST(Process, EndTellsHowItWent) {
-  EXPECT_TRUE(Process::run("cat; exit 0")->end(Milliseconds(5000)));
-  EXPECT_FALSE(Process::run("cat; exit 2")->end(Milliseconds(5000)));
-  EXPECT_FALSE(Process::run("trap '' TERM; sleep 1000")->end(Milliseconds(50)));
+  EXPECT_EQ(Process::run("cat; exit 0")->end(Milliseconds(5000)), "");
+  EXPECT_EQ(Process::run("cat; exit 2")->end(Milliseconds(5000)), "ended with status 2");
+  EXPECT_EQ(Process::run("cat; kill -KILL $$")->end(Milliseconds(5000)),
+            "was killed by signal 9 (Killed)");
+  EXPECT_EQ(Process::run("cat; echo and one more thing")->end(Milliseconds(5000)),
+            "wrote something, and nobody had asked");
+  EXPECT_EQ(Process::run("trap '' TERM; sleep 1000")->end(Milliseconds(50)),
+            "did not end within 50 ms");
 }
 
 TEST(Process, StandardErrorIsKeptBeyondTheEnd) {
@@ -122,7 +112,7 @@ TEST(Process, SignalsOfOurOwnDoNotHurt) {
   ASSERT_EQ(::setitimer(ITIMER_REAL, &timer, nullptr), 0);
   const auto slow = Process::run("sleep 0.2; echo here; sleep 0.1");
   EXPECT_EQ(slow->read_line(in(5000)), "here");
-  EXPECT_TRUE(slow->end(Milliseconds(5000)));
+  EXPECT_EQ(slow->end(Milliseconds(5000)), "");
   timer = {};
   ASSERT_EQ(::setitimer(ITIMER_REAL, &timer, nullptr), 0);
   ASSERT_EQ(::sigaction(SIGALRM, &before, nullptr), 0);

@@ -1,6 +1,7 @@
 #include "conformance/attach/rct_answer.h"
 
 #include <algorithm>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -17,13 +18,23 @@ using trace::quoted;
 constexpr std::size_t kLinesMax = 10'000;  // Of an answer.
 constexpr std::size_t kShownMax = 100;     // Of a line, in an error.
 
-std::string shown(std::string_view line) {
-  std::string out;
-  for (const char c : line.substr(0, kShownMax)) {
-    const auto byte = static_cast<unsigned char>(c);
-    out += byte < 0x20 || byte > 0x7E ? fmt::format("\\x{:02x}", byte) : std::string(1, c);
+// These two return what is wrong.
+std::string read_roles(std::string_view list, std::vector<machine::Role>& out) {
+  while (!list.empty()) {
+    const std::size_t size = std::min(list.find(','), list.size());
+    const auto role = role_of(list.substr(0, size));
+    if (!role) {
+      return quoted(list.substr(0, size)) + " is no role: mote, sink or base_station";
+    }
+    out.push_back(*role);
+    list.remove_prefix(std::min(size + 1, list.size()));
   }
-  return line.size() > kShownMax ? quoted(out + "...") : quoted(out);
+  return {};
+}
+std::string read_time(std::string_view word, bool& real) {
+  real = word == "real";
+  return real || word == "virtual" ? std::string()
+                                   : quoted(word) + " is no time: virtual or real";
 }
 
 bool is_family(std::string_view text) {
@@ -34,6 +45,15 @@ bool is_family(std::string_view text) {
 }
 
 }  // namespace
+
+std::string shown(std::string_view line) {
+  std::string out;
+  for (const char c : line.substr(0, kShownMax)) {
+    const auto byte = static_cast<unsigned char>(c);
+    out += byte < 0x20 || byte > 0x7E ? fmt::format("\\x{:02x}", byte) : std::string(1, c);
+  }
+  return line.size() > kShownMax ? quoted(out + "...") : quoted(out);
+}
 
 void AnswerReader::fail(const std::string& what) const {
   throw TargetBroken(
@@ -213,23 +233,20 @@ Identity read_hello(const std::string& line) {
   out.name = words.next();
   out.version = words.next();
   if (out.name.empty() || out.version.empty()) throw broken("it lacks its name or version");
+  std::set<std::string_view> keys;
   while (!words.at_end()) {
     const std::string_view word = words.next();
-    if (word.starts_with("roles=")) {
-      std::string_view list = word.substr(6);
-      while (!list.empty()) {
-        const std::size_t size = std::min(list.find(','), list.size());
-        const auto role = role_of(list.substr(0, size));
-        if (!role) throw broken(quoted(list.substr(0, size)) + " is no role: mote, sink or "
-                                "base_station");
-        out.roles.push_back(*role);
-        list.remove_prefix(std::min(size + 1, list.size()));
-      }
-    } else if (word == "time=real" || word == "time=virtual") {
-      out.real_time = word == "time=real";
-    } else {
-      throw broken(quoted(word) + " is neither roles= nor time=virtual nor time=real");
+    const std::size_t size = word.find('=');
+    if (size == 0 || size == std::string_view::npos) {
+      throw broken(quoted(word) + " is no key=value, such as roles=mote");
     }
+    const std::string_view key = word.substr(0, size);
+    const std::string_view value = word.substr(size + 1);
+    if (key != "roles" && key != "time") continue;  // Of a later runner's interest.
+    if (!keys.insert(key).second) throw broken(fmt::format("it says {}= twice", key));
+    const std::string wrong = key == "roles" ? read_roles(value, out.roles)
+                                             : read_time(value, out.real_time);
+    if (!wrong.empty()) throw broken(wrong);
   }
   if (out.roles.empty()) throw broken("it says no roles=");
   return out;

@@ -58,6 +58,9 @@ class AnswerReader {
   std::size_t lines_ = 0;
 };
 
+/// A line in an error: in quotes, its first bytes, what is not printable as \xff.
+std::string shown(std::string_view line);
+
 /// The identity that a closing `hello` line tells. Throws runner::TargetBroken.
 Identity read_hello(const std::string& line);
 

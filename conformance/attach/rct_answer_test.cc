@@ -165,6 +165,31 @@ TEST(RctAnswer, NothingButTheClosingLineBeforeANodeRuns) {
   EXPECT_EQ(wrong_with(asked, {"note new", "ready"}), "");
 }
 
+std::string hello_wrong_with(const std::string& line) {
+  try {
+    read_hello(line);
+  } catch (const runner::TargetBroken& error) {
+    return std::string(error.what()).substr(std::string(error.what()).rfind("': ") + 3);
+  }
+  return "";
+}
+
+TEST(RctAnswer, HelloMayGrow) {
+  const Identity who =
+      read_hello("hello rct/1 a 2 caps=linkack,x roles=mote,sink time=real x= caps=more");
+  EXPECT_EQ(who.name, "a");
+  EXPECT_EQ(who.version, "2");
+  EXPECT_EQ(who.roles, (std::vector{machine::Role::kMote, machine::Role::kSink}));
+  EXPECT_TRUE(who.real_time);
+  EXPECT_EQ(hello_wrong_with("hello rct/1 a 2 roles=mote roles=sink"), "it says roles= twice");
+  EXPECT_EQ(hello_wrong_with("hello rct/1 a 2 roles=mote time=real time=real"),
+            "it says time= twice");
+  EXPECT_NE(hello_wrong_with("hello rct/1 a 2 roles=mote time=warped"), "");
+  EXPECT_NE(hello_wrong_with("hello rct/1 a 2 roles=mote fast"), "");
+  EXPECT_NE(hello_wrong_with("hello rct/1 a 2 roles=mote =fast"), "");
+  EXPECT_EQ(hello_wrong_with("hello rct/1 a 2 caps=x"), "it says no roles=");
+}
+
 TEST(RctAnswer, RealTimeGoesOn) {
   Asked asked = until();
   asked.real_time = true;

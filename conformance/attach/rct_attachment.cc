@@ -34,8 +34,7 @@ std::unique_ptr<RctClient> RctAttachment::take() {
   while (!idle_.empty()) {
     std::unique_ptr<RctClient> client = std::move(idle_.back());
     idle_.pop_back();
-    if (client->fit()) return client;
-    keep_stderr(*client);
+    if (waits(*client)) return client;
   }
   auto client = std::make_unique<RctClient>(start_(), options_);
   try {
@@ -50,7 +49,25 @@ std::unique_ptr<RctClient> RctAttachment::take() {
 
 void RctAttachment::give_back(std::unique_ptr<RctClient> client) {
   keep_stderr(*client);
-  if (client->fit()) idle_.push_back(std::move(client));
+  if (!client->broken()) idle_.push_back(std::move(client));
+}
+
+// False, and a mishap, where it did something since its last answer.
+bool RctAttachment::waits(RctClient& client) {
+  std::string what = client.unasked();
+  if (!what.empty()) mishaps_.push_back({std::move(what), true, client.take_stderr()});
+  return !client.broken();
+}
+
+void RctAttachment::finish() {
+  std::erase_if(idle_, [this](const auto& client) { return !waits(*client); });
+  for (const auto& client : idle_) client->say_bye();  // To all, so that they end at once.
+  for (const auto& client : idle_) {
+    std::string what = client->end(options_.step_timeout);
+    std::string words = client->take_stderr();
+    if (!what.empty()) mishaps_.push_back({std::move(what), false, std::move(words)});
+  }
+  idle_.clear();
 }
 
 void RctAttachment::keep_stderr(RctClient& client) {

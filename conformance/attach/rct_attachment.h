@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "conformance/attach/rct_target.h"
@@ -24,9 +25,12 @@ class RctAttachment : public Attachment {
   std::unique_ptr<runner::Target> target() override;
   std::string honesty() override;
   std::string take_stderr() override;
+  std::vector<Mishap> take_mishaps() override { return std::exchange(mishaps_, {}); }
+  void finish() override;
 
  private:
   std::unique_ptr<RctClient> take();
+  bool waits(RctClient& client);
   void give_back(std::unique_ptr<RctClient> client);
   void keep_stderr(RctClient& client);
 
@@ -36,6 +40,7 @@ class RctAttachment : public Attachment {
   runner::Tolerance tolerance_;
   std::vector<std::unique_ptr<RctClient>> idle_;
   std::string stderr_;
+  std::vector<Mishap> mishaps_;
 };
 
 }  // namespace rubric::attach

@@ -10,18 +10,14 @@ namespace {
 using runner::TargetBroken;
 using std::chrono::steady_clock;
 
-constexpr Milliseconds kGrace{500};          // From `bye` to the end.
+constexpr Milliseconds kGrace{500};  // From `bye` to the end, where nobody asks about it.
+constexpr Milliseconds kAtOnce{0};
 constexpr std::size_t kNotesBytesMax = 65536;  // The last ones are kept.
 
 }  // namespace
 
 RctClient::~RctClient() {
-  if (broken_) return;
-  try {
-    process_->write("bye\n", steady_clock::now() + kGrace);
-    process_->end(kGrace);
-  } catch (const TargetBroken&) {  // Its end is the process's destruction.
-  }
+  if (!broken_) end(kGrace);
 }
 
 const Identity& RctClient::hello() {
@@ -65,7 +61,33 @@ void RctClient::give_up() {
   process_->kill();
 }
 
-bool RctClient::fit() { return !broken_ && !process_->has_output() && !process_->closed(); }
+std::string RctClient::unasked() {
+  if (broken_ || (!process_->has_output() && !process_->closed())) return {};
+  std::string what;
+  try {
+    what = "wrote " + shown(process_->read_line(steady_clock::now() + kAtOnce));
+  } catch (const TargetBroken& error) {  // It ended, or did not end its line.
+    what = error.what();
+  }
+  give_up();
+  return what;
+}
+
+void RctClient::say_bye() {
+  if (broken_ || said_bye_) return;
+  said_bye_ = true;
+  try {
+    process_->write("bye\n", steady_clock::now() + kGrace);
+  } catch (const TargetBroken&) {  // How it ended is seen at its end.
+  }
+}
+
+std::string RctClient::end(Milliseconds grace) {
+  if (broken_) return {};
+  say_bye();
+  broken_ = true;
+  return process_->end(grace);
+}
 
 std::string RctClient::take_stderr() { return std::exchange(notes_, {}) + process_->take_stderr(); }
 

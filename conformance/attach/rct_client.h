@@ -15,7 +15,7 @@ class RctClient {
  public:
   RctClient(std::unique_ptr<Process> process, const Options& options)
       : process_(std::move(process)), options_(options) {}
-  /// Says `bye`, and kills what does not go.
+  /// Ends it, if that was not done.
   ~RctClient();
 
   /// Asks who it is, at first.
@@ -27,8 +27,16 @@ class RctClient {
 
   /// Kills it: it cannot be believed any more.
   void give_up();
-  /// Whether it waits for the next command, as far as one can see.
-  bool fit();
+  /// It was given up, by whoever threw runner::TargetBroken for it.
+  bool broken() const { return broken_; }
+  /// What it has done since its last answer, when it was to wait: that it died, or what it wrote.
+  /// It is given up then. Empty: it waits, as far as one can see.
+  std::string unasked();
+  /// Says `bye`. Several may be told before they are waited for.
+  void say_bye();
+  /// Waits for its end, and kills what does not go. Returns what was wrong with its end, or
+  /// nothing. It is given up.
+  std::string end(Milliseconds grace);
   const Identity& identity() const { return identity_; }
   /// Of standard error, and its notes.
   std::string take_stderr();
@@ -42,6 +50,7 @@ class RctClient {
   Identity identity_;
   bool greeted_ = false;
   bool broken_ = false;
+  bool said_bye_ = false;
   std::string notes_;
 };
 

@@ -63,6 +63,10 @@ case two_nodes
 case mote.silent
 %node m5 mote id=5 iut
    @0..20   m5 !> rA *  [J1-CALLED]
+
+case mote.silent_everywhere
+%node m5 mote id=5 iut
+   @0..20   m5 !> * *  [J1-CALLED]
 )";
 
 const trace::Parsed& cases() {
@@ -127,6 +131,34 @@ class WrongAcks : public runner::Machine {
   }
 };
 
+// Says something all the time, as debugging aids do.
+class Talker {
+ public:
+  explicit Talker(std::unique_ptr<PacketLine> line)
+      : line_(std::move(line)), thread_([this] { talk(); }) {}
+  ~Talker() {
+    stop_ = true;
+    thread_.join();
+  }
+
+ private:
+  void talk() {
+    while (!stop_) {
+      try {
+        line_->open(steady_clock::now() + Milliseconds(10));
+        line_->send(trace::packet_of({0xFFFF, 5, 0, 100, {'h', 'i'}}),
+                    steady_clock::now() + Milliseconds(10));
+      } catch (const runner::TargetBroken&) {  // Nobody is there, or not any more.
+      }
+      std::this_thread::sleep_for(Milliseconds(1));
+    }
+  }
+
+  std::unique_ptr<PacketLine> line_;
+  std::atomic<bool> stop_{false};
+  std::thread thread_;
+};
+
 TEST(RealTime, CasesAreWhole) {
   ASSERT_TRUE(cases().ok()) << cases().errors();
   for (const trace::Case& one : cases().file.cases) {  // The machine in virtual time passes.
@@ -151,6 +183,20 @@ TEST(RealTime, SinkBehindAForwarder) {
   expect(CaseVerdict::kSkip, *attachment, "two_nodes");
   EXPECT_EQ(sink.lives(), 1);
   EXPECT_EQ(attachment->honesty(), "");
+}
+
+// The rules know nothing of a mote's line: nothing passes there, nothing fails, whatever comes.
+TEST(RealTime, MoteBehindAForwarder) {
+  const std::uint16_t port = free_port();
+  const Talker mote(forwarder_at(port));
+  const auto attachment = attach(fmt::format("sf:127.0.0.1:{}:mote", port), kOptions);
+  EXPECT_EQ(attachment->identity().name, "mote_behind_forwarder");
+  EXPECT_EQ(attachment->identity().roles, std::vector{machine::Role::kMote});
+  expect(CaseVerdict::kInconclusive, *attachment, "mote.silent");
+  expect(CaseVerdict::kInconclusive, *attachment, "mote.silent_everywhere");
+  EXPECT_EQ(run(*attachment, "mote.silent_everywhere").reason,
+            "line 38: the target does not show all its links");
+  expect(CaseVerdict::kSkip, *attachment, "sink.ack");
 }
 
 TEST(RealTime, BrokenSinkBehindAForwarder) {
@@ -245,6 +291,18 @@ TEST(RealTime, NobodyThere) {
     EXPECT_THROW(attachment->identity(), runner::TargetBroken);
   }
   EXPECT_LT(steady_clock::now() - before, Milliseconds(6000));
+}
+
+// Who is not there when we come is none that is about to start.
+TEST(RealTime, NobodyThereIsNoLongWait) {
+  const Options patient{Milliseconds(200), Milliseconds(60000)};
+  const std::uint16_t port = free_port();
+  const auto before = steady_clock::now();
+  for (const char* target : {"sf:127.0.0.1:{}", "sf:127.0.0.1:{}:mote", "serial:tcp:127.0.0.1:{}"}) {
+    const auto attachment = attach(fmt::format(fmt::runtime(target), port), patient);
+    EXPECT_THROW(attachment->identity(), runner::TargetBroken);
+  }
+  EXPECT_LT(steady_clock::now() - before, Milliseconds(20000));
 }
 
 // The other end of a forwarder's connection: writes the handshake, hears a while, writes the rest.

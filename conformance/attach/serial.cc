@@ -71,26 +71,10 @@ ByteStream open_serial_device(const std::string& path, std::uint32_t baud) {
   return ByteStream(std::move(device));
 }
 
-void SerialLine::open(SteadyTime deadline) {
-  if (stream_.is_open()) {
-    try {
-      while (read_some(steady_clock::now())) {
-      }
-      return;
-    } catch (const TargetBroken&) {  // It has gone since.
-    }
-  }
+void SerialLine::begin(SteadyTime) {
   deframer_ = HdlcDeframer(MutableBytes(room_.data(), room_.size()));
   packets_.clear();
   synchronised_ = false;
-  stream_ = connect_(deadline);
-}
-
-void SerialLine::close() { stream_.close(); }
-
-void SerialLine::broken(const std::string& why) {
-  close();
-  throw TargetBroken(why);
 }
 
 void SerialLine::send(const std::vector<std::uint8_t>& packet, SteadyTime deadline) {
@@ -101,7 +85,7 @@ void SerialLine::send(const std::vector<std::uint8_t>& packet, SteadyTime deadli
     const auto size = write_serial_packet_ack(seq, Bytes(packet.data(), packet.size()),
                                               MutableBytes(out, sizeof out));
     if (!size) throw TargetBroken("a packet too long for the serial line");
-    stream_.write(Bytes(out, *size), deadline);
+    put(Bytes(out, *size), deadline);
     const SteadyTime ack_deadline = std::min(deadline, steady_clock::now() + kAckWait);
     while (confirmed_ != seq) {
       if (!read_some(ack_deadline)) break;
@@ -121,12 +105,9 @@ std::optional<TimedPacket> SerialLine::receive(SteadyTime deadline) {
   return packet;
 }
 
-// False when the time is over.
-bool SerialLine::read_some(SteadyTime deadline) {
-  std::uint8_t bytes[512];
-  const std::size_t count = stream_.read(MutableBytes(bytes, sizeof bytes), deadline);
-  for (std::size_t i = 0; i < count; ++i) {
-    const HdlcEvent event = deframer_.push(bytes[i]);
+void SerialLine::take(Bytes bytes) {
+  for (const std::uint8_t byte : bytes) {
+    const HdlcEvent event = deframer_.push(byte);
     if (event == HdlcEvent::kFrame) {
       synchronised_ = true;
       frame(deframer_.content());
@@ -136,7 +117,6 @@ bool SerialLine::read_some(SteadyTime deadline) {
                          deframer_.error().fault == Fault::kCrc ? "wrong CRC" : "wrong size"));
     }
   }
-  return count > 0;
 }
 
 // A whole frame from its kind on.
@@ -150,14 +130,14 @@ void SerialLine::frame(Bytes content) {
   std::uint8_t out[hdlc_frame_room(8)];
   if (kind == kSerialPacketAck && content.size() > header) {
     if (const auto size = write_serial_ack(content[1], MutableBytes(out, sizeof out))) {
-      put(out, *size);
+      answer(Bytes(out, *size));
     }
   } else if (kind == kSerialUnknown) {  // What we sent was not known: no answer to an answer.
     return;
   } else if (kind != kSerialPacketNoAck) {  // As hosts answer what they do not know.
-    const std::uint8_t answer[] = {kSerialUnknown, kind};
-    if (const auto size = write_hdlc_frame(answer, MutableBytes(out, sizeof out))) {
-      put(out, *size);
+    const std::uint8_t unknown[] = {kSerialUnknown, kind};
+    if (const auto size = write_hdlc_frame(unknown, MutableBytes(out, sizeof out))) {
+      answer(Bytes(out, *size));
     }
     return;
   }
@@ -166,8 +146,6 @@ void SerialLine::frame(Bytes content) {
       {steady_clock::now(), {content.data() + header, content.data() + content.size()}});
 }
 
-void SerialLine::put(const std::uint8_t* bytes, std::size_t size) {
-  stream_.write(Bytes(bytes, size), steady_clock::now() + kAckWait);
-}
+void SerialLine::answer(Bytes frame) { put(frame, steady_clock::now() + kAckWait); }
 
 }  // namespace rubric::attach

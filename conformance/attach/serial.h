@@ -4,13 +4,11 @@
 #include <array>
 #include <cstdint>
 #include <deque>
-#include <functional>
 #include <optional>
 #include <string>
 
 #include "codec/runtime/hdlc.h"
-#include "conformance/attach/packet_line.h"
-#include "conformance/attach/stream.h"
+#include "conformance/attach/stream_line.h"
 
 namespace rubric::attach {
 
@@ -22,27 +20,22 @@ std::optional<std::uint32_t> baud_of(std::string_view text);
 ByteStream open_serial_device(const std::string& path, std::uint32_t baud);
 
 /// Packets are sent as hosts do it: each is confirmed by the node, and sent again if it is not.
-class SerialLine : public PacketLine {
+class SerialLine : public StreamLine {
  public:
   static constexpr Milliseconds kAckWait{1000};
   static constexpr int kTries = 3;
 
-  using Connect = std::function<ByteStream(SteadyTime deadline)>;
-  explicit SerialLine(Connect connect) : connect_(std::move(connect)) {}
+  using StreamLine::StreamLine;
 
-  void open(SteadyTime deadline) override;
-  void close() override;
   void send(const std::vector<std::uint8_t>& packet, SteadyTime deadline) override;
   std::optional<TimedPacket> receive(SteadyTime deadline) override;
 
  private:
-  bool read_some(SteadyTime deadline);
+  void begin(SteadyTime deadline) override;
+  void take(Bytes bytes) override;
   void frame(Bytes content);
-  void put(const std::uint8_t* bytes, std::size_t size);
-  [[noreturn]] void broken(const std::string& why);
+  void answer(Bytes frame);
 
-  Connect connect_;
-  ByteStream stream_;
   std::array<std::uint8_t, kSerialAfterHeaderMax + 2> room_{};
   HdlcDeframer deframer_{MutableBytes(room_.data(), room_.size())};
   std::deque<TimedPacket> packets_;

@@ -91,5 +91,41 @@ TEST(SerialOnly, MachineFailsNothing) {
   EXPECT_GT(mute_fails, passed);  // Inconclusive ones are judged as far as they can be seen.
 }
 
+// Silence on every link takes more than a serial line to be seen; its contrary does not.
+TEST(SerialOnly, SilenceEverywhereIsNotKeptForSure) {
+  const trace::Parsed parsed = trace::parse(
+      "%rtr 1\n%node sA sink id=1 island=11 iut\n"
+      "case silent\n @0..50 sA !> * * [J10-SINK]\n"
+      "case heard\n 5 sA < serA am=0->1 net_msg(dest=11:1 src=11:null reliable=1 seq_num=7 "
+      "payload.trans_id=connless payload.app_id=mockup payload.payload=x01)\n"
+      " @0..400 sA !> * * [J10-SINK]\n", "a.rtr");
+  ASSERT_TRUE(parsed.ok()) << parsed.errors();
+  const CaseResult silent = run<Machine>(parsed.file, parsed.file.cases.at(0));
+  EXPECT_EQ(silent.verdict, CaseVerdict::kInconclusive);
+  EXPECT_EQ(silent.reason, "line 4: the target does not show all its links");
+  EXPECT_EQ(run<Machine>(parsed.file, parsed.file.cases.at(1)).verdict, CaseVerdict::kFail);
+}
+
+class Blind : public SerialOnly {
+ public:
+  using SerialOnly::SerialOnly;
+  Reach reach() const override { return {false, false, false, false}; }
+  const std::vector<Output>& outputs() const override { return none_; }
+
+ private:
+  std::vector<Output> none_;
+};
+
+TEST(Blind, NothingPassesOfWhichNothingIsSeen) {
+  for (const trace::Parsed& file : load_cases("conformance/cases")) {
+    for (const trace::Case& one : file.file.cases) {
+      const CaseResult result = run_case(file.file, one, [](const trace::NodeHeader&) {
+        return std::make_unique<Blind>(std::make_unique<Machine>());
+      });
+      EXPECT_EQ(result.verdict, CaseVerdict::kInconclusive) << one.name;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace rubric::runner

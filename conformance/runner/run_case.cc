@@ -139,7 +139,13 @@ class Run {
       if (line.op != Op::kMustNot && line.op != Op::kMay) matched(line, window.from);
       return true;
     }
-    if (!is_seen(*node, line)) return pass_over(line);
+    if (!is_seen(*node, line)) {
+      // What is seen may break what goes for every link; to keep it takes more.
+      if (line.op == Op::kMustNot && is_seen_in_part(*node, line)) {
+        forbidden_.push_back({&line, window});
+      }
+      return pass_over(line);
+    }
     switch (line.op) {
       case Op::kGiven:
         give(*node, line, window.from);
@@ -165,17 +171,27 @@ class Run {
       case trace::LinkKind::kPeis: return reach.peis;
       case trace::LinkKind::kApp:
       case trace::LinkKind::kPower: return reach.app;
-      case trace::LinkKind::kAny: return true;
+      case trace::LinkKind::kAny: return line.op == Op::kMay || sees_all(reach);
     }
     return true;
   }
+  static bool sees_all(const Reach& reach) {
+    return reach.radio && reach.serial && reach.peis && reach.app;
+  }
 
-  // A line of which the target shows nothing. False when the case cannot go on without it.
+  bool is_seen_in_part(const NodeLog& node, const Line& line) const {
+    const Reach reach = node.target().reach();
+    return scope_.link(line.link).value_or(trace::LinkKind::kAny) == trace::LinkKind::kAny &&
+           (reach.radio || reach.serial || reach.peis || reach.app);
+  }
+
+  // A line of which the target shows nothing, or not all. False when the case cannot go on without it.
   bool pass_over(const Line& line) {
     const bool needed = line.op == Op::kGiven ||
                         (line.op == Op::kEmits && is_needed_later(case_, line));
     if (unseen_.empty() || needed) {
-      unseen_ = fmt::format("line {}: the target does not show {}", line.place.line, line.link);
+      unseen_ = fmt::format("line {}: the target does not show {}", line.place.line,
+                            line.link == "*" ? "all its links" : line.link);
     }
     return !needed;
   }

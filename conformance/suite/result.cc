@@ -40,6 +40,7 @@ int exit_code(const SuiteRun& run) {
   bool decided = false;
   for (const ImplementationRun& implementation : run.implementations) {
     broke = broke || !implementation.dishonest.empty();
+    for (const OutsideFault& one : implementation.outside) broke = broke || one.broke;
     for (const CaseRun& one : implementation.cases) {
       broke = broke || one.result.verdict == CaseVerdict::kError;
       failed = failed || one.unexpected();

@@ -46,6 +46,14 @@ struct CaseRun {
   bool unexpected() const;
 };
 
+/// What went wrong outside of the cases.
+struct OutsideFault {
+  std::string when;         ///< "before j1.request", "after the last case", "at its end".
+  std::string text;         ///< "was killed by signal 9 (Killed)".
+  bool broke = false;       ///< It died or spoke there; else it only did not end as `bye` asks for.
+  std::string stderr_text;  ///< Of the implementation then.
+};
+
 /// All cases on one implementation.
 struct ImplementationRun {
   std::string target;         ///< As the user wrote it.
@@ -53,6 +61,7 @@ struct ImplementationRun {
   std::string dishonest;      ///< Why nothing else was run; mostly empty.
   std::string stderr_text;    ///< What it wrote to its standard error then.
   std::vector<CaseRun> cases; ///< In the order of files and cases.
+  std::vector<OutsideFault> outside;  ///< In the order of the cases that they came before.
   double wall_ms = 0;
 };
 
@@ -72,8 +81,8 @@ struct SuiteRun {
   std::vector<StaleExpectation> stale;
 };
 
-/// 0 as expected, 1 an unexpected failure or an expectation that is not true, 2 an error or a
-/// dishonest implementation, 3 nothing was decided.
+/// 0 as expected, 1 an unexpected failure or an expectation that is not true, 2 an error, a
+/// dishonest implementation, or one that broke between cases, 3 nothing was decided.
 int exit_code(const SuiteRun& run);
 
 using VerdictCounts = std::map<runner::CaseVerdict, std::size_t>;

@@ -6,6 +6,7 @@
 #include <exception>
 #include <mutex>
 #include <thread>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -67,6 +68,26 @@ class Work {
     done_.resize(run_.cases.size());
   }
 
+  /// What went wrong when nothing was asked, noticed when the case `before` was to begin.
+  void keep_mishaps(attach::Attachment& attachment, std::size_t before) {
+    for (attach::Mishap& one : attachment.take_mishaps()) {
+      const char* const at_end = one.broke ? "after its last case" : "at its end";
+      mishaps_.push_back({before, {before < run_.cases.size()
+                                       ? "before " + plan_.cases[before / plan_.repeats].blank.name
+                                       : at_end,
+                                   std::move(one.text), one.broke, std::move(one.stderr_text)}});
+    }
+  }
+
+  /// Of all attachments, when they are done.
+  std::vector<OutsideFault> outside() {
+    std::stable_sort(mishaps_.begin(), mishaps_.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::vector<OutsideFault> out;
+    for (auto& [before, fault] : mishaps_) out.push_back(std::move(fault));
+    return out;
+  }
+
   void on(attach::Attachment& attachment) {
     for (std::size_t i = next_++; i < run_.cases.size(); i = next_++) {
       const std::uint32_t repeat = static_cast<std::uint32_t>(i % plan_.repeats);
@@ -76,12 +97,16 @@ class Work {
       one.repeat = repeat;
       expect(plan_.expected, run_, one);
       const std::lock_guard lock(mutex_);
+      keep_mishaps(attachment, i);
       run_.cases[i] = std::move(one);
       done_[i] = true;
       for (; told_ < done_.size() && done_[told_]; ++told_) {
         if (watcher_.worked) watcher_.worked(run_.cases[told_]);
       }
     }
+    attachment.finish();
+    const std::lock_guard lock(mutex_);
+    keep_mishaps(attachment, run_.cases.size());
   }
 
  private:
@@ -91,6 +116,7 @@ class Work {
   std::atomic<std::size_t> next_ = 0;
   std::mutex mutex_;
   std::vector<bool> done_;
+  std::vector<std::pair<std::size_t, OutsideFault>> mishaps_;
   std::size_t told_ = 0;
 };
 
@@ -184,6 +210,7 @@ ImplementationRun run(const std::string& target, const MakeAttachment& make, con
   for (const std::exception_ptr& one : broken) {
     if (one) std::rethrow_exception(one);
   }
+  out.outside = work.outside();
   out.wall_ms = ms_since(start);
   return out;
 }

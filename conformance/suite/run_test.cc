@@ -160,6 +160,34 @@ TEST(Run, WhatBreaksIsAnErrorOfItsCaseAlone) {
   EXPECT_EQ(exit_code(all), 2);
 }
 
+TEST(Run, WhatHappensBetweenCasesIsKept) {
+  const ImplementationRun ended = suite::run("x", fake([](FakeAttachment& one) {
+    one.last = {{"ended with status 3", false, "boo\n"}};
+  }), plan({"j4.*"}));
+  ASSERT_EQ(ended.outside.size(), 1U);
+  EXPECT_EQ(ended.outside[0].when, "at its end");
+  EXPECT_EQ(ended.outside[0].text, "ended with status 3");
+  EXPECT_EQ(ended.outside[0].stderr_text, "boo\n");
+  SuiteRun all;
+  all.implementations.push_back(ended);
+  EXPECT_EQ(exit_code(all), 0) << "nothing that was judged is in doubt";
+
+  int made = 0;
+  const ImplementationRun died = suite::run("x", fake([&](FakeAttachment& one) {
+    one.make = [&] {
+      if (++made == 5) one.mishaps = {{"was killed by signal 9", true, ""}};
+      return testing::machine_target();
+    };
+    one.last = {{"wrote 'x'", true, ""}};
+  }), plan({"j4.*"}));
+  ASSERT_EQ(died.outside.size(), 2U);
+  EXPECT_EQ(died.outside[0].when, "before " + died.cases.at(1).name) << "three canaries, a case";
+  EXPECT_EQ(died.outside[1].when, "after its last case");
+  EXPECT_EQ(count(died).at(CaseVerdict::kPass), died.cases.size());
+  all.implementations = {died};
+  EXPECT_EQ(exit_code(all), 2);
+}
+
 TEST(Run, WhatItCannotPlayIsSkipped) {
   const ImplementationRun run = suite::run("x", fake([](FakeAttachment& one) {
     one.who.roles = {machine::Role::kMote};

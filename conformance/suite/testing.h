@@ -40,6 +40,11 @@ class FakeAttachment : public attach::Attachment {
   }
   std::string honesty() override { return honest; }
   std::string take_stderr() override { return std::exchange(stderr_, {}); }
+  std::vector<attach::Mishap> take_mishaps() override { return std::exchange(mishaps, {}); }
+  void finish() override { mishaps.insert(mishaps.end(), last.begin(), last.end()); }
+
+  std::vector<attach::Mishap> mishaps;  ///< Until now.
+  std::vector<attach::Mishap> last;     ///< At its end.
 
  private:
   std::string stderr_;

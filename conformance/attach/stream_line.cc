@@ -1,0 +1,40 @@
+#include "conformance/attach/stream_line.h"
+
+#include "conformance/runner/target.h"
+
+namespace rubric::attach {
+
+using runner::TargetBroken;
+using std::chrono::steady_clock;
+
+void StreamLine::open(SteadyTime deadline) {
+  if (stream_.is_open()) {
+    try {
+      while (read_some(steady_clock::now())) {
+      }
+      return;
+    } catch (const TargetBroken&) {  // It has gone since.
+    }
+  }
+  stream_ = connect_(deadline);
+  try {
+    begin(deadline);
+  } catch (const TargetBroken&) {
+    close();
+    throw;
+  }
+}
+
+bool StreamLine::read_some(SteadyTime deadline) {
+  std::uint8_t bytes[4096];
+  const std::size_t count = stream_.read(MutableBytes(bytes, sizeof bytes), deadline);
+  take(Bytes(bytes, count));
+  return count > 0;
+}
+
+void StreamLine::broken(const std::string& why) {
+  close();
+  throw TargetBroken(why);
+}
+
+}  // namespace rubric::attach
