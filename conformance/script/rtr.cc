@@ -1,0 +1,231 @@
+#include "conformance/script/rtr.h"
+
+#include <algorithm>
+#include <memory>
+#include <stdexcept>
+
+#include "conformance/events/app_events.h"
+#include "conformance/runner/subject_target.h"
+#include "conformance/script/bytes.h"
+
+namespace rubric::script {
+namespace {
+
+using machine::Link;
+using runner::Output;
+using trace::LinkKind;
+using trace::Message;
+using trace::Op;
+
+// config_of() of the runner, backwards: first numbers are 1000 + 257 * seed, modulo 2^16.
+std::uint64_t seed_of(std::uint16_t first_seq) {
+  constexpr std::uint32_t kInverseOf257 = 0xFF01;
+  return static_cast<std::uint16_t>((first_seq - 1000U) * kInverseOf257);
+}
+
+struct LineName {
+  std::string name;
+  LinkKind kind;
+};
+LineName name_of(Link link) {
+  switch (link) {
+    case Link::kRadio: return {"rA", LinkKind::kRadio};
+    case Link::kSerial: return {"serA", LinkKind::kSerial};
+    case Link::kPeis: break;
+  }
+  return {"peis", LinkKind::kPeis};
+}
+
+trace::Line frame_line(Ticks now, const std::string& node, Op op, const machine::Frame& frame) {
+  const LineName line = name_of(frame.link);
+  return trace::frame_line(now, node, op, line.name, line.kind,
+                           {frame.dest, frame.src, 0, frame.type,
+                            {frame.payload.begin(), frame.payload.end()}});
+}
+
+// The machine behind the runner, which remembers what it is given.
+class Recorder : public runner::SubjectTarget {
+ public:
+  explicit Recorder(Script& out) : SubjectTarget(std::make_unique<runner::Machine>()), out_(out) {}
+
+  void reset(const machine::Config& config) override {
+    out_.config = config;
+    SubjectTarget::reset(config);
+  }
+  void give(Ticks now, const machine::Event& event) override {
+    Step step{now - last_, event, {}};
+    if (auto* heard = std::get_if<machine::Heard>(&step.event)) {
+      step.bytes = taken(heard->frame.payload);
+    } else if (auto* called = std::get_if<machine::Called>(&step.event)) {
+      if (auto* send = std::get_if<machine::Send>(&called->call)) step.bytes = taken(send->data);
+    }
+    last_ = now;
+    out_.steps.push_back(std::move(step));
+    SubjectTarget::give(now, event);
+  }
+
+ private:
+  static std::vector<std::uint8_t> taken(Bytes& bytes) {
+    std::vector<std::uint8_t> out(bytes.begin(), bytes.end());
+    bytes = {};
+    return out;
+  }
+
+  Script& out_;
+  Ticks last_ = 0;
+};
+
+// What keeps the outputs when the runner's target is gone.
+class Keeper : public runner::Target {
+ public:
+  Keeper(CaseScript& out) : out_(out), target_(out.script) {}
+  ~Keeper() override { out_.outputs = target_.outputs(); }
+  void reset(const machine::Config& config) override { target_.reset(config); }
+  void give(Ticks now, const machine::Event& event) override { target_.give(now, event); }
+  std::optional<Ticks> next() const override { return target_.next(); }
+  Ticks run_until(Ticks time) override { return target_.run_until(time); }
+  const std::vector<Output>& outputs() const override { return target_.outputs(); }
+  void hold_link_acks(bool hold) override { target_.hold_link_acks(hold); }
+
+ private:
+  CaseScript& out_;
+  Recorder target_;
+};
+
+bool fits(const Script& script) {
+  const auto whole = [](const Step& step) { return fitting_delay(step.delay) == step.delay; };
+  return script.steps.size() <= kStepsMax && script.length() <= kLengthMax &&
+         std::all_of(script.steps.begin(), script.steps.end(), whole);
+}
+
+Message message_of(const machine::Event& event) {
+  if (const auto* called = std::get_if<machine::Called>(&event)) {
+    return events::from_call(called->call);
+  }
+  if (const auto* done = std::get_if<machine::SendDone>(&event)) {
+    return Message::named("linkack").with("acked", trace::Value::of(done->acked ? 1 : 0));
+  }
+  if (const auto* line = std::get_if<machine::LinkBusy>(&event)) {
+    return Message::named(line->busy ? "busy" : "idle");
+  }
+  if (const auto* app = std::get_if<machine::AppBusy>(&event)) {
+    return Message::named(app->busy ? "busy" : "idle");
+  }
+  return Message::named(std::holds_alternative<machine::Reboot>(event) ? "reboot" : "off");
+}
+
+std::string link_of(const machine::Event& event) {
+  if (std::holds_alternative<machine::SendDone>(event)) return name_of(Link::kRadio).name;
+  if (const auto* line = std::get_if<machine::LinkBusy>(&event)) return name_of(line->link).name;
+  const bool power = std::holds_alternative<machine::Reboot>(event) ||
+                     std::holds_alternative<machine::PowerOff>(event);
+  return power ? "power" : "app";
+}
+
+}  // namespace
+
+std::vector<CaseScript> scripts_of(const trace::File& file, const trace::Case& one) {
+  std::vector<std::unique_ptr<CaseScript>> made;
+  const auto make = [&](const trace::NodeHeader& node) -> std::unique_ptr<runner::Target> {
+    made.push_back(std::make_unique<CaseScript>(CaseScript{node.name, {}, {}}));
+    return std::make_unique<Keeper>(*made.back());
+  };
+  const runner::CaseResult result = runner::run_case(file, one, make);
+  if (result.verdict == runner::CaseVerdict::kError) {
+    throw std::runtime_error(one.name + ": " + result.reason);
+  }
+  std::vector<CaseScript> out;
+  for (const auto& each : made) {
+    Script& script = each->script;
+    Ticks given = 0;
+    for (const Step& step : script.steps) given += step.delay;
+    script.rest = std::min(result.length - given, kRestMax);
+    if (!fits(script)) throw std::runtime_error(one.name + ": too long for a script");
+    out.push_back(std::move(*each));
+  }
+  return out;
+}
+
+trace::NodeHeader node_of(const Script& script) {
+  const machine::Config& config = script.config;
+  trace::NodeHeader node;
+  node.role = static_cast<trace::Role>(config.role);
+  node.iut = true;
+  if (config.role != machine::Role::kBaseStation) {
+    node.id = config.id;
+    node.channels = config.profile.channels_max;
+  }
+  if (config.role != machine::Role::kMote) node.island = config.island;
+  node.name = config.role == machine::Role::kMote ? "m" + std::to_string(config.id)
+              : config.role == machine::Role::kSink ? "sA"
+                                                    : "bA";
+  return node;
+}
+
+trace::File begin_file(const Script& script) {
+  const machine::Config& config = script.config;
+  trace::File file = trace::File::begin(is_deployed(config.profile) ? "deployed" : "paper");
+  file.header({trace::SeedHeader{seed_of(config.first_seq)}, {}, {}});
+  return file.node(node_of(script));
+}
+
+trace::Line line_of(const Output& output, const std::string& node) {
+  trace::Line line;
+  if (output.is_frame) {
+    line = frame_line(output.time, node, Op::kEmits, output.frame.frame());
+  } else {
+    machine::Notice notice = output.notice;
+    if (auto* received = std::get_if<machine::Received>(&notice)) {
+      received->data = Bytes(output.data.data(), output.data.size());
+    }
+    line = trace::app_line(output.time, node, Op::kEmits, "app", events::from_notice(notice));
+  }
+  const std::string_view rule = trace::requirement_text(output.requirement);
+  if (!rule.empty()) line.requirements.emplace_back(rule);
+  return line;
+}
+
+trace::Line line_of(const Step& step, Ticks now, const std::string& node) {
+  const machine::Event event = step.whole();
+  if (const auto* heard = std::get_if<machine::Heard>(&event)) {
+    return frame_line(now, node, Op::kGiven, heard->frame);
+  }
+  return trace::app_line(now, node, Op::kGiven, link_of(event), message_of(event));
+}
+
+trace::Line nothing_else(Ticks end, const std::string& node, const std::vector<ReqId>& rules) {
+  trace::Line line;
+  line.time = trace::Time::at(0);
+  line.time.to = end;
+  line.node = node;
+  line.op = Op::kMustNot;
+  line.link = "*";
+  line.message = Message::any();
+  for (const ReqId rule : rules) line.requirements.emplace_back(trace::requirement_text(rule));
+  return line;
+}
+
+trace::File to_file(const Script& script, const Played& run, const Title& title) {
+  trace::File file = begin_file(script);
+  const std::string node = node_of(script).name;
+  trace::Case one(title.case_name);
+  for (const std::string& text : title.comments) {
+    one.items.emplace_back(trace::Comment{';', false, " " + text});
+  }
+  std::size_t shown = 0;
+  const auto show = [&](std::size_t to) {
+    for (; shown < to; ++shown) one.add(line_of(run.outputs[shown], node));
+  };
+  Ticks now = 0;
+  for (std::size_t i = 0; i < run.before.size(); ++i) {
+    show(run.before[i]);
+    now += script.steps[i].delay;
+    one.add(line_of(script.steps[i], now, node));
+  }
+  show(run.outputs.size());
+  one.add(nothing_else(script.length(), node, title.rules));
+  file.cases.push_back(std::move(one));
+  return file;
+}
+
+}  // namespace rubric::script
