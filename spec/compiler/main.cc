@@ -12,6 +12,7 @@
 #include "spec/compiler/emit.h"
 #include "spec/compiler/emit_cpp.h"
 #include "spec/compiler/emit_java.h"
+#include "spec/compiler/emit_lua.h"
 #include "spec/compiler/load.h"
 
 namespace {
@@ -20,7 +21,7 @@ enum Exit { kOk = 0, kDiagnostics = 1, kUsage = 2, kCannotReadOrWrite = 3 };
 
 const std::vector<std::string> kEmitters{"cpp",        "tables",   "requirements", "protocols",
                                          "dictionary", "messages", "profiles",     "cases",
-                                         "java",       "doc"};
+                                         "java",       "lua",    "doc"};
 
 struct Options {
   std::string requirements = "spec/requirements.yaml";
@@ -56,6 +57,7 @@ rubricc::GeneratedFiles emit(const Options& options, const rubricc::Model& model
   if (wants(options, "protocols")) append(out, rubricc::emit_protocols(model));
   if (wants(options, "profiles")) append(out, rubricc::emit_profiles(model));
   if (wants(options, "cases")) append(out, rubricc::emit_cases(model, options.cases));
+  if (wants(options, "lua")) append(out, rubricc::emit_lua(model));
   if (wants(options, "doc")) append(out, rubricc::emit_doc(model));
   return out;
 }

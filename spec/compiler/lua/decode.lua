@@ -1,0 +1,278 @@
+-- Decoding by the tables above: the same rules as codec/reflect/decode.cc, in Lua. It knows the
+-- tables' form and no protocol.
+
+-- Loads of expressions: numbers at an offset from the start of a structure; 0 beyond its end.
+local Window = {}
+Window.__index = Window
+
+local function window(bytes, base, limit)
+  return setmetatable({bytes = bytes, base = base, limit = limit}, Window)
+end
+
+function Window:u8(offset)
+  local at = self.base + offset
+  if at + 1 > self.limit then return 0 end
+  return self.bytes:byte(at + 1)
+end
+
+local function number_at(bytes, at, width, little)
+  local value = 0
+  for i = 1, width do
+    local byte = bytes:byte(at + (little and width + 1 - i or i))
+    value = value * 256 + byte
+  end
+  return value
+end
+
+local function loader(width, little)
+  return function(self, offset)
+    local at = self.base + offset
+    if at + width > self.limit then return 0 end
+    return number_at(self.bytes, at, width, little)
+  end
+end
+Window.be16 = loader(2, false)
+Window.le16 = loader(2, true)
+Window.be32 = loader(4, false)
+Window.le32 = loader(4, true)
+
+local function load_number(field, bytes, at)
+  local value = number_at(bytes, at, field.width, field.little)
+  if field.kind == "sint" and value >= 2 ^ (8 * field.width - 1) then
+    value = value - 2 ^ (8 * field.width)
+  end
+  return value
+end
+
+-- One decoding. Nodes are tables: field, type, kind, offset, size, value; children from 1 on.
+local Decoder = {}
+Decoder.__index = Decoder
+
+function Decoder:fail(fault, offset, field, text)
+  self.error = {fault = fault, offset = offset, rule = field.rule, text = text}
+  return false
+end
+
+function Decoder:note(kind, offset, text)
+  self.notes[#self.notes + 1] = {kind = kind, offset = offset, text = text}
+end
+
+function Decoder:add_stale(from, to)
+  self.stale[#self.stale + 1] = {offset = from, size = to - from}
+end
+
+local function add(parent, kind, field, offset, size)
+  local node = {kind = kind, field = field, offset = offset, size = size}
+  parent[#parent + 1] = node
+  return node
+end
+
+local function allowed_text(field)
+  if field.min then return ", allowed are " .. field.min .. " to " .. field.max end
+  local values = {}
+  for i, value in ipairs(field.one_of) do values[i] = string.format("%d", value) end
+  return (#values == 1 and ", must be " or ", must be one of ") .. table.concat(values, ", ")
+end
+
+function Decoder:is_allowed(field, value, at)
+  if field.min then
+    if value >= field.min and value <= field.max then return true end
+  else
+    for _, one in ipairs(field.one_of) do
+      if one == value then return true end
+    end
+  end
+  local text = string.format("%s is %d%s", field.name, value, allowed_text(field))
+  return self:fail(field.min and "out_of_range" or "unexpected", at, field, text)
+end
+
+-- The functions below return whether all is well and where the next field begins.
+
+function Decoder:truncated(parent, field, at, limit, needed)
+  if at < limit then add(parent, "bytes", field, at, limit - at) end
+  local text = string.format("%s needs %d bytes, the bytes end at %d", field.name, needed, limit)
+  return self:fail("truncated", limit, field, text), at
+end
+
+function Decoder:number(parent, field, at, limit)
+  local width = field.width
+  if limit - at < width then
+    local text = string.format("%s needs %d bytes, the bytes end at %d", field.name, width, limit)
+    return self:fail("truncated", limit, field, text), at
+  end
+  local value = load_number(field, self.bytes, at)
+  if (field.min or field.one_of) and not self:is_allowed(field, value, at) then
+    return false, at
+  end
+  add(parent, "number", field, at, width).value = value
+  if field.expect and value ~= field.expect then
+    self:note("unexpected_value", at,
+              string.format("%s is %d, expected is %d", field.name, value, field.expect))
+  end
+  return true, at + width
+end
+
+function Decoder:array(parent, field, base, at, limit)
+  local element = field.kind == "struct" and types[field.type] or nil
+  local width = element and element.max or field.width
+  local count
+  if field.count then
+    count = field.count(window(self.bytes, base, limit))
+    if count < 0 or count * width > limit - at then
+      return self:truncated(parent, field, at, limit, count * width)
+    end
+  else
+    count = math.floor((limit - at) / width)
+    if count * width ~= limit - at then
+      return self:truncated(parent, field, at, limit, (count + 1) * width)
+    end
+  end
+  local node = add(parent, element and "structs" or "numbers", field, at, count * width)
+  for i = 0, count - 1 do
+    local from = at + i * width
+    if element then
+      if not self:structure(node, element, field, from, from + width) then return false, at end
+    else
+      add(node, "number", field, from, width).value = load_number(field, self.bytes, from)
+    end
+  end
+  return true, at + count * width
+end
+
+-- A message that only another carrier has, where this one has none for the key.
+function Decoder:elsewhere(parent, field, key, at, limit)
+  local name = self.more and self.more.cases[key]
+  if not name then return false end
+  if self:fits(parent, field, types[name], at, limit) then
+    self:note("radio_only", at, types[name].name .. " travels on the radio only")
+  else
+    self:note("does_not_fit", at, "the bytes do not fit " .. types[name].name)
+    add(parent, "bytes", field, at, limit - at)
+  end
+  return true
+end
+
+function Decoder:nested(parent, field, base, at, limit, outer)
+  local type = types[field.type]
+  if field.cases then
+    local key = field.key(window(self.bytes, base, outer))
+    type = types[field.cases[key] or field.otherwise]
+    if not type then
+      if base == 0 and self:elsewhere(parent, field, key, at, limit) then return true, limit end
+      if limit > at then
+        self:note("unknown_message", at, string.format("no message has the key %d", key))
+      end
+      add(parent, "bytes", field, at, limit - at)
+      return true, limit
+    end
+    self.path[#self.path + 1] = type
+  end
+  local good, used = self:structure(parent, type, field, at, limit)
+  if not good then return false, at end
+  if not (field.size or field.to_end) then return true, used end
+  if used < limit then self:add_stale(used, limit) end
+  return true, limit
+end
+
+function Decoder:other(parent, field, base, at, limit)
+  local last = limit
+  if field.size then
+    local size = field.size(window(self.bytes, base, limit))
+    if size < 0 or size > limit - at then
+      return self:truncated(parent, field, at, limit, size)
+    end
+    last = at + size
+  end
+  if field.repeated then return self:array(parent, field, base, at, last) end
+  if field.kind == "bytes" then
+    add(parent, "bytes", field, at, last - at)
+    return true, last
+  end
+  return self:nested(parent, field, base, at, last, limit)
+end
+
+-- Whether the bytes are such a structure; if not, nothing of the attempt is left.
+function Decoder:fits(parent, field, type, at, limit)
+  local nodes, notes, stale, path = #parent, #self.notes, #self.stale, #self.path
+  self.path[path + 1] = type
+  local good, used = self:structure(parent, type, field, at, limit)
+  if good then
+    if used < limit then self:add_stale(used, limit) end
+    return true
+  end
+  self.error = nil
+  local function cut(list, size)
+    for i = #list, size + 1, -1 do list[i] = nil end
+  end
+  cut(parent, nodes)
+  cut(self.notes, notes)
+  cut(self.stale, stale)
+  cut(self.path, path)
+  return false
+end
+
+-- Tries the interpretations of the bytes of field number `index`; true if one fits.
+function Decoder:interpret(parent, type, index, base, at, limit)
+  local unfit, about
+  local whole = window(self.bytes, base, limit)
+  for _, candidate in ipairs(type.interpretations) do
+    if candidate.overlays == index and (not candidate.condition or candidate.condition(whole)) then
+      about = candidate
+      local chosen = types[candidate.type]
+      if candidate.cases then
+        chosen = at < limit and types[candidate.cases[candidate.key(whole)] or candidate.otherwise]
+      end
+      if chosen then
+        if self:fits(parent, candidate, chosen, at, limit) then return true end
+        unfit = chosen
+      end
+    end
+  end
+  if at == limit then return false end
+  local name = (about or type[index]).name
+  local key = self.bytes:byte(at + 1)
+  if unfit then
+    self:note("does_not_fit", at,
+              string.format("%s has the key %d and does not fit %s", name, key, unfit.name))
+  else
+    self:note("unknown_message", at, string.format("%s: no message has the key %d", name, key))
+  end
+  return false
+end
+
+function Decoder:structure(parent, type, field, base, limit)
+  local node = add(parent, "struct", field, base, 0)
+  node.type = type
+  if type.max and limit - base > type.max then limit = base + type.max end
+  local at = base
+  local good = true
+  for index, one in ipairs(type) do
+    if not one.condition or one.condition(window(self.bytes, base, limit)) then
+      if one.width and not one.repeated then
+        good, at = self:number(node, one, at, limit)
+      elseif type.interpretations and one.kind == "bytes" and
+          self:interpret(node, type, index, base, at, limit) then
+        at = limit
+      else
+        good, at = self:other(node, one, base, at, limit)
+      end
+      if not good then break end
+    end
+  end
+  node.size = at - base
+  return good, at
+end
+
+-- Decodes `bytes`, a string, as the type of that name. `more`: the field of another carrier that
+-- chooses messages, or nil. Bytes left at the end are a fault.
+local function decode(name, bytes, more)
+  local out = setmetatable({bytes = bytes, more = more, notes = {}, stale = {}, path = {}}, Decoder)
+  local type = types[name]
+  local good, used = out:structure(out, type, nil, 0, #bytes)
+  if good and used < #bytes then
+    local rule = #type > 0 and type[#type].rule or type.rule
+    out.error = {fault = "trailing", offset = used, rule = rule,
+                 text = string.format("%d bytes more than the length says", #bytes - used)}
+  end
+  return out
+end

@@ -1,0 +1,387 @@
+-- The Wireshark side: fields, expert information, and where packets come from.
+--   wtap_encap USER0: a serial frame from its kind byte to its CRC, flags and escapes removed
+--   wtap_encap USER1: a packet of the serial forwarder, from the dispatch byte on
+--   wpan.panid: the payload of an 802.15.4 frame of the PAN that the preferences name
+
+local rubric = Proto("rubric", "TinyOS active message, decoded by Rubric")
+local from_serial = Proto("rubric_serial", "TinyOS serial frame (Rubric)")
+local from_sf = Proto("rubric_sf", "Serial forwarder packet (Rubric)")
+local from_radio = Proto("rubric_radio", "TinyOS radio frame (Rubric)")
+
+local MAC_HEADER = 9                -- IEEE 802.15.4-2006, section 7.2.1: short addresses, one PAN.
+local SERIAL_ACK, PACKET_ACK, PACKET_NOACK = 67, 68, 69  -- TEP 113, section 3.1.
+local CONTENT_MIN = 4               -- Kind, a byte, CRC.
+local AFTER_HEADER_MAX = 254        -- Bytes behind kind and sequence number, CRC included.
+
+-- Fields, by their names in filters.
+
+local fields = {}
+local field_list = {}
+
+local function define(abbreviation, make)
+  if fields[abbreviation] then return end
+  fields[abbreviation] = make()
+  field_list[#field_list + 1] = fields[abbreviation]
+end
+
+local NUMBERS = {
+  uint = {ProtoField.uint8, ProtoField.uint16, nil, ProtoField.uint32},
+  sint = {ProtoField.int8, ProtoField.int16, nil, ProtoField.int32},
+  mask = {ProtoField.uint8, ProtoField.uint16},
+}
+
+local function define_mask(field, abbreviation)
+  local bits = masks[field.mask]
+  define(abbreviation, function()
+    return NUMBERS.mask[field.width](abbreviation, field.name, base.HEX, nil, nil, field.doc)
+  end)
+  for i = 1, bits.count do
+    if bits[i] then
+      define(abbreviation .. "." .. bits[i], function()
+        return ProtoField.bool(abbreviation .. "." .. bits[i], bits[i], bits.count, nil, 2 ^ (i - 1))
+      end)
+    end
+  end
+end
+
+local define_message
+
+local function define_field(field, prefix)
+  local abbreviation = prefix .. "." .. field.name
+  if field.kind == "mask" then
+    define_mask(field, abbreviation)
+  elseif field.kind == "float" then
+    define(abbreviation, function()
+      return ProtoField.float(abbreviation, field.name, field.doc)
+    end)
+  elseif field.width then
+    define(abbreviation, function()
+      return NUMBERS[field.kind][field.width](abbreviation, field.name, base.DEC,
+                                              enums[field.enum], nil, field.doc)
+    end)
+  elseif field.cases then
+    -- Bytes without a message stay bytes.
+    define(abbreviation, function()
+      return ProtoField.bytes(abbreviation, field.name, base.SPACE, field.doc)
+    end)
+    for _, name in pairs(field.cases) do define_message(types[name]) end
+    if field.otherwise then define_message(types[field.otherwise]) end
+  elseif field.type then
+    define(abbreviation, function()
+      return ProtoField.none(abbreviation, field.name, field.doc)
+    end)
+    for _, one in ipairs(types[field.type]) do define_field(one, abbreviation) end
+  else
+    define(abbreviation, function()
+      return ProtoField.bytes(abbreviation, field.name, base.SPACE, field.doc)
+    end)
+  end
+end
+
+define_message = function(type)
+  local abbreviation = "rubric." .. type.name
+  if fields[abbreviation] then return end
+  define(abbreviation, function()
+    return ProtoField.none(abbreviation, type.name, type.doc)
+  end)
+  for _, field in ipairs(type) do define_field(field, abbreviation) end
+  for _, one in ipairs(type.interpretations or {}) do
+    if one.cases then
+      define_field(one, abbreviation)
+    else
+      define_message(types[one.type])
+    end
+  end
+end
+
+local function define_all()
+  for _, protocol in ipairs(protocols) do
+    for _, name in pairs(protocol.carriers) do
+      for _, field in ipairs(types[name]) do define_field(field, "rubric") end
+    end
+  end
+  for _, field in ipairs(types[serial_frame]) do
+    define_field(field, "rubric.serial")
+  end
+  for name, doc in pairs({
+    message = "The innermost message that was found", path = "Messages from the outermost in",
+    fault = "What is wrong", rule = "The requirement that is broken",
+  }) do
+    define("rubric." .. name, function()
+      return ProtoField.string("rubric." .. name, name, base.ASCII, doc)
+    end)
+  end
+  define("rubric.am_type", function()
+    return ProtoField.uint8("rubric.am_type", "AM type", base.DEC)
+  end)
+  define("rubric.fault_offset", function()
+    return ProtoField.uint32("rubric.fault_offset", "fault offset", base.DEC, nil, nil,
+                             "Of the first wrong byte, from the dispatch byte or frame control on")
+  end)
+  define("rubric.stale", function()
+    return ProtoField.bytes("rubric.stale", "stale", base.SPACE, "Bytes that mean nothing")
+  end)
+  define("rubric.serial.crc", function()
+    return ProtoField.uint16("rubric.serial.crc", "crc", base.HEX, nil, nil, "CRC-16, low byte first")
+  end)
+end
+define_all()
+rubric.fields = field_list
+
+local fault_expert = ProtoExpert.new("rubric.malformed", "A rule of the wire is broken",
+                                     expert.group.MALFORMED, expert.severity.ERROR)
+local note_expert = ProtoExpert.new("rubric.note", "Remarkable", expert.group.UNDECODED,
+                                    expert.severity.NOTE)
+rubric.experts = {fault_expert, note_expert}
+
+-- Showing what was decoded. `view` says which bytes of which tvb an offset means.
+
+local function range_of(view, offset, size)
+  return view.tvb(offset - view.skipped, size)
+end
+
+local function add_number(tree, abbreviation, field, node, view)
+  local range = range_of(view, node.offset, node.size)
+  local add_to = field.little and tree.add_le or tree.add
+  local item = add_to(tree, fields[abbreviation], range)
+  if field.enum and not enums[field.enum][node.value] then
+    item:set_text(string.format("%s: %d", field.name, node.value))
+  end
+  if field.kind == "mask" then
+    local bits = masks[field.mask]
+    for i = 1, bits.count do
+      if bits[i] then add_to(item, fields[abbreviation .. "." .. bits[i]], range) end
+    end
+  end
+  if field.unit and field.kind ~= "float" then
+    item:append_text(string.format(" (%g %s)", node.value * field.scale + field.zero, field.unit))
+  end
+end
+
+local show
+
+local function show_children(tree, node, prefix, view)
+  for _, child in ipairs(node) do show(tree, child, prefix, view) end
+end
+
+show = function(tree, node, prefix, view)
+  local field = node.field
+  if node.offset < view.skipped then return end  -- Another dissector has shown it.
+  local abbreviation = prefix .. "." .. field.name
+  if node.kind == "number" then
+    add_number(tree, abbreviation, field, node, view)
+  elseif node.kind == "numbers" then
+    show_children(tree, node, prefix, view)
+  elseif node.kind == "bytes" then
+    if node.size > 0 then
+      tree:add(fields[abbreviation], range_of(view, node.offset, node.size))
+    end
+  elseif node.kind == "structs" then
+    for _, child in ipairs(node) do
+      local branch = tree:add(fields[abbreviation], range_of(view, child.offset, child.size))
+      show_children(branch, child, abbreviation, view)
+    end
+  else
+    -- A chosen message begins a name of its own; other structures lengthen that of their message.
+    if node.type ~= types[field.type] or field.message then
+      abbreviation = "rubric." .. node.type.name
+    end
+    if node.size == 0 and #node == 0 then return end  -- The frame ended before it.
+    local branch = tree:add(fields[abbreviation], range_of(view, node.offset, node.size))
+    show_children(branch, node, abbreviation, view)
+  end
+end
+
+local function path_text(path)
+  local names = {}
+  for i, type in ipairs(path) do names[i] = type.name end
+  return table.concat(names, "/")
+end
+
+local function show_fault(tree, pinfo, err, range)
+  local rule = rules[err.rule]
+  local text = err.fault .. ": " .. err.text
+  if rule then text = text .. " [" .. err.rule .. " " .. rule.level .. ": " .. rule.text .. "]" end
+  tree:add(fields["rubric.fault"], err.fault):set_generated()
+  tree:add(fields["rubric.fault_offset"], err.offset):set_generated()
+  if rule then tree:add(fields["rubric.rule"], err.rule):set_generated() end
+  tree:add_tvb_expert_info(fault_expert, range, text)
+  pinfo.cols.info:append(" !! " .. err.fault .. " at " .. err.offset .. ": " .. err.text)
+end
+
+local function show_all(tree, pinfo, out, view, am_type, fault)
+  show_children(tree, out[1], "rubric", view)
+  local path = path_text(out.path)
+  if am_type then tree:add(fields["rubric.am_type"], am_type):set_generated() end
+  if #out.path > 0 then
+    tree:add(fields["rubric.path"], path):set_generated()
+    tree:add(fields["rubric.message"], out.path[#out.path].name):set_generated()
+  end
+  for _, stale in ipairs(out.stale) do
+    tree:add(fields["rubric.stale"], range_of(view, stale.offset, stale.size))
+  end
+  pinfo.cols.info = path ~= "" and path or "AM " .. tostring(am_type or "?")
+  local whole = view.tvb()
+  for _, note in ipairs(out.notes) do
+    tree:add_tvb_expert_info(note_expert, whole, note.kind .. " at " .. note.offset .. ": " ..
+                             note.text)
+  end
+  local err = fault or out.error
+  if err then show_fault(tree, pinfo, err, whole) end
+end
+
+-- Where packets come from.
+
+rubric.prefs.protocol = Pref.enum("Protocol", 1, "Whose messages the frames carry", protocol_choices,
+                                  false)
+rubric.prefs.pan = Pref.uint("PAN (AM group)", 0x22, "Radio frames of this PAN are decoded")
+
+local function protocol() return protocols[rubric.prefs.protocol] end
+
+local function radio_choice(carriers)
+  local type = carriers.radio_i and types[carriers.radio_i]
+  local last = type and type[#type]
+  return last and last.cases and last or nil
+end
+
+local function begin(pinfo, root, tvb)
+  pinfo.cols.protocol = protocol().name
+  return root:add(rubric, tvb())
+end
+
+local function dissect_packet(tvb, pinfo, tree, fault)
+  local carriers = protocol().carriers
+  local out = decode(carriers.serial, tvb:raw(), radio_choice(carriers))
+  local am_type = tvb:len() >= 8 and tvb(0, 1):uint() == 0 and tvb(7, 1):uint() or nil
+  show_all(tree, pinfo, out, {tvb = tvb, skipped = 0}, am_type, fault)
+end
+
+function from_sf.dissector(tvb, pinfo, root)
+  local tree = begin(pinfo, root, tvb)
+  if tvb:len() == 0 then
+    return show_fault(tree, pinfo, {fault = "empty", offset = 0, rule = "WIRE-SF-LENGTH",
+                                    text = "the packet has no bytes"}, tvb())
+  end
+  dissect_packet(tvb, pinfo, tree)
+end
+
+-- CRC-16 with polynomial 0x1021 from 0, high bit first, without bit operators, which Lua 5.2 and
+-- 5.4 write differently.
+local xor_nibbles = {}
+for a = 0, 15 do
+  xor_nibbles[a] = {}
+  for b = 0, 15 do
+    local value = 0
+    for bit = 0, 3 do
+      if math.floor(a / 2 ^ bit) % 2 ~= math.floor(b / 2 ^ bit) % 2 then value = value + 2 ^ bit end
+    end
+    xor_nibbles[a][b] = value
+  end
+end
+local function xor8(a, b)
+  return 16 * xor_nibbles[math.floor(a / 16)][math.floor(b / 16)] + xor_nibbles[a % 16][b % 16]
+end
+
+local crc_high, crc_low = {}, {}
+for i = 0, 255 do
+  local high, low = i, 0
+  for _ = 1, 8 do
+    local carry = high >= 128
+    high = high * 2 % 256 + (low >= 128 and 1 or 0)
+    low = low * 2 % 256
+    if carry then high, low = xor8(high, 0x10), xor8(low, 0x21) end
+  end
+  crc_high[i], crc_low[i] = high, low
+end
+
+local function crc16(bytes, size)
+  local high, low = 0, 0
+  for i = 1, size do
+    local index = xor8(high, bytes:byte(i))
+    high, low = xor8(low, crc_high[index]), crc_low[index]
+  end
+  return high * 256 + low
+end
+
+local function has_seq(kind) return kind == SERIAL_ACK or kind == PACKET_ACK end
+
+local function serial_fault(bytes, kind)
+  local size = #bytes
+  local max = AFTER_HEADER_MAX + (has_seq(kind) and 2 or 1)
+  if size > max then
+    return {fault = "too_long", offset = max, rule = "WIRE-HDLC-LONG",
+            text = "the frame is beyond the largest possible size"}
+  elseif size < CONTENT_MIN then
+    return {fault = "too_short", offset = size, rule = "WIRE-HDLC-SHORT",
+            text = "the frame is below the smallest possible size"}
+  end
+  local found = bytes:byte(size) * 256 + bytes:byte(size - 1)
+  local right = crc16(bytes, size - 2)
+  if found == right then return nil end
+  return {fault = "crc", offset = size - 2, rule = "WIRE-SERIAL-CRC",
+          text = string.format("the check sum is 0x%04x, the bytes give 0x%04x", found, right)}
+end
+
+function from_serial.dissector(tvb, pinfo, root)
+  local tree = begin(pinfo, root, tvb)
+  local size = tvb:len()
+  local kind = size > 0 and tvb(0, 1):uint() or -1
+  local fault = serial_fault(tvb:raw(), kind)
+  if size == 0 then return show_fault(tree, pinfo, fault, tvb()) end
+  tree:add(fields["rubric.serial.kind"], tvb(0, 1))
+  local at, last = 1, size
+  if size >= 3 then
+    last = size - 2
+    tree:add_le(fields["rubric.serial.crc"], tvb(last, 2))
+  end
+  if has_seq(kind) and at < last then
+    tree:add(fields["rubric.serial.seq_num"], tvb(at, 1))
+    at = at + 1
+  end
+  -- Faults count from the dispatch byte, as everywhere in Rubric.
+  if fault then fault.offset = math.max(0, fault.offset - at) end
+  local is_packet = kind == PACKET_ACK or kind == PACKET_NOACK
+  if is_packet and at < last then
+    return dissect_packet(tvb(at, last - at):tvb(), pinfo, tree, fault)
+  end
+  pinfo.cols.info = enums[types[serial_frame][1].enum][kind] or "serial frame of kind " .. kind
+  if fault then show_fault(tree, pinfo, fault, tvb()) end
+end
+
+local frame_control = Field.new("wpan.fcf")
+
+-- The 802.15.4 dissector has taken the header off; the tables count from its first byte.
+function from_radio.dissector(tvb, pinfo, root)
+  local tree = begin(pinfo, root, tvb)
+  local control = frame_control()
+  -- Data frame, short addresses, PAN id compression; what says more or less carries no AM message.
+  local shape = control and control.value or 0
+  local plain = shape % 16 % 8 == 1 and math.floor(shape / 64) % 2 == 1 and
+      math.floor(shape / 1024) % 4 == 2 and math.floor(shape / 16384) % 4 == 2
+  if not plain then
+    tree:add_tvb_expert_info(note_expert, tvb(), "not_decoded: another kind of 802.15.4 frame")
+    return
+  end
+  local carriers = protocol().carriers
+  local bytes = tvb:raw()
+  local is_i_frame = #bytes == 0 or bytes:byte(1) == 0x3f
+  local name = is_i_frame and carriers.radio_i or carriers.radio_t
+  local out = decode(name, string.rep("\0", MAC_HEADER) .. bytes)
+  local am_type = bytes:byte(is_i_frame and 2 or 1)
+  show_all(tree, pinfo, out, {tvb = tvb, skipped = MAC_HEADER}, am_type)
+end
+
+local encapsulations = DissectorTable.get("wtap_encap")
+encapsulations:add(wtap.USER0, from_serial)
+encapsulations:add(wtap.USER1, from_sf)
+
+local pans = DissectorTable.get("wpan.panid")
+local registered_pan
+
+local function register_pan()
+  if registered_pan then pans:remove(registered_pan, from_radio) end
+  registered_pan = rubric.prefs.pan
+  pans:add(registered_pan, from_radio)
+end
+register_pan()
+rubric.prefs_changed = register_pan

@@ -1,0 +1,11 @@
+// The part of the dissector that no spec changes, from spec/compiler/lua.
+#pragma once
+
+#include <string_view>
+
+namespace rubricc {
+
+extern const std::string_view kLuaDecode;
+extern const std::string_view kLuaWireshark;
+
+}  // namespace rubricc
