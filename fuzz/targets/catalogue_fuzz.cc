@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "fuzz/support/embedded_files.h"
 #include "fuzz/support/places.h"
@@ -37,12 +38,23 @@ void as_catalogue(const std::string& text) {
   }
 }
 
+const std::vector<rubricc::Requirement>& rules() {
+  static const std::vector<rubricc::Requirement> all = [] {
+    Model model;
+    Diagnostics diagnostics;
+    rubricc::load_requirements_text(kRules, rubric::fuzz::embedded_file(kRules), model,
+                                    diagnostics);
+    require(diagnostics.empty(), "the project's own rules are good");
+    return model.requirements;
+  }();
+  return all;
+}
+
 void with_rules(const std::string& text, const char* name,
                 void (*load)(const std::string&, const std::string&, Model&, Diagnostics&)) {
   Model model;
   Diagnostics diagnostics;
-  rubricc::load_requirements_text(kRules, rubric::fuzz::embedded_file(kRules), model, diagnostics);
-  require(diagnostics.empty(), "the project's own rules are good");
+  model.requirements = rules();
   load(name, text, model, diagnostics);
   rubric::fuzz::places_are_within(diagnostics, name, text);
   if (!diagnostics.empty()) return;

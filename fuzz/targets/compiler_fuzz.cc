@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "fuzz/support/embedded_files.h"
 #include "fuzz/support/places.h"
@@ -17,16 +18,25 @@ namespace {
 using rubric::fuzz::require;
 
 constexpr const char* kInput = "spec/wire/input.ksy";
+constexpr const char* kImport = "spec/wire/tinyos.ksy";
+constexpr const char* kRules = "spec/requirements.yaml";
 
-// The input beside the specs that it may import, and the catalogue that it may quote.
+const std::vector<rubricc::Requirement>& rules() {
+  static const std::vector<rubricc::Requirement> all = [] {
+    rubricc::Model model;
+    rubricc::Diagnostics diagnostics;
+    rubricc::load_requirements_text(kRules, rubric::fuzz::embedded_file(kRules), model,
+                                    diagnostics);
+    return model.requirements;
+  }();
+  return all;
+}
+
+// The input with the catalogue that it may quote, beside the spec that it may import.
 void load(const std::string& text, rubricc::Model& model, rubricc::Diagnostics& diagnostics) {
-  for (const char* name : {"spec/requirements.yaml", "spec/wire/tinyos.ksy"}) {
-    const std::string content = rubric::fuzz::embedded_file(name);
-    if (name == std::string("spec/requirements.yaml")) {
-      rubricc::load_requirements_text(name, content, model, diagnostics);
-    } else {
-      rubricc::load_spec_text(name, content, model, diagnostics);
-    }
+  model.requirements = rules();
+  if (text.find("tinyos") != std::string::npos) {
+    rubricc::load_spec_text(kImport, rubric::fuzz::embedded_file(kImport), model, diagnostics);
   }
   rubricc::load_spec_text(kInput, text, model, diagnostics);
   rubricc::check_model(model, diagnostics);

@@ -1,6 +1,5 @@
 // Property: what parses of any text prints as a text that parses to the same and prints the same;
 // mistakes stand within the text; a frame made of a line is what that line asks for.
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -12,6 +11,7 @@
 #include "conformance/trace/match.h"
 #include "conformance/trace/parse.h"
 #include "conformance/trace/print.h"
+#include "fuzz/support/lines.h"
 #include "fuzz/support/require.h"
 
 namespace {
@@ -19,15 +19,8 @@ namespace {
 using namespace rubric::trace;
 using rubric::fuzz::require;
 
-// Of each line without its end, and of one behind the last.
-std::vector<std::size_t> line_sizes(std::string_view text) {
-  std::vector<std::size_t> out(1);
-  for (const char c : text) c == '\n' ? out.push_back(0) : static_cast<void>(++out.back());
-  return out;
-}
-
 void places_are_within(const Parsed& parsed, std::string_view text) {
-  const std::vector<std::size_t> sizes = line_sizes(text);
+  const std::vector<std::size_t> sizes = rubric::fuzz::line_sizes(text);
   for (const Diagnostic& one : parsed.diagnostics) {
     require(one.place.line >= 1 && one.place.line <= sizes.size(), "a mistake is in a line");
     require(one.place.column >= 1 && one.place.column <= sizes[one.place.line - 1] + 1,

@@ -2,15 +2,11 @@
 // reflection tables find the same fault at the same place by the same rule, or the same values.
 #include <cstddef>
 #include <cstdint>
-#include <string>
 #include <vector>
 
-#include "codec/codec_test/every_view.h"
-#include "codec/generated/oscilloscope/tables.h"
-#include "codec/generated/rubicon/tables.h"
-#include "codec/generated/tinyos/tables.h"
 #include "codec/reflect/compare_view.h"
 #include "fuzz/support/require.h"
+#include "fuzz/support/structures.h"
 
 namespace {
 
@@ -55,14 +51,8 @@ struct Structure {
 
 std::vector<Structure> all_structures() {
   std::vector<Structure> out;
-  for_each_view_of_all([&out]<class View>(const std::string& name, ViewTag<View>) {
-    const std::size_t dot = name.find('.');
-    for (const reflect::Protocol* protocol :
-         {&tinyos::tables::kProtocol, &rubicon::tables::kProtocol,
-          &oscilloscope::tables::kProtocol}) {
-      if (name.substr(0, dot) != protocol->id) continue;
-      out.push_back({reflect::find_type(*protocol, name.substr(dot + 1)), &check<View>});
-    }
+  fuzz::for_each_structure([&out]<class View>(const reflect::Type& type, ViewTag<View>) {
+    out.push_back({&type, &check<View>});
   });
   return out;
 }

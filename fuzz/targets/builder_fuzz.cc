@@ -1,0 +1,152 @@
+// Property: a value of any fields is written into any room as bytes that parse gives back the same,
+// or refused by a rule that the tables refuse it by too; nothing behind the room is touched.
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "fuzz/support/input.h"
+#include "fuzz/support/require.h"
+#include "fuzz/support/structures.h"
+
+namespace {
+
+using namespace rubric;
+using fuzz::Input;
+using fuzz::require;
+
+constexpr std::size_t kRoom = 512;
+constexpr std::size_t kGuard = 16;
+constexpr std::uint8_t kUntouched = 0xA5;
+
+/// Gives each field what comes next in the input.
+class Fill {
+ public:
+  explicit Fill(Input& input) : input_(input) {}
+
+  template <class T>
+  void operator()(const char*, T& field) {
+    fill(field);
+  }
+
+ private:
+  template <class T>
+  void fill(T& field) {
+    if constexpr (std::is_same_v<T, float>) {
+      field = float_of_bits(input_.u32());
+    } else if constexpr (requires { field.raw(); }) {
+      field = T(static_cast<decltype(field.raw())>(input_.u16()));
+    } else if constexpr (std::is_enum_v<T> || std::is_integral_v<T>) {
+      field = static_cast<T>(sizeof(T) == 1 ? input_.u8() : sizeof(T) == 2 ? input_.u16()
+                                                                           : input_.u32());
+    } else {
+      visit_fields(field, *this);
+    }
+  }
+  void fill(Bytes& field) { field = input_.bytes(input_.u8()); }
+  template <class T, std::size_t kCount>
+  void fill(T (&field)[kCount]) {
+    for (T& item : field) fill(item);
+  }
+  template <class T, std::size_t kCapacity>
+  void fill(Array<T, kCapacity>& field) {
+    field.count = static_cast<std::uint16_t>(input_.u16() % (kCapacity + 1));
+    for (std::size_t i = 0; i < field.count; ++i) fill(field.items[i]);
+  }
+
+  Input& input_;
+};
+
+/// Room with something behind it that must stay as it is.
+class Guarded {
+ public:
+  explicit Guarded(std::size_t size) : all_(size + kGuard, kUntouched), size_(size) {}
+  MutableBytes room() { return MutableBytes(all_.data(), size_); }
+  void check() const {
+    require(std::all_of(all_.begin() + static_cast<std::ptrdiff_t>(size_), all_.end(),
+                        [](std::uint8_t byte) { return byte == kUntouched; }),
+            "nothing behind the room is written");
+  }
+
+ private:
+  std::vector<std::uint8_t> all_;
+  std::size_t size_;
+};
+
+// Rules of a structure and of whatever may stand in it.
+bool is_rule_of(const reflect::Type& type, ReqId rule) {
+  if (type.requirement == rule) return true;
+  for (int i = 0; i < type.field_count; ++i) {
+    const reflect::Field& field = type.fields[i];
+    if (field.requirement == rule || (field.type && is_rule_of(*field.type, rule))) return true;
+    for (int k = 0; field.choice && k < field.choice->count; ++k) {
+      if (is_rule_of(*field.choice->cases[k].type, rule)) return true;
+    }
+  }
+  return false;
+}
+
+template <class View>
+void taken(const typename View::Value& value, Bytes bytes, const reflect::Type& type) {
+  const Result<View> view = View::parse(bytes);
+  require(view && view->stale().empty(), "parse takes what write made");
+  if (std::string_view(type.id) != "serial_frame") {  // A value may have a number that kinds lack.
+    require(view->to_value() == value, "parse gives the value back");
+  }
+  reflect::Decoded decoded;
+  reflect::decode(type, bytes, reflect::Tail::kFault, true, decoded);
+  require(!is_error(decoded.error), "the tables take what write made");
+  Guarded exact(bytes.size());
+  const auto again = write(value, exact.room());
+  require(again && equal(*again, bytes), "write needs no more room than it uses");
+  exact.check();
+  if (bytes.empty()) return;
+  Guarded small(bytes.size() - 1);
+  const auto refused = write(value, small.room());
+  require(!refused && refused.error().fault == Fault::kNoRoom, "less room is too little");
+  small.check();
+}
+
+template <class View>
+void check(Input input, const reflect::Type& type) {
+  const std::size_t room = input.u8();
+  typename View::Value value;
+  Fill fill(input);
+  visit_fields(value, fill);
+  Guarded out(kRoom);
+  const auto written = write(value, out.room());
+  out.check();
+  if (written) {
+    taken<View>(value, *written, type);
+  } else {
+    require(written.error().fault != Fault::kNoRoom, "there is room enough");
+    require(is_rule_of(type, written.error().requirement), "the rule is one of the structure's");
+  }
+  Guarded any(room);
+  const auto tried = write(value, any.room());
+  any.check();
+  require(tried.has_value() == (written && written->size() <= room), "room alone does not help");
+}
+
+struct Structure {
+  const reflect::Type* type;
+  void (*check)(Input input, const reflect::Type& type);
+};
+
+std::vector<Structure> all_structures() {
+  std::vector<Structure> out;
+  fuzz::for_each_structure([&out]<class View>(const reflect::Type& type, ViewTag<View>) {
+    out.push_back({&type, &check<View>});
+  });
+  return out;
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const std::vector<Structure> structures = all_structures();
+  for (const Structure& one : structures) one.check(Input(data, size), *one.type);
+  return 0;
+}

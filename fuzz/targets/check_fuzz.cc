@@ -1,0 +1,89 @@
+// Property: whatever bytes `rubric check` is given as a capture or a log, it ends with a verdict that
+// its findings say, about frames that are there, in reports that are whole, and the same each time.
+#include <cstddef>
+#include <cstdint>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "conformance/oracle/duplicates.h"
+#include "conformance/oracle/findings.h"
+#include "conformance/oracle/judge.h"
+#include "conformance/oracle/read.h"
+#include "conformance/oracle/report/json.h"
+#include "conformance/oracle/report/junit.h"
+#include "conformance/oracle/report/text.h"
+#include "fuzz/support/require.h"
+#include "tools/record/json.h"
+
+namespace {
+
+using namespace rubric;
+using fuzz::require;
+
+// By the input's size, so that a capture is an input as it is.
+oracle::Options options_for(std::size_t size) {
+  oracle::Options out;
+  out.deployed = (size & 1) != 0;
+  out.sniffer_complete = (size & 2) != 0;
+  out.start_cold = (size & 4) != 0;
+  if ((size & 8) != 0) out.nodes = {{1, machine::Role::kSink, 11}, {2, machine::Role::kMote, 0}};
+  if ((size & 16) != 0) out.testers = {3};
+  return out;
+}
+
+void refers_to_what_is_there(const oracle::Run& run, const oracle::Report& report) {
+  std::set<std::pair<std::uint32_t, std::uint64_t>> frames;
+  for (const oracle::Observation& one : run.seen) {
+    frames.insert({one.place.file, one.place.frame});
+  }
+  const auto is_there = [&](const oracle::Place& place) {
+    return place.file < run.files.size() &&
+           (place.frame == 0 || frames.contains({place.file, place.frame}));
+  };
+  for (const oracle::Finding& one : report.findings) {
+    require(is_there(one.place) && is_there(one.last), "a finding is about a frame that is there");
+    require(one.count >= 1 && !one.text.empty(), "a finding says what happened");
+  }
+  require(report.frames <= run.seen.size(), "no more frames are judged than were seen");
+  require(report.verdict == oracle::verdict_of(report.findings), "the verdict is the gravest");
+}
+
+std::string reports(const report::Story& story) {
+  const std::string json = report::json_report(story);
+  record::parse_json(json);
+  report::TextOptions options;
+  options.judge = oracle::judge;
+  const std::string text = report::text_report(story, options);
+  const std::string junit = report::junit_report(story);
+  require(!text.empty() && junit.find("</testsuite") != std::string::npos, "reports are whole");
+  return json + text + junit;
+}
+
+std::string checked(std::string_view bytes, const oracle::Options& given) {
+  oracle::Options options = given;
+  oracle::RunReader reader;
+  std::string error;
+  if (!reader.add_bytes("input", bytes, error)) {
+    require(!error.empty(), "a refusal has a reason");
+    return error;
+  }
+  oracle::Run run = reader.finish();
+  if (!oracle::drop_duplicates(run, options, error)) return error;
+  const oracle::Report found = oracle::judge(run, options);
+  refers_to_what_is_there(run, found);
+  const report::ExpectationFile expected;
+  const report::Outcome outcome = report::compare(run, options, found, expected);
+  return reports({run, options, found, expected, outcome});
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view bytes(reinterpret_cast<const char*>(data), size);
+  const oracle::Options options = options_for(size);
+  const std::string first = checked(bytes, options);
+  require(first == checked(bytes, options), "the same input gives the same reports");
+  return 0;
+}

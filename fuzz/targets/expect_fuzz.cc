@@ -1,0 +1,103 @@
+// Property: any text read as the failures that `rubric check` or `rubric test` is to expect is
+// refused at a line of it, or its entries are whole and read the same when they are written again.
+#include <cstddef>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "codec/reflect/fault_text.h"
+#include "conformance/oracle/report/expect.h"
+#include "conformance/suite/expected.h"
+#include "fuzz/support/lines.h"
+#include "fuzz/support/require.h"
+
+namespace {
+
+using rubric::fuzz::require;
+using Members = std::vector<std::pair<std::string, std::string>>;
+
+std::string quoted(const std::string& text) {
+  constexpr const char* kDigits = "0123456789abcdef";
+  std::string out = "\"";
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\') {
+      out += std::string("\\") + c;
+    } else if (byte < 0x20 || byte == 0x7F) {
+      out += std::string("\\x") + kDigits[byte >> 4] + kDigits[byte & 15];
+    } else {
+      out += c;
+    }
+  }
+  return out + '"';
+}
+
+std::string entry_text(const Members& members) {
+  std::string out;
+  for (const auto& [key, value] : members) {
+    if (!value.empty()) out += (out.empty() ? "- " : "  ") + key + ": " + quoted(value) + '\n';
+  }
+  return out;
+}
+
+// Both readers say "input.yaml:LINE: what".
+void line_is_within(const std::string& error, const std::string& text) {
+  const std::string before = "input.yaml:";
+  require(error.starts_with(before), "the file is named");
+  const std::size_t line = std::stoul(error.substr(before.size()));
+  require(line <= rubric::fuzz::line_sizes(text).size() + 1, "the line is one of the text");
+  require(error.find(": ") + 2 < error.size(), "it says what is wrong");
+}
+
+bool of_check(const std::string& text, std::string& again) {
+  rubric::report::ExpectationFile file;
+  std::string error;
+  if (!rubric::report::parse_expectations(text, "input.yaml", file, error)) {
+    line_is_within(error, text);
+    return false;
+  }
+  for (const auto& one : file.expectations) {
+    require(one.requirement != rubric::ReqId::kNone, "a rule is named");
+    require(!one.message.empty() && !one.reason.empty(), "message and reason are there");
+    require(one.line <= rubric::fuzz::line_sizes(text).size(), "it has a line");
+    again += entry_text({{"requirement", rubric::reflect::requirement(one.requirement).id},
+                         {"node", one.node}, {"file", one.file}, {"profile", one.profile},
+                         {"message", one.message}, {"reason", one.reason}});
+  }
+  const auto outcome = rubric::report::compare({}, {}, {}, file);
+  require(outcome.results.size() == file.expectations.size(), "each comes to something");
+  return true;
+}
+
+bool of_test(const std::string& text, std::string& again) {
+  try {
+    for (const auto& one : rubric::suite::parse_expected(text, "input.yaml").entries) {
+      require(!one.cases.empty() && !one.requirement.empty(), "case and rule are there");
+      require(!one.message.empty() && !one.reason.empty(), "message and reason are there");
+      require(one.line <= rubric::fuzz::line_sizes(text).size(), "it has a line");
+      again += entry_text({{"case", one.cases}, {"requirement", one.requirement},
+                           {"message", one.message}, {"reason", one.reason},
+                           {"target", one.target}, {"profile", one.profile}});
+    }
+    return true;
+  } catch (const std::runtime_error& error) {
+    line_is_within(error.what(), text);
+    return false;
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string text(reinterpret_cast<const char*>(data), size);
+  for (bool (*read)(const std::string&, std::string&) : {&of_check, &of_test}) {
+    std::string written;
+    std::string again;
+    if (!read(text, written) || written.empty()) continue;
+    require(read(written, again), "what was written is read");
+    require(again == written, "and is the same");
+  }
+  return 0;
+}
