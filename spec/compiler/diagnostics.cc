@@ -2,6 +2,8 @@
 #include "spec/compiler/diagnostics.h"
 
 #include <algorithm>
+#include <fstream>
+#include <iterator>
 #include <fmt/core.h>
 
 namespace rubricc {
@@ -96,6 +98,13 @@ std::string Diagnostics::print() const {
     out += fmt::format("    {}\n    {}^\n", line, blank_like(line, before));
   }
   return out;
+}
+
+std::optional<std::string> text_of_file(const std::string& file, Diagnostics& diagnostics) {
+  std::ifstream in(file, std::ios::binary);
+  if (in) return std::string(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
+  diagnostics.error({file, 0, 0}, "cannot be read");
+  return std::nullopt;
 }
 
 std::string quoted(std::string_view word) {

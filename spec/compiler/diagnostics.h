@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -38,6 +39,9 @@ class Diagnostics {
   std::map<std::string, std::string> sources_;
   std::map<Key, Diagnostic> found_;
 };
+
+/// The text of a file; nothing, after an error, where it cannot be read.
+std::optional<std::string> text_of_file(const std::string& file, Diagnostics& diagnostics);
 
 /// `'word'`
 std::string quoted(std::string_view word);

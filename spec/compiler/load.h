@@ -19,9 +19,15 @@ void load_profiles(const std::string& folder, Model& model, Diagnostics& diagnos
 void load_cases(const std::vector<std::string>& files, Model& model, Diagnostics& diagnostics);
 /// The traces (.rtr) in `folder` and below, by name; none where there is no such folder.
 std::vector<std::string> case_files(const std::string& folder);
-/// Specs as load_specs(), from text in memory, for the fuzzer and the tests; `file` is what
-/// diagnostics show.
+
+// The same from text in memory, for the fuzzer and the tests; `file` is what diagnostics show.
 void load_spec_text(const std::string& file, const std::string& text, Model& model,
+                    Diagnostics& diagnostics);
+void load_requirements_text(const std::string& file, const std::string& text, Model& model,
+                            Diagnostics& diagnostics);
+void load_profile_text(const std::string& file, const std::string& text, Model& model,
+                       Diagnostics& diagnostics);
+void load_case_text(const std::string& file, const std::string& text, Model& model,
                     Diagnostics& diagnostics);
 
 /// Resolves names, expressions, sizes and offsets, and reports everything that breaks a rule of

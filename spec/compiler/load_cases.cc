@@ -2,8 +2,6 @@
 // stands in a trace is its own parser's to judge.
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <set>
 #include <sstream>
@@ -73,13 +71,7 @@ class CaseReader {
     for (const Requirement& one : model.requirements) ids_.push_back(one.id);
   }
 
-  void read(const std::string& file) {
-    std::ifstream in(file, std::ios::binary);
-    if (!in) {
-      diagnostics_.error({file, 0, 0}, "cannot be read");
-      return;
-    }
-    const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  void read(const std::string& file, const std::string& text) {
     diagnostics_.add_source(file, text);
     file_ = file;
     case_.clear();
@@ -153,7 +145,15 @@ class CaseReader {
 
 void load_cases(const std::vector<std::string>& files, Model& model, Diagnostics& diagnostics) {
   CaseReader reader(model, diagnostics);
-  for (const std::string& file : files) reader.read(file);
+  for (const std::string& file : files) {
+    const auto text = text_of_file(file, diagnostics);
+    if (text) reader.read(file, *text);
+  }
+}
+
+void load_case_text(const std::string& file, const std::string& text, Model& model,
+                    Diagnostics& diagnostics) {
+  CaseReader(model, diagnostics).read(file, text);
 }
 
 std::vector<std::string> case_files(const std::string& folder) {

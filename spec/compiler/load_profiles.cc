@@ -2,8 +2,6 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <fmt/core.h>
 
 #include "spec/compiler/load.h"
@@ -123,12 +121,12 @@ class Reader {
 std::span<const ProfileField> profile_fields() { return kFields; }
 
 void load_profile(const std::string& file, Model& model, Diagnostics& diagnostics) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) {
-    diagnostics.error({file, 0, 0}, "cannot be read");
-    return;
-  }
-  const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  const auto text = text_of_file(file, diagnostics);
+  if (text) load_profile_text(file, *text, model, diagnostics);
+}
+
+void load_profile_text(const std::string& file, const std::string& text, Model& model,
+                       Diagnostics& diagnostics) {
   diagnostics.add_source(file, text);
   Profile out;
   out.file = file;

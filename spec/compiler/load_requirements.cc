@@ -1,8 +1,6 @@
 // Loads the catalogue of requirements.
 #include <algorithm>
 #include <array>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <span>
 #include <fmt/core.h>
@@ -90,12 +88,12 @@ Requirement read_requirement(const YamlInput& input, const YAML::Node& node) {
 }  // namespace
 
 void load_requirements(const std::string& file, Model& model, Diagnostics& diagnostics) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) {
-    diagnostics.error({file, 0, 0}, "cannot be read");
-    return;
-  }
-  const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  const auto text = text_of_file(file, diagnostics);
+  if (text) load_requirements_text(file, *text, model, diagnostics);
+}
+
+void load_requirements_text(const std::string& file, const std::string& text, Model& model,
+                            Diagnostics& diagnostics) {
   diagnostics.add_source(file, text);
   const auto root = parse_yaml(file, text, diagnostics);
   if (!root) return;
