@@ -305,6 +305,30 @@ class Explain(unittest.TestCase):
         self.assertGreater(whole.count(".rtr"), int(more[1]))
         self.assertLess(len(out.splitlines()), 20)
 
+    def test_frames_of_the_radio_as_traces_write_them(self):
+        """rct/1 has radio frames in a serial packet's form, so that is what people paste."""
+        for hexadecimal, name, field in [
+                ("00 ffff 0001 06 00 0e 03e802000701", "join_request", "mote_desc.mote_type"),
+                ("00 0005 0001 0a 00 0f 000b00050000000003e8", "join_reply", "cur_time"),
+                ("00 0001 0005 0e 00 1d 000b0001000b000503e802000701", "ack_join", "seq_num")]:
+            code, out, _ = rubric("explain", hexadecimal)
+            self.assertEqual(code, 0)
+            self.assertIn(f"{name} does not travel on the serial line",
+                          " ".join(out.decode().split()))
+            self.assertIn(field, out.decode())
+            self.assertNotIn(b"Opaque", out)
+            code, lines, _ = rubric("decode", "--input-format", "hex", "--format", "jsonl",
+                                    stdin=hexadecimal.encode() + b"\n")
+            line = json.loads(lines)
+            self.assertEqual((code, line["message"]), (0, name))
+            self.assertEqual(line["notes"][0]["note"], "radio_only")
+            for missing in [(), ("raw",)]:  # Fields alone give the same bytes.
+                kept = {key: value for key, value in line.items() if key not in missing}
+                code, back, err = rubric("encode", "--format", "hex",
+                                         stdin=json.dumps(kept).encode())
+                self.assertEqual((code, err), (0, ""))
+                self.assertEqual(back.split()[-1].decode(), hexadecimal.replace(" ", ""))
+
     def test_frames(self):
         code, out, _ = rubric("explain", *CONFIG_PACKET.decode().split())
         self.assertEqual(code, 0)

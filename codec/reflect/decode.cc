@@ -129,7 +129,7 @@ std::size_t Decoded::child(std::size_t parent, std::string_view name) const {
 /// One decoding: a cursor over the tables that appends nodes.
 class Decoder {
  public:
-  Decoder(Decoded& out) : out_(out) {}
+  Decoder(Decoded& out, const Switch* more) : out_(out), more_(more) {}
 
   void run(const Type& type, Tail tail, bool is_message) {
     whole(type, tail, is_message);
@@ -275,6 +275,7 @@ class Decoder {
       const std::int64_t key = evaluate(f.choice->key, from(base, limit));
       type = choose(*f.choice, key);
       if (!type) {
+        if (more_ && base == 0 && radio_only(f, key, at, end)) return true;
         if (end > at) push_note({NoteKind::kUnknownMessage, at, &f, nullptr, key});
         push(NodeKind::kBytes, &f, at, end - at);
         at = end;
@@ -291,6 +292,20 @@ class Decoder {
       if (used < end) push_stale(used, end);
       at = end;
     }
+    return true;
+  }
+
+  /// A message of another carrier; true if there is one for the key, be it opaque as it does not fit.
+  bool radio_only(const Field& f, std::int64_t key, std::uint32_t& at, std::uint32_t end) {
+    const Type* type = choose(*more_, key);
+    if (!type) return false;
+    if (fits(f, *type, at, end)) {
+      push_note({NoteKind::kRadioOnly, at, &f, type, key});
+    } else {
+      push_note({NoteKind::kDoesNotFit, at, &f, type, key});
+      push(NodeKind::kBytes, &f, at, end - at);
+    }
+    at = end;
     return true;
   }
 
@@ -368,13 +383,15 @@ class Decoder {
   }
 
   Decoded& out_;
+  const Switch* more_;
   Node* nodes_ = nullptr;
   std::size_t count_ = 0;  // Of nodes; `out_` learns it at the end.
 };
 
-void decode(const Type& type, Bytes bytes, Tail tail, bool is_message, Decoded& out) {
+void decode(const Type& type, Bytes bytes, Tail tail, bool is_message, Decoded& out,
+            const Switch* more) {
   out.clear(bytes);
-  Decoder(out).run(type, tail, is_message);
+  Decoder(out, more).run(type, tail, is_message);
 }
 
 }  // namespace rubric::reflect

@@ -39,12 +39,13 @@ enum class NoteKind : std::uint8_t {
   kDoesNotFit,       ///< The bytes do not fit the message that their key names; they stay opaque.
   kUnexpectedValue,  ///< A field's value is not the expected one.
   kNotDecoded,       ///< The frame is of a kind that carries no message known here.
+  kRadioOnly,        ///< A serial packet holds a message that travels on the radio only.
 };
 struct Note {
   NoteKind kind;
   std::uint32_t offset;   ///< In bytes, from the start of the frame.
   const Field* field;     ///< That the note is about.
-  const Type* type;       ///< kDoesNotFit: the message that it was held against.
+  const Type* type;       ///< kDoesNotFit, kRadioOnly: the message that it was held against.
   std::int64_t value;     ///< The key, or the value.
 };
 
@@ -109,8 +110,11 @@ class Decoded {
 enum class Tail : std::uint8_t { kStale, kFault };
 
 /// Decodes `bytes` as `type`. `is_message`: the type itself is the first name of the path. What was
-/// decoded before a fault stays in `out`. Bytes must not exceed 2^31.
-void decode(const Type& type, Bytes bytes, Tail tail, bool is_message, Decoded& out);
+/// decoded before a fault stays in `out`. Bytes must not exceed 2^31. `more`: chooses for keys that
+/// the outermost structure's own choice has no type for; what it chooses is noted as kRadioOnly,
+/// and stays opaque where it does not fit.
+void decode(const Type& type, Bytes bytes, Tail tail, bool is_message, Decoded& out,
+            const Switch* more = nullptr);
 
 /// The value of an expression over the structure that begins at `base`, whose loads lie within
 /// `bytes` (the spec compiler proves it, loads beyond the end give 0).

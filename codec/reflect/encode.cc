@@ -22,8 +22,8 @@ std::string bytes_text(std::size_t n) { return to_string(n) + (n == 1 ? " byte" 
 /// only measures that are missing are filled in later.
 class Encoder {
  public:
-  Encoder(Bytes stale, std::vector<std::uint8_t>& out)
-      : stale_(stale), out_(out), start_(out.size()) {}
+  Encoder(Bytes stale, std::vector<std::uint8_t>& out, const Switch* more)
+      : stale_(stale), out_(out), more_(more), start_(out.size()) {}
 
   void run(const Type& type, const Value& fields, Tail tail) {
     open_parts_ = tail == Tail::kStale ? 1 : 0;
@@ -252,7 +252,11 @@ class Encoder {
     const Type* type = f.type;
     if (f.choice) {
       require_given(f.choice->key, base);
-      type = choose(*f.choice, evaluate(f.choice->key, from(base)));
+      const std::int64_t key = evaluate(f.choice->key, from(base));
+      type = choose(*f.choice, key);
+      if (!type && more_ && base == start_ && value.is(Value::Kind::kObject)) {
+        type = choose(*more_, key);
+      }
       if (!type) return opaque(f, &value, base, limit);
     }
     if (f.extent == Extent::kOwn) return structure(*type, value, limit);
@@ -366,6 +370,7 @@ class Encoder {
   Bytes stale_;
   std::size_t stale_used_ = 0;
   std::vector<std::uint8_t>& out_;
+  const Switch* more_;
   std::size_t start_;
   Measures measures_;
   std::string path_;
@@ -373,8 +378,8 @@ class Encoder {
 };
 
 void encode(const Type& type, const Value& fields, Bytes stale, Tail tail,
-            std::vector<std::uint8_t>& out) {
-  Encoder(stale, out).run(type, fields, tail);
+            std::vector<std::uint8_t>& out, const Switch* more) {
+  Encoder(stale, out, more).run(type, fields, tail);
 }
 
 }  // namespace rubric::reflect

@@ -154,6 +154,7 @@ std::string_view note_name(NoteKind kind) {
     case NoteKind::kUnknownMessage: return "unknown_message";
     case NoteKind::kDoesNotFit: return "does_not_fit";
     case NoteKind::kNotDecoded: return "not_decoded";
+    case NoteKind::kRadioOnly: return "radio_only";
     case NoteKind::kUnexpectedValue: break;
   }
   return "unexpected_value";
@@ -167,6 +168,9 @@ std::string note_text(const Note& note) {
     case NoteKind::kDoesNotFit:
       return name + " has the key " + key + " and does not fit " +
              (note.type ? note.type->name : "its message");
+    case NoteKind::kRadioOnly:
+      return (note.type ? note.type->name : name) + std::string(" does not travel on the serial ") +
+             "line: these are the bytes of a radio message in a serial packet's form";
     case NoteKind::kNotDecoded: {
       char hex[24];
       std::snprintf(hex, sizeof(hex), "%#llx", static_cast<unsigned long long>(note.value));

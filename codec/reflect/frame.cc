@@ -46,12 +46,18 @@ void find_payload(Frame& out) {
 
 }  // namespace
 
+const Switch* payload_choice(const Protocol& protocol, std::string_view carrier) {
+  const Type* type = find_carrier(protocol, carrier);
+  return type && type->field_count ? type->fields[type->field_count - 1].choice : nullptr;
+}
+
 FrameDecoder::FrameDecoder(const Protocol& protocol, const Type* bare)
     : protocol_(protocol),
       bare_(bare),
       serial_(find_carrier(protocol, "serial")),
       radio_i_(find_carrier(protocol, "radio_i")),
-      radio_t_(find_carrier(protocol, "radio_t")) {}
+      radio_t_(find_carrier(protocol, "radio_t")),
+      radio_choice_(payload_choice(protocol, "radio_i")) {}
 
 void FrameDecoder::decode(const Packet& packet, Frame& out) const {
   clear(out, packet);
@@ -74,12 +80,15 @@ void FrameDecoder::decode(const Packet& packet, Frame& out) const {
   }
   out.error = out.decoded.error;
   if (packet.error.fault == Fault::kNone) return;
-  // The framing's fault comes first; its offset counts from the kind byte.
+  // The framing's fault comes first; its offset counts from the kind byte, or the length byte.
   out.error = packet.error;
+  std::uint32_t head = 0;
   if (packet.framing == Framing::kHdlc) {
-    const std::uint32_t head = (packet.kind != kAbsent) + (packet.serial_seq != kAbsent);
-    out.error.offset_bytes -= std::min(out.error.offset_bytes, head);
+    head = (packet.kind != kAbsent) + (packet.serial_seq != kAbsent);
+  } else if (packet.error.requirement == req::kWireSfLength && packet.link_type == 0) {
+    head = 1;  // A capture file's records have no length byte.
   }
+  out.error.offset_bytes -= std::min(out.error.offset_bytes, head);
 }
 
 void FrameDecoder::decode_serial(Frame& out) const {
@@ -89,7 +98,7 @@ void FrameDecoder::decode_serial(Frame& out) const {
     out.am = {true, load_be16(p + 1), load_be16(p + 3), p[5], p[6], p[7]};
   }
   if (!serial_) return not_decoded(out, out.packet->kind);
-  reflect::decode(*serial_, bytes, Tail::kFault, false, out.decoded);
+  reflect::decode(*serial_, bytes, Tail::kFault, false, out.decoded, radio_choice_);
   find_payload(out);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 
 #include "codec/containers/packet.h"
 #include "codec/reflect/decode.h"
@@ -30,6 +31,10 @@ struct MacHeader {
   std::uint16_t dest = 0;
   std::uint16_t src = 0;
 };
+
+/// The choice of the messages in this carrier's frames; null if it has none. A serial packet with a
+/// message of the radio's is how a trace and an adapter write a radio frame (rct/1).
+const Switch* payload_choice(const Protocol& protocol, std::string_view carrier);
 
 /// What a decoded packet amounts to. `packet` and the bytes are borrowed.
 struct Frame {
@@ -65,6 +70,7 @@ class FrameDecoder {
   const Type* serial_;
   const Type* radio_i_;
   const Type* radio_t_;
+  const Switch* radio_choice_;
 };
 
 }  // namespace rubric::reflect

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <tuple>
 
 #include "codec/containers/testing.h"
 #include "codec/generated/rubicon/tables.h"
@@ -60,6 +61,23 @@ TEST(Frame, LinkAck_IsAMessageWithoutActiveMessage) {
   EXPECT_STREQ(frame.decoded.message()->name, "mac_ack");
 }
 
+TEST(Frame, SerialPacketWithARadioMessage_IsReadAndNoted) {
+  for (const auto& [hex, message, kind] : {
+           std::tuple{"0000010000060" "00e" "c4f501004301", "join_request", NoteKind::kRadioOnly},
+           {"0000010000050" "00e" "c4f5010043", "", NoteKind::kDoesNotFit},
+           {"0000010000050" "0c8" "c4f5010043", "", NoteKind::kUnknownMessage}}) {
+    Case c(Framing::kSf, hex);
+    const Frame& frame = c.decode();
+    EXPECT_FALSE(frame.malformed());
+    EXPECT_TRUE(frame.has_payload);
+    const Type* type = frame.decoded.message();
+    EXPECT_STREQ(type ? type->name : "", message);
+    ASSERT_EQ(frame.decoded.note_count(), 1U);
+    EXPECT_EQ(frame.decoded.notes()[0].kind, kind);
+    EXPECT_EQ(frame.decoded.notes()[0].offset, 8U);
+  }
+}
+
 struct NoteCase {
   const char* name;
   Framing framing;
@@ -98,6 +116,16 @@ TEST(Frame, FramingFault_ComesFirst_AndCountsFromTheDispatchByte) {
   const Frame& frame = c.decode();
   EXPECT_EQ(frame.error, (Error{Fault::kCrc, 11, req::kWireSerialCrc}));
   EXPECT_STREQ(frame.decoded.message()->name, "config");
+}
+
+TEST(Frame, CutForwarderPacket_CountsFromTheDispatchByte) {
+  Case stream(Framing::kSf, "0001");
+  stream.packet.error = Error{Fault::kCut, 3, req::kWireSfLength};  // From the length byte on.
+  EXPECT_EQ(stream.decode().error, (Error{Fault::kCut, 2, req::kWireSfLength}));
+  Case record(Framing::kSf, "0001");
+  record.packet.link_type = 148;  // Without a length byte.
+  record.packet.error = Error{Fault::kTooLong, 255, req::kWireSfLength};
+  EXPECT_EQ(record.decode().error, (Error{Fault::kTooLong, 255, req::kWireSfLength}));
 }
 
 TEST(Frame, CutInTheHeader_NamesTheHeadersRule) {

@@ -81,7 +81,8 @@ void kind_names(const Protocol&, Names& names) {
 void note_names(const Protocol&, Names& names) {
   for (const reflect::NoteKind kind :
        {reflect::NoteKind::kUnknownMessage, reflect::NoteKind::kDoesNotFit,
-        reflect::NoteKind::kUnexpectedValue, reflect::NoteKind::kNotDecoded}) {
+        reflect::NoteKind::kUnexpectedValue, reflect::NoteKind::kNotDecoded,
+        reflect::NoteKind::kRadioOnly}) {
     names.emplace_back(reflect::note_name(kind));
   }
 }

@@ -201,6 +201,23 @@ class Rows {
   std::uint32_t done_ = 0;
 };
 
+std::string rule_text(ReqId id) {
+  if (id == ReqId::kNone) return {};
+  const reflect::Requirement& rule = reflect::requirement(id);
+  return wrapped(fmt::format("{} ({}): {}", rule.id, rule.level, rule.sentence), 4) +
+         fmt::format("    Source: {}\n", rule.source);
+}
+
+// What is wrong with opaque bytes, held against the message that their key names.
+std::string misfit_text(Bytes bytes, const reflect::Type& type) {
+  Decoded decoded;
+  reflect::decode(type, bytes, reflect::Tail::kStale, true, decoded);
+  if (decoded.error.fault == Fault::kNone) return {};  // Its room is what it does not fit.
+  return wrapped(fmt::format("As {} it is malformed at its byte {}: {}.", type.id,
+                             decoded.error.offset_bytes, reflect::error_text(decoded)), 2) +
+         rule_text(decoded.error.requirement);
+}
+
 }  // namespace
 
 std::string explain_frame(const Frame& frame) {
@@ -210,17 +227,15 @@ std::string explain_frame(const Frame& frame) {
     const reflect::Note& note = frame.decoded.notes()[i];
     out += wrapped(fmt::format("Note at byte {}: {}.", rows.head_bytes() + note.offset,
                                reflect::note_text(note)), 2);
+    if (note.kind == reflect::NoteKind::kDoesNotFit && note.type) {
+      out += misfit_text(frame.decoded.bytes.from(note.offset), *note.type);
+    }
   }
   if (!frame.malformed()) return out;
   out += wrapped(fmt::format("Malformed at byte {}: {}.",
                              rows.head_bytes() + frame.error.offset_bytes,
                              reflect::error_text(frame)), 2);
-  const reflect::Requirement& rule = reflect::requirement(frame.error.requirement);
-  if (frame.error.requirement != ReqId::kNone) {
-    out += wrapped(fmt::format("{} ({}): {}", rule.id, rule.level, rule.sentence), 4);
-    out += fmt::format("    Source: {}\n", rule.source);
-  }
-  return out;
+  return out + rule_text(frame.error.requirement);
 }
 
 }  // namespace rubric::layout

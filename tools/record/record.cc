@@ -174,12 +174,12 @@ RecordReader::Plan RecordReader::plan_radio(const Value& line, const Value& am) 
     Value values = Value::of_object();
     values.set("fcf", Value::of_integer(*fcf));
     if (const Value* dsn = given(frame, "dsn")) values.set("dsn", *dsn);
-    return {reflect::find_carrier(tinyos::tables::kProtocol, "radio_ack"), std::move(values)};
+    return {reflect::find_carrier(tinyos::tables::kProtocol, "radio_ack"), std::move(values), nullptr};
   }
   const bool has_network = !frame.find("network") || given(frame, "network");
   const Type* type = reflect::find_carrier(protocol_, has_network ? "radio_i" : "radio_t");
   const Value payload = fields ? *fields : Value{};
-  return {type, radio_values(with_am_type(line, am, type), frame, has_network, payload)};
+  return {type, radio_values(with_am_type(line, am, type), frame, has_network, payload), nullptr};
 }
 
 // Without raw: what the frame is made of.
@@ -189,7 +189,7 @@ RecordReader::Plan RecordReader::plan(const Value& line, Framing framing) const 
   if (framing == Framing::kBare) {
     const Type* message = bare_type(line);
     if (!message || !fields) throw no_raw("there are no fields of a known message");
-    return {message, *fields};
+    return {message, *fields, nullptr};
   }
   const bool nothing = !fields && am.keys.empty();
   // A radio acknowledgement is a frame control field and a number alone.
@@ -202,6 +202,7 @@ RecordReader::Plan RecordReader::plan(const Value& line, Framing framing) const 
     made = plan_radio(line, am);
   } else {
     made.type = reflect::find_carrier(protocol_, "serial");
+    made.more = reflect::payload_choice(protocol_, "radio_i");
     made.values = serial_values(with_am_type(line, am, made.type), object_of(line, "frame"),
                                 fields ? *fields : Value{});
   }
@@ -231,7 +232,7 @@ void RecordReader::build(const Value& line, const OwnedPacket& around,
   const Plan made = plan(line, framing);
   try {
     reflect::encode(*made.type, made.values, Bytes(stale_.data(), stale_.size()),
-                    is_bare ? reflect::Tail::kStale : reflect::Tail::kFault, out);
+                    is_bare ? reflect::Tail::kStale : reflect::Tail::kFault, out, made.more);
   } catch (const reflect::EncodeError& error) {
     const std::string path = is_bare && !error.path().empty() && error.path() != "stale"
                                  ? "fields." + error.path()

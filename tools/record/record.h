@@ -58,6 +58,7 @@ class RecordReader {
   struct Plan {
     const reflect::Type* type = nullptr;
     Value values;
+    const reflect::Switch* more = nullptr;  // As reflect::encode takes it.
   };
 
   Plan plan(const Value& line, Framing framing) const;
