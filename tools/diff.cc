@@ -12,7 +12,6 @@
 #include "conformance/suite/select.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/output.h"
-#include "tools/cli/usage.h"
 #include "tools/player.h"
 
 namespace rubric::tools {
@@ -23,8 +22,7 @@ struct Options {
   std::vector<std::string> targets;
   std::vector<std::string> profiles;
   suite::Selection selection;
-  std::string out = "-";
-  double timeout_seconds = 5;
+  PlayerOptions shared;
 };
 
 constexpr const char* kFooter =
@@ -47,14 +45,12 @@ void compare(const Options& options) {
   std::vector<std::unique_ptr<AttachedPlayer>> players;
   for (std::size_t i = 0; i < 2; ++i) {
     players.push_back(std::make_unique<AttachedPlayer>(
-        options.targets[i], options.timeout_seconds,
+        options.targets[i], options.shared,
         options.profiles.empty() ? std::string() : options.profiles[i]));
   }
   std::vector<trace::File> files;
   for (const suite::SuiteCase& each : suite::select(cases, options.selection)) {
-    trace::File& file = files.emplace_back();
-    file.head = each.file->file.head;
-    file.cases.push_back(*each.one);
+    files.push_back(seeded(each.file->file, *each.one, options.shared));
   }
   std::vector<const trace::File*> pointers;
   for (const trace::File& file : files) pointers.push_back(&file);
@@ -76,24 +72,8 @@ void compare(const Options& options) {
       shrunk_text(difference.shrunk, difference.case_name + ".difference",
                   {fmt::format("A, {}: {}", players[0]->name(), outcome_text(difference.a)),
                    fmt::format("B, {}: {}", players[1]->name(), outcome_text(difference.b))});
-  if (!cli::write_file(options.out, text)) cli::exit_with(cli::kVerdictBroken);
+  if (!cli::write_file(options.shared.out, text)) cli::exit_with(cli::kVerdictBroken);
   cli::exit_with(cli::kVerdictFailed);
-}
-
-void run(const Options& options) {
-  try {
-    compare(options);
-  } catch (const CLI::Error&) {  // An exit code that was chosen.
-    throw;
-  } catch (const std::invalid_argument& error) {
-    throw CLI::ValidationError(error.what());
-  } catch (const runner::TargetBroken& error) {
-    fmt::print(stderr, "rubric diff: {}\n", error.what());
-    cli::exit_with(cli::kVerdictBroken);
-  } catch (const std::runtime_error& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    cli::exit_with(cli::kVerdictInput);
-  }
 }
 
 }  // namespace
@@ -118,13 +98,10 @@ void add_diff(CLI::App& app) {
       ->take_all();
   sub->add_option("--requirement", options->selection.requirements,
                   "Only cases that name this rule, or one of this family")->expected(1)->take_all();
-  sub->add_option("--out", options->out, "Where the trace goes; - is stdout")
-      ->capture_default_str();
-  sub->add_option("--timeout", options->timeout_seconds, "Seconds for an answer")
-      ->check(CLI::Range(0.01, 3600.0))
-      ->capture_default_str();
-  cli::set_usage_exit_code(*sub, cli::kVerdictUsage);
-  sub->callback([options] { run(*options); });
+  add_player_options(*sub, options->shared);
+  sub->callback([options, sub] {
+    run_player_command(*sub, [&] { compare(*options); });
+  });
 }
 
 }  // namespace rubric::tools

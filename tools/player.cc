@@ -1,23 +1,62 @@
 #include "tools/player.h"
 
 #include <chrono>
+#include <cstdio>
+#include <stdexcept>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "conformance/suite/canary.h"
+#include "conformance/trace/headers.h"
 #include "conformance/trace/print.h"
+#include "tools/cli/exit_codes.h"
+#include "tools/cli/input.h"
+#include "tools/cli/usage.h"
 
 namespace rubric::tools {
 
-AttachedPlayer::AttachedPlayer(const std::string& target, double timeout_seconds,
+void add_player_options(CLI::App& app, PlayerOptions& options) {
+  app.add_option("--out", options.out, "Where the trace goes; - is stdout")
+      ->check(cli::given())
+      ->capture_default_str();
+  app.add_option("--timeout", options.timeout_seconds, "Seconds for an answer")
+      ->check(CLI::Range(0.01, 3600.0))
+      ->capture_default_str();
+  app.add_option("--seed", options.seed, "Of what is random in nodes, where a trace has none")
+      ->check(cli::whole_number());
+  cli::set_usage_exit_code(app, cli::kVerdictUsage);
+}
+
+void run_player_command(const CLI::App& app, const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const CLI::Error&) {  // An exit code that was chosen.
+    throw;
+  } catch (const std::invalid_argument& error) {
+    throw CLI::ValidationError(error.what());
+  } catch (const runner::TargetBroken& error) {
+    fmt::print(stderr, "rubric {}: {}\n", app.get_name(), error.what());
+    cli::exit_with(cli::kVerdictBroken);
+  } catch (const std::runtime_error& error) {
+    fmt::print(stderr, "rubric {}: {}\n", app.get_name(), error.what());
+    cli::exit_with(cli::kVerdictInput);
+  }
+}
+
+trace::File seeded(const trace::File& file, const trace::Case& one, const PlayerOptions& options) {
+  trace::File out = shrink::only(file, one);
+  if (options.seed) trace::set_seed_if_none(out, one, *options.seed);
+  return out;
+}
+
+AttachedPlayer::AttachedPlayer(const std::string& target, const PlayerOptions& options,
                                std::string profile)
     : profile_(std::move(profile)) {
-  attach::Options options;
-  options.step_timeout = std::chrono::milliseconds(static_cast<int>(timeout_seconds * 1000));
-  attachment_ = attach::attach(target, options);
-  if (const std::string wrong = attachment_->honesty(); !wrong.empty()) {
-    throw runner::TargetBroken(target + ": " + wrong);
-  }
+  attach::Options how;
+  how.step_timeout = std::chrono::milliseconds(static_cast<int>(options.timeout_seconds * 1000));
+  attachment_ = attach::attach(target, how);
+  suite::require_honest(*attachment_, target);
 }
 
 shrink::Player AttachedPlayer::player() {

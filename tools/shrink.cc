@@ -11,7 +11,6 @@
 #include "conformance/suite/cases.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/output.h"
-#include "tools/cli/usage.h"
 #include "tools/player.h"
 
 namespace rubric::tools {
@@ -25,8 +24,7 @@ struct Options {
   std::string target;
   std::string case_name;
   std::string profile;
-  std::string out = "-";
-  double timeout_seconds = 5;
+  PlayerOptions shared;
 };
 
 constexpr const char* kFooter =
@@ -46,16 +44,17 @@ bool passes(const CaseResult& result) {
 }
 
 struct Failing {
-  const suite::SuiteCase* one;
+  trace::File file;  // With this case alone.
   CaseResult result;
 };
 
-std::optional<Failing> find_failing(const suite::Cases& cases, const std::string& name,
+std::optional<Failing> find_failing(const suite::Cases& cases, const Options& options,
                                     const shrink::Player& player) {
   for (const suite::SuiteCase& each : cases.all()) {
-    if (!name.empty() && each.one->name != name) continue;
-    CaseResult result = shrink::play(shrink::only(each.file->file, *each.one), player);
-    if (fails(result)) return Failing{&each, std::move(result)};
+    if (!options.case_name.empty() && each.one->name != options.case_name) continue;
+    trace::File file = seeded(each.file->file, *each.one, options.shared);
+    CaseResult result = shrink::play(file, player);
+    if (fails(result)) return Failing{std::move(file), std::move(result)};
   }
   return std::nullopt;
 }
@@ -65,20 +64,20 @@ void shrink_it(const Options& options) {
   if (!options.case_name.empty() && !cases.find(options.case_name)) {
     throw CLI::ValidationError(options.trace + " has no case " + options.case_name);
   }
-  AttachedPlayer attached(options.target, options.timeout_seconds, options.profile);
-  AttachedPlayer machine("machine", options.timeout_seconds, "");
+  AttachedPlayer attached(options.target, options.shared, options.profile);
+  AttachedPlayer machine("machine", options.shared, "");
   const shrink::Player player = attached.player();
-  const auto found = find_failing(cases, options.case_name, player);
+  const auto found = find_failing(cases, options, player);
   if (!found) {
     std::fputs("nothing fails: there is nothing to shrink\n", stderr);
     cli::exit_with(cli::kVerdictInconclusive);
   }
-  const trace::File& file = found->one->file->file;
+  const trace::Case& one = found->file.cases.at(0);
   std::optional<shrink::Player> reference = machine.player();
-  if (!passes(shrink::play(shrink::only(file, *found->one->one), *reference))) reference.reset();
+  if (!passes(shrink::play(found->file, *reference))) reference.reset();
   const auto shows = shrink::fails_alike(found->result, player, reference);
-  const shrink::Shrunk shrunk = shrink::shrink(file, *found->one->one, shows);
-  const std::string& name = found->one->one->name;
+  const shrink::Shrunk shrunk = shrink::shrink(found->file, one, shows);
+  const std::string& name = one.name;
   if (shrunk.lines_before == 0) {
     throw runner::TargetBroken(name + " does not fail in the same way twice; is a seed ignored?");
   }
@@ -88,25 +87,9 @@ void shrink_it(const Options& options) {
                   {fmt::format("{} of the {} lines of {}.", shrunk.lines, shrunk.lines_before,
                                name),
                    fmt::format("On {}: {}", attached.name(), outcome_text(last))});
-  if (!cli::write_file(options.out, text)) cli::exit_with(cli::kVerdictBroken);
+  if (!cli::write_file(options.shared.out, text)) cli::exit_with(cli::kVerdictBroken);
   fmt::print(stderr, "{}: {} lines shrank to {} in {} runs\n{}\n", name, shrunk.lines_before,
              shrunk.lines, shrunk.tried, outcome_text(last));
-}
-
-void run(const Options& options) {
-  try {
-    shrink_it(options);
-  } catch (const CLI::Error&) {  // An exit code that was chosen.
-    throw;
-  } catch (const std::invalid_argument& error) {
-    throw CLI::ValidationError(error.what());
-  } catch (const runner::TargetBroken& error) {
-    fmt::print(stderr, "rubric shrink: {}\n", error.what());
-    cli::exit_with(cli::kVerdictBroken);
-  } catch (const std::runtime_error& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    cli::exit_with(cli::kVerdictInput);
-  }
 }
 
 }  // namespace
@@ -120,13 +103,10 @@ void add_shrink(CLI::App& app) {
   sub->add_option("--case", options->case_name, "Which case; default: the first that fails");
   sub->add_option("--profile", options->profile, "Dialect; default: as the trace says")
       ->check(CLI::IsMember({"paper", "deployed"}));
-  sub->add_option("--out", options->out, "Where the new trace goes; - is stdout")
-      ->capture_default_str();
-  sub->add_option("--timeout", options->timeout_seconds, "Seconds for an answer")
-      ->check(CLI::Range(0.01, 3600.0))
-      ->capture_default_str();
-  cli::set_usage_exit_code(*sub, cli::kVerdictUsage);
-  sub->callback([options] { run(*options); });
+  add_player_options(*sub, options->shared);
+  sub->callback([options, sub] {
+    run_player_command(*sub, [&] { shrink_it(*options); });
+  });
 }
 
 }  // namespace rubric::tools

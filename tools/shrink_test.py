@@ -1,4 +1,5 @@
 """rubric shrink and rubric diff on broken machines behind rct/1."""
+import contextlib
 import pathlib
 import subprocess
 import sys
@@ -10,6 +11,49 @@ MACHINE = sys.argv.pop(1)
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 CASE = ROOT / "conformance/cases/j4.rtr"
 BROKEN = f"{MACHINE} --mutant wrong_seq_accepted_and_acked_as_it_is"
+
+
+# It refuses what nobody knows, but says that it joined whatever it is asked.
+LIAR = """
+import sys
+for line in sys.stdin:
+    words = line.split()
+    if words[0] == "hello": print("hello rct/1 liar 1 roles=mote time=virtual")
+    elif words[0] == "reset": print("ready")
+    elif words[0] == "call" and words[2].startswith("join("):
+        print(f"up {words[1]} joined(10053:5 success)\\nnext -\\ndone {words[1]}")
+    elif words[0] in ("call", "rx", "linkack", "line", "power", "until"):
+        print(f"next -\\ndone {words[1]}")
+    elif words[0] == "bye": break
+    else: print("unsupported")
+    sys.stdout.flush()
+"""
+
+
+# The machine, and with seed 7 the broken one.
+MOODY = f"""
+import subprocess, sys
+both = [subprocess.Popen(words, shell=True, text=True, bufsize=1, stdin=subprocess.PIPE,
+                         stdout=subprocess.PIPE) for words in ({MACHINE!r}, {BROKEN!r})]
+chosen = 0
+for line in sys.stdin:
+    if line.startswith("reset"): chosen = int("seed=7 " in line)
+    for i, one in enumerate(both):
+        if i != chosen and not line.startswith(("hello", "bye")): continue
+        one.stdin.write(line)
+        while not line.startswith("bye"):
+            answer = one.stdout.readline()
+            if i == chosen: print(answer, end="", flush=True)
+            if answer.split(maxsplit=1)[0] in ("hello", "ready", "done", "unsupported"): break
+"""
+
+
+@contextlib.contextmanager
+def moody():
+    with tempfile.TemporaryDirectory() as folder:
+        script = pathlib.Path(folder, "moody.py")
+        script.write_text(MOODY, encoding="utf-8")
+        yield f"{sys.executable} {script}"
 
 
 def run(*words):
@@ -48,6 +92,25 @@ class Shrink(unittest.TestCase):
         self.assertEqual(code, 0, err)
         self.assertIn("[J8-LIMIT", out)
 
+    def test_a_seed_stands_in_what_is_made(self):
+        with moody() as target:
+            self.assertEqual(run("shrink", str(CASE), "--target", target)[0], 3)
+            code, out, err = run("shrink", str(CASE), "--target", target, "--seed", "7")
+            self.assertEqual(code, 0, err)
+            self.assertIn("%seed 7\n", out)
+
+    def test_an_adapter_that_says_yes_to_everything(self):
+        """It passes what nobody can pass: what it does otherwise says nothing."""
+        with tempfile.TemporaryDirectory() as folder:
+            liar = pathlib.Path(folder, "liar.py")
+            liar.write_text(LIAR, encoding="utf-8")
+            target = f"{sys.executable} {liar}"
+            for words in [("shrink", str(CASE), "--target", target),
+                          ("diff", "--target", "machine", "--target", target, "--cases", "j4.*")]:
+                code, out, err = run(*words)
+                self.assertEqual((code, out), (2, ""), err)
+                self.assertIn(f"rubric {words[0]}: {target}: canary.mote has to fail", err)
+
     def test_nothing_to_shrink(self):
         code, _, err = run("shrink", str(CASE), "--target", "machine")
         self.assertEqual(code, 3)
@@ -68,6 +131,14 @@ class Shrink(unittest.TestCase):
 
 
 class Diff(unittest.TestCase):
+    def test_a_seed(self):
+        with moody() as target:
+            words = ["diff", "--target", "machine", "--target", target, "--cases", "j4.*"]
+            self.assertEqual(run(*words)[0], 0)
+            code, out, err = run(*words, "--seed", "7")
+            self.assertEqual(code, 1, err)
+            self.assertIn("%seed 7\n", out)
+
     def test_a_mutant_and_the_machine(self):
         code, out, err = run("diff", "--target", "machine", "--target", BROKEN,
                              "--requirement", "J4")

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "conformance/trace/headers.h"
+
 namespace rubric::shrink {
 namespace {
 
@@ -23,25 +25,11 @@ bool kept(const CaseResult& result) {
 // First numbers as they come, 0 and 65535: see runner::config_of.
 constexpr std::uint64_t kSeeds[] = {0, 58392, 58647};
 
-// Puts `what` in place of the headers of its kind, or adds one.
-template <class Kind>
-trace::File with(trace::File file, const Kind& what) {
-  bool found = false;
-  for (auto* items : {&file.head, &file.cases[0].items}) {
-    for (trace::Item& item : *items) {
-      auto* header = std::get_if<trace::Header>(&item);
-      if (!header || !std::holds_alternative<Kind>(header->what)) continue;
-      header->what = what;
-      found = true;
-    }
-  }
-  if (!found) file.header({what, {}, {}});
-  return file;
-}
-
 bool keeps(const trace::File& file, const Player& reference) {
   return std::all_of(std::begin(kSeeds), std::end(kSeeds), [&](std::uint64_t seed) {
-    return kept(play(seed == 0 ? file : with(file, trace::SeedHeader{seed}), reference));
+    trace::File asked = file;
+    if (seed != 0) trace::set_header(asked, asked.cases.at(0), trace::SeedHeader{seed});
+    return kept(play(asked, reference));
   });
 }
 
@@ -64,8 +52,10 @@ trace::File only(const trace::File& file, const trace::Case& one) {
 }
 
 CaseResult play(const trace::File& file, const Player& player) {
-  const trace::File asked =
-      player.profile.empty() ? file : with(file, trace::ProfileHeader{player.profile});
+  trace::File asked = file;
+  if (!player.profile.empty()) {
+    trace::set_header(asked, asked.cases.at(0), trace::ProfileHeader{player.profile});
+  }
   return runner::run_case(asked, asked.cases.at(0), player.make);
 }
 
