@@ -4,6 +4,7 @@
 
 #include "tools/check.h"
 #include "tools/cli/usage.h"
+#include "tools/completion.h"
 #include "tools/convert.h"
 #include "tools/coverage.h"
 #include "tools/decode.h"
@@ -49,5 +50,6 @@ int main(int argc, char** argv) {
   rubric::tools::add_diff(app);
   rubric::tools::add_new_adapter(app);
   rubric::tools::add_coverage(app);
+  rubric::tools::add_completion(app);
   return rubric::cli::parse_and_run(app, argc, argv);
 }
