@@ -104,7 +104,8 @@ void PcapWriter::begin(std::string& out) {
 }
 
 bool PcapWriter::write(const Packet& packet, std::string_view, std::string& out) {
-  if (link_type_of(packet) != link_type_) return false;
+  const std::uint16_t link_type = link_type_of(packet);
+  if (link_type == 0 || link_type != link_type_) return false;
   const auto ns = static_cast<std::uint64_t>(
       std::clamp<std::int64_t>(packet.time_ns, 0, kPcapTimeNsMax));
   put32(ns / kNsPerSecond, out);

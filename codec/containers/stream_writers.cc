@@ -53,6 +53,9 @@ bool HdlcWriter::write(const Packet& packet, std::string_view, std::string& out)
   }
   escape_from(begin, out);
   if (packet.framing == Framing::kHdlc) {
+    // Of a frame cut behind an escape, its first byte, only that escape was ever there.
+    const bool nothing = out.size() == begin;
+    if (packet.error.fault == Fault::kCut && nothing) out += static_cast<char>(kHdlcEscape);
     if (packet.error.fault == Fault::kCut) return true;
     if (packet.error.fault == Fault::kAborted) out += static_cast<char>(kHdlcEscape);
   }

@@ -16,8 +16,8 @@ using testing::Kept;
 using MakeReader = std::function<std::unique_ptr<Reader>()>;
 
 /// Everything that a new reader makes of `input`, which must come out the same when the input comes
-/// byte by byte, in small pieces and in large ones. Each piece is a heap block of its own, so that a
-/// sanitizer sees a read beyond it and of one that is gone.
+/// in small pieces and in large ones, of which the input decides. Each piece is a heap block of its
+/// own, so that a sanitizer sees a read beyond it and of one that is gone.
 std::vector<Kept> read_in_any_pieces(const MakeReader& make, Bytes input);
 
 /// The same packets, whatever they are; prints the first that differ.

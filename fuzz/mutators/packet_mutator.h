@@ -1,0 +1,65 @@
+// Mutates streams of packets by what they mean: fields, messages, sequences; whatever engine asks.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "codec/generate/frame_generator.h"
+#include "codec/reflect/frame.h"
+#include "fuzz/mutators/packet_stream.h"
+
+namespace rubric::fuzz {
+
+/// Mutants of the streams of one protocol. The same seed and calls give the same mutants.
+class PacketMutator {
+ public:
+  PacketMutator(const reflect::Protocol& protocol, const reflect::RouteTable& routes,
+                std::uint64_t seed);
+
+  /// A mutant of `input`, a stream or file of that format, of at most `max_size` bytes. Most are
+  /// what was read with a few changes and check sums that match; some are bytes changed anywhere.
+  std::vector<std::uint8_t> mutate(InputFormat format, Bytes input, std::size_t max_size);
+  /// The packets of two inputs in one: the beginning of one and the end of the other, or some of
+  /// each in their order.
+  std::vector<std::uint8_t> cross_over(InputFormat format, Bytes one, Bytes other,
+                                       std::size_t max_size);
+
+  /// One change of one or a few packets of the stream.
+  void change(PacketStream& stream);
+  /// A change of what one packet holds, check sums repaired or, rarely, left wrong.
+  void change_packet(PacketStream& stream, std::size_t at);
+
+  generate::Random& random() { return generator_.random(); }
+  /// Goes on as a new mutator of that seed would.
+  void reseed(std::uint64_t seed) { random() = generate::Random(seed); }
+
+ private:
+  /// A number of a packet of the stream.
+  struct Number {
+    std::size_t packet;
+    std::size_t offset;
+    std::size_t width;
+    bool little;
+    const char* name;
+  };
+
+  void insert_message(PacketStream& stream);
+  void adopt_values(PacketStream& stream, std::size_t at);
+  void copy_number(PacketStream& stream);
+  void change_frame(StreamPacket& packet);
+  void change_outside(StreamPacket& packet);
+  void add_numbers(const PacketStream& stream, std::size_t at, std::vector<Number>& out);
+  void copy(PacketStream& stream, const Number& from, const Number& to);
+  const reflect::Route* pick_route(const PacketStream& stream);
+  std::size_t pick_packet(const PacketStream& stream);
+
+  const reflect::Protocol& protocol_;
+  const reflect::RouteTable& routes_;
+  generate::FrameGenerator generator_;
+  reflect::FrameDecoder decoder_;
+  reflect::Frame frame_;
+  std::vector<const reflect::Type*> messages_;  // Each once.
+};
+
+}  // namespace rubric::fuzz
