@@ -28,6 +28,8 @@ class Target:
         self.max_len = int(max_len)
         self.smoke_runs = int(smoke_runs)
         self.folders = [ROOT / folder for folder in folders.split()]
+        if self.corpus.is_dir() and self.corpus not in self.folders:
+            self.folders.insert(0, self.corpus)  # it is newer than the build folder
         self.timeout_s = int(timeout)
         self.repro = repro == "repro"  # `rubric repro` writes its inputs as traces
 

@@ -90,28 +90,34 @@ function(rubric_benchmark name)
   target_link_libraries(${name} PRIVATE rubric_options ${arg_DEPS} benchmark::benchmark_main)
 endfunction()
 
-# rubric_fuzzer(NAME [MUTATOR lib] [DICT protocol] [MAX_LEN bytes] [SMOKE_RUNS n] [SEEDS folder ...]
-#   [DEPS lib ...]): the fuzz target targets/NAME_fuzz.cc. With RUBRIC_FUZZ a program for the
-# engine. With tests, built by any compiler, a replay of the corpus: corpora/NAME, if it is there,
-# and SEEDS, folders of the project. What the scripts in fuzz/ must know goes to the build folder's
-# fuzz_targets.tsv: name, dictionary or -, max_len, smoke runs, folders of the corpus.
+# rubric_fuzzer(NAME [MUTATOR lib] [DICT protocol] [MAX_LEN bytes] [SMOKE_RUNS n] [TIMEOUT seconds]
+#   [REPRO] [SEEDS folder ...] [DEPS lib ...]): the fuzz target targets/NAME_fuzz.cc. With
+# RUBRIC_FUZZ a program for the engine. With tests, built by any compiler, a replay of the corpus:
+# corpora/NAME, if it is there, and SEEDS, folders of the project. REPRO says that `rubric repro`
+# writes this target's inputs as traces. What the scripts in fuzz/ must know goes to the build
+# folder's fuzz_targets.tsv: name, dictionary or -, max_len, smoke runs, folders of the corpus,
+# seconds that an input may take, repro or -.
 function(rubric_fuzzer name)
-  cmake_parse_arguments(arg "" "MUTATOR;DICT;MAX_LEN;SMOKE_RUNS" "SEEDS;DEPS" ${ARGN})
+  cmake_parse_arguments(arg "REPRO" "MUTATOR;DICT;MAX_LEN;SMOKE_RUNS;TIMEOUT" "SEEDS;DEPS" ${ARGN})
   set(target ${name}_fuzz)
   set(libraries rubric_options rubric_fuzz_support ${arg_MUTATOR} ${arg_DEPS})
   set(corpus ${arg_SEEDS})
   if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/corpora/${name})
     list(PREPEND corpus fuzz/corpora/${name})
   endif()
-  foreach(default "DICT;-" "MAX_LEN;4096" "SMOKE_RUNS;20000")
+  foreach(default "DICT;-" "MAX_LEN;4096" "SMOKE_RUNS;20000" "TIMEOUT;20")
     list(POP_FRONT default option)
     if(NOT arg_${option})
       set(arg_${option} ${default})
     endif()
   endforeach()
+  set(repro -)
+  if(arg_REPRO)
+    set(repro repro)
+  endif()
   list(JOIN corpus " " folders)
   file(APPEND ${PROJECT_BINARY_DIR}/fuzz_targets.tsv
-    "${name}\t${arg_DICT}\t${arg_MAX_LEN}\t${arg_SMOKE_RUNS}\t${folders}\n")
+    "${name}\t${arg_DICT}\t${arg_MAX_LEN}\t${arg_SMOKE_RUNS}\t${folders}\t${arg_TIMEOUT}\t${repro}\n")
   if(RUBRIC_FUZZ)
     add_executable(${target} targets/${target}.cc)
     target_link_libraries(${target} PRIVATE ${libraries} ${RUBRIC_FUZZ_ENGINE})
