@@ -138,6 +138,8 @@ std::string Server::answer(std::string_view command) {
   Words words(command);
   const std::string_view word = words.next();
   try {
+    // An answer quotes its command, and has to be printable itself.
+    if (std::string wrong = unprintable(command); !wrong.empty()) throw Unsupported(wrong);
     if (word == "hello") return hello(words.rest());
     if (word == "bye") {
       ended_ = true;

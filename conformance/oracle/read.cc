@@ -26,12 +26,13 @@ struct FileCloser {
 }  // namespace
 
 Bytes RunStorage::keep(Bytes bytes) {
+  if (bytes.empty()) return {};  // The first of all: there is no block yet.
   if (bytes.size() > kBlockBytes - used_) {
     blocks_.push_back(std::make_unique<std::uint8_t[]>(std::max(kBlockBytes, bytes.size())));
     used_ = 0;
   }
   std::uint8_t* const to = blocks_.back().get() + used_;
-  if (!bytes.empty()) std::memcpy(to, bytes.data(), bytes.size());
+  std::memcpy(to, bytes.data(), bytes.size());
   used_ = std::min(kBlockBytes, used_ + bytes.size());
   return {to, bytes.size()};
 }

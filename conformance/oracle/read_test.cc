@@ -77,6 +77,16 @@ TEST(Read, FilesOfOneRunShareTheirClock) {
   EXPECT_LT(told_us, report_us);
 }
 
+TEST(Read, AMessageWithoutBytesMayComeFirst) {
+  RunReader reader({InputFormat::kSf, Framing::kSf});
+  std::string error;
+  const std::string_view stream("\x55\x20\x08\x00\xff\xff\x00\x00\x00\x00\x02", 11);
+  ASSERT_TRUE(reader.add_bytes("stream", stream, error)) << error;
+  const oracle::Run run = reader.finish();
+  ASSERT_EQ(run.seen.size(), 1U);
+  EXPECT_TRUE(run.seen[0].frame.payload.empty());
+}
+
 TEST(Read, WhatCannotBeReadSaysWhy) {
   std::string error;
   EXPECT_FALSE(read({"no/such/file.pcapng"}, error));

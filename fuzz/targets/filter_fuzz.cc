@@ -2,9 +2,9 @@
 // made says of every frame the same twice, and the opposite under `!`.
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "fuzz/support/require.h"
 #include "tools/format/filter.h"
@@ -18,17 +18,20 @@ using format::FilterError;
 using format::Sample;
 using fuzz::require;
 
-const std::vector<const Sample*>& frames() {
-  static const std::vector<const Sample*> all = {
-      new Sample(format::kUpdates),
-      new Sample(format::kUpdates, Framing::kHdlc),
-      new Sample("00 ffff 0000 02 00 0b 0001", Framing::kSf),
-      new Sample("4188 07 2200 0100 0200 3f 1c 000b 0001 000b 0002 01 0007 03 1002 0a"
-                 "0001 0002", Framing::kRadio),
-      new Sample("0200 07", Framing::kRadio),
-      new Sample("", Framing::kSf),
-      new Sample(format::kJoinRequest, Framing::kBare, "join_request"),
-      new Sample("8002 0001 3f000000 7fc00000 ff800000", Framing::kBare, "synaptic_data")};
+const std::deque<Sample>& frames() {
+  static const std::deque<Sample> all = [] {
+    std::deque<Sample> made;
+    made.emplace_back(format::kUpdates);
+    made.emplace_back(format::kUpdates, Framing::kHdlc);
+    made.emplace_back("00 ffff 0000 02 00 0b 0001");
+    made.emplace_back("4188 07 2200 0100 0200 3f 1c 000b 0001 000b 0002 01 0007 09 030a2301 00010002",
+                      Framing::kRadio);
+    made.emplace_back("0200 07", Framing::kRadio);
+    made.emplace_back("");
+    made.emplace_back(format::kJoinRequest, Framing::kBare, "join_request");
+    made.emplace_back("8002 0001 3f000000 7fc00000 ff800000", Framing::kBare, "synaptic_data");
+    return made;
+  }();
   return all;
 }
 
@@ -44,10 +47,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     try {
       const Filter denied(opposite, format::rubicon());
       const Filter both(doubled, format::rubicon());
-      for (const Sample* frame : frames()) {
-        const bool holds = filter.matches(frame->record);
-        require(denied.matches(frame->record) != holds, "`!` is the opposite");
-        require(both.matches(frame->record) == holds, "a and a is a");
+      for (const Sample& frame : frames()) {
+        const bool holds = filter.matches(frame.record);
+        require(denied.matches(frame.record) != holds, "`!` is the opposite");
+        require(both.matches(frame.record) == holds, "a and a is a");
       }
     } catch (const FilterError& error) {
       require(std::string_view(error.what()).find("deep") != std::string_view::npos ||
