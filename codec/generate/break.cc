@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "codec/generate/interpret.h"
 #include "codec/generate/values.h"
 #include "codec/reflect/decode.h"
 #include "codec/reflect/encode_number.h"
@@ -30,12 +31,14 @@ class Breaker {
   }
 
   bool value() {
-    const auto part = pick([&](const Part& p) {
+    return value_of(pick([&](const Part& p) {
       // By the numbers of its own a radio frame's carrier is told from the others.
       const bool shape = draft_.radio && p.scope == 0;
       return p.kind == PartKind::kNumber && !shape &&
              p.field->valid.kind != reflect::ValidKind::kAny;
-    });
+    }));
+  }
+  bool value_of(std::uint32_t part) {
     if (part == kNone) return false;
     const Part& p = draft_.parts[part];
     std::int64_t number = 0;
@@ -70,7 +73,9 @@ class Breaker {
   }
 
   bool more() {
-    const std::uint32_t part = pick([&](const Part& p) { return counts(p); });
+    return more_than(pick([&](const Part& p) { return counts(p); }));
+  }
+  bool more_than(std::uint32_t part) {
     if (part == kNone) return false;
     const Part& p = draft_.parts[part];
     const Part& measure = number_of(p);
@@ -81,8 +86,9 @@ class Breaker {
     const std::int64_t number = random_.chance(0.6) ? least : random_.between(least, most);
     if (!is_allowed(*measure.field, number)) return false;
     return lie(measure, number, [&] {
-      return fault(Fault::kTruncated, limit, *p.field, name(measure) + " is " +
-                   to_string(number) + ", but " + name(p) + " has " + counted(p));
+      return fault(
+          Fault::kTruncated, limit, *p.field,
+          name(measure) + " is " + to_string(number) + ", but " + name(p) + " has " + counted(p));
     });
   }
 
@@ -100,8 +106,8 @@ class Breaker {
     if (!is_allowed(*measure.field, number)) return false;
     const auto end = static_cast<std::uint32_t>(p.at + number);
     const std::uint32_t first = draft_.first_cut(end, part + 1, p.last_inside, {});
-    const std::string text = name(measure) + " is " + to_string(number) + ", but " + name(p) +
-                             " has " + counted(p);
+    const std::string text =
+        name(measure) + " is " + to_string(number) + ", but " + name(p) + " has " + counted(p);
     if (first != kNone) {
       return lie(measure, number, [&] {
         return fault(Fault::kTruncated, end, *draft_.parts[first].field,
@@ -110,8 +116,19 @@ class Breaker {
     }
     // Bytes behind the end of an inner part are stale; behind that of the frame they are too many.
     if (p.scope != 0) return false;
-    return lie(measure, number,
-               [&] { return fault(Fault::kTrailing, end, *p.field, text); });
+    return lie(measure, number, [&] { return fault(Fault::kTrailing, end, *p.field, text); });
+  }
+
+  bool body() {
+    const Body& b = draft_.body;
+    const Part& place = draft_.parts[b.part];
+    if (!b.type || place.size == 0) return false;
+    const std::size_t way = random_.below(3);
+    if (!(way == 0 ? body_value() : way == 1 ? body_more() : body_cut())) return false;
+    const std::size_t lost = draft_.bytes.size() - out_.bytes.size();
+    const std::size_t end = place.at + place.size - lost;
+    const Bytes owner(out_.bytes.data() + b.base, end - b.base);
+    return !may_fit_another(*b.owner, b.field, owner, end - place.at, b.type, false);
   }
 
   bool trailing() {
@@ -133,7 +150,8 @@ class Breaker {
   }
   static std::string counted(const Part& p) {
     const std::uint32_t count = p.size / p.element_bytes;
-    const char* const unit = p.kind == PartKind::kArray && p.element_bytes != 1 ? "element" : "byte";
+    const char* const unit =
+        p.kind == PartKind::kArray && p.element_bytes != 1 ? "element" : "byte";
     return to_string(count) + " " + unit + (count == 1 ? "" : "s");
   }
 
@@ -151,13 +169,55 @@ class Breaker {
     return p.field == &type.fields[type.field_count - 1];
   }
 
+  // Of the message in opaque bytes.
+
+  bool body_value() {
+    return value_of(pick_inside([&](const Part& p) {
+      return p.kind == PartKind::kNumber && p.field->valid.kind != reflect::ValidKind::kAny;
+    }));
+  }
+  bool body_more() {
+    return more_than(pick_inside([&](const Part& p) { return counts(p); }));
+  }
+  // Takes bytes from the message's end, with what is stale behind it, and repairs all sizes.
+  bool body_cut() {
+    const Body& b = draft_.body;
+    const Part& place = draft_.parts[b.part];
+    const std::uint32_t end = place.at + place.size;
+    const auto at = place.at + 1 + static_cast<std::uint32_t>(random_.below(place.size));
+    if (at >= end) return false;
+    const std::uint32_t first = draft_.first_cut(at, b.part + 1, b.last_inside, {}, false);
+    if (first == kNone) return false;
+    for (std::uint32_t i = 0; i < b.part; ++i) {
+      const Part& p = draft_.parts[i];
+      if (p.kind != PartKind::kRoom || p.measure == kNone) continue;
+      const std::int64_t bytes = std::int64_t{p.size} - (end - at);
+      if (!is_allowed(*number_of(p).field, bytes)) return false;
+      store(number_of(p), bytes);
+    }
+    out_.bytes.erase(out_.bytes.begin() + at, out_.bytes.begin() + end);
+    const Part& p = draft_.parts[first];
+    return fault(Fault::kTruncated, at, *p.field,
+                 std::string(b.type->name) + " has " + to_string(at - place.at) + " bytes, " +
+                     name(p) + " needs more");
+  }
+
+  template <class Fits>
+  std::uint32_t pick_inside(const Fits& fits) {
+    return pick_of(draft_.body.part + 1, draft_.body.last_inside, fits);
+  }
   /// One of the parts that a decoder insists on and that fit; kNone if there is none.
   template <class Fits>
   std::uint32_t pick(const Fits& fits) {
+    const auto parts = static_cast<std::uint32_t>(draft_.parts.size());
+    return pick_of(0, parts, [&](const Part& p) { return p.hard && fits(p); });
+  }
+  template <class Fits>
+  std::uint32_t pick_of(std::uint32_t from, std::uint32_t to, const Fits& fits) {
     std::uint32_t chosen = kNone;
     std::size_t met = 0;
-    for (std::uint32_t i = 0; i < draft_.parts.size(); ++i) {
-      if (!draft_.parts[i].hard || !fits(draft_.parts[i])) continue;
+    for (std::uint32_t i = from; i < to; ++i) {
+      if (!fits(draft_.parts[i])) continue;
       if (random_.below(++met) == 0) chosen = i;
     }
     return chosen;
@@ -218,6 +278,10 @@ class Breaker {
 };
 
 }  // namespace
+
+bool break_body(const Draft& draft, Random& random, Broken& out) {
+  return Breaker(draft, draft.bytes.size(), nullptr, random, out).body();
+}
 
 bool break_one(const Draft& draft, Breakage how, std::size_t max_bytes, const Type* short_radio,
                Random& random, Broken& out) {

@@ -1,6 +1,6 @@
 // Breaks one thing of a valid frame, and says what that does: which rule it breaks, and where a
-// decoder that reads front to back first sees it. This follows from the layout of the frame and from
-// the change alone; no decoder is asked.
+// decoder that reads front to back first sees it. This follows from the layout of the frame and
+// from the change alone; no decoder is asked.
 #pragma once
 
 #include <cstdint>
@@ -28,6 +28,11 @@ struct Broken {
   Error error{Fault::kNone, 0, ReqId::kNone};
   std::string what;
 };
+
+/// Breaks the body of `draft`, so that the frame stays valid, but these bytes are no longer the
+/// message that they are meant to be, nor another. `error`, of which the offset counts from the
+/// frame's start, is what keeps them from fitting. False as below.
+bool break_body(const Draft& draft, Random& random, Broken& out);
 
 /// Breaks `draft` in that way; false if it cannot be, or chance found nothing. `max_bytes`: of the
 /// frame. `short_radio`: the structure that a radio frame is taken for which ends with its MAC

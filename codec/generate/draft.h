@@ -1,5 +1,5 @@
-// A frame in the making: its bytes, and what each of them is, so that whoever breaks one thing knows
-// what that does.
+// A frame in the making: its bytes, and what each of them is, so that whoever breaks one thing
+// knows what that does.
 #pragma once
 
 #include <cstdint>
@@ -13,9 +13,9 @@ inline constexpr std::uint32_t kNone = UINT32_MAX;
 
 /// A structure: where it begins, and where what surrounds it makes it end.
 struct Scope {
-  std::uint32_t parent;      ///< Index of the scope around it; kNone for the outermost.
-  std::uint32_t base;        ///< In bytes from the start of the frame.
-  std::uint32_t end;         ///< Set by a size, an element's width or the frame; kNone: its parent's.
+  std::uint32_t parent;  ///< Index of the scope around it; kNone for the outermost.
+  std::uint32_t base;    ///< In bytes from the start of the frame.
+  std::uint32_t end;     ///< Set by a size, an element's width or the frame; kNone: its parent's.
   const reflect::Type* type;
 };
 
@@ -40,19 +40,31 @@ struct Part {
   bool hard;                    ///< False within an interpretation: what does not fit stays opaque.
 };
 
+/// Opaque bytes that are meant as a message.
+struct Body {
+  const reflect::Type* type = nullptr;   ///< The message; null where there is none.
+  const reflect::Type* owner = nullptr;  ///< The structure whose field the bytes are.
+  std::uint16_t field = 0;               ///< Index in the owner's fields.
+  std::uint32_t base = 0;                ///< Where the owner begins.
+  std::uint32_t part = 0;                ///< Of the bytes; those of the message follow it.
+  std::uint32_t last_inside = 0;         ///< Index behind the last of them.
+};
+
 struct Draft {
   std::vector<std::uint8_t> bytes;
   std::vector<Part> parts;
-  std::vector<Scope> scopes;              ///< The first is the carrier's.
-  std::vector<const reflect::Type*> path; ///< The messages from the outermost in.
+  std::vector<Scope> scopes;               ///< The first is the carrier's.
+  std::vector<const reflect::Type*> path;  ///< The messages from the outermost in.
+  Body body;
   bool radio = false;
 
   /// Where a decoder of this frame stops the structure.
   std::uint32_t limit(std::uint32_t scope) const;
   /// The first part that lacks bytes where all ends at `limit`, among [from, to); kNone where
-  /// none does. `passed`: parts whose measure was made to agree.
+  /// none does. `passed`: parts whose measure was made to agree. `hard`: only among those that a
+  /// decoder insists on.
   std::uint32_t first_cut(std::uint32_t limit, std::uint32_t from, std::uint32_t to,
-                          const std::vector<std::uint32_t>& passed) const;
+                          const std::vector<std::uint32_t>& passed, bool hard = true) const;
 };
 
 }  // namespace rubric::generate

@@ -13,6 +13,7 @@ namespace {
 
 constexpr int kTries = 200;
 constexpr int kBreakTries = 60;
+constexpr double kBodyShare = 0.3;
 constexpr std::size_t kFcsBytes = 2;
 // TinyOS's serial line has room for this many bytes with kind, sequence number and CRC around.
 constexpr std::size_t kSerialBytesMax = 252;
@@ -21,7 +22,9 @@ bool is_radio(const reflect::Route& route) {
   return std::string_view(route.carrier).starts_with("radio");
 }
 
-std::size_t most_bytes(bool radio) { return radio ? kRadioFrameMax - kFcsBytes : kSerialBytesMax; }
+std::size_t most_bytes(bool radio) {
+  return radio ? kRadioFrameMax - kFcsBytes : kSerialBytesMax;
+}
 
 // Tries the ways in any order; few messages can be broken in all.
 bool break_somehow(const Draft& draft, std::size_t max_bytes, const reflect::Type* short_radio,
@@ -65,7 +68,20 @@ Generated FrameGenerator::near_valid(const reflect::Route& route) {
       radio ? reflect::find_carrier(protocol_, "radio_i") : nullptr;
   Broken broken;
   for (int i = 0; i < kBreakTries; ++i) {
-    const Draft made = draft(route);
+    Draft made = draft(route);
+    if (made.body.type && random_.chance(kBodyShare)) {
+      if (!break_body(made, random_, broken)) continue;
+      made.path.pop_back();
+      Generated out;
+      out.framing = radio ? Framing::kRadio : Framing::kSf;
+      out.bytes = std::move(broken.bytes);
+      out.route = &route;
+      out.path = std::move(made.path);
+      out.unfit = broken.error;
+      out.unfit_message = made.body.type;
+      out.what = std::move(broken.what);
+      return out;
+    }
     if (!break_somehow(made, most_bytes(radio), short_radio, random_, broken)) continue;
     Generated out;
     out.framing = radio ? Framing::kRadio : Framing::kSf;

@@ -16,8 +16,8 @@ namespace rubric::generate {
 
 /// A frame, and what a decoder must say of it.
 struct Generated {
-  Framing framing = Framing::kSf;      ///< kSf for the serial line, kRadio for the air.
-  std::vector<std::uint8_t> bytes;     ///< As Packet::bytes.
+  Framing framing = Framing::kSf;         ///< kSf for the serial line, kRadio for the air.
+  std::vector<std::uint8_t> bytes;        ///< As Packet::bytes.
   const reflect::Route* route = nullptr;  ///< To which message it leads, or nearly leads.
   /// Of a valid frame: the messages that it is, from the outermost in. Where the route's message
   /// always holds others, these follow it.
@@ -25,8 +25,13 @@ struct Generated {
   /// By construction, not by asking a decoder: Fault::kNone where the frame is valid. The offset
   /// counts from bytes[0].
   Error error{Fault::kNone, 0, ReqId::kNone};
+  /// Of a valid frame whose innermost bytes break a rule of the message that they are meant to be:
+  /// which rule, and where. A decoder leaves these bytes opaque; `path` ends before that message.
+  Error unfit{Fault::kNone, 0, ReqId::kNone};
+  const reflect::Type* unfit_message = nullptr;
   std::string what;  ///< "valid", or what is wrong: "join_request.type is 7, allowed are 1 to 5".
   bool valid() const { return error.fault == Fault::kNone; }
+  bool fits() const { return unfit.fault == Fault::kNone; }
 };
 
 /// Frames of one protocol. The same seed gives the same frames, whatever the machine. Throws
@@ -44,8 +49,9 @@ class FrameGenerator {
   /// allows, bounds and reserved values more often than chance has them; sizes and counts agree.
   Generated valid(const reflect::Route& route);
   /// The same with one rule broken: a field just outside what is allowed, a count that lies, bytes
-  /// missing at the end, a length byte off by one, ... Falls back on a valid frame only for a
-  /// message that no change of one thing makes invalid.
+  /// missing at the end, a length byte off by one, ... Where the message is one that applications
+  /// put into opaque bytes, it may be its rule, and the frame is valid but does not fit (`unfit`).
+  /// Falls back on a valid frame only for a message that no change of one thing makes invalid.
   Generated near_valid(const reflect::Route& route);
   /// The valid frame with what each of its bytes is.
   Draft draft(const reflect::Route& route);
@@ -56,10 +62,10 @@ class FrameGenerator {
   Random random_;
 };
 
-/// Changes a field of `bytes`, a frame of that framing, in place, by its type: another allowed value,
-/// a bound, a neighbour, a bit, an element more or less of an array; lengths and counts around it are
-/// repaired, so that what was valid mostly stays so. False, and nothing changed, where nothing of
-/// the frame can be read. `max_size` in bytes.
+/// Changes a field of `bytes`, a frame of that framing, in place, by its type: another allowed
+/// value, a bound, a neighbour, a bit, an element more or less of an array; lengths and counts
+/// around it are repaired, so that what was valid mostly stays so. False, and nothing changed,
+/// where nothing of the frame can be read. `max_size` in bytes.
 bool change_field(const reflect::Protocol& protocol, Framing framing,
                   std::vector<std::uint8_t>& bytes, std::size_t max_size, Random& random);
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "codec/generate/interpret.h"
+#include "codec/generate/routes.h"
 #include "codec/generate/values.h"
 #include "codec/reflect/decode.h"
 #include "codec/reflect/encode_number.h"
@@ -23,7 +25,9 @@ using reflect::Type;
 constexpr std::int64_t kDataFrame = 0x8841;
 constexpr std::int64_t kAckRequest = 0x0020;
 
-std::uint32_t index32(std::size_t n) { return static_cast<std::uint32_t>(n); }
+std::uint32_t index32(std::size_t n) {
+  return static_cast<std::uint32_t>(n);
+}
 
 // Offset of the one number that the expression is; -1 if it is more.
 std::int32_t lone_load(const Expr& expr) {
@@ -44,15 +48,15 @@ FrameWriter::FrameWriter(const reflect::Route& route, bool radio, std::size_t ma
 }
 
 bool FrameWriter::write(const Type& carrier) {
-  reached_ = route_.type == &carrier;
+  reached_ = same_message(route_.type, &carrier);
   if (reached_) draft_.path.push_back(&carrier);
   return structure(carrier, kNone, max_bytes_, true) && reached_;
 }
 
 std::uint32_t FrameWriter::add_part(PartKind kind, const Field& f, const Place& place) {
   const std::uint32_t index = index32(draft_.parts.size());
-  draft_.parts.push_back({kind, &f, place.scope, index32(size()), 0, 1, kNone, index + 1, false,
-                          place.hard});
+  draft_.parts.push_back(
+      {kind, &f, place.scope, index32(size()), 0, 1, kNone, index + 1, false, place.hard});
   return index;
 }
 
@@ -100,8 +104,9 @@ bool FrameWriter::number(const Field& f, const Place& place) {
   const bool given = forced(f, size(), value);
   if (given && !is_allowed(f, value)) return false;
   // What measures a structure is put right when that is written.
-  if (!given) value = measures_room(f, place) ? allowed(f).min
-                                              : allowed_value(f, most_for(f, place), random_);
+  if (!given)
+    value =
+        measures_room(f, place) ? allowed(f).min : allowed_value(f, most_for(f, place), random_);
   const std::uint32_t part = add_part(PartKind::kNumber, f, place);
   put(f, value);
   close_part(part);
@@ -222,7 +227,7 @@ bool FrameWriter::nested(const Field& f, const Place& place) {
     if (!type) return false;  // A route leads to a message.
     draft_.path.push_back(type);
   }
-  if (type == route_.type && size() == route_.offset) reached_ = true;
+  if (same_message(type, route_.type) && size() == route_.offset) reached_ = true;
   if (f.extent == Extent::kOwn) return structure(*type, place.scope, left(place), place.hard);
   const std::uint32_t part = add_part(PartKind::kRoom, f, place);
   if (f.extent == Extent::kSize) return sized(f, *type, part, place);
@@ -292,15 +297,6 @@ bool FrameWriter::interpreted(const Field& f, std::uint16_t index, const Place& 
   return true;
 }
 
-// What a decoder would read the bytes as, by the conditions and the bytes that are there.
-const Type* FrameWriter::reading(const Interpretation& one, const Place& place) const {
-  const Field& f = one.field;
-  const Bytes whole = from(place.base);
-  if (f.condition.count && !reflect::evaluate(f.condition, whole)) return nullptr;
-  if (!f.choice) return f.type;
-  return reflect::choose(*f.choice, reflect::evaluate(f.choice->key, whole));
-}
-
 bool FrameWriter::inside(std::uint16_t index, const Place& place) {
   // The key of the choice is mostly the first byte, and the route knows it.
   const std::size_t at = size();
@@ -316,35 +312,24 @@ bool FrameWriter::inside(std::uint16_t index, const Place& place) {
   const Type* wanted = nullptr;
   for (int i = 0; !wanted && i < place.type.interpretation_count; ++i) {
     const Interpretation& one = place.type.interpretations[i];
-    const Type* type = one.overlays == index ? reading(one, place) : nullptr;
-    if (type == route_.type || (type && route_.offset > at)) wanted = type;
+    const Type* type = one.overlays == index ? reading(one, from(place.base)) : nullptr;
+    if (same_message(type, route_.type) || (type && route_.offset > at)) wanted = type;
   }
   draft_.bytes.resize(at);
   if (!wanted) return false;
   draft_.path.push_back(wanted);
-  if (wanted == route_.type && at == route_.offset) reached_ = true;
+  if (same_message(wanted, route_.type) && at == route_.offset) reached_ = true;
   const auto first = index32(draft_.parts.size());
   if (!structure(*wanted, place.scope, left(place), false)) return false;
   if (!takes_all(first)) stale(left(place));
-  // None that is tried before it may fit as well.
-  for (int i = 0; i < place.type.interpretation_count; ++i) {
-    const Interpretation& one = place.type.interpretations[i];
-    const Type* type = one.overlays == index ? reading(one, place) : nullptr;
-    if (type == wanted) return true;
-    if (type && type->min_size <= size() - at) return false;
-  }
-  return false;
+  draft_.body = {
+      wanted, &place.type, index, index32(place.base), first - 1, index32(draft_.parts.size())};
+  const bool before = true;  // None that is tried before it may fit as well.
+  return !may_fit_another(place.type, index, from(place.base), size() - at, wanted, before);
 }
 
 bool FrameWriter::stays_opaque(std::uint16_t index, std::size_t at, const Place& place) const {
-  for (int i = 0; i < place.type.interpretation_count; ++i) {
-    const Interpretation& one = place.type.interpretations[i];
-    if (one.overlays != index) continue;
-    if (one.field.choice && size() == at) continue;  // The key is the first byte.
-    const Type* type = reading(one, place);
-    if (type && type->min_size <= size() - at) return false;
-  }
-  return true;
+  return !may_fit_another(place.type, index, from(place.base), size() - at, nullptr, false);
 }
 
 }  // namespace rubric::generate

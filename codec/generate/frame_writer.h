@@ -59,7 +59,6 @@ class FrameWriter {
   void stale(std::size_t room);
   bool is_interpreted(const Type& type, std::uint16_t index) const;
   bool interpreted(const Field& f, std::uint16_t index, const Place& place);
-  const Type* reading(const reflect::Interpretation& one, const Place& place) const;
   bool inside(std::uint16_t index, const Place& place);
   bool stays_opaque(std::uint16_t index, std::size_t at, const Place& place) const;
 

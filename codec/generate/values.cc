@@ -103,8 +103,8 @@ bool refused_value(const Field& field, Random& random, std::int64_t& value) {
   const std::int64_t near[] = {good.min - 1, good.max + 1, all.min, all.max};
   constexpr int kTries = 40;  // A rule that refuses but a few values is met by its neighbours.
   for (int i = 0; i < kTries; ++i) {
-    value = random.chance(0.6) ? near[random.below(std::size(near))]
-                               : random.between(all.min, all.max);
+    value =
+        random.chance(0.6) ? near[random.below(std::size(near))] : random.between(all.min, all.max);
     if (value >= all.min && value <= all.max && !is_allowed(field, value)) return true;
   }
   return false;

@@ -26,7 +26,8 @@ bool is_allowed(const reflect::Field& field, std::int64_t value);
 std::int64_t allowed_value(const reflect::Field& field, std::int64_t most, Random& random);
 std::int64_t allowed_value(const reflect::Field& field, Random& random);
 
-/// A value that the rule refuses, mostly a neighbour of what it allows; false where it refuses none.
+/// A value that the rule refuses, mostly a neighbour of what it allows; false where it refuses
+/// none.
 bool refused_value(const reflect::Field& field, Random& random, std::int64_t& value);
 
 /// Any byte; flags, escapes and bounds more often.

@@ -1,0 +1,164 @@
+// What the framer says of its frames is what the readers say of the containers that hold them.
+#include "codec/generate/framer.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <iterator>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <string_view>
+
+#include "codec/containers/writer.h"
+#include "codec/generate/known_protocols.h"
+#include "codec/generate/routes.h"
+#include "codec/generated/requirements_table.h"
+#include "codec/reflect/frame.h"
+#include "codec/reflect/registry.h"
+
+namespace rubric::generate {
+namespace {
+
+constexpr int kFramesOfRoute = 400;
+
+constexpr InputFormat kContainers[] = {InputFormat::kHdlc, InputFormat::kSf, InputFormat::kPcapng,
+                                       InputFormat::kHex};
+
+std::vector<Framed> frames_of(const Known& known, InputFormat container, std::uint64_t seed) {
+  FrameGenerator generator(known.protocol, known.routes, seed);
+  Framer framer(container, generator.random());
+  std::vector<Framed> all;
+  for (int i = 0; i < known.routes.count; ++i) {
+    const reflect::Route& route = known.routes.routes[i];
+    if (!framer.holds(route)) continue;
+    for (int k = 0; k < kFramesOfRoute; ++k) {
+      Framed framed;
+      if (k % 4 == 3 && framer.broken(generator.valid(route), false, framed)) {
+        all.push_back(std::move(framed));
+      } else {
+        all.push_back(framer.sound(k % 2 ? generator.near_valid(route) : generator.valid(route)));
+      }
+    }
+  }
+  const reflect::Route& first = known.routes.routes[0];
+  Framed last;
+  if (framer.holds(first) && framer.broken(generator.valid(first), true, last)) {
+    all.push_back(std::move(last));
+  }
+  return all;
+}
+
+/// Writes and reads the frames; what does not come back as it should is a failure.
+void round_trip(const Known& known, InputFormat container, const std::vector<Framed>& frames,
+                std::set<ReqId>& broken) {
+  const auto writer = make_writer(container);
+  std::string file;
+  writer->begin(file);
+  for (const Framed& framed : frames) {
+    // Hex text says nothing of a fault in the content, and has no other.
+    ASSERT_TRUE(writer->write(framed.view(), {}, file)) << described(framed);
+  }
+  writer->finish(file);
+  const reflect::FrameDecoder decoder(known.reader);
+  reflect::Frame frame;
+  std::size_t index = 0;
+  const auto take = [&](const Packet& packet) {
+    ASSERT_LT(index, frames.size());
+    const Framed& framed = frames[index++];
+    decoder.decode(packet, frame);
+    ASSERT_EQ(frame.error, framed.error)
+        << described(framed) << "\nthe decoder: " << text(frame.error);
+    ASSERT_EQ(rubric::testing::to_hex(packet.bytes), rubric::testing::to_hex(framed.view().bytes));
+    ASSERT_EQ(packet.kind, framed.packet.kind);
+    ASSERT_EQ(packet.fcs, framed.packet.fcs);
+    if (framed.valid()) {
+      ASSERT_EQ(names(framed.path.data(), framed.path.size()),
+                names(frame.decoded.path(), frame.decoded.path_count()));
+    }
+    if (!framed.valid()) broken.insert(framed.error.requirement);
+  };
+  const auto reader = make_reader(container);
+  auto guarded = [&](const Packet& packet) {
+    if (!::testing::Test::HasFatalFailure()) take(packet);
+  };
+  reader->feed(rubric::testing::view(file), guarded);
+  reader->finish(guarded);
+  if (::testing::Test::HasFatalFailure()) return;
+  EXPECT_EQ(index, frames.size());
+}
+
+TEST(Framer, ReadersReportWhatTheFramerBroke) {
+  for (const Known& known : kKnown) {
+    for (const InputFormat container : kContainers) {
+      for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+        std::set<ReqId> broken;
+        const std::vector<Framed> frames = frames_of(known, container, seed);
+        if (frames.empty()) continue;  // The radio's acknowledgement, in a stream.
+        round_trip(known, container, frames, broken);
+        if (HasFatalFailure()) return;
+        EXPECT_GE(broken.size(), 1U);
+      }
+    }
+  }
+}
+
+// The rules of the wire that no generated frame breaks, and why.
+constexpr const char* kOfTheStream = "is about the stream or file around the frames";
+constexpr const char* kNotCarried = "no carrier holds this message, so no frame leads to it";
+const std::map<ReqId, const char*> kNotBroken = {
+    {req::kWireSfHandshake, kOfTheStream},
+    {req::kWireRadioTap, "no writer writes TAP headers"},
+    {req::kWirePcap, kOfTheStream},
+    {req::kWirePcapng, kOfTheStream},
+    {req::kWireHex, kOfTheStream},
+    {req::kWireHdlcTwoFlags, "is for writers; readers take one flag"},
+    {req::kWireSerialKind, "every byte is a kind, unknown ones are shown"},
+    {req::kWireSerialSeq, "a frame that is long enough has the sequence number"},
+    {req::kWireAppHeader, "the least nbytes that is allowed covers TRANSID and APPID"},
+    {req::kWireData, kNotCarried},
+    {req::kWireComplete, kNotCarried},
+    {req::kWireNetCommand, kNotCarried},
+    {req::kWireNetData, kNotCarried},
+    {req::kWireConnless, kNotCarried},
+};
+
+TEST(Routes, EveryProtocolHasThem) {
+  for (const reflect::Protocol* protocol : reflect::protocols()) {
+    const reflect::RouteTable* routes = routes_of(*protocol);
+    ASSERT_NE(routes, nullptr) << protocol->id;
+    EXPECT_GT(routes->count, 0) << protocol->id;
+  }
+}
+
+TEST(Framer, BreaksEveryRuleOfTheWireThatAFrameCanBreak) {
+  std::set<ReqId> broken;
+  for (const Known& known : kKnown) {
+    for (const InputFormat container : kContainers) {
+      for (std::uint64_t seed = 11; seed <= 16; ++seed) {
+        for (const Framed& framed : frames_of(known, container, seed)) {
+          if (!framed.valid()) broken.insert(framed.error.requirement);
+          if (framed.unfit_message) broken.insert(framed.unfit.requirement);
+        }
+      }
+    }
+  }
+  long count = 0;
+  for (std::size_t i = 1; i < std::size(kRequirements); ++i) {
+    if (!std::string_view(kRequirements[i].id).starts_with("WIRE-")) continue;
+    const auto id = static_cast<ReqId>(i);
+    const auto reason = kNotBroken.find(id);
+    ++count;
+    if (reason != kNotBroken.end()) {
+      std::printf("not broken: %s: %s\n", kRequirements[i].id, reason->second);
+      EXPECT_FALSE(broken.contains(id)) << kRequirements[i].id << " is broken after all";
+    } else {
+      EXPECT_TRUE(broken.contains(id)) << kRequirements[i].id << " is never broken";
+    }
+  }
+  std::printf("%zu of %ld rules of the wire broken\n", broken.size(), count);
+}
+
+}  // namespace
+}  // namespace rubric::generate

@@ -1,0 +1,20 @@
+// Which interpretations of opaque bytes a decoder would try.
+#pragma once
+
+#include <cstdint>
+
+#include "codec/reflect/schema.h"
+#include "codec/runtime/bytes.h"
+
+namespace rubric::generate {
+
+/// What an interpretation reads its bytes as, by its condition and its key; null if it does not.
+/// `structure`: from the start of the structure that it belongs to.
+const reflect::Type* reading(const reflect::Interpretation& one, Bytes structure);
+
+/// Whether another message than `wanted` might fit the last `size` bytes of `structure`, which are
+/// field `index` of `type`. `before_only`: among those that are tried before `wanted`.
+bool may_fit_another(const reflect::Type& type, std::uint16_t index, Bytes structure,
+                     std::size_t size, const reflect::Type* wanted, bool before_only);
+
+}  // namespace rubric::generate
