@@ -77,7 +77,7 @@ class Folder(unittest.TestCase):
         """The Python mote with another text in it."""
         folder = self.folder / "mote"
         folder.mkdir(exist_ok=True)
-        for name in ("adapter.py", "mote.py"):
+        for name in ("adapter.py", "words.py", "mote.py"):
             text = (MOTE / name).read_text()
             if name == "mote.py":
                 self.assertIn(old, text)

@@ -1,13 +1,15 @@
 """A small mote of the RUBICON Communication Layer: joining, network, transport, synaptic channels.
 
-It has no clock and no thread. Whoever drives it sets `now` (ticks of 1/1024 s), gives it what
-happens, and calls run_due() when due() says so. Where the rules leave a choice it takes another one
-than the reference machine does; the decisions are named.
+It has no thread, and no clock but its world's. Whoever drives it gives it what happens, and calls
+run_due() when due() says so. Where the rules leave a choice it takes another one than the reference
+machine does; the decisions are named.
 """
 
 import collections
 import struct
 from typing import NamedTuple
+
+from words import Address, ChannelId, call_of
 
 JOIN, JOIN_REPLY, NET, ACK_JOIN = 14, 15, 28, 29              # AM types.
 SYN_CHANNEL, CONNLESS, LEARNING, RUBICON_ACK = 1, 3, 6, 9     # TRANSID and APPID.
@@ -23,22 +25,6 @@ ACK_TIMEOUT = 1000
 BUFFER = 4
 DATA_MAX = 100
 CONNECTIONS_MAX = 10
-
-
-class Address(NamedTuple):
-    island: int
-    device: int
-
-    def __str__(self):
-        return f"{self.island}:{self.device}"
-
-
-class ChannelId(NamedTuple):
-    source: int
-    destination: int
-
-    def __str__(self):
-        return f"{self.source}->{self.destination}"
 
 
 class Message(NamedTuple):
@@ -78,12 +64,19 @@ class Channel:
 
 
 class Mote:
-    """`world.tx(line, packet)` puts a packet on a line that is free; `world.up(name, ...)` tells
-    the application. The methods call_NAME are the calls of the application."""
+    """`world.now` is the time in ticks of 1/1024 s; `world.tx(line, packet)` puts a packet on a
+    free line; `world.up(name, ...)` tells the application. rx, call, line, linkack and power are
+    the commands of rct/1, with their words behind the time; `settings` are those of `reset`."""
 
-    def __init__(self, world, device, channels, number, now):
-        self.world, self.device, self.room = world, device, channels
-        self.number, self.now, self.started_at = number, now, now
+    def __init__(self, world, settings):
+        self.world, self.device = world, int(settings["id"])
+        self.room = int(settings["channels"])
+        self.number = (1000 + 257 * int(settings["seed"])) & 0xFFFF
+        self.start()
+
+    def start(self):
+        """Forgets all but its next sequence number."""
+        self.is_on, self.started_at = True, self.now
         self.interfaces = {0: True, 1: True}    # Radio, serial.
         self.busy = self.application_busy = False
         self.outgoing, self.incoming = collections.deque(), collections.deque()
@@ -92,11 +85,31 @@ class Mote:
         self.awaited = {}                       # Reliable messages by number: (message, deadline).
         self.channels = {}                      # By (id, is_output).
         self.period = 500                       # The synaptic clock runs always (decision 121).
-        self.tick_at = now + self.period + 30 * (device - 1)
+        self.tick_at = self.now + self.period + 30 * (self.device - 1)
+
+    def power(self, what):
+        self.is_on = False
+        if what == "reboot":
+            self.start()
+
+    def call(self, *words):
+        """False: there is no such call."""
+        name, arguments = call_of(words)
+        method = getattr(self, "call_" + name, None)
+        if self.is_on and method:
+            method(**arguments)
+        return method is not None
 
     # Time.
 
+    @property
+    def now(self):
+        return self.world.now
+
     def due(self):
+        """The tick at which something happens by itself; None: never."""
+        if not self.is_on:
+            return None
         times = [self.tick_at] + [deadline for _, deadline in self.awaited.values()]
         return min(times + ([self.timer] if self.request is not None else []))
 
@@ -126,22 +139,29 @@ class Mote:
         while self.outgoing and not self.busy and self.interfaces[0]:
             self.world.tx("radio", self.outgoing.popleft())
 
-    def set_busy(self, line, busy):
-        if line == "radio":
-            self.busy = busy
+    def line(self, line, state):
+        if self.is_on and line == "radio":
+            self.busy = state == "busy"
             self.flush()
-        if line == "app":
-            self.application_busy = busy
+        if self.is_on and line == "app":
+            self.application_busy = state == "busy"
             while self.incoming and not self.application_busy:
                 self.message(self.incoming.popleft())
 
-    def heard(self, line, packet):
+    def linkack(self, acked):
+        pass    # It never asks for one.
+
+    def rx(self, line, packet_hex):
+        packet = bytes.fromhex(packet_hex)
         _, dest, src, _, _, am_type = struct.unpack(">BHHBBB", packet[:8])
-        if line != "radio" or not self.interfaces[0] or dest not in (self.device, ALL):
-            return
+        listens = self.is_on and line == "radio" and self.interfaces[0]
+        if listens and dest in (self.device, ALL):
+            self.heard(src, am_type, packet[8:])
+
+    def heard(self, src, am_type, payload):
         if am_type == JOIN_REPLY:
-            self.join_reply(src, packet[8:])
-        message = unpacked(packet[8:]) if am_type == NET else None
+            self.join_reply(src, payload)
+        message = unpacked(payload) if am_type == NET else None
         if message is None:
             return
         if not self.application_busy:
@@ -301,14 +321,14 @@ class Mote:
             del self.channels[key]
         self.world.up("op_result", bool(keys))
 
-    def start(self, channel):
+    def start_channel(self, channel):
         channel.fresh |= channel.is_output and not channel.started
         channel.started = True
 
     def call_start(self, channel):
         keys = self.both(channel)
         for key in keys:
-            self.start(self.channels[key])
+            self.start_channel(self.channels[key])
         self.world.up("op_result", bool(keys))
 
     def call_stop(self, channel):
@@ -319,7 +339,7 @@ class Mote:
 
     def call_start_all(self):
         for channel in self.channels.values():
-            self.start(channel)
+            self.start_channel(channel)
         self.world.up("op_result", True)
 
     def call_stop_all(self):

@@ -1,58 +1,64 @@
 """Your mote goes here, or the bridge to it. Whatever is marked TODO is yours to write.
 
-It has no clock of its own: adapter.py sets `now` (ticks of 1/1024 s), gives it what happens, and
-calls run_due() when due() says so. What the mote does, it tells its `world`:
+It has no clock of its own: `world.now` is the time (ticks of 1/1024 s). adapter.py gives it what
+happens, and calls run_due() when due() says so. What the mote does, it tells its `world`:
     world.tx("radio", packet)           a frame leaves; packet begins 00, destination, source, ...
     world.up("joined", address, True)   news for the application
 """
 
-from typing import NamedTuple
-
-
-class Address(NamedTuple):
-    island: int
-    device: int
-
-    def __str__(self):
-        return f"{self.island}:{self.device}"
-
-
-class ChannelId(NamedTuple):
-    source: int
-    destination: int
-
-    def __str__(self):
-        return f"{self.source}->{self.destination}"
+from words import Address, call_of    # And ChannelId.
 
 
 class Mote:
-    """One that has just started, with nothing remembered but the next sequence number."""
+    def __init__(self, world, settings):
+        self.world, self.device = world, int(settings["id"])
+        self.number = (1000 + 257 * int(settings["seed"])) & 0xFFFF
+        self.start()
 
-    def __init__(self, world, device, channels, number, now):
-        self.world, self.device, self.channels = world, device, channels
-        self.number, self.now, self.started_at = number, now, now
+    def start(self):
+        """As one that has just started: nothing is remembered but the next sequence number."""
+        self.is_on, self.started_at = True, self.world.now
+        # TODO: what your mote is at its start.
 
     def due(self):
         """The tick at which something happens by itself; None: never."""
-        return None    # TODO: the soonest of your timers.
+        return None    # TODO: the soonest of your timers, while it is on.
 
     def run_due(self):
         """Does what is due now."""
         # TODO: what your timers do.
 
-    def heard(self, line, packet):
-        """A frame came by "radio" or "serial", whoever it is for."""
-        # TODO: hand it to your receiver.
+    # The commands of rct/1, with their words behind the time.
 
-    def set_busy(self, line, busy):
-        """Somebody else has the line, or left it. "app": the application takes no messages."""
+    def rx(self, line, packet_hex):
+        """A frame came by "radio" or "serial", whoever it is for."""
+        packet = bytes.fromhex(packet_hex)
+        # TODO: hand the packet to your receiver.
+
+    def line(self, line, state):
+        """Somebody else has the line ("busy"), or left it ("idle"). "app": the application takes
+        no messages."""
         # TODO: what is to be sent, or handed up, waits meanwhile.
 
-    # Calls of the application: call_NAME, with the arguments by their names. A call that is not
-    # here is answered `unsupported`, and the cases that need it are skipped.
+    def linkack(self, acked):
+        """How the transmission ended for which you asked: "1" is acked. See PORTING.md."""
+
+    def power(self, what):
+        self.is_on = False
+        if what == "reboot":
+            self.start()
+
+    def call(self, *words):
+        """A call of the application. False: there is no such call, so the case is skipped."""
+        name, arguments = call_of(words)
+        method = getattr(self, "call_" + name, None)
+        if self.is_on and method:
+            method(**arguments)
+        return method is not None
 
     def call_get_clock(self):
-        self.world.up("clock", (self.now - self.started_at) * 1000 // 1024)
+        self.world.up("clock", (self.world.now - self.started_at) * 1000 // 1024)
 
-    # TODO: call_join(self, type, transducers, actuators), then call_send(self, dest, app_id,
-    # reliable, data), and so on; PORTING.md has the list.
+    # TODO: call_join(self, type, transducers, actuators), which answers with
+    #     self.world.up("joined", Address(11, self.device), True)
+    # later; then call_send(self, dest, app_id, reliable, data), and so on. PORTING.md has the list.
