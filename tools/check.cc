@@ -23,8 +23,7 @@
 #include "tools/cli/input.h"
 #include "tools/cli/output.h"
 #include "tools/cli/terminal.h"
-#include "tools/cli/text_file.h"
-#include "tools/cli/usage.h"
+#include "tools/cli/verdict.h"
 #include "tools/record/packet_output.h"
 
 namespace rubric::tools {
@@ -158,27 +157,15 @@ oracle::ReadAs read_as(const std::string& format) {
   return {};
 }
 
-[[noreturn]] void unreadable(std::string what) {
-  while (what.ends_with('\n')) what.pop_back();  // Of a trace it may be a list of lines.
-  fmt::print(stderr, "rubric check: {}\n", what);
-  cli::exit_with(cli::kVerdictInput);
-}
-
-// The whole of a file, or of stdin for "-"; ends the program where that cannot be read.
-std::string text_of_file(const std::string& path) {
-  std::string out;
-  std::string error;
-  if (!cli::read_file(path, out, error)) unreadable(error);
-  return out;
-}
+constexpr const char* kCommand = "check";
 
 oracle::Run read_run(const CheckOptions& options) {
   oracle::RunReader reader(read_as(options.input_format));
   std::string error;
   for (const std::string& file : options.files) {
-    const bool good = file == "-" ? reader.add_bytes("stdin", text_of_file(file), error)
+    const bool good = file == "-" ? reader.add_bytes("stdin", cli::text_of_file(kCommand, file), error)
                                   : reader.add_file(file, error);
-    if (!good) unreadable(error);
+    if (!good) cli::unreadable(kCommand, error);
   }
   return reader.finish();
 }
@@ -215,7 +202,7 @@ report::ExpectationFile expectations(const std::string& path) {
   report::ExpectationFile file;
   if (path.empty()) return file;
   std::string error;
-  if (!report::parse_expectations(text_of_file(path), path, file, error)) {
+  if (!report::parse_expectations(cli::text_of_file(kCommand, path), path, file, error)) {
     throw CLI::ValidationError("--expect", error);
   }
   return file;
@@ -262,7 +249,9 @@ int run(const CheckOptions& options) {
   const report::ExpectationFile expected = expectations(options.expect);
   oracle::Run whole = read_run(options);
   oracle::Run part = ranges.empty() ? std::move(whole) : report::part_of(whole, ranges, judged);
-  if (std::string error; !oracle::drop_duplicates(part, judged, error)) unreadable(error);
+  if (std::string error; !oracle::drop_duplicates(part, judged, error)) {
+    cli::unreadable(kCommand, error);
+  }
   const oracle::Report found = oracle::judge(part, judged);
   const report::Outcome outcome = report::compare(part, judged, found, expected);
   const report::Story story{part, judged, found, expected, outcome};
@@ -326,22 +315,11 @@ void add_options(CLI::App& command, CheckOptions& options) {
 }  // namespace
 
 void add_check(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("check", "Hold captures and logs against the rules");
+  CLI::App* command = app.add_subcommand(kCommand, "Hold captures and logs against the rules");
   auto options = std::make_shared<CheckOptions>();
   add_options(*command, *options);
   command->footer(kFooter);
-  cli::set_usage_exit_code(*command, cli::kVerdictUsage);
-  command->callback([options] {
-    int code = cli::kVerdictBroken;
-    try {
-      code = run(*options);
-    } catch (const CLI::Error&) {
-      throw;
-    } catch (const std::exception& error) {
-      fmt::print(stderr, "rubric check: {}\n", error.what());
-    }
-    cli::exit_with(code);
-  });
+  cli::set_verdict(*command, [options] { return run(*options); });
 }
 
 }  // namespace rubric::tools

@@ -1,0 +1,43 @@
+#include "tools/cli/verdict.h"
+
+#include <cstdio>
+#include <exception>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "tools/cli/exit_codes.h"
+#include "tools/cli/text_file.h"
+#include "tools/cli/usage.h"
+
+namespace rubric::cli {
+
+void set_verdict(CLI::App& command, std::function<int()> run) {
+  set_usage_exit_code(command, kVerdictUsage);
+  command.callback([name = command.get_name(), run = std::move(run)] {
+    int code = kVerdictBroken;
+    try {
+      code = run();
+    } catch (const CLI::Error&) {
+      throw;
+    } catch (const std::exception& error) {
+      fmt::print(stderr, "rubric {}: {}\n", name, error.what());
+    }
+    exit_with(code);
+  });
+}
+
+void unreadable(const char* command, std::string what) {
+  while (what.ends_with('\n')) what.pop_back();
+  fmt::print(stderr, "rubric {}: {}\n", command, what);
+  exit_with(kVerdictInput);
+}
+
+std::string text_of_file(const char* command, const std::string& path) {
+  std::string out;
+  std::string error;
+  if (!read_file(path, out, error)) unreadable(command, error);
+  return out;
+}
+
+}  // namespace rubric::cli
