@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
 """A sink in QEMU, seen through its serial line alone, as a base station has it.
 
-Usage: arm_serial_test.py FIRMWARE_ARM SINK_ELF [RUBRIC]: a talk with it, or the suite.
+Usage: arm_serial_test.py FIRMWARE_ARM SINK_ELF [RUBRIC]: a talk with it by both ways to the line,
+or the suite over TCP.
 """
 
 import collections
 import json
 import os
 import select
+import socket
 import struct
 import subprocess
 import sys
@@ -103,7 +105,7 @@ def talk(line):
 
 def work_suite(rubric, device):
     """What the line alone can show is kept; the rest is not decided."""
-    done = subprocess.run([rubric, "test", "--target", f"serial:{device}:115200", "--role", "sink",
+    done = subprocess.run([rubric, "test", "--target", f"serial:{device}", "--role", "sink",
                            "--format", "json"], capture_output=True, text=True)
     cases = [case for run in json.loads(done.stdout)["implementations"] for case in run["cases"]]
     verdicts = collections.Counter(case["verdict"] for case in cases)
@@ -115,25 +117,47 @@ def work_suite(rubric, device):
         raise SystemExit("the suite does not pass")
 
 
-def main():
-    program = subprocess.Popen(sys.argv[1:2] + ["--serial-device", "11"] + sys.argv[2:3],
+def over_device(name):
+    line = os.open(name, os.O_RDWR | os.O_NOCTTY)
+    tty.setraw(line, termios.TCSANOW)
+    talk(line)
+    os.close(line)
+
+
+def over_tcp(name):
+    """Twice, since users of a line come and go."""
+    kind, host, port = name.split(":")
+    if kind != "tcp":
+        raise SystemExit(f"{name} is not as in serial:tcp:HOST:PORT")
+    for _ in range(2):
+        with socket.create_connection((host, int(port)), PATIENCE_S) as line:
+            talk(line.fileno())
+
+
+def serve(option, use):
+    """Calls `use` with what a sink in QEMU says its line is called."""
+    program = subprocess.Popen([sys.argv[1], option, "11", sys.argv[2]],
                                stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
     try:
-        device = program.stdout.readline().strip()
-        if not device:
-            raise SystemExit("no device")
-        if len(sys.argv) > 3:
-            work_suite(sys.argv[3], device)
-        else:
-            line = os.open(device, os.O_RDWR | os.O_NOCTTY)
-            tty.setraw(line, termios.TCSANOW)
-            talk(line)
-            print(f"{device}: confirmed, moved to island 12, acked")
+        name = program.stdout.readline().strip()
+        if not name:
+            raise SystemExit(f"{option} names no line")
+        use(name)
+        print(f"{name}: as it should be")
     finally:
         program.stdin.close()
         program.wait(PATIENCE_S)
-    return program.returncode
+    if program.returncode != 0:
+        raise SystemExit(f"{option} ended with {program.returncode}")
+
+
+def main():
+    if len(sys.argv) > 3:
+        serve("--serial-tcp", lambda name: work_suite(sys.argv[3], name))
+    else:
+        serve("--serial-device", over_device)
+        serve("--serial-tcp", over_tcp)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

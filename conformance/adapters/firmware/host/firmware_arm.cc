@@ -13,8 +13,10 @@ using namespace rubric::firmware;
 constexpr const char* kUsage =
     "usage: firmware_arm ELF...\n"
     "       firmware_arm --serial-device ISLAND ELF\n"
+    "       firmware_arm --serial-tcp ISLAND ELF\n"
     "Speaks rct/1; starts the ELF file whose role and channels are asked for. Or starts a sink\n"
-    "and prints the name of a device, which is its serial line until standard input ends.\n"
+    "and prints the name of a device, or tcp:HOST:PORT, which is its serial line until standard\n"
+    "input ends.\n"
     "The emulator is $QEMU_SYSTEM_ARM, else qemu-system-arm.\n";
 
 std::string emulator() {
@@ -23,10 +25,11 @@ std::string emulator() {
 }
 
 int run(const std::vector<std::string>& arguments) {
-  if (arguments.size() == 3 && arguments[0] == "--serial-device") {
+  const bool over_tcp = arguments[0] == "--serial-tcp";
+  if (arguments.size() == 3 && (over_tcp || arguments[0] == "--serial-device")) {
     const auto island = static_cast<std::uint16_t>(number_of(arguments[1], 0xFFFF));
     QemuBoard board(emulator(), arguments[2]);
-    return serve_serial_device(board, island);
+    return serve_serial_device(board, island, over_tcp);
   }
   std::vector<Station> stations;
   for (const std::string& elf_file : arguments) {

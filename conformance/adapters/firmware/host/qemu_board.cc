@@ -22,9 +22,8 @@ namespace {
 
 using std::chrono::nanoseconds;
 
-// What the emulator finds open.
-constexpr int kSerialInEmulator = 3;
-constexpr int kLinkInEmulator = 4;
+// How long the emulator may take to connect its UARTs, on a machine that is busy.
+constexpr std::chrono::seconds kConnectTime{20};
 // A record that is under way must be handled before the next one.
 constexpr std::chrono::milliseconds kRecordTime{20};
 
@@ -33,23 +32,14 @@ nanoseconds duration_of(Instant instant) {
       static_cast<double>(instant) * 1e9 / static_cast<double>(kInstantsPerSecond)));
 }
 
-// Ours, and the emulator's.
-std::array<int, 2> socket_pair() {
-  std::array<int, 2> pair{};
-  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, pair.data()) != 0) {
-    throw BoardBroken(std::strerror(errno));
-  }
-  return pair;
+// A UART of the emulator, which connects to `port`.
+std::string chardev(const char* id, const LoopbackPort& port) {
+  return fmt::format("socket,id={},host=127.0.0.1,port={},server=off,nodelay=on", id,
+                     port.port());
 }
 
-// In the child. Descriptors may be in each other's places, so both move out of the way first.
-void give_descriptors(int serial, int link) {
-  const int serial_copy = fcntl(serial, F_DUPFD, 10);
-  const int link_copy = fcntl(link, F_DUPFD, 10);
-  dup2(serial_copy, kSerialInEmulator);
-  dup2(link_copy, kLinkInEmulator);
-  close(serial_copy);
-  close(link_copy);
+// In the child: standard input and output are rct/1's.
+void leave_standard_input() {
   const int null = open("/dev/null", O_RDWR);
   dup2(null, STDIN_FILENO);
   dup2(null, STDOUT_FILENO);
@@ -63,34 +53,47 @@ QemuBoard::QemuBoard(std::string qemu, std::string elf_file)
 QemuBoard::~QemuBoard() { end_emulator(); }
 
 void QemuBoard::end_emulator() {
-  if (emulator_ < 0) return;
-  kill(emulator_, SIGKILL);
-  waitpid(emulator_, nullptr, 0);
-  close(link_);
-  close(serial_);
+  if (emulator_ >= 0) {
+    kill(emulator_, SIGKILL);
+    waitpid(emulator_, nullptr, 0);
+  }
+  for (const int connection : {link_, serial_}) {
+    if (connection >= 0) close(connection);
+  }
   emulator_ = link_ = serial_ = -1;
 }
 
 void QemuBoard::power_on() {
   end_emulator();
-  const auto serial = socket_pair();
-  const auto link = socket_pair();
-  const std::string serial_device = fmt::format("socket,id=serial,fd={}", kSerialInEmulator);
-  const std::string link_device = fmt::format("socket,id=link,fd={}", kLinkInEmulator);
+  const LoopbackPort serial;
+  const LoopbackPort link;
+  const std::string serial_device = chardev("serial", serial);
+  const std::string link_device = chardev("link", link);
   emulator_ = fork();
   if (emulator_ < 0) throw BoardBroken(std::strerror(errno));
   if (emulator_ == 0) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
-    give_descriptors(serial[1], link[1]);
+    leave_standard_input();
     execlp(qemu_.c_str(), qemu_.c_str(), "-M", "lm3s6965evb", "-display", "none", "-monitor",
            "none", "-chardev", serial_device.c_str(), "-serial", "chardev:serial", "-chardev",
            link_device.c_str(), "-serial", "chardev:link", "-kernel", elf_file_.c_str(), nullptr);
     _exit(127);
   }
-  close(serial[1]);
-  close(link[1]);
-  serial_ = serial[0];
-  link_ = link[0];
+  serial_ = connected(serial);
+  link_ = connected(link);
+}
+
+int QemuBoard::connected(const LoopbackPort& port) {
+  const auto has_ended = [this] {
+    if (waitpid(emulator_, nullptr, WNOHANG) != emulator_) return false;
+    emulator_ = -1;
+    return true;
+  };
+  const int connection = port.accept(kConnectTime, has_ended);
+  if (connection >= 0) return connection;
+  const bool ended = emulator_ < 0;
+  end_emulator();
+  throw BoardBroken(fmt::format("{} {}", qemu_, ended ? "has ended" : "does not connect"));
 }
 
 // Memory is kept, so the emulator goes on and the firmware resets its processor.

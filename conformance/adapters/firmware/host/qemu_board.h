@@ -1,4 +1,4 @@
-// An LM3S6965 in qemu-system-arm. Its time is real.
+// An LM3S6965 in qemu-system-arm, whose UARTs are TCP connections. Its time is real.
 #pragma once
 
 #include <sys/types.h>
@@ -7,6 +7,7 @@
 #include <string>
 
 #include "conformance/adapters/firmware/host/board.h"
+#include "conformance/adapters/firmware/host/loopback.h"
 
 namespace rubric::firmware {
 
@@ -33,6 +34,7 @@ class QemuBoard : public SimulatedBoard {
   void put(int descriptor, Bytes bytes);
   template <class Take>
   void read_some(int descriptor, Take take);
+  int connected(const LoopbackPort& port);
   void end_emulator();
 
   std::string qemu_;

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <sys/socket.h>
 #include <termios.h>
 #include <unistd.h>
 
@@ -10,39 +11,25 @@
 #include <cstdlib>
 #include <cstring>
 #include <iostream>
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
 
 #include "conformance/adapters/firmware/host/bridge.h"
+#include "conformance/adapters/firmware/host/loopback.h"
 
 namespace rubric::firmware {
 namespace {
 
-// A pseudo terminal that changes no byte. The slave stays open, so that its users may come and go.
+// The line's other end. Its users may come and go.
 class Device {
  public:
-  Device() {
-    master_ = posix_openpt(O_RDWR | O_NOCTTY);
-    if (master_ < 0 || grantpt(master_) != 0 || unlockpt(master_) != 0) {
-      throw BoardBroken(std::strerror(errno));
-    }
-    slave_ = open(name(), O_RDWR | O_NOCTTY);
-    termios settings{};
-    if (slave_ < 0 || tcgetattr(slave_, &settings) != 0) throw BoardBroken(std::strerror(errno));
-    cfmakeraw(&settings);
-    tcsetattr(slave_, TCSANOW, &settings);
-  }
-  ~Device() {
-    close(slave_);
-    close(master_);
-  }
-  Device(const Device&) = delete;
-  Device& operator=(const Device&) = delete;
-
-  const char* name() const { return ptsname(master_); }
-  int master() const { return master_; }
-
- private:
-  int master_ = -1;
-  int slave_ = -1;
+  virtual ~Device() = default;
+  virtual std::string name() const = 0;
+  virtual void put(std::uint8_t byte) = 0;
+  // What has come; nothing is waited for.
+  virtual std::size_t take(std::uint8_t* bytes, std::size_t max) = 0;
 };
 
 bool has_bytes(int descriptor) {
@@ -50,9 +37,76 @@ bool has_bytes(int descriptor) {
   return poll(&waited, 1, 0) > 0;
 }
 
+// A pseudo terminal that changes no byte. The slave stays open for those who come.
+class Terminal : public Device {
+ public:
+  Terminal() {
+    master_ = posix_openpt(O_RDWR | O_NOCTTY);
+    if (master_ < 0 || grantpt(master_) != 0 || unlockpt(master_) != 0) {
+      throw BoardBroken(std::strerror(errno));
+    }
+    slave_ = open(ptsname(master_), O_RDWR | O_NOCTTY);
+    termios settings{};
+    if (slave_ < 0 || tcgetattr(slave_, &settings) != 0) throw BoardBroken(std::strerror(errno));
+    cfmakeraw(&settings);
+    tcsetattr(slave_, TCSANOW, &settings);
+  }
+  ~Terminal() override {
+    close(slave_);
+    close(master_);
+  }
+  Terminal(const Terminal&) = delete;
+  Terminal& operator=(const Terminal&) = delete;
+
+  std::string name() const override { return ptsname(master_); }
+  void put(std::uint8_t byte) override {
+    if (write(master_, &byte, 1) != 1) throw BoardBroken(std::strerror(errno));
+  }
+  std::size_t take(std::uint8_t* bytes, std::size_t max) override {
+    if (!has_bytes(master_)) return 0;
+    const ssize_t size = read(master_, bytes, max);
+    if (size <= 0) throw BoardBroken("the terminal has gone");
+    return static_cast<std::size_t>(size);
+  }
+
+ private:
+  int master_ = -1;
+  int slave_ = -1;
+};
+
+// One connection at a time. What is sent to nobody is lost, as on a line.
+class TcpLine : public Device {
+ public:
+  TcpLine() = default;
+  ~TcpLine() override { hang_up(); }
+  TcpLine(const TcpLine&) = delete;
+  TcpLine& operator=(const TcpLine&) = delete;
+
+  std::string name() const override { return fmt::format("tcp:127.0.0.1:{}", port_.port()); }
+  void put(std::uint8_t byte) override {
+    if (user_ >= 0) send(user_, &byte, 1, MSG_NOSIGNAL | MSG_DONTWAIT);
+  }
+  std::size_t take(std::uint8_t* bytes, std::size_t max) override {
+    if (user_ < 0) user_ = port_.accept(std::chrono::milliseconds(0));
+    if (user_ < 0 || !has_bytes(user_)) return 0;
+    const ssize_t size = recv(user_, bytes, max, 0);
+    if (size <= 0) hang_up();
+    return size > 0 ? static_cast<std::size_t>(size) : 0;
+  }
+
+ private:
+  void hang_up() {
+    if (user_ >= 0) close(user_);
+    user_ = -1;
+  }
+
+  LoopbackPort port_;
+  int user_ = -1;
+};
+
 }  // namespace
 
-int serve_serial_device(QemuBoard& board, std::uint16_t island) {
+int serve_serial_device(QemuBoard& board, std::uint16_t island, bool over_tcp) {
   Bridge bridge(board);
   const Firmware firmware = bridge.greet();
   if (!firmware.is_sink) throw BoardBroken("this is no firmware of a sink");
@@ -60,19 +114,19 @@ int serve_serial_device(QemuBoard& board, std::uint16_t island) {
   setup.id = 1;
   setup.island = island;
   bridge.start(setup);
-  const Device device;
-  bridge.set_serial_tap([&](std::uint8_t byte) {
-    if (write(device.master(), &byte, 1) != 1) throw BoardBroken(std::strerror(errno));
-  });
-  std::cout << device.name() << std::endl;
+  std::unique_ptr<Device> device;
+  if (over_tcp) {
+    device = std::make_unique<TcpLine>();
+  } else {
+    device = std::make_unique<Terminal>();
+  }
+  bridge.set_serial_tap([&](std::uint8_t byte) { device->put(byte); });
+  std::cout << device->name() << std::endl;
   while (true) {
     std::array<std::uint8_t, 512> bytes{};
     if (has_bytes(STDIN_FILENO) && read(STDIN_FILENO, bytes.data(), bytes.size()) <= 0) return 0;
-    if (has_bytes(device.master())) {
-      const ssize_t size = read(device.master(), bytes.data(), bytes.size());
-      if (size <= 0) return 1;
-      board.put_serial(Bytes(bytes.data(), static_cast<std::size_t>(size)));
-    }
+    const std::size_t size = device->take(bytes.data(), bytes.size());
+    if (size > 0) board.put_serial(Bytes(bytes.data(), size));
     bridge.run(bridge.tick() + 1);  // A tick or two of real time.
     bridge.take_lines();
   }
