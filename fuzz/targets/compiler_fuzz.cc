@@ -51,8 +51,9 @@ std::string emitted(const rubricc::Model& model) {
   for (const auto& spec : model.specs) {
     if (spec->file != kInput) continue;
     add(rubricc::emit_tables(*spec));
-    add(rubricc::emit_dictionary(*spec));
     add(rubricc::emit_messages(*spec));
+    if (spec->types.empty()) continue;
+    add(rubricc::emit_dictionary(*spec));
     add(rubricc::emit_cpp(*spec));
     add(rubricc::emit_java(*spec));
   }
