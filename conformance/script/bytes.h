@@ -1,6 +1,6 @@
 // Scripts as bytes. Every byte string is a script, so that a fuzzer may change any byte:
 //
-//   head   role and profile u8, id u16, island u16, channels u8, first sequence number u16, rest u16
+//   head   role and profile u8, id u16, island u16, channels u8, first number u16, rest u16
 //   steps  kind u8, delay u16, what the kind needs
 //
 // all big-endian. A number out of range stands for one in range, and what is missing at the end for

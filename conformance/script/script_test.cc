@@ -120,7 +120,8 @@ TEST(Script, EveryKindOfEvent) {
     ASSERT_FALSE(script.steps.empty());
     const machine::Event& event = script.steps[0].event;
     events.insert(event.index());
-    if (const auto* called = std::get_if<machine::Called>(&event)) calls.insert(called->call.index());
+    const auto* called = std::get_if<machine::Called>(&event);
+    if (called) calls.insert(called->call.index());
   }
   EXPECT_EQ(calls.size(), std::variant_size_v<machine::Call>);
   EXPECT_EQ(events.size(), std::variant_size_v<machine::Event> - 1);  // Timers are the node's own.

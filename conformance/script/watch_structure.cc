@@ -1,0 +1,191 @@
+// What holds for the machine as a function, whatever the protocol says.
+#include <algorithm>
+
+#include "conformance/events/app_events.h"
+#include "conformance/machine/join.h"
+#include "conformance/machine/lines.h"
+#include "conformance/machine/messages.h"
+#include "conformance/script/watch.h"
+#include "conformance/trace/concrete.h"
+#include "conformance/trace/print.h"
+
+namespace rubric::script {
+namespace {
+
+using explorer::Property;
+using machine::Action;
+using machine::Actions;
+using machine::Link;
+using machine::Role;
+using machine::State;
+using machine::Transmit;
+namespace am = machine::am;
+
+constexpr std::size_t kAmHeaderBytes = 8;
+constexpr std::size_t kMessageBytesMax = 122;  // (paper: Memory Occupation)
+
+bool same(const Transmit& a, const Transmit& b) {
+  return a.link == b.link && a.link_ack == b.link_ack && a.type == b.type && a.dest == b.dest &&
+         a.src == b.src && equal(a.bytes(), b.bytes());
+}
+
+bool same(const Action& a, const Action& b) {
+  return a.what == b.what && a.requirement == b.requirement && a.index == b.index;
+}
+
+template <class Range>
+bool same_range(const Range& a, const Range& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const auto& x, const auto& y) { return same(x, y); });
+}
+
+bool same_notices(const Actions& a, const Actions& b) {
+  const auto text = [](const machine::Notice& notice) {
+    return trace::print(events::from_notice(notice));
+  };
+  return std::equal(a.notices().begin(), a.notices().end(), b.notices().begin(), b.notices().end(),
+                    [&](const auto& x, const auto& y) { return text(x) == text(y); });
+}
+
+// The answer of a call that has one, whatever else happens.
+bool is_result(const machine::Notice& notice) {
+  return std::holds_alternative<machine::SendResult>(notice) ||
+         std::holds_alternative<machine::ChannelResult>(notice) ||
+         std::holds_alternative<machine::OperationResult>(notice) ||
+         std::holds_alternative<machine::InputValue>(notice) ||
+         std::holds_alternative<machine::InterfaceState>(notice) ||
+         std::holds_alternative<machine::Clock>(notice);
+}
+
+trace::LinkKind kind_of(Link link) {
+  if (link == Link::kRadio) return trace::LinkKind::kRadio;
+  return link == Link::kSerial ? trace::LinkKind::kSerial : trace::LinkKind::kPeis;
+}
+
+bool parses(const Transmit& t) {
+  const trace::AmFrame frame{t.dest, t.src, 0, t.type, {t.bytes().begin(), t.bytes().end()}};
+  return trace::decode(frame, kind_of(t.link)).name != trace::decode_raw(frame).name;
+}
+
+// Whether somebody looks at frames of this type on that line.
+bool listens(Role role, const machine::Frame& frame) {
+  if (frame.type == am::kNet) return true;
+  if (frame.link == Link::kSerial) return role == Role::kSink && frame.type == am::kConfig;
+  return frame.link == Link::kRadio && (frame.type == am::kJoin || frame.type == am::kJoinReply ||
+                                        frame.type == am::kAckJoin);
+}
+
+template <class Line>
+bool moves(const Line& line) {
+  return line.out.empty() || !line.on || line.sending || line.taken;
+}
+
+}  // namespace
+
+void Watched::must(bool holds, const char* sentence, Ticks now, ReqId rule) {
+  if (holds || broken_) return;
+  broken_ = Broken{"structure", sentence, {}, now};
+  if (rule != ReqId::kNone) broken_->requirements.push_back(rule);
+}
+
+void Watched::same_again(const State& before, const Seen& seen) {
+  State copy = before;
+  Actions actions;
+  step_(copy, seen.now, seen.event, actions);
+  must(copy == seen.after && machine::hash_value(copy) == machine::hash_value(seen.after),
+       "The same event makes the same state of the same state.", seen.now);
+  const bool alike = same_range(actions.all(), seen.actions.all()) &&
+                     same_range(actions.transmits(), seen.actions.transmits()) &&
+                     same_notices(actions, seen.actions);
+  must(alike, "The same event in the same state has the same consequences.", seen.now);
+}
+
+void Watched::check_labels(const Seen& seen) {
+  const auto* heard = std::get_if<machine::Heard>(&seen.event);
+  const auto* called = std::get_if<machine::Called>(&seen.event);
+  // Where the protocol says nothing: what TinyOS keeps away, ends of nothing, power.
+  const bool kept_away = heard && (seen.handled.empty() || !listens(config_.role, heard->frame));
+  // What is for a mote of its island no sink hands to a base station, so no rule says what then.
+  const bool astray = heard && config_.role == Role::kBaseStation &&
+                      heard->frame.link == Link::kSerial;
+  const bool beyond = kept_away || astray || std::holds_alternative<machine::SendDone>(seen.event) ||
+                      std::holds_alternative<machine::LinkBusy>(seen.event) ||
+                      std::holds_alternative<machine::Reboot>(seen.event);
+  for (const Action& action : seen.actions.all()) {
+    if (action.requirement != ReqId::kNone) continue;
+    const bool told = action.what == Action::What::kNotify;
+    const bool sends = action.what == Action::What::kTransmit;
+    const bool channel_of_base = told && called && config_.role == Role::kBaseStation;
+    must(!sends && (!told || channel_of_base), "Whatever a node does names its rule.", seen.now);
+    must(told || beyond, "Whatever a node ignores names its rule.", seen.now);
+  }
+  if (heard) must(!seen.actions.all().empty(), "No frame is taken without a word.", seen.now);
+  if (!called || seen.before.off) return;
+  const bool joins = std::holds_alternative<machine::JoinIsland>(called->call);
+  const auto results = std::count_if(seen.actions.notices().begin(), seen.actions.notices().end(),
+                                     is_result);
+  must(results == (joins ? 0 : 1), "Each call but joinIsland returns once.", seen.now);
+  if (joins) must(!seen.actions.all().empty(), "No call is taken without a word.", seen.now);
+}
+
+void Watched::check_frames(const Seen& seen) {
+  int on_radio = 0;
+  int on_serial = 0;
+  for (const Transmit& one : seen.actions.transmits()) {
+    must(parses(one), "Whatever a node sends is a message of the wire spec.", seen.now);
+    must(one.size_bytes + kAmHeaderBytes <= kMessageBytesMax, "No message is over 122 bytes.",
+         seen.now, req::kWireAmLength);
+    must(machine::has_line(config_.role, one.link), "A node sends on its own lines.", seen.now);
+    on_radio += one.link == Link::kRadio;
+    on_serial += one.link == Link::kSerial;
+    if (one.link == Link::kPeis) continue;
+    const bool sending = one.link == Link::kRadio ? seen.after.radio.sending
+                                                  : seen.after.serial.sending;
+    must(sending, "What is sent takes its line.", seen.now, req::kN2Busy);
+  }
+  must(on_radio <= 1 && on_serial <= 1, "One line carries one frame at a time.", seen.now,
+       req::kN2Busy);
+  must(!seen.after.off || seen.actions.notices().empty(), "Without power nothing happens.",
+       seen.now, req::kN10Off);
+}
+
+void Watched::check_bounds(const Seen& seen) {
+  const State& s = seen.after;
+  must(seen.now >= last_, "Time does not go back.", seen.now);
+  const runner::DueTimers set = machine::timers(s);
+  must(set.size() <= 2 + machine::kAwaitedMax, "Timers are bounded.", seen.now);
+  const bool joining = s.join.phase == machine::JoinMote::Phase::kJoining;
+  bool join_timer = false;
+  for (const machine::DueTimer& timer : set) {
+    must(timer.due >= seen.now, "No timer is set for the past.", seen.now);
+    join_timer |= timer.timer.kind == machine::TimerKind::kJoin;
+  }
+  const machine::Profile& profile = config_.profile;
+  const std::size_t waiting = s.radio.in.size() + s.serial.in.size();
+  const bool lists = s.sink.members.size() <= profile.members_max &&
+                     s.sink.pending.size() <= machine::kPendingMax &&
+                     s.sink.unreported.size() <= machine::kMembersMax &&
+                     s.awaited.size() <= machine::kAwaitedMax &&
+                     s.synaptic.out.size() <= profile.channels_max &&
+                     s.synaptic.in.size() <= profile.channels_max;
+  const bool buffers = s.radio.out.size() <= s.radio.out.room() &&
+                       s.serial.out.size() <= s.serial.out.room() &&
+                       s.radio.in.size() <= s.radio.in.room() &&
+                       s.serial.in.size() <= s.serial.in.room() && s.waiting.size() == waiting &&
+                       (s.app_busy || waiting == 0);
+  bool once = true;
+  for (const machine::Admission& member : s.sink.members) {
+    once &= machine::find_member(s.sink, member.devid) == &member;
+  }
+  if (!lists || !buffers || !once) breaks(Property::kQueuesBounded, seen.now);
+  for (std::size_t i = 0; i < s.awaited.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      must(s.awaited[i].seq_num != s.awaited[k].seq_num, "No number is awaited twice.", seen.now,
+           req::kN12Reuse);
+    }
+  }
+  const bool waits_for_something = moves(s.radio) && moves(s.serial);
+  if (!waits_for_something || joining != join_timer) breaks(Property::kNoDeadlock, seen.now);
+}
+
+}  // namespace rubric::script

@@ -1,0 +1,30 @@
+// Property: whatever happens to a node of the reference machine, it keeps the explorer's promises
+// and its own bounds, names its rules, and does the same again.
+//
+// RUBRIC_FLAW names a flaw of conformance/flaws that stands in for the machine: this must be found.
+#include <cstdio>
+#include <cstdlib>
+
+#include "conformance/script/bytes.h"
+#include "conformance/script/watch.h"
+#include "fuzz/support/require.h"
+
+namespace {
+
+rubric::flaws::StepFunction chosen_step() {
+  const char* name = std::getenv("RUBRIC_FLAW");
+  if (name == nullptr || *name == '\0') return rubric::machine::step;
+  const rubric::flaws::Flaw* flaw = rubric::flaws::find(name);
+  rubric::fuzz::require(flaw != nullptr, "RUBRIC_FLAW names a flaw");
+  return flaw->step;
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace rubric;
+  static const flaws::StepFunction step = chosen_step();
+  const auto broken = script::watch(script::decode(Bytes(data, size)), step);
+  if (broken) fuzz::require(false, broken->text().c_str());
+  return 0;
+}
