@@ -191,7 +191,8 @@ class Result:
 
     @staticmethod
     def cause_in(text):
-        for pattern in (r"^broken: .*$", r"runtime error: .*$", r"^SUMMARY: .*$",
+        for pattern in (r"^broken: .*$", r"runtime error: .*$", r"^  what\(\):.*$",
+                        r"^SUMMARY: .*$",
                         r"ERROR: libFuzzer: .*$", r"^==\d+== ?ERROR: .*$"):
             found = re.search(pattern, text, re.M)
             if found:
