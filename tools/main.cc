@@ -12,6 +12,7 @@
 #include "tools/encode.h"
 #include "tools/explain.h"
 #include "tools/explore.h"
+#include "tools/generate.h"
 #include "tools/messages.h"
 #include "tools/new_adapter.h"
 #include "tools/shrink.h"
@@ -42,6 +43,7 @@ int main(int argc, char** argv) {
   rubric::tools::add_stats(app);
   rubric::tools::add_explain(app);
   rubric::tools::add_explore(app);
+  rubric::tools::add_generate(app);
   rubric::tools::add_messages(app);
   rubric::tools::add_simulate(app);
   rubric::tools::add_check(app);
