@@ -68,13 +68,18 @@ class Run {
 
   void start() {
     for (const trace::NodeHeader& header : scope_.nodes) {
-      if (header.iut) add_node(header);
+      if (header.iut) nodes_.emplace_back(scope_, case_, header, make_(header));
     }
     if (nodes_.empty()) throw std::runtime_error("no node of this case is under test");
+    // When all are there: where time is real, those reset first would be far ahead of one whose
+    // process has yet to start.
+    auto node = nodes_.begin();
+    for (const trace::NodeHeader& header : scope_.nodes) {
+      if (header.iut) reset(*node++, header);
+    }
   }
 
-  void add_node(const trace::NodeHeader& header) {
-    NodeLog& node = nodes_.emplace_back(scope_, case_, header, make_(header));
+  void reset(NodeLog& node, const trace::NodeHeader& header) {
     node.target().reset(config_of(scope_, header));
     for (const Line* line : case_.lines()) {
       if (line->node == header.name && line->message.name == "linkack") ++node.link_acks_to_come;
