@@ -163,8 +163,9 @@ oracle::Run read_run(const CheckOptions& options) {
   oracle::RunReader reader(read_as(options.input_format));
   std::string error;
   for (const std::string& file : options.files) {
-    const bool good = file == "-" ? reader.add_bytes("stdin", cli::text_of_file(kCommand, file), error)
-                                  : reader.add_file(file, error);
+    const bool good =
+        file == "-" ? reader.add_bytes("stdin", cli::text_of_file(kCommand, file), error)
+                    : reader.add_file(file, error);
     if (!good) cli::unreadable(kCommand, error);
   }
   return reader.finish();

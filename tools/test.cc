@@ -14,6 +14,7 @@
 #include <thread>
 #include <vector>
 
+#include "conformance/attach/groups.h"
 #include "conformance/suite/report/github.h"
 #include "conformance/suite/report/html.h"
 #include "conformance/suite/report/json.h"
@@ -28,13 +29,15 @@
 #include "tools/cli/output.h"
 #include "tools/cli/progress.h"
 #include "tools/cli/terminal.h"
-#include "tools/cli/text_file.h"
-#include "tools/cli/usage.h"
+#include "tools/cli/verdict.h"
 
 namespace rubric::tools {
 namespace {
 
 using Milliseconds = std::chrono::milliseconds;
+
+constexpr const char* kCommand = "test";
+constexpr std::uint64_t kSeedMax = 65535;
 
 constexpr const char* kFooter =
     "A target is a command that speaks rct/1, a real node at its own line, or the reference\n"
@@ -44,6 +47,7 @@ constexpr const char* kFooter =
     "  sf-server:PORT            a base station that connects to a Serial Forwarder: to us\n"
     "  sf:HOST:PORT              a sink behind a Serial Forwarder\n"
     "  serial:DEVICE[:BAUD]      a sink at a serial line; serial:tcp:HOST:PORT at an emulator's\n"
+    "  sf:HOST:PORT:mote         a mote there; serial:...:mote too. Its line decides nothing.\n"
     "Without TRACES it is tried with the kit's own golden traces, which the program carries with\n"
     "it.\n"
     "Examples:\n"
@@ -54,8 +58,8 @@ constexpr const char* kFooter =
     "Before a case is worked each implementation has to refuse an unknown command, and to fail\n"
     "cases that nobody can pass.\n"
     "Exit codes: 0 as expected (weak results and skipped cases included), 1 a failure that nobody\n"
-    "expected, or an expectation that is not true, 2 an implementation or the kit broke, or was\n"
-    "not honest, 3 nothing was decided, 64 usage, 66 traces cannot be read.";
+    "expected, or an expectation that is not true, 2 an implementation or the kit broke (between\n"
+    "cases, too), or was not honest, 3 nothing was decided, 64 usage, 66 traces cannot be read.";
 
 struct TestOptions {
   std::vector<std::string> traces;
@@ -80,26 +84,18 @@ struct TestOptions {
   bool verbose = false;
 };
 
-[[noreturn]] void unreadable(std::string what) {
-  while (what.ends_with('\n')) what.pop_back();
-  fmt::print(stderr, "rubric test: {}\n", what);
-  cli::exit_with(cli::kVerdictInput);
-}
-
 suite::Cases read_cases(const TestOptions& options) {
   if (options.traces.empty()) return suite::Cases::own();
   try {
     return suite::Cases::of(options.traces);
   } catch (const std::runtime_error& error) {
-    unreadable(error.what());
+    cli::unreadable(kCommand, error.what());
   }
 }
 
 suite::ExpectedFailures read_expected(const TestOptions& options) {
   if (options.expect.empty()) return {};
-  std::string text;
-  std::string error;
-  if (!cli::read_file(options.expect, text, error)) unreadable(error);
+  const std::string text = cli::text_of_file(kCommand, options.expect);
   try {
     return suite::parse_expected(text, options.expect);
   } catch (const std::runtime_error& mistake) {
@@ -109,13 +105,11 @@ suite::ExpectedFailures read_expected(const TestOptions& options) {
 
 std::optional<suite::EarlierRun> read_earlier(const TestOptions& options) {
   if (options.compare.empty()) return std::nullopt;
-  std::string text;
-  std::string error;
-  if (!cli::read_file(options.compare, text, error)) unreadable(error);
+  const std::string text = cli::text_of_file(kCommand, options.compare);
   try {
     return suite::read_json_report(text);
   } catch (const std::runtime_error& mistake) {
-    unreadable(fmt::format("{}: {}", options.compare, mistake.what()));
+    cli::unreadable(kCommand, fmt::format("{}: {}", options.compare, mistake.what()));
   }
 }
 
@@ -153,6 +147,28 @@ std::string list_text(const std::vector<suite::SuiteCase>& cases) {
     out += line + '\n';
   }
   return out;
+}
+
+int list(const TestOptions& options, const std::vector<suite::SuiteCase>& cases) {
+  if (options.format != "text" && options.format != "json") {
+    throw CLI::ValidationError("--list", "prints text or json, no " + options.format);
+  }
+  const std::string text = options.format == "json" ? suite::json_list(cases) : list_text(cases);
+  return cli::write_file(options.out, text) ? cli::kVerdictExpected : cli::kVerdictBroken;
+}
+
+// What nodes get of a seed has 16 bits; one more would be an earlier one again.
+void check_seeds(const TestOptions& options) {
+  const std::uint64_t first = options.seed.value_or(0);
+  if (first > kSeedMax) {
+    throw CLI::ValidationError("--seed",
+                               fmt::format("expected 0 to {}, given {}", kSeedMax, first));
+  }
+  if (first + options.repeats - 1 > kSeedMax) {
+    throw CLI::ValidationError(
+        "--repeat", fmt::format("{} seeds from {} on go beyond {}", options.repeats, first,
+                                kSeedMax));
+  }
 }
 
 // Text appears as it is made, on a terminal each line at once; in a file when it is whole.
@@ -250,11 +266,9 @@ int run(const TestOptions& options) {
   suite::Plan plan;
   plan.expected = read_expected(options);
   const std::optional<suite::EarlierRun> earlier = read_earlier(options);
+  check_seeds(options);
   plan.cases = selected(options, cases);
-  if (options.list) {
-    return cli::write_file(options.out, list_text(plan.cases)) ? cli::kVerdictExpected
-                                                               : cli::kVerdictBroken;
-  }
+  if (options.list) return list(options, plan.cases);
   if (options.targets.empty()) throw CLI::RequiredError("--target");
   for (const std::string& target : options.targets) {
     try {
@@ -263,6 +277,7 @@ int run(const TestOptions& options) {
       throw CLI::ValidationError("--target", fmt::format("'{}': {}", target, error.what()));
     }
   }
+  attach::end_groups_on_signals();
   plan.profile = options.profile;
   plan.seed = options.seed;
   plan.repeats = options.repeats;
@@ -293,7 +308,8 @@ void add_selection(CLI::App& command, TestOptions& options) {
       ->check(CLI::IsMember({"mote", "sink", "base_station"}));
   command.add_option("--shard", options.shard, "I/N: the Ith of N parts of the cases")
       ->check(cli::given());
-  command.add_flag("--list", options.list, "Print names, roles and rules of the cases");
+  command.add_flag("--list", options.list,
+                   "Print names, roles and rules of the cases, as text or JSON");
 }
 
 void add_options(CLI::App& command, TestOptions& options) {
@@ -304,7 +320,8 @@ void add_options(CLI::App& command, TestOptions& options) {
   command.add_option("--profile", options.profile,
                      "paper or deployed, whatever the traces say: what nodes are told to keep to")
       ->check(CLI::IsMember({"paper", "deployed"}));
-  command.add_option("--seed", options.seed, "Of what is random in nodes, where a trace has none")
+  command.add_option("--seed", options.seed,
+                     "Of what is random in nodes, where a trace has none; 0 to 65535")
       ->check(cli::whole_number());
   command.add_option("--repeat", options.repeats,
                      "Each case so often, each time with the next seed")
@@ -343,22 +360,11 @@ void add_options(CLI::App& command, TestOptions& options) {
 }  // namespace
 
 void add_test(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("test", "Try implementations with golden traces");
+  CLI::App* command = app.add_subcommand(kCommand, "Try implementations with golden traces");
   auto options = std::make_shared<TestOptions>();
   add_options(*command, *options);
   command->footer(kFooter);
-  cli::set_usage_exit_code(*command, cli::kVerdictUsage);
-  command->callback([options] {
-    int code = cli::kVerdictBroken;
-    try {
-      code = run(*options);
-    } catch (const CLI::Error&) {
-      throw;
-    } catch (const std::exception& error) {
-      fmt::print(stderr, "rubric test: {}\n", error.what());
-    }
-    cli::exit_with(code);
-  });
+  cli::set_verdict(*command, [options] { return run(*options); });
 }
 
 }  // namespace rubric::tools

@@ -8,9 +8,38 @@ import json
 import pathlib
 import re
 import shlex
+import signal
+import subprocess
+import time
 import unittest
 
-from test_testing import CASES, HONEST, Folder, rubric, test
+from test_testing import CASES, HONEST, RUBRIC, Folder, comes, is_dead, rubric, test
+
+# A mute adapter. One of two ends when the other is to play node 7, which does so after that end.
+PAIR = """
+import os, pathlib, sys, threading, time
+folder, me = pathlib.Path(sys.argv[1]), os.getpid()
+(folder / f"pid.{me}").touch()
+def end():
+    while not any(path.suffix != f".{me}" for path in folder.glob("seven.*")): time.sleep(0.01)
+    os._exit(5)
+threading.Thread(target=end, daemon=True).start()
+def is_dead(pid):
+    return pathlib.Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] == "Z"
+for line in sys.stdin:
+    words = line.split()
+    if words[0] == "hello": print("hello rct/1 pair 1 roles=mote")
+    elif words[0] == "bye": break
+    elif words[0] == "frobnicate": print("unsupported")
+    elif words[0] == "reset":
+        if "id=7" in words:
+            (folder / f"seven.{me}").touch()
+            others = [int(path.suffix[1:]) for path in folder.glob("pid.*")]
+            while not all(is_dead(pid) for pid in others if pid != me): time.sleep(0.01)
+        print("ready")
+    else: print("done", words[1])
+    sys.stdout.flush()
+"""
 
 
 class Running(Folder):
@@ -78,6 +107,45 @@ class Running(Folder):
         self.assertEqual([(c["repeat"], c["seed"]) for c in cases], [(0, 5), (1, 6), (2, 7)])
         self.assertIn("seq_num=2285", "".join(cases[0]["log"]))  # 1000 + 257 * 5
         self.assertIn("seq_num=2542", "".join(cases[1]["log"]))
+
+    def test_seeds_that_would_be_others_are_refused(self):
+        args = ["--target", "machine", "--cases", "j4.accept"]
+        self.assertEqual(test(*args, "--seed", "65535")[0], 0)
+        for more in (["--seed", "65536"], ["--seed", "65535", "--repeat", "2"],
+                     ["--seed", "18446744073709551615", "--repeat", "2"]):
+            code, _, err = test(*args, *more)
+            self.assertEqual(code, 64, more)
+            self.assertIn("65535", err)
+
+    def test_list_as_json(self):
+        code, out, _ = test("--list", "--format", "json", "--requirement", "J4-SEQ")
+        listed = json.loads(out)
+        self.assertEqual((code, listed["schema"]), (0, "rubric.test.list/1"))
+        lines = test("--list", "--requirement", "J4-SEQ")[1].splitlines()
+        self.assertEqual([one["name"] for one in listed["cases"]],
+                         [line.split()[0] for line in lines])
+        for one in listed["cases"]:
+            self.assertEqual(list(one), ["name", "file", "comment", "roles", "rules"])
+            self.assertIn("J4-SEQ", one["rules"])
+            self.assertTrue(pathlib.Path(one["file"]).exists())
+        self.assertEqual(test("--list", "--format", "tap")[0], 64)
+
+    def test_a_glob_that_is_not_true_is_one_line(self):
+        known = self.write("known.yaml", "- {case: 'j4.*', requirement: J4, message: x, reason: y}")
+        code, out, _ = test("--target", "machine", "--cases", "j4.*", "--expect", known)
+        self.assertEqual(code, 1)
+        self.assertEqual(out.count("NOT TRUE"), 1)
+        self.assertIn("1 expectation not true", out)
+        self.assertIn("runs that 'j4.*' stands for do not fail so", " ".join(out.split()))
+
+    def test_nobody_at_the_port(self):
+        """It is not waited for longer than --timeout says, whatever starts slowly elsewhere."""
+        for target in ("sf:127.0.0.1:1", "serial:tcp:127.0.0.1:1", "sf:127.0.0.1:1:mote"):
+            before = time.monotonic()
+            code, out, _ = test("--target", target, "--timeout", "0.2")
+            self.assertEqual(code, 2)
+            self.assertIn("Connection refused", " ".join(out.split()))
+            self.assertLess(time.monotonic() - before, 10)
 
     def test_profile(self):
         """Differences of release 1.0 that its profile accepts are expected, its faults are not."""
@@ -156,6 +224,63 @@ class Failing(Folder):
         self.assertEqual(code, 2)
         self.assertRegex(out, r"error +j1\.request ")
         self.assertRegex(out, r"(error|pass) +j10\.mote")
+
+    def test_bad_end_is_a_note(self):
+        code, out, _ = test("--target", self.fake("bad_end"), "--cases", "j10.mote*")
+        self.assertEqual(code, 0, out)
+        self.assertIn("  Note: it ended with status 1, after `bye`.\n", out)
+        self.assertIn("    | could not save\n", out)
+
+    def test_end_between_cases_is_seen(self):
+        trace = self.write("two.rtr", "%rtr 1\n"
+                           "case two.pair\n%node m5 mote id=5 iut\n%node m6 mote id=6 iut\n"
+                           "  0..50 m5 !> app *\n"
+                           "case two.alone\n%node m7 mote id=7 iut\n  0..50 m7 !> app *\n")
+        pair = self.write("pair.py", PAIR)
+        for form in ("text", "json", "junit", "tap"):
+            place = self.folder / form
+            place.mkdir()
+            code, out, _ = test("--target", f"exec python3 {pair} {place}", trace, "--format", form)
+            self.assertEqual(code, 2, out)
+            self.assertIn("ended with status 5", out)
+            if form == "text":
+                self.assertIn("pair: 2 pass.", out)
+                self.assertIn("  Broke: it ended with status 5, after its last case.\n", out)
+                self.assertIn("1 implementation broke between cases", " ".join(out.split()))
+
+    def test_signals_end_what_is_attached(self):
+        for signal_number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            at = self.folder / f"pid{signal_number}"
+            run = subprocess.Popen(
+                [RUBRIC, "test", "--target", f"{self.fake('stubborn')} {at}", "--cases",
+                 "j10.mote*", "--timeout", "3000"],
+                stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            self.addCleanup(run.wait)
+            self.addCleanup(run.kill)
+            self.assertTrue(comes(at.exists))
+            pid = int(at.read_text())
+            self.assertFalse(is_dead(pid))
+            run.send_signal(signal_number)
+            self.assertEqual(run.wait(timeout=60), -signal_number)
+            self.assertTrue(comes(lambda: is_dead(pid)))
+
+    def test_hang_up_under_nohup(self):
+        at = self.folder / "pid"
+        run = subprocess.Popen(
+            ["nohup", RUBRIC, "test", "--target", f"{self.fake('stubborn')} {at}", "--cases",
+             "j10.mote*", "--timeout", "3000"],
+            stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.addCleanup(run.wait)
+        self.addCleanup(run.kill)
+        self.assertTrue(comes(at.exists))
+        pid = int(at.read_text())
+        run.send_signal(signal.SIGHUP)
+        time.sleep(0.3)
+        self.assertIsNone(run.poll())
+        self.assertFalse(is_dead(pid))
+        run.send_signal(signal.SIGTERM)
+        self.assertEqual(run.wait(timeout=60), -signal.SIGTERM)
+        self.assertTrue(comes(lambda: is_dead(pid)))
 
     def test_nonsense_is_an_error(self):
         code, out, _ = test("--target", self.fake("babbles"), "--cases", "j1.request")

@@ -5,6 +5,7 @@ import pathlib
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 RUBRIC = os.path.abspath(sys.argv.pop(1))
@@ -15,7 +16,7 @@ CASES = sum(line.startswith("case ") for path in pathlib.Path("conformance/cases
 
 # An adapter that does nothing, and breaks as its first argument says.
 FAKE = '''
-import os, sys, time
+import os, signal, sys, time
 how = sys.argv[1]
 for line in sys.stdin:
     words = line.split()
@@ -26,6 +27,7 @@ for line in sys.stdin:
     elif words[0] == "reset":
         print("ready")
     elif words[0] == "bye":
+        if how == "bad_end": sys.exit("could not save")
         break
     elif words[0] not in ("rx", "call", "linkack", "line", "power", "until"):
         print("done 0" if how == "yes_man" else "unsupported what is that")
@@ -39,6 +41,11 @@ for line in sys.stdin:
         os.abort()
     elif words[0] == "call" and how == "hangs":
         time.sleep(60)
+    elif words[0] == "until" and how == "stubborn":
+        signal.signal(signal.SIGTERM, signal.SIG_IGN)
+        with open(sys.argv[3] + ".new", "w") as file: file.write(str(os.getpid()))
+        os.rename(sys.argv[3] + ".new", sys.argv[3])
+        while True: time.sleep(60)
     elif words[0] == "call" and how == "babbles":
         print("hi there")
     else:
@@ -56,6 +63,25 @@ def rubric(*args, env=None, cwd=None):
 
 def test(*args, **more):
     return rubric("test", *args, **more)
+
+
+def is_dead(pid):
+    """Gone, or dead and not yet waited for by whoever inherited it."""
+    try:
+        text = pathlib.Path(f"/proc/{pid}/stat").read_text()
+    except (FileNotFoundError, ProcessLookupError):
+        return True
+    return text.rpartition(")")[2].split()[0] == "Z"
+
+
+def comes(condition):
+    """Whether it comes true in a time that nothing takes, however busy the host is."""
+    end = time.monotonic() + 60
+    while time.monotonic() < end:
+        if condition():
+            return True
+        time.sleep(0.01)
+    return False
 
 
 class Folder(unittest.TestCase):

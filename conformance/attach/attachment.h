@@ -63,7 +63,8 @@ struct Options {
 
 /// By what the user wrote: `machine`, `machine:FLAW` (conformance/flaws), `sf-server:PORT`,
 /// `sf:HOST:PORT`, `serial:DEVICE[:BAUD]`, `serial:tcp:HOST:PORT`, the last three also with `:mote`
-/// at their end, else a shell command that speaks rct/1. Starts nothing yet. Throws std::invalid_argument where the text makes no sense.
+/// at their end, else a shell command that speaks rct/1. Starts nothing yet. Throws
+/// std::invalid_argument where the text makes no sense.
 std::unique_ptr<Attachment> attach(const std::string& target, const Options& options);
 
 }  // namespace rubric::attach

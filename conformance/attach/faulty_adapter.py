@@ -1,8 +1,9 @@
 """An adapter that is good but for one fault.
 
 Usage: faulty_adapter.py FAULT FLAG ADAPTER. Passes everything to the program ADAPTER, until the
-fault happens. Removes the file FLAG, which says that this run is to be the faulty one. What it does
-when nothing is asked it does once there is a file FLAG.now, and says so by its process id in FLAG.done.
+fault happens. Removes the file FLAG, which says that this run is to be the faulty one. What it
+does when nothing is asked it does once there is a file FLAG.now, and says so by its process id in
+FLAG.done.
 """
 
 import os

@@ -298,7 +298,8 @@ TEST(RealTime, NobodyThereIsNoLongWait) {
   const Options patient{Milliseconds(200), Milliseconds(60000)};
   const std::uint16_t port = free_port();
   const auto before = steady_clock::now();
-  for (const char* target : {"sf:127.0.0.1:{}", "sf:127.0.0.1:{}:mote", "serial:tcp:127.0.0.1:{}"}) {
+  for (const char* target :
+       {"sf:127.0.0.1:{}", "sf:127.0.0.1:{}:mote", "serial:tcp:127.0.0.1:{}"}) {
     const auto attachment = attach(fmt::format(fmt::runtime(target), port), patient);
     EXPECT_THROW(attachment->identity(), runner::TargetBroken);
   }

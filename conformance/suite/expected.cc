@@ -3,11 +3,13 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <set>
 #include <stdexcept>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "codec/generated/requirements_table.h"
 #include "conformance/generated/profiles.h"
@@ -128,6 +130,24 @@ std::string why_untrue(const ExpectedFailure& entry, const CaseRun& one) {
   return fmt::format("{}, but line {} of {} says: {}", was, first.place.line, one.file, first.text);
 }
 
+// The first that is not so tells the rest of those that a glob stands for.
+std::string why_untrue(const ExpectedFailure& entry, const std::vector<const CaseRun*>& untrue,
+                       std::size_t asked) {
+  constexpr std::size_t kNamed = 5;
+  std::string first = why_untrue(entry, *untrue.front());
+  if (asked == 1) return first;
+  std::vector<std::string> names;
+  for (const CaseRun* one : untrue) {
+    if (names.empty() || names.back() != one->name) names.push_back(one->name);
+  }
+  if (names.size() > kNamed) {
+    names.resize(kNamed);
+    names.emplace_back("...");
+  }
+  return fmt::format("{} of the {} runs that '{}' stands for do not fail so ({}). The first: {}",
+                     untrue.size(), asked, entry.cases, fmt::join(names, ", "), first);
+}
+
 }  // namespace
 
 ExpectedFailures parse_expected(std::string_view text, const std::string& name) {
@@ -193,12 +213,16 @@ std::vector<StaleExpectation> untrue(const ExpectedFailures& expected, const Sui
       out.push_back({place, fmt::format("no case is called '{}'", entry.cases)});
       continue;
     }
+    std::vector<const CaseRun*> asked;
     for (const ImplementationRun& implementation : run.implementations) {
       for (const CaseRun& one : implementation.cases) {
-        if (!is_about(entry, implementation, one)) continue;
-        if (is_decided(one) && !is_so(entry, one)) out.push_back({place, why_untrue(entry, one)});
+        if (is_about(entry, implementation, one) && is_decided(one)) asked.push_back(&one);
       }
     }
+    std::vector<const CaseRun*> untrue;
+    std::copy_if(asked.begin(), asked.end(), std::back_inserter(untrue),
+                 [&](const CaseRun* one) { return !is_so(entry, *one); });
+    if (!untrue.empty()) out.push_back({place, why_untrue(entry, untrue, asked.size())});
   }
   return out;
 }

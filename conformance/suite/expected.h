@@ -35,8 +35,8 @@ ExpectedFailures parse_expected(std::string_view text, const std::string& name);
 void expect(const ExpectedFailures& expected, const ImplementationRun& implementation,
             CaseRun& one);
 
-/// Entries that are not true of the run: that name no case at all, and each case of theirs that was
-/// worked and passed, or failed otherwise. Nothing is said of entries for another target or
+/// Entries that are not true of the run, each once: that name no case at all, or of whose cases
+/// some were worked and passed, or failed otherwise. Nothing is said of entries for another target or
 /// profile, nor of cases that were not worked to their end.
 std::vector<StaleExpectation> untrue(const ExpectedFailures& expected, const SuiteRun& run,
                                      const Cases& all);

@@ -112,6 +112,34 @@ TEST(Expected, FamiliesGlobsAndLinesWithoutRule) {
   EXPECT_EQ(hold(entry("j4.accept", "none"), failed({failure({}, "nothing")})).exit_code, 0);
 }
 
+TEST(Expected, AnEntryIsNotTrueOnce) {
+  static const Cases cases = Cases::own();
+  const ExpectedFailures file = parse_expected(
+      "- {case: 'j*', requirement: J4, message: nothing, reason: Known.}\n", "known.yaml");
+  SuiteRun run;
+  ImplementationRun& node = run.implementations.emplace_back();
+  for (const SuiteCase& one : cases.all()) {
+    if (one.blank.name.starts_with("j")) node.cases.push_back(one.blank);
+  }
+  const std::size_t all = node.cases.size();
+  ASSERT_GT(all, 7U);
+  node.cases[1].result.verdict = CaseVerdict::kFail;
+  node.cases[1].result.failures = {kAck};
+  const std::vector<StaleExpectation> stale = untrue(file, run, cases);
+  ASSERT_EQ(stale.size(), 1U);
+  EXPECT_EQ(stale[0].place, "known.yaml:1");
+  const std::string& text = stale[0].text;
+  EXPECT_THAT(text, HasSubstr(std::to_string(all - 1) + " of the " + std::to_string(all) +
+                              " runs that 'j*' stands for do not fail so (" +
+                              node.cases[0].name + ", " + node.cases[2].name + ", "));
+  EXPECT_THAT(text, HasSubstr(", ...). The first: " + node.cases[0].name + " was expected"));
+  for (CaseRun& one : node.cases) {
+    one.result.verdict = CaseVerdict::kFail;
+    one.result.failures = {kAck};
+  }
+  EXPECT_TRUE(untrue(file, run, cases).empty());
+}
+
 TEST(Expected, AnEmptyFileKnowsOfNothing) {
   for (const char* text : {"", "# all mended\n"}) {
     EXPECT_EQ(hold(text, failed({})).exit_code, 0);

@@ -48,7 +48,7 @@ struct CaseRun {
 
 /// What went wrong outside of the cases.
 struct OutsideFault {
-  std::string when;         ///< "before j1.request", "after the last case", "at its end".
+  std::string when;         ///< "before j1.request", "after its last case", "after `bye`".
   std::string text;         ///< "was killed by signal 9 (Killed)".
   bool broke = false;       ///< It died or spoke there; else it only did not end as `bye` asks for.
   std::string stderr_text;  ///< Of the implementation then.
@@ -65,8 +65,8 @@ struct ImplementationRun {
   double wall_ms = 0;
 };
 
-/// An entry of the file of expected failures that is not true: it names what there is not, or its
-/// case passes or fails otherwise.
+/// An entry of the file of expected failures that is not true: it names what there is not, or of
+/// its cases some pass or fail otherwise.
 struct StaleExpectation {
   std::string place;  ///< "file:line".
   std::string text;

@@ -12,6 +12,7 @@
 
 #include "conformance/runner/subject_target.h"
 #include "conformance/suite/canary.h"
+#include "conformance/trace/headers.h"
 
 namespace rubric::suite {
 namespace {
@@ -39,26 +40,6 @@ std::string missing_role(const CaseRun& one, const attach::Identity& identity) {
   return {};
 }
 
-// Puts `what` in place of the header of its kind, wherever one stands.
-template <class Kind>
-bool replace_header(std::vector<trace::Item>& items, const Kind& what) {
-  bool found = false;
-  for (trace::Item& item : items) {
-    auto* header = std::get_if<trace::Header>(&item);
-    if (!header || !std::holds_alternative<Kind>(header->what)) continue;
-    header->what = what;
-    found = true;
-  }
-  return found;
-}
-
-bool states_seed(const std::vector<trace::Item>& items) {
-  return std::any_of(items.begin(), items.end(), [](const trace::Item& item) {
-    const auto* header = std::get_if<trace::Header>(&item);
-    return header && std::holds_alternative<trace::SeedHeader>(header->what);
-  });
-}
-
 // Works the cases of a plan, each repeat for itself, on several attachments.
 class Work {
  public:
@@ -71,7 +52,7 @@ class Work {
   /// What went wrong when nothing was asked, noticed when the case `before` was to begin.
   void keep_mishaps(attach::Attachment& attachment, std::size_t before) {
     for (attach::Mishap& one : attachment.take_mishaps()) {
-      const char* const at_end = one.broke ? "after its last case" : "at its end";
+      const char* const at_end = one.broke ? "after its last case" : "after `bye`";
       mishaps_.push_back({before, {before < run_.cases.size()
                                        ? "before " + plan_.cases[before / plan_.repeats].blank.name
                                        : at_end,
@@ -140,15 +121,11 @@ CaseRun run_one(const SuiteCase& one, attach::Attachment& attachment, const std:
   trace::File head;  // The case stands for itself.
   head.head = one.file->file.head;
   trace::Case itself = *one.one;
-  if (!profile.empty() && !replace_header(itself.items, trace::ProfileHeader{profile}) &&
-      !replace_header(head.head, trace::ProfileHeader{profile})) {
-    head.header({trace::ProfileHeader{profile}, {}, {}});
+  if (!profile.empty()) {
+    trace::set_header(head, itself, trace::ProfileHeader{profile});
+    out.profile = profile;
   }
-  if (!profile.empty()) out.profile = profile;
-  if (seed && !states_seed(itself.items) && !states_seed(head.head)) {
-    head.header({trace::SeedHeader{*seed}, {}, {}});
-    out.seed = *seed;
-  }
+  if (seed && trace::set_seed_if_none(head, itself, *seed)) out.seed = *seed;
   try {
     const std::string missing = missing_role(out, attachment.identity());
     if (missing.empty()) {

@@ -165,7 +165,7 @@ TEST(Run, WhatHappensBetweenCasesIsKept) {
     one.last = {{"ended with status 3", false, "boo\n"}};
   }), plan({"j4.*"}));
   ASSERT_EQ(ended.outside.size(), 1U);
-  EXPECT_EQ(ended.outside[0].when, "at its end");
+  EXPECT_EQ(ended.outside[0].when, "after `bye`");
   EXPECT_EQ(ended.outside[0].text, "ended with status 3");
   EXPECT_EQ(ended.outside[0].stderr_text, "boo\n");
   SuiteRun all;

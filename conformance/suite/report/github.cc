@@ -51,6 +51,12 @@ std::string github_annotations(const SuiteRun& run, std::size_t max) {
                                 escaped(implementation_name(run, i), true),
                                 escaped(dishonest, false)));
   }
+  for (std::size_t i = 0; i < run.implementations.size(); ++i) {
+    if (!broke_outside(run.implementations[i])) continue;
+    lines.push_back(fmt::format("::error title={} broke between cases::{}\n",
+                                escaped(implementation_name(run, i), true),
+                                escaped(outside_headline(run.implementations[i]), false)));
+  }
   for (const StaleExpectation& one : run.stale) {
     const std::size_t colon = one.place.rfind(':');  // "file:line".
     lines.push_back(fmt::format("::error file={},line={},title=expectation that is not true::{}\n",

@@ -44,6 +44,7 @@ Json implementation(const SuiteRun& run, std::size_t index) {
           {"real_time", one.identity.real_time},
           {"wall_ms", one.wall_ms},
           {"dishonest", one.dishonest},
+          {"outside", outside_headline(one)},
           {"stderr", one.stderr_text},
           {"counts", std::move(counts)},
           {"rules", {{"all", totals.all},
@@ -98,6 +99,7 @@ class Data {
             {"shard", run_.shard},
             {"traces", run_.traces},
             {"earlier", earlier_ != nullptr},
+            {"gone", gone()},
             {"stale", std::move(stale)},
             {"rules", rules()},
             {"implementations", std::move(implementations)},
@@ -144,7 +146,7 @@ class Data {
             {"unexpected", one.unexpected()},
             {"expectation", expectation_text(one.expectation)},
             {"expected_reason", one.expected_reason},
-            {"earlier", earlier_verdict(implementation, one)},
+            {"earlier", earlier_ ? earlier_verdict(*earlier_, run_, i, one) : std::string()},
             {"headline", headline(one)},
             {"reason", one.result.reason},
             {"profile", one.profile},
@@ -160,10 +162,15 @@ class Data {
             {"log", log(one, lines)}};
   }
 
-  std::string earlier_verdict(const ImplementationRun& implementation, const CaseRun& one) const {
-    if (!earlier_) return {};
-    const auto found = earlier_->verdicts.find({implementation.identity.name, one.name});
-    return found == earlier_->verdicts.end() ? std::string() : found->second;
+  Json gone() const {
+    Json out = Json::array();
+    if (!earlier_) return out;
+    for (const Change& one : compare(run_, *earlier_).gone) {
+      out.push_back({{"implementation", one.implementation},
+                     {"name", one.case_name},
+                     {"was", one.was}});
+    }
+    return out;
   }
 
   Json failure(const runner::Failure& one, const std::vector<trace::NodeHeader>& nodes,

@@ -1,5 +1,6 @@
 #include "conformance/suite/report/json.h"
 
+#include <map>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -15,6 +16,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kSchema = "rubric.test/1";
+constexpr const char* kListSchema = "rubric.test.list/1";
 
 Json ids(const std::vector<ReqId>& requirements) {
   Json out = Json::array();
@@ -79,6 +81,13 @@ Json requirement(const RequirementSummary& one) {
 Json implementation(const ImplementationRun& run) {
   Json cases = Json::array();
   for (const CaseRun& one : run.cases) cases.push_back(case_run(one));
+  Json outside = Json::array();
+  for (const OutsideFault& one : run.outside) {
+    outside.push_back({{"when", one.when},
+                       {"text", one.text},
+                       {"broke", one.broke},
+                       {"stderr", one.stderr_text}});
+  }
   Json requirements = Json::array();
   for (const RequirementSummary& one : by_requirement(run)) {
     requirements.push_back(requirement(one));
@@ -89,6 +98,7 @@ Json implementation(const ImplementationRun& run) {
           {"roles", roles(run.identity.roles)},
           {"real_time", run.identity.real_time},
           {"dishonest", run.dishonest},
+          {"outside", std::move(outside)},
           {"wall_ms", run.wall_ms},
           {"counts", counts(count(run))},
           {"cases", std::move(cases)},
@@ -137,6 +147,19 @@ std::string json_report(const SuiteRun& run) {
   return out.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+std::string json_list(const std::vector<SuiteCase>& cases) {
+  Json list = Json::array();
+  for (const SuiteCase& one : cases) {
+    list.push_back({{"name", one.blank.name},
+                    {"file", one.blank.file},
+                    {"comment", one.blank.comment},
+                    {"roles", roles(one.blank.roles)},
+                    {"rules", one.rules}});
+  }
+  const Json out = {{"schema", kListSchema}, {"cases", std::move(list)}};
+  return out.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
 EarlierRun read_json_report(std::string_view text) {
   Json all;
   try {
@@ -149,15 +172,22 @@ EarlierRun read_json_report(std::string_view text) {
     throw std::runtime_error(fmt::format("schema is \"{}\"; this reads {}", schema, kSchema));
   }
   EarlierRun earlier;
+  std::map<std::string, std::size_t> of_name;
   std::size_t i = 0;
   for (const Json& one : list_of(all, "implementations", "the report")) {
     const std::string place = fmt::format("implementations[{}]", i++);
     const std::string name = text_of(one, "name", place);
+    const std::size_t which = of_name[name]++;
     std::size_t k = 0;
     for (const Json& each : list_of(one, "cases", place)) {
       const std::string where = fmt::format("{}.cases[{}]", place, k++);
       const std::string case_name = text_of(each, "name", where);
-      earlier.verdicts[{name, case_name}] = text_of(each, "verdict", where);
+      const std::string verdict = text_of(each, "verdict", where);
+      const Json& repeat = member(each, "repeat", where);
+      if (!repeat.is_number_unsigned()) {
+        throw std::runtime_error(fmt::format("{}: repeat is no number", where));
+      }
+      earlier.verdicts[{name, case_name, which, repeat.get<std::uint32_t>()}] = verdict;
     }
   }
   return earlier;

@@ -18,7 +18,21 @@ struct Sums {
   std::size_t failures = 0;
   std::size_t errors = 0;
   std::size_t skipped = 0;
+  double wall_ms = 0;
+
+  void add(const Sums& other) {
+    tests += other.tests;
+    failures += other.failures;
+    errors += other.errors;
+    skipped += other.skipped;
+    wall_ms += other.wall_ms;
+  }
 };
+
+std::string attributes(const Sums& sums) {
+  return fmt::format("tests=\"{}\" failures=\"{}\" errors=\"{}\" skipped=\"{}\" time=\"{:.3f}\"",
+                     sums.tests, sums.failures, sums.errors, sums.skipped, sums.wall_ms / 1000);
+}
 
 // Readers split at the last dot.
 std::string class_name_of(std::string name) {
@@ -61,15 +75,33 @@ std::string testcase(const std::string& class_name, const CaseRun& one, Sums& su
   return inside.empty() ? out + "/>\n" : out + ">\n" + inside + "</testcase>\n";
 }
 
-std::string suite_element(const std::string& name, double wall_ms, const Sums& sums,
-                          const std::string& body) {
-  return fmt::format("<testsuite name=\"{}\" tests=\"{}\" failures=\"{}\" errors=\"{}\" "
-                     "skipped=\"{}\" time=\"{:.3f}\">\n{}</testsuite>\n",
-                     xml_text(name), sums.tests, sums.failures, sums.errors, sums.skipped,
-                     wall_ms / 1000, body);
+// What goes wrong between cases, and at the end, is nothing of any of them.
+std::string outside(const std::string& class_name, const ImplementationRun& run, Sums& sums) {
+  if (run.outside.empty()) return "";
+  ++sums.tests;
+  std::string body;
+  for (const OutsideFault& one : run.outside) {
+    body += xml_text(outside_text(one) + '\n' + one.stderr_text);
+  }
+  std::string inside = "<system-out>" + body + "</system-out>\n";
+  if (broke_outside(run)) {
+    ++sums.errors;
+    inside = fmt::format("<error type=\"error\" message=\"{}\">{}</error>\n",
+                         xml_text(outside_headline(run)), body);
+  }
+  return fmt::format("<testcase classname=\"{}\" name=\"outside_of_cases\" time=\"0\">\n"
+                     "{}</testcase>\n", xml_text(class_name), inside);
 }
 
-std::string stale_suite(const SuiteRun& run) {
+// Its numbers are those of the whole, too.
+std::string suite_element(const std::string& name, const Sums& sums, const std::string& body,
+                          Sums& whole) {
+  whole.add(sums);
+  return fmt::format("<testsuite name=\"{}\" {}>\n{}</testsuite>\n", xml_text(name),
+                     attributes(sums), body);
+}
+
+std::string stale_suite(const SuiteRun& run, Sums& whole) {
   if (run.stale.empty()) return "";
   Sums sums;
   std::string body;
@@ -80,18 +112,20 @@ std::string stale_suite(const SuiteRun& run) {
                         "<failure type=\"stale\" message=\"{}\"/>\n</testcase>\n",
                         xml_text(one.place), xml_text(one.text));
   }
-  return suite_element("rubric test: expectations", 0, sums, body);
+  return suite_element("rubric test: expectations", sums, body, whole);
 }
 
 }  // namespace
 
 std::string junit_report(const SuiteRun& run) {
-  std::string out = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n";
+  std::string suites;
+  Sums whole;
   for (std::size_t i = 0; i < run.implementations.size(); ++i) {
     const ImplementationRun& one = run.implementations[i];
     const std::string name = implementation_name(run, i);
     const std::string class_name = class_name_of(name);
     Sums sums;
+    sums.wall_ms = one.wall_ms;
     std::string body;
     if (!one.dishonest.empty()) {
       ++sums.tests;
@@ -101,9 +135,13 @@ std::string junit_report(const SuiteRun& run) {
                           xml_text(class_name), xml_text(one.dishonest));
     }
     for (const CaseRun& each : one.cases) body += testcase(class_name, each, sums);
-    out += suite_element("rubric test: " + name, one.wall_ms, sums, body);
+    body += outside(class_name, one, sums);
+    suites += suite_element("rubric test: " + name, sums, body, whole);
   }
-  return out + stale_suite(run) + "</testsuites>\n";
+  suites += stale_suite(run, whole);
+  return fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+                     "<testsuites name=\"rubric test\" {}>\n{}</testsuites>\n",
+                     attributes(whole), suites);
 }
 
 }  // namespace rubric::suite

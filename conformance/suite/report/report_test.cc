@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "codec/reflect/fault_text.h"
+#include "conformance/suite/report/compare.h"
 #include "conformance/suite/report/github.h"
 #include "conformance/suite/report/json.h"
 #include "conformance/suite/report/junit.h"
@@ -76,7 +77,7 @@ TEST(Report, TapHasAPointForEachCaseAndExpectation) {
             "  ...\n"
             "not ok 4 - tiny 0.3: a.error\n"
             "  ---\n  verdict: error\n  file: conformance/cases/j4.rtr\n  details: |\n"
-            "    conformance/cases/j4.rtr:3: no rule\n      but       it died\n"
+            "    conformance/cases/j4.rtr:3: it died\n"
             "    standard error:\n    panic: <b>&\\x01\\xff\n    # second: 50%\n"
             "  ...\n"
             "ok 5 - tiny 0.3: a.skip # SKIP skip: no base station\n"
@@ -97,8 +98,7 @@ TEST(Report, AnnotationsAreTheGravestFirstAndEscaped) {
   EXPECT_EQ(github_annotations(every_kind(), 3),
             "::error file=known.yaml,line=9,title=expectation that is not true::no case is called "
             "z.z\n"
-            "::error file=conformance/cases/j4.rtr,line=3,title=a.error on tiny 0.3::no rule: it "
-            "died\n"
+            "::error file=conformance/cases/j4.rtr,line=3,title=a.error on tiny 0.3::it died\n"
             "::error file=conformance/cases/j4.rtr,line=12,title=a.fail on tiny 0.3::J4-SEQ: at 7 "
             "it emitted ack_join\n");
   SuiteRun run = every_kind();
@@ -121,6 +121,39 @@ TEST(Report, ARefusedImplementationIsNoSuccess) {
   EXPECT_EQ(github_annotations(run), "::error title=tiny 0.3 is refused::it passes everything\n");
   EXPECT_NE(junit_report(run).find("<error type=\"error\" message=\"it passes everything\"/>"),
             std::string::npos);
+}
+
+TEST(Report, WhatHappensOutsideOfCasesIsShown) {
+  SuiteRun run = every_kind();
+  run.stale.clear();
+  ImplementationRun& tiny = run.implementations[0];
+  tiny.cases = {one("a.pass", CaseVerdict::kPass)};
+  tiny.outside = {{"after `bye`", "ended with status 3", false, "boo <1>\n"}};
+  EXPECT_EQ(tap_report(run), "TAP version 13\n1..1\nok 1 - tiny 0.3: a.pass\n"
+                             "# tiny 0.3: ended with status 3, after `bye`\n");
+  EXPECT_EQ(github_annotations(run), "");
+  std::string xml = junit_report(run);
+  EXPECT_NE(xml.find("tests=\"2\" failures=\"0\" errors=\"0\""), std::string::npos) << xml;
+  EXPECT_NE(xml.find("name=\"outside_of_cases\" time=\"0\">\n<system-out>ended with status 3, "
+                     "after `bye`\nboo &lt;1&gt;\n</system-out>"), std::string::npos) << xml;
+
+  tiny.outside.push_back({"before a.pass", "wrote 'x'", true, ""});
+  EXPECT_EQ(tap_report(run), "TAP version 13\n1..2\nok 1 - tiny 0.3: a.pass\n"
+                             "not ok 2 - tiny 0.3: outside of cases: wrote 'x', before a.pass "
+                             "(and 1 more)\n");
+  EXPECT_EQ(github_annotations(run),
+            "::error title=tiny 0.3 broke between cases::wrote 'x', before a.pass (and 1 more)\n");
+  xml = junit_report(run);
+  EXPECT_NE(xml.find("tests=\"2\" failures=\"0\" errors=\"1\""), std::string::npos) << xml;
+  EXPECT_NE(xml.find("<error type=\"error\" message=\"wrote 'x', before a.pass"),
+            std::string::npos) << xml;
+  const Json report = Json::parse(json_report(run));
+  EXPECT_EQ(report["exit_code"], 2);
+  EXPECT_EQ(report["implementations"][0]["outside"],
+            Json::parse(R"([{"when": "after `bye`", "text": "ended with status 3", "broke": false,
+                             "stderr": "boo <1>\n"},
+                            {"when": "before a.pass", "text": "wrote 'x'", "broke": true,
+                             "stderr": ""}])"));
 }
 
 TEST(Report, AtMostTenAnnotations) {
@@ -176,6 +209,59 @@ TEST(Report, JsonHasEverythingAndIsReadAgain) {
   const EarlierRun earlier = read_json_report(text);
   EXPECT_EQ(earlier.verdicts.size(), 7u);
   EXPECT_EQ(earlier.verdicts.at({"tiny", "a.weak"}), "weak");
+}
+
+TEST(Report, JUnitHasTheTotalsOfAllSuites) {
+  SuiteRun run = every_kind();
+  run.implementations.push_back(run.implementations[0]);
+  run.implementations[1].cases.resize(1);
+  const std::string xml = junit_report(run);
+  EXPECT_NE(xml.find("<testsuites name=\"rubric test\" tests=\"9\" failures=\"3\" errors=\"1\" "
+                     "skipped=\"2\" time=\"0.024\">"), std::string::npos) << xml;
+}
+
+TEST(Report, ALineWithoutRuleSaysSoAndWhatBrokeSaysHow) {
+  CaseRun run = one("a", CaseVerdict::kFail);
+  run.result.failures[0].requirements.clear();
+  EXPECT_EQ(headline(run), "at 7 it emitted ack_join");
+  EXPECT_EQ(in_full(run), "conformance/cases/j4.rtr:12: a line that names no rule\n"
+                          "  expected  m5 !> rA  ack_join(*)\n"
+                          "  but       at 7 it emitted ack_join\n");
+}
+
+std::string text_of(const std::vector<Change>& changes) {
+  std::string out;
+  for (const Change& one : changes) {
+    out += one.implementation + " " + one.case_name + ": " + one.was + "-" + one.is + "\n";
+  }
+  return out;
+}
+
+TEST(Compare, ChangedNewAndGone) {
+  SuiteRun before = every_kind();
+  ImplementationRun& tiny = before.implementations[0];
+  tiny.identity.version = "0.2";  // Versions are what is compared.
+  tiny.cases = {one("a.gone", CaseVerdict::kPass), one("a.fail", CaseVerdict::kPass),
+                one("a.twice", CaseVerdict::kPass), one("a.twice", CaseVerdict::kFail)};
+  tiny.cases[3].repeat = 1;
+  before.implementations.push_back(tiny);  // Of the same name, with cases of its own.
+  before.implementations[1].cases = {one("a.fail", CaseVerdict::kFail)};
+  before.implementations.push_back(before.implementations[1]);
+  before.implementations[2].identity.name = "other";
+
+  SuiteRun now = every_kind();
+  now.implementations[0].cases = {one("a.fail", CaseVerdict::kFail),
+                                  one("a.twice", CaseVerdict::kPass),
+                                  one("a.new", CaseVerdict::kSkip)};
+  now.implementations.push_back(now.implementations[0]);
+  now.implementations[1].cases = {one("a.fail", CaseVerdict::kPass)};
+  const Comparison since = compare(now, read_json_report(json_report(before)));
+  EXPECT_EQ(text_of(since.changed), "tiny 0.3 #1 a.fail: pass-fail\n"
+                                    "tiny 0.3 #2 a.fail: fail-pass\n");
+  EXPECT_EQ(text_of(since.added), "tiny 0.3 #1 a.new: -skip\n");
+  EXPECT_EQ(text_of(since.gone), "other a.fail: fail-\n"
+                                 "tiny 0.3 #1 a.gone: pass-\n"
+                                 "tiny 0.3 #1 a.twice#2: fail-\n");
 }
 
 struct BadJson {

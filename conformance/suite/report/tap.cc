@@ -80,6 +80,14 @@ std::string tap_report(const SuiteRun& run) {
                             plain(case_name(one)), directive(one));
       if (failed || one.result.verdict == CaseVerdict::kWeak) points += block(one);
     }
+    const ImplementationRun& implementation = run.implementations[i];
+    const std::string outside = plain(outside_headline(implementation));
+    if (broke_outside(implementation)) {
+      points += fmt::format("not ok {} - {}: outside of cases: {}\n", ++number, plain(name),
+                            outside);
+    } else if (!outside.empty()) {
+      points += fmt::format("# {}: {}\n", plain(name), outside);
+    }
   }
   for (const StaleExpectation& one : run.stale) {
     points += fmt::format("not ok {} - {}: {}\n", ++number, plain(one.place), plain(one.text));

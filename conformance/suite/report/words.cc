@@ -1,5 +1,7 @@
 #include "conformance/suite/report/words.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "codec/reflect/fault_text.h"
@@ -15,8 +17,8 @@ std::string base_name(const ImplementationRun& run) {
   return identity.version.empty() ? identity.name : identity.name + " " + identity.version;
 }
 
+// What broke has no rule, and a line of a case need not name one.
 std::string rules_of(const runner::Failure& failure) {
-  if (failure.requirements.empty()) return "no rule";
   return fmt::format("{}", fmt::join(failure.requirements, " "));
 }
 
@@ -63,7 +65,8 @@ std::string headline(const CaseRun& one) {
   }
   if (one.result.failures.empty()) return one.result.reason;
   const runner::Failure& first = one.result.failures.front();
-  std::string out = fmt::format("{}: {}", rules_of(first), first.text);
+  const std::string rules = rules_of(first);
+  std::string out = rules.empty() ? first.text : fmt::format("{}: {}", rules, first.text);
   if (one.result.failures.size() > 1) {
     out += fmt::format(" (and {} more)", one.result.failures.size() - 1);
   }
@@ -73,7 +76,13 @@ std::string headline(const CaseRun& one) {
 std::string in_full(const CaseRun& one) {
   std::string out;
   for (const runner::Failure& failure : one.result.failures) {
-    out += fmt::format("{}:{}: {}{}\n", one.file, failure.place.line, rules_of(failure),
+    const std::string place = fmt::format("{}:{}: ", one.file, failure.place.line);
+    const std::string rules = rules_of(failure);
+    if (rules.empty() && failure.expected.empty()) {
+      out += place + failure.text + '\n';
+      continue;
+    }
+    out += fmt::format("{}{}{}\n", place, rules.empty() ? "a line that names no rule" : rules,
                        failure.weak ? " (SHOULD)" : "");
     for (const std::string& name : failure.requirements) {
       const ReqId id = trace::requirement_id(name);
@@ -86,6 +95,25 @@ std::string in_full(const CaseRun& one) {
   }
   if (one.result.failures.empty() && !one.result.reason.empty()) out += one.result.reason + "\n";
   if (!one.stderr_text.empty()) out += "standard error:\n" + one.stderr_text + "\n";
+  return out;
+}
+
+bool broke_outside(const ImplementationRun& implementation) {
+  const auto& all = implementation.outside;
+  return std::any_of(all.begin(), all.end(), [](const OutsideFault& one) { return one.broke; });
+}
+
+std::string outside_text(const OutsideFault& fault) { return fault.text + ", " + fault.when; }
+
+std::string outside_headline(const ImplementationRun& implementation) {
+  const auto& all = implementation.outside;
+  if (all.empty()) return {};
+  const auto gravest =
+      std::max_element(all.begin(), all.end(), [](const OutsideFault& a, const OutsideFault& b) {
+        return a.broke < b.broke;
+      });
+  std::string out = outside_text(*gravest);
+  if (all.size() > 1) out += fmt::format(" (and {} more)", all.size() - 1);
   return out;
 }
 

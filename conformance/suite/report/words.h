@@ -29,6 +29,12 @@ std::string headline(const CaseRun& one);
 /// Rules with their sentences, the lines that were not kept, what happened instead, and the
 /// standard error of what broke.
 std::string in_full(const CaseRun& one);
+/// Whether it died or spoke outside of the cases.
+bool broke_outside(const ImplementationRun& implementation);
+/// "was killed by signal 9 (Killed), before j1.request".
+std::string outside_text(const OutsideFault& fault);
+/// In one line: the gravest of these, and how many more there are; empty: nothing.
+std::string outside_headline(const ImplementationRun& implementation);
 /// The command that runs just this case again.
 std::string replay_command(const SuiteRun& run, const ImplementationRun& implementation,
                            const CaseRun& one);

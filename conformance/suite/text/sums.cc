@@ -35,6 +35,36 @@ std::string broken_text(const ImplementationRun& implementation) {
   return out;
 }
 
+// What happened when no case was at work.
+std::string outside(const ImplementationRun& implementation, const TextOptions& options) {
+  constexpr std::size_t kShown = 4;
+  const std::vector<OutsideFault>& all = implementation.outside;
+  std::string out;
+  for (std::size_t i = 0; i < all.size() && (i < kShown || options.verbose); ++i) {
+    out += wrapped(fmt::format("{}{}: ", kIndent, all[i].broke ? "Broke" : "Note"),
+                   fmt::format("it {}.", outside_text(all[i])), options.width);
+    out += error_text(all[i].stderr_text, options);
+  }
+  if (all.size() > kShown && !options.verbose) {
+    out += fmt::format("{}and {} more\n", kIndent, all.size() - kShown);
+  }
+  return out;
+}
+
+template <class Say>
+std::string list_of(const std::vector<Change>& changes, const TextOptions& options, Say say) {
+  constexpr std::size_t kShown = 20;
+  std::string out;
+  for (std::size_t i = 0; i < changes.size() && (i < kShown || options.verbose); ++i) {
+    out += wrapped(kIndent, fmt::format("{}: {} {}", changes[i].implementation,
+                                        changes[i].case_name, say(changes[i])), options.width);
+  }
+  if (changes.size() > kShown && !options.verbose) {
+    out += fmt::format("{}and {} more; --verbose names them\n", kIndent, changes.size() - kShown);
+  }
+  return out;
+}
+
 }  // namespace
 
 std::string opening_text(const SuiteRun& run, const ImplementationRun& implementation,
@@ -71,6 +101,7 @@ std::string totals_text(const ImplementationRun& implementation, const TextOptio
   out += wrapped(kIndent, fmt::format("Of {} rules {} tried: {} kept, {} broken, {} not decided.",
                                       rules.all, rules.all - rules.untried, rules.kept,
                                       rules.broken, rules.undecided), options.width);
+  out += outside(implementation, options);
   const std::string broken = broken_text(implementation);
   if (!broken.empty()) out += wrapped(fmt::format("{}Broken: ", kIndent), broken, options.width);
   return '\n' + out;
@@ -78,32 +109,20 @@ std::string totals_text(const ImplementationRun& implementation, const TextOptio
 
 std::string changes_text(const SuiteRun& run, const EarlierRun& earlier, const std::string& name,
                          const TextOptions& options) {
-  constexpr std::size_t kShown = 30;
-  std::vector<std::string> changes;
-  std::size_t unknown = 0;
-  for (const ImplementationRun& implementation : run.implementations) {
-    for (const CaseRun& one : implementation.cases) {
-      if (one.repeat != 0) continue;
-      const auto was = earlier.verdicts.find({implementation.identity.name, one.name});
-      const std::string_view is = runner::verdict_text(one.result.verdict);
-      if (was == earlier.verdicts.end()) {
-        ++unknown;
-      } else if (was->second != is) {
-        changes.push_back(fmt::format("{}: {} was {}, is {}", implementation.identity.name,
-                                      one.name, was->second, is));
-      }
-    }
-  }
+  const Comparison since = compare(run, earlier);
   std::string out = '\n' + wrapped("", fmt::format(
-      "Since {}: {} with another verdict, {} that it does not have.", name,
-      counted(changes.size(), "case"), counted(unknown, "case")), options.width, kIndent.size());
-  for (std::size_t i = 0; i < changes.size() && (i < kShown || options.verbose); ++i) {
-    out += wrapped(kIndent, changes[i], options.width);
-  }
-  if (changes.size() > kShown && !options.verbose) {
-    out += fmt::format("{}and {} more\n", kIndent, changes.size() - kShown);
-  }
-  return out;
+      "Since {}: {} with another verdict, {} new, {} gone or not chosen.", name,
+      counted(since.changed.size(), "case"), since.added.size(), since.gone.size()),
+      options.width, kIndent.size());
+  out += list_of(since.changed, options, [](const Change& one) {
+    return fmt::format("was {}, is {}", one.was, one.is);
+  });
+  out += list_of(since.added, options, [](const Change& one) {
+    return fmt::format("is new: {}", one.is);
+  });
+  return out + list_of(since.gone, options, [](const Change& one) {
+    return fmt::format("is gone, was {}", one.was);
+  });
 }
 
 std::string closing_text(const SuiteRun& run, const TextOptions& options) {
@@ -116,8 +135,10 @@ std::string closing_text(const SuiteRun& run, const TextOptions& options) {
   std::size_t expected = 0;
   std::size_t errors = 0;
   std::size_t refused = 0;
+  std::size_t broken = 0;
   for (const ImplementationRun& implementation : run.implementations) {
     refused += !implementation.dishonest.empty();
+    broken += broke_outside(implementation);
     for (const CaseRun& one : implementation.cases) {
       const bool error = one.result.verdict == CaseVerdict::kError;
       errors += error;
@@ -133,6 +154,9 @@ std::string closing_text(const SuiteRun& run, const TextOptions& options) {
   }
   if (errors > 0) text += fmt::format(", {}", counted(errors, "error"));
   if (refused > 0) text += fmt::format(", {} refused", counted(refused, "implementation"));
+  if (broken > 0) {
+    text += fmt::format(", {} broke between cases", counted(broken, "implementation"));
+  }
   const char* verdict = code == 0 ? "as expected" : code == 1 ? "not as expected"
                         : code == 2 ? "broken" : "nothing was decided";
   out += '\n';

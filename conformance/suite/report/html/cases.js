@@ -2,7 +2,7 @@
 
 const kNoFilter = { text: '', verdict: 'all', role: 'all', family: 'all' };
 const filter = { ...kNoFilter };
-const kChoices = { verdict: ['unexpected', 'changed', ...kVerdicts],
+const kChoices = { verdict: ['unexpected', 'changed', 'new', ...kVerdicts],
   role: ['mote', 'sink', 'base_station'], family: families };
 const kRulesShown = 4;
 
@@ -20,6 +20,7 @@ function fits(one) {
   if (filter.verdict === 'all') return true;
   if (filter.verdict === 'unexpected') return one.runs.some((run) => run.unexpected);
   if (filter.verdict === 'changed') return one.runs.some(isChanged);
+  if (filter.verdict === 'new') return one.runs.some(isNew);
   return one.runs.some((run) => run.verdict === filter.verdict);
 }
 
@@ -74,6 +75,7 @@ function tile(implementation) {
     h('div', {}, implementation.dishonest
       ? [h('span', { class: verdictClass('error') }, 'refused'), ' ', implementation.dishonest]
       : words.length ? words : 'nothing was run'),
+    implementation.outside && h('div', {}, `outside of the cases: ${implementation.outside}`),
     total > 0 && h('div', { class: 'soft' }, ruleWords(implementation.rules)),
     h('div', { class: 'soft' },
       `${implementation.roles.join(', ').replace('_', ' ') || 'no role'} \u00b7 ` +
@@ -114,10 +116,25 @@ function stale() {
       h('li', {}, h('code', {}, one.place), ': ', one.text))));
 }
 
+// What an earlier run had and this one has not: its row would be empty.
+function gone() {
+  if (!data.gone.length) return null;
+  return h('details', { id: 'gone' },
+    h('summary', {}, `${count(data.gone.length, 'case')} of the earlier run ` +
+      `${data.gone.length === 1 ? 'is' : 'are'} gone, or not chosen this time`),
+    scroll('Cases that are gone', h('table', {},
+      h('thead', {}, h('tr', {}, ['Case', 'On', 'Was'].map((name) =>
+        h('th', { scope: 'col' }, name)))),
+      h('tbody', {}, data.gone.map((one) => h('tr', {},
+        h('th', { scope: 'row', class: 'mono' }, one.name), h('td', {}, one.implementation),
+        h('td', {}, h('span', { class: verdictClass(one.was) }, one.was))))))));
+}
+
 function filters(changed) {
   const has = (wanted) => data.cases.some((one) => one.runs.some(wanted));
   const verdicts = [['all', 'all'], ['unexpected', 'not as expected'],
     ...(data.earlier ? [['changed', 'changed since']] : []),
+    ...(has(isNew) ? [['new', 'new since']] : []),
     ...kVerdicts.filter((name) => name === filter.verdict || has((run) => run.verdict === name))
       .map((name) => [name, name])];
   const roles = [['all', 'all'], ['mote', 'mote'], ['sink', 'sink'],
@@ -154,7 +171,7 @@ function showCases(query) {
   main.replaceChildren(
     h('h2', {}, 'Cases'),
     h('ul', { class: 'tiles' }, data.implementations.map(tile)),
-    ...[stale()].filter(Boolean),
+    ...[stale(), gone()].filter(Boolean),
     filters(changed), caption,
     scroll('Matrix of cases', h('table', { id: 'matrix',
       class: data.implementations.length > 1 ? 'many' : 'one' },
