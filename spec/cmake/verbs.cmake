@@ -31,7 +31,11 @@ endif()
 function(rubric_library name)
   cmake_parse_arguments(arg "" "" "SOURCES;DEPS" ${ARGN})
   add_library(${name} STATIC ${arg_SOURCES})
-  target_link_libraries(${name} PUBLIC rubric_options ${arg_DEPS})
+  # Our warnings are for us: who uses an installed library has options of his own.
+  target_link_libraries(${name} PUBLIC $<BUILD_INTERFACE:rubric_options> ${arg_DEPS})
+  target_compile_features(${name} PUBLIC cxx_std_20)
+  target_include_directories(${name} INTERFACE $<INSTALL_INTERFACE:include/rubric>)
+  set_property(GLOBAL APPEND PROPERTY RUBRIC_LIBRARIES ${name})
 endfunction()
 
 # rubric_program(NAME SOURCES a.cc ... [DEPS lib ...]): a program, at the top of the build folder.

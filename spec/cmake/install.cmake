@@ -1,0 +1,103 @@
+# What `cmake --install` lays down, and the Debian packages that `cpack` makes of it:
+#   tool  the programs rubric and rubricc, their manual pages, completions, the Wireshark dissector
+#   dev   headers and libraries, for find_package(rubric) and pkg-config
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+set(config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/rubric)
+set(include_dir ${CMAKE_INSTALL_INCLUDEDIR}/rubric)
+
+# The conformance library is what `rubric test`, `check` and `explore` are made of. The libraries
+# of codec and conformance belong to it, without those of tests, fuzzing, commands and compiler.
+get_property(libraries GLOBAL PROPERTY RUBRIC_LIBRARIES)
+list(FILTER libraries EXCLUDE REGEX
+  "^firmware_|^rubric_(compiler|commands|cli|format|fuzz.*|legal.*|.*mutator|record.*|cpp_node.*)$")
+add_library(rubric_conformance INTERFACE)
+target_link_libraries(rubric_conformance INTERFACE ${libraries})
+set_target_properties(rubric_conformance PROPERTIES EXPORT_NAME conformance)
+
+install(TARGETS rubric rubricc COMPONENT tool)
+install(TARGETS rubric_runtime EXPORT rubric_codec COMPONENT dev)
+install(TARGETS ${libraries} rubric_conformance EXPORT rubric_conformance
+  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}/rubric COMPONENT dev)
+install(DIRECTORY codec conformance DESTINATION ${include_dir} COMPONENT dev
+  FILES_MATCHING PATTERN "*.h" PATTERN "adapters" EXCLUDE PATTERN "legal" EXCLUDE
+  PATTERN "codec_test" EXCLUDE PATTERN "codec_bench" EXCLUDE PATTERN "*fixture.h" EXCLUDE
+  PATTERN "testing.h" EXCLUDE PATTERN "cases" EXCLUDE PATTERN "promela" EXCLUDE)
+foreach(part codec conformance)
+  install(EXPORT rubric_${part} NAMESPACE rubric:: DESTINATION ${config_dir} COMPONENT dev)
+endforeach()
+
+configure_package_config_file(spec/cmake/rubric-config.cmake.in rubric-config.cmake
+  INSTALL_DESTINATION ${config_dir})
+write_basic_package_version_file(rubric-config-version.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/rubric-config.cmake
+  ${PROJECT_BINARY_DIR}/rubric-config-version.cmake DESTINATION ${config_dir} COMPONENT dev)
+
+# pkg-config files find the prefix from where they lie, so that it can be moved.
+file(RELATIVE_PATH up /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+string(REGEX REPLACE "/$" "" pc_prefix "\${pcfiledir}/${up}")
+set(pc_libraries "")
+foreach(library ${libraries})
+  get_target_property(type ${library} TYPE)
+  if(type STREQUAL "STATIC_LIBRARY")
+    string(APPEND pc_libraries " -l${library}")
+  endif()
+endforeach()
+foreach(part codec conformance)
+  configure_file(spec/cmake/rubric-${part}.pc.in rubric-${part}.pc @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/rubric-${part}.pc
+    DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT dev)
+endforeach()
+
+# Completions and manual pages are written by the program that they are about.
+foreach(pair bash:bash-completion/completions/rubric zsh:zsh/site-functions/_rubric
+    fish:fish/vendor_completions.d/rubric.fish)
+  string(REPLACE ":" ";" pair ${pair})
+  list(POP_FRONT pair shell place)
+  set(file ${PROJECT_BINARY_DIR}/completion/${shell})
+  add_custom_command(OUTPUT ${file}
+    COMMAND ${CMAKE_COMMAND} -E make_directory ${PROJECT_BINARY_DIR}/completion
+    COMMAND rubric completion ${shell} > ${file} DEPENDS rubric VERBATIM)
+  list(APPEND completions ${file})
+  get_filename_component(folder ${place} DIRECTORY)
+  get_filename_component(name ${place} NAME)
+  install(FILES ${file} DESTINATION ${CMAKE_INSTALL_DATADIR}/${folder} RENAME ${name}
+    COMPONENT tool)
+endforeach()
+add_custom_target(rubric_completions ALL DEPENDS ${completions})
+
+find_program(HELP2MAN help2man)
+if(HELP2MAN)
+  add_custom_command(OUTPUT man/rubric.1
+    COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/spec/cmake/man_pages.sh ${HELP2MAN} $<TARGET_FILE:rubric>
+      $<TARGET_FILE:rubricc> man
+    DEPENDS rubric rubricc spec/cmake/man_pages.sh VERBATIM)
+  add_custom_target(rubric_man ALL DEPENDS man/rubric.1)
+  install(DIRECTORY ${PROJECT_BINARY_DIR}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1
+    COMPONENT tool)
+else()
+  message(STATUS "No help2man: manual pages are not built")
+endif()
+install(FILES tools/wireshark/generated/rubric.lua
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/rubric/wireshark COMPONENT tool)
+install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT tool)
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME rubric)
+set(CPACK_PACKAGE_CONTACT "Rubric maintainers <maintainers@rubric.invalid>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "Codec and conformance test kit for small sensor networks")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_COMPONENTS_ALL tool dev)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_TOOL_PACKAGE_NAME rubric)
+set(CPACK_DEBIAN_DEV_PACKAGE_NAME librubric-dev)
+set(CPACK_COMPONENT_TOOL_DESCRIPTION
+  "Decodes captures of TinyOS active messages, judges them by the rules of the RUBICON\n"
+  "Communication Layer, and tests implementations against a reference machine.")
+set(CPACK_COMPONENT_DEV_DESCRIPTION "The codec (headers only) and the conformance library.")
+set(CPACK_DEBIAN_TOOL_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_TOOL_PACKAGE_SECTION net)
+set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libfmt-dev, libyaml-cpp-dev, nlohmann-json3-dev")
+include(CPack)

@@ -1,0 +1,20 @@
+#!/usr/bin/env bash
+# man_pages.sh HELP2MAN RUBRIC RUBRICC FOLDER: a manual page of each program and each command of
+# rubric, from what they say of themselves.
+set -euo pipefail
+help2man=$1 rubric=$2 rubricc=$3 folder=$4
+rm -rf "$folder"
+mkdir -p "$folder"
+version=$("$rubric" --version)
+
+page() {  # page NAME WHAT COMMAND
+  "$help2man" --no-info --no-discard-stderr --version-string="$version" --name="$2" \
+    --output="$folder/$1.1" "$3"
+  sed -i "1,/^\.TH/s/^\.TH .*/.TH ${1^^} 1 \"\" \"rubric $version\" \"User Commands\"/" "$folder/$1.1"
+}
+"$rubric" --help | sed -n '/^Subcommands:/,/^$/p' | sed -n 's/^  \([a-z][a-z-]*\)  *\(.*\)/\1\t\2/p' |
+  while IFS=$'\t' read -r command what; do
+    page "rubric-$command" "$what" "$rubric $command"
+  done
+page rubric "codec and conformance test kit for the RUBICON Communication Layer" "$rubric"
+page rubricc "compiler of wire specs" "$rubricc"
