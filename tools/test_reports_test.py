@@ -81,6 +81,8 @@ class Formats(Folder):
         cases = list(root.iter("testcase"))
         self.assertEqual(len(cases), CASES)
         self.assertEqual(len({c.get("name") for c in cases}), CASES)
+        suite, = root
+        self.assertEqual({**suite.attrib, "name": "rubric test"}, root.attrib)
         out = test("--target", HONEST, "--format", "tap")[1]
         self.assertIn("TAP version 13", out)
         self.assertIn(f"1..{CASES}", out)
@@ -112,10 +114,15 @@ class Formats(Folder):
         code, out, _ = test("--target", self.impatient_mote(), *args, "--compare", before)
         self.assertEqual(code, 1)
         self.assertIn(f"Since {before}: ", " ".join(out.split()))
-        self.assertRegex(out, r"rubric_python_mote: j8\.\w+ was pass, is fail")
+        self.assertRegex(out, r"rubric_python_mote[ .\d]*: j8\.\w+ was pass, is fail")
         out = test("--target", HONEST, *args, "--compare", before)[1]
-        self.assertIn("0 cases with another verdict, 0 cases that it does not have.",
+        self.assertIn("0 cases with another verdict, 0 new, 0 gone or not chosen.",
                       " ".join(out.split()))
+        out = test("--target", HONEST, "--cases", "j8.at_most_five", "--cases", "j4.few",
+                   "--compare", before)[1]
+        self.assertRegex(" ".join(out.split()), r"0 cases with another verdict, 1 new, [1-9]\d* gone")
+        self.assertRegex(out, r"\n  rubric_python_mote[ .\d]*: j4\.few is new: pass\n")
+        self.assertRegex(out, r"\n  rubric_python_mote[ .\d]*: j8\.\w+ is gone, was pass\n")
         for text, says in [("{", "no JSON"), ("{}", "schema")]:
             code, _, err = test("--target", HONEST, "--compare", self.write("x.json", text))
             self.assertEqual(code, 66)

@@ -174,7 +174,8 @@ RecordReader::Plan RecordReader::plan_radio(const Value& line, const Value& am) 
     Value values = Value::of_object();
     values.set("fcf", Value::of_integer(*fcf));
     if (const Value* dsn = given(frame, "dsn")) values.set("dsn", *dsn);
-    return {reflect::find_carrier(tinyos::tables::kProtocol, "radio_ack"), std::move(values), nullptr};
+    return {reflect::find_carrier(tinyos::tables::kProtocol, "radio_ack"), std::move(values),
+            nullptr};
   }
   const bool has_network = !frame.find("network") || given(frame, "network");
   const Type* type = reflect::find_carrier(protocol_, has_network ? "radio_i" : "radio_t");

@@ -9,6 +9,7 @@
 #include "codec/runtime/crc16.h"
 #include "codec/runtime/hdlc.h"
 #include "codec/runtime/ieee802154_fcs.h"
+#include "conformance/machine/ticks.h"
 #include "conformance/suite/report/log_lines.h"
 #include "conformance/suite/report/words.h"
 #include "conformance/trace/print.h"
@@ -20,7 +21,7 @@ using trace::Line;
 using trace::LinkKind;
 using trace::Op;
 
-constexpr std::int64_t kTicksPerSecond = 1024;  // Logs count in binary milliseconds.
+constexpr std::int64_t kNsPerSecond = 1'000'000'000;
 constexpr std::uint16_t kFcfData = 0x8841;      // IEEE 802.15.4: data, short addresses in one PAN.
 constexpr std::uint8_t kNetwork6Lowpan = 0x3F;  // TinyOS: an I-frame.
 constexpr std::size_t kSafeNameMax = 80;
@@ -97,7 +98,7 @@ class Capture {
   }
 
   void write(const Line& line, Packet& packet) {
-    packet.time_ns = line.time.from * 1'000'000'000 / kTicksPerSecond;
+    packet.time_ns = line.time.from * kNsPerSecond / machine::kTicksPerSecond;
     if (writer_.write(packet, line.link, out_)) ++packets_;
   }
 

@@ -2,17 +2,15 @@
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
 #include <random>
 #include <set>
-#include <stdexcept>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "conformance/suite/report/case_files.h"
+#include "conformance/suite/report/folder.h"
 #include "conformance/suite/report/html_assets.h"
 #include "conformance/suite/report/html_data.h"
 #include "conformance/suite/report/words.h"
@@ -21,19 +19,6 @@ namespace rubric::suite {
 namespace {
 
 namespace fs = std::filesystem;
-
-void make_folder(const fs::path& path) {
-  std::error_code error;
-  fs::create_directories(path, error);
-  if (error) throw std::runtime_error(path.string() + ": " + error.message());
-}
-
-void write(const fs::path& path, std::string_view text) {
-  std::ofstream out(path, std::ios::binary | std::ios::trunc);
-  out.write(text.data(), static_cast<std::streamsize>(text.size()));
-  out.close();
-  if (!out) throw std::runtime_error(path.string() + ": cannot be written");
-}
 
 // Names of folders and files, each once, even where capitals do not count.
 class Names {
@@ -56,21 +41,21 @@ class Names {
   std::set<std::string> taken_;
 };
 
-std::vector<CaseLinks> write_cases(const ImplementationRun& run, const fs::path& folder,
-                                   const std::string& link) {
-  if (!run.cases.empty()) make_folder(folder);
+// `place` ends with '/'.
+std::vector<CaseLinks> write_cases(const ImplementationRun& run, ReportFolder& folder,
+                                   const std::string& place) {
   Names names;
   std::vector<CaseLinks> out;
   for (const CaseRun& one : run.cases) {
     CaseLinks& links = out.emplace_back();
     if (one.result.log.lines().empty()) continue;  // Nothing was given to it.
     const std::string name = names.unique(case_name(one));
-    write(folder / (name + ".rtr"), case_rtr(one));
-    links.rtr = link + name + ".rtr";
+    links.rtr = place + name + ".rtr";
+    folder.write(links.rtr, case_rtr(one));
     const std::string capture = case_pcapng(one);
     if (capture.empty()) continue;
-    write(folder / (name + ".pcapng"), capture);
-    links.pcapng = link + name + ".pcapng";
+    links.pcapng = place + name + ".pcapng";
+    folder.write(links.pcapng, capture);
   }
   return out;
 }
@@ -104,18 +89,18 @@ std::string filled(std::string_view page, const std::vector<std::string_view>& v
 
 }  // namespace
 
-void write_html_report(const SuiteRun& run, const EarlierRun* earlier, const fs::path& folder) {
-  make_folder(folder);
+void write_html_report(const SuiteRun& run, const EarlierRun* earlier, const fs::path& path) {
+  ReportFolder folder(path);
   Names names;
   std::vector<std::vector<CaseLinks>> links;
   for (std::size_t i = 0; i < run.implementations.size(); ++i) {
     const std::string name = names.unique(implementation_name(run, i));
-    links.push_back(write_cases(run.implementations[i], folder / "cases" / name,
-                                "cases/" + name + "/"));
+    links.push_back(write_cases(run.implementations[i], folder, "cases/" + name + "/"));
   }
   const std::string nonce = random_nonce();
   const std::string data = html_data(run, earlier, links);
-  write(folder / "index.html", filled(kPage, {nonce, kStyle, data, kScript}));
+  folder.write("index.html", filled(kPage, {nonce, kStyle, data, kScript}));
+  folder.finish();
 }
 
 }  // namespace rubric::suite

@@ -9,10 +9,11 @@
 
 namespace rubric::suite {
 
-/// Writes DIR/index.html and DIR/cases/IMPLEMENTATION/CASE.{rtr,pcapng}; makes the folders. With
-/// `earlier` the page says which verdicts changed since. Throws std::runtime_error with the path
-/// that could not be written.
+/// Writes DIR/index.html and DIR/cases/IMPLEMENTATION/CASE.{rtr,pcapng}; makes the folders, and
+/// removes what an earlier report left of cases that there are no more (ReportFolder). With
+/// `earlier` the page says which verdicts changed since, which cases are new, and which are gone.
+/// Throws std::runtime_error with the path that could not be written.
 void write_html_report(const SuiteRun& run, const EarlierRun* earlier,
-                       const std::filesystem::path& folder);
+                       const std::filesystem::path& path);
 
 }  // namespace rubric::suite

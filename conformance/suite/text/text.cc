@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "codec/reflect/fault_text.h"
+#include "conformance/machine/ticks.h"
 #include "conformance/report/text.h"
 #include "conformance/suite/report/words.h"
 #include "conformance/suite/text/scene.h"
@@ -40,7 +41,7 @@ std::string head_of(const CaseRun& one) {
 }
 
 std::string ms_text(runner::Ticks ticks) {
-  return fmt::format("{:.1f} ms", static_cast<double>(ticks) * 1000 / 1024);
+  return fmt::format("{:.1f} ms", static_cast<double>(machine::us_of(ticks)) / 1000);
 }
 
 std::string when_text(const Failure& failure) {
@@ -139,8 +140,9 @@ class Story {
       if (i == 0 || options_.verbose) {
         out_ += failure_text(one, failure, options_);
       } else if (i <= kAlso) {
-        out_ += field("Also:", fmt::format("line {} [{}]: {}", failure.place.line,
-                                           joined(failure.requirements), failure.text),
+        const std::string rules = joined(failure.requirements);
+        out_ += field("Also:", fmt::format("line {}{}: {}", failure.place.line,
+                                           rules.empty() ? "" : " [" + rules + "]", failure.text),
                       options_);
       }
     }
@@ -152,7 +154,7 @@ class Story {
   void surroundings(const CaseRun& one) {
     if (one.result.failures.empty() || one.result.log.lines().empty()) return;
     const Failure& failure = one.result.failures.front();
-    out_ += fmt::format("{}Log, in ticks of 1/1024 s:\n", kIndent);
+    out_ += fmt::format("{}Log, in ticks of 1/{} s:\n", kIndent, machine::kTicksPerSecond);
     out_ += log_around(one, failure, 2 * kIndent.size(), options_.width);
     if (failure.expected.empty()) return;
     out_ += '\n' + chart_around(one, failure, 2 * kIndent.size(), options_.width);

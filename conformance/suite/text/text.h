@@ -27,7 +27,8 @@ std::string story_text(const SuiteRun& run, const ImplementationRun& implementat
                        const TextOptions& options);
 /// Counts, rules and times of an implementation.
 std::string totals_text(const ImplementationRun& implementation, const TextOptions& options);
-/// Cases whose verdict is another than in an earlier run; `name` is what the user calls that.
+/// Cases whose verdict is another than in an earlier run, that it does not have, and that are gone
+/// since; `name` is what the user calls that run.
 std::string changes_text(const SuiteRun& run, const EarlierRun& earlier, const std::string& name,
                          const TextOptions& options);
 /// Expectations that are not true, and how the run ends.

@@ -54,6 +54,7 @@ const familyOf = (id) => id.split('-')[0];
 const families = [...new Set(Object.keys(data.rules).map(familyOf))];
 const isCompared = data.implementations.map((_, i) => data.cases.some((one) =>
   one.runs.some((run) => run.implementation === i && run.earlier !== '')));
+const isNew = (run) => run.earlier === '' && isCompared[run.implementation];
 const isChanged = (run) => run.earlier !== '' && run.earlier !== run.verdict;
 
 // ---- Verdicts.
@@ -66,7 +67,7 @@ function flagsOf(run) {
   if (run.expectation === 'unexpected_pass') flags.push('was to fail');
   if (run.expectation === 'otherwise') flags.push('not as known');
   if (isChanged(run)) flags.push('was ' + run.earlier);
-  if (run.earlier === '' && isCompared[run.implementation]) flags.push('new');
+  if (isNew(run)) flags.push('new');
   return flags;
 }
 

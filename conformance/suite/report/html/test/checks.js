@@ -55,6 +55,18 @@ async function compared(page, go) {
   assert.deepStrictEqual(await texts(page, '#matrix tbody .flag'), ['was pass']);
   await go('#/cases?text=j4.wrong_seq.again');
   assert.deepStrictEqual(await texts(page, '#matrix tbody .flag'), ['new', 'new']);
+  await go('#/cases?verdict=new');
+  const fresh = await texts(page, '#matrix tbody th');
+  assert.ok(fresh.length > 0 && fresh.every((name) => name.endsWith('.again')), fresh.join(' '));
+  // What is gone has no row of its own there.
+  const gone = page.locator('#gone');
+  assert.strictEqual(await gone.locator('summary').textContent(),
+    '2 cases of the earlier run are gone, or not chosen this time');
+  assert.strictEqual(await gone.locator('table').isVisible(), false);
+  await gone.locator('summary').click();
+  assert.deepStrictEqual(await gone.locator('tbody tr').evaluateAll((all) =>
+    all.map((row) => [...row.children].map((cell) => cell.textContent))),
+  [['j4.that_was', 'good 1', 'fail'], ['j4.accept', 'retired', 'pass']]);
 }
 
 async function failing(page, go) {
