@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Installs what was built, and the Debian packages made of it, into clean folders and builds programs
-of somebody else against them, by CMake and by pkg-config, also after the folder was moved.
+"""Installs what was built, and the Debian packages made of it, and builds programs of somebody else
+against them, by CMake and by pkg-config, after the folder was moved as well.
 
 Usage: install_test.py BUILD_FOLDER.
 """
