@@ -40,13 +40,13 @@ def write_options(target, path, has_dictionary):
 
 def write_seeds(target, path):
     """A zip with the same bytes whenever it is built; folders become part of the names."""
-    seeds = target.seeds()
+    seeds = {"_".join((folder.name, *f.relative_to(folder).parts)): f.read_bytes()
+             for folder in target.folders for f in sorted(folder.rglob("*")) if f.is_file()}
     if not seeds:
         raise SystemExit(f"{target.name}: no seeds")
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
-        for seed in seeds:
-            name = str(fuzz.shown(seed)).replace("/", "_")
-            archive.writestr(zipfile.ZipInfo(name), seed.read_bytes())
+        for name, content in seeds.items():
+            archive.writestr(zipfile.ZipInfo(name), content)
 
 
 def main():

@@ -4,6 +4,7 @@ import os
 import pathlib
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import time
@@ -56,16 +57,7 @@ class Target:
         return [f for f in files if f.is_file()]
 
     def property(self):
-        """The sentence that the target's first lines state."""
-        words = []
-        for line in self.source.read_text(encoding="utf-8").splitlines():
-            if not line.startswith("// "):
-                break
-            words.append(line[3:].strip())
-        text = " ".join(words)
-        if not text.startswith("Property: "):
-            raise SystemExit(f"{shown(self.source)}: its first line is not `// Property: ...`")
-        return text[len("Property: "):]
+        return property_of(self.source)
 
     def options(self):
         """libFuzzer's options that hold for every run of this target."""
@@ -74,6 +66,25 @@ class Target:
         if self.dictionary:
             options.append(f"-dict={self.dictionary}")
         return options
+
+
+def sources():
+    """The files of the targets; one without a property is only a test of the mutators."""
+    files = sorted((ROOT / "fuzz/targets").glob("*_fuzz.cc"))
+    return [f for f in files if not property_of(f).startswith("none")]
+
+
+def property_of(source):
+    """The sentence that a target's first lines state."""
+    words = []
+    for line in source.read_text(encoding="utf-8").splitlines():
+        if not line.startswith("// "):
+            break
+        words.append(line[3:].strip())
+    text = " ".join(words)
+    if not text.startswith("Property: "):
+        raise SystemExit(f"{shown(source)}: its first line is not `// Property: ...`")
+    return text[len("Property: "):].rstrip(".")
 
 
 def shown(path):
@@ -143,6 +154,7 @@ class Run:
         libFuzzer's option that ends the run."""
         self.target = target
         self.finds = finds
+        self.interrupted = False
         for folder in (corpus, finds):
             folder.mkdir(parents=True, exist_ok=True)
         self.log = finds.parent / "log"
@@ -154,6 +166,11 @@ class Run:
             # A session of its own: Ctrl-C reaches the script alone, which then ends the run.
             self.process = subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT,
                                             env=environment(), cwd=ROOT, start_new_session=True)
+
+    def interrupt(self):
+        """As Ctrl-C does: the engine says what it did and ends."""
+        self.interrupted = True
+        self.process.send_signal(signal.SIGINT)
 
     def artifacts(self):
         return {f for f in self.finds.iterdir() if f.name.startswith(ARTIFACTS)}
@@ -181,7 +198,8 @@ class Result:
             or int(self.runs / max(self.seconds, 1))
         self.coverage = self.last(r"\bcov: (\d+)", text)
         self.corpus_size = self.last(r"\bcorp: (\d+)/", text)
-        self.failed = bool(self.crashes) or self.code not in (0, None)
+        ended = run.interrupted or self.code in (0, None)
+        self.failed = bool(self.crashes) or not ended
         self.cause = self.cause_in(text) if self.failed else ""
 
     @staticmethod
@@ -229,7 +247,7 @@ class Pool:
                         run.process.kill()
                 interrupted, waiting = stop, []
                 for run in running:
-                    run.process.send_signal(2)
+                    run.interrupt()
             for run in [r for r in running if r.process.poll() is not None]:
                 running.remove(run)
                 self.results.append(run.result())
