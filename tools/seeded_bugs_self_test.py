@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """The test of seeded bugs itself: it accepts no list with mistakes, and sees bugs not found.
 
-A stand-in for rubric says that an implementation breaks the rules that stand in its file `broken`.
+A stand-in for rubric says that an implementation breaks the rules that stand in its file `broken`;
+SHOULD-... is one that it should keep.
 """
 
 import json
@@ -15,12 +16,14 @@ TEST = pathlib.Path(__file__).parent / "seeded_bugs_test.py"
 STAND_IN = """#!/usr/bin/env python3
 import json, pathlib, sys
 rules = pathlib.Path(sys.argv[sys.argv.index("--target") + 1], "broken").read_text().split()
+weak = all(rule.startswith("SHOULD-") for rule in rules)
 cases = [{"name": "j1.x", "verdict": "pass", "failures": []}]
 if rules:
-    cases.append({"name": "j4.y", "verdict": "fail", "failures": [{"requirements": rules}]})
+    cases.append({"name": "j4.y", "verdict": "weak" if weak else "fail",
+                  "failures": [{"requirements": rules}]})
 report = {"implementations": [{"cases": cases}]}
 pathlib.Path(sys.argv[sys.argv.index("--out") + 1]).write_text(json.dumps(report))
-sys.exit(1 if rules else 0)
+sys.exit(0 if weak else 1)
 """
 GOOD = {"name": "a", "file": "broken", "old": "\n", "new": "J4-SEQ\n", "requirement": "J4-SEQ"}
 
@@ -52,11 +55,24 @@ class SeededBugs(unittest.TestCase):
             self.assertEqual(code, 1, text)
             self.assertIn("2 bugs, 1 not found", text)
 
+    def test_weak(self):
+        weak = {**GOOD, "new": "SHOULD-X\n", "requirement": "SHOULD-X", "verdict": "weak"}
+        code, text = self.try_bugs([weak])
+        self.assertEqual(code, 0, text)
+        self.assertIn("a: SHOULD-X in j4.y", text)
+        for change in ({"verdict": "fail"}, {"new": "SHOULD-X J4-SEQ\n"}, {"new": "SHOULD-Y\n"},
+                       {"new": ""}):
+            with self.subTest(change):
+                code, text = self.try_bugs([{**weak, **change}])
+                self.assertEqual(code, 1, text)
+                self.assertIn("1 bugs, 1 not found", text)
+
     def test_mistakes_in_the_list(self):
         for bugs, tree, why in (
                 ([], "\n", "not a list of bugs"),
                 ([{**GOOD, "why": "x"}], "\n", "has not just"),
                 ([{"name": "a"}], "\n", "has not just"),
+                ([{**GOOD, "verdict": "pass"}], "\n", "neither fail nor weak"),
                 ([GOOD, GOOD], "\n", "more than one bug is called a"),
                 ([{**GOOD, "old": "absent"}], "\n", "stands 0 times"),
                 ([GOOD], "\n\n", "stands 2 times"),

@@ -6,7 +6,8 @@ Usage: seeded_bugs_test.py --bugs BUGS.json --rubric RUBRIC --target COMMAND [--
 
 BUGS.json is a list of {"name", "file", "old", "new", "requirement"}: `old`, which stands exactly
 once in `file`, is replaced by `new`, and then a case has to fail at a line that names
-`requirement`. `file` is relative to FOLDER, the implementation's tree: where BUGS.json stands if
+`requirement`. Where only SHOULD rules are broken an entry says "verdict": "weak" as well: then a
+case has to be weak there, none may fail, and the run ends with 0. `file` is relative to FOLDER, the implementation's tree: where BUGS.json stands if
 not said. Each bug gets a copy of the tree of its own; {dir} in the commands stands for it, and they
 run there. First the copy is tried without a bug: it has to pass.
 """
@@ -21,6 +22,7 @@ import sys
 import tempfile
 
 KEYS = {"name", "file", "old", "new", "requirement"}
+CODE_OF = {"fail": 1, "weak": 0}    # How rubric test ends, by the worst verdict.
 TIMEOUT_S = 600
 
 
@@ -33,8 +35,10 @@ def read_bugs(path):
     if not isinstance(bugs, list) or not bugs:
         raise Mistake(f"{path}: not a list of bugs")
     for number, bug in enumerate(bugs, 1):
-        if not isinstance(bug, dict) or set(bug) != KEYS:
+        if not isinstance(bug, dict) or set(bug) - {"verdict"} != KEYS:
             raise Mistake(f"{path}: bug {number} has not just {', '.join(sorted(KEYS))}")
+        if bug.setdefault("verdict", "fail") not in CODE_OF:
+            raise Mistake(f"{path}: bug {number} is neither fail nor weak")
     names = [bug["name"] for bug in bugs]
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:
@@ -91,11 +95,11 @@ def cases_of(report):
     return [case for run in report["implementations"] for case in run["cases"]]
 
 
-def broken_rules(report):
+def broken_rules(report, verdicts=("fail", "weak")):
     """The rules that failed lines name, with the cases."""
     rules = {}
     for case in cases_of(report):
-        for failure in case["failures"] if case["verdict"] in ("fail", "weak") else []:
+        for failure in case["failures"] if case["verdict"] in verdicts else []:
             for rule in failure["requirements"]:
                 rules.setdefault(rule, {})[case["name"]] = True
     return rules
@@ -105,8 +109,13 @@ def judge(bug, code, report):
     """What is wrong with how the bug was found; empty: nothing."""
     rules = broken_rules(report)
     verdicts = sorted({case["verdict"] for case in cases_of(report)})
-    if code != 1:
-        return f"rubric test ended with {code}, not with 1; verdicts: {', '.join(verdicts)}"
+    wanted = CODE_OF[bug["verdict"]]
+    if code != wanted:
+        return f"rubric test ended with {code}, not with {wanted}; verdicts: {', '.join(verdicts)}"
+    if bug["verdict"] == "weak":
+        rules = broken_rules(report, ("weak",))
+        if not {"fail", "error"}.isdisjoint(verdicts):
+            return f"not just weak; verdicts: {', '.join(verdicts)}"
     if bug["requirement"] not in rules:
         others = ", ".join(sorted(rules)) or "nothing"
         return f"not found by {bug['requirement']}, but by {others}"

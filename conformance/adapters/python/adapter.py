@@ -30,7 +30,7 @@ class Adapter:
         self.wrote = False
         self.pass_time(int(words[0]), stop_at_output=command == "until")
         if command != "until" and getattr(self.mote, command)(*words[1:]) is False:
-            return f"unsupported {command} {words[1]}"
+            return f"unsupported {command} {words[1].split('(')[0]}"
         print("next", "-" if self.mote.due() is None else self.mote.due())
         return f"done {self.now}"
 

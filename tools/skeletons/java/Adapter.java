@@ -15,6 +15,8 @@ import java.util.Set;
  *   rubric test --target 'java -cp . Adapter'
  */
 final class Adapter implements World {
+    // TODO: what you play: "mote", "sink" or "base_station".
+    private static final String ROLE = "mote";
     private static final Set<String> COMMANDS =
             Set.of("rx", "call", "linkack", "line", "power", "until");
 
@@ -65,8 +67,8 @@ final class Adapter implements World {
     private String closing(String line) {
         String[] words = line.split(" ", 4);
         if (words[0].equals("hello")) {
-            // TODO: the name and version of your implementation, and the roles that it can play.
-            return "hello rct/1 my_node 0.1 roles=base_station time=virtual";
+            // TODO: the name and version of your implementation.
+            return "hello rct/1 my_node 0.1 roles=" + ROLE + " time=virtual";
         }
         if (words[0].equals("reset")) {
             return reset(line);
@@ -86,7 +88,7 @@ final class Adapter implements World {
 
     private String reset(String line) {
         String[] words = line.split(" ", 3);
-        if (!words[1].equals("base_station")) { // TODO: if you can play others.
+        if (!words[1].equals(ROLE)) {
             throw new Unsupported("role " + words[1]);
         }
         role = words[1];

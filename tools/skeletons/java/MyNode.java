@@ -53,7 +53,7 @@ final class MyNode {
 
     /** A call of the application. False: not there, and the cases that need it are skipped. */
     boolean call(String name, Map<String, String> arguments) {
-        // TODO: "send" has arguments dest, app_id, reliable and data, and so on.
+        // TODO: "join" has arguments type, transducers and actuators, and so on.
         if (name.equals("get_clock")) {
             world.up("clock(" + (now - startedAt) * 1000 / 1024 + ")");
             return true;
