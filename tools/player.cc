@@ -7,7 +7,9 @@
 
 #include <fmt/format.h>
 
+#include "conformance/attach/groups.h"
 #include "conformance/suite/canary.h"
+#include "conformance/suite/run.h"
 #include "conformance/trace/headers.h"
 #include "conformance/trace/print.h"
 #include "tools/cli/exit_codes.h"
@@ -24,11 +26,13 @@ void add_player_options(CLI::App& app, PlayerOptions& options) {
       ->check(CLI::Range(0.01, 3600.0))
       ->capture_default_str();
   app.add_option("--seed", options.seed, "Of what is random in nodes, where a trace has none")
-      ->check(cli::whole_number());
+      ->check(cli::whole_number())
+      ->check(CLI::Range(std::uint64_t{0}, suite::kSeedMax));
   cli::set_usage_exit_code(app, cli::kVerdictUsage);
 }
 
 void run_player_command(const CLI::App& app, const std::function<void()>& work) {
+  attach::end_groups_on_signals();
   try {
     work();
   } catch (const CLI::Error&) {  // An exit code that was chosen.

@@ -37,7 +37,6 @@ namespace {
 using Milliseconds = std::chrono::milliseconds;
 
 constexpr const char* kCommand = "test";
-constexpr std::uint64_t kSeedMax = 65535;
 
 constexpr const char* kFooter =
     "A target is a command that speaks rct/1, a real node at its own line, or the reference\n"
@@ -157,8 +156,8 @@ int list(const TestOptions& options, const std::vector<suite::SuiteCase>& cases)
   return cli::write_file(options.out, text) ? cli::kVerdictExpected : cli::kVerdictBroken;
 }
 
-// What nodes get of a seed has 16 bits; one more would be an earlier one again.
 void check_seeds(const TestOptions& options) {
+  using suite::kSeedMax;
   const std::uint64_t first = options.seed.value_or(0);
   if (first > kSeedMax) {
     throw CLI::ValidationError("--seed",

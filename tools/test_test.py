@@ -249,12 +249,15 @@ class Failing(Folder):
                 self.assertIn("1 implementation broke between cases", " ".join(out.split()))
 
     def test_signals_end_what_is_attached(self):
-        for signal_number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-            at = self.folder / f"pid{signal_number}"
-            run = subprocess.Popen(
-                [RUBRIC, "test", "--target", f"{self.fake('stubborn')} {at}", "--cases",
-                 "j10.mote*", "--timeout", "3000"],
-                stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        cases = "conformance/cases/j10.rtr"
+        for number, (signal_number, command) in enumerate([
+                (signal.SIGINT, ["test", cases]), (signal.SIGTERM, ["test", cases]),
+                (signal.SIGHUP, ["test", cases]), (signal.SIGINT, ["shrink", cases]),
+                (signal.SIGTERM, ["diff", cases, "--target", "machine"])]):
+            at = self.folder / f"pid{number}"
+            target = f"{self.fake('stubborn')} {at}"
+            run = subprocess.Popen([RUBRIC, *command, "--target", target, "--timeout", "3000"],
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
             self.addCleanup(run.wait)
             self.addCleanup(run.kill)
             self.assertTrue(comes(at.exists))

@@ -12,10 +12,14 @@
 
 namespace rubric::suite {
 
+/// What nodes get of a seed has 16 bits: one more would be an earlier one again.
+inline constexpr std::uint64_t kSeedMax = 65535;
+
 struct Plan {
   std::vector<SuiteCase> cases;
   std::string profile;                ///< Whatever the traces say; empty: as they say.
-  std::optional<std::uint64_t> seed;  ///< Of traces that state none; each repeat has one more.
+  std::optional<std::uint64_t> seed;  ///< Of traces that state none; each repeat has one more,
+                                      ///< up to kSeedMax.
   std::uint32_t repeats = 1;
   unsigned jobs = 1;                  ///< Attachments at once; one only where time is real.
   ExpectedFailures expected;
