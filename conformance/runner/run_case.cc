@@ -190,7 +190,8 @@ class Run {
            (reach.radio || reach.serial || reach.peis || reach.app);
   }
 
-  // A line of which the target shows nothing, or not all. False when the case cannot go on without it.
+  // A line of which the target shows nothing, or not all. False when the case cannot go on without
+  // it.
   bool pass_over(const Line& line) {
     const bool needed = line.op == Op::kGiven ||
                         (line.op == Op::kEmits && is_needed_later(case_, line));

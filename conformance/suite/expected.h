@@ -36,8 +36,8 @@ void expect(const ExpectedFailures& expected, const ImplementationRun& implement
             CaseRun& one);
 
 /// Entries that are not true of the run, each once: that name no case at all, or of whose cases
-/// some were worked and passed, or failed otherwise. Nothing is said of entries for another target or
-/// profile, nor of cases that were not worked to their end.
+/// some were worked and passed, or failed otherwise. Nothing is said of entries for another target
+/// or profile, nor of cases that were not worked to their end.
 std::vector<StaleExpectation> untrue(const ExpectedFailures& expected, const SuiteRun& run,
                                      const Cases& all);
 
