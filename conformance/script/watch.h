@@ -67,7 +67,7 @@ class Watched : public runner::Subject {
   void finish(Ticks now);
   const std::optional<Broken>& broken() const { return broken_; }
   /// Of this many steps the node gets its timers; a clock of a tick could run for ever.
-  static constexpr std::size_t kTimedStepsMax = 6000;
+  static constexpr std::size_t kTimedStepsMax = 2000;
 
  private:
   struct Seen {  // One step.

@@ -105,9 +105,11 @@ void Watched::check_labels(const Seen& seen) {
   const auto* called = std::get_if<machine::Called>(&seen.event);
   // Where the protocol says nothing: what TinyOS keeps away, ends of nothing, power.
   const bool kept_away = heard && (seen.handled.empty() || !listens(config_.role, heard->frame));
-  // What is for a mote of its island no sink hands to a base station, so no rule says what then.
-  const bool astray = heard && config_.role == Role::kBaseStation &&
-                      heard->frame.link == Link::kSerial;
+  // No sink hands its base station what is for a mote of their island: no rule says what then.
+  const bool astray =
+      config_.role == Role::kBaseStation &&
+      std::any_of(seen.handled.begin(), seen.handled.end(),
+                  [](const machine::Frame& frame) { return frame.link == Link::kSerial; });
   const bool beyond = kept_away || astray || std::holds_alternative<machine::SendDone>(seen.event) ||
                       std::holds_alternative<machine::LinkBusy>(seen.event) ||
                       std::holds_alternative<machine::Reboot>(seen.event);

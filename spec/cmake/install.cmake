@@ -10,7 +10,8 @@ set(include_dir ${CMAKE_INSTALL_INCLUDEDIR}/rubric)
 # of codec and conformance belong to it, without those of tests, fuzzing, commands and compiler.
 get_property(libraries GLOBAL PROPERTY RUBRIC_LIBRARIES)
 list(FILTER libraries EXCLUDE REGEX
-  "^firmware_|^rubric_(compiler|commands|cli|format|fuzz.*|legal.*|.*mutator|record.*|cpp_node.*)$")
+  "^firmware_|^rubric_(compiler|commands|cli|format|fuzz.*|legal.*|.*mutator|record.*)$")
+list(FILTER libraries EXCLUDE REGEX "^rubric_(cpp_node.*|script)$")
 add_library(rubric_conformance INTERFACE)
 target_link_libraries(rubric_conformance INTERFACE ${libraries})
 set_target_properties(rubric_conformance PROPERTIES EXPORT_NAME conformance)
@@ -22,7 +23,8 @@ install(TARGETS ${libraries} rubric_conformance EXPORT rubric_conformance
 install(DIRECTORY codec conformance DESTINATION ${include_dir} COMPONENT dev
   FILES_MATCHING PATTERN "*.h" PATTERN "adapters" EXCLUDE PATTERN "legal" EXCLUDE
   PATTERN "codec_test" EXCLUDE PATTERN "codec_bench" EXCLUDE PATTERN "*fixture.h" EXCLUDE
-  PATTERN "testing.h" EXCLUDE PATTERN "cases" EXCLUDE PATTERN "promela" EXCLUDE)
+  PATTERN "testing.h" EXCLUDE PATTERN "cases" EXCLUDE PATTERN "promela" EXCLUDE
+  PATTERN "script" EXCLUDE)
 foreach(part codec conformance)
   install(EXPORT rubric_${part} NAMESPACE rubric:: DESTINATION ${config_dir} COMPONENT dev)
 endforeach()

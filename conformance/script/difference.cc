@@ -1,0 +1,226 @@
+#include "conformance/script/difference.h"
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <set>
+
+#include "codec/generated/rubicon/net_msg.h"
+#include "conformance/machine/messages.h"
+#include "conformance/runner/run_case.h"
+#include "conformance/runner/subject_target.h"
+#include "conformance/script/cpp_target.h"
+#include "conformance/script/rtr.h"
+#include "conformance/trace/encode.h"
+
+namespace rubric::script {
+namespace {
+
+using machine::Link;
+using runner::Output;
+using trace::FieldValue;
+using trace::Line;
+using trace::Message;
+using trace::Value;
+namespace am = machine::am;
+
+constexpr std::size_t kOutputsMax = 4000;  // A clock of a tick could fill any memory.
+
+FieldValue* field(Line& line, std::string_view path) {
+  for (FieldValue& one : line.message.fields) {
+    if (one.path == path) return &one;
+  }
+  return nullptr;
+}
+
+void free_field(Line& line, std::string_view path) {
+  if (FieldValue* found = field(line, path)) found->value = Value::any();
+}
+
+// A clock may be a millisecond off, by how it rounds.
+void loosen(FieldValue* found) {
+  if (!found || !found->value.is(Value::Kind::kNumber)) return;
+  const std::int64_t ms = found->value.number;
+  constexpr std::int64_t kMax = 0xFFFFFFFF;
+  found->value = ms == 0 || ms == kMax ? Value::any() : Value::range(ms - 1, ms + 1);
+}
+
+// The node's own numbers are whatever it chooses: variables, one for each that it used.
+class Numbers {
+ public:
+  /// What stands for this number from now on: its first use binds it.
+  Value chosen(std::uint16_t number) {
+    auto [at, fresh] = names_.try_emplace(number);
+    if (fresh) at->second = "q" + std::to_string(++count_);
+    return Value::variable(at->second);
+  }
+  /// Nothing: the node has not used it.
+  std::optional<Value> known(std::uint16_t number) const {
+    const auto at = names_.find(number);
+    if (at == names_.end()) return {};
+    return Value::variable(at->second);
+  }
+  void forget(std::uint16_t number) { names_.erase(number); }
+
+ private:
+  std::map<std::uint16_t, std::string> names_;
+  int count_ = 0;
+};
+
+bool is_forwarded(const Output& output, const std::set<std::uint16_t>& sent) {
+  const auto message = rubicon::NetMsgView::parse(output.frame.bytes());
+  switch (output.requirement) {
+    case req::kN6Forward:
+    case req::kN6Route:
+    case req::kN7Radio:
+    case req::kN8Incoming:
+      return true;
+    case req::kN8Peis:
+      return !message || !sent.contains(message->seq_num());
+    default:
+      return false;
+  }
+}
+
+class Lenient {
+ public:
+  Lenient(const Script& script, const Played& played)
+      : script_(script), played_(played), node_(node_of(script).name) {}
+
+  trace::File file() {
+    trace::File file = begin_file(script_);
+    trace::Case one("difference");
+    Ticks now = 0;
+    for (std::size_t i = 0; i < played_.before.size(); ++i) {
+      show(played_.before[i], one, false);
+      now += script_.steps[i].delay;
+      one.add(given(script_.steps[i], now));
+      given_at_ = now;
+    }
+    show(played_.outputs.size(), one, true);
+    one.add(nothing_else(script_.length(), node_, {}));
+    file.cases.push_back(std::move(one));
+    return file;
+  }
+
+ private:
+  void show(std::size_t to, trace::Case& one, bool) {
+    for (; shown_ < to; ++shown_) one.add(expected(played_.outputs[shown_]));
+  }
+
+  Line expected(const Output& output) {
+    Line line = line_of(output, node_);
+    line.bytes.reset();
+    if (output.is_frame) {
+      loosen_frame(output, line);
+    } else {
+      loosen_notice(output.notice, line);
+    }
+    return line;
+  }
+
+  void loosen_frame(const Output& output, Line& line) {
+    const std::uint8_t type = output.frame.type;
+    if (output.frame.link == Link::kSerial) line.am.reset();  // Nobody looks (FACTS 2).
+    if (type == am::kJoinReply) {
+      // One that waited for the radio may tell the time of its request.
+      const bool waited = output.time != given_at_;
+      if (waited) free_field(line, "cur_time");
+      loosen(field(line, "cur_time"));
+    }
+    if (type == am::kJoin || type == am::kAckJoin) variable(line, "seq_num");
+    if (type != am::kNet || is_forwarded(output, sent_)) return;
+    if (output.requirement == req::kT2Ack || output.requirement == req::kS2Send ||
+        output.requirement == req::kS3Changed || output.requirement == req::kJ6Report) {
+      free_field(line, "seq_num");
+    } else {
+      variable(line, "seq_num");
+    }
+  }
+
+  void variable(Line& line, std::string_view path) {
+    FieldValue* found = field(line, path);
+    if (!found || !found->value.is(Value::Kind::kNumber)) return;
+    found->value = numbers_.chosen(static_cast<std::uint16_t>(found->value.number));
+  }
+
+  void loosen_notice(const machine::Notice& notice, Line& line) {
+    if (const auto* sent = std::get_if<machine::SendResult>(&notice)) {
+      if (sent->seq_num == machine::kNoSeq) return;
+      sent_.insert(sent->seq_num);
+      variable(line, "seq_num");
+    } else if (const auto* ack = std::get_if<machine::AckReceived>(&notice)) {
+      if (ack->success && not_well_.contains(ack->seq_num)) free_field(line, "result");
+      variable(line, "seq_num");
+    } else if (const auto* joined = std::get_if<machine::Joined>(&notice)) {
+      if (!joined->success) free_field(line, "address");
+    } else if (const auto* made = std::get_if<machine::ChannelResult>(&notice)) {
+      if (!made->success) free_field(line, "channel");
+    } else if (const auto* value = std::get_if<machine::InputValue>(&notice)) {
+      if (!value->success) free_field(line, "value");
+    } else if (std::holds_alternative<machine::Clock>(notice)) {
+      loosen(field(line, "ms"));
+    }
+  }
+
+  // A frame that answers the node says the number that the node chose.
+  Line given(const Step& step, Ticks now) {
+    Line line = line_of(step, now, node_);
+    // Success and failure are both right for it (decision 108).
+    const FieldValue* code = field(line, "payload.body.ack");
+    const FieldValue* acked = field(line, "payload.body.seq_num");
+    if (code && acked && code->value.number != 0) {
+      not_well_.insert(static_cast<std::uint16_t>(acked->value.number));
+    }
+    for (const std::string_view path : {"seq_num", "payload.body.seq_num"}) {
+      FieldValue* found = field(line, path);
+      const bool answers = line.message.name == "join_reply" || path != "seq_num";
+      if (!found || !answers || !found->value.is(Value::Kind::kNumber)) continue;
+      const auto known = numbers_.known(static_cast<std::uint16_t>(found->value.number));
+      if (!known || !is_whole(line)) continue;
+      found->value = *known;
+      line.bytes.reset();
+    }
+    return line;
+  }
+
+  // Whether the fields of a frame's line say all that its bytes do.
+  bool is_whole(Line line) const {
+    const trace::AmFrame exact = trace::frame_of(line, {});
+    line.bytes.reset();
+    return trace::frame_of(line, {}) == exact;
+  }
+
+  const Script& script_;
+  const Played& played_;
+  std::string node_;
+  Numbers numbers_;
+  std::set<std::uint16_t> sent_;      // Numbers that send returned,
+  std::set<std::uint16_t> not_well_;  // and that were acked with a code other than 0.
+  std::size_t shown_ = 0;
+  Ticks given_at_ = 0;
+};
+
+}  // namespace
+
+trace::File lenient_file(const Script& script, const Played& played) {
+  return Lenient(script, played).file();
+}
+
+Difference difference(const Script& script) {
+  const Script compared = until_free(without_undecided(script));
+  runner::SubjectTarget reference(std::make_unique<runner::Machine>());
+  const Played played = play(compared, reference);
+  Difference out;
+  out.steps = compared.steps.size();
+  if (played.outputs.size() > kOutputsMax) return out;
+  out.file = lenient_file(compared, played);
+  const runner::CaseResult result = runner::run_case(
+      out.file, out.file.cases[0], [](const trace::NodeHeader&) { return cpp_target(); });
+  if (result.verdict == runner::CaseVerdict::kPass) return out;
+  if (result.verdict == runner::CaseVerdict::kWeak) return out;
+  out.text = result.failures.empty() ? result.reason : runner::explain(result, "difference");
+  return out;
+}
+
+}  // namespace rubric::script

@@ -1,0 +1,45 @@
+// The machine and the independent node do the same, as far as the rules say.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "conformance/runner/case_files.h"
+#include "conformance/script/bytes.h"
+#include "conformance/script/difference.h"
+#include "conformance/script/rtr.h"
+#include "conformance/trace/check.h"
+#include "conformance/trace/print.h"
+
+namespace rubric::script {
+namespace {
+
+std::vector<CaseScript> golden_scripts() {
+  std::vector<CaseScript> out;
+  for (const trace::Parsed& file : runner::load_cases("conformance/cases")) {
+    for (const trace::Case& one : file.file.cases) {
+      for (CaseScript& each : scripts_of(file.file, one)) {
+        each.node = one.name + "." + each.node;
+        out.push_back(std::move(each));
+      }
+    }
+  }
+  return out;
+}
+
+TEST(Difference, NoneInGoldenTraces) {
+  std::size_t steps = 0;
+  std::size_t compared = 0;
+  for (const CaseScript& each : golden_scripts()) {
+    const Difference difference = script::difference(each.script);
+    EXPECT_EQ(difference.text, "") << each.node << "\n" << trace::print(difference.file);
+    const auto wrong = trace::check(difference.file);
+    EXPECT_TRUE(wrong.empty()) << each.node << ": " << wrong[0].text;
+    steps += each.script.steps.size();
+    compared += difference.steps;
+  }
+  std::printf("%zu of %zu steps compared\n", compared, steps);
+  EXPECT_GT(compared * 10, steps * 7);  // What is free must not swallow what is not.
+}
+
+}  // namespace
+}  // namespace rubric::script

@@ -1,0 +1,17 @@
+// Property: given the same, the reference machine and the independent C++ node do the same, up to
+// what the rules leave free (conformance/script/README.md).
+#include <cstddef>
+#include <cstdint>
+
+#include "conformance/script/bytes.h"
+#include "conformance/script/difference.h"
+#include "conformance/trace/check.h"
+#include "fuzz/support/require.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace rubric;
+  const script::Difference difference = script::difference(script::decode(Bytes(data, size)));
+  fuzz::require(difference.text.empty(), difference.text.c_str());
+  fuzz::require(trace::check(difference.file).empty(), "what they are held against is a trace");
+  return 0;
+}
