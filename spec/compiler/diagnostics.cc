@@ -13,12 +13,7 @@ constexpr std::size_t kShownMax = 500;        // Diagnostics printed in a run.
 constexpr std::size_t kSourceLineMax = 200;   // Bytes of a source line that are shown.
 constexpr std::size_t kListedMax = 12;        // Names in a list of known ones.
 
-std::string_view line_of(std::string_view text, int line) {
-  for (int at = 1; at < line; ++at) {
-    const std::size_t end = text.find('\n');
-    if (end == text.npos) return {};
-    text.remove_prefix(end + 1);
-  }
+std::string_view first_line(std::string_view text) {
   text = text.substr(0, text.find('\n'));
   if (text.ends_with('\r')) text.remove_suffix(1);
   return text;
@@ -56,12 +51,21 @@ std::size_t distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 void Diagnostics::add_source(const std::string& file, std::string text) {
-  sources_.insert_or_assign(file, std::move(text));
+  Source& source = sources_[file];
+  source.lines = {0};
+  for (std::size_t end = text.find('\n'); end != text.npos; end = text.find('\n', end + 1)) {
+    source.lines.push_back(end + 1);
+  }
+  source.text = std::move(text);
 }
 
-const std::string* Diagnostics::source(const std::string& file) const {
+std::string_view Diagnostics::source_from(const std::string& file, int line) const {
   const auto found = sources_.find(file);
-  return found == sources_.end() ? nullptr : &found->second;
+  if (found == sources_.end() || line < 1) return {};
+  const Source& source = found->second;
+  const auto index = static_cast<std::size_t>(line - 1);
+  if (index >= source.lines.size()) return {};
+  return std::string_view(source.text).substr(source.lines[index]);
 }
 
 void Diagnostics::error(const Place& place, std::string what, std::string_view expected) {
@@ -90,9 +94,9 @@ std::string Diagnostics::print() const {
       continue;
     }
     out += fmt::format("{}:{}:{}: error: {}\n", place.file, place.line, place.column, found.text);
-    const std::string* text = source(place.file);
-    if (text == nullptr) continue;
-    const std::string_view line = line_of(*text, place.line).substr(0, kSourceLineMax);
+    if (!sources_.contains(place.file)) continue;
+    const std::string_view line =
+        first_line(source_from(place.file, place.line)).substr(0, kSourceLineMax);
     const std::size_t before = static_cast<std::size_t>(std::max(place.column - 1, 0));
     if (before > line.size()) continue;
     out += fmt::format("    {}\n    {}^\n", line, blank_like(line, before));

@@ -22,7 +22,8 @@ class Diagnostics {
  public:
   /// Remembers a file's text so that its lines can be shown.
   void add_source(const std::string& file, std::string text);
-  const std::string* source(const std::string& file) const;
+  /// That text from a line on, which counts from 1; empty where there is no such file or line.
+  std::string_view source_from(const std::string& file, int line) const;
 
   /// `expected` may be empty. The same error at the same place is kept once: an aliased YAML node
   /// is read as often as it is used.
@@ -36,7 +37,11 @@ class Diagnostics {
 
  private:
   using Key = std::tuple<std::string, int, int, std::string>;
-  std::map<std::string, std::string> sources_;
+  struct Source {
+    std::string text;
+    std::vector<std::size_t> lines;  // Where each begins.
+  };
+  std::map<std::string, Source> sources_;
   std::map<Key, Diagnostic> found_;
 };
 

@@ -34,6 +34,37 @@ bool is_word_start(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_word(char c) { return is_word_start(c) || is_digit(c); }
 
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
+
+/// Where the character `offset` of a YAML scalar stands. One of several lines has lost its line ends
+/// and indents: its words are looked up in the `source`, which begins with the line of `begin`. Where
+/// it is not written as it reads (escapes) that leads to `begin`.
+Place place_in_scalar(const Place& begin, std::string_view text, std::size_t offset,
+                      std::string_view source) {
+  Place at = begin;
+  auto i = static_cast<std::size_t>(begin.column - 1);
+  const auto go_on = [&] {
+    ++at.column;
+    if (source[i++] != '\n') return;
+    ++at.line;
+    at.column = 1;
+  };
+  if (i < source.size() && (source[i] == '|' || source[i] == '>')) {
+    const int header = at.line;
+    while (i < source.size() && at.line == header) go_on();
+  }
+  Place last = at;
+  for (std::size_t k = 0; k < text.size() && k <= offset; ++k) {
+    if (is_blank(text[k])) continue;
+    while (i < source.size() && is_blank(source[i])) go_on();
+    if (i >= source.size() || source[i] != text[k]) return begin;
+    if (k == offset) return at;
+    go_on();
+    last = at;
+  }
+  return last;  // Behind the end.
+}
+
 struct Fault {};  // Thrown within the parser after the diagnostic, caught in parse_expr.
 
 class Parser {
@@ -57,6 +88,8 @@ class Parser {
   }
 
   Place here() const {
+    const std::string_view source = diagnostics_.source_from(place_.file, place_.line);
+    if (!source.empty()) return place_in_scalar(place_, text_, token_start_, source);
     Place at = place_;
     at.column += static_cast<int>(token_start_);
     return at;
