@@ -220,6 +220,27 @@ TEST(Report, JUnitHasTheTotalsOfAllSuites) {
                      "skipped=\"2\" time=\"0.024\">"), std::string::npos) << xml;
 }
 
+TEST(Report, HeadlinesSayWhatShouldHaveBeen) {
+  CaseRun run = one("a", CaseVerdict::kFail);
+  runner::Failure& failure = run.result.failures[0];
+  failure.forbidden = true;
+  EXPECT_EQ(headline(run), "J4-SEQ: forbidden, but at 7 it emitted ack_join");
+  failure.forbidden = false;
+  failure.expected = "a+2000..4300 m5 > app  joined(result=fail ...)  [J8-FAIL]";
+  failure.requirements = {"J8-FAIL"};
+  failure.text = "it emitted nothing there";
+  EXPECT_EQ(headline(run), "J8-FAIL: expected m5 > app joined(result=fail ...), but it emitted "
+                           "nothing there");
+}
+
+TEST(Report, HeadlinesOfErrorsBeginWithWhatBroke) {
+  CaseRun run = one("a", CaseVerdict::kError);
+  EXPECT_EQ(headline(run), "it died");
+  run.result.reason = "`call 0 join(type=1)`: ended with status 134";
+  EXPECT_EQ(what_broke(run), "ended with status 134");
+  EXPECT_EQ(headline(run), "ended with status 134, at `call 0 join(type=1)`");
+}
+
 TEST(Report, ALineWithoutRuleSaysSoAndWhatBrokeSaysHow) {
   CaseRun run = one("a", CaseVerdict::kFail);
   run.result.failures[0].requirements.clear();

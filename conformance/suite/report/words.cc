@@ -1,11 +1,14 @@
 #include "conformance/suite/report/words.h"
 
 #include <algorithm>
+#include <optional>
 
 #include <fmt/format.h>
 
 #include "codec/reflect/fault_text.h"
 #include "conformance/report/shell.h"
+#include "conformance/suite/report/log_lines.h"
+#include "conformance/trace/print.h"
 #include "conformance/trace/trace.h"
 
 namespace rubric::suite {
@@ -20,6 +23,15 @@ std::string base_name(const ImplementationRun& run) {
 // What broke has no rule, and a line of a case need not name one.
 std::string rules_of(const runner::Failure& failure) {
   return fmt::format("{}", fmt::join(failure.requirements, " "));
+}
+
+// What should have happened: "expected m5 > app joined(result=fail ...), but ".
+std::string asked_text(const runner::Failure& failure) {
+  if (failure.forbidden) return "forbidden, but ";
+  const std::optional<trace::Line> asked = asked_line(failure);
+  if (!asked) return {};
+  return fmt::format("expected {} {} {} {}, but ", asked->node, trace::op_text(asked->op),
+                     asked->link, trace::print(asked->message));
 }
 
 }  // namespace
@@ -59,14 +71,25 @@ bool is_undecided(const CaseRun& one) {
          one.result.verdict == runner::CaseVerdict::kInconclusive;
 }
 
+std::string what_broke(const CaseRun& one) {
+  const std::string& reason = one.result.reason;
+  const std::size_t behind = reason.starts_with('`') ? reason.find("`: ") : reason.npos;
+  return behind == reason.npos ? reason : reason.substr(behind + 3);
+}
+
 std::string headline(const CaseRun& one) {
   if (one.expectation == Expectation::kUnexpectedPass) {
     return "it passes, but was expected to fail: " + one.expected_reason;
   }
+  if (one.result.verdict == runner::CaseVerdict::kError) {
+    const std::string what = what_broke(one);
+    const std::string asked = one.result.reason.substr(0, one.result.reason.size() - what.size());
+    return asked.empty() ? what : fmt::format("{}, at {}", what, asked.substr(0, asked.size() - 2));
+  }
   if (one.result.failures.empty()) return one.result.reason;
   const runner::Failure& first = one.result.failures.front();
   const std::string rules = rules_of(first);
-  std::string out = rules.empty() ? first.text : fmt::format("{}: {}", rules, first.text);
+  std::string out = (rules.empty() ? "" : rules + ": ") + asked_text(first) + first.text;
   if (one.result.failures.size() > 1) {
     out += fmt::format(" (and {} more)", one.result.failures.size() - 1);
   }

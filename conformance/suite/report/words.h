@@ -24,6 +24,8 @@ std::string implementation_name(const SuiteRun& run, std::size_t index);
 std::string case_name(const CaseRun& one);
 /// Skipped or inconclusive.
 bool is_undecided(const CaseRun& one);
+/// Why an error is one, without the command that was asked then.
+std::string what_broke(const CaseRun& one);
 /// In one line: the first failure, or why there is no verdict.
 std::string headline(const CaseRun& one);
 /// Rules with their sentences, the lines that were not kept, what happened instead, and the

@@ -101,7 +101,7 @@ class Story {
  private:
   // What makes a second case like a first one: the rules that it breaks, or what broke.
   static std::string kind_of(const CaseRun& one) {
-    if (one.result.verdict == CaseVerdict::kError) return one.result.reason;
+    if (one.result.verdict == CaseVerdict::kError) return what_broke(one);
     if (one.result.failures.empty()) return one.name;
     return joined(one.result.failures.front().requirements);
   }

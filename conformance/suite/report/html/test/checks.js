@@ -236,7 +236,8 @@ async function harmless(page, go) {
   const folders = fs.readdirSync(path.join(page.folder, 'cases'));
   assert.deepStrictEqual(folders.filter((name) => !/^[\w.~-]+$/.test(name)), []);
   assert.strictEqual(folders.length, 3);
-  assert.deepStrictEqual(fs.readdirSync(page.folder).sort(), ['cases', 'index.html']);
+  assert.deepStrictEqual(fs.readdirSync(page.folder).sort(),
+    ['cases', 'index.html', 'report.files']);
 }
 
 async function nowhere(page, go) {
