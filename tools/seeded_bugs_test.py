@@ -7,9 +7,10 @@ Usage: seeded_bugs_test.py --bugs BUGS.json --rubric RUBRIC --target COMMAND [--
 BUGS.json is a list of {"name", "file", "old", "new", "requirement"}: `old`, which stands exactly
 once in `file`, is replaced by `new`, and then a case has to fail at a line that names
 `requirement`. Where only SHOULD rules are broken an entry says "verdict": "weak" as well: then a
-case has to be weak there, none may fail, and the run ends with 0. `file` is relative to FOLDER, the implementation's tree: where BUGS.json stands if
-not said. Each bug gets a copy of the tree of its own; {dir} in the commands stands for it, and they
-run there. First the copy is tried without a bug: it has to pass.
+case has to be weak there, none may fail, and the run ends with 0. `file` is relative to FOLDER, the
+implementation's tree: where BUGS.json stands if not said. Each bug gets a copy of the tree of its
+own; {dir} in the commands stands for it, and they run there. First the copy is tried without a bug:
+it has to pass.
 """
 
 import argparse
