@@ -163,6 +163,29 @@ TEST(RunCase, WhatWasBrokenBeforeStaysBroken) {
   }
 }
 
+// Says when it is reset.
+class Started : public Ticker {
+ public:
+  explicit Started(std::string& happened) : Ticker({}), happened_(happened) {}
+  void reset(const machine::Config&) override { happened_ += "reset "; }
+
+ private:
+  std::string& happened_;
+};
+
+TEST(RunCase, NoNodeIsResetBeforeAllAreThere) {  // Where time is real they would be out of step.
+  const trace::Parsed parsed = trace::parse(
+      "%rtr 1\n%profile paper\n%node m2 mote id=2 iut\n%node m5 mote id=5 iut\ncase x\n"
+      "0..50 m5 !> app clock(*)\n", "x.rtr");
+  ASSERT_EQ(parsed.errors(), "");
+  std::string happened;
+  run_case(parsed.file, parsed.file.cases.at(0), [&](const trace::NodeHeader& header) {
+    happened += header.name + " ";
+    return std::make_unique<Started>(happened);
+  });
+  EXPECT_EQ(happened, "m2 m5 reset reset ");
+}
+
 TEST(RunCase, NothingUnderTestIsAnError) {
   const trace::Parsed parsed =
       trace::parse("%rtr 1\n%profile paper\n%node m5 mote id=5\ncase x\n", "x.rtr");
