@@ -51,6 +51,7 @@ struct Options {
   std::vector<std::string> messages;
   std::string output = "-";
   std::string expect;
+  bool fields = false;
 };
 
 constexpr const char* kFooter =
@@ -157,8 +158,20 @@ std::string error_json(const Error& error, std::string_view more = {}) {
                      reflect::requirement(error.requirement).id, more);
 }
 
+std::string fields_json(const Framed& framed) {
+  if (!framed.valid()) return "null";
+  std::string text;
+  for (const generate::NumberAt& number : framed.numbers) {
+    fmt::format_to(std::back_inserter(text), "{}{{\"field\":\"{}.{}\",\"offset\":{},\"value\":{}}}",
+                   text.empty() ? "[" : ",", number.message->name, number.field->name,
+                   number.offset_bytes, number.value);
+  }
+  return text + "]";
+}
+
 // The line without its end.
-std::string expectation(std::uint64_t number, const std::string& offset, const Framed& framed) {
+std::string expectation(std::uint64_t number, const std::string& offset, const Framed& framed,
+                        bool with_fields) {
   std::vector<std::string> path;
   for (const reflect::Type* type : framed.path) path.push_back(json_string(type->name));
   std::string raw(2 * framed.bytes.size(), '0');
@@ -170,11 +183,12 @@ std::string expectation(std::uint64_t number, const std::string& offset, const F
   return fmt::format(
       "{{\"schema\":\"rubric.generate/1\",\"number\":{},\"offset\":{},\"carrier\":\"{}\","
       "\"framing\":\"{}\",\"message\":\"{}\",\"verdict\":\"{}\",\"path\":{},\"error\":{},"
-      "\"unfit\":{},\"what\":{},\"raw\":\"{}\"}}",
+      "\"unfit\":{},\"what\":{},{}\"raw\":\"{}\"}}",
       number, offset, framed.route->carrier, format::framing_name(framed.packet.framing),
       framed.route->type->name, framed.valid() ? "valid" : "malformed",
       framed.valid() ? fmt::format("[{}]", fmt::join(path, ",")) : "null", error_json(framed.error),
-      unfit, json_string(framed.what), raw);
+      unfit, json_string(framed.what), with_fields ? "\"fields\":" + fields_json(framed) + "," : "",
+      raw);
 }
 
 // What a person reads beside the packet.
@@ -282,7 +296,7 @@ class Run {
     Framed framed = make(index);
     const std::uint64_t number = index + 1;
     if (!writer_) {
-      std::string line = expectation(number, "null", framed);
+      std::string line = expectation(number, "null", framed, options_.fields);
       out.append(line + "\n");
       return line;
     }
@@ -294,7 +308,7 @@ class Run {
     const bool radio = framed.packet.framing == Framing::kRadio;
     writer_->write(framed.view(), radio ? "radio" : "serial", text_);
     out.append(text_);
-    return expectation(number, std::to_string(begin + frame_begin()), framed);
+    return expectation(number, std::to_string(begin + frame_begin()), framed, options_.fields);
   }
 
   // Where in what was written last the frame begins, as a reader counts.
@@ -368,6 +382,7 @@ void add_generate(CLI::App& app) {
       ->capture_default_str();
   sub->add_option("--expect", options->expect, "Where the expectations go, a JSON line a frame")
       ->check(cli::given());
+  sub->add_flag("--fields", options->fields, "Expectations have each number of a valid frame, too");
   sub->callback([options] {
     check_outputs(*options);
     const reflect::Protocol& protocol = cli::chosen_protocol(options->input);

@@ -44,6 +44,7 @@ class Breaker {
     std::int64_t number = 0;
     if (!refused_value(*p.field, random_, number)) return false;
     store(p, number);
+    if (random_.chance(0.8)) agree(part, number);
     const bool range = p.field->valid.kind == reflect::ValidKind::kRange;
     return fault(range ? Fault::kOutOfRange : Fault::kUnexpected, p.at, *p.field,
                  name(p) + ": " + reflect::number_problem(*p.field, number));
@@ -169,6 +170,31 @@ class Breaker {
     return p.field == &type.fields[type.field_count - 1];
   }
 
+  /// Puts bytes where the measure `part` now says more than there are, if the sizes around allow
+  /// it: else a decoder that does not know the rule would refuse the frame for what is missing.
+  void agree(std::uint32_t part, std::int64_t number) {
+    const auto parts = static_cast<std::uint32_t>(draft_.parts.size());
+    std::uint32_t measured = part + 1;
+    while (measured < parts && draft_.parts[measured].measure != part) ++measured;
+    if (measured == parts) return;
+    const Part& m = draft_.parts[measured];
+    const std::int64_t more = number * m.element_bytes - m.size;
+    if (more <= 0 || more + size_ > static_cast<std::int64_t>(max_bytes_)) return;
+    std::vector<std::uint32_t> around;
+    for (std::uint32_t i = 0; i < measured; ++i) {
+      const Part& p = draft_.parts[i];
+      if (p.measure == kNone || p.last_inside <= measured) continue;
+      if (!is_allowed(*number_of(p).field, p.size + more)) return;
+      around.push_back(i);
+    }
+    for (const std::uint32_t i : around) {
+      store(number_of(draft_.parts[i]), draft_.parts[i].size + more);
+    }
+    std::vector<std::uint8_t> noise(static_cast<std::size_t>(more));
+    for (std::uint8_t& byte : noise) byte = any_byte(random_);
+    out_.bytes.insert(out_.bytes.begin() + m.at + m.size, noise.begin(), noise.end());
+  }
+
   // Of the message in opaque bytes.
 
   bool body_value() {
@@ -279,8 +305,8 @@ class Breaker {
 
 }  // namespace
 
-bool break_body(const Draft& draft, Random& random, Broken& out) {
-  return Breaker(draft, draft.bytes.size(), nullptr, random, out).body();
+bool break_body(const Draft& draft, std::size_t max_bytes, Random& random, Broken& out) {
+  return Breaker(draft, max_bytes, nullptr, random, out).body();
 }
 
 bool break_one(const Draft& draft, Breakage how, std::size_t max_bytes, const Type* short_radio,

@@ -32,7 +32,7 @@ struct Broken {
 /// Breaks the body of `draft`, so that the frame stays valid, but these bytes are no longer the
 /// message that they are meant to be, nor another. `error`, of which the offset counts from the
 /// frame's start, is what keeps them from fitting. False as below.
-bool break_body(const Draft& draft, Random& random, Broken& out);
+bool break_body(const Draft& draft, std::size_t max_bytes, Random& random, Broken& out);
 
 /// Breaks `draft` in that way; false if it cannot be, or chance found nothing. `max_bytes`: of the
 /// frame. `short_radio`: the structure that a radio frame is taken for which ends with its MAC

@@ -14,6 +14,7 @@ namespace {
 constexpr int kTries = 200;
 constexpr int kBreakTries = 60;
 constexpr double kBodyShare = 0.3;
+constexpr double kValueShare = 0.3;
 constexpr std::size_t kFcsBytes = 2;
 // TinyOS's serial line has room for this many bytes with kind, sequence number and CRC around.
 constexpr std::size_t kSerialBytesMax = 252;
@@ -26,9 +27,26 @@ std::size_t most_bytes(bool radio) {
   return radio ? kRadioFrameMax - kFcsBytes : kSerialBytesMax;
 }
 
-// Tries the ways in any order; few messages can be broken in all.
+// What stands in `bytes`, which differ from the draft's at most in and behind its body.
+std::vector<NumberAt> numbers_of(const Draft& draft, const std::vector<std::uint8_t>& bytes,
+                                 bool with_body) {
+  std::vector<NumberAt> out;
+  for (const Part& part : draft.parts) {
+    if (part.kind != PartKind::kNumber || !(part.hard || with_body)) continue;
+    out.push_back({draft.scopes[part.scope].type, part.field, part.at,
+                   reflect::load_number(*part.field, bytes.data() + part.at)});
+  }
+  return out;
+}
+
+// Tries the ways in any order, values more often first, since rules are most often about these;
+// few messages can be broken in all ways.
 bool break_somehow(const Draft& draft, std::size_t max_bytes, const reflect::Type* short_radio,
                    Random& random, Broken& out) {
+  if (random.chance(kValueShare) &&
+      break_one(draft, Breakage::kValue, max_bytes, short_radio, random, out)) {
+    return true;
+  }
   Breakage ways[kBreakages];
   for (std::size_t i = 0; i < kBreakages; ++i) ways[i] = static_cast<Breakage>(i);
   for (std::size_t left = kBreakages; left > 0; --left) {
@@ -55,6 +73,7 @@ Generated FrameGenerator::valid(const reflect::Route& route) {
   Draft made = draft(route);
   Generated out;
   out.framing = made.radio ? Framing::kRadio : Framing::kSf;
+  out.numbers = numbers_of(made, made.bytes, true);
   out.bytes = std::move(made.bytes);
   out.path = std::move(made.path);
   out.route = &route;
@@ -70,10 +89,11 @@ Generated FrameGenerator::near_valid(const reflect::Route& route) {
   for (int i = 0; i < kBreakTries; ++i) {
     Draft made = draft(route);
     if (made.body.type && random_.chance(kBodyShare)) {
-      if (!break_body(made, random_, broken)) continue;
+      if (!break_body(made, most_bytes(radio), random_, broken)) continue;
       made.path.pop_back();
       Generated out;
       out.framing = radio ? Framing::kRadio : Framing::kSf;
+      out.numbers = numbers_of(made, broken.bytes, false);
       out.bytes = std::move(broken.bytes);
       out.route = &route;
       out.path = std::move(made.path);

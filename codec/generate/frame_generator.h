@@ -14,6 +14,14 @@
 
 namespace rubric::generate {
 
+/// A number of a frame; elements of arrays of numbers are none.
+struct NumberAt {
+  const reflect::Type* message;  ///< The structure that it belongs to.
+  const reflect::Field* field;
+  std::uint32_t offset_bytes;  ///< From the start of the frame.
+  std::int64_t value;          ///< A float as its 32 bits.
+};
+
 /// A frame, and what a decoder must say of it.
 struct Generated {
   Framing framing = Framing::kSf;         ///< kSf for the serial line, kRadio for the air.
@@ -25,6 +33,8 @@ struct Generated {
   /// By construction, not by asking a decoder: Fault::kNone where the frame is valid. The offset
   /// counts from bytes[0].
   Error error{Fault::kNone, 0, ReqId::kNone};
+  /// Of a valid frame: its numbers, in ascending order of offset.
+  std::vector<NumberAt> numbers;
   /// Of a valid frame whose innermost bytes break a rule of the message that they are meant to be:
   /// which rule, and where. A decoder leaves these bytes opaque; `path` ends before that message.
   Error unfit{Fault::kNone, 0, ReqId::kNone};

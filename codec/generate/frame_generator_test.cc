@@ -51,6 +51,21 @@ void check_unfit(const Generated& made, const reflect::Decoded& decoded) {
                                << "\nthe generator: " << text(made.unfit);
 }
 
+/// All numbers that the decoder reads, and no others, are those that the generator names.
+void check_numbers(const Generated& made, const reflect::Decoded& decoded) {
+  std::size_t met = 0;
+  for (std::size_t i = 0; i < decoded.node_count(); ++i) {
+    const reflect::Node& node = decoded[i];
+    if (node.kind != reflect::NodeKind::kNumber) continue;
+    ASSERT_LT(met, made.numbers.size()) << described(made);
+    const NumberAt& number = made.numbers[met++];
+    ASSERT_EQ(number.offset_bytes, node.offset) << described(made);
+    ASSERT_EQ(number.value, node.value) << described(made);
+    ASSERT_STREQ(number.field->name, node.field->name) << described(made);
+  }
+  ASSERT_EQ(met, made.numbers.size()) << described(made);
+}
+
 class Generator : public ::testing::TestWithParam<int> {
  protected:
   const Known& known() const { return kKnown[GetParam()]; }
@@ -70,6 +85,8 @@ TEST_P(Generator, ValidFramesLeadToTheirMessage) {
       ASSERT_EQ(names(made.path.data(), made.path.size()),
                 names(frame.decoded.path(), frame.decoded.path_count()))
           << described(made);
+      check_numbers(made, frame.decoded);
+      if (HasFatalFailure()) return;
     }
   }
 }
@@ -85,6 +102,7 @@ TEST_P(Generator, NearValidFramesBreakWhatTheySay) {
       decoder.decode(packet, frame);
       ASSERT_TRUE(!made.valid() || !made.fits()) << described(made);
       if (!made.fits()) check_unfit(made, frame.decoded);
+      if (!made.fits()) check_numbers(made, frame.decoded);
       if (HasFatalFailure()) return;
       ASSERT_EQ(frame.error, made.error)
           << described(made) << "\nthe decoder: " << text(frame.error);
@@ -148,6 +166,27 @@ TEST(ChangeField, LeavesAloneWhatCannotBeRead) {
   const std::vector<std::uint8_t> before = foreign;
   EXPECT_FALSE(change_field(rubicon::tables::kProtocol, Framing::kSf, foreign, 100, random));
   EXPECT_EQ(foreign, before);
+}
+
+/// With the bound moved by one a decoder must take the frames whose number is just beyond it, else
+/// they show nothing of the bound.
+TEST(NearValid, NumbersBeyondABoundOfASizeComeWithTheBytes) {
+  FrameGenerator generator(rubicon::tables::kProtocol, rubicon::messages::kRoutes, 4);
+  std::map<std::string, int> met;
+  for (int i = 0; i < rubicon::messages::kRoutes.count; ++i) {
+    for (int seed = 0; seed < kSeeds; ++seed) {
+      const Generated made = generator.near_valid(rubicon::messages::kRoutes.routes[i]);
+      const std::size_t size = made.bytes.size();
+      if (made.error == Error{Fault::kOutOfRange, 5, req::kWireAmLength}) {
+        met["length"] += size == 8u + 115u && made.bytes[5] == 115;
+      }
+      if (made.error.requirement != req::kWireNetNbytes) continue;
+      const std::size_t at = made.error.offset_bytes;
+      met["nbytes"] += made.bytes[at] == 103 && size > at + 103;
+    }
+  }
+  EXPECT_GT(met["length"], 100);
+  EXPECT_GT(met["nbytes"], 100);
 }
 
 INSTANTIATE_TEST_SUITE_P(Protocols, Generator, ::testing::Range(0, kKnownCount));

@@ -51,6 +51,7 @@ Framed taken(Generated made) {
   out.bytes = std::move(made.bytes);
   out.route = made.route;
   out.path = std::move(made.path);
+  out.numbers = std::move(made.numbers);
   out.error = made.error;
   out.unfit = made.unfit;
   out.unfit_message = made.unfit_message;
@@ -63,6 +64,7 @@ void set_fault(Fault fault, std::size_t at, ReqId requirement, const char* what,
   out.error = fail(fault, at, requirement).error;
   out.packet.error = out.error;
   out.path.clear();
+  out.numbers.clear();
   out.what = what;
 }
 

@@ -20,6 +20,7 @@ struct Framed {
   std::vector<std::uint8_t> bytes;
   const reflect::Route* route = nullptr;
   std::vector<const reflect::Type*> path;      ///< As Generated::path.
+  std::vector<NumberAt> numbers;               ///< As Generated::numbers.
   Error error{Fault::kNone, 0, ReqId::kNone};  ///< What reflect::Frame::error must be.
   Error unfit{Fault::kNone, 0, ReqId::kNone};  ///< As Generated::unfit.
   const reflect::Type* unfit_message = nullptr;

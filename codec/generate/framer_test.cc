@@ -21,7 +21,7 @@
 namespace rubric::generate {
 namespace {
 
-constexpr int kFramesOfRoute = 400;
+constexpr int kFramesOfRoute = 200;
 
 constexpr InputFormat kContainers[] = {InputFormat::kHdlc, InputFormat::kSf, InputFormat::kPcapng,
                                        InputFormat::kHex};

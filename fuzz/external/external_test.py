@@ -1,0 +1,160 @@
+#!/usr/bin/env python3
+"""The examples of README.md run, agree, and find a fault that is planted in the decoder.
+
+Usage: external_test.py RUBRIC [TestClass ...], in the project's folder.
+"""
+
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import textwrap
+import unittest
+
+HERE = pathlib.Path(__file__).resolve().parent
+RUBRIC = None
+ORACLE = "spec/oracle"  # Where npm put Kaitai Struct.
+
+
+def compare(script, *arguments, code):
+    done = subprocess.run([sys.executable, str(HERE / script), "--rubric", RUBRIC, *arguments],
+                          capture_output=True, text=True, check=False)
+    assert done.returncode == code, (done.returncode, done.stdout[-3000:], done.stderr[-3000:])
+    return done.stdout
+
+
+class Scratch(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="rubric-external-")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def patched(self, source, old, new):
+        """A copy of a file with one place changed."""
+        text = pathlib.Path(source).read_text("utf-8")
+        self.assertIn(old, text)
+        target = self.folder / pathlib.Path(source).name
+        target.write_text(text.replace(old, new), "utf-8")
+        return target
+
+    def assert_names(self, said, *words):
+        for word in words:
+            self.assertIn(word, said)
+
+
+class Kaitai(Scratch):
+    def kaitai(self, specs, code, *arguments):
+        return compare("compare.py", "--count", "10000", *arguments, "--", "node",
+                       str(HERE / "kaitai_decoder.js"), str(specs), ORACLE, code=code)
+
+    def test_agrees(self):
+        said = self.kaitai("spec/wire", 0)
+        self.assert_names(said, "10000 frames: ", " 0 skipped, 0 disagreements")
+
+    def planted(self, old, new):
+        shutil.copy("spec/wire/tinyos.ksy", self.folder)
+        self.patched("spec/wire/rubicon.ksy", old, new)
+        return self.kaitai(self.folder, 1)
+
+    def test_a_bound_one_too_large_is_found(self):
+        said = self.planted("max: 102", "max: 103")
+        self.assert_names(said, "net_msg.nbytes: expected a number from 2 to 102, given 103",
+                          "rubric explain WIRE-NET-NBYTES",
+                          "should have been refused, out_of_range", "was accepted")
+
+    def test_a_bound_one_too_small_is_found(self):
+        said = self.planted("max: 102", "max: 101")
+        self.assert_names(said, "should have been accepted as net_msg", "was refused: Validation")
+
+    def test_swapped_fields_are_found(self):
+        """Nothing is refused or accepted wrongly then; the fields show it."""
+        net_msg = "      - id: seq_num\n        type: u2\n        doc: Sequence number.\n"
+        said = self.planted(net_msg, net_msg.replace("u2", "u2le"))
+        self.assert_names(said, "net_msg.seq_num should have been")
+
+
+class Tshark(Scratch):
+    def tshark(self, code, *arguments):
+        return compare("compare_tshark.py", "--count", "4000", *arguments, code=code)
+
+    def planted(self, old, new):
+        return self.tshark(1, "--dissector",
+                           str(self.patched(HERE / "am_dissector.lua", old, new)))
+
+    def test_agrees(self):
+        self.assert_names(self.tshark(0), "4000 frames: ", " 0 disagreements")
+
+    def test_a_bound_that_is_off_is_found(self):
+        said = self.planted("length > 114", "length > 115")
+        self.assert_names(said, "rubric explain WIRE-AM-LENGTH", "was accepted")
+
+    def test_a_crc_that_is_not_checked_is_found(self):
+        said = self.planted('return "wrong CRC"', 'crc16(buffer, 1)')
+        self.assert_names(said, "the CRC is wrong", "rubric explain WIRE-SERIAL-CRC")
+
+    def test_a_wrong_offset_is_found(self):
+        said = self.planted("tree:add(f.src, packet(3, 2))", "tree:add(f.src, packet(1, 2))")
+        self.assert_names(said, "am_header.src should have been")
+
+    def test_a_crash_is_found(self):
+        said = self.planted('if payload:len() < 12 then return "network header cut off" end', "")
+        self.assert_names(said, "Lua Error", "Range is out of bounds")
+
+
+class Harness(Scratch):
+    """Decoders of which the harness alone is tried."""
+
+    def decoder(self, code, body, *arguments):
+        script = self.folder / "decoder.py"
+        script.write_text("import json, sys\n" + textwrap.dedent(body), "utf-8")
+        return compare("compare.py", "--count", "300", *arguments, "--", sys.executable,
+                       str(script), code=code)
+
+    def test_the_decoder_of_the_readme_runs(self):
+        """It knows one message, and skips the others."""
+        text = (HERE / "README.md").read_text("utf-8")
+        body = text.split("```python\n")[1].split("```")[0]
+        said = self.decoder(0, body.removeprefix("import json, sys\n"), "--carrier", "serial")
+        self.assert_names(said, " 0 disagreements")
+
+    def test_accepting_everything_is_wrong(self):
+        said = self.decoder(1, """
+            for line in sys.stdin:
+                print(json.dumps({"accept": True}))
+        """)
+        self.assert_names(said, "was accepted")
+        self.assertNotIn("was refused", said)
+
+    def test_skipping_everything_says_nothing(self):
+        said = self.decoder(1, """
+            for line in sys.stdin:
+                print(json.dumps({"skip": True}))
+        """)
+        self.assert_names(said, "300 skipped", "Too little was compared")
+
+    def test_an_early_end_is_told(self):
+        said = self.decoder(1, """
+            print(json.dumps({"skip": True}))
+        """)
+        self.assert_names(said, "frame 2, ", "no answer came")
+
+    def test_what_is_no_answer_is_told(self):
+        said = self.decoder(1, """
+            for line in sys.stdin:
+                print("yes")
+        """)
+        self.assert_names(said, "the answer is no JSON object: yes")
+        said = self.decoder(1, """
+            for line in sys.stdin:
+                print(json.dumps({"accept": "yes"}))
+        """)
+        self.assert_names(said, 'the answer was {"accept": "yes"}')
+
+    def test_a_program_that_is_not_there(self):
+        compare("compare.py", "--count", "10", "--", str(self.folder / "none"), code=2)
+
+
+if __name__ == "__main__":
+    RUBRIC = sys.argv.pop(1)
+    unittest.main()
