@@ -1,6 +1,7 @@
 // Property: a value of any fields is written into any room as bytes that parse gives back the same,
 // or refused by a rule that the tables refuse it by too; nothing behind the room is touched.
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
@@ -62,16 +63,16 @@ class Fill {
 /// Room with something behind it that must stay as it is.
 class Guarded {
  public:
-  explicit Guarded(std::size_t size) : all_(size + kGuard, kUntouched), size_(size) {}
+  explicit Guarded(std::size_t size) : size_(size) { all_.fill(kUntouched); }
   MutableBytes room() { return MutableBytes(all_.data(), size_); }
   void check() const {
-    require(std::all_of(all_.begin() + static_cast<std::ptrdiff_t>(size_), all_.end(),
+    require(std::all_of(all_.begin() + size_, all_.begin() + size_ + kGuard,
                         [](std::uint8_t byte) { return byte == kUntouched; }),
             "nothing behind the room is written");
   }
 
  private:
-  std::vector<std::uint8_t> all_;
+  std::array<std::uint8_t, kRoom + kGuard> all_;
   std::size_t size_;
 };
 
