@@ -120,7 +120,8 @@ class Formats(Folder):
                       " ".join(out.split()))
         out = test("--target", HONEST, "--cases", "j8.at_most_five", "--cases", "j4.few",
                    "--compare", before)[1]
-        self.assertRegex(" ".join(out.split()), r"0 cases with another verdict, 1 new, [1-9]\d* gone")
+        self.assertRegex(" ".join(out.split()),
+                         r"0 cases with another verdict, 1 new, [1-9]\d* gone")
         self.assertRegex(out, r"\n  rubric_python_mote[ .\d]*: j4\.few is new: pass\n")
         self.assertRegex(out, r"\n  rubric_python_mote[ .\d]*: j8\.\w+ is gone, was pass\n")
         for text, says in [("{", "no JSON"), ("{}", "schema")]:

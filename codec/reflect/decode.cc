@@ -295,7 +295,7 @@ class Decoder {
     return true;
   }
 
-  /// A message of another carrier; true if there is one for the key, be it opaque as it does not fit.
+  /// A message of another carrier; true if there is one for the key, opaque where it does not fit.
   bool radio_only(const Field& f, std::int64_t key, std::uint32_t& at, std::uint32_t end) {
     const Type* type = choose(*more_, key);
     if (!type) return false;

@@ -49,8 +49,8 @@ class EncodeError : public std::runtime_error {
 ///
 /// `stale` are the bytes behind the meant content, in order. They fill what a given size says
 /// beyond the content; what is left of them goes to the end of the outermost part of open size,
-/// with Tail::kStale the end of `type` itself. `more` chooses as in decode. Throws EncodeError; `out`
-/// is then unspecified.
+/// with Tail::kStale the end of `type` itself. `more` chooses as in decode. Throws EncodeError;
+/// `out` is then unspecified.
 void encode(const Type& type, const Value& fields, Bytes stale, Tail tail,
             std::vector<std::uint8_t>& out, const Switch* more = nullptr);
 

@@ -335,68 +335,6 @@ TEST(Html, SaysWhereItCannotWrite) {
   }
 }
 
-void put(const fs::path& path, const std::string& text) {
-  fs::create_directories(path.parent_path());
-  std::ofstream(path) << text;
-}
-
-std::set<std::string> files_in(const fs::path& folder) {
-  std::set<std::string> out;
-  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    if (!entry.is_directory()) out.insert(fs::relative(entry.path(), folder).string());
-  }
-  return out;
-}
-
-TEST(Html, AUsedFolderLosesWhatAnEarlierReportLeftAndNothingElse) {
-  Folder folder;
-  const fs::path path = folder.path() / "used";
-  put(path / "cases" / "machine" / "mine.rtr", "mine");
-  put(path / "notes.txt", "mine");
-  SuiteRun run;
-  run.implementations.push_back(whole().implementations[0]);
-  run.implementations[0].identity.name = "machine";
-  run.implementations[0].identity.version = "";
-  run.implementations[0].cases = {one("j4.accept"), one("j4.wrong_seq"), one("open_door")};
-  run.implementations.push_back(run.implementations[0]);
-  run.implementations[1].identity.name = "retired";
-  write_html_report(run, nullptr, path);
-  EXPECT_TRUE(fs::exists(path / "cases" / "retired" / "open_door.pcapng"));
-  put(path / "cases" / "machine" / "open_door.rtr", "changed since");
-
-  run.implementations.pop_back();
-  run.implementations[0].cases.resize(1);
-  write_html_report(run, nullptr, path);
-  const std::set<std::string> kept = {
-      "cases/machine/j4.accept.pcapng", "cases/machine/j4.accept.rtr", "cases/machine/mine.rtr",
-      "cases/machine/open_door.rtr", "index.html", "notes.txt", "report.files"};
-  EXPECT_EQ(files_in(path), kept);
-  EXPECT_FALSE(fs::exists(path / "cases" / "retired"));
-  write_html_report(run, nullptr, path);
-  EXPECT_EQ(files_in(path), kept);
-}
-
-TEST(Html, AnAccountThatLeadsElsewhereRemovesNothing) {
-  Folder folder;
-  const fs::path path = folder.path() / "report";
-  const std::string sum = "af63f54c86021707";  // Of "x".
-  const std::vector<std::string> others = {"outside.txt", "report/linked/file.txt",
-                                           "report/other/file.txt"};
-  for (const std::string& other : others) put(folder.path() / other, "x");
-  put(path / "old.txt", "x");
-  fs::create_directory_symlink(folder.path() / "report" / "other", path / "link");
-  fs::create_symlink(folder.path() / "outside.txt", path / "link.txt");
-  put(path / "report.files", "rubric.files/1\n" + sum + " ../outside.txt\n" + sum + " " +
-                                 (folder.path() / "outside.txt").string() + "\n" + sum +
-                                 " link/file.txt\n" + sum + " link.txt\n" + sum +
-                                 " ./linked/file.txt\n" + sum + " linked/../linked/file.txt\n" +
-                                 sum + " old.txt\nnonsense\n");
-  write_html_report(SuiteRun(), nullptr, path);
-  for (const std::string& other : others) EXPECT_TRUE(fs::exists(folder.path() / other)) << other;
-  EXPECT_TRUE(fs::is_symlink(path / "link.txt"));
-  EXPECT_FALSE(fs::exists(path / "old.txt"));  // It is what the account says.
-}
-
 TEST(HtmlData, KnowsTheEarlierRunAndWhatBrokeARule) {
   SuiteRun run;
   ImplementationRun& out = run.implementations.emplace_back();

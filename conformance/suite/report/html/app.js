@@ -5,7 +5,8 @@ function showRun() {
     facts([['Profile', data.profile], ['Seed', data.seed === '0' ? '' : data.seed],
       ['Shard', data.shard],
       ['Traces', data.traces.length ? data.traces.join(', ') : 'the kit\u2019s own'],
-      ['Compared', data.earlier ? 'with an earlier run: cells say what a verdict was, and which cases are new' : ''],
+      ['Compared', data.earlier
+      ? 'with an earlier run: cells say what a verdict was, and which cases are new' : ''],
       ['Cases', String(data.cases.length)],
       ['Rules', `${Object.keys(data.rules).length} named by these cases`]]),
     h('h3', {}, 'Implementations'),
