@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 
 #include "codec/generated/rubicon/net_msg.h"
@@ -24,6 +25,18 @@ using trace::Message;
 using trace::Value;
 namespace am = machine::am;
 
+// The machine, or a flaw around it.
+class Stepped : public runner::Machine {
+ public:
+  explicit Stepped(flaws::StepFunction of) : step_(of) {}
+  void step(Ticks now, const machine::Event& event, machine::Actions& actions) override {
+    step_(state_, now, event, actions);
+  }
+
+ private:
+  flaws::StepFunction step_;
+};
+
 constexpr std::size_t kOutputsMax = 4000;  // A clock of a tick could fill any memory.
 
 FieldValue* field(Line& line, std::string_view path) {
@@ -42,7 +55,7 @@ void loosen(FieldValue* found) {
   if (!found || !found->value.is(Value::Kind::kNumber)) return;
   const std::int64_t ms = found->value.number;
   constexpr std::int64_t kMax = 0xFFFFFFFF;
-  found->value = ms == 0 || ms == kMax ? Value::any() : Value::range(ms - 1, ms + 1);
+  found->value = Value::range(std::max<std::int64_t>(ms - 1, 0), std::min(ms + 1, kMax));
 }
 
 // The node's own numbers are whatever it chooses: variables, one for each that it used.
@@ -60,7 +73,6 @@ class Numbers {
     if (at == names_.end()) return {};
     return Value::variable(at->second);
   }
-  void forget(std::uint16_t number) { names_.erase(number); }
 
  private:
   std::map<std::uint16_t, std::string> names_;
@@ -92,19 +104,20 @@ class Lenient {
     trace::Case one("difference");
     Ticks now = 0;
     for (std::size_t i = 0; i < played_.before.size(); ++i) {
-      show(played_.before[i], one, false);
+      show(played_.before[i], one);
       now += script_.steps[i].delay;
       one.add(given(script_.steps[i], now));
-      given_at_ = now;
+      const bool frame = std::holds_alternative<machine::Heard>(script_.steps[i].event);
+      heard_at_ = frame ? std::optional<Ticks>(now) : std::nullopt;
     }
-    show(played_.outputs.size(), one, true);
+    show(played_.outputs.size(), one);
     one.add(nothing_else(script_.length(), node_, {}));
     file.cases.push_back(std::move(one));
     return file;
   }
 
  private:
-  void show(std::size_t to, trace::Case& one, bool) {
+  void show(std::size_t to, trace::Case& one) {
     for (; shown_ < to; ++shown_) one.add(expected(played_.outputs[shown_]));
   }
 
@@ -124,13 +137,16 @@ class Lenient {
     if (output.frame.link == Link::kSerial) line.am.reset();  // Nobody looks (FACTS 2).
     if (type == am::kJoinReply) {
       // One that waited for the radio may tell the time of its request.
-      const bool waited = output.time != given_at_;
-      if (waited) free_field(line, "cur_time");
+      if (output.time != heard_at_) free_field(line, "cur_time");
       loosen(field(line, "cur_time"));
     }
     if (type == am::kJoin || type == am::kAckJoin) variable(line, "seq_num");
-    if (type != am::kNet || is_forwarded(output, sent_)) return;
-    if (output.requirement == req::kT2Ack || output.requirement == req::kS2Send ||
+    if (type != am::kNet) return;
+    if (is_forwarded(output, sent_)) {
+      FieldValue* acked = field(line, "payload.body.seq_num");
+      const bool changed = acked && answered_.contains(acked->value.number);
+      if (changed) variable(line, "payload.body.seq_num");
+    } else if (output.requirement == req::kT2Ack || output.requirement == req::kS2Send ||
         output.requirement == req::kS3Changed || output.requirement == req::kJ6Report) {
       free_field(line, "seq_num");
     } else {
@@ -178,6 +194,7 @@ class Lenient {
       if (!found || !answers || !found->value.is(Value::Kind::kNumber)) continue;
       const auto known = numbers_.known(static_cast<std::uint16_t>(found->value.number));
       if (!known || !is_whole(line)) continue;
+      answered_.insert(found->value.number);
       found->value = *known;
       line.bytes.reset();
     }
@@ -197,8 +214,9 @@ class Lenient {
   Numbers numbers_;
   std::set<std::uint16_t> sent_;      // Numbers that send returned,
   std::set<std::uint16_t> not_well_;  // and that were acked with a code other than 0.
+  std::set<std::int64_t> answered_;   // Numbers for which a given frame has their variable.
   std::size_t shown_ = 0;
-  Ticks given_at_ = 0;
+  std::optional<Ticks> heard_at_;  // If the last step was a frame.
 };
 
 }  // namespace
@@ -207,9 +225,9 @@ trace::File lenient_file(const Script& script, const Played& played) {
   return Lenient(script, played).file();
 }
 
-Difference difference(const Script& script) {
-  const Script compared = until_free(without_undecided(script));
-  runner::SubjectTarget reference(std::make_unique<runner::Machine>());
+Difference difference(const Script& script, flaws::StepFunction step) {
+  const Script compared = until_free(without_undecided(script), step);
+  runner::SubjectTarget reference(std::make_unique<Stepped>(step));
   const Played played = play(compared, reference);
   Difference out;
   out.steps = compared.steps.size();

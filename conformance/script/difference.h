@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "conformance/flaws/flaws.h"
 #include "conformance/script/script.h"
 #include "conformance/trace/trace.h"
 
@@ -12,21 +13,22 @@ namespace rubric::script {
 
 struct Difference {
   std::string text;    ///< On what they differ; empty: on nothing.
-  trace::File file;    ///< What the C++ node was held against: the machine's run, without what is free.
+  trace::File file;    ///< What the C++ node was held against.
   std::size_t steps = 0;  ///< Of the script that were compared; the others are beyond the rules.
 };
 
 /// Lets the script happen to both, as far as the rules decide what comes of it. The machine's run
 /// becomes a golden trace in which numbers, times and orders that are free are left open, and the
 /// runner holds the C++ node against it.
-Difference difference(const Script& script);
+/// `step` may put a flaw in the machine's place.
+Difference difference(const Script& script, flaws::StepFunction step = machine::step);
 
 // Parts of that.
 
 /// Without the steps of which no rule says what they do, in profile paper.
 Script without_undecided(const Script& script);
 /// As long as what happens is decided by the rules alone, on the machine.
-Script until_free(Script script);
+Script until_free(Script script, flaws::StepFunction step = machine::step);
 /// The machine's run of a script, as a trace that asks for no more than the rules do.
 trace::File lenient_file(const Script& script, const Played& played);
 

@@ -1,6 +1,7 @@
 // The machine and the independent node do the same, as far as the rules say.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 
 #include "conformance/runner/case_files.h"
@@ -39,6 +40,36 @@ TEST(Difference, NoneInGoldenTraces) {
   }
   std::printf("%zu of %zu steps compared\n", compared, steps);
   EXPECT_GT(compared * 10, steps * 7);  // What is free must not swallow what is not.
+}
+
+TEST(Difference, NoneInChangedOnes) {
+  const std::vector<CaseScript> scripts = golden_scripts();
+  std::mt19937 random(3);
+  for (int i = 0; i < 4000; ++i) {
+    Script script = scripts[random() % scripts.size()].script;
+    if (script.steps.empty()) continue;
+    const auto some = [&] {
+      return script.steps.begin() + static_cast<std::ptrdiff_t>(random() % script.steps.size());
+    };
+    const Step step = *some();
+    script.steps.insert(some(), step);
+    some()->delay = static_cast<Ticks>(random() % 3 == 0 ? random() % 1200 : random() % 20);
+    script.steps.erase(some());
+    const std::vector<std::uint8_t> bytes = encode(script);
+    const Difference difference = script::difference(decode(Bytes(bytes.data(), bytes.size())));
+    ASSERT_EQ(difference.text, "") << trace::print(difference.file);
+  }
+}
+
+// What is free hides no flaw but those that the C++ node's own freedom covers.
+TEST(Difference, FlawsDiffer) {
+  const std::vector<CaseScript> scripts = golden_scripts();
+  for (const flaws::Flaw& flaw : flaws::all()) {
+    const bool differs = std::any_of(scripts.begin(), scripts.end(), [&](const CaseScript& each) {
+      return !difference(each.script, flaw.step).text.empty();
+    });
+    EXPECT_TRUE(differs) << flaw.name;
+  }
 }
 
 }  // namespace

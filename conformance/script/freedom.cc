@@ -13,6 +13,7 @@
 #include "conformance/machine/transport.h"
 #include "conformance/runner/subject_target.h"
 #include "conformance/script/difference.h"
+#include "conformance/script/watch.h"
 
 namespace rubric::script {
 namespace {
@@ -104,9 +105,11 @@ bool is_decided(const machine::Config& config, const machine::Call& call) {
 // The machine, and the first moment from which on others may go on in another way.
 class Probe : public runner::Machine {
  public:
+  explicit Probe(flaws::StepFunction of) : step_(of) {}
   void step(Ticks now, const machine::Event& event, machine::Actions& actions) override {
+    late_sends(now);
     const State before = state_;
-    Machine::step(now, event, actions);
+    step_(state_, now, event, actions);
     if (is_free(before, now, event, actions)) free_at(now);
     remember_sends(event, actions, now);
     late_sends(now);
@@ -187,7 +190,7 @@ class Probe : public runner::Machine {
 
   void ended(std::uint16_t seq_num, Ticks now) {
     std::erase_if(sent_, [&](const Sent& one) {
-      const Ticks soonest = one.called + state_.config.profile.ack_timeout_ticks;
+      const Ticks soonest = one.called + machine::kPaper.ack_timeout_ticks;
       if (one.seq_num == seq_num && now > soonest) free_at(soonest);
       return one.seq_num == seq_num;
     });
@@ -196,12 +199,17 @@ class Probe : public runner::Machine {
   // The timeout counts from the call, or from when the message has left (decision 110).
   void late_sends(Ticks now) {
     for (const Sent& one : sent_) {
-      const Ticks soonest = one.called + state_.config.profile.ack_timeout_ticks;
-      if (now > soonest && machine::is_awaited(state_.awaited, one.seq_num)) free_at(soonest);
+      const Ticks soonest = one.called + machine::kPaper.ack_timeout_ticks;
+      for (const machine::Awaited& awaited : state_.awaited) {
+        if (awaited.seq_num != one.seq_num || now < soonest) continue;
+        const bool left_late = awaited.due != 0 && awaited.due != soonest;
+        if (left_late || waits_for_line(state_, one.seq_num)) free_at(soonest);
+      }
     }
   }
   void free_at(Ticks time) { free_ = std::min(time, free_.value_or(time)); }
 
+  flaws::StepFunction step_;
   std::optional<Ticks> free_;
   std::vector<Sent> sent_;
 };
@@ -250,9 +258,9 @@ Script without_undecided(const Script& script) {
   return out;
 }
 
-Script until_free(Script script) {
+Script until_free(Script script, flaws::StepFunction step) {
   for (;;) {
-    auto subject = std::make_unique<Probe>();
+    auto subject = std::make_unique<Probe>(step);
     Probe& probe = *subject;
     runner::SubjectTarget target(std::move(subject));
     play(script, target);

@@ -12,8 +12,8 @@ explorer::Options walk_options(explorer::Scope scope, explorer::StepFunction ste
 /// The scope of a walk stands in its first byte.
 explorer::Scope walk_scope(Bytes bytes);
 
-/// Each further byte chooses one of the ways on. The walk ends with the bytes, where there is no way
-/// on, after kMovesMax moves, or where a property is broken. `nodes` may have walked before.
+/// Each further byte chooses one of the ways on. The walk ends with the bytes, where there is no
+/// way on, after kMovesMax moves, or where a property is broken. `nodes` may have walked before.
 constexpr std::size_t kMovesMax = 600;
 explorer::Path walk(explorer::Nodes& nodes, Bytes bytes);
 

@@ -53,16 +53,6 @@ int waiting_reports(const State& state) {
   return count;
 }
 
-bool waits(const State& state, std::uint16_t seq_num) {
-  for (std::size_t i = 0; i < state.radio.out.size(); ++i) {
-    if (state.radio.out[i].awaited == seq_num) return true;
-  }
-  for (std::size_t i = 0; i < state.serial.out.size(); ++i) {
-    if (state.serial.out[i].awaited == seq_num) return true;
-  }
-  return false;
-}
-
 bool is_broadcast(Address dest) {
   return dest.pid == machine::kBroadcastPid || dest.devid == machine::kBroadcastDevid;
 }
@@ -365,7 +355,7 @@ void Watched::sink_ends(const Seen& seen) {
 void Watched::ends(const Seen& seen) {
   History& h = history_;
   for (History::Sent& open : h.sends) {
-    if (!open.left && !waits(seen.after, open.seq_num)) open.left = seen.now;
+    if (!open.left && !waits_for_line(seen.after, open.seq_num)) open.left = seen.now;
   }
   if (config_.role == Role::kMote) mote_ends(seen);
   if (config_.role == Role::kSink) sink_ends(seen);
@@ -378,6 +368,16 @@ void Watched::ends(const Seen& seen) {
 }
 
 void Watched::finish(Ticks now) { overdue(now); }
+
+bool waits_for_line(const State& state, std::uint16_t seq_num) {
+  for (std::size_t i = 0; i < state.radio.out.size(); ++i) {
+    if (state.radio.out[i].awaited == seq_num) return true;
+  }
+  for (std::size_t i = 0; i < state.serial.out.size(); ++i) {
+    if (state.serial.out[i].awaited == seq_num) return true;
+  }
+  return false;
+}
 
 std::string Broken::text() const {
   std::string rules;

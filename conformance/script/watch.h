@@ -115,6 +115,9 @@ class Watched : public runner::Subject {
   std::size_t steps_ = 0;
 };
 
+/// Whether the message with this number, whose ack is awaited, is yet to leave.
+bool waits_for_line(const machine::State& state, std::uint16_t seq_num);
+
 /// Lets a script happen to the machine, or to a flaw around it. Nothing: all promises were kept.
 std::optional<Broken> watch(const Script& script, flaws::StepFunction step = machine::step);
 

@@ -110,7 +110,8 @@ void Watched::check_labels(const Seen& seen) {
       config_.role == Role::kBaseStation &&
       std::any_of(seen.handled.begin(), seen.handled.end(),
                   [](const machine::Frame& frame) { return frame.link == Link::kSerial; });
-  const bool beyond = kept_away || astray || std::holds_alternative<machine::SendDone>(seen.event) ||
+  const bool beyond = kept_away || astray ||
+                      std::holds_alternative<machine::SendDone>(seen.event) ||
                       std::holds_alternative<machine::LinkBusy>(seen.event) ||
                       std::holds_alternative<machine::Reboot>(seen.event);
   for (const Action& action : seen.actions.all()) {

@@ -28,6 +28,7 @@ void Mote::run_due() {
   if (!timer_ || *timer_ > now()) return;
   if (requests_left_ > 0) return request();
   timer_.reset();
+  line(Line::kRadio).drop(AmType::kJoin);
   world().joined({}, false);
 }
 
@@ -43,10 +44,16 @@ void Mote::join(const MoteDesc& description) {
 void Mote::request() {
   --requests_left_;
   timer_ = now() + kJoinPeriod;
+  if (line(Line::kRadio).holds(AmType::kJoin)) return;  // The one before is yet to leave.
   rubicon::JoinRequest request;
   request.seq_num = number_;
   request.mote_desc = description_;
   line(Line::kRadio).push({kSinkDevice, device_, AmType::kJoin, bytes_of(request)});
+}
+
+//= J8-PERIOD: A join_request follows the one before it no earlier than the join timeout.
+void Mote::left(Line, const Frame& frame) {
+  if (frame.type == AmType::kJoin && timer_) timer_ = now() + kJoinPeriod;
 }
 
 bool Mote::is_for_me(Line line, const Frame& frame) const {
@@ -64,6 +71,8 @@ void Mote::control(Line, const Frame& frame) {
   if (reply->seq_num() != number_) return;
   if (reply->mote_addr() != device_ || is_reserved(reply->island_addr())) return;
   timer_.reset();
+  //= J5-STOP: A mote that is joined sends no further join_request.
+  line(Line::kRadio).drop(AmType::kJoin);
   address_ = Address{reply->island_addr(), device_};
   sink_ = frame.src;
   accepted_at_ = now();

@@ -21,6 +21,7 @@ class Mote : public Node {
   void control(Line line, const Frame& frame) override;
   void message(Line line, const Message& message) override;
   bool is_for_me(Line line, const Frame& frame) const override;
+  void left(Line line, const Frame& frame) override;
 
   void request();
   void send_ack_join();

@@ -30,11 +30,16 @@ Node::Node(const Settings& settings, Ticks phase, World& world)
       now_(settings.now),
       started_(settings.now),
       next_number_(settings.next_number),
-      lines_{{Line::kRadio, kRadioRoom, world},
-             {Line::kSerial, kSerialRoom, world},
-             {Line::kPeis, kPeisRoom, world}},
+      lines_{out_line(Line::kRadio), out_line(Line::kSerial), out_line(Line::kPeis)},
       synaptic_(settings.channels, phase, world,
                 [this](Address dest, const Values& values) { return send_values(dest, values); }) {}
+
+OutLine Node::out_line(Line which) {
+  return {which, kRoom[static_cast<std::size_t>(which)], [this](Line line, const Frame& frame) {
+            left(line, frame);
+            world_.transmit(line, frame);
+          }};
+}
 
 std::optional<Ticks> Node::due() const {
   std::optional<Ticks> soonest = synaptic_.next_tick();

@@ -72,6 +72,8 @@ class Node {
   virtual void message(Line line, const Message& message) = 0;
   /// Whether the frame's AM address means this node.
   virtual bool is_for_me(Line line, const Frame& frame) const = 0;
+  /// A frame leaves now, maybe long after it was accepted.
+  virtual void left(Line, const Frame&) {}
   /// Something happened, so there may be room on a line.
   virtual void may_have_room() {}
 
@@ -93,6 +95,7 @@ class Node {
     Line line;
     Message message;
   };
+  OutLine out_line(Line which);
   void acknowledge(const Message& message);
   void settle(const Message& ack);
   bool send_values(Address dest, const Values& values);

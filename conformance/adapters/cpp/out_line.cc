@@ -1,5 +1,6 @@
 #include "conformance/adapters/cpp/out_line.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace rubric::cpp_node {
@@ -9,6 +10,15 @@ bool OutLine::push(Frame frame) {
   waiting_.push_back(std::move(frame));
   send_waiting();
   return true;
+}
+
+bool OutLine::holds(AmType type) const {
+  return std::any_of(waiting_.begin(), waiting_.end(),
+                     [&](const Frame& one) { return one.type == type; });
+}
+
+void OutLine::drop(AmType type) {
+  std::erase_if(waiting_, [&](const Frame& one) { return one.type == type; });
 }
 
 void OutLine::set_busy(bool busy) {
@@ -33,7 +43,7 @@ void OutLine::send_waiting() {
     const Frame frame = std::move(waiting_.front());
     waiting_.pop_front();
     unconfirmed_ = frame.link_ack;
-    world_.transmit(line_, frame);
+    transmit_(line_, frame);
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <deque>
+#include <functional>
 
 #include "conformance/adapters/cpp/world.h"
 
@@ -10,13 +11,21 @@ namespace rubric::cpp_node {
 
 class OutLine {
  public:
-  OutLine(Line line, std::size_t room, World& world) : line_(line), room_(room), world_(world) {}
+  /// Puts a frame on the line, which is free.
+  using Transmit = std::function<void(Line line, const Frame& frame)>;
+
+  OutLine(Line line, std::size_t room, Transmit transmit)
+      : line_(line), room_(room), transmit_(std::move(transmit)) {}
 
   /// False, and nothing happens, when the buffer is full or the interface off.
   bool push(Frame frame);
   bool has_room() const { return on_ && waiting_.size() < room_; }
   /// What is pushed now leaves at once.
   bool is_free() const { return on_ && !busy_ && !unconfirmed_ && waiting_.empty(); }
+  /// Whether a frame of this type waits.
+  bool holds(AmType type) const;
+  /// Frames of this type that wait are never sent.
+  void drop(AmType type);
 
   /// Somebody else has the line, or leaves it.
   void set_busy(bool busy);
@@ -30,7 +39,7 @@ class OutLine {
 
   Line line_;
   std::size_t room_;
-  World& world_;
+  Transmit transmit_;
   std::deque<Frame> waiting_;
   bool on_ = true;
   bool busy_ = false;

@@ -93,6 +93,7 @@ void Sink::configure(const Frame& frame) {
   //= N9-MEMBERS: A sink whose island id changes forgets its members.
   members_.clear();
   open_joins_.clear();
+  line(Line::kRadio).drop(AmType::kJoinReply);  // It offers the island that is no more.
 }
 
 bool Sink::radiate(const Message& message) {

@@ -48,7 +48,7 @@ std::optional<ChannelId> Synaptic::create(Direction direction, Address own, Addr
   if (channel->peer != peer) return {};  // An id holds no island: two peers would share it.
   //= S1-ENLARGE: Creating a channel that exists enlarges it by size.
   channel->values.resize(channel->values.size() + size);
-  channel->fresh = out;
+  if (out) channel->fresh = true;
   return id;
 }
 
