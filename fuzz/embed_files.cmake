@@ -1,5 +1,5 @@
-# cmake -DROOT=project -DFILES=a,b -DOUT=embedded_files.cc -P embed_files.cmake: files of the project
-# as C++ text, so that a fuzz target needs none where it runs.
+# cmake -DROOT=project -DFILES=a,b -DOUT=embedded_files.cc -P embed_files.cmake: files of the
+# project as C++ text, so that a fuzz target needs none where it runs.
 set(text "// Generated when the program is built.
 #include \"fuzz/support/embedded_files.h\"
 

@@ -1,5 +1,5 @@
-// Property: what a builder makes in place, by any order of setters that take or refuse, is what write
-// makes of a value with the same fields; nothing behind its room is touched.
+// Property: what a builder makes in place, by any order of setters that take or refuse, is what
+// write makes of a value with the same fields; nothing behind its room is touched.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Property: whatever bytes `rubric check` is given as a capture or a log, it ends with a verdict that
-// its findings say, about frames that are there, in reports that are whole, and the same each time.
+// Property: whatever bytes `rubric check` is given as a capture or a log, it ends with a verdict
+// that its findings say, about frames that are there, in whole reports, the same each time.
 #include <cstddef>
 #include <cstdint>
 #include <set>
