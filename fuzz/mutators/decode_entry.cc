@@ -37,6 +37,7 @@ extern "C" std::size_t LLVMFuzzerCustomCrossOver(const std::uint8_t* one, std::s
                                                  const std::uint8_t* other,
                                                  std::size_t other_size, std::uint8_t* out,
                                                  std::size_t max_size, unsigned seed) {
+  if (seed % fuzz::kCrossOversAsked != 0) return 0;
   if (one_size < kHead || other_size < kHead || max_size <= kHead) return 0;
   const InputFormat format = format_of(one, one_size);
   if (format != format_of(other, other_size)) return 0;

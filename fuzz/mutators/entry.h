@@ -20,6 +20,10 @@ inline PacketMutator& seeded_mutator(unsigned seed) {
   return mutator;
 }
 
+/// libFuzzer asks for a cross-over as often as for a mutant. One of so many is enough; for the others
+/// it asks again.
+inline constexpr unsigned kCrossOversAsked = 4;
+
 /// Gives `out` to the engine, behind what `data` already begins with.
 inline std::size_t give(const std::vector<std::uint8_t>& out, std::size_t head_bytes,
                         std::uint8_t* data, std::size_t max_size) {

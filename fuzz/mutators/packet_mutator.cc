@@ -1,7 +1,9 @@
 #include "fuzz/mutators/packet_mutator.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
+#include <stdexcept>
 
 #include "codec/containers/link_record.h"
 #include "codec/runtime/hdlc.h"
@@ -39,9 +41,15 @@ PacketMutator::PacketMutator(const reflect::Protocol& protocol, const reflect::R
                              std::uint64_t seed)
     : protocol_(protocol), routes_(routes), generator_(protocol, routes, seed), decoder_(protocol) {
   for (std::size_t i = 0; i < routes.count; ++i) {
-    const reflect::Type* const type = routes.routes[i].type;
-    if (std::find(messages_.begin(), messages_.end(), type) != messages_.end()) continue;
-    messages_.push_back(type);
+    const reflect::Route& route = routes.routes[i];
+    try {
+      generator_.valid(route);
+    } catch (const std::logic_error&) {
+      continue;  // No frame can take this route.
+    }
+    ways_.push_back(&route);
+    const bool known = std::find(messages_.begin(), messages_.end(), route.type) != messages_.end();
+    if (!known) messages_.push_back(route.type);
   }
 }
 
@@ -91,17 +99,17 @@ void PacketMutator::change(PacketStream& stream) {
   std::vector<StreamPacket>& packets = stream.packets;
   if (packets.empty()) return insert_message(stream);
   const std::size_t at = pick_packet(stream);
-  switch (random().below(16)) {
-    case 0: case 1: case 2: case 3: case 4:
+  switch (random().below(20)) {
+    case 0: case 1: case 2: case 3: case 4: case 5:
       return insert_message(stream);
-    case 5: case 6: case 7:
+    case 6: case 7: case 8: case 9: case 10: case 11:
       return copy_number(stream);
-    case 8:
+    case 12:
       packets.erase(packets.begin() + static_cast<std::ptrdiff_t>(at));
       return;
-    case 9:
+    case 13:
       return insert(stream, random().below(packets.size() + 1), StreamPacket(packets[at]));
-    case 10:
+    case 14:
       return std::swap(packets[at], packets[random().below(packets.size())]);
     default:
       return change_packet(stream, at);
@@ -111,7 +119,7 @@ void PacketMutator::change(PacketStream& stream) {
 void PacketMutator::insert_message(PacketStream& stream) {
   const reflect::Route* const route = pick_route(stream);
   if (route == nullptr) return;
-  const bool near = random().below(6) == 0;
+  const bool near = random().below(8) == 0;
   const generate::Generated made =
       near ? generator_.near_valid(*route) : generator_.valid(*route);
   std::vector<StreamPacket>& packets = stream.packets;
@@ -126,69 +134,91 @@ void PacketMutator::insert_message(PacketStream& stream) {
     packet.interface_name = before.interface_name;
   }
   insert(stream, at, packet);
-  if (random().below(2) == 0) adopt_values(stream, at);
+  if (random().below(4) != 0) adopt_values(stream, at);
 }
 
-// A message that answers another repeats its numbers: those of the same name, mostly.
+// A message that answers another repeats its numbers: those of the same name, and, as the same is
+// not called the same everywhere, others.
 void PacketMutator::adopt_values(PacketStream& stream, std::size_t at) {
-  std::vector<Number> known;
-  for (std::size_t i = at - std::min(at, kLookBack); i < at; ++i) add_numbers(stream, i, known);
-  if (known.empty()) return;
-  std::vector<Number> own;
-  add_numbers(stream, at, own);
-  for (const Number& to : own) {
-    if (random().below(3) == 0) continue;
-    // From a random place on, so that no packet is preferred.
-    const std::size_t start = random().below(known.size());
-    for (std::size_t i = 0; i < known.size(); ++i) {
-      const Number& from = known[(start + i) % known.size()];
-      if (from.width != to.width || std::strcmp(from.name, to.name) != 0) continue;
-      copy(stream, from, to);
-      break;
-    }
+  const std::vector<Number> known = numbers(stream, at - std::min(at, kLookBack), at);
+  const std::vector<Number> own = numbers(stream, at, at + 1);
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    if (random().below(4) != 0) copy_some(stream, known, own, i, random().below(4) != 0);
   }
   repair_sums(stream.packets[at]);
 }
 
 void PacketMutator::copy_number(PacketStream& stream) {
   const std::size_t at = pick_packet(stream);
-  std::vector<Number> own;
-  add_numbers(stream, at, own);
+  const std::vector<Number> own = numbers(stream, at, at + 1);
   if (own.empty()) return;
-  const Number to = own[random().below(own.size())];
-  std::vector<Number> known;
   const std::size_t end = std::min(stream.packets.size(), at + kLookBack / 4);
-  for (std::size_t i = at - std::min(at, kLookBack); i < end; ++i) add_numbers(stream, i, known);
-  std::vector<Number> fit;
-  for (const Number& from : known) {
-    if (from.width == to.width && (from.packet != to.packet || from.offset != to.offset)) {
-      fit.push_back(from);
-    }
-  }
-  if (fit.empty()) return;
-  copy(stream, fit[random().below(fit.size())], to);
+  const std::vector<Number> known = numbers(stream, at - std::min(at, kLookBack), end);
+  copy_some(stream, known, own, random().below(own.size()), random().below(2) == 0);
   repair_sums(stream.packets[at]);
 }
 
-void PacketMutator::copy(PacketStream& stream, const Number& from, const Number& to) {
-  const Buffer source = stream.packets[from.packet].bytes;
-  Buffer& target = stream.packets[to.packet].bytes;
-  for (std::size_t i = 0; i < to.width; ++i) {
-    const std::size_t other = from.little == to.little ? i : to.width - 1 - i;
-    target[to.offset + i] = source[from.offset + other];
+// Takes one of `known` over into own[to], and perhaps what follows it into what follows: the parts
+// of an address stand in the same order everywhere.
+void PacketMutator::copy_some(PacketStream& stream, const std::vector<Number>& known,
+                              const std::vector<Number>& own, std::size_t to, bool by_name) {
+  const auto fits = [&](const Number& from) {
+    const bool itself = from.packet == own[to].packet && from.offset == own[to].offset;
+    return !itself && from.width == own[to].width &&
+           (!by_name || std::strcmp(from.name, own[to].name) == 0);
+  };
+  std::size_t chosen = known.size();
+  std::size_t seen = 0;
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    if (fits(known[i]) && random().below(++seen) == 0) chosen = i;
+  }
+  if (chosen == known.size()) return;
+  const Message message = message_of(stream.packets[own[to].packet]);
+  for (; chosen < known.size() && to < own.size() && fits(known[chosen]); ++chosen, ++to) {
+    copy(stream, known[chosen], own[to], message);
+    if (by_name || random().below(4) == 0) return;
   }
 }
 
-void PacketMutator::add_numbers(const PacketStream& stream, std::size_t at,
-                                std::vector<Number>& out) {
-  const Packet packet = stream.packets[at].view();
-  decoder_.decode(packet, frame_);
-  const reflect::Decoded& decoded = frame_.decoded;
-  for (std::size_t i = 0; i < decoded.node_count(); ++i) {
-    const reflect::Node& node = decoded[i];
-    if (node.kind != reflect::NodeKind::kNumber || node.field == nullptr) continue;
-    out.push_back({at, node.offset, node.size, node.field->little_endian, node.field->name});
+// Unless the packet would no longer be the message that it is: lengths and types are no values.
+void PacketMutator::copy(PacketStream& stream, const Number& from, const Number& to,
+                         const Message& message) {
+  StreamPacket& packet = stream.packets[to.packet];
+  std::uint8_t* const target = packet.bytes.data() + to.offset;
+  const std::uint8_t* const source = stream.packets[from.packet].bytes.data() + from.offset;
+  std::array<std::uint8_t, 8> old{};
+  std::array<std::uint8_t, 8> copied{};
+  for (std::size_t i = 0; i < to.width; ++i) {
+    old[i] = target[i];
+    copied[i] = source[from.little == to.little ? i : to.width - 1 - i];
   }
+  std::copy_n(copied.data(), to.width, target);
+  if (message_of(packet) != message) std::copy_n(old.data(), to.width, target);
+}
+
+PacketMutator::Message PacketMutator::message_of(const StreamPacket& packet) {
+  const Packet view = packet.view();
+  decoder_.decode(view, frame_);
+  return {frame_.decoded.message(), frame_.decoded.error.fault};
+}
+
+// Those of the messages; what the headers around them say is mostly settled by the message.
+std::vector<PacketMutator::Number> PacketMutator::numbers(const PacketStream& stream,
+                                                          std::size_t begin, std::size_t end) {
+  std::vector<Number> out;
+  out.reserve(64);
+  for (std::size_t at = begin; at < end; ++at) {
+    const Packet packet = stream.packets[at].view();
+    decoder_.decode(packet, frame_);
+    const reflect::Decoded& decoded = frame_.decoded;
+    const bool all = random().below(8) == 0;
+    for (std::size_t i = all ? 0 : frame_.payload_node; i < decoded.node_count(); ++i) {
+      const reflect::Node& node = decoded[i];
+      if (node.kind != reflect::NodeKind::kNumber || node.field == nullptr) continue;
+      out.push_back({at, node.offset, node.size, node.field->little_endian, node.field->name});
+    }
+  }
+  return out;
 }
 
 void PacketMutator::change_packet(PacketStream& stream, std::size_t at) {
@@ -252,24 +282,43 @@ void PacketMutator::change_outside(StreamPacket& packet) {
 // The last packets are those that a sequence has come to.
 std::size_t PacketMutator::pick_packet(const PacketStream& stream) {
   const std::size_t count = stream.packets.size();
-  return random().below(3) == 0 ? count - 1 : random().below(count);
+  return random().below(2) == 0 ? count - 1 : random().below(count);
 }
 
-// Every message as often as any other, however many ways lead to it. Null where none fits.
+// Whether a message of that type may tell again what one of `numbers` tells.
+bool PacketMutator::answers(const reflect::Type& type, const std::vector<Number>& numbers) {
+  for (std::size_t i = 0; i < type.field_count; ++i) {
+    const reflect::Field& field = type.fields[i];
+    if (field.width_bytes < 2) continue;  // Types and counts.
+    for (const Number& number : numbers) {
+      if (number.width == field.width_bytes && std::strcmp(number.name, field.name) == 0) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+// Every message as often as any other, however many ways lead to it; half of the time one that may
+// go on with the last packet. Null where none fits.
 const reflect::Route* PacketMutator::pick_route(const PacketStream& stream) {
   const bool radio = takes_radio(stream);
   const bool serial = takes_serial(stream);
-  for (std::size_t tries = 0; tries < 8; ++tries) {
+  std::vector<Number> last;
+  if (!stream.packets.empty() && random().below(2) == 0) {
+    last = numbers(stream, stream.packets.size() - 1, stream.packets.size());
+  }
+  for (std::size_t tries = 0; tries < 16; ++tries) {
     const reflect::Type* const type = messages_[random().below(messages_.size())];
+    if (!last.empty() && tries < 12 && !answers(*type, last)) continue;
     const reflect::Route* found = nullptr;
     std::size_t seen = 0;
-    for (std::size_t i = 0; i < routes_.count; ++i) {
-      const reflect::Route& route = routes_.routes[i];
-      if (route.type != type) continue;
-      const bool on_line = std::strcmp(route.carrier, "serial") == 0;
-      const bool converts = std::strcmp(route.carrier, "radio_i") == 0;
+    for (const reflect::Route* const way : ways_) {
+      if (way->type != type) continue;
+      const bool on_line = std::strcmp(way->carrier, "serial") == 0;
+      const bool converts = std::strcmp(way->carrier, "radio_i") == 0;
       if (on_line ? !serial : !radio && !(serial && converts)) continue;
-      if (random().below(++seen) == 0) found = &route;
+      if (random().below(++seen) == 0) found = way;
     }
     if (found != nullptr) return found;
   }

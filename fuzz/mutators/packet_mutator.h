@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "codec/generate/frame_generator.h"
@@ -43,14 +44,20 @@ class PacketMutator {
     bool little;
     const char* name;
   };
+  /// What a packet is: its innermost message, and what is wrong with it.
+  using Message = std::pair<const reflect::Type*, Fault>;
 
   void insert_message(PacketStream& stream);
   void adopt_values(PacketStream& stream, std::size_t at);
   void copy_number(PacketStream& stream);
   void change_frame(StreamPacket& packet);
   void change_outside(StreamPacket& packet);
-  void add_numbers(const PacketStream& stream, std::size_t at, std::vector<Number>& out);
-  void copy(PacketStream& stream, const Number& from, const Number& to);
+  std::vector<Number> numbers(const PacketStream& stream, std::size_t begin, std::size_t end);
+  void copy_some(PacketStream& stream, const std::vector<Number>& known,
+                 const std::vector<Number>& own, std::size_t to, bool by_name);
+  Message message_of(const StreamPacket& packet);
+  void copy(PacketStream& stream, const Number& from, const Number& to, const Message& message);
+  static bool answers(const reflect::Type& type, const std::vector<Number>& numbers);
   const reflect::Route* pick_route(const PacketStream& stream);
   std::size_t pick_packet(const PacketStream& stream);
 
@@ -59,7 +66,8 @@ class PacketMutator {
   generate::FrameGenerator generator_;
   reflect::FrameDecoder decoder_;
   reflect::Frame frame_;
-  std::vector<const reflect::Type*> messages_;  // Each once.
+  std::vector<const reflect::Route*> ways_;     // Those that frames can take.
+  std::vector<const reflect::Type*> messages_;  // To which they lead, each once.
 };
 
 }  // namespace rubric::fuzz

@@ -1,0 +1,81 @@
+#!/usr/bin/env python3
+"""Shows that the structure-aware mutator comes to a trap that plain libFuzzer does not come to.
+
+Usage: planted_test.py [--build FOLDER] [--seeds N] [--plain-seconds S]
+
+The trap (targets/planted_fuzz.cc) lies behind four valid messages in order, each of which repeats
+what was said before. The same target is built with the mutator and without; both begin with one
+serial frame and the dictionary. The mutator has to find the trap within 30 seconds. Without it, ten
+times as many runs, or the same 30 seconds if they are over before, must not. With --seeds the whole
+is done for that many seeds. Exit 1 if it comes out otherwise.
+"""
+
+import argparse
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+LIMIT_S = 30
+MORE_RUNS = 10
+SEED_FRAME = bytes.fromhex("7e4301be487e")  # The confirmation of a packet.
+OPTIONS = ["-max_len=400", "-use_counters=0", "-print_final_stats=1",
+           f"-dict={ROOT}/fuzz/dictionaries/rubicon.dict"]
+
+
+def run(program, seed, *options):
+    """Whether the trap was found, after how many runs and seconds."""
+    with tempfile.TemporaryDirectory() as work:
+        corpus = pathlib.Path(work, "corpus")
+        corpus.mkdir()
+        (corpus / "ack.hdlc").write_bytes(SEED_FRAME)
+        start = time.monotonic()
+        done = subprocess.run(
+            [program, f"-seed={seed}", f"-max_total_time={LIMIT_S}", f"-artifact_prefix={work}/",
+             *OPTIONS, *options, str(corpus)], capture_output=True, text=True, errors="replace",
+            check=False)
+        seconds = time.monotonic() - start
+    runs = re.search(r"number_of_executed_units: (\d+)", done.stderr)
+    found = "broken: nobody gets here" in done.stderr
+    if not runs or (done.returncode != 0) != found:
+        sys.exit(f"{program} did not run:\n{done.stderr[-2000:]}")
+    return found, int(runs[1]), seconds
+
+
+def one(build, seed, plain_seconds):
+    found, runs, seconds = run(build / "planted_aware_fuzz", seed)
+    said = "found the trap" if found else "did not find the trap"
+    print(f"seed {seed}: with the mutator {said}: {runs} runs, {seconds:.1f} s", flush=True)
+    bound = [f"-max_total_time={plain_seconds}"]
+    if plain_seconds == LIMIT_S:
+        bound.append(f"-runs={MORE_RUNS * runs}")
+    plain_found, plain_runs, plain_s = run(build / "planted_plain_fuzz", seed, *bound)
+    said = "found the trap" if plain_found else "did not find the trap"
+    print(f"seed {seed}: plain libFuzzer {said}: {plain_runs} runs, {plain_s:.1f} s", flush=True)
+    return found and seconds <= LIMIT_S and not plain_found, runs, seconds
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/fuzz/fuzz",
+                        help="where the fuzz targets are (default: build/fuzz/fuzz)")
+    parser.add_argument("--seeds", type=int, default=1)
+    parser.add_argument("--plain-seconds", type=int, default=LIMIT_S,
+                        help="other than 30: plain libFuzzer runs for so long, however many runs")
+    options = parser.parse_args()
+    rows = [one(options.build, seed, options.plain_seconds) for seed in range(1, options.seeds + 1)]
+    good = sum(row[0] for row in rows)
+    if options.seeds > 1:
+        for name, column in (("runs", 1), ("seconds", 2)):
+            values = sorted(row[column] for row in rows)
+            print(f"{name} to the trap: least {values[0]:.1f}, median "
+                  f"{values[len(values) // 2]:.1f}, most {values[-1]:.1f}")
+    print(f"{good} of {len(rows)} as wanted")
+    return 0 if good == len(rows) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
