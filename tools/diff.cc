@@ -98,6 +98,9 @@ void add_diff(CLI::App& app) {
       ->take_all();
   sub->add_option("--requirement", options->selection.requirements,
                   "Only cases that name this rule, or one of this family")->expected(1)->take_all();
+  for (const char* name : {"--target", "--profile", "--cases", "--requirement"}) {
+    sub->get_option(name)->allow_extra_args(false);  // One at a time: traces may follow.
+  }
   add_player_options(*sub, options->shared);
   sub->callback([options, sub] {
     run_player_command(*sub, [&] { compare(*options); });

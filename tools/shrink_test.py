@@ -158,6 +158,11 @@ class Diff(unittest.TestCase):
         self.assertEqual((code, out), (0, ""), err)
         self.assertIn("0 differ", err)
 
+    def test_traces_may_stand_between_the_options(self):
+        code, _, err = run("diff", "--target", "machine", "conformance/cases/j1.rtr", "--target",
+                           MACHINE)
+        self.assertEqual(code, 0, err)
+
     def test_one_target_is_not_enough(self):
         code, _, err = run("diff", "--target", "machine")
         self.assertEqual(code, 64)
