@@ -1,5 +1,5 @@
-// Property: a value of any fields is written into any room as bytes that parse gives back the same,
-// or refused by a rule that the tables refuse it by too; nothing behind the room is touched.
+// Property: a value of any fields is written as bytes that parse and tables take and that give it
+// back, whatever the room, or refused by a rule of its structure; behind the room all stays.
 #include <algorithm>
 #include <array>
 #include <cstddef>
