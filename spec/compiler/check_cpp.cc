@@ -38,7 +38,7 @@ class Names {
   void claim(const std::string& name, const Place& place) {
     const auto [found, fresh] = lines_.try_emplace(name, place.line);
     if (fresh) return;
-    check_.error(place, fmt::format("{} twice in the generated code of {}", quoted(name), where_),
+    check_.error(place, fmt::format("{} twice in the generated code of {}", quote(name), where_),
                  fmt::format("line {} makes it too", found->second));
   }
 
@@ -49,11 +49,11 @@ class Names {
 };
 
 void check_classes(Check& check, const Spec& spec) {
-  Names names(check, quoted(spec.id));
+  Names names(check, quote(spec.id));
   const auto claim = [&](const std::string& name, const Place& place) {
     names.claim(name, place);
     if (!std::binary_search(kClasses.begin(), kClasses.end(), name)) return;
-    check.error(place, fmt::format("{} hides a class of the runtime", quoted(name)),
+    check.error(place, fmt::format("{} hides a class of the runtime", quote(name)),
                 "another name was expected");
   };
   for (const auto& one : spec.enums) claim(pascal(one->id), one->place);
@@ -79,7 +79,7 @@ class Structure {
     if (!type_.fields.empty() && type_.fields.back()->condition && cpp::has_tail(type_)) {
       const Field& last = *type_.fields.back();
       error(last.condition->place, fmt::format("field {} takes all bytes and may be absent",
-                                               quoted(last.id)),
+                                               quote(last.id)),
             "a field with 'if' must have a size of its own");
     }
     if (ok_) check_members();
@@ -94,7 +94,7 @@ class Structure {
 
   void check_name(const Field& field) {
     if (!std::binary_search(kMembers.begin(), kMembers.end(), field.id)) return;
-    error(field.place, fmt::format("{} hides a member of the generated view", quoted(field.id)),
+    error(field.place, fmt::format("{} hides a member of the generated view", quote(field.id)),
           "another name was expected; -name can show this one");
   }
 
@@ -112,13 +112,13 @@ class Structure {
       most = static_cast<std::uint64_t>(field.count->range.max);
     }
     if (most <= kElementsMax) return;
-    error(field.place, fmt::format("{} has up to {} elements", quoted(field.id), most),
+    error(field.place, fmt::format("{} has up to {} elements", quote(field.id), most),
           fmt::format("the generated code takes at most {}", kElementsMax));
   }
 
   void check_members() {
     const cpp::Layout layout = cpp::lay_out(type_);
-    Names view(check_, quoted(type_.id)), builder(check_, quoted(type_.id));
+    Names view(check_, quote(type_.id)), builder(check_, quote(type_.id));
     for (const auto& field : type_.fields) {
       const Place& place = field->place;
       const bool structure = field->kind == ValueKind::kStruct && !field->choice;
@@ -189,7 +189,7 @@ void check_cpp(Check& check) {
     const bool many = numbers.of(*type) > kNumbersMax;
     const bool inner = holds(*type, refused);
     if (many && !inner) {
-      check.error(type->place, fmt::format("{} nests too many numbers", quoted(type->id)),
+      check.error(type->place, fmt::format("{} nests too many numbers", quote(type->id)),
                   fmt::format("at most {} are laid out", kNumbersMax));
     }
     if (many || inner || !Structure(check, *type).check()) refused.insert(type);

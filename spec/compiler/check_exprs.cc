@@ -75,7 +75,7 @@ class Resolver {
   ExprShape enum_value(Expr& expr) {
     const Enum* found = find_enum(*scope_.type.spec, expr.path);
     if (found == nullptr) {
-      check_.error(expr.place, fmt::format("unknown enum in {}", quoted(to_text(expr))),
+      check_.error(expr.place, fmt::format("unknown enum in {}", quote(to_text(expr))),
                    suggestion(expr.path[expr.path.size() - 2],
                               ids_of(scope_.type.spec->enums)));
       return open();
@@ -88,7 +88,7 @@ class Resolver {
     }
     std::vector<std::string> known;
     for (const EnumEntry& entry : found->entries) known.push_back(entry.name);
-    check_.error(expr.place, fmt::format("unknown enum value {}", quoted(to_text(expr))),
+    check_.error(expr.place, fmt::format("unknown enum value {}", quote(to_text(expr))),
                  suggestion(expr.path.back(), known));
     return open();
   }
@@ -97,7 +97,7 @@ class Resolver {
   const Field* head(const Expr& expr) {
     const std::string& name = expr.path[0];
     if (scope_.wide) {
-      check_.error(expr.place, fmt::format("{} is no constant", quoted(to_text(expr))),
+      check_.error(expr.place, fmt::format("{} is no constant", quote(to_text(expr))),
                    "a number or an enum::value was expected");
       return nullptr;
     }
@@ -105,46 +105,46 @@ class Resolver {
     for (std::size_t i = 0; i < fields.size(); ++i) {
       if (fields[i]->id != name) continue;
       if (i < scope_.fields_before) return fields[i].get();
-      check_.error(expr.place, fmt::format("field {} is used before it is read", quoted(name)),
+      check_.error(expr.place, fmt::format("field {} is used before it is read", quote(name)),
                    "only fields further up are known here");
       return nullptr;
     }
     for (const auto& instance : scope_.type.instances) {
       if (instance->id != name) continue;
       if (instance->is_peek && scope_.peeks) return instance.get();
-      check_.error(expr.place, fmt::format("instance {} cannot be read here", quoted(name)),
+      check_.error(expr.place, fmt::format("instance {} cannot be read here", quote(name)),
                    "only instances read peeks");
       return nullptr;
     }
     const std::span before(fields.data(), scope_.fields_before);
-    check_.error(expr.place, fmt::format("unknown field {}", quoted(name)),
+    check_.error(expr.place, fmt::format("unknown field {}", quote(name)),
                  suggestion(name, ids_of(before)));
     return nullptr;
   }
 
   const Field* inner(const Expr& expr, const Field& outer, const std::string& name) {
     if (outer.kind != ValueKind::kStruct || outer.choice) {
-      check_.error(expr.place, fmt::format("{} has no fields to read", quoted(outer.id)),
+      check_.error(expr.place, fmt::format("{} has no fields to read", quote(outer.id)),
                    outer.choice ? "its type depends on a switch" : "it is no structure");
       return nullptr;
     }
     if (outer.extent != ExtentKind::kOwn) {
-      check_.error(expr.place, fmt::format("the fields of {} cannot be read", quoted(outer.id)),
+      check_.error(expr.place, fmt::format("the fields of {} cannot be read", quote(outer.id)),
                    "a size delimits it; a structure without one was expected");
       return nullptr;
     }
     for (const auto& field : outer.type->fields) {
       if (field->id == name) return field.get();
     }
-    check_.error(expr.place, fmt::format("unknown field {} of {}", quoted(name),
-                                         quoted(outer.type->id)),
+    check_.error(expr.place, fmt::format("unknown field {} of {}", quote(name),
+                                         quote(outer.type->id)),
                  suggestion(name, ids_of(outer.type->fields)));
     return nullptr;
   }
 
   /// Whether `step` stands at a constant place in every frame.
   bool is_fixed(const Expr& expr, const Field& step) {
-    const std::string what = quoted(to_text(expr));
+    const std::string what = quote(to_text(expr));
     if (step.repeat != RepeatKind::kOnce) {
       check_.error(expr.place, fmt::format("{} is a list", what), "a single number was expected");
     } else if (step.condition) {
@@ -173,7 +173,7 @@ class Resolver {
     if (step == nullptr) return open();
     if (step->kind != ValueKind::kUint) {
       check_.error(expr.place, fmt::format("{} cannot be read in an expression",
-                                           quoted(to_text(expr))),
+                                           quote(to_text(expr))),
                    "an unsigned number was expected");
       return open();
     }
@@ -187,7 +187,7 @@ class Resolver {
   bool wants(const Expr& operand, ExprShape found, Shape shape, std::string_view expected) {
     if (found.shape == shape) return true;
     if (found.shape != Shape::kOpen) {
-      check_.error(operand.place, fmt::format("{} does not fit here", quoted(to_text(operand))),
+      check_.error(operand.place, fmt::format("{} does not fit here", quote(to_text(operand))),
                    expected);
     }
     return false;
@@ -211,8 +211,8 @@ class Resolver {
     const bool same = left.shape == right.shape && left.enumeration == right.enumeration;
     if (!same || left.shape == Shape::kBool || (ordered && left.shape == Shape::kEnum)) {
       check_.error(expr.place,
-                   fmt::format("{} and {} cannot be compared", quoted(to_text(*expr.operands[0])),
-                               quoted(to_text(*expr.operands[1]))),
+                   fmt::format("{} and {} cannot be compared", quote(to_text(*expr.operands[0])),
+                               quote(to_text(*expr.operands[1]))),
                    "two numbers, or a field and a value of its enum; .to_i makes a number");
       return open();
     }
@@ -230,13 +230,13 @@ class Resolver {
     const Interval b = expr.operands[1]->range;
     if ((expr.op == ExprOp::kDiv || expr.op == ExprOp::kMod) && b.min <= 0 && b.max >= 0) {
       check_.error(expr.place,
-                   fmt::format("{} can be zero", quoted(to_text(*expr.operands[1]))),
+                   fmt::format("{} can be zero", quote(to_text(*expr.operands[1]))),
                    "a divisor that is never zero was expected");
       return open();
     }
     const auto range = combine(expr.op, a, b);
     if (!range) {
-      check_.error(expr.place, fmt::format("{} can overflow 64 bits", quoted(to_text(expr))),
+      check_.error(expr.place, fmt::format("{} can overflow 64 bits", quote(to_text(expr))),
                    "smaller numbers were expected");
       return open();
     }
@@ -268,7 +268,7 @@ std::optional<std::int64_t> resolve_constant(Check& check, Expr& expr, std::stri
   if (found.shape == Shape::kOpen) return std::nullopt;
   const Shape wanted = enumeration == nullptr ? Shape::kInt : Shape::kEnum;
   if (found.shape == wanted && found.enumeration == enumeration) return expr.range.min;
-  check.error(expr.place, fmt::format("{} does not fit {}", quoted(to_text(expr)), quoted(what)),
+  check.error(expr.place, fmt::format("{} does not fit {}", quote(to_text(expr)), quote(what)),
               enumeration == nullptr
                   ? std::string("a number was expected")
                   : fmt::format("a value of {}:: was expected", enumeration->id));

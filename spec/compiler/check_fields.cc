@@ -13,7 +13,7 @@ void check_bytes(Check& check, Field& field) {
   if (field.kind != ValueKind::kBytes || field.extent != ExtentKind::kOwn) return;
   check.open.insert(&field);
   if (field.refused_keys || field.places.contains("contents")) return;
-  check.error(field.place, fmt::format("field {} has neither type nor size", quoted(field.id)),
+  check.error(field.place, fmt::format("field {} has neither type nor size", quote(field.id)),
               "type, size, size-eos or contents was expected");
 }
 
@@ -26,7 +26,7 @@ void check_extent(Check& check, Field& field) {
     check.open.insert(&field);
   }
   if (field.choice && !sized) {
-    check.error(field.choice->place, fmt::format("the switch of {} has no size", quoted(field.id)),
+    check.error(field.choice->place, fmt::format("the switch of {} has no size", quote(field.id)),
                 "size or size-eos bounds the bytes of an unknown case");
     check.open.insert(&field);
   }
@@ -45,24 +45,24 @@ void check_repeat(Check& check, Field& field) {
 void check_enum_use(Check& check, Field& field) {
   if (field.enum_name.empty() || field.kind == ValueKind::kUint) return;
   check.error(place_of(field.places, "enum", field.place),
-              fmt::format("an enum on {}", quoted(field.id)), "an unsigned number was expected");
+              fmt::format("an enum on {}", quote(field.id)), "an unsigned number was expected");
   field.enumeration = nullptr;
 }
 
 void check_number_keys(Check& check, Field& field) {
   if (field.valid && !is_integer(field)) {
-    check.error(field.valid->place, fmt::format("valid on {}", quoted(field.id)),
+    check.error(field.valid->place, fmt::format("valid on {}", quote(field.id)),
                 "an integer was expected");
     field.valid.reset();
   }
   if (field.expect_expr && (field.kind != ValueKind::kUint || field.repeat != RepeatKind::kOnce)) {
-    check.error(field.expect_expr->place, fmt::format("-expect on {}", quoted(field.id)),
+    check.error(field.expect_expr->place, fmt::format("-expect on {}", quote(field.id)),
                 "a single unsigned number was expected");
     field.expect_expr.reset();
   }
   if (field.unit && (!is_number(field) || field.enumeration != nullptr)) {
     check.error(place_of(field.places, "-unit", field.place),
-                fmt::format("-unit on {}", quoted(field.id)), "a plain number was expected");
+                fmt::format("-unit on {}", quote(field.id)), "a plain number was expected");
   }
 }
 

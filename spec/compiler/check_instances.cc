@@ -21,19 +21,19 @@ void check_peek(Check& check, const Type& type, Field& peek) {
   peek.fixed_offset = peek.position;
   peek.min_size = peek.max_size = static_cast<std::uint32_t>(peek.width_bytes);
   if (peek.kind != ValueKind::kUint) {
-    check.error(peek.place, fmt::format("peek {} is no unsigned number", quoted(peek.id)),
+    check.error(peek.place, fmt::format("peek {} is no unsigned number", quote(peek.id)),
                 "an instance is a number at pos, or a type over size-eos bytes at pos");
     check.open.insert(&peek);
   }
   if (peek.condition) {
-    check.error(peek.condition->place, fmt::format("peek {} has a condition", quoted(peek.id)),
+    check.error(peek.condition->place, fmt::format("peek {} has a condition", quote(peek.id)),
                 "conditions belong to interpretations");
   }
   const auto end = static_cast<std::uint64_t>(peek.position + peek.width_bytes);
   if (!check.is_open(&type) && end > type.max_size) {
-    check.error(peek.place, fmt::format("peek {} lies behind the end of {}", quoted(peek.id),
-                                        quoted(type.id)),
-                fmt::format("{} has at most {}", quoted(type.id), bytes_text(type.max_size)));
+    check.error(peek.place, fmt::format("peek {} lies behind the end of {}", quote(peek.id),
+                                        quote(type.id)),
+                fmt::format("{} has at most {}", quote(type.id), bytes_text(type.max_size)));
   }
 }
 
@@ -48,7 +48,7 @@ void check_overlay(Check& check, const Type& type, Field& instance) {
   }
   if (check.is_open(&type)) return;
   check.error(instance.place,
-              fmt::format("interpretation {} overlays nothing", quoted(instance.id)),
+              fmt::format("interpretation {} overlays nothing", quote(instance.id)),
               fmt::format("a size-eos field without type at offset {} was expected",
                           instance.position));
 }
@@ -57,7 +57,7 @@ void check_interpretation(Check& check, const Type& type, Field& instance) {
   if (instance.kind != ValueKind::kStruct || instance.extent != ExtentKind::kToEnd) {
     check.error(instance.place,
                 fmt::format("instance {} is neither peek nor interpretation",
-                            quoted(instance.id)),
+                            quote(instance.id)),
                 "a number at pos, or a type over size-eos bytes at pos was expected");
     return;
   }

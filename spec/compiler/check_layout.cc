@@ -81,19 +81,19 @@ class Layout {
     if (found.shape == Shape::kOpen) return false;
     if (found.shape != Shape::kInt) {
       check_.error(expr->place, fmt::format("a {} that is no number: {}", what,
-                                            quoted(to_text(*expr))),
+                                            quote(to_text(*expr))),
                    "a number was expected; .to_i makes one of an enum");
       return false;
     }
     if (expr->range.min < 0) {
       check_.error(expr->place, fmt::format("the {} {} can be negative", what,
-                                            quoted(to_text(*expr))),
+                                            quote(to_text(*expr))),
                    fmt::format("it is {} to {}; 'valid' can narrow what it is made of",
                                expr->range.min, expr->range.max));
       return false;
     }
     if (expr->range.max == 0) {
-      check_.error(expr->place, fmt::format("the {} {} is always 0", what, quoted(to_text(*expr))),
+      check_.error(expr->place, fmt::format("the {} {} is always 0", what, quote(to_text(*expr))),
                    "a field has bytes");
       return false;
     }
@@ -104,7 +104,7 @@ class Layout {
     if (last(index)) return;
     if (field.extent == ExtentKind::kToEnd || field.repeat == RepeatKind::kToEnd) {
       check_.error(field.place, fmt::format("field {} takes all bytes but is not the last",
-                                            quoted(field.id)),
+                                            quote(field.id)),
                    "nothing can follow it");
     }
   }
@@ -132,7 +132,7 @@ class Layout {
     const bool varies = size.min != size.max;
     if (field.kind == ValueKind::kStruct && varies && field.extent == ExtentKind::kOwn &&
         (field.repeat != RepeatKind::kOnce || !last(index))) {
-      check_.error(field.place, fmt::format("structure {} varies in size", quoted(field.id)),
+      check_.error(field.place, fmt::format("structure {} varies in size", quote(field.id)),
                    "only the last field can, or one with a size");
       is_open_ = true;
     }
@@ -158,7 +158,7 @@ class Layout {
                    bounded(static_cast<std::uint64_t>(range.max))};
     if (field.kind == ValueKind::kStruct && inner.min > out.max) {
       check_.error(field.size->place,
-                   fmt::format("{} never fits in {}", quoted(field.id), bytes_text(out.max)),
+                   fmt::format("{} never fits in {}", quote(field.id), bytes_text(out.max)),
                    fmt::format("it has at least {}", inner.min));
       is_open_ = true;
     }
@@ -172,11 +172,11 @@ class Layout {
     if (type_.max_size != kUnbounded) {
       if (declared == type_.max_size) return;
       check_.error(place, fmt::format("-size {} does not add up", declared),
-                   fmt::format("the fields of {} take {}", quoted(type_.id),
+                   fmt::format("the fields of {} take {}", quote(type_.id),
                                bytes_text(type_.max_size)));
     } else if (declared <= type_.min_size || declared >= kUnbounded) {
       check_.error(place, fmt::format("-size {} leaves no room", declared),
-                   fmt::format("{} has at least {} and takes what follows", quoted(type_.id),
+                   fmt::format("{} has at least {} and takes what follows", quote(type_.id),
                                bytes_text(type_.min_size)));
     } else {
       type_.max_size = static_cast<std::uint32_t>(declared);

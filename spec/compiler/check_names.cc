@@ -23,11 +23,11 @@ class Names {
     if (fresh) return;
     const auto& [other, line] = found->second;
     if (other == name) {
-      check_.error(place, fmt::format("duplicate {} {}", what_, quoted(name)),
+      check_.error(place, fmt::format("duplicate {} {}", what_, quote(name)),
                    fmt::format("it stands already in line {}", line));
     } else {
-      check_.error(place, fmt::format("{}s {} and {} differ only in '_'", what_, quoted(other),
-                                      quoted(name)),
+      check_.error(place, fmt::format("{}s {} and {} differ only in '_'", what_, quote(other),
+                                      quote(name)),
                    "they become one name in C++");
     }
   }
@@ -59,7 +59,7 @@ Lookup split(Check& check, const Spec& spec, const std::string& name, const Plac
     // An import that could not be read was reported already.
     const bool failed = spec.imports.size() != spec.import_names.size();
     if (!failed) {
-      check.error(place, fmt::format("{} is not imported", quoted(id)),
+      check.error(place, fmt::format("{} is not imported", quote(id)),
                   suggestion(id, ids_of(spec.imports)));
     }
   }
@@ -75,7 +75,7 @@ const Type* find_type(Check& check, const Spec& spec, const std::string& name,
   }
   std::vector<std::string> known = ids_of(where->types);
   if (where == &spec) known.insert(known.end(), kNumberTypes.begin(), kNumberTypes.end());
-  check.error(place, fmt::format("unknown type {}", quoted(name)), suggestion(id, known));
+  check.error(place, fmt::format("unknown type {}", quote(name)), suggestion(id, known));
   return nullptr;
 }
 
@@ -84,7 +84,7 @@ void resolve_case(Check& check, const Spec& spec, const Field& field, SwitchCase
   if (found.type == nullptr) {
     check.open.insert(&field);
   } else if (found.type->is_mask) {
-    check.error(found.place, fmt::format("{} is a mask", quoted(found.type_name)),
+    check.error(found.place, fmt::format("{} is a mask", quote(found.type_name)),
                 "a case chooses a structure");
     check.open.insert(&field);
   }
@@ -111,7 +111,7 @@ void resolve_field(Check& check, const Spec& spec, Field& field) {
     if (where == nullptr) return;
     field.enumeration = find_enum(*where, id);
     if (field.enumeration != nullptr) return;
-    check.error(place, fmt::format("unknown enum {}", quoted(field.enum_name)),
+    check.error(place, fmt::format("unknown enum {}", quote(field.enum_name)),
                 suggestion(id, ids_of(where->enums)));
   }
 }

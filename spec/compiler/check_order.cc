@@ -43,7 +43,7 @@ class Order {
 
   void visit_used(const Type& used, const Field& field, const Place& place, int depth) {
     if (marks_[&used] == Mark::kOpen) {
-      check_.error(place, fmt::format("type {} contains itself", quoted(used.id)),
+      check_.error(place, fmt::format("type {} contains itself", quote(used.id)),
                    "types must not form a circle");
       check_.open.insert(&field);
     } else if (depth > kTypeNestingMax) {

@@ -21,7 +21,7 @@ class Requirements {
     known(type.requirement, place_of(type.places, "-requirement", type.place));
     const bool needed = !type.is_mask && type.carrier.empty() && type.id != type.spec->id;
     if (needed && !type.places.contains("-requirement") && !type.refused_keys) {
-      check_.error(type.place, fmt::format("type {} without requirement", quoted(type.id)),
+      check_.error(type.place, fmt::format("type {} without requirement", quote(type.id)),
                    "-requirement: was expected");
     }
     for (const auto* list : {&type.fields, &type.instances}) {
@@ -32,7 +32,7 @@ class Requirements {
  private:
   void known(const std::string& id, const Place& place) {
     if (id.empty() || ids_.empty() || std::binary_search(ids_.begin(), ids_.end(), id)) return;
-    check_.error(place, fmt::format("unknown requirement {}", quoted(id)), suggestion(id, ids_));
+    check_.error(place, fmt::format("unknown requirement {}", quote(id)), suggestion(id, ids_));
   }
 
   /// The field's own, else that of the type it stands in, else that of the type it holds.
@@ -57,7 +57,7 @@ void check_am_types(Check& check, const Type& carrier) {
       const auto& own = one.type->am_types;
       if (std::find(own.begin(), own.end(), *one.number) != own.end()) continue;
       check.error(one.place, fmt::format("case {} leads to {}, whose AM type is {}", *one.number,
-                                         quoted(one.type_name), own.front()),
+                                         quote(one.type_name), own.front()),
                   "the switch of a carrier and -am-type must agree");
     }
   }
@@ -75,12 +75,12 @@ void check_types(Check& check) {
       check_am_types(check, *type);
       const Place& place = place_of(type->places, "-carrier", type->place);
       if (std::find(kCarriers.begin(), kCarriers.end(), type->carrier) == kCarriers.end()) {
-        check.error(place, fmt::format("unknown carrier {}", quoted(type->carrier)),
+        check.error(place, fmt::format("unknown carrier {}", quote(type->carrier)),
                     suggestion(type->carrier, kCarriers));
       }
       const auto [first, fresh] = lines.try_emplace(type->carrier, place.line);
       if (!fresh) {
-        check.error(place, fmt::format("duplicate carrier {}", quoted(type->carrier)),
+        check.error(place, fmt::format("duplicate carrier {}", quote(type->carrier)),
                     fmt::format("line {} has it already", first->second));
       }
     }

@@ -113,7 +113,7 @@ TEST(Diagnostics, HaveATestEach) {
 
 TEST(Diagnostics, AreFoundInSources) {
   const std::string source =
-      "check.error(place_of(places, \"size\", at), fmt::format(\"a {} too {}\", quoted(x), 2),\n"
+      "check.error(place_of(places, \"size\", at), fmt::format(\"a {} too {}\", quote(x), 2),\n"
       "            \"b \\\"c\\\"\");\nif (is_error(\"no\")) fail(\"d\", \"\");";
   EXPECT_EQ(texts_in(source), (std::vector<std::string>{"a {} too {}", "b \"c\"", "d", ""}));
   EXPECT_EQ(longest_constant_part("a {} too {}"), " too ");

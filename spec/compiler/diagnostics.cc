@@ -111,7 +111,7 @@ std::optional<std::string> text_of_file(const std::string& file, Diagnostics& di
   return std::nullopt;
 }
 
-std::string quoted(std::string_view word) {
+std::string quote(std::string_view word) {
   std::string out = "'";
   for (const char c : word.substr(0, 80)) {
     out += static_cast<unsigned char>(c) < 0x20 ? '?' : c;
@@ -141,7 +141,7 @@ std::string nearest(std::string_view word, std::span<const std::string_view> can
 
 std::string suggestion(std::string_view word, std::span<const std::string_view> candidates) {
   const std::string near = nearest(word, candidates);
-  if (!near.empty()) return fmt::format("did you mean {}?", quoted(near));
+  if (!near.empty()) return fmt::format("did you mean {}?", quote(near));
   if (candidates.empty()) return "there is none here";
   std::string list;
   for (std::size_t i = 0; i < candidates.size() && i < kListedMax; ++i) {

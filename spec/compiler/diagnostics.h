@@ -49,7 +49,7 @@ class Diagnostics {
 std::optional<std::string> text_of_file(const std::string& file, Diagnostics& diagnostics);
 
 /// `'word'`
-std::string quoted(std::string_view word);
+std::string quote(std::string_view word);
 
 /// "1 byte", "2 bytes"
 std::string bytes_text(std::uint64_t count);

@@ -210,7 +210,7 @@ GeneratedFiles emit_java(const Spec& spec) {
   for (const auto& type : spec.types) {
     out.push_back(type->is_mask ? mask(*type, spec) : structure(*type, spec));
     if (type->is_mask) continue;
-    entries += (entries.empty() ? "" : ",\n") + std::string("Map.entry(") + quoted(type->id) +
+    entries += (entries.empty() ? "" : ",\n") + std::string("Map.entry(") + quote(type->id) +
                ", " + class_name(type->id) + "::parse)";
   }
   if (!entries.empty()) {

@@ -105,7 +105,7 @@ std::string class_of(const Enum& e, const Spec& spec) {
   return (e.spec != &spec ? package_of(*e.spec) + "." : "") + class_name(e.id);
 }
 
-std::string quoted(std::string_view text) { return "\"" + std::string(text) + "\""; }
+std::string quote(std::string_view text) { return "\"" + std::string(text) + "\""; }
 
 std::string literal(std::int64_t value) {
   const bool fits = value >= INT32_MIN && value <= INT32_MAX;

@@ -29,7 +29,7 @@ std::string class_of(const Enum& e, const Spec& spec);
 std::string package_of(const Spec& spec);
 
 /// A string literal.
-std::string quoted(std::string_view text);
+std::string quote(std::string_view text);
 /// An integer literal: with L where int does not hold it.
 std::string literal(std::int64_t value);
 /// A key of a switch, which is an int.

@@ -64,7 +64,7 @@ std::string rule(const Field& f) {
 }
 
 std::string take(const std::string& in, const Field& f) {
-  return in + "." + wire_name(f) + "(" + quoted(f.requirement) + ")" + rule(f) + ";\n";
+  return in + "." + wire_name(f) + "(" + quote(f.requirement) + ")" + rule(f) + ";\n";
 }
 
 bool ends_with_bytes(const Field& f) {
@@ -81,7 +81,7 @@ std::string delimited(const FieldLayout& l, const Leaf& leaf) {
 // The field's bytes as a reader of their own; whole elements of `l.unit` bytes.
 std::string part(const FieldLayout& l, const Leaf& leaf) {
   const Field& f = *l.field;
-  const std::string rule_id = quoted(f.requirement);
+  const std::string rule_id = quote(f.requirement);
   const std::string bytes =
       ends_with_bytes(f) ? "in.rest()" : "in.part(" + delimited(l, leaf) + ", " + rule_id + ")";
   if (f.repeat != RepeatKind::kToEnd || l.unit == 1) return bytes;
@@ -121,7 +121,7 @@ std::string check_field(const FieldLayout& l, const Spec& spec) {
   switch (l.shape) {
     case Shape::kNumber:
       if (cpp::has_rule(f)) return take("in", f);
-      return "in.skip(" + std::to_string(f.width_bytes) + ", " + quoted(f.requirement) + ");\n";
+      return "in.skip(" + std::to_string(f.width_bytes) + ", " + quote(f.requirement) + ");\n";
     case Shape::kNested:
       return "in.nested(" + class_of(*f.type, spec) + "::check);\n";
     case Shape::kNestedRange:
@@ -311,7 +311,7 @@ std::string emit_getters(const Layout& layout, const Spec& spec) {
     const Field& f = *layout.fields[i].field;
     out += getter(layout, i, spec);
     visits += (f.condition ? "if (" + member_with("has", f.id) + "()) " : "") +
-              "visitor.accept(" + quoted(f.id) + ", " + member(f.id) + "());\n";
+              "visitor.accept(" + quote(f.id) + ", " + member(f.id) + "());\n";
   }
   for (const Group& group : layout.groups) out += group_getter(group, spec);
   const std::string size =

@@ -130,7 +130,7 @@ std::string step(const Layout& layout, const FieldLayout& l, const Spec& spec) {
   const std::string put = "out." + wire_name(f) + "(";
   if (l.derived_from) {
     return put + "out.length(" + length_of(layout, *l.derived_from) + ", " +
-           literal(f.range.min) + ", " + literal(f.range.max) + ", " + quoted(f.requirement) +
+           literal(f.range.min) + ", " + literal(f.range.max) + ", " + quote(f.requirement) +
            "));\n";
   }
   switch (l.shape) {
@@ -190,7 +190,7 @@ std::string emit_writer(const Layout& layout, const Spec& spec) {
                         {"doc", javadoc(doc, 2)},
                         {"members", members},
                         {"class", class_name(layout.type->id)},
-                        {"rule", quoted(layout.type->requirement)},
+                        {"rule", quote(layout.type->requirement)},
                         {"setters", setters},
                         {"steps", steps}});
 }

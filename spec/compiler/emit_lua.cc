@@ -34,7 +34,7 @@ local protocol_choices = {
 <<wireshark>>
 )";
 
-std::string quoted(std::string_view text) {
+std::string quote(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) {
     if (c == '\n') {
@@ -49,7 +49,7 @@ std::string quoted(std::string_view text) {
 
 template <class Named>
 std::string full_name(const Named& named) {
-  return quoted(named.spec->id + "." + named.id);
+  return quote(named.spec->id + "." + named.id);
 }
 
 std::string load_text(const Expr& expr) {
@@ -98,7 +98,7 @@ class Entry {
     pairs_.push_back(fmt::format("{} = {}", key, value));
   }
   void add_text(std::string_view key, std::string_view text) {
-    if (!text.empty()) add(key, quoted(text));
+    if (!text.empty()) add(key, quote(text));
   }
   void add_function(std::string_view key, const ExprPtr& expr) {
     if (expr) add(key, "function(d) return " + expr_text(*expr) + " end");
@@ -175,10 +175,10 @@ std::string field_text(const Field& field) {
 }
 
 std::string type_table(const Type& type) {
-  std::string out = fmt::format("types[{}] = {{\n  name = {},", full_name(type), quoted(type.name));
+  std::string out = fmt::format("types[{}] = {{\n  name = {},", full_name(type), quote(type.name));
   if (type.max_size != UINT32_MAX) out += fmt::format(" max = {},", type.max_size);
-  if (!type.requirement.empty()) out += fmt::format(" rule = {},", quoted(type.requirement));
-  if (!type.doc.empty()) out += "\n  doc = " + quoted(type.doc) + ",";
+  if (!type.requirement.empty()) out += fmt::format(" rule = {},", quote(type.requirement));
+  if (!type.doc.empty()) out += "\n  doc = " + quote(type.doc) + ",";
   for (const auto& field : type.fields) out += "\n  " + field_text(*field) + ",";
   std::string interpretations;
   for (const auto& instance : type.instances) {
@@ -191,7 +191,7 @@ std::string type_table(const Type& type) {
 std::string enum_table(const Enum& one) {
   std::vector<std::string> entries;
   for (const EnumEntry& entry : one.entries) {
-    entries.push_back(fmt::format("[{}] = {}", entry.value, quoted(entry.name)));
+    entries.push_back(fmt::format("[{}] = {}", entry.value, quote(entry.name)));
   }
   return fmt::format("enums[{}] = {{{}}}\n", full_name(one), fmt::join(entries, ", "));
 }
@@ -200,7 +200,7 @@ std::string enum_table(const Enum& one) {
 std::string mask_table(const Type& type) {
   std::vector<std::string> bits;
   for (auto bit = type.bits.rbegin(); bit != type.bits.rend(); ++bit) {
-    bits.push_back(bit->unnamed ? "false" : quoted(bit->name));
+    bits.push_back(bit->unnamed ? "false" : quote(bit->name));
   }
   return fmt::format("masks[{}] = {{count = {}, {}}}\n", full_name(type), bits.size(),
                      fmt::join(bits, ", "));
@@ -220,8 +220,8 @@ std::string rule_tables(const Model& model) {
   std::string out;
   for (const Requirement& rule : model.requirements) {
     if (!rule.id.starts_with("WIRE-")) continue;
-    out += fmt::format("rules[{}] = {{level = {}, text = {}}}\n", quoted(rule.id),
-                       quoted(rule.level), quoted(rule.sentence));
+    out += fmt::format("rules[{}] = {{level = {}, text = {}}}\n", quote(rule.id),
+                       quote(rule.level), quote(rule.sentence));
   }
   return out;
 }
@@ -248,7 +248,7 @@ std::string protocol_text(const Spec& spec) {
   for (const auto& type : spec.types) {
     if (!type->carrier.empty()) carriers.add(type->carrier, full_name(*type));
   }
-  return fmt::format("  {{name = {}, carriers = {}}},", quoted(spec.id), carriers.text());
+  return fmt::format("  {{name = {}, carriers = {}}},", quote(spec.id), carriers.text());
 }
 
 std::string serial_frame_of(const Model& model) {
@@ -270,7 +270,7 @@ GeneratedFiles emit_lua(const Model& model) {
   for (std::size_t i = 0; i < protocols.size(); ++i) {
     const Spec& spec = *protocols[i];
     carriers += protocol_text(spec) + "\n";
-    choices += fmt::format("  {{{}, {}, {}}},\n", i + 1, quoted(spec.title), i + 1);
+    choices += fmt::format("  {{{}, {}, {}}},\n", i + 1, quote(spec.title), i + 1);
     files += (i == 0 ? "" : " ") + spec.file;
   }
   const auto lines = [](std::string text) {

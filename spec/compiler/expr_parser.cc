@@ -76,7 +76,7 @@ class Parser {
 
   ExprPtr whole() {
     ExprPtr expr = binary(1, 0);
-    if (!token_.empty()) fail(fmt::format("unexpected {}", quoted(token_)),
+    if (!token_.empty()) fail(fmt::format("unexpected {}", quote(token_)),
                               "an operator or the end of the expression was expected");
     return expr;
   }
@@ -180,14 +180,14 @@ class Parser {
       return name();
     }
     fail(token_.empty() ? "the expression ends early"
-                        : fmt::format("unexpected {}", quoted(token_)),
+                        : fmt::format("unexpected {}", quote(token_)),
          "a number, a field or an enum::value was expected");
   }
 
   ExprPtr number() {
     ExprPtr out = node(ExprOp::kInt, here());
     const auto value = parse_integer(token_);
-    if (!value) fail(fmt::format("{} is no number", quoted(token_)),
+    if (!value) fail(fmt::format("{} is no number", quote(token_)),
                      "decimal or 0x digits of a 64-bit number were expected");
     out->value = *value;
     next();
@@ -206,7 +206,7 @@ class Parser {
   ExprPtr name() {
     ExprPtr out = node(ExprOp::kField, here());
     if (token_[0] == '_') {
-      fail(fmt::format("{} is outside the profile", quoted(token_)),
+      fail(fmt::format("{} is outside the profile", quote(token_)),
            "fields of the same structure can be read");
     }
     out->path.push_back(word());

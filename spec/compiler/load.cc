@@ -63,11 +63,11 @@ class Loader {
     const bool again = std::any_of(spec.imports.begin(), spec.imports.end(),
                                    [&](const Spec* one) { return one->file == file; });
     if (again) {
-      diagnostics_.error(place, fmt::format("{} is imported twice", quoted(name)));
+      diagnostics_.error(place, fmt::format("{} is imported twice", quote(name)));
       return;
     }
     if (std::find(open_.begin(), open_.end(), file) != open_.end()) {
-      diagnostics_.error(place, fmt::format("{} imports itself in a circle", quoted(name)),
+      diagnostics_.error(place, fmt::format("{} imports itself in a circle", quote(name)),
                          "imports must end");
       return;
     }
@@ -75,8 +75,8 @@ class Loader {
                        name.find("..") == name.npos;
     const auto text = plain && open_.size() < kSpecsMax ? read_file(file) : std::nullopt;
     if (!text) {
-      diagnostics_.error(place, fmt::format("import {} not found", quoted(name)),
-                         fmt::format("{} was expected", quoted(file)));
+      diagnostics_.error(place, fmt::format("import {} not found", quote(name)),
+                         fmt::format("{} was expected", quote(file)));
       return;
     }
     if (const Spec* found = load(file, *text)) spec.imports.push_back(found);
@@ -86,8 +86,8 @@ class Loader {
     for (const auto& other : model_.specs) {
       if (other->id != spec.id || spec.id.empty()) continue;
       diagnostics_.error(place_of(spec.places, "id", {spec.file, 1, 1}),
-                         fmt::format("a second spec {}", quoted(spec.id)),
-                         fmt::format("{} has that id", quoted(other->file)));
+                         fmt::format("a second spec {}", quote(spec.id)),
+                         fmt::format("{} has that id", quote(other->file)));
     }
   }
 

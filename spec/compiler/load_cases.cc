@@ -107,7 +107,7 @@ class CaseReader {
     const Place here = place(number, line.words[1].at);
     const auto [first, fresh] = places_.try_emplace(case_, here);
     if (fresh) return;
-    diagnostics_.error(here, fmt::format("case {} twice", rubricc::quoted(case_)),
+    diagnostics_.error(here, fmt::format("case {} twice", rubricc::quote(case_)),
                        fmt::format("it stands already in {}:{}", first->second.file,
                                    first->second.line));
   }
@@ -124,7 +124,7 @@ class CaseReader {
                            "a line 'case NAME' was expected further up");
       } else if (std::find(ids_.begin(), ids_.end(), id.text) == ids_.end()) {
         diagnostics_.error(place(number, id.at),
-                           fmt::format("unknown requirement {}", rubricc::quoted(id.text)),
+                           fmt::format("unknown requirement {}", rubricc::quote(id.text)),
                            suggestion(id.text, ids_));
       } else if (seen_.emplace(case_, id.text, negative).second) {
         model_.case_uses.push_back({case_, file_, id.text, negative});

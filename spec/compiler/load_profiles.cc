@@ -70,7 +70,7 @@ class Reader {
       const ProfileField& field = kFields[i];
       if (field.is_switch != switches) continue;
       if (!map.has(field.name)) {
-        input_.error(node, fmt::format("{} is missing", quoted(field.name)),
+        input_.error(node, fmt::format("{} is missing", quote(field.name)),
                      "every profile says what each of them is");
       } else if (switches) {
         out_.values[i] = map.boolean(field.name).value_or(false) ? 1 : 0;
@@ -84,7 +84,7 @@ class Reader {
     const std::int64_t value = map.integer(field.name).value_or(field.min);
     if (value >= field.min && value <= field.max) return value;
     input_.error(map.find(field.name)->value,
-                 fmt::format("{} is {} in a profile", rubricc::quoted(field.name), value),
+                 fmt::format("{} is {} in a profile", rubricc::quote(field.name), value),
                  fmt::format("it can be {} to {}", field.min, field.max));
     return field.min;
   }
@@ -106,7 +106,7 @@ class Reader {
       std::vector<std::string> ids;
       for (const Requirement& one : model_.requirements) ids.push_back(one.id);
       input_.error(entry.key_node,
-                   fmt::format("unknown requirement {}", rubricc::quoted(entry.key)),
+                   fmt::format("unknown requirement {}", rubricc::quote(entry.key)),
                    suggestion(entry.key, ids));
     }
   }

@@ -39,11 +39,11 @@ std::uint8_t read_roles(const YamlInput& input, const YAML::Node& node) {
     if (!word) continue;
     const auto role = std::find(kRoles.begin(), kRoles.end(), *word);
     if (role == kRoles.end()) {
-      input.error(item, "unknown role " + quoted(*word), suggestion(*word, kRoles));
+      input.error(item, "unknown role " + quote(*word), suggestion(*word, kRoles));
       continue;
     }
     const auto bit = static_cast<std::uint8_t>(1U << (role - kRoles.begin()));
-    if ((out & bit) != 0) input.error(item, fmt::format("role {} twice", quoted(*word)));
+    if ((out & bit) != 0) input.error(item, fmt::format("role {} twice", quote(*word)));
     out = static_cast<std::uint8_t>(out | bit);
   }
   return out;
@@ -62,7 +62,7 @@ Requirement read_requirement(const YamlInput& input, const YAML::Node& node) {
   for (const std::string_view key : {"id", "level", "clause", "sentence", "source", "deployed"}) {
     const YamlEntry* entry = map.find(key);
     if (entry == nullptr || !one_line(map.text(key).value_or("-")).empty()) continue;
-    input.error(entry->value, fmt::format("{} is empty", quoted(key)));
+    input.error(entry->value, fmt::format("{} is empty", quote(key)));
   }
   if (const YamlEntry* id = map.find("id")) out.place = input.place(id->value);
   out.id = map.text("id").value_or("");
@@ -74,11 +74,11 @@ Requirement read_requirement(const YamlInput& input, const YAML::Node& node) {
   out.forbids = map.boolean("forbids").value_or(false);
   out.deployed = one_line(map.text("deployed").value_or(""));
   if (out.level != "MUST" && out.level != "SHOULD" && out.level != "MAY") {
-    input.error(map.find("level")->value, "level is " + quoted(out.level),
+    input.error(map.find("level")->value, "level is " + quote(out.level),
                 "MUST, SHOULD or MAY was expected");
   }
   if (!out.id.empty() && !is_requirement_id(out.id)) {
-    input.diagnostics.error(out.place, "requirement id " + quoted(out.id),
+    input.diagnostics.error(out.place, "requirement id " + quote(out.id),
                             "upper-case words with '-' between them were expected");
     out.id.clear();
   }
@@ -105,7 +105,7 @@ void load_requirements_text(const std::string& file, const std::string& text, Mo
     if (found.id.empty()) continue;
     const auto [first, fresh] = lines.try_emplace(cpp_constant(found.id), found.place.line);
     if (!fresh) {
-      diagnostics.error(found.place, fmt::format("requirement {} twice", quoted(found.id)),
+      diagnostics.error(found.place, fmt::format("requirement {} twice", quote(found.id)),
                         fmt::format("it stands already in line {}", first->second));
       continue;
     }

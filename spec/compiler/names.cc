@@ -45,16 +45,16 @@ bool is_snake_case(std::string_view id) {
 void check_id(Diagnostics& diagnostics, const Place& place, std::string_view id,
               std::string_view what) {
   if (!is_snake_case(id)) {
-    diagnostics.error(place, fmt::format("name {}", quoted(id)), "lower snake case was expected");
+    diagnostics.error(place, fmt::format("name {}", quote(id)), "lower snake case was expected");
   } else if (id.size() > kIdMax) {
-    diagnostics.error(place, fmt::format("name {}", quoted(id)),
+    diagnostics.error(place, fmt::format("name {}", quote(id)),
                       fmt::format("at most {} characters", kIdMax));
   } else if (!what.empty() && std::binary_search(kReserved.begin(), kReserved.end(), id)) {
-    diagnostics.error(place, fmt::format("{} cannot be the name of {}", quoted(id), what),
+    diagnostics.error(place, fmt::format("{} cannot be the name of {}", quote(id), what),
                       "it is a word of C++ or of the profile");
   } else if (what == "a spec" && std::binary_search(kReservedSpecs.begin(), kReservedSpecs.end(),
                                                     id)) {
-    diagnostics.error(place, fmt::format("{} cannot be the name of {}", quoted(id), what),
+    diagnostics.error(place, fmt::format("{} cannot be the name of {}", quote(id), what),
                       "the generated code has a namespace of that name");
   }
 }

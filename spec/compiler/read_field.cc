@@ -41,7 +41,7 @@ bool set_number(const YamlInput& input, const YAML::Node& node, std::string_view
   }
   field.little_endian = suffix.empty() ? spec.little_endian : suffix == "le";
   if (suffix.empty() && !spec.places.contains("endian")) {
-    input.error(node, fmt::format("no byte order for {}", quoted(word)),
+    input.error(node, fmt::format("no byte order for {}", quote(word)),
                 "meta: endian, or the suffix be or le was expected");
   }
   return true;
@@ -164,7 +164,7 @@ void read_contents(const YamlInput& input, const YamlMap& map, Field& field) {
   }
   for (const char* other : {"type", "size", "size-eos", "valid", "enum", "repeat"}) {
     if (!map.has(other)) continue;
-    input.error(map.find(other)->key_node, fmt::format("{} beside contents", quoted(other)),
+    input.error(map.find(other)->key_node, fmt::format("{} beside contents", quote(other)),
                 "contents stand alone");
   }
   field.kind = ValueKind::kUint;
@@ -190,7 +190,7 @@ void read_repeat(const YamlInput& input, const YamlMap& map, Field& field) {
   } else if (repeat == "eos") {
     field.repeat = RepeatKind::kToEnd;
   } else if (repeat) {
-    input.error(map.find("repeat")->value, "repeat is " + quoted(*repeat),
+    input.error(map.find("repeat")->value, "repeat is " + quote(*repeat),
                 "expr or eos was expected");
   }
   if (count != nullptr && repeat != "expr") {
@@ -220,7 +220,7 @@ double read_real(const YamlInput& input, const YamlMap& map, std::string_view ke
   const char* const end = word->data() + word->size();
   const auto [at, fault] = std::from_chars(word->data(), end, value);
   if (fault == std::errc() && at == end && value > -1e12 && value < 1e12) return value;
-  input.error(map.find(key)->value, fmt::format("{} is {}", quoted(key), quoted(*word)),
+  input.error(map.find(key)->value, fmt::format("{} is {}", quote(key), quote(*word)),
               "a decimal number was expected");
   return absent;
 }

@@ -114,7 +114,7 @@ void check_seq(const YamlInput& input, const YamlMap& map, const Type& type) {
   const bool empty = seq == nullptr ? !map.refused_keys()
                                     : seq->value.IsSequence() && seq->value.size() == 0;
   if (!empty) return;
-  input.diagnostics.error(type.place, fmt::format("type {} without fields", quoted(type.id)),
+  input.diagnostics.error(type.place, fmt::format("type {} without fields", quote(type.id)),
                           "seq: with a field was expected");
 }
 
@@ -135,7 +135,7 @@ void read_type(const YamlInput& input, const YamlMap& map, const Spec& spec, Typ
   read_crc(input, map, type);
   if (!type.framing.empty() && type.framing != "hdlc") {
     input.diagnostics.error(type.places.at("-framing"),
-                            fmt::format("unknown framing {}", quoted(type.framing)),
+                            fmt::format("unknown framing {}", quote(type.framing)),
                             "known is hdlc");
   }
   if (input.budget >= 0 && map.is_map()) check_seq(input, map, type);
@@ -151,7 +151,7 @@ void read_enum_value(const YamlInput& input, const YamlEntry& entry, Enum& out) 
   value.place = input.place(entry.key_node);
   const auto number = parse_integer(entry.key);
   if (!number || *number < 0 || *number > kEnumValueMax) {
-    input.error(entry.key_node, fmt::format("enum value {}", quoted(entry.key)),
+    input.error(entry.key_node, fmt::format("enum value {}", quote(entry.key)),
                 "a number of 0 to 0xffffffff was expected");
     return;
   }
@@ -212,7 +212,7 @@ void read_meta(const YamlInput& input, const YAML::Node& root, const YamlMap& to
   if (const auto endian = meta.text("endian")) {
     spec.little_endian = *endian == "le";
     if (*endian != "le" && *endian != "be") {
-      input.diagnostics.error(spec.places.at("endian"), "endian is " + quoted(*endian),
+      input.diagnostics.error(spec.places.at("endian"), "endian is " + quote(*endian),
                               "be or le was expected");
     }
   }

@@ -102,12 +102,12 @@ YamlMap::YamlMap(const YamlInput& input, const YAML::Node& node, std::string_vie
     }
     const std::string& key = pair.first.Scalar();
     if (const YamlEntry* first = find(key)) {
-      input.error(pair.first, fmt::format("{} twice in {}", quoted(key), what),
+      input.error(pair.first, fmt::format("{} twice in {}", quote(key), what),
                   fmt::format("it stands already in line {}", input.place(first->key_node).line));
       continue;
     }
     if (!allowed.empty() && std::find(allowed.begin(), allowed.end(), key) == allowed.end()) {
-      input.error(pair.first, fmt::format("unknown key {} of {}", quoted(key), what),
+      input.error(pair.first, fmt::format("unknown key {} of {}", quote(key), what),
                   suggestion(key, allowed));
       refused_keys_ = true;
       continue;
@@ -141,7 +141,7 @@ std::optional<bool> YamlMap::boolean(std::string_view key) const {
   if (word == "true") return true;
   if (word == "false") return false;
   if (word) {
-    input_.error(entry->value, fmt::format("{} is {}", quoted(key), quoted(*word)),
+    input_.error(entry->value, fmt::format("{} is {}", quote(key), quote(*word)),
                  "true or false was expected");
   }
   return std::nullopt;
@@ -151,7 +151,7 @@ std::vector<YAML::Node> yaml_items(const YamlInput& input, const YAML::Node& nod
                                    std::string_view what) {
   std::vector<YAML::Node> out;
   if (!node.IsSequence()) {
-    input.error(node, fmt::format("{} is {}", quoted(what), kind_of(node)),
+    input.error(node, fmt::format("{} is {}", quote(what), kind_of(node)),
                 "a list was expected");
     return out;
   }
@@ -166,7 +166,7 @@ std::optional<std::string> yaml_text(const YamlInput& input, const YAML::Node& n
                                      std::string_view what) {
   if (node.IsScalar()) return node.Scalar();
   const bool is_key = what.find(' ') == what.npos;
-  input.error(node, fmt::format("{} is {}", is_key ? quoted(what) : what, kind_of(node)),
+  input.error(node, fmt::format("{} is {}", is_key ? quote(what) : what, kind_of(node)),
               node.IsNull() ? "a value was expected; quote the word 'null'"
                             : "a value was expected");
   return std::nullopt;
@@ -178,7 +178,7 @@ std::optional<std::int64_t> yaml_integer(const YamlInput& input, const YAML::Nod
   if (!word) return std::nullopt;
   const auto number = parse_integer(*word);
   if (!number) {
-    input.error(node, fmt::format("{} is {}", quoted(what), quoted(*word)),
+    input.error(node, fmt::format("{} is {}", quote(what), quote(*word)),
                 "a decimal or 0x number was expected");
   }
   return number;
