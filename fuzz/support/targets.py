@@ -29,8 +29,10 @@ class Target:
         self.max_len = int(max_len)
         self.smoke_runs = int(smoke_runs)
         self.folders = [ROOT / folder for folder in folders.split()]
-        if self.corpus.is_dir() and self.corpus not in self.folders:
-            self.folders.insert(0, self.corpus)  # it is newer than the build folder
+        # The corpus may be newer than the build folder, or gone since.
+        self.folders = [f for f in self.folders if f != self.corpus]
+        if self.corpus.is_dir():
+            self.folders.insert(0, self.corpus)
         self.timeout_s = int(timeout)
         self.repro = repro == "repro"  # `rubric repro` writes its inputs as traces
 
