@@ -1,18 +1,14 @@
 #include "conformance/suite/expected.h"
 
-#include <yaml-cpp/yaml.h>
-
 #include <algorithm>
 #include <iterator>
-#include <map>
-#include <set>
-#include <stdexcept>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "codec/generated/requirements_table.h"
 #include "conformance/generated/profiles.h"
+#include "conformance/report/entries.h"
 #include "conformance/suite/select.h"
 
 namespace rubric::suite {
@@ -25,56 +21,17 @@ constexpr const char* kNoRule = "none";
 constexpr const char* kOfProfile =
     "The numbers and switches of the profile say so: the reference machine does it as well.";
 
-struct Mistake {
-  std::uint32_t line;
-  std::string text;
-};
-
-std::uint32_t line_of(const YAML::Mark& mark) { return static_cast<std::uint32_t>(mark.line + 1); }
-
-std::string scalar(const YAML::Node& node, const std::string& key) {
-  if (!node.IsScalar() || node.Scalar().empty()) {
-    throw Mistake{line_of(node.Mark()), key + ": expected a text"};
-  }
-  return node.Scalar();
-}
-
-void check_value(const std::string& key, const std::string& value, std::uint32_t line) {
+std::string mistake(std::string_view key, const std::string& value) {
   if (key == "requirement" && value != kNoRule &&
       std::none_of(std::begin(kRequirements), std::end(kRequirements),
                    [&](const reflect::Requirement& rule) { return is_of(rule.id, value); })) {
-    throw Mistake{line, fmt::format("no requirement is called '{}'; '{}' is for lines that name "
-                                    "none", value, kNoRule)};
+    return fmt::format("no requirement is called '{}'; '{}' is for lines that name none", value,
+                       kNoRule);
   }
   if (key == "profile" && !machine::find_profile(value)) {
-    throw Mistake{line, fmt::format("profile is paper or deployed, not '{}'", value)};
+    return fmt::format("profile is paper or deployed, not '{}'", value);
   }
-}
-
-ExpectedFailure read_one(const YAML::Node& node) {
-  ExpectedFailure one;
-  one.line = line_of(node.Mark());
-  if (!node.IsMap()) throw Mistake{one.line, "expected case, requirement, message and reason"};
-  std::map<std::string, std::string*> keys = {
-      {"case", &one.cases},     {"requirement", &one.requirement}, {"message", &one.message},
-      {"reason", &one.reason},  {"target", &one.target},           {"profile", &one.profile}};
-  std::set<std::string> seen;
-  for (const auto& entry : node) {
-    const std::string key = scalar(entry.first, "key");
-    const std::uint32_t line = line_of(entry.first.Mark());
-    const auto known = keys.find(key);
-    if (known == keys.end()) {
-      throw Mistake{line, "unknown key '" + key +
-                              "'; known are case, requirement, message, reason, target, profile"};
-    }
-    if (!seen.insert(key).second) throw Mistake{line, key + " stands here twice"};
-    *known->second = scalar(entry.second, key);
-    check_value(key, *known->second, line);
-  }
-  for (const char* key : {"case", "requirement", "message", "reason"}) {
-    if (!seen.contains(key)) throw Mistake{one.line, fmt::format("{} is missing", key)};
-  }
-  return one;
+  return {};
 }
 
 bool is_about(const ExpectedFailure& one, const ImplementationRun& implementation,
@@ -151,16 +108,15 @@ std::string why_untrue(const ExpectedFailure& entry, const std::vector<const Cas
 }  // namespace
 
 ExpectedFailures parse_expected(std::string_view text, const std::string& name) {
+  const report::EntryForm form{
+      "expected failures",
+      {"case", "requirement", "message", "reason"},
+      {"case", "requirement", "message", "reason", "target", "profile"},
+      mistake};
   ExpectedFailures out{name, {}};
-  try {
-    const YAML::Node root = YAML::Load(std::string(text));
-    if (root.IsNull()) return out;  // Nothing is known to fail.
-    if (!root.IsSequence()) throw Mistake{1, "expected a list of expected failures"};
-    for (const YAML::Node& node : root) out.entries.push_back(read_one(node));
-  } catch (const Mistake& mistake) {
-    throw std::runtime_error(fmt::format("{}:{}: {}", name, mistake.line, mistake.text));
-  } catch (const YAML::Exception& broken) {
-    throw std::runtime_error(fmt::format("{}:{}: {}", name, line_of(broken.mark), broken.msg));
+  for (const report::Entry& one : report::parse_entries(text, name, form)) {
+    out.entries.push_back({one.text("case"), one.text("requirement"), one.text("message"),
+                           one.text("reason"), one.text("target"), one.text("profile"), one.line});
   }
   return out;
 }

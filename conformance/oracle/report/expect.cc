@@ -1,13 +1,12 @@
 #include "conformance/oracle/report/expect.h"
 
-#include <fmt/format.h>
 #include <fnmatch.h>
-#include <yaml-cpp/yaml.h>
 
 #include <algorithm>
-#include <set>
+#include <stdexcept>
 
 #include "codec/reflect/fault_text.h"
+#include "conformance/report/entries.h"
 
 namespace rubric::report {
 namespace {
@@ -15,57 +14,14 @@ namespace {
 using oracle::Finding;
 using oracle::Severity;
 
-struct Mistake {
-  std::uint32_t line;
-  std::string text;
-};
-
-std::uint32_t line_of(const YAML::Mark& mark) { return static_cast<std::uint32_t>(mark.line + 1); }
-
-std::string scalar(const YAML::Node& node, const std::string& key) {
-  if (!node.IsScalar() || node.Scalar().empty()) {
-    throw Mistake{line_of(node.Mark()), key + ": expected a text"};
+std::string mistake(std::string_view key, const std::string& value) {
+  if (key == "requirement" && reflect::find_requirement(value) == ReqId::kNone) {
+    return "no requirement is called '" + value + "'";
   }
-  return node.Scalar();
-}
-
-Expectation read_one(const YAML::Node& node) {
-  Expectation one;
-  one.line = line_of(node.Mark());
-  if (!node.IsMap()) throw Mistake{one.line, "expected requirement, message and reason"};
-  std::set<std::string> seen;
-  for (const auto& entry : node) {
-    const std::string key = scalar(entry.first, "key");
-    const std::uint32_t line = line_of(entry.first.Mark());
-    if (!seen.insert(key).second) throw Mistake{line, key + " stands here twice"};
-    const std::string value = scalar(entry.second, key);
-    if (key == "requirement") {
-      one.requirement = reflect::find_requirement(value);
-      if (one.requirement == ReqId::kNone) {
-        throw Mistake{line, "no requirement is called '" + value + "'"};
-      }
-    } else if (key == "node") {
-      one.node = value;
-    } else if (key == "file") {
-      one.file = value;
-    } else if (key == "profile") {
-      if (value != "paper" && value != "deployed") {
-        throw Mistake{line, "profile is paper or deployed, not '" + value + "'"};
-      }
-      one.profile = value;
-    } else if (key == "message") {
-      one.message = value;
-    } else if (key == "reason") {
-      one.reason = value;
-    } else {
-      throw Mistake{line, "unknown key '" + key +
-                              "'; known are requirement, node, file, profile, message, reason"};
-    }
+  if (key == "profile" && value != "paper" && value != "deployed") {
+    return "profile is paper or deployed, not '" + value + "'";
   }
-  for (const char* key : {"requirement", "message", "reason"}) {
-    if (!seen.contains(key)) throw Mistake{one.line, fmt::format("{} is missing", key)};
-  }
-  return one;
+  return {};
 }
 
 bool glob_matches(const std::string& glob, const std::string& path) {
@@ -103,16 +59,19 @@ std::string_view came_name(Came came) {
 
 bool parse_expectations(std::string_view text, const std::string& name, ExpectationFile& out,
                         std::string& error) {
+  const EntryForm form{"expectations",
+                       {"requirement", "message", "reason"},
+                       {"requirement", "node", "file", "profile", "message", "reason"},
+                       mistake};
   out = {name, {}};
   try {
-    const YAML::Node root = YAML::Load(std::string(text));
-    if (!root.IsSequence()) throw Mistake{1, "expected a list of expectations"};
-    for (const YAML::Node& node : root) out.expectations.push_back(read_one(node));
-  } catch (const Mistake& mistake) {
-    error = fmt::format("{}:{}: {}", name, mistake.line, mistake.text);
-    return false;
-  } catch (const YAML::Exception& broken) {
-    error = fmt::format("{}:{}: {}", name, line_of(broken.mark), broken.msg);
+    for (const Entry& one : parse_entries(text, name, form)) {
+      out.expectations.push_back({reflect::find_requirement(one.text("requirement")),
+                                  one.text("node"), one.text("file"), one.text("profile"),
+                                  one.text("message"), one.text("reason"), one.line});
+    }
+  } catch (const std::runtime_error& refused) {
+    error = refused.what();
     return false;
   }
   return true;
