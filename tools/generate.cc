@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -19,14 +18,11 @@
 #include "codec/generate/framer.h"
 #include "codec/generate/link_ack.h"
 #include "codec/generate/routes.h"
-#include "codec/reflect/fault_text.h"
 #include "codec/reflect/suggest.h"
-#include "conformance/report/text.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/input.h"
 #include "tools/cli/output.h"
-#include "tools/format/put.h"
-#include "tools/format/record.h"
+#include "tools/generate_lines.h"
 
 namespace rubric::tools {
 namespace {
@@ -35,7 +31,6 @@ using generate::Framed;
 using generate::FrameGenerator;
 using generate::Framer;
 using reflect::Route;
-using report::json_string;
 
 constexpr double kFramingShare = 0.15;  // Of the broken frames, where a format has framing.
 constexpr std::int64_t kBetweenFramesNs = 1'000'000;
@@ -151,54 +146,6 @@ class CountedOutput {
   std::unique_ptr<cli::Output> output_;
 };
 
-std::string error_json(const Error& error, std::string_view more = {}) {
-  if (error.fault == Fault::kNone) return "null";
-  return fmt::format("{{\"fault\":\"{}\",\"offset\":{},\"requirement\":\"{}\"{}}}",
-                     reflect::fault_name(error.fault), error.offset_bytes,
-                     reflect::requirement(error.requirement).id, more);
-}
-
-std::string fields_json(const Framed& framed) {
-  if (!framed.valid()) return "null";
-  std::string text;
-  for (const generate::NumberAt& number : framed.numbers) {
-    fmt::format_to(std::back_inserter(text), "{}{{\"field\":\"{}.{}\",\"offset\":{},\"value\":{}}}",
-                   text.empty() ? "[" : ",", number.message->name, number.field->name,
-                   number.offset_bytes, number.value);
-  }
-  return text + "]";
-}
-
-// The line without its end.
-std::string expectation(std::uint64_t number, const std::string& offset, const Framed& framed,
-                        bool with_fields) {
-  std::vector<std::string> path;
-  for (const reflect::Type* type : framed.path) path.push_back(json_string(type->name));
-  std::string raw(2 * framed.bytes.size(), '0');
-  format::put_hex(raw.data(), framed.view().bytes);
-  const std::string unfit =
-      framed.unfit_message
-          ? error_json(framed.unfit, fmt::format(",\"message\":\"{}\"", framed.unfit_message->name))
-          : "null";
-  return fmt::format(
-      "{{\"schema\":\"rubric.generate/1\",\"number\":{},\"offset\":{},\"carrier\":\"{}\","
-      "\"framing\":\"{}\",\"message\":\"{}\",\"verdict\":\"{}\",\"path\":{},\"error\":{},"
-      "\"unfit\":{},\"what\":{},{}\"raw\":\"{}\"}}",
-      number, offset, framed.route->carrier, format::framing_name(framed.packet.framing),
-      framed.route->type->name, framed.valid() ? "valid" : "malformed",
-      framed.valid() ? fmt::format("[{}]", fmt::join(path, ",")) : "null", error_json(framed.error),
-      unfit, json_string(framed.what), with_fields ? "\"fields\":" + fields_json(framed) + "," : "",
-      raw);
-}
-
-// What a person reads beside the packet.
-std::string comment(const Framed& framed) {
-  if (framed.valid()) return "valid: " + framed.what;
-  return fmt::format("malformed: {} at {} ({}): {}", reflect::fault_name(framed.error.fault),
-                     framed.error.offset_bytes, reflect::requirement(framed.error.requirement).id,
-                     framed.what);
-}
-
 /// One run.
 class Run {
  public:
@@ -253,7 +200,7 @@ class Run {
     });
     if (!left_out.empty()) {
       fmt::print(stderr, "rubric: {} holds no radio frames: left out {}\n", options_.format,
-                 fmt::join(left_out, ", "));
+                 joined(left_out, ", "));
     }
     if (options_.count < messages_.size()) {
       fmt::print(stderr, "rubric: {} of {} messages do not come up; --count {} has them all\n",

@@ -142,6 +142,22 @@ class Generate(unittest.TestCase):
             self.assertNotEqual(one, run("generate", "--format", form, "--count", "200", "--seed",
                                          "8").stdout)
 
+    def test_fields_are_the_numbers_of_valid_frames(self):
+        rows = lines(run("generate", "--fields", "--count", "200", "--message", "config").stdout)
+        text = "".join(row["raw"] + "\n" for row in rows).encode()
+        for row, record in zip(rows, decoded("--input-format", "hex", input=text)):
+            if row["error"]:
+                self.assertIsNone(row["fields"])
+                continue
+            values = {field["field"]: field["value"] for field in row["fields"]}
+            wanted = {"am_header.dispatch": 0}
+            wanted.update({f"am_header.{key}": value for key, value in record["am"].items()})
+            wanted.update({f"config.{key}": record["fields"][key] for key in ("type", "value")})
+            self.assertEqual(values, wanted)
+            offsets = [field["offset"] for field in row["fields"]]
+            self.assertEqual(offsets, sorted(set(offsets)))
+        self.assertNotIn("fields", lines(run("generate", "--count", "30").stdout)[0])
+
     def test_valid_is_the_share(self):
         for share in ("0", "0.25", "1"):
             rows = lines(run("generate", "--count", "4000", "--valid", share).stdout)

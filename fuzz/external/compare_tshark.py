@@ -14,7 +14,8 @@ import subprocess
 import sys
 import tempfile
 
-import compare
+sys.dont_write_bytecode = True
+import compare  # noqa: E402: only now, lest it leave its bytecode beside it
 
 HERE = pathlib.Path(__file__).resolve().parent
 # How the dissector's fields are called here.
