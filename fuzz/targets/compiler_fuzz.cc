@@ -11,6 +11,7 @@
 #include "spec/compiler/emit.h"
 #include "spec/compiler/emit_cpp.h"
 #include "spec/compiler/emit_java.h"
+#include "spec/compiler/emit_lua.h"
 #include "spec/compiler/load.h"
 
 namespace {
@@ -59,6 +60,7 @@ std::string emitted(const rubricc::Model& model) {
   }
   add(rubricc::emit_doc(model));
   for (const auto& file : rubricc::emit_protocols(model)) out += file.text;
+  for (const auto& file : rubricc::emit_lua(model)) out += file.text;
   return out;
 }
 
