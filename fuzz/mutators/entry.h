@@ -20,8 +20,8 @@ inline PacketMutator& seeded_mutator(unsigned seed) {
   return mutator;
 }
 
-/// libFuzzer asks for a cross-over as often as for a mutant. One of so many is enough; for the others
-/// it asks again.
+/// libFuzzer asks for a cross-over as often as for a mutant. One of so many is enough; for the
+/// others it asks again.
 inline constexpr unsigned kCrossOversAsked = 4;
 
 /// Gives `out` to the engine, behind what `data` already begins with.

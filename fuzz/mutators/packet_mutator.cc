@@ -51,6 +51,7 @@ PacketMutator::PacketMutator(const reflect::Protocol& protocol, const reflect::R
     const bool known = std::find(messages_.begin(), messages_.end(), route.type) != messages_.end();
     if (!known) messages_.push_back(route.type);
   }
+  reseed(seed);
 }
 
 Buffer PacketMutator::mutate(InputFormat format, Bytes input, std::size_t max_size) {

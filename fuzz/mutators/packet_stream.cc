@@ -26,23 +26,13 @@ void put(std::vector<std::uint8_t>& out, std::size_t at, std::size_t width, bool
   }
 }
 
-std::uint32_t get(const std::vector<std::uint8_t>& bytes, std::size_t at, std::size_t width,
-                  bool little) {
-  std::uint32_t value = 0;
-  for (std::size_t i = 0; i < width; ++i) {
-    value = value << 8 | bytes[at + (little ? width - 1 - i : i)];
-  }
-  return value;
-}
-
-// Whether the bytes say everything that leads to the route's message.
+// Whether the bytes lead to the route's message by their types. Wider choices are addresses, which
+// may be any but one as well.
 bool follows(const reflect::Route& route, const std::vector<std::uint8_t>& bytes) {
   for (std::size_t i = 0; i < route.choice_count; ++i) {
     const reflect::RouteChoice& choice = route.choices[i];
-    if (choice.offset + std::size_t{choice.width_bytes} > bytes.size()) return false;
-    const std::uint32_t value =
-        get(bytes, choice.offset, choice.width_bytes, choice.little_endian);
-    if (value != choice.value) return false;
+    if (choice.width_bytes != 1) continue;
+    if (choice.offset >= bytes.size() || bytes[choice.offset] != choice.value) return false;
   }
   return true;
 }
@@ -175,7 +165,9 @@ void repair_sums(StreamPacket& packet) {
   if (packet.packet.framing != Framing::kHdlc) return;
   if (packet.packet.kind == kAbsent) packet.packet.kind = kSerialPacketNoAck;
   const bool has_seq = serial_kind_has_seq(packet.packet.kind);
-  if (has_seq == (packet.packet.serial_seq == kAbsent)) packet.packet.serial_seq = has_seq ? 0 : kAbsent;
+  if (has_seq == (packet.packet.serial_seq == kAbsent)) {
+    packet.packet.serial_seq = has_seq ? 0 : kAbsent;
+  }
   packet.packet.crc = kAbsent;
   std::string content;
   append_serial_content(packet.view(), content);
@@ -194,7 +186,8 @@ void repair_lengths(StreamPacket& packet, const reflect::RouteTable& routes) {
   if (best == nullptr) return;
   for (std::size_t i = 0; i < best->length_count; ++i) {
     const reflect::RouteLength& length = best->lengths[i];
-    const std::size_t bytes = packet.bytes.size() - std::min<std::size_t>(length.from, packet.bytes.size());
+    const std::size_t from = std::min<std::size_t>(length.from, packet.bytes.size());
+    const std::size_t bytes = packet.bytes.size() - from;
     put(packet.bytes, length.offset, length.width_bytes, length.little_endian,
         static_cast<std::uint32_t>(std::min(bytes, kAmLengthMax)));
   }

@@ -1,5 +1,5 @@
 // Property: any split of a pcap file gives the same packets, one for each record that a plain loop
-// finds, all lying in the file where they say; and what is written from them reads back as the same.
+// finds, all in the file where they say; what is written from them reads back as the same.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -44,7 +44,8 @@ void check_writer(const std::vector<Kept>& packets, std::uint16_t link_type) {
   std::vector<Kept> wanted;
   for (const Kept& kept : packets) {
     if (!writer.write(kept.get(), written)) {
-      require(kept.packet.link_type == 0 || link_type == kLinkRadioTap, "every record of a file can be written to one");
+      require(kept.packet.link_type == 0 || link_type == kLinkRadioTap,
+              "every record of a file can be written to one");
       continue;
     }
     wanted.push_back(fuzz::placeless(kept));
