@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <string_view>
 
 #include "codec/generate/known_protocols.h"
 #include "codec/generated/rubicon/all.h"
@@ -189,6 +190,55 @@ TEST(NearValid, NumbersBeyondABoundOfASizeComeWithTheBytes) {
   }
   EXPECT_GT(met["length"], 100);
   EXPECT_GT(met["nbytes"], 100);
+}
+
+const reflect::Route& serial_route(const char* message) {
+  const reflect::RouteTable& all = rubicon::messages::kRoutes;
+  for (int i = 0; i < all.count; ++i) {
+    const reflect::Route& route = all.routes[i];
+    if (std::string_view(route.carrier) != "serial") continue;
+    if (std::string_view(route.type->id) == message) return route;
+  }
+  ADD_FAILURE() << "no route to " << message;
+  return all.routes[0];
+}
+
+TEST(NearValid, CutAtEachPlace) {
+  FrameGenerator generator(rubicon::tables::kProtocol, rubicon::messages::kRoutes, 6);
+  std::set<std::uint32_t> plain;
+  std::set<std::uint32_t> repaired;  // The AM length agrees.
+  for (int k = 0; k < kSeeds; ++k) {
+    const Generated made = generator.near_valid(serial_route("config"));
+    const std::size_t size = made.bytes.size();
+    if (made.error.fault != Fault::kTruncated || made.error.offset_bytes != size) continue;
+    const bool agrees = size >= 8 && made.bytes[5] == size - 8;
+    (agrees ? repaired : plain).insert(made.error.offset_bytes);
+  }
+  for (std::uint32_t at = 1; at < 11; ++at) EXPECT_TRUE(plain.contains(at)) << at;
+  EXPECT_EQ(repaired, (std::set<std::uint32_t>{8, 9, 10}));
+}
+
+/// How often the number at `at` is off by -1 and by +1 from what it counts, and nothing else is.
+std::map<int, int> off_by_one(const char* message, std::size_t at, std::size_t from, ReqId rule) {
+  FrameGenerator generator(rubicon::tables::kProtocol, rubicon::messages::kRoutes, 7);
+  std::map<int, int> met;
+  for (int k = 0; k < kSeeds; ++k) {
+    const Generated made = generator.near_valid(serial_route(message));
+    if (made.error.requirement != rule || made.bytes.size() <= at) continue;
+    if (made.what.find(" is ") == std::string::npos) continue;  // A cut, or bytes behind the end.
+    ++met[made.bytes[at] - static_cast<int>(made.bytes.size() - from)];
+  }
+  return met;
+}
+
+TEST(NearValid, LengthsAreOffByOneInBothDirections) {
+  std::map<int, int> length = off_by_one("command", 5, 8, req::kWireAmLength);
+  EXPECT_GT(length[1], 20);
+  EXPECT_GT(length[-1], 20);
+  std::map<int, int> nbytes = off_by_one("app_msg", 19, 20, req::kWireNetPayload);
+  EXPECT_GT(nbytes[1], 20);
+  std::map<int, int> count = off_by_one("learning_module_cmd", 15, 16, req::kWireLearningModuleCmd);
+  EXPECT_GT(count[1], 20);
 }
 
 /// The generated views are another decoder than that of the tables.
