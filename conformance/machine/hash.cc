@@ -58,6 +58,7 @@ void add(Hasher& hasher, const JoinMote& join) {
   hasher.add(join.address, {join.seq_num, join.sink_devid});
   hasher.add(join.descriptor);
   hasher.add(std::uint64_t{join.due} << 32 | join.accepted);
+  hasher.add(std::uint64_t{join.asked ? 1u : 0u});
 }
 
 template <std::size_t kRoom>

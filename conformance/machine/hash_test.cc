@@ -56,6 +56,7 @@ TEST(Hash, EveryDifferenceCounts) {
       [](State& s) { s.join.descriptor.transducers++; },
       [](State& s) { s.join.due++; },
       [](State& s) { s.join.accepted++; },
+      [](State& s) { s.join.asked = !s.join.asked; },
       [](State& s) { s.sink.members[0].devid++; },
       [](State& s) { s.sink.members[0].seq_num++; },
       [](State& s) { s.sink.members[0].descriptor.mote_type++; },

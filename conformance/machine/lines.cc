@@ -36,6 +36,7 @@ void left(Node& node, Link link, std::uint8_t type, std::uint16_t awaited) {
   if (link != Link::kRadio || type != am::kJoin || join.phase != JoinMote::Phase::kJoining) return;
   //= J8-PERIOD: A join_request follows the one before it no earlier than the join timeout.
   join.due = node.now + node.profile().join_period_ticks;
+  join.asked = true;
 }
 
 // A repeated ack_join that had to wait too long must not be sent any more.

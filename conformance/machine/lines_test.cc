@@ -291,5 +291,18 @@ TEST(Queue, EraseKeepsTheOrderOfTheOthers) {
   }
 }
 
+// Nobody can have answered what has not left: a number may be guessed, or of a boot before.
+TEST(Outgoing, J4_NoRequestOutstandingBeforeItLeaves) {
+  Device mote(mote_config(5));
+  mote.step(LinkBusy{Link::kRadio, true});
+  mote.call(JoinIsland{kDescriptor});
+  const std::uint16_t seq_num = mote.state.join.seq_num;
+  mote.hear(join_reply(5, {kIsland, 5}, 0, seq_num));
+  EXPECT_EQ(mote.labels(), std::vector{ignored(req::kJ4Joined)});
+  mote.step(LinkBusy{Link::kRadio, false}).done();
+  mote.hear(join_reply(5, {kIsland, 5}, 0, seq_num));
+  EXPECT_TRUE(mote.notice<Joined>().success);
+}
+
 }  // namespace
 }  // namespace rubric::machine

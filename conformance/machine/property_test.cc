@@ -320,7 +320,7 @@ TEST(Property, AnythingInAnyOrder) {
       all.deliveries += once.deliveries;
     }
     EXPECT_GT(all.members, config.role == Role::kBaseStation ? -1 : 30);
-    EXPECT_GT(all.deliveries, 1000);
+    EXPECT_GT(all.deliveries, 900);
   }
 }
 

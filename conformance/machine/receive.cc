@@ -40,9 +40,14 @@ void hear_join_reply(Node& node, const Frame& frame) {
   if (offered.devid != node.config().id || is_reserved(offered.pid)) {
     return node.actions.ignored(req::kJ4Address);
   }
+  // Nor is a request outstanding that still waits for the radio: nobody can have answered it.
+  if (state.join.phase == JoinMote::Phase::kJoining && !state.join.asked) {
+    return node.actions.ignored(req::kJ4Joined);
+  }
   const JoinSend send = hear_reply(state.join, join_context(node), offered, reply->seq_num(),
                                    frame.src, node.actions);
   if (send != JoinSend::kAck) return;
+  state.join.asked = false;
   //= J4-CLOCK: A mote that accepts a join_reply sets its clock to cur_time.
   state.clock_offset_ms = reply->cur_time() - ms_of(node);
   node.actions.followed(req::kJ4Clock);

@@ -94,6 +94,18 @@ bool is_forwarded(const Output& output, const std::set<std::uint16_t>& sent) {
   }
 }
 
+bool same(const Output& a, const Output& b) {
+  if (a.time != b.time || a.is_frame != b.is_frame) return false;
+  if (!a.is_frame) return line_of(a, "").message == line_of(b, "").message;
+  return a.frame.link == b.frame.link && a.frame.type == b.frame.type &&
+         a.frame.dest == b.frame.dest && a.frame.src == b.frame.src &&
+         equal(a.frame.bytes(), b.frame.bytes());
+}
+bool same(const std::vector<Output>& a, const std::vector<Output>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const Output& x, const Output& y) { return same(x, y); });
+}
+
 class Lenient {
  public:
   Lenient(const Script& script, const Played& played)
@@ -124,6 +136,7 @@ class Lenient {
   Line expected(const Output& output) {
     Line line = line_of(output, node_);
     line.bytes.reset();
+    line.message.open = output.is_frame;
     if (output.is_frame) {
       loosen_frame(output, line);
     } else {
@@ -232,6 +245,8 @@ Difference difference(const Script& script, flaws::StepFunction step) {
   Difference out;
   out.steps = compared.steps.size();
   if (played.outputs.size() > kOutputsMax) return out;
+  const auto other = cpp_target();
+  if (same(played.outputs, play(compared, *other).outputs)) return out;  // Mostly, and fast.
   out.file = lenient_file(compared, played);
   const runner::CaseResult result = runner::run_case(
       out.file, out.file.cases[0], [](const trace::NodeHeader&) { return cpp_target(); });

@@ -38,6 +38,7 @@ void Mote::join(const MoteDesc& description) {
   description_ = description;
   number_ = take_number();
   requests_left_ = kRequests;
+  asked_ = false;
   request();
 }
 
@@ -53,7 +54,9 @@ void Mote::request() {
 
 //= J8-PERIOD: A join_request follows the one before it no earlier than the join timeout.
 void Mote::left(Line, const Frame& frame) {
-  if (frame.type == AmType::kJoin && timer_) timer_ = now() + kJoinPeriod;
+  if (frame.type != AmType::kJoin || !timer_) return;
+  timer_ = now() + kJoinPeriod;
+  asked_ = true;
 }
 
 bool Mote::is_for_me(Line line, const Frame& frame) const {
@@ -65,7 +68,7 @@ void Mote::control(Line, const Frame& frame) {
   const auto reply =
       rubicon::JoinReplyView::parse(Bytes(frame.payload.data(), frame.payload.size()));
   //= J4-JOINED: A mote that is joined, or has no request outstanding, ignores a join_reply.
-  if (!reply || !timer_) return;
+  if (!reply || !timer_ || !asked_) return;
   //= J4-SEQ: A mote ignores a join_reply whose sequence number is not that of its outstanding
   //= request.
   if (reply->seq_num() != number_) return;

@@ -32,6 +32,7 @@ class Mote : public Node {
   // The joinIsland call under way.
   int requests_left_ = 0;
   std::optional<Ticks> timer_;  ///< While there is one.
+  bool asked_ = false;          ///< A request has left.
   std::uint16_t number_ = 0;
   MoteDesc description_;
 
