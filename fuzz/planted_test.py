@@ -24,8 +24,8 @@ LIMIT_S = 30
 WAIT_S = 4 * LIMIT_S  # By the clock.
 MORE_RUNS = 10
 SEED_FRAME = bytes.fromhex("7e4301be487e")  # The confirmation of a packet.
-# For both alike. What counts is how far a sequence came, not how often a loop ran; and a mutant of a
-# mutant has mostly lost the sequence.
+# For both alike. What counts is how far a sequence came, not how often a loop ran; and a mutant of
+# a mutant has mostly lost the sequence.
 OPTIONS = ["-max_len=400", "-use_counters=0", "-mutate_depth=1", "-print_final_stats=1",
            f"-dict={ROOT}/fuzz/dictionaries/rubicon.dict"]
 
