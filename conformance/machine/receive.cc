@@ -47,7 +47,6 @@ void hear_join_reply(Node& node, const Frame& frame) {
   const JoinSend send = hear_reply(state.join, join_context(node), offered, reply->seq_num(),
                                    frame.src, node.actions);
   if (send != JoinSend::kAck) return;
-  state.join.asked = false;
   //= J4-CLOCK: A mote that accepts a join_reply sets its clock to cur_time.
   state.clock_offset_ms = reply->cur_time() - ms_of(node);
   node.actions.followed(req::kJ4Clock);

@@ -44,7 +44,7 @@ struct JoinMote {
   Descriptor descriptor;
   Ticks due = 0;               ///< When the timer fires, while joining; else 0.
   Ticks accepted = 0;          ///< When the reply was accepted.
-  bool asked = false;          ///< While joining: a request has left, so a reply may answer it.
+  bool asked = false;          ///< A request of the present or last call has left.
   friend bool operator==(const JoinMote&, const JoinMote&) = default;
 };
 

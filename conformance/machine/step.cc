@@ -13,7 +13,6 @@ namespace {
 void join_timer_due(Node& node) {
   const JoinSend send = join_timer(node.state.join, join_context(node), node.actions);
   if (send == JoinSend::kRequest) return send_join_request(node, req::kJ8Retry);
-  node.state.join.asked = false;
   forget_waiting(node.state, am::kJoin);  // The call is over; what waits for the radio is, too.
 }
 

@@ -239,7 +239,7 @@ trace::File lenient_file(const Script& script, const Played& played) {
 }
 
 Difference difference(const Script& script, flaws::StepFunction step) {
-  const Script compared = until_free(without_undecided(script), step);
+  const Script compared = without_guesses(until_free(without_undecided(script), step), step);
   runner::SubjectTarget reference(std::make_unique<Stepped>(step));
   const Played played = play(compared, reference);
   Difference out;

@@ -29,6 +29,9 @@ Difference difference(const Script& script, flaws::StepFunction step = machine::
 Script without_undecided(const Script& script);
 /// As long as what happens is decided by the rules alone, on the machine.
 Script until_free(Script script, flaws::StepFunction step = machine::step);
+/// Numbers in answers to the node that are not those of its requests and sends become ones that no
+/// node has used either: each node chooses its own, and a guess might be the other's.
+Script without_guesses(Script script, flaws::StepFunction step = machine::step);
 /// The machine's run of a script, as a trace that asks for no more than the rules do.
 trace::File lenient_file(const Script& script, const Played& played);
 

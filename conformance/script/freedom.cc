@@ -2,10 +2,13 @@
 // may differ. Each has its line in README.md.
 #include <algorithm>
 #include <memory>
+#include <set>
 #include <utility>
+#include <vector>
 
 #include "codec/generated/rubicon/config.h"
 #include "codec/generated/rubicon/join_reply.h"
+#include "codec/generated/rubicon/join_request.h"
 #include "codec/generated/rubicon/net_msg.h"
 #include "conformance/generated/profiles.h"
 #include "conformance/machine/lines.h"
@@ -22,6 +25,7 @@ using machine::Address;
 using machine::Frame;
 using machine::Link;
 using machine::Role;
+using runner::Output;
 using machine::State;
 namespace am = machine::am;
 namespace component = machine::component;
@@ -226,7 +230,50 @@ Script before(Script script, Ticks end) {
   return script;
 }
 
+// Where a frame that the node hears says which of its numbers it answers; null: nowhere.
+std::uint8_t* answered_number(const Frame& frame, std::vector<std::uint8_t>& bytes) {
+  constexpr std::size_t kReplySeqOffset = 8;
+  constexpr std::size_t kBodyOffset = 14;  // Of a net_msg, behind TRANSID and APPID.
+  constexpr std::size_t kCodeBodyBytes = 4;
+  if (frame.type == am::kJoinReply && bytes.size() >= kReplySeqOffset + 2) {
+    return bytes.data() + kReplySeqOffset;
+  }
+  const auto message = rubicon::NetMsgView::parse(Bytes(bytes.data(), bytes.size()));
+  if (frame.type != am::kNet || !message) return nullptr;
+  const Bytes payload = message->payload();
+  if (payload[0] != component::kRubiconAck || !is_ack_body(payload.from(2))) return nullptr;
+  const bool with_code = payload.size() >= 2 + kCodeBodyBytes;
+  return bytes.data() + kBodyOffset + (with_code ? 1 : 0);
+}
+
+void add_numbers(const Output& output, std::set<std::uint16_t>& numbers) {
+  if (const auto* sent = std::get_if<machine::SendResult>(&output.notice)) {
+    if (!output.is_frame) numbers.insert(sent->seq_num);
+  }
+  const auto request = rubicon::JoinRequestView::parse(output.frame.bytes());
+  if (output.is_frame && output.frame.type == am::kJoin && request) {
+    numbers.insert(request->seq_num());
+  }
+}
+
 }  // namespace
+
+Script without_guesses(Script script, flaws::StepFunction step) {
+  runner::SubjectTarget target(std::make_unique<Probe>(step));
+  const Played played = play(script, target);
+  std::set<std::uint16_t> numbers;
+  std::size_t shown = 0;
+  for (std::size_t i = 0; i < script.steps.size(); ++i) {
+    for (; shown < played.before[i]; ++shown) add_numbers(played.outputs[shown], numbers);
+    Step& one = script.steps[i];
+    const auto* heard = std::get_if<machine::Heard>(&one.event);
+    std::uint8_t* const number = heard ? answered_number(heard->frame, one.bytes) : nullptr;
+    if (!number || numbers.contains(load_be16(number))) continue;
+    constexpr std::uint16_t kFar = 0x4000;  // No script lets a node use so many.
+    store_be16(number, static_cast<std::uint16_t>(script.config.first_seq - kFar));
+  }
+  return script;
+}
 
 Script without_undecided(const Script& script) {
   Script out;

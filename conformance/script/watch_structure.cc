@@ -1,6 +1,7 @@
 // What holds for the machine as a function, whatever the protocol says.
 #include <algorithm>
 
+#include "codec/generated/rubicon/net_msg.h"
 #include "conformance/events/app_events.h"
 #include "conformance/machine/join.h"
 #include "conformance/machine/lines.h"
@@ -77,6 +78,16 @@ bool listens(Role role, const machine::Frame& frame) {
                                         frame.type == am::kAckJoin);
 }
 
+// No sink hands its base station what is for a mote of their island, and no base station another
+// what is for every island: no rule says what then.
+bool is_for_nobody(const machine::Frame& frame, std::uint16_t island) {
+  const auto message = rubicon::NetMsgView::parse(frame.payload);
+  if (!message) return false;
+  const machine::Address dest = machine::address_of(message->dest());
+  const bool back = frame.link == Link::kSerial && dest.pid == island;
+  return (back || dest.pid == machine::kBroadcastPid) && dest.devid != machine::kNullDevid;
+}
+
 template <class Line>
 bool moves(const Line& line) {
   return line.out.empty() || !line.on || line.sending || line.taken;
@@ -107,11 +118,11 @@ void Watched::check_labels(const Seen& seen) {
   const auto* called = std::get_if<machine::Called>(&seen.event);
   // Where the protocol says nothing: what TinyOS keeps away, ends of nothing, power.
   const bool kept_away = heard && (seen.handled.empty() || !listens(config_.role, heard->frame));
-  // No sink hands its base station what is for a mote of their island: no rule says what then.
   const bool astray =
       config_.role == Role::kBaseStation &&
-      std::any_of(seen.handled.begin(), seen.handled.end(),
-                  [](const machine::Frame& frame) { return frame.link == Link::kSerial; });
+      std::any_of(seen.handled.begin(), seen.handled.end(), [&](const machine::Frame& frame) {
+        return is_for_nobody(frame, seen.before.island);
+      });
   const bool beyond = kept_away || astray ||
                       std::holds_alternative<machine::SendDone>(seen.event) ||
                       std::holds_alternative<machine::LinkBusy>(seen.event) ||
