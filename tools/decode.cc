@@ -16,6 +16,7 @@
 #include "tools/format/filter.h"
 #include "tools/format/jsonl.h"
 #include "tools/format/text.h"
+#include "tools/live/capture_file.h"
 
 namespace rubric::tools {
 namespace {
@@ -33,6 +34,7 @@ struct DecodeOptions {
   bool hex = false;
   bool strict = false;
   bool units = false;
+  std::string write;  ///< A capture of what is read; empty: none.
 };
 
 std::vector<format::Path> chosen_fields(const DecodeOptions& options,
@@ -109,12 +111,21 @@ class Decode {
         clock_(options.time) {}
 
   int run() {
+    if (!options_.write.empty()) capture_.emplace(options_.write);
     formatter_->begin(output_.buffer());
     const cli::InputResult result = cli::read_packets(
         options_.input,
         [this](const Packet& packet, const cli::Source& source) { return take(packet, source); },
-        [this] { output_.flush(); });
+        [this] {
+          output_.flush();
+          if (capture_) capture_->flush();
+        });
     output_.flush();
+    if (result.live) {
+      fmt::print(stderr, "rubric: {} frames, {} malformed, {} shown\n", index_, malformed_count_,
+                 printed_);
+    }
+    if (capture_ && !capture_->finish()) return cli::kExitInput;
     std::string reason;
     if (output_.failed(&reason)) {
       fmt::print(stderr, "rubric: cannot write: {}\n", reason);
@@ -130,6 +141,8 @@ class Decode {
     decoder_.decode(packet, frame_);
     const bool noted = options_.strict && frame_.decoded.note_count() != 0;
     malformed_ = malformed_ || frame_.malformed() || noted;
+    malformed_count_ += frame_.malformed();
+    if (capture_) capture_->write(packet, source.interface_name);
     record_.index = index_++;
     record_.number = source.number;
     record_.frame = &frame_;
@@ -153,7 +166,9 @@ class Decode {
   format::Record record_;
   std::uint64_t index_ = 0;
   std::uint64_t printed_ = 0;
+  std::uint64_t malformed_count_ = 0;
   bool malformed_ = false;
+  std::optional<live::CaptureFile> capture_;
 };
 
 }  // namespace
@@ -162,6 +177,7 @@ void add_decode(CLI::App& app) {
   CLI::App* command = app.add_subcommand("decode", "Print what captures hold, a line a frame");
   auto options = std::make_shared<DecodeOptions>();
   cli::add_input_options(*command, options->input);
+  cli::add_live_options(*command, options->input);
   command->add_option("--format", options->format, "text, jsonl (rubric.decode/1) or csv")
       ->check(CLI::IsMember({"text", "jsonl", "csv"}))
       ->capture_default_str();
@@ -178,6 +194,8 @@ void add_decode(CLI::App& app) {
   command->add_flag("--hex", options->hex, "Text: a hex dump below each line");
   command->add_flag("--strict", options->strict, "Exit code 1 for noted frames, too");
   command->add_flag("--units", options->units, "Show values in their units, such as degrees C");
+  command->add_option("--write", options->write, "Keep all frames in this pcapng file as well")
+      ->check(cli::given());
   cli::add_color_option(*command, options->color);
   command->footer(
       "Examples:\n"
@@ -185,6 +203,7 @@ void add_decode(CLI::App& app) {
       "  rubric decode mote.serial.bin --format jsonl | jq .message\n"
       "  rubric decode capture.pcapng --format csv --fields time,src.devid,updates.value\n"
       "  echo 0a000c | rubric decode --as config\n"
+      "  rubric decode serial@/dev/ttyUSB0:telosb --write run.pcapng    # until Ctrl-C\n"
       "Exit codes: 0 clean, 1 something malformed was read, 2 usage, 3 input cannot be read.");
   command->callback([options] { cli::exit_with(Decode(*options).run()); });
 }

@@ -1,20 +1,28 @@
 #include "tools/cli/input.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <poll.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
+#include <cstdlib>
 #include <cstring>
 #include <memory>
+#include <optional>
+#include <stdexcept>
+#include <thread>
+#include <utility>
 
 #include "codec/containers/reader.h"
 #include "codec/reflect/fault_text.h"
 #include "codec/reflect/registry.h"
 #include "codec/reflect/suggest.h"
+#include "conformance/runner/target.h"
+#include "tools/cli/input_file.h"
 #include "tools/cli/progress.h"
+#include "tools/live/line.h"
+#include "tools/live/stop.h"
 
 namespace rubric::cli {
 namespace {
@@ -22,9 +30,10 @@ namespace {
 constexpr std::size_t kChunkBytes = 256 * 1024;
 constexpr std::size_t kDetectBytes = 4096;
 constexpr std::size_t kDetectMost = 64 * 1024;
-constexpr int kDetectPatienceMs = 200;
 /// A bare message of a binary file: a bound, so that memory stays flat whatever is read.
 constexpr std::size_t kBareMost = kDetectMost;
+
+constexpr std::chrono::milliseconds kReconnectEvery{1000};
 
 /// Hex text whose lines are 802.15.4 frames without FCS.
 constexpr const char* kHexRadio = "hex-radio";
@@ -52,43 +61,12 @@ InputFormat find_format(std::string_view name) {
   return InputFormat::kUnknown;
 }
 
-/// A file that is being read, with what was read of it to find out its format.
-class File {
- public:
-  /// Throws std::system_error.
-  explicit File(const std::string& name) : is_stdin_(name == "-") {
-    fd_ = is_stdin_ ? 0 : ::open(name.c_str(), O_RDONLY | O_CLOEXEC);
-    if (fd_ < 0) throw std::system_error(errno, std::generic_category());
-    struct stat status {};
-    if (::fstat(fd_, &status) == 0) is_regular_ = S_ISREG(status.st_mode);
-  }
-  ~File() {
-    if (!is_stdin_) ::close(fd_);
-  }
-  File(const File&) = delete;
-  File& operator=(const File&) = delete;
-
-  bool is_regular() const { return is_regular_; }
-
-  /// Up to `size` bytes, 0 at the end. Throws std::system_error.
-  std::size_t read(std::uint8_t* to, std::size_t size) {
-    while (true) {
-      const ssize_t got = ::read(fd_, to, size);
-      if (got >= 0) return static_cast<std::size_t>(got);
-      if (errno != EINTR) throw std::system_error(errno, std::generic_category());
-    }
-  }
-
-  bool has_more_soon() const {
-    pollfd wait{fd_, POLLIN, 0};
-    return is_regular_ || ::poll(&wait, 1, kDetectPatienceMs) != 0;
-  }
-
- private:
-  int fd_;
-  bool is_stdin_;
-  bool is_regular_ = false;
-};
+/// No FILE: $MOTECOM where somebody sits at a terminal, who would else have to type frames.
+std::vector<std::string> names_of(const InputOptions& options) {
+  if (!options.files.empty()) return options.files;
+  const bool asked = ::isatty(0) && std::getenv("MOTECOM") != nullptr;
+  return {asked ? live::default_address() : "-"};
+}
 
 std::uint64_t total_size(const std::vector<std::string>& files) {
   std::uint64_t total = 0;
@@ -108,7 +86,7 @@ class Run {
       : options_(options),
         on_packet_(on_packet),
         on_idle_(on_idle),
-        files_(options.files.empty() ? std::vector<std::string>{"-"} : options.files),
+        files_(names_of(options)),
         chunk_(std::make_unique_for_overwrite<std::uint8_t[]>(kChunkBytes)),
         progress_(total_size(files_), options.progress) {}
 
@@ -118,9 +96,13 @@ class Run {
       source_.file_index = i;
       source_.number = 0;
       try {
-        one();
+        const std::optional<live::Address> address = live::parse_address(files_[i]);
+        address ? line(*address) : one();
       } catch (const std::system_error& error) {
-        complain(std::strerror(error.code().value()));
+        complain(error.code().value() == ESTALE ? "it has become shorter"
+                                                : std::strerror(error.code().value()));
+      } catch (const std::invalid_argument& error) {
+        complain(error.what());
       }
     }
     return result_;
@@ -134,8 +116,58 @@ class Run {
     fmt::print(stderr, "rubric: {}: {}\n", name, what);
   }
 
+  // A line in use, until it ends or the user says so.
+  void line(const live::Address& address) {
+    live::stop_on_signals();
+    result_.live = true;
+    live::Line line(address, options_.listen_only);
+    source_.format = format_name(line.format());
+    ReaderOptions reader_options;
+    reader_options.direction = Direction::kOutbound;
+    reader_options.interface_name = address.name;
+    while (!live::stop_requested() && !result_.stopped) {
+      const std::unique_ptr<Reader> reader = make_reader(line.format(), reader_options);
+      try {
+        line.open(std::chrono::steady_clock::now() + kReconnectEvery);
+        if (std::exchange(lost_, false)) fmt::print(stderr, "rubric: {}: again\n", address.name);
+        pump_line(line, *reader);
+      } catch (const runner::TargetBroken& broken) {
+        if (!lost_) complain(broken.what());
+        lost_ = true;
+        if (!options_.reconnect) return;
+        std::this_thread::sleep_for(kReconnectEvery);
+      }
+    }
+    result_.failed = result_.failed && lost_;
+  }
+
+  void pump_line(live::Line& line, Reader& reader) {
+    std::int64_t now_ns = 0;
+    auto deliver = [&](const Packet& packet) {
+      Packet stamped = packet;
+      stamped.time_ns = now_ns;
+      line.answer(packet);
+      give(stamped, reader.interfaces());
+    };
+    try {
+      while (!live::stop_requested() && !result_.stopped) {
+        const std::size_t size = line.read(MutableBytes(chunk_.get(), kChunkBytes));
+        now_ns = std::chrono::system_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
+        if (size) reader.feed(Bytes(chunk_.get(), size), deliver);
+        if (on_idle_) on_idle_();
+      }
+    } catch (const runner::TargetBroken&) {
+      reader.finish(deliver);  // What there is of a frame that was on its way.
+      throw;
+    }
+  }
+
   void one() {
-    File file(files_[source_.file_index]);
+    if (options_.follow) {
+      live::stop_on_signals();
+      result_.live = true;
+    }
+    InputFile file(files_[source_.file_index], options_.follow, on_idle_);
     std::size_t size = 0;
     InputFormat format = find_format(options_.format);
     const bool bare = !options_.as_message.empty();
@@ -164,7 +196,7 @@ class Run {
   }
 
   // Reads until the content tells its format.
-  std::size_t look(File& file, InputFormat& format) {
+  std::size_t look(InputFile& file, InputFormat& format) {
     std::size_t size = 0;
     bool ended = false;
     while (!ended && size < kDetectMost) {
@@ -178,7 +210,7 @@ class Run {
     return size;
   }
 
-  void pump(File& file, Reader& reader, std::size_t size) {
+  void pump(InputFile& file, Reader& reader, std::size_t size) {
     auto deliver = [&](const Packet& packet) { give(packet, reader.interfaces()); };
     while (true) {
       if (size) reader.feed(Bytes(chunk_.get(), size), deliver);
@@ -192,7 +224,7 @@ class Run {
   }
 
   // A binary file as one message.
-  void whole(File& file, std::size_t size) {
+  void whole(InputFile& file, std::size_t size) {
     std::vector<std::uint8_t> bytes(chunk_.get(), chunk_.get() + size);
     Packet packet;
     while (const std::size_t got = file.read(chunk_.get(), kChunkBytes)) {
@@ -229,6 +261,7 @@ class Run {
   Progress progress_;
   Source source_;
   InputResult result_;
+  bool lost_ = false;  // The line is gone, and that was said.
 };
 
 std::vector<std::string> protocol_names() {
@@ -255,6 +288,24 @@ void add_input_options(CLI::App& app, InputOptions& options) {
   app.add_option("--as", options.as_message,
                  "The input is this message alone: each line of hex text, or a binary file whole")
       ->check(given());
+}
+
+void add_live_options(CLI::App& app, InputOptions& options) {
+  const auto check = [](const std::string& text) {
+    try {
+      live::parse_address(text);
+      return std::string();
+    } catch (const std::invalid_argument& error) {
+      return std::string(error.what());
+    }
+  };
+  app.get_option("FILE")->check(CLI::Validator(check, ""))->description(
+      "Captures, in order; none or - is stdin. Or lines in use: serial@DEVICE:BAUD (or a platform, "
+      "as serial@/dev/ttyUSB0:telosb), network@HOST:PORT, sf@HOST:PORT");
+  app.add_flag("--follow", options.follow, "At the end of a file wait for more of it");
+  app.add_flag("--listen-only", options.listen_only,
+               "Confirm no frames of a serial line, so that nothing is written to it");
+  app.add_flag("--reconnect", options.reconnect, "Open a line that is gone again, when it is back");
 }
 
 CLI::Validator given() {

@@ -19,10 +19,17 @@ struct InputOptions {
   std::string spec = "rubicon";    ///< A protocol's id.
   std::string as_message;          ///< Bytes are this message alone; empty: framed packets.
   bool progress = true;            ///< A bar on stderr for long files, where that is a terminal.
+  bool follow = false;             ///< At a file's end wait for more of it.
+  bool listen_only = false;        ///< Write nothing to a serial line.
+  bool reconnect = false;          ///< A line that is gone is opened again.
 };
 
 /// Adds FILE..., --input-format, --spec and --as to a subcommand.
 void add_input_options(CLI::App& app, InputOptions& options);
+
+/// Adds --follow, --listen-only and --reconnect: for subcommands whose files may as well be lines in
+/// use (live/line.h). Without FILE, at a terminal, $MOTECOM is taken.
+void add_live_options(CLI::App& app, InputOptions& options);
 
 /// Checks that an option's text is not empty, as that of a shell's unset variable is.
 CLI::Validator given();
@@ -50,6 +57,7 @@ struct Source {
 struct InputResult {
   bool failed = false;   ///< A file could not be opened or read, or is damaged; said on stderr.
   bool stopped = false;  ///< The callback asked to stop.
+  bool live = false;     ///< A line, or a file that was followed, was read until somebody said so.
 };
 
 /// Called for each packet, in order; false stops reading.

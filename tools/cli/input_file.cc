@@ -1,0 +1,64 @@
+#include "tools/cli/input_file.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <system_error>
+#include <thread>
+
+#include "tools/live/stop.h"
+
+namespace rubric::cli {
+namespace {
+
+constexpr int kDetectPatienceMs = 200;
+constexpr std::chrono::milliseconds kFollowEvery{100};
+
+}  // namespace
+
+InputFile::InputFile(const std::string& name, bool follow, const std::function<void()>& on_idle)
+    : fd_(name == "-" ? 0 : ::open(name.c_str(), O_RDONLY | O_CLOEXEC)),
+      is_stdin_(name == "-"),
+      follow_(follow),
+      on_idle_(on_idle) {
+  if (fd_ < 0) throw std::system_error(errno, std::generic_category());
+  struct stat status {};
+  if (::fstat(fd_, &status) == 0) is_regular_ = S_ISREG(status.st_mode);
+}
+
+InputFile::~InputFile() {
+  if (!is_stdin_) ::close(fd_);
+}
+
+std::size_t InputFile::read(std::uint8_t* to, std::size_t size) {
+  while (true) {
+    const ssize_t got = ::read(fd_, to, size);
+    if (got > 0) return static_cast<std::size_t>(got);
+    if (got < 0 && errno != EINTR) throw std::system_error(errno, std::generic_category());
+    if (live::stop_requested() || (got == 0 && !follow_)) return 0;
+    if (got == 0) wait();
+  }
+}
+
+bool InputFile::has_more_soon() const {
+  if (is_regular_) return !follow_ || left() > 0;
+  pollfd wait{fd_, POLLIN, 0};
+  return ::poll(&wait, 1, kDetectPatienceMs) != 0;
+}
+
+off_t InputFile::left() const {
+  struct stat status {};
+  return ::fstat(fd_, &status) == 0 ? status.st_size - ::lseek(fd_, 0, SEEK_CUR) : 0;
+}
+
+void InputFile::wait() {
+  if (is_regular_ && left() < 0) throw std::system_error(ESTALE, std::generic_category());
+  if (on_idle_) on_idle_();
+  std::this_thread::sleep_for(kFollowEvery);
+}
+
+}  // namespace rubric::cli

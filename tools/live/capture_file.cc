@@ -1,0 +1,55 @@
+#include "tools/live/capture_file.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <system_error>
+
+#include <fmt/format.h>
+
+namespace rubric::live {
+namespace {
+
+constexpr std::size_t kEnough = 64 * 1024;
+
+}  // namespace
+
+CaptureFile::CaptureFile(const std::string& path)
+    : path_(path), fd_(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
+  if (fd_ < 0) throw std::system_error(errno, std::generic_category(), path);
+  writer_.begin(waiting_);
+  flush();  // Whoever reads the file meanwhile sees what it is.
+}
+
+CaptureFile::~CaptureFile() { ::close(fd_); }
+
+void CaptureFile::write(const Packet& packet, std::string_view interface_name) {
+  writer_.write(packet, interface_name, waiting_);
+  if (waiting_.size() >= kEnough) flush();
+}
+
+void CaptureFile::flush() {
+  std::size_t sent = 0;
+  while (error_ == 0 && sent < waiting_.size()) {
+    const ssize_t count = ::write(fd_, waiting_.data() + sent, waiting_.size() - sent);
+    if (count >= 0) {
+      sent += static_cast<std::size_t>(count);
+    } else if (errno != EINTR) {
+      error_ = errno;
+    }
+  }
+  waiting_.clear();
+}
+
+bool CaptureFile::finish() {
+  writer_.finish(waiting_);
+  flush();
+  if (error_ == 0) return true;
+  fmt::print(stderr, "rubric: {}: {}\n", path_, std::strerror(error_));
+  return false;
+}
+
+}  // namespace rubric::live

@@ -1,0 +1,12 @@
+// Ctrl-C ends what has no end of its own, cleanly.
+#pragma once
+
+namespace rubric::live {
+
+/// From now on the first SIGINT, SIGTERM or SIGHUP only asks to stop; the second ends the process
+/// as it would have. A signal that was ignored at start, as nohup does it, stays ignored.
+void stop_on_signals();
+/// Whether one has come.
+bool stop_requested();
+
+}  // namespace rubric::live

@@ -1,0 +1,244 @@
+#!/usr/bin/env python3
+"""`rubric decode` on lines in use: pseudo terminals, a serial forwarder's port, a growing file.
+
+Usage: live_test.py RUBRIC PROJECT_FOLDER. All of it on this host, bounded in time.
+"""
+
+import json
+import os
+import pathlib
+import pty
+import select
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+import tty
+import unittest
+
+RUBRIC = ""
+ROOT = pathlib.Path()
+PATIENCE_S = 20
+SERIAL = "spec/captures/firmware/a_join_data.serial.bin"
+FORWARDER = "spec/captures/basestation/s04_acks.from_sink.sfstream"
+
+
+def crc(data):
+    value = 0
+    for byte in data:
+        value ^= byte << 8
+        for _ in range(8):
+            value = (value << 1 ^ 0x1021 if value & 0x8000 else value << 1) & 0xffff
+    return value
+
+
+def hdlc(content):
+    whole = content + crc(content).to_bytes(2, "little")
+    out = b"".join(bytes([0x7d, byte ^ 0x20]) if byte in (0x7d, 0x7e) else bytes([byte])
+                   for byte in whole)
+    return b"\x7e" + out + b"\x7e"
+
+
+def lines_of(path, *arguments):
+    out = subprocess.run([RUBRIC, "decode", ROOT / path, "--format", "jsonl", *arguments],
+                         capture_output=True, check=False).stdout
+    return [json.loads(line) for line in out.splitlines()]
+
+
+def meaning(records):
+    return [(record["message"], record["fields"], record["error"]) for record in records]
+
+
+class Running:
+    """A rubric that is read and ended by somebody else."""
+
+    def __init__(self, *arguments, **more):
+        self.process = subprocess.Popen([RUBRIC, *map(str, arguments)], stdout=subprocess.PIPE,
+                                        stderr=subprocess.PIPE, **more)
+        self.read = b""
+
+    def lines(self, count):
+        """The next lines, as JSON."""
+        deadline = time.monotonic() + PATIENCE_S
+        while self.read.count(b"\n") < count:
+            left = max(0, deadline - time.monotonic())
+            more = b""
+            if select.select([self.process.stdout], [], [], left)[0]:
+                more = os.read(self.process.stdout.fileno(), 1 << 16)
+            if not more:
+                self.process.kill()
+                raise AssertionError(f"{self.read.count(10)} of {count} lines: {self.end(None)}")
+            self.read += more
+        *found, self.read = self.read.split(b"\n", count)
+        return [json.loads(line) for line in found]
+
+    def end(self, signal_number=signal.SIGINT):
+        if signal_number is not None:
+            self.process.send_signal(signal_number)
+        out, err = self.process.communicate(timeout=PATIENCE_S)
+        return self.process.returncode, out.decode(), err.decode()
+
+
+class Pty:
+    """A serial device whose other end is here."""
+
+    def __init__(self, test):
+        self.fd, other = pty.openpty()
+        tty.setraw(self.fd)
+        self.name = os.ttyname(other)
+        test.addCleanup(os.close, self.fd)
+        test.addCleanup(os.close, other)
+
+    def read(self, seconds):
+        got = b""
+        deadline = time.monotonic() + seconds
+        while select.select([self.fd], [], [], max(0, deadline - time.monotonic()))[0]:
+            got += os.read(self.fd, 1000)
+        return got
+
+
+class Forwarder:
+    """The server's end of a serial forwarder connection."""
+
+    def __init__(self, test, port=0):
+        self.listener = socket.create_server(("127.0.0.1", port))
+        self.listener.settimeout(PATIENCE_S)
+        self.port = self.listener.getsockname()[1]
+        test.addCleanup(self.listener.close)
+
+    def accept(self, data):
+        connection, _ = self.listener.accept()
+        connection.settimeout(PATIENCE_S)
+        if connection.recv(2) != b"U ":
+            raise AssertionError("no handshake")
+        connection.sendall(data)
+        return connection
+
+
+class Live(unittest.TestCase):
+    maxDiff = 2000
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="rubric-live-")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def started(self, *arguments, **more):
+        running = Running(*arguments, **more)
+        self.addCleanup(running.process.stdout.close)
+        self.addCleanup(running.process.stderr.close)
+        self.addCleanup(running.process.kill)
+        return running
+
+    def test_a_serial_line(self):
+        line = Pty(self)
+        kept = self.folder / "kept.pcapng"
+        running = self.started("decode", f"serial@{line.name}:telosb", "--format", "jsonl",
+                               "--write", kept)
+        wanted = lines_of(SERIAL)
+        time.sleep(0.5)  # Opening throws away what came before.
+        os.write(line.fd, (ROOT / SERIAL).read_bytes()[:2000])
+        records = running.lines(10)
+        self.assertEqual(meaning(records), meaning(wanted[:10]))
+        self.assertEqual({record["interface"] for record in records},
+                         {f"serial@{line.name}:telosb"})
+        self.assertLess(abs(records[-1]["time"] - time.time()), PATIENCE_S)
+        code, _, err = running.end()
+        self.assertEqual(code, 0, err)
+        self.assertRegex(err, r"^rubric: \d+ frames, 0 malformed, \d+ shown\n$")
+        self.assertEqual(meaning(lines_of(kept))[:10], meaning(wanted[:10]))
+
+    def test_frames_that_ask_for_it_are_confirmed(self):
+        packet = bytes.fromhex("00ffff000003002514000c")
+        for arguments, answer in (((), hdlc(b"\x43\x2a")), (("--listen-only",), b"")):
+            line = Pty(self)
+            running = self.started("decode", f"serial@{line.name}:115200", "--format", "jsonl",
+                                   *arguments)
+            time.sleep(0.5)
+            os.write(line.fd, hdlc(b"\x44\x2a" + packet))
+            self.assertEqual(running.lines(1)[0]["message"], "config")
+            self.assertEqual(line.read(0.5), answer)
+            self.assertEqual(running.end()[0], 0)
+
+    def test_a_serial_forwarder_that_goes(self):
+        server = Forwarder(self)
+        running = self.started("decode", f"sf@127.0.0.1:{server.port}", "--format", "jsonl")
+        connection = server.accept((ROOT / FORWARDER).read_bytes())
+        wanted = lines_of(FORWARDER)
+        self.assertEqual(meaning(running.lines(len(wanted))), meaning(wanted))
+        connection.close()
+        code, _, err = running.end(None)
+        self.assertEqual(code, 3)
+        self.assertIn(f"sf@127.0.0.1:{server.port}: the line broke: the other end closed it", err)
+
+    def test_a_serial_forwarder_that_comes_back(self):
+        server = Forwarder(self)
+        running = self.started("decode", f"sf@127.0.0.1:{server.port}", "--format", "jsonl",
+                               "--reconnect")
+        wanted = lines_of(FORWARDER)
+        for _ in range(2):
+            connection = server.accept((ROOT / FORWARDER).read_bytes())
+            self.assertEqual(meaning(running.lines(len(wanted))), meaning(wanted))
+            connection.close()
+        connection = server.accept((ROOT / FORWARDER).read_bytes())
+        running.lines(len(wanted))
+        code, _, err = running.end(signal.SIGTERM)
+        connection.close()
+        self.assertEqual(code, 0, err)
+        self.assertEqual(err.count("the other end closed it"), 2)
+        self.assertEqual(err.count("again"), 2)
+        self.assertIn(f"rubric: {3 * len(wanted)} frames", err)
+
+    def test_a_file_that_grows(self):
+        path = self.folder / "growing.pcapng"
+        whole = (ROOT / "spec/captures/firmware/a_join_data.pcapng").read_bytes()
+        wanted = lines_of("spec/captures/firmware/a_join_data.pcapng")
+        path.write_bytes(b"")
+        running = self.started("decode", path, "--follow", "--format", "jsonl")
+        found = []
+        with open(path, "ab", buffering=0) as file:
+            for at in range(0, len(whole), 3001):
+                file.write(whole[at:at + 3001])
+                time.sleep(0.02)
+        found = running.lines(len(wanted))
+        self.assertEqual(found, wanted)
+        path.write_bytes(whole[:100])
+        code, _, err = running.end(None)
+        self.assertEqual(code, 3)
+        self.assertIn("it has become shorter", err)
+
+    def test_motecom(self):
+        server = Forwarder(self)
+        master, slave = pty.openpty()
+        self.addCleanup(os.close, master)
+        running = self.started("decode", "--format", "jsonl", "--count", "1", stdin=slave,
+                               env={**os.environ, "MOTECOM": f"sf@127.0.0.1:{server.port}"})
+        os.close(slave)
+        connection = server.accept((ROOT / FORWARDER).read_bytes())
+        self.addCleanup(connection.close)
+        self.assertEqual(len(running.lines(1)), 1)
+        self.assertEqual(running.end(None)[0], 0)
+
+    def test_lines_that_cannot_be(self):
+        for name, what in (("serial@/dev/ttyUSB0", "expected serial@DEVICE:BAUD"),
+                           ("serial@/dev/null:fast", "expected serial@DEVICE:BAUD"),
+                           ("sf@nowhere", "expected HOST:PORT")):
+            done = subprocess.run([RUBRIC, "decode", name], capture_output=True, text=True,
+                                  check=False)
+            self.assertEqual((done.returncode, done.stdout), (2, ""), name)
+            self.assertIn(what, done.stderr)
+        for name, what in (("serial@/dev/null:115200", "is no serial line"),
+                           ("serial@/no/such:57600", "cannot be opened"),
+                           ("sf@127.0.0.1:1", "cannot connect")):
+            done = subprocess.run([RUBRIC, "decode", name], capture_output=True, text=True,
+                                  check=False)
+            self.assertEqual(done.returncode, 3, name)
+            self.assertIn(what, done.stderr)
+
+
+if __name__ == "__main__":
+    ROOT = pathlib.Path(sys.argv.pop(2)).resolve()
+    RUBRIC = os.path.abspath(sys.argv.pop(1))
+    unittest.main()
