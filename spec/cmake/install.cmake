@@ -11,7 +11,7 @@ set(include_dir ${CMAKE_INSTALL_INCLUDEDIR}/rubric)
 get_property(libraries GLOBAL PROPERTY RUBRIC_LIBRARIES)
 list(FILTER libraries EXCLUDE REGEX
   "^firmware_|^rubric_(compiler|commands|cli|format|fuzz.*|legal.*|.*mutator|record.*)$")
-list(FILTER libraries EXCLUDE REGEX "^rubric_(cpp_node.*|script)$")
+list(FILTER libraries EXCLUDE REGEX "^rubric_(cpp_node.*|lines|script)$")
 add_library(rubric_conformance INTERFACE)
 target_link_libraries(rubric_conformance INTERFACE ${libraries})
 set_target_properties(rubric_conformance PROPERTIES EXPORT_NAME conformance)
