@@ -1,8 +1,8 @@
-// Entry points for targets whose input is a capture of any format, known by its content. One of no
-// known format becomes a capture file, which holds whatever was sent anywhere.
+// Entry points for targets whose input is a capture of any format, known by its content, or a log.
+// One of no known format becomes a capture file, which holds whatever was sent anywhere.
 #include "codec/containers/reader.h"
 #include "fuzz/mutators/entry.h"
-#include "fuzz/support/mutate_bytes.h"
+#include "fuzz/mutators/lines_mutator.h"
 
 namespace {
 
@@ -20,7 +20,7 @@ bool is_log(const std::uint8_t* data, std::size_t size) { return size > 0 && dat
 
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
                                                std::size_t max_size, unsigned seed) {
-  if (is_log(data, size)) return fuzz::mutate_bytes(data, size, max_size, seed);
+  if (is_log(data, size)) return fuzz::mutate_lines(data, size, max_size, seed);
   const Bytes input(data, size);
   const auto made = fuzz::seeded_mutator(seed).mutate(format_of(input), input, max_size);
   return fuzz::give(made, 0, data, max_size);

@@ -1,6 +1,5 @@
-// Changes text as a person's slip would: whole lines come twice, go or change places, and words and
-// values stand where others stood. For targets whose input is text. An engine that knows bytes only
-// breaks the text's outer form first and seldom reaches what its words mean.
+#include "fuzz/mutators/lines_mutator.h"
+
 #include <algorithm>
 #include <cctype>
 #include <cstring>
@@ -113,11 +112,9 @@ class Slips {
 };
 
 }  // namespace
-}  // namespace rubric::fuzz
 
-extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
-                                               std::size_t max_size, unsigned seed) {
-  using namespace rubric::fuzz;
+std::size_t mutate_lines(std::uint8_t* data, std::size_t size, std::size_t max_size,
+                         unsigned seed) {
   std::minstd_rand random(seed);
   if (random() % 3 == 0) return mutate_bytes(data, size, max_size, seed);
   Slips slips(std::string(reinterpret_cast<const char*>(data), size),
@@ -127,3 +124,5 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
   if (kept > 0) std::memcpy(data, slips.text().data(), kept);
   return kept;
 }
+
+}  // namespace rubric::fuzz
