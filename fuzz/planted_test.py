@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Shows that the structure-aware mutator comes to a trap that plain libFuzzer does not come to.
 
-Usage: planted_test.py [--build FOLDER] [--seeds N] [--plain-seconds S]
+Usage: planted_test.py [BUILD_FOLDER] [--seeds N] [--plain-seconds S], of a build of the fuzz
+targets (build/fuzz); both programs are built if need be.
 
 The trap (targets/planted_fuzz.cc) lies behind four valid messages in order, each of which repeats
 what was said before. The same target is built with the mutator and without; both begin with one
@@ -20,6 +21,8 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+AWARE = "planted_aware_fuzz"
+PLAIN = "planted_plain_fuzz"
 LIMIT_S = 30
 WAIT_S = 4 * LIMIT_S  # By the clock.
 MORE_RUNS = 10
@@ -55,13 +58,13 @@ def run(program, seed, *options):
 
 
 def one(build, seed, plain_seconds):
-    found, runs, seconds = run(build / "planted_aware_fuzz", seed)
+    found, runs, seconds = run(build / AWARE, seed)
     said = "found the trap" if found else "did not find the trap"
     print(f"seed {seed}: with the mutator {said}: {runs} runs, {seconds:.1f} s", flush=True)
     bound = [f"-max_total_time={plain_seconds}"]
     if plain_seconds == LIMIT_S:  # No more than it has to.
         bound.append(f"-runs={MORE_RUNS * runs}")
-    plain_found, plain_runs, plain_s = run(build / "planted_plain_fuzz", seed, *bound)
+    plain_found, plain_runs, plain_s = run(build / PLAIN, seed, *bound)
     said = "found the trap" if plain_found else "did not find the trap"
     print(f"seed {seed}: plain libFuzzer {said}: {plain_runs} runs, {plain_s:.1f} s", flush=True)
     return found and seconds <= LIMIT_S and not plain_found, runs, seconds
@@ -69,13 +72,18 @@ def one(build, seed, plain_seconds):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/fuzz/fuzz",
-                        help="where the fuzz targets are (default: build/fuzz/fuzz)")
+    parser.add_argument("build", type=pathlib.Path, nargs="?", default=ROOT / "build/fuzz",
+                        help="the build folder of the fuzz targets (default: build/fuzz)")
     parser.add_argument("--seeds", type=int, default=1)
     parser.add_argument("--plain-seconds", type=int, default=LIMIT_S,
                         help="other than 30: plain libFuzzer runs for so long, however many runs")
     options = parser.parse_args()
-    rows = [one(options.build, seed, options.plain_seconds) for seed in range(1, options.seeds + 1)]
+    built = subprocess.run(["cmake", "--build", options.build, "--target", AWARE, PLAIN],
+                           capture_output=True, text=True, check=False)
+    if built.returncode != 0:
+        sys.exit(built.stdout + built.stderr)
+    rows = [one(options.build / "fuzz", seed, options.plain_seconds)
+            for seed in range(1, options.seeds + 1)]
     good = sum(row[0] for row in rows)
     if options.seeds > 1:
         for name, column in (("runs", 1), ("seconds", 2)):
