@@ -15,6 +15,7 @@
 #include "tools/generate.h"
 #include "tools/messages.h"
 #include "tools/new_adapter.h"
+#include "tools/repro.h"
 #include "tools/shrink.h"
 #include "tools/simulate.h"
 #include "tools/stats.h"
@@ -50,6 +51,7 @@ int main(int argc, char** argv) {
   rubric::tools::add_test(app);
   rubric::tools::add_shrink(app);
   rubric::tools::add_diff(app);
+  rubric::tools::add_repro(app);
   rubric::tools::add_new_adapter(app);
   rubric::tools::add_coverage(app);
   rubric::tools::add_completion(app);

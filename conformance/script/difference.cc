@@ -111,9 +111,13 @@ class Lenient {
   Lenient(const Script& script, const Played& played)
       : script_(script), played_(played), node_(node_of(script).name) {}
 
-  trace::File file() {
+  trace::File file(const Title& title) {
     trace::File file = begin_file(script_);
-    trace::Case one("difference");
+    trace::Case one(title.case_name);
+    for (const std::string& text : title.comments) {
+      one.items.emplace_back(trace::Comment{';', false, " " + text});
+    }
+    one.add(nothing_else(script_.length(), node_, title.rules));
     Ticks now = 0;
     for (std::size_t i = 0; i < played_.before.size(); ++i) {
       show(played_.before[i], one);
@@ -123,7 +127,6 @@ class Lenient {
       heard_at_ = frame ? std::optional<Ticks>(now) : std::nullopt;
     }
     show(played_.outputs.size(), one);
-    one.add(nothing_else(script_.length(), node_, {}));
     file.cases.push_back(std::move(one));
     return file;
   }
@@ -234,8 +237,8 @@ class Lenient {
 
 }  // namespace
 
-trace::File lenient_file(const Script& script, const Played& played) {
-  return Lenient(script, played).file();
+trace::File lenient_file(const Script& script, const Played& played, const Title& title) {
+  return Lenient(script, played).file(title);
 }
 
 Difference difference(const Script& script, flaws::StepFunction step) {
@@ -247,7 +250,7 @@ Difference difference(const Script& script, flaws::StepFunction step) {
   if (played.outputs.size() > kOutputsMax) return out;
   const auto other = cpp_target();
   if (same(played.outputs, play(compared, *other).outputs)) return out;  // Mostly, and fast.
-  out.file = lenient_file(compared, played);
+  out.file = lenient_file(compared, played, {"repro.difference", {}, {}});
   const runner::CaseResult result = runner::run_case(
       out.file, out.file.cases[0], [](const trace::NodeHeader&) { return cpp_target(); });
   if (result.verdict == runner::CaseVerdict::kPass) return out;

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "conformance/flaws/flaws.h"
+#include "conformance/script/rtr.h"
 #include "conformance/script/script.h"
 #include "conformance/trace/trace.h"
 
@@ -32,7 +33,8 @@ Script until_free(Script script, flaws::StepFunction step = machine::step);
 /// Numbers in answers to the node that are not those of its requests and sends become ones that no
 /// node has used either: each node chooses its own, and a guess might be the other's.
 Script without_guesses(Script script, flaws::StepFunction step = machine::step);
-/// The machine's run of a script, as a trace that asks for no more than the rules do.
-trace::File lenient_file(const Script& script, const Played& played);
+/// The machine's run of a script, as a trace that asks for no more than the rules do: whatever
+/// numbers a node begins with, `script` being without_guesses().
+trace::File lenient_file(const Script& script, const Played& played, const Title& title);
 
 }  // namespace rubric::script

@@ -38,7 +38,7 @@ TEST(Difference, NoneInGoldenTraces) {
     // Also where they do the very same, so that nothing had to be left open.
     const Script decided = until_free(without_undecided(each.script));
     runner::SubjectTarget target(std::make_unique<runner::Machine>());
-    const trace::File file = lenient_file(decided, play(decided, target));
+    const trace::File file = lenient_file(decided, play(decided, target), {"x", {}, {}});
     const auto wrong = trace::check(file);
     EXPECT_TRUE(wrong.empty()) << each.node << ": " << wrong[0].text;
     const auto result = runner::run_case(file, file.cases[0], [](const trace::NodeHeader&) {

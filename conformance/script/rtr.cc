@@ -212,6 +212,7 @@ trace::File to_file(const Script& script, const Played& run, const Title& title)
   for (const std::string& text : title.comments) {
     one.items.emplace_back(trace::Comment{';', false, " " + text});
   }
+  one.add(nothing_else(script.length(), node, title.rules));
   std::size_t shown = 0;
   const auto show = [&](std::size_t to) {
     for (; shown < to; ++shown) one.add(line_of(run.outputs[shown], node));
@@ -223,7 +224,6 @@ trace::File to_file(const Script& script, const Played& run, const Title& title)
     one.add(line_of(script.steps[i], now, node));
   }
   show(run.outputs.size());
-  one.add(nothing_else(script.length(), node, title.rules));
   file.cases.push_back(std::move(one));
   return file;
 }

@@ -40,7 +40,8 @@ trace::NodeHeader node_of(const Script& script);
 trace::File begin_file(const Script& script);
 trace::Line line_of(const runner::Output& output, const std::string& node);
 trace::Line line_of(const Step& step, Ticks now, const std::string& node);
-/// `!>`: nothing but what other lines take, from the start to `end`.
+/// `!>`: nothing but what other lines take, from the start to `end`. It stands first, so that it
+/// counts even where the case ends at a line that finds nothing.
 trace::Line nothing_else(Ticks end, const std::string& node, const std::vector<ReqId>& rules);
 
 }  // namespace rubric::script

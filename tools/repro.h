@@ -1,0 +1,10 @@
+// rubric repro: an input of the stateful fuzz targets, as a trace.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace rubric::tools {
+
+void add_repro(CLI::App& app);
+
+}  // namespace rubric::tools
