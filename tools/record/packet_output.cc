@@ -10,9 +10,7 @@
 #include <system_error>
 
 #include "codec/containers/link_record.h"
-#include "codec/containers/serial_frame.h"
 #include "codec/reflect/fault_text.h"
-#include "codec/runtime/hdlc.h"
 
 namespace rubric::record {
 namespace {
@@ -140,9 +138,6 @@ std::string PacketOutput::write(const Packet& packet, std::string_view interface
   cut_.clear();
   const bool is_stream = container_ == kHdlc || container_ == kSf;
   if (is_stream && packet.error.fault == Fault::kCut) {
-    // Without a byte of content, only an escape can have come of it.
-    const bool empty = container_ == kHdlc && serial_content_size(packet) == 0;
-    if (empty) bytes_ += static_cast<char>(kHdlcEscape);
     cut_ = bytes_;
   } else {
     output_->buffer().append(bytes_);
