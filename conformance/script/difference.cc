@@ -217,11 +217,13 @@ class Lenient {
     return line;
   }
 
-  // Whether the fields of a frame's line say all that its bytes do.
+  // Whether the fields of a frame's line say all that its bytes do, but for left-over ones behind.
   bool is_whole(Line line) const {
-    const trace::AmFrame exact = trace::frame_of(line, {});
+    trace::AmFrame exact = trace::frame_of(line, {});
     line.bytes.reset();
-    return trace::frame_of(line, {}) == exact;
+    const trace::AmFrame said = trace::frame_of(line, {});
+    if (said.payload.size() < exact.payload.size()) exact.payload.resize(said.payload.size());
+    return said == exact;
   }
 
   const Script& script_;
