@@ -86,7 +86,7 @@ class ScriptsTest(unittest.TestCase):
         self.assertEqual(len(again), 1, done.stdout)
         command = again[0].split()[1:]
         self.assertIn("build/fuzzing/deep/finds/crash-", command[1])
-        self.assertIn(f"rubric repro --fuzzer deep {command[1]}", done.stdout)
+        self.assertIn(f"rubric repro deep {command[1]}", done.stdout)
         shown = subprocess.run(command, cwd=self.root, capture_output=True, check=False)
         self.assertNotEqual(shown.returncode, 0)
         self.assertEqual(self.names(), ["start.txt"])
