@@ -1,9 +1,14 @@
 // Every generated builder, given every field of a value of its structure, by field names.
 #pragma once
 
+#include <concepts>
 #include <cstddef>
+#include <cstdint>
 #include <iterator>
 #include <type_traits>
+
+#include "codec/runtime/bytes.h"
+#include "fuzz/support/require.h"
 
 namespace rubric::fuzz {
 
@@ -62,6 +67,46 @@ void set_every_field(Builder& builder, const Value& value) {
     }
   }
   RUBRIC_EACH_FIELD(RUBRIC_SET_FIELD)
+}
+
+// Fields whose setters refuse 255 in any room: counts and flags.
+#define RUBRIC_EACH_LIMITED_FIELD(F) \
+  F(reliable) F(nbytes) F(output_size) F(src_neurons_size) F(dest_neurons_size)
+
+#define RUBRIC_SET_TOO_MUCH(field)                                                              \
+  if constexpr (requires { value.field; }) {                                                    \
+    if constexpr (requires { builder.set_##field(&value.field[0], std::size(value.field)); }) { \
+      using Item = std::remove_cvref_t<decltype(value.field[0])>;                               \
+      static const Item many[256] = {};                                                         \
+      if constexpr (std::is_arithmetic_v<Item>) {                                               \
+        require(!builder.set_##field(many, 256), "too many are refused");                       \
+      }                                                                                         \
+    }                                                                                           \
+    if constexpr (requires { builder.set_##field(Bytes()); }) {                                 \
+      static const std::uint8_t large[2000] = {};                                               \
+      require(!builder.set_##field(Bytes(large, 2000)), "too many bytes are refused");          \
+      if constexpr (requires { builder.set_##field##_size(std::size_t{2000}); }) {              \
+        require(!builder.set_##field##_size(std::size_t{2000}), "too large a size is refused"); \
+      }                                                                                         \
+    }                                                                                           \
+  }
+
+#define RUBRIC_SET_255(field)                                          \
+  if constexpr (requires {                                             \
+                  {                                                    \
+                    builder.set_##field(std::uint8_t{255})             \
+                  } -> std::same_as<bool>;                             \
+                }) {                                                   \
+    require(!builder.set_##field(std::uint8_t{255}), "255 is refused"); \
+  }
+
+/// Gives each setter that can refuse more than any structure of `value`'s kind holds: it refuses,
+/// and changes nothing.
+template <class Builder, class Value>
+void set_too_much(Builder& builder, const Value& value) {
+  (void)value;
+  RUBRIC_EACH_FIELD(RUBRIC_SET_TOO_MUCH)
+  RUBRIC_EACH_LIMITED_FIELD(RUBRIC_SET_255)
 }
 
 }  // namespace rubric::fuzz

@@ -78,11 +78,16 @@ void check(Bytes bytes, std::uint8_t before) {
   if (!view) return;
   check_parts(*view);
   std::vector<std::uint8_t> room(view->bytes().size(), before);
-  const auto created = Builder::create(MutableBytes(room.data(), room.size()));
+  const MutableBytes whole(room.data(), room.size());
+  for (std::size_t n = 0; n < View::kMinSizeBytes; ++n) {
+    require(!Builder::create(whole.first(n)), "less than the least has no room");
+  }
+  const auto created = Builder::create(whole);
   require(created.has_value(), "what parse took has room for its builder");
   Builder builder = *created;
   const typename View::Value value = view->to_value();
   fuzz::set_every_field(builder, value);
+  fuzz::set_too_much(builder, value);
   const Result<View> made = builder.finish();
   require(made && equal(made->bytes(), view->bytes()), "the builder makes the bytes again");
   require(!(*made != *view) && !(made->to_value() != value), "what is the same is not different");
