@@ -16,6 +16,14 @@ std::uint32_t hash_of(Bytes input) {
 
 std::vector<Kept> read_in_any_pieces(const MakeReader& make, Bytes input) {
   const std::vector<Kept> whole = testing::read_all(*make(), input);
+  const auto used = make();
+  for (int time = 0; time < 2; ++time) {
+    std::vector<Kept> again = testing::read_all(*used, input);
+    for (std::size_t i = 0; i < std::min(again.size(), whole.size()); ++i) {
+      again[i].packet.interface_id = whole[i].packet.interface_id;  // They count on.
+    }
+    require_same(again, whole, "after the end a reader takes a new input");
+  }
   std::minstd_rand random(hash_of(input));
   constexpr std::size_t kSmall[] = {1, 3, 20, 90};
   for (const std::size_t piece_max : {kSmall[random() % 4], std::size_t{800}}) {

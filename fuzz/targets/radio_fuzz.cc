@@ -97,6 +97,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   require(packet.offset_bytes + packet.bytes.size() <= record.size(), "a frame lies in its record");
   const Kept kept(packet);
   check_sum(kept, record.size());
+  if (missing != 0 || link_type == kLinkRadioNoFcs) {
+    require(packet.fcs == kAbsent, "a frame without its end has no FCS");
+  } else if (link_type == kLinkRadioFcs && record.size() >= 2) {
+    require(packet.fcs == load_le16(record.end() - 2), "the FCS is what the frame ends with");
+  }
   check_append(kept);
 
   static const reflect::FrameDecoder decoder(*reflect::find_protocol("rubicon"));
