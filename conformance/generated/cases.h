@@ -17,7 +17,7 @@ struct CaseUse {
 };
 
 /// By file, then as they stand there; each case once for a rule and a sign.
-inline constexpr std::array<CaseUse, 1214> kCaseUses{{
+inline constexpr std::array<CaseUse, 1220> kCaseUses{{
     {"j1.request", "conformance/cases/j1.rtr", req::kJ1Request, false},
     {"j1.request", "conformance/cases/j1.rtr", req::kJ1Dest, true},
     {"j1.request", "conformance/cases/j1.rtr", req::kJ1Request, true},
@@ -130,6 +130,8 @@ inline constexpr std::array<CaseUse, 1214> kCaseUses{{
     {"j8.already_joined", "conformance/cases/j8.rtr", req::kJ8Joined, false},
     {"j8.already_joined", "conformance/cases/j8.rtr", req::kJ8Joined, true},
     {"j8.already_joined", "conformance/cases/j8.rtr", req::kN5Deliver, false},
+    {"j8.period_after_a_busy_radio", "conformance/cases/j8.rtr", req::kJ8Retry, false},
+    {"j8.period_after_a_busy_radio", "conformance/cases/j8.rtr", req::kJ8Period, true},
     {"j9.interleave", "conformance/cases/j9.rtr", req::kJ9Interleave, false},
     {"j9.interleave", "conformance/cases/j9.rtr", req::kJ6Add, false},
     {"j9.numbers_do_not_mix", "conformance/cases/j9.rtr", req::kJ6Seq, true},
@@ -446,6 +448,8 @@ inline constexpr std::array<CaseUse, 1214> kCaseUses{{
     {"n9.base_station", "conformance/cases/n9.rtr", req::kN9Set, false},
     {"n9.base_station", "conformance/cases/n9.rtr", req::kN1Src, false},
     {"n9.base_station", "conformance/cases/n9.rtr", req::kN8Serial, false},
+    {"n9.reply_that_waited", "conformance/cases/n9.rtr", req::kN9Set, true},
+    {"n9.reply_that_waited", "conformance/cases/n9.rtr", req::kJ3Address, true},
     {"s1.mote_id", "conformance/cases/s1.rtr", req::kS1Id, false},
     {"s1.sink_id", "conformance/cases/s1.rtr", req::kS1Id, false},
     {"s1.enlarge_out", "conformance/cases/s1.rtr", req::kS1Id, false},
@@ -494,6 +498,8 @@ inline constexpr std::array<CaseUse, 1214> kCaseUses{{
     {"s1.sink_clock", "conformance/cases/s1.rtr", req::kS2Signal, false},
     {"s1.sink_clock", "conformance/cases/s1.rtr", req::kS1Clock, true},
     {"s1.sink_clock", "conformance/cases/s1.rtr", req::kS2Tick, true},
+    {"s1.enlarged_input_keeps_news", "conformance/cases/s1.rtr", req::kS1Enlarge, false},
+    {"s1.enlarged_input_keeps_news", "conformance/cases/s1.rtr", req::kS2Signal, false},
     {"s1.limit_as_stated", "conformance/cases/s1_channels.rtr", req::kS1Id, false},
     {"s1.limit_as_stated", "conformance/cases/s1_channels.rtr", req::kS1Limit, false},
     {"s1.limit_as_stated", "conformance/cases/s1_channels.rtr", req::kS1Read, false},

@@ -137,7 +137,12 @@ class Mote:
 
     def flush(self):
         while self.outgoing and not self.busy and self.interfaces[0]:
-            self.world.tx("radio", self.outgoing.popleft())
+            packet = self.outgoing.popleft()
+            if packet[7] == JOIN:
+                if packet[8:10] != struct.pack(">H", self.request or 0):
+                    continue                           # It waited too long: asked again, or over.
+                self.timer = self.now + JOIN_PERIOD    # From when it leaves (J8-PERIOD).
+            self.world.tx("radio", packet)
 
     def line(self, line, state):
         if self.is_on and line == "radio":
