@@ -1,4 +1,4 @@
-"""rubric repro: from a fuzz input that breaks a flawed machine to a golden trace that finds the flaw.
+"""rubric repro: from an input that breaks a flawed machine to a golden trace that finds the flaw.
 
 Usage: repro_test.py RUBRIC MACHINE_FUZZ_REPLAY SCRIPT_SEEDS
 """

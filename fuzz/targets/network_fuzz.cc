@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kMemoryMax = std::size_t{256} << 20;
 
-// What nodes did is remembered from input to input, for a step costs more than a look; not for ever.
+// What nodes did is remembered from input to input: a step costs more than a look.
 rubric::explorer::Nodes& nodes_for(rubric::explorer::Scope scope) {
   static std::array<std::unique_ptr<rubric::explorer::Nodes>, 2> kept;
   auto& nodes = kept[static_cast<std::size_t>(scope)];
