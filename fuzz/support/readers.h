@@ -15,9 +15,10 @@ namespace rubric::fuzz {
 using testing::Kept;
 using MakeReader = std::function<std::unique_ptr<Reader>()>;
 
-/// Everything that a new reader makes of `input`, which must come out the same when the input comes
-/// in small pieces and in large ones, of which the input decides, and to a reader that was used. Each piece is a heap block of its
-/// own, so that a sanitizer sees a read beyond it and of one that is gone.
+/// Everything that a new reader makes of `input`, which must come out the same when a reader that
+/// was used gets it, and when it comes in small pieces and in large ones, of which the input
+/// decides. Each piece is a heap block of its own, so that a sanitizer sees a read beyond it and of
+/// one that is gone.
 std::vector<Kept> read_in_any_pieces(const MakeReader& make, Bytes input);
 
 /// The same packets, whatever they are; prints the first that differ.
