@@ -148,7 +148,9 @@ machine::WriteOutput read_value(Reader& in) {
   return out;
 }
 
-machine::Call read_call(std::size_t which, Reader& in, std::vector<std::uint8_t>& bytes) {
+// Not inlined: g++ 12 takes the variant's padding for uninitialised data.
+[[gnu::noinline]] machine::Call read_call(std::size_t which, Reader& in,
+                                          std::vector<std::uint8_t>& bytes) {
   switch (which) {
     case 0: return machine::JoinIsland{read_descriptor(in)};
     case 1: {
