@@ -28,7 +28,8 @@ done
 
 # Libraries that a runner may lack are copied beside the targets, which look for them there.
 cmake -S "$project" -B "$build" -G Ninja -DCMAKE_PREFIX_PATH="$installed" \
-  -DCMAKE_EXE_LINKER_FLAGS='-Wl,-rpath,$ORIGIN/lib' -DRUBRIC_FUZZ=ON \
+  -DCMAKE_BUILD_RPATH='$ORIGIN/lib' -DCMAKE_EXE_LINKER_FLAGS=-Wl,--disable-new-dtags \
+  -DRUBRIC_FUZZ=ON \
   -DRUBRIC_FUZZ_ENGINE="$LIB_FUZZING_ENGINE" -DRUBRIC_TESTS=OFF
 mapfile -t targets < <(cut -f1 "$build/fuzz_targets.tsv")
 cmake --build "$build" --target "${targets[@]/%/_fuzz}"
