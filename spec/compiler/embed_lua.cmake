@@ -4,7 +4,7 @@ set(text "// Generated from spec/compiler/lua when the program is built.
 
 namespace rubricc {
 ")
-foreach(pair IN ITEMS kLuaDecode:decode kLuaWireshark:wireshark)
+foreach(pair IN ITEMS kLuaDecode:decode kLuaCrc16:crc16 kLuaWireshark:wireshark)
   string(REPLACE ":" ";" pair "${pair}")
   list(GET pair 0 constant)
   list(GET pair 1 name)

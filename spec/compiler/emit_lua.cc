@@ -31,6 +31,8 @@ local protocol_choices = {
 
 <<decode>>
 
+<<crc16>>
+
 <<wireshark>>
 )";
 
@@ -282,6 +284,7 @@ GeneratedFiles emit_lua(const Model& model) {
                    {"tables", lines(tables + rule_tables(model))},
                    {"serial_frame", serial_frame_of(model)}, {"protocols", lines(carriers)},
                    {"choices", lines(choices)}, {"decode", lines(std::string(kLuaDecode))},
+                   {"crc16", lines(std::string(kLuaCrc16))},
                    {"wireshark", lines(std::string(kLuaWireshark))}});
   return {{"tools/wireshark/generated/rubric.lua", text}};
 }

@@ -6,6 +6,7 @@
 namespace rubricc {
 
 extern const std::string_view kLuaDecode;
+extern const std::string_view kLuaCrc16;
 extern const std::string_view kLuaWireshark;
 
 }  // namespace rubricc

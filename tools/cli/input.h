@@ -27,7 +27,7 @@ struct InputOptions {
 /// Adds FILE..., --input-format, --spec and --as to a subcommand.
 void add_input_options(CLI::App& app, InputOptions& options);
 
-/// Adds --follow, --listen-only and --reconnect: for subcommands whose files may as well be lines in
+/// Adds --follow, --listen-only and --reconnect: for subcommands whose files may be lines in
 /// use (live/line.h). Without FILE, at a terminal, $MOTECOM is taken.
 void add_live_options(CLI::App& app, InputOptions& options);
 

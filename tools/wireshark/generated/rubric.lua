@@ -747,6 +747,44 @@ local function decode(name, bytes, more)
   return out
 end
 
+-- CRC-16 with polynomial 0x1021 from 0, high bit first, without bit operators, which Lua 5.2 and
+-- 5.4 write differently.
+local xor_nibbles = {}
+for a = 0, 15 do
+  xor_nibbles[a] = {}
+  for b = 0, 15 do
+    local value = 0
+    for bit = 0, 3 do
+      if math.floor(a / 2 ^ bit) % 2 ~= math.floor(b / 2 ^ bit) % 2 then value = value + 2 ^ bit end
+    end
+    xor_nibbles[a][b] = value
+  end
+end
+local function xor8(a, b)
+  return 16 * xor_nibbles[math.floor(a / 16)][math.floor(b / 16)] + xor_nibbles[a % 16][b % 16]
+end
+
+local crc_high, crc_low = {}, {}
+for i = 0, 255 do
+  local high, low = i, 0
+  for _ = 1, 8 do
+    local carry = high >= 128
+    high = high * 2 % 256 + (low >= 128 and 1 or 0)
+    low = low * 2 % 256
+    if carry then high, low = xor8(high, 0x10), xor8(low, 0x21) end
+  end
+  crc_high[i], crc_low[i] = high, low
+end
+
+local function crc16(bytes, size)
+  local high, low = 0, 0
+  for i = 1, size do
+    local index = xor8(high, bytes:byte(i))
+    high, low = xor8(low, crc_high[index]), crc_low[index]
+  end
+  return high * 256 + low
+end
+
 -- The Wireshark side: fields, expert information, and where packets come from.
 --   wtap_encap USER0: a serial frame from its kind byte to its CRC, flags and escapes removed
 --   wtap_encap USER1: a packet of the serial forwarder, from the dispatch byte on
@@ -758,6 +796,7 @@ local from_sf = Proto("rubric_sf", "Serial forwarder packet (Rubric)")
 local from_radio = Proto("rubric_radio", "TinyOS radio frame (Rubric)")
 
 local MAC_HEADER = 9                -- IEEE 802.15.4-2006, section 7.2.1: short addresses, one PAN.
+local RADIO_FRAME_MAX = 125         -- aMaxPHYPacketSize without FCS.
 local SERIAL_ACK, PACKET_ACK, PACKET_NOACK = 67, 68, 69  -- TEP 113, section 3.1.
 local CONTENT_MIN = 4               -- Kind, a byte, CRC.
 local AFTER_HEADER_MAX = 254        -- Bytes behind kind and sequence number, CRC included.
@@ -827,9 +866,12 @@ local function define_field(field, prefix)
   end
 end
 
+local defined = {}  -- Types; some share a name, as what PCs and motes send.
+
 define_message = function(type)
+  if defined[type] then return end
+  defined[type] = true
   local abbreviation = "rubric." .. type.name
-  if fields[abbreviation] then return end
   define(abbreviation, function()
     return ProtoField.none(abbreviation, type.name, type.doc)
   end)
@@ -869,6 +911,10 @@ local function define_all()
   end)
   define("rubric.stale", function()
     return ProtoField.bytes("rubric.stale", "stale", base.SPACE, "Bytes that mean nothing")
+  end)
+  define("rubric.cut_off", function()
+    return ProtoField.bytes("rubric.cut_off", "cut off", base.SPACE,
+                            "Bytes of a field that needs more of them")
   end)
   define("rubric.serial.crc", function()
     return ProtoField.uint16("rubric.serial.crc", "crc", base.HEX, nil, nil, "CRC-16, low byte first")
@@ -923,7 +969,10 @@ show = function(tree, node, prefix, view)
     show_children(tree, node, prefix, view)
   elseif node.kind == "bytes" then
     if node.size > 0 then
-      tree:add(fields[abbreviation], range_of(view, node.offset, node.size))
+      -- What is left of numbers that were cut off is no number.
+      local whole = field.kind == "bytes" or field.cases
+      tree:add(fields[whole and abbreviation or "rubric.cut_off"],
+               range_of(view, node.offset, node.size))
     end
   elseif node.kind == "structs" then
     for _, child in ipairs(node) do
@@ -1014,44 +1063,6 @@ function from_sf.dissector(tvb, pinfo, root)
   dissect_packet(tvb, pinfo, tree)
 end
 
--- CRC-16 with polynomial 0x1021 from 0, high bit first, without bit operators, which Lua 5.2 and
--- 5.4 write differently.
-local xor_nibbles = {}
-for a = 0, 15 do
-  xor_nibbles[a] = {}
-  for b = 0, 15 do
-    local value = 0
-    for bit = 0, 3 do
-      if math.floor(a / 2 ^ bit) % 2 ~= math.floor(b / 2 ^ bit) % 2 then value = value + 2 ^ bit end
-    end
-    xor_nibbles[a][b] = value
-  end
-end
-local function xor8(a, b)
-  return 16 * xor_nibbles[math.floor(a / 16)][math.floor(b / 16)] + xor_nibbles[a % 16][b % 16]
-end
-
-local crc_high, crc_low = {}, {}
-for i = 0, 255 do
-  local high, low = i, 0
-  for _ = 1, 8 do
-    local carry = high >= 128
-    high = high * 2 % 256 + (low >= 128 and 1 or 0)
-    low = low * 2 % 256
-    if carry then high, low = xor8(high, 0x10), xor8(low, 0x21) end
-  end
-  crc_high[i], crc_low[i] = high, low
-end
-
-local function crc16(bytes, size)
-  local high, low = 0, 0
-  for i = 1, size do
-    local index = xor8(high, bytes:byte(i))
-    high, low = xor8(low, crc_high[index]), crc_low[index]
-  end
-  return high * 256 + low
-end
-
 local function has_seq(kind) return kind == SERIAL_ACK or kind == PACKET_ACK end
 
 local function serial_fault(bytes, kind)
@@ -1117,7 +1128,12 @@ function from_radio.dissector(tvb, pinfo, root)
   local name = is_i_frame and carriers.radio_i or carriers.radio_t
   local out = decode(name, string.rep("\0", MAC_HEADER) .. bytes)
   local am_type = bytes:byte(is_i_frame and 2 or 1)
-  show_all(tree, pinfo, out, {tvb = tvb, skipped = MAC_HEADER}, am_type)
+  local fault
+  if MAC_HEADER + #bytes > RADIO_FRAME_MAX then
+    fault = {fault = "too_long", offset = RADIO_FRAME_MAX, rule = "WIRE-RADIO-LENGTH",
+             text = "the frame is beyond the largest possible size"}
+  end
+  show_all(tree, pinfo, out, {tvb = tvb, skipped = MAC_HEADER}, am_type, fault)
 end
 
 local encapsulations = DissectorTable.get("wtap_encap")
