@@ -49,12 +49,12 @@ Step heard(const Frame& frame, std::vector<std::uint8_t> payload) {
 
 // The serial form of a frame, whatever line brings it: the table has it for every message.
 std::vector<std::uint8_t> packet_of(const Frame& frame, const std::vector<std::uint8_t>& payload) {
-  std::vector<std::uint8_t> out(kAmHeaderBytes);
+  std::vector<std::uint8_t> out(kAmHeaderBytes + payload.size());
   store_be16(&out[1], frame.dest);
   store_be16(&out[3], frame.src);
   out[5] = static_cast<std::uint8_t>(payload.size());
   out[7] = frame.type;
-  out.insert(out.end(), payload.begin(), payload.end());
+  std::copy(payload.begin(), payload.end(), out.begin() + kAmHeaderBytes);
   return out;
 }
 
