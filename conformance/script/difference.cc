@@ -88,7 +88,8 @@ bool is_forwarded(const Output& output, const std::set<std::uint16_t>& sent) {
     case req::kN8Incoming:
       return true;
     case req::kN8Peis:
-      return !message || !sent.contains(message->seq_num());
+      return !message || !sent.contains(message->seq_num()) ||
+             machine::address_of(message->src()).devid != machine::kNullDevid;
     default:
       return false;
   }
@@ -109,7 +110,12 @@ bool same(const std::vector<Output>& a, const std::vector<Output>& b) {
 class Lenient {
  public:
   Lenient(const Script& script, const Played& played)
-      : script_(script), played_(played), node_(node_of(script).name) {}
+      : script_(script), played_(played), node_(node_of(script).name) {
+    for (const Output& output : played.outputs) {
+      const auto* sent = std::get_if<machine::SendResult>(&output.notice);
+      if (!output.is_frame && sent) sent_.insert(sent->seq_num);
+    }
+  }
 
   trace::File file(const Title& title) {
     trace::File file = begin_file(script_);
@@ -179,7 +185,6 @@ class Lenient {
   void loosen_notice(const machine::Notice& notice, Line& line) {
     if (const auto* sent = std::get_if<machine::SendResult>(&notice)) {
       if (sent->seq_num == machine::kNoSeq) return;
-      sent_.insert(sent->seq_num);
       variable(line, "seq_num");
     } else if (const auto* ack = std::get_if<machine::AckReceived>(&notice)) {
       if (ack->success && not_well_.contains(ack->seq_num)) free_field(line, "result");
