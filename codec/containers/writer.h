@@ -51,8 +51,8 @@ class SfWriter final : public Writer {
 };
 
 /// A pcap file of one link type (see link_record.h), little-endian, nanoseconds. Packets of other
-/// framings, and kBare ones without link type, are refused; a missing time is written as 0, as is one before 1970, and one beyond the
-/// 32 bits of its seconds (2106) as the last that there is.
+/// framings, and kBare ones without link type, are refused; a missing time is written as 0, as is
+/// one before 1970, and one beyond the 32 bits of its seconds (2106) as the last that there is.
 /// Source: draft-ietf-opsawg-pcap.
 class PcapWriter final : public Writer {
  public:

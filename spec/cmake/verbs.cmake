@@ -120,8 +120,9 @@ function(rubric_fuzzer name)
     set(repro repro)
   endif()
   list(JOIN corpus " " folders)
-  file(APPEND ${PROJECT_BINARY_DIR}/fuzz_targets.tsv
-    "${name}\t${arg_DICT}\t${arg_MAX_LEN}\t${arg_SMOKE_RUNS}\t${folders}\t${arg_TIMEOUT}\t${repro}\n")
+  string(JOIN "\t" row ${name} ${arg_DICT} ${arg_MAX_LEN} ${arg_SMOKE_RUNS} "${folders}"
+    ${arg_TIMEOUT} ${repro})
+  file(APPEND ${PROJECT_BINARY_DIR}/fuzz_targets.tsv "${row}\n")
   if(RUBRIC_FUZZ)
     add_executable(${target} targets/${target}.cc)
     target_link_libraries(${target} PRIVATE ${libraries} ${RUBRIC_FUZZ_ENGINE})
