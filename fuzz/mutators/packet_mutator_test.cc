@@ -89,13 +89,13 @@ TEST(PacketMutator, MutantsOfValidStreamsMostlyParse) {
 TEST(PacketMutator, TheSeedDecides) {
   for (const Input& input : kInputs) {
     const std::string good = read_file(input.path);
-    std::set<std::vector<std::uint8_t>> different;
+    std::set<std::string> different;
     PacketMutator again = mutator(0);
     for (std::size_t seed = 1; seed <= 50; ++seed) {
       const auto mutant = mutator(seed).mutate(input.format, view(good), kRoom);
       again.reseed(seed);
       EXPECT_EQ(again.mutate(input.format, view(good), kRoom), mutant) << input.name;
-      different.insert(mutant);
+      different.emplace(mutant.begin(), mutant.end());
     }
     EXPECT_GT(different.size(), 40U) << input.name;
   }
