@@ -23,7 +23,7 @@ inline const Known kKnown[] = {
      oscilloscope::tables::kProtocol},
     {tinyos::tables::kProtocol, kLinkAckRoutes, rubicon::tables::kProtocol},
 };
-inline constexpr int kKnownCount = 3;
+constexpr int kKnownCount = 3;
 
 inline std::string text(const Error& error) {
   return std::string(reflect::fault_name(error.fault)) + " at " +
