@@ -17,7 +17,7 @@ struct Known {
   const reflect::RouteTable& routes;
   const reflect::Protocol& reader;  ///< Whose decoder reads them.
 };
-inline const Known kKnown[] = {
+const Known kKnown[] = {
     {rubicon::tables::kProtocol, rubicon::messages::kRoutes, rubicon::tables::kProtocol},
     {oscilloscope::tables::kProtocol, oscilloscope::messages::kRoutes,
      oscilloscope::tables::kProtocol},

@@ -8,9 +8,9 @@
 namespace rubric::generate {
 
 // IEEE 802.15.4-2006, section 7.2.2.3: the frame type, and nothing else, is set.
-inline constexpr reflect::RouteChoice kLinkAckChoices[] = {{0, 2, true, 0x0002}};
-inline constexpr reflect::Route kLinkAckRoute[] = {
+constexpr reflect::RouteChoice kLinkAckChoices[] = {{0, 2, true, 0x0002}};
+constexpr reflect::Route kLinkAckRoute[] = {
     {"radio_ack", &tinyos::tables::types::kMacAck, 0, UINT32_MAX, kLinkAckChoices, 1, nullptr, 0}};
-inline constexpr reflect::RouteTable kLinkAckRoutes{kLinkAckRoute, 1};
+constexpr reflect::RouteTable kLinkAckRoutes{kLinkAckRoute, 1};
 
 }  // namespace rubric::generate
