@@ -173,6 +173,7 @@ async function figures(page, go) {
 
 async function keyboard(page, go) {
   await go('#/cases');
+  const cases = await page.locator('#matrix tbody tr').count();
   const order = [];
   for (let i = 0; i < 9; ++i) {
     await page.keyboard.press('Tab');
@@ -180,7 +181,7 @@ async function keyboard(page, go) {
     if (i === 0) assert.ok(await page.locator('#skip').evaluate((one) => one.offsetLeft >= 0));
   }
   assert.deepStrictEqual(order.slice(0, 7),
-    ['skip', 'Cases', 'Rules', 'Figures', 'This run', 'theme', '558 pass']);
+    ['skip', 'Cases', 'Rules', 'Figures', 'This run', 'theme', `${cases} pass`]);
   assert.ok(await page.locator('#skip').evaluate((one) => one.offsetLeft < 0));
   await page.locator('#skip').focus();
   await page.keyboard.press('Enter');
