@@ -1,6 +1,6 @@
 // Property: any split of a serial line's bytes, on every path of this processor, gives the frames,
 // places and faults that a plain byte-by-byte deframer finds, the mote's deframer agrees on what is
-// whole, and what is written from them reads back as the same.
+// whole, and what is written from them reads back as the same; so do any bytes that a mote writes.
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -58,6 +58,38 @@ void check_writer(const std::vector<Kept>& packets) {
   fuzz::require_same(again, wanted, "what is written reads back as the same");
 }
 
+// Any bytes as the content of a frame, in a buffer of just the size that they take.
+void check_mote_writer(Bytes content) {
+  std::array<std::uint8_t, hdlc_frame_room(kHdlcKeptMax)> room;
+  const std::size_t max = serial_content_max(content.empty() ? 0 : content[0]) - kSerialCrcBytes;
+  const auto size = write_hdlc_frame(content, MutableBytes(room.data(), room.size()));
+  require(size.has_value() == (content.size() <= max), "a frame is refused just where it is too long");
+  if (!size) return require(size.error().fault == Fault::kTooLong, "and that is why");
+  const Bytes frame(room.data(), *size);
+
+  std::array<std::uint8_t, kHdlcKeptMax> buffer;
+  HdlcDeframer deframer(MutableBytes(buffer.data(), buffer.size()));
+  HdlcEvent event = HdlcEvent::kNone;
+  for (const std::uint8_t byte : frame) event = deframer.push(byte);
+  const bool shown = content.size() + kSerialCrcBytes >= kSerialContentMin;
+  require((event == HdlcEvent::kFrame) == shown, "what a mote writes is a sound frame");
+  if (shown) require(equal(deframer.content(), content), "of the same content");
+
+  std::array<std::uint8_t, hdlc_frame_room(kHdlcKeptMax)> other;
+  const auto less = write_hdlc_frame(content, MutableBytes(other.data(), *size - 1));
+  require(!less && less.error().fault == Fault::kNoRoom, "a byte less of room is refused");
+  if (content.empty() || (content[0] != kSerialPacketAck && content[0] != kSerialPacketNoAck)) {
+    return;
+  }
+  const bool numbered = content[0] == kSerialPacketAck;
+  if (numbered && content.size() < 2) return;
+  const Bytes packet = content.from(numbered ? 2 : 1);
+  const MutableBytes out(other.data(), other.size());
+  const auto again = numbered ? write_serial_packet_ack(content[1], packet, out)
+                              : write_serial_packet(packet, out);
+  require(again && equal(Bytes(other.data(), *again), frame), "a packet makes the same frame");
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -71,5 +103,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   check_mote(stream, wanted);
   check_writer(wanted);
+  check_mote_writer(stream);
   return 0;
 }
