@@ -71,29 +71,33 @@ ByteStream open_serial_device(const std::string& path, std::uint32_t baud) {
   return ByteStream(std::move(device));
 }
 
+HostLinkOptions SerialLine::link_options() {
+  HostLinkOptions options;
+  options.ack_wait = kAckWait;
+  options.tries = kTries;
+  return options;
+}
+
 void SerialLine::begin(SteadyTime) {
-  deframer_ = HdlcDeframer(MutableBytes(room_.data(), room_.size()));
+  link_.reset(steady_clock::now());
   packets_.clear();
   synchronised_ = false;
 }
 
 void SerialLine::send(const std::vector<std::uint8_t>& packet, SteadyTime deadline) {
-  std::uint8_t out[hdlc_frame_room(kSerialAfterHeaderMax + 2)];
-  for (int tries = 0; tries < kTries; ++tries) {
-    confirmed_.reset();
-    const std::uint8_t seq = seq_++;
-    const auto size = write_serial_packet_ack(seq, Bytes(packet.data(), packet.size()),
-                                              MutableBytes(out, sizeof out));
-    if (!size) throw TargetBroken("a packet too long for the serial line");
-    put(Bytes(out, *size), deadline);
-    const SteadyTime ack_deadline = std::min(deadline, steady_clock::now() + kAckWait);
-    while (confirmed_ != seq) {
-      if (!read_some(ack_deadline)) break;
-    }
-    if (confirmed_ == seq) return;
-    if (steady_clock::now() >= deadline) break;
+  confirmed_.reset();
+  const Bytes bytes(packet.data(), packet.size());
+  if (link_.submit(bytes, steady_clock::now()) != HostLink::Submitted::kTaken) {
+    throw TargetBroken("a packet too long for the serial line");
   }
-  broken("the node does not confirm packets on its serial line");
+  while (!confirmed_) {
+    flush(deadline);
+    const SteadyTime now = steady_clock::now();
+    if (now >= deadline) break;
+    read_some(std::min(deadline, link_.next().value_or(now)));
+    link_.tick(steady_clock::now());
+  }
+  if (confirmed_ != true) broken("the node does not confirm packets on its serial line");
 }
 
 std::optional<TimedPacket> SerialLine::receive(SteadyTime deadline) {
@@ -106,46 +110,26 @@ std::optional<TimedPacket> SerialLine::receive(SteadyTime deadline) {
 }
 
 void SerialLine::take(Bytes bytes) {
-  for (const std::uint8_t byte : bytes) {
-    const HdlcEvent event = deframer_.push(byte);
-    if (event == HdlcEvent::kFrame) {
+  std::optional<std::string> malformed;
+  auto frame = [&](const Packet& packet) {
+    if (malformed) return;
+    if (packet.error.fault == Fault::kNone) {
       synchronised_ = true;
-      frame(deframer_.content());
-    } else if (event == HdlcEvent::kBad && synchronised_) {
-      broken(fmt::format("a malformed frame of {} bytes on the serial line: {}",
-                         deframer_.content().size(),
-                         deframer_.error().fault == Fault::kCrc ? "wrong CRC" : "wrong size"));
+    } else if (synchronised_) {
+      malformed = packet.error.fault == Fault::kCrc ? "wrong CRC" : "wrong size";
     }
-  }
+    if (!brings_packet(packet)) return;
+    packets_.push_back({steady_clock::now(), {packet.bytes.begin(), packet.bytes.end()}});
+  };
+  link_.take(bytes, steady_clock::now(), frame);
+  if (malformed) broken("a malformed frame on the serial line: " + *malformed);
+  flush(steady_clock::now() + kAckWait);
 }
 
-// A whole frame from its kind on.
-void SerialLine::frame(Bytes content) {
-  const std::uint8_t kind = content[0];
-  const std::size_t header = serial_kind_has_seq(kind) ? 2 : 1;
-  if (kind == kSerialAck && content.size() >= 2) {
-    confirmed_ = content[1];
-    return;
-  }
-  std::uint8_t out[hdlc_frame_room(8)];
-  if (kind == kSerialPacketAck && content.size() > header) {
-    if (const auto size = write_serial_ack(content[1], MutableBytes(out, sizeof out))) {
-      answer(Bytes(out, *size));
-    }
-  } else if (kind == kSerialUnknown) {  // What we sent was not known: no answer to an answer.
-    return;
-  } else if (kind != kSerialPacketNoAck) {  // As hosts answer what they do not know.
-    const std::uint8_t unknown[] = {kSerialUnknown, kind};
-    if (const auto size = write_hdlc_frame(unknown, MutableBytes(out, sizeof out))) {
-      answer(Bytes(out, *size));
-    }
-    return;
-  }
-  if (content.size() <= header) return;
-  packets_.push_back(
-      {steady_clock::now(), {content.data() + header, content.data() + content.size()}});
+void SerialLine::flush(SteadyTime deadline) {
+  if (link_.output().empty()) return;
+  put(link_.output(), deadline);
+  link_.written(link_.output().size());
 }
-
-void SerialLine::answer(Bytes frame) { put(frame, steady_clock::now() + kAckWait); }
 
 }  // namespace rubric::attach

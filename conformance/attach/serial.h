@@ -1,13 +1,12 @@
 // The serial line of a mote, as a device or through TCP: framed as TEP 113 has it.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <deque>
 #include <optional>
 #include <string>
 
-#include "codec/runtime/hdlc.h"
+#include "conformance/attach/host_link.h"
 #include "conformance/attach/stream_line.h"
 
 namespace rubric::attach {
@@ -31,17 +30,18 @@ class SerialLine : public StreamLine {
   std::optional<TimedPacket> receive(SteadyTime deadline) override;
 
  private:
+  static HostLinkOptions link_options();
   void begin(SteadyTime deadline) override;
   void take(Bytes bytes) override;
-  void frame(Bytes content);
-  void answer(Bytes frame);
+  void flush(SteadyTime deadline);
 
-  std::array<std::uint8_t, kSerialAfterHeaderMax + 2> room_{};
-  HdlcDeframer deframer_{MutableBytes(room_.data(), room_.size())};
+  std::optional<bool> confirmed_;  // Whether the packet that was sent last was; nothing: not yet.
+  HostLink link_{link_options(),
+                 [this](const HostLink::Outcome& outcome) {
+                   if (outcome.packet + 1 == link_.taken()) confirmed_ = outcome.confirmed;
+                 }};
   std::deque<TimedPacket> packets_;
-  std::optional<std::uint8_t> confirmed_;  // The last number that the node confirmed.
-  std::uint8_t seq_ = 14;                  // As TinyOS hosts begin.
-  bool synchronised_ = false;              // What comes before the first good frame is noise.
+  bool synchronised_ = false;  // What comes before the first good frame is noise.
 };
 
 }  // namespace rubric::attach

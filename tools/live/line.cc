@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "codec/runtime/hdlc.h"
+#include "conformance/attach/host_link.h"
 #include "conformance/attach/serial.h"
 
 namespace rubric::live {
@@ -91,18 +91,10 @@ std::size_t Line::read(MutableBytes out) {
 }
 
 void Line::answer(const Packet& packet) {
-  if (mute_ || packet.framing != Framing::kHdlc || packet.error.fault != Fault::kNone) return;
-  std::uint8_t room[hdlc_frame_room(8)];
-  const MutableBytes out(room, sizeof room);
-  const bool known = packet.kind == kSerialPacketNoAck || packet.kind == kSerialAck ||
-                     packet.kind == kSerialUnknown;
-  if (known || packet.kind == kAbsent) return;
-  const std::uint8_t unknown[] = {kSerialUnknown, static_cast<std::uint8_t>(packet.kind)};
-  const Result<std::size_t> size =
-      packet.kind == kSerialPacketAck
-          ? write_serial_ack(static_cast<std::uint8_t>(packet.serial_seq), out)
-          : write_hdlc_frame(unknown, out);
-  if (size) stream_.write(Bytes(room, *size), steady_clock::now() + kAnswerTime);
+  if (mute_) return;
+  std::uint8_t room[attach::kHostAnswerRoom];
+  const std::size_t size = attach::host_answer(packet, MutableBytes(room, sizeof room));
+  if (size > 0) stream_.write(Bytes(room, size), steady_clock::now() + kAnswerTime);
 }
 
 }  // namespace rubric::live
