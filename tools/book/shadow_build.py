@@ -1,0 +1,63 @@
+#!/usr/bin/env python3
+"""Builds in a copy of the project what a new or changed wire spec changes, in seconds in place of
+minutes: the generated files, the two parts of rubric that hold its tables, and rubric of these and
+of the libraries that are already built.
+
+Usage: shadow_build.py BUILD_FOLDER COPY TARGET. TARGET is regenerate or rubric.
+"""
+
+import json
+import pathlib
+import shlex
+import subprocess
+import sys
+
+EMITTERS = "cpp,tables,requirements,protocols,dictionary,messages,profiles,cases,java,lua"
+# What holds the tables of all protocols, and the texts of all rules.
+HOLDERS = ("codec/reflect/registry.cc", "codec/reflect/fault_text.cc")
+
+
+def run(words, folder):
+    done = subprocess.run(words, cwd=folder, check=False)
+    if done.returncode:
+        sys.exit(done.returncode)
+
+
+def regenerate(copy):
+    specs = sorted(str(path.relative_to(copy)) for path in (copy / "spec/wire").glob("*.ksy"))
+    run(["rubricc", "--emit", EMITTERS, "--out", ".", *specs], copy)
+
+
+def rebuild(build, root, copy):
+    known = json.loads((build / "compile_commands.json").read_text(encoding="utf-8"))
+    flags = {entry["file"]: shlex.split(entry["command"]) for entry in known}
+    objects = []
+    for holder in HOLDERS:
+        words = flags[str(root / holder)]
+        words = [word.replace(str(root), str(copy)) for word in words]
+        words[words.index("-o") + 1] = str(copy / "build" / (pathlib.Path(holder).stem + ".o"))
+        objects.append(words[words.index("-o") + 1])
+        run(words, copy)
+    listed = subprocess.run(["ninja", "-C", build, "-t", "commands", "rubric"], check=True,
+                            capture_output=True, text=True).stdout
+    link = shlex.split(listed.splitlines()[-1].removeprefix(": && ").removesuffix(" && :"))
+    program = copy / ".bin/rubric"
+    program.unlink()
+    at = link.index("-o")
+    link[at:at + 2] = [*objects, "-o", str(program)]
+    run(link, build)
+
+
+def main():
+    build, copy = (pathlib.Path(word) for word in sys.argv[1:3])
+    root = pathlib.Path(__file__).resolve().parents[2]
+    if sys.argv[3] == "regenerate":
+        regenerate(copy)
+    elif sys.argv[3] == "rubric":
+        rebuild(build, root, copy)
+    else:
+        sys.exit(f"shadow_build.py knows no target {sys.argv[3]}")
+
+
+if __name__ == "__main__":
+    main()
