@@ -28,6 +28,9 @@ expect 0 --emit tables,doc --out "$out/good" $good
 [ -f "$out/good/doc/wire.html" ] || { echo "no page"; failures=1; }
 expect 0 doc --out "$out/doc" $good
 [ -f "$out/doc/doc/wire.html" ] || { echo "no page by doc"; failures=1; }
+expect 0 --emit json --out "$out/json" $good
+grep -q '"schema": "rubricc.model/1"' "$out/json/doc/wire.json" ||
+  { echo "no model as JSON"; failures=1; }
 expect 1 --check $bad
 grep -q 'many_mistakes.ksy:43:5: error: duplicate enum value 2' "$out/stderr" ||
   { echo "the diagnostics are not on stderr"; failures=1; }

@@ -22,5 +22,7 @@ GeneratedFiles emit_profiles(const Model& model);
 GeneratedFiles emit_cases(const Model& model, const std::string& folder);
 /// doc/wire.html: all specs on one page.
 GeneratedFiles emit_doc(const Model& model);
+/// doc/wire.json: the model for programs that print it.
+GeneratedFiles emit_json(const Model& model);
 
 }  // namespace rubricc

@@ -21,7 +21,7 @@ enum Exit { kOk = 0, kDiagnostics = 1, kUsage = 2, kCannotReadOrWrite = 3 };
 
 const std::vector<std::string> kEmitters{"cpp",        "tables",   "requirements", "protocols",
                                          "dictionary", "messages", "profiles",     "cases",
-                                         "java",       "lua",    "doc"};
+                                         "java",       "lua",    "doc",          "json"};
 
 struct Options {
   std::string requirements = "spec/requirements.yaml";
@@ -59,6 +59,7 @@ rubricc::GeneratedFiles emit(const Options& options, const rubricc::Model& model
   if (wants(options, "cases")) append(out, rubricc::emit_cases(model, options.cases));
   if (wants(options, "lua")) append(out, rubricc::emit_lua(model));
   if (wants(options, "doc")) append(out, rubricc::emit_doc(model));
+  if (wants(options, "json")) append(out, rubricc::emit_json(model));
   return out;
 }
 
@@ -91,7 +92,7 @@ int run(const Options& options) {
   rubricc::Diagnostics diagnostics;
   rubricc::load_requirements(options.requirements, model, diagnostics);
   if (has_profiles) rubricc::load_profiles(options.profiles, model, diagnostics);
-  if (options.check || wants(options, "cases")) {
+  if (options.check || wants(options, "cases") || wants(options, "json")) {
     rubricc::load_cases(rubricc::case_files(options.cases), model, diagnostics);
   }
   rubricc::load_specs(options.files, model, diagnostics);
