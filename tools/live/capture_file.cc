@@ -1,6 +1,7 @@
 #include "tools/live/capture_file.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -42,6 +43,11 @@ void CaptureFile::flush() {
     }
   }
   waiting_.clear();
+}
+
+bool CaptureFile::reader_gone() const {
+  pollfd self{fd_, 0, 0};
+  return error_ == EPIPE || (::poll(&self, 1, 0) == 1 && (self.revents & POLLERR) != 0);
 }
 
 bool CaptureFile::finish() {

@@ -19,6 +19,8 @@ class CaptureFile {
   void write(const Packet& packet, std::string_view interface_name);
   /// What was written so far is in the file then, in whole blocks.
   void flush();
+  /// Whether the file is a pipe whose reader closed it.
+  bool reader_gone() const;
   /// Ends the file. False, having said why on stderr, if something of it could not be written.
   bool finish();
 

@@ -27,4 +27,6 @@ void stop_on_signals() {
 
 bool stop_requested() { return stop != 0; }
 
+void request_stop() { stop = 1; }
+
 }  // namespace rubric::live

@@ -8,5 +8,7 @@ namespace rubric::live {
 void stop_on_signals();
 /// Whether one has come.
 bool stop_requested();
+/// As if one had come.
+void request_stop();
 
 }  // namespace rubric::live
