@@ -1,0 +1,84 @@
+// rubric-extcap: called by Wireshark, which captures with it. extcap(4) says how.
+#include <csignal>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "tools/cli/exit_codes.h"
+#include "tools/extcap/capture.h"
+#include "tools/extcap/command_line.h"
+#include "tools/extcap/sentences.h"
+#include "tools/live/line.h"
+
+namespace rubric::extcap {
+namespace {
+
+int answer(const std::string& text) {
+  fmt::print("{}", text);
+  return std::fflush(stdout) == 0 ? cli::kExitClean : cli::kExitInput;
+}
+
+int complain(const std::string& what) {
+  fmt::print(stderr, "rubric-extcap: {}\nTry 'rubric-extcap --help'.\n", what);
+  return cli::kExitUsage;
+}
+
+/// `--listen-only` and `--listen-only=true`.
+bool flag(const CommandLine& line, std::string_view name) {
+  return line.has(name) && line.value(name) != "false";
+}
+
+int start(const CommandLine& line) {
+  CaptureOptions options;
+  options.fifo = line.value("--fifo");
+  options.source = line.value("--other-source");
+  if (options.source.empty()) options.source = line.value("--source");
+  if (options.source.empty()) options.source = live::default_address();
+  options.filter = line.value("--extcap-capture-filter");
+  options.spec = line.value("--spec", "rubicon");
+  options.listen_only = flag(line, "--listen-only");
+  options.reconnect = flag(line, "--reconnect");
+  return capture(options);
+}
+
+/// Wireshark asks without --capture whether a filter is one, and takes every output for a no.
+int judge_filter(const CommandLine& line) {
+  const std::string error = filter_error(line.value("--extcap-capture-filter"),
+                                         line.value("--spec", "rubicon"));
+  if (error.empty()) return cli::kExitClean;
+  answer(error + "\n");
+  return cli::kExitUsage;
+}
+
+int run(const CommandLine& line) {
+  if (line.has("--help")) return answer(help_text());
+  if (line.has("--version")) return answer(RUBRIC_VERSION "\n");
+  if (!line.unfinished().empty()) return complain(line.unfinished() + " needs a value");
+  if (line.has("--extcap-interfaces")) return answer(interfaces());
+  const std::string interface = line.value("--extcap-interface", kInterface);
+  if (interface != kInterface) {
+    return complain(fmt::format("unknown interface '{}'; there is '{}'", interface, kInterface));
+  }
+  if (line.has("--extcap-dlts")) return answer(link_types());
+  if (line.has("--extcap-config")) return answer(config(line.value("--extcap-reload-option")));
+  if (line.has("--capture")) return start(line);
+  if (line.has("--extcap-capture-filter")) return judge_filter(line);
+  return complain("nothing to do: one of --extcap-interfaces, --extcap-dlts, --extcap-config, "
+                  "--extcap-capture-filter, --capture is needed");
+}
+
+}  // namespace
+}  // namespace rubric::extcap
+
+int main(int argc, char** argv) {
+  std::signal(SIGPIPE, SIG_IGN);  // A closed pipe shows as a failed write.
+  try {
+    return rubric::extcap::run(
+        rubric::extcap::CommandLine(std::vector<std::string>(argv + 1, argv + argc)));
+  } catch (const CLI::Error& error) {
+    return rubric::extcap::complain(error.what());
+  }
+}
