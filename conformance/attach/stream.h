@@ -40,6 +40,8 @@ class ByteStream {
 
   bool is_open() const { return descriptor_.is_open(); }
   void close() { descriptor_.close(); }
+  /// For those who wait for several at once. -1: it is not open.
+  int fd() const { return descriptor_.get(); }
 
  private:
   Descriptor descriptor_;
