@@ -1,0 +1,359 @@
+#include "conformance/oracle/align_clock.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+namespace rubric::oracle {
+namespace {
+
+constexpr std::size_t kFramesMin = 3;
+constexpr std::int64_t kSlackUs = 100'000;     // Beyond the response time: a queue, a repetition.
+constexpr double kDriftMax = 300e-6;           // Of two crystals, and some more.
+constexpr std::size_t kTrack = 9;              // Neighbours that say where the next one lies.
+constexpr std::size_t kSlopePoints = 300;      // Enough for a slope; pairs of them are counted.
+constexpr double kTrimmed = 0.02;              // Pairs that are a chance, or a message held up.
+constexpr double kSigma = 1.4826;              // Of a median deviation.
+constexpr std::size_t kDriftFrames = 8;
+constexpr std::int64_t kDriftSpanUs = 10'000'000;
+
+// One pair: the second file's stamp, how far it is ahead, and which way the frame went.
+struct Point {
+  std::int64_t at_us = 0;
+  std::int64_t ahead_us = 0;
+  int lag_sign = 0;
+  std::int64_t lag_min_us = 0;
+  bool inlier = false;
+  double rest_us = 0;  // Without drift.
+};
+
+using Points = std::vector<Point>;
+
+Points points_of(const Run& run, const CommonFrames& common) {
+  Points out;
+  for (const Pair& pair : common.pairs) {
+    const std::int64_t a = run.seen[pair.a].place.time_us;
+    const std::int64_t b = run.seen[pair.b].place.time_us;
+    if (a == kNoStamp || b == kNoStamp) continue;
+    out.push_back({b, b - a, pair.lag_sign, pair.lag_min_us, false, 0});
+  }
+  std::stable_sort(out.begin(), out.end(),
+                   [](const Point& x, const Point& y) { return x.at_us < y.at_us; });
+  return out;
+}
+
+template <class T>
+T median(std::vector<T> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// The value that `part` of them, 0 to 1, are not above.
+double quantile(std::vector<double> values, double part) {
+  const double rank = part * static_cast<double>(values.size() - 1);
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(std::llround(rank));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+// The most that lie within `width` of each other, of those that are not inliers.
+struct Cluster {
+  std::size_t size = 0;
+  std::int64_t from_us = 0;
+};
+Cluster densest(const Points& points, std::int64_t width_us) {
+  std::vector<std::int64_t> ahead;
+  for (const Point& point : points) {
+    if (!point.inlier) ahead.push_back(point.ahead_us);
+  }
+  std::sort(ahead.begin(), ahead.end());
+  Cluster out;
+  std::size_t from = 0;
+  for (std::size_t to = 0; to < ahead.size(); ++to) {
+    while (ahead[to] - ahead[from] > width_us) ++from;
+    if (to - from + 1 <= out.size) continue;
+    out = {to - from + 1, ahead[from]};
+  }
+  return out;
+}
+
+// Marks what goes on from the densest part: drift moves it slowly.
+class Tracking {
+ public:
+  Tracking(Points& points, std::int64_t width_us) : points_(points), width_us_(width_us) {}
+
+  void track() {
+    const Cluster seed = densest(points_, width_us_);
+    std::vector<std::size_t> seeds;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const std::int64_t over = points_[i].ahead_us - seed.from_us;
+      if (over >= 0 && over <= width_us_) seeds.push_back(i);
+    }
+    const std::size_t middle = seeds[seeds.size() / 2];
+    const std::int64_t start_us = seed.from_us + width_us_ / 2;
+    walk(middle, points_.size(), 1, start_us);
+    walk(middle, points_.size(), -1, start_us);
+  }
+
+ private:
+  void walk(std::size_t from, std::size_t size, std::ptrdiff_t step, std::int64_t here_us) {
+    std::vector<std::int64_t> last;
+    std::int64_t at_us = points_[from].at_us;
+    for (std::size_t i = from; i < size; i += static_cast<std::size_t>(step)) {
+      Point& point = points_[i];
+      const double drifted = kDriftMax * static_cast<double>(std::abs(point.at_us - at_us));
+      if (std::abs(point.ahead_us - here_us) > width_us_ / 2 + std::llround(drifted)) continue;
+      point.inlier = true;
+      at_us = point.at_us;
+      if (last.size() == kTrack) last.erase(last.begin());
+      last.push_back(point.ahead_us);
+      if (last.size() >= kFramesMin) here_us = median(last);
+    }
+  }
+
+  Points& points_;
+  std::int64_t width_us_;
+};
+
+// The middle slope between pairs that went the same way (Theil and Sen).
+double slope_of(const Points& in) {
+  std::vector<double> slopes;
+  const std::size_t stride = std::max<std::size_t>(1, in.size() / kSlopePoints);
+  for (std::size_t i = 0; i < in.size(); i += stride) {
+    for (std::size_t j = i + stride; j < in.size(); j += stride) {
+      const std::int64_t apart_us = in[j].at_us - in[i].at_us;
+      if (in[i].lag_sign != in[j].lag_sign || apart_us < kDriftSpanUs / 10) continue;
+      slopes.push_back(static_cast<double>(in[j].ahead_us - in[i].ahead_us) /
+                       static_cast<double>(apart_us));
+    }
+  }
+  return slopes.empty() ? 0 : median(std::move(slopes));
+}
+
+std::vector<double> rests(const Points& in, int lag_sign) {
+  std::vector<double> out;
+  for (const Point& point : in) {
+    if (point.lag_sign == lag_sign) out.push_back(point.rest_us);
+  }
+  return out;
+}
+
+// How far points are from the middle one of those that went the same way.
+std::vector<double> deviations(const Points& in) {
+  std::vector<double> out;
+  for (const int sign : {-1, 0, 1}) {
+    const std::vector<double> values = rests(in, sign);
+    if (values.empty()) continue;
+    const double middle = median(values);
+    for (const double value : values) out.push_back(std::abs(value - middle));
+  }
+  return out;
+}
+
+void set_rests(Points& in, std::int64_t base_us, double drift) {
+  for (Point& point : in) {
+    const double since = static_cast<double>(point.at_us - in.front().at_us);
+    point.rest_us = static_cast<double>(point.ahead_us - base_us) - drift * since;
+  }
+}
+
+// A slope that the scatter of the points cannot feign, and that clocks can have; else 0. Leaves the
+// rests without it.
+double drift_of(Points& in, std::int64_t base_us) {
+  set_rests(in, base_us, 0);
+  const std::int64_t span_us = in.back().at_us - in.front().at_us;
+  if (in.size() < kDriftFrames || span_us < kDriftSpanUs) return 0;
+  const double slope = slope_of(in);
+  set_rests(in, base_us, slope);
+  const double sigma = kSigma * median(deviations(in)) + 1;
+  const double doubt =
+      sigma * std::sqrt(12 / static_cast<double>(in.size())) / static_cast<double>(span_us);
+  if (std::abs(slope) > 4 * doubt && std::abs(slope) <= kDriftMax) return slope;
+  set_rests(in, base_us, 0);
+  return 0;
+}
+
+// Where the offset can lie: no effect stands before its cause.
+struct Bounds {
+  std::optional<double> low;   // By frames whose cause is in the second file.
+  std::optional<double> high;
+};
+Bounds bounds_of(const Points& in, bool physical) {
+  std::vector<double> low;
+  std::vector<double> high;
+  for (const Point& point : in) {
+    const double least = physical ? static_cast<double>(point.lag_min_us) : 0;
+    if (point.lag_sign < 0) low.push_back(point.rest_us + least);
+    if (point.lag_sign > 0) high.push_back(point.rest_us - least);
+  }
+  Bounds out;
+  if (!low.empty()) out.low = quantile(low, 1 - kTrimmed);
+  if (!high.empty()) out.high = quantile(high, kTrimmed);
+  return out;
+}
+
+// Whether the stamps as they are break nothing: no effect before its cause by more than the skew,
+// and not all of them later than nodes may be.
+bool agree(const Points& in, const AlignOptions& options) {
+  const auto skew = static_cast<double>(options.skew_us);
+  const auto response = static_cast<double>(options.response_us);
+  const std::vector<double> same = rests(in, 0);
+  if (!same.empty() && std::abs(median(same)) > skew) return false;
+  const Bounds bounds = bounds_of(in, false);
+  if (bounds.low && *bounds.low > skew) return false;
+  if (bounds.high && *bounds.high < -skew) return false;
+  if (bounds.low && !bounds.high && same.empty() && *bounds.low < -response) return false;
+  return !(bounds.high && !bounds.low && same.empty() && *bounds.high > response);
+}
+
+std::string count_text(std::size_t count) {
+  return count == 1 ? "1 frame" : std::to_string(count) + " frames";
+}
+
+class Fit {
+ public:
+  Fit(const Run& run, const CommonFrames& common, const AlignOptions& options)
+      : run_(run), common_(common), options_(options), points_(points_of(run, common)) {}
+
+  ClockFit fit() {
+    if (points_.empty()) {
+      return unsure(common_.repeated == 0 ? "no frame is in both"
+                                          : "frames that are in both repeat, so that any of them "
+                                            "could be any other");
+    }
+    if (near_zero()) {
+      out_.clocks = Clocks::kAgree;
+      out_.frames = points_.size();
+      return out_;
+    }
+    if (points_.size() < kFramesMin) {
+      return unsure("only " + count_text(points_.size()) +
+                    (points_.size() == 1 ? " is" : " are") + " in both, and " +
+                    std::to_string(kFramesMin) + " are needed");
+    }
+    const std::int64_t width_us = 2 * (options_.response_us + kSlackUs);
+    Tracking(points_, width_us).track();
+    for (const Point& point : points_) {
+      if (point.inlier) in_.push_back(point);
+    }
+    const std::size_t other = densest(points_, width_us).size;
+    if (in_.size() < kFramesMin || 2 * in_.size() <= points_.size() || 2 * other > in_.size()) {
+      return unsure("the " + count_text(points_.size()) +
+                    " that are in both do not lie equally far apart");
+    }
+    if (!covers()) {
+      return unsure("the " + count_text(in_.size()) +
+                    " that are in both are fewer than those of the same time that are not");
+    }
+    return judge();
+  }
+
+ private:
+  ClockFit unsure(std::string why) {
+    out_.clocks = Clocks::kUnsure;
+    out_.why = std::move(why);
+    return out_;
+  }
+
+  // Most of them are as frames of one clock: nothing is to be shown.
+  bool near_zero() const {
+    Points near;
+    const std::int64_t most = options_.response_us + kSlackUs + options_.skew_us;
+    for (const Point& point : points_) {
+      if (std::abs(point.ahead_us) > most) continue;
+      near.push_back(point);
+    }
+    if (2 * near.size() <= points_.size()) return false;
+    const auto span_us = static_cast<double>(near.back().at_us - near.front().at_us);
+    const double drifted = std::abs(drift_of(near, 0)) * span_us;
+    set_rests(near, 0, 0);
+    return drifted <= static_cast<double>(options_.skew_us) && agree(near, options_);
+  }
+
+  // In the time that both were recorded one file has no more frames that the other has not than
+  // frames that it has.
+  bool covers() const {
+    const std::int64_t ahead_us = in_[in_.size() / 2].ahead_us;
+    const auto at = [&](std::uint32_t index) { return run_.seen[index].place.time_us; };
+    const Extent of_a = extent(common_.only_a, true);
+    const Extent of_b = extent(common_.only_b, false);
+    const auto within = [&](std::int64_t time_us) {  // On the second clock.
+      return time_us >= std::max(of_a.first_us + ahead_us, of_b.first_us) - kSlackUs &&
+             time_us <= std::min(of_a.last_us + ahead_us, of_b.last_us) + kSlackUs;
+    };
+    std::size_t only_a = 0;
+    std::size_t only_b = 0;
+    for (const std::uint32_t i : common_.only_a) only_a += within(at(i) + ahead_us) ? 1 : 0;
+    for (const std::uint32_t i : common_.only_b) only_b += within(at(i)) ? 1 : 0;
+    return in_.size() >= std::min(only_a, only_b);
+  }
+
+  struct Extent {
+    std::int64_t first_us = 0;
+    std::int64_t last_us = 0;
+  };
+  Extent extent(const std::vector<std::uint32_t>& only, bool of_a) const {
+    const std::int64_t start_us = in_.front().at_us - (of_a ? in_.front().ahead_us : 0);
+    Extent out{start_us, start_us};
+    const auto add = [&](std::uint32_t index) {
+      const std::int64_t time_us = run_.seen[index].place.time_us;
+      if (time_us == kNoStamp) return;
+      out.first_us = std::min(out.first_us, time_us);
+      out.last_us = std::max(out.last_us, time_us);
+    };
+    for (const std::uint32_t index : only) add(index);
+    for (const Pair& pair : common_.pairs) add(of_a ? pair.a : pair.b);
+    return out;
+  }
+
+  ClockFit judge() {
+    const std::int64_t base_us = in_.front().ahead_us;
+    out_.drift = drift_of(in_, base_us);
+    out_.spread_us = quantile(deviations(in_), 0.9);
+    if (out_.spread_us > static_cast<double>(options_.response_us)) {
+      return unsure("the " + count_text(in_.size()) + " that are in both lie up to " +
+                    std::to_string(std::llround(out_.spread_us / 1000)) + " ms apart");
+    }
+    const std::vector<double> same = rests(in_, 0);
+    const Bounds bounds = bounds_of(in_, true);
+    if (bounds.low && bounds.high &&
+        *bounds.low - *bounds.high > static_cast<double>(options_.skew_us)) {
+      return unsure("some of the frames that are in both would stand before their causes");
+    }
+    double rest = 0;
+    if (!same.empty()) {
+      rest = median(same);
+    } else if (bounds.low && bounds.high) {
+      rest = (*bounds.low + *bounds.high) / 2;
+    } else {
+      rest = bounds.high ? *bounds.high : *bounds.low;
+    }
+    out_.clocks = Clocks::kDiffer;
+    out_.offset_us = base_us + std::llround(rest);
+    out_.at_us = in_.front().at_us;
+    out_.frames = in_.size();
+    return out_;
+  }
+
+  const Run& run_;
+  const CommonFrames& common_;
+  const AlignOptions& options_;
+  Points points_;
+  Points in_;
+  ClockFit out_;
+};
+
+}  // namespace
+
+std::int64_t ClockFit::moved(std::int64_t time_us) const {
+  const double since = static_cast<double>(time_us - at_us);
+  return time_us - offset_us - std::llround(drift * since);
+}
+
+ClockFit fit_clock(const Run& run, const CommonFrames& common, const AlignOptions& options) {
+  return Fit(run, common, options).fit();
+}
+
+}  // namespace rubric::oracle

@@ -1,0 +1,36 @@
+// How far the clock of one capture is ahead of that of another, by the frames that both have.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "conformance/oracle/align.h"
+#include "conformance/oracle/align_frames.h"
+
+namespace rubric::oracle {
+
+/// What came of it.
+enum class Clocks : std::uint8_t {
+  kAgree,   ///< As far as the frames tell they are one clock, or good for the rules as they are.
+  kDiffer,  ///< By offset and drift.
+  kUnsure,  ///< The frames do not say; `why` says why.
+};
+
+struct ClockFit {
+  Clocks clocks = Clocks::kUnsure;
+  std::string why;            ///< kUnsure: the second half of a sentence.
+  std::int64_t offset_us = 0; ///< The second file's clock minus the first's, at `at_us`.
+  double drift = 0;           ///< Grows by this in a second, in seconds.
+  std::int64_t at_us = 0;     ///< On the second file's clock.
+  std::size_t frames = 0;     ///< Pairs that agree.
+  double spread_us = 0;       ///< Nine tenths of them are that close to the middle one.
+
+  /// A stamp of the second file on the first one's clock.
+  std::int64_t moved(std::int64_t time_us) const;
+};
+
+/// Fits the clock of the file of `b` to that of the file of `a`. Both have stamps.
+ClockFit fit_clock(const Run& run, const CommonFrames& common, const AlignOptions& options);
+
+}  // namespace rubric::oracle
