@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "conformance/machine/profile.h"
+#include "conformance/oracle/align.h"
 #include "conformance/oracle/message.h"
 
 namespace rubric::oracle {
