@@ -318,7 +318,7 @@ class Encoder {
                    Limit limit) {
     bool given = false;
     std::optional<EncodeError> error;
-    bool error_is_chosen = false;
+    int error_rank = 0;
     for (int k = 0; k < type.interpretation_count; ++k) {
       const Interpretation& candidate = type.interpretations[k];
       const Field& f = candidate.field;
@@ -341,8 +341,10 @@ class Encoder {
           path_.resize(before.path);
           if (chosen) return true;
         } catch (const EncodeError& e) {
-          if (!error || (chosen && !error_is_chosen)) error = e;
-          error_is_chosen = error_is_chosen || chosen;
+          // A key that is not given is taken to be that of whatever is tried.
+          const int rank = 2 * chosen + has_members(*tried, *value);
+          if (rank > error_rank) error = e;
+          error_rank = std::max(error_rank, rank);
         }
         back_to(before);
       }
@@ -351,6 +353,14 @@ class Encoder {
     if (error) throw *error;
     push_path(type.interpretations[0].field.name);
     fail("no message of " + std::string(type.name) + " has these fields here", type.requirement);
+  }
+
+  /// Whether every member of the object is one of the type's, if only by what it begins with.
+  static bool has_members(const Type& type, const Value& object) {
+    return std::all_of(object.keys.begin(), object.keys.end(), [&](const std::string& key) {
+      return std::any_of(type.fields, type.fields + type.field_count,
+                         [&](const Field& f) { return key.starts_with(f.name); });
+    });
   }
 
   void attempt(const Field& f, const Type& type, const Value& value, std::size_t base,

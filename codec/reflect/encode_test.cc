@@ -315,6 +315,12 @@ TEST(Encode, InterpretationByItsOwnFirstByte) {
             "body: no message of body has these fields here");
 }
 
+TEST(Encode, MistakeIsThatOfTheMessageWhoseFieldsAreGiven) {
+  EXPECT_EQ(outcome(toy::kBody, body(3, "body", object({{"y", integer(5)}}))), "030405");
+  EXPECT_EQ(outcome(toy::kBody, body(3, "body", object({{"y", integer(256)}}))),
+            "body.y: expected a number from 0 to 255, given 256");
+}
+
 TEST(Encode, OpaqueInPlaceOfInterpretation) {
   EXPECT_EQ(outcome(toy::kBody, body(3, "payload", string("0105"))), "030105");
   EXPECT_EQ(outcome(toy::kBody, object({{"kind", integer(3)}})), "03");

@@ -139,15 +139,18 @@ inline constexpr Type kArrays = type("arrays", kArrayFields);
 // body: bytes with interpretations by their own first byte.
 inline constexpr Field kBodyFields[] = {field("kind", Kind::kUint, 1, 0),
                                         to_end(field("payload", Kind::kBytes, 0, 1))};
-inline constexpr Field kOneFields[] = {field("tag", Kind::kUint, 1, 0),
+inline constexpr Field kOneFields[] = {with_expect(field("tag", Kind::kUint, 1, 0), 1),
                                        field("x", Kind::kUint, 1, 1)};
 inline constexpr Type kOne = type("one", kOneFields);
 inline constexpr Field kTwoFields[] = {field("tag", Kind::kUint, 1, 0),
                                        field("x", Kind::kUint, 2, 1)};
 inline constexpr Type kTwo = type("two", kTwoFields);
-inline constexpr SwitchCase kTagCases[] = {{1, &kOne}, {2, &kTwo}};
+inline constexpr Field kFourFields[] = {with_expect(field("tag", Kind::kUint, 1, 0), 4),
+                                        field("y", Kind::kUint, 1, 1)};
+inline constexpr Type kFour = type("four", kFourFields);
+inline constexpr SwitchCase kTagCases[] = {{1, &kOne}, {2, &kTwo}, {4, &kFour}};
 inline constexpr ExprStep kTagSteps[] = {{Op::kLoadU8, 1}};
-inline constexpr Switch kByTag = {expr(kTagSteps), kTagCases, 2, nullptr};
+inline constexpr Switch kByTag = {expr(kTagSteps), kTagCases, 3, nullptr};
 inline constexpr ExprStep kIsThreeSteps[] = {{Op::kLoadU8, 0}, {Op::kConst, 3}, {Op::kEq, 0}};
 inline constexpr Interpretation kBodyInterpretations[] = {
     {with_choice(with_condition(to_end(field("body", Kind::kStruct, 0, 1)), expr(kIsThreeSteps)),
