@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <csignal>
 
+#include "tools/chart.h"
 #include "tools/check.h"
 #include "tools/cli/usage.h"
 #include "tools/completion.h"
@@ -13,6 +14,7 @@
 #include "tools/explain.h"
 #include "tools/explore.h"
 #include "tools/generate.h"
+#include "tools/install_wireshark.h"
 #include "tools/messages.h"
 #include "tools/new_adapter.h"
 #include "tools/repro.h"
@@ -54,6 +56,8 @@ int main(int argc, char** argv) {
   rubric::tools::add_repro(app);
   rubric::tools::add_new_adapter(app);
   rubric::tools::add_coverage(app);
+  rubric::tools::add_install_wireshark(app);
+  rubric::tools::add_chart(app);
   rubric::tools::add_completion(app);
   return rubric::cli::parse_and_run(app, argc, argv);
 }

@@ -135,6 +135,7 @@ class Run {
         if (!lost_) complain(broken.what());
         lost_ = true;
         if (!options_.reconnect) return;
+        if (on_idle_) on_idle_();
         std::this_thread::sleep_for(kReconnectEvery);
       }
     }

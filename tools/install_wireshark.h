@@ -1,0 +1,10 @@
+// rubric install-wireshark: the dissector and rubric-extcap where Wireshark finds them.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace rubric::tools {
+
+void add_install_wireshark(CLI::App& app);
+
+}  // namespace rubric::tools
