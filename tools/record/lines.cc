@@ -5,6 +5,7 @@
 
 #include <cerrno>
 #include <system_error>
+#include <utility>
 
 namespace rubric::record {
 namespace {
@@ -13,8 +14,9 @@ constexpr std::size_t kChunkBytes = 256 * 1024;
 
 }  // namespace
 
-Lines::Lines(const std::string& name)
+Lines::Lines(const std::string& name, BeforeRead before_read)
     : fd_(name == "-" ? 0 : ::open(name.c_str(), O_RDONLY | O_CLOEXEC)),
+      before_read_(std::move(before_read)),
       chunk_(std::make_unique_for_overwrite<char[]>(kChunkBytes)) {
   if (fd_ < 0) throw std::system_error(errno, std::generic_category());
 }
@@ -25,6 +27,7 @@ Lines::~Lines() {
 
 bool Lines::fill() {
   while (true) {
+    if (before_read_ && !before_read_(fd_)) return false;
     const ssize_t got = ::read(fd_, chunk_.get(), kChunkBytes);
     if (got >= 0) {
       rest_ = {chunk_.get(), static_cast<std::size_t>(got)};

@@ -1,6 +1,8 @@
 // Lines of a file or of stdin, one at a time, in bounded memory.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -12,8 +14,12 @@ class Lines {
   /// More than any frame's line; what is longer is no line of ours.
   static constexpr std::size_t kMaxBytes = 16 * 1024 * 1024;
 
+  /// Called before each read from the file, which may wait: for work to be done meanwhile. False:
+  /// nothing more is read, as if the file ended.
+  using BeforeRead = std::function<bool(int fd)>;
+
   /// Opens a file, "-" is stdin. Throws std::system_error.
-  explicit Lines(const std::string& name);
+  explicit Lines(const std::string& name, BeforeRead before_read = {});
   ~Lines();
   Lines(const Lines&) = delete;
   Lines& operator=(const Lines&) = delete;
@@ -31,6 +37,7 @@ class Lines {
   bool fill();
 
   int fd_;
+  BeforeRead before_read_;
   std::unique_ptr<char[]> chunk_;
   std::string_view rest_;  // Of the chunk.
   std::string line_;       // A line that spans chunks.
