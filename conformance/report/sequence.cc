@@ -121,6 +121,7 @@ class Drawing {
       }
     }
     if (!labelled) cells += "  " + row.label;
+    if (!row.note.empty()) cells += "  [" + row.note + "]";
     if (row.marked) cells += "  <<<";
     return cells;
   }

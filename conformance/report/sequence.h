@@ -1,7 +1,8 @@
-// Sequence charts in text.
+// Sequence charts: who sends what to whom, as text (here) and as a picture (sequence_svg.h).
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <string>
 #include <vector>
@@ -20,12 +21,24 @@ struct SequenceRow {
   std::vector<std::size_t> to;     ///< Columns.
   bool sent = false;               ///< Somebody may take it, though no column does.
   bool marked = false;             ///< "<<<" stands behind it, and its arrow is doubled.
+  std::string note;                ///< Stands behind the row: "ignored: J4-SEQ".
+
+  // For pictures.
+  enum class Way : std::uint8_t { kRadio, kSerial, kPeis, kCall, kState };
+  Way way = Way::kRadio;           ///< kCall: between a node and its application.
+  std::string detail;              ///< The label with what matters of the message.
+  std::string full;                ///< All of it.
+  std::vector<std::size_t> missed; ///< Columns that it was for and that never got it.
+  bool stimulus = false;           ///< Given from outside, by nobody that is drawn.
+  bool ignored = false;
+  std::vector<std::size_t> lines;  ///< Of the log, that this row stands for.
 };
 
 /// One column a node, one row an event. `|` is a node's time line, `*` what goes to nobody known,
 /// or comes from nobody known.
 struct Sequence {
   std::vector<std::string> columns;
+  std::vector<std::string> about;  ///< For pictures: a few words on each column, or empty.
   std::string number_title = "frame";
   std::vector<SequenceRow> rows;
 };

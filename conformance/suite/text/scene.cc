@@ -9,6 +9,7 @@
 
 #include "conformance/report/sequence.h"
 #include "conformance/report/text.h"
+#include "conformance/suite/report/chart.h"
 #include "conformance/suite/report/log_lines.h"
 #include "conformance/trace/print.h"
 #include "conformance/trace/value_text.h"
@@ -16,7 +17,6 @@
 namespace rubric::suite {
 namespace {
 
-using report::kNoColumn;
 using trace::Line;
 using trace::Op;
 
@@ -63,57 +63,6 @@ trace::Message with_short_paths(trace::Message message) {
   }
   return message;
 }
-
-// The nodes of a case as columns, and among whom a line passes.
-class Stage {
- public:
-  explicit Stage(const CaseRun& one) : nodes_(one.nodes) {
-    const auto tested = std::count_if(nodes_.begin(), nodes_.end(),
-                                      [](const trace::NodeHeader& node) { return node.iut; });
-    app_ = tested == 1;
-    if (app_) names_.emplace_back("app");
-    for (const bool under_test : {true, false}) {  // The others beside whom they talk to.
-      for (const trace::NodeHeader& node : nodes_) {
-        if (node.iut == under_test) names_.push_back(node.name);
-      }
-    }
-  }
-
-  const std::vector<std::string>& names() const { return names_; }
-
-  std::size_t column(std::string_view name) const {
-    const auto found = std::find(names_.begin(), names_.end(), name);
-    return found == names_.end() ? kNoColumn : static_cast<std::size_t>(found - names_.begin());
-  }
-
-  report::SequenceRow row(const Line& line) const {
-    report::SequenceRow row;
-    row.label = short_text(line.message);
-    const std::size_t node = column(line.node);
-    const bool given = line.op == Op::kGiven;
-    const bool frame = line.am.has_value();
-    std::vector<std::size_t> peers;
-    if (frame) {
-      for (const std::size_t i : peers_of(nodes_, line)) peers.push_back(column(nodes_[i].name));
-    } else if (app_ && line.link == "app") {
-      peers = {0};
-    }
-    if (!given) {
-      row.from = node;
-      row.to = peers;
-      row.sent = frame;
-    } else {
-      if (peers.size() == 1) row.from = peers.front();
-      row.to = {node};
-    }
-    return row;
-  }
-
- private:
-  const std::vector<trace::NodeHeader>& nodes_;
-  std::vector<std::string> names_;
-  bool app_ = false;
-};
 
 std::string window_text(const runner::Failure& failure) {
   return failure.from == failure.to ? fmt::format("@{}", failure.from)

@@ -1,0 +1,384 @@
+#include "conformance/suite/report/chart.h"
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "conformance/report/text.h"
+#include "conformance/runner/subject_target.h"
+#include "conformance/suite/report/log_lines.h"
+#include "conformance/trace/print.h"
+#include "conformance/trace/value_text.h"
+
+namespace rubric::suite {
+namespace {
+
+using machine::Action;
+using report::kNoColumn;
+using report::SequenceRow;
+using trace::Line;
+using trace::Op;
+using trace::Value;
+
+constexpr std::size_t kDetailMax = 46;
+
+// The machine, with what it made of each stimulus.
+class Watched : public runner::SubjectTarget {
+ public:
+  explicit Watched(std::vector<Heed>& heeds)
+      : SubjectTarget(std::make_unique<runner::Machine>()), heeds_(heeds) {}
+
+  void give(runner::Ticks now, const machine::Event& event) override {
+    while (run_until(now) < now) {  // What comes of the time before is not of this.
+    }
+    const std::size_t before = labels().size();
+    SubjectTarget::give(now, event);
+    Heed heed;
+    bool acted = false;
+    for (std::size_t i = before; i < labels().size(); ++i) {
+      const Action& action = labels()[i];
+      if (action.what == Action::What::kIgnored) {
+        heed.is_ignored = true;
+        heed.ignored.push_back(action.requirement);
+      } else if (action.what == Action::What::kFollowed) {
+        acted = true;
+        heed.followed.push_back(action.requirement);
+      } else {
+        acted = true;
+      }
+    }
+    heed.is_ignored = heed.is_ignored && !acted;
+    heeds_.push_back(std::move(heed));
+  }
+
+ private:
+  std::vector<Heed>& heeds_;
+};
+
+std::string tail_of(const std::string& path) { return path.substr(path.rfind('.') + 1); }
+
+std::string text_at(const trace::Message& message, std::string_view path) {
+  const Value* value = message.find(path);
+  return value == nullptr ? std::string() : trace::value_text(*value);
+}
+
+std::string cut(std::string text, std::size_t length_max) {
+  if (text.size() > length_max) {
+    text.resize(length_max - 3);
+    while (!text.empty() && (static_cast<unsigned char>(text.back()) & 0xC0) == 0x80) {
+      text.pop_back();
+    }
+    text += "...";
+  }
+  return text;
+}
+
+std::string net_msg_text(const trace::Message& message) {
+  const std::string ends = text_at(message, "src") + "->" + text_at(message, "dest");
+  if (text_at(message, "payload.trans_id") == "rubicon_ack") {
+    return fmt::format("{} {}", short_text(message), ends);
+  }
+  const std::string app = text_at(message, "payload.app_id");
+  const bool reliable = text_at(message, "reliable") == "1";
+  return fmt::format("net_msg {}{} seq {}{}", ends, app.empty() ? "" : " " + app,
+                     text_at(message, "seq_num"), reliable ? " reliable" : "");
+}
+
+// "joined(11:5 success)": names and addresses stand for themselves.
+std::string fields_text(const trace::Message& message) {
+  std::string out;
+  for (const trace::FieldValue& field : message.fields) {
+    const Value::Kind kind = field.value.kind;
+    const bool plain = kind == Value::Kind::kNames || kind == Value::Kind::kAddress ||
+                       kind == Value::Kind::kChannel || kind == Value::Kind::kText;
+    if (!out.empty()) out += ' ';
+    if (!plain) out += tail_of(field.path) + "=";
+    out += trace::value_text(field.value);
+  }
+  return message.name + (out.empty() ? "" : "(" + out + ")");
+}
+
+SequenceRow::Way way_of(const Line& line, const CaseRun& one) {
+  using Way = SequenceRow::Way;
+  trace::Scope scope;
+  scope.nodes = one.nodes;
+  scope.links = one.links;
+  if (!line.am) return line.link == "app" && line.message.name != "busy" &&
+                               line.message.name != "idle" ? Way::kCall : Way::kState;
+  switch (scope.link(line.link).value_or(trace::LinkKind::kAny)) {
+    case trace::LinkKind::kSerial: return Way::kSerial;
+    case trace::LinkKind::kPeis: return Way::kPeis;
+    default: return Way::kRadio;
+  }
+}
+
+std::string full_text(const Line& line) {
+  Line copy = line;
+  copy.bytes.reset();
+  std::string out;
+  trace::put_line(copy, out);
+  const std::size_t begin = out.find_first_not_of(' ');
+  return begin == out.npos ? out : out.substr(begin);
+}
+
+std::string rules_text(const std::vector<ReqId>& rules) {
+  std::string out;
+  for (const ReqId rule : rules) {
+    if (rule == ReqId::kNone) continue;
+    out += (out.empty() ? "" : ", ") + std::string(trace::requirement_text(rule));
+  }
+  return out;
+}
+
+void add_note(std::string& note, const std::string& more) {
+  if (more.empty()) return;
+  note += (note.empty() ? "" : ", ") + more;
+}
+
+/// Makes the rows of a log, in its order.
+class Chart {
+ public:
+  Chart(const CaseRun& one, const Heeds& heeds)
+      : one_(one), heeds_(heeds), stage_(one), lines_(one.result.log.lines()) {}
+
+  report::Sequence take() {
+    const std::vector<std::size_t> before = first_seen(lines_);
+    find_heeds();
+    find_links();
+    rows_of_.assign(lines_.size(), kNoLine);
+    for (std::size_t i = 0; i < lines_.size(); ++i) {
+      if (before[i] == kNoLine) {
+        add(i);
+      } else {
+        heard(i, rows_of_[before[i]]);
+      }
+    }
+    for (std::size_t i = 0; i < rows_.size(); ++i) complete(i);
+    report::Sequence out;
+    out.columns = stage_.names();
+    out.about = stage_.about();
+    out.number_title = "tick";
+    out.rows = std::move(rows_);
+    drop_idle_columns(out);
+    return out;
+  }
+
+ private:
+  void find_heeds() {
+    std::map<std::string, std::size_t, std::less<>> next;
+    heed_of_.assign(lines_.size(), nullptr);
+    for (std::size_t i = 0; i < lines_.size(); ++i) {
+      if (lines_[i]->op != Op::kGiven) continue;
+      const auto found = heeds_.find(lines_[i]->node);
+      if (found == heeds_.end()) continue;
+      const std::size_t at = next[lines_[i]->node]++;
+      if (at < found->second.size()) heed_of_[i] = &found->second[at];
+    }
+  }
+
+  // Which nodes under test speak on a link at all.
+  void find_links() {
+    for (const Line* line : lines_) {
+      if (line->am) on_link_[line->link].insert(stage_.column(line->node));
+    }
+  }
+
+  void add(std::size_t i) {
+    const Line& line = *lines_[i];
+    SequenceRow row = stage_.row(line);
+    row.number = std::to_string(line.time.from);
+    row.detail = key_text(line.message, kDetailMax);
+    row.full = full_text(line);
+    row.way = way_of(line, one_);
+    row.lines = {i};
+    row.stimulus = line.op == Op::kGiven;
+    for (const std::string& rule : line.requirements) add_note(row.note, rule);
+    rows_of_[i] = rows_.size();
+    rows_.push_back(std::move(row));
+    takers_.emplace_back();
+    if (line.op == Op::kGiven) {
+      takers_.back().push_back(i);
+    } else if (line.am) {
+      split_hearers(rows_.back());
+    }
+  }
+
+  // Nodes under test hear what they are given, and nothing else.
+  void split_hearers(SequenceRow& row) const {
+    const Line& line = *lines_[row.lines.front()];
+    std::vector<std::size_t> stay;
+    for (const std::size_t column : row.to) {
+      const bool tested = std::any_of(one_.nodes.begin(), one_.nodes.end(), [&](const auto& node) {
+        return node.iut && stage_.column(node.name) == column;
+      });
+      const auto on_link = on_link_.find(line.link);
+      if (!tested) {
+        stay.push_back(column);
+      } else if (on_link != on_link_.end() && on_link->second.contains(column)) {
+        row.missed.push_back(column);
+      }
+    }
+    row.to = std::move(stay);
+  }
+
+  void heard(std::size_t i, std::size_t at) {
+    SequenceRow& row = rows_[at];
+    const std::size_t column = stage_.column(lines_[i]->node);
+    row.lines.push_back(i);
+    std::erase(row.missed, column);
+    if (std::find(row.to.begin(), row.to.end(), column) == row.to.end()) row.to.push_back(column);
+    rows_of_[i] = at;
+    takers_[at].push_back(i);
+  }
+
+  // What those who got it made of it.
+  void complete(std::size_t at) {
+    SequenceRow& row = rows_[at];
+    std::size_t ignored = 0;
+    for (const std::size_t i : takers_[at]) {
+      const Heed* heed = heed_of_[i];
+      if (heed == nullptr) continue;
+      add_note(row.note, rules_text(heed->followed));
+      if (heed->ignored.empty()) continue;
+      if (heed->is_ignored) ++ignored;
+      const std::string rules = rules_text(heed->ignored);
+      const std::string who = row.to.size() > 1 ? " by " + lines_[i]->node : "";
+      add_note(row.note, "ignored" + who + (rules.empty() ? "" : ": " + rules));
+    }
+    row.ignored = ignored != 0 && ignored == takers_[at].size();
+    for (const std::size_t column : row.missed) {
+      add_note(row.note, "not heard by " + stage_.names()[column]);
+    }
+  }
+
+  static void drop_idle_columns(report::Sequence& sequence) {
+    std::set<std::size_t> used;
+    for (const SequenceRow& row : sequence.rows) {
+      used.insert(row.from);
+      used.insert(row.to.begin(), row.to.end());
+      used.insert(row.missed.begin(), row.missed.end());
+    }
+    std::vector<std::size_t> place(sequence.columns.size(), kNoColumn);
+    std::vector<std::string> names;
+    std::vector<std::string> about;
+    for (std::size_t c = 0; c < sequence.columns.size(); ++c) {
+      if (!used.contains(c)) continue;
+      place[c] = names.size();
+      names.push_back(sequence.columns[c]);
+      about.push_back(sequence.about[c]);
+    }
+    for (SequenceRow& row : sequence.rows) {
+      if (row.from != kNoColumn) row.from = place[row.from];
+      for (std::size_t& c : row.to) c = place[c];
+      for (std::size_t& c : row.missed) c = place[c];
+    }
+    sequence.columns = std::move(names);
+    sequence.about = std::move(about);
+  }
+
+  const CaseRun& one_;
+  const Heeds& heeds_;
+  const Stage stage_;
+  const std::vector<const Line*> lines_;
+  std::vector<const Heed*> heed_of_;
+  std::map<std::string, std::set<std::size_t>, std::less<>> on_link_;
+  std::vector<std::size_t> rows_of_;
+  std::vector<SequenceRow> rows_;
+  std::vector<std::vector<std::size_t>> takers_;  // Of each row: lines that were given.
+};
+
+}  // namespace
+
+MachineRun run_on_machine(const SuiteCase& one) {
+  MachineRun out;
+  out.run = one.blank;
+  out.run.result = runner::run_case(
+      one.file->file, *one.one,
+      [&](const trace::NodeHeader& node) -> std::unique_ptr<runner::Target> {
+        return std::make_unique<Watched>(out.heeds[node.name]);
+      });
+  return out;
+}
+
+Stage::Stage(const CaseRun& one) : nodes_(one.nodes) {
+  const auto tested = std::count_if(nodes_.begin(), nodes_.end(),
+                                    [](const trace::NodeHeader& node) { return node.iut; });
+  app_ = tested == 1;
+  if (app_) names_.emplace_back("app");
+  for (const bool under_test : {true, false}) {  // The others beside whom they talk to.
+    for (const trace::NodeHeader& node : nodes_) {
+      if (node.iut == under_test) names_.push_back(node.name);
+    }
+  }
+}
+
+std::size_t Stage::column(std::string_view name) const {
+  const auto found = std::find(names_.begin(), names_.end(), name);
+  return found == names_.end() ? kNoColumn : static_cast<std::size_t>(found - names_.begin());
+}
+
+SequenceRow Stage::row(const Line& line) const {
+  SequenceRow row;
+  row.label = short_text(line.message);
+  const std::size_t node = column(line.node);
+  const bool given = line.op == Op::kGiven;
+  const bool frame = line.am.has_value();
+  std::vector<std::size_t> peers;
+  if (frame) {
+    for (const std::size_t i : peers_of(nodes_, line)) peers.push_back(column(nodes_[i].name));
+  } else if (app_ && line.link == "app") {
+    peers = {0};
+  }
+  if (!given) {
+    row.from = node;
+    row.to = peers;
+    row.sent = frame;
+  } else {
+    if (peers.size() == 1) row.from = peers.front();
+    row.to = {node};
+  }
+  return row;
+}
+
+std::vector<std::string> Stage::about() const {
+  std::vector<std::string> out;
+  for (const std::string& name : names_) {
+    std::string words;
+    for (const trace::NodeHeader& node : nodes_) {
+      if (node.name != name) continue;
+      words = trace::role_text(node.role);
+      std::replace(words.begin(), words.end(), '_', ' ');
+      if (node.island) words += fmt::format(" {}", *node.island);
+      if (node.id) words += fmt::format("{}{}", node.island ? ":" : " ", *node.id);
+    }
+    out.push_back(std::move(words));
+  }
+  return out;
+}
+
+std::string key_text(const trace::Message& message, std::size_t length_max) {
+  const std::string& name = message.name;
+  const std::string seq = text_at(message, "seq_num");
+  std::string out;
+  if (name == "join_request" && !seq.empty()) {
+    out = fmt::format("{} seq {}", name, seq);
+  } else if (name == "join_reply" && !seq.empty()) {
+    out = fmt::format("{} {}:{} seq {}", name, text_at(message, "island_addr"),
+                      text_at(message, "mote_addr"), seq);
+  } else if (name == "ack_join" && !seq.empty()) {
+    out = fmt::format("{} {}->{} seq {}", name, text_at(message, "src"), text_at(message, "dest"),
+                      seq);
+  } else if (name == "net_msg" && !seq.empty()) {
+    out = net_msg_text(message);
+  } else {
+    out = fields_text(message);
+  }
+  return cut(std::move(out), length_max);
+}
+
+report::Sequence chart(const CaseRun& one, const Heeds& heeds) { return Chart(one, heeds).take(); }
+
+}  // namespace rubric::suite
