@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "conformance/report/sequence_style.h"
 #include "conformance/report/text.h"
 
 namespace rubric::report {
@@ -25,30 +26,6 @@ constexpr double kHeadHeight = 38;
 constexpr double kMargin = 10;
 constexpr long long kPauseTicks = 100;  // A longer time is drawn as a pause.
 constexpr std::size_t kDescribedMax = 60;
-
-constexpr std::string_view kStyle =
-    "<style>"
-    "svg.rubric-chart:root{color-scheme:light dark;color:CanvasText;background:Canvas}"
-    ".rubric-chart text{font:12px ui-monospace,'DejaVu Sans Mono',Menlo,Consolas,monospace;"
-    "fill:currentColor;stroke:none}"
-    ".rubric-chart .rc-label{paint-order:stroke;stroke:var(--rubric-ground,Canvas);"
-    "stroke-width:5px;stroke-linejoin:round}"
-    ".rubric-chart .rc-name{font-weight:700;text-anchor:middle}"
-    ".rubric-chart .rc-about{font-size:10.5px;text-anchor:middle;opacity:.75}"
-    ".rubric-chart .rc-time{font-size:11px;text-anchor:end;opacity:.75}"
-    ".rubric-chart .rc-note{font-size:11px;opacity:.85}"
-    ".rubric-chart .rc-middle{text-anchor:middle}"
-    ".rubric-chart .rc-head{fill:none;stroke:currentColor}"
-    ".rubric-chart .rc-life{stroke:currentColor;opacity:.4}"
-    ".rubric-chart .rc-pause{stroke:currentColor;opacity:.4;stroke-dasharray:2 4}"
-    ".rubric-chart .rc-line{stroke:currentColor;stroke-width:1.6;fill:none}"
-    ".rubric-chart .rc-tip{stroke:currentColor;fill:currentColor}"
-    ".rubric-chart .rc-open{stroke:currentColor;fill:var(--rubric-ground,Canvas)}"
-    ".rubric-chart .rc-serial{stroke-dasharray:9 4}"
-    ".rubric-chart .rc-peis{stroke-dasharray:2.5 3.5}"
-    ".rubric-chart .rc-call{stroke-width:1}"
-    ".rubric-chart .rc-lost{stroke:var(--rubric-lost,#d33a2c);stroke-width:2;fill:none}"
-    "</style>";
 
 double length_of(std::string_view text, double character) {
   std::size_t letters = 0;
@@ -110,9 +87,9 @@ class Picture {
       const SequenceRow& row = sequence_.rows[i];
       const long long time = number_of(row.number);
       if (i > 0 && time - before > kPauseTicks) {
-        lives(from, y, "rc-life");
-        lives(y, y + kPause, "rc-pause");
-        from = y + kPause;
+        lives(from, y + 5, "rc-life");
+        lives(y + 5, y + 5 + kPause, "rc-pause");
+        from = y + 5 + kPause;
         y += kPause;
       }
       y += span_of(row).single() ? kRowStub : kRowArrow;
@@ -203,7 +180,7 @@ class Picture {
         "height=\"{2:.0f}\">\n<title id=\"{0}-title\">{3}</title>\n<desc id=\"{0}-desc\">{4}"
         "</desc>\n",
         xml_text(words_.id), width_, height, xml_text(words_.title), xml_text(description()));
-    return out.append(kStyle) + '\n';
+    return out.append(kSequenceStyle) + '\n';
   }
 
   std::string name_of(std::size_t column) const { return sequence_.columns[column]; }
@@ -336,6 +313,7 @@ class Picture {
   }
 
   void draw_arrows(const SequenceRow& row, const Span& span, double y, std::string& out) const {
+    out += label((x_[span.first] + x_[span.last]) / 2, y - 6, row.detail, " rc-middle");
     const std::size_t from = row.from == kNoColumn ? span.first : row.from;
     for (const bool right : {false, true}) {
       double far = x_[from];
@@ -354,7 +332,6 @@ class Picture {
              fmt::format("<path class=\"rc-lost\" d=\"M{:.1f} {:.1f}l10 10m0 -10l-10 10\"/>",
                          end - 5, y - 5);
     }
-    out += label((x_[span.first] + x_[span.last]) / 2, y - 6, row.detail, " rc-middle");
   }
 
   // How the lines of a picture that has several kinds of them are to be read; its height.

@@ -21,6 +21,6 @@ struct SvgWords {
 std::string sequence_svg(const Sequence& sequence, const SvgWords& words);
 
 /// The most characters that a label should have.
-inline constexpr std::size_t kSvgLabelMax = 46;
+inline constexpr std::size_t kSvgLabelMax = 52;
 
 }  // namespace rubric::report

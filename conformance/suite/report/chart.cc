@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "conformance/report/text.h"
+#include "conformance/report/sequence_svg.h"
 #include "conformance/runner/subject_target.h"
 #include "conformance/suite/report/log_lines.h"
 #include "conformance/trace/print.h"
@@ -22,8 +22,6 @@ using report::SequenceRow;
 using trace::Line;
 using trace::Op;
 using trace::Value;
-
-constexpr std::size_t kDetailMax = 46;
 
 // The machine, with what it made of each stimulus.
 class Watched : public runner::SubjectTarget {
@@ -82,9 +80,10 @@ std::string net_msg_text(const trace::Message& message) {
     return fmt::format("{} {}", short_text(message), ends);
   }
   const std::string app = text_at(message, "payload.app_id");
-  const bool reliable = text_at(message, "reliable") == "1";
-  return fmt::format("net_msg {}{} seq {}{}", ends, app.empty() ? "" : " " + app,
-                     text_at(message, "seq_num"), reliable ? " reliable" : "");
+  const std::string seq = text_at(message, "seq_num");
+  return fmt::format("net_msg {}{}{}{}", ends, seq == "0" ? "" : " seq " + seq,
+                     text_at(message, "reliable") == "1" ? " reliable" : "",
+                     app.empty() ? "" : " " + app);
 }
 
 // "joined(11:5 success)": names and addresses stand for themselves.
@@ -190,7 +189,7 @@ class Chart {
     const Line& line = *lines_[i];
     SequenceRow row = stage_.row(line);
     row.number = std::to_string(line.time.from);
-    row.detail = key_text(line.message, kDetailMax);
+    row.detail = key_text(line.message, report::kSvgLabelMax);
     row.full = full_text(line);
     row.way = way_of(line, one_);
     row.lines = {i};
