@@ -1,0 +1,83 @@
+"""What in the book has a name, the anchor of each, and the links that text gets by itself."""
+
+import re
+
+from book.html import code, escape, link
+
+_RULE = re.compile(r"\b[A-Z][A-Z0-9]*(?:-[A-Z0-9]+)+\b")
+_DECISION = re.compile(r"\bdecisions? (\d{3})\b")
+_TICKED = re.compile(r"`([^`]+)`")
+
+
+class Names:
+    """Anchors by kind and name. Of types and enums that share a name, the first in order of specs
+    has it as its anchor; the others have theirs with the spec before it."""
+
+    KINDS = ("layout", "mask", "enum", "rules", "case")
+
+    def __init__(self, project):
+        self.project = project
+        self.anchors = {kind: {} for kind in self.KINDS}
+        taken = set()
+        types = {name: "mask" if "bits" in one else "layout"
+                 for name, one in project.types.items()}
+        for name, kind in [*types.items(), *((name, "enum") for name in project.enums)]:
+            short = name.split("::")[1]
+            anchor = short if short not in taken else name.replace("::", "-")
+            taken.add(anchor)
+            self.anchors[kind][name] = anchor
+        self.anchors["rules"] = {name: name for name in project.rules}
+        self.anchors["case"] = {name: name for name in project.cases}
+        self._by_text = self._texts()
+
+    def find(self, kind, name):
+        """The full name behind a short or full one; none if there is no such thing."""
+        known = self.anchors[kind]
+        if name in known:
+            return name
+        return next((one for one in known if one.split("::")[-1] == name), None)
+
+    def _texts(self):
+        """What inline code must be to become a link. A word alone may mean anything else."""
+        out = {}
+        for kind in self.KINDS:
+            for name, anchor in self.anchors[kind].items():
+                short = name.split("::")[-1]
+                if kind in ("rules", "case") or "_" in short:
+                    out.setdefault(short, anchor)
+                if "::" in name:
+                    out[name] = anchor
+        return out
+
+    def anchor_of_code(self, text):
+        return self._by_text.get(text)
+
+    def type_link(self, full):
+        kind = "mask" if full in self.anchors["mask"] else "layout"
+        return link(self.anchors[kind][full], code(full.split("::")[1]))
+
+    def enum_link(self, full):
+        return link(self.anchors["enum"][full], code(full.split("::")[1]))
+
+    def rule_link(self, rule):
+        return link(rule, escape(rule)) if rule in self.anchors["rules"] else escape(rule)
+
+    def rich(self, text):
+        """Plain text as HTML, in which rules, decisions and what stands between backticks are what
+        they are in a chapter."""
+        out = []
+        for i, part in enumerate(_TICKED.split(text)):
+            if i % 2 == 1:
+                anchor = self.anchor_of_code(part)
+                out.append(link(anchor, code(part)) if anchor else code(part))
+                continue
+            part = escape(part)
+            part = _RULE.sub(lambda found: self.rule_link(found[0]), part)
+            out.append(_DECISION.sub(self._decision, part))
+        return "".join(out)
+
+    def _decision(self, found):
+        number = int(found[1])
+        if number not in self.project.decisions:
+            return found[0]
+        return link(f"decision-{number}", found[0])
