@@ -134,6 +134,10 @@ std::size_t ByteStream::read(MutableBytes out, SteadyTime deadline) {
   }
 }
 
+void ByteStream::end_output() {
+  if (is_open()) ::shutdown(descriptor_.get(), SHUT_WR);
+}
+
 HostPort read_host_port(std::string_view text) {
   HostPort out;
   const std::size_t colon = text.rfind(':');

@@ -42,6 +42,8 @@ class ByteStream {
   void close() { descriptor_.close(); }
   /// For those who wait for several at once. -1: it is not open.
   int fd() const { return descriptor_.get(); }
+  /// Tells the other end of a connection that nothing more comes from here. Of a device: nothing.
+  void end_output();
 
  private:
   Descriptor descriptor_;
