@@ -1,0 +1,132 @@
+#include "tools/forward.h"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <cstdlib>
+#include <memory>
+#include <string>
+#include <system_error>
+
+#include "conformance/runner/target.h"
+#include "tools/cli/exit_codes.h"
+#include "tools/cli/input.h"
+#include "tools/live/forward/server.h"
+#include "tools/live/line.h"
+
+namespace rubric::tools {
+namespace {
+
+struct ForwardOptions {
+  std::string source;
+  std::uint64_t buffer_kib = 1024;
+  std::uint32_t timeout_s = 10;
+  std::uint32_t ack_wait_ms = 1000;
+  forward::Options server;
+};
+
+live::Address source_of(const std::string& given) {
+  std::string name = given;
+  if (name.empty() && std::getenv("MOTECOM") != nullptr) name = live::default_address();
+  if (name.empty()) throw CLI::RequiredError("SOURCE (or $MOTECOM)");
+  try {
+    if (const auto address = live::parse_address(name)) return *address;
+  } catch (const std::invalid_argument& error) {
+    throw CLI::ValidationError("SOURCE", error.what());
+  }
+  throw CLI::ValidationError(
+      "SOURCE", fmt::format("'{}': expected serial@DEVICE:BAUD, network@HOST:PORT or sf@HOST:PORT",
+                            name));
+}
+
+void print_summary(const std::string& source, const forward::Counts& counts) {
+  fmt::print(stderr, "rubric: {}: {} packets from it ({} malformed frames), {} to it", source,
+             counts.from_source, counts.malformed, counts.to_source);
+  if (counts.unconfirmed) fmt::print(stderr, ", {} not confirmed", counts.unconfirmed);
+  if (counts.not_sent) fmt::print(stderr, ", {} not sent", counts.not_sent);
+  fmt::print(stderr, "; {} clients, {} cut off", counts.served, counts.cut_off);
+  if (counts.refused) fmt::print(stderr, ", {} refused", counts.refused);
+  fmt::print(stderr, "\n");
+}
+
+int run(ForwardOptions& options) {
+  options.server.source.address = source_of(options.source);
+  options.server.source.link.ack_wait = attach::Milliseconds(options.ack_wait_ms);
+  options.server.backlog_bytes = options.buffer_kib * 1024;
+  options.server.limits.patience = std::chrono::seconds(options.timeout_s);
+  try {
+    forward::Server server(options.server);
+    const bool whole = server.run();
+    print_summary(options.server.source.address.name, server.counts());
+    return whole ? cli::kExitClean : cli::kExitInput;
+  } catch (const runner::TargetBroken& broken) {
+    fmt::print(stderr, "rubric: {}\n", broken.what());
+  } catch (const std::system_error& error) {
+    fmt::print(stderr, "rubric: {}\n", error.what());
+  }
+  return cli::kExitInput;
+}
+
+void add_client_options(CLI::App& command, ForwardOptions& options) {
+  command.add_option("--clients", options.server.clients_max, "So many at once, others are refused")
+      ->check(CLI::Range(1, 10'000))
+      ->capture_default_str();
+  command.add_option("--buffer", options.buffer_kib,
+                     "KiB that a client may be behind before it is cut off; of all clients together")
+      ->check(CLI::Range(64, 1 << 20))
+      ->capture_default_str();
+  command.add_option("--timeout", options.timeout_s,
+                     "Seconds that a client may take for its handshake, and to end a packet")
+      ->check(CLI::Range(1, 86'400))
+      ->capture_default_str();
+}
+
+void add_source_options(CLI::App& command, ForwardOptions& options) {
+  command.add_flag("--reconnect", options.server.reconnect,
+                   "Open a source that is gone again, when it is back; clients stay");
+  command.add_flag("--listen-only", options.server.source.link.listen_only,
+                   "Write nothing to a serial line; packets of clients are dropped");
+  command.add_option("--ack-wait", options.ack_wait_ms,
+                     "Milliseconds until a packet that the mote does not confirm is sent again")
+      ->check(CLI::Range(1, 3'600'000))
+      ->capture_default_str();
+  command.add_option("--tries", options.server.source.link.tries,
+                     "How often a packet is sent before it is given up")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+}
+
+}  // namespace
+
+void add_forward(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
+      "forward", "Serve a mote's serial line to many clients, as TinyOS's Serial Forwarder does");
+  auto options = std::make_shared<ForwardOptions>();
+  command->add_option("SOURCE", options->source,
+                      "serial@DEVICE:BAUD (or a platform, as serial@/dev/ttyUSB0:telosb), "
+                      "network@HOST:PORT or sf@HOST:PORT; without it, $MOTECOM");
+  command->add_option("--port", options->server.port, "Where clients connect; 0: a free port")
+      ->capture_default_str();
+  command->add_option("--bind", options->server.bind,
+                      "The address to listen at; 0.0.0.0 or :: lets other hosts in")
+      ->check(cli::given())
+      ->capture_default_str();
+  add_client_options(*command, *options);
+  add_source_options(*command, *options);
+  command->add_option("--write", options->server.write,
+                      "Keep what goes by, both ways, in this pcapng file")
+      ->check(cli::given());
+  command->add_flag("--verbose", options->server.verbose, "Say which clients come and leave");
+  command->footer(
+      "The first line on stdout says where it listens: 'listening on 127.0.0.1:9002'. Everybody who\n"
+      "can connect there reads all packets and can send to the motes.\n"
+      "Examples:\n"
+      "  rubric forward serial@/dev/ttyUSB0:telosb             # until Ctrl-C\n"
+      "  rubric decode sf@localhost:9002                       # one of many clients\n"
+      "  rubric forward sf@lab:9002 --port 9003 --reconnect --write run.pcapng\n"
+      "Exit codes: 0 ended by Ctrl-C, 2 usage, 3 the source is gone, the port is taken or the capture\n"
+      "cannot be written.");
+  command->callback([options] { cli::exit_with(run(*options)); });
+}
+
+}  // namespace rubric::tools

@@ -1,0 +1,11 @@
+// rubric forward: a serial line, or a serial forwarder, for many.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace rubric::tools {
+
+/// Adds the subcommand.
+void add_forward(CLI::App& app);
+
+}  // namespace rubric::tools

@@ -1,0 +1,83 @@
+// One client of a serial forwarder.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "conformance/attach/stream.h"
+#include "tools/live/forward/backlog.h"
+
+namespace rubric::forward {
+
+/// A client owns its socket, which never blocks, and a small room for what it sends; what it gets
+/// stands in the Backlog. Where it breaks the protocol, fault() says so from then on.
+class Client {
+ public:
+  /// `packet_max`: the longest packet that the source takes, in bytes. `patience`: how long a
+  /// client may take to shake hands, and to end a packet that it has begun.
+  struct Limits {
+    std::size_t packet_max = 255;
+    attach::Milliseconds patience{10'000};
+  };
+
+  /// It gets what comes from now on. Its peer's address is its name.
+  Client(attach::Descriptor socket, std::string name, std::uint64_t offset, const Limits& limits,
+         attach::SteadyTime now);
+
+  const std::string& name() const { return name_; }
+  /// -1 when there is nobody any more; packets of it may be left.
+  int fd() const { return socket_.get(); }
+  /// What it has to be cut off for; empty: nothing.
+  const std::string& fault() const { return fault_; }
+  /// Nobody is there, and nothing of it is left.
+  bool is_over() const { return (ended_ || fd() < 0) && !packet(); }
+
+  /// What poll is to wait for. -1: for nothing.
+  int poll_fd() const { return lost_ && in_used_ == kRoom ? -1 : fd(); }
+  short events() const;
+  /// What poll found.
+  void turn(short found, const Backlog& backlog, attach::SteadyTime now);
+  /// Writes what it lacks, as far as the socket takes it. Cuts it off where the backlog has lost
+  /// what it lacks.
+  void write(const Backlog& backlog, attach::SteadyTime now);
+  /// Nobody waits for it any longer than that.
+  std::optional<attach::SteadyTime> deadline() const;
+  /// The time may be over.
+  void tick(attach::SteadyTime now);
+
+  /// The first packet that it sent; valid until the next call that is not const.
+  std::optional<Bytes> packet() const;
+  void drop_packet();
+  /// How many whole packets wait.
+  std::size_t packets_waiting() const;
+  /// Whether everything was written to it.
+  bool is_served(const Backlog& backlog) const {
+    return fd() < 0 || lost_ || offset_ == backlog.end();
+  }
+
+ private:
+  static constexpr std::size_t kRoom = 4096;
+
+  void read(attach::SteadyTime now);
+  void drop(std::size_t count);
+  void look();
+  bool is_cut_short() const { return in_used_ > 0 && !packet(); }
+
+  attach::Descriptor socket_;
+  std::string name_;
+  Limits limits_;
+  std::string fault_;
+  std::array<std::uint8_t, kRoom> in_{};
+  std::size_t in_used_ = 0;
+  attach::SteadyTime heard_;   // When it last sent something.
+  attach::SteadyTime served_;  // When it last took something.
+  std::uint64_t offset_;       // Of the first byte that it lacks.
+  bool greeted_ = false;
+  bool blocked_ = false;       // The socket takes no more for now.
+  bool ended_ = false;         // It will send no more.
+  bool lost_ = false;          // It takes no more, but there may be something to read.
+};
+
+}  // namespace rubric::forward

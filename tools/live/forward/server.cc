@@ -1,0 +1,325 @@
+#include "tools/live/forward/server.h"
+
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "conformance/runner/target.h"
+#include "tools/live/stop.h"
+
+namespace rubric::forward {
+namespace {
+
+using attach::Milliseconds;
+using runner::TargetBroken;
+using std::chrono::steady_clock;
+
+constexpr Milliseconds kReconnectEvery{1000};
+// What comes within this time goes to a client in one piece. The first packet after a pause does
+// not wait.
+constexpr Milliseconds kGather{2};
+constexpr Milliseconds kKeepEvery{200};
+constexpr Milliseconds kDrainTime{1000};
+constexpr Milliseconds kNoRoomPause{1000};
+
+Source::Options limited(Source::Options options, Milliseconds patience) {
+  options.patience = patience;
+  return options;
+}
+
+}  // namespace
+
+Server::Server(const Options& options)
+    : options_(options),
+      listener_(listen_at(options.bind, options.port)),
+      here_(address_here(listener_.get())),
+      source_(limited(options.source, options.limits.patience), handlers()),
+      backlog_(options.backlog_bytes) {
+  options_.limits.packet_max = source_.packet_max();
+  if (!options.write.empty()) capture_.emplace(options.write);
+}
+
+Source::Handlers Server::handlers() {
+  Source::Handlers out;
+  if (!options_.write.empty()) {
+    out.on_frame = [this](const Packet& frame) {
+      capture_->write(frame, source_.name());
+      if (!capture_due_) capture_due_ = steady_clock::now() + kKeepEvery;
+    };
+  }
+  out.on_packet = [this](Bytes bytes) { on_packet(bytes); };
+  out.on_malformed = [this] { ++counts_.malformed; };
+  out.on_given = [this](bool confirmed) { on_given(confirmed); };
+  return out;
+}
+
+void Server::on_packet(Bytes bytes) {
+  const auto size = static_cast<std::uint8_t>(bytes.size());
+  backlog_.append(Bytes(&size, 1));
+  backlog_.append(bytes);
+  ++counts_.from_source;
+}
+
+void Server::on_given(bool confirmed) {
+  ++(confirmed ? counts_.to_source : counts_.unconfirmed);
+  if (confirmed == !unconfirmed_) return;
+  unconfirmed_ = !confirmed;
+  fmt::print(stderr, "rubric: {}: {}\n", source_.name(),
+             confirmed ? "the mote confirms packets again"
+                       : "the mote does not confirm a packet; it is given up (said once)");
+}
+
+void Server::announce() {
+  if (announced_) return;
+  announced_ = true;
+  fmt::print("listening on {}\n", here_.text());
+  std::fflush(stdout);
+  if (here_.is_loopback()) return;
+  fmt::print(stderr,
+             "rubric: WARNING: {} can be reached from other hosts: everybody who connects there "
+             "reads all packets and can send to the motes\n", here_.text());
+}
+
+void Server::open_source(Time now) {
+  open_at_.reset();
+  try {
+    source_.open(now);
+    connected();
+  } catch (const TargetBroken& broken) {
+    lose_source(broken.what(), now);
+  }
+}
+
+void Server::turn_source(short found, Time now) {
+  const std::optional<Time> due = source_.next();
+  if (found == 0 && !(due && *due <= now)) return;
+  try {
+    const bool was_up = source_.is_up();
+    source_.turn(found, now);
+    if (!was_up) connected();
+  } catch (const TargetBroken& broken) {
+    lose_source(broken.what(), now);
+  }
+}
+
+// It was not up before.
+void Server::connected() {
+  if (source_.socket() >= 0) {
+    const SocketAddress peer = address_of_peer(source_.socket());
+    if (peer.port() == here_.port() && peer.same_host(address_here(source_.socket()))) {
+      throw TargetBroken("this is where this forwarder itself listens");
+    }
+  }
+  if (!source_.is_up()) return;
+  announce();
+  if (std::exchange(lost_, false)) fmt::print(stderr, "rubric: {}: again\n", source_.name());
+}
+
+void Server::lose_source(const std::string& why, Time now) {
+  source_.close(now);
+  if (!std::exchange(lost_, true)) fmt::print(stderr, "rubric: {}: {}\n", source_.name(), why);
+  over_ = !options_.reconnect;
+  if (over_) return;
+  announce();
+  open_at_ = now + kReconnectEvery;
+}
+
+// One packet of each client in turn, as long as the source takes them.
+void Server::give_packets(Time now) {
+  const bool mute = options_.source.link.listen_only;
+  for (std::size_t idle = 0; idle < clients_.size() && (mute || source_.takes());) {
+    Client& client = *clients_[turn_++ % clients_.size()];
+    const std::optional<Bytes> packet = client.packet();
+    if (!packet) {
+      ++idle;
+      continue;
+    }
+    idle = 0;
+    if (mute) {
+      ++counts_.not_sent;
+    } else {
+      try {
+        source_.give(*packet, now);
+      } catch (const TargetBroken& broken) {
+        lose_source(broken.what(), now);
+      }
+    }
+    client.drop_packet();
+  }
+}
+
+void Server::accept_clients(Time now) {
+  accept_at_.reset();
+  while (true) {
+    attach::Descriptor socket(
+        ::accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
+    if (socket.is_open()) {
+      admit(std::move(socket), now);
+    } else if (would_block(errno)) {
+      return;
+    } else if (errno != ECONNABORTED) {
+      if (!std::exchange(full_, true)) {
+        fmt::print(stderr, "rubric: cannot take another client: {}\n", std::strerror(errno));
+      }
+      accept_at_ = now + kNoRoomPause;
+      return;
+    }
+  }
+}
+
+void Server::admit(attach::Descriptor socket, Time now) {
+  const std::string name = address_of_peer(socket.get()).text();
+  if (clients_.size() >= options_.clients_max && !make_room()) {
+    ++counts_.refused;
+    if (!std::exchange(full_, true)) {
+      fmt::print(stderr, "rubric: client {} is refused: there are {} already (--clients)\n", name,
+                 clients_.size());
+    }
+    return;
+  }
+  ++counts_.served;
+  if (options_.verbose) fmt::print(stderr, "rubric: client {} has come\n", name);
+  clients_.push_back(
+      std::make_unique<Client>(std::move(socket), name, backlog_.end(), options_.limits, now));
+}
+
+// Those who left packets behind that the source did not take yet have to give way.
+bool Server::make_room() {
+  const auto gone = std::find_if(clients_.begin(), clients_.end(),
+                                 [](const auto& client) { return client->fd() < 0; });
+  if (gone == clients_.end()) return false;
+  counts_.not_sent += (*gone)->packets_waiting();
+  fmt::print(stderr, "rubric: client {} has left; {} packets of it are given up\n",
+             (*gone)->name(), (*gone)->packets_waiting());
+  clients_.erase(gone);
+  return true;
+}
+
+void Server::write_clients(Time now) {
+  for (const auto& client : clients_) client->write(backlog_, now);
+  written_end_ = backlog_.end();
+  written_at_ = now;
+}
+
+void Server::remove_clients() {
+  const auto done = [this](const std::unique_ptr<Client>& client) {
+    if (!client->fault().empty()) {
+      ++counts_.cut_off;
+      counts_.not_sent += client->packets_waiting();
+      fmt::print(stderr, "rubric: client {} is cut off: {}\n", client->name(), client->fault());
+      return true;
+    }
+    if (!client->is_over()) return false;
+    if (options_.verbose) fmt::print(stderr, "rubric: client {} has left\n", client->name());
+    return true;
+  };
+  if (std::erase_if(clients_, done) > 0) full_ = false;
+}
+
+// What the source said before it went is for all who take it.
+void Server::drain() {
+  const Time end = steady_clock::now() + kDrainTime;
+  while (true) {
+    write_clients(steady_clock::now());
+    remove_clients();
+    const bool served = std::all_of(clients_.begin(), clients_.end(), [this](const auto& client) {
+      return client->is_served(backlog_);
+    });
+    if (served || live::stop_requested() || steady_clock::now() >= end) return;
+    wait(end);
+    for (std::size_t i = 2; i < polled_.size(); ++i) {
+      clients_[i - 2]->turn(polled_[i].revents, backlog_, steady_clock::now());
+    }
+  }
+}
+
+bool Server::write_due(Time now) const {
+  const std::uint64_t waiting = backlog_.end() - written_end_;
+  return waiting > 0 && (now >= written_at_ + kGather || waiting > backlog_.size_bytes() / 4);
+}
+
+void Server::keep_capture(Time now) {
+  if (!capture_due_ || now < *capture_due_) return;
+  capture_->flush();
+  capture_due_.reset();
+}
+
+std::optional<Server::Time> Server::next() const {
+  std::optional<Time> out;
+  const auto at = [&out](std::optional<Time> time) {
+    if (time && (!out || *time < *out)) out = time;
+  };
+  at(open_at_);
+  at(accept_at_);
+  at(capture_due_);
+  at(source_.next());
+  if (backlog_.end() != written_end_) at(written_at_ + kGather);
+  for (const auto& client : clients_) at(client->deadline());
+  return out;
+}
+
+void Server::wait(std::optional<Time> until) {
+  polled_.clear();
+  polled_.push_back({accept_at_ ? -1 : listener_.get(), POLLIN, 0});
+  polled_.push_back(source_.wanted());
+  for (const auto& client : clients_) {
+    polled_.push_back({client->poll_fd(), client->events(), 0});
+  }
+  timespec left{};
+  if (until) {
+    const auto time = std::max(*until - steady_clock::now(), Time::duration::zero());
+    const auto whole = std::chrono::duration_cast<std::chrono::seconds>(time);
+    left = {static_cast<time_t>(whole.count()), static_cast<long>((time - whole).count())};
+  }
+  // A signal that comes just before poll must end it, too: signals come within it alone.
+  sigset_t signals;
+  sigset_t before;
+  sigemptyset(&signals);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals, signal);
+  ::sigprocmask(SIG_BLOCK, &signals, &before);
+  const bool asked = live::stop_requested();
+  if (asked || ::ppoll(polled_.data(), polled_.size(), until ? &left : nullptr, &before) <= 0) {
+    for (pollfd& one : polled_) one.revents = 0;
+  }
+  ::sigprocmask(SIG_SETMASK, &before, nullptr);
+}
+
+void Server::turn() {
+  Time now = steady_clock::now();
+  if (open_at_ && now >= *open_at_) open_source(now);
+  give_packets(now);
+  if (write_due(now)) write_clients(now);
+  remove_clients();
+  keep_capture(now);
+  if (over_) return;
+  wait(next());
+  now = steady_clock::now();
+  for (std::size_t i = 2; i < polled_.size(); ++i) {
+    Client& client = *clients_[i - 2];
+    if (polled_[i].revents != 0) client.turn(polled_[i].revents, backlog_, now);
+    client.tick(now);
+  }
+  turn_source(polled_[1].revents, now);
+  if (polled_[0].revents != 0 || (accept_at_ && now >= *accept_at_)) accept_clients(now);
+}
+
+bool Server::run() {
+  live::stop_on_signals();
+  open_at_ = steady_clock::now();
+  while (!over_ && !live::stop_requested()) turn();
+  drain();
+  const bool failed = lost_ && over_;
+  counts_.not_sent += source_.is_giving() ? 1 : 0;
+  for (const auto& client : clients_) counts_.not_sent += client->packets_waiting();
+  source_.close(steady_clock::now());
+  return (!capture_ || capture_->finish()) && !failed;
+}
+
+}  // namespace rubric::forward
