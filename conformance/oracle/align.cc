@@ -24,7 +24,10 @@ struct File {
   bool timed = false;        // Some have stamps.
   bool radio = false;
   bool serial = false;
-  bool settled = false;      // On the common clock, or left as it is.
+  bool settled = false;      // On a clock, or left as it is.
+  std::uint32_t clock = 0;   // The first file on the same one.
+  std::int64_t first_us = 0;
+  std::int64_t last_us = 0;
 };
 
 class Alignment {
@@ -39,9 +42,9 @@ class Alignment {
     if (captures < 2) return;
     sightings_ = sightings_of(run_);
     while (const std::optional<std::uint32_t> next = first_unsettled()) {
-      files_[*next].settled = true;  // The first, or one that nothing puts beside those before.
       while (settle_one()) continue;
     }
+    mark_unordered();
   }
 
  private:
@@ -51,15 +54,22 @@ class Alignment {
       if (!seen.node.empty() || !(radio || seen.kind == Observation::Kind::kSerial)) continue;
       File& file = files_[seen.place.file];
       file.frames = true;
-      file.timed = file.timed || seen.place.time_us != kNoStamp;
       (radio ? file.radio : file.serial) = true;
+      const std::int64_t time_us = seen.place.time_us;
+      if (time_us == kNoStamp) continue;
+      file.first_us = file.timed ? std::min(file.first_us, time_us) : time_us;
+      file.last_us = file.timed ? std::max(file.last_us, time_us) : time_us;
+      file.timed = true;
     }
   }
 
+  // The first, or one that nothing puts beside those before.
   std::optional<std::uint32_t> first_unsettled() {
     for (std::uint32_t i = 0; i < files_.size(); ++i) {
       if (!files_[i].timed || files_[i].settled) continue;
-      say_why_not(i);
+      files_[i].clock = i;
+      stay(i);
+      files_[i].settled = true;
       return i;
     }
     return std::nullopt;
@@ -83,6 +93,7 @@ class Alignment {
     }
     if (!best) return false;
     files_[best_b].settled = true;
+    files_[best_b].clock = files_[best_a].clock;
     if (best->clocks == Clocks::kDiffer) move(best_a, best_b, *best);
     return true;
   }
@@ -105,17 +116,39 @@ class Alignment {
     run_.facts.push_back(text + ")");
   }
 
-  // Of a file that has frames in common with one before, or the other kind of link.
-  void say_why_not(std::uint32_t b) {
+  // Says why file `b` is on no clock of those before. Its own is taken to be theirs only where
+  // there is nothing to tell that it is not.
+  void stay(std::uint32_t b) {
+    bool said = false;
     for (std::uint32_t a = 0; a < files_.size(); ++a) {
       if (!files_[a].settled) continue;
       const bool other = files_[a].radio != files_[b].radio || files_[a].serial != files_[b].serial;
       const CommonFrames common = common_frames(run_, sightings_[a], sightings_[b]);
-      if (common.pairs.empty() && !other) continue;
-      const ClockFit fit = fit_clock(run_, common, options_);
-      run_.facts.push_back(run_.files[b] + " is not aligned with " + run_.files[a] + ": " +
-                           fit.why);
-      return;
+      const bool some = !common.pairs.empty() || !common.guesses.empty();
+      if (!some && !other) continue;
+      if (!said) {
+        run_.facts.push_back(run_.files[b] + " is not aligned with " + run_.files[a] + ": " +
+                             fit_clock(run_, common, options_).why);
+      }
+      said = true;
+      const bool apart = files_[b].first_us > files_[a].last_us + options_.response_us ||
+                            files_[a].first_us > files_[b].last_us + options_.response_us;
+      const bool could = !common.only_a.empty() && !common.only_b.empty();
+      if (!some && !could && !apart) files_[b].clock = files_[a].clock;
+    }
+  }
+
+  // Lines on another clock than the air's first capture.
+  void mark_unordered() {
+    const auto air = std::find_if(files_.begin(), files_.end(),
+                                  [](const File& f) { return f.timed && f.radio; });
+    if (air == files_.end()) return;
+    for (const Observation& seen : run_.seen) {
+      const File& file = files_[seen.place.file];
+      if (!seen.node.empty() || seen.kind != Observation::Kind::kSerial) continue;
+      if (!file.timed || file.clock == air->clock) continue;
+      run_.unordered_taps.resize(run_.taps.size());
+      run_.unordered_taps[seen.tap] = true;
     }
   }
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <map>
 #include <optional>
 
 namespace rubric::oracle {
@@ -17,6 +17,7 @@ constexpr double kTrimmed = 0.02;              // Pairs that are a chance, or a 
 constexpr double kSigma = 1.4826;              // Of a median deviation.
 constexpr std::size_t kDriftFrames = 8;
 constexpr std::int64_t kDriftSpanUs = 10'000'000;
+constexpr double kDriftShownUs = 200;          // Less than that, over all, is none.
 
 // One pair: the second file's stamp, how far it is ahead, and which way the frame went.
 struct Point {
@@ -170,7 +171,12 @@ double drift_of(Points& in, std::int64_t base_us) {
   const double sigma = kSigma * median(deviations(in)) + 1;
   const double doubt =
       sigma * std::sqrt(12 / static_cast<double>(in.size())) / static_cast<double>(span_us);
-  if (std::abs(slope) > 4 * doubt && std::abs(slope) <= kDriftMax) return slope;
+  const double moved_us = std::abs(slope) * static_cast<double>(span_us);
+  const double spread_us = quantile(deviations(in), 0.9);
+  if (std::abs(slope) > 4 * doubt && std::abs(slope) <= kDriftMax &&
+      moved_us > 2 * spread_us + kDriftShownUs) {
+    return slope;
+  }
   set_rests(in, base_us, 0);
   return 0;
 }
@@ -218,15 +224,15 @@ class Fit {
       : run_(run), common_(common), options_(options), points_(points_of(run, common)) {}
 
   ClockFit fit() {
-    if (points_.empty()) {
-      return unsure(common_.repeated == 0 ? "no frame is in both"
-                                          : "frames that are in both repeat, so that any of them "
-                                            "could be any other");
-    }
-    if (near_zero()) {
+    if (points_.empty() ? guesses_near_zero() : near_zero()) {
       out_.clocks = Clocks::kAgree;
       out_.frames = points_.size();
       return out_;
+    }
+    if (points_.empty()) {
+      return unsure(common_.guesses.empty() ? "no frame is in both"
+                                            : "the frames that are in both repeat, so that each "
+                                              "could be another one");
     }
     if (points_.size() < kFramesMin) {
       return unsure("only " + count_text(points_.size()) +
@@ -270,6 +276,22 @@ class Fit {
     const double drifted = std::abs(drift_of(near, 0)) * span_us;
     set_rests(near, 0, 0);
     return drifted <= static_cast<double>(options_.skew_us) && agree(near, options_);
+  }
+
+  // Most of those that repeat can be pairs of one clock.
+  bool guesses_near_zero() const {
+    std::map<std::uint32_t, bool> near;  // By frame of the second file.
+    for (const Pair& pair : common_.guesses) {
+      const std::int64_t a = run_.seen[pair.a].place.time_us;
+      const std::int64_t b = run_.seen[pair.b].place.time_us;
+      if (a == kNoStamp || b == kNoStamp) continue;
+      const std::int64_t later_us = pair.lag_sign < 0 ? a - b : b - a;
+      const std::int64_t most_us = pair.lag_sign == 0 ? 0 : options_.response_us;
+      bool& good = near[pair.b];
+      good = good || (later_us >= -options_.skew_us && later_us <= most_us + options_.skew_us);
+    }
+    const auto count = std::count_if(near.begin(), near.end(), [](auto& one) { return one.second; });
+    return 2 * static_cast<std::size_t>(count) > near.size();
   }
 
   // In the time that both were recorded one file has no more frames that the other has not than

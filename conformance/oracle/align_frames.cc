@@ -151,37 +151,33 @@ class Pairing {
   void match(Common how, Group of_a, Group of_b, int sign) {
     const std::vector<Sighting> a = once(run_, of_a);
     const std::vector<Sighting> b = once(run_, of_b);
-    if (a.size() > kGroupMax || b.size() > kGroupMax) {
-      out_.repeated += std::min(a.size(), b.size());
-      return;
-    }
-    std::vector<std::size_t> partner(a.size(), 0);
+    if (a.size() > kGroupMax || b.size() > kGroupMax) return;
     std::vector<std::size_t> fit_a(a.size(), 0);
     std::vector<std::size_t> fit_b(b.size(), 0);
+    std::vector<std::pair<std::size_t, std::size_t>> fitting;
     for (std::size_t i = 0; i < a.size(); ++i) {
       for (std::size_t j = 0; j < b.size(); ++j) {
         if (!(sign < 0 ? fits(run_, how, b[j], a[i]) : fits(run_, how, a[i], b[j]))) continue;
-        partner[i] = j;
+        fitting.emplace_back(i, j);
         ++fit_a[i];
         ++fit_b[j];
       }
     }
+    for (const auto& [i, j] : fitting) {
+      const Pair pair = pair_of(how, a[i], b[j], sign);
+      (fit_a[i] == 1 && fit_b[j] == 1 ? out_.pairs : out_.guesses).push_back(pair);
+    }
+    if (how == Common::kSame) return;  // Another place hears other frames.
     for (std::size_t i = 0; i < a.size(); ++i) {
-      if (fit_a[i] == 0) {
-        if (how != Common::kSame) out_.only_a.push_back(a[i].index);
-      } else if (fit_a[i] > 1 || fit_b[partner[i]] > 1) {
-        ++out_.repeated;
-      } else {
-        add(how, a[i], b[partner[i]], sign);
-      }
+      if (fit_a[i] == 0) out_.only_a.push_back(a[i].index);
     }
     for (std::size_t j = 0; j < b.size(); ++j) {
-      if (fit_b[j] == 0 && how != Common::kSame) out_.only_b.push_back(b[j].index);
+      if (fit_b[j] == 0) out_.only_b.push_back(b[j].index);
     }
   }
 
  private:
-  void add(Common how, const Sighting& a, const Sighting& b, int sign) {
+  Pair pair_of(Common how, const Sighting& a, const Sighting& b, int sign) const {
     Pair pair{a.index, b.index, how, sign, 0};
     const Observation& cause = run_.seen[sign < 0 ? b.index : a.index];
     // Radio stamps are starts of frames, and serial stamps ends.
@@ -189,7 +185,7 @@ class Pairing {
       const auto bytes = static_cast<std::int64_t>(cause.frame.payload.size()) + kAroundBytes;
       pair.lag_min_us = bytes * kByteUs;
     }
-    out_.pairs.push_back(pair);
+    return pair;
   }
 
   const Run& run_;

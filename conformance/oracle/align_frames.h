@@ -30,7 +30,8 @@ struct CommonFrames {
   std::vector<Pair> pairs;            ///< In the order of the first file.
   std::vector<std::uint32_t> only_a;  ///< Of a kind that passes between the files, yet in one only.
   std::vector<std::uint32_t> only_b;
-  std::size_t repeated = 0;           ///< Frames that repeat, so that pairs are a guess.
+  /// Frames that repeat, so that pairs are a guess: each with each that it could be.
+  std::vector<Pair> guesses;
 };
 
 /// One frame, as something that may be in another file as well.

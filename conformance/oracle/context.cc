@@ -1,5 +1,6 @@
 #include "conformance/oracle/context.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <optional>
 
@@ -46,8 +47,10 @@ void Context::look_up() {
   for (const Tap& tap : run.taps) {
     hears_radio = hears_radio || tap.link == machine::Link::kRadio;
   }
-  if (run.has_time) return;
+  untimed_taps = run.unordered_taps;
   untimed_taps.resize(run.taps.size());
+  unordered = std::find(untimed_taps.begin(), untimed_taps.end(), true) != untimed_taps.end();
+  if (run.has_time) return;
   std::optional<std::int64_t> order;  // A file without stamps, or all that have some.
   for (const Observation& seen : run.seen) {
     const std::int64_t its = seen.place.timed() ? -1 : std::int64_t{seen.place.file};
@@ -62,8 +65,9 @@ bool Context::rests_on_order(ReqId requirement, const Place& at, std::uint16_t n
   if (!unordered || is_of(requirement, "WIRE-")) return false;
   if (!at.timed()) return true;
   if (node == kNobody) return false;
-  // Replies to requests are on the air alone.
-  if (is_of(requirement, "J3-") || is_of(requirement, "J10-")) return false;
+  // Replies to requests are on the air alone; reports of joins that stand somewhere are not.
+  const bool air = is_of(requirement, "J3-") || is_of(requirement, "J10-");
+  if (air && (run.unordered_taps.empty() || requirement == req::kJ3Time)) return false;
   const Device& d = device(node);
   const Device& lines = d.role == machine::Role::kBaseStation && d.partner != kNobody
                             ? device(d.partner)

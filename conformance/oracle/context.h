@@ -49,7 +49,8 @@ struct Context {
 
   /// Files are in no known order to each other, as raw bytes beside a capture with stamps are.
   bool unordered = false;
-  std::vector<bool> untimed_taps;         ///< Where unordered: those with frames without a stamp.
+  std::vector<bool> untimed_taps;         ///< Where unordered: those with frames without a stamp,
+                                          ///< or on a clock of their own.
 
   /// Fills in all of these. Before anything else.
   void look_up();

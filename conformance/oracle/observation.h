@@ -102,6 +102,9 @@ struct Run {
   /// Everything has a stamp. Raw bytes carry none: no rule about their times is judged, and where
   /// other files are beside them nothing that rests on the order between the two fails.
   bool has_time = true;
+  /// By tap: its clock has nothing to do with that of the air, as far as anybody knows, and nothing
+  /// that rests on the order between the two fails. Empty: there is no such tap.
+  std::vector<bool> unordered_taps;
 };
 
 /// The whole answer.

@@ -1,0 +1,119 @@
+// Captures of one run that were recorded apart.
+#include "conformance/oracle/align.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "conformance/oracle/align_testing.h"
+#include "conformance/simulator/capture_recorder.h"
+#include "conformance/simulator/scenarios.h"
+#include "conformance/simulator/simulation.h"
+
+namespace rubric::oracle {
+namespace {
+
+constexpr const char* kCaptures[] = {
+    "a2_join_data_sensible_start", "a_join_data",          "b_reliable",
+    "c_two_islands",               "d1_lose_request",      "d2_lose_reply",
+    "d3_lose_ack",                 "e1_simultaneous_join", "f_synaptic",
+    "h10_hdlc_escape_and_bad_serial", "h4_stale_bytes"};
+constexpr double kAhead_s[] = {0, -3600, -1.5, -0.2, 0.2, 1e6};
+
+std::string capture(const std::string& name) {
+  std::ifstream file("spec/captures/firmware/" + name + ".pcapng", std::ios::binary);
+  EXPECT_TRUE(file) << name;
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+std::string simulated(const simulator::Scenario& scenario,
+                      const simulator::ScenarioOptions& options) {
+  simulator::Network network = simulator::make_network(scenario, options);
+  simulator::CaptureRecorder recorder(network);
+  simulator::Simulation simulation(std::move(network), {&recorder});
+  simulation.run_until(scenario.length_us);
+  return recorder.finish();
+}
+
+// What is found apart is what is found in the whole; where the files could not be aligned nothing
+// fails that the whole has not. Returns whether they were, or needed not be.
+bool expect_as_whole(const std::string& name, const Apart& parts, const Options& options,
+                     bool complete = true) {
+  const oracle::Run run = put_together(parts);
+  const std::string fact = aligned_fact(run);
+  const bool aligned = fact.find(" is not ") == fact.npos;
+  const Report apart = judge(run, options);
+  const Report whole = judge(whole_run(parts), options);
+  const auto fails = findings_of(apart, &parts, true);
+  const auto known = findings_of(whole, nullptr, true);
+  for (const std::string& one : fails) {
+    EXPECT_TRUE(known.contains(one)) << name << ": " << one << "; " << fact;
+  }
+  // Forwards that are 0.2 s late are within what a node may take: such clocks are left alone.
+  if (!aligned) return false;
+  EXPECT_EQ(fails, known) << name << "; " << fact;
+  if (complete) {
+    EXPECT_EQ(findings_of(apart, &parts, false), findings_of(whole, nullptr, false))
+        << name << "; " << fact;
+  }
+  return true;
+}
+
+TEST(Align, TheFindingsOfCapturesOfTheFirmwareStay) {
+  std::size_t aligned = 0;
+  for (const char* name : kCaptures) {
+    const std::string bytes = capture(name);
+    for (const double ahead_s : kAhead_s) {
+      for (const double drift_ppm : {0.0, 50.0}) {
+        for (const bool strict : {false, true}) {
+          SerialClock clock;
+          clock.ahead_s = ahead_s;
+          clock.drift_ppm = drift_ppm;
+          Options options;
+          options.sniffer_complete = options.start_cold = strict;
+          const std::string what = std::string(name) + " " + std::to_string(ahead_s) + " s " +
+                                   std::to_string(drift_ppm) + " ppm";
+          aligned += expect_as_whole(what, take_apart(bytes, clock), options) ? 1 : 0;
+        }
+      }
+    }
+  }
+  EXPECT_GE(aligned, 150U);
+}
+
+TEST(Align, TheFindingsOfSimulatedNetworksStay) {
+  std::size_t aligned = 0;
+  std::size_t all = 0;
+  for (const simulator::Scenario& scenario : simulator::scenarios()) {
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+      simulator::ScenarioOptions options;
+      options.seed = seed;
+      options.loss = 0.1 * static_cast<double>(seed % 2);
+      const std::string bytes = simulated(scenario, options);
+      for (const double ahead_s : kAhead_s) {
+        for (const double lost : {0.0, 0.2}) {
+          for (const double begin_s : {0.0, 10.0}) {
+            SerialClock clock;
+            clock.ahead_s = ahead_s;
+            clock.drift_ppm = seed % 2 == 0 ? 50 : 0;
+            clock.lost = lost;
+            clock.begin_s = begin_s;
+            clock.seed = seed;
+            const std::string what = std::string(scenario.name) + " " + std::to_string(seed) +
+                                     ", " + std::to_string(ahead_s) + " s, lost " +
+                                     std::to_string(lost) + ", from " + std::to_string(begin_s);
+            ++all;
+            aligned += expect_as_whole(what, take_apart(bytes, clock), {}, ahead_s != 0.2) ? 1 : 0;
+          }
+        }
+      }
+    }
+  }
+  std::printf("%zu of %zu aligned\n", aligned, all);
+}
+
+}  // namespace
+}  // namespace rubric::oracle
