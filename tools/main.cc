@@ -13,6 +13,7 @@
 #include "tools/encode.h"
 #include "tools/explain.h"
 #include "tools/explore.h"
+#include "tools/forward.h"
 #include "tools/generate.h"
 #include "tools/install_wireshark.h"
 #include "tools/messages.h"
@@ -46,6 +47,7 @@ int main(int argc, char** argv) {
   rubric::tools::add_stats(app);
   rubric::tools::add_explain(app);
   rubric::tools::add_explore(app);
+  rubric::tools::add_forward(app);
   rubric::tools::add_generate(app);
   rubric::tools::add_messages(app);
   rubric::tools::add_simulate(app);
