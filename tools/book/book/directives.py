@@ -145,10 +145,11 @@ class Directives:
         self.mistakes.add(*place, expected("carrier", name, carriers))
         return ""
 
-    def _draw(self, place, function, name):
+    def _draw(self, place, function, name, *more):
         """A drawing of diagrams.py, which says itself which names there are."""
         try:
-            svg = getattr(importlib.import_module("diagrams"), function)(self.project.rubric, name)
+            draw = getattr(importlib.import_module("diagrams"), function)
+            svg = draw(self.project.rubric, name, *more)
             self.drawings += 1
             svg, style = fitted(svg, f"d{self.drawings}-")
             self.styles[style] = None
@@ -158,7 +159,7 @@ class Directives:
             return ""
 
     def _chart(self, place, name, _level):
-        svg = self._draw(place, "chart_svg", name)
+        svg = self._draw(place, "chart_svg", name, lambda rule: f"#{rule}")
         caption = self.names.rich(self.project.cases.get(name, {}).get("comment", ""))
         return (f'<figure class="drawing chart"><div class="scroll">{svg}</div>'
                 f"<figcaption>{link(name, code(name))} {caption}</figcaption></figure>") \

@@ -77,10 +77,11 @@ class Rules:
         if seen["transitions"]:
             parts.append(_count(seen["transitions"], "step") + " of the reference machine")
         if seen["ignores"]:
-            parts.append(f"{seen['ignores']} refusals")
+            parts.append(_count(seen["ignores"], "refusal"))
         if seen["explored"]:
             parts.append("reached by the explorer")
-        parts.append(_count(seen["mutants"], "mutant") + " broken by name, each found")
+        caught = "that breaks it, caught" if seen["mutants"] == 1 else "that break it, all caught"
+        parts.append(f"{_count(seen['mutants'], 'mutant')} {caught}")
         return [("Coverage", ", ".join(parts))]
 
     def _cases(self, rule):
@@ -95,7 +96,9 @@ class Rules:
             comment = self.names.rich(self.project.cases[name].get("comment", ""))
             items.append(f"<li>{link(name, code(name))}{sign} {comment}</li>")
         words = _count(len(shown), "golden trace")
-        if tempting:
+        if len(tempting) == len(shown):
+            words += ", which tempts it" if len(shown) == 1 else ", all of which tempt it"
+        elif tempting:
             words += f", {len(tempting)} of which tempt{'s' if len(tempting) == 1 else ''} it"
         return (f"<details{' open' if len(shown) < 4 else ''}><summary>{words}</summary>"
                 f'<ul class="cases">{"".join(items)}</ul></details>')

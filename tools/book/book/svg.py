@@ -19,9 +19,13 @@ def fitted(svg, prefix):
     refused = _REFUSED.search(svg)
     if refused:
         raise ValueError(f"the page allows no '{refused[0].strip()}' in a drawing")
+    own = set(re.findall(r'\bid="([^"]+)"', svg))
     svg = re.sub(r'\bid="([^"]+)"', rf'id="{prefix}\1"', svg)
-    svg = re.sub(r'\bhref="#([^"]+)"', rf'href="#{prefix}\1"', svg)
+    svg = re.sub(r'\bhref="#([^"]+)"', lambda m: f'href="#{prefix}{m[1]}"' if m[1] in own else m[0],
+                 svg)
     svg = re.sub(r"url\(#([^)]+)\)", rf"url(#{prefix}\1)", svg)
+    if "<a " in svg:  # An image has nothing in it that one could follow.
+        svg = svg.replace('role="img"', 'role="group"', 1)
     svg = re.sub(r'(aria-(?:labelledby|describedby))="([^"]+)"',
                   lambda m: f'{m[1]}="' + " ".join(prefix + one for one in m[2].split()) + '"', svg)
     return svg, style
