@@ -133,6 +133,7 @@ class Install(unittest.TestCase):
         for path in ("bash-completion/completions/rubric", "zsh/site-functions/_rubric",
                      "fish/vendor_completions.d/rubric.fish", "rubric/wireshark/rubric.lua"):
             self.assertGreater((share / path).stat().st_size, 1000, path)
+        self.wireshark(rubric)
 
     def test_manual_pages(self):
         pages = self.prefix / "share/man/man1"
@@ -140,7 +141,8 @@ class Install(unittest.TestCase):
                     .split("Subcommands:")[1].split("\n\n")[0].splitlines()
                     if re.match(r"  \S", row)]
         self.assertGreater(len(commands), 10)
-        for name in ["rubric", "rubricc"] + ["rubric-" + command for command in commands]:
+        programs = ["rubric", "rubricc", "rubric-extcap"]
+        for name in programs + ["rubric-" + command for command in commands]:
             page = pages / f"{name}.1"
             done = subprocess.run(["man", "--warnings", "-l", str(page)], capture_output=True,
                                   text=True, check=True, env={**os.environ, "MANPAGER": "cat"})
@@ -163,6 +165,15 @@ class Install(unittest.TestCase):
         said = self.pkg_config(root / "usr", "rubric-codec", CODEC, "deb_codec")
         self.assertEqual(said, "10 bytes, island 11\n")
         self.assertIn("join_reply", run(root / "usr/bin/rubric", "messages"))
+        self.wireshark(root / "usr/bin/rubric")
+
+    def wireshark(self, rubric):
+        """It finds what it needs to teach Wireshark, in whatever folder it was installed."""
+        home = tempfile.TemporaryDirectory(dir=self.base)
+        self.addCleanup(home.cleanup)
+        environment = {**os.environ, "HOME": home.name}
+        run(rubric, "install-wireshark", env=environment)
+        self.assertIn("rubric (RUBICON mote or sink", run("tshark", "-D", env=environment))
 
 
 if __name__ == "__main__":

@@ -1,5 +1,6 @@
 # What `cmake --install` lays down, and the Debian packages that `cpack` makes of it:
-#   tool  the programs rubric and rubricc, their manual pages, completions, the Wireshark dissector
+#   tool  the programs rubric, rubricc and rubric-extcap, their manual pages, completions, the
+#         Wireshark dissector
 #   dev   headers and libraries, for find_package(rubric) and pkg-config
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
@@ -10,13 +11,13 @@ set(include_dir ${CMAKE_INSTALL_INCLUDEDIR}/rubric)
 # of codec and conformance belong to it, without those of tests, fuzzing, commands and compiler.
 get_property(libraries GLOBAL PROPERTY RUBRIC_LIBRARIES)
 list(FILTER libraries EXCLUDE REGEX
-  "^firmware_|^rubric_(compiler|commands|cli|format|fuzz.*|legal.*|.*mutator|record.*)$")
+  "^firmware_|^rubric_(compiler|commands|cli|format|forward|live|fuzz.*|legal.*|.*mutator|record.*)$")
 list(FILTER libraries EXCLUDE REGEX "^rubric_(cpp_node.*|lines|script)$")
 add_library(rubric_conformance INTERFACE)
 target_link_libraries(rubric_conformance INTERFACE ${libraries})
 set_target_properties(rubric_conformance PROPERTIES EXPORT_NAME conformance)
 
-install(TARGETS rubric rubricc COMPONENT tool)
+install(TARGETS rubric rubricc rubric-extcap COMPONENT tool)
 install(TARGETS rubric_runtime EXPORT rubric_codec COMPONENT dev)
 install(TARGETS ${libraries} rubric_conformance EXPORT rubric_conformance
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}/rubric COMPONENT dev)
@@ -72,8 +73,8 @@ find_program(HELP2MAN help2man)
 if(HELP2MAN)
   add_custom_command(OUTPUT man/rubric.1
     COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/spec/cmake/man_pages.sh ${HELP2MAN} $<TARGET_FILE:rubric>
-      $<TARGET_FILE:rubricc> man
-    DEPENDS rubric rubricc spec/cmake/man_pages.sh VERBATIM)
+      $<TARGET_FILE:rubricc> $<TARGET_FILE:rubric-extcap> man
+    DEPENDS rubric rubricc rubric-extcap spec/cmake/man_pages.sh VERBATIM)
   add_custom_target(rubric_man ALL DEPENDS man/rubric.1)
   install(DIRECTORY ${PROJECT_BINARY_DIR}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1
     COMPONENT tool)

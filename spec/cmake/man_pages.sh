@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# man_pages.sh HELP2MAN RUBRIC RUBRICC FOLDER: a manual page of each program and each command of
-# rubric, from what they say of themselves.
+# man_pages.sh HELP2MAN RUBRIC RUBRICC RUBRIC_EXTCAP FOLDER: a manual page of each program and each
+# command of rubric, from what they say of themselves.
 set -euo pipefail
-help2man=$1 rubric=$2 rubricc=$3 folder=$4
+help2man=$1 rubric=$2 rubricc=$3 extcap=$4 folder=$5
 rm -rf "$folder"
 mkdir -p "$folder"
 version=$("$rubric" --version)
@@ -18,3 +18,4 @@ page() {  # page NAME WHAT COMMAND
   done
 page rubric "codec and conformance test kit for the RUBICON Communication Layer" "$rubric"
 page rubricc "compiler of wire specs" "$rubricc"
+page rubric-extcap "captures for Wireshark from motes and serial forwarders" "$extcap"

@@ -11,6 +11,9 @@ namespace rubric::extcap {
 /// The name of our only interface, as in `tshark -i rubric`.
 inline constexpr std::string_view kInterface = "rubric";
 
+/// The protocol of the capture filter, where none is named.
+inline constexpr std::string_view kDefaultSpec = "rubicon";
+
 /// A command line of which only what is known is kept: newer Wiresharks pass more than older ones.
 class CommandLine {
  public:

@@ -38,7 +38,7 @@ int start(const CommandLine& line) {
   if (options.source.empty()) options.source = line.value("--source");
   if (options.source.empty()) options.source = live::default_address();
   options.filter = line.value("--extcap-capture-filter");
-  options.spec = line.value("--spec", "rubicon");
+  options.spec = line.value("--spec", kDefaultSpec);
   options.listen_only = flag(line, "--listen-only");
   options.reconnect = flag(line, "--reconnect");
   return capture(options);
@@ -47,7 +47,7 @@ int start(const CommandLine& line) {
 /// Wireshark asks without --capture whether a filter is one, and takes every output for a no.
 int judge_filter(const CommandLine& line) {
   const std::string error = filter_error(line.value("--extcap-capture-filter"),
-                                         line.value("--spec", "rubicon"));
+                                         line.value("--spec", kDefaultSpec));
   if (error.empty()) return cli::kExitClean;
   answer(error + "\n");
   return cli::kExitUsage;

@@ -71,7 +71,7 @@ std::string sources() {
 std::string specs() {
   std::string out;
   for (const reflect::Protocol* protocol : reflect::protocols()) {
-    out += value(kSpec, protocol->id, protocol->id, out.empty());
+    out += value(kSpec, protocol->id, protocol->id, protocol->id == kDefaultSpec);
   }
   return out;
 }

@@ -1,0 +1,142 @@
+"""What the tests of rubric-extcap share: sources on this host, and programs to be ended."""
+
+import json
+import os
+import pathlib
+import pty
+import select
+import socket
+import subprocess
+import tempfile
+import time
+import tty
+import unittest
+
+PATIENCE_S = 60
+SERIAL = "spec/captures/firmware/a_join_data.serial.bin"
+FORWARDER = "spec/captures/basestation/s04_acks.from_sink.sfstream"
+PACKET = bytes.fromhex("00ffff000003002514000c")  # A config message.
+
+
+class Given:
+    """Of the command line."""
+    rubric = ""
+    extcap = ""
+    root = pathlib.Path()
+
+    @classmethod
+    def take(cls, words):
+        """RUBRIC RUBRIC_EXTCAP PROJECT_FOLDER."""
+        cls.root = pathlib.Path(words.pop(3)).resolve()
+        cls.extcap = os.path.abspath(words.pop(2))
+        cls.rubric = os.path.abspath(words.pop(1))
+
+
+def crc(data):
+    value = 0
+    for byte in data:
+        value ^= byte << 8
+        for _ in range(8):
+            value = (value << 1 ^ 0x1021 if value & 0x8000 else value << 1) & 0xffff
+    return value
+
+
+def hdlc(content, wrong=0):
+    whole = content + (crc(content) ^ wrong).to_bytes(2, "little")
+    out = b"".join(bytes([0x7d, byte ^ 0x20]) if byte in (0x7d, 0x7e) else bytes([byte])
+                   for byte in whole)
+    return b"\x7e" + out + b"\x7e"
+
+
+def run(*words, **more):
+    return subprocess.run([str(word) for word in words], capture_output=True, text=True,
+                          check=False, timeout=PATIENCE_S, **more)
+
+
+def decoded(path):
+    out = run(Given.rubric, "decode", path, "--format", "jsonl").stdout
+    return [json.loads(line) for line in out.splitlines()]
+
+
+def meaning(records):
+    return [(record["path"], record["fields"], record["error"]) for record in records]
+
+
+def wait_for(holds, what):
+    deadline = time.monotonic() + PATIENCE_S
+    while not holds():
+        if time.monotonic() > deadline:
+            raise AssertionError(f"waited in vain until {what}")
+        time.sleep(0.02)
+
+
+class Pty:
+    """A serial device; its other end is here."""
+
+    def __init__(self, test):
+        self.fd, other = pty.openpty()
+        tty.setraw(self.fd)
+        self.name = os.ttyname(other)
+        test.addCleanup(os.close, self.fd)
+        test.addCleanup(os.close, other)
+
+    def read(self, size):
+        got = b""
+        while len(got) < size and select.select([self.fd], [], [], PATIENCE_S)[0]:
+            got += os.read(self.fd, 1000)
+        return got
+
+
+class Server:
+    """Whom a capture connects to."""
+
+    def __init__(self, test):
+        self.listener = socket.create_server(("127.0.0.1", 0))
+        self.listener.settimeout(PATIENCE_S)
+        self.port = self.listener.getsockname()[1]
+        test.addCleanup(self.listener.close)
+
+    def accept(self, test):
+        connection, _ = self.listener.accept()
+        connection.settimeout(PATIENCE_S)
+        test.addCleanup(connection.close)
+        return connection
+
+    def forward(self, test, data):
+        """As a serial forwarder, from its handshake on."""
+        connection = self.accept(test)
+        test.assertEqual(connection.recv(2), b"U ")
+        connection.sendall(data)
+        return connection
+
+
+class Base(unittest.TestCase):
+    maxDiff = 3000
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="rubric extcap ")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.home = self.folder / "home"
+        self.home.mkdir()
+        self.environment = {name: value for name, value in os.environ.items()
+                            if name not in ("MOTECOM", "XDG_CONFIG_HOME")}
+        self.environment.update(HOME=str(self.home), TMPDIR=str(self.folder))
+
+    def started(self, *words):
+        process = subprocess.Popen([str(word) for word in words], stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE, env=self.environment,
+                                   start_new_session=True)
+
+        def end():
+            process.kill()
+            process.wait()
+            process.stdout.close()
+            process.stderr.close()
+        self.addCleanup(end)
+        return process
+
+    def ended(self, process):
+        """Its exit code and what it said on stderr."""
+        err = process.communicate(timeout=PATIENCE_S)[1].decode()
+        return process.returncode, err

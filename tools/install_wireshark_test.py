@@ -1,0 +1,270 @@
+#!/usr/bin/env python3
+"""Live captures by tshark with rubric-extcap, and `rubric install-wireshark`, which makes it known.
+
+Usage: install_wireshark_test.py RUBRIC RUBRIC_EXTCAP PROJECT_FOLDER. Needs tshark.
+"""
+
+import os
+import pathlib
+import re
+import select
+import shutil
+import signal
+import sys
+import time
+import unittest
+
+from extcap_testing import (FORWARDER, PACKET, PATIENCE_S, SERIAL, Base, Given, Pty, Server,
+                            decoded, hdlc, run, wait_for)
+
+CONFIG = pathlib.Path(".config/wireshark/extcap/rubric-extcap")
+
+
+class Wireshark(Base):
+    """What tshark makes of it."""
+
+    def setUp(self):
+        super().setUp()
+        done = run(Given.rubric, "install-wireshark", env=self.environment)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+
+    def tshark(self, source, *more):
+        fields = ("frame.encap_type", "rubric.path", "rubric.net_msg.seq_num", "rubric.fault",
+                  "frame.interface_name")
+        words = [word for field in fields for word in ("-e", field)]
+        return self.started("tshark", "-l", "-i", "rubric", "-o", f"extcap.rubric.source:{source}",
+                            "-T", "fields", "-E", "separator=|", "-E", "occurrence=f", *words,
+                            *more)
+
+    def lines(self, process, count):
+        got = b""
+        deadline = time.monotonic() + PATIENCE_S
+        while got.count(b"\n") < count:
+            left = max(0, deadline - time.monotonic())
+            more = b""
+            if select.select([process.stdout], [], [], left)[0]:
+                more = os.read(process.stdout.fileno(), 1 << 16)
+            if not more:
+                process.kill()
+                raise AssertionError(f"{got.count(10)} of {count} lines: {self.ended(process)}")
+            got += more
+        return [line.split("|") for line in got.decode().splitlines()]
+
+    def nothing_left(self, mark):
+        """No process that was started for this source, no pipe in the temporary folder."""
+        def ours():
+            found = []
+            for path in pathlib.Path("/proc").glob("[0-9]*/cmdline"):
+                try:
+                    words = path.read_bytes().decode(errors="replace").split("\0")
+                except OSError:
+                    continue
+                if mark in " ".join(words) and "rubric-extcap" in words[0]:
+                    found.append(words)
+            return found
+        wait_for(lambda: not ours(), "the capture program has gone")
+        self.assertEqual(list(self.folder.glob("wireshark_extcap*")), [])
+
+    def test_it_is_listed(self):
+        done = run("tshark", "-D", env=self.environment)
+        self.assertRegex(done.stdout, r"(?m)^\d+\. rubric \(RUBICON mote or sink")
+        self.assertNotRegex(done.stderr, "invalid|couldn't")
+        done = run("tshark", "-i", "rubric", "-L", env=self.environment)
+        self.assertIn("USER0", done.stdout)
+        self.assertIn("USER1", done.stdout)
+
+    def test_the_settings_are_known(self):
+        done = run("tshark", "-G", "currentprefs", env=self.environment)
+        for name in ("source", "othersource", "listenonly", "reconnect", "spec"):
+            self.assertIn(f"#extcap.rubric.{name}:", done.stdout)
+
+    def test_a_serial_forwarder(self):
+        server = Server(self)
+        address = f"sf@127.0.0.1:{server.port}"
+        process = self.tshark(address)
+        connection = server.forward(self, (Given.root / FORWARDER).read_bytes())
+        wanted = decoded(Given.root / FORWARDER)
+        lines = self.lines(process, len(wanted))  # While the source stays open.
+        self.assertIsNone(process.poll())
+        self.assertEqual([line[1] for line in lines], ["/".join(one["path"]) for one in wanted])
+        self.assertEqual([line[2] for line in lines],
+                         [str(one["fields"].get("seq_num", "")) for one in wanted])
+        self.assertEqual({line[0] for line in lines}, {"46"})  # WTAP_ENCAP_USER1
+        self.assertEqual({line[4] for line in lines}, {address})
+        process.send_signal(signal.SIGINT)
+        code, err = self.ended(process)
+        self.assertEqual(code, 0, err)
+        self.assertIn(f"{len(wanted)} packets captured", err)
+        self.assertEqual(connection.recv(1), b"")
+        self.nothing_left(address)
+
+    def test_a_serial_line_by_tcp(self):
+        server = Server(self)
+        address = f"network@127.0.0.1:{server.port}"
+        process = self.tshark("", "-o", f"extcap.rubric.othersource:{address}", "-o",
+                              "extcap.rubric.listenonly:true")
+        connection = server.accept(self)
+        connection.sendall(hdlc(b"\x44\x2a" + PACKET))
+        connection.sendall(hdlc(b"\x45" + PACKET, wrong=0x10))
+        connection.sendall((Given.root / SERIAL).read_bytes()[:3000])
+        lines = self.lines(process, 20)
+        self.assertEqual({line[0] for line in lines}, {"45"})  # WTAP_ENCAP_USER0
+        self.assertEqual(lines[0][1], "config")
+        self.assertEqual([line[3] for line in lines[:2]], ["", "crc"])
+        wanted = decoded(Given.root / SERIAL)[:18]
+        self.assertEqual([line[1] for line in lines[2:20]],
+                         ["/".join(one["path"]) for one in wanted])
+        os.killpg(process.pid, signal.SIGINT)  # As Ctrl-C does it.
+        code, err = self.ended(process)
+        self.assertEqual(code, 0, err)
+        self.assertEqual(connection.recv(1), b"")  # Nothing was confirmed.
+        self.nothing_left(address)
+
+    def test_a_serial_device_with_a_space_in_its_name(self):
+        line = Pty(self)
+        place = self.folder / "my mote"
+        place.symlink_to(line.name)
+        address = f"serial@{place}:micaz"
+        process = self.tshark(address, "-f", "message==config", "-c", "1")
+        confirmed = hdlc(b"\x43\x2a")
+        got = b""
+        deadline = time.monotonic() + PATIENCE_S
+        while confirmed not in got and time.monotonic() < deadline:
+            os.write(line.fd, hdlc(b"\x45\x00") + hdlc(b"\x44\x2a" + PACKET))
+            if select.select([line.fd], [], [], 0.2)[0]:
+                got += os.read(line.fd, 1000)
+        self.assertEqual(self.lines(process, 1)[0][:2], ["45", "config"])
+        self.assertEqual(self.ended(process)[0], 0)
+        self.nothing_left(str(place))
+
+    def test_mistakes_are_shown(self):
+        for more, what in ((["-o", "extcap.rubric.source:serial@/no/such:micaz"],
+                            "/no/such: cannot be opened"),
+                           (["-f", "mesage"], "unknown name 'mesage'")):
+            process = self.tshark("sf@127.0.0.1:1", *more)
+            err = self.ended(process)[1]
+            self.assertIn(what, err)
+            self.assertIn("0 packets captured", err)
+
+    def test_a_peer_that_goes(self):
+        server = Server(self)
+        process = self.tshark(f"sf@127.0.0.1:{server.port}")
+        server.forward(self, (Given.root / FORWARDER).read_bytes()).close()
+        wanted = decoded(Given.root / FORWARDER)
+        self.assertEqual(len(self.lines(process, len(wanted))), len(wanted))
+        self.assertIn("the other end closed it", self.ended(process)[1])
+
+
+class Install(Base):
+    def install(self, *words, code=0, program=None):
+        done = run(program or Given.rubric, "install-wireshark", *words, env=self.environment)
+        self.assertEqual(done.returncode, code, done)
+        return done.stdout + done.stderr
+
+    def tree(self):
+        return sorted(str(path.relative_to(self.home)) for path in self.home.rglob("*")
+                      if not path.is_dir())
+
+    def test_where_tshark_says(self):
+        folders = run("tshark", "-G", "folders", env=self.environment).stdout
+        lua = re.search(r"Personal Lua Plugins:\s+(.*)", folders)[1]
+        said = self.install("--dry-run")
+        self.assertIn(f"would write {lua}/rubric.lua\n", said)
+        self.assertEqual(self.tree(), [])
+        for _ in range(2):
+            said = self.install()
+            self.assertIn(f"wrote {lua}/rubric.lua\n", said)
+            self.assertEqual(len(self.tree()), 2)
+        self.assertEqual(pathlib.Path(lua, "rubric.lua").read_bytes(),
+                         (Given.root / "tools/wireshark/generated/rubric.lua").read_bytes())
+        link = next(self.home.rglob("rubric-extcap"))
+        self.assertEqual(os.path.realpath(link), os.path.realpath(Given.extcap))
+        self.assertIn("removed", self.install("--remove"))
+        self.assertEqual(self.tree(), [])
+        self.assertIn("not there", self.install("--remove"))
+
+    def test_without_tshark(self):
+        """Wiresharks since 4.2 look beside the plug-ins, older ones beside the configuration."""
+        tools = self.folder / "tools"
+        tools.mkdir()
+        self.environment["PATH"] = f"{tools}:/bin"
+        (tools / "tshark").write_text("#!/bin/sh\nexit 1\n", encoding="utf-8")
+        (tools / "tshark").chmod(0o755)
+        for said, extcap in (("Wireshark 4.0.17 (Git)", CONFIG), ("Wireshark 3.6.2", CONFIG),
+                             ("Wireshark 4.4.1.", ".local/lib/wireshark/extcap/rubric-extcap"),
+                             ("what?", ".local/lib/wireshark/extcap/rubric-extcap")):
+            (tools / "wireshark").write_text(f"#!/bin/sh\necho '{said}'\n", encoding="utf-8")
+            (tools / "wireshark").chmod(0o755)
+            self.install()
+            self.assertEqual(self.tree(), sorted([str(extcap),
+                                                  ".local/lib/wireshark/plugins/rubric.lua"]))
+            self.install("--remove")
+
+    def test_a_newer_tshark(self):
+        tools = self.folder / "tools"
+        tools.mkdir()
+        self.environment["PATH"] = f"{tools}:/bin"
+        (tools / "tshark").write_text(
+            "#!/bin/sh\nprintf 'Personal configuration:\\t%s\\n' \"$HOME/a\"\n"
+            "printf 'Personal Lua Plugins: \\t%s\\n' \"$HOME/b c\"\n"
+            "printf 'Personal Extcap path:\\t%s\\n' \"$HOME/d\"\n", encoding="utf-8")
+        (tools / "tshark").chmod(0o755)
+        self.install()
+        self.assertEqual(self.tree(), ["b c/rubric.lua", "d/rubric-extcap"])
+
+    def test_a_folder_of_choice(self):
+        self.install("--dir", self.home / "w")
+        self.assertEqual(self.tree(), ["w/extcap/rubric-extcap", "w/plugins/rubric.lua"])
+        self.install("--dir", "", code=2)
+
+    def test_files_of_others_stay(self):
+        self.install("--dir", self.home)
+        for name in ("plugins/rubric.lua", "extcap/rubric-extcap"):
+            path = self.home / name
+            for words in ([], ["--remove"], ["--dry-run"]):
+                path.unlink()
+                path.write_text("mine", encoding="utf-8")
+                said = self.install("--dir", self.home, *words, code=3)
+                self.assertIn(f"{path}: this is not ours", said)
+                self.assertEqual(path.read_text(encoding="utf-8"), "mine")
+            other = self.folder / "other"
+            other.write_text("theirs", encoding="utf-8")
+            path.unlink()
+            path.symlink_to(other)
+            self.install("--dir", self.home, code=3)
+            self.install("--dir", self.home, "--force")
+            self.assertEqual(other.read_text(encoding="utf-8"), "theirs")
+        (self.home / "extcap/rubric-extcap").unlink()
+        (self.home / "extcap/rubric-extcap").mkdir()
+        self.assertIn("folder", self.install("--dir", self.home, "--force", code=3))
+
+    def test_what_an_older_one_left_is_renewed(self):
+        program = self.home / "extcap/rubric-extcap"
+        program.parent.mkdir()
+        program.symlink_to("/gone/rubric-extcap")
+        self.install("--dir", self.home)
+        self.assertEqual(os.path.realpath(program), os.path.realpath(Given.extcap))
+        program.unlink()
+        shutil.copy(Given.extcap, program)  # As where there are no links.
+        self.install("--dir", self.home)
+        self.assertTrue(program.is_symlink())
+
+    def test_a_program_that_lacks_its_other_half(self):
+        alone = self.folder / "alone"
+        alone.mkdir()
+        shutil.copy(Given.rubric, alone / "rubric")
+        said = self.install("--dir", self.home, code=3, program=alone / "rubric")
+        self.assertIn(f"{alone}/rubric-extcap: there is no such file", said)
+        self.assertEqual(self.tree(), [])
+
+    def test_without_home(self):
+        tools = self.folder / "tools"
+        tools.mkdir()
+        self.environment["PATH"] = str(tools)
+        del self.environment["HOME"]
+        self.assertIn("$HOME is not set", self.install(code=3))
+
+
+if __name__ == "__main__":
+    Given.take(sys.argv)
+    unittest.main()
