@@ -33,12 +33,12 @@ class Cases:
     def entry(self, name):
         one = self.project.cases[name]
         rules = ", ".join(map(self.names.rule_link, one["rules"]))
-        comment = self.names.rich(one.get("comment", ""))
+        comment = escape(one.get("comment", ""))  # No links: it is what unfolds the case.
         return (f'<details class="case" id="{escape(name)}" data-find="{escape(name)} case">'
-                f"<summary>{code(name)} <span>{escape(', '.join(one['roles']))}</span></summary>"
-                f"<p>{comment}{mark(name)}</p>"
+                f"<summary>{code(name)} <span>{escape(', '.join(one['roles']))}</span>"
+                f'<span class="why">{comment}</span></summary>'
                 f'<dl class="facts"><dt>Rules</dt><dd>{rules}</dd><dt>File</dt>'
-                f"<dd>{code(one['file'])}</dd></dl>"
+                f"<dd>{code(one['file'])}{mark(name)}</dd></dl>"
                 f'<pre class="code"><code>{escape(self.text(name))}</code></pre></details>')
 
     def all(self, names, level):

@@ -155,7 +155,7 @@ class Directives:
             self.styles[style] = None
             return svg
         except (ImportError, AttributeError, RuntimeError, ValueError) as error:
-            self.mistakes.add(*place, f"{name}: {error}")
+            self.mistakes.add(*place, f"{name}: {str(error).splitlines()[0]}")
             return ""
 
     def _chart(self, place, name, _level):

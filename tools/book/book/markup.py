@@ -10,6 +10,7 @@ from markdown.inlinepatterns import InlineProcessor
 from markdown.treeprocessors import Treeprocessor
 
 from book.html import code, escape, slug
+from book.names import DECISION, RULE
 
 _FENCE = re.compile(r"(\s*)(`{3,})\s*(\w*)\s*(.*?)\s*$")
 _HEADINGS = {"h1", "h2", "h3", "h4", "h5", "h6"}
@@ -69,17 +70,19 @@ class _Tree(Treeprocessor):
         self.headings.append((int(one.tag[1]), anchor, text))
 
 
-class _Decision(InlineProcessor):
+class _Mention(InlineProcessor):
+    """A link to what the text names; `anchor_of` takes the match, and gives None for no link."""
     ANCESTOR_EXCLUDES = ("a",)
 
-    def __init__(self, numbers):
-        super().__init__(r"\bdecision (\d{3})\b")
-        self.numbers = numbers
+    def __init__(self, pattern, anchor_of):
+        super().__init__(pattern)
+        self.anchor_of = anchor_of
 
     def handleMatch(self, m, data):  # pylint: disable=invalid-name,arguments-renamed
-        if int(m[1]) not in self.numbers:
+        anchor = self.anchor_of(m)
+        if anchor is None:
             return None, None, None
-        element = ElementTree.Element("a", {"href": f"#decision-{m[1]}"})
+        element = ElementTree.Element("a", {"href": "#" + anchor})
         element.text = m[0]
         return element, m.start(0), m.end(0)
 
@@ -93,7 +96,8 @@ class _Book(Extension):
     def extendMarkdown(self, md):  # pylint: disable=invalid-name
         md.preprocessors.deregister("html_block")
         md.inlinePatterns.deregister("html")
-        md.inlinePatterns.register(_Decision(self.names.project.decisions), "decision", 60)
+        md.inlinePatterns.register(_Mention(DECISION, self.names.anchor_of_decision), "decision", 60)
+        md.inlinePatterns.register(_Mention(RULE, self.names.anchor_of_rule), "rule", 59)
         md.treeprocessors.register(_Tree(md, self.names, self.headings), "book", 5)
 
 

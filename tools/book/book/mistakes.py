@@ -1,5 +1,7 @@
 """Mistakes in the text of the book: all of a run are collected, then shown together."""
 
+import difflib
+
 
 class Mistakes:
     def __init__(self):
@@ -20,8 +22,8 @@ class Mistakes:
 
 
 def expected(what, name, names):
-    """The text for a name that does not exist: names that are like it, else all of them."""
-    alike = [one for one in names if name.lower() in one.lower() or one.lower() in name.lower()]
-    shown = sorted(alike or names)
+    """The text for a name that does not exist: expected are names that are like it, else any."""
+    names = sorted(set(names))
+    shown = difflib.get_close_matches(name, names, 3, 0.7) or names
     more = f" and {len(shown) - 12} more" if len(shown) > 12 else ""
-    return f"no {what} is called '{name}'; there is {', '.join(shown[:12])}{more}"
+    return f"no {what} is called '{name}'; expected {', '.join(shown[:12])}{more}"

@@ -4,8 +4,8 @@ import re
 
 from book.html import code, escape, link
 
-_RULE = re.compile(r"\b[A-Z][A-Z0-9]*(?:-[A-Z0-9]+)+\b")
-_DECISION = re.compile(r"\bdecisions? (\d{3})\b")
+RULE = r"\b[A-Z][A-Z0-9]*(?:-[A-Z0-9]+)+\b"
+DECISION = r"\b[Dd]ecision\s(\d{3})\b"
 _TICKED = re.compile(r"`([^`]+)`")
 
 
@@ -72,12 +72,16 @@ class Names:
                 out.append(link(anchor, code(part)) if anchor else code(part))
                 continue
             part = escape(part)
-            part = _RULE.sub(lambda found: self.rule_link(found[0]), part)
-            out.append(_DECISION.sub(self._decision, part))
+            part = re.sub(RULE, lambda found: self.rule_link(found[0]), part)
+            out.append(re.sub(DECISION, self._decision, part))
         return "".join(out)
 
+    def anchor_of_rule(self, found):
+        return found[0] if found[0] in self.project.rules else None
+
+    def anchor_of_decision(self, found):
+        return f"decision-{found[1]}" if int(found[1]) in self.project.decisions else None
+
     def _decision(self, found):
-        number = int(found[1])
-        if number not in self.project.decisions:
-            return found[0]
-        return link(f"decision-{number}", found[0])
+        anchor = self.anchor_of_decision(found)
+        return link(anchor, found[0]) if anchor else found[0]

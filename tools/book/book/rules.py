@@ -121,7 +121,11 @@ class Rules:
         rows = []
         for group, rules in groups.items():
             ones = [self.project.rules[rule] for rule in rules]
-            clauses = list(dict.fromkeys(one["clause"] for one in ones))
+            areas = {}  # "wire, radio" is the part radio of wire.
+            for one in ones:
+                area, _, part = one["clause"].partition(", ")
+                areas.setdefault(area, {})[part] = None
+            clauses = [f"{area}: {', '.join(parts)}" for area, parts in areas.items()]
             uses = [self.uses.get(rule, {False: [], True: []}) for rule in rules]
             seen = [self.project.coverage.get(rule, {}) for rule in rules]
             rows.append([

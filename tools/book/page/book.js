@@ -113,7 +113,7 @@
       const words = one.dataset.find.split(' ');
       const kind = words.pop();
       out.push({ name: words.join(' '), kind, id: place.id,
-        more: text(one.querySelector('p')).replace(/#$/, '') });
+        more: text(one.querySelector('p, .why')) });
     }
     for (const one of all('article h1, article h2, article h3')) {
       if (one.classList.contains('entry') || one.closest('[data-find]')) continue;
