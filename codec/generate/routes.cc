@@ -2,15 +2,15 @@
 
 #include <string_view>
 
-#include "codec/generated/oscilloscope/messages.h"
-#include "codec/generated/rubicon/messages.h"
+#include "codec/generated/route_tables.h"
 
 namespace rubric::generate {
 
 const reflect::RouteTable* routes_of(const reflect::Protocol& protocol) {
   const std::string_view id = protocol.id;
-  if (id == oscilloscope::tables::kProtocol.id) return &oscilloscope::messages::kRoutes;
-  if (id == rubicon::tables::kProtocol.id) return &rubicon::messages::kRoutes;
+  for (const reflect::ProtocolRoutes& known : reflect::kProtocolRoutes) {
+    if (known.protocol->id == id) return known.routes;
+  }
   return nullptr;
 }
 
