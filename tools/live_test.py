@@ -4,134 +4,24 @@
 Usage: live_test.py RUBRIC PROJECT_FOLDER. All of it on this host, bounded in time.
 """
 
-import json
 import os
-import pathlib
 import pty
-import select
 import signal
-import socket
 import subprocess
-import sys
-import tempfile
 import time
-import tty
 import unittest
 
-RUBRIC = ""
-ROOT = pathlib.Path()
-PATIENCE_S = 20
+from live_testing import PATIENCE_S, ROOT, RUBRIC, Forwarder, LiveTest, Pty, hdlc, lines_of
+
 SERIAL = "spec/captures/firmware/a_join_data.serial.bin"
 FORWARDER = "spec/captures/basestation/s04_acks.from_sink.sfstream"
-
-
-def crc(data):
-    value = 0
-    for byte in data:
-        value ^= byte << 8
-        for _ in range(8):
-            value = (value << 1 ^ 0x1021 if value & 0x8000 else value << 1) & 0xffff
-    return value
-
-
-def hdlc(content):
-    whole = content + crc(content).to_bytes(2, "little")
-    out = b"".join(bytes([0x7d, byte ^ 0x20]) if byte in (0x7d, 0x7e) else bytes([byte])
-                   for byte in whole)
-    return b"\x7e" + out + b"\x7e"
-
-
-def lines_of(path, *arguments):
-    out = subprocess.run([RUBRIC, "decode", ROOT / path, "--format", "jsonl", *arguments],
-                         capture_output=True, check=False).stdout
-    return [json.loads(line) for line in out.splitlines()]
 
 
 def meaning(records):
     return [(record["message"], record["fields"], record["error"]) for record in records]
 
 
-class Running:
-    """A rubric that is read and ended by somebody else."""
-
-    def __init__(self, *arguments, **more):
-        self.process = subprocess.Popen([RUBRIC, *map(str, arguments)], stdout=subprocess.PIPE,
-                                        stderr=subprocess.PIPE, **more)
-        self.read = b""
-
-    def lines(self, count):
-        """The next lines, as JSON."""
-        deadline = time.monotonic() + PATIENCE_S
-        while self.read.count(b"\n") < count:
-            left = max(0, deadline - time.monotonic())
-            more = b""
-            if select.select([self.process.stdout], [], [], left)[0]:
-                more = os.read(self.process.stdout.fileno(), 1 << 16)
-            if not more:
-                self.process.kill()
-                raise AssertionError(f"{self.read.count(10)} of {count} lines: {self.end(None)}")
-            self.read += more
-        *found, self.read = self.read.split(b"\n", count)
-        return [json.loads(line) for line in found]
-
-    def end(self, signal_number=signal.SIGINT):
-        if signal_number is not None:
-            self.process.send_signal(signal_number)
-        out, err = self.process.communicate(timeout=PATIENCE_S)
-        return self.process.returncode, out.decode(), err.decode()
-
-
-class Pty:
-    """A serial device whose other end is here."""
-
-    def __init__(self, test):
-        self.fd, other = pty.openpty()
-        tty.setraw(self.fd)
-        self.name = os.ttyname(other)
-        test.addCleanup(os.close, self.fd)
-        test.addCleanup(os.close, other)
-
-    def read(self, seconds):
-        got = b""
-        deadline = time.monotonic() + seconds
-        while select.select([self.fd], [], [], max(0, deadline - time.monotonic()))[0]:
-            got += os.read(self.fd, 1000)
-        return got
-
-
-class Forwarder:
-    """The server's end of a serial forwarder connection."""
-
-    def __init__(self, test, port=0):
-        self.listener = socket.create_server(("127.0.0.1", port))
-        self.listener.settimeout(PATIENCE_S)
-        self.port = self.listener.getsockname()[1]
-        test.addCleanup(self.listener.close)
-
-    def accept(self, data):
-        connection, _ = self.listener.accept()
-        connection.settimeout(PATIENCE_S)
-        if connection.recv(2) != b"U ":
-            raise AssertionError("no handshake")
-        connection.sendall(data)
-        return connection
-
-
-class Live(unittest.TestCase):
-    maxDiff = 2000
-
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="rubric-live-")
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-
-    def started(self, *arguments, **more):
-        running = Running(*arguments, **more)
-        self.addCleanup(running.process.stdout.close)
-        self.addCleanup(running.process.stderr.close)
-        self.addCleanup(running.process.kill)
-        return running
-
+class Live(LiveTest):
     def test_a_serial_line(self):
         line = Pty(self)
         kept = self.folder / "kept.pcapng"
@@ -239,6 +129,4 @@ class Live(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    ROOT = pathlib.Path(sys.argv.pop(2)).resolve()
-    RUBRIC = os.path.abspath(sys.argv.pop(1))
     unittest.main()

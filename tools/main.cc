@@ -19,6 +19,7 @@
 #include "tools/messages.h"
 #include "tools/new_adapter.h"
 #include "tools/repro.h"
+#include "tools/send.h"
 #include "tools/shrink.h"
 #include "tools/simulate.h"
 #include "tools/stats.h"
@@ -47,6 +48,7 @@ int main(int argc, char** argv) {
   rubric::tools::add_stats(app);
   rubric::tools::add_explain(app);
   rubric::tools::add_explore(app);
+  rubric::tools::add_send(app);
   rubric::tools::add_forward(app);
   rubric::tools::add_generate(app);
   rubric::tools::add_messages(app);

@@ -9,6 +9,7 @@ enum ExitCode : int {
   kExitMalformed = 1,  ///< Something malformed was found; with --strict, also something noted.
   kExitUsage = 2,      ///< The command line makes no sense.
   kExitInput = 3,      ///< Input cannot be read or output cannot be written.
+  kExitNotSent = 4,    ///< send: a packet was not confirmed, or the line cannot be had or is gone.
 };
 
 /// Exit codes of the subcommands that give verdicts: check, explore, coverage.

@@ -29,6 +29,8 @@ std::optional<Address> parse_address(std::string_view text);
 
 /// $MOTECOM, or sf@localhost:9002, as TinyOS hosts have it.
 std::string default_address();
+/// Whether that is what somebody wants who names no source: at a terminal, with $MOTECOM set.
+bool asked_by_motecom();
 
 /// All throw runner::TargetBroken, with what is wrong, when the other end cannot be had or is gone.
 class Line {
@@ -44,6 +46,15 @@ class Line {
   void close() { stream_.close(); }
   /// The next bytes; 0 when there are none for a short while.
   std::size_t read(MutableBytes out);
+  /// As above; 0 when the time is over first.
+  std::size_t read(MutableBytes out, attach::SteadyTime deadline) {
+    return stream_.read(out, deadline);
+  }
+  void write(Bytes bytes, attach::SteadyTime deadline) { stream_.write(bytes, deadline); }
+  /// Tells the other end of a connection that nothing more comes from here.
+  void end_output() { stream_.end_output(); }
+  /// To wait for, beside others; -1: it is not open.
+  int fd() const { return stream_.fd(); }
   /// Confirms a sound PACKET_ACK frame and answers one of an unknown kind, as hosts do. Source:
   /// TEP 113, section 3.1.
   void answer(const Packet& packet);

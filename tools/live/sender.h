@@ -1,0 +1,61 @@
+// Sends packets over a line in use, one at a time, and hears what comes back meanwhile.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "codec/containers/reader.h"
+#include "conformance/attach/host_link.h"
+#include "tools/live/line.h"
+
+namespace rubric::live {
+
+/// Throws runner::TargetBroken, with what is wrong, when the other end cannot be had or is gone;
+/// send() alone tells it in its result. Everything ends early when the user asks to stop (stop.h).
+class Sender {
+ public:
+  /// What became of a packet. A serial forwarder confirms nothing: it is done once it was written.
+  struct Result {
+    bool done = false;
+    int tries = 0;         ///< How often it was sent.
+    int strange_acks = 0;  ///< Confirmations of other numbers that came meanwhile.
+    attach::Milliseconds took{0};
+    std::string broken;    ///< Why the line is gone, if it is.
+  };
+  /// Called for each frame that came, stamped with this host's time.
+  using OnFrame = std::function<void(const Packet&)>;
+
+  Sender(Address address, const attach::HostLinkOptions& options, OnFrame on_frame);
+
+  /// Opens the line; of a serial forwarder, waits for its first bytes.
+  void open();
+  /// The longest packet that this line takes, in bytes from the dispatch byte on.
+  std::size_t packet_bytes_max() const;
+  /// Whether packets are confirmed.
+  bool confirms() const { return line_.address().kind != Address::Kind::kForwarder; }
+
+  /// Sends a packet of 1 to packet_bytes_max() bytes.
+  Result send(Bytes packet);
+  /// Hears until then, or until `fd` has something to read or has ended: true. -1: there is none.
+  bool hear(attach::SteadyTime until, int fd = -1);
+  /// Ends the connection so that nothing is lost of what was written.
+  void close();
+
+ private:
+  Result send_to_forwarder(Bytes packet);
+  Result result_of(const attach::HostLink::Outcome& outcome) const;
+  void greet();
+  bool step(attach::SteadyTime until, int fd);
+  void read();
+  void flush();
+
+  Line line_;
+  OnFrame on_frame_;
+  std::optional<attach::HostLink::Outcome> outcome_;
+  attach::HostLink link_;            // Of a serial line.
+  std::unique_ptr<Reader> reader_;   // Of a serial forwarder.
+};
+
+}  // namespace rubric::live

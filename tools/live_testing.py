@@ -1,0 +1,216 @@
+"""What the tests of lines in use share: the program, frames, and the other ends of lines.
+
+Their arguments are RUBRIC PROJECT_FOLDER. All of it is on this host, and bounded in time.
+"""
+
+import json
+import os
+import pathlib
+import pty
+import select
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import tty
+import unittest
+
+RUBRIC = os.path.abspath(sys.argv.pop(1))
+ROOT = pathlib.Path(sys.argv.pop(1)).resolve()
+PATIENCE_S = 20
+ACK, PACKET_ACK, PACKET_NOACK, UNKNOWN = 0x43, 0x44, 0x45, 0xff
+
+
+def crc(data):
+    value = 0
+    for byte in data:
+        value ^= byte << 8
+        for _ in range(8):
+            value = (value << 1 ^ 0x1021 if value & 0x8000 else value << 1) & 0xffff
+    return value
+
+
+def hdlc(content):
+    whole = content + crc(content).to_bytes(2, "little")
+    out = b"".join(bytes([0x7d, byte ^ 0x20]) if byte in (0x7d, 0x7e) else bytes([byte])
+                   for byte in whole)
+    return b"\x7e" + out + b"\x7e"
+
+
+def unframed(part):
+    """The content of what stood between two flags; a malformed one raises AssertionError."""
+    out, escaped = bytearray(), False
+    for byte in part:
+        if byte == 0x7d:
+            escaped = True
+        else:
+            out.append(byte ^ 0x20 if escaped else byte)
+            escaped = False
+    content, check = bytes(out[:-2]), bytes(out[-2:])
+    if escaped or crc(content).to_bytes(2, "little") != check:
+        raise AssertionError(f"a malformed frame: {part.hex()}")
+    return content
+
+
+def lines_of(path, *arguments):
+    out = subprocess.run([RUBRIC, "decode", ROOT / path, "--format", "jsonl", *arguments],
+                         capture_output=True, check=False).stdout
+    return [json.loads(line) for line in out.splitlines()]
+
+
+class Running:
+    """A rubric that is read and ended by somebody else."""
+
+    def __init__(self, *arguments, **more):
+        self.process = subprocess.Popen([RUBRIC, *map(str, arguments)], stdout=subprocess.PIPE,
+                                        stderr=subprocess.PIPE, **more)
+        self.read = b""
+
+    def text_lines(self, count):
+        """The next lines."""
+        deadline = time.monotonic() + PATIENCE_S
+        while self.read.count(b"\n") < count:
+            left = max(0, deadline - time.monotonic())
+            more = b""
+            if select.select([self.process.stdout], [], [], left)[0]:
+                more = os.read(self.process.stdout.fileno(), 1 << 16)
+            if not more:
+                self.process.kill()
+                raise AssertionError(f"{self.read.count(10)} of {count} lines: {self.end(None)}")
+            self.read += more
+        *found, self.read = self.read.split(b"\n", count)
+        return [line.decode() for line in found]
+
+    def lines(self, count):
+        """The next lines, as JSON."""
+        return [json.loads(line) for line in self.text_lines(count)]
+
+    def end(self, signal_number=signal.SIGINT):
+        if signal_number is not None:
+            self.process.send_signal(signal_number)
+        if self.process.stdin and self.process.stdin.closed:
+            self.process.stdin = None  # Else communicate() closes it again.
+        out, err = self.process.communicate(timeout=PATIENCE_S)
+        return self.process.returncode, out.decode(), err.decode()
+
+
+class Pty:
+    """A serial device whose other end is here."""
+
+    def __init__(self, test):
+        self.fd, other = pty.openpty()
+        tty.setraw(self.fd)
+        self.name = os.ttyname(other)
+        test.addCleanup(self.close)
+        test.addCleanup(os.close, other)
+
+    def read(self, seconds):
+        got = b""
+        deadline = time.monotonic() + seconds
+        while select.select([self.fd], [], [], max(0, deadline - time.monotonic()))[0]:
+            got += os.read(self.fd, 1000)
+        return got
+
+    def close(self):
+        """Unplugged."""
+        if self.fd >= 0:
+            os.close(self.fd)
+        self.fd = -1
+
+
+class Forwarder:
+    """The server's end of a serial forwarder connection."""
+
+    def __init__(self, test, port=0):
+        self.listener = socket.create_server(("127.0.0.1", port))
+        self.listener.settimeout(PATIENCE_S)
+        self.port = self.listener.getsockname()[1]
+        test.addCleanup(self.listener.close)
+
+    def accept(self, data):
+        connection, _ = self.listener.accept()
+        connection.settimeout(PATIENCE_S)
+        if connection.recv(2) != b"U ":
+            raise AssertionError("no handshake")
+        connection.sendall(data)
+        return connection
+
+
+class Mote:
+    """A mote at the end of a line, in a thread of its own.
+
+    `answer(self, kind, seq, packet)` is called for each frame that asks to be confirmed; what it
+    returns is written. All frames that came are kept, so is every byte; nothing comes malformed.
+    """
+
+    def __init__(self, test, fd, answer):
+        self.fd = fd
+        self.answer = answer
+        self.packets = []   # Of (number, packet).
+        self.others = []    # Contents of other frames.
+        self.bytes = b""
+        self.error = None
+        self.stop, self.stopping = os.pipe()
+        self.thread = threading.Thread(target=self.run, daemon=True)
+        self.thread.start()
+        test.addCleanup(self.end)
+
+    def run(self):
+        try:
+            while self.step():
+                pass
+        except AssertionError as error:
+            self.error = error
+        except OSError:  # The other end has gone.
+            pass
+
+    def step(self):
+        if self.stop in select.select([self.fd, self.stop], [], [])[0]:
+            return False
+        more = os.read(self.fd, 1 << 16)
+        self.bytes += more
+        at = self.bytes.rfind(b"\x7e") + 1
+        done = len(self.packets) + len(self.others)
+        for part in [part for part in self.bytes[:at].split(b"\x7e") if part][done:]:
+            content = unframed(part)
+            if content[0] != PACKET_ACK:
+                self.others.append(content)
+                continue
+            self.packets.append((content[1], content[2:]))
+            reply = self.answer(self, content[1], content[2:])
+            if reply:
+                os.write(self.fd, reply)
+        return bool(more)
+
+    def end(self):
+        if self.thread.is_alive():
+            os.write(self.stopping, b".")
+            self.thread.join(PATIENCE_S)
+        if self.stop >= 0:
+            os.close(self.stop)
+            os.close(self.stopping)
+            self.stop = -1
+        if self.error:
+            raise self.error
+
+
+class LiveTest(unittest.TestCase):
+    maxDiff = 2000
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="rubric-live-")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def started(self, *arguments, **more):
+        running = Running(*arguments, **more)
+        self.addCleanup(running.process.stdout.close)
+        self.addCleanup(running.process.stderr.close)
+        if running.process.stdin:
+            self.addCleanup(running.process.stdin.close)
+        self.addCleanup(running.process.wait)
+        self.addCleanup(running.process.kill)
+        return running

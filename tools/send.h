@@ -1,0 +1,11 @@
+// rubric send: packets to a mote's serial line in use, and what comes back.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace rubric::tools {
+
+/// Adds the subcommand.
+void add_send(CLI::App& app);
+
+}  // namespace rubric::tools

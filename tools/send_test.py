@@ -1,0 +1,448 @@
+#!/usr/bin/env python3
+"""`rubric send`: what stands on the wire, what is said, and what becomes of it.
+
+Usage: send_test.py RUBRIC PROJECT_FOLDER. The other ends are motes and forwarders of this test's,
+on pseudo terminals and sockets.
+"""
+
+import json
+import os
+import re
+import signal
+import socket
+import struct
+import subprocess
+import threading
+import time
+import unittest
+
+from live_testing import (ACK, PACKET_ACK, PACKET_NOACK, PATIENCE_S, ROOT, RUBRIC, UNKNOWN,
+                          Forwarder, LiveTest, Mote, Pty, hdlc, lines_of)
+
+CLEAN, USAGE, INPUT, NOT_SENT = 0, 2, 3, 4
+LONG_MS = 60_000  # Never over while somebody answers.
+DEMO = "spec/captures/basestation/s04_acks.from_sink.sfstream"
+
+
+def config(value):
+    return struct.pack(">BHHBBBBH", 0, 0xffff, 0, 3, 0, 37, 10, value)
+
+
+def line(value):
+    return json.dumps({"type": 10, "value": value}) + "\n"
+
+
+def confirms(_, seq, __):
+    return hdlc(bytes([ACK, seq]))
+
+
+def send(*arguments, text="", env=None):
+    """Exit code, stdout, stderr."""
+    done = subprocess.run([RUBRIC, "send", *map(str, arguments)], input=text, text=True,
+                          capture_output=True, check=False, env={**os.environ, **(env or {})},
+                          timeout=3 * PATIENCE_S)
+    return done.returncode, done.stdout, done.stderr
+
+
+class Base(LiveTest):
+    def mote(self, answer):
+        """Where to send, and the mote there."""
+        device = Pty(self)
+        return f"serial@{device.name}:telosb", Mote(self, device.fd, answer)
+
+    def forwarder(self, serve):
+        """Where to send; `serve(connection)` runs in a thread."""
+        server = Forwarder(self)
+
+        def run():
+            with server.accept(b"U ") as connection:
+                serve(connection)
+
+        thread = threading.Thread(target=run, daemon=True)
+        thread.start()
+        self.addCleanup(thread.join, PATIENCE_S)
+        return f"sf@127.0.0.1:{server.port}", thread
+
+
+class Serial(Base):
+    def test_a_packet_is_confirmed(self):
+        to, mote = self.mote(confirms)
+        packet = struct.pack(">BHHBBBBH", 0, 7, 3, 3, 0x7d, 37, 10, 0x7e7d)
+        code, out, err = send("--as", "config", "--to", to, "--dest", "7", "--src", "3", "--group",
+                              "125", "--timeout", LONG_MS, text=line(0x7e7d))
+        self.assertEqual(code, CLEAN, err)
+        self.assertRegex(out, r"^   1  config          confirmed after 1 try, \d+ ms\n$")
+        self.assertEqual(err, "rubric: 1 packet, 1 confirmed\n")
+        mote.end()
+        self.assertEqual(mote.bytes, hdlc(bytes([PACKET_ACK, 14]) + packet))
+        self.assertIn(b"\x7d\x5e\x7d\x5d", mote.bytes)
+
+    def test_one_after_the_other(self):
+        to, mote = self.mote(confirms)
+        text = "".join(line(value) for value in range(300))
+        code, out, err = send("--as", "config", "--to", to, "--timeout", LONG_MS, text=text)
+        self.assertEqual(code, CLEAN, err)
+        self.assertEqual(out.count(" confirmed after 1 try"), 300)
+        mote.end()
+        self.assertEqual(mote.packets, [((14 + i) % 256, config(i)) for i in range(300)])
+
+    def test_sent_again_until_confirmed(self):
+        def answer(mote, seq, _):
+            return hdlc(bytes([ACK, seq])) if len(mote.packets) == 3 else None
+
+        to, mote = self.mote(answer)
+        code, out, err = send("--as", "config", "--to", to, "--timeout", "1000", "--retries", "9",
+                              text=line(12))
+        self.assertEqual(code, CLEAN, err)
+        found = re.fullmatch(r"   1  config          confirmed after (\d+) tries, (\d+) ms\n", out)
+        self.assertTrue(found, out)
+        self.assertGreaterEqual(int(found[1]), 3)
+        self.assertGreaterEqual(int(found[2]), 2000)
+        mote.end()
+        self.assertEqual(mote.packets[:3], [(14 + i, config(12)) for i in range(3)])
+
+    def test_not_confirmed(self):
+        for more, wanted in (((), [(14, 1), (15, 1), (16, 1)]),
+                             (("--keep-going",), [(14 + i, 1 + i // 3) for i in range(6)])):
+            to, mote = self.mote(lambda *_: None)
+            code, out, err = send("--as", "config", "--to", to, "--timeout", "30", "--retries",
+                                  "2", *more, text=line(1) + line(2))
+            self.assertEqual(code, NOT_SENT, err)
+            self.assertRegex(out, r"^   1  config          not confirmed after 3 tries, \d+ ms\n")
+            if more:
+                self.assertEqual(out.count("not confirmed after 3 tries"), 2)
+                self.assertEqual(err, "rubric: 2 packets, 0 confirmed, 2 not\n")
+            else:
+                self.assertEqual(out.count("\n"), 1)
+                self.assertEqual(err, "rubric: stdin:1: not confirmed; nothing behind it is sent "
+                                      "(--keep-going would)\n"
+                                      "rubric: 1 packet, 0 confirmed, 1 not\n")
+            mote.end()
+            self.assertEqual(mote.packets, [(seq, config(value)) for seq, value in wanted])
+
+    def test_a_wrong_number_confirms_nothing(self):
+        to, _ = self.mote(lambda _, seq, __: hdlc(bytes([ACK, seq + 1])))
+        code, out, err = send("--as", "config", "--to", to, "--timeout", "200", "--retries", "0",
+                              text=line(1))
+        self.assertEqual(code, NOT_SENT, err)
+        self.assertRegex(out, r"not confirmed after 1 try, \d+ ms; 1 confirmation of other numbers "
+                              r"came\n$")
+
+    def test_a_slow_mote_gets_each_once_more_at_most(self):
+        """What it confirms late is confirmed, and is no confirmation of what comes next."""
+        def answer(_, seq, __):
+            time.sleep(0.15)
+            return hdlc(bytes([ACK, seq]))
+
+        to, mote = self.mote(answer)
+        code, out, err = send("--as", "config", "--to", to, "--timeout", "100", "--retries", "1000",
+                              text="".join(line(value) for value in range(5)))
+        self.assertEqual(code, CLEAN, err + out)
+        mote.end()
+        self.assertEqual([seq for seq, _ in mote.packets],
+                         [14 + i for i in range(len(mote.packets))])
+        order = [packet for _, packet in mote.packets]
+        self.assertEqual(sorted(set(order), key=order.index), [config(i) for i in range(5)])
+
+    def test_noise_and_questions_between(self):
+        """What makes no sense is passed over; what asks for it is answered."""
+        noise = b"\x00\x11\x22\x7e" + hdlc(b"\x45\x00\x01")[:-2] + b"\x7e\x7d\x7e"
+        asked = hdlc(bytes([PACKET_ACK, 0x2a]) + config(1)) + hdlc(b"\x99\x01\x02")
+
+        def answer(_, seq, __):
+            return noise + asked + hdlc(bytes([ACK, seq])) + hdlc(bytes([UNKNOWN, PACKET_ACK]))
+
+        to, mote = self.mote(answer)
+        code, _, err = send("--as", "config", "--to", to, "--timeout", LONG_MS, text=line(1) * 2)
+        self.assertEqual(code, CLEAN, err)
+        mote.end()
+        wanted = [bytes([ACK, 0x2a]), bytes([UNKNOWN, 0x99])]
+        self.assertEqual(mote.others[:2], wanted)
+
+    def test_a_mote_that_disappears(self):
+        device = Pty(self)
+
+        def answer(mote, seq, _):
+            if len(mote.packets) == 1:
+                return hdlc(bytes([ACK, seq]))
+            device.close()
+            raise OSError
+
+        Mote(self, device.fd, answer)
+        to = f"serial@{device.name}:telosb"
+        code, out, err = send("--as", "config", "--to", to, "--timeout", LONG_MS,
+                              "--keep-going", text=line(1) + line(2) + line(3))
+        self.assertEqual(code, NOT_SENT)
+        self.assertRegex(out, r"^   1 .* confirmed after 1 try, .*\n   2 .* not confirmed after 1 "
+                              r"try, \d+ ms\n$")
+        self.assertIn(f"rubric: {to}: the line broke: ", err)
+        self.assertIn("rubric: 2 packets, 1 confirmed, 1 not\n", err)
+
+    def test_through_tcp(self):
+        with socket.create_server(("127.0.0.1", 0)) as listener:
+            listener.settimeout(PATIENCE_S)
+            to = f"network@127.0.0.1:{listener.getsockname()[1]}"
+            running = self.started("send", "--as", "config", "--to", to, "--timeout", LONG_MS,
+                                   stdin=subprocess.PIPE)
+            connection, _ = listener.accept()
+        self.addCleanup(connection.close)
+        mote = Mote(self, connection.fileno(), confirms)
+        running.process.stdin.write(line(5).encode())
+        running.process.stdin.flush()
+        self.assertIn(" confirmed after 1 try", running.text_lines(1)[0])
+        mote.end()
+        self.assertEqual(mote.packets, [(14, config(5))])
+        connection.close()
+        code, _, err = running.end(None)
+        self.assertEqual(code, NOT_SENT)
+        self.assertIn(f"rubric: {to}: the line broke: the other end closed it\n", err)
+
+    def test_what_is_answered_is_shown(self):
+        heard = threading.Event()
+
+        def answer(mote, seq, _):
+            def later():
+                heard.wait(PATIENCE_S)
+                os.write(mote.fd, hdlc(bytes([PACKET_NOACK]) + config(77)))
+
+            threading.Thread(target=later, daemon=True).start()
+            return hdlc(bytes([ACK, seq]))
+
+        to, _ = self.mote(answer)
+        running = self.started("send", "--as", "config", "--to", to, "--timeout", LONG_MS,
+                               "--listen", "600", stdin=subprocess.PIPE)
+        running.process.stdin.write(line(5).encode())
+        running.process.stdin.close()
+        self.assertIn("confirmed after 1 try", running.text_lines(1)[0])
+        heard.set()
+        self.assertRegex(running.text_lines(1)[0], r"-> .*config +.*77")
+        code, out, err = running.end()
+        self.assertEqual((code, out), (CLEAN, ""), err)
+        self.assertEqual(err, "rubric: 1 packet, 1 confirmed, 1 came\n")
+
+    def test_what_is_answered_as_json(self):
+        def answer(_, seq, packet):
+            return hdlc(bytes([PACKET_NOACK]) + packet) + hdlc(bytes([ACK, seq]))
+
+        to, _ = self.mote(answer)
+        code, out, err = send("--as", "config", "--to", to, "--timeout", LONG_MS, "--listen", "0",
+                              "--format", "jsonl", text=line(5) + line(6))
+        self.assertEqual(code, CLEAN, err)
+        records = [json.loads(row) for row in out.splitlines()]
+        self.assertEqual([row["fields"]["value"] for row in records], [5, 6])
+        self.assertEqual([row["index"] for row in records], [0, 1])
+        self.assertEqual({row["direction"] for row in records}, {"outbound"})
+        self.assertEqual({row["interface"] for row in records}, {to})
+        self.assertEqual(err.count("confirmed after 1 try"), 2)
+
+    def test_lines_are_sent_as_they_come(self):
+        to, mote = self.mote(confirms)
+        running = self.started("send", "--as", "config", "--to", to, "--timeout", LONG_MS,
+                               stdin=subprocess.PIPE)
+        for value in range(3):
+            running.process.stdin.write(b"\n" + line(value).encode())
+            running.process.stdin.flush()
+            self.assertIn(" confirmed after 1 try", running.text_lines(1)[0])
+        time.sleep(0.2)
+        self.assertIsNone(running.process.poll())
+        code, _, err = running.end()
+        self.assertEqual((code, err), (CLEAN, "rubric: 3 packets, 3 confirmed\n"))
+        mote.end()
+        self.assertEqual(len(mote.packets), 3)
+
+    def test_interrupted(self):
+        to, mote = self.mote(lambda *_: None)
+        running = self.started("send", "--as", "config", "--to", to, "--timeout", LONG_MS,
+                               "--keep-going", stdin=subprocess.PIPE)
+        running.process.stdin.write((line(1) + line(2)).encode())
+        running.process.stdin.close()
+        deadline = time.monotonic() + PATIENCE_S
+        while not mote.packets and time.monotonic() < deadline:
+            time.sleep(0.01)
+        code, out, err = running.end(signal.SIGTERM)
+        self.assertEqual(code, NOT_SENT)
+        self.assertIn("not confirmed after 1 try", out)
+        self.assertEqual(err, "rubric: stdin:1: stopped; nothing behind it is sent\n"
+                              "rubric: 1 packet, 0 confirmed, 1 not\n")
+        mote.end()
+        self.assertEqual(mote.packets, [(14, config(1))])
+
+    def test_between_packets_is_waited(self):
+        to, mote = self.mote(confirms)
+        begun = time.monotonic()
+        code, _, err = send("--as", "config", "--to", to, "--timeout", LONG_MS, "--interval", "200",
+                            text=line(1) * 4)
+        self.assertEqual(code, CLEAN, err)
+        self.assertGreaterEqual(time.monotonic() - begun, 0.6)
+        mote.end()
+        self.assertEqual(len(mote.packets), 4)
+
+    def test_what_was_decoded_is_sent_again(self):
+        """Of a capture of both directions; its confirmations are no packets."""
+        to, mote = self.mote(confirms)
+        path = self.folder / "run.jsonl"
+        rows = lines_of(DEMO)[:20]
+        ack = {**json.loads(subprocess.run([RUBRIC, "decode", "--format", "jsonl",
+                                            "--input-format", "hdlc"], input=hdlc(b"\x43\x05"),
+                                           capture_output=True, check=True).stdout)}
+        path.write_text("".join(json.dumps(row) + "\n" for row in [ack, *rows, ack]),
+                        encoding="utf-8")
+        code, out, err = send(path, "--to", to, "--timeout", LONG_MS)
+        self.assertEqual(code, CLEAN, err)
+        self.assertEqual(err, f"rubric: {len(rows)} packets, {len(rows)} confirmed, 2 frames "
+                              "without a packet left out\n")
+        self.assertEqual([row.split()[1] for row in out.splitlines()],
+                         [row["message"] for row in rows])
+        mote.end()
+        self.assertEqual([packet.hex() for _, packet in mote.packets], [row["raw"] for row in rows])
+
+
+class Input(Base):
+    def test_bad_lines_are_told_and_not_sent(self):
+        to, mote = self.mote(confirms)
+        text = line(1) + '{"type":10,"value":70000}\n' + "{\n" + '{"kind":1}\n' + line(2)
+        code, out, err = send("--as", "config", "--to", to, "--timeout", LONG_MS, text=text)
+        self.assertEqual(code, INPUT)
+        self.assertEqual(out.count("confirmed after 1 try"), 2)
+        self.assertRegex(err, r"(?m)^rubric: stdin:2: value: expected .*70000")
+        self.assertRegex(err, r"(?m)^rubric: stdin:3:\d+: ")
+        self.assertRegex(err, r"(?m)^rubric: stdin:4: ")
+        mote.end()
+        self.assertEqual(mote.packets, [(14, config(1)), (15, config(2))])
+
+    def test_what_is_no_packet_of_a_serial_line(self):
+        to, mote = self.mote(confirms)
+        radio = lines_of("spec/captures/firmware/a_join_data.pcapng", "--filter",
+                         "framing==radio", "--count", "1")[0]
+        broken = hdlc(b"\x45" + config(1)).replace(config(1)[-2:], config(2)[-2:])
+        malformed = json.loads(subprocess.run(
+            [RUBRIC, "decode", "--format", "jsonl", "--input-format", "hdlc"], input=broken,
+            capture_output=True, check=False).stdout)
+        long = {"schema": "rubric.decode/1", "framing": "sf", "raw": "00" * 253}
+        path = self.folder / "odd.jsonl"
+        path.write_text("".join(json.dumps(row) + "\n" for row in (radio, malformed, long)),
+                        encoding="utf-8")
+        code, out, err = send(path, "--to", to)
+        self.assertEqual((code, out), (INPUT, ""))
+        self.assertIn(f"rubric: {path}:1: expected a serial packet, given a radio frame\n", err)
+        self.assertIn(f"rubric: {path}:2: a malformed frame cannot be sent as it is: ", err)
+        self.assertIn(f"rubric: {path}:3: expected a packet of at most 252 bytes from the dispatch "
+                      "byte on, as a mote's serial line takes, given 253\n", err)
+        mote.end()
+        self.assertEqual(mote.bytes, b"")
+
+    def test_usage(self):
+        for arguments, what in (
+                (("--to", "nowhere"), "'nowhere': expected serial@DEVICE:BAUD, network@HOST:PORT "
+                                      "or sf@HOST:PORT"),
+                (("--to", "serial@/dev/null:fast"), "expected serial@DEVICE:BAUD"),
+                (("--to", ""), "is empty"),
+                (("serial@/dev/ttyUSB0:telosb",), "is where to: --to serial@/dev/ttyUSB0:telosb"),
+                (("--dest", "1"), "go with --as MESSAGE"),
+                (("--as", "cofnig"), "did you mean"),
+                (("--as", "updates"), "no AM type carries updates itself on serial lines; give "
+                                      "--am-type, or send the message that it travels in"),
+                (("--timeout", "0"), "--timeout"),
+                (("--retries", "-1"), "--retries"),
+                (("--listen", "-1"), "--listen")):
+            code, out, err = send("--to", "serial@/dev/null:telosb", *arguments) \
+                if "--to" not in arguments else send(*arguments)
+            self.assertEqual((code, out), (USAGE, ""), arguments)
+            self.assertIn(what, err)
+        code, _, err = send(env={"MOTECOM": "telepathy"})
+        self.assertEqual(code, USAGE)
+        self.assertIn("$MOTECOM: 'telepathy': expected", err)
+
+    def test_lines_that_cannot_be_had(self):
+        with socket.create_server(("127.0.0.1", 0)) as taken:
+            free = taken.getsockname()[1]
+        for to, what in (("serial@/dev/null:115200", "is no serial line"),
+                         ("serial@/no/such:57600", "cannot be opened"),
+                         (f"network@127.0.0.1:{free}", "cannot connect")):
+            code, out, err = send("--as", "config", "--to", to, text=line(1))
+            self.assertEqual((code, out), (NOT_SENT, ""), to)
+            self.assertIn(f"rubric: {to}: ", err)
+            self.assertIn(what, err)
+            self.assertIn("rubric: 0 packets, 0 confirmed\n", err)
+
+    def test_a_file_that_is_not_there(self):
+        to, _ = self.mote(confirms)
+        code, _, err = send(self.folder / "none.jsonl", "--to", to)
+        self.assertEqual(code, INPUT)
+        self.assertIn("none.jsonl: No such file or directory", err)
+
+
+class SerialForwarder(Base):
+    def test_packets_and_their_end(self):
+        """All of it arrives, though the forwarder sends all the while what nobody reads."""
+        got = []
+
+        def serve(connection):
+            flood = (bytes([11]) + config(9)) * 500
+            whole = b""
+            while more := connection.recv(1 << 16):
+                whole += more
+                connection.sendall(flood)
+                time.sleep(0.01)
+            got.append(whole)
+
+        to, thread = self.forwarder(serve)
+        code, out, err = send("--as", "config", text="".join(line(i) for i in range(200)),
+                              env={"MOTECOM": to})
+        self.assertEqual(code, CLEAN, err)
+        self.assertEqual(err, "rubric: 200 packets sent\n")
+        self.assertEqual(out.splitlines()[199], " 200  config          sent")
+        thread.join(PATIENCE_S)
+        self.assertEqual(got, [b"".join(bytes([11]) + config(i) for i in range(200))])
+
+    def test_what_is_answered_is_shown(self):
+        def serve(connection):
+            connection.sendall(connection.recv(12))
+            connection.recv(1)
+
+        to, _ = self.forwarder(serve)
+        running = self.started("send", "--as", "config", "--to", to, "--listen", "600", "--format",
+                               "jsonl", stdin=subprocess.PIPE)
+        running.process.stdin.write(line(5).encode())
+        running.process.stdin.flush()
+        self.assertEqual(running.lines(1)[0]["fields"], {"type": 10, "type_name": "set_island_id",
+                                                         "value": 5})
+        code, _, err = running.end()
+        self.assertEqual(code, CLEAN, err)
+        self.assertEqual(err, "   1  config          sent\nrubric: 1 packet sent, 1 came\n")
+
+    def test_who_is_no_forwarder(self):
+        with socket.create_server(("127.0.0.1", 0)) as listener:
+            listener.settimeout(PATIENCE_S)
+            to = f"sf@127.0.0.1:{listener.getsockname()[1]}"
+
+            def greet():
+                connection, _ = listener.accept()
+                with connection:
+                    connection.sendall(b"SSH-2.0\r\n")
+                    connection.recv(100)
+
+            thread = threading.Thread(target=greet, daemon=True)
+            thread.start()
+            code, out, err = send("--as", "config", "--to", to, text=line(1))
+            thread.join(PATIENCE_S)
+        self.assertEqual((code, out), (NOT_SENT, ""))
+        self.assertIn(f"rubric: {to}: the other end is no serial forwarder's: it begins with 53 53, "
+                      "not with 55 20\n", err)
+
+    def test_a_forwarder_that_goes(self):
+        def serve(connection):
+            connection.recv(12)
+
+        to, _ = self.forwarder(serve)
+        running = self.started("send", "--as", "config", "--to", to, stdin=subprocess.PIPE)
+        running.process.stdin.write(line(1).encode())
+        running.process.stdin.flush()
+        self.assertIn("sent", running.text_lines(1)[0])
+        code, _, err = running.end(None)
+        self.assertEqual(code, NOT_SENT)
+        self.assertIn(f"rubric: {to}: the line broke: ", err)
+
+
+if __name__ == "__main__":
+    unittest.main()
