@@ -1,20 +1,19 @@
 #!/usr/bin/env python3
 """Builds in a copy of the project what a new or changed wire spec changes, in seconds in place of
-minutes: the generated files, the two parts of rubric that hold its tables, and rubric of these and
+minutes: the generated files, the three parts of rubric that hold its tables, and rubric of these and
 of the libraries that are already built.
 
 Usage: shadow_build.py BUILD_FOLDER COPY TARGET. TARGET is regenerate or rubric.
 """
 
-import json
 import pathlib
 import shlex
 import subprocess
 import sys
 
 EMITTERS = "cpp,tables,requirements,protocols,dictionary,messages,profiles,cases,java,lua"
-# What holds the tables of all protocols, and the texts of all rules.
-HOLDERS = ("codec/reflect/registry.cc", "codec/reflect/fault_text.cc")
+# What holds the tables of all protocols, the ways to their messages, and the texts of all rules.
+HOLDERS = ("codec/reflect/registry.cc", "codec/generate/routes.cc", "codec/reflect/fault_text.cc")
 
 
 def run(words, folder):
@@ -29,20 +28,21 @@ def regenerate(copy):
 
 
 def rebuild(build, root, copy):
-    known = json.loads((build / "compile_commands.json").read_text(encoding="utf-8"))
-    flags = {entry["file"]: shlex.split(entry["command"]) for entry in known}
-    objects = []
-    for holder in HOLDERS:
-        words = flags[str(root / holder)]
-        words = [word.replace(str(root), str(copy)) for word in words]
-        words[words.index("-o") + 1] = str(copy / "build" / (pathlib.Path(holder).stem + ".o"))
-        objects.append(words[words.index("-o") + 1])
-        run(words, copy)
     listed = subprocess.run(["ninja", "-C", build, "-t", "commands", "rubric"], check=True,
                             capture_output=True, text=True).stdout
-    link = shlex.split(listed.splitlines()[-1].removeprefix(": && ").removesuffix(" && :"))
+    known = [shlex.split(line.removeprefix(": && ").removesuffix(" && :"))
+             for line in listed.splitlines()]
+    objects = []
+    for holder in HOLDERS:
+        words = next(words for words in known if words[-1] == str(root / holder))
+        objects.append(str(copy / "build" / (pathlib.Path(holder).stem + ".o")))
+        words[words.index("-o") + 1] = objects[-1]
+        words[words.index("-MF") + 1] = objects[-1] + ".d"
+        words[-1] = str(copy / holder)
+        run([f"-I{copy}" if word == f"-I{root}" else word for word in words], build)
     program = copy / ".bin/rubric"
     program.unlink()
+    link = known[-1]
     at = link.index("-o")
     link[at:at + 2] = [*objects, "-o", str(program)]
     run(link, build)

@@ -4,6 +4,8 @@ project of its own, from top to bottom:
     ```console              each `$ ` line is run by bash; what it prints must be what follows it
     ```cpp file=a.cc        is written to a.cc and compiled to a program a, with all warnings;
                             an ```output block behind it is what a prints
+    ```cpp file=a.cc with=copy  the same, with the headers of the copy, which may be generated anew
+    ```cpp file=a.cc build=cmake    is written only: the text builds it itself
     ```cpp file=a.cc for=mote   is compiled for an ATmega128, a Cortex-M3 and this computer
     ```LANGUAGE file=PATH   is written to PATH
     ```diff                 is applied by `patch -p0`
@@ -29,7 +31,8 @@ STRICT = ["-Wall", "-Wextra", "-Wshadow", "-Wconversion", "-Werror"]
 MOTES = (["avr-g++", "-mmcu=atmega128", "-std=c++14", "-Os"],
          ["arm-none-eabi-g++", "-mcpu=cortex-m3", "-mthumb", "-std=c++14", "-Os"],
          ["c++", "-std=c++14", "-O2"])
-FIRMWARE = ["-ffreestanding", "-fno-exceptions", "-fno-rtti"]
+FIRMWARE = ["-ffreestanding", "-fno-exceptions", "-fno-rtti", "-Wall", "-Wextra", "-Wshadow",
+            "-Werror"]
 SECONDS_MAX = 300
 
 
@@ -129,10 +132,11 @@ class Place:
         source = block.words["file"]
         if block.words.get("for") == "mote":
             for compiler in MOTES:
-                self.must([*compiler, *FIRMWARE, *STRICT, "-I", self.include, "-c", source,
+                self.must([*compiler, *FIRMWARE, "-I", self.include, "-c", source,
                            "-o", ".mote.o"])
             return
-        self.must(["c++", "-std=c++17", *STRICT, "-I", self.include, source,
+        include = self.folder if block.words.get("with") == "copy" else self.include
+        self.must(["c++", "-std=c++17", *STRICT, "-I", include, source,
                    "-o", source.removesuffix(".cc")])
 
     def options(self, text):
@@ -174,7 +178,7 @@ def renewed(text, place):
     for block in blocks(text):
         try:
             now = place.work(block, before)
-        except (Wrong, subprocess.TimeoutExpired) as mistake:
+        except (Wrong, OSError, subprocess.TimeoutExpired) as mistake:
             wrong.append((block.line, str(mistake)))
             now = block.text
         if now != block.text:
