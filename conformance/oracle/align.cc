@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "conformance/oracle/align_clock.h"
 #include "conformance/oracle/align_frames.h"
+#include "conformance/oracle/align_order.h"
+#include "conformance/oracle/message.h"
 
 namespace rubric::oracle {
 namespace {
@@ -45,6 +48,9 @@ class Alignment {
       while (settle_one()) continue;
     }
     mark_unordered();
+    for (std::uint32_t i = 0; i < files_.size(); ++i) {
+      if (files_[i].frames && !files_[i].timed) order(i);
+    }
   }
 
  private:
@@ -138,15 +144,70 @@ class Alignment {
     }
   }
 
-  // Lines on another clock than the air's first capture.
-  void mark_unordered() {
+  // Puts a file without stamps among those on the air's clock.
+  void order(std::uint32_t b) {
+    const std::optional<std::uint32_t> air = air_file();
+    if (!air) return;
+    OrderEvidence evidence;
+    std::size_t same = 0;
+    for (std::uint32_t a = 0; a < files_.size(); ++a) {
+      if (!files_[a].timed || files_[a].clock != files_[*air].clock) continue;
+      const CommonFrames common = common_frames(run_, sightings_[a], sightings_[b]);
+      for (const Pair& pair : common.pairs) {
+        const bool timed = run_.seen[pair.a].place.time_us != kNoStamp;
+        same += pair.how == Common::kSame ? 1 : 0;
+        if (timed && pair.how != Common::kSame) evidence.pairs.push_back(pair);
+      }
+      std::copy(common.only_a.begin(), common.only_a.end(), std::back_inserter(evidence.only_a));
+      std::copy(common.only_b.begin(), common.only_b.end(), std::back_inserter(evidence.only_b));
+    }
+    if (same > evidence.pairs.size()) return;  // Frames of it are in another file (duplicates.h).
+    OrderFit fit;
+    fit.why = "frames between islands may go either way on its line";
+    if (!two_ways(b)) fit = fit_order(run_, b, evidence, options_);
+    const std::string other = run_.files[*air];
+    if (!fit.good) {
+      run_.facts.push_back(run_.files[b] + ", which has no time stamps, is not aligned with " +
+                           other + ": " + fit.why);
+      return;
+    }
+    run_.facts.push_back(run_.files[b] + ", which has no time stamps, is in order with " + other +
+                         " by " + std::to_string(fit.frames) + " common frames, between which " +
+                         std::to_string(fit.between) + " of its " + std::to_string(fit.all) +
+                         " frames lie");
+  }
+
+  // Both directions of a line in one file, and messages of which only the direction tells whether
+  // the sink got or sent them.
+  bool two_ways(std::uint32_t b) const {
+    bool down = false;
+    bool open = false;
+    for (const Observation& seen : run_.seen) {
+      if (seen.place.file != b || seen.kind != Observation::Kind::kSerial) continue;
+      if (run_.taps[seen.tap].has_direction) continue;
+      Net net;
+      down = down || seen.to_mote;
+      open = open || (seen.frame.type == am::kNet && parse_net(seen.frame.payload, net) &&
+                      net.src.devid != machine::kNullDevid && net.dest.devid != machine::kNullDevid);
+    }
+    return down && open;
+  }
+
+  std::optional<std::uint32_t> air_file() const {
     const auto air = std::find_if(files_.begin(), files_.end(),
                                   [](const File& f) { return f.timed && f.radio; });
-    if (air == files_.end()) return;
+    if (air == files_.end()) return std::nullopt;
+    return static_cast<std::uint32_t>(air - files_.begin());
+  }
+
+  // Lines on another clock than the air's first capture.
+  void mark_unordered() {
+    const std::optional<std::uint32_t> air = air_file();
+    if (!air) return;
     for (const Observation& seen : run_.seen) {
       const File& file = files_[seen.place.file];
       if (!seen.node.empty() || seen.kind != Observation::Kind::kSerial) continue;
-      if (!file.timed || file.clock == air->clock) continue;
+      if (!file.timed || file.clock == files_[*air].clock) continue;
       run_.unordered_taps.resize(run_.taps.size());
       run_.unordered_taps[seen.tap] = true;
     }

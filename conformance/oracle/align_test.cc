@@ -115,5 +115,91 @@ TEST(Align, TheFindingsOfSimulatedNetworksStay) {
   std::printf("%zu of %zu aligned\n", aligned, all);
 }
 
+// Failures of a line without stamps, in order by common frames, that the whole has, too.
+struct Kept {
+  std::size_t runs = 0;
+  std::size_t aligned = 0;
+  std::size_t fails = 0;         // Of wholes.
+  std::size_t fails_apart = 0;
+  std::size_t fails_before = 0;  // Without alignment.
+  std::size_t open = 0;          // Inconclusive ones.
+  std::size_t open_before = 0;
+};
+
+std::size_t open_of(const Report& report) {
+  return static_cast<std::size_t>(
+      std::count_if(report.findings.begin(), report.findings.end(), [](const Finding& finding) {
+        return finding.severity == Severity::kInconclusive;
+      }));
+}
+
+void expect_order(const std::string& name, const Apart& parts, const Options& options,
+                  Kept& kept) {
+  const oracle::Run run = put_together(parts);
+  const std::string fact = aligned_fact(run);
+  const Report apart = judge(run, options);
+  const auto fails = findings_of(apart, &parts, true);
+  const auto known = findings_of(judge(whole_run(parts), options), nullptr, true);
+  for (const std::string& one : fails) {
+    EXPECT_TRUE(known.contains(one)) << name << ": " << one << "; " << fact;
+  }
+  AlignOptions off;
+  off.enabled = false;
+  const Report before = judge(put_together(parts, off), options);
+  ++kept.runs;
+  kept.aligned += run.loose.empty() ? 0 : 1;
+  kept.fails += known.size();
+  kept.fails_apart += fails.size();
+  kept.fails_before += findings_of(before, &parts, true).size();
+  kept.open += open_of(apart);
+  kept.open_before += open_of(before);
+}
+
+void print(const char* what, const Kept& kept) {
+  std::printf("%s: %zu of %zu in order; %zu failures, %zu without stamps, %zu without order; "
+              "%zu inconclusive, %zu without order\n",
+              what, kept.aligned, kept.runs, kept.fails, kept.fails_apart, kept.fails_before,
+              kept.open, kept.open_before);
+}
+
+TEST(Align, ALineWithoutStampsIsInOrderWithTheFirmwaresAir) {
+  Kept kept;
+  for (const char* name : kCaptures) {
+    for (const bool strict : {false, true}) {
+      for (const double begin_s : {0.0, 20.0}) {
+        SerialClock clock;
+        clock.stamps = false;
+        clock.begin_s = begin_s;
+        Options options;
+        options.sniffer_complete = options.start_cold = strict;
+        expect_order(name, take_apart(capture(name), clock), options, kept);
+      }
+    }
+  }
+  print("firmware", kept);
+}
+
+TEST(Align, ALineWithoutStampsIsInOrderWithASimulatedAir) {
+  Kept kept;
+  for (const simulator::Scenario& scenario : simulator::scenarios()) {
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+      simulator::ScenarioOptions options;
+      options.seed = seed;
+      options.loss = 0.1 * static_cast<double>(seed % 2);
+      const std::string bytes = simulated(scenario, options);
+      for (const double lost : {0.0, 0.2}) {
+        SerialClock clock;
+        clock.stamps = false;
+        clock.lost = lost;
+        clock.seed = seed;
+        Options strict;
+        strict.sniffer_complete = strict.start_cold = lost == 0;
+        expect_order(scenario.name, take_apart(bytes, clock), strict, kept);
+      }
+    }
+  }
+  print("simulator", kept);
+}
+
 }  // namespace
 }  // namespace rubric::oracle

@@ -31,26 +31,38 @@ struct SerialClock {
   double base_s = 1'000'000'000;  ///< What both clocks show at the start of the run.
 };
 
-/// The files, and the same frames in one file by one clock.
+/// One file of a run.
+struct Part {
+  std::string name;
+  std::string bytes;
+  std::vector<std::uint64_t> frames{0};  ///< Number in the whole by number in this one.
+};
+
+/// The air, then the lines: all of them in one file, or in one each without stamps. And the same
+/// frames in one file by one clock.
 struct Apart {
-  std::string radio;
-  std::string serial;
+  std::vector<Part> parts;
   std::string whole;
-  std::vector<std::uint64_t> radio_frame{0};   ///< Number in `whole` by number in the part.
-  std::vector<std::uint64_t> serial_frame{0};
 };
 
 inline Apart take_apart(std::string_view pcapng, const SerialClock& clock) {
   constexpr double kNs = 1e9;
   Apart out;
-  PcapngWriter radio;
   PcapngWriter whole;
-  PcapngWriter timed;
-  HdlcWriter raw;
-  Writer& serial = clock.stamps ? static_cast<Writer&>(timed) : static_cast<Writer&>(raw);
-  radio.begin(out.radio);
   whole.begin(out.whole);
-  serial.begin(out.serial);
+  std::vector<std::unique_ptr<Writer>> writers;
+  const auto part_of = [&](const std::string& name, InputFormat format) {
+    const auto known = std::find_if(out.parts.begin(), out.parts.end(),
+                                    [&](const Part& part) { return part.name == name; });
+    const auto i = static_cast<std::size_t>(known - out.parts.begin());
+    if (known == out.parts.end()) {
+      out.parts.push_back({name, {}, {0}});
+      writers.push_back(make_writer(format));
+      writers.back()->begin(out.parts[i].bytes);
+    }
+    return i;
+  };
+  part_of("radio", InputFormat::kPcapng);
   std::mt19937_64 random(clock.seed);
   const std::unique_ptr<Reader> reader = make_reader(InputFormat::kPcapng, {});
   std::uint64_t frames = 0;
@@ -64,54 +76,48 @@ inline Apart take_apart(std::string_view pcapng, const SerialClock& clock) {
     now.time_ns = packet.time_ns + std::llround(clock.base_s * kNs);
     if (!whole.write(now, name, out.whole)) return;
     ++frames;
-    if (on_air) {
-      radio.write(now, name, out.radio);
-      out.radio_frame.push_back(frames);
-      return;
+    std::size_t i = 0;
+    if (!on_air) {
+      now.time_ns += std::llround(clock.ahead_s * kNs + at_s * clock.drift_ppm * 1000);
+      i = clock.stamps ? part_of("serial", InputFormat::kPcapng)
+                       : part_of(name, InputFormat::kHdlc);
     }
-    now.time_ns += std::llround(clock.ahead_s * kNs + at_s * clock.drift_ppm * 1000);
-    serial.write(now, name, out.serial);
-    out.serial_frame.push_back(frames);
+    writers[i]->write(now, name, out.parts[i].bytes);
+    out.parts[i].frames.push_back(frames);
   };
   reader->feed({reinterpret_cast<const std::uint8_t*>(pcapng.data()), pcapng.size()},
                PacketSink(take));
   reader->finish(PacketSink(take));
-  radio.finish(out.radio);
   whole.finish(out.whole);
-  serial.finish(out.serial);
+  for (std::size_t i = 0; i < writers.size(); ++i) writers[i]->finish(out.parts[i].bytes);
   return out;
 }
 
-/// Both files as one run.
-inline Run put_together(const Apart& parts, const AlignOptions& options = {},
-                        bool serial_first = false) {
+/// The files as one run.
+inline Run put_together(const Apart& apart, const AlignOptions& options = {}) {
   ReadAs as;
   as.align = options;
   RunReader reader(as);
   std::string error;
-  if (serial_first) reader.add_bytes("serial", parts.serial, error);
-  reader.add_bytes("radio", parts.radio, error);
-  if (!serial_first) reader.add_bytes("serial", parts.serial, error);
+  for (const Part& part : apart.parts) reader.add_bytes(part.name, part.bytes, error);
   return reader.finish();
 }
-inline Run whole_run(const Apart& parts) {
+inline Run whole_run(const Apart& apart) {
   RunReader reader;
   std::string error;
-  reader.add_bytes("whole", parts.whole, error);
+  reader.add_bytes("whole", apart.whole, error);
   return reader.finish();
 }
 
 /// Findings as "N6-FORWARD fail 17 sink of island 11", the frame numbered as in the whole.
-inline std::multiset<std::string> findings_of(const Report& report, const Apart* parts,
+inline std::multiset<std::string> findings_of(const Report& report, const Apart* apart,
                                               bool fails_only) {
   constexpr const char* kSeverities[] = {"note", "weak", "stray", "inconclusive", "fail"};
   std::multiset<std::string> out;
   for (const Finding& finding : report.findings) {
     if (fails_only && finding.severity != Severity::kFail) continue;
     std::uint64_t frame = finding.place.frame;
-    if (parts != nullptr) {
-      frame = (finding.place.file == 0 ? parts->radio_frame : parts->serial_frame).at(frame);
-    }
+    if (apart != nullptr) frame = apart->parts[finding.place.file].frames.at(frame);
     out.insert(std::string(kRequirements[static_cast<std::size_t>(finding.requirement)].id) + " " +
                kSeverities[static_cast<std::size_t>(finding.severity)] + " " +
                std::to_string(frame) + " " + finding.node);
@@ -119,10 +125,12 @@ inline std::multiset<std::string> findings_of(const Report& report, const Apart*
   return out;
 }
 
-/// The sentence of Run::facts on how `file` was aligned; empty where there is none.
-inline std::string aligned_fact(const Run& run, const std::string& file = "serial") {
+/// What Run::facts says of the alignment; empty where there was nothing to do.
+inline std::string aligned_fact(const Run& run) {
   for (const std::string& fact : run.facts) {
-    if (fact.starts_with(file + " is ") && fact.find("aligned with") != fact.npos) return fact;
+    if (fact.find("aligned with") != fact.npos || fact.find("in order with") != fact.npos) {
+      return fact;
+    }
   }
   return {};
 }

@@ -53,7 +53,7 @@ void Context::look_up() {
   if (run.has_time) return;
   std::optional<std::int64_t> order;  // A file without stamps, or all that have some.
   for (const Observation& seen : run.seen) {
-    const std::int64_t its = seen.place.timed() ? -1 : std::int64_t{seen.place.file};
+    const std::int64_t its = seen.place.in_order() ? -1 : std::int64_t{seen.place.file};
     unordered = unordered || (order && *order != its);
     order = its;
     if (its >= 0) untimed_taps[seen.tap] = true;
@@ -63,7 +63,7 @@ void Context::look_up() {
 bool Context::rests_on_order(ReqId requirement, const Place& at, std::uint16_t node) const {
   // A frame that breaks a rule of the format breaks it at any time.
   if (!unordered || is_of(requirement, "WIRE-")) return false;
-  if (!at.timed()) return true;
+  if (!at.in_order()) return true;
   if (node == kNobody) return false;
   // Replies to requests are on the air alone; reports of joins that stand somewhere are not.
   const bool air = is_of(requirement, "J3-") || is_of(requirement, "J10-");

@@ -18,8 +18,11 @@ struct Place {
   std::uint64_t frame = 0;         ///< Number in its file, from 1; 0: none (an end, a whole run).
   std::uint64_t offset_bytes = 0;  ///< Of the frame's record in its file; a line number in .rtr.
   std::int64_t time_us = -1;       ///< Since the first stamp of the run; -1: the file has no time.
+  /// The file has no time; time_us only puts the frame in order with other files (Run::loose).
+  bool loose = false;
 
-  bool timed() const { return time_us >= 0; }
+  bool timed() const { return time_us >= 0 && !loose; }
+  bool in_order() const { return time_us >= 0; }
 };
 
 /// One explanation that the oracle had considered, and how it ended.

@@ -85,6 +85,15 @@ struct LoggedNode {
   std::vector<std::pair<std::int64_t, std::int64_t>> busy_us;  ///< From when to when.
 };
 
+/// Between which times a frame of a file without stamps must lie, by frames that other files have.
+struct LoosePlace {
+  std::uint32_t file = 0;
+  std::uint64_t frame = 0;
+  std::int64_t early_us = 0;
+  std::int64_t late_us = 0;
+  bool between = false;  ///< Two of those frames are around it; else one time is that of the run.
+};
+
 /// Holds what observations point to.
 struct RunStorage;
 
@@ -105,6 +114,9 @@ struct Run {
   /// By tap: its clock has nothing to do with that of the air, as far as anybody knows, and nothing
   /// that rests on the order between the two fails. Empty: there is no such tap.
   std::vector<bool> unordered_taps;
+  /// Of files without stamps that are in order with others, by file and frame. What is blamed on
+  /// anybody stands in each order that these allow.
+  std::vector<LoosePlace> loose;
 };
 
 /// The whole answer.
