@@ -50,15 +50,16 @@ struct Options {
 
 constexpr const char* kFooter =
     "Packets go one at a time. On a serial line each is sent again, as TinyOS hosts do, until the\n"
-    "mote confirms it; what asks for it is confirmed meanwhile. A serial forwarder confirms nothing.\n"
-    "Frames without a packet, such as confirmations in what was decoded, are left out.\n"
+    "mote confirms it; what the mote wants confirmed is confirmed, too. A serial forwarder\n"
+    "confirms nothing. Frames without a packet, as confirmations in a capture, are left out.\n"
     "Examples:\n"
-    "  echo '{\"type\":10,\"value\":12}' | rubric send --as config --to serial@/dev/ttyUSB0:telosb\n"
+    "  echo '{\"type\":10,\"value\":12}' |\n"
+    "    rubric send --as config --to serial@/dev/ttyUSB0:telosb\n"
     "  rubric send commands.jsonl --to sf@localhost:9002 --listen 2   # and what is answered\n"
     "  rubric decode run.pcapng --filter 'direction==inbound' --format jsonl | rubric send\n"
-    "Exit codes: 0 all packets confirmed (or given to the forwarder), 2 usage, 3 some line or file\n"
-    "could not be read or encoded, and was not sent, 4 a packet was not confirmed, or the line cannot\n"
-    "be had or is gone.";
+    "Exit codes: 0 all packets confirmed (or given to the forwarder), 2 usage, 3 some line or\n"
+    "file could not be read or encoded, and was not sent, 4 a packet was not confirmed, or the\n"
+    "line cannot be had or is gone.";
 
 live::Address address_of(const Options& options) {
   const std::string text = options.to.empty() ? live::default_address() : options.to;
@@ -289,8 +290,8 @@ void add_timing_options(CLI::App& app, Options& options) {
   app.add_flag("--keep-going", options.keep_going,
                "Go on behind a packet that is not confirmed");
   app.add_option("--listen", options.listen_s,
-                 "Show what comes back, as rubric decode does, until so many seconds after the last "
-                 "packet")
+                 "Show what comes back, as rubric decode does, until so many seconds after the "
+                 "last packet")
       ->check(CLI::Range(0.0, kListenMostS));
 }
 
@@ -300,7 +301,7 @@ void add_send(CLI::App& app) {
   auto options = std::make_shared<Options>();
   options->lines.to_line = true;
   CLI::App* sub = app.add_subcommand(
-      "send", "Packets to a mote's serial line: JSON lines of 'rubric decode', or fields alone");
+      "send", "Packets to a mote: JSON lines of 'rubric decode', or fields alone");
   sub->footer(kFooter);
   record::add_line_options(*sub, options->lines);
   sub->get_option("FILE")->check([](const std::string& text) {

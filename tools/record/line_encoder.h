@@ -1,5 +1,5 @@
-// From the lines that people give to packets: those of `rubric decode --format jsonl`, or the fields
-// of one message alone.
+// From lines to packets: those of `rubric decode --format jsonl`, or the fields of one message
+// alone.
 #pragma once
 
 #include <CLI/CLI.hpp>
