@@ -3,7 +3,7 @@
 import dataclasses
 import re
 
-from book import markup
+from book import markup, texts
 from book.html import slug
 
 _PART = re.compile(r"<!-- part: (.+) -->")
@@ -30,7 +30,7 @@ def read(folder, root, mistakes):
     part = ""
     for path in sorted(folder.glob("[0-9][0-9]-*.md")):
         file = str(path.relative_to(root)) if path.is_relative_to(root) else path.name
-        pieces = list(markup.split(path.read_text(encoding="utf-8").splitlines()))
+        pieces = list(markup.split(texts.lines_of(path, root, mistakes)))
         found = _PART.fullmatch(pieces[0][2].strip()) if pieces and pieces[0][1] == "text" else None
         if found:
             part = found[1]
