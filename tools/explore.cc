@@ -23,6 +23,7 @@
 #include "tools/cli/input.h"
 #include "tools/cli/output.h"
 #include "tools/cli/usage.h"
+#include "tools/explore_transitions.h"
 
 namespace rubric::tools {
 namespace {
@@ -43,6 +44,7 @@ struct Options {
   std::string out;
   std::string weakness_out;
   std::vector<std::string> properties;
+  TransitionOptions transitions;
   bool reboot = false;
   unsigned requests = 0;  // 0: as the profile says.
   unsigned acks = 0;
@@ -76,12 +78,23 @@ template <class Table>
   usage(fmt::format("unknown {} '{}'{}", what, word, reflect::did_you_mean(word, names)));
 }
 
+machine::Profile chosen_profile(const Options& options) {
+  const machine::NamedProfile* const profile = machine::find_profile(options.profile);
+  if (profile == nullptr) unknown("profile", options.profile, machine::kProfiles);
+  return profile->profile;
+}
+
+// Null: none is asked for.
+const flaws::Flaw* chosen_flaw(const Options& options) {
+  const flaws::Flaw* const flaw = flaws::find(options.flaw);
+  if (flaw == nullptr && !options.flaw.empty()) unknown("flaw", options.flaw, flaws::all());
+  return flaw;
+}
+
 // What the options' words mean.
 explorer::Options resolve(const Options& options) {
   explorer::Options network = options.network;
-  const machine::NamedProfile* const profile = machine::find_profile(options.profile);
-  if (profile == nullptr) unknown("profile", options.profile, machine::kProfiles);
-  network.profile = profile->profile;
+  network.profile = chosen_profile(options);
   if (options.requests != 0) {
     network.profile.join_requests_max = static_cast<std::uint8_t>(options.requests);
   }
@@ -94,9 +107,7 @@ explorer::Options resolve(const Options& options) {
   // Every message that is heard again is answered by a new number: without a limit there is no end.
   const bool endless = network.scope == Scope::kFull && network.dup && network.dups == 0;
   if (endless) network.dups = 1;
-  if (!options.flaw.empty()) {
-    const flaws::Flaw* const flaw = flaws::find(options.flaw);
-    if (flaw == nullptr) unknown("flaw", options.flaw, flaws::all());
+  if (const flaws::Flaw* const flaw = chosen_flaw(options)) {
     if (flaw->seen == flaws::Seen::kTime) {
       usage(fmt::format("flaw {} shows only where time runs; time is abstract here", flaw->name));
     }
@@ -272,6 +283,14 @@ std::string trace_text(explorer::Nodes& nodes, const Options& options, const exp
 }
 
 void run(const Options& options) {
+  if (options.transitions.wanted) {
+    const flaws::Flaw* const flaw = chosen_flaw(options);
+    return print_transitions(options.transitions,
+                             {options.profile, chosen_profile(options), options.flaw,
+                              flaw == nullptr ? machine::step : flaw->step},
+                             options.format, options.out);
+  }
+  if (options.format == "dot") usage("--format dot draws --transitions");
   const auto nodes = std::make_unique<explorer::Nodes>(resolve(options));
   ProgressLine line(options.format == "text");
   const Result result =
@@ -368,10 +387,11 @@ void add_explore(CLI::App& app) {
                   "with --calls 2, what needs messages with --scope full");
   sub->add_option("--profile", options->profile, "paper or deployed")->capture_default_str();
   add_bounds(*sub, *options);
-  sub->add_option("--format", options->format, "text or json")
-      ->check(CLI::IsMember({"text", "json"}))
+  sub->add_option("--format", options->format, "text or json; transitions also as dot (Graphviz)")
+      ->check(CLI::IsMember({"text", "json", "dot"}))
       ->capture_default_str();
   sub->add_option("--out", options->out, "File for the shortest trace; default stdout");
+  add_transition_options(*sub, options->transitions);
   sub->add_option("--out-known", options->weakness_out,
                   "File for the shortest way to a known weakness");
   sub->callback([options] { run(*options); });
