@@ -11,8 +11,8 @@ set(include_dir ${CMAKE_INSTALL_INCLUDEDIR}/rubric)
 # of codec and conformance belong to it, without those of tests, fuzzing, commands and compiler.
 get_property(libraries GLOBAL PROPERTY RUBRIC_LIBRARIES)
 list(FILTER libraries EXCLUDE REGEX
-  "^firmware_|^rubric_(compiler|commands|cli|format|forward|live|fuzz.*|legal.*|.*mutator|record.*)$")
-list(FILTER libraries EXCLUDE REGEX "^rubric_(cpp_node.*|lines|script)$")
+  "^firmware_|^rubric_(compiler|commands|cli|format|fuzz.*|legal.*|.*mutator|record.*)$")
+list(FILTER libraries EXCLUDE REGEX "^rubric_(cpp_node.*|forward|lines|live|script)$")
 add_library(rubric_conformance INTERFACE)
 target_link_libraries(rubric_conformance INTERFACE ${libraries})
 set_target_properties(rubric_conformance PROPERTIES EXPORT_NAME conformance)
