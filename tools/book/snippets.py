@@ -122,7 +122,9 @@ class Place:
         """The block as it would have to be shown."""
         out = ""
         for command, _ in commands(text):
-            _, printed = self.run(["bash", "-c", command])
+            status, printed = self.run(["bash", "-c", command])
+            if status > 128:
+                raise Wrong(f"{command}ends with {status}, as what a signal ends does\n{printed}")
             if printed and not printed.endswith("\n"):
                 printed += "\n"
             out += "$ " + command + printed
