@@ -1,0 +1,195 @@
+#!/usr/bin/env python3
+"""Where `rubric forward` has its packets from, and where it listens.
+
+Usage: forward_source_test.py RUBRIC. All of it on this host, bounded in time.
+"""
+
+import os
+import pathlib
+import pty
+import socket
+import subprocess
+import sys
+import tempfile
+import tty
+import unittest
+
+from forward_testing import PATIENCE_S, RUBRIC, Client, Mote, Running, from_mote, hdlc, packet
+
+
+class Sources(unittest.TestCase):
+    maxDiff = 2000
+
+    def test_a_source_that_goes(self):
+        mote = Mote(self).on_a_port()
+        running = Running(self, mote.source)
+        mote.accept()
+        client = Client(self, running)
+        wanted = [packet(number, 100) for number in range(200)]
+        mote.say(b"".join(map(from_mote, wanted)))
+        mote.connection.close()
+        self.assertEqual(client.packets(200), wanted)
+        self.assertTrue(client.is_cut_off())
+        code, summary = running.end(None)
+        self.assertEqual(code, 3)
+        self.assertIn("200 packets from it", summary)
+        running.wait_for(f"^rubric: {mote.source}: the line broke: the other end closed it$")
+
+    def test_a_source_that_comes_back(self):
+        mote = Mote(self).on_a_port()
+        running = Running(self, mote.source, "--reconnect")
+        mote.accept()
+        client = Client(self, running)
+        for number in range(2):
+            mote.say(from_mote(packet(number)))
+            self.assertEqual(client.packet(), packet(number))
+            if number == 1:  # It goes with a packet that it has not confirmed.
+                client.give(packet(7))
+                self.assertEqual(mote.frame()[2:], packet(7))
+            mote.connection.close()
+            mote.accept()
+        self.assertEqual(mote.confirmed_packet(), packet(7))
+        mote.say(from_mote(packet(3)))
+        self.assertEqual(client.packet(), packet(3))
+        code, summary = running.end()
+        self.assertEqual(code, 0)
+        self.assertRegex(summary, ": 3 packets from it .*, 1 to it; 1 clients, 0 cut off$")
+        self.assertEqual(sum("the other end closed it" in line for line in running.complaints), 2)
+        self.assertEqual(sum(line.endswith(": again") for line in running.complaints), 2)
+
+    def test_a_device_that_is_unplugged(self):
+        with tempfile.TemporaryDirectory(prefix="rubric-forward-") as folder:
+            name = pathlib.Path(folder) / "ttyUSB0"
+            running = None
+            for number in range(2):
+                master, slave = pty.openpty()
+                tty.setraw(master)
+                name.symlink_to(os.ttyname(slave))
+                if running is None:
+                    running = Running(self, f"serial@{name}:57600", "--reconnect")
+                    client = Client(self, running)
+                else:
+                    running.wait_for(": again")
+                os.write(master, from_mote(packet(number)))
+                self.assertEqual(client.packet(), packet(number))
+                name.unlink()
+                os.close(slave)
+                os.close(master)
+            self.assertEqual(running.end()[0], 0)
+
+    def test_sources_that_cannot_be(self):
+        for source, code, what in (("serial@/no/such:57600", 3, "cannot be opened"),
+                                   ("sf@127.0.0.1:1", 3, "cannot connect"),
+                                   ("serial@/dev/ttyUSB0", 2, "expected serial@DEVICE:BAUD"),
+                                   ("capture.pcapng", 2, "expected serial@DEVICE:BAUD, network")):
+            done = subprocess.run([RUBRIC, "forward", source, "--port", "0"], capture_output=True,
+                                  text=True, check=False, timeout=PATIENCE_S)
+            self.assertEqual((done.returncode, done.stdout), (code, ""), source)
+            self.assertIn(what, done.stderr)
+        environment = {key: value for key, value in os.environ.items() if key != "MOTECOM"}
+        done = subprocess.run([RUBRIC, "forward", "--port", "0"], capture_output=True, text=True,
+                              check=False, timeout=PATIENCE_S, env=environment)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("SOURCE", done.stderr)
+
+    def test_a_source_that_is_no_forwarder(self):
+        mote = Mote(self).on_a_port()
+        running = subprocess.Popen([RUBRIC, "forward", "--port", "0",
+                                    mote.source.replace("network", "sf")],
+                                   stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+        mote.accept()
+        mote.say(b"SSH-2.0")
+        out, err = running.communicate(timeout=PATIENCE_S)
+        self.assertEqual((running.returncode, out), (3, ""))
+        self.assertIn("the other end is no serial forwarder: it does not begin with 55 20", err)
+
+    def test_a_forwarder_of_a_forwarder(self):
+        mote = Mote(self).on_a_terminal()
+        first = Running(self, mote.source)
+        second = Running(self, f"sf@127.0.0.1:{first.port}")
+        near, far = Client(self, first), Client(self, second)
+        wanted = [packet(number) for number in range(100)]
+        mote.say(b"".join(map(from_mote, wanted)))
+        self.assertEqual(near.packets(100), wanted)
+        self.assertEqual(far.packets(100), wanted)
+        far.give(packet(1))
+        near.give(packet(2))
+        self.assertEqual(sorted(mote.confirmed_packet() for _ in range(2)), [packet(1), packet(2)])
+        self.assertEqual(first.end()[0], 0)
+        self.assertEqual(second.end(None)[0], 3)
+
+    def test_a_forwarder_of_itself(self):
+        with socket.create_server(("127.0.0.1", 0)) as free:
+            port = free.getsockname()[1]
+        done = subprocess.run([RUBRIC, "forward", f"sf@localhost:{port}", "--port", str(port)],
+                              capture_output=True, text=True, check=False, timeout=PATIENCE_S)
+        self.assertEqual(done.returncode, 3)
+        self.assertIn("this is where this forwarder itself listens", done.stderr)
+
+    def test_a_port_that_is_taken(self):
+        mote = Mote(self).on_a_terminal()
+        running = Running(self, mote.source)
+        done = subprocess.run([RUBRIC, "forward", mote.source, "--port", str(running.port)],
+                              capture_output=True, text=True, check=False, timeout=PATIENCE_S)
+        self.assertEqual(done.returncode, 3)
+        self.assertIn(f"cannot listen at 127.0.0.1, port {running.port}: Address already in use",
+                      done.stderr)
+
+    def test_other_hosts_are_let_in_only_aloud(self):
+        mote = Mote(self).on_a_terminal()
+        running = Running(self, mote.source)
+        self.assertEqual(running.host, "127.0.0.1")
+        self.assertEqual(running.end()[0], 0)
+        self.assertFalse(any("WARNING" in line for line in running.complaints))
+        running = Running(self, mote.source, "--bind", "0.0.0.0")
+        running.wait_for("WARNING: 0.0.0.0:.* can be reached from other hosts")
+        self.assertEqual(running.end()[0], 0)
+
+    def test_ipv6(self):
+        try:
+            socket.create_server(("::1", 0), family=socket.AF_INET6).close()
+        except OSError:
+            self.skipTest("this host has no IPv6")
+        mote = Mote(self).on_a_terminal()
+        running = Running(self, mote.source, "--bind", "::1")
+        client = Client(self, running)
+        mote.say(from_mote(packet(1)))
+        self.assertEqual(client.packet(), packet(1))
+
+    def test_listen_only(self):
+        mote = Mote(self).on_a_port()
+        running = Running(self, mote.source, "--listen-only")
+        mote.accept()
+        client = Client(self, running)
+        client.give(packet(1))
+        client.give(packet(2))
+        mote.say(hdlc(b"\x44\x2a" + packet(3)))
+        self.assertEqual(client.packet(), packet(3))
+        Client(self, running)
+        self.assertRegex(running.end()[1], ", 0 to it, 2 not sent; ")
+        self.assertEqual(mote.connection.read(100), b"")
+
+    def test_what_goes_by_is_kept(self):
+        with tempfile.TemporaryDirectory(prefix="rubric-forward-") as folder:
+            kept = pathlib.Path(folder) / "kept.pcapng"
+            mote = Mote(self).on_a_port()
+            running = Running(self, mote.source, "--write", kept)
+            mote.accept()
+            client = Client(self, running)
+            mote.say(from_mote(packet(1)))
+            self.assertEqual(client.packet(), packet(1))
+            client.give(packet(2))
+            self.assertEqual(mote.confirmed_packet(), packet(2))
+            mote.say(from_mote(packet(3)))
+            self.assertEqual(client.packet(), packet(3))
+            self.assertEqual(running.end()[0], 0)
+            out = subprocess.run([RUBRIC, "decode", kept, "--format", "csv", "--fields",
+                                  "direction,frame.kind"],
+                                 capture_output=True, text=True, check=False).stdout
+        self.assertEqual(out.split()[1:],
+                         ["outbound,69", "inbound,68", "outbound,67", "outbound,69"])
+
+
+if __name__ == "__main__":
+    del sys.argv[1]
+    unittest.main()

@@ -1,0 +1,217 @@
+#!/usr/bin/env python3
+"""The clients of `rubric forward`: good ones, bad ones, slow ones, and others' programs.
+
+Usage: forward_test.py RUBRIC. All of it on this host, bounded in time.
+"""
+
+import socket
+import struct
+import subprocess
+import sys
+import unittest
+
+from forward_testing import PATIENCE_S, RUBRIC, Client, Mote, Running, from_mote, hdlc, packet
+
+SOCKET_BYTES = 4096  # Of those who are slow, so that the kernel keeps little for them.
+
+
+class Clients(unittest.TestCase):
+    maxDiff = 2000
+
+    def test_all_clients_get_the_same_in_order(self):
+        mote = Mote(self).on_a_terminal()
+        running = Running(self, mote.source)
+        clients = [Client(self, running) for _ in range(5)]
+        wanted = [packet(number, 4 * (number % 20)) for number in range(500)]
+        for data in wanted:
+            mote.say(from_mote(data))
+        for client in clients:
+            self.assertEqual(client.packets(len(wanted)), wanted)
+        late = Client(self, running)
+        mote.say(from_mote(packet(1000)))
+        for client in [*clients, late]:
+            self.assertEqual(client.packet(), packet(1000))
+        code, summary = running.end()
+        self.assertEqual((code, summary),
+                         (0, f"rubric: {mote.source}: 501 packets from it (0 malformed frames), "
+                             "0 to it; 6 clients, 0 cut off"))
+
+    def test_malformed_frames_are_counted_and_not_passed_on(self):
+        mote = Mote(self).on_a_port()
+        running = Running(self, mote.source)
+        mote.accept()
+        client = Client(self, running)
+        good = from_mote(packet(1))
+        mote.say(good[:9] + bytes([good[9] ^ 1]) + good[10:] + b"\x7e\x45\x7e" +
+                 b"\x7e" + b"\x45" * 300 + b"\x7e" + hdlc(b"\x43\x07") + from_mote(packet(2)))
+        self.assertEqual(client.packet(), packet(2))
+        self.assertRegex(running.end()[1], r": 1 packets from it \(3 malformed frames\), 0 to it")
+
+    def test_a_client_that_stops_reading_is_cut_off_alone(self):
+        mote = Mote(self).on_a_port()
+        running = Running(self, mote.source, "--buffer", "64")
+        mote.accept()
+        good = Client(self, running)
+        stalled = Client(self, running, receive_bytes=SOCKET_BYTES)
+        total = 0
+        while not any("cut off" in line for line in running.complaints):
+            batch = range(total, total + 200)
+            mote.say(b"".join(from_mote(packet(number, 100)) for number in batch))
+            self.assertEqual(good.packets(200), [packet(number, 100) for number in batch])
+            total += 200
+            self.assertLess(total, 100_000, "a client that takes nothing is served for ever")
+        self.assertRegex(running.wait_for("cut off"),
+                         f"^rubric: client {stalled.name} is cut off: it is \\d+ bytes behind and "
+                         r"has taken nothing for \d+\.\d s$")
+        self.assertTrue(stalled.is_cut_off())
+        mote.say(from_mote(packet(total)))
+        self.assertEqual(good.packet(), packet(total))
+        self.assertRegex(running.end()[1], f": {total + 1} packets .*; 2 clients, 1 cut off$")
+
+    def test_a_packet_for_the_mote_is_sent_until_it_is_confirmed(self):
+        mote = Mote(self).on_a_terminal()
+        running = Running(self, mote.source, "--ack-wait", "100")
+        client = Client(self, running)
+        client.give(packet(1))
+        client.give(packet(2))
+        first = mote.frame()
+        second = mote.frame()  # Since nothing confirmed the first.
+        self.assertEqual((first[0], first[1]), (0x44, 14))
+        self.assertEqual((second[0], second[1]), (0x44, 15))
+        self.assertEqual({first[2:], second[2:]}, {packet(1)})
+        mote.say(hdlc(bytes([0x43, second[1]])))
+        content = mote.frame()
+        while content[2:] == packet(1):  # It may have been sent once more meanwhile.
+            content = mote.frame()
+        self.assertEqual(content[2:], packet(2))
+        mote.say(hdlc(bytes([0x43, content[1]])))
+        client.give(packet(3))
+        self.assertEqual(mote.confirmed_packet()[:1], b"\x00")
+        mote.say(from_mote(packet(4)))
+        self.assertEqual(client.packet(), packet(4))
+        self.assertEqual(running.end()[0], 0)
+
+    def test_packets_that_ask_for_it_are_confirmed(self):
+        mote = Mote(self).on_a_terminal()
+        running = Running(self, mote.source)
+        client = Client(self, running)
+        mote.say(hdlc(b"\x44\x2a" + packet(1)))
+        self.assertEqual(mote.frame(), b"\x43\x2a")
+        self.assertEqual(client.packet(), packet(1))
+        self.assertEqual(running.end()[0], 0)
+
+    def test_clients_take_turns(self):
+        mote = Mote(self).on_a_port()
+        running = Running(self, mote.source)
+        mote.accept()
+        greedy, modest = Client(self, running), Client(self, running)
+        for number in range(30):
+            greedy.give(packet(number))
+        self.assertEqual(mote.frame()[0], 0x44)  # It waits for its confirmation, so all others wait.
+        for number in range(100, 103):
+            modest.give(packet(number))
+        Client(self, running)  # What the others sent was read before this one was let in.
+        mote.say(hdlc(bytes([0x43, 14])))
+        order = [mote.confirmed_packet() for _ in range(32)]
+        self.assertEqual([data for data in order if data in map(packet, range(100))],
+                         [packet(number) for number in range(1, 30)])
+        places = [order.index(packet(number)) for number in range(100, 103)]
+        self.assertEqual(places, sorted(places))
+        self.assertLess(places[-1], 8, "the packets of one keep those of the other waiting")
+
+    def test_a_mote_that_confirms_nothing(self):
+        mote = Mote(self).on_a_port()
+        running = Running(self, mote.source, "--ack-wait", "20", "--tries", "3")
+        mote.accept()
+        client = Client(self, running)
+        for number in range(4):
+            client.give(packet(number))
+        tries = [mote.frame() for _ in range(12)]
+        self.assertEqual([content[2:] for content in tries],
+                         [packet(number) for number in range(4) for _ in range(3)])
+        running.wait_for("does not confirm a packet")
+        mote.say(from_mote(packet(9)))
+        self.assertEqual(client.packet(), packet(9))
+        client.give(packet(5))
+        while mote.confirmed_packet() != packet(5):
+            pass
+        running.wait_for("the mote confirms packets again")
+        code, summary = running.end()
+        self.assertEqual(code, 0)
+        self.assertRegex(summary, r", 1 to it, 4 not confirmed; 1 clients, 0 cut off$")
+        self.assertEqual(len(running.complaints), 3, running.complaints)
+
+    def test_bad_clients_are_cut_off_and_others_are_not(self):
+        mote = Mote(self).on_a_port()
+        running = Running(self, mote.source, "--timeout", "1")
+        mote.accept()
+        good = Client(self, running)
+        for sent, why in ((b"G", "begins with 47, not with 55 20"),
+                          (b"U\x1f", "begins with 55 1f, not with 55 20"),
+                          (b"U \x00", "sent a packet of no bytes"),
+                          (b"U \xfd" + bytes(253), "sent a packet of 253 bytes; the source takes 252"),
+                          (b"U", "has sent no handshake for"),
+                          (b"", "has sent no handshake for"),
+                          (b"U \x05\x00\x01", "has sent no more of a packet for")):
+            bad = Client(self, running, hello=sent)
+            running.wait_for(f"client {bad.name} is cut off: it {why}")
+            self.assertTrue(bad.is_cut_off())
+        left = Client(self, running, hello=b"U \x05\x00")
+        left.socket.close()
+        running.wait_for(f"client {left.name} is cut off: it left within a packet")
+        reset = Client(self, running)
+        reset.socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+        reset.socket.close()
+        newer = Client(self, running, hello=b"U!")  # A later version is none of ours, but no fault.
+        mote.say(from_mote(packet(1)))
+        self.assertEqual([good.packet(), newer.packet()], [packet(1)] * 2)
+        newer.give(packet(2))
+        self.assertEqual(mote.confirmed_packet(), packet(2))
+        self.assertRegex(running.end()[1], "; 11 clients, 8 cut off$")
+
+    def test_what_a_client_sent_before_it_left_is_sent(self):
+        mote = Mote(self).on_a_port()
+        running = Running(self, mote.source)
+        mote.accept()
+        for number in range(3):
+            client = Client(self, running)
+            client.give(packet(number))
+            client.give(packet(number + 10))
+            client.socket.close()
+        found = sorted(mote.confirmed_packet() for _ in range(6))
+        self.assertEqual(found, [packet(number) for number in (0, 1, 2, 10, 11, 12)])
+
+    def test_too_many_clients(self):
+        mote = Mote(self).on_a_port()
+        running = Running(self, mote.source, "--clients", "2", "--verbose")
+        mote.accept()
+        clients = [Client(self, running) for _ in range(2)]
+        for _ in range(3):
+            refused = socket.create_connection((running.host, running.port), PATIENCE_S)
+            self.addCleanup(refused.close)
+            self.assertEqual(refused.recv(2), b"")
+        running.wait_for("is refused: there are 2 already")
+        clients[0].socket.close()
+        running.wait_for(f"client {clients[0].name} has left")
+        third = Client(self, running)
+        mote.say(from_mote(packet(1)))
+        self.assertEqual([clients[1].packet(), third.packet()], [packet(1)] * 2)
+        self.assertRegex(running.end()[1], "; 3 clients, 0 cut off, 3 refused$")
+        self.assertEqual(sum("is refused" in line for line in running.complaints), 1)
+
+    def test_rubric_decode_is_a_client(self):
+        mote = Mote(self).on_a_terminal()
+        running = Running(self, mote.source, "--verbose")
+        with subprocess.Popen([RUBRIC, "decode", f"sf@127.0.0.1:{running.port}", "--count", "3",
+                               "--format", "csv", "--fields", "message,am.type"],
+                              stdout=subprocess.PIPE, text=True) as decode:
+            running.wait_for("has come")
+            mote.say(from_mote(bytes.fromhex("00ffff000003002514000c")) * 3)
+            out, _ = decode.communicate(timeout=PATIENCE_S)
+        self.assertEqual(out.split()[1:], ["config,37"] * 3)
+        running.wait_for("has left")
+
+
+if __name__ == "__main__":
+    del sys.argv[1]
+    unittest.main()
