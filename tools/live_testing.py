@@ -199,6 +199,7 @@ class Mote:
 
 class LiveTest(unittest.TestCase):
     maxDiff = 2000
+    program = Running
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory(prefix="rubric-live-")
@@ -206,7 +207,7 @@ class LiveTest(unittest.TestCase):
         self.folder = pathlib.Path(folder.name)
 
     def started(self, *arguments, **more):
-        running = Running(*arguments, **more)
+        running = self.program(*arguments, **more)
         self.addCleanup(running.process.stdout.close)
         self.addCleanup(running.process.stderr.close)
         if running.process.stdin:
