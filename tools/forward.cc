@@ -72,7 +72,7 @@ void add_client_options(CLI::App& command, ForwardOptions& options) {
       ->check(CLI::Range(1, 10'000))
       ->capture_default_str();
   command.add_option("--buffer", options.buffer_kib,
-                     "KiB that a client may be behind before it is cut off; of all clients together")
+                     "KiB that a client may be behind; then it is cut off")
       ->check(CLI::Range(64, 1 << 20))
       ->capture_default_str();
   command.add_option("--timeout", options.timeout_s,
@@ -118,14 +118,14 @@ void add_forward(CLI::App& app) {
       ->check(cli::given());
   command->add_flag("--verbose", options->server.verbose, "Say which clients come and leave");
   command->footer(
-      "The first line on stdout says where it listens: 'listening on 127.0.0.1:9002'. Everybody who\n"
-      "can connect there reads all packets and can send to the motes.\n"
+      "The first line on stdout says where it listens: 'listening on 127.0.0.1:9002'. Everybody\n"
+      "who can connect there reads all packets and can send to the motes.\n"
       "Examples:\n"
       "  rubric forward serial@/dev/ttyUSB0:telosb             # until Ctrl-C\n"
       "  rubric decode sf@localhost:9002                       # one of many clients\n"
       "  rubric forward sf@lab:9002 --port 9003 --reconnect --write run.pcapng\n"
-      "Exit codes: 0 ended by Ctrl-C, 2 usage, 3 the source is gone, the port is taken or the capture\n"
-      "cannot be written.");
+      "Exit codes: 0 ended by Ctrl-C, 2 usage, 3 the source is gone, the port is taken or the\n"
+      "capture cannot be written.");
   command->callback([options] { cli::exit_with(run(*options)); });
 }
 
