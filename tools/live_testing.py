@@ -89,6 +89,9 @@ class Running:
         return [json.loads(line) for line in self.text_lines(count)]
 
     def end(self, signal_number=signal.SIGINT):
+        """Exit code and the rest of stdout and stderr. None: it ends by itself."""
+        if signal_number is None and self.process.stdin:
+            self.process.wait(PATIENCE_S)  # Before its stdin ends.
         if signal_number is not None:
             self.process.send_signal(signal_number)
         if self.process.stdin and self.process.stdin.closed:

@@ -11,7 +11,7 @@ import threading
 import time
 import unittest
 
-from live_testing import PATIENCE_S, RUBRIC, hdlc, lines_of
+from live_testing import ACK, PACKET_NOACK, PATIENCE_S, RUBRIC, hdlc, lines_of
 from send_testing import (CLEAN, INPUT, LONG_MS, NOT_SENT, USAGE, Base, config, confirms, line,
                           send)
 
@@ -129,6 +129,29 @@ class SerialForwarder(Base):
         code, _, err = running.end()
         self.assertEqual(code, CLEAN, err)
         self.assertEqual(err, "   1  config          sent\nrubric: 1 packet sent, 1 came\n")
+
+    def test_through_rubric_forward_to_a_mote(self):
+        """More packets than wait there at a time, and what the mote says to the last."""
+        last = 199
+
+        def answer(_, seq, packet):
+            said = hdlc(bytes([PACKET_NOACK]) + config(7)) if packet == config(last) else b""
+            return hdlc(bytes([ACK, seq])) + said
+
+        to, mote = self.mote(answer)
+        forward = self.started("forward", to, "--port", "0")
+        port = forward.text_lines(1)[0].rpartition(":")[2]
+        running = self.started("send", "--as", "config", "--to", f"sf@127.0.0.1:{port}",
+                               "--listen", "600", "--format", "jsonl", stdin=subprocess.PIPE)
+        running.process.stdin.write("".join(line(i) for i in range(last + 1)).encode())
+        running.process.stdin.close()
+        self.assertEqual(running.lines(1)[0]["fields"]["value"], 7)
+        code, _, err = running.end()
+        self.assertEqual(code, CLEAN, err)
+        self.assertEqual(forward.end()[0], CLEAN)
+        mote.end()
+        self.assertEqual([packet for _, packet in mote.packets],
+                         [config(i) for i in range(last + 1)])
 
     def test_who_is_no_forwarder(self):
         with socket.create_server(("127.0.0.1", 0)) as listener:
