@@ -59,69 +59,118 @@ std::string json_of(const Diagram& diagram) {
 // HTML-like labels of Graphviz.
 std::string html(std::string_view text) {
   std::string out;
-  for (const char c : report::xml_text(text)) out += c == '\n' ? std::string("<BR/>") : std::string(1, c);
+  for (const char c : report::xml_text(text)) {
+    if (c == '\n') {
+      out += "<BR/>";
+    } else {
+      out += c;
+    }
+  }
   return out;
 }
+
+constexpr std::string_view kBreak = "<BR ALIGN=\"LEFT\"/>";
 
 std::string small(const std::string& text) {
   return "<FONT POINT-SIZE=\"10\">" + text + "</FONT>";
 }
 
-// A trigger in bold, what comes out, and the rules.
-std::string label_of(const Transition& t) {
+std::string guarded(const Transition& t) {
+  std::string out = t.trigger;
+  if (!t.guards.empty()) out += fmt::format(" [{}]", fmt::join(t.guards, " or "));
+  return out;
+}
+
+// Lines: a trigger in bold with its guard, what comes out, the rules.
+std::string lines_of(const Transition& t) {
   std::string out = "<B>" + html(t.trigger) + "</B>";
   if (!t.guards.empty()) out += html(fmt::format(" [{}]", fmt::join(t.guards, " or ")));
-  out += "<BR ALIGN=\"LEFT\"/>";
+  out += kBreak;
   if (!t.outputs.empty()) {
-    out += html(fmt::format("  / {}", fmt::join(t.outputs, ", "))) + "<BR ALIGN=\"LEFT\"/>";
+    out += html(fmt::format("  / {}", fmt::join(t.outputs, ", "))) + std::string(kBreak);
   }
   if (!t.rules.empty()) {
-    out += "  " + small(html(fmt::format("{}", fmt::join(t.rules, " ")))) + "<BR ALIGN=\"LEFT\"/>";
+    out += small(html(fmt::format("  {}", fmt::join(t.rules, " ")))) + std::string(kBreak);
   }
   return out;
 }
 
-// A state's name, and below it what has no effect there.
+std::string table(const std::string& rows) {
+  return "<TABLE BORDER=\"0\" CELLBORDER=\"0\" CELLPADDING=\"4\">" + rows + "</TABLE>";
+}
+
+std::string cell(const std::string& lines) {
+  return "<TR><TD ALIGN=\"LEFT\" BALIGN=\"LEFT\">" + lines + "</TD></TR>";
+}
+
+// A state's name, what happens in it without leaving it, and what has no effect there.
 std::string node_of(const Diagram& diagram, std::size_t state) {
-  std::string rows;
+  std::string inside;
+  std::string ignored;
   for (const Transition& t : diagram.transitions) {
-    if (t.from != state || !t.ignored) continue;
-    rows += small(html(trigger_of(t)) + (t.rules.empty() ? "" : "  ") +
-                  html(fmt::format("{}", fmt::join(t.rules, " ")))) +
-            "<BR ALIGN=\"LEFT\"/>";
+    if (t.from != state || t.to != state) continue;
+    if (t.ignored) {
+      ignored += small(html(fmt::format("{}  {}", guarded(t), fmt::join(t.rules, " "))));
+      ignored += kBreak;
+    } else {
+      inside += lines_of(t);
+    }
   }
-  std::string out = fmt::format(
-      "  s{} [label=<<TABLE BORDER=\"0\" CELLBORDER=\"0\" CELLPADDING=\"3\"><TR><TD><B>{}</B></TD>"
-      "</TR>",
-      state, html(diagram.states[state]));
-  if (!rows.empty()) {
-    out += fmt::format("<HR/><TR><TD ALIGN=\"LEFT\" BALIGN=\"LEFT\">{}<BR ALIGN=\"LEFT\"/>{}</TD></TR>",
-                       small("ignores"), rows);
+  std::string rows = "<TR><TD><B>" + html(diagram.states[state]) + "</B></TD></TR>";
+  if (!inside.empty()) rows += "<HR/>" + cell(inside);
+  if (!ignored.empty()) rows += "<HR/>" + cell(small("ignored:") + std::string(kBreak) + ignored);
+  return fmt::format("  s{} [label=<{}>];\n", state, table(rows));
+}
+
+using Edges = std::map<std::pair<std::size_t, std::size_t>, std::vector<const Transition*>>;
+
+// Takes out what leads from every other state to the first, such as a reboot; its lines.
+std::string from_everywhere(Edges& edges, const std::vector<bool>& reached) {
+  std::string out;
+  const auto others = std::count(reached.begin() + 1, reached.end(), true);
+  std::map<std::string, std::size_t> counts;
+  for (const auto& [ends, all] : edges) {
+    for (const Transition* t : all) counts[lines_of(*t)] += ends.second == 0 ? 1 : 0;
   }
-  return out + "</TABLE>>];\n";
+  for (const auto& [lines, count] : counts) {
+    if (others < 2 || count != static_cast<std::size_t>(others)) continue;
+    out += lines;
+    for (auto& [ends, all] : edges) {
+      if (ends.second != 0) continue;
+      std::erase_if(all, [&](const Transition* t) { return lines_of(*t) == lines; });
+    }
+  }
+  return out;
 }
 
 std::string dot_of(const Diagram& diagram) {
   std::string out = fmt::format(
       "digraph {} {{\n"
-      "  graph [rankdir=TB, bgcolor=transparent, nodesep=0.6, ranksep=0.5, tooltip={}];\n"
-      "  node [shape=box, style=rounded, fontname=\"Helvetica\", fontsize=13];\n"
-      "  edge [fontname=\"Helvetica\", fontsize=12, arrowsize=0.8];\n"
-      "  start [shape=point, width=0.12];\n  start -> s0;\n",
+      "  graph [rankdir=TB, bgcolor=transparent, nodesep=0.5, ranksep=0.45, tooltip={}];\n"
+      "  node [shape=box, style=rounded, fontname=\"Courier\", fontsize=12, margin=\"0.05\"];\n"
+      "  edge [fontname=\"Courier\", fontsize=12, arrowsize=0.8];\n"
+      "  start [shape=point, width=0.12];\n",
       diagram.name, json_string(diagram.title));
   std::vector<bool> reached(diagram.states.size());
   reached[0] = true;
-  std::map<std::pair<std::size_t, std::size_t>, std::vector<std::string>> edges;
+  Edges edges;
   for (const Transition& t : diagram.transitions) {
     reached[t.from] = reached[t.to] = true;
-    if (!t.ignored) edges[{t.from, t.to}].push_back(label_of(t));
+    if (t.from != t.to) edges[{t.from, t.to}].push_back(&t);
   }
+  const std::string everywhere = from_everywhere(edges, reached);
+  out += everywhere.empty() ? "  start -> s0;\n"
+                            : fmt::format("  start -> s0 [label=<{}>];\n",
+                                          table(cell("from every state:" + std::string(kBreak) +
+                                                     everywhere)));
   for (std::size_t i = 0; i < reached.size(); ++i) {
     if (reached[i]) out += node_of(diagram, i);
   }
-  for (const auto& [ends, labels] : edges) {
-    out += fmt::format("  s{} -> s{} [label=<{}>];\n", ends.first, ends.second,
-                       fmt::join(labels, ""));
+  for (const auto& [ends, all] : edges) {
+    std::string lines;
+    for (const Transition* t : all) lines += lines_of(*t);
+    if (lines.empty()) continue;
+    out += fmt::format("  s{} -> s{} [label=<{}>];\n", ends.first, ends.second, table(cell(lines)));
   }
   return out + "}\n";
 }

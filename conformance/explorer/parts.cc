@@ -66,9 +66,9 @@ std::optional<Trigger> join_trigger(const State& state, const Given& given) {
     if (state.join.phase == JoinMote::Phase::kOutside) return Trigger{"join_reply", ""};
     if (state.join.phase == JoinMote::Phase::kMember) {
       const bool second = own && number_at(message, "island_addr") != state.join.address.pid;
-      return Trigger{"join_reply", second ? "another island's to the same request" : ""};
+      return Trigger{"join_reply", second ? "another island's offer" : ""};
     }
-    return Trigger{"join_reply", own ? "its request's number" : "another number"};
+    return Trigger{"join_reply", own ? "its number" : "another number"};
   }
   if (const auto* called = std::get_if<machine::Called>(&given.what)) {
     if (!std::holds_alternative<machine::JoinIsland>(called->call)) return std::nullopt;
