@@ -10,6 +10,7 @@ import hashlib
 import json
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -54,7 +55,9 @@ class Book(unittest.TestCase):
         cls.folder = tempfile.TemporaryDirectory()  # pylint: disable=consider-using-with
         cls.addClassCleanup(cls.folder.cleanup)
         cls.out = pathlib.Path(cls.folder.name) / "doc/rubric.html"
-        cls.made = make(cls.out)
+        cls.chapters = pathlib.Path(cls.folder.name) / "chapters"
+        shutil.copytree(HERE / "chapters", cls.chapters)
+        cls.made = make(cls.out, "--chapters", cls.chapters)
         if cls.made.returncode != 0:
             raise AssertionError(cls.made.stderr)
         cls.text = cls.out.read_text(encoding="utf-8")
@@ -66,7 +69,7 @@ class Book(unittest.TestCase):
 
     def test_the_same_bytes_each_time(self):
         again = self.out.with_name("again.html")
-        self.assertEqual(make(again).returncode, 0)
+        self.assertEqual(make(again, "--chapters", self.chapters).returncode, 0)
         self.assertEqual(again.read_bytes(), self.out.read_bytes())
 
     def test_is_of_a_sensible_size_and_of_no_machine(self):
@@ -186,7 +189,8 @@ class Mistakes(unittest.TestCase):
         wanted = ["no directive is called 'layuot'; expected layout$",
                   "no message is called 'join_replay'; expected join_reply$", "no enum is called 'mote'; expected",
                   "no rule or group is called 'J44'; expected J4", "no golden trace is called 'j4.lisetd'",
-                  "j4.nothing", "nothing", "no command of rubric is called 'nothing'",
+                  "no golden trace is called 'j4.nothing'; expected",
+                  "no state diagram is called 'nothing'; expected join, listing", "no command of rubric is called 'nothing'",
                   "no file of the project is called", "no carrier is called 'smoke'; expected radio_ack, radio_i",
                   r"expected '\{\{layout NAME\}\}'", r"expected '\{\{coverage\}\}'",
                   "no file of the project is called"]

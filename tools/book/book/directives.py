@@ -1,7 +1,6 @@
 """What each directive stands for. See tools/book/README.md."""
 
-import importlib
-
+import diagrams
 from book import appendix, chapters, markup
 from book.cases import Cases
 from book.html import escape, link, code, table
@@ -145,31 +144,37 @@ class Directives:
         self.mistakes.add(*place, expected("carrier", name, carriers))
         return ""
 
-    def _draw(self, place, function, name, *more):
-        """A drawing of diagrams.py, which says itself which names there are."""
+    def _draw(self, place, draw, name):
+        """A drawing of diagrams.py, in which rules lead to themselves."""
         try:
-            draw = getattr(importlib.import_module("diagrams"), function)
-            svg = draw(self.project.rubric, name, *more)
+            svg = draw(self.project.rubric, name, lambda rule: f"#{rule}")
             self.drawings += 1
             svg, style = fitted(svg, f"d{self.drawings}-")
             self.styles[style] = None
             return svg
-        except (ImportError, AttributeError, RuntimeError, ValueError) as error:
+        except (OSError, RuntimeError, ValueError) as error:
             self.mistakes.add(*place, f"{name}: {str(error).splitlines()[0]}")
             return ""
 
     def _chart(self, place, name, _level):
-        svg = self._draw(place, "chart_svg", name, lambda rule: f"#{rule}")
-        caption = self.names.rich(self.project.cases.get(name, {}).get("comment", ""))
+        if name not in self.project.cases:
+            self.mistakes.add(*place, expected("golden trace", name, self.project.cases))
+            return ""
+        svg = self._draw(place, diagrams.chart_svg, name)
+        caption = self.names.rich(self.project.cases[name].get("comment", ""))
         return (f'<figure class="drawing chart"><div class="scroll">{svg}</div>'
                 f"<figcaption>{link(name, code(name))} {caption}</figcaption></figure>") \
             if svg else ""
 
     def _states(self, place, name, _level):
-        svg = self._draw(place, "states_svg", name)
+        known = diagrams.STATES
+        if name not in known:
+            self.mistakes.add(*place, expected("state diagram", name, known))
+            return ""
+        svg = self._draw(place, diagrams.states_svg, name)
         return (f'<figure class="drawing states"><div class="scroll">{svg}</div>'
-                f"<figcaption>The states of {code(name)}, as the reference machine has them."
-                "</figcaption></figure>") if svg else ""
+                f"<figcaption>{escape(known[name])}: every transition that the reference machine "
+                "makes in small networks.</figcaption></figure>") if svg else ""
 
     def _help(self, place, name, _level):
         try:

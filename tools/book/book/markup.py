@@ -25,6 +25,9 @@ def code_block(language, words, lines):
         if language == "console" and line.startswith("$ "):
             shown.append('<span class="prompt">$ </span>'
                          f'<span class="command">{escape(line[2:])}</span>')
+        elif language == "diff" and line[:1] in {"+", "-"}:
+            css = "added" if line[0] == "+" else "removed"
+            shown.append(f'<span class="{css}">{escape(line)}</span>')
         else:
             shown.append(escape(line))
     caption = f'<figcaption>{code(named["file"])}</figcaption>' if "file" in named else ""
