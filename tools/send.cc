@@ -115,6 +115,7 @@ class Send {
     try {
       sender_.open();
       good = send_all();
+      listening_ = true;
       if (options_.listen_s && !unsent_) {
         sender_.hear(steady_clock::now() + std::chrono::duration_cast<steady_clock::duration>(
                                                std::chrono::duration<double>(*options_.listen_s)));
@@ -237,7 +238,8 @@ class Send {
     record.time_ns = packet.time_ns;
     record.frame = &frame_;
     formatter_->print(record, output_.buffer());
-    output_.flush();
+    // Who closed the pipe has seen enough; what is to be sent is sent all the same.
+    if (!output_.flush() && listening_) live::request_stop();
   }
 
   void line_is_gone(const char* what) {
@@ -274,6 +276,7 @@ class Send {
   int left_out_ = 0;
   std::uint64_t frames_ = 0;  // That came and were shown.
   bool unsent_ = false;
+  bool listening_ = false;    // All that there was to send was sent.
 };
 
 void add_timing_options(CLI::App& app, Options& options) {

@@ -194,6 +194,31 @@ class Serial(Base):
         self.assertEqual({row["interface"] for row in records}, {to})
         self.assertEqual(err.count("confirmed after 1 try"), 2)
 
+    def test_nobody_reads_any_more(self):
+        """All is sent, and nothing is listened to for nobody."""
+        def answer(mote, seq, packet):
+            reply = hdlc(bytes([ACK, seq]))
+            if packet == config(9):  # Again and again, until somebody has enough.
+                threading.Thread(target=chatter, args=(mote,), daemon=True).start()
+            return reply
+
+        def chatter(mote):
+            while mote.fd >= 0 and not done.wait(0.05):
+                os.write(mote.fd, hdlc(bytes([PACKET_NOACK]) + config(77)))
+
+        done = threading.Event()
+        self.addCleanup(done.set)
+        to, mote = self.mote(answer)
+        running = self.started("send", "--as", "config", "--to", to, "--timeout", LONG_MS,
+                               "--listen", "600", stdin=subprocess.PIPE)
+        running.process.stdout.close()
+        running.process.stdin.write("".join(line(value) for value in range(10)).encode())
+        running.process.stdin.close()
+        self.assertEqual(running.process.wait(PATIENCE_S), CLEAN)
+        done.set()
+        mote.end()
+        self.assertEqual(len(mote.packets), 10)
+
     def test_lines_are_sent_as_they_come(self):
         to, mote = self.mote(confirms)
         running = self.started("send", "--as", "config", "--to", to, "--timeout", LONG_MS,

@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -92,7 +93,8 @@ Sender::Result Sender::send(Bytes packet) {
   std::string broken;
   outcome_.reset();
   try {
-    link_.submit(packet, steady_clock::now());
+    const HostLink::Submitted submitted = link_.submit(packet, steady_clock::now());
+    if (submitted != HostLink::Submitted::kTaken) throw std::logic_error("no packet of this line");
     while (!outcome_ && !stop_requested()) {
       step(link_.next().value_or(steady_clock::now()), -1);
     }
