@@ -84,6 +84,9 @@ endif()
 install(FILES tools/wireshark/generated/rubric.lua
   DESTINATION ${CMAKE_INSTALL_DATADIR}/rubric/wireshark COMPONENT tool)
 install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT tool)
+# The book, if it was made: target `book`.
+install(FILES ${PROJECT_BINARY_DIR}/doc/rubric.html DESTINATION ${CMAKE_INSTALL_DOCDIR}
+  COMPONENT tool OPTIONAL)
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME rubric)
