@@ -1,9 +1,13 @@
 // Property: any split of a serial forwarder's stream gives the packets that a plain loop over its
-// length bytes finds, and what is written from them reads back as the same.
+// length bytes finds, and what is written from them reads back as the same, also by way of a serial
+// line.
 #include <cstddef>
 #include <cstdint>
 
+#include "codec/containers/reader.h"
 #include "codec/containers/sf_reader.h"
+#include "codec/containers/writer.h"
+#include "codec/runtime/hdlc.h"
 #include "fuzz/support/readers.h"
 #include "fuzz/support/require.h"
 
@@ -78,6 +82,24 @@ void check_writer(const std::vector<Kept>& packets) {
   fuzz::require_same(again, wanted, "what is written reads back as the same");
 }
 
+// As `rubric convert` does it.
+void check_by_serial_line(const std::vector<Kept>& packets) {
+  const auto to_line = make_writer(InputFormat::kHdlc, 0);
+  const auto to_forwarder = make_writer(InputFormat::kSf, 0);
+  for (const Kept& kept : packets) {
+    const bool fits = kept.bytes.size() <= kSerialAfterHeaderMax - kSerialCrcBytes;
+    if (kept.packet.error.fault != Fault::kNone || !fits) continue;
+    std::string line;
+    require(to_line->write(kept.get(), "", line), "a serial line takes a forwarder's packet");
+    const auto reader = make_reader(InputFormat::kHdlc, {});
+    const std::vector<Kept> frames = testing::read_all(*reader, testing::view(line));
+    require(frames.size() == 1 && frames[0].bytes == kept.bytes, "and carries it");
+    std::string back;
+    require(to_forwarder->write(frames[0].get(), "", back), "a forwarder takes it from there");
+    require(back == static_cast<char>(kept.bytes.size()) + kept.bytes, "as it was");
+  }
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -87,5 +109,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   fuzz::require_same(fuzz::read_in_any_pieces(make, stream), wanted,
                      "the reader finds what a plain loop finds");
   check_writer(wanted);
+  check_by_serial_line(wanted);
   return 0;
 }
