@@ -69,6 +69,7 @@ std::string html(std::string_view text) {
   return out;
 }
 
+constexpr std::string_view kBlank = "\u00a0";  // Others are lost at the ends of an SVG's texts.
 constexpr std::string_view kBreak = "<BR ALIGN=\"LEFT\"/>";
 
 std::string small(const std::string& text) {
@@ -84,19 +85,21 @@ std::string guarded(const Transition& t) {
 // Lines: a trigger in bold with its guard, what comes out, the rules.
 std::string lines_of(const Transition& t) {
   std::string out = "<B>" + html(t.trigger) + "</B>";
-  if (!t.guards.empty()) out += html(fmt::format(" [{}]", fmt::join(t.guards, " or ")));
+  if (!t.guards.empty()) out += html(fmt::format("{}[{}]", kBlank, fmt::join(t.guards, " or ")));
   out += kBreak;
   if (!t.outputs.empty()) {
-    out += html(fmt::format("  / {}", fmt::join(t.outputs, ", "))) + std::string(kBreak);
+    out += html(fmt::format("{0}{0}/ {1}", kBlank, fmt::join(t.outputs, ", ")));
+    out += kBreak;
   }
   if (!t.rules.empty()) {
-    out += small(html(fmt::format("  {}", fmt::join(t.rules, " ")))) + std::string(kBreak);
+    out += small(html(fmt::format("{0}{0}{1}", kBlank, fmt::join(t.rules, " "))));
+    out += kBreak;
   }
   return out;
 }
 
 std::string table(const std::string& rows) {
-  return "<TABLE BORDER=\"0\" CELLBORDER=\"0\" CELLPADDING=\"4\">" + rows + "</TABLE>";
+  return "<TABLE BORDER=\"0\" CELLBORDER=\"0\" CELLSPACING=\"1\" CELLPADDING=\"3\">" + rows + "</TABLE>";
 }
 
 std::string cell(const std::string& lines) {
@@ -110,14 +113,15 @@ std::string node_of(const Diagram& diagram, std::size_t state) {
   for (const Transition& t : diagram.transitions) {
     if (t.from != state || t.to != state) continue;
     if (t.ignored) {
-      ignored += small(html(fmt::format("{}  {}", guarded(t), fmt::join(t.rules, " "))));
+      ignored += small(html(fmt::format("{0}{1}{1}{2}", guarded(t), kBlank,
+                                        fmt::join(t.rules, " "))));
       ignored += kBreak;
     } else {
-      inside += lines_of(t);
+      inside += cell(lines_of(t));
     }
   }
   std::string rows = "<TR><TD><B>" + html(diagram.states[state]) + "</B></TD></TR>";
-  if (!inside.empty()) rows += "<HR/>" + cell(inside);
+  if (!inside.empty()) rows += "<HR/>" + inside;
   if (!ignored.empty()) rows += "<HR/>" + cell(small("ignored:") + std::string(kBreak) + ignored);
   return fmt::format("  s{} [label=<{}>];\n", state, table(rows));
 }
@@ -168,9 +172,9 @@ std::string dot_of(const Diagram& diagram) {
   }
   for (const auto& [ends, all] : edges) {
     std::string lines;
-    for (const Transition* t : all) lines += lines_of(*t);
+    for (const Transition* t : all) lines += cell(lines_of(*t));
     if (lines.empty()) continue;
-    out += fmt::format("  s{} -> s{} [label=<{}>];\n", ends.first, ends.second, table(cell(lines)));
+    out += fmt::format("  s{} -> s{} [label=<{}>];\n", ends.first, ends.second, table(lines));
   }
   return out + "}\n";
 }

@@ -35,6 +35,8 @@ std::string name_of(const machine::Transmit& frame) {
 
 // "joined(success)", "mote_joined".
 std::string name_of(const machine::Notice& notice) {
+  const auto* sent = std::get_if<machine::SendResult>(&notice);
+  if (sent != nullptr && sent->seq_num == machine::kNoSeq) return "send_result(error)";
   const trace::Message message = events::from_notice(notice);
   const trace::Value* result = message.find("result");
   return result == nullptr ? message.name : message.name + "(" + result->text + ")";

@@ -30,7 +30,7 @@ struct SequenceRow {
   std::string full;                ///< All of it.
   std::vector<std::size_t> missed; ///< Columns that it was for and that never got it.
   bool stimulus = false;           ///< Given from outside, by nobody that is drawn.
-  bool ignored = false;
+  std::vector<std::size_t> ignored_by;  ///< Columns of `to` that made nothing of it.
   std::vector<std::size_t> lines;  ///< Of the log, that this row stands for.
 };
 

@@ -291,6 +291,11 @@ class Picture {
                        open ? "rc-open" : "rc-tip", x, y, back);
   }
 
+  static bool ignores(const SequenceRow& row, std::size_t column) {
+    return std::find(row.ignored_by.begin(), row.ignored_by.end(), column) !=
+           row.ignored_by.end();
+  }
+
   static std::string line_class(const SequenceRow& row) {
     return std::string("rc-line") + way_class(row.way);
   }
@@ -303,11 +308,11 @@ class Picture {
           "<rect class=\"rc-open\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"9\" height=\"9\"/>", x - 4.5,
           y - 4.5);
     } else if (row.from != kNoColumn && row.way == Way::kCall) {
-      out += line(x, x - kStub + 4, y, line_class(row)) + tip(x - kStub, y, false, row.ignored);
+      out += line(x, x - kStub + 4, y, line_class(row)) + tip(x - kStub, y, false, false);
     } else if (row.from != kNoColumn) {
-      out += line(x, x + kStub - 4, y, line_class(row)) + tip(x + kStub, y, true, row.ignored);
+      out += line(x, x + kStub - 4, y, line_class(row)) + tip(x + kStub, y, true, false);
     } else {
-      out += line(x - kStub, x - 4, y, line_class(row)) + tip(x, y, true, row.ignored);
+      out += line(x - kStub, x - 4, y, line_class(row)) + tip(x, y, true, !row.ignored_by.empty());
     }
     out += label(label_begin(row), y + 4, row.detail, "");
   }
@@ -323,7 +328,7 @@ class Picture {
       }
       if (far != x_[from]) out += line(x_[from], far + (right ? -4 : 4), y, line_class(row));
       for (const std::size_t c : row.to) {
-        if (beyond(c)) out += tip(x_[c], y, right, row.ignored);
+        if (beyond(c)) out += tip(x_[c], y, right, ignores(row, c));
       }
     }
     for (const std::size_t c : row.missed) {

@@ -69,8 +69,8 @@ def cleaned(svg, name, title, rule_href=None):
     head = re.match(r'<svg width="([\d.]+)pt" height="([\d.]+)pt"\s+viewBox="([^"]+)"[^>]*>', svg)
     if head is None:
         raise RuntimeError("dot: its SVG does not begin as expected")
-    width, height = (round(float(text) * 4 / 3) for text in head.groups()[:2])
-    body = svg[head.end():]
+    width, height = (round(float(text)) for text in head.groups()[:2])
+    body = svg[head.end():].replace("&#45;", "-")
     body = re.sub(r"<title>[^<]*</title>\n?", "", body)
     body = re.sub(r"<a [^>]*>|</a>", "", body)
     body = re.sub(r' (fill|stroke|font-family)="[^"]*"', "", body)

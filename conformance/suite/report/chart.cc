@@ -236,18 +236,16 @@ class Chart {
   // What those who got it made of it.
   void complete(std::size_t at) {
     SequenceRow& row = rows_[at];
-    std::size_t ignored = 0;
     for (const std::size_t i : takers_[at]) {
       const Heed* heed = heed_of_[i];
       if (heed == nullptr) continue;
       add_note(row.note, rules_text(heed->followed));
       if (heed->ignored.empty()) continue;
-      if (heed->is_ignored) ++ignored;
+      if (heed->is_ignored) row.ignored_by.push_back(stage_.column(lines_[i]->node));
       const std::string rules = rules_text(heed->ignored);
       const std::string who = row.to.size() > 1 ? " by " + lines_[i]->node : "";
       add_note(row.note, "ignored" + who + (rules.empty() ? "" : ": " + rules));
     }
-    row.ignored = ignored != 0 && ignored == takers_[at].size();
     for (const std::size_t column : row.missed) {
       add_note(row.note, "not heard by " + stage_.names()[column]);
     }
@@ -273,6 +271,7 @@ class Chart {
       if (row.from != kNoColumn) row.from = place[row.from];
       for (std::size_t& c : row.to) c = place[c];
       for (std::size_t& c : row.missed) c = place[c];
+      for (std::size_t& c : row.ignored_by) c = place[c];
     }
     sequence.columns = std::move(names);
     sequence.about = std::move(about);
