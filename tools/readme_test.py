@@ -1,30 +1,33 @@
 #!/usr/bin/env python3
-"""Runs every `$ build/release/rubric ...` shown in README.md and compares what it prints.
+"""Runs every `$ ...` line of README.md and compares what it prints.
 
-Usage: readme_test.py PATH_TO_RUBRIC, in the project's folder.
+Usage: readme_test.py PATH_TO_RUBRIC [--write]
 """
 
-import re
-import shlex
-import subprocess
+import pathlib
 import sys
+import tempfile
 
-PROGRAM = "build/release/rubric"
-BLOCK = re.compile(r"^```\n\$ (" + PROGRAM + r"[^\n]*)\n(.*?)^```$", re.M | re.S)
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(ROOT / "tools/book"))
+
+import snippets  # pylint: disable=wrong-import-position
 
 
 def main():
-    with open("README.md", encoding="utf-8") as file:
-        blocks = BLOCK.findall(file.read())
-    failed = 0
-    for command, shown in blocks:
-        words = [sys.argv[1]] + shlex.split(command)[1:]
-        printed = subprocess.run(words, capture_output=True, text=True, check=False).stdout
-        if printed != shown:
-            failed += 1
-            print(f"README.md shows for\n$ {command}\n{shown}\nbut it prints\n{printed}")
-    print(f"{len(blocks) - failed} of {len(blocks)} commands print what README.md shows")
-    return 1 if failed or not blocks else 0
+    readme = ROOT / "README.md"
+    text = readme.read_text(encoding="utf-8")
+    with tempfile.TemporaryDirectory(prefix="rubric-readme-") as folder:
+        place = snippets.Place(folder, ROOT, pathlib.Path(sys.argv[1]).resolve().parent)
+        now, wrong = snippets.renewed(text, place)
+    if sys.argv[2:] == ["--write"]:
+        readme.write_text(now, encoding="utf-8")
+    for line, what in wrong:
+        print(f"README.md:{line}: {what}")
+    shown = sum(block.language == "console" for block in snippets.blocks(text))
+    print(f"{shown} blocks of commands, {len(wrong)} mistakes")
+    return 1 if wrong or not shown else 0
 
 
 if __name__ == "__main__":
