@@ -29,7 +29,8 @@ namespace {
 
 constexpr const char* kFooter =
     "Exit codes: 0 clean, 1 something malformed was found, 2 usage, 3 input cannot be read or\n"
-    "output cannot be written; check, test, explore and coverage give verdicts and have others.\n"
+    "output cannot be written, 4 not sent; check, test, explore and coverage give verdicts and\n"
+    "have others.\n"
     "'rubric COMMAND --help' says more.";
 
 }  // namespace
