@@ -15,7 +15,6 @@ namespace rubric::oracle {
 namespace {
 
 constexpr std::int64_t kNsPerUs = 1000;
-constexpr std::int64_t kUntimed = std::numeric_limits<std::int64_t>::min();
 constexpr std::size_t kChunkBytes = 1024 * 1024;
 constexpr std::size_t kLookBytes = 4096;  // Enough to tell a format.
 
@@ -44,49 +43,108 @@ std::string_view RunStorage::keep(std::string_view text) {
   return texts_.emplace_back(text);
 }
 
+namespace {
+
+// One file in the reading.
+struct Source {
+  std::uint32_t file = 0;
+  std::vector<std::uint32_t> taps;  // Of its interfaces.
+  std::uint64_t frames = 0;
+};
+
+std::uint32_t tap_of(const Packet& packet, std::string_view interface_name, Source& source,
+                     Run& run) {
+  constexpr std::uint32_t kNone = UINT32_MAX;
+  if (source.taps.size() <= packet.interface_id) source.taps.resize(packet.interface_id + 1, kNone);
+  std::uint32_t& index = source.taps[packet.interface_id];
+  if (index == kNone) {
+    index = static_cast<std::uint32_t>(run.taps.size());
+    Tap tap;
+    tap.name = interface_name.empty() ? std::string_view(run.files[source.file]) : interface_name;
+    run.taps.push_back(tap);
+  }
+  Tap& tap = run.taps[index];
+  if (packet.framing == Framing::kHdlc || packet.framing == Framing::kSf) {
+    tap.link = machine::Link::kSerial;
+  }
+  if (packet.direction != Direction::kUnknown) tap.has_direction = true;
+  return index;
+}
+
+void observe(const Packet& packet, std::string_view interface_name, Source& source, Run& run) {
+  ++source.frames;
+  Observation seen;
+  if (!observe_packet(packet, *run.storage, seen)) return;
+  seen.tap = tap_of(packet, interface_name, source, run);
+  seen.place.file = source.file;
+  seen.place.frame = source.frames;
+  seen.place.offset_bytes = packet.offset_bytes;
+  seen.place.time_us = packet.time_ns == kNoTime ? kNoStamp : packet.time_ns / kNsPerUs;
+  if (seen.kind == Observation::Kind::kSerial) {
+    seen.to_mote = packet.direction == Direction::kUnknown ? looks_towards_sink(seen.frame)
+                                                           : packet.direction ==
+                                                                 Direction::kInbound;
+  } else if (seen.kind == Observation::Kind::kLinkAck && packet.framing == Framing::kHdlc) {
+    seen.to_mote = packet.direction == Direction::kInbound;
+  }
+  run.seen.push_back(seen);
+}
+
+// Times count from the first one, and what several taps saw is in one order.
+Run in_one_order(Run run, const AlignOptions& options) {
+  const auto by_file = [](const Observation& a, const Observation& b) {
+    return a.place.file < b.place.file;
+  };
+  if (!std::is_sorted(run.seen.begin(), run.seen.end(), by_file)) {  // Files that grew at a time.
+    std::stable_sort(run.seen.begin(), run.seen.end(), by_file);
+  }
+  align(run, options);
+  // A log counts from the start of its run. Captures of simulated networks do, too; those of real
+  // ones have stamps of this century, and then the log is taken to begin with the capture.
+  constexpr std::int64_t kTenYearsUs = 315'360'000'000'000;
+  constexpr std::int64_t kNone = std::numeric_limits<std::int64_t>::max();
+  std::int64_t first_us = kNone;
+  for (const Observation& seen : run.seen) {
+    const std::int64_t time = seen.place.time_us;
+    if (seen.node.empty() && time != kNoStamp) first_us = std::min(first_us, time);
+  }
+  const std::int64_t logs_us = first_us != kNone && first_us > kTenYearsUs ? first_us : 0;
+  for (Observation& seen : run.seen) {
+    if (!seen.node.empty()) seen.place.time_us += logs_us;
+    if (seen.place.time_us != kNoStamp) first_us = std::min(first_us, seen.place.time_us);
+  }
+  for (Observation& seen : run.seen) {
+    seen.place.time_us = seen.place.time_us == kNoStamp ? -1 : seen.place.time_us - first_us;
+  }
+  for (LoosePlace& place : run.loose) {
+    place.early_us -= first_us;
+    place.late_us -= first_us;
+  }
+  for (LoggedNode& node : run.nodes) {
+    for (auto& [from, to] : node.busy_us) {
+      from += logs_us - first_us;
+      if (to != kNone) to += logs_us - first_us;
+    }
+  }
+  merge(run);
+  return run;
+}
+
+}  // namespace
+
 struct RunReader::State {
   ReadAs as;
   Run run;
-  // One file in the reading.
+  std::vector<Source> growing;  // By file; of others unused.
+  // One file that is read whole.
   std::unique_ptr<Reader> reader;
-  std::vector<std::uint32_t> taps;  // Of the reader's interfaces.
-  std::uint64_t frames = 0;
-
-  std::uint32_t tap_of(const Packet& packet) {
-    while (taps.size() <= packet.interface_id) {
-      const std::size_t i = taps.size();
-      taps.push_back(static_cast<std::uint32_t>(run.taps.size()));
-      Tap tap;
-      const auto& interfaces = reader->interfaces();
-      if (i < interfaces.size()) tap.name = interfaces[i].name;
-      if (tap.name.empty()) tap.name = run.files.back();
-      run.taps.push_back(tap);
-    }
-    Tap& tap = run.taps[taps[packet.interface_id]];
-    if (packet.framing == Framing::kHdlc || packet.framing == Framing::kSf) {
-      tap.link = machine::Link::kSerial;
-    }
-    if (packet.direction != Direction::kUnknown) tap.has_direction = true;
-    return taps[packet.interface_id];
-  }
+  Source source;
 
   void take(const Packet& packet) {
-    ++frames;
-    Observation seen;
-    if (!observe_packet(packet, *run.storage, seen)) return;
-    seen.tap = tap_of(packet);
-    seen.place.file = static_cast<std::uint32_t>(run.files.size() - 1);
-    seen.place.frame = frames;
-    seen.place.offset_bytes = packet.offset_bytes;
-    seen.place.time_us = packet.time_ns == kNoTime ? kUntimed : packet.time_ns / kNsPerUs;
-    if (seen.kind == Observation::Kind::kSerial) {
-      seen.to_mote = packet.direction == Direction::kUnknown ? looks_towards_sink(seen.frame)
-                                                             : packet.direction ==
-                                                                   Direction::kInbound;
-    } else if (seen.kind == Observation::Kind::kLinkAck && packet.framing == Framing::kHdlc) {
-      seen.to_mote = packet.direction == Direction::kInbound;
-    }
-    run.seen.push_back(seen);
+    const auto& interfaces = reader->interfaces();
+    const bool known = packet.interface_id < interfaces.size();
+    observe(packet, known ? std::string_view(interfaces[packet.interface_id].name) : "", source,
+            run);
   }
 
   void begin(const std::string& name, Bytes start, const std::string& interface_name) {
@@ -95,8 +153,7 @@ struct RunReader::State {
     options.interface_name = interface_name;
     options.hex_framing = as.hex_framing;
     reader = make_reader(as.format == InputFormat::kUnknown ? detect(start) : as.format, options);
-    taps.clear();
-    frames = 0;
+    source = Source{static_cast<std::uint32_t>(run.files.size() - 1), {}, 0};
   }
 };
 
@@ -105,6 +162,20 @@ RunReader::RunReader(const ReadAs& as) : state_(std::make_unique<State>()) {
   state_->run.storage = std::make_shared<RunStorage>();
 }
 RunReader::~RunReader() = default;
+
+std::uint32_t RunReader::open(const std::string& name) {
+  const auto file = static_cast<std::uint32_t>(state_->run.files.size());
+  state_->run.files.push_back(name);
+  state_->growing.resize(file + 1);
+  state_->growing[file].file = file;
+  return file;
+}
+
+void RunReader::take(std::uint32_t file, const Packet& packet, std::string_view interface_name) {
+  observe(packet, interface_name, state_->growing[file], state_->run);
+}
+
+Run RunReader::snapshot() const { return in_one_order(state_->run, state_->as.align); }
 
 bool RunReader::add_bytes(const std::string& name, std::string_view bytes, std::string& error) {
   const Bytes all(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
@@ -157,33 +228,11 @@ bool RunReader::add_file(const std::string& path, std::string& error) {
 
 Run RunReader::finish() {
   Run run = std::move(state_->run);
+  const ReadAs as = state_->as;
   state_ = std::make_unique<State>();
+  state_->as = as;
   state_->run.storage = std::make_shared<RunStorage>();
-  // A log counts from the start of its run. Captures of simulated networks do, too; those of real
-  // ones have stamps of this century, and then the log is taken to begin with the capture.
-  constexpr std::int64_t kTenYearsUs = 315'360'000'000'000;
-  constexpr std::int64_t kNone = std::numeric_limits<std::int64_t>::max();
-  std::int64_t first_us = kNone;
-  for (const Observation& seen : run.seen) {
-    const std::int64_t time = seen.place.time_us;
-    if (seen.node.empty() && time != kUntimed) first_us = std::min(first_us, time);
-  }
-  const std::int64_t logs_us = first_us != kNone && first_us > kTenYearsUs ? first_us : 0;
-  for (Observation& seen : run.seen) {
-    if (!seen.node.empty()) seen.place.time_us += logs_us;
-    if (seen.place.time_us != kUntimed) first_us = std::min(first_us, seen.place.time_us);
-  }
-  for (Observation& seen : run.seen) {
-    seen.place.time_us = seen.place.time_us == kUntimed ? -1 : seen.place.time_us - first_us;
-  }
-  for (LoggedNode& node : run.nodes) {
-    for (auto& [from, to] : node.busy_us) {
-      from += logs_us - first_us;
-      if (to != kNone) to += logs_us - first_us;
-    }
-  }
-  merge(run);
-  return run;
+  return in_one_order(std::move(run), as.align);
 }
 
 std::optional<Run> read(const std::vector<std::string>& files, std::string& error) {
@@ -205,7 +254,8 @@ void merge(Run& run) {
   if (!std::is_sorted(run.seen.begin(), run.seen.end(), earlier)) {
     std::stable_sort(run.seen.begin(), run.seen.end(), earlier);
   }
-  run.has_time = run.seen.empty() || time_of(run.seen.back()) != kLast;
+  run.has_time = std::all_of(run.seen.begin(), run.seen.end(),
+                             [](const Observation& seen) { return seen.place.timed(); });
   run.start_us = run.seen.empty() ? 0 : std::max<std::int64_t>(0, run.seen.front().place.time_us);
   const auto last = std::find_if(run.seen.rbegin(), run.seen.rend(),
                                  [](const Observation& seen) { return seen.place.timed(); });

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "codec/containers/reader.h"
+#include "conformance/oracle/align.h"
 #include "conformance/oracle/observation.h"
 
 namespace rubric::oracle {
@@ -16,6 +17,7 @@ namespace rubric::oracle {
 struct ReadAs {
   InputFormat format = InputFormat::kUnknown;  ///< kUnknown: found out from the content.
   Framing hex_framing = Framing::kSf;          ///< What the lines of hex text are.
+  AlignOptions align = {};                     ///< How captures are put on one clock.
 };
 
 /// Collects files to one run. Damaged bytes are observed as such and never stop the reading.
@@ -31,6 +33,14 @@ class RunReader {
   bool add_file(const std::string& path, std::string& error);
   /// The same for bytes at hand; `name` is how reports call them.
   bool add_bytes(const std::string& name, std::string_view bytes, std::string& error);
+  /// A file or line whose packets come one by one; returns its index among the run's files.
+  std::uint32_t open(const std::string& name);
+  /// The next packet of file `file`, which open() gave; the name is that of the packet's interface,
+  /// empty where it has none.
+  void take(std::uint32_t file, const Packet& packet, std::string_view interface_name);
+  /// What finish() would give now; more may be added afterwards. The bytes of frames are shared.
+  Run snapshot() const;
+
   /// Everything that was added, in one order (see merge()). The reader is empty afterwards.
   Run finish();
 

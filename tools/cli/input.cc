@@ -2,11 +2,9 @@
 
 #include <fmt/format.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <chrono>
-#include <cstdlib>
 #include <cstring>
 #include <memory>
 #include <optional>
@@ -64,8 +62,7 @@ InputFormat find_format(std::string_view name) {
 /// No FILE: $MOTECOM where somebody sits at a terminal, who would else have to type frames.
 std::vector<std::string> names_of(const InputOptions& options) {
   if (!options.files.empty()) return options.files;
-  const bool asked = ::isatty(0) && std::getenv("MOTECOM") != nullptr;
-  return {asked ? live::default_address() : "-"};
+  return {live::asked_by_motecom() ? live::default_address() : "-"};
 }
 
 std::uint64_t total_size(const std::vector<std::string>& files) {
@@ -99,8 +96,9 @@ class Run {
         const std::optional<live::Address> address = live::parse_address(files_[i]);
         address ? line(*address) : one();
       } catch (const std::system_error& error) {
-        complain(error.code().value() == ESTALE ? "it has become shorter"
-                                                : std::strerror(error.code().value()));
+        complain(std::strerror(error.code().value()));
+      } catch (const FileChanged& changed) {
+        complain(changed.what());
       } catch (const std::invalid_argument& error) {
         complain(error.what());
       }

@@ -21,7 +21,8 @@ constexpr std::chrono::milliseconds kFollowEvery{100};
 }  // namespace
 
 InputFile::InputFile(const std::string& name, bool follow, const std::function<void()>& on_idle)
-    : fd_(name == "-" ? 0 : ::open(name.c_str(), O_RDONLY | O_CLOEXEC)),
+    : name_(name),
+      fd_(name == "-" ? 0 : ::open(name.c_str(), O_RDONLY | O_CLOEXEC)),
       is_stdin_(name == "-"),
       follow_(follow),
       on_idle_(on_idle) {
@@ -36,6 +37,7 @@ InputFile::~InputFile() {
 
 std::size_t InputFile::read(std::uint8_t* to, std::size_t size) {
   while (true) {
+    if (!ready()) return 0;
     const ssize_t got = ::read(fd_, to, size);
     if (got > 0) return static_cast<std::size_t>(got);
     if (got < 0 && errno != EINTR) throw std::system_error(errno, std::generic_category());
@@ -55,8 +57,26 @@ off_t InputFile::left() const {
   return ::fstat(fd_, &status) == 0 ? status.st_size - ::lseek(fd_, 0, SEEK_CUR) : 0;
 }
 
+// False when the user asks to stop. A thread among several has no signals to end its waiting.
+bool InputFile::ready() const {
+  pollfd one{fd_, POLLIN, 0};
+  while (!is_regular_) {
+    if (live::stop_requested()) return false;
+    if (::poll(&one, 1, static_cast<int>(kFollowEvery.count())) != 0) break;
+  }
+  return true;
+}
+
 void InputFile::wait() {
-  if (is_regular_ && left() < 0) throw std::system_error(ESTALE, std::generic_category());
+  if (is_regular_ && left() < 0) throw FileChanged("it has become shorter");
+  if (is_regular_ && !is_stdin_ && left() == 0) {
+    struct stat ours {};
+    struct stat named {};
+    if (::stat(name_.c_str(), &named) != 0) throw FileChanged("it was renamed or deleted");
+    const bool same = ::fstat(fd_, &ours) == 0 && ours.st_dev == named.st_dev &&
+                      ours.st_ino == named.st_ino;
+    if (!same) throw FileChanged("another file has taken its name");
+  }
   if (on_idle_) on_idle_();
   std::this_thread::sleep_for(kFollowEvery);
 }

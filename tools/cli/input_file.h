@@ -6,9 +6,16 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <stdexcept>
 #include <string>
 
 namespace rubric::cli {
+
+/// A file that is followed is not what it was; `what` says how.
+class FileChanged : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 
 class InputFile {
  public:
@@ -22,7 +29,8 @@ class InputFile {
   bool is_regular() const { return is_regular_; }
 
   /// Up to `size` bytes, 0 at the end, which a file that is followed has only when the user asks
-  /// to stop. Throws std::system_error; ESTALE where a file became shorter.
+  /// to stop. Throws std::system_error, and FileChanged where the file became shorter or its name
+  /// is another's or nobody's, once all of it was read.
   std::size_t read(std::uint8_t* to, std::size_t size);
 
   /// Whether more bytes are there, or will be in a moment.
@@ -31,7 +39,9 @@ class InputFile {
  private:
   off_t left() const;
   void wait();
+  bool ready() const;
 
+  std::string name_;
   int fd_;
   bool is_stdin_;
   bool is_regular_ = false;

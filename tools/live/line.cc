@@ -1,5 +1,7 @@
 #include "tools/live/line.h"
 
+#include <unistd.h>
+
 #include <cstdlib>
 #include <stdexcept>
 
@@ -70,6 +72,8 @@ std::string default_address() {
   const char* const set = std::getenv("MOTECOM");
   return set != nullptr && *set != '\0' ? set : "sf@localhost:9002";
 }
+
+bool asked_by_motecom() { return ::isatty(0) != 0 && std::getenv("MOTECOM") != nullptr; }
 
 InputFormat Line::format() const {
   return address_.kind == Address::Kind::kForwarder ? InputFormat::kSf : InputFormat::kHdlc;

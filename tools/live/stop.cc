@@ -1,14 +1,15 @@
 #include "tools/live/stop.h"
 
+#include <atomic>
 #include <csignal>
 #include <initializer_list>
 
 namespace rubric::live {
 namespace {
 
-volatile std::sig_atomic_t stop = 0;
+std::atomic<bool> stop = false;  // Lock-free, so good for handlers and threads.
 
-void remember(int) { stop = 1; }
+void remember(int) { stop = true; }
 
 }  // namespace
 
@@ -25,8 +26,8 @@ void stop_on_signals() {
   }
 }
 
-bool stop_requested() { return stop != 0; }
+bool stop_requested() { return stop; }
 
-void request_stop() { stop = 1; }
+void request_stop() { stop = true; }
 
 }  // namespace rubric::live

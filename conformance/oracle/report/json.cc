@@ -44,29 +44,6 @@ std::string hypotheses_json(const Finding& finding) {
   return out + "]";
 }
 
-std::string finding_json(const Story& story, std::size_t i) {
-  const Finding& finding = story.report.findings[i];
-  const reflect::Requirement& rule = reflect::requirement(finding.requirement);
-  const auto& files = story.run.files;
-  const std::size_t by = story.outcome.expected_by[i];
-  const bool is_expected = by != kUnexpected;
-  const bool has_frame = finding.place.frame != 0;
-  return fmt::format(
-      "{{\"requirement\":{},\"level\":{},\"sentence\":{},\"severity\":\"{}\",\"time\":{},"
-      "\"file\":{},\"frame\":{},\"offset\":{},\"node\":{},\"text\":{},\"expected\":{},"
-      "\"count\":{},\"last_frame\":{},\"known\":{},\"hypotheses\":{}}}",
-      json_string_or_null(rule.id), json_string_or_null(rule.level),
-      json_string_or_null(rule.sentence), severity_name(finding.severity),
-      time_json(finding.place.time_us),
-      finding.place.file < files.size() ? json_string(files[finding.place.file]) : "null",
-      number_or_null(finding.place.frame),
-      has_frame ? std::to_string(finding.place.offset_bytes) : "null",
-      json_string_or_null(finding.node), json_string(finding.text), json_string(finding.expected),
-      finding.count, number_or_null(finding.last.frame),
-      is_expected ? json_string(story.expected.expectations[by].reason) : "null",
-      hypotheses_json(finding));
-}
-
 std::string expectations_json(const Story& story) {
   std::vector<std::size_t> all(story.outcome.results.size());
   for (std::size_t e = 0; e < all.size(); ++e) all[e] = e;
@@ -102,6 +79,29 @@ std::string counts_json(const Story& story) {
 
 }  // namespace
 
+std::string json_finding(const Story& story, std::size_t index) {
+  const Finding& finding = story.report.findings[index];
+  const reflect::Requirement& rule = reflect::requirement(finding.requirement);
+  const auto& files = story.run.files;
+  const std::size_t by = story.outcome.expected_by[index];
+  const bool is_expected = by != kUnexpected;
+  const bool has_frame = finding.place.frame != 0;
+  return fmt::format(
+      "{{\"requirement\":{},\"level\":{},\"sentence\":{},\"severity\":\"{}\",\"time\":{},"
+      "\"file\":{},\"frame\":{},\"offset\":{},\"node\":{},\"text\":{},\"expected\":{},"
+      "\"count\":{},\"last_frame\":{},\"known\":{},\"hypotheses\":{}}}",
+      json_string_or_null(rule.id), json_string_or_null(rule.level),
+      json_string_or_null(rule.sentence), severity_name(finding.severity),
+      time_json(finding.place.time_us),
+      finding.place.file < files.size() ? json_string(files[finding.place.file]) : "null",
+      number_or_null(finding.place.frame),
+      has_frame ? std::to_string(finding.place.offset_bytes) : "null",
+      json_string_or_null(finding.node), json_string(finding.text), json_string(finding.expected),
+      finding.count, number_or_null(finding.last.frame),
+      is_expected ? json_string(story.expected.expectations[by].reason) : "null",
+      hypotheses_json(finding));
+}
+
 std::string json_report(const Story& story) {
   std::vector<std::size_t> indices(story.report.findings.size());
   for (std::size_t i = 0; i < indices.size(); ++i) indices[i] = i;
@@ -114,7 +114,7 @@ std::string json_report(const Story& story) {
       o.start_cold ? "cold" : "unknown");
   out += "\"files\":" + list(story.run.files, json_string) + ",\n";
   out += "\"findings\":" +
-         list(indices, [&](std::size_t i) { return finding_json(story, i); }) + ",\n";
+         list(indices, [&](std::size_t i) { return json_finding(story, i); }) + ",\n";
   out += "\"counts\":" + counts_json(story) + ",\n";
   out += "\"facts\":" + list(story.report.facts, json_string) + ",\n";
   out += "\"exercised\":" + list(story.report.exercised, [](const auto& one) {

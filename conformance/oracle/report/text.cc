@@ -52,6 +52,11 @@ class TextReport {
     return std::move(out_);
   }
 
+  std::string one(std::size_t i) {
+    options_.verbose ? in_full(i) : in_line(i);
+    return std::move(out_);
+  }
+
  private:
   bool is_expected(std::size_t i) const {
     return story_.outcome.expected_by[i] != kUnexpected;
@@ -132,7 +137,8 @@ class TextReport {
     std::string name(severity_name(story_.report.findings[i].severity));
     std::transform(name.begin(), name.end(), name.begin(),
                    [](char c) { return static_cast<char>(c >= 'a' && c <= 'z' ? c - 32 : c); });
-    return is_expected(i) ? "EXPECTED " + name : name;
+    if (is_expected(i)) name = "EXPECTED " + name;
+    return options_.head.empty() ? name : options_.head + " " + name;
   }
 
   void field(std::string_view name, std::string_view text) {
@@ -235,6 +241,7 @@ class TextReport {
   }
 
   void replay(const Finding& finding) {
+    if (options_.command.empty()) return;
     std::string ranges;
     if (options_.judge) {
       for (const FrameRange& range : windows_.around(finding)) {
@@ -258,21 +265,26 @@ class TextReport {
     if (!groups.empty()) out_ += '\n';
     for (const auto& [key, group] : groups) {
       for (std::size_t n = 0; n < group.size(); ++n) {
-        const std::size_t i = group[n];
-        const Finding& finding = story_.report.findings[i];
+        const Finding& finding = story_.report.findings[group[n]];
         if (n >= kLinesOfRule && group.size() > kLinesOfRule + 1) {
           out_ += fmt::format("{}and {} more of {} (--verbose lists them)\n", kIndent,
                               group.size() - n, trace_id(finding.requirement));
           break;
         }
-        std::string rest = fmt::format("{}: {}", heading(i), finding.text);
-        if (is_expected(i)) {
-          rest += fmt::format(" Expected: {}",
-                              story_.expected.expectations[story_.outcome.expected_by[i]].reason);
-        }
-        styled_line(style_of(finding.severity), head(i), rest);
+        in_line(group[n]);
       }
     }
+  }
+
+  void in_line(std::size_t i) {
+    const Finding& finding = story_.report.findings[i];
+    std::string rest = fmt::format("{}: {}", heading(i),
+                                   options_.text.empty() ? finding.text : options_.text);
+    if (is_expected(i)) {
+      rest += fmt::format(" Expected: {}",
+                          story_.expected.expectations[story_.outcome.expected_by[i]].reason);
+    }
+    styled_line(style_of(finding.severity), head(i), rest);
   }
 
   void expectations() {
@@ -340,6 +352,10 @@ class TextReport {
 
 std::string text_report(const Story& story, const TextOptions& options) {
   return TextReport(story, options).text();
+}
+
+std::string text_finding(const Story& story, std::size_t index, const TextOptions& options) {
+  return TextReport(story, options).one(index);
 }
 
 }  // namespace rubric::report

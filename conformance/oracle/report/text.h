@@ -21,14 +21,20 @@ struct TextOptions {
   std::size_t width = 100;
   bool color = false;
   bool verbose = false;        ///< Every finding in full.
-  /// The command that made this run, ready for a shell: program and options, and its files.
+  /// The command that made this run, ready for a shell: program and options, and its files. Empty
+  /// where the run cannot be had again.
   std::string command = "rubric check";
   std::string files;
+  std::string head;            ///< text_finding(): stands before the severity in capitals.
+  std::string text;            ///< text_finding(): what is said in a line, in place of the finding's.
   Judge judge;                 ///< Finds parts of the run that show a finding; empty: none.
 };
 
 /// What the run is, each failure in full (others of the same rule and node in a line), the rest in
 /// a line each, what became of expectations, and the sum.
 std::string text_report(const Story& story, const TextOptions& options);
+
+/// One finding of a story alone: a line, wrapped to the width, with `verbose` in full.
+std::string text_finding(const Story& story, std::size_t index, const TextOptions& options);
 
 }  // namespace rubric::report

@@ -1,0 +1,445 @@
+#!/usr/bin/env python3
+"""`rubric check` of runs that go on: lines in use, growing files, several at a time.
+
+Usage: check_live_test.py RUBRIC PROJECT_FOLDER. All of it on this host, bounded in time.
+"""
+
+import json
+import os
+import pathlib
+import pty
+import resource
+import select
+import signal
+import struct
+import subprocess
+import sys
+import time
+import unittest
+
+import live_testing
+from live_testing import ROOT, RUBRIC, Forwarder, Pty, hdlc
+
+PATIENCE_S = live_testing.PATIENCE_S = 60
+CAPTURES = pathlib.Path("spec/captures")
+BROKEN_LINE = CAPTURES / "basestation/s06_control_03.from_sink.sfstream"  # J6-CONTENT fails.
+CLEAN_LINE = CAPTURES / "firmware/a_join_data.serial.bin"
+OPEN_LINE = CAPTURES / "firmware/b_reliable.serial.bin"  # Stays inconclusive.
+STRAY_REPLY = CAPTURES / "firmware/g2_stray_reply_while_joining.pcapng"  # J4-SEQ fails.
+TWO_TAPS = CAPTURES / "firmware/e1_simultaneous_join.pcapng"
+PACKET_BLOCK = 6
+
+
+def data(path):
+    return (ROOT / path).read_bytes()
+
+
+def blocks(capture):
+    """The blocks of a little-endian pcapng file."""
+    at = 0
+    while at < len(capture):
+        size = struct.unpack_from("<I", capture, at + 4)[0]
+        yield capture[at:at + size]
+        at += size
+
+
+def is_packet(block):
+    return struct.unpack_from("<I", block)[0] == PACKET_BLOCK
+
+
+def until_packet(capture, count):
+    """What of a capture goes up to that packet, which is within."""
+    size = 0
+    for block in blocks(capture):
+        size += len(block)
+        count -= is_packet(block)
+        if count == 0:
+            break
+    return size
+
+
+def stamped(block, shift_us):
+    """A packet block of microseconds, that much later."""
+    ticks = (struct.unpack_from("<I", block, 12)[0] << 32) + struct.unpack_from("<I", block, 16)[0]
+    ticks += shift_us
+    return block[:12] + struct.pack("<II", ticks >> 32, ticks & 0xffffffff) + block[20:]
+
+
+class Checked(live_testing.Running):
+    """A `rubric check` that somebody waits for."""
+
+    def __init__(self, *arguments, **more):
+        super().__init__("check", *arguments, **more)
+        self.seen = []
+
+    def event(self, kind, requirement=None):
+        """The next event of that kind; those before it are in `seen`."""
+        while True:
+            self.seen += self.lines(1)
+            event = self.seen[-1]
+            if event["event"] != kind:
+                continue
+            if requirement is None or event["finding"]["requirement"] == requirement:
+                return event
+
+    def text(self, wanted, stream=None):
+        """What is printed until that text is."""
+        stream = stream or self.process.stdout
+        got = b""
+        deadline = time.monotonic() + PATIENCE_S
+        while wanted.encode() not in got:
+            left = max(0, deadline - time.monotonic())
+            ready = select.select([stream], [], [], left)[0]
+            more = os.read(stream.fileno(), 1 << 16) if ready else b""
+            if not more:
+                self.process.kill()
+                raise AssertionError(f"no {wanted!r} in {got}: {self.end(None)}")
+            got += more
+        return got.decode()
+
+    def report(self, signal_number=signal.SIGINT):
+        """Exit code, the last event's report, and what was said on stderr."""
+        code, out, err = self.end(signal_number)
+        self.seen += [json.loads(line) for line in (self.read.decode() + out).splitlines()]
+        if self.seen[-1]["event"] != "report":
+            raise AssertionError(f"{code}, {self.seen[-1]}, {err}")
+        return code, self.seen[-1]["report"], err
+
+
+def offline(*arguments):
+    done = subprocess.run([RUBRIC, "check", *map(str, arguments), "--format", "json"],
+                          capture_output=True, text=True, check=False, timeout=PATIENCE_S)
+    return done.returncode, json.loads(done.stdout) if done.stdout else done.stderr
+
+
+def key(finding):
+    return finding["file"], finding["frame"], finding["requirement"], finding["node"]
+
+
+def standing(events):
+    """What was told and not withdrawn."""
+    out = {}
+    for event in events:
+        if event["event"] in ("found", "changed"):
+            out[key(event["finding"])] = event["finding"]["severity"]
+        elif event["event"] == "withdrawn":
+            del out[key(event["finding"])]
+    return out
+
+
+class CheckLive(live_testing.LiveTest):
+    maxDiff = 3000
+    program = Checked
+
+    def served(self, content, *arguments):
+        """A check of a serial forwarder that sends this and stays open."""
+        server = Forwarder(self)
+        running = self.started(f"sf@127.0.0.1:{server.port}", *arguments)
+        connection = server.accept(content)
+        self.addCleanup(connection.close)
+        return running, connection
+
+    def test_a_failure_is_told_while_the_line_is_open(self):
+        kept = self.folder / "kept.pcapng"
+        running, _ = self.served(data(BROKEN_LINE), "--format", "jsonl", "--write", kept)
+        found = running.event("found", "J6-CONTENT")["finding"]
+        self.assertEqual((found["severity"], found["frame"]), ("fail", 2))
+        code, report, err = running.report()
+        self.assertEqual((code, err), (1, ""))
+        self.assertEqual(report["schema"], "rubric.check/1")
+        self.assertEqual((code, report), offline(kept))
+        self.assertIn(found, report["findings"])
+
+    def test_as_text(self):
+        kept = self.folder / "kept.pcapng"
+        running, _ = self.served(data(BROKEN_LINE), "--write", kept)
+        line = running.text("J6-CONTENT")
+        self.assertRegex(line, r"^FAIL J6-CONTENT, sink of island 12, frame 2 at ")
+        self.assertNotIn("Verdict", line)
+        code, out, err = running.end()
+        self.assertEqual((code, err), (1, ""))
+        again = subprocess.run([RUBRIC, "check", kept], capture_output=True, text=True, check=False)
+        self.assertTrue(out.endswith("\n\n" + again.stdout) or out.endswith(again.stdout), out)
+        self.assertIn(f"Again:    rubric check {kept}", out)
+
+    def test_without_a_file_there_is_nothing_to_check_again(self):
+        running, _ = self.served(data(BROKEN_LINE), "--verbose")
+        said = running.text("J6-CONTENT")
+        while "Allowed:" not in said:  # In full at once.
+            said += running.text("\n")
+        code, out, _ = running.end(signal.SIGTERM)
+        self.assertEqual(code, 1)
+        self.assertIn("Verdict: fail", out)
+        self.assertNotIn("Again:", said + out)
+
+    def test_documents_come_at_the_end(self):
+        for form, start in (("json", "{"), ("junit", "<")):
+            running, _ = self.served(data(BROKEN_LINE), "--format", form)
+            running.text("FAIL J6-CONTENT", running.process.stderr)
+            code, out, _ = running.end()
+            self.assertEqual((code, out[0]), (1, start))
+        where = self.folder / "report.json"
+        running, _ = self.served(data(BROKEN_LINE), "--format", "json", "--out", where)
+        running.text("FAIL J6-CONTENT")
+        self.assertEqual(running.end()[0], 1)
+        self.assertEqual(json.loads(where.read_text())["verdict"], "fail")
+
+    def test_what_is_expected_is_told_as_that(self):
+        known = self.folder / "known.yaml"
+        known.write_text("- requirement: J6-CONTENT\n  message: serial_joined\n  reason: It is old.\n")
+        running, _ = self.served(data(BROKEN_LINE), "--expect", known)
+        running.text("EXPECTED FAIL J6-CONTENT")
+        code, out, _ = running.end()
+        self.assertEqual(code, 0, out)
+
+    def test_a_serial_line(self):
+        for path, severity in ((CLEAN_LINE, None), (OPEN_LINE, "inconclusive")):
+            line = Pty(self)
+            kept = self.folder / f"{path.name}.pcapng"
+            running = self.started(f"serial@{line.name}:telosb", "--format", "jsonl", "--write",
+                                   kept)
+            self.opened(running, line)
+            content = data(path)
+            for at in range(0, len(content), 1000):
+                os.write(line.fd, content[at:at + 1000])
+                time.sleep(0.01)
+            if severity:
+                self.assertEqual(running.event("found", "T2-ACK")["finding"]["severity"], severity)
+            frames = offline(path)[1]["counts"]["frames"]
+            self.grown(kept, lambda: offline(kept)[1]["counts"]["frames"] == frames)
+            code, report, err = running.report()
+            self.assertEqual(err, "")
+            self.assertEqual((code, report), offline(kept))
+            self.assertEqual(report["counts"]["frames"], frames)
+
+    def opened(self, running, line):
+        """Waits for the line to be listened to: opening it throws away what came before."""
+        deadline = time.monotonic() + PATIENCE_S
+        ask = hdlc(b"\x44\x2a" + bytes.fromhex("00ffff000001002509"))
+        while True:
+            os.write(line.fd, ask)
+            if line.read(0.2):
+                break
+            self.assertLess(time.monotonic(), deadline, running.process.poll())
+
+    def grown(self, path, done):
+        deadline = time.monotonic() + PATIENCE_S
+        while not done():
+            self.assertLess(time.monotonic(), deadline, path)
+            time.sleep(0.1)
+
+    def test_frames_that_ask_for_it_are_confirmed(self):
+        packet = bytes.fromhex("00ffff000003002514000c")
+        for arguments, answer in (((), hdlc(b"\x43\x2a")), (("--listen-only",), b"")):
+            line = Pty(self)
+            kept = self.folder / "kept.pcapng"
+            running = self.started(f"serial@{line.name}:115200", "--write", kept, *arguments)
+            got = bytearray()
+
+            def captured():
+                os.write(line.fd, hdlc(b"\x44\x2a" + packet))
+                got.extend(line.read(0.2))
+                return kept.exists() and kept.stat().st_size > 150
+
+            self.grown(kept, captured)
+            got.extend(line.read(0.5))
+            self.assertEqual(got[:len(answer)] if answer else got, answer)
+            self.assertEqual(running.end()[2], "")
+            kept.unlink()
+
+    def test_a_file_that_grows(self):
+        path = self.folder / "growing.pcapng"
+        whole = data(STRAY_REPLY)
+        request = until_packet(whole, 1)
+        path.write_bytes(whole[:request])
+        running = self.started(path, "--follow", "--format", "jsonl")
+        # Nothing comes, and that no reply came is told.
+        silent = running.event("found", "J3-REPLY")["finding"]
+        self.assertEqual((silent["severity"], silent["frame"]), ("inconclusive", 1))
+        with open(path, "ab", buffering=0) as file:
+            for at in range(request, len(whole), 11):
+                file.write(whole[at:at + 11])
+        found = running.event("found", "J4-SEQ")["finding"]
+        code, report, err = running.report()
+        self.assertEqual((code, err), (1, ""))
+        self.assertEqual((code, report), offline(path))
+        self.assertIn(found, report["findings"])
+
+    def test_what_turns_out_otherwise_is_withdrawn(self):
+        path = self.folder / "growing.pcapng"
+        whole = data(TWO_TAPS)
+        request = until_packet(whole, 1)
+        path.write_bytes(whole[:request])
+        running = self.started(path, "--follow", "--format", "jsonl")
+        running.event("found", "J3-REPLY")
+        with open(path, "ab") as file:
+            file.write(whole[request:])
+        gone = running.event("withdrawn", "J3-REPLY")
+        self.assertTrue(gone["why"])
+        code, report, _ = running.report()
+        self.assertEqual((code, report), offline(path))
+        self.assertNotIn("J3-REPLY", [one["requirement"] for one in report["findings"]])
+
+    def test_files_that_become_others(self):
+        whole = data(TWO_TAPS)
+        for change, said in (("shorten", "it has become shorter"),
+                             ("replace", "another file has taken its name"),
+                             ("remove", "it was renamed or deleted")):
+            path = self.folder / f"{change}.pcapng"
+            path.write_bytes(whole)
+            running = self.started(path, "--follow")
+            if change == "shorten":
+                time.sleep(1)
+                path.write_bytes(whole[:100])
+            elif change == "replace":
+                other = self.folder / "other.pcapng"
+                other.write_bytes(whole)
+                other.rename(path)
+            else:
+                path.unlink()
+            code, out, err = running.end(None)
+            if code == 66 and "No such file" in err:
+                continue  # It was faster than the opening.
+            self.assertIn(f"rubric: {path}: {said}", err)
+            self.assertIn("Verdict: ", out)
+            self.assertEqual(code, 66)
+
+    def test_radio_and_serial_at_once(self):
+        capture = list(blocks(data(TWO_TAPS)))
+        line = Pty(self)
+        sniffer = self.folder / "sniffer.pcapng"
+        kept = self.folder / "kept.pcapng"
+        sniffer.write_bytes(b"".join(block for block in capture if not is_packet(block)))
+        running = self.started(f"serial@{line.name}:telosb", sniffer, "--follow", "--write", kept,
+                               "--format", "jsonl", "--listen-only")
+        self.grown(kept, lambda: kept.exists())
+        time.sleep(1)  # Opening throws away what came before.
+        packets = [block for block in capture if is_packet(block)]
+        first_us = struct.unpack_from("<I", packets[0], 16)[0]
+        start = time.time()
+        with open(sniffer, "ab", buffering=0) as file:
+            for block in packets:
+                interface, high, low, size = struct.unpack_from("<IIII", block, 8)
+                at = ((high << 32) + low - first_us) / 1e6
+                time.sleep(max(0, start + at - time.time()))
+                if interface == 0:
+                    file.write(stamped(block, int(start * 1e6) - first_us))
+                else:
+                    os.write(line.fd, hdlc(block[28:28 + size - 2]))
+        frames = len(packets)
+        self.grown(kept, lambda: offline(kept)[1]["counts"]["frames"] > 0)
+        code, report, err = running.report()
+        self.assertEqual((code, report), offline(kept, sniffer), err)
+        self.assertEqual(report["files"], [str(kept), str(sniffer)])
+        self.assertGreater(report["counts"]["frames"], frames // 2)
+        self.assertEqual(report["counts"]["fail"], 0)
+
+    def test_a_line_that_breaks(self):
+        running, connection = self.served(data(BROKEN_LINE), "--format", "jsonl")
+        running.event("found", "J6-CONTENT")
+        connection.close()
+        code, report, err = running.report(None)
+        self.assertEqual((code, report["verdict"]), (1, "fail"))
+        self.assertIn("the line broke: the other end closed it", err)
+        running, connection = self.served(data(BROKEN_LINE)[:2])
+        connection.close()
+        self.assertEqual(running.end(None)[0], 66)
+
+    def test_a_line_that_comes_back(self):
+        server = Forwarder(self)
+        running = self.started(f"sf@127.0.0.1:{server.port}", "--reconnect", "--format", "jsonl")
+        server.accept(b"U ").close()
+        connection = server.accept(data(BROKEN_LINE))
+        self.addCleanup(connection.close)
+        self.assertEqual(running.event("found", "J6-CONTENT")["finding"]["frame"], 2)
+        code, _, err = running.report()
+        self.assertEqual(code, 1)
+        self.assertIn("the other end closed it", err)
+        self.assertIn("again", err)
+
+    def test_a_reader_that_has_seen_enough(self):
+        running, _ = self.served(data(BROKEN_LINE))
+        running.text("J6-CONTENT")
+        running.process.stdout.close()
+        self.assertEqual(running.process.wait(PATIENCE_S), 1)
+        self.assertEqual(running.process.stderr.read(), b"")
+
+    def test_a_pipe(self):
+        running = self.started("-", "--follow", "--format", "jsonl", stdin=subprocess.PIPE)
+        self.addCleanup(running.process.stdin.close)
+        running.process.stdin.write(data(STRAY_REPLY))
+        running.process.stdin.flush()
+        running.event("found", "J4-SEQ")
+        code, report, err = running.report()
+        self.assertEqual((code, report["files"], err), (1, ["stdin"], ""))
+
+    def test_motecom(self):
+        server = Forwarder(self)
+        master, slave = pty.openpty()
+        self.addCleanup(os.close, master)
+        running = self.started("--format", "jsonl", stdin=slave,
+                               env={**os.environ, "MOTECOM": f"sf@127.0.0.1:{server.port}"})
+        os.close(slave)
+        connection = server.accept(data(BROKEN_LINE))
+        self.addCleanup(connection.close)
+        running.event("found", "J6-CONTENT")
+        self.assertEqual(running.report()[0], 1)
+
+    def test_options_that_make_no_sense(self):
+        log = self.folder / "run.rtr"
+        log.write_text("%rtr 1\n")
+        line = "sf@127.0.0.1:1"
+        for arguments, said in (
+                (("x.pcapng", "--write", "y.pcapng"), "none of the sources is a line in use"),
+                (("x.pcapng", "--follow", "--write", "y.pcapng"), "none of the sources is a line"),
+                ((line, "--frames", "1..2"), "--frames"),
+                ((line, log), "is a log"),
+                ((line, line), "is there twice"),
+                ((line, "--write", "y", "--out", "y"), "the report goes to y"),
+                (("serial@/dev/ttyUSB0",), "expected serial@DEVICE:BAUD"),
+                ((), "FILE")):
+            done = subprocess.run([RUBRIC, "check", *map(str, arguments)], capture_output=True,
+                                  text=True, check=False, stdin=subprocess.DEVNULL,
+                                  timeout=PATIENCE_S)
+            self.assertEqual((done.returncode, done.stdout), (64, ""), arguments)
+            self.assertIn(said, done.stderr, arguments)
+
+    def test_a_long_run_is_judged_in_little_of_the_time(self):
+        """Frames as fast as they go: what is judged again and again must not add up."""
+        path = self.folder / "long.pcapng"
+        subprocess.run([RUBRIC, "simulate", "--motes", "20", "--sinks", "2", "--seconds", "250",
+                        "--out-pcapng", path], check=True, capture_output=True)
+        whole = path.read_bytes()
+        growing = self.folder / "growing.pcapng"
+        growing.write_bytes(b"")
+        begin = time.monotonic()
+        running = self.started(growing, "--follow", "--format", "jsonl", "--start", "cold")
+        with open(growing, "ab", buffering=0) as file:
+            for at in range(0, len(whole), len(whole) // 40):
+                file.write(whole[at:at + len(whole) // 40])
+                time.sleep(0.1)
+        fed = time.monotonic() - begin
+        time.sleep(2)
+        running.process.send_signal(signal.SIGINT)
+        out = running.process.stdout.read()
+        _, status, usage = os.wait4(running.process.pid, 0)
+        running.process.returncode = os.waitstatus_to_exitcode(status)
+        wall = time.monotonic() - begin
+        code, report = offline(path, "--start", "cold")
+        got = json.loads(out.splitlines()[-1])["report"]
+        self.assertEqual(running.process.returncode, code)
+        self.assertGreater(got["counts"]["frames"], 30000)
+        self.assertEqual(got["counts"], report["counts"])
+        busy = usage.ru_utime + usage.ru_stime
+        if os.environ.get("RUBRIC_MEASURE"):
+            print(f"{got['counts']['frames']} frames fed in {fed:.1f} s, {busy:.2f} of {wall:.1f} s "
+                  "of CPU", file=sys.stderr)
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        offline(path, "--start", "cold")
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        once = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+        self.assertLess(busy, 0.3 * wall + 3 * once)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,60 @@
+// Several sources at once, each as it comes.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <exception>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "tools/cli/input.h"
+
+namespace rubric::cli {
+
+/// Reads every file and line of an InputOptions in a thread of its own, as read_packets() does, so
+/// that lines are confirmed however long somebody thinks about a packet. They end when they end, or
+/// when the user says so (live/stop.h).
+class InputThreads {
+ public:
+  explicit InputThreads(const InputOptions& options);
+  /// Asks them to stop and waits for it.
+  ~InputThreads();
+  InputThreads(const InputThreads&) = delete;
+  InputThreads& operator=(const InputThreads&) = delete;
+
+  /// `file` counts in options.files. The packet is borrowed, as is the interface's name.
+  using OnPacket = std::function<void(const Packet&, std::size_t file, std::string_view interface)>;
+  /// Hands over what has come, in its order, after waiting for it until then at most. False when
+  /// all sources have ended and nothing is left. What threads threw is thrown here.
+  bool take(std::chrono::steady_clock::time_point until, const OnPacket& on_packet);
+
+  /// Whether a source could not be opened or read, or broke off. Said on stderr.
+  bool failed() const { return failed_; }
+
+ private:
+  struct Kept {
+    Packet packet;
+    std::vector<std::uint8_t> bytes;
+    std::string comment;
+    std::string interface_name;
+    std::size_t file = 0;
+  };
+
+  void read(InputOptions options, std::size_t file);
+  void keep(const Packet& packet, const Source& source, std::size_t file);
+
+  std::mutex mutex_;
+  std::condition_variable came_;
+  std::condition_variable taken_;
+  std::deque<Kept> waiting_;
+  std::size_t running_ = 0;
+  bool failed_ = false;
+  std::exception_ptr thrown_;
+  std::vector<std::thread> threads_;
+};
+
+}  // namespace rubric::cli
