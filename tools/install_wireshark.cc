@@ -31,6 +31,7 @@ constexpr const char* kFooter =
     "tshark, those of the Wireshark that is installed. rubric-extcap is linked, so that it is\n"
     "renewed together with rubric; where a file system has no links it is copied. Safe to repeat.\n"
     "Files of others are left alone.\n"
+    "\n"
     "Examples:\n"
     "  rubric install-wireshark\n"
     "  rubric install-wireshark --dry-run\n"

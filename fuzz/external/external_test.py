@@ -15,6 +15,7 @@ import unittest
 HERE = pathlib.Path(__file__).resolve().parent
 RUBRIC = None
 ORACLE = "spec/oracle"  # Where npm put Kaitai Struct.
+DISSECTOR = "tools/wireshark/generated/rubric.lua"
 
 
 def compare(script, *arguments, code):
@@ -79,27 +80,33 @@ class Tshark(Scratch):
         return compare("compare_tshark.py", "--count", "4000", *arguments, code=code)
 
     def planted(self, old, new):
-        return self.tshark(1, "--dissector",
-                           str(self.patched(HERE / "am_dissector.lua", old, new)))
+        return self.tshark(1, "--dissector", str(self.patched(DISSECTOR, old, new)))
 
     def test_agrees(self):
         self.assert_names(self.tshark(0), "4000 frames: ", " 0 disagreements")
 
     def test_a_bound_that_is_off_is_found(self):
-        said = self.planted("length > 114", "length > 115")
-        self.assert_names(said, "rubric explain WIRE-AM-LENGTH", "was accepted")
+        said = self.planted("min = 0, max = 114", "min = 0, max = 115")
+        self.assert_names(said, "rubric explain WIRE-AM-LENGTH", "out_of_range at byte 5 by")
 
     def test_a_crc_that_is_not_checked_is_found(self):
-        said = self.planted('return "wrong CRC"', 'crc16(buffer, 1)')
-        self.assert_names(said, "the CRC is wrong", "rubric explain WIRE-SERIAL-CRC")
+        said = self.planted("if found == right then", "if true then")
+        self.assert_names(said, "the CRC is wrong", "rubric explain WIRE-SERIAL-CRC",
+                          "was accepted")
 
     def test_a_wrong_offset_is_found(self):
-        said = self.planted("tree:add(f.src, packet(3, 2))", "tree:add(f.src, packet(1, 2))")
-        self.assert_names(said, "am_header.src should have been")
+        said = self.planted("return true, at + width", "return true, at + 1")
+        self.assert_names(said, "am_header.", "was refused")
+
+    def test_a_number_read_wrongly_is_found(self):
+        """Nothing is refused or accepted wrongly then; the fields show it."""
+        field = '{name = "seq_num", kind = "uint", width = 2'
+        said = self.planted(field, field + ", little = true")
+        self.assert_names(said, "seq_num should have been")
 
     def test_a_crash_is_found(self):
-        said = self.planted('if payload:len() < 12 then return "network header cut off" end', "")
-        self.assert_names(said, "Lua Error", "Range is out of bounds")
+        said = self.planted("if size >= 3 then", "if true then")
+        self.assert_names(said, '"crash": "_ws.malformed"')
 
 
 class Harness(Scratch):

@@ -14,7 +14,7 @@ namespace rubricc {
 namespace {
 
 constexpr std::string_view kFile = R"(<<banner>>
--- A Wireshark dissector: lay this file into the folder of personal Lua plugins.
+-- A Wireshark dissector: `rubric install-wireshark` lays it into the folder of Lua plugins.
 
 -- The wire spec as tables.
 local enums, masks, types, rules = {}, {}, {}, {}

@@ -10,9 +10,11 @@ local from_radio = Proto("rubric_radio", "TinyOS radio frame (Rubric)")
 
 local MAC_HEADER = 9                -- IEEE 802.15.4-2006, section 7.2.1: short addresses, one PAN.
 local RADIO_FRAME_MAX = 125         -- aMaxPHYPacketSize without FCS.
+local FCS_BYTES = 2
 local SERIAL_ACK, PACKET_ACK, PACKET_NOACK = 67, 68, 69  -- TEP 113, section 3.1.
 local CONTENT_MIN = 4               -- Kind, a byte, CRC.
 local AFTER_HEADER_MAX = 254        -- Bytes behind kind and sequence number, CRC included.
+local SF_PACKET_MAX = 255           -- What a length byte can say.
 
 -- Fields, by their names in filters.
 
@@ -273,7 +275,10 @@ function from_sf.dissector(tvb, pinfo, root)
     return show_fault(tree, pinfo, {fault = "empty", offset = 0, rule = "WIRE-SF-LENGTH",
                                     text = "the packet has no bytes"}, tvb())
   end
-  dissect_packet(tvb, pinfo, tree)
+  local fault = tvb:len() > SF_PACKET_MAX and
+      {fault = "too_long", offset = SF_PACKET_MAX, rule = "WIRE-SF-LENGTH",
+       text = "the packet is beyond the largest possible size"} or nil
+  dissect_packet(tvb, pinfo, tree, fault)
 end
 
 local function has_seq(kind) return kind == SERIAL_ACK or kind == PACKET_ACK end
@@ -322,6 +327,7 @@ function from_serial.dissector(tvb, pinfo, root)
 end
 
 local frame_control = Field.new("wpan.fcf")
+local encapsulation = Field.new("frame.encap_type")
 
 -- The 802.15.4 dissector has taken the header off; the tables count from its first byte.
 function from_radio.dissector(tvb, pinfo, root)
@@ -343,7 +349,9 @@ function from_radio.dissector(tvb, pinfo, root)
   local am_type = bytes:byte(is_i_frame and 2 or 1)
   local fault
   if MAC_HEADER + #bytes > RADIO_FRAME_MAX then
-    fault = {fault = "too_long", offset = RADIO_FRAME_MAX, rule = "WIRE-RADIO-LENGTH",
+    local with_fcs = encapsulation().value == wtap.IEEE802_15_4
+    fault = {fault = "too_long", rule = "WIRE-RADIO-LENGTH",
+             offset = RADIO_FRAME_MAX + (with_fcs and FCS_BYTES or 0),
              text = "the frame is beyond the largest possible size"}
   end
   show_all(tree, pinfo, out, {tvb = tvb, skipped = MAC_HEADER}, am_type, fault)
