@@ -96,7 +96,7 @@ def closer(frame, given, names):
             return f"should have been {compare.wanted(frame)}, was refused: {given['why']}"
         return None
     expected = [(last(one["field"]), one["value"]) for one in frame["fields"]
-                if not one["field"].startswith("mac_header.")]  # Wireshark's own dissector shows it.
+                if not one["field"].startswith("mac_header.")]  # Wireshark's own shows it.
     given["list"] = [one for one in given["list"] if one[0] in names[tuple(frame["path"])]]
     for right, found in zip(expected, given["list"]):
         if right != found:
