@@ -11,7 +11,6 @@
 #include "conformance/oracle/align_clock.h"
 #include "conformance/oracle/align_frames.h"
 #include "conformance/oracle/align_order.h"
-#include "conformance/oracle/message.h"
 
 namespace rubric::oracle {
 namespace {
@@ -27,6 +26,7 @@ struct File {
   bool timed = false;        // Some have stamps.
   bool radio = false;
   bool serial = false;
+  bool moved = false;        // By the frames that another one has.
   bool settled = false;      // On a clock, or left as it is.
   std::uint32_t clock = 0;   // The first file on the same one.
   std::int64_t first_us = 0;
@@ -47,7 +47,7 @@ class Alignment {
     while (const std::optional<std::uint32_t> next = first_unsettled()) {
       while (settle_one()) continue;
     }
-    mark_unordered();
+    mark_lines();
     for (std::uint32_t i = 0; i < files_.size(); ++i) {
       if (files_[i].frames && !files_[i].timed) order(i);
     }
@@ -113,6 +113,8 @@ class Alignment {
       if (seen.place.file != b || !seen.node.empty() || seen.place.time_us == kNoStamp) continue;
       seen.place.time_us = fit.moved(seen.place.time_us);
     }
+    files_[b].moved = true;
+    run_.slack_us = std::max(run_.slack_us, std::min(fit.slack_us, options_.response_us));
     std::string text = run_.files[b] + " is aligned with " + run_.files[a] + " by " +
                        std::to_string(fit.frames) + " common frames: its clock is " +
                        decimal(std::abs(static_cast<double>(fit.offset_us)) / 1e6, 6, "s") +
@@ -148,6 +150,8 @@ class Alignment {
   void order(std::uint32_t b) {
     const std::optional<std::uint32_t> air = air_file();
     if (!air) return;
+    const std::optional<std::vector<std::uint32_t>> turned = wrong_ways(run_, b);
+    if (turned) turn(*turned, b);
     OrderEvidence evidence;
     std::size_t same = 0;
     for (std::uint32_t a = 0; a < files_.size(); ++a) {
@@ -161,12 +165,16 @@ class Alignment {
       std::copy(common.only_a.begin(), common.only_a.end(), std::back_inserter(evidence.only_a));
       std::copy(common.only_b.begin(), common.only_b.end(), std::back_inserter(evidence.only_b));
     }
-    if (same > evidence.pairs.size()) return;  // Frames of it are in another file (duplicates.h).
+    if (same > evidence.pairs.size()) {  // Frames of it are in another file (duplicates.h).
+      if (turned) turn(*turned, b);
+      return;
+    }
     OrderFit fit;
     fit.why = "frames between islands may go either way on its line";
-    if (!two_ways(b)) fit = fit_order(run_, b, evidence, options_);
+    if (turned) fit = fit_order(run_, b, evidence, options_);
     const std::string other = run_.files[*air];
     if (!fit.good) {
+      if (turned) turn(*turned, b);
       run_.facts.push_back(run_.files[b] + ", which has no time stamps, is not aligned with " +
                            other + ": " + fit.why);
       return;
@@ -177,20 +185,11 @@ class Alignment {
                          " frames lie");
   }
 
-  // Both directions of a line in one file, and messages of which only the direction tells whether
-  // the sink got or sent them.
-  bool two_ways(std::uint32_t b) const {
-    bool down = false;
-    bool open = false;
-    for (const Observation& seen : run_.seen) {
-      if (seen.place.file != b || seen.kind != Observation::Kind::kSerial) continue;
-      if (run_.taps[seen.tap].has_direction) continue;
-      Net net;
-      down = down || seen.to_mote;
-      open = open || (seen.frame.type == am::kNet && parse_net(seen.frame.payload, net) &&
-                      net.src.devid != machine::kNullDevid && net.dest.devid != machine::kNullDevid);
-    }
-    return down && open;
+  // These frames of `b` go the other way.
+  void turn(const std::vector<std::uint32_t>& frames, std::uint32_t b) {
+    if (frames.empty()) return;
+    for (const std::uint32_t i : frames) run_.seen[i].to_mote = !run_.seen[i].to_mote;
+    sightings_[b] = std::move(sightings_of(run_)[b]);
   }
 
   std::optional<std::uint32_t> air_file() const {
@@ -200,16 +199,18 @@ class Alignment {
     return static_cast<std::uint32_t>(air - files_.begin());
   }
 
-  // Lines on another clock than the air's first capture.
-  void mark_unordered() {
+  // Lines on another clock than the air's first capture, and those that were put on it.
+  void mark_lines() {
     const std::optional<std::uint32_t> air = air_file();
     if (!air) return;
     for (const Observation& seen : run_.seen) {
       const File& file = files_[seen.place.file];
-      if (!seen.node.empty() || seen.kind != Observation::Kind::kSerial) continue;
-      if (!file.timed || file.clock == files_[*air].clock) continue;
-      run_.unordered_taps.resize(run_.taps.size());
-      run_.unordered_taps[seen.tap] = true;
+      if (!seen.node.empty() || seen.kind != Observation::Kind::kSerial || !file.timed) continue;
+      const bool own = file.clock != files_[*air].clock;
+      if (!own && (seen.place.file == *air || !(file.moved || files_[*air].moved))) continue;
+      std::vector<bool>& taps = own ? run_.unordered_taps : run_.slack_taps;
+      taps.resize(run_.taps.size());
+      taps[seen.tap] = true;
     }
   }
 

@@ -13,6 +13,8 @@ constexpr std::int64_t kSlackUs = 100'000;     // Beyond the response time: a qu
 constexpr double kDriftMax = 300e-6;           // Of two crystals, and some more.
 constexpr std::size_t kTrack = 9;              // Neighbours that say where the next one lies.
 constexpr std::size_t kSlopePoints = 300;      // Enough for a slope; pairs of them are counted.
+constexpr std::int64_t kUnwaitedUs = 20'000;   // That even the fastest frame may have waited.
+constexpr double kRoundedUs = 2;               // What rounding may take from an order.
 constexpr double kTrimmed = 0.02;              // Pairs that are a chance, or a message held up.
 constexpr double kSigma = 1.4826;              // Of a median deviation.
 constexpr std::size_t kDriftFrames = 8;
@@ -25,6 +27,7 @@ struct Point {
   std::int64_t ahead_us = 0;
   int lag_sign = 0;
   std::int64_t lag_min_us = 0;
+  bool up = false;  // From the air to a line.
   bool inlier = false;
   double rest_us = 0;  // Without drift.
 };
@@ -37,7 +40,8 @@ Points points_of(const Run& run, const CommonFrames& common) {
     const std::int64_t a = run.seen[pair.a].place.time_us;
     const std::int64_t b = run.seen[pair.b].place.time_us;
     if (a == kNoStamp || b == kNoStamp) continue;
-    out.push_back({b, b - a, pair.lag_sign, pair.lag_min_us, false, 0});
+    const bool up = pair.how == Common::kUp || pair.how == Common::kJoined;
+    out.push_back({b, b - a, pair.lag_sign, pair.lag_min_us, up, false, 0});
   }
   std::stable_sort(out.begin(), out.end(),
                    [](const Point& x, const Point& y) { return x.at_us < y.at_us; });
@@ -184,34 +188,45 @@ double drift_of(Points& in, std::int64_t base_us) {
 // Where the offset can lie: no effect stands before its cause.
 struct Bounds {
   std::optional<double> low;   // By frames whose cause is in the second file.
-  std::optional<double> high;
+  std::optional<double> high;  // By those whose cause is in the first one.
 };
-Bounds bounds_of(const Points& in, bool physical) {
-  std::vector<double> low;
-  std::vector<double> high;
-  for (const Point& point : in) {
-    const double least = physical ? static_cast<double>(point.lag_min_us) : 0;
-    if (point.lag_sign < 0) low.push_back(point.rest_us + least);
-    if (point.lag_sign > 0) high.push_back(point.rest_us - least);
+
+// The least of them, without those that are far from all others.
+std::optional<double> least(const std::vector<double>& values, double far_us) {
+  if (values.empty()) return std::nullopt;
+  const double usual = quantile(values, kTrimmed);
+  double out = usual;
+  for (const double value : values) {
+    if (value >= usual - far_us) out = std::min(out, value);
   }
-  Bounds out;
-  if (!low.empty()) out.low = quantile(low, 1 - kTrimmed);
-  if (!high.empty()) out.high = quantile(high, kTrimmed);
   return out;
 }
 
-// Whether the stamps as they are break nothing: no effect before its cause by more than the skew,
-// and not all of them later than nodes may be.
-bool agree(const Points& in, const AlignOptions& options) {
-  const auto skew = static_cast<double>(options.skew_us);
-  const auto response = static_cast<double>(options.response_us);
+Bounds bounds_of(const Points& in, const AlignOptions& options) {
+  std::vector<double> low;
+  std::vector<double> high;
+  for (const Point& point : in) {
+    if (point.lag_sign < 0) low.push_back(-point.rest_us - static_cast<double>(point.lag_min_us));
+    if (point.lag_sign > 0) high.push_back(point.rest_us - static_cast<double>(point.lag_min_us));
+  }
+  const auto far_us = static_cast<double>(options.skew_us);
+  Bounds out{least(low, far_us), least(high, far_us)};
+  if (out.low) out.low = -*out.low + kRoundedUs;
+  if (out.high) out.high = *out.high - kRoundedUs;
+  return out;
+}
+
+// How far the second clock is ahead of rest 0: as far as the same frames say, else so that the
+// fastest frame from the air to the line waited for nothing. The line's stamps are then as early as
+// they can be, so that what came down it stands before its effect on the air, however fast.
+double ahead_of(const Points& in, const AlignOptions& options) {
   const std::vector<double> same = rests(in, 0);
-  if (!same.empty() && std::abs(median(same)) > skew) return false;
-  const Bounds bounds = bounds_of(in, false);
-  if (bounds.low && *bounds.low > skew) return false;
-  if (bounds.high && *bounds.high < -skew) return false;
-  if (bounds.low && !bounds.high && same.empty() && *bounds.low < -response) return false;
-  return !(bounds.high && !bounds.low && same.empty() && *bounds.high > response);
+  if (!same.empty()) return median(same);
+  const Bounds bounds = bounds_of(in, options);
+  const auto up = std::find_if(in.begin(), in.end(), [](const Point& one) { return one.up; });
+  if (up != in.end()) return up->lag_sign > 0 ? *bounds.high : *bounds.low;
+  const double down_us = kUnwaitedUs / 2.0;
+  return bounds.high ? *bounds.high - down_us : *bounds.low + down_us;
 }
 
 std::string count_text(std::size_t count) {
@@ -275,7 +290,8 @@ class Fit {
     const auto span_us = static_cast<double>(near.back().at_us - near.front().at_us);
     const double drifted = std::abs(drift_of(near, 0)) * span_us;
     set_rests(near, 0, 0);
-    return drifted <= static_cast<double>(options_.skew_us) && agree(near, options_);
+    const auto skew_us = static_cast<double>(options_.skew_us);
+    return drifted <= skew_us && std::abs(ahead_of(near, options_)) <= skew_us;
   }
 
   // Most of those that repeat can be pairs of one clock.
@@ -338,22 +354,18 @@ class Fit {
       return unsure("the " + count_text(in_.size()) + " that are in both lie up to " +
                     std::to_string(std::llround(out_.spread_us / 1000)) + " ms apart");
     }
-    const std::vector<double> same = rests(in_, 0);
-    const Bounds bounds = bounds_of(in_, true);
+    const Bounds bounds = bounds_of(in_, options_);
     if (bounds.low && bounds.high &&
         *bounds.low - *bounds.high > static_cast<double>(options_.skew_us)) {
       return unsure("some of the frames that are in both would stand before their causes");
     }
-    double rest = 0;
-    if (!same.empty()) {
-      rest = median(same);
-    } else if (bounds.low && bounds.high) {
-      rest = (*bounds.low + *bounds.high) / 2;
-    } else {
-      rest = bounds.high ? *bounds.high : *bounds.low;
-    }
     out_.clocks = Clocks::kDiffer;
-    out_.offset_us = base_us + std::llround(rest);
+    out_.offset_us = base_us + std::llround(ahead_of(in_, options_));
+    if (bounds.low && bounds.high) {
+      out_.slack_us = std::max<std::int64_t>(0, std::llround(*bounds.high - *bounds.low));
+    } else if (rests(in_, 0).empty()) {
+      out_.slack_us = kUnwaitedUs;
+    }
     out_.at_us = in_.front().at_us;
     out_.frames = in_.size();
     return out_;

@@ -26,6 +26,8 @@ struct ClockFit {
   std::size_t frames = 0;     ///< Pairs that agree.
   double spread_us = 0;       ///< Nine tenths of them are that close to the middle one.
 
+  std::int64_t slack_us = 0;  ///< Stamps of the two files are that good after moved().
+
   /// A stamp of the second file on the first one's clock.
   std::int64_t moved(std::int64_t time_us) const;
 };

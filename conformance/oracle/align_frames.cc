@@ -151,7 +151,9 @@ class Pairing {
   void match(Common how, Group of_a, Group of_b, int sign) {
     const std::vector<Sighting> a = once(run_, of_a);
     const std::vector<Sighting> b = once(run_, of_b);
-    if (a.size() > kGroupMax || b.size() > kGroupMax) return;
+    if (!a.empty() && !b.empty() && std::max(a.size(), b.size()) > kGroupMax) {
+      return guess(how, a, b, sign);
+    }
     std::vector<std::size_t> fit_a(a.size(), 0);
     std::vector<std::size_t> fit_b(b.size(), 0);
     std::vector<std::pair<std::size_t, std::size_t>> fitting;
@@ -177,6 +179,17 @@ class Pairing {
   }
 
  private:
+  // Too many to compare each with each: those next to each other by their stamps.
+  void guess(Common how, Group a, Group b, int sign) {
+    const auto at = [&](const Sighting& one) { return run_.seen[one.index].place.time_us; };
+    std::size_t i = 0;
+    for (const Sighting& one : b) {
+      while (i + 1 < a.size() && at(a[i + 1]) <= at(one)) ++i;
+      out_.guesses.push_back(pair_of(how, a[i], one, sign));
+      if (i + 1 < a.size()) out_.guesses.push_back(pair_of(how, a[i + 1], one, sign));
+    }
+  }
+
   Pair pair_of(Common how, const Sighting& a, const Sighting& b, int sign) const {
     Pair pair{a.index, b.index, how, sign, 0};
     const Observation& cause = run_.seen[sign < 0 ? b.index : a.index];

@@ -61,11 +61,21 @@ std::pair<std::int64_t, std::int64_t> between_of(const Run& run) {
   return out;
 }
 
+// Of loose frames their likely times, the earliest, the latest, or none; of lines with slack the
+// earliest, half of the slack later, all of it.
 enum class When : std::uint8_t { kLikely, kEarly, kLate, kNever };
 
 Report judge_with(const Run& run, const Options& options, When when) {
   Run now = run;
   now.loose.clear();
+  now.slack_taps.clear();
+  const std::int64_t later_us = when == When::kEarly  ? run.slack_us / 2
+                                : when == When::kLate ? run.slack_us
+                                                      : 0;
+  for (Observation& seen : now.seen) {
+    const bool line = !run.slack_taps.empty() && seen.node.empty() && run.slack_taps[seen.tap];
+    if (line && seen.place.timed()) seen.place.time_us += later_us;
+  }
   if (when == When::kNever) {
     std::erase_if(now.seen, [](const Observation& seen) { return seen.place.loose; });
   } else if (when != When::kLikely) {
@@ -76,6 +86,7 @@ Report judge_with(const Run& run, const Options& options, When when) {
     }
   }
   merge(now);
+  now.has_time = run.has_time;
   now.start_us = run.start_us;  // Of a part they are what its maker said.
   now.end_us = run.end_us;
   return judge(now, options);
@@ -88,7 +99,8 @@ Report judge_each_order(const Run& run, const Options& options) {
   if (std::none_of(report.findings.begin(), report.findings.end(), blames)) return report;
   const std::set<Name> early = blamed_in(judge_with(run, options, When::kEarly));
   const std::set<Name> late = blamed_in(judge_with(run, options, When::kLate));
-  const std::set<Name> never = blamed_in(judge_with(run, options, When::kNever));
+  std::set<Name> never;
+  if (!run.loose.empty()) never = blamed_in(judge_with(run, options, When::kNever));
   const auto [first_us, last_us] = between_of(run);
   for (Finding& finding : report.findings) {
     if (!blames(finding)) continue;
@@ -99,7 +111,7 @@ Report judge_each_order(const Run& run, const Options& options) {
     const std::int64_t at_us = finding.place.time_us;
     const bool between = place != nullptr ? place->between : at_us >= first_us && at_us <= last_us;
     const bool stands = early.contains(name) && late.contains(name) &&
-                        (between || id.starts_with("WIRE-") || never.contains(name));
+                        (run.loose.empty() || between || id.starts_with("WIRE-") || never.contains(name));
     if (!stands) finding.severity = Severity::kInconclusive;
   }
   report.verdict = verdict_of(report.findings);

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
 #include <tuple>
+
+#include "conformance/oracle/message.h"
 
 namespace rubric::oracle {
 namespace {
@@ -48,6 +51,24 @@ std::vector<Anchor> longest_in_order(const std::vector<Anchor>& all) {
   }
   std::reverse(out.begin(), out.end());
   return out;
+}
+
+// From one island to another, and no telling from where the line has it: a host may hand down what
+// it got.
+bool may_be_either(const Run& run, const Observation& seen) {
+  Net net;
+  return seen.kind == Observation::Kind::kSerial && !run.taps[seen.tap].has_direction &&
+         seen.frame.type == am::kNet && parse_net(seen.frame.payload, net) &&
+         net.src.devid != machine::kNullDevid && net.dest.pid != net.src.pid;
+}
+
+// The island of the line that this message shows, whichever way it went; 0: it shows none.
+std::uint16_t island_shown(const Observation& seen, const Net& net) {
+  SerialJoined joined;
+  if (!seen.to_mote && parse_serial_joined(net, joined)) return joined.address.pid;
+  if (net.src.devid == machine::kNullDevid) return net.src.pid;
+  return net.dest == machine::Address{net.src.pid, machine::kNullDevid} ? net.src.pid
+                                                                        : std::uint16_t{0};
 }
 
 class Ordering {
@@ -126,9 +147,11 @@ class Ordering {
       if (next < anchors_.size() && anchors_[next].index == frames[i]) {
         early_us = std::max(early_us, anchors_[next++].from_us);
       }
+      const bool between =
+          frames[i] >= anchors_.front().index && frames[i] <= anchors_.back().index;
+      out.between += between ? 1 : 0;
       places[i] = {place.file, place.frame, std::min(early_us, last_us), 0,
-                   frames[i] >= anchors_.front().index && frames[i] <= anchors_.back().index};
-      out.between += places[i].between ? 1 : 0;
+                   between && !may_be_either(run_, run_.seen[frames[i]])};
     }
     out.all = frames.size();
     std::int64_t late_us = last_us;
@@ -181,6 +204,37 @@ class Ordering {
 };
 
 }  // namespace
+
+std::optional<std::vector<std::uint32_t>> wrong_ways(const Run& run, std::uint32_t file) {
+  std::vector<std::uint32_t> open;
+  std::set<std::uint16_t> islands;
+  for (std::uint32_t i = 0; i < run.seen.size(); ++i) {
+    const Observation& seen = run.seen[i];
+    if (seen.place.file != file || seen.kind != Observation::Kind::kSerial) continue;
+    if (run.taps[seen.tap].has_direction) continue;
+    if (const std::int32_t id = set_island_id(seen.frame); id > 0) {
+      islands.insert(static_cast<std::uint16_t>(id));
+    }
+    Net net;
+    if (seen.frame.type != am::kNet || !parse_net(seen.frame.payload, net)) continue;
+    if (const std::uint16_t island = island_shown(seen, net); island != 0) islands.insert(island);
+    if (may_be_either(run, seen)) open.push_back(i);
+    const bool within = net.src.devid != machine::kNullDevid &&
+                        net.dest.devid != machine::kNullDevid && net.dest.pid == net.src.pid;
+    if (within) return std::nullopt;  // A sink hands on no such message.
+  }
+  if (open.empty()) return open;
+  if (islands.size() != 1) return std::nullopt;
+  std::vector<std::uint32_t> out;
+  for (const std::uint32_t i : open) {
+    Net net;
+    if (!parse_net(run.seen[i].frame.payload, net)) continue;
+    const bool down = net.dest.pid == *islands.begin();
+    if (!down && net.src.pid != *islands.begin()) return std::nullopt;
+    if (down != run.seen[i].to_mote) out.push_back(i);
+  }
+  return out;
+}
 
 OrderFit fit_order(Run& run, std::uint32_t file, const OrderEvidence& evidence,
                    const AlignOptions& options) {

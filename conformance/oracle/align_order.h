@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,11 @@ struct OrderFit {
   std::size_t between = 0;  ///< Frames of the file from the first to the last of them.
   std::size_t all = 0;
 };
+
+/// Frames of `file`, bytes that do not say which way they went, that went the other way than they
+/// seem to: messages from another island on a line whose island the others show. Nothing where
+/// some message may have gone either way.
+std::optional<std::vector<std::uint32_t>> wrong_ways(const Run& run, std::uint32_t file);
 
 /// Gives the frames of `file` likely stamps, Place::loose and their bounds in Run::loose, where the
 /// pairs say so. Stamps are those of the files, as in align().

@@ -52,6 +52,8 @@ struct Context {
   std::vector<bool> untimed_taps;         ///< Where unordered: those with frames without a stamp,
                                           ///< or on a clock of their own.
 
+  std::vector<bool> down_taps;            ///< With frames to a sink.
+
   /// Fills in all of these. Before anything else.
   void look_up();
   /// Calls `call` with each known mote of that address.
@@ -63,7 +65,7 @@ struct Context {
   std::int64_t early_us() const { return machine::us_of(profile().early_ticks); }
   std::int64_t join_period_us() const { return machine::us_of(profile().join_period_ticks); }
   std::int64_t response_us() const {
-    return options.response_us.value_or(machine::us_of(profile().response_ticks));
+    return options.response_us.value_or(machine::us_of(profile().response_ticks)) + run.slack_us;
   }
   std::int64_t ack_timeout_us() const;
   machine::JoinContext join_context(std::uint16_t id, std::uint16_t island,
@@ -81,6 +83,9 @@ struct Context {
               Said said);
   /// Whether a finding of this kind rests on an order that nobody knows.
   bool rests_on_order(ReqId requirement, const Place& at, std::uint16_t node) const;
+  /// A sink's line of which only its own frames are in the run, as of a line in use that others
+  /// write to: what came down it is not known.
+  bool half_heard(std::uint16_t node) const;
   /// A frame of an unknown sender.
   void report_stranger(const Observation& seen, std::uint16_t node);
 };

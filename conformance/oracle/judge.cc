@@ -1,4 +1,5 @@
 #include "conformance/oracle/judge.h"
+#include "conformance/oracle/align_judge.h"
 
 #include <algorithm>
 
@@ -235,6 +236,9 @@ void Judge::told(const Observation& seen, std::uint16_t device) {
   }
 }
 
-Report judge(const Run& run, const Options& options) { return Judge(run, options).judge(); }
+Report judge(const Run& run, const Options& options) {
+  const bool one_order = run.loose.empty() && run.slack_taps.empty();
+  return one_order ? Judge(run, options).judge() : judge_each_order(run, options);
+}
 
 }  // namespace rubric::oracle

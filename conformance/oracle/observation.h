@@ -91,7 +91,8 @@ struct LoosePlace {
   std::uint64_t frame = 0;
   std::int64_t early_us = 0;
   std::int64_t late_us = 0;
-  bool between = false;  ///< Two of those frames are around it; else one time is that of the run.
+  /// Two of those frames are around it, and it is plain which way it went; else it blames nobody.
+  bool between = false;
 };
 
 /// Holds what observations point to.
@@ -114,6 +115,10 @@ struct Run {
   /// By tap: its clock has nothing to do with that of the air, as far as anybody knows, and nothing
   /// that rests on the order between the two fails. Empty: there is no such tap.
   std::vector<bool> unordered_taps;
+  /// Lines on clocks of their own were put on that of the air, as early as they can be; they may
+  /// be so much later. What is blamed on anybody stands wherever in that time they are.
+  std::int64_t slack_us = 0;
+  std::vector<bool> slack_taps;  ///< By tap: those lines; empty: none.
   /// Of files without stamps that are in order with others, by file and frame. What is blamed on
   /// anybody stands in each order that these allow.
   std::vector<LoosePlace> loose;
