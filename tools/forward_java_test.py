@@ -51,9 +51,12 @@ class Java(unittest.TestCase):
         mote.say(from_mote(RELIABLE[:17] + b"\x00\x29" + RELIABLE[19:]))
         self.assertEqual(stations[1].stdout.readline(), "received(11:5 10 x4f50454e)\n")
         mote.confirmed_packet()
+        mote.say(from_mote(RELIABLE[:8]))  # Behind the confirmation, which is then heard, too.
+        for data in (RELIABLE[:17] + b"\x00\x29" + RELIABLE[19:], RELIABLE[:8]):
+            self.assertEqual(listener.packet(), data)
         code, summary = running.end()
         self.assertEqual(code, 0)
-        self.assertRegex(summary, ": 2 packets from it .*, 5 to it; 3 clients, 0 cut off$")
+        self.assertRegex(summary, ": 3 packets from it .*, 5 to it; 3 clients, 0 cut off$")
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 // Loads `rubric forward` as a busy serial line and many clients would, checks that every client
-// gets every packet in order, and measures what that took. Prints one JSON object; exit 0 if nothing
-// was lost and the forwarder's memory did not grow.
+// gets every packet in order, and measures what that took. Prints one JSON object; exit 0 if
+// nothing was lost and the forwarder's memory did not grow.
 #include <fcntl.h>
 #include <poll.h>
 #include <sys/resource.h>
