@@ -62,14 +62,16 @@ std::string footer() {
   return text +
          "Time is abstract: a timer that is set may fire at any moment. Where nothing is broken,\n"
          "the run also fails if something that must be possible was never reached.\n"
+         "Examples:\n"
+         "  rubric explore --sinks 2 --loss --dup\n"
+         "  rubric explore --calls 2 --loss --flaw accepts_wrong_seq --out broken.rtr\n"
+         "  rubric explore --transitions --part join --format dot | dot -Tsvg -o join.svg\n"
          "Exit codes: 0 all properties hold, 1 one is broken or something was never reached,\n"
          "2 the trace cannot be written, 3 a limit was met first or the flaw never acted,\n"
          "64 usage.";
 }
 
-[[noreturn]] void usage(const std::string& what) {
-  throw CLI::ValidationError(what);
-}
+[[noreturn]] void usage(const std::string& what) { throw CLI::ValidationError(what); }
 
 template <class Table>
 [[noreturn]] void unknown(const char* what, const std::string& word, const Table& table) {
@@ -369,13 +371,11 @@ void add_explore(CLI::App& app) {
       app.add_subcommand("explore", "Try everything that can happen in a small network");
   sub->footer(footer());
   cli::set_usage_exit_code(*sub, cli::kVerdictUsage);
-  const int motes_max = static_cast<int>(explorer::kMotesMax);
-  const int sinks_max = static_cast<int>(explorer::kSinksMax);
   sub->add_option("--motes", options->network.motes, "How many")
-      ->check(CLI::Range(1, motes_max))
+      ->check(CLI::Range(std::size_t{1}, explorer::kMotesMax))
       ->capture_default_str();
   sub->add_option("--sinks", options->network.sinks, "How many, all in range of all motes")
-      ->check(CLI::Range(1, sinks_max))
+      ->check(CLI::Range(std::size_t{1}, explorer::kSinksMax))
       ->capture_default_str();
   add_faults(*sub, *options);
   sub->add_option("--scope", options->scope, "join: joins alone; full: and messages of members")

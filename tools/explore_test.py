@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
-"""Tests of `rubric explore` as a program: verdicts, exit codes, both formats, where traces go.
+"""Tests of `rubric explore` as a program: verdicts, exit codes, formats, where traces go, and the
+state diagrams against those that were read and found right.
 
-Usage: explore_test.py RUBRIC.
+Usage: explore_test.py RUBRIC [--regenerate]: writes the diagrams of tools/expect anew; read the
+difference.
 """
 
 import json
@@ -12,6 +14,7 @@ import tempfile
 import unittest
 
 RUBRIC = str(pathlib.Path(sys.argv.pop(1)).resolve())
+DIAGRAMS = pathlib.Path(__file__).resolve().parent / "expect/transitions.txt"
 FAULTS = ["--loss", "--dup"]
 # A flaw, a network in which it shows, and the property that its first trace breaks.
 FLAWS = [("accepts_wrong_seq", ["--calls", "2"], "joined_after_reply"),
@@ -142,5 +145,52 @@ class Explore(unittest.TestCase):
                 self.assertIn(text, done.stderr)
 
 
+class Transitions(unittest.TestCase):
+    def test_are_those_that_were_read(self):
+        done = explore("--transitions")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual(done.stdout, DIAGRAMS.read_text())
+
+    def test_json(self):
+        done = explore("--transitions", "--part", "join", "--format", "json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        found = json.loads(done.stdout)
+        self.assertEqual((found["schema"], found["profile"], found["flaw"]),
+                         ("rubric.transitions/1", "paper", None))
+        part, = found["parts"]
+        self.assertEqual((part["name"], part["complete"]), ("join", True))
+        self.assertGreater(part["worlds"], 1000)
+        stray, = [t for t in part["transitions"] if t["rules"] == ["J4-SEQ"]]
+        self.assertEqual((stray["trigger"], stray["guards"], stray["outputs"], stray["ignored"]),
+                         ("join_reply", ["another number"], [], True))
+        self.assertEqual(stray["from"], stray["to"])
+        self.assertTrue(stray["witness"][-1].startswith("heard join_reply(island_addr=1"))
+        self.assertTrue(stray["witness"][0].startswith("called join("))
+
+    def test_dot(self):
+        done = explore("--transitions", "--format", "dot")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual([line.split()[1] for line in done.stdout.splitlines()
+                          if line.startswith("digraph")], ["join", "listing", "message"])
+        self.assertEqual(explore("--format", "dot").returncode, 64)
+
+    def test_a_flaw_shows(self):
+        done = explore("--transitions", "--part", "join", "--flaw", "accepts_wrong_seq")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertNotIn("another number: ignored", done.stdout)
+        self.assertIn("join_reply / joined(success), ack_join", done.stdout)
+
+    def test_usage(self):
+        for words, text in [(["--transitions", "--part", "jion"], "did you mean 'join'"),
+                            (["--part", "join"], "--transitions"),
+                            (["--transitions", "--motes", "2"], "--transitions")]:
+            done = explore(*words)
+            self.assertEqual(done.returncode, 64, done.stderr)
+            self.assertIn(text, done.stderr)
+
+
 if __name__ == "__main__":
-    unittest.main()
+    if "--regenerate" in sys.argv:
+        DIAGRAMS.write_text(explore("--transitions").stdout)
+    else:
+        unittest.main()

@@ -51,13 +51,15 @@ STYLE = ("<style>"
 
 def states_svg(rubric, name, rule_href=None):
     """The state diagram of a part of a node, one of STATES, as the machine makes its transitions.
-    Graphviz places it. RuntimeError where either program fails."""
+    Graphviz places it. KeyError for a part that there is not, RuntimeError where either program
+    fails."""
+    title = STATES[name]
     dot = run(rubric, "explore", "--transitions", "--part", name, "--format", "dot")
     done = subprocess.run(["dot", "-Tsvg"], input=dot, stdout=subprocess.PIPE,
                           stderr=subprocess.PIPE, text=True, check=False)
     if done.returncode != 0:
         raise RuntimeError(f"dot: {done.stderr.strip()}")
-    return cleaned(done.stdout, name, STATES[name], rule_href)
+    return cleaned(done.stdout, name, title, rule_href)
 
 
 def cleaned(svg, name, title, rule_href=None):

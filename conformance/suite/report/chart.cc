@@ -123,10 +123,12 @@ std::string full_text(const Line& line) {
   return begin == out.npos ? out : out.substr(begin);
 }
 
+// Each once.
 std::string rules_text(const std::vector<ReqId>& rules) {
   std::string out;
+  std::set<ReqId> seen{ReqId::kNone};
   for (const ReqId rule : rules) {
-    if (rule == ReqId::kNone) continue;
+    if (!seen.insert(rule).second) continue;
     out += (out.empty() ? "" : ", ") + std::string(trace::requirement_text(rule));
   }
   return out;
