@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Builds in a copy of the project what a new or changed wire spec changes, in seconds in place of
-minutes: the generated files, the three parts of rubric that hold its tables, and rubric of these and
-of the libraries that are already built.
+minutes: the generated files, the three parts of rubric that hold its tables, and rubric of these
+and of the libraries that are already built.
 
 Usage: shadow_build.py BUILD_FOLDER COPY TARGET. TARGET is regenerate or rubric.
 """

@@ -17,7 +17,8 @@ import snippets
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 CODEC_ONLY = """add_library(rubric::codec INTERFACE IMPORTED)
-target_include_directories(rubric::codec INTERFACE ${CMAKE_CURRENT_LIST_DIR}/../../../include/rubric)
+target_include_directories(rubric::codec INTERFACE
+  ${CMAKE_CURRENT_LIST_DIR}/../../../include/rubric)
 """
 CODEC_ONLY_PC = "Name: rubric-codec\nDescription: headers\nVersion: 0\nCflags: -I{}\n"
 

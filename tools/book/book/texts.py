@@ -1,5 +1,5 @@
-"""`{{text PATH}}` in a chapter: a Markdown file of the project as part of it. A link to another file
-of the project becomes the file's name, since the book is read where the project is not."""
+"""`{{text PATH}}` in a chapter: a Markdown file of the project as part of it. A link to another
+file of the project becomes the file's name, since the book is read where the project is not."""
 
 import posixpath
 import re
