@@ -187,11 +187,14 @@ class Mistakes(unittest.TestCase):
             "{{help nothing}}\n\n{{include spec/nothing}}\n\n{{dispatch smoke}}\n\n{{layout}}\n\n"
             "{{coverage J4}}\n\n{{include ../../etc/passwd}}\n")
         wanted = ["no directive is called 'layuot'; expected layout$",
-                  "no message is called 'join_replay'; expected join_reply$", "no enum is called 'mote'; expected",
-                  "no rule or group is called 'J44'; expected J4", "no golden trace is called 'j4.lisetd'",
+                  "no message is called 'join_replay'; expected join_reply$",
+                  "no enum is called 'mote'; expected",
+                  "no rule or group is called 'J44'; expected J4",
+                  "no golden trace is called 'j4.lisetd'",
                   "no golden trace is called 'j4.nothing'; expected",
-                  "no state diagram is called 'nothing'; expected join, listing", "no command of rubric is called 'nothing'",
-                  "no file of the project is called", "no carrier is called 'smoke'; expected radio_ack, radio_i",
+                  "no state diagram is called 'nothing'; expected join, listing",
+                  "no command of rubric is called 'nothing'", "no file of the project is called",
+                  "no carrier is called 'smoke'; expected radio_ack, radio_i",
                   r"expected '\{\{layout NAME\}\}'", r"expected '\{\{coverage\}\}'",
                   "no file of the project is called"]
         self.assertEqual(len(found), len(wanted), found)

@@ -16,6 +16,8 @@ def profiles(names, level):
             shown = [("on" if value else "off") if kind == "switches" else str(value)
                      for value in values]
             differs = "differs" if len(set(values)) > 1 else ""
+            if differs:
+                shown[-1] += '<span class="tag">differs</span>'
             rows.append(("", differs, [code(key), *shown]))
     out = [table(["constant or switch", *[one["name"] for one in known]], rows,
                  "Constants and switches; rows in which profiles differ are marked", "profiles")]

@@ -3,7 +3,7 @@
 import diagrams
 from book import appendix, chapters, markup
 from book.cases import Cases
-from book.html import escape, link, code, table
+from book.html import code, escape, heading, link, table
 from book.mistakes import expected
 from book.rules import Rules
 from book.svg import fitted
@@ -40,7 +40,7 @@ class Directives:
                           "help", "include"}
 
     def survey(self, chapter):
-        """Before anything is rendered: what is shown where, for the references know what is left."""
+        """Before anything is rendered: what is shown where; the references show the rest."""
         for line, name, argument, _ in chapters.directives(chapter):
             place = (chapter.file, line)
             if name not in self.table:
@@ -104,9 +104,15 @@ class Directives:
                              self.names.rich(one.get("doc", ""))])
         return table(["name", "spec", "AM type", "what"], rows, caption, "index")
 
+    @staticmethod
+    def _rest(level, anchor, title, entries):
+        """What a reference shows in full."""
+        return "\n".join([heading(level, anchor, title), *entries]) if entries else ""
+
     def _all_layouts(self, _place, _name, level):
-        return self._index(["layout"], "All messages and their parts") + "\n".join(
-            self.wire.layout(one, level + 1) for one in self._left("layout"))
+        left = [self.wire.layout(one, level + 2) for one in self._left("layout")]
+        return self._index(["layout"], "All messages and their parts") + self._rest(
+            level + 1, "messages-shown-here", "Messages that no chapter shows", left)
 
     def _all_enums(self, _place, _name, level):
         rows = []
@@ -123,8 +129,9 @@ class Directives:
         return "\n".join(out)
 
     def _all_rules(self, _place, _name, level):
-        return self.rules.index() + "\n".join(
-            self.rules.entry(one, level + 1) for one in self._left("rules"))
+        left = [self.rules.entry(one, level + 2) for one in self._left("rules")]
+        return self.rules.index() + self._rest(
+            level + 1, "rules-shown-here", "Rules that no chapter shows", left)
 
     def _all_cases(self, _place, _name, level):
         return self.cases.all(self._left("case"), level + 1)
@@ -184,7 +191,8 @@ class Directives:
             self.mistakes.add(*place, expected("command of rubric", name, commands))
             return ""
         return (f'<figure class="listing help"><figcaption>{code(f"rubric {name} --help")}'
-                f'</figcaption><pre class="code"><code>{escape(text.strip())}</code></pre></figure>')
+                f'</figcaption><pre class="code"><code>{escape(text.strip())}</code></pre>'
+                "</figure>")
 
     def _include(self, place, name, _level):
         path = (self.project.root / name).resolve()

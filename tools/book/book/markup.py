@@ -25,7 +25,7 @@ def code_block(language, words, lines):
         if language == "console" and line.startswith("$ "):
             shown.append('<span class="prompt">$ </span>'
                          f'<span class="command">{escape(line[2:])}</span>')
-        elif language == "diff" and line[:1] in {"+", "-"}:
+        elif language == "diff" and re.match(r"(\+(?!\+\+ )|-(?!-- ))", line):
             css = "added" if line[0] == "+" else "removed"
             shown.append(f'<span class="{css}">{escape(line)}</span>')
         else:
@@ -99,7 +99,8 @@ class _Book(Extension):
     def extendMarkdown(self, md):  # pylint: disable=invalid-name
         md.preprocessors.deregister("html_block")
         md.inlinePatterns.deregister("html")
-        md.inlinePatterns.register(_Mention(DECISION, self.names.anchor_of_decision), "decision", 60)
+        decision = _Mention(DECISION, self.names.anchor_of_decision)
+        md.inlinePatterns.register(decision, "decision", 60)
         md.inlinePatterns.register(_Mention(RULE, self.names.anchor_of_rule), "rule", 59)
         md.treeprocessors.register(_Tree(md, self.names, self.headings), "book", 5)
 

@@ -1,4 +1,4 @@
-"""Makes a drawing part of the page: unique identifiers, and nothing that the page does not allow."""
+"""Makes a drawing part of the page: unique identifiers, nothing that the page does not allow."""
 
 import re
 

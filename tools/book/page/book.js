@@ -54,8 +54,8 @@
   // Light or dark: what the system says until the reader says otherwise.
   const theme = byId('theme');
   const system = matchMedia('(prefers-color-scheme: dark)');
-  const isDark = () => (document.documentElement.dataset.theme || (system.matches ? 'dark' : 'light'))
-    === 'dark';
+  const isDark = () => (document.documentElement.dataset.theme
+    || (system.matches ? 'dark' : 'light')) === 'dark';
   const label = () => { theme.textContent = isDark() ? 'Light' : 'Dark'; };
   theme.addEventListener('click', () => {
     document.documentElement.dataset.theme = isDark() ? 'light' : 'dark';
