@@ -23,6 +23,7 @@ struct Options {
 constexpr const char* kFooter =
     "A gap is the time between neighbouring frames of one file. A frame counts as repeated if the\n"
     "one before it with the same addresses, message and interface had the same seq_num.\n"
+    "A line in use, and with --follow a file that grows, is counted until Ctrl-C.\n"
     "Exit codes: 0 clean, 1 malformed frames were seen, 2 usage, 3 input cannot be read.";
 
 int run(const Options& options) {
@@ -58,6 +59,7 @@ void add_stats(CLI::App& app) {
       "stats", "Counts by message, addresses and fault; rates, gaps, repetitions");
   sub->footer(kFooter);
   cli::add_input_options(*sub, options->input);
+  cli::add_live_options(*sub, options->input);
   sub->add_option("--format", options->format, "text or json")
       ->check(CLI::IsMember({"text", "json"}))
       ->capture_default_str();

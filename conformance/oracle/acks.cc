@@ -114,7 +114,8 @@ void Acks::refuse(std::uint16_t node, const Observation& seen, const Net& ack, s
                 " bytes that holds no sequence number.";
     said.expected = "The acknowledged number, alone or in a learning_notification.";
   } else if (best == nullptr) {
-    severity = context_.without_ever(kNobody, now);
+    severity = context_.half_heard(node) ? Severity::kInconclusive
+                                         : context_.without_ever(kNobody, now);
     said.text = "An ack to " + text_of(ack.dest) + " of number " +
                 number(static_cast<std::uint64_t>(acked)) +
                 ", which no message that came to this node had.";
