@@ -47,6 +47,10 @@ void Context::look_up() {
   for (const Tap& tap : run.taps) {
     hears_radio = hears_radio || tap.link == machine::Link::kRadio;
   }
+  down_taps.resize(run.taps.size());
+  for (const Observation& seen : run.seen) {
+    if (seen.kind == Observation::Kind::kSerial && seen.to_mote) down_taps[seen.tap] = true;
+  }
   untimed_taps = run.unordered_taps;
   untimed_taps.resize(run.taps.size());
   unordered = std::find(untimed_taps.begin(), untimed_taps.end(), true) != untimed_taps.end();
@@ -76,6 +80,13 @@ bool Context::rests_on_order(ReqId requirement, const Place& at, std::uint16_t n
     if (untimed_taps[tap]) return true;
   }
   return false;
+}
+
+bool Context::half_heard(std::uint16_t node) const {
+  const Device& d = device(node);
+  const bool down = std::any_of(d.taps.begin(), d.taps.end(),
+                                [this](std::uint32_t tap) { return down_taps[tap]; });
+  return !d.hearing && !d.taps.empty() && !down;
 }
 
 std::int64_t Context::ack_timeout_us() const {
