@@ -92,7 +92,8 @@ class Place:
         (tools / "cmake").write_text(
             "#!/bin/sh\n[ \"$1 $2 $3\" = '--build --preset release' ] || "
             f"exec {shlex.quote(shutil.which('cmake'))} \"$@\"\n"
-            f"exec {shlex.quote(sys.executable)} {shlex.quote(str(root))}/tools/book/shadow_build.py"
+            f"exec {shlex.quote(sys.executable)} "
+            f"{shlex.quote(str(root))}/tools/book/shadow_build.py"
             f" {shlex.quote(str(build))} {shlex.quote(str(self.folder))} \"$5\"\n",
             encoding="utf-8")
         (tools / "cmake").chmod(0o755)
