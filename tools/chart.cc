@@ -34,8 +34,8 @@ constexpr const char* kFooter =
     "  rubric chart j4.wrong_seq\n"
     "  rubric chart open_door.lost --format svg --out open_door.svg\n"
     "  rubric chart my_traces.rtr:mine --target ./my_adapter\n"
-    "Exit codes: 0 drawn, 1 drawn, but the trace was not kept, 2 the trace cannot be worked or the\n"
-    "output not be written, 64 usage, 66 the file cannot be read.";
+    "Exit codes: 0 drawn, 1 drawn, but the trace was not kept, 2 the trace cannot be worked or\n"
+    "the output not be written, 64 usage, 66 the file cannot be read.";
 
 struct Options {
   std::string what;

@@ -372,10 +372,10 @@ void add_explore(CLI::App& app) {
   sub->footer(footer());
   cli::set_usage_exit_code(*sub, cli::kVerdictUsage);
   sub->add_option("--motes", options->network.motes, "How many")
-      ->check(CLI::Range(std::size_t{1}, explorer::kMotesMax))
+      ->check(CLI::Range(1, int{explorer::kMotesMax}))
       ->capture_default_str();
   sub->add_option("--sinks", options->network.sinks, "How many, all in range of all motes")
-      ->check(CLI::Range(std::size_t{1}, explorer::kSinksMax))
+      ->check(CLI::Range(1, int{explorer::kSinksMax}))
       ->capture_default_str();
   add_faults(*sub, *options);
   sub->add_option("--scope", options->scope, "join: joins alone; full: and messages of members")

@@ -99,7 +99,8 @@ std::string lines_of(const Transition& t) {
 }
 
 std::string table(const std::string& rows) {
-  return "<TABLE BORDER=\"0\" CELLBORDER=\"0\" CELLSPACING=\"1\" CELLPADDING=\"3\">" + rows + "</TABLE>";
+  return "<TABLE BORDER=\"0\" CELLBORDER=\"0\" CELLSPACING=\"1\" CELLPADDING=\"3\">" + rows +
+         "</TABLE>";
 }
 
 std::string cell(const std::string& lines) {
@@ -211,7 +212,8 @@ std::string transitions_json(const std::vector<Diagram>& diagrams, const std::st
   std::string all;
   for (const Diagram& diagram : diagrams) all += (all.empty() ? "\n" : ",\n") + json_of(diagram);
   return fmt::format(
-      "{{\"schema\": \"rubric.transitions/1\", \"profile\": {}, \"flaw\": {},\n \"parts\": [{}]}}\n",
+      "{{\"schema\": \"rubric.transitions/1\", \"profile\": {}, \"flaw\": {},\n"
+      " \"parts\": [{}]}}\n",
       json_string(profile), report::json_string_or_null(flaw), all);
 }
 

@@ -21,8 +21,7 @@ def run(rubric, *words):
 def with_links(svg, rule_href):
     """Makes each rule in a chart a link to rule_href(rule)."""
     return re.sub(r'<tspan class="rc-rule">([^<]+)</tspan>',
-                  lambda m: f'<a href="{rule_href(m[1])}"><tspan class="rc-rule">{m[1]}</tspan></a>',
-                  svg)
+                  lambda m: f'<a href="{rule_href(m[1])}">{m[0]}</a>', svg)
 
 
 def chart_svg(rubric, case_id, rule_href=None):
