@@ -20,7 +20,7 @@ struct AlignOptions {
 /// Puts the captures of `run` on the clock of the first one that has stamps, where the frames that
 /// two of them share show that their clocks differ; Run::facts says what was done, or why not.
 /// Stamps are those of the files, kNoStamp where there are none; `seen` is in the order of files.
-/// Lines of .rtr logs keep their times (decision 133).
+/// Lines of .rtr logs keep their times (decision 9).
 void align(Run& run, const AlignOptions& options);
 
 }  // namespace rubric::oracle
