@@ -43,6 +43,7 @@ constexpr std::chrono::seconds kPatience{30};
 struct LoadOptions {
   std::string program;
   std::size_t clients = 32;
+  std::size_t stalled = 0;           // More clients, which read nothing and are to be cut off.
   std::uint64_t rate = 10'000;       // Packets a second.
   double seconds = 60;
   std::size_t packet_bytes = 122;    // As RUBICON's net_msg has it.
@@ -280,6 +281,14 @@ void run(const LoadOptions& options, const Child& child, Line& line, std::vector
   }
 }
 
+// Reads to the end of what there is; only the forwarder's own end ends it.
+bool is_open(const Descriptor& socket) {
+  std::uint8_t room[16 * 1024];
+  ssize_t count = 1;
+  while (count > 0) count = ::recv(socket.get(), room, sizeof room, 0);
+  return count < 0 && would_block(errno);
+}
+
 std::size_t latency_of(const Measured& measured, double share) {
   std::uint64_t all = 0;
   for (const std::uint64_t count : measured.latency_ms) all += count;
@@ -296,13 +305,16 @@ int run(const LoadOptions& options) {
   const Descriptor listener = listen_at("127.0.0.1", 0);
   Child child(options.program,
               fmt::format("network@127.0.0.1:{}", address_here(listener.get()).port()),
-              options.clients);
+              options.clients + options.stalled);
   Line line(accepted(listener), options);
   const std::uint16_t port = child.port();
   std::vector<Reader> readers;
   for (std::size_t i = 0; i < options.clients; ++i) readers.emplace_back(connected(port));
+  std::vector<Descriptor> stalled;
+  for (std::size_t i = 0; i < options.stalled; ++i) stalled.push_back(connected(port));
   Measured measured;
   run(options, child, line, readers, measured);
+  const auto still_served = std::count_if(stalled.begin(), stalled.end(), is_open);
   measured.cpu_seconds = child.end();
   std::uint64_t lost = 0;
   std::uint64_t wrong = 0;
@@ -316,13 +328,13 @@ int run(const LoadOptions& options) {
              "\"packets_per_second\": {:.0f}, \"lost\": {}, \"out_of_order\": {}, "
              "\"rss_warm_kib\": {}, \"rss_max_kib\": {}, \"rss_end_kib\": {}, "
              "\"cpu_seconds\": {:.2f}, \"latency_ms_50\": {}, \"latency_ms_99\": {}, "
-             "\"latency_ms_max\": {:.1f}}}\n",
+             "\"latency_ms_max\": {:.1f}, \"stalled\": {}, \"not_cut_off\": {}}}\n",
              options.clients, options.packet_bytes, measured.sent, measured.seconds,
              static_cast<double>(measured.sent) / std::max(measured.seconds, 1e-3), lost, wrong,
              measured.rss_warm_kib, measured.rss_max_kib, measured.rss_end_kib,
              measured.cpu_seconds, latency_of(measured, 0.5), latency_of(measured, 0.99),
-             measured.latency_ms_max);
-  const bool good = lost == 0 && wrong == 0 && measured.cpu_seconds >= 0 &&
+             measured.latency_ms_max, options.stalled, still_served);
+  const bool good = lost == 0 && wrong == 0 && still_served == 0 && measured.cpu_seconds >= 0 &&
                     measured.rss_warm_kib > 0 && growth <= options.growth_kib_max;
   return good ? 0 : 1;
 }
@@ -335,6 +347,8 @@ int main(int argc, char** argv) {
   rubric::forward::LoadOptions options;
   app.add_option("RUBRIC", options.program, "The program")->required();
   app.add_option("--clients", options.clients)->capture_default_str();
+  app.add_option("--stalled", options.stalled, "More clients, which read nothing")
+      ->capture_default_str();
   app.add_option("--rate", options.rate, "Packets a second")->capture_default_str();
   app.add_option("--seconds", options.seconds)->capture_default_str();
   app.add_option("--bytes", options.packet_bytes, "Of a packet")

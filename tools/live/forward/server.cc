@@ -28,6 +28,7 @@ constexpr Milliseconds kGather{2};
 constexpr Milliseconds kKeepEvery{200};
 constexpr Milliseconds kDrainTime{1000};
 constexpr Milliseconds kNoRoomPause{1000};
+constexpr int kAcceptedAtOnce = 64;
 
 Source::Options limited(Source::Options options, Milliseconds patience) {
   options.patience = patience;
@@ -157,7 +158,7 @@ void Server::give_packets(Time now) {
 
 void Server::accept_clients(Time now) {
   accept_at_.reset();
-  while (true) {
+  for (int count = 0; count < kAcceptedAtOnce; ++count) {
     attach::Descriptor socket(
         ::accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
     if (socket.is_open()) {
