@@ -213,7 +213,10 @@ auto order_of(const Sighting& one) {
 Group take(const std::vector<Sighting>& all, std::size_t& at, Common how, std::uint64_t key,
            bool cause) {
   const std::size_t from = at;
-  while (at < all.size() && all[at].how == how && all[at].key == key && all[at].cause == cause) ++at;
+  const auto named = [&](const Sighting& one) {
+    return one.how == how && one.key == key && one.cause == cause;
+  };
+  while (at < all.size() && named(all[at])) ++at;
   return Group(all).subspan(from, at - from);
 }
 
@@ -264,7 +267,7 @@ CommonFrames common_frames(const Run& run, std::vector<Sighting>& a, std::vector
     }
   }
   std::sort(out.pairs.begin(), out.pairs.end(),
-            [](const Pair& x, const Pair& y) { return std::tuple(x.a, x.b) < std::tuple(y.a, y.b); });
+            [](const Pair& x, const Pair& y) { return std::tie(x.a, x.b) < std::tie(y.a, y.b); });
   return out;
 }
 

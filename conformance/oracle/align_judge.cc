@@ -110,8 +110,9 @@ Report judge_each_order(const Run& run, const Options& options) {
     const LoosePlace* const place = place_of(run, finding.place);
     const std::int64_t at_us = finding.place.time_us;
     const bool between = place != nullptr ? place->between : at_us >= first_us && at_us <= last_us;
-    const bool stands = early.contains(name) && late.contains(name) &&
-                        (run.loose.empty() || between || id.starts_with("WIRE-") || never.contains(name));
+    const bool seen = run.loose.empty() || between || id.starts_with("WIRE-");
+    const bool stands =
+        early.contains(name) && late.contains(name) && (seen || never.contains(name));
     if (!stands) finding.severity = Severity::kInconclusive;
   }
   report.verdict = verdict_of(report.findings);
