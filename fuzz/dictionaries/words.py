@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 """Writes the dictionaries of the text formats from what defines them: grammars, tables, readers.
 
-fuzz/dictionaries/words.py .
+fuzz/dictionaries/words.py PROJECT [--check]
+
+With --check it writes nothing; exit 1 if some dictionary is not what it would write.
 """
 import pathlib
 import re
@@ -25,8 +27,8 @@ SOURCES = {
     "spec": [("spec/wire/*.ksy", KEY), ("spec/wire/*.ksy", r"(?:type|enum|encoding): (\w+)"),
              ("spec/compiler/read_*.cc", LITERAL), ("spec/compiler/expr_parser.cc", LITERAL)],
     "rules": [("spec/profiles/*.yaml", KEY), (RULES, KEY), (RULES, ID),
-              ("conformance/suite/expected.cc", r'\{"(\w+)", &one'),
-              ("conformance/oracle/report/expect.cc", r'key == "(\w+)"')],
+              ("conformance/suite/expected.cc", r'one\.text\("(\w+)"\)'),
+              ("conformance/oracle/report/expect.cc", r'one\.text\("(\w+)"\)')],
     "jsonl": [("tools/decode_format.md", CODE), (TABLES, FIELD), (TABLES, NAMES),
               (TABLES, ENTRIES)],
     "filter": [("tools/decode_format.md", LITERAL), ("tools/decode_format.md", CODE),
@@ -66,9 +68,18 @@ def text_of(project, name):
 
 def main():
     project = pathlib.Path(sys.argv[1])
+    check = sys.argv[2:] == ["--check"]
+    old = []
     for name in SOURCES:
         path = project / "fuzz" / "dictionaries" / f"{name}.dict"
-        path.write_text(text_of(project, name), encoding="utf-8")
+        text = text_of(project, name)
+        if not check:
+            path.write_text(text, encoding="utf-8")
+        elif path.read_text(encoding="utf-8") != text:
+            old.append(path.name)
+    if old:
+        sys.exit(f"{', '.join(old)}: not what fuzz/dictionaries/words.py . writes")
+    print(f"{len(SOURCES)} dictionaries " + ("are current" if check else "written"))
 
 
 main()
