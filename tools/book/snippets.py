@@ -124,7 +124,7 @@ class Place:
         out = ""
         for command, _ in commands(text):
             status, printed = self.run(["bash", "-c", command])
-            if status > 128:
+            if status < 0 or status > 128:  # Of bash, or of what it ran.
                 raise Wrong(f"{command}ends with {status}, as what a signal ends does\n{printed}")
             if printed and not printed.endswith("\n"):
                 printed += "\n"
