@@ -9,7 +9,6 @@ import os
 import pathlib
 import pty
 import resource
-import select
 import signal
 import struct
 import subprocess
@@ -17,128 +16,13 @@ import sys
 import time
 import unittest
 
-import live_testing
-from live_testing import ROOT, RUBRIC, Forwarder, Pty, hdlc
-
-PATIENCE_S = live_testing.PATIENCE_S = 60
-CAPTURES = pathlib.Path("spec/captures")
-BROKEN_LINE = CAPTURES / "basestation/s06_control_03.from_sink.sfstream"  # J6-CONTENT fails.
-CLEAN_LINE = CAPTURES / "firmware/a_join_data.serial.bin"
-OPEN_LINE = CAPTURES / "firmware/b_reliable.serial.bin"  # Stays inconclusive.
-STRAY_REPLY = CAPTURES / "firmware/g2_stray_reply_while_joining.pcapng"  # J4-SEQ fails.
-TWO_TAPS = CAPTURES / "firmware/e1_simultaneous_join.pcapng"
-PACKET_BLOCK = 6
+from check_live_testing import (BROKEN_LINE, CLEAN_LINE, MANY, OPEN_LINE, PATIENCE_S, SERIAL_TOO,
+                                STRAY_REPLY, TWO_TAPS, CheckTest, blocks, data, is_packet,
+                                of_findings, offline, stamped, standing, until_packet)
+from live_testing import RUBRIC, Forwarder, Pty, Running, hdlc
 
 
-def data(path):
-    return (ROOT / path).read_bytes()
-
-
-def blocks(capture):
-    """The blocks of a little-endian pcapng file."""
-    at = 0
-    while at < len(capture):
-        size = struct.unpack_from("<I", capture, at + 4)[0]
-        yield capture[at:at + size]
-        at += size
-
-
-def is_packet(block):
-    return struct.unpack_from("<I", block)[0] == PACKET_BLOCK
-
-
-def until_packet(capture, count):
-    """What of a capture goes up to that packet, which is within."""
-    size = 0
-    for block in blocks(capture):
-        size += len(block)
-        count -= is_packet(block)
-        if count == 0:
-            break
-    return size
-
-
-def stamped(block, shift_us):
-    """A packet block of microseconds, that much later."""
-    ticks = (struct.unpack_from("<I", block, 12)[0] << 32) + struct.unpack_from("<I", block, 16)[0]
-    ticks += shift_us
-    return block[:12] + struct.pack("<II", ticks >> 32, ticks & 0xffffffff) + block[20:]
-
-
-class Checked(live_testing.Running):
-    """A `rubric check` that somebody waits for."""
-
-    def __init__(self, *arguments, **more):
-        super().__init__("check", *arguments, **more)
-        self.seen = []
-
-    def event(self, kind, requirement=None):
-        """The next event of that kind; those before it are in `seen`."""
-        while True:
-            self.seen += self.lines(1)
-            event = self.seen[-1]
-            if event["event"] != kind:
-                continue
-            if requirement is None or event["finding"]["requirement"] == requirement:
-                return event
-
-    def text(self, wanted, stream=None):
-        """What is printed until that text is."""
-        stream = stream or self.process.stdout
-        got = b""
-        deadline = time.monotonic() + PATIENCE_S
-        while wanted.encode() not in got:
-            left = max(0, deadline - time.monotonic())
-            ready = select.select([stream], [], [], left)[0]
-            more = os.read(stream.fileno(), 1 << 16) if ready else b""
-            if not more:
-                self.process.kill()
-                raise AssertionError(f"no {wanted!r} in {got}: {self.end(None)}")
-            got += more
-        return got.decode()
-
-    def report(self, signal_number=signal.SIGINT):
-        """Exit code, the last event's report, and what was said on stderr."""
-        code, out, err = self.end(signal_number)
-        self.seen += [json.loads(line) for line in (self.read.decode() + out).splitlines()]
-        if self.seen[-1]["event"] != "report":
-            raise AssertionError(f"{code}, {self.seen[-1]}, {err}")
-        return code, self.seen[-1]["report"], err
-
-
-def offline(*arguments):
-    done = subprocess.run([RUBRIC, "check", *map(str, arguments), "--format", "json"],
-                          capture_output=True, text=True, check=False, timeout=PATIENCE_S)
-    return done.returncode, json.loads(done.stdout) if done.stdout else done.stderr
-
-
-def key(finding):
-    return finding["file"], finding["frame"], finding["requirement"], finding["node"]
-
-
-def standing(events):
-    """What was told and not withdrawn."""
-    out = {}
-    for event in events:
-        if event["event"] in ("found", "changed"):
-            out[key(event["finding"])] = event["finding"]["severity"]
-        elif event["event"] == "withdrawn":
-            del out[key(event["finding"])]
-    return out
-
-
-class CheckLive(live_testing.LiveTest):
-    maxDiff = 3000
-    program = Checked
-
-    def served(self, content, *arguments):
-        """A check of a serial forwarder that sends this and stays open."""
-        server = Forwarder(self)
-        running = self.started(f"sf@127.0.0.1:{server.port}", *arguments)
-        connection = server.accept(content)
-        self.addCleanup(connection.close)
-        return running, connection
-
+class CheckLive(CheckTest):
     def test_a_failure_is_told_while_the_line_is_open(self):
         kept = self.folder / "kept.pcapng"
         running, _ = self.served(data(BROKEN_LINE), "--format", "jsonl", "--write", kept)
@@ -186,7 +70,7 @@ class CheckLive(live_testing.LiveTest):
 
     def test_what_is_expected_is_told_as_that(self):
         known = self.folder / "known.yaml"
-        known.write_text("- requirement: J6-CONTENT\n  message: serial_joined\n  reason: It is old.\n")
+        known.write_text("- requirement: J6-CONTENT\n  message: serial_joined\n  reason: Old.\n")
         running, _ = self.served(data(BROKEN_LINE), "--expect", known)
         running.text("EXPECTED FAIL J6-CONTENT")
         code, out, _ = running.end()
@@ -210,22 +94,6 @@ class CheckLive(live_testing.LiveTest):
             code, report, err = running.report()
             self.assertEqual(err, "")
             self.assertEqual((code, report), offline(kept))
-
-    def opened(self, running, line):
-        """Waits for the line to be listened to: opening it throws away what came before."""
-        deadline = time.monotonic() + PATIENCE_S
-        ask = hdlc(b"\x44\x2a" + bytes.fromhex("00ffff000001002509"))
-        while True:
-            os.write(line.fd, ask)
-            if line.read(0.2):
-                break
-            self.assertLess(time.monotonic(), deadline, running.process.poll())
-
-    def grown(self, path, done):
-        deadline = time.monotonic() + PATIENCE_S
-        while not done():
-            self.assertLess(time.monotonic(), deadline, path)
-            time.sleep(0.1)
 
     def test_frames_that_ask_for_it_are_confirmed(self):
         packet = bytes.fromhex("00ffff000003002514000c")
@@ -278,6 +146,36 @@ class CheckLive(live_testing.LiveTest):
         code, report, _ = running.report()
         self.assertEqual((code, report), offline(path))
         self.assertNotIn("J3-REPLY", [one["requirement"] for one in report["findings"]])
+
+    def test_what_is_told_is_what_is_reported(self):
+        for capture in (MANY, SERIAL_TOO):
+            path = self.folder / capture.name
+            path.write_bytes(b"")
+            wanted = of_findings(offline(capture)[1]["findings"])
+            wanted = {(str(path), *rest): severity for (_, *rest), severity in wanted.items()}
+            self.assertTrue(wanted)
+            running = self.started(path, "--follow", "--format", "jsonl")
+            content = data(capture)
+            with open(path, "ab", buffering=0) as file:
+                for at in range(0, len(content), len(content) // 20):
+                    file.write(content[at:at + len(content) // 20])
+                    time.sleep(0.1)
+            while standing(running.seen) != wanted:
+                running.seen += running.lines(1)
+            code, report, _ = running.report()
+            self.assertEqual((code, report), offline(path))
+
+    def test_a_device_that_is_unplugged(self):
+        line = Pty(self)
+        kept = self.folder / "kept.pcapng"
+        running = self.started(f"serial@{line.name}:telosb", "--write", kept)
+        self.opened(running, line)
+        line.close()
+        code, out, err = running.end(None)
+        self.assertEqual(code, 66)
+        self.assertIn("the line broke", err)
+        self.assertIn("Verdict: ", out)
+        self.assertTrue(offline(kept)[1]["schema"])
 
     def test_files_that_become_others(self):
         whole = data(TWO_TAPS)
@@ -373,7 +271,7 @@ class CheckLive(live_testing.LiveTest):
 
     def test_stats_of_a_line(self):
         server = Forwarder(self)
-        running = live_testing.Running("stats", f"sf@127.0.0.1:{server.port}", "--format", "json")
+        running = Running("stats", f"sf@127.0.0.1:{server.port}", "--format", "json")
         connection = server.accept(data(BROKEN_LINE))
         time.sleep(1)
         connection.close()
@@ -381,7 +279,7 @@ class CheckLive(live_testing.LiveTest):
         self.assertEqual((code, json.loads(out)["frames"]), (3, 2), err)
         path = self.folder / "whole.pcapng"
         path.write_bytes(data(TWO_TAPS))
-        running = live_testing.Running("stats", path, "--follow", "--format", "json")
+        running = Running("stats", path, "--follow", "--format", "json")
         folder = pathlib.Path(f"/proc/{running.process.pid}/fd")
         self.grown(path, lambda: str(path) in map(os.path.realpath, folder.iterdir()))
         time.sleep(0.5)
@@ -447,8 +345,8 @@ class CheckLive(live_testing.LiveTest):
         self.assertEqual(got["counts"], report["counts"])
         busy = usage.ru_utime + usage.ru_stime
         if os.environ.get("RUBRIC_MEASURE"):
-            print(f"{got['counts']['frames']} frames fed in {fed:.1f} s, {busy:.2f} of {wall:.1f} s "
-                  "of CPU", file=sys.stderr)
+            print(f"{got['counts']['frames']} frames fed in {fed:.1f} s; {busy:.2f} of {wall:.1f} s "
+                  f"of CPU, {usage.ru_maxrss // 1024} MB", file=sys.stderr)
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
         offline(path, "--start", "cold")
         after = resource.getrusage(resource.RUSAGE_CHILDREN)

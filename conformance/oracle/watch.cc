@@ -48,7 +48,9 @@ std::vector<Change> Watch::update(const Report& report, std::int64_t now_us) {
       ++std::get<4>(key);
       at = known_.find(key);
     }
-    if (at == known_.end()) at = known_.emplace(std::move(key), Known{now_us, false, true, {}}).first;
+    if (at == known_.end()) {
+      at = known_.emplace(std::move(key), Known{now_us, false, true, {}}).first;
+    }
     look(finding, at->second, now_us, found);
   }
   std::vector<Change> out;

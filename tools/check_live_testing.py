@@ -1,0 +1,158 @@
+"""What tests of `rubric check` on runs that go on share: captures, and who waits for findings."""
+
+import json
+import os
+import pathlib
+import select
+import signal
+import struct
+import subprocess
+import time
+
+import live_testing
+from live_testing import ROOT, RUBRIC, Forwarder, hdlc
+
+PATIENCE_S = live_testing.PATIENCE_S = 60
+CAPTURES = pathlib.Path("spec/captures")
+BROKEN_LINE = CAPTURES / "basestation/s06_control_03.from_sink.sfstream"  # J6-CONTENT fails.
+CLEAN_LINE = CAPTURES / "firmware/a_join_data.serial.bin"
+OPEN_LINE = CAPTURES / "firmware/b_reliable.serial.bin"  # Stays inconclusive.
+STRAY_REPLY = CAPTURES / "firmware/g2_stray_reply_while_joining.pcapng"  # J4-SEQ fails.
+MANY = CAPTURES / "firmware/a2_join_data_sensible_start.pcapng"  # J3-TIME fails.
+SERIAL_TOO = CAPTURES / "firmware/c_two_islands.pcapng"  # Weak.
+TWO_TAPS = CAPTURES / "firmware/e1_simultaneous_join.pcapng"
+PACKET_BLOCK = 6
+
+
+def data(path):
+    return (ROOT / path).read_bytes()
+
+
+def blocks(capture):
+    """The blocks of a little-endian pcapng file."""
+    at = 0
+    while at < len(capture):
+        size = struct.unpack_from("<I", capture, at + 4)[0]
+        yield capture[at:at + size]
+        at += size
+
+
+def is_packet(block):
+    return struct.unpack_from("<I", block)[0] == PACKET_BLOCK
+
+
+def until_packet(capture, count):
+    """What of a capture goes up to that packet, which is within."""
+    size = 0
+    for block in blocks(capture):
+        size += len(block)
+        count -= is_packet(block)
+        if count == 0:
+            break
+    return size
+
+
+def stamped(block, shift_us):
+    """A packet block of microseconds, that much later."""
+    ticks = (struct.unpack_from("<I", block, 12)[0] << 32) + struct.unpack_from("<I", block, 16)[0]
+    ticks += shift_us
+    return block[:12] + struct.pack("<II", ticks >> 32, ticks & 0xffffffff) + block[20:]
+
+
+class Checked(live_testing.Running):
+    """A `rubric check` that somebody waits for."""
+
+    def __init__(self, *arguments, **more):
+        super().__init__("check", *arguments, **more)
+        self.seen = []
+
+    def event(self, kind, requirement=None):
+        """The next event of that kind; those before it are in `seen`."""
+        while True:
+            self.seen += self.lines(1)
+            event = self.seen[-1]
+            if event["event"] != kind:
+                continue
+            if requirement is None or event["finding"]["requirement"] == requirement:
+                return event
+
+    def text(self, wanted, stream=None):
+        """What is printed until that text is."""
+        stream = stream or self.process.stdout
+        got = b""
+        deadline = time.monotonic() + PATIENCE_S
+        while wanted.encode() not in got:
+            left = max(0, deadline - time.monotonic())
+            ready = select.select([stream], [], [], left)[0]
+            more = os.read(stream.fileno(), 1 << 16) if ready else b""
+            if not more:
+                self.process.kill()
+                raise AssertionError(f"no {wanted!r} in {got}: {self.end(None)}")
+            got += more
+        return got.decode()
+
+    def report(self, signal_number=signal.SIGINT):
+        """Exit code, the last event's report, and what was said on stderr."""
+        code, out, err = self.end(signal_number)
+        self.seen += [json.loads(line) for line in (self.read.decode() + out).splitlines()]
+        if self.seen[-1]["event"] != "report":
+            raise AssertionError(f"{code}, {self.seen[-1]}, {err}")
+        report = self.seen[-1]["report"]
+        told, reported = standing(self.seen), of_findings(report["findings"])
+        if not told.items() <= reported.items():
+            raise AssertionError(f"told {told}, reported {reported}")
+        return code, report, err
+
+
+def offline(*arguments):
+    done = subprocess.run([RUBRIC, "check", *map(str, arguments), "--format", "json"], cwd=ROOT,
+                          capture_output=True, text=True, check=False, timeout=PATIENCE_S)
+    return done.returncode, json.loads(done.stdout) if done.stdout else done.stderr
+
+
+def key(finding):
+    return finding["file"], finding["frame"], finding["requirement"], finding["node"]
+
+
+def of_findings(findings):
+    return {key(finding): finding["severity"] for finding in findings}
+
+
+def standing(events):
+    """What was told and not withdrawn."""
+    out = {}
+    for event in events:
+        if event["event"] in ("found", "changed"):
+            out[key(event["finding"])] = event["finding"]["severity"]
+        elif event["event"] == "withdrawn":
+            del out[key(event["finding"])]
+    return out
+
+
+class CheckTest(live_testing.LiveTest):
+    maxDiff = 3000
+    program = Checked
+
+    def served(self, content, *arguments):
+        """A check of a serial forwarder that sends this and stays open."""
+        server = Forwarder(self)
+        running = self.started(f"sf@127.0.0.1:{server.port}", *arguments)
+        connection = server.accept(content)
+        self.addCleanup(connection.close)
+        return running, connection
+
+    def opened(self, running, line):
+        """Waits for the line to be listened to: opening it throws away what came before."""
+        deadline = time.monotonic() + PATIENCE_S
+        ask = hdlc(b"\x44\x2a" + bytes.fromhex("00ffff000001002509"))
+        while True:
+            os.write(line.fd, ask)
+            if line.read(0.2):
+                break
+            self.assertLess(time.monotonic(), deadline, running.process.poll())
+
+    def grown(self, path, done):
+        deadline = time.monotonic() + PATIENCE_S
+        while not done():
+            self.assertLess(time.monotonic(), deadline, path)
+            time.sleep(0.1)
