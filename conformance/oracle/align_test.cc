@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "conformance/oracle/align_testing.h"
+#include "conformance/oracle/duplicates.h"
 #include "conformance/simulator/capture_recorder.h"
 #include "conformance/simulator/scenarios.h"
 #include "conformance/simulator/simulation.h"
@@ -38,6 +39,30 @@ std::string simulated(const simulator::Scenario& scenario,
   return recorder.finish();
 }
 
+// The worst difference between stamps of the line, apart and in the whole, in ms.
+double worst_ms(const oracle::Run& run, const Apart& apart) {
+  const oracle::Run whole = whole_run(apart);
+  std::vector<std::int64_t> times(whole.seen.size() + 1);
+  for (const Observation& seen : whole.seen) {
+    times.resize(std::max<std::size_t>(times.size(), seen.place.frame + 1));
+    times[seen.place.frame] = seen.place.time_us;
+  }
+  const auto error_us = [&](const Observation& seen) {
+    return seen.place.time_us - times[apart.parts[seen.place.file].frames.at(seen.place.frame)];
+  };
+  std::int64_t zero_us = 0;  // A run's times count from its first frame, whichever that is.
+  for (const Observation& seen : run.seen) {
+    if (seen.place.file == 0) zero_us = error_us(seen);
+  }
+  std::int64_t out_us = 0;
+  for (const Observation& seen : run.seen) {
+    out_us = std::max(out_us, std::abs(error_us(seen) - zero_us));
+  }
+  return static_cast<double>(out_us) / 1000;
+}
+
+double worst = 0;  // Of all tests.
+
 // What is found apart is what is found in the whole; where the files could not be aligned nothing
 // fails that the whole has not. Returns whether they were, or needed not be.
 bool expect_as_whole(const std::string& name, const Apart& parts, const Options& options,
@@ -54,6 +79,10 @@ bool expect_as_whole(const std::string& name, const Apart& parts, const Options&
   }
   if (!aligned) return false;
   EXPECT_EQ(fails, known) << name << "; " << fact;
+  if (!fact.empty()) {
+    EXPECT_LT(worst_ms(run, parts), 50) << name << "; " << fact;
+    worst = std::max(worst, worst_ms(run, parts));
+  }
   if (complete) {
     EXPECT_EQ(findings_of(apart, &parts, false), findings_of(whole, nullptr, false))
         << name << "; " << fact;
@@ -111,7 +140,56 @@ TEST(Align, TheFindingsOfSimulatedNetworksStay) {
       }
     }
   }
-  std::printf("%zu of %zu aligned\n", aligned, all);
+  std::printf("%zu of %zu aligned, stamps within %.3f ms\n", aligned, all, worst);
+}
+
+// Two sniffers of one air with clocks of their own: their frames are judged once.
+TEST(Align, TwoSniffersOfOneAir) {
+  SerialClock one;
+  SerialClock other;
+  other.base_s = one.base_s + 100.123;
+  other.lost = 0.2;
+  Apart apart = take_apart(capture("a_join_data"), one);
+  const Apart second = take_apart(capture("a_join_data"), other);
+  const oracle::Run whole = put_together(apart);
+  apart.parts.push_back(second.parts[0]);
+  apart.parts.back().name = "second";
+  oracle::Run run = put_together(apart);
+  EXPECT_NE(aligned_fact(run).find("second is aligned with radio"), std::string::npos);
+  EXPECT_NE(aligned_fact(run).find("100.123000 s ahead"), std::string::npos) << aligned_fact(run);
+  std::string error;
+  ASSERT_TRUE(drop_duplicates(run, {}, error)) << error;
+  EXPECT_EQ(run.seen.size() - whole.seen.size(),
+            static_cast<std::size_t>(std::count_if(
+                run.seen.begin(), run.seen.end(), [](const Observation& seen) {
+                  return seen.place.file == 2 && seen.kind == Observation::Kind::kLinkAck;
+                })));
+  EXPECT_EQ(findings_of(judge(run, {}), nullptr, false),
+            findings_of(judge(whole, {}), nullptr, false));
+}
+
+// The lines of two sinks, each on a clock of its own, before the air.
+TEST(Align, EveryFileHasItsClock) {
+  const std::string bytes = capture("c_two_islands");
+  SerialClock raw;
+  raw.stamps = false;
+  const Apart by_line = take_apart(bytes, raw);
+  ASSERT_EQ(by_line.parts.size(), 3U);
+  SerialClock clock;
+  Apart apart;
+  apart.whole = take_apart(bytes, clock).whole;
+  for (const std::size_t i : {1U, 2U, 0U}) {
+    clock.base_s = 1e9 + 1000.0 * static_cast<double>(i);
+    Part part = only_interface(take_apart(bytes, clock).whole, by_line.parts[i].name);
+    part.frames = by_line.parts[i].frames;
+    apart.parts.push_back(part);
+  }
+  const oracle::Run run = put_together(apart);
+  EXPECT_EQ(std::count_if(run.facts.begin(), run.facts.end(), [](const std::string& fact) {
+              return fact.find("is aligned with") != fact.npos;
+            }), 2);
+  EXPECT_EQ(findings_of(judge(run, {}), &apart, false),
+            findings_of(judge(whole_run(apart), {}), nullptr, false));
 }
 
 // Failures of a line without stamps, in order by common frames, that the whole has, too.

@@ -93,6 +93,23 @@ inline Apart take_apart(std::string_view pcapng, const SerialClock& clock) {
   return out;
 }
 
+/// What one interface of a pcapng file has, as a file of its own.
+inline Part only_interface(std::string_view pcapng, const std::string& name) {
+  Part out{name, {}, {0}};
+  PcapngWriter writer;
+  writer.begin(out.bytes);
+  const std::unique_ptr<Reader> reader = make_reader(InputFormat::kPcapng, {});
+  auto take = [&](const Packet& packet) {
+    if (reader->interfaces()[packet.interface_id].name != name) return;
+    writer.write(packet, name, out.bytes);
+  };
+  reader->feed({reinterpret_cast<const std::uint8_t*>(pcapng.data()), pcapng.size()},
+               PacketSink(take));
+  reader->finish(PacketSink(take));
+  writer.finish(out.bytes);
+  return out;
+}
+
 /// The files as one run.
 inline Run put_together(const Apart& apart, const AlignOptions& options = {}) {
   ReadAs as;
