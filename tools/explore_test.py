@@ -171,7 +171,7 @@ class Transitions(unittest.TestCase):
         done = explore("--transitions", "--format", "dot")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual([line.split()[1] for line in done.stdout.splitlines()
-                          if line.startswith("digraph")], ["join", "listing", "message"])
+                          if line.startswith("digraph")], ["join", "listing", "message", "output", "input"])
         self.assertEqual(explore("--format", "dot").returncode, 64)
 
     def test_a_flaw_shows(self):

@@ -166,7 +166,7 @@ std::string dot_of(const Diagram& diagram) {
   const std::string everywhere = from_everywhere(edges, reached);
   out += everywhere.empty() ? "  start -> s0;\n"
                             : fmt::format("  start -> s0 [label=<{}>];\n",
-                                          table(cell("from every state:" + std::string(kBreak) +
+                                          table(cell("from every other state:" + std::string(kBreak) +
                                                      everywhere)));
   for (std::size_t i = 0; i < reached.size(); ++i) {
     if (reached[i]) out += node_of(diagram, i);

@@ -201,20 +201,22 @@ std::vector<Options> message_networks(const machine::Profile& profile) {
 }  // namespace
 
 std::span<const PartInfo> parts() {
-  static const std::array<PartInfo, 3> kParts{{
+  static const std::array<PartInfo, 5> kParts{{
       {"join",
        "How a mote joins an island",
        {"not a member", "request out", "member,\nack_join on the air",
         "member,\nack_join confirmed", "member,\nack_join unconfirmed"},
-       is_mote, join_state, join_trigger, join_networks},
+       is_mote, join_state, join_trigger, join_networks, nullptr},
       {"listing",
        "How a sink lists a mote",
        {"not known", "answered", "listed", "listed,\nanswered again"},
-       is_sink, listing_state, listing_trigger, listing_networks},
+       is_sink, listing_state, listing_trigger, listing_networks, nullptr},
       {"message",
        "How a message ends at the mote that sent it",
        {"no ack awaited", "ack awaited"},
-       is_mote, message_state, message_trigger, message_networks},
+       is_mote, message_state, message_trigger, message_networks, nullptr},
+      synaptic_output(),
+      synaptic_input(),
   }};
   return kParts;
 }

@@ -24,9 +24,13 @@ struct PartInfo {
   std::size_t (*state_of)(const machine::State& state);
   /// Nothing: the event has nothing to do with the part.
   std::optional<Trigger> (*trigger_of)(const machine::State& before, const Given& given);
-  /// The networks that show the part.
+  /// The networks that show the part; or null, and what a sink is given that shows it alone.
   std::vector<Options> (*networks)(const machine::Profile& profile);
+  std::vector<Given> (*alphabet)(const machine::Profile& profile);
 };
+
+PartInfo synaptic_output();
+PartInfo synaptic_input();
 
 std::span<const PartInfo> parts();
 /// Null: there is none of that name.

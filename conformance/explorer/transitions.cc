@@ -39,6 +39,7 @@ std::string name_of(const machine::Notice& notice) {
   if (sent != nullptr && sent->seq_num == machine::kNoSeq) return "send_result(error)";
   const trace::Message message = events::from_notice(notice);
   const trace::Value* result = message.find("result");
+  if (result == nullptr) result = message.find("status");
   return result == nullptr ? message.name : message.name + "(" + result->text + ")";
 }
 
@@ -247,6 +248,67 @@ class Tour {
   std::unordered_set<std::uint64_t> looked_;
 };
 
+/// Breadth-first over one sink, which is given anything at any time.
+class Alone {
+ public:
+  Alone(const PartInfo& part, const machine::Profile& profile, StepFunction step, Found& found)
+      : part_(part), step_(step), found_(found) {
+    config_.role = machine::Role::kSink;
+    config_.id = profile.sink_id;
+    config_.island = kFirstIsland;
+    config_.profile = profile;
+    alphabet_ = part.alphabet(profile);
+  }
+
+  /// False: there were too many states.
+  bool run(std::uint64_t& worlds) {
+    visit(machine::start(config_), kNone, 0);
+    for (std::uint32_t i = 0; i < all_.size() && all_.size() <= kWorldsMax; ++i) {
+      for (std::size_t k = 0; k < alphabet_.size(); ++k) look(i, k);
+    }
+    worlds += all_.size();
+    return all_.size() <= kWorldsMax;
+  }
+
+ private:
+  struct Entry {
+    machine::State state;
+    std::uint32_t parent;
+    std::size_t letter;
+  };
+
+  void look(std::uint32_t index, std::size_t letter) {
+    machine::State state = all_[index].state;
+    const Given& given = alphabet_[letter];
+    const bool ticks = std::holds_alternative<machine::TimerDue>(given.what) && !given.heard;
+    if (ticks && state.synaptic.due == 0) return;  // No such timer is set.
+    auto found = Step(part_, step_).take(state, given);
+    if (found && !found_.holds(*found)) {
+      found->witness = {config_, {given}};
+      for (std::uint32_t i = index; all_[i].parent != kNone; i = all_[i].parent) {
+        found->witness.events.insert(found->witness.events.begin(), alphabet_[all_[i].letter]);
+      }
+      found_.add(std::move(*found));
+    }
+    visit(std::move(state), index, letter);
+  }
+
+  void visit(machine::State state, std::uint32_t parent, std::size_t letter) {
+    state.sequence = machine::start(config_).sequence;  // Else no two states would be the same.
+    if (seen_.insert(machine::hash_value(state)).second) {
+      all_.push_back({std::move(state), parent, letter});
+    }
+  }
+
+  const PartInfo& part_;
+  StepFunction step_;
+  Found& found_;
+  machine::Config config_;
+  std::vector<Given> alphabet_;
+  std::vector<Entry> all_;
+  std::unordered_set<std::uint64_t> seen_;
+};
+
 const PartInfo& part_named(std::string_view name) {
   const PartInfo* part = find_part(name);
   if (part == nullptr) throw std::invalid_argument("no part is called " + std::string(name));
@@ -261,6 +323,7 @@ std::string Given::text() const {
     return "called " + trace::print(events::from_call(called->call));
   }
   if (const auto* due = std::get_if<machine::TimerDue>(&what)) {
+    if (due->timer.kind == machine::TimerKind::kSynaptic) return "tick";
     return due->timer.kind == machine::TimerKind::kJoin ? "join timer" : "ack timer";
   }
   if (const auto* done = std::get_if<machine::SendDone>(&what)) {
@@ -285,7 +348,10 @@ Diagram transitions_of(std::string_view name, const machine::Profile& profile, S
   out.title = part.title;
   out.states = part.states;
   Found found;
-  for (Options& options : part.networks(profile)) {
+  if (part.networks == nullptr) out.complete = Alone(part, profile, step, found).run(out.worlds);
+  std::vector<Options> networks;
+  if (part.networks != nullptr) networks = part.networks(profile);
+  for (Options& options : networks) {
     options.step = step;
     out.complete = Tour(part, options, found).run(out.worlds) && out.complete;
   }

@@ -70,6 +70,14 @@ const std::set<std::string> kEssential{
     // T3: each reliable message ends once.
     "ack awaited --ack [its number] / ack_received(success)--> no ack awaited "
     "N5-DELIVER T3-SUCCESS",
+    // S1 to S6: channels.
+    "started --tick [reliable] / net_msg--> started S2-SEND",
+    "started --tick [power-save, first or changed] / net_msg--> started S3-CHANGED",
+    "started --tick [power-save, unchanged]--> started S3-UNCHANGED",
+    "started --tick [data came] / syn_data(new)--> started S2-SIGNAL",
+    "started --tick [no data came] / syn_data(old)--> started S3-OLD",
+    "no channel --data / syn_data(unknown_channel)--> no channel N6-DELIVER S5-UNKNOWN",
+    "stopped --data ignored--> stopped N6-DELIVER S6-STOPPED",
     "ack awaited --ack timer / ack_received(fail)--> no ack awaited T3-TIMEOUT",
     "ack awaited --ack [another number] ignored--> ack awaited N5-DELIVER T3-MATCH",
 };

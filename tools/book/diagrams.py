@@ -34,7 +34,9 @@ def chart_svg(rubric, case_id, rule_href=None):
 # The parts of a node that have a state diagram, and what each shows.
 STATES = {"join": "How a mote joins an island",
           "listing": "How a sink lists a mote",
-          "message": "How a message ends at the mote that sent it"}
+          "message": "How a message ends at the mote that sent it",
+          "output": "An output channel of synaptic communication",
+          "input": "An input channel of synaptic communication"}
 
 FONTS = "ui-monospace,'DejaVu Sans Mono',Menlo,Consolas,monospace"
 STYLE = ("<style>"
