@@ -192,7 +192,7 @@ class Mistakes(unittest.TestCase):
                   "no rule or group is called 'J44'; expected J4",
                   "no golden trace is called 'j4.lisetd'",
                   "no golden trace is called 'j4.nothing'; expected",
-                  "no state diagram is called 'nothing'; expected join, listing",
+                  "no state diagram is called 'nothing'; expected .*join, listing",
                   "no command of rubric is called 'nothing'", "no file of the project is called",
                   "no carrier is called 'smoke'; expected radio_ack, radio_i",
                   r"expected '\{\{layout NAME\}\}'", r"expected '\{\{coverage\}\}'",
