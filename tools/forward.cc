@@ -20,8 +20,9 @@ namespace {
 struct ForwardOptions {
   std::string source;
   std::uint64_t buffer_kib = 1024;
-  std::uint32_t timeout_s = 10;
+  std::uint32_t patience_s = 10;
   std::uint32_t ack_wait_ms = 1000;
+  int retries = 24;  ///< As TinyOS's Java host.
   forward::Options server;
 };
 
@@ -52,8 +53,9 @@ void print_summary(const std::string& source, const forward::Counts& counts) {
 int run(ForwardOptions& options) {
   options.server.source.address = source_of(options.source);
   options.server.source.link.ack_wait = attach::Milliseconds(options.ack_wait_ms);
+  options.server.source.link.tries = 1 + options.retries;
   options.server.backlog_bytes = options.buffer_kib * 1024;
-  options.server.limits.patience = std::chrono::seconds(options.timeout_s);
+  options.server.limits.patience = std::chrono::seconds(options.patience_s);
   try {
     forward::Server server(options.server);
     const bool whole = server.run();
@@ -75,7 +77,7 @@ void add_client_options(CLI::App& command, ForwardOptions& options) {
                      "KiB that a client may be behind; then it is cut off")
       ->check(CLI::Range(64, 1 << 20))
       ->capture_default_str();
-  command.add_option("--timeout", options.timeout_s,
+  command.add_option("--patience", options.patience_s,
                      "Seconds that a client may take for its handshake, and to end a packet")
       ->check(CLI::Range(1, 86'400))
       ->capture_default_str();
@@ -86,13 +88,12 @@ void add_source_options(CLI::App& command, ForwardOptions& options) {
                    "Open a source that is gone again, when it is back; clients stay");
   command.add_flag("--listen-only", options.server.source.link.listen_only,
                    "Write nothing to a serial line; packets of clients are dropped");
-  command.add_option("--ack-wait", options.ack_wait_ms,
-                     "Milliseconds until a packet that the mote does not confirm is sent again")
+  command.add_option("--timeout", options.ack_wait_ms,
+                     "Serial lines: ms until a packet that is not confirmed is sent again")
       ->check(CLI::Range(1, 3'600'000))
       ->capture_default_str();
-  command.add_option("--tries", options.server.source.link.tries,
-                     "How often a packet is sent before it is given up")
-      ->check(CLI::Range(1, 1000))
+  command.add_option("--retries", options.retries, "Serial lines: how often it is sent again")
+      ->check(CLI::Range(0, 10'000))
       ->capture_default_str();
 }
 

@@ -31,7 +31,7 @@ class Java(unittest.TestCase):
 
     def test_two_base_stations_and_a_listener(self):
         mote = Mote(self).on_a_port()
-        running = Running(self, mote.source, "--verbose", "--ack-wait", str(1000 * PATIENCE_S))
+        running = Running(self, mote.source, "--verbose", "--timeout", str(1000 * PATIENCE_S))
         mote.accept()
         listener = Client(self, running)
         stations = []

@@ -70,7 +70,7 @@ class Clients(unittest.TestCase):
 
     def test_a_packet_for_the_mote_is_sent_until_it_is_confirmed(self):
         mote = Mote(self).on_a_terminal()
-        running = Running(self, mote.source, "--ack-wait", "100")
+        running = Running(self, mote.source, "--timeout", "100")
         client = Client(self, running)
         client.give(packet(1))
         client.give(packet(2))
@@ -121,7 +121,7 @@ class Clients(unittest.TestCase):
 
     def test_a_mote_that_confirms_nothing(self):
         mote = Mote(self).on_a_port()
-        running = Running(self, mote.source, "--ack-wait", "20", "--tries", "3")
+        running = Running(self, mote.source, "--timeout", "20", "--retries", "2")
         mote.accept()
         client = Client(self, running)
         for number in range(4):
@@ -143,7 +143,7 @@ class Clients(unittest.TestCase):
 
     def test_bad_clients_are_cut_off_and_others_are_not(self):
         mote = Mote(self).on_a_port()
-        running = Running(self, mote.source, "--timeout", "1")
+        running = Running(self, mote.source, "--patience", "1")
         mote.accept()
         good = Client(self, running)
         for sent, why in ((b"G", "begins with 47, not with 55 20"),
@@ -211,6 +211,17 @@ class Clients(unittest.TestCase):
             out, _ = decode.communicate(timeout=PATIENCE_S)
         self.assertEqual(out.split()[1:], ["config,37"] * 3)
         running.wait_for("has left")
+
+    def test_rubric_send_is_a_client(self):
+        mote = Mote(self).on_a_terminal()
+        running = Running(self, mote.source)
+        with subprocess.Popen([RUBRIC, "send", "--as", "config", "--to",
+                               f"sf@127.0.0.1:{running.port}"], stdin=subprocess.PIPE,
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as send:
+            said = send.communicate('{"type":10,"value":12}\n', timeout=PATIENCE_S)
+        self.assertEqual(send.returncode, 0, said)
+        # It has left, and what it sent is sent all the same.
+        self.assertEqual(mote.confirmed_packet(), bytes.fromhex("00ffff00000300250a000c"))
 
 
 if __name__ == "__main__":
