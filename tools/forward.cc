@@ -107,6 +107,7 @@ void add_forward(CLI::App& app) {
                       "serial@DEVICE:BAUD (or a platform, as serial@/dev/ttyUSB0:telosb), "
                       "network@HOST:PORT or sf@HOST:PORT; without it, $MOTECOM");
   command->add_option("--port", options->server.port, "Where clients connect; 0: a free port")
+      ->check(CLI::Range(0, 65'535))
       ->capture_default_str();
   command->add_option("--bind", options->server.bind,
                       "The address to listen at; 0.0.0.0 or :: lets other hosts in")
