@@ -306,7 +306,8 @@ class Fit {
       bool& good = near[pair.b];
       good = good || (later_us >= -options_.skew_us && later_us <= most_us + options_.skew_us);
     }
-    const auto count = std::count_if(near.begin(), near.end(), [](auto& one) { return one.second; });
+    const auto count =
+        std::count_if(near.begin(), near.end(), [](const auto& one) { return one.second; });
     return 2 * static_cast<std::size_t>(count) > near.size();
   }
 
@@ -323,8 +324,12 @@ class Fit {
     };
     std::size_t only_a = 0;
     std::size_t only_b = 0;
-    for (const std::uint32_t i : common_.only_a) only_a += within(at(i) + ahead_us) ? 1 : 0;
-    for (const std::uint32_t i : common_.only_b) only_b += within(at(i)) ? 1 : 0;
+    for (const std::uint32_t i : common_.only_a) {
+      only_a += at(i) != kNoStamp && within(at(i) + ahead_us) ? 1 : 0;
+    }
+    for (const std::uint32_t i : common_.only_b) {
+      only_b += at(i) != kNoStamp && within(at(i)) ? 1 : 0;
+    }
     return in_.size() >= std::min(only_a, only_b);
   }
 
