@@ -345,8 +345,8 @@ class CheckLive(CheckTest):
         self.assertEqual(got["counts"], report["counts"])
         busy = usage.ru_utime + usage.ru_stime
         if os.environ.get("RUBRIC_MEASURE"):
-            print(f"{got['counts']['frames']} frames fed in {fed:.1f} s; {busy:.2f} of {wall:.1f} s "
-                  f"of CPU, {usage.ru_maxrss // 1024} MB", file=sys.stderr)
+            print(f"{got['counts']['frames']} frames fed in {fed:.1f} s; {busy:.2f} of "
+                  f"{wall:.1f} s of CPU, {usage.ru_maxrss // 1024} MB", file=sys.stderr)
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
         offline(path, "--start", "cold")
         after = resource.getrusage(resource.RUSAGE_CHILDREN)

@@ -2,6 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <string>
+#include <vector>
+
 #include "conformance/oracle/identity.h"
 #include "conformance/oracle/judge.h"
 #include "conformance/oracle/message.h"
@@ -30,6 +37,48 @@ TEST(Read, TapsAndNumbersOfACapture) {
   EXPECT_EQ(first.place.time_us, 0);
   EXPECT_EQ(run.seen[1].kind, Observation::Kind::kLinkAck);
   EXPECT_TRUE(run.has_time);
+}
+
+// Packets of two files, each a few at a time.
+TEST(Read, ARunThatGrowsEndsAsItsFiles) {
+  const std::vector<std::string> files = {std::string(kFirmware) + "a_join_data.pcapng",
+                                          std::string(kFirmware) + "c_two_islands.pcapng"};
+  constexpr std::size_t kPieceBytes = 501;
+  RunReader growing;
+  std::vector<std::string> bytes;
+  std::vector<std::unique_ptr<Reader>> readers;
+  for (const std::string& file : files) {
+    growing.open(file);
+    std::ifstream in(file, std::ios::binary);
+    bytes.emplace_back(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
+    readers.push_back(make_reader(InputFormat::kPcapng));
+  }
+  std::size_t before = 0;
+  for (std::size_t at = 0; at < std::max(bytes[0].size(), bytes[1].size()); at += kPieceBytes) {
+    for (std::uint32_t file = 0; file < 2; ++file) {
+      if (at >= bytes[file].size()) continue;
+      const std::string piece = bytes[file].substr(at, kPieceBytes);
+      auto take = [&](const Packet& packet) {
+        growing.take(file, packet, readers[file]->interfaces()[packet.interface_id].name);
+      };
+      readers[file]->feed(Bytes(reinterpret_cast<const std::uint8_t*>(piece.data()), piece.size()),
+                          PacketSink(take));
+    }
+    const oracle::Run now = growing.snapshot();
+    EXPECT_GE(now.seen.size(), before);
+    before = now.seen.size();
+  }
+  const oracle::Run whole = must_read(files);
+  const oracle::Run grown = growing.finish();
+  EXPECT_EQ(grown.files, whole.files);
+  ASSERT_EQ(grown.seen.size(), whole.seen.size());
+  for (std::size_t i = 0; i < whole.seen.size(); ++i) {
+    EXPECT_EQ(grown.seen[i].place.file, whole.seen[i].place.file) << i;
+    EXPECT_EQ(grown.seen[i].place.frame, whole.seen[i].place.frame) << i;
+    EXPECT_EQ(grown.seen[i].place.time_us, whole.seen[i].place.time_us) << i;
+    EXPECT_EQ(grown.taps[grown.seen[i].tap].name, whole.taps[whole.seen[i].tap].name) << i;
+  }
+  EXPECT_EQ(growing.finish().seen.size(), 0U);
 }
 
 TEST(Read, TwoSinksOfOneAddressAreTwoDevices) {

@@ -25,8 +25,8 @@ struct TextOptions {
   /// where the run cannot be had again.
   std::string command = "rubric check";
   std::string files;
-  std::string head;            ///< text_finding(): stands before the severity in capitals.
-  std::string text;            ///< text_finding(): what is said in a line, in place of the finding's.
+  std::string head;            ///< text_finding(): stands before the severity, in capitals.
+  std::string text;            ///< text_finding(): said in a line in place of the finding's.
   Judge judge;                 ///< Finds parts of the run that show a finding; empty: none.
 };
 
