@@ -8,6 +8,7 @@ difference.
 
 import json
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -170,8 +171,8 @@ class Transitions(unittest.TestCase):
     def test_dot(self):
         done = explore("--transitions", "--format", "dot")
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertEqual([line.split()[1] for line in done.stdout.splitlines()
-                          if line.startswith("digraph")], ["join", "listing", "message", "output", "input"])
+        self.assertEqual(re.findall(r"^digraph (\w+)", done.stdout, re.M),
+                         ["join", "listing", "message", "output", "input"])
         self.assertEqual(explore("--format", "dot").returncode, 64)
 
     def test_a_flaw_shows(self):

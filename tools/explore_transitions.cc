@@ -21,7 +21,8 @@ void add_transition_options(CLI::App& sub, TransitionOptions& options) {
                       name == "--flaw" || name == "--format" || name == "--out";
     if (!fits) wanted->excludes(other);
   }
-  sub.add_option("--part", options.parts, "Transitions of this part alone: join, listing, message, output, input")
+  sub.add_option("--part", options.parts,
+                 "Transitions of this part alone: join, listing, message, output, input")
       ->needs(wanted);
 }
 

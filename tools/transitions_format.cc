@@ -137,12 +137,12 @@ std::string from_everywhere(Edges& edges, const std::vector<bool>& reached) {
   for (const auto& [ends, all] : edges) {
     for (const Transition* t : all) counts[lines_of(*t)] += ends.second == 0 ? 1 : 0;
   }
-  for (const auto& [lines, count] : counts) {
-    if (others < 2 || count != static_cast<std::size_t>(others)) continue;
-    out += lines;
+  for (const auto& one : counts) {
+    if (others < 2 || one.second != static_cast<std::size_t>(others)) continue;
+    out += one.first;
     for (auto& [ends, all] : edges) {
       if (ends.second != 0) continue;
-      std::erase_if(all, [&](const Transition* t) { return lines_of(*t) == lines; });
+      std::erase_if(all, [&](const Transition* t) { return lines_of(*t) == one.first; });
     }
   }
   return out;
@@ -164,10 +164,12 @@ std::string dot_of(const Diagram& diagram) {
     if (t.from != t.to) edges[{t.from, t.to}].push_back(&t);
   }
   const std::string everywhere = from_everywhere(edges, reached);
-  out += everywhere.empty() ? "  start -> s0;\n"
-                            : fmt::format("  start -> s0 [label=<{}>];\n",
-                                          table(cell("from every other state:" + std::string(kBreak) +
-                                                     everywhere)));
+  if (everywhere.empty()) {
+    out += "  start -> s0;\n";
+  } else {
+    const std::string lines = "from every other state:" + std::string(kBreak) + everywhere;
+    out += fmt::format("  start -> s0 [label=<{}>];\n", table(cell(lines)));
+  }
   for (std::size_t i = 0; i < reached.size(); ++i) {
     if (reached[i]) out += node_of(diagram, i);
   }

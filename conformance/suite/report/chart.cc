@@ -194,6 +194,11 @@ class Chart {
     row.detail = key_text(line.message, report::kSvgLabelMax);
     row.full = full_text(line);
     row.way = way_of(line, one_);
+    if (row.way == SequenceRow::Way::kRadio && row.from == kNoColumn) {
+      row.detail += " (from " + trace::value_text(line.am->source) + ")";
+    } else if (row.way == SequenceRow::Way::kRadio && row.to.empty()) {
+      row.detail += " (to " + trace::value_text(line.am->dest) + ")";
+    }
     row.lines = {i};
     row.stimulus = line.op == Op::kGiven;
     for (const std::string& rule : line.requirements) add_note(row.note, rule);
