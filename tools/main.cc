@@ -29,8 +29,7 @@ namespace {
 
 constexpr const char* kFooter =
     "Exit codes: 0 clean, 1 something malformed was found, 2 usage, 3 input cannot be read or\n"
-    "output cannot be written, 4 not sent; check, test, explore and coverage give verdicts and\n"
-    "have others.\n"
+    "output cannot be written, 4 not sent; check, test, chart, explore and coverage have others.\n"
     "'rubric COMMAND --help' says more.";
 
 }  // namespace
@@ -48,21 +47,21 @@ int main(int argc, char** argv) {
   rubric::tools::add_convert(app);
   rubric::tools::add_stats(app);
   rubric::tools::add_explain(app);
-  rubric::tools::add_explore(app);
+  rubric::tools::add_messages(app);
   rubric::tools::add_send(app);
   rubric::tools::add_forward(app);
-  rubric::tools::add_generate(app);
-  rubric::tools::add_messages(app);
-  rubric::tools::add_simulate(app);
+  rubric::tools::add_install_wireshark(app);
   rubric::tools::add_check(app);
   rubric::tools::add_test(app);
+  rubric::tools::add_new_adapter(app);
   rubric::tools::add_shrink(app);
   rubric::tools::add_diff(app);
-  rubric::tools::add_repro(app);
-  rubric::tools::add_new_adapter(app);
-  rubric::tools::add_coverage(app);
-  rubric::tools::add_install_wireshark(app);
   rubric::tools::add_chart(app);
+  rubric::tools::add_simulate(app);
+  rubric::tools::add_explore(app);
+  rubric::tools::add_coverage(app);
+  rubric::tools::add_generate(app);
+  rubric::tools::add_repro(app);
   rubric::tools::add_completion(app);
   return rubric::cli::parse_and_run(app, argc, argv);
 }
