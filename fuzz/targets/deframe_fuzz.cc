@@ -63,7 +63,7 @@ void check_mote_writer(Bytes content) {
   std::array<std::uint8_t, hdlc_frame_room(kHdlcKeptMax)> room;
   const std::size_t max = serial_content_max(content.empty() ? 0 : content[0]) - kSerialCrcBytes;
   const auto size = write_hdlc_frame(content, MutableBytes(room.data(), room.size()));
-  require(size.has_value() == (content.size() <= max), "a frame is refused just where it is too long");
+  require(size.has_value() == (content.size() <= max), "just too long a frame is refused");
   if (!size) return require(size.error().fault == Fault::kTooLong, "and that is why");
   const Bytes frame(room.data(), *size);
 
