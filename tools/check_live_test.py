@@ -269,6 +269,25 @@ class CheckLive(CheckTest):
         code, report, err = running.report()
         self.assertEqual((code, report["files"], err), (1, ["stdin"], ""))
 
+    def test_a_named_pipe(self):
+        path = self.folder / "sniffed"
+        os.mkfifo(path)
+        running = self.started(path, "--follow", "--format", "jsonl")
+        with open(path, "wb") as file:
+            file.write(data(STRAY_REPLY))
+        running.event("found", "J4-SEQ")
+        code, report, err = running.report()
+        self.assertEqual((code, report["files"], err), (1, [str(path)], ""))
+
+    def test_a_named_pipe_that_nobody_writes_to(self):
+        path = self.folder / "sniffed"
+        os.mkfifo(path)
+        running = self.started(path, "--follow", "--format", "jsonl")
+        folder = pathlib.Path(f"/proc/{running.process.pid}/fd")
+        self.grown(path, lambda: str(path) in map(os.path.realpath, folder.iterdir()))
+        code, report, err = running.report()
+        self.assertEqual((code, report["findings"], err), (3, [], ""))
+
     def test_stats_of_a_line(self):
         server = Forwarder(self)
         running = Running("stats", f"sf@127.0.0.1:{server.port}", "--format", "json")

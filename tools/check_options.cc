@@ -4,6 +4,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <string_view>
 #include <utility>
@@ -155,6 +156,9 @@ oracle::ReadAs read_as(const CheckOptions& options) {
 }
 
 bool is_log(const std::string& name) {
+  // What is read of a pipe here is gone for those who read it later.
+  std::error_code none;
+  if (!std::filesystem::is_regular_file(name, none)) return false;
   std::ifstream file(name, std::ios::binary);
   std::string start(kLogLook, '\0');
   file.read(start.data(), static_cast<std::streamsize>(start.size()));

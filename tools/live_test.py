@@ -81,6 +81,17 @@ class Live(LiveTest):
         self.assertEqual(err.count("again"), 2)
         self.assertIn(f"rubric: {3 * len(wanted)} frames", err)
 
+    def test_what_another_source_could_not_do_is_not_forgotten(self):
+        server = Forwarder(self)
+        wanted = lines_of(FORWARDER)
+        running = self.started("decode", "sf@127.0.0.1:1", f"sf@127.0.0.1:{server.port}",
+                               "--format", "jsonl")
+        connection = server.accept((ROOT / FORWARDER).read_bytes())
+        running.lines(len(wanted))
+        code, _, err = running.end()
+        connection.close()
+        self.assertEqual((code, err.count("cannot connect"), err.count("again")), (3, 1, 0))
+
     def test_a_file_that_grows(self):
         path = self.folder / "growing.pcapng"
         whole = (ROOT / "spec/captures/firmware/a_join_data.pcapng").read_bytes()

@@ -118,6 +118,8 @@ class Run {
   void line(const live::Address& address) {
     live::stop_on_signals();
     result_.live = true;
+    const bool failed_before = result_.failed;  // What another line could not do stays so.
+    lost_ = false;
     live::Line line(address, options_.listen_only);
     source_.format = format_name(line.format());
     ReaderOptions reader_options;
@@ -137,7 +139,7 @@ class Run {
         std::this_thread::sleep_for(kReconnectEvery);
       }
     }
-    result_.failed = result_.failed && lost_;
+    result_.failed = failed_before || lost_;
   }
 
   void pump_line(live::Line& line, Reader& reader) {

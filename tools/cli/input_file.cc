@@ -18,11 +18,19 @@ namespace {
 constexpr int kDetectPatienceMs = 200;
 constexpr std::chrono::milliseconds kFollowEvery{100};
 
+// A named pipe that nobody writes to yet is open at once and waited for by ready(), where the user
+// can ask to stop, rather than within open().
+int open_at_once(const std::string& name) {
+  const int fd = ::open(name.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (fd >= 0) ::fcntl(fd, F_SETFL, O_RDONLY);
+  return fd;
+}
+
 }  // namespace
 
 InputFile::InputFile(const std::string& name, bool follow, const std::function<void()>& on_idle)
     : name_(name),
-      fd_(name == "-" ? 0 : ::open(name.c_str(), O_RDONLY | O_CLOEXEC)),
+      fd_(name == "-" ? 0 : open_at_once(name)),
       is_stdin_(name == "-"),
       follow_(follow),
       on_idle_(on_idle) {
@@ -49,7 +57,7 @@ std::size_t InputFile::read(std::uint8_t* to, std::size_t size) {
 bool InputFile::has_more_soon() const {
   if (is_regular_) return !follow_ || left() > 0;
   pollfd wait{fd_, POLLIN, 0};
-  return ::poll(&wait, 1, kDetectPatienceMs) != 0;
+  return ::poll(&wait, 1, kDetectPatienceMs) > 0 && (wait.revents & POLLIN) != 0;
 }
 
 off_t InputFile::left() const {
