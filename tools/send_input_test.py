@@ -114,6 +114,44 @@ class SerialForwarder(Base):
         thread.join(PATIENCE_S)
         self.assertEqual(got, [b"".join(bytes([11]) + config(i) for i in range(200))])
 
+    def long_packets(self, count):
+        """A file with so many of 255 bytes, with their numbers."""
+        path = self.folder / "long.jsonl"
+        with open(path, "w", encoding="utf-8") as file:
+            for i in range(count):
+                file.write(json.dumps({"schema": "rubric.decode/1", "framing": "sf",
+                                       "raw": f"{i:010x}" + 250 * "00"}) + "\n")
+        return path
+
+    def test_one_that_writes_first(self):
+        """It reads nothing until all of what it says in two seconds is taken."""
+        count, got = 20_000, []
+
+        def serve(connection):
+            until = time.monotonic() + 2
+            while time.monotonic() < until:
+                connection.sendall((bytes([255]) + bytes(255)) * 256)
+            whole = bytearray()
+            while more := connection.recv(1 << 16):
+                whole += more
+            got.extend(int.from_bytes(whole[at + 1:at + 6], "big") if whole[at] == 255 else None
+                       for at in range(0, len(whole), 256))
+
+        to, thread = self.forwarder(serve, receive_bytes=4096)
+        code, _, err = send(self.long_packets(count), "--to", to)
+        self.assertEqual((code, err), (CLEAN, f"rubric: {count} packets sent\n"))
+        thread.join(PATIENCE_S)
+        self.assertEqual(got, list(range(count)))
+
+    def test_one_that_never_reads(self):
+        done = threading.Event()
+        to, _ = self.forwarder(lambda _: done.wait(PATIENCE_S), receive_bytes=4096)
+        self.addCleanup(done.set)
+        code, out, err = send(self.long_packets(50_000), "--to", to)
+        self.assertEqual(code, NOT_SENT)
+        self.assertRegex(out.splitlines()[-1], r"^ *\d+  AM type 0 +not sent$")
+        self.assertIn(f"rubric: {to}: the line takes no more bytes\n", err)
+
     def test_what_is_answered_is_shown(self):
         def serve(connection):
             connection.sendall(connection.recv(12))

@@ -2,6 +2,7 @@
 
 import json
 import os
+import socket
 import struct
 import subprocess
 import threading
@@ -38,9 +39,12 @@ class Base(LiveTest):
         device = Pty(self)
         return f"serial@{device.name}:telosb", Mote(self, device.fd, answer)
 
-    def forwarder(self, serve):
-        """Where to send; `serve(connection)` runs in a thread."""
+    def forwarder(self, serve, receive_bytes=None):
+        """Where to send; `serve(connection)` runs in a thread. There is little room for what comes
+        where it has receive_bytes."""
         server = Forwarder(self)
+        if receive_bytes:
+            server.listener.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, receive_bytes)
 
         def run():
             with server.accept(b"U ") as connection:

@@ -103,21 +103,24 @@ ByteStream::ByteStream(Descriptor descriptor) : descriptor_(std::move(descriptor
 void ByteStream::write(Bytes bytes, SteadyTime deadline) {
   std::size_t sent = 0;
   while (sent < bytes.size()) {
-    if (!is_open()) throw TargetBroken("the line is closed");
-    const std::uint8_t* const from = bytes.data() + sent;
-    const int fd = descriptor_.get();
-    ssize_t count = ::send(fd, from, bytes.size() - sent, MSG_NOSIGNAL);
-    if (count < 0 && errno == ENOTSOCK) count = ::write(fd, from, bytes.size() - sent);
-    if (count >= 0) {
-      sent += static_cast<std::size_t>(count);
-    } else if (!would_block(errno)) {
-      const int error = errno;
-      close();
-      throw TargetBroken(fmt::format("the line broke: {}", std::strerror(error)));
-    } else if (!wait_for(fd, POLLOUT, deadline)) {
+    const std::size_t count = write_some(Bytes(bytes.data() + sent, bytes.size() - sent));
+    sent += count;
+    if (count == 0 && !wait_for(descriptor_.get(), POLLOUT, deadline)) {
       throw TargetBroken("the line takes no more bytes");
     }
   }
+}
+
+std::size_t ByteStream::write_some(Bytes bytes) {
+  if (!is_open()) throw TargetBroken("the line is closed");
+  const int fd = descriptor_.get();
+  ssize_t count = ::send(fd, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+  if (count < 0 && errno == ENOTSOCK) count = ::write(fd, bytes.data(), bytes.size());
+  if (count >= 0) return static_cast<std::size_t>(count);
+  if (would_block(errno)) return 0;
+  const int error = errno;
+  close();
+  throw TargetBroken(fmt::format("the line broke: {}", std::strerror(error)));
 }
 
 std::size_t ByteStream::read(MutableBytes out, SteadyTime deadline) {

@@ -35,6 +35,8 @@ class ByteStream {
   explicit ByteStream(Descriptor descriptor);
 
   void write(Bytes bytes, SteadyTime deadline);
+  /// How many of the bytes could be written without a wait; 0: none.
+  std::size_t write_some(Bytes bytes);
   /// How many bytes there are now, at most out.size(); 0 when the time is over first.
   std::size_t read(MutableBytes out, SteadyTime deadline);
 

@@ -50,7 +50,8 @@ class Line {
   std::size_t read(MutableBytes out, attach::SteadyTime deadline) {
     return stream_.read(out, deadline);
   }
-  void write(Bytes bytes, attach::SteadyTime deadline) { stream_.write(bytes, deadline); }
+  /// How many of the bytes the line takes at once; 0: none.
+  std::size_t write_some(Bytes bytes) { return stream_.write_some(bytes); }
   /// Tells the other end of a connection that nothing more comes from here.
   void end_output() { stream_.end_output(); }
   /// To wait for, beside others; -1: it is not open.

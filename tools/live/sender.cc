@@ -8,7 +8,6 @@
 #include <cstring>
 #include <stdexcept>
 #include <utility>
-#include <vector>
 
 #include <fmt/format.h>
 
@@ -28,10 +27,14 @@ using std::chrono::steady_clock;
 constexpr Milliseconds kOpenTime{1000};
 constexpr Milliseconds kGreetTime{5000};
 constexpr Milliseconds kWriteTime{5000};
-constexpr Milliseconds kCloseTime{500};
+constexpr Milliseconds kCloseTime{5000};
+constexpr Milliseconds kQuietTime{500};
 /// How long is waited for anything before it is asked whether to stop: a signal may come just
 /// before the wait begins.
 constexpr Milliseconds kPatience{100};
+constexpr std::size_t kReadBytes = 4096;
+/// A forwarder that says more than so many times kReadBytes at once is heard on after the packet.
+constexpr int kReadsMost = 256;
 
 ReaderOptions reader_options(const std::string& name) {
   ReaderOptions options;
@@ -109,15 +112,18 @@ Sender::Result Sender::send(Bytes packet) {
 
 Sender::Result Sender::send_to_forwarder(Bytes packet) {
   Result result;
-  //= WIRE-SF-LENGTH: A serial forwarder packet is a length byte of 1 to 255 and that many bytes
-  //= from the dispatch byte on.
-  std::vector<std::uint8_t> out{static_cast<std::uint8_t>(packet.size())};
-  out.insert(out.end(), packet.begin(), packet.end());
   const SteadyTime begun = steady_clock::now();
   try {
+    // Some forwarders cut off who lags behind what they say, others wait for him.
+    for (int i = 0; i < kReadsMost && read() == kReadBytes; ++i) continue;
+    //= WIRE-SF-LENGTH: A serial forwarder packet is a length byte of 1 to 255 and that many bytes
+    //= from the dispatch byte on.
+    out_.push_back(static_cast<std::uint8_t>(packet.size()));
+    out_.insert(out_.end(), packet.begin(), packet.end());
     result.tries = 1;
-    line_.write(Bytes(out.data(), out.size()), begun + kWriteTime);
-    result.done = true;
+    flush();
+    while (!out_.empty() && !stop_requested()) step(steady_clock::now() + kPatience, -1);
+    result.done = out_.empty();
   } catch (const TargetBroken& error) {
     result.broken = error.what();
   }
@@ -137,18 +143,20 @@ bool Sender::hear(SteadyTime until, int fd) {
 bool Sender::step(SteadyTime until, int fd) {
   flush();
   const auto left = std::chrono::ceil<Milliseconds>(until - steady_clock::now());
-  pollfd both[] = {{line_.fd(), POLLIN, 0}, {fd, POLLIN, 0}};
+  const auto wanted = static_cast<short>(POLLIN | (output().empty() ? 0 : POLLOUT));
+  pollfd both[] = {{line_.fd(), wanted, 0}, {fd, POLLIN, 0}};
   const auto wait = std::clamp(left, Milliseconds{0}, kPatience);
   const int ready = ::poll(both, 2, static_cast<int>(wait.count()));
   if (ready < 0 && errno != EINTR) throw TargetBroken(std::strerror(errno));
-  if (ready > 0 && both[0].revents != 0) read();
+  if (ready > 0 && (both[0].revents & ~POLLOUT) != 0) read();
   link_.tick(steady_clock::now());
   flush();
   return ready > 0 && both[1].revents != 0;
 }
 
-void Sender::read() {
-  std::uint8_t room[4096];
+// How many bytes there were, at most kReadBytes.
+std::size_t Sender::read() {
+  std::uint8_t room[kReadBytes];
   const SteadyTime now = steady_clock::now();
   const std::size_t size = line_.read(MutableBytes(room, sizeof room), now);
   const std::int64_t now_ns =
@@ -163,22 +171,44 @@ void Sender::read() {
   } else {
     reader_->feed(Bytes(room, size), deliver);
   }
+  return size;
 }
 
+Bytes Sender::output() const {
+  return confirms() ? link_.output() : Bytes(out_.data(), out_.size());
+}
+
+void Sender::written(std::size_t count) {
+  if (confirms()) return link_.written(count);
+  out_.erase(out_.begin(), out_.begin() + static_cast<std::ptrdiff_t>(count));
+}
+
+// What the line takes now: to wait for the rest without reading would be for ever where the other
+// end does the same.
 void Sender::flush() {
-  if (link_.output().empty()) return;
-  line_.write(link_.output(), steady_clock::now() + kWriteTime);
-  link_.written(link_.output().size());
+  while (!output().empty()) {
+    const std::size_t count = line_.write_some(output());
+    if (count == 0) {
+      const SteadyTime now = steady_clock::now();
+      if (!stuck_since_) stuck_since_ = now;
+      if (now - *stuck_since_ >= kWriteTime) throw TargetBroken("the line takes no more bytes");
+      return;
+    }
+    stuck_since_.reset();
+    written(count);
+  }
 }
 
 // To close a connection with bytes unread may cost the other end what it has not read yet.
 void Sender::close() {
   const SteadyTime deadline = steady_clock::now() + kCloseTime;
+  bool quiet = line_.address().kind == Address::Kind::kSerial;
   try {
     line_.end_output();
-    std::uint8_t room[4096];
-    while (line_.address().kind != Address::Kind::kSerial && steady_clock::now() < deadline) {
-      line_.read(MutableBytes(room, sizeof room), deadline);
+    std::uint8_t room[kReadBytes];
+    while (!quiet && steady_clock::now() < deadline) {
+      const SteadyTime until = std::min(deadline, steady_clock::now() + kQuietTime);
+      quiet = line_.read(MutableBytes(room, sizeof room), until) == 0;
     }
   } catch (const TargetBroken&) {  // As it should: the other end closed it, too.
   }

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "codec/containers/reader.h"
 #include "conformance/attach/host_link.h"
@@ -48,7 +49,9 @@ class Sender {
   Result result_of(const attach::HostLink::Outcome& outcome) const;
   void greet();
   bool step(attach::SteadyTime until, int fd);
-  void read();
+  std::size_t read();
+  Bytes output() const;
+  void written(std::size_t count);
   void flush();
 
   Line line_;
@@ -56,6 +59,8 @@ class Sender {
   std::optional<attach::HostLink::Outcome> outcome_;
   attach::HostLink link_;            // Of a serial line.
   std::unique_ptr<Reader> reader_;   // Of a serial forwarder.
+  std::vector<std::uint8_t> out_;    // For a serial forwarder: what is still to be written.
+  std::optional<attach::SteadyTime> stuck_since_;  // The line takes nothing.
 };
 
 }  // namespace rubric::live
