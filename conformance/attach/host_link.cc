@@ -51,18 +51,18 @@ void HostLink::send(SteadyTime now) {
   if (current_.tries == 0) {
     current_.packet = waiting_.front().number;
     current_.begun = now;
-    frames_ = 0;
+    turns_ = 0;
   }
-  ++current_.tries;
+  ++turns_;
   due_ = now + options_.ack_wait;
   // Where the try before could not be written yet, a second one would not help the mote.
-  if (frames_ > 0 && !output_.empty()) return;
+  if (current_.tries > 0 && !output_.empty()) return;
   const std::vector<std::uint8_t>& bytes = waiting_.front().bytes;
   std::uint8_t out[hdlc_frame_room(kSerialAfterHeaderMax + 2)];
   const auto size = write_serial_packet_ack(seq_++, Bytes(bytes.data(), bytes.size()),
                                             MutableBytes(out, sizeof out));
   assert(size);
-  ++frames_;
+  ++current_.tries;
   put(Bytes(out, *size));
 }
 
@@ -98,7 +98,7 @@ void HostLink::heard(const Packet& packet, SteadyTime now) {
 // Whether one of the present packet's tries has this number.
 bool HostLink::is_ours(std::uint8_t seq) const {
   const int age = static_cast<std::uint8_t>(seq_ - seq);  // 1: the last try's.
-  return age >= 1 && age <= std::min(frames_, kNumbersKept);
+  return age >= 1 && age <= std::min(current_.tries, kNumbersKept);
 }
 
 // The first packet is done; the next one's turn.
@@ -113,7 +113,7 @@ void HostLink::end(bool confirmed, SteadyTime now) {
 
 void HostLink::tick(SteadyTime now) {
   if (waiting_.empty() || now < due_) return;
-  if (current_.tries < options_.tries) return send(now);
+  if (turns_ < options_.tries) return send(now);
   end(false, now);
 }
 

@@ -29,7 +29,8 @@ bool brings_packet(const Packet& packet);
 
 struct HostLinkOptions {
   Milliseconds ack_wait{1000};    ///< Until a packet is sent again. TinyOS's Java host has 1000 ms,
-  int tries = 25;                 ///< and sends up to 25 times.
+  int tries = 25;                 ///< and sends up to 25 times. A turn counts, too, when the line
+                                  ///< had not taken the try before.
   std::size_t waiting_max = 64;   ///< Packets that wait behind the one that is being sent.
   bool listen_only = false;       ///< Nothing is ever to be written; packets are refused.
 };
@@ -55,7 +56,8 @@ class HostLink {
   struct Outcome {
     std::uint64_t packet = 0;  ///< Counts the packets that were taken, from 0.
     bool confirmed = false;
-    int tries = 0;             ///< How often it was sent; 0: the line was gone before its turn.
+    int tries = 0;             ///< How often it was sent, or put where it waits to be written; 0:
+                               ///< the line was gone before its turn.
     int strange_acks = 0;      ///< Confirmations of other numbers that came meanwhile.
     SteadyTime begun;          ///< Of the first try; as `ended` where there was none.
     SteadyTime ended;
@@ -111,7 +113,7 @@ class HostLink {
   std::uint64_t taken_ = 0;
   std::vector<std::uint8_t> output_;
   Outcome current_;              // Of the packet being sent, so far.
-  int frames_ = 0;               // How often its bytes were put out: each with another number.
+  int turns_ = 0;                // How often it was time to send it.
   SteadyTime due_;
   std::uint8_t seq_ = kSeqFirst; // The next try's.
 };

@@ -227,9 +227,29 @@ TEST(HostLink, ALineThatTakesNothing) {
   EXPECT_LE(host.link.output().size(), HostLink::kOutputMax);
   EXPECT_EQ(host.packets, 2000);
   host.wrote();
-  host.take(ack(14), 3500);
+  host.link.tick(at(4000));
+  EXPECT_EQ(host.wrote(), sent(15, kConfig));
+  host.take(ack(14), 4500);
   ASSERT_EQ(host.outcomes.size(), 1U);
-  EXPECT_EQ(host.outcomes[0].tries, 4);
+  EXPECT_EQ(host.outcomes[0].tries, 2);  // Of five turns.
+}
+
+TEST(HostLink, ALineThatTakesNothingIsGivenUpInTime) {
+  HostLinkOptions options;
+  options.tries = 3;
+  Host host(options);
+  host.link.submit(view(kConfig), at(0));
+  host.link.submit(view(kOther), at(0));
+  for (int time_ms = 1000; time_ms <= 3000; time_ms += 1000) {
+    EXPECT_TRUE(host.outcomes.empty());
+    host.link.tick(at(time_ms));
+  }
+  ASSERT_EQ(host.outcomes.size(), 1U);
+  EXPECT_FALSE(host.outcomes[0].confirmed);
+  EXPECT_EQ(host.outcomes[0].tries, 1);
+  host.take(ack(15), 3001);  // The next one's, which was put behind it.
+  ASSERT_EQ(host.outcomes.size(), 2U);
+  EXPECT_EQ(host.outcomes[1].tries, 1);
 }
 
 TEST(HostLink, TheLineGoes) {
