@@ -11,11 +11,13 @@
 
 namespace rubric::explorer {
 
+/// What makes a part go on, as it is drawn.
 struct Trigger {
   std::string name;
   std::string guard;  ///< Empty: none.
 };
 
+/// One part: a view of a node's state, and what shows all of it.
 struct PartInfo {
   const char* name;
   const char* title;
@@ -32,6 +34,8 @@ struct PartInfo {
 PartInfo synaptic_output();
 PartInfo synaptic_input();
 
+/// All parts, each with a name of its own, in the order in which they are drawn; they live as long
+/// as the program.
 std::span<const PartInfo> parts();
 /// Null: there is none of that name.
 const PartInfo* find_part(std::string_view name);

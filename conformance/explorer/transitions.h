@@ -31,9 +31,11 @@ struct Witness {
   std::vector<Given> events;
 };
 
+/// A step that a part makes: from one of its states to another, or to the same one. Steps that are
+/// alike but for their guards are one.
 struct Transition {
-  std::size_t from = 0;                ///< States of the part.
-  std::size_t to = 0;
+  std::size_t from = 0;                ///< Index into Diagram::states.
+  std::size_t to = 0;                  ///< The same.
   std::string trigger;                 ///< "join_reply", "join timer".
   std::vector<std::string> guards;     ///< Any of them holds; none: always.
   std::vector<std::string> outputs;    ///< "ack_join", "joined(success)", in their order.
@@ -42,6 +44,7 @@ struct Transition {
   Witness witness;                     ///< Of a shortest way through the network to it.
 };
 
+/// All that one part of a node does, as the networks that were explored show it.
 struct Diagram {
   std::string name;                    ///< "join"
   std::string title;
@@ -51,10 +54,12 @@ struct Diagram {
   bool complete = true;                ///< All of them.
 };
 
+/// What a part is called: on the command line, and above its diagram.
 struct PartName {
   const char* name;
   const char* title;
 };
+/// Of each of parts() (parts.h), in their order; they live as long as the program.
 std::span<const PartName> part_names();
 
 /// Explores what shows this part. `part` is one of part_names(), `step` the machine's or a flaw's.

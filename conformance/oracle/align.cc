@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <iterator>
 #include <optional>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "conformance/oracle/align_clock.h"
@@ -105,7 +106,23 @@ class Alignment {
   }
 
   ClockFit fitted(std::uint32_t a, std::uint32_t b) {
-    return fit_clock(run_, common_frames(run_, sightings_[a], sightings_[b]), options_);
+    return fit_clock(run_, common_of(a, b), options_);
+  }
+
+  // What two files with stamps have in common; of a line and a sniffer, what the line has in common
+  // with all sniffers on that one's clock: one of them may have missed frames, or hear them late.
+  CommonFrames common_of(std::uint32_t a, std::uint32_t b) {
+    const auto sniffer = [](const File& file) { return file.timed && file.radio && !file.serial; };
+    if (!sniffer(files_[a]) || files_[b].radio) {
+      return common_frames(run_, sightings_[a], sightings_[b]);
+    }
+    std::vector<const std::vector<Sighting>*> sniffers;
+    for (std::uint32_t i = 0; i < files_.size(); ++i) {
+      const bool one_clock = files_[i].settled && files_[i].clock == files_[a].clock;
+      if (sniffer(files_[i]) && one_clock) sniffers.push_back(&sightings_[i]);
+    }
+    std::vector<Sighting> air = each_once(run_, sniffers, options_.skew_us);
+    return common_frames(run_, air, sightings_[b]);
   }
 
   void move(std::uint32_t a, std::uint32_t b, const ClockFit& fit) {
@@ -131,7 +148,7 @@ class Alignment {
     for (std::uint32_t a = 0; a < files_.size(); ++a) {
       if (!files_[a].settled) continue;
       const bool other = files_[a].radio != files_[b].radio || files_[a].serial != files_[b].serial;
-      const CommonFrames common = common_frames(run_, sightings_[a], sightings_[b]);
+      const CommonFrames common = common_of(a, b);
       const bool some = !common.pairs.empty() || !common.guesses.empty();
       if (!some && !other) continue;
       if (!said) {
@@ -152,20 +169,8 @@ class Alignment {
     if (!air) return;
     const std::optional<std::vector<std::uint32_t>> turned = wrong_ways(run_, b);
     if (turned) turn(*turned, b);
-    OrderEvidence evidence;
-    std::size_t same = 0;
-    for (std::uint32_t a = 0; a < files_.size(); ++a) {
-      if (!files_[a].timed || files_[a].clock != files_[*air].clock) continue;
-      const CommonFrames common = common_frames(run_, sightings_[a], sightings_[b]);
-      for (const Pair& pair : common.pairs) {
-        const bool timed = run_.seen[pair.a].place.time_us != kNoStamp;
-        same += pair.how == Common::kSame ? 1 : 0;
-        if (timed && pair.how != Common::kSame) evidence.pairs.push_back(pair);
-      }
-      std::copy(common.only_a.begin(), common.only_a.end(), std::back_inserter(evidence.only_a));
-      std::copy(common.only_b.begin(), common.only_b.end(), std::back_inserter(evidence.only_b));
-    }
-    if (same > evidence.pairs.size()) {  // Frames of it are in another file (duplicates.h).
+    const OrderEvidence evidence = evidence_of(b, *air);
+    if (shared_with_timed(b, *air) > evidence.pairs.size()) {  // See duplicates.h.
       if (turned) turn(*turned, b);
       return;
     }
@@ -183,6 +188,37 @@ class Alignment {
                          " by " + std::to_string(fit.frames) + " common frames, between which " +
                          std::to_string(fit.between) + " of its " + std::to_string(fit.all) +
                          " frames lie");
+  }
+
+  // What `b` has in common with the air. Of sniffers that hear the same each frame counts once.
+  OrderEvidence evidence_of(std::uint32_t b, std::uint32_t air) {
+    std::vector<const std::vector<Sighting>*> timed;
+    for (std::uint32_t a = 0; a < files_.size(); ++a) {
+      if (files_[a].timed && files_[a].clock == files_[air].clock) timed.push_back(&sightings_[a]);
+    }
+    std::vector<Sighting> others = each_once(run_, timed, options_.skew_us);
+    if (!files_[b].radio) {  // What is on another line passes to none.
+      std::erase_if(others, [&](const Sighting& one) {
+        return run_.seen[one.index].kind != Observation::Kind::kRadio;
+      });
+    }
+    CommonFrames common = common_frames(run_, others, sightings_[b]);
+    std::erase_if(common.pairs, [&](const Pair& pair) {
+      return run_.seen[pair.a].place.time_us == kNoStamp;
+    });
+    return {std::move(common.pairs), std::move(common.only_a), std::move(common.only_b)};
+  }
+
+  // Frames of `b` that a line with stamps has as well.
+  std::size_t shared_with_timed(std::uint32_t b, std::uint32_t air) {
+    std::set<std::uint32_t> same;
+    for (std::uint32_t a = 0; a < files_.size(); ++a) {
+      if (!files_[a].timed || files_[a].clock != files_[air].clock) continue;
+      for (const Pair& pair : common_frames(run_, sightings_[a], sightings_[b]).pairs) {
+        if (pair.how == Common::kSame) same.insert(pair.b);
+      }
+    }
+    return same.size();
   }
 
   // These frames of `b` go the other way.

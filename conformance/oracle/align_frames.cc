@@ -1,6 +1,9 @@
 #include "conformance/oracle/align_frames.h"
 
 #include <algorithm>
+#include <iterator>
+#include <map>
+#include <set>
 #include <span>
 #include <tuple>
 
@@ -268,6 +271,53 @@ CommonFrames common_frames(const Run& run, std::vector<Sighting>& a, std::vector
   }
   std::sort(out.pairs.begin(), out.pairs.end(),
             [](const Pair& x, const Pair& y) { return std::tie(x.a, x.b) < std::tie(y.a, y.b); });
+  return out;
+}
+
+std::vector<Sighting> each_once(const Run& run,
+                                const std::vector<const std::vector<Sighting>*>& files,
+                                std::int64_t skew_us) {
+  std::vector<const std::vector<Sighting>*> by_size = files;
+  std::stable_sort(by_size.begin(), by_size.end(),
+                   [](const auto* a, const auto* b) { return a->size() > b->size(); });
+  // A frame that counts, and the last file that has it: two frames of one file are two.
+  struct Heard {
+    std::uint32_t index;
+    std::uint32_t file;
+  };
+  std::multimap<std::pair<std::uint64_t, std::int64_t>, Heard> heard;  // By key and stamp.
+  std::set<std::uint32_t> again;
+  for (const std::vector<Sighting>* const file : by_size) {
+    for (const Sighting& one : *file) {
+      const Place& place = run.seen[one.index].place;
+      if (one.how != Common::kSame || place.time_us == kNoStamp) continue;
+      const auto end = heard.upper_bound({one.key, place.time_us + skew_us});
+      auto same = heard.lower_bound({one.key, place.time_us - skew_us});
+      const auto may_be = [&](const Heard& other) {
+        return other.file != place.file && whole(run.seen[other.index], run.seen[one.index]);
+      };
+      std::size_t tries = kGroupMax;  // More of one key at one time cannot be told apart.
+      while (same != end && !may_be(same->second)) {
+        if (--tries == 0) {
+          same = end;
+        } else {
+          ++same;
+        }
+      }
+      if (same == end) {
+        heard.insert({{one.key, place.time_us}, {one.index, place.file}});
+      } else {
+        same->second.file = place.file;
+        again.insert(one.index);
+      }
+    }
+  }
+  std::vector<Sighting> out;
+  for (const std::vector<Sighting>* const file : files) {
+    std::copy_if(file->begin(), file->end(), std::back_inserter(out), [&](const Sighting& one) {
+      return one.how != Common::kSame && !again.contains(one.index);
+    });
+  }
   return out;
 }
 

@@ -48,4 +48,10 @@ std::vector<std::vector<Sighting>> sightings_of(const Run& run);
 /// Pairs among the sightings of two files; each is sorted by it.
 CommonFrames common_frames(const Run& run, std::vector<Sighting>& a, std::vector<Sighting>& b);
 
+/// What may pass between the air and a line of several files on one clock, by file: a frame that
+/// two of them have within `skew_us` is of the one that has more frames, or the first.
+std::vector<Sighting> each_once(const Run& run,
+                                const std::vector<const std::vector<Sighting>*>& files,
+                                std::int64_t skew_us);
+
 }  // namespace rubric::oracle

@@ -12,7 +12,7 @@
 namespace rubric::oracle {
 
 /// What the frames of one file, which has no stamps, have in common with those of files on one
-/// clock; of each pair `b` is in that one.
+/// clock; of each pair `b` is in that one, and in no other pair.
 struct OrderEvidence {
   std::vector<Pair> pairs;
   std::vector<std::uint32_t> only_a;  ///< See CommonFrames.

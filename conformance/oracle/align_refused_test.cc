@@ -1,9 +1,6 @@
 // Captures that belong to no run together, or that any shift would fit: left as they are.
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <sstream>
-
 #include "conformance/oracle/align.h"
 #include "conformance/oracle/align_testing.h"
 #include "conformance/oracle/duplicates.h"
@@ -13,14 +10,6 @@ namespace rubric::oracle {
 namespace {
 
 constexpr std::int64_t kSecondUs = 1'000'000;
-
-std::string capture(const std::string& name) {
-  std::ifstream file("spec/captures/firmware/" + name + ".pcapng", std::ios::binary);
-  EXPECT_TRUE(file) << name;
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
 
 oracle::Run together(const std::vector<Part>& parts) {
   RunReader reader;

@@ -3,9 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <sstream>
-
 #include "conformance/oracle/align_testing.h"
 #include "conformance/oracle/duplicates.h"
 #include "conformance/simulator/capture_recorder.h"
@@ -21,14 +18,6 @@ constexpr const char* kCaptures[] = {
     "d3_lose_ack",                 "e1_simultaneous_join", "f_synaptic",
     "h10_hdlc_escape_and_bad_serial", "h4_stale_bytes"};
 constexpr double kAhead_s[] = {0, -3600, -1.5, -0.2, 0.2, 1e6};
-
-std::string capture(const std::string& name) {
-  std::ifstream file("spec/captures/firmware/" + name + ".pcapng", std::ios::binary);
-  EXPECT_TRUE(file) << name;
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
 
 std::string simulated(const simulator::Scenario& scenario,
                       const simulator::ScenarioOptions& options) {

@@ -2,12 +2,16 @@
 // clock or none.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <fstream>
 #include <memory>
 #include <random>
 #include <set>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,6 +23,15 @@
 #include "conformance/oracle/read.h"
 
 namespace rubric::oracle {
+
+/// A capture of the firmware.
+inline std::string capture(const std::string& name) {
+  std::ifstream file("spec/captures/firmware/" + name + ".pcapng", std::ios::binary);
+  EXPECT_TRUE(file) << name;
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
 
 /// How the serial lines were recorded.
 struct SerialClock {
