@@ -78,24 +78,31 @@ fs::path our_extcap() {
   std::error_code error;
   const fs::path self = fs::read_symlink("/proc/self/exe", error);
   if (error) refuse("/proc/self/exe", error.message());
-  const fs::path out = self.parent_path() / kExtcap;
-  if (!fs::exists(out, error)) {
-    refuse(out, "there is no such file: it belongs beside rubric, as 'cmake --install', the Debian "
-                "package and the build folder have it");
+  return self.parent_path() / kExtcap;
+}
+
+/// The place must not be where the program itself stands, nor what its own name there leads to.
+void expect_other(const fs::path& program, const fs::path& place) {
+  std::error_code error;
+  const bool same_folder = fs::equivalent(program.parent_path(), place.parent_path(), error);
+  if (same_folder || (!fs::is_symlink(place, error) && fs::equivalent(program, place, error))) {
+    refuse(place, "this is the program itself; name a folder of Wireshark's");
   }
-  return out;
 }
 
 /// One of the two files.
 class Place {
  public:
   Place(fs::path folder, const char* name, const Options& options)
-      : folder_(std::move(folder)), path_(folder_ / name), options_(options) {
+      : folder_(std::move(folder)), path_(folder_ / name),
+        beside_(folder_ / fmt::format(".{}.new", name)), options_(options) {
     if (is_there(path_) && !options.force && !is_ours(path_)) {
       refuse(path_, "this is not ours; --force replaces or removes it");
     }
     if (fs::is_directory(fs::symlink_status(path_))) refuse(path_, "this is a folder");
   }
+
+  const fs::path& path() const { return path_; }
 
   void remove() const {
     if (!is_there(path_)) return fmt::print("not there: {}\n", path_.string());
@@ -109,7 +116,12 @@ class Place {
   void write(std::string_view text) const {
     if (options_.dry_run) return fmt::print("would write {}\n", path_.string());
     clear();
-    if (!cli::write_file(path_.string(), text)) cli::exit_with(cli::kExitInput);
+    if (!cli::write_file(beside_.string(), text)) {
+      std::error_code error;
+      fs::remove(beside_, error);
+      cli::exit_with(cli::kExitInput);
+    }
+    replace();
     fmt::print("wrote {}\n", path_.string());
   }
 
@@ -117,25 +129,41 @@ class Place {
     if (options_.dry_run) return fmt::print("would link {} to {}\n", path_.string(), to.string());
     clear();
     std::error_code error;
-    fs::create_symlink(to, path_, error);
-    if (!error) return fmt::print("linked {} to {}\n", path_.string(), to.string());
-    fs::copy_file(to, path_, error);  // With its permissions.
-    if (error) refuse(path_, error.message());
+    fs::create_symlink(to, beside_, error);
+    const bool linked = !error;
+    if (!linked) fs::copy_file(to, beside_, error);  // With its permissions.
+    if (error) give_up(error);
+    replace();
+    if (linked) return fmt::print("linked {} to {}\n", path_.string(), to.string());
     fmt::print("copied {} to {}\n", to.string(), path_.string());
   }
 
  private:
-  /// Makes room. A link is never written through: what it points to may be anybody's.
+  /// Makes room beside it. A link is never written through: what it points to may be anybody's.
   void clear() const {
     std::error_code error;
     fs::create_directories(folder_, error);
     if (error) refuse(folder_, error.message());
-    fs::remove(path_, error);
-    if (error) refuse(path_, error.message());
+    fs::remove(beside_, error);
+    if (error) refuse(beside_, error.message());
+  }
+
+  /// What was there before stays until the new one is whole.
+  void replace() const {
+    std::error_code error;
+    fs::rename(beside_, path_, error);
+    if (error) give_up(error);
+  }
+
+  [[noreturn]] void give_up(const std::error_code& why) const {
+    std::error_code error;
+    fs::remove(beside_, error);
+    refuse(path_, why.message());
   }
 
   fs::path folder_;
   fs::path path_;
+  fs::path beside_;
   const Options& options_;
 };
 
@@ -145,11 +173,16 @@ void install(const Options& options) {
                                          : wireshark::folders_in(fs::absolute(options.folder));
   const Place dissector(folders.plugins, kDissector, options);
   const Place extcap(folders.extcap, kExtcap, options);
+  const fs::path program = our_extcap();
+  expect_other(program, extcap.path());
   if (options.remove) {
     dissector.remove();
     return extcap.remove();
   }
-  const fs::path program = our_extcap();
+  if (!fs::exists(program)) {
+    refuse(program, "there is no such file: it belongs beside rubric, as 'cmake --install', the "
+                    "Debian package and the build folder have it");
+  }
   dissector.write(wireshark::dissector());
   extcap.link(program);
   if (options.dry_run) return;
