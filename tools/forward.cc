@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <cstdlib>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <system_error>
@@ -40,6 +41,15 @@ live::Address source_of(const std::string& given) {
                             name));
 }
 
+// All clients wait while the capture is written: it must not be a pipe, which may take nothing.
+void check_capture(const std::string& path) {
+  std::error_code none;
+  const auto status = std::filesystem::status(path, none);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    throw CLI::ValidationError("--write", path + " is no regular file");
+  }
+}
+
 void print_summary(const std::string& source, const forward::Counts& counts) {
   fmt::print(stderr, "rubric: {}: {} packets from it ({} malformed frames), {} to it", source,
              counts.from_source, counts.malformed, counts.to_source);
@@ -52,6 +62,7 @@ void print_summary(const std::string& source, const forward::Counts& counts) {
 
 int run(ForwardOptions& options) {
   options.server.source.address = source_of(options.source);
+  check_capture(options.server.write);
   options.server.source.link.ack_wait = attach::Milliseconds(options.ack_wait_ms);
   options.server.source.link.tries = 1 + options.retries;
   options.server.backlog_bytes = options.buffer_kib * 1024;
@@ -116,7 +127,7 @@ void add_forward(CLI::App& app) {
   add_client_options(*command, *options);
   add_source_options(*command, *options);
   command->add_option("--write", options->server.write,
-                      "Keep what goes by, both ways, in this pcapng file")
+                      "Keep what goes by, both ways, in this pcapng file; no pipe")
       ->check(cli::given());
   command->add_flag("--verbose", options->server.verbose, "Say which clients come and leave");
   command->footer(

@@ -29,11 +29,25 @@ class Sources(unittest.TestCase):
         mote.say(b"".join(map(from_mote, wanted)))
         mote.connection.close()
         self.assertEqual(client.packets(200), wanted)
-        self.assertTrue(client.is_cut_off())
+        client.wait_until_cut_off()
         code, summary = running.end(None)
         self.assertEqual(code, 3)
         self.assertIn("200 packets from it", summary)
         running.wait_for(f"^rubric: {mote.source}: the line broke: the other end closed it$")
+
+    def test_who_comes_too_late_does_not_keep_it_awake(self):
+        mote = Mote(self).on_a_port()
+        running = Running(self, mote.source)
+        mote.accept()
+        Client(self, running, receive_bytes=4096)  # It takes nothing: the rest is waited for.
+        mote.say(b"".join(from_mote(packet(number, 100)) for number in range(8000)))
+        mote.connection.close()
+        running.wait_for("the line broke")
+        with socket.socket() as late:
+            late.settimeout(PATIENCE_S)
+            late.connect_ex((running.host, running.port))
+            self.assertEqual(running.end(None)[0], 3)
+        self.assertLess(running.cpu_seconds, 0.3)
 
     def test_a_source_that_comes_back(self):
         mote = Mote(self).on_a_port()
@@ -126,6 +140,32 @@ class Sources(unittest.TestCase):
         self.assertEqual(done.returncode, 3)
         self.assertIn("this is where this forwarder itself listens", done.stderr)
 
+    def test_a_forwarder_of_itself_that_listens_everywhere(self):
+        with socket.create_server(("127.0.0.1", 0)) as free:
+            port = str(free.getsockname()[1])
+        done = subprocess.run([RUBRIC, "forward", f"sf@127.0.0.1:{port}", "--port", port,
+                               "--bind", "0.0.0.0"],
+                              capture_output=True, text=True, check=False, timeout=PATIENCE_S)
+        self.assertEqual(done.returncode, 3)
+        self.assertIn("this is where this forwarder itself listens", done.stderr)
+
+    def test_the_same_port_of_another_address_is_another_forwarder(self):
+        mote = Mote(self).on_a_terminal()
+        first = Running(self, mote.source)
+        second = Running(self, f"sf@127.0.0.1:{first.port}", "--bind", "127.0.0.2",
+                         port=first.port)
+        client = Client(self, second)
+        mote.say(from_mote(packet(1)))
+        self.assertEqual(client.packet(), packet(1))
+
+    def test_a_source_without_a_descriptor(self):
+        mote = Mote(self).on_a_port()
+        done = subprocess.run(["sh", "-c", 'ulimit -n 4; exec "$@"', "sh",  # Three, and it listens.
+                               RUBRIC, "forward", mote.source, "--port", "0"],
+                              capture_output=True, text=True, check=False, timeout=PATIENCE_S)
+        self.assertEqual(done.returncode, 3)
+        self.assertIn("cannot connect: Too many open files", done.stderr)
+
     def test_a_port_that_is_taken(self):
         mote = Mote(self).on_a_terminal()
         running = Running(self, mote.source)
@@ -188,6 +228,33 @@ class Sources(unittest.TestCase):
                                  capture_output=True, text=True, check=False).stdout
         self.assertEqual(out.split()[1:],
                          ["outbound,69", "inbound,68", "outbound,67", "outbound,69"])
+
+    def test_a_capture_that_cannot_be_written_is_told_at_once(self):
+        with tempfile.TemporaryDirectory(prefix="rubric-forward-") as folder:
+            kept = pathlib.Path(folder) / "kept.pcapng"
+            mote = Mote(self).on_a_port()
+            running = Running(self, mote.source, "--write", kept,
+                              limits="trap '' XFSZ; ulimit -f 8")  # Of 512 bytes each.
+            mote.accept()
+            client = Client(self, running)
+            mote.say(from_mote(packet(1, 100)) * 100)
+            running.wait_for(f"^rubric: {kept}: File too large$")
+            mote.say(from_mote(packet(2)))
+            self.assertEqual(client.packets(101)[-1], packet(2))
+            self.assertEqual(running.end()[0], 3)
+            self.assertEqual(sum("File too large" in line for line in running.complaints), 1)
+
+    def test_a_capture_is_a_regular_file(self):
+        with tempfile.TemporaryDirectory(prefix="rubric-forward-") as folder:
+            pipe = pathlib.Path(folder) / "kept.pcapng"
+            os.mkfifo(pipe)
+            reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+            self.addCleanup(os.close, reader)
+            done = subprocess.run([RUBRIC, "forward", "sf@127.0.0.1:1", "--port", "0",
+                                   "--write", pipe],
+                                  capture_output=True, text=True, check=False, timeout=PATIENCE_S)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn(f"--write: {pipe} is no regular file", done.stderr)
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@
 Usage: forward_test.py RUBRIC. All of it on this host, bounded in time.
 """
 
+import resource
 import socket
 import struct
 import subprocess
@@ -63,7 +64,7 @@ class Clients(unittest.TestCase):
         self.assertRegex(running.wait_for("cut off"),
                          f"^rubric: client {stalled.name} is cut off: it is \\d+ bytes behind and "
                          r"has taken nothing for \d+\.\d s$")
-        self.assertTrue(stalled.is_cut_off())
+        stalled.wait_until_cut_off()
         mote.say(from_mote(packet(total)))
         self.assertEqual(good.packet(), packet(total))
         self.assertRegex(running.end()[1], f": {total + 1} packets .*; 2 clients, 1 cut off$")
@@ -121,7 +122,7 @@ class Clients(unittest.TestCase):
 
     def test_a_mote_that_confirms_nothing(self):
         mote = Mote(self).on_a_port()
-        running = Running(self, mote.source, "--timeout", "20", "--retries", "2")
+        running = Running(self, mote.source, "--timeout", "100", "--retries", "2")
         mote.accept()
         client = Client(self, running)
         for number in range(4):
@@ -133,8 +134,7 @@ class Clients(unittest.TestCase):
         mote.say(from_mote(packet(9)))
         self.assertEqual(client.packet(), packet(9))
         client.give(packet(5))
-        while mote.confirmed_packet() != packet(5):
-            pass
+        self.assertEqual(mote.confirmed_packet(), packet(5))
         running.wait_for("the mote confirms packets again")
         code, summary = running.end()
         self.assertEqual(code, 0)
@@ -155,7 +155,7 @@ class Clients(unittest.TestCase):
                           (b"U \x05\x00\x01", "has sent no more of a packet for")):
             bad = Client(self, running, hello=sent)
             running.wait_for(f"client {bad.name} is cut off: it {why}")
-            self.assertTrue(bad.is_cut_off())
+            bad.wait_until_cut_off()
         left = Client(self, running, hello=b"U \x05\x00")
         left.socket.close()
         running.wait_for(f"client {left.name} is cut off: it left within a packet")
@@ -198,6 +198,78 @@ class Clients(unittest.TestCase):
         self.assertEqual([clients[1].packet(), third.packet()], [packet(1)] * 2)
         self.assertRegex(running.end()[1], "; 3 clients, 0 cut off, 3 refused$")
         self.assertEqual(sum("is refused" in line for line in running.complaints), 1)
+
+    def test_who_left_gives_way_while_the_source_is_gone(self):
+        mote = Mote(self).on_a_port()
+        running = Running(self, mote.source, "--clients", "3", "--reconnect")
+        mote.accept()
+        mote.listener.close()
+        mote.connection.close()
+        running.wait_for("the other end closed it")
+        names = []
+        for number in range(6):
+            client = Client(self, running)
+            client.give(packet(number))
+            client.socket.close()
+            names.append(client.name)
+        for name in names[:3]:
+            running.wait_for(f"client {name} has left; 1 packets of it are given up")
+        self.assertRegex(running.end()[1], ", 6 not sent; 6 clients, 0 cut off$")
+
+    def test_more_clients_than_the_shell_allows_descriptors(self):
+        mote = Mote(self).on_a_port()
+        running = Running(self, mote.source, "--clients", "100", limits="ulimit -S -n 64")
+        mote.accept()
+        clients = [Client(self, running) for _ in range(100)]
+        mote.say(from_mote(packet(1)))
+        self.assertEqual([client.packet() for client in clients], [packet(1)] * 100)
+        self.assertRegex(running.end()[1], "; 100 clients, 0 cut off$")
+
+    def test_clients_never_take_the_descriptors_of_the_source(self):
+        mote = Mote(self).on_a_port()
+        running = Running(self, mote.source, "--clients", "500", "--reconnect",
+                          limits="ulimit -n 64")
+        mote.accept()
+        running.wait_for("^rubric: no more than 32 clients at once: only 64 descriptors are")
+        clients = [Client(self, running) for _ in range(32)]
+        refused = socket.create_connection((running.host, running.port), PATIENCE_S)
+        self.addCleanup(refused.close)
+        self.assertEqual(refused.recv(2), b"")
+        mote.connection.close()
+        mote.accept()
+        mote.say(from_mote(packet(1)))
+        self.assertEqual([client.packet() for client in clients], [packet(1)] * 32)
+        self.assertRegex(running.end()[1], "; 32 clients, 0 cut off, 1 refused$")
+
+    def test_a_wait_that_fails_ends_it(self):
+        mote = Mote(self).on_a_port()
+        running = Running(self, mote.source)
+        mote.accept()
+        clients = [Client(self, running) for _ in range(8)]
+        # Poll takes no more of them than there may be descriptors.
+        resource.prlimit(running.process.pid, resource.RLIMIT_NOFILE, (8, 8))
+        mote.say(from_mote(packet(1)))
+        clients[0].wait_until_cut_off()
+        self.assertEqual(running.end(None),
+                         (3, "rubric: cannot wait for source and clients: Invalid argument"))
+
+    def test_what_is_cut_short_behind_whole_packets(self):
+        mote = Mote(self).on_a_port()
+        running = Running(self, mote.source, "--timeout", str(1000 * PATIENCE_S))
+        mote.accept()
+        first, client = Client(self, running), Client(self, running)
+        first.give(packet(1))
+        self.assertEqual(mote.frame()[2:], packet(1))  # The others wait until it is confirmed.
+        client.give(packet(2))
+        client.socket.sendall(b"\x05\x00")
+        client.socket.close()
+        Client(self, running)  # What the others sent was read before this one was let in.
+        mote.say(hdlc(b"\x43\x0e"))
+        self.assertEqual(mote.confirmed_packet(), packet(2))
+        running.wait_for(f"client {client.name} is cut off: it left within a packet")
+        mote.say(from_mote(packet(3)))  # Behind the confirmation, which is then heard, too.
+        self.assertEqual(first.packet(), packet(3))
+        self.assertRegex(running.end()[1], ", 2 to it; 3 clients, 1 cut off$")
 
     def test_rubric_decode_is_a_client(self):
         mote = Mote(self).on_a_terminal()

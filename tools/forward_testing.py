@@ -7,6 +7,7 @@ Forwarder.
 import os
 import pty
 import re
+import resource
 import select
 import signal
 import socket
@@ -49,11 +50,13 @@ def from_mote(data):
 
 
 class Running:
-    """A forwarder, until the end of the test."""
+    """A forwarder, until the end of the test; `limits` is what the shell does before."""
 
-    def __init__(self, test, source, *arguments):
-        self.process = subprocess.Popen([RUBRIC, "forward", source, "--port", "0", *arguments],
-                                        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    def __init__(self, test, source, *arguments, port=0, limits=":"):
+        self.process = subprocess.Popen(
+            ["sh", "-c", limits + '; exec "$@"', "sh",
+             RUBRIC, "forward", source, "--port", str(port), *arguments],
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         test.addCleanup(self.close)
         self.complaints = []
         self.said = threading.Condition()
@@ -82,10 +85,13 @@ class Running:
             return found()
 
     def end(self, signal_number=signal.SIGINT):
-        """Exit code and the summary."""
+        """Exit code and the summary; `cpu_seconds` then says what it all took."""
         if signal_number is not None:
             self.process.send_signal(signal_number)
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
         code = self.process.wait(PATIENCE_S)
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        self.cpu_seconds = sum(after[:2]) - sum(before[:2])
         self.reader.join(PATIENCE_S)
         return code, self.complaints[-1] if self.complaints else ""
 
@@ -132,14 +138,13 @@ class Client:
     def give(self, data):
         self.socket.sendall(bytes([len(data)]) + data)
 
-    def is_cut_off(self):
-        """Reads to the end."""
+    def wait_until_cut_off(self):
+        """Reads to the end; an error where that does not come."""
         try:
             while self.socket.recv(1 << 16):
                 pass
         except ConnectionResetError:
             pass
-        return True
 
 
 class Mote:

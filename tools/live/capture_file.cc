@@ -40,6 +40,7 @@ void CaptureFile::flush() {
       sent += static_cast<std::size_t>(count);
     } else if (errno != EINTR) {
       error_ = errno;
+      if (error_ != EPIPE) complain();
     }
   }
   waiting_.clear();
@@ -54,8 +55,12 @@ bool CaptureFile::finish() {
   writer_.finish(waiting_);
   flush();
   if (error_ == 0) return true;
-  fmt::print(stderr, "rubric: {}: {}\n", path_, std::strerror(error_));
+  if (error_ == EPIPE) complain();
   return false;
+}
+
+void CaptureFile::complain() const {
+  fmt::print(stderr, "rubric: {}: {}\n", path_, std::strerror(error_));
 }
 
 }  // namespace rubric::live

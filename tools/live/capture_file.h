@@ -21,10 +21,13 @@ class CaptureFile {
   void flush();
   /// Whether the file is a pipe whose reader closed it.
   bool reader_gone() const;
-  /// Ends the file. False, having said why on stderr, if something of it could not be written.
+  /// Ends the file. False if something of it could not be written. Why, stderr says once: as soon
+  /// as it happens, but that the reader of a pipe is gone only here.
   bool finish();
 
  private:
+  void complain() const;
+
   std::string path_;
   int fd_;
   int error_ = 0;

@@ -54,21 +54,22 @@ void Client::turn(short found, const Backlog& backlog, attach::SteadyTime now) {
   }
   if (ended_ && broken) return socket_.close();
   // Also where it is lost: what it had sent before is for the source all the same.
-  if ((broken || (found & POLLIN)) && in_used_ < kRoom) read(now);
+  if (broken || (found & POLLIN)) read(now);
 }
 
+// All that is there, so that who has left is known for that before the next one comes.
 void Client::read(attach::SteadyTime now) {
-  const ssize_t count = ::recv(fd(), in_.data() + in_used_, kRoom - in_used_, 0);
-  if (count > 0) {
+  while (!ended_ && in_used_ < kRoom) {
+    const ssize_t count = ::recv(fd(), in_.data() + in_used_, kRoom - in_used_, 0);
+    if (count < 0 && would_block(errno)) return;
+    if (count <= 0) {
+      ended_ = true;
+      if (lost_ || count < 0) socket_.close();
+      return look_behind_the_last();
+    }
     in_used_ += static_cast<std::size_t>(count);
     heard_ = now;
     look();
-  } else if (count == 0 || !would_block(errno)) {
-    ended_ = true;
-    if (lost_ || count < 0) socket_.close();
-    if (is_cut_short() && fault_.empty()) {
-      fault_ = greeted_ ? "it left within a packet" : "it left within the handshake";
-    }
   }
 }
 
@@ -101,6 +102,12 @@ void Client::drop(std::size_t count) {
   in_used_ -= count;
   std::memmove(in_.data(), in_.data() + count, in_used_);
   look();
+  look_behind_the_last();
+}
+
+void Client::look_behind_the_last() {
+  if (!ended_ || !fault_.empty() || !is_cut_short()) return;
+  fault_ = greeted_ ? "it left within a packet" : "it left within the handshake";
 }
 
 std::optional<Bytes> Client::packet() const {
@@ -132,7 +139,7 @@ void Client::write(const Backlog& backlog, attach::SteadyTime now) {
     if (count > 0) {
       offset_ += static_cast<std::uint64_t>(count);
       served_ = now;
-    } else if (would_block(errno)) {
+    } else if (would_block(errno) || errno == ENOBUFS || errno == ENOMEM) {
       blocked_ = true;
     } else {
       lost_ = true;  // Poll says so, too, and then it is read to its end.

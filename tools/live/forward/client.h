@@ -31,8 +31,10 @@ class Client {
   int fd() const { return socket_.get(); }
   /// What it has to be cut off for; empty: nothing.
   const std::string& fault() const { return fault_; }
+  /// It sends nothing more; packets of it may be left.
+  bool has_left() const { return ended_ || fd() < 0; }
   /// Nobody is there, and nothing of it is left.
-  bool is_over() const { return (ended_ || fd() < 0) && !packet(); }
+  bool is_over() const { return has_left() && !packet(); }
 
   /// What poll is to wait for. -1: for nothing.
   int poll_fd() const { return lost_ && in_used_ == kRoom ? -1 : fd(); }
@@ -63,6 +65,7 @@ class Client {
   void read(attach::SteadyTime now);
   void drop(std::size_t count);
   void look();
+  void look_behind_the_last();
   bool is_cut_short() const { return in_used_ > 0 && !packet(); }
 
   attach::Descriptor socket_;

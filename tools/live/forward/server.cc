@@ -1,5 +1,6 @@
 #include "tools/live/forward/server.h"
 
+#include <sys/resource.h>
 #include <sys/socket.h>
 
 #include <algorithm>
@@ -7,6 +8,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
@@ -29,10 +31,26 @@ constexpr Milliseconds kKeepEvery{200};
 constexpr Milliseconds kDrainTime{1000};
 constexpr Milliseconds kNoRoomPause{1000};
 constexpr int kAcceptedAtOnce = 64;
+constexpr rlim_t kOtherDescriptors = 32;  // Besides those of clients.
 
 Source::Options limited(Source::Options options, Milliseconds patience) {
   options.patience = patience;
   return options;
+}
+
+// As many of these clients as there can be descriptors for, so that the source always has its own.
+std::size_t clients_possible(std::size_t wanted) {
+  const rlim_t needed = wanted + kOtherDescriptors;
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= needed) return wanted;
+  limit.rlim_cur = std::min(needed, limit.rlim_max);
+  ::setrlimit(RLIMIT_NOFILE, &limit);
+  ::getrlimit(RLIMIT_NOFILE, &limit);
+  if (limit.rlim_cur >= needed) return wanted;
+  const rlim_t left = std::max(limit.rlim_cur, kOtherDescriptors + 1) - kOtherDescriptors;
+  fmt::print(stderr, "rubric: no more than {} clients at once: only {} descriptors are allowed\n",
+             left, limit.rlim_cur);
+  return static_cast<std::size_t>(left);
 }
 
 }  // namespace
@@ -44,6 +62,7 @@ Server::Server(const Options& options)
       source_(limited(options.source, options.limits.patience), handlers()),
       backlog_(options.backlog_bytes) {
   options_.limits.packet_max = source_.packet_max();
+  options_.clients_max = clients_possible(options.clients_max);
   if (!options.write.empty()) capture_.emplace(options.write);
 }
 
@@ -114,7 +133,8 @@ void Server::turn_source(short found, Time now) {
 void Server::connected() {
   if (source_.socket() >= 0) {
     const SocketAddress peer = address_of_peer(source_.socket());
-    if (peer.port() == here_.port() && peer.same_host(address_here(source_.socket()))) {
+    const SocketAddress mine = here_.is_any() ? address_here(source_.socket()) : here_;
+    if (peer.port() == here_.port() && peer.same_host(mine)) {
       throw TargetBroken("this is where this forwarder itself listens");
     }
   }
@@ -159,6 +179,8 @@ void Server::give_packets(Time now) {
 void Server::accept_clients(Time now) {
   accept_at_.reset();
   for (int count = 0; count < kAcceptedAtOnce; ++count) {
+    // Who gives way is known when all were looked at, as they were before the first one here.
+    if (count > 0 && clients_.size() >= options_.clients_max) return;
     attach::Descriptor socket(
         ::accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
     if (socket.is_open()) {
@@ -194,7 +216,7 @@ void Server::admit(attach::Descriptor socket, Time now) {
 // Those who left packets behind that the source did not take yet have to give way.
 bool Server::make_room() {
   const auto gone = std::find_if(clients_.begin(), clients_.end(),
-                                 [](const auto& client) { return client->fd() < 0; });
+                                 [](const auto& client) { return client->has_left(); });
   if (gone == clients_.end()) return false;
   counts_.not_sent += (*gone)->packets_waiting();
   fmt::print(stderr, "rubric: client {} has left; {} packets of it are given up\n",
@@ -226,6 +248,7 @@ void Server::remove_clients() {
 
 // What the source said before it went is for all who take it.
 void Server::drain() {
+  listener_.close();  // Nobody is let in any more: who waits there must not keep this awake.
   const Time end = steady_clock::now() + kDrainTime;
   while (true) {
     write_clients(steady_clock::now());
@@ -286,10 +309,15 @@ void Server::wait(std::optional<Time> until) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals, signal);
   ::sigprocmask(SIG_BLOCK, &signals, &before);
   const bool asked = live::stop_requested();
-  if (asked || ::ppoll(polled_.data(), polled_.size(), until ? &left : nullptr, &before) <= 0) {
-    for (pollfd& one : polled_) one.revents = 0;
-  }
+  const int found =
+      asked ? 0 : ::ppoll(polled_.data(), polled_.size(), until ? &left : nullptr, &before);
+  const int error = found < 0 ? errno : 0;
   ::sigprocmask(SIG_SETMASK, &before, nullptr);
+  if (error != 0 && error != EINTR) {
+    throw std::system_error(error, std::generic_category(), "cannot wait for source and clients");
+  }
+  if (found > 0) return;
+  for (pollfd& one : polled_) one.revents = 0;
 }
 
 void Server::turn() {

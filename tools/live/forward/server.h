@@ -16,11 +16,12 @@
 
 namespace rubric::forward {
 
+/// What to forward, to whom, and how far one client may hold up itself.
 struct Options {
   Source::Options source;
   std::string bind = "127.0.0.1";
   std::uint16_t port = 9002;               ///< 0: a free one.
-  std::size_t clients_max = 64;
+  std::size_t clients_max = 64;            ///< Fewer where the system allows fewer descriptors.
   std::size_t backlog_bytes = 1024 * 1024; ///< A client that is further behind is cut off.
   Client::Limits limits;                   ///< packet_max is the source's.
   bool reconnect = false;
@@ -49,7 +50,8 @@ class Server {
 
   /// Until somebody asks to stop, or the source is gone and is not to be opened again. Says on
   /// stdout where it listens, once the source is open, and on stderr what happens. False: the
-  /// source is gone, or the capture could not be written.
+  /// source is gone, or the capture could not be written. Throws std::system_error where it can
+  /// wait for nothing any more.
   bool run();
   const Counts& counts() const { return counts_; }
 

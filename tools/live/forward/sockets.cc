@@ -55,6 +55,11 @@ bool SocketAddress::is_loopback() const {
   return family() == AF_INET6 && IN6_IS_ADDR_LOOPBACK(&as_v6(*this).sin6_addr);
 }
 
+bool SocketAddress::is_any() const {
+  if (family() == AF_INET) return as_v4(*this).sin_addr.s_addr == INADDR_ANY;
+  return family() == AF_INET6 && IN6_IS_ADDR_UNSPECIFIED(&as_v6(*this).sin6_addr);
+}
+
 bool SocketAddress::same_host(const SocketAddress& other) const {
   if (family() != other.family()) return false;
   if (family() == AF_INET) return as_v4(*this).sin_addr.s_addr == as_v4(other).sin_addr.s_addr;
@@ -97,6 +102,10 @@ attach::Descriptor listen_at(const std::string& host, std::uint16_t port) {
   int error = 0;
   for (const SocketAddress& address : resolve(host, port, true)) {
     attach::Descriptor made = make_socket(address);
+    if (!made.is_open()) {
+      error = errno;
+      continue;
+    }
     const int on = 1;
     ::setsockopt(made.get(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
     if (::bind(made.get(), address.get(), address.size_bytes) == 0 &&
@@ -118,7 +127,12 @@ void Connector::begin(attach::SteadyTime now) {
 void Connector::try_next(attach::SteadyTime now) {
   while (next_ < addresses_.size()) {
     const SocketAddress& address = addresses_[next_++];
-    socket_ = make_socket(address);
+    attach::Descriptor made = make_socket(address);
+    if (!made.is_open()) {
+      error_ = errno;
+      continue;
+    }
+    socket_ = std::move(made);
     connected_ = ::connect(socket_.get(), address.get(), address.size_bytes) == 0;
     error_ = errno;
     deadline_ = now + kConnectTime;

@@ -24,6 +24,8 @@ struct SocketAddress {
   std::string text() const;
   /// Whether only this host reaches it.
   bool is_loopback() const;
+  /// Whether it stands for all addresses of this host.
+  bool is_any() const;
   /// Whether the hosts are the same; ports do not matter.
   bool same_host(const SocketAddress& other) const;
 };
