@@ -5,6 +5,7 @@
 
 namespace rubric::tools {
 
+/// Adds the subcommand.
 void add_chart(CLI::App& app);
 
 }  // namespace rubric::tools

@@ -5,6 +5,7 @@
 
 namespace rubric::tools {
 
+/// Adds the subcommand.
 void add_install_wireshark(CLI::App& app);
 
 }  // namespace rubric::tools
