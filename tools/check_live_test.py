@@ -6,7 +6,6 @@ Usage: check_live_test.py RUBRIC PROJECT_FOLDER. All of it on this host, bounded
 
 import json
 import os
-import pathlib
 import pty
 import resource
 import signal
@@ -16,10 +15,11 @@ import sys
 import time
 import unittest
 
-from check_live_testing import (BROKEN_LINE, CLEAN_LINE, MANY, OPEN_LINE, PATIENCE_S, SERIAL_TOO,
-                                STRAY_REPLY, TWO_TAPS, CheckTest, blocks, data, is_packet,
-                                of_findings, offline, stamped, standing, until_packet)
-from live_testing import RUBRIC, Forwarder, Pty, Running, hdlc
+from check_live_testing import (BROKEN_LINE, CLEAN_LINE, MANY, OPEN_LINE, SERIAL_TOO, STRAY_REPLY,
+                                TWO_TAPS, CheckTest, blocks, data, is_packet, of_findings, offline,
+                                stamped, standing, until_packet)
+from live_testing import RUBRIC, Forwarder, Running
+from serial_testing import PATIENCE_S, Pty, hdlc, holds
 
 
 class CheckLive(CheckTest):
@@ -185,8 +185,7 @@ class CheckLive(CheckTest):
             path = self.folder / f"{change}.pcapng"
             path.write_bytes(whole)
             running = self.started(path, "--follow")
-            folder = pathlib.Path(f"/proc/{running.process.pid}/fd")
-            self.grown(path, lambda f=folder, p=path: str(p) in map(os.path.realpath, f.iterdir()))
+            self.grown(path, lambda it=running.process, p=path: holds(it, p))
             if change == "shorten":
                 path.write_bytes(whole[:100])
             elif change == "replace":
@@ -209,7 +208,7 @@ class CheckLive(CheckTest):
         running = self.started(f"serial@{line.name}:telosb", sniffer, "--follow", "--write", kept,
                                "--format", "jsonl", "--listen-only")
         self.grown(kept, lambda: kept.exists())
-        time.sleep(1)  # Opening throws away what came before.
+        line.opened(running.process)
         packets = [block for block in capture if is_packet(block)]
         first_us = struct.unpack_from("<I", packets[0], 16)[0]
         start = time.time()
@@ -283,8 +282,7 @@ class CheckLive(CheckTest):
         path = self.folder / "sniffed"
         os.mkfifo(path)
         running = self.started(path, "--follow", "--format", "jsonl")
-        folder = pathlib.Path(f"/proc/{running.process.pid}/fd")
-        self.grown(path, lambda: str(path) in map(os.path.realpath, folder.iterdir()))
+        self.grown(path, lambda: holds(running.process, path))
         code, report, err = running.report()
         self.assertEqual((code, report["findings"], err), (3, [], ""))
 
@@ -299,8 +297,7 @@ class CheckLive(CheckTest):
         path = self.folder / "whole.pcapng"
         path.write_bytes(data(TWO_TAPS))
         running = Running("stats", path, "--follow", "--format", "json")
-        folder = pathlib.Path(f"/proc/{running.process.pid}/fd")
-        self.grown(path, lambda: str(path) in map(os.path.realpath, folder.iterdir()))
+        self.grown(path, lambda: holds(running.process, path))
         time.sleep(0.5)
         code, out, err = running.end()
         self.assertEqual((code, json.loads(out)["frames"], err), (0, 11, ""))

@@ -10,9 +10,9 @@ import subprocess
 import time
 
 import live_testing
-from live_testing import ROOT, RUBRIC, Forwarder, hdlc
+from live_testing import ROOT, RUBRIC, Forwarder
+from serial_testing import PATIENCE_S, hdlc
 
-PATIENCE_S = live_testing.PATIENCE_S = 60
 CAPTURES = pathlib.Path("spec/captures")
 BROKEN_LINE = CAPTURES / "basestation/s06_control_03.from_sink.sfstream"  # J6-CONTENT fails.
 CLEAN_LINE = CAPTURES / "firmware/a_join_data.serial.bin"

@@ -13,8 +13,9 @@ import sys
 import time
 import unittest
 
-from extcap_testing import (FORWARDER, PACKET, PATIENCE_S, SERIAL, Base, Given, Pty, Server,
-                            decoded, hdlc, meaning, run, wait_for)
+from extcap_testing import (FORWARDER, PACKET, SERIAL, Base, Given, Server, decoded, meaning,
+                            run)
+from serial_testing import PATIENCE_S, Pty, hdlc, wait_for
 
 UNKNOWN = ["--extcap-version=9.9", "--not-yet-known", "--also-new", "value", "--log-level=debug"]
 # As Wireshark takes them apart.
@@ -207,7 +208,7 @@ class Captures(Base):
                     self.assertEqual(self.ended(process), (0, ""))
                     self.assertEqual(connection.recv(1), b"")  # Nothing was confirmed.
                 else:
-                    self.assertTrue(line.read(len(hdlc(b"\x43\x2a"))).startswith(hdlc(b"\x43\x2a")))
+                    self.assertTrue(line.take(len(hdlc(b"\x43\x2a"))).startswith(hdlc(b"\x43\x2a")))
                     process.send_signal(signal.SIGTERM)
                     self.assertEqual(self.ended(process), (0, ""))
                 os.close(fd)

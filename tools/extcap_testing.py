@@ -3,16 +3,13 @@
 import json
 import os
 import pathlib
-import pty
-import select
 import socket
 import subprocess
 import tempfile
-import time
-import tty
 import unittest
 
-PATIENCE_S = 60
+from serial_testing import PATIENCE_S
+
 SERIAL = "spec/captures/firmware/a_join_data.serial.bin"
 FORWARDER = "spec/captures/basestation/s04_acks.from_sink.sfstream"
 PACKET = bytes.fromhex("00ffff000003002514000c")  # A config message.
@@ -32,22 +29,6 @@ class Given:
         cls.rubric = os.path.abspath(words.pop(1))
 
 
-def crc(data):
-    value = 0
-    for byte in data:
-        value ^= byte << 8
-        for _ in range(8):
-            value = (value << 1 ^ 0x1021 if value & 0x8000 else value << 1) & 0xffff
-    return value
-
-
-def hdlc(content, wrong=0):
-    whole = content + (crc(content) ^ wrong).to_bytes(2, "little")
-    out = b"".join(bytes([0x7d, byte ^ 0x20]) if byte in (0x7d, 0x7e) else bytes([byte])
-                   for byte in whole)
-    return b"\x7e" + out + b"\x7e"
-
-
 def run(*words, **more):
     return subprocess.run([str(word) for word in words], capture_output=True, text=True,
                           check=False, timeout=PATIENCE_S, **more)
@@ -60,31 +41,6 @@ def decoded(path):
 
 def meaning(records):
     return [(record["path"], record["fields"], record["error"]) for record in records]
-
-
-def wait_for(holds, what):
-    deadline = time.monotonic() + PATIENCE_S
-    while not holds():
-        if time.monotonic() > deadline:
-            raise AssertionError(f"waited in vain until {what}")
-        time.sleep(0.02)
-
-
-class Pty:
-    """A serial device; its other end is here."""
-
-    def __init__(self, test):
-        self.fd, other = pty.openpty()
-        tty.setraw(self.fd)
-        self.name = os.ttyname(other)
-        test.addCleanup(os.close, self.fd)
-        test.addCleanup(os.close, other)
-
-    def read(self, size):
-        got = b""
-        while len(got) < size and select.select([self.fd], [], [], PATIENCE_S)[0]:
-            got += os.read(self.fd, 1000)
-        return got
 
 
 class Server:

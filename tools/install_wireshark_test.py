@@ -15,8 +15,8 @@ import sys
 import time
 import unittest
 
-from extcap_testing import (FORWARDER, PACKET, PATIENCE_S, SERIAL, Base, Given, Pty, Server,
-                            decoded, hdlc, run, wait_for)
+from extcap_testing import FORWARDER, PACKET, SERIAL, Base, Given, Server, decoded, run
+from serial_testing import PATIENCE_S, Pty, hdlc, wait_for
 
 CONFIG = pathlib.Path(".config/wireshark/extcap/rubric-extcap")
 

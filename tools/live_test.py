@@ -11,7 +11,8 @@ import subprocess
 import time
 import unittest
 
-from live_testing import PATIENCE_S, ROOT, RUBRIC, Forwarder, LiveTest, Pty, hdlc, lines_of
+from live_testing import ROOT, RUBRIC, Forwarder, LiveTest, lines_of
+from serial_testing import PATIENCE_S, Pty, hdlc
 
 SERIAL = "spec/captures/firmware/a_join_data.serial.bin"
 FORWARDER = "spec/captures/basestation/s04_acks.from_sink.sfstream"
@@ -28,7 +29,7 @@ class Live(LiveTest):
         running = self.started("decode", f"serial@{line.name}:telosb", "--format", "jsonl",
                                "--write", kept)
         wanted = lines_of(SERIAL)
-        time.sleep(0.5)  # Opening throws away what came before.
+        line.opened(running.process)
         os.write(line.fd, (ROOT / SERIAL).read_bytes()[:2000])
         records = running.lines(10)
         self.assertEqual(meaning(records), meaning(wanted[:10]))
@@ -46,7 +47,7 @@ class Live(LiveTest):
             line = Pty(self)
             running = self.started("decode", f"serial@{line.name}:115200", "--format", "jsonl",
                                    *arguments)
-            time.sleep(0.5)
+            line.opened(running.process)
             os.write(line.fd, hdlc(b"\x44\x2a" + packet))
             self.assertEqual(running.lines(1)[0]["message"], "config")
             self.assertEqual(line.read(0.5), answer)

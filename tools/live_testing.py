@@ -1,4 +1,4 @@
-"""What the tests of lines in use share: the program, frames, and the other ends of lines.
+"""What the tests of lines in use share: the program, and the other ends of lines.
 
 Their arguments are RUBRIC PROJECT_FOLDER. All of it is on this host, and bounded in time.
 """
@@ -6,7 +6,6 @@ Their arguments are RUBRIC PROJECT_FOLDER. All of it is on this host, and bounde
 import json
 import os
 import pathlib
-import pty
 import select
 import signal
 import socket
@@ -15,44 +14,12 @@ import sys
 import tempfile
 import threading
 import time
-import tty
 import unittest
+
+from serial_testing import PACKET_ACK, PATIENCE_S, unframed
 
 RUBRIC = os.path.abspath(sys.argv.pop(1))
 ROOT = pathlib.Path(sys.argv.pop(1)).resolve()
-PATIENCE_S = 20
-ACK, PACKET_ACK, PACKET_NOACK, UNKNOWN = 0x43, 0x44, 0x45, 0xff
-
-
-def crc(data):
-    value = 0
-    for byte in data:
-        value ^= byte << 8
-        for _ in range(8):
-            value = (value << 1 ^ 0x1021 if value & 0x8000 else value << 1) & 0xffff
-    return value
-
-
-def hdlc(content):
-    whole = content + crc(content).to_bytes(2, "little")
-    out = b"".join(bytes([0x7d, byte ^ 0x20]) if byte in (0x7d, 0x7e) else bytes([byte])
-                   for byte in whole)
-    return b"\x7e" + out + b"\x7e"
-
-
-def unframed(part):
-    """The content of what stood between two flags; a malformed one raises AssertionError."""
-    out, escaped = bytearray(), False
-    for byte in part:
-        if byte == 0x7d:
-            escaped = True
-        else:
-            out.append(byte ^ 0x20 if escaped else byte)
-            escaped = False
-    content, check = bytes(out[:-2]), bytes(out[-2:])
-    if escaped or crc(content).to_bytes(2, "little") != check:
-        raise AssertionError(f"a malformed frame: {part.hex()}")
-    return content
 
 
 def lines_of(path, *arguments):
@@ -98,30 +65,6 @@ class Running:
             self.process.stdin = None  # Else communicate() closes it again.
         out, err = self.process.communicate(timeout=PATIENCE_S)
         return self.process.returncode, out.decode(), err.decode()
-
-
-class Pty:
-    """A serial device whose other end is here."""
-
-    def __init__(self, test):
-        self.fd, other = pty.openpty()
-        tty.setraw(self.fd)
-        self.name = os.ttyname(other)
-        test.addCleanup(self.close)
-        test.addCleanup(os.close, other)
-
-    def read(self, seconds):
-        got = b""
-        deadline = time.monotonic() + seconds
-        while select.select([self.fd], [], [], max(0, deadline - time.monotonic()))[0]:
-            got += os.read(self.fd, 1000)
-        return got
-
-    def close(self):
-        """Unplugged."""
-        if self.fd >= 0:
-            os.close(self.fd)
-        self.fd = -1
 
 
 class Forwarder:

@@ -11,9 +11,10 @@ import threading
 import time
 import unittest
 
-from live_testing import ACK, PACKET_NOACK, PATIENCE_S, RUBRIC, hdlc, lines_of
+from live_testing import RUBRIC, lines_of
 from send_testing import (CLEAN, INPUT, LONG_MS, NOT_SENT, USAGE, Base, config, confirms, line,
                           send)
+from serial_testing import ACK, PACKET_NOACK, PATIENCE_S, hdlc
 
 
 class Input(Base):

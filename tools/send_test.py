@@ -16,9 +16,9 @@ import threading
 import time
 import unittest
 
-from live_testing import (ACK, PACKET_ACK, PACKET_NOACK, PATIENCE_S, RUBRIC, UNKNOWN, Mote, Pty,
-                          hdlc, lines_of)
+from live_testing import RUBRIC, Mote, lines_of
 from send_testing import CLEAN, LONG_MS, NOT_SENT, Base, config, confirms, line, send
+from serial_testing import ACK, PACKET_ACK, PACKET_NOACK, PATIENCE_S, UNKNOWN, Pty, hdlc
 
 DEMO = "spec/captures/basestation/s04_acks.from_sink.sfstream"
 

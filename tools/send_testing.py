@@ -7,7 +7,8 @@ import struct
 import subprocess
 import threading
 
-from live_testing import ACK, PATIENCE_S, RUBRIC, Forwarder, LiveTest, Mote, Pty, hdlc
+from live_testing import RUBRIC, Forwarder, LiveTest, Mote
+from serial_testing import ACK, PATIENCE_S, Pty, hdlc
 
 CLEAN, USAGE, INPUT, NOT_SENT = 0, 2, 3, 4
 LONG_MS = 60_000  # Never over while somebody answers.

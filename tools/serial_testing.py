@@ -1,0 +1,93 @@
+"""What tests of serial lines share: frames, the far end of a line, and patience."""
+
+import os
+import pathlib
+import pty
+import select
+import time
+import tty
+
+PATIENCE_S = 60
+ACK, PACKET_ACK, PACKET_NOACK, UNKNOWN = 0x43, 0x44, 0x45, 0xff
+
+
+def crc(data):
+    value = 0
+    for byte in data:
+        value ^= byte << 8
+        for _ in range(8):
+            value = (value << 1 ^ 0x1021 if value & 0x8000 else value << 1) & 0xffff
+    return value
+
+
+def hdlc(content, wrong=0):
+    whole = content + (crc(content) ^ wrong).to_bytes(2, "little")
+    out = b"".join(bytes([0x7d, byte ^ 0x20]) if byte in (0x7d, 0x7e) else bytes([byte])
+                   for byte in whole)
+    return b"\x7e" + out + b"\x7e"
+
+
+def unframed(part):
+    """The content of what stood between two flags; a malformed one raises AssertionError."""
+    out, escaped = bytearray(), False
+    for byte in part:
+        if byte == 0x7d:
+            escaped = True
+        else:
+            out.append(byte ^ 0x20 if escaped else byte)
+            escaped = False
+    content, check = bytes(out[:-2]), bytes(out[-2:])
+    if escaped or crc(content).to_bytes(2, "little") != check:
+        raise AssertionError(f"a malformed frame: {part.hex()}")
+    return content
+
+
+def wait_for(holds, what):
+    deadline = time.monotonic() + PATIENCE_S
+    while not holds():
+        if time.monotonic() > deadline:
+            raise AssertionError(f"waited in vain until {what}")
+        time.sleep(0.02)
+
+
+def holds(process, path):
+    """Whether it has the file open."""
+    folder = pathlib.Path(f"/proc/{process.pid}/fd")
+    return os.path.realpath(path) in map(os.path.realpath, folder.iterdir())
+
+
+class Pty:
+    """A serial device whose other end is here."""
+
+    def __init__(self, test):
+        self.fd, other = pty.openpty()
+        tty.setraw(self.fd)
+        self.name = os.ttyname(other)
+        test.addCleanup(self.close)
+        test.addCleanup(os.close, other)
+
+    def read(self, seconds):
+        """What comes in that time."""
+        got = b""
+        deadline = time.monotonic() + seconds
+        while select.select([self.fd], [], [], max(0, deadline - time.monotonic()))[0]:
+            got += os.read(self.fd, 1000)
+        return got
+
+    def opened(self, process):
+        """Waits until the process listens: opening it throws away what came before."""
+        wait_for(lambda: holds(process, self.name), f"{self.name} is opened")
+        time.sleep(0.2)
+
+    def take(self, size):
+        """So many bytes at least, if they come."""
+        got = b""
+        while len(got) < size and select.select([self.fd], [], [], PATIENCE_S)[0]:
+            got += os.read(self.fd, 1000)
+        return got
+
+    def close(self):
+        """Unplugged."""
+        if self.fd >= 0:
+            os.close(self.fd)
+        self.fd = -1
