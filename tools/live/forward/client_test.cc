@@ -1,0 +1,72 @@
+#include "tools/live/forward/client.h"
+
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace {
+
+int send_error = 0;  // What the next one fails with; 0: it does not.
+
+}  // namespace
+
+// In place of the system's, which cannot be made to lack memory.
+extern "C" ssize_t send(int fd, const void* bytes, size_t size, int flags) {
+  if (send_error == 0) return ::sendto(fd, bytes, size, flags, nullptr, 0);
+  errno = send_error;
+  return -1;
+}
+
+namespace rubric::forward {
+namespace {
+
+class ClientTest : public ::testing::TestWithParam<int> {
+ protected:
+  ClientTest() {
+    int ends[2];
+    EXPECT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, ends), 0);
+    client_.emplace(attach::Descriptor(ends[0]), "here", 0, Client::Limits{}, now_);
+    peer_ = attach::Descriptor(ends[1]);
+  }
+  ~ClientTest() override { send_error = 0; }
+
+  std::vector<std::uint8_t> received() const {
+    std::array<std::uint8_t, 100> room{};
+    const ssize_t count = ::read(peer_.get(), room.data(), room.size());
+    return {room.begin(), room.begin() + std::max<ssize_t>(count, 0)};
+  }
+
+  const attach::SteadyTime now_ = std::chrono::steady_clock::now();
+  Backlog backlog_{1024};
+  attach::Descriptor peer_;
+  std::optional<Client> client_;
+};
+
+TEST_P(ClientTest, GetsLaterWhatTheSystemHasNoRoomForNow) {
+  const std::vector<std::uint8_t> bytes{2, 0, 7};
+  backlog_.append({bytes.data(), bytes.size()});
+  send_error = GetParam();
+  client_->write(backlog_, now_);
+  EXPECT_TRUE(client_->events() & POLLOUT);
+  EXPECT_FALSE(client_->is_served(backlog_));
+  send_error = 0;
+  client_->turn(POLLOUT, backlog_, now_);
+  EXPECT_TRUE(client_->is_served(backlog_));
+  EXPECT_EQ(client_->fault(), "");
+  EXPECT_EQ(received(), (std::vector<std::uint8_t>{0x55, 0x20, 2, 0, 7}));
+}
+
+INSTANTIATE_TEST_SUITE_P(Errors, ClientTest, ::testing::Values(EAGAIN, EINTR, ENOBUFS, ENOMEM));
+
+}  // namespace
+}  // namespace rubric::forward
