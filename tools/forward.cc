@@ -32,13 +32,10 @@ live::Address source_of(const std::string& given) {
   if (name.empty() && std::getenv("MOTECOM") != nullptr) name = live::default_address();
   if (name.empty()) throw CLI::RequiredError("SOURCE (or $MOTECOM)");
   try {
-    if (const auto address = live::parse_address(name)) return *address;
+    return live::required_address(name);
   } catch (const std::invalid_argument& error) {
     throw CLI::ValidationError("SOURCE", error.what());
   }
-  throw CLI::ValidationError(
-      "SOURCE", fmt::format("'{}': expected serial@DEVICE:BAUD, network@HOST:PORT or sf@HOST:PORT",
-                            name));
 }
 
 // All clients wait while the capture is written: it must not be a pipe, which may take nothing.

@@ -65,13 +65,10 @@ live::Address address_of(const Options& options) {
   const std::string text = options.to.empty() ? live::default_address() : options.to;
   const char* const whence = options.to.empty() ? "$MOTECOM" : "--to";
   try {
-    if (const auto address = live::parse_address(text)) return *address;
+    return live::required_address(text);
   } catch (const std::invalid_argument& error) {
     throw CLI::ValidationError(whence, error.what());
   }
-  throw CLI::ValidationError(whence,
-                             fmt::format("'{}': expected serial@DEVICE:BAUD, network@HOST:PORT or "
-                                         "sf@HOST:PORT", text));
 }
 
 attach::HostLinkOptions link_options(const Options& options) {

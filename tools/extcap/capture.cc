@@ -91,10 +91,7 @@ int capture(const CaptureOptions& options) {
   try {
     // Before anything can go wrong: until the pipe is opened, Wireshark waits and shows nothing.
     live::CaptureFile file(options.fifo);
-    if (!live::parse_address(options.source)) {
-      return usage(fmt::format("source '{}': expected serial@DEVICE:BAUD, network@HOST:PORT or "
-                               "sf@HOST:PORT", options.source));
-    }
+    live::required_address(options.source);
     return Capture(options, file).run();
   } catch (const format::FilterError& error) {
     return usage("capture filter: " + error.explain(options.filter));

@@ -68,6 +68,12 @@ std::optional<Address> parse_address(std::string_view text) {
   return out;
 }
 
+Address required_address(std::string_view text) {
+  if (const auto address = parse_address(text)) return *address;
+  throw std::invalid_argument(fmt::format("'{}': expected serial@DEVICE:BAUD, network@HOST:PORT or "
+                                          "sf@HOST:PORT", text));
+}
+
 std::string default_address() {
   const char* const set = std::getenv("MOTECOM");
   return set != nullptr && *set != '\0' ? set : "sf@localhost:9002";

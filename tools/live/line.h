@@ -26,6 +26,8 @@ struct Address {
 /// Nothing where the text is no such name, so that it is a file's. Throws std::invalid_argument
 /// with what is wrong where it begins as one.
 std::optional<Address> parse_address(std::string_view text);
+/// As above, where the text cannot be a file's: throws for any that is no such name.
+Address required_address(std::string_view text);
 
 /// $MOTECOM, or sf@localhost:9002, as TinyOS hosts have it.
 std::string default_address();
