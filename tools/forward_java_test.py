@@ -8,7 +8,8 @@ import subprocess
 import sys
 import unittest
 
-from forward_testing import PATIENCE_S, Client, Mote, Running, from_mote
+from forward_testing import Client, Mote, Running, from_mote
+from serial_testing import PATIENCE_S
 
 COMMAND = [sys.argv[2], "-cp", sys.argv[3], "rubric.basestation.ForwarderClient"]
 ISLAND = 11

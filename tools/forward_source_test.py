@@ -14,7 +14,8 @@ import tempfile
 import tty
 import unittest
 
-from forward_testing import PATIENCE_S, RUBRIC, Client, Mote, Running, from_mote, hdlc, packet
+from forward_testing import RUBRIC, Client, Mote, Running, from_mote, packet
+from serial_testing import PATIENCE_S, hdlc
 
 
 class Sources(unittest.TestCase):

@@ -11,7 +11,8 @@ import subprocess
 import sys
 import unittest
 
-from forward_testing import PATIENCE_S, RUBRIC, Client, Mote, Running, from_mote, hdlc, packet
+from forward_testing import RUBRIC, Client, Mote, Running, from_mote, packet
+from serial_testing import PATIENCE_S, hdlc
 
 SOCKET_BYTES = 4096  # Of those who are slow, so that the kernel keeps little for them.
 

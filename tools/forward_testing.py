@@ -16,24 +16,9 @@ import sys
 import threading
 import tty
 
+from serial_testing import PATIENCE_S, crc, hdlc
+
 RUBRIC = os.path.abspath(sys.argv[1])
-PATIENCE_S = 60
-
-
-def crc(data):
-    value = 0
-    for byte in data:
-        value ^= byte << 8
-        for _ in range(8):
-            value = (value << 1 ^ 0x1021 if value & 0x8000 else value << 1) & 0xffff
-    return value
-
-
-def hdlc(content):
-    whole = content + crc(content).to_bytes(2, "little")
-    out = b"".join(bytes([0x7d, byte ^ 0x20]) if byte in (0x7d, 0x7e) else bytes([byte])
-                   for byte in whole)
-    return b"\x7e" + out + b"\x7e"
 
 
 def unescaped(frame):
