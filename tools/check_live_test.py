@@ -286,6 +286,15 @@ class CheckLive(CheckTest):
         code, report, err = running.report()
         self.assertEqual((code, report["findings"], err), (3, [], ""))
 
+    def test_a_wish_that_comes_as_two_signals(self):
+        running = self.started("-", "--follow", "--format", "jsonl", stdin=subprocess.PIPE)
+        self.addCleanup(running.process.stdin.close)
+        running.process.stdin.write(data(STRAY_REPLY))
+        running.process.stdin.flush()
+        running.event("found", "J4-SEQ")
+        running.process.send_signal(signal.SIGTERM)  # As `timeout` does it.
+        self.assertEqual(running.report(signal.SIGTERM)[0], 1)
+
     def test_stats_of_a_line(self):
         server = Forwarder(self)
         running = Running("stats", f"sf@127.0.0.1:{server.port}", "--format", "json")

@@ -156,6 +156,7 @@ class Install(unittest.TestCase):
         names = [run("dpkg-deb", "--field", path, "Package").strip() for path in found]
         self.assertEqual(names, ["librubric-dev", "rubric"])
         self.assertRegex(run("dpkg-deb", "--field", found[1], "Depends"), r"libfmt\d")
+        self.assertNotIn(";", run("dpkg-deb", "--field", found[1], "Description"))
         root = self.base / "root"
         for path in found:
             run("dpkg-deb", "--extract", path, root)

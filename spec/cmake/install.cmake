@@ -88,6 +88,13 @@ install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT to
 install(FILES ${PROJECT_BINARY_DIR}/doc/rubric.html DESTINATION ${CMAKE_INSTALL_DOCDIR}
   COMPONENT tool OPTIONAL)
 
+add_custom_target(installable)
+add_dependencies(installable rubric rubricc rubric-extcap rubric_completions ${libraries})
+if(HELP2MAN)
+  add_dependencies(installable rubric_man)
+endif()
+
+set(CPACK_PROJECT_CONFIG_FILE ${PROJECT_SOURCE_DIR}/spec/cmake/package_tools.cmake)
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME rubric)
 set(CPACK_PACKAGE_CONTACT "Rubric maintainers <maintainers@rubric.invalid>")
@@ -99,8 +106,8 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_TOOL_PACKAGE_NAME rubric)
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME librubric-dev)
 set(CPACK_COMPONENT_TOOL_DESCRIPTION
-  "Decodes captures of TinyOS active messages, judges them by the rules of the RUBICON\n"
-  "Communication Layer, and tests implementations against a reference machine.")
+  "Decodes captures of TinyOS active messages, judges them by the rules of the RUBICON
+Communication Layer, and tests implementations against a reference machine.")
 set(CPACK_COMPONENT_DEV_DESCRIPTION "The codec (headers only) and the conformance library.")
 set(CPACK_DEBIAN_TOOL_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_TOOL_PACKAGE_SECTION net)

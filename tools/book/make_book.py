@@ -12,12 +12,17 @@ import pathlib
 import subprocess
 import sys
 
-from book import chapters, check, page
-from book.directives import Directives
-from book.html import escape
-from book.mistakes import Mistakes
-from book.names import Names
-from book.project import Project
+try:
+    from book import chapters, check, page
+    from book.directives import Directives
+    from book.html import escape
+    from book.mistakes import Mistakes
+    from book.names import Names
+    from book.project import Project
+except ModuleNotFoundError as missing:
+    sys.stderr.write(f"make_book.py: Python has no {missing.name}: the book needs the packages "
+                     "python3-markdown, python3-yaml and graphviz\n")
+    sys.exit(3)
 
 HERE = pathlib.Path(__file__).resolve().parent
 
