@@ -1,7 +1,7 @@
 // Input of every subcommand that reads packets: which files, what is in them, which protocol.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "tools/cli/command.h"
 #include <functional>
 #include <string>
 #include <string_view>
@@ -25,22 +25,15 @@ struct InputOptions {
 };
 
 /// Adds FILE..., --input-format, --spec and --as to a subcommand.
-void add_input_options(CLI::App& app, InputOptions& options);
+void add_input_options(Command& app, InputOptions& options);
 
 /// Adds --follow, --listen-only and --reconnect: for subcommands whose files may be lines in
 /// use (live/line.h). Without FILE, at a terminal, $MOTECOM is taken.
-void add_live_options(CLI::App& app, InputOptions& options);
+void add_live_options(Command& app, InputOptions& options);
 
-/// Checks that an option's text is not empty, as that of a shell's unset variable is.
-CLI::Validator given();
-/// Checks for a whole number of 1 or more.
-CLI::Validator at_least_one();
-/// Checks for a whole number of 0 or more: CLI11 alone takes -1 for the greatest that there is.
-CLI::Validator whole_number();
-
-/// The protocol that --spec names; CLI::ValidationError with the nearest name if there is none.
+/// The protocol that --spec names; UsageError with the nearest name if there is none.
 const reflect::Protocol& chosen_protocol(const InputOptions& options);
-/// The message that --as names, null if it is not given; CLI::ValidationError as above.
+/// The message that --as names, null if it is not given; UsageError as above.
 const reflect::Type* chosen_message(const InputOptions& options,
                                     const reflect::Protocol& protocol);
 

@@ -4,13 +4,13 @@
 #include <functional>
 #include <string>
 
-#include <CLI/CLI.hpp>
+#include "tools/cli/command.h"
 
 namespace rubric::cli {
 
 /// Has the subcommand end with what `run` returns, one of VerdictCode. What that throws, but for
-/// CLI::Error, is printed, and the kit broke.
-void set_verdict(CLI::App& command, std::function<int()> run);
+/// Ending, is printed, and the kit broke.
+void set_verdict(Command& command, std::function<int()> run);
 
 /// Ends the subcommand: its input cannot be read. `what` may be a list of lines.
 [[noreturn]] void unreadable(const char* command, std::string what);

@@ -17,7 +17,7 @@ struct CaptureOptions {
 /// Captures until somebody says so. The exit code; mistakes are said on stderr.
 int capture(const CaptureOptions& options);
 
-/// What is wrong with a filter; empty: nothing. Throws CLI::ValidationError for an unknown `spec`.
+/// What is wrong with a filter; empty: nothing. Throws cli::UsageError for an unknown `spec`.
 std::string filter_error(const std::string& filter, const std::string& spec);
 
 }  // namespace rubric::extcap

@@ -2,7 +2,7 @@
 // alone.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "tools/cli/command.h"
 
 #include <functional>
 #include <optional>
@@ -29,17 +29,17 @@ struct LineOptions {
 };
 
 /// Adds FILE, --spec, --as, --am-type, --dest, --src and --group to a subcommand.
-void add_line_options(CLI::App& app, LineOptions& options);
+void add_line_options(cli::Command& app, LineOptions& options);
 /// Adds --carrier.
-void add_carrier_option(CLI::App& app, LineOptions& options);
-/// Throws CLI::ValidationError where an option came that goes with --as alone.
+void add_carrier_option(cli::Command& app, LineOptions& options);
+/// Throws cli::UsageError where an option came that goes with --as alone.
 void check_line_options(const LineOptions& options);
 
 /// Turns a line into a packet.
 class LineEncoder {
  public:
   /// `serial_framing`: "hdlc" or "sf", of a message that comes alone and goes by serial line.
-  /// Throws CLI::ValidationError where nothing carries the message.
+  /// Throws cli::UsageError where nothing carries the message.
   LineEncoder(const LineOptions& options, const reflect::Protocol& protocol,
               const reflect::Type* message, std::string_view serial_framing);
 

@@ -1,0 +1,49 @@
+// What `rubric check` says: findings as they come, and the report.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "conformance/oracle/watch.h"
+#include "tools/commands/check_options.h"
+#include "tools/cli/output.h"
+
+namespace rubric::tools {
+
+/// The report in the format that is asked for. `fd` is a terminal's or -1; `files` are those that
+/// the same run can be read from again, none where it cannot.
+std::string report_text(const CheckOptions& options, const report::Story& story, int fd,
+                        const std::vector<std::string>& files);
+
+/// News of a run that goes on: text on stdout, jsonl where the report goes. Where stdout is for
+/// a report of another format, text goes to stderr.
+class CheckNews {
+ public:
+  /// Throws std::system_error where a file cannot be written.
+  explicit CheckNews(const CheckOptions& options);
+  ~CheckNews();
+  CheckNews(const CheckNews&) = delete;
+  CheckNews& operator=(const CheckNews&) = delete;
+
+  /// Says at a terminal that there is something to wait for.
+  void begin() const;
+  void tell(const oracle::Run& run, const oracle::Options& judged, const oracle::Change& change,
+            const report::ExpectationFile& expected);
+  /// What was told can be read then.
+  void flush() { output_.flush(); }
+  /// Whether somebody still reads it.
+  bool open() const;
+  /// The end. False, having said why, if something could not be written.
+  bool report(const report::Story& story, const std::vector<std::string>& files);
+
+ private:
+  std::string text(const report::Story& story, const oracle::Change& change) const;
+
+  const CheckOptions& options_;
+  int fd_;
+  int file_ = -1;  // Of jsonl that goes to a file.
+  cli::Output output_;
+  bool told_ = false;
+};
+
+}  // namespace rubric::tools
