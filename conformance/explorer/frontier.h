@@ -9,7 +9,7 @@
 namespace rubric::explorer {
 
 /// From which state, and by which of its ways on, a state was reached first.
-struct Link {
+struct PathLink {
   static constexpr std::uint16_t kStart = 0xFFFF;
   std::uint32_t index = 0;   ///< Of the state, among those of its thread.
   std::uint16_t thread = 0;

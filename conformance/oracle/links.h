@@ -1,9 +1,15 @@
 // Acknowledgements of the link: whether a frame that asked for one got it.
 #pragma once
 
+#include <cstdint>
+
 #include "conformance/oracle/observation.h"
 
 namespace rubric::oracle {
+
+inline constexpr std::int64_t kRadioByteUs = 32;  ///< 250 kbit/s. (IEEE 802.15.4, 6.1.1)
+/// Bytes of a frame on the air around its payload: preamble, SFD, length, MAC header, type, FCS.
+inline constexpr std::int64_t kAroundBytes = 19;
 
 /// Whether an 802.15.4 acknowledgement with the DSN of radio frame `index` was seen 0 to 2.5 ms
 /// after its end. A proof that *some* node of that address received it; its absence proves nothing.

@@ -30,7 +30,7 @@ using report::json_string;
 
 constexpr std::size_t kRules = std::size(kRequirements);
 
-struct Options {
+struct CoverageOptions {
   std::string cases = "conformance/cases";
   std::string format = "text";
 };
@@ -134,7 +134,7 @@ void judge(Coverage& coverage) {
   }
 }
 
-Coverage measure(const Options& options) {
+Coverage measure(const CoverageOptions& options) {
   Coverage coverage;
   const mutants::Golden golden(options.cases);
   read_cases(golden, coverage);
@@ -242,7 +242,7 @@ std::string json_of(const Coverage& coverage) {
   return out + "]}\n";
 }
 
-int run(const Options& options) {
+int run_coverage(const CoverageOptions& options) {
   Coverage coverage;
   try {
     coverage = measure(options);
@@ -258,7 +258,7 @@ int run(const Options& options) {
 }  // namespace
 
 void add_coverage(cli::Command& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CoverageOptions>();
   cli::Command& sub = app.add_subcommand("coverage", "Which rules are tested, and by what");
   sub.footer(
       "Counts, for each rule of behaviour, golden traces that ask for it and that forbid "
@@ -274,10 +274,7 @@ void add_coverage(cli::Command& app) {
       .one_of({"text", "json"})
       .show_default();
   sub.set_usage_exit_code(cli::kVerdictUsage);
-  sub.callback([options] {
-    const int code = run(*options);
-    if (code != cli::kVerdictExpected) cli::exit_with(code);
-  });
+  sub.exit_code_of([options] { return run_coverage(*options); });
 }
 
 }  // namespace rubric::tools

@@ -205,7 +205,7 @@ void add_decode(cli::Command& app) {
       "  echo 0a000c | rubric decode --as config\n"
       "  rubric decode serial@/dev/ttyUSB0:telosb --write run.pcapng    # until Ctrl-C\n"
       "Exit codes: 0 clean, 1 something malformed was read, 2 usage, 3 input cannot be read.");
-  command.callback([options] { cli::exit_with(Decode(*options).run()); });
+  command.exit_code_of([options] { return Decode(*options).run(); });
 }
 
 }  // namespace rubric::tools

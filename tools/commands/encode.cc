@@ -15,13 +15,13 @@
 namespace rubric::tools {
 namespace {
 
-struct Options {
+struct EncodeOptions {
   record::LineOptions lines;
   std::string format = "hex";
   std::string output = "-";
 };
 
-constexpr const char* kFooter =
+constexpr const char* kEncodeFooter =
     "A line with \"raw\" is encoded from it. Where it also has \"fields\" and is not marked\n"
     "malformed, both must say the same: delete \"raw\", and \"crc\" or \"fcs\" in\n"
     "\"frame\", to encode changed fields. Sizes, counts and check sums that are missing are\n"
@@ -36,7 +36,7 @@ std::string_view serial_framing(const std::string& format) {
 }
 
 /// Whether all lines were written.
-bool write_all(const Options& options, record::LineEncoder& encoder, record::PacketOutput& output,
+bool write_all(const EncodeOptions& options, record::LineEncoder& encoder, record::PacketOutput& output,
                bool& any) {
   std::string last_place;
   const auto put = [&](record::EncodedLines& lines, const record::OwnedPacket& packet,
@@ -55,7 +55,7 @@ bool write_all(const Options& options, record::LineEncoder& encoder, record::Pac
   return good;
 }
 
-int run(const Options& options) {
+int run_encode(const EncodeOptions& options) {
   const reflect::Protocol& protocol = cli::chosen_protocol(options.lines.input);
   const reflect::Type* message = cli::chosen_message(options.lines.input, protocol);
   record::LineEncoder encoder(options.lines, protocol, message, serial_framing(options.format));
@@ -74,7 +74,7 @@ int run(const Options& options) {
   return cli::kExitInput;
 }
 
-void check_target(const Options& options) {
+void check_target(const EncodeOptions& options) {
   if (record::overwrites(options.output, options.lines.input.files)) {
     throw cli::UsageError("--output", "'" + options.output + "' is also the input");
   }
@@ -83,10 +83,10 @@ void check_target(const Options& options) {
 }  // namespace
 
 void add_encode(cli::Command& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<EncodeOptions>();
   cli::Command& sub = app.add_subcommand(
       "encode", "Frames from the JSON lines of 'rubric decode', or from fields alone");
-  sub.footer(kFooter);
+  sub.footer(kEncodeFooter);
   record::add_line_options(sub, options->lines);
   record::add_carrier_option(sub, options->lines);
   sub.add_option("--format", options->format, "What to write: hex, hdlc, sf, pcap, pcapng")
@@ -98,7 +98,7 @@ void add_encode(cli::Command& app) {
   sub.callback([options] {
     record::check_line_options(options->lines);
     check_target(*options);
-    const int code = run(*options);
+    const int code = run_encode(*options);
     if (code != cli::kExitClean) cli::exit_with(code);
   });
 }

@@ -26,14 +26,14 @@ namespace {
 
 using reflect::Protocol;
 
-struct Options {
+struct ExplainOptions {
   cli::InputOptions input;  // The protocol, and the message that bytes are.
   std::vector<std::string> words;
   std::string framing = "auto";
   bool all_cases = false;
 };
 
-constexpr const char* kFooter =
+constexpr const char* kExplainFooter =
     "X is a message, a rule (WIRE-NET-NBYTES) or a group of them (J4), an enum or a mask, or the\n"
     "hex bytes of a frame: a serial packet as Listen prints it, a serial frame with its kind\n"
     "byte, an 802.15.4 frame.\n"
@@ -127,7 +127,7 @@ bool parse_frame(const std::vector<std::string>& words, std::vector<std::uint8_t
   return decode_hex_line(text, bytes).fault == Fault::kNone && !bytes.empty();
 }
 
-int explain_bytes(const Options& options, const Protocol& protocol,
+int explain_bytes(const ExplainOptions& options, const Protocol& protocol,
                   const std::vector<std::uint8_t>& bytes, std::string& out) {
   const reflect::Type* message = cli::chosen_message(options.input, protocol);
   auto given = layout::take_frame(bytes, message ? "bare" : options.framing);
@@ -144,7 +144,7 @@ int explain_bytes(const Options& options, const Protocol& protocol,
   return frame.malformed() ? cli::kExitMalformed : cli::kExitClean;
 }
 
-int run(const Options& options) {
+int run_explain(const ExplainOptions& options) {
   const Protocol& protocol = cli::chosen_protocol(options.input);
   const bool as_bytes = !options.input.as_message.empty() || options.framing != "auto";
   std::string text;
@@ -173,9 +173,9 @@ int run(const Options& options) {
 }  // namespace
 
 void add_explain(cli::Command& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ExplainOptions>();
   cli::Command& sub = app.add_subcommand("explain", "What a message, a rule, a name or a frame means");
-  sub.footer(kFooter);
+  sub.footer(kExplainFooter);
   sub.add_option("X", options->words, "A name, or hex bytes in one word or several").required();
   sub.add_option("--spec", options->input.spec, "Protocol above the AM layer")
       .show_default();
@@ -187,10 +187,7 @@ void add_explain(cli::Command& app) {
       .one_of({"auto", "sf", "hdlc", "radio"})
       .show_default();
   sub.add_flag("--cases", options->all_cases, "All golden traces that name a rule, however many");
-  sub.callback([options] {
-    const int code = run(*options);
-    if (code != cli::kExitClean) cli::exit_with(code);
-  });
+  sub.exit_code_of([options] { return run_explain(*options); });
 }
 
 }  // namespace rubric::tools

@@ -35,7 +35,7 @@ using explorer::Scope;
 using report::json_string;
 using report::json_string_or_null;
 
-struct Options {
+struct ExploreOptions {
   explorer::Options network;
   std::string profile = "paper";
   std::string flaw;
@@ -50,7 +50,7 @@ struct Options {
   unsigned acks = 0;
 };
 
-std::string footer() {
+std::string explore_footer() {
   std::string text = "Properties:\n";
   for (const auto& p : explorer::properties()) {
     text += fmt::format("  {:<19} {}\n", p.name, p.sentence);
@@ -80,21 +80,21 @@ template <class Table>
   usage(fmt::format("unknown {} '{}'{}", what, word, reflect::did_you_mean(word, names)));
 }
 
-machine::Profile chosen_profile(const Options& options) {
+machine::Profile chosen_profile(const ExploreOptions& options) {
   const machine::NamedProfile* const profile = machine::find_profile(options.profile);
   if (profile == nullptr) unknown("profile", options.profile, machine::kProfiles);
   return profile->profile;
 }
 
 // Null: none is asked for.
-const flaws::Flaw* chosen_flaw(const Options& options) {
+const flaws::Flaw* chosen_flaw(const ExploreOptions& options) {
   const flaws::Flaw* const flaw = flaws::find(options.flaw);
   if (flaw == nullptr && !options.flaw.empty()) unknown("flaw", options.flaw, flaws::all());
   return flaw;
 }
 
 // What the options' words mean.
-explorer::Options resolve(const Options& options) {
+explorer::Options resolve(const ExploreOptions& options) {
   explorer::Options network = options.network;
   network.profile = chosen_profile(options);
   if (options.requests != 0) {
@@ -167,7 +167,7 @@ std::string ways_to_widen(const explorer::Options& network) {
   return fmt::format("{}", fmt::join(ways, ", "));
 }
 
-Verdict judge(const Options& options, const explorer::Options& network, const Result& result) {
+Verdict judge(const ExploreOptions& options, const explorer::Options& network, const Result& result) {
   if (result.violation) return {"broken", cli::kVerdictFailed, 0, {}};
   if (!result.complete) return {"inconclusive", cli::kVerdictInconclusive, 0, result.limit};
   if (!options.flaw.empty() && !result.step_acted) {
@@ -234,7 +234,7 @@ std::string json_list(const std::vector<std::string>& names) {
   return "[" + text + "]";
 }
 
-std::string json_of(const Options& options, const Result& result, const Verdict& verdict,
+std::string json_of(const ExploreOptions& options, const Result& result, const Verdict& verdict,
                     const std::string& trace) {
   const Progress& p = result.progress;
   const Mask broken = result.violation ? result.violation->violated : 0;
@@ -276,7 +276,7 @@ class ProgressLine {
   double next_ = 1;
 };
 
-std::string trace_text(explorer::Nodes& nodes, const Options& options, const explorer::Path& path,
+std::string trace_text(explorer::Nodes& nodes, const ExploreOptions& options, const explorer::Path& path,
                        const std::string& name) {
   std::string note = fmt::format("Found by rubric explore: {} motes, {} sinks, profile {}",
                                  nodes.options().motes, nodes.options().sinks, options.profile);
@@ -284,7 +284,7 @@ std::string trace_text(explorer::Nodes& nodes, const Options& options, const exp
   return trace::print(explorer::counterexample(nodes, path, {options.profile, name, note}));
 }
 
-void run(const Options& options) {
+void run_explore(const ExploreOptions& options) {
   if (options.transitions.wanted) {
     const flaws::Flaw* const flaw = chosen_flaw(options);
     return print_transitions(options.transitions,
@@ -325,7 +325,7 @@ void run(const Options& options) {
   if (verdict.exit_code != cli::kVerdictExpected) cli::exit_with(verdict.exit_code);
 }
 
-void add_faults(cli::Command& sub, Options& options) {
+void add_faults(cli::Command& sub, ExploreOptions& options) {
   explorer::Options& n = options.network;
   sub.add_flag("--loss", n.loss, "Frames and link acks may be lost");
   sub.add_flag("--dup", n.dup, "Frames may be heard again");
@@ -341,7 +341,7 @@ void add_faults(cli::Command& sub, Options& options) {
       .show_default();
 }
 
-void add_bounds(cli::Command& sub, Options& options) {
+void add_bounds(cli::Command& sub, ExploreOptions& options) {
   explorer::Options& n = options.network;
   sub.add_option("--calls", n.calls, "Calls of joinIsland, each mote")
       .between(1, 8)
@@ -366,10 +366,10 @@ void add_bounds(cli::Command& sub, Options& options) {
 }  // namespace
 
 void add_explore(cli::Command& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ExploreOptions>();
   cli::Command& sub =
       app.add_subcommand("explore", "Try everything that can happen in a small network");
-  sub.footer(footer());
+  sub.footer(explore_footer());
   sub.set_usage_exit_code(cli::kVerdictUsage);
   sub.add_option("--motes", options->network.motes, "How many")
       .between(1, int{explorer::kMotesMax})
@@ -394,7 +394,7 @@ void add_explore(cli::Command& app) {
   add_transition_options(sub, options->transitions);
   sub.add_option("--out-known", options->weakness_out,
                   "File for the shortest way to a known weakness");
-  sub.callback([options] { run(*options); });
+  sub.callback([options] { run_explore(*options); });
 }
 
 }  // namespace rubric::tools

@@ -57,7 +57,7 @@ void print_summary(const std::string& source, const forward::Counts& counts) {
   fmt::print(stderr, "\n");
 }
 
-int run(ForwardOptions& options) {
+int run_forward(ForwardOptions& options) {
   options.server.source.address = source_of(options.source);
   check_capture(options.server.write);
   options.server.source.link.ack_wait = attach::Milliseconds(options.ack_wait_ms);
@@ -136,7 +136,7 @@ void add_forward(cli::Command& app) {
       "  rubric forward sf@lab:9002 --port 9003 --reconnect --write run.pcapng\n"
       "Exit codes: 0 ended by Ctrl-C, 2 usage, 3 the source is gone, the port is taken or the\n"
       "capture cannot be written.");
-  command.callback([options] { cli::exit_with(run(*options)); });
+  command.exit_code_of([options] { return run_forward(*options); });
 }
 
 }  // namespace rubric::tools

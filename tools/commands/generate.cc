@@ -37,7 +37,7 @@ constexpr std::int64_t kBetweenFramesNs = 1'000'000;
 constexpr std::uint64_t kAckSeed = 0x61636B;  // The acknowledgement has a generator of its own.
 constexpr std::size_t kPcapngDataAt = 28;     // In an enhanced packet block.
 
-struct Options {
+struct GenerateOptions {
   cli::InputOptions input;  // Only the choice of the protocol.
   std::uint64_t count = 1000;
   std::uint64_t seed = 1;
@@ -49,7 +49,7 @@ struct Options {
   bool fields = false;
 };
 
-constexpr const char* kFooter =
+constexpr const char* kGenerateFooter =
     "Each message in turn comes up, on each way that leads to it. The expectation of a frame\n"
     "(schema rubric.generate/1, see tools/generate_format.md) says which fault of which rule\n"
     "stands where, by construction: no decoder is asked. jsonl carries it in line, with the frame\n"
@@ -149,7 +149,7 @@ class CountedOutput {
 /// One run.
 class Run {
  public:
-  Run(const Options& options, const reflect::Protocol& protocol)
+  Run(const GenerateOptions& options, const reflect::Protocol& protocol)
       : options_(options),
         format_(format_of(options.format)),
         frames_(protocol, *generate::routes_of(protocol), options.seed),
@@ -267,7 +267,7 @@ class Run {
     return text_.size() - load_le32(end - 4) + kPcapngDataAt;
   }
 
-  const Options& options_;
+  const GenerateOptions& options_;
   InputFormat format_;
   FrameGenerator frames_;
   FrameGenerator acks_;
@@ -284,7 +284,7 @@ std::string share(const std::string& text) {
   return "expected a share from 0 to 1, given " + text;
 }
 
-void check_outputs(const Options& options) {
+void check_outputs(const GenerateOptions& options) {
   if (options.expect.empty()) return;
   if (options.format == "jsonl") {
     throw cli::UsageError("--expect", "jsonl carries the expectations in line");
@@ -302,10 +302,10 @@ void check_outputs(const Options& options) {
 }  // namespace
 
 void add_generate(cli::Command& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<GenerateOptions>();
   cli::Command& sub = app.add_subcommand(
       "generate", "Valid and near-valid frames, and what a decoder must say of each");
-  sub.footer(kFooter);
+  sub.footer(kGenerateFooter);
   sub.add_option("--count", options->count, "How many frames")
       .check(cli::at_least_one)
       .show_default();

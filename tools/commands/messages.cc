@@ -22,12 +22,12 @@ using layout::Reach;
 using reflect::Protocol;
 using reflect::Type;
 
-struct Options {
+struct MessagesOptions {
   cli::InputOptions input;  // Only the choice of the protocol.
   std::string format = "text";
 };
 
-constexpr const char* kFooter =
+constexpr const char* kMessagesFooter =
     "\nAM is a message's own number; it stands in frames under that number where 'in' is serial\n"
     "or radio. No frame leads to a message 'by name', only --as; see 'rubric explain NAME'.\n";
 
@@ -68,7 +68,7 @@ std::string text(const Protocol& protocol) {
     table.add({am_text(type, reaches), type.id, layout::size_text(type), places(reaches),
                layout::first_sentence(type.doc)});
   }
-  return table.text_within(layout::kColumns) + kFooter;
+  return table.text_within(layout::kColumns) + kMessagesFooter;
 }
 
 std::string json(const Reach& reach) {
@@ -110,7 +110,7 @@ std::string json(const Protocol& protocol) {
 }  // namespace
 
 void add_messages(cli::Command& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<MessagesOptions>();
   cli::Command& sub = app.add_subcommand("messages", "The messages of a protocol");
   sub.add_option("--spec", options->input.spec, "Protocol above the AM layer")
       .show_default();

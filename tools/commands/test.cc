@@ -38,7 +38,7 @@ using Milliseconds = std::chrono::milliseconds;
 
 constexpr const char* kCommand = "test";
 
-constexpr const char* kFooter =
+constexpr const char* kTestFooter =
     "A target is a command that speaks rct/1, a real node at its own line, or the reference\n"
     "machine in this program (conformance/PORTING.md):\n"
     "  './my_adapter --fast'     started as a child process\n"
@@ -260,7 +260,7 @@ bool write_formats(const TestOptions& options, const suite::SuiteRun& run,
   return (options.report.empty() || write_folder(options, run, earlier)) && good;
 }
 
-int run(const TestOptions& options) {
+int run_test(const TestOptions& options) {
   const suite::Cases cases = read_cases(options);
   suite::Plan plan;
   plan.expected = read_expected(options);
@@ -362,8 +362,8 @@ void add_test(cli::Command& app) {
   cli::Command& command = app.add_subcommand(kCommand, "Try implementations with golden traces");
   auto options = std::make_shared<TestOptions>();
   add_options(command, *options);
-  command.footer(kFooter);
-  cli::set_verdict(command, [options] { return run(*options); });
+  command.footer(kTestFooter);
+  cli::set_verdict(command, [options] { return run_test(*options); });
 }
 
 }  // namespace rubric::tools
