@@ -27,10 +27,14 @@ if(RUBRIC_FUZZ AND RUBRIC_FUZZ_ENGINE STREQUAL "-fsanitize=fuzzer")
   target_compile_options(rubric_options INTERFACE -fsanitize=fuzzer-no-link)
 endif()
 
-# rubric_library(NAME SOURCES a.cc ... [DEPS lib ...]): a static library.
+# rubric_library(NAME [COLD] SOURCES a.cc ... [DEPS lib ...]): a static library. COLD: no benchmark
+# depends on its speed, so that it is compiled in less time.
 function(rubric_library name)
-  cmake_parse_arguments(arg "" "" "SOURCES;DEPS" ${ARGN})
+  cmake_parse_arguments(arg "COLD" "" "SOURCES;DEPS" ${ARGN})
   add_library(${name} STATIC ${arg_SOURCES})
+  if(arg_COLD)
+    target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+  endif()
   # Our warnings are for us: who uses an installed library has options of his own.
   target_link_libraries(${name} PUBLIC $<BUILD_INTERFACE:rubric_options> ${arg_DEPS})
   target_compile_features(${name} PUBLIC cxx_std_20)
@@ -57,6 +61,7 @@ function(rubric_test name)
     set(arg_LABEL fast)
   endif()
   add_executable(${name} ${arg_SOURCES})
+  set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
   target_link_libraries(${name} PRIVATE rubric_options ${arg_DEPS} GTest::gmock GTest::gtest_main)
   add_test(NAME ${name} COMMAND ${name} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
   set_tests_properties(${name} PROPERTIES LABELS ${arg_LABEL} TIMEOUT 600)
