@@ -71,8 +71,6 @@ class Listener {
   ByteStream accept(SteadyTime deadline);
 
  private:
-  void listen();
-
   HostPort at_;
   Descriptor descriptor_;
 };

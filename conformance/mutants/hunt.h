@@ -50,13 +50,14 @@ Found hunt(const Golden& golden, const Mutant& mutant);
 /// All of them, on so many threads.
 std::vector<Found> hunt_all(const Golden& golden, const Mutants& mutants, unsigned threads);
 
-/// A mutant that no golden trace may be asked to find, and why. In names `*` stands for anything.
-struct Equivalent {
+/// A mutant that no golden trace finds, and why. In names `*` stands for anything.
+struct Survivor {
   const char* name;
   const char* reason;
+  bool equivalent = true;  ///< What it changes is free or unseen. False: it is merely not judged.
 };
-std::span<const Equivalent> equivalents();
+std::span<const Survivor> survivors();
 /// The entry for a mutant of this name, or null.
-const Equivalent* find_equivalent(std::string_view name);
+const Survivor* find_survivor(std::string_view name);
 
 }  // namespace rubric::mutants

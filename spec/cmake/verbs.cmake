@@ -80,6 +80,28 @@ function(rubric_script_test name)
   set_tests_properties(${name} PROPERTIES LABELS ${arg_LABEL} TIMEOUT 900)
 endfunction()
 
+# rubric_have_tools(RESULT WHAT VARIABLE ...): RESULT says whether find_program or find_library set
+# all of the variables. Where one is missing, WHAT is not built and not tested: that is a warning,
+# and an error with RUBRIC_ALL_TOOLS.
+function(rubric_have_tools result what)
+  set(${result} TRUE PARENT_SCOPE)
+  foreach(variable ${ARGN})
+    if(NOT ${variable})
+      list(APPEND missing ${variable})
+    endif()
+  endforeach()
+  if(missing)
+    set(${result} FALSE PARENT_SCOPE)
+    set(severity WARNING)
+    if(RUBRIC_ALL_TOOLS)
+      set(severity SEND_ERROR)
+    endif()
+    list(JOIN missing ", " missing)
+    message(${severity} "${what} is not built or tested, without ${missing}; "
+      "`tools/install-packages test` installs what is needed.")
+  endif()
+endfunction()
+
 # rubric_must_not_compile(NAME SOURCE x.cc EXPECT regex): compiling x.cc must fail with a message
 # that matches; a control build of the same file with -DRUBRIC_CONTROL must succeed.
 function(rubric_must_not_compile name)
