@@ -13,14 +13,14 @@ namespace rubric::legal {
 namespace {
 
 constexpr std::size_t kNetHeaderBytes = 12;
-constexpr std::size_t kNetMsgBytes = 114;
+constexpr std::size_t kNetBytes = 114;
 constexpr std::uint8_t kMaxNbytes = 102;
-constexpr auto kNet = static_cast<std::uint8_t>(rubicon::AmType::kNet);
+constexpr auto kNetType = static_cast<std::uint8_t>(rubicon::AmType::kNet);
 
 }  // namespace
 
 Sink::Sink(World& world, int number, int island_index, std::uint16_t island)
-    : Node(world, number, kSinkAm, island_index, "sink"), serial_memory_(kNetMsgBytes) {
+    : Node(world, number, kSinkAm, island_index, "sink"), serial_memory_(kNetBytes) {
   address_ = {island, kSinkAm};
 }
 
@@ -131,7 +131,7 @@ void Sink::serial_heard(std::uint8_t am_type, const Octets& payload) {
       event("island_set", fmt::format(",\"island\":{}", island));
     });
   }
-  if (am_type != kNet) return;
+  if (am_type != kNetType) return;
   work(true, [this, payload] {
     const auto message = decode_net(view(payload));
     if (message) on_serial_net(*message);
@@ -164,7 +164,7 @@ void Sink::to_host(const NetMessage& message, bool own) {
   std::copy(bytes.begin(), bytes.end(), serial_memory_.begin());
   const bool lies = !own && !world().traits().serial_true_nbytes;
   if (lies) serial_memory_[kNetHeaderBytes - 1] = kMaxNbytes;
-  line_->to_host(kNet, serial_memory_);
+  line_->to_host(kNetType, serial_memory_);
 }
 
 bool Sink::route(const NetMessage& message) {

@@ -13,6 +13,10 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_L
   # It warns of overlap in its own std::string at -O2 and above (GCC bug 105651).
   target_compile_options(rubric_options INTERFACE -Wno-restrict)
 endif()
+if(CMAKE_UNITY_BUILD)
+  # It takes a type of an anonymous namespace for shared where the file is included.
+  target_compile_options(rubric_options INTERFACE -Wno-subobject-linkage)
+endif()
 if(RUBRIC_WERROR)
   target_compile_options(rubric_options INTERFACE -Werror)
 endif()
@@ -50,6 +54,18 @@ function(rubric_program name)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
 endfunction()
 
+# What all tests include, compiled once.
+if(RUBRIC_TESTS AND NOT RUBRIC_FUZZ)
+  find_package(GTest REQUIRED)
+  find_package(fmt REQUIRED)
+  # A program, as precompiled headers fit code of their own kind alone.
+  file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/test_headers.cc CONTENT "int main() {}\n")
+  add_executable(rubric_test_headers ${PROJECT_BINARY_DIR}/test_headers.cc)
+  target_link_libraries(rubric_test_headers PRIVATE rubric_options GTest::gmock fmt::fmt)
+  target_precompile_headers(rubric_test_headers PRIVATE <gmock/gmock.h> <gtest/gtest.h>
+    <fmt/format.h> <algorithm> <fstream> <map> <optional> <set> <string> <variant> <vector>)
+endif()
+
 # rubric_test(NAME SOURCES a_test.cc ... [DEPS lib ...] [LABEL fast|slow]): one GoogleTest program,
 # one ctest entry, run from the project's folder.
 function(rubric_test name)
@@ -62,7 +78,9 @@ function(rubric_test name)
   endif()
   add_executable(${name} ${arg_SOURCES})
   set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
-  target_link_libraries(${name} PRIVATE rubric_options ${arg_DEPS} GTest::gmock GTest::gtest_main)
+  target_link_libraries(${name} PRIVATE rubric_options ${arg_DEPS} GTest::gmock GTest::gtest_main
+    fmt::fmt)
+  target_precompile_headers(${name} REUSE_FROM rubric_test_headers)
   add_test(NAME ${name} COMMAND ${name} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
   set_tests_properties(${name} PROPERTIES LABELS ${arg_LABEL} TIMEOUT 600)
 endfunction()
