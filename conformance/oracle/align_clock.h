@@ -1,4 +1,5 @@
-// How far the clock of one capture is ahead of that of another, by the frames that both have.
+// Computes how far the clock of one capture is ahead of another's, from the frames that both have;
+// align.h says what this rests on.
 #pragma once
 
 #include <cstdint>
