@@ -45,7 +45,7 @@ namespace rubric::oracle {
 struct Arrived {
   Net net;
   Place place;
-  std::uint16_t sender = kNobody;  ///< Of the last hop.
+  std::uint16_t sender = kNobody;  ///< Who sent it on its last hop.
   ReqId forbidden = ReqId::kNone;  ///< Acking or delivering it breaks this rule.
   bool weak = false;
   bool must_ack = false;
@@ -56,7 +56,7 @@ struct Arrived {
   std::uint8_t delivered = 0;
 };
 
-/// What is known of an arrival.
+/// The facts about an arrival.
 struct Arrival {
   ReqId forbidden = ReqId::kNone;  ///< Why the message must have no effect at the node.
   bool weak = false;               ///< And that rule is a SHOULD.
@@ -69,17 +69,17 @@ class Acks {
   Acks(Context& context, std::size_t devices);
 
   void begin_life(std::uint16_t node);
-  /// A message comes to `node`.
+  /// Notes that a message comes to `node`.
   void arrived(std::uint16_t node, const Observation& seen, std::uint16_t sender, const Net& net,
                const Arrival& arrival);
   void repeated(std::uint16_t node, const Net& net);
-  /// A log says that the node received the message.
+  /// Notes that by a log the node received the message.
   void surely(std::uint16_t node, const Net& net);
-  /// `node` sends an ack, which is a message of its own.
+  /// Judges an ack that `node` sends as a message of its own.
   void sent(std::uint16_t node, const Observation& seen, const Net& ack);
-  /// Its application got a message, by a log.
+  /// Judges a message that by a log the application of `node` got.
   void delivered(std::uint16_t node, const Observation& seen, const machine::Received& received);
-  /// It sent something at this time: what it owed since long it will not send any more.
+  /// Notes that the node sent something at this time, so whatever it still owes is overdue.
   void showed_life(std::uint16_t node, std::int64_t now_us);
   void finish();
 

@@ -58,7 +58,7 @@
 
 namespace rubric::oracle {
 
-/// Stamp of what has none, while a run is put together.
+/// The stamp of a frame without one, while a run is put together.
 constexpr std::int64_t kNoStamp = std::numeric_limits<std::int64_t>::min();
 
 struct AlignOptions {

@@ -54,19 +54,19 @@
 
 namespace rubric::oracle {
 
-/// What a mote may be in. A frame on the air makes two of one: it was received, or it was lost.
+/// A state that a mote may be in. A frame on the air splits it: it was received, or it was lost.
 struct MoteHypothesis {
   machine::JoinMote join;
   bool unknown = false;           ///< Nothing is known: it ran before the capture began.
-  std::int64_t first_request_us = 0;  ///< Of the present call.
+  std::int64_t first_request_us = 0;  ///< In the present call.
   std::int64_t last_request_us = 0;
-  std::int64_t accepted_us = 0;   ///< When the reply was heard.
-  std::uint32_t reply = 0;        ///< Which observation that was.
+  std::int64_t accepted_us = 0;   ///< Time of the accepted reply.
+  std::uint32_t reply = 0;        ///< Index of the accepted reply.
   bool renumbered = false;        ///< Requests of this call had several numbers.
   std::uint8_t acks_seen = 0;     ///< ack_join on the air.
   bool confirmed = false;         ///< The link acknowledged its ack_join; it may have heard that.
   bool unaccepted = false;        ///< It acked what it could not accept.
-  bool told = false;              ///< Its application was told SUCCESS.
+  bool told = false;              ///< Its application got joined(SUCCESS).
   bool sent = false;              ///< It sent a net_msg, so in its own view it is a member.
 };
 
@@ -97,7 +97,7 @@ class MoteJoins {
 
   const std::vector<MoteHypothesis>& set(std::uint16_t mote) const { return motes_[mote].set; }
 
-  /// The own address where every hypothesis agrees on it.
+  /// Returns the own address if every hypothesis agrees on it.
   std::optional<machine::Address> address(std::uint16_t mote) const;
 
  private:

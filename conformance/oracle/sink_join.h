@@ -53,7 +53,7 @@
 
 namespace rubric::oracle {
 
-/// What a sink may think of one mote, and what it owes.
+/// A possible state of a sink's view of one mote, with what it owes.
 struct SinkHypothesis {
   bool unknown = false;  ///< It may list the mote since before the capture.
   std::optional<machine::Admission> member;
@@ -65,14 +65,14 @@ struct SinkHypothesis {
   friend bool operator==(const SinkHypothesis&, const SinkHypothesis&) = default;
 };
 
-/// The machine's list with what a hypothesis says of its one mote, and back.
+/// Converts between the machine's list and a hypothesis about one mote.
 machine::JoinSink list_of(const SinkHypothesis& h);
 void take_list(const machine::JoinSink& list, SinkHypothesis& h);
 
 /// A sink and a mote.
 struct PairWatch {
   std::vector<SinkHypothesis> set;
-  std::uint16_t answered_seq = 0;      ///< Of the last reply.
+  std::uint16_t answered_seq = 0;      ///< In the last reply.
   bool answered = false;
   Place request;                       ///< The last.
   std::uint16_t request_seq = 0;
@@ -88,7 +88,7 @@ struct SinkWatch {
   std::uint16_t island = 0;
   bool island_set = false;   ///< SET_ISLAND_ID was seen.
   std::unordered_map<std::uint16_t, PairWatch> motes;  ///< By AM address.
-  bool has_clock = false;    ///< Of the last reply:
+  bool has_clock = false;    ///< From the last reply:
   std::uint32_t clock_ms = 0;
   std::int64_t clock_us = 0;
   std::uint32_t debts = 0;   ///< Pairs with something due.
@@ -108,13 +108,13 @@ class SinkJoins {
   void report(std::uint16_t sink, const Observation& seen, const Net& net,
               const SerialJoined& joined);
   void told(std::uint16_t sink, const Observation& seen, const machine::MoteJoined& joined);
-  /// The sink sent something at this time: what it owed since long it will not send any more.
+  /// Notes that the sink sent something at this time, so whatever it still owes is overdue.
   void showed_life(std::uint16_t sink, std::int64_t now_us, bool on_serial);
   void finish(std::int64_t end_us);
-  /// Somebody else waits for the answer to the mote's last request.
+  /// Notes that somebody else waits for the answer to the mote's last request.
   void settled(std::uint16_t mote_am) { unanswered_[mote_am].open = false; }
 
-  /// The sink's island now; 0: not known.
+  /// Returns the sink's island now; 0 if unknown.
   std::uint16_t island(std::uint16_t sink) const;
   SinkWatch* find(std::uint16_t sink);
 
