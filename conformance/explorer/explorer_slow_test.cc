@@ -25,7 +25,7 @@ TEST(ExploreSlow, TwoMotesAndTwoSinks) {
     if (threads == 1) alone = result.progress;
     EXPECT_EQ(result.progress.states, alone.states);
     EXPECT_EQ(result.progress.transitions, alone.transitions);
-    // Some hundred thousand, and each with several ways on: with fewer something was left out.
+    // Some hundred thousand, and each with several successors: fewer would mean a gap.
     EXPECT_GT(result.progress.states, 100'000U);
     EXPECT_GT(result.progress.transitions, 5 * result.progress.states);
   }

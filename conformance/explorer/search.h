@@ -52,7 +52,7 @@
 
 namespace rubric::explorer {
 
-/// How far a search is.
+/// The progress of a search.
 struct Progress {
   std::uint64_t states = 0;
   std::uint64_t transitions = 0;
@@ -61,7 +61,7 @@ struct Progress {
   double seconds = 0;
 };
 
-/// A way from the start to a state, and what it breaks or shows.
+/// A path from the start to a state, and the properties that it breaks.
 struct Path {
   std::vector<Move> moves;
   Mask violated = 0;
@@ -78,14 +78,14 @@ struct Result {
   Mask goals = 0;                ///< Reached.
   std::size_t node_states = 0;   ///< Different states of single nodes,
   std::size_t frames = 0;        ///< and frames.
-  std::size_t memory_bytes = 0;  ///< Of all that was kept, at the end.
+  std::size_t memory_bytes = 0;  ///< For everything kept, at the end.
   std::size_t memory_per_state_bytes = 0;
 };
 
-/// The goals that these options must reach.
+/// Returns the goals that these options must reach.
 Mask expected_goals(const Options& options);
 
-/// Explores. `report`, if any, is called now and then. Counts do not depend on threads; which of
+/// Explores. Calls `report`, if any, now and then. Counts do not depend on threads; which of
 /// several shortest violations is found may.
 Result explore(Nodes& nodes, const std::function<void(const Progress&)>& report = {});
 
