@@ -1,5 +1,5 @@
-// Mutants that the golden traces cannot tell from a correct node, or may not: what they change is
-// free, or cannot be seen.
+// Mutants that the golden traces cannot, or must not, tell from a correct node: the change is
+// allowed, or invisible.
 #include <array>
 
 #include "conformance/mutants/hunt.h"

@@ -1,4 +1,4 @@
-// Mistakes of motes with a join_reply: which they accept, what they make of it, ack_join.
+// Mistakes of motes with a join_reply: which they accept, what they do with it, ack_join.
 #include <algorithm>
 
 #include "conformance/mutants/fields.h"
