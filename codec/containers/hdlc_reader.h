@@ -21,8 +21,8 @@ inline constexpr std::size_t kHdlcKeptMax = 4096;
 ///
 /// Faults (offsets count in the unescaped content from the kind byte): kAborted, kTooLong,
 /// kTooShort, kCrc, kCut, looked for in this order, kCut first at the end of the input. An unknown
-/// kind is no fault. serial_frame.h explains how the pieces of a malformed frame are filled in. Source:
-/// TEP 113, section 3.1; RFC 1662, section 4.
+/// kind is no fault. serial_frame.h explains how the pieces of a malformed frame are filled in.
+/// Source: TEP 113, section 3.1; RFC 1662, section 4.
 class HdlcReader final : public Reader {
  public:
   explicit HdlcReader(const ReaderOptions& options = {}, CpuPath path = best_cpu_path());
