@@ -45,7 +45,7 @@ int complain(const CLI::App& app, const std::string& what) {
   return code == usage_codes().end() ? kExitUsage : code->second;
 }
 
-// The subcommand that was given, or the program itself.
+// Returns the given subcommand, or the program itself.
 const CLI::App& innermost(const CLI::App& app) {
   const CLI::App* at = &app;
   while (!at->get_subcommands().empty()) at = at->get_subcommands().back();
