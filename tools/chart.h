@@ -1,4 +1,4 @@
-// rubric chart: a golden trace as a sequence chart, as the reference machine works it.
+// rubric chart: draws a golden trace as a sequence chart, as run by the reference machine.
 #pragma once
 
 #include <CLI/CLI.hpp>

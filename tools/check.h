@@ -1,4 +1,4 @@
-// rubric check: holds captures and logs against the protocol's rules.
+// rubric check: checks captures and logs by the protocol's rules.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -27,12 +27,13 @@ struct Command {
   std::vector<Flag> flags;
 };
 
-/// The first sentence of a description, on one line.
+/// Returns the first sentence of a description, on one line.
 std::string brief(const std::string& text) {
   return text.substr(0, text.find_first_of(";\n"));
 }
 
-/// CLI11 tells the members of a set in the name of the type: "TEXT:{text,jsonl,csv}".
+/// Returns the members of a set, which CLI11 lists in the name of the type:
+/// "TEXT:{text,jsonl,csv}".
 std::vector<std::string> choices_of(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   const std::size_t open = type.find('{');
@@ -83,7 +84,8 @@ std::vector<std::string> dashed(const Flag& flag) {
   return out;
 }
 
-/// In single quotes as every shell reads them, without the signs that zsh gives a meaning.
+/// Returns text in single quotes as every shell reads them, without characters that are special in
+/// zsh.
 std::string shell_quoted(std::string_view text) {
   std::string out = "'";
   for (const char c : text) {
@@ -140,7 +142,7 @@ complete -F _rubric rubric
 )");
 }
 
-/// '(-o --output)'{-o,--output}'[what it is]:value:(a b)'
+/// Returns '(-o --output)'{-o,--output}'[what it is]:value:(a b)'.
 std::string zsh_argument(const Flag& flag) {
   const std::vector<std::string> names = dashed(flag);
   const std::string help = shell_quoted("[" + flag.description + "]");
@@ -149,7 +151,7 @@ std::string zsh_argument(const Flag& flag) {
     tail = ":value:" + (flag.choices.empty() ? std::string("_files")
                                              : "(" + joined(flag.choices) + ")");
   }
-  // The brackets around the description mean something, those within it were replaced.
+  // The brackets around the description are special; those within it were replaced.
   std::string body = "'[" + help.substr(2, help.size() - 4) + "]" + tail + "'";
   if (names.size() == 1) return names[0] + body;
   return fmt::format("'({})'{{{}}}{}", joined(names), fmt::join(names, ","), body);

@@ -1,4 +1,5 @@
-// rubric coverage: which rules the golden traces, the machine, the explorer and the mutants touch.
+// rubric coverage: lists which rules the golden traces, the machine, the explorer and the mutants
+// touch.
 #pragma once
 
 #include <CLI/CLI.hpp>

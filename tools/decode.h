@@ -1,4 +1,4 @@
-// rubric decode: prints what captures hold.
+// rubric decode: prints the contents of captures.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,4 +1,4 @@
-// rubric diff: the shortest trace on which two implementations, or two profiles, differ.
+// rubric diff: finds the shortest trace on which two implementations, or two profiles, differ.
 #pragma once
 
 #include <CLI/CLI.hpp>

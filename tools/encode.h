@@ -1,4 +1,4 @@
-// rubric encode: frames from the lines that rubric decode prints, or from fields alone.
+// rubric encode: makes frames from the lines of rubric decode, or from fields alone.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,4 +1,4 @@
-// rubric explain: what a message, a rule, a name or a frame means, from the tables.
+// rubric explain: explains a message, a rule, a name or a frame, from the tables.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,4 +1,4 @@
-// rubric explore: every state of a small network, and what must hold in all of them.
+// rubric explore: visits every state of a small network and checks its properties.
 #pragma once
 
 #include <CLI/CLI.hpp>

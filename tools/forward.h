@@ -1,4 +1,4 @@
-// rubric forward: a serial line, or a serial forwarder, for many.
+// rubric forward: shares a serial line, or a serial forwarder, with many clients.
 #pragma once
 
 #include <CLI/CLI.hpp>

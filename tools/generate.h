@@ -1,4 +1,4 @@
-// rubric generate: valid and near-valid frames with what a decoder must say of each.
+// rubric generate: makes valid and near-valid frames with the results that a decoder must give.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,4 +1,4 @@
-// rubric install-wireshark: the dissector and rubric-extcap where Wireshark finds them.
+// rubric install-wireshark: installs the dissector and rubric-extcap where Wireshark finds them.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,4 +1,4 @@
-// rubric messages: the messages of a protocol.
+// rubric messages: lists the messages of a protocol.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,4 +1,4 @@
-// rubric repro: an input of the stateful fuzz targets, as a trace.
+// rubric repro: prints an input of the stateful fuzz targets as a trace.
 #pragma once
 
 #include <CLI/CLI.hpp>

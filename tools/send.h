@@ -1,4 +1,4 @@
-// rubric send: packets to a mote's serial line in use, and what comes back.
+// rubric send: sends packets to a mote's serial line in use, and shows its frames.
 #pragma once
 
 #include <CLI/CLI.hpp>

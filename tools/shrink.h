@@ -1,4 +1,4 @@
-// rubric shrink: a failing trace made as small as it can be.
+// rubric shrink: makes a failing trace as small as possible.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,4 +1,4 @@
-// rubric simulate: a network in virtual time, written as log and capture.
+// rubric simulate: runs a network in virtual time, and writes log and capture.
 #pragma once
 
 #include <CLI/CLI.hpp>

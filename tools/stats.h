@@ -1,4 +1,4 @@
-// rubric stats: what captures hold, counted.
+// rubric stats: counts the contents of captures.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,4 +1,4 @@
-// rubric test: works golden traces on implementations.
+// rubric test: runs golden traces on implementations.
 #pragma once
 
 #include <CLI/CLI.hpp>
