@@ -61,7 +61,7 @@ void Node::set_application_busy(bool busy) {
   handle_waiting();
 }
 
-// Where a message of this node's own goes; false: it is refused.
+// Routes a message of this node's own; returns false if it is refused.
 bool Node::route_own(Address& dest, Route& route) const {
   //= J11-SEND: A mote that is not a member sends no net_msg.
   if (!is_member()) return false;
