@@ -48,7 +48,7 @@ function netMessage(random) {
   let inner = random.chance(0.85) ? bodies.body(message, random)
       : bodies.noise(random.below(101), random);
   if (inner.length > 0 && first !== null) inner[0] = first;
-  // What stands behind the body is left over from earlier frames, within nbytes and behind it.
+  // Bytes after the body are left over from earlier frames, within nbytes and after it.
   if (random.chance(0.2)) inner = Buffer.concat([inner, bodies.noise(random.below(20), random)]);
   inner = inner.subarray(0, netPayloadMax - 2);
   const byPc = random.chance(0.05) ? !fromPc : (fromPc ?? random.chance(0.5));

@@ -20,7 +20,7 @@ const faultOfError = {
   ValidationLessThanError: 'out_of_range',
   ValidationGreaterThanError: 'out_of_range',
 };
-// What is run: its share of COUNT, and the least of different mutated frames where that matters.
+// The runs: their share of COUNT, and the least of different mutated frames where that matters.
 const suites = [
   {carrier: 'serial', spec: 'rubicon', share: 0.7, leastMutated: 100000},
   {carrier: 'radio_i_frame', spec: 'rubicon', share: 0.15, as: 'RadioIFrame'},
@@ -66,7 +66,7 @@ function disagreement(kaitai, frame, record) {
     return `rubric ${said({fault, offset})}, Kaitai ${said(verdict)}`;
   }
   if (fault) return null;
-  // Of a serial frame the record shows the message; with --as all of it.
+  // The record shows the message of a serial frame; with --as all of it.
   const message = kaitai.whole ? verdict.object : verdict.object.payload;
   if (message instanceof Uint8Array || message === undefined) {
     // A radio message in a serial packet is shown with a note; the serial carrier has no such case.

@@ -1,7 +1,7 @@
 // ---- Sequence charts.
 //
 // A row is a line of the log, or one that is missing. Its `arrows` go from lane to lane; a lane is
-// a node, or the application above one. Null stands for somebody whom the case does not have.
+// a node, or the application above one. Null is somebody whom the case does not have.
 
 const kRow = 22;
 const kRowFigure = 40;
