@@ -32,7 +32,7 @@ using generate::FrameGenerator;
 using generate::Framer;
 using reflect::Route;
 
-constexpr double kFramingShare = 0.15;  // Of the broken frames, if a format has framing.
+constexpr double kFramingShare = 0.15;  // Share of the broken frames, if a format has framing.
 constexpr std::int64_t kBetweenFramesNs = 1'000'000;
 constexpr std::uint64_t kAckSeed = 0x61636B;  // The acknowledgement has a generator of its own.
 constexpr std::size_t kPcapngDataAt = 28;     // In an enhanced packet block.

@@ -195,7 +195,7 @@ class Breaker {
     out_.bytes.insert(out_.bytes.begin() + m.at + m.size, noise.begin(), noise.end());
   }
 
-  // Of the message in opaque bytes.
+  // Breaks of the message in opaque bytes.
 
   bool body_value() {
     return value_of(pick_inside([&](const Part& p) {

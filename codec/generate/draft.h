@@ -44,7 +44,7 @@ struct Body {
   const reflect::Type* type = nullptr;   ///< The message; null where there is none.
   const reflect::Type* owner = nullptr;  ///< The structure whose field the bytes are.
   std::uint16_t field = 0;               ///< Index in the owner's fields.
-  std::uint32_t base = 0;                ///< Where the owner begins.
+  std::uint32_t base = 0;                ///< Start of the owner.
   std::uint32_t part = 0;                ///< Index of the bytes; the message's follow.
   std::uint32_t last_inside = 0;         ///< Index after the last of them.
 };

@@ -179,7 +179,7 @@ struct RouteLength {
 /// How a frame reaches a message (codec/generated/*/messages.h), for the structure-aware fuzzer and
 /// other builders of frames; the message's own contents are in its Type.
 struct Route {
-  const char* carrier;    ///< Of the frames: "serial", "radio_i", ...
+  const char* carrier;    ///< Carrier of the frames: "serial", "radio_i", ...
   const Type* type;       ///< The message.
   uint16_t offset;        ///< Offset of its begin.
   uint32_t room;          ///< The most bytes that it can have there; UINT32_MAX if unbounded.

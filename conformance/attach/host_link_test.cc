@@ -247,7 +247,7 @@ TEST(HostLink, ALineThatTakesNothingIsGivenUpInTime) {
   ASSERT_EQ(host.outcomes.size(), 1U);
   EXPECT_FALSE(host.outcomes[0].confirmed);
   EXPECT_EQ(host.outcomes[0].tries, 1);
-  host.take(ack(15), 3001);  // Of the next packet.
+  host.take(ack(15), 3001);  // For the next packet.
   ASSERT_EQ(host.outcomes.size(), 2U);
   EXPECT_EQ(host.outcomes[1].tries, 1);
 }

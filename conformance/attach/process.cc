@@ -148,7 +148,7 @@ std::unique_ptr<Process> Process::copy(const std::function<int(int, int)>& body)
     close_fd(pipes.err.read_fd);
     ::_exit(body(pipes.in.read_fd, pipes.out.write_fd));
   }
-  ::setpgid(pid, pid);  // Whoever comes first: it must be so before it is killed.
+  ::setpgid(pid, pid);  // In parent and child: it must be so before it is killed.
   return std::unique_ptr<Process>(new Process(pid, start.started(pid), pipes));
 }
 

@@ -179,7 +179,7 @@ Answer RctTarget::answer_to(const Asked& asked, Milliseconds more) {
     return client_->ask(asked, more);
   } catch (const Unsupported& error) {
     if (!asked.passes_time) throw;
-    client_->give_up();  // Whoever has started lets time pass.
+    client_->give_up();  // A started node lets time pass.
     throw TargetBroken(std::string("unsupported ") + error.what());
   }
 }

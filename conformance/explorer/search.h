@@ -36,7 +36,7 @@
 // Cannot know: what only a clock decides (J8-PERIOD, the period of J4-REPEAT), what damaged frames,
 // base stations and PEIS do, and larger networks than the one explored.
 //
-// What the answer is worth: a violation is a path of the machine itself, or of the flaw around it.
+// Reading the answer: a violation is a path of the machine itself, or of the flaw around it.
 // `complete` means that every state within the bounds was expanded. A full table, an overflow of
 // the air or `states_max` clears it, and the verdict is then inconclusive. A complete search
 // without a violation still fails if a goal (expected_goals()) was never reached, since properties

@@ -19,7 +19,7 @@ void hear_join_request(Node& node, const Frame& frame) {
   if (!is_sink(node)) return node.actions.ignored(req::kJ10Mote);
   const auto request = rubicon::JoinRequestView::parse(frame.payload);
   if (!request) return node.actions.ignored(request.error().requirement);
-  // No mote has such a TinyOS id, so none could be told in a reply. (decision 132)
+  // No mote has such a TinyOS id, so no reply could name it. (decision 132)
   if (is_reserved(frame.src) || frame.src == node.config().id) {
     return node.actions.ignored(req::kJ3Address);
   }

@@ -137,7 +137,7 @@ void add_acceptance(Mutants& out) {
                  })});
 }
 
-// What the link layer says of ack_join.
+// The link ack of ack_join.
 
 struct Confirmed {
   Transmit ack;

@@ -45,7 +45,7 @@ namespace rubric::oracle {
 struct Arrived {
   Net net;
   Place place;
-  std::uint16_t sender = kNobody;  ///< Who sent it on its last hop.
+  std::uint16_t sender = kNobody;  ///< The node that sent it on its last hop.
   ReqId forbidden = ReqId::kNone;  ///< Acking or delivering it breaks this rule.
   bool weak = false;
   bool must_ack = false;

@@ -221,7 +221,7 @@ std::optional<std::vector<std::uint32_t>> wrong_ways(const Run& run, std::uint32
     if (may_be_either(run, seen)) open.push_back(i);
     const bool within = net.src.devid != machine::kNullDevid &&
                         net.dest.devid != machine::kNullDevid && net.dest.pid == net.src.pid;
-    if (within) return std::nullopt;  // A sink hands on no such message.
+    if (within) return std::nullopt;  // A sink passes no such message on.
   }
   if (open.empty()) return open;
   if (islands.size() != 1) return std::nullopt;

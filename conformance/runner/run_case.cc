@@ -304,7 +304,7 @@ class Run {
   const trace::Case& case_;
   const trace::Scope scope_;
   const TargetFactory& make_;
-  trace::Place place_;   // Of the current line.
+  trace::Place place_;   // Place of the current line.
   std::string unseen_;   // The first line of which the target shows nothing.
   std::vector<NodeLog> nodes_;
   std::vector<Pending> forbidden_;

@@ -32,7 +32,7 @@ struct Failure {
   bool weak = false;                      ///< All of these are SHOULD.
   Ticks time = 0;                         ///< When the breaking output came, or its time was over.
   std::string expected;                   ///< The line.
-  std::string text;                       ///< What happened instead, with the nearest miss.
+  std::string text;                       ///< The actual event, with the nearest miss.
   Ticks from = 0;                         ///< The line's time, since the start of the case.
   Ticks to = 0;
   bool forbidden = false;                 ///< The line says what must not be emitted.

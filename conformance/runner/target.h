@@ -34,7 +34,8 @@ class Unsupported : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// What a target lets the runner see and do. A node behind a serial line shows only that line.
+/// The part of a node that a target lets the runner see and do. A node behind a serial line shows
+/// only that line.
 struct Reach {
   bool radio = true;
   bool serial = true;

@@ -12,7 +12,7 @@ namespace rubric::simulator {
 
 struct ScenarioOptions {
   std::uint64_t seed = 1;
-  double loss = 0;         ///< Of every radio frame at every receiver.
+  double loss = 0;         ///< Share of lost radio frames at every receiver.
   double duplication = 0;
   std::size_t motes = 3;   ///< For the scenario `free` only.
   std::size_t sinks = 1;

@@ -150,7 +150,7 @@ class Flatten {
   const Decoded& decoded_;
   Concrete& out_;
   std::string path_;
-  bool inside_ = false;  // Of an address, which is shown as a whole.
+  bool inside_ = false;  // Inside an address, which is shown as a whole.
 };
 
 // Frames are named by their payload; that a whole frame was understood is only of interest to

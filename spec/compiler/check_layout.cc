@@ -48,7 +48,7 @@ class Layout {
     const bool count_ok = resolve_number(field, field.count, scope, "count");
     check_last(field, index);
     if (!extent_ok || !count_ok || check_.is_open(&field) || is_type_open(field)) {
-      // The place of what follows is unknown: report nothing about it.
+      // Later fields have an unknown place: report nothing about them.
       check_.open.insert(&field);
       is_open_ = true;
     } else {

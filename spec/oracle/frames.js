@@ -1,4 +1,4 @@
-// Makes frames to hold both decoders against: real ones and made-up messages of every kind, mutated
+// Makes frames to compare both decoders on: real ones and made-up messages of every kind, mutated
 // where parsers go wrong. Seeded, so a run can be repeated.
 'use strict';
 const fs = require('fs');
@@ -93,7 +93,7 @@ function radioFrame({type, payload}, network, random) {
   return Buffer.concat([head, payload]);
 }
 
-/// What each carrier's frames are made from: a fresh frame, and the bytes where parsers go wrong.
+/// The parts of each carrier's frames: a fresh frame, and the bytes where parsers go wrong.
 const makers = {
   serial: {
     fresh: (random) => serialFrame(message(bodies.serialTypes, 0.8, random), random),

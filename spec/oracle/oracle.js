@@ -1,4 +1,4 @@
-// Holds `rubric decode` against Kaitai Struct's own parser: same frames accepted, same faults in
+// Compares `rubric decode` with Kaitai Struct's own parser: same frames accepted, same faults in
 // the same places, same fields, same bytes left over.
 // Usage: node oracle.js PATH_TO_RUBRIC [COUNT] [SEED]
 'use strict';
@@ -37,7 +37,7 @@ function widthAt(specs, srcPath) {
   throw new Error(`no ${srcPath} in the spec`);
 }
 
-/// Where Kaitai's error is: what is too short is so at its end; a value is where it begins.
+/// Returns the place of Kaitai's error: the end for missing bytes, the beginning for a value.
 function offsetOf(error, specs) {
   const {io, srcPath} = error;
   return io.byteOffset + (srcPath ? io.pos - widthAt(specs, srcPath) : io.size);
@@ -92,7 +92,7 @@ async function loadSuite({spec, as}) {
 
 const count = (counts, key) => counts[key] = (counts[key] || 0) + 1;
 
-/// What the frames are: {origins, different: of the mutated ones}.
+/// Counts the frames: {origins, different: mutated ones}.
 function census(frames) {
   const origins = {};
   for (const {origin} of frames) count(origins, origin);

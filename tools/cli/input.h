@@ -58,7 +58,7 @@ struct Source {
 struct InputResult {
   bool failed = false;   ///< A file could not be opened or read, or is damaged; said on stderr.
   bool stopped = false;  ///< The callback asked to stop.
-  bool live = false;     ///< A line, or a file that was followed, was read until somebody said so.
+  bool live = false;     ///< A line, or a followed file, was read until the user stopped it.
 };
 
 /// Called for each packet, in order; false stops reading.

@@ -13,7 +13,7 @@
 
 namespace rubric::format {
 
-/// What is wrong with an expression, and at which character.
+/// An error in an expression, with the character at fault.
 class FilterError : public std::runtime_error {
  public:
   FilterError(const std::string& what, std::size_t position)

@@ -1,4 +1,4 @@
-// Who sent what to whom, in words: the frames of a run as a report shows them.
+// Describes in words who sent what to whom: the frames of a run as a report shows them.
 #pragma once
 
 #include <string>

@@ -72,7 +72,7 @@ class Arm : public Board {
 
  private:
   mutable uint32_t value_ = 0;
-  mutable uint32_t parts_ = 0;  // Of the present tick, passed when the clock was last read.
+  mutable uint32_t parts_ = 0;  // Of the present tick, passed at the last read of the clock.
   mutable Ticks ticks_ = 0;
 
   void start_uart(uint32_t uart, uint32_t baud) {

@@ -70,7 +70,7 @@ class Bridge final : private Listener {
     bool on_air = false;        ///< Else it waits for the channel.
     bool wants_ack = false;
     ByteVector packet;
-    Instant end = 0;            ///< Of the transmission, unless linkack ends it.
+    Instant end = 0;            ///< End of the transmission, unless linkack ends it.
   };
   struct Reported {  // From the last kIdle.
     std::uint8_t records = 0;

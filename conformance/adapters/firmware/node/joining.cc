@@ -123,7 +123,7 @@ void Node::hear_join_request(uint16_t src, Bytes payload) {
   //= J10-MOTE: A mote ignores join_request and ack_join.
   if (!kIsSink) return;
   const auto request = rubicon::JoinRequestView::parse(payload);
-  // No mote has such a TinyOS id, so none could be told in a reply. (decision 132)
+  // No mote has such a TinyOS id, so no reply could name it. (decision 132)
   if (!request || is_reserved(src) || src == id_) return;
   const Descriptor descriptor = request->mote_desc().to_value();
   if (!admissions_.request(src, request->seq_num(), descriptor)) return;

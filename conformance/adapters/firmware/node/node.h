@@ -53,7 +53,7 @@ class Node {
   Address address() const;
   uint16_t last_seq_num() const { return awaiting_.last_seq_num(); }
 
-  // What the board reports.
+  // Events from the board.
 
   /// Handles a frame that is addressed to this node or to all; ignores longer ones than
   /// kAmPayloadMax.
