@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Where `rubric forward` has its packets from, and where it listens.
+"""The sources of `rubric forward`, and where it listens.
 
 Usage: forward_source_test.py RUBRIC. All of it on this host, bounded in time.
 """

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What conformance/PORTING.md shows is what happens: the loop, the conversations, the failure.
+"""conformance/PORTING.md shows what happens: the loop, the conversations, the failure.
 
 Usage: porting_test.py RUBRIC PROJECT_FOLDER [--regenerate]
 --regenerate writes the loop and the failure into the text.

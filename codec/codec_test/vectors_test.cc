@@ -1,4 +1,4 @@
-// The generated views against spec/vectors: bytes and what they must mean, decided without them.
+// The generated views against spec/vectors: bytes and their meaning, decided without them.
 #include "codec/codec_test/vectors.h"
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 namespace rubric {
 namespace {
 
-// The fields of a view as text, by path.
+// Prints the fields of a view as text, by path.
 class Dump {
  public:
   std::map<std::string, std::string> fields;
@@ -133,7 +133,7 @@ TEST(Vectors, ViewsAcceptReadAndRefuseAsTheySay) {
 }
 
 // Chosen at run time, by the tables of all.h: the value of a valid vector is written as its meant
-// bytes again, and what parse refuses, the table's functions refuse with the same error.
+// bytes again, and the table's functions refuse with the same error as parse.
 TEST(Vectors, CodecsByNameWriteTheMeantBytesAgain) {
   std::map<std::string, MessageCodec> codecs;
   for (const NamedCodec& named : all_codecs()) codecs.emplace(named.name, named.codec);

@@ -22,7 +22,7 @@ std::size_t most_bytes(bool radio) {
   return radio ? kRadioFrameMax - kFcsBytes : kSerialBytesMax;
 }
 
-// What stands in `bytes`, which differ from the draft's at most in and behind its body.
+// Returns the numbers in `bytes`, which differ from the draft's at most in and after its body.
 std::vector<NumberAt> numbers_of(const Draft& draft, const std::vector<std::uint8_t>& bytes,
                                  bool with_body) {
   std::vector<NumberAt> out;
@@ -34,8 +34,8 @@ std::vector<NumberAt> numbers_of(const Draft& draft, const std::vector<std::uint
   return out;
 }
 
-// Tries the ways in any order, values more often first, since rules are most often about these;
-// few messages can be broken in all ways.
+// Tries the ways in any order, values more often first, since most rules are about these; few
+// messages can be broken in all ways.
 bool break_somehow(const Draft& draft, std::size_t max_bytes, const reflect::Type* short_radio,
                    Random& random, Broken& out) {
   if (random.chance(kValueShare) &&

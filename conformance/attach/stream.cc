@@ -29,7 +29,7 @@ using std::chrono::steady_clock;
 constexpr Milliseconds kRetry{50};
 constexpr const char* kThisHost = "127.0.0.1";
 
-// Whether the descriptor is ready before the deadline; interruptions do not count.
+// Returns whether the descriptor is ready before the deadline; continues after interruptions.
 bool wait_for(int fd, short events, SteadyTime deadline) {
   while (true) {
     const auto left = std::chrono::ceil<Milliseconds>(deadline - steady_clock::now());
@@ -50,7 +50,7 @@ ByteStream stream_of(Descriptor connection) {
   return ByteStream(std::move(connection));
 }
 
-// 0, or what went wrong.
+// Connects once. Returns 0, or the error.
 int connect_once(const Descriptor& connection, const SocketAddress& address, SteadyTime deadline) {
   if (!connection.is_open()) return errno;
   if (::connect(connection.get(), address.get(), address.size_bytes) == 0) return 0;

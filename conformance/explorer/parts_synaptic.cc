@@ -1,5 +1,5 @@
-// Synaptic channels: the explored networks have none, so that a sink is looked at alone, with the
-// calls and the data that concern one channel.
+// Synaptic channels: the explored networks have none, so a sink is explored alone, with the calls
+// and the data of one channel.
 #include "conformance/events/app_events.h"
 #include "conformance/explorer/parts.h"
 #include "conformance/machine/synaptic.h"
@@ -38,7 +38,7 @@ std::vector<Given> alphabet(const Calls&... calls) {
   return {given(Called{calls})..., given(machine::TimerDue{kTick}), given(machine::Reboot{})};
 }
 
-// A call's name, "tick", "data" or "reboot".
+// Returns a call's name, "tick", "data" or "reboot".
 std::string name_of(const Given& given) {
   if (given.heard) return "data";
   if (const auto* called = std::get_if<Called>(&given.what)) {
@@ -83,7 +83,7 @@ std::vector<Given> output_alphabet(const machine::Profile&) {
                   machine::WriteOutput{kOutId, 0, 2.0F});
 }
 
-// What the other end sends at its tick.
+// Returns the data that the other end sends at its tick.
 machine::Transmit data(const machine::Profile& profile) {
   machine::Config config;
   config.id = kPeer.devid;

@@ -16,11 +16,11 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kLookahead = 16;         // States whose ways on are looked up together.
-constexpr std::size_t kWaysOnMax = 256;        // Of one state; room is kept for so many.
+constexpr std::size_t kLookahead = 16;         // States whose successors are looked up together.
+constexpr std::size_t kWaysOnMax = 256;        // For one state; room is kept for so many.
 constexpr std::size_t kBatchMin = 16384;       // States between two looks at the room.
 
-/// A state that breaks something, or is weak in a known way.
+/// A state that breaks something, or has a known weakness.
 struct Find {
   PathLink link;
   Mask violated = 0;
@@ -38,7 +38,7 @@ class Worker {
     add(world, {});
   }
 
-  /// Takes chunks until none is left or one holds a violation.
+  /// Takes chunks until none is left.
   void work(const std::vector<Chunk>& chunks, std::atomic<std::size_t>& taken) {
     for (std::size_t i = taken++; i < chunks.size(); i = taken++) expand(chunks[i]);
   }
@@ -73,7 +73,7 @@ class Worker {
     }
   }
 
-  // Computes the ways on, and asks memory for the places where they may be known.
+  // Computes the successors, and prefetches their places in the visited set.
   void look(Pending& pending, PathLink self) {
     pending.self = self;
     network.successors(world_, pending.ways_on);
@@ -117,7 +117,7 @@ class Worker {
   std::array<Pending, kLookahead> pending_;
 
  public:
-  std::vector<Find> step_violations;  ///< By the link of the step that breaks something.
+  std::vector<Find> step_violations;  ///< Links are the steps that break something.
 };
 
 class Search {
@@ -137,7 +137,7 @@ class Search {
   }
 
  private:
-  // Expands every state of one depth. False: nothing is left, or the search has to stop.
+  // Expands every state of one depth. Returns false if nothing is left, or the search has to stop.
   bool level() {
     std::vector<Frontier> frontiers;
     std::vector<Chunk> chunks;
@@ -159,7 +159,7 @@ class Search {
     return !found_violation();
   }
 
-  // As many chunks as surely find room for what follows them.
+  // Returns how many chunks surely find room for their successors.
   std::size_t batch_size(const std::vector<Chunk>& chunks, std::size_t first) {
     std::size_t wanted = 0;
     for (std::size_t i = first; i < chunks.size() && wanted < kBatchMin; ++i) {
@@ -219,7 +219,8 @@ class Search {
     return p;
   }
 
-  // The moves that lead to a state: its links, from last to first, walked again from the start.
+  // Returns the moves that lead to a state: follows its links back, and walks them again from the
+  // start.
   Path path_to(PathLink last, Mask violated) {
     std::vector<std::uint16_t> ways;
     const bool at_start = last.way == PathLink::kStart;
@@ -240,8 +241,9 @@ class Search {
     return path;
   }
 
-  // Violations of a step are one shorter to find than those of the state that it leads to, but the
-  // states of a level are looked at when their steps are taken: those of states come first.
+  // Returns the shortest violation. A step's violation is one move shorter than that of the state
+  // that it leads to, but states of a level are checked when their steps are taken: those of states
+  // come first.
   std::optional<Path> shortest_violation() {
     for (const bool of_states : {true, false}) {
       const Find* best = nullptr;

@@ -159,7 +159,7 @@ void Sink::on_serial_net(const NetMessage& message) {
 void Sink::by_radio(const NetMessage& message) { transmit_net(message, message.dest.devid); }
 
 void Sink::to_host(const NetMessage& message, bool own) {
-  // The serial line always carries a whole message; what is behind the content is left over.
+  // The serial line always carries a whole message; the bytes after the content are left over.
   const Octets bytes = encode(message);
   std::copy(bytes.begin(), bytes.end(), serial_memory_.begin());
   const bool lies = !own && !world().traits().serial_true_nbytes;

@@ -13,7 +13,7 @@ using rubicon::AmType;
 constexpr auto kMockupMessage = static_cast<std::uint8_t>(rubicon::Component::kMockup);
 constexpr std::uint16_t kTesterAm = 66;
 
-/// What mote 3 sends between 3.0 and 3.5 s is lost, and it sends a reliable message then.
+/// Loses the frames of mote 3 between 3.0 and 3.5 s, when it sends a reliable message.
 void lose_a_message(Plan& plan) {
   plan.losses.push_back([](World& world, const RadioFrame& frame, const Device&) {
     return frame.src == 3 && world.now_us() > 3'000'000 && world.now_us() < 3'500'000;
@@ -27,7 +27,7 @@ void ack_deployed(Plan& plan, Random&) { plan.chats = 25; }
 void ack_paper(Plan& plan, Random&) {
   plan.chats = 25;
   plan.traits.ack_form = AckForm::kPaper;
-  plan.traits.serial_true_nbytes = true;  // With 102 bytes nobody could tell this form.
+  plan.traits.serial_true_nbytes = true;  // 102 bytes would hide this form.
 }
 void ack_per_node(Plan& plan, Random&) {
   plan.chats = 25;
@@ -79,7 +79,7 @@ void unknown_app_silent(Plan& plan, Random&) {
   unknown_app(plan);
 }
 
-/// A tester's net_msg to mote `index` with the byte at `offset` changed.
+/// Returns a tester's net_msg to mote `index` with the byte at `offset` changed.
 Script patched(std::size_t index, std::size_t offset, std::uint8_t value) {
   return [index, offset, value](World& world) {
     NetMessage message;

@@ -32,7 +32,7 @@ TEST(Legal, NoGoldenTraceFails) {
               golden.cases().size(), weak);
 }
 
-// Each shows what it says: somewhere it does something else than the machine.
+// Each one differs from the machine somewhere, as it should.
 TEST(Legal, EachDiffersFromTheMachine) {
   const Golden golden("conformance/cases");
   for (const LegalVariant& variant : legal_variants()) {

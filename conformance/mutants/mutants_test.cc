@@ -37,7 +37,7 @@ const Hunted& generated() {
   return all;
 }
 
-// A survivor must be listed with its reason, and what is listed must survive.
+// A survivor must be listed with its reason, and each listed one must survive.
 void expect_found(const Hunted& all) {
   for (std::size_t i = 0; i < all.mutants.size(); ++i) {
     const Mutant& mutant = all.mutants[i];

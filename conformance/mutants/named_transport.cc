@@ -1,4 +1,4 @@
-// Mistakes in Rubicon ACK: which messages are acked, how, and what their sender makes of it.
+// Mistakes in Rubicon ACK: which messages are acked, how, and what their sender does then.
 #include <algorithm>
 
 #include "conformance/machine/transport.h"
@@ -16,7 +16,7 @@ bool is_ack_sent(const Moment& moment, const Transmit& frame) {
   return is_ack(frame) && moment.heard(am::kNet) != nullptr;
 }
 
-// A net_msg for this very node, with something of it.
+// Returns whether it is a net_msg for this very node, of that kind.
 bool is_for_us(const Moment& moment, const Frame& frame) {
   return is_net(frame) && get(frame, net::kDestPid) == own(moment).pid &&
          get(frame, net::kDestDevid) == own(moment).devid;
@@ -107,7 +107,8 @@ void add_message_acks(Mutants& out) {
                      })});
 }
 
-// What must not be acked is acked: as if it were reliable, plain, or for this node alone.
+// Adds mutants that ack what must not be acked: as if it were reliable, plain, or for this node
+// alone.
 void add_needless_acks(Mutants& out) {
   out.push_back({"unreliable_acked",
                  "An unreliable message is acked.",

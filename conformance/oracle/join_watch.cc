@@ -42,7 +42,7 @@ void JoinWatch::owe(std::uint16_t node, const Debt& debt) {
 void JoinWatch::asked(std::uint16_t mote, std::uint32_t index) {
   std::vector<Debt>& debts = debts_[mote];
   std::erase_if(debts, [](const Debt& debt) { return debt.owes == Owes::kRetry; });
-  // A capture does not tell a mote that gave up from one that was switched off (decision 101).
+  // In a capture a mote that gave up looks like one that was switched off (decision 101).
   const Device& device = context_.device(mote);
   if (!device.hearing || !device.application || !waits(mote)) return;
   Debt debt;
@@ -93,7 +93,7 @@ void JoinWatch::surely_offered(std::uint16_t mote, std::uint32_t index, const Re
   if (still_owed(mote, debt)) owe(mote, debt);
 }
 
-// Whether every explanation of the node owes it.
+// Returns whether every explanation of the node owes it.
 bool JoinWatch::still_owed(std::uint16_t node, const Debt& debt) {
   const Observation& cause = context_.run.seen[debt.index];
   const std::int64_t from = cause.place.time_us;
@@ -130,7 +130,7 @@ void JoinWatch::settle(std::uint16_t node, std::int64_t now_us, bool end) {
     if (!still_owed(node, debt)) return true;
     if (now_us <= debt.due_us && (!end || device.hearing)) return false;
     const std::int64_t from = context_.run.seen[debt.index].place.time_us;
-    // At its end a log of what the node was given needs no sign of life, a capture does.
+    // At its end a log of what the node was given needs no sign of life; a capture does.
     const bool sure = !context_.who.damaged(from, now_us) &&
                       (device.hearing ||
                        (!end && context_.without(node, from, now_us) == Severity::kFail));
@@ -140,7 +140,8 @@ void JoinWatch::settle(std::uint16_t node, std::int64_t now_us, bool end) {
   });
 }
 
-// So much went through the node around that time that a buffer may have been full (decision 122).
+// Returns whether so many frames went through the node around that time that a buffer may have been
+// full (decision 122).
 bool JoinWatch::crowded(std::uint16_t node, const Debt& debt) const {
   const std::vector<Observation>& seen = context_.run.seen;
   std::size_t frames = 0;
@@ -192,7 +193,7 @@ void JoinWatch::clock_told(std::uint16_t mote, const Observation& seen, std::uin
   for (const MoteHypothesis& h : set) {
     const machine::Frame& frame = context_.run.seen[h.reply].frame;
     Reply reply;
-    // A clock before the join says nothing; nor does one after a reply that nobody saw.
+    // A clock before the join shows nothing; nor does one after a reply that nobody saw.
     if (h.unknown || h.join.phase != Phase::kMember || frame.type != am::kJoinReply ||
         !parse_reply(frame.payload, reply) || reply.seq_num != h.join.seq_num) {
       return;

@@ -48,7 +48,7 @@ void judge_both(const std::string& variant, std::uint64_t seed, Count& count) {
   for (const legal::NodeInfo& node : traffic.nodes) {
     if (node.role == legal::Role::kTester) options.testers.push_back(node.id);
   }
-  // Where a host sends malformed messages on purpose it is the tester.
+  // A host that sends malformed messages on purpose is the tester.
   if (!traffic.all_well_formed) options.testers.push_back(0);
   judge_one(traffic, options, count);
   options.sniffer_complete = traffic.sniffer_complete;

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::int64_t kNsPerUs = 1000;
 constexpr std::size_t kChunkBytes = 1024 * 1024;
-constexpr std::size_t kLookBytes = 4096;  // Enough to tell a format.
+constexpr std::size_t kLookBytes = 4096;  // Enough to recognize a format.
 
 struct FileCloser {
   void operator()(std::FILE* file) const { std::fclose(file); }
@@ -45,10 +45,10 @@ std::string_view RunStorage::keep(std::string_view text) {
 
 namespace {
 
-// One file in the reading.
+// A file that is being read.
 struct ReadSource {
   std::uint32_t file = 0;
-  std::vector<std::uint32_t> taps;  // Of its interfaces.
+  std::vector<std::uint32_t> taps;  // For its interfaces.
   std::uint64_t frames = 0;
 };
 
@@ -90,7 +90,7 @@ void observe(const Packet& packet, std::string_view interface_name, ReadSource& 
   run.seen.push_back(seen);
 }
 
-// Times count from the first one, and what several taps saw is in one order.
+// Makes times count from the first one, and orders what several taps saw.
 Run in_one_order(Run run, const AlignOptions& options) {
   const auto by_file = [](const Observation& a, const Observation& b) {
     return a.place.file < b.place.file;

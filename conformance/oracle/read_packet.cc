@@ -43,8 +43,8 @@ bool observe_radio(Bytes bytes, RunStorage& storage, Observation& out) {
   out.frame.link = machine::Link::kRadio;
   out.frame.dest = load_le16(bytes.data() + 5);
   out.frame.src = load_le16(bytes.data() + 7);
-  // An I-frame has the network byte before the type, a T-frame begins with the type. 0x3F itself
-  // is no AM type of this protocol.
+  // An I-frame has the network byte before the type; a T-frame begins with the type. 0x3F itself is
+  // no AM type of this protocol.
   const bool lowpan = bytes[kMacHeaderBytes] == kNetworkLowpan;
   const std::size_t type_at = kMacHeaderBytes + (lowpan ? 1 : 0);
   if (bytes.size() <= type_at) return damaged(req::kWireRadioHeader, out);

@@ -1,4 +1,4 @@
-// The simulator's networks are made of reference machines: nothing in their logs and captures may
+// The simulator's networks consist of reference machines: nothing in their logs and captures may
 // fail.
 #include <gtest/gtest.h>
 
@@ -72,14 +72,14 @@ void judge_network(const simulator::Scenario& scenario, const simulator::Scenari
   Run captured = run_of(name, capture.finish());
   add_frames(captured, count.frames);
   expect_no_fail(std::string(name) + " .pcapng", captured, count);
-  // A line in use shows what comes from the sink.
+  // A line in use shows only the sink's own frames.
   std::erase_if(captured.seen, [](const Observation& seen) {
     return seen.kind == Observation::Kind::kSerial && seen.to_mote;
   });
   expect_no_fail(std::string(name) + " one way", captured, count);
 }
 
-// What is told while a run grows, judged every half second.
+// News while a run grows, judged every half second.
 struct Told {
   std::uint64_t found = 0;
   std::uint64_t withdrawn = 0;
@@ -115,7 +115,7 @@ void print(const char* what, const Count& count) {
               static_cast<unsigned long long>(count.fails));
 }
 
-// Any part of a run can be judged, also one in which half of the nodes are not seen.
+// Any part of a run can be judged, even one in which half of the nodes are not seen.
 TEST(Simulated, PartsOfRunsAreJudged) {
   std::size_t parts = 0;
   for (const simulator::Scenario& scenario : simulator::scenarios()) {

@@ -24,7 +24,7 @@ std::string scalar(const YAML::Node& node, const std::string& key) {
   return node.Scalar();
 }
 
-/// "a, b and c"
+/// Returns "a, b and c".
 std::string listed(const std::vector<std::string_view>& words) {
   std::string out;
   for (std::size_t i = 0; i < words.size(); ++i) {

@@ -1,4 +1,5 @@
-// How sequence charts look. All names begin with rc-, since an inlined style is the whole page's.
+// The style of sequence charts. All names begin with rc-, since an inlined style is the whole
+// page's.
 #pragma once
 
 #include <string_view>

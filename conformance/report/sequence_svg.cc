@@ -13,15 +13,15 @@
 namespace rubric::report {
 namespace {
 
-// In pixels. Fonts are monospaced, so that widths are known before anybody draws.
-constexpr double kCharacter = 7.3;      // Of a label, 12 px high.
-constexpr double kSmall = 6.7;          // Of a note, 11 px high.
+// In pixels. Fonts are monospaced, so that widths are known before drawing.
+constexpr double kCharacter = 7.3;      // In a label, 12 px high.
+constexpr double kSmall = 6.7;          // In a note, 11 px high.
 constexpr double kStub = 34;            // An arrow that one end of has no column.
 constexpr double kGapPixelsMin = 96;          // Between columns.
 constexpr double kLabelRoom = 26;       // That an arrow is longer than its label.
 constexpr double kRowArrow = 31;
 constexpr double kRowStub = 25;
-constexpr double kPause = 16;           // Of a long time.
+constexpr double kPause = 16;           // For a long time.
 constexpr double kHeadHeight = 38;
 constexpr double kMargin = 10;
 constexpr long long kPauseTicks = 100;  // A longer time is drawn as a pause.
@@ -54,7 +54,7 @@ const char* way_class(Way way) {
   return "";
 }
 
-// The columns between which something is drawn: all that it is from and for.
+// The columns between which a row is drawn: all its senders and receivers.
 struct Span {
   std::size_t first = kNoColumn;
   std::size_t last = kNoColumn;
@@ -104,7 +104,7 @@ class Picture {
   }
 
  private:
-  // Columns stand as far apart as the labels between them need.
+  // Places columns as far apart as the labels between them need.
   void place() {
     double time_width = length_of(sequence_.number_title, kSmall);
     for (const SequenceRow& row : sequence_.rows) {
@@ -145,7 +145,7 @@ class Picture {
     for (std::size_t c = span.first; c < span.last; ++c) gap[c] += more;
   }
 
-  // Where notes begin, and how wide all is.
+  // Measures where notes begin, and the width of all.
   void measure() {
     double right = columns_ == 0 ? time_ : x_.back() + head_width(columns_ - 1) / 2;
     double notes = 0;
@@ -166,7 +166,7 @@ class Picture {
                      length_of(about, 6.4) + 14});
   }
 
-  // Of a row that has one column only.
+  // Returns where the label of a row with only one column begins.
   double label_begin(const SequenceRow& row) const {
     const bool leaves = row.from != kNoColumn && row.to.empty() && row.way != Way::kCall &&
                         row.way != Way::kState;
@@ -185,7 +185,7 @@ class Picture {
 
   std::string name_of(std::size_t column) const { return sequence_.columns[column]; }
 
-  // What somebody hears who does not see the picture.
+  // Returns the text for readers who do not see the picture.
   std::string description() const {
     std::string out = fmt::format("{} between {}.", counted(sequence_.rows.size(), "event"),
                                   fmt::join(sequence_.columns, ", "));
@@ -256,7 +256,7 @@ class Picture {
     out += "</g>\n";
   }
 
-  // Rules are words in capitals with a number: J4-SEQ.
+  // Marks rules: words in capitals with a number, such as J4-SEQ.
   static std::string with_rules(const std::string& note) {
     std::string out;
     for (std::size_t i = 0; i < note.size();) {
@@ -300,7 +300,7 @@ class Picture {
     return std::string("rc-line") + way_class(row.way);
   }
 
-  // To or from somebody without a column, or something that happens at one node.
+  // Draws a row to or from a node without a column, or an event at one node.
   void draw_stub(const SequenceRow& row, double y, std::string& out) const {
     const double x = x_[span_of(row).first];
     if (row.way == Way::kState) {
@@ -339,7 +339,7 @@ class Picture {
     }
   }
 
-  // How the lines of a picture that has several kinds of them are to be read; its height.
+  // Draws the legend of a picture with several kinds of lines; returns its height.
   double legend(double y, std::string& out) {
     std::vector<std::pair<Way, const char*>> kinds;
     for (const auto& [way, name] : {std::pair{Way::kRadio, "radio"}, {Way::kSerial, "serial line"},

@@ -50,7 +50,7 @@ std::string wrapped(std::string_view first, std::string_view text, std::size_t w
                     std::size_t hang) {
   std::string out(first);
   std::size_t column = first.size();
-  bool fresh = true;  // Nothing stands in this line yet.
+  bool fresh = true;  // The line is empty yet.
   while (!text.empty()) {
     const std::size_t begin = text.find_first_not_of(" \n\t\r");
     if (begin == std::string_view::npos) break;

@@ -82,7 +82,7 @@ class CppTarget : public runner::Target, public node::World {
 
  private:
   struct Line {
-    bool taken = false;         // By somebody else,
+    bool taken = false;         // By another station,
     bool sending = false;       // or by the node's own frame,
     bool unconfirmed = false;   // which asked for a link ack,
     std::optional<Ticks> ends;  // and ends by itself.
@@ -112,7 +112,7 @@ class CppTarget : public runner::Target, public node::World {
     if (node_) node_->set_busy(node_line(link), at(link).taken || at(link).sending);
   }
 
-  // The end of a transmission that is due now; false: there is none.
+  // Ends one transmission that is due now; returns false if there is none.
   bool end_one() {
     for (const Link link : {Link::kRadio, Link::kSerial, Link::kPeis}) {
       if (at(link).ends != now_) continue;

@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t kSerialHeaderBytes = 8;  // Dispatch and AM header.
 constexpr Micros kBaud = 115'200;
 constexpr Micros kBitsPerByte = 10;
-constexpr Micros kResendUs = 1'000'000;  // Of a host that misses its confirmation.
+constexpr Micros kResendUs = 1'000'000;  // A host misses its confirmation.
 constexpr int kTriesMax = 25;
 
 std::vector<std::uint8_t> packet_of(const machine::Frame& am) {
@@ -24,7 +24,7 @@ std::vector<std::uint8_t> packet_of(const machine::Frame& am) {
   return bytes;
 }
 
-// How long the frame takes, flags and escapes included.
+// Returns how long the frame takes, flags and escapes included.
 Micros shift_us(std::uint8_t kind, std::int32_t seq, Bytes packet) {
   std::array<std::uint8_t, hdlc_frame_room(kSerialAfterHeaderMax + 2)> room;
   HdlcFramer framer(MutableBytes(room.data(), room.size()));
@@ -51,7 +51,7 @@ void Serial::send(NodeId from, const machine::Frame& frame) {
   });
 }
 
-// Puts a frame behind what this end is sending; `done` at its end. Returns when that is.
+// Queues a frame after what this end is sending; calls `done` at its end. Returns when that is.
 Micros Serial::shift_out(bool to_sink, std::uint8_t kind, std::int32_t seq, const Shared& held,
                          Done done) {
   End& end = to_sink ? base_station_ : sink_;

@@ -58,8 +58,8 @@ bool is_so(const ExpectedFailure& one, const CaseRun& run) {
                      [&](const Failure& f) { return has_rule(one, f) && has_message(one, f); });
 }
 
-// What the profile accepts instead; null if it does not. One reason is enough not to emit what a
-// line asks for; what a line forbids has to be accepted by each rule that forbids it.
+// Returns the behaviour that the profile accepts instead, or null. For a missing output one
+// accepted rule is enough; for a forbidden output each rule that forbids it has to be accepted.
 const char* accepted(const machine::NamedProfile* profile, const Failure& failure) {
   const char* sentence = nullptr;
   for (const std::string& rule : failure.requirements) {
@@ -87,7 +87,8 @@ std::string why_untrue(const ExpectedFailure& entry, const CaseRun& one) {
   return fmt::format("{}, but line {} of {} says: {}", was, first.place.line, one.file, first.text);
 }
 
-// The first that is not so tells the rest of those that a glob stands for.
+// Says why an entry is untrue by the first case that contradicts it, and counts the other cases
+// that its glob matches.
 std::string why_untrue(const ExpectedFailure& entry, const std::vector<const CaseRun*>& untrue,
                        std::size_t asked) {
   constexpr std::size_t kNamed = 5;

@@ -1,4 +1,4 @@
-// Known failures: each way to be true, and each way not to be.
+// Known failures: each way in which an entry holds, and each in which it does not.
 #include "conformance/suite/expected.h"
 
 #include <gmock/gmock.h>

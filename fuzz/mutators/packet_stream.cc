@@ -12,7 +12,7 @@
 namespace rubric::fuzz {
 namespace {
 
-constexpr std::size_t kMacBytes = 9;      // Of the radio's header: control to source address.
+constexpr std::size_t kMacBytes = 9;      // The radio's header, from control to source address.
 constexpr std::size_t kRadioIHead = 11;   // The AM payload of an I-frame.
 constexpr std::size_t kAmLengthMax = 255;
 constexpr std::uint8_t kNetwork = 0x3F;
@@ -26,8 +26,8 @@ void put(std::vector<std::uint8_t>& out, std::size_t at, std::size_t width, bool
   }
 }
 
-// Whether the bytes lead to the route's message by their types. Wider choices are addresses, which
-// may be any but one as well.
+// Returns whether the bytes lead to the route's message by their types. Wider choices are
+// addresses, of which any but one may occur as well.
 bool follows(const reflect::Route& route, const std::vector<std::uint8_t>& bytes) {
   for (std::size_t i = 0; i < route.choice_count; ++i) {
     const reflect::RouteChoice& choice = route.choices[i];
@@ -43,7 +43,7 @@ const char* carrier_of(const StreamPacket& packet) {
   return network ? "radio_i" : "radio_t";
 }
 
-// The serial packet that says what an I-frame does.
+// Returns the serial packet with the contents of an I-frame.
 std::vector<std::uint8_t> as_serial(const std::vector<std::uint8_t>& frame) {
   if (frame.size() < kRadioIHead) return frame;
   const std::size_t length = std::min(frame.size() - kRadioIHead, kAmLengthMax);

@@ -7,7 +7,7 @@ namespace {
 
 constexpr int kMaxDepth = 64;
 
-/// Each function takes its part off the front of the text; false where there is none.
+/// Each function takes its part off the front of the text; returns false if there is none.
 class Judge {
  public:
   using Members = std::map<std::string_view, std::string_view>;
@@ -72,7 +72,7 @@ class Judge {
     return first >= 0x20;
   }
 
-  // The four digits behind \u.
+  // Takes the four digits after \u.
   bool unit(unsigned* value) {
     *value = 0;
     for (int i = 0; i < 4; ++i, ++at_) {

@@ -1,5 +1,4 @@
-// A small judge of JSON, to hold what is printed against; a parser's own code would only be in the
-// way of the fuzzer's.
+// A small JSON validator for output; a parser's own code would only distract the fuzzer.
 #pragma once
 
 #include <map>
@@ -7,8 +6,9 @@
 
 namespace rubric::fuzz {
 
-/// Whether `text` is one JSON value (RFC 8259) in UTF-8 with nothing but white space around it. Of
-/// an object, `*members` gets each member's value as it is written, by its key as it is written.
+/// Returns whether `text` is one JSON value (RFC 8259) in UTF-8 with nothing but white space around
+/// it. For an object, `*members` gets each member's value as it is written, by its key as it is
+/// written.
 bool is_json(std::string_view text, std::map<std::string_view, std::string_view>* members);
 
 }  // namespace rubric::fuzz

@@ -18,8 +18,8 @@ TEST(JsonCheck, MembersAsWritten) {
   EXPECT_EQ(members["d"], R"("\u00e4\"")");
 }
 
-// The judge and a grown parser agree on what is JSON. (No number here can grow beyond a double,
-// which that parser refuses.)
+// The validator and a full parser agree on JSON. (No number here can grow beyond a double, which
+// that parser refuses.)
 TEST(JsonCheck, AgreesWithAParser) {
   const std::string good[] = {
       R"({"schema":"rubric.decode/1","time":0.52,"interface":"s:1\n","n":[1,-2,3e-9,0.5E-7]})",

@@ -1,5 +1,5 @@
-// Property: whatever bytes `rubric check` is given as a capture or a log, it ends with a verdict
-// that its findings say, about frames that are there, in whole reports, the same each time.
+// Property: whatever bytes `rubric check` gets as a capture or a log, it ends with the verdict of
+// its findings, about existing frames, in whole reports, the same each time.
 #include <cstddef>
 #include <cstdint>
 #include <set>
@@ -25,7 +25,7 @@ using fuzz::require;
 // The text report judges parts of a run to find the least that shows a failure.
 constexpr std::size_t kSearchedMax = 12;
 
-// By the input's size, so that a capture is an input as it is.
+// Chooses options by the input's size, so that a capture is a valid input.
 oracle::Options options_for(std::size_t size) {
   oracle::Options out;
   out.deployed = (size & 1) != 0;

@@ -1,5 +1,5 @@
-// Property: whatever bytes come, in whatever format and pieces, what `rubric decode` makes of them
-// lies within the packet; its JSON lines are JSON and say the packet's bytes, its CSV has a cell a
+// Property: whatever bytes come, in whatever format and pieces, the output of `rubric decode` lies
+// within the packet; its JSON lines are JSON and contain the packet's bytes, its CSV has a cell a
 // column, its text holds nothing that a terminal would obey.
 #include <cstddef>
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Property: any text read as the failures that `rubric check` or `rubric test` is to expect is
-// refused at a line of it, or its entries are whole and read the same when they are written again.
+// Property: any text read as the expected failures of `rubric check` or `rubric test` is refused at
+// a line of it, or its entries are whole and read the same when they are written again.
 #include <cstddef>
 #include <cstdint>
 #include <stdexcept>
@@ -42,7 +42,7 @@ std::string entry_text(const Members& members) {
   return out;
 }
 
-// Both readers say "input.yaml:LINE: what".
+// Requires a line of the text in "input.yaml:LINE: what", as both readers print it.
 void line_is_within(const std::string& error, const std::string& text) {
   const std::string before = "input.yaml:";
   require(error.starts_with(before), "the file is named");

@@ -4,7 +4,7 @@ include_guard()
 set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 
-# What every target of the project is compiled with.
+# Options with which every target of the project is compiled.
 add_library(rubric_options INTERFACE)
 target_include_directories(rubric_options INTERFACE ${PROJECT_SOURCE_DIR})
 target_compile_features(rubric_options INTERFACE cxx_std_20)

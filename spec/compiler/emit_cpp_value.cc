@@ -1,4 +1,4 @@
-// Values: plain structures, and how they are written.
+// Emits values: plain structures, and how they are written.
 #include <algorithm>
 #include <stdexcept>
 
@@ -67,7 +67,7 @@ std::string value_of(const Field& f) { return "value." + f.id; }
 
 std::string length_text(const Field& holder) { return value_of(holder) + ".size()"; }
 
-// Fields of expressions as members of `value`.
+// Prints fields of expressions as members of `value`.
 Leaf value_leaf(const Layout& layout) {
   return [&layout](const Expr& expr) {
     if (expr.field->is_instance) {
@@ -243,7 +243,7 @@ std::string store_field(const Layout& layout, std::size_t i, const Spec& spec) {
          ");\n}\n";
 }
 
-// What the bytes can still break once the lengths are right.
+// Returns whether the bytes can still break a rule once the lengths are right.
 bool needs_verify(const Layout& layout) {
   const auto leaf_rule = [&](const FrontLeaf& leaf) {
     const auto derived = [&](const FieldLayout& l) {

@@ -1,4 +1,4 @@
-// Holds `rubric decode` against Kaitai Struct's own parser: same frames accepted, same faults in
+// Compares `rubric decode` with Kaitai Struct's own parser: same frames accepted, same faults in
 // the same places, same fields, same bytes left over.
 // Usage: node oracle.js PATH_TO_RUBRIC [COUNT] [SEED]. Without COUNT it compares as many frames as
 // README.md says, as many different mutated ones among them.
@@ -40,7 +40,7 @@ function widthAt(specs, srcPath) {
   throw new Error(`no ${srcPath} in the spec`);
 }
 
-/// Where Kaitai's error is: what is too short is so at its end; a value is where it begins.
+/// Returns the place of Kaitai's error: the end for missing bytes, the beginning for a value.
 function offsetOf(error, specs) {
   const {io, srcPath} = error;
   return io.byteOffset + (srcPath ? io.pos - widthAt(specs, srcPath) : io.size);
@@ -69,7 +69,7 @@ function disagreement(kaitai, frame, record) {
     return `rubric ${said({fault, offset})}, Kaitai ${said(verdict)}`;
   }
   if (fault) return null;
-  // Of a serial frame the record shows the message; with --as all of it.
+  // The record shows the message of a serial frame; with --as all of it.
   const message = kaitai.whole ? verdict.object : verdict.object.payload;
   if (message instanceof Uint8Array || message === undefined) {
     // A radio message in a serial packet is shown with a note; the serial carrier has no such case.

@@ -50,7 +50,7 @@ struct ChartOptions {
   cli::exit_with(cli::kVerdictInput);
 }
 
-// The cases that the user means; they point into `cases`.
+// Returns the cases that the user means; they point into `cases`.
 std::vector<const suite::SuiteCase*> chosen(const std::string& what, suite::Cases& cases) {
   constexpr std::string_view kEnding = ".rtr";
   const std::size_t colon = what.rfind(".rtr:");
@@ -94,7 +94,7 @@ suite::MachineRun work(const suite::SuiteCase& one, const std::string& target) {
   }
 }
 
-// Says what is wrong with the run; the program's exit code.
+// Prints what is wrong with the run; returns the program's exit code.
 int judged(const suite::CaseRun& run) {
   using runner::CaseVerdict;
   switch (run.result.verdict) {

@@ -22,13 +22,13 @@ namespace {
 
 using oracle::Change;
 
-// One line of it: its line ends are between its items, those of texts are escaped.
+// Puts JSON on one line: its line ends are between its items, those of texts are escaped.
 std::string in_a_line(std::string json) {
   std::erase(json, '\n');
   return json;
 }
 
-// "at" is when it was said, in seconds since 1970; null of a run that is over.
+// Returns an event; "at" is its time in seconds since 1970, null for a run that is over.
 std::string event(std::string_view name, bool live, std::string_view members) {
   const auto now = std::chrono::system_clock::now().time_since_epoch();
   const double seconds = std::chrono::duration<double>(now).count();

@@ -20,7 +20,7 @@ struct NamedCommand {
   std::vector<cli::OptionInfo> flags;
 };
 
-/// The first sentence of a description, on one line.
+/// Returns the first sentence of a description, on one line.
 std::string brief(const std::string& text) {
   return text.substr(0, text.find_first_of(";\n"));
 }
@@ -51,7 +51,8 @@ std::vector<std::string> dashed(const cli::OptionInfo& flag) {
   return out;
 }
 
-/// In single quotes as every shell reads them, without the signs that zsh gives a meaning.
+/// Returns text in single quotes as every shell reads them, without characters that are special in
+/// zsh.
 std::string shell_quoted(std::string_view text) {
   std::string out = "'";
   for (const char c : text) {
@@ -117,7 +118,7 @@ std::string zsh_argument(const cli::OptionInfo& flag) {
     tail = ":value:" + (flag.choices.empty() ? std::string("_files")
                                              : "(" + spaced(flag.choices) + ")");
   }
-  // The brackets around the description mean something, those within it were replaced.
+  // The brackets around the description are special; those within it were replaced.
   std::string body = "'[" + help.substr(2, help.size() - 4) + "]" + tail + "'";
   if (names.size() == 1) return names[0] + body;
   return fmt::format("'({})'{{{}}}{}", spaced(names), fmt::join(names, ","), body);

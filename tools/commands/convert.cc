@@ -44,7 +44,7 @@ std::string container_of(std::string_view file) {
   return {};
 }
 
-/// What the target could not hold.
+/// Data that the target could not hold.
 struct Losses {
   std::uint64_t packets = 0;
   std::uint64_t written = 0;
@@ -52,7 +52,7 @@ struct Losses {
   std::uint64_t directions = 0;
   std::uint64_t interfaces = 0;
   std::uint64_t comments = 0;
-  std::uint64_t sequence_numbers = 0;  // Of the serial line.
+  std::uint64_t sequence_numbers = 0;  // From the serial line.
   std::uint64_t radio = 0;             // Among those written.
   std::map<std::string, std::uint64_t> refused;  // By reason: a handful.
 };
@@ -88,7 +88,7 @@ void report(const Losses& losses, const std::string& container) {
   }
 }
 
-// Several files and no -o: the last one is the target, as with cp.
+// Settles the target: with several files and no -o it is the last one, as with cp.
 void settle_target(ConvertOptions& options) {
   if (options.output.empty() && options.input.files.size() > 1) {
     options.output = options.input.files.back();
@@ -133,7 +133,7 @@ int run_convert(const ConvertOptions& options) {
       return output.open();
     };
     result = cli::read_packets(options.input, on_packet);
-    // A name that was mistyped must not cost the file that would have been replaced.
+    // A mistyped name must not cost the file that would have been replaced.
     if (!result.failed || losses.packets > 0) failure = output.finish();
   } catch (const std::system_error& error) {
     failure = error.code().message();

@@ -35,7 +35,7 @@ struct CoverageOptions {
   std::string format = "text";
 };
 
-// What touches a rule.
+// A test or tool that touches a rule.
 struct Touch {
   std::set<std::string> positive;  // Golden traces.
   std::set<std::string> negative;
@@ -92,7 +92,7 @@ void run_cases(const mutants::Golden& golden, Coverage& coverage) {
   });
 }
 
-// The explorer takes a plain function, so what that sees stands here.
+// The explorer takes a plain function, so its results are kept here.
 std::array<std::atomic<bool>, kRules> g_explored;
 
 void seen_step(machine::State& state, machine::Ticks now, const machine::Event& event,
@@ -103,7 +103,8 @@ void seen_step(machine::State& state, machine::Ticks now, const machine::Event& 
   }
 }
 
-// Small networks: two sinks and a lossy air in join scope, messages between a mote and its sink.
+// Explores small networks: two sinks and a lossy air in join scope, messages between a mote and its
+// sink.
 void explore(Coverage& coverage) {
   explorer::Options join;
   join.step = seen_step;
@@ -149,7 +150,7 @@ Coverage measure(const CoverageOptions& options) {
   return coverage;
 }
 
-// Wire rules by level: those that are MUST, and the others.
+// Counts wire rules by level: those that are MUST, and the others.
 std::map<std::string, std::size_t> wire_levels() {
   std::map<std::string, std::size_t> levels;
   for (std::size_t i = 1; i < kRules; ++i) {

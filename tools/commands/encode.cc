@@ -29,13 +29,13 @@ constexpr const char* kEncodeFooter =
     "  echo '{\"type\":10,\"value\":12}' | rubric encode --as config\n"
     "Exit codes: 0 all lines encoded, 2 usage, 3 some line or file could not be read or encoded.";
 
-/// What a message alone goes into on its way to such an output.
+/// Returns the framing of a single message on its way to such an output.
 std::string_view serial_framing(const std::string& format) {
   const bool in_capture = format == "pcap" || format == "pcapng";
   return format == "hdlc" || in_capture ? "hdlc" : "sf";
 }
 
-/// Whether all lines were written.
+/// Writes all lines. Returns whether all were written.
 bool write_all(const EncodeOptions& options, record::LineEncoder& encoder, record::PacketOutput& output,
                bool& any) {
   std::string last_place;
@@ -63,7 +63,7 @@ int run_encode(const EncodeOptions& options) {
     record::PacketOutput output(options.format, options.output);
     bool any = false;
     const bool good = write_all(options, encoder, output, any);
-    // A name that was mistyped must not cost the file that would have been replaced.
+    // A mistyped name must not cost the file that would have been replaced.
     if (!good && !any) return cli::kExitInput;
     const std::string failure = output.finish();
     if (failure.empty()) return good ? cli::kExitClean : cli::kExitInput;

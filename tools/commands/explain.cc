@@ -39,12 +39,12 @@ constexpr const char* kExplainFooter =
     "byte, an 802.15.4 frame.\n"
     "Exit codes: 0 explained, 1 the frame is malformed, 2 usage or nothing of that name.";
 
-// The protocol above and the frames below, where names are looked for.
+// Returns the protocol above and the frames below, in which names are looked up.
 std::vector<const Protocol*> layers(const Protocol& protocol) {
   return {&protocol, &tinyos::tables::kProtocol};
 }
 
-// Empty if nothing has this name.
+// Returns an empty text if nothing has this name.
 std::string explain_name(const Protocol& protocol, const std::string& name, bool all_cases) {
   std::string out;
   const auto add = [&](std::string text) { out += (out.empty() ? "" : "\n") + std::move(text); };
@@ -90,7 +90,7 @@ std::string in_case(std::string text, int (*to_case)(int)) {
   return text;
 }
 
-// What rules there are, for a name that looks like one's: those of its group, else the groups.
+// Returns the rules with a similar name: those of its group, else the groups.
 std::string rules_like(const std::string& name) {
   const std::string group = in_case(name.substr(0, name.find('-')), std::toupper);
   const bool letter_and_number = group.size() > 1 && std::isalpha(group[0]) != 0 &&
@@ -136,7 +136,7 @@ int explain_bytes(const ExplainOptions& options, const Protocol& protocol,
         "X", "these bytes begin like no frame; --framing or --as says what they are");
   }
   if (message) given->what = fmt::format("the message {} alone", message->id);
-  // Moving the bytes left them in their place, so that the packet still points at them.
+  // Moving the bytes left them in their place, so the packet still points at them.
   reflect::Frame frame;
   reflect::FrameDecoder(protocol, message).decode(given->packet, frame);
   out = fmt::format("Taken as {}, {} bytes.\n\n", given->what, given->bytes.size());

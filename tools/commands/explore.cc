@@ -86,14 +86,14 @@ machine::Profile chosen_profile(const ExploreOptions& options) {
   return profile->profile;
 }
 
-// Null: none is asked for.
+// Returns the chosen flaw, or null.
 const flaws::Flaw* chosen_flaw(const ExploreOptions& options) {
   const flaws::Flaw* const flaw = flaws::find(options.flaw);
   if (flaw == nullptr && !options.flaw.empty()) unknown("flaw", options.flaw, flaws::all());
   return flaw;
 }
 
-// What the options' words mean.
+// Returns the meaning of the options' words.
 explorer::Options resolve(const ExploreOptions& options) {
   explorer::Options network = options.network;
   network.profile = chosen_profile(options);
@@ -106,7 +106,7 @@ explorer::Options resolve(const ExploreOptions& options) {
     usage(fmt::format("at most {} motes and sinks together", explorer::kNodesMax));
   }
   if (options.reboot) network.reboots = std::max<std::uint8_t>(network.reboots, 1);
-  // Every message that is heard again is answered by a new number: without a limit there is no end.
+  // Messages that are heard again are answered with new numbers: without a limit there is no end.
   const bool endless = network.scope == Scope::kFull && network.dup && network.dups == 0;
   if (endless) network.dups = 1;
   if (const flaws::Flaw* const flaw = chosen_flaw(options)) {
@@ -127,7 +127,7 @@ explorer::Options resolve(const ExploreOptions& options) {
   return network;
 }
 
-// The names in a mask, in their order.
+// Returns the names in a mask, in order.
 template <class Table, class Key>
 std::vector<std::string> names_in(Mask mask, const Table& table, Key key) {
   std::vector<std::string> names;
@@ -150,7 +150,7 @@ struct Verdict {
   std::string limit;  ///< Why nothing was decided.
 };
 
-// What could be given so that more happens in the network.
+// Returns options that would make more happen in the network.
 std::string ways_to_widen(const explorer::Options& network) {
   std::vector<std::string> ways;
   const auto way = [&](bool open, const char* words) {
@@ -180,7 +180,7 @@ Verdict judge(const ExploreOptions& options, const explorer::Options& network, c
   return {"holds", cli::kVerdictExpected, 0, {}};
 }
 
-// That two different states have the same fingerprint, and one is so left out: at most this.
+// Returns a bound for the probability that two states share a fingerprint, so that one is left out.
 double omission_probability(std::uint64_t states) {
   const auto n = static_cast<double>(states);
   return n * n / 2 / 18446744073709551616.0;
@@ -254,7 +254,7 @@ std::string json_of(const ExploreOptions& options, const Result& result, const V
       json_string_or_null(trace));
 }
 
-// A line on stderr that is drawn over, twice a second; nothing where that is no terminal.
+// A line on stderr that is redrawn twice a second; nothing if that is no terminal.
 class ProgressLine {
  public:
   explicit ProgressLine(bool wanted) : active_(wanted && isatty(2) != 0) {}
@@ -311,7 +311,7 @@ void run_explore(const ExploreOptions& options) {
         trace_text(*nodes, options, *result.known_weakness, "explore.known_weakness");
     good = cli::write_file(options.weakness_out, weakness) && good;
   }
-  // A trace on stdout stands alone there, so that it can be given on.
+  // A trace on stdout is printed alone, so that it can be piped on.
   const bool trace_alone = options.format == "text" && !text.empty() && !in_file;
   if (options.format == "json") {
     good = cli::write_file("-", json_of(options, result, verdict, text)) && good;

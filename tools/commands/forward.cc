@@ -23,7 +23,7 @@ struct ForwardOptions {
   std::uint64_t buffer_kib = 1024;
   std::uint32_t patience_s = 10;
   std::uint32_t ack_wait_ms = 1000;
-  int retries = 24;  ///< As TinyOS's Java host.
+  int retries = 24;  ///< TinyOS's Java host has the same.
   forward::Options server;
 };
 
@@ -38,7 +38,8 @@ live::Address source_of(const std::string& given) {
   }
 }
 
-// All clients wait while the capture is written: it must not be a pipe, which may take nothing.
+// Checks that the capture is no pipe: all clients wait while it is written, and a pipe may take
+// nothing.
 void check_capture(const std::string& path) {
   std::error_code none;
   const auto status = std::filesystem::status(path, none);

@@ -32,7 +32,7 @@ using generate::FrameGenerator;
 using generate::Framer;
 using reflect::Route;
 
-constexpr double kFramingShare = 0.15;  // Of the broken frames, where a format has framing.
+constexpr double kFramingShare = 0.15;  // Share of the broken frames, if a format has framing.
 constexpr std::int64_t kBetweenFramesNs = 1'000'000;
 constexpr std::uint64_t kAckSeed = 0x61636B;  // The acknowledgement has a generator of its own.
 constexpr std::size_t kPcapngDataAt = 28;     // In an enhanced packet block.
@@ -82,7 +82,7 @@ InputFormat format_of(std::string_view name) {
   return InputFormat::kUnknown;
 }
 
-/// A message, and the ways to it that the format can hold.
+/// A message, and its routes that the format can hold.
 struct Message {
   std::string name;
   std::vector<const Route*> routes;
@@ -104,7 +104,7 @@ void add_routes(const reflect::RouteTable& table, bool of_link, const Framer& fr
   }
 }
 
-/// A file or stdout that counts what it was given.
+/// A file or stdout that counts its input.
 class CountedOutput {
  public:
   explicit CountedOutput(const std::string& path) : path_(path) {
@@ -128,9 +128,9 @@ class CountedOutput {
     output_->buffer().append(text);
     output_->drain();
   }
-  /// Whether somebody takes more.
+  /// Returns whether the reader is still there.
   bool open() const { return fd_ >= 0 && output_->open(); }
-  /// False, having said why, if writing failed.
+  /// Ends the output. Returns false, having printed why, if writing failed.
   bool finish() {
     if (fd_ >= 0) output_->flush();
     if (fd_ >= 0 && !output_->failed(&reason_)) return true;
@@ -179,7 +179,7 @@ class Run {
   }
 
  private:
-  // Those that were asked for, or all that the format holds; in an order of the seed's.
+  // Chooses the requested messages, or all that the format holds; in an order of the seed's.
   void choose_messages() {
     std::vector<std::string> names;
     for (const Message& message : messages_) names.push_back(message.name);
@@ -238,7 +238,7 @@ class Run {
     return framer_.sound(generator.near_valid(route));
   }
 
-  /// Writes a frame; its expectation.
+  /// Writes a frame; returns its expectation.
   std::string one(std::uint64_t index, CountedOutput& out) {
     Framed framed = make(index);
     const std::uint64_t number = index + 1;
@@ -258,11 +258,11 @@ class Run {
     return expectation(number, std::to_string(begin + frame_begin()), framed, options_.fields);
   }
 
-  // Where in what was written last the frame begins, as a reader counts.
+  // Returns where the frame begins in the last output, as a reader counts.
   std::size_t frame_begin() const {
-    if (format_ == InputFormat::kHdlc) return 1;  // Behind the flag.
+    if (format_ == InputFormat::kHdlc) return 1;  // After the flag.
     if (format_ != InputFormat::kPcapng) return 0;
-    // A description of an interface may stand before it. The block's length stands at both ends.
+    // A description of an interface may precede it. The block's length is at both ends.
     const auto* const end = reinterpret_cast<const std::uint8_t*>(text_.data()) + text_.size();
     return text_.size() - load_le32(end - 4) + kPcapngDataAt;
   }

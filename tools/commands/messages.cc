@@ -31,7 +31,7 @@ constexpr const char* kMessagesFooter =
     "\nAM is a message's own number; it stands in frames under that number where 'in' is serial\n"
     "or radio. No frame leads to a message 'by name', only --as; see 'rubric explain NAME'.\n";
 
-// The name that is shown, where that of the type says no more: several of one shown name lead on.
+// Returns the shown name, or that of the type if several types share the shown one.
 std::string place(const Reach& reach, const std::vector<Reach>& reaches) {
   if (!reach.carrier.empty()) return reach.carrier;
   const std::string_view name = reach.parent->name;
@@ -41,7 +41,7 @@ std::string place(const Reach& reach, const std::vector<Reach>& reaches) {
   return several ? reach.parent->name : reach.parent->id;
 }
 
-// What it stands in: frames of which carrier, which other messages.
+// Returns the places of a message: frames of which carrier, which other messages.
 std::string places(const std::vector<Reach>& reaches) {
   std::vector<std::string> names;
   for (const Reach& reach : reaches) {

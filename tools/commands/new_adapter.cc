@@ -25,7 +25,7 @@ constexpr const char* kNewAdapterFooter =
 struct Language {
   const char* name;
   const char* build;   ///< Within the folder; empty: nothing to build.
-  const char* target;  ///< Of rubric test.
+  const char* target;  ///< For rubric test.
 };
 constexpr Language kLanguages[] = {
     {"python", "", "python3 adapter.py"},

@@ -44,7 +44,7 @@ constexpr const char* kReproFooter =
     "Exit codes: 0 nothing is broken, 1 something is, 2 the trace cannot be written, 64 usage,\n"
     "66 the input cannot be read.";
 
-// What is written, and what was found, or nothing.
+// The output, with the broken promise or nothing.
 struct Repro {
   trace::File file;
   std::string found;

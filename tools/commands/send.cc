@@ -142,7 +142,7 @@ class Send {
     return lines.all();
   }
 
-  // Why this cannot be sent, or nothing.
+  // Returns why this cannot be sent, or nothing.
   std::string refusal(const Packet& packet) const {
     if (packet.framing == Framing::kRadio) return "expected a serial packet, given a radio frame";
     if (packet.framing == Framing::kBare) {
@@ -160,7 +160,7 @@ class Send {
                        packet.bytes.size());
   }
 
-  // Whether to go on.
+  // Sends one packet. Returns whether to go on.
   bool one(EncodedLines& lines, const OwnedPacket& owned, const std::string& place) {
     const Packet packet = owned.view();
     const std::string why = refusal(packet);
@@ -198,7 +198,7 @@ class Send {
     return frame_.am.present ? fmt::format("AM type {}", frame_.am.type) : "packet";
   }
 
-  // The packet's line.
+  // Prints the packet's line.
   void report(const Packet& packet, const live::Sender::Result& result) {
     ++packets_;
     done_ += result.done;
@@ -222,7 +222,7 @@ class Send {
     output_.flush();
   }
 
-  // A frame came.
+  // Handles a frame from the line.
   void came(const Packet& packet) {
     const bool confirmation = packet.framing == Framing::kHdlc && packet.kind == kSerialAck &&
                               packet.error.fault == Fault::kNone;
@@ -235,7 +235,7 @@ class Send {
     record.time_ns = packet.time_ns;
     record.frame = &frame_;
     formatter_->print(record, output_.buffer());
-    // Who closed the pipe has seen enough; what is to be sent is sent all the same.
+    // A closed pipe ends the listening; packets are sent all the same.
     if (!output_.flush() && listening_) live::request_stop();
   }
 
@@ -268,10 +268,10 @@ class Send {
   cli::Output output_;
   reflect::Frame frame_;
   live::Sender sender_;
-  int packets_ = 0;   // That were sent, whatever became of them.
+  int packets_ = 0;   // Sent packets, whatever their result.
   int done_ = 0;
   int left_out_ = 0;
-  std::uint64_t frames_ = 0;  // That came and were shown.
+  std::uint64_t frames_ = 0;  // Received and shown.
   bool unsent_ = false;
   bool listening_ = false;    // All that there was to send was sent.
 };

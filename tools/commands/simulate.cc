@@ -29,7 +29,7 @@ constexpr const char* kFree = "free";
 struct SimulateOptions {
   simulator::ScenarioOptions network;
   std::string scenario = kFree;
-  double seconds = 0;  ///< 0: as long as the scenario takes to be told.
+  double seconds = 0;  ///< 0: as long as the scenario's story.
   std::string rtr;
   std::string pcapng;
 };
@@ -95,7 +95,7 @@ std::vector<std::string> scenario_names() {
 
 void add_simulate(cli::Command& app) {
   constexpr std::size_t kMotesMax = 200;  // Anchors have the addresses above.
-  constexpr std::size_t kSinksMax = 26;   // Islands are told apart by a letter.
+  constexpr std::size_t kSinksMax = 26;   // A letter distinguishes each island.
   constexpr double kSecondsMax = 86'400;
   auto options = std::make_shared<SimulateOptions>();
   cli::Command& sub = app.add_subcommand("simulate", "Run a network of reference machines");

@@ -170,7 +170,7 @@ void check_seeds(const TestOptions& options) {
   }
 }
 
-// Text appears as it is made, on a terminal each line at once; in a file when it is whole.
+// Prints text as it is made, on a terminal each line at once; to a file when it is whole.
 class Text {
  public:
   Text(const TestOptions& options, bool wanted)
@@ -237,7 +237,7 @@ suite::SuiteRun work(const TestOptions& options, const suite::Cases& cases, suit
   return all;
 }
 
-// Everything into one folder: the page with what belongs to it, and what programs read.
+// Writes everything into one folder: the page with its files, and reports for programs.
 bool write_folder(const TestOptions& options, const suite::SuiteRun& run,
                   const std::optional<suite::EarlierRun>& earlier) {
   suite::write_html_report(run, earlier ? &*earlier : nullptr, options.report);

@@ -21,7 +21,7 @@ std::string one_line(std::string text) {
   return text;
 }
 
-// "join_reply, another number"
+// Returns "join_reply, another number".
 std::string trigger_of(const Transition& t) {
   std::string out = t.trigger;
   if (!t.guards.empty()) out += fmt::format(", {}", fmt::join(t.guards, " or "));
@@ -56,7 +56,7 @@ std::string json_of(const Diagram& diagram) {
   return out + "]}";
 }
 
-// HTML-like labels of Graphviz.
+// Escapes text for HTML-like labels of Graphviz.
 std::string html(std::string_view text) {
   std::string out;
   for (const char c : report::xml_text(text)) {
@@ -82,7 +82,7 @@ std::string guarded(const Transition& t) {
   return out;
 }
 
-// Lines: a trigger in bold with its guard, what comes out, the rules.
+// Returns lines: a trigger in bold with its guard, the output, the rules.
 std::string lines_of(const Transition& t) {
   std::string out = "<B>" + html(t.trigger) + "</B>";
   if (!t.guards.empty()) out += html(fmt::format("{}[{}]", kBlank, fmt::join(t.guards, " or ")));
@@ -107,7 +107,7 @@ std::string cell(const std::string& lines) {
   return "<TR><TD ALIGN=\"LEFT\" BALIGN=\"LEFT\">" + lines + "</TD></TR>";
 }
 
-// A state's name, what happens in it without leaving it, and what has no effect there.
+// Returns a state's name, the steps that stay in it, and the triggers without effect there.
 std::string node_of(const Diagram& diagram, std::size_t state) {
   std::string inside;
   std::string ignored;
@@ -129,7 +129,8 @@ std::string node_of(const Diagram& diagram, std::size_t state) {
 
 using Edges = std::map<std::pair<std::size_t, std::size_t>, std::vector<const Transition*>>;
 
-// Takes out what leads from every other state to the first, such as a reboot; its lines.
+// Removes edges present from every state to the initial one (a reboot, for example) and returns
+// them as text.
 std::string from_everywhere(Edges& edges, const std::vector<bool>& reached) {
   std::string out;
   const auto others = std::count(reached.begin() + 1, reached.end(), true);

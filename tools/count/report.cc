@@ -18,7 +18,8 @@ using report::json_string_or_null;
 
 using NamedFlow = std::pair<std::string, const Flow*>;
 
-// The most frequent first; equally frequent ones by name, so that the order is always the same.
+// Returns the most frequent first; equally frequent ones by name, so that the order is always the
+// same.
 std::vector<NamedFlow> sorted(const Counters::Flows& flows) {
   std::vector<NamedFlow> list;
   for (const auto& [name, flow] : flows) list.emplace_back(name, &flow);

@@ -93,7 +93,7 @@ constexpr std::size_t kMaxShown = 1000;
 
 std::string FilterError::explain(std::string_view expression) const {
   if (expression.size() > kMaxShown) return fmt::format("{} (character {})", what(), position_ + 1);
-  // Characters that are no printable ASCII would shift the caret.
+  // Unprintable or non-ASCII characters would shift the caret.
   std::string shown(expression);
   for (char& c : shown) {
     if (c < ' ' || c > '~') c = '?';

@@ -47,7 +47,7 @@ std::int32_t dispatch_of(const Packet& packet) {
 }
 
 std::int32_t network_of(const reflect::Frame& frame) {
-  constexpr std::size_t kNetworkAt = 9;  // Behind the 802.15.4 header.
+  constexpr std::size_t kNetworkAt = 9;  // After the 802.15.4 header.
   return frame.mac.has_network ? frame.packet->bytes[kNetworkAt] : kAbsent;
 }
 

@@ -21,7 +21,7 @@ void pad(Buffer& out, std::size_t start, std::size_t column) {
   out.append(used < column ? column - used + 1 : 1, ' ');
 }
 
-// Microseconds, unless there is more to show.
+// Appends microseconds, unless there is more to show.
 void append_time(std::int64_t time_ns, Buffer& out) {
   constexpr std::int64_t kSecond = 1'000'000'000;
   const std::int64_t seconds = time_ns / kSecond;
@@ -67,7 +67,7 @@ void append_addresses(const Frame& frame, Buffer& out) {
   pad(out, start, 9);
 }
 
-// What the frame is, where it holds no known message.
+// Returns the kind of a frame that holds no known message.
 std::string other_name(const Frame& frame) {
   const Packet& packet = *frame.packet;
   if (packet.framing == Framing::kHdlc && dispatch_of(packet) == kAbsent) {

@@ -67,7 +67,7 @@ class FieldPrinter {
     styled_.end();
   }
 
-  // Of a structure that is no pair: behind the opening brace.
+  // Prints a structure that is no pair after its opening brace.
   void value(std::size_t i) {
     const Node& node = decoded_[i];
     switch (node.kind) {

@@ -1,4 +1,4 @@
-// The fields of a frame on one line: name=value.
+// Prints the fields of a frame on one line: name=value.
 #pragma once
 
 #include "tools/format/record.h"
@@ -15,10 +15,10 @@ struct FieldStyle {
 };
 
 /// Appends all fields of the outermost message. Structures of two numbers are pairs, "dest=11:2";
-/// messages within the message follow behind a bar.
+/// messages within the message follow after a bar.
 void append_fields(const Record& record, FieldStyle style, Styled& styled);
 
-/// Hex of the first `most` bytes, and how many there are if there are more.
+/// Appends hex of the first `most` bytes, and their number if there are more.
 void append_hex_short(Bytes bytes, std::size_t most, Buffer& out);
 
 }  // namespace rubric::format

@@ -22,7 +22,7 @@ constexpr std::uint16_t kFcfAck = 0x0002;
 
 Bytes view(const ByteList& bytes) { return {bytes.data(), bytes.size()}; }
 
-// Flags around and escapes within, as on the line itself.
+// Removes the flags around and the escapes within, as on the line itself.
 ByteList without_flags(const ByteList& given) {
   ByteList content;
   std::size_t begin = 0;

@@ -107,7 +107,7 @@ void expect_same(const Kept& kept, const OwnedPacket& owned) {
   ASSERT_EQ(kept.interface_name, owned.interface_name);
 }
 
-// Whether a frame that was put together from fields alone must be the same: text does not keep
+// Returns whether a frame that is rebuilt from fields alone must be the same: text keeps neither
 // which NaN it was, nor opaque payloads.
 bool rebuildable(const Value& line) {
   const Value* fields = line.find("fields");
@@ -115,7 +115,7 @@ bool rebuildable(const Value& line) {
   return fields->is(Value::Kind::kObject) && error->is(Value::Kind::kNull);
 }
 
-// What no file can hold again: bytes that are no packet.
+// Returns whether no file can hold the packet: bytes that are none.
 bool is_lost(const Packet& packet) {
   return packet.error.requirement == ReqId::kWireSfHandshake ||
          (packet.error.fault == Fault::kTooLong && packet.dropped_bytes > 0);
@@ -163,7 +163,7 @@ void round_trip(const std::string& input, InputFormat format, Tally& tally) {
     ASSERT_NO_FATAL_FAILURE(expect_same(kept, owned));
   }
   ASSERT_EQ(output.finish(), "");
-  // What was written reads as the same frames; only places differ.
+  // The output reads as the same frames; only places differ.
   const std::vector<Kept> second = read_all(read_file(file), format);
   ASSERT_EQ(second.size(), written_lines.size());
   const auto without_offset = [](const std::string& line) {
@@ -207,7 +207,8 @@ std::string damaged(std::string input, std::mt19937& random) {
   return input;
 }
 
-// A damaged capture file ends at the damage, so there it is the frames that are damaged.
+// Returns damaged frames of an input: a damaged capture file ends at the damage, so there it is the
+// frames that are damaged.
 std::string damaged_frames(const std::string& input, InputFormat format, std::mt19937& random) {
   PcapngWriter writer;
   std::string output;

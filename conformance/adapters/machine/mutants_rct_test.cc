@@ -1,5 +1,5 @@
-// What the golden traces find in this process, they find through rct/1 as well: every mutant is
-// run in a process of its own, and talks over pipes.
+// The golden traces find every mutant through rct/1 as well as in this process: each runs in a
+// process of its own, and talks over pipes.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -24,7 +24,7 @@ const Golden& golden() {
   return cases;
 }
 
-// A copy of this process that serves the wrapped machine.
+// Attaches a copy of this process that serves the wrapped machine.
 RctAttachment attached(const StepMaker& step) {
   const auto serve = [step](int in_fd, int out_fd) {
     std::FILE* const in = ::fdopen(in_fd, "r");
@@ -41,7 +41,7 @@ runner::CaseResult run_on(attach::Attachment& attachment, const CaseRef& ref) {
                           [&](const trace::NodeHeader&) { return attachment.target(); });
 }
 
-// By the case that kills it in this process, else by any other.
+// Tries the case that kills it in this process, else any other.
 bool killed_through_rct(const Mutant& mutant, const Found& found) {
   RctAttachment attachment = attached(mutant.step);
   for (const bool first : {true, false}) {

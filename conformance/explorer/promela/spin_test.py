@@ -24,7 +24,7 @@ FLAWS = [None, "accepts_wrong_seq", "one_pending_seq", "joined_on_link_ack", "no
 NETWORKS = [(1, 2, 2, False, False), (2, 1, 1, False, True), (1, 1, 1, True, True)]
 REQUESTS = 2
 ACKS = 2
-# What spin must find reachable in a network without flaws; these are denied in the model.
+# Goals that spin must find reachable in a network without flaws; the model denies them.
 REACHABLE = ["never_first", "never_fail", "never_over"]
 REACHABLE_WITH_TWO_SINKS = REACHABLE + ["never_second"]
 SECONDS_MAX = 120
@@ -50,7 +50,7 @@ class Pan:
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT).stdout
 
     def breaks(self, claim):
-        """Whether some run breaks the claim. Fails unless the search was complete."""
+        """Returns whether some run breaks the claim. Fails unless the search was complete."""
         out = self.run(["./pan", "-a", "-m100000", "-w18", "-N", claim])
         if "errors: 0" in out:
             for sign in ("out of memory", "max search depth too small", "Search not completed"):

@@ -37,7 +37,7 @@ bool applies(const Expectation& one, const oracle::Run& run, bool deployed) {
                      [&](const std::string& file) { return glob_matches(one.file, file); });
 }
 
-// All but the message agrees.
+// Returns whether all but the message agrees.
 bool is_about(const Expectation& one, const oracle::Run& run, const Finding& finding) {
   if (finding.severity != Severity::kFail || finding.requirement != one.requirement) return false;
   if (!one.node.empty() && finding.node != one.node) return false;

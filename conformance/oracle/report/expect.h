@@ -10,7 +10,7 @@
 
 namespace rubric::report {
 
-/// A failure that is known. Empty texts ask for nothing, but message and reason are required.
+/// A known failure. Empty texts match anything, but message and reason are required.
 struct Expectation {
   ReqId requirement = ReqId::kNone;
   std::string node;     ///< The finding's node, exactly.
@@ -18,7 +18,7 @@ struct Expectation {
   std::string profile;  ///< "paper" or "deployed": holds under that one only.
   std::string message;  ///< Part of the finding's text.
   std::string reason;
-  std::uint32_t line = 0;  ///< Where it stands in its file.
+  std::uint32_t line = 0;  ///< Line number in its file.
 };
 
 struct ExpectationFile {
@@ -26,14 +26,14 @@ struct ExpectationFile {
   std::vector<Expectation> expectations;
 };
 
-/// What an expectation came to.
+/// The outcome of an expectation.
 enum class Came : std::uint8_t {
   kTrue,          ///< A failure is just so.
   kStale,         ///< Nothing failed that way any more.
   kOtherMessage,  ///< It fails, but says something else.
   kNotAsked,      ///< It is about another file or profile.
 };
-/// "matched", "stale", "other_message", "not_applicable".
+/// Returns "matched", "stale", "other_message", "not_applicable".
 std::string_view came_name(Came came);
 
 struct ExpectationResult {
@@ -43,22 +43,22 @@ struct ExpectationResult {
 
 constexpr std::size_t kUnexpected = static_cast<std::size_t>(-1);
 
-/// A report seen beside what was expected of it.
+/// A report compared with its expectations.
 struct Outcome {
   std::vector<ExpectationResult> results;  ///< One for each expectation.
   std::vector<std::size_t> expected_by;    ///< One for each finding; kUnexpected: by none.
   std::uint64_t unexpected_failures = 0;
   std::uint64_t broken_expectations = 0;   ///< Stale, or with another message.
   bool nothing_judged = false;             ///< No rule had its chance to be broken.
-  /// The report's; inconclusive where nothing could be judged.
+  /// The report's verdict; inconclusive if nothing could be judged.
   oracle::Verdict verdict = oracle::Verdict::kPass;
 
   bool as_expected() const { return unexpected_failures == 0 && broken_expectations == 0; }
-  /// 0 as expected, 1 not, 3 nothing but inconclusive.
+  /// Returns 0 as expected, 1 not, 3 nothing but inconclusive.
   int exit_code() const { return !as_expected() ? 1 : nothing_judged ? 3 : 0; }
 };
 
-/// Reads a file's text. False, with `error` as "file:line: what", where it says nothing sensible.
+/// Reads a file's text. Returns false, with `error` as "file:line: what", if it makes no sense.
 bool parse_expectations(std::string_view text, const std::string& name, ExpectationFile& out,
                         std::string& error);
 

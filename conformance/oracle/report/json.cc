@@ -22,7 +22,7 @@ std::string time_json(std::int64_t time_us) {
   return text.empty() ? "null" : text;
 }
 
-// "[" items "]", each item in a line of its own.
+// Prints "[" items "]", each item on a line of its own.
 template <class Items, class ToText>
 std::string list(const Items& items, ToText to_text) {
   std::string out = "[";

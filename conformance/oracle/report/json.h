@@ -7,10 +7,10 @@
 
 namespace rubric::report {
 
-/// One JSON object and a line end.
+/// Returns one JSON object and a line end.
 std::string json_report(const Story& story);
 
-/// One object of its `findings`, without a line end.
+/// Returns one object of its `findings`, without a line end.
 std::string json_finding(const Story& story, std::size_t index);
 
 }  // namespace rubric::report

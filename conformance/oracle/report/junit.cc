@@ -13,7 +13,7 @@ namespace {
 using oracle::Finding;
 using oracle::Severity;
 
-/// What is said of one rule.
+/// Results for one rule.
 struct Case {
   std::uint64_t kept = 0;
   std::vector<std::size_t> failures;

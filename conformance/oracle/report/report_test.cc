@@ -1,5 +1,5 @@
-// The parts of a report, on findings made by hand; what `rubric check` prints of captures is
-// tested in tools/check_test.py.
+// The parts of a report, on findings made by hand; tools/check_test.py tests the output of `rubric
+// check` for captures.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -22,7 +22,7 @@ using oracle::Severity;
 constexpr std::size_t kFramesBefore = 3;
 constexpr std::size_t kFramesAfter = 2;
 constexpr std::size_t kFactLines = 6;    // More are run together.
-constexpr std::size_t kLinesOfRule = 3;  // Of a rule and severity, without --verbose.
+constexpr std::size_t kLinesOfRule = 3;  // For a rule and severity, without --verbose.
 constexpr std::string_view kIndent = "  ";
 
 class TextReport {
@@ -185,8 +185,8 @@ class TextReport {
     }
   }
 
-  // The frame at the place, some before it and some after it that concern the same node, and of a
-  // sink's only those about the same motes.
+  // Returns the frame at the place with some before and after it that concern the same node; for a
+  // sink, only those about the same motes.
   std::vector<std::size_t> window(std::size_t at, std::uint16_t node) {
     std::vector<std::uint16_t> topic;
     if (at < story_.run.seen.size()) topic = scene_->topic(at);
@@ -228,7 +228,7 @@ class TextReport {
       out_ += fmt::format("{}{}, {}\n", kIndent, where, scene_->route(i));
       constexpr std::string_view kDeep = "             ";
       const std::string message = scene_->message(i);
-      // The frame in question in full, a line of the others.
+      // Shows the frame in question in full, the others on one line each.
       if (i == at || kDeep.size() + message.size() <= options_.width) {
         out_ += wrapped(kDeep, message, options_.width, kDeep.size() + 2);
       } else {
@@ -248,12 +248,12 @@ class TextReport {
         ranges += " --frames " + range_text(range, story_.run.files.size());
       }
     }
-    // A command is copied whole, so it is not broken.
+    // A command is meant to be copied, so it is not broken.
     out_ += fmt::format("\n{}Again:    {}{}{}\n", kIndent, options_.command, options_.files,
                         ranges);
   }
 
-  // The rest: by severity, then by rule, a few of each.
+  // Prints the rest: by severity, then by rule, a few of each.
   void in_lines(const std::vector<std::size_t>& which) {
     using Key = std::tuple<int, bool, ReqId>;
     std::map<Key, std::vector<std::size_t>> groups;

@@ -40,7 +40,7 @@ std::vector<std::uint8_t> radio_frame(const trace::AmFrame& am, std::uint8_t dsn
   return bytes;
 }
 
-/// Writes the frames of one case, each once however many nodes hear it.
+/// Writes the frames of one case, each once, however many nodes hear it.
 class Capture {
  public:
   explicit Capture(const CaseRun& one) : one_(one) {

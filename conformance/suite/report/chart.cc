@@ -23,14 +23,14 @@ using trace::Line;
 using trace::Op;
 using trace::Value;
 
-// The machine, with what it made of each stimulus.
+// The machine, recording its reaction to each stimulus.
 class Watched : public runner::SubjectTarget {
  public:
   explicit Watched(std::vector<Heed>& heeds)
       : SubjectTarget(std::make_unique<runner::Machine>()), heeds_(heeds) {}
 
   void give(runner::Ticks now, const machine::Event& event) override {
-    while (run_until(now) < now) {  // What comes of the time before is not of this.
+    while (run_until(now) < now) {  // Earlier output is no reaction to this.
     }
     const std::size_t before = labels().size();
     SubjectTarget::give(now, event);
@@ -86,7 +86,7 @@ std::string net_msg_text(const trace::Message& message) {
                      app.empty() ? "" : " " + app);
 }
 
-// "joined(11:5 success)": names and addresses stand for themselves.
+// Returns "joined(11:5 success)": names and addresses are shown without their fields.
 std::string fields_text(const trace::Message& message) {
   std::string out;
   for (const trace::FieldValue& field : message.fields) {
@@ -123,7 +123,7 @@ std::string full_text(const Line& line) {
   return begin == out.npos ? out : out.substr(begin);
 }
 
-// Each once.
+// Returns the rules, each once.
 std::string rules_text(const std::vector<ReqId>& rules) {
   std::string out;
   std::set<ReqId> seen{ReqId::kNone};
@@ -180,7 +180,7 @@ class Chart {
     }
   }
 
-  // Which nodes under test speak on a link at all.
+  // Finds the links that each node under test uses.
   void find_links() {
     for (const Line* line : lines_) {
       if (line->am) on_link_[line->link].insert(stage_.column(line->node));
@@ -212,7 +212,7 @@ class Chart {
     }
   }
 
-  // Nodes under test hear what they are given, and nothing else.
+  // Splits hearers: nodes under test hear what they are given, and nothing else.
   void split_hearers(SequenceRow& row) const {
     const Line& line = *lines_[row.lines.front()];
     std::vector<std::size_t> stay;
@@ -240,7 +240,7 @@ class Chart {
     takers_[at].push_back(i);
   }
 
-  // What those who got it made of it.
+  // Adds the reactions of those who received it.
   void complete(std::size_t at) {
     SequenceRow& row = rows_[at];
     for (const std::size_t i : takers_[at]) {
@@ -292,7 +292,7 @@ class Chart {
   std::map<std::string, std::set<std::size_t>, std::less<>> on_link_;
   std::vector<std::size_t> rows_of_;
   std::vector<SequenceRow> rows_;
-  std::vector<std::vector<std::size_t>> takers_;  // Of each row: lines that were given.
+  std::vector<std::vector<std::size_t>> takers_;  // For each row: lines that were given.
 };
 
 }  // namespace

@@ -54,7 +54,7 @@ Json implementation(const SuiteRun& run, std::size_t index) {
                      {"untried", totals.untried}}}};
 }
 
-/// Frames of all logs, each of them once.
+/// Collects the frames of all logs, each once.
 class Frames {
  public:
   std::size_t index_of(const Line& line, trace::LinkKind kind) {
@@ -213,7 +213,7 @@ class Data {
     return out;
   }
 
-  // Keys that would say nothing are left out: logs are most of the page.
+  // Returns the log without empty keys: logs are most of the page.
   Json log(const CaseRun& one, const std::vector<const Line*>& lines) {
     trace::Scope scope;
     scope.nodes = one.nodes;
@@ -269,12 +269,12 @@ class Data {
 
 std::string html_data(const SuiteRun& run, const EarlierRun* earlier,
                       const std::vector<std::vector<CaseLinks>>& links) {
-  // What implementations say of themselves need not be UTF-8.
+  // Text from implementations need not be UTF-8.
   const std::string text =
       Data(run, earlier, links).take().dump(-1, ' ', false, Json::error_handler_t::replace);
   std::string out;
   out.reserve(text.size());
-  for (const char c : text) {  // "<" stands within strings only.
+  for (const char c : text) {  // "<" occurs within strings only.
     if (c == '<') {
       out += "\\u003c";
     } else {

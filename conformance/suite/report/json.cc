@@ -143,7 +143,7 @@ std::string json_report(const SuiteRun& run) {
                     {"exit_code", exit_code(run)},
                     {"implementations", std::move(implementations)},
                     {"stale", std::move(stale)}};
-  // What an implementation wrote to its standard error need not be UTF-8.
+  // An implementation's standard error need not be UTF-8.
   return out.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -11,12 +11,12 @@
 
 namespace rubric::suite {
 
-/// One JSON object and a line end. All keys are always there.
+/// Returns one JSON object and a line end. All keys are always there.
 std::string json_report(const SuiteRun& run);
-/// Cases that were not worked: one object of the schema rubric.test.list/1.
+/// Lists cases without running them: one object of the schema rubric.test.list/1.
 std::string json_list(const std::vector<SuiteCase>& cases);
 
-/// Reads what json_report() wrote. Throws std::runtime_error with place and reason.
+/// Reads a report of json_report(). Throws std::runtime_error with place and reason.
 EarlierRun read_json_report(std::string_view text);
 
 }  // namespace rubric::suite

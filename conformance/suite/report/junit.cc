@@ -34,7 +34,7 @@ std::string attributes(const Sums& sums) {
                      sums.tests, sums.failures, sums.errors, sums.skipped, sums.wall_ms / 1000);
 }
 
-// Readers split at the last dot.
+// Replaces dots, since readers split at the last one.
 std::string class_name_of(std::string name) {
   std::replace(name.begin(), name.end(), '.', '_');
   return "rubric." + name;
@@ -75,7 +75,7 @@ std::string testcase(const std::string& class_name, const CaseRun& one, Sums& su
   return inside.empty() ? out + "/>\n" : out + ">\n" + inside + "</testcase>\n";
 }
 
-// What goes wrong between cases, and at the end, is nothing of any of them.
+// Reports faults between cases, and at the end, which belong to no case.
 std::string outside(const std::string& class_name, const ImplementationRun& run, Sums& sums) {
   if (run.outside.empty()) return "";
   ++sums.tests;
@@ -93,7 +93,7 @@ std::string outside(const std::string& class_name, const ImplementationRun& run,
                      "{}</testcase>\n", xml_text(class_name), inside);
 }
 
-// Its numbers are those of the whole, too.
+// Returns a testsuite, whose numbers count in the whole, too.
 std::string suite_element(const std::string& name, const Sums& sums, const std::string& body,
                           Sums& whole) {
   whole.add(sums);

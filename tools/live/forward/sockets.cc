@@ -56,7 +56,7 @@ void Connector::go_on(bool writable, attach::SteadyTime now) {
 }
 
 attach::ByteStream Connector::take() {
-  const int on = 1;  // What is written is whole packets already.
+  const int on = 1;  // Writes are whole packets already.
   ::setsockopt(socket_.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
   ::setsockopt(socket_.get(), SOL_SOCKET, SO_KEEPALIVE, &on, sizeof on);
   return attach::ByteStream(std::move(socket_));

@@ -1,4 +1,4 @@
-// Sockets of a program that waits for many at once: no call here blocks but for names.
+// Sockets of a program that waits for many at once: no call here blocks except for names.
 #pragma once
 
 #include <vector>
@@ -19,15 +19,15 @@ class Connector {
  public:
   explicit Connector(std::vector<SocketAddress> addresses) : addresses_(std::move(addresses)) {}
 
-  /// From the first address on. Throws runner::TargetBroken, here and below, when none is left.
+  /// Starts with the first address. Throws runner::TargetBroken, here and below, when none is left.
   void begin(attach::SteadyTime now);
-  /// The socket is writable, or the time may be over.
+  /// Continues when the socket is writable, or the time may be over.
   void go_on(bool writable, attach::SteadyTime now);
   bool connected() const { return connected_; }
   int fd() const { return socket_.get(); }
-  /// When to go on though nothing happened.
+  /// Returns when to continue though nothing happened.
   attach::SteadyTime deadline() const { return deadline_; }
-  /// The connection, once.
+  /// Returns the connection, once.
   attach::ByteStream take();
   void close() { socket_.close(); }
 
@@ -42,7 +42,7 @@ class Connector {
   int error_ = 0;  // Why the last one failed.
 };
 
-/// Whether an error only says that there is nothing to do now.
+/// Returns whether an error only means that there is nothing to do now.
 bool would_block(int error);
 
 }  // namespace rubric::forward

@@ -29,7 +29,7 @@ function showCase(name, label, number) {
     h('h3', {}, 'The case'), source(one, run));
 }
 
-// To the cases before and after, of those that the matrix shows.
+// Links to the cases before and after, among those that the matrix shows.
 function neighbours(one, run) {
   const chosen = data.cases.filter((each) => each === one || fits(each));
   const at = chosen.indexOf(one);
@@ -68,7 +68,7 @@ function aboutCase(one, run) {
   ]);
 }
 
-// The first in full; more of them often say the same.
+// Shows the first in full; more of them often say the same.
 function failuresView(run) {
   const [first, ...rest] = run.failures;
   return [first && failureView(first, run),

@@ -24,7 +24,7 @@ function fits(one) {
   return one.runs.some((run) => run.verdict === filter.verdict);
 }
 
-// The filter stands in the address, so that it can be kept and passed on.
+// The address holds the filter, so that it can be kept and shared.
 function casesHash(state) {
   const query = new URLSearchParams();
   for (const [key, value] of Object.entries(state)) {
@@ -116,7 +116,7 @@ function stale() {
       h('li', {}, h('code', {}, one.place), ': ', one.text))));
 }
 
-// What an earlier run had and this one has not: its row would be empty.
+// Lists the cases of an earlier run that this one lacks; their rows would be empty.
 function gone() {
   if (!data.gone.length) return null;
   return h('details', { id: 'gone' },

@@ -1,7 +1,7 @@
 // ---- Sequence charts.
 //
 // A row is a line of the log, or one that is missing. Its `arrows` go from lane to lane; a lane is
-// a node, or the application above one. Null stands for somebody whom the case does not have.
+// a node, or the application above one. Null is somebody whom the case does not have.
 
 const kRow = 22;
 const kRowFigure = 40;
@@ -13,7 +13,8 @@ const kTextWidth = 400;
 
 const appLane = (node) => 'app of ' + node;
 
-// Rows as they are drawn: a frame that a node under test emits and another is given is one arrow.
+// Returns rows as they are drawn: a frame that one node under test emits and another is given is
+// one arrow.
 function rowsOf(run, hasAppLane) {
   const rows = run.log.map((line, index) =>
     ({ ...line, index, heard: new Set(), text: textOf(line) }));
@@ -67,7 +68,7 @@ function withFailures(rows, run, hasAppLane) {
   return rows;
 }
 
-// The nodes that take part, in the order of the case.
+// Returns the nodes that take part, in the order of the case.
 function lanesOf(rows, nodes, appsOf) {
   const used = new Set(rows.flatMap((row) => row.arrows.flatMap((one) => [one.from, one.to])));
   const lanes = [];
@@ -89,7 +90,7 @@ function lanesOf(rows, nodes, appsOf) {
   return lanes;
 }
 
-// The chart of a case: time, arrows, and the words of each row behind them.
+// Draws the chart of a case: time, arrows, and the words of each row after them.
 function caseChart(run, pick) {
   const alone = run.nodes.filter((node) => node.iut).length === 1;
   const all = withFailures(rowsOf(run, alone), run, alone);
@@ -170,7 +171,7 @@ function drawRow(row, at) {
   return group;
 }
 
-// One that goes to several lanes goes from each to the next.
+// Splits an arrow to several lanes into one from each to the next.
 function inSteps(arrows, x) {
   const starts = new Map();
   return [...arrows].sort((a, b) => Math.abs(x.get(a.to) - x.get(a.from)) -

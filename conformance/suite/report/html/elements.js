@@ -3,7 +3,7 @@
 const data = JSON.parse(document.getElementById('data').textContent);
 const main = document.getElementById('main');
 
-// In the order in which somebody wants to hear of them.
+// In the order in which readers want to see them.
 const kVerdicts = ['fail', 'error', 'weak', 'inconclusive', 'skip', 'pass'];
 
 function add(element, children) {

@@ -3,7 +3,7 @@
 const kJoinWords = ['join', 'join_request', 'join_reply', 'ack_join', 'joined', 'mote_joined'];
 const wordOf = (line) => textOf(line).split('(')[0];
 
-// The best run for a figure: one that passed, of a case that was made for it.
+// Returns the best run for a figure: one that passed, of a case that was made for it.
 function figureRun(implementation, names, fitsFigure) {
   const places = new Map(names.map((name, i) => [name, i]));
   let best = null;
@@ -52,7 +52,7 @@ function showFigures(label) {
       : h('p', {}, 'No case of this run shows a mote that joins and sends readings.'));
 }
 
-// The first mote's join, from the application's call to the sink's notice.
+// Draws the first mote's join, from the application's call to the sink's notice.
 function joinFigure(run) {
   const rows = rowsOf(run, true).filter((row) => kJoinWords.includes(wordOf(row)));
   const asked = rows.find((row) => wordOf(row) === 'ack_join');
@@ -75,7 +75,7 @@ function joinFigure(run) {
     count(shown.length, 'message') + ': ' + shown.map((row) => row.label).join(', ') });
 }
 
-// "joined(11:2, success)"; of frames what the join is about.
+// Returns "joined(11:2, success)"; for frames, the subject of the join.
 function figureLabel(row) {
   const word = wordOf(row);
   const fields = [...row.text.matchAll(/([\w.]+)=([^\s()]+)/g)];
@@ -102,7 +102,7 @@ function timelineKey() {
     sign(s('circle', { class: 'dot', r: 3.5 }), 'reading sent to the sink'));
 }
 
-// Milliseconds, counted from the first join, as the paper has it.
+// Draws milliseconds, counted from the first join, as the paper does.
 function timeline(run) {
   const motes = run.nodes.filter((node) => isMote(run, node.name))
     .map((node) => ({ ...node, joined: joinOf(run, node.name),

@@ -7,7 +7,7 @@ for (const one of data.cases) for (const id of one.rules) casesOf.get(id)?.push(
 
 const breaks = (run, id) => run.failures.some((failure) => failure.rules.includes(id));
 
-// What a rule's row says of an implementation: a verdict's name for its colour, and words.
+// Returns a rule's state for an implementation: a verdict's name for its colour, and words.
 function stateOf(id, implementation) {
   const runs = casesOf.get(id).flatMap((one) =>
     one.runs.filter((run) => run.implementation === implementation));

@@ -1,5 +1,5 @@
 'use strict';
-// What the page has to do. Each check gets a page of its own, and `go` to a place in it.
+// Checks of the page. Each gets a page of its own, and `go` to open a place in it.
 const assert = require('node:assert');
 const fs = require('node:fs');
 const path = require('node:path');
@@ -21,7 +21,7 @@ async function filters(page, go) {
   assert.ok(failing > 0 && failing < all, `${failing} of ${all}`);
   assert.strictEqual(await page.locator('#matrix tbody tr:has(.v-fail)').count(), failing);
   assert.strictEqual(await page.locator('.count').textContent(), `${failing} of ${all} cases`);
-  // It stands in the address, so it is still there when the page is loaded again.
+  // It is in the address, so it is still there when the page is loaded again.
   assert.match(page.url(), /#\/cases\?verdict=fail$/);
   await page.reload();
   assert.strictEqual(await rows(page), failing);
@@ -58,7 +58,7 @@ async function compared(page, go) {
   await go('#/cases?verdict=new');
   const fresh = await texts(page, '#matrix tbody th');
   assert.ok(fresh.length > 0 && fresh.every((name) => name.endsWith('.again')), fresh.join(' '));
-  // What is gone has no row of its own there.
+  // A case that is gone has no row of its own there.
   const gone = page.locator('#gone');
   assert.strictEqual(await gone.locator('summary').textContent(),
     '2 cases of the earlier run are gone, or not chosen this time');
@@ -157,7 +157,7 @@ async function figures(page, go) {
     ['join', 'join_request', 'join_reply', 'joined', 'ack_join', 'mote_joined']);
   assert.deepStrictEqual(await texts(page, '.heads text:not(.small)'),
     ['tick', 'application', 'm2', 'sA', 'application']);
-  // As the paper has it: motes 2, 4 and 3, then a reading every 500 ms.
+  // As in the paper: motes 2, 4 and 3, then a reading every 500 ms.
   assert.deepStrictEqual(await texts(page, '.timeline text.iut'), ['m2', 'm4', 'm3']);
   assert.deepStrictEqual(await texts(page, '.timeline text.small'),
     ['0 ms', '3842 ms', '6940 ms']);
@@ -216,7 +216,7 @@ async function themes(page, go) {
   assert.strictEqual(await background(page), dark);
 }
 
-// Whatever implementations say is text.
+// Expects whatever implementations say to be shown as text.
 async function harmless(page, go) {
   const places = ['#/cases', '#/rules', '#/figures', '#/run'];
   await go('#/cases');
