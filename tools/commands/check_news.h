@@ -28,7 +28,7 @@ class CheckNews {
   /// Says at a terminal that there is something to wait for.
   void begin() const;
   void tell(const oracle::Run& run, const oracle::Options& judged, const oracle::Change& change,
-            const report::ExpectationFile& expected);
+            const report::KnownFailures& expected);
   /// What was told can be read then.
   void flush() { output_.flush(); }
   /// Whether somebody still reads it.

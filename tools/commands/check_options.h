@@ -43,7 +43,7 @@ struct CheckOptions {
 oracle::Options oracle_options(const CheckOptions& options);
 std::vector<report::FrameRange> frame_ranges(const CheckOptions& options);
 /// What the file --expect names says; nothing without it.
-report::ExpectationFile expectations(const CheckOptions& options);
+report::KnownFailures expectations(const CheckOptions& options);
 
 /// What --input-format says captures are.
 oracle::ReadAs read_as(const CheckOptions& options);

@@ -158,8 +158,7 @@ class TextReport {
     }
     field("Allowed:", finding.expected);
     if (is_expected(i)) {
-      field("Expected:",
-            story_.expected.expectations[story_.outcome.expected_by[i]].reason);
+      field("Expected:", story_.expected.entries[story_.outcome.expected_by[i]].reason);
     }
     hypotheses(finding);
     frames(finding);
@@ -282,7 +281,7 @@ class TextReport {
                                    options_.text.empty() ? finding.text : options_.text);
     if (is_expected(i)) {
       rest += fmt::format(" Expected: {}",
-                          story_.expected.expectations[story_.outcome.expected_by[i]].reason);
+                          story_.expected.entries[story_.outcome.expected_by[i]].reason);
     }
     styled_line(style_of(finding.severity), head(i), rest);
   }
@@ -290,20 +289,21 @@ class TextReport {
   void expectations() {
     for (std::size_t e = 0; e < story_.outcome.results.size(); ++e) {
       const ExpectationResult& result = story_.outcome.results[e];
-      const Expectation& one = story_.expected.expectations[e];
+      const KnownFailure& one = story_.expected.entries[e];
       const std::string place = fmt::format("{}:{}", story_.expected.name, one.line);
       if (result.came == Came::kStale) {
         out_ += '\n';
-        styled_line("1;31", "STALE", fmt::format(
-            "{}: {} does not fail with \"{}\" any more. If that is meant, delete the expectation.",
-            place, trace_id(one.requirement), one.message));
+        styled_line("1;31", "STALE",
+                    fmt::format("{}: {} does not fail with \"{}\" any more. If that is meant, "
+                                "delete the expectation.",
+                                place, one.requirement, one.message));
       } else if (result.came == Came::kOtherMessage) {
         const Finding& finding = story_.report.findings[result.findings.front()];
         out_ += '\n';
-        styled_line("1;31", "OTHER MESSAGE", fmt::format(
-            "{}: {} was expected to say \"{}\", but {} says: {}", place,
-            trace_id(one.requirement), one.message, place_text(story_.run, finding.place),
-            finding.text));
+        styled_line("1;31", "OTHER MESSAGE",
+                    fmt::format("{}: {} was expected to say \"{}\", but {} says: {}", place,
+                                one.requirement, one.message, place_text(story_.run, finding.place),
+                                finding.text));
       }
     }
   }
@@ -317,7 +317,7 @@ class TextReport {
     }
     const Outcome& outcome = story_.outcome;
     std::string text = counted(counts[Severity::kFail], "failure");
-    if (!story_.expected.expectations.empty()) {
+    if (!story_.expected.entries.empty()) {
       text += fmt::format(", {} expected, {} not true", counted(expected, "known failure"),
                           counted(outcome.broken_expectations, "expectation"));
     }

@@ -13,7 +13,7 @@ struct Story {
   const oracle::Run& run;
   const oracle::Options& options;
   const oracle::Report& report;
-  const ExpectationFile& expected;
+  const KnownFailures& expected;
   const Outcome& outcome;
 };
 
