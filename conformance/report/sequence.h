@@ -20,7 +20,7 @@ struct SequenceRow {
   std::size_t from = kNoColumn;
   std::vector<std::size_t> to;     ///< Columns.
   bool sent = false;               ///< Somebody may take it, though no column does.
-  bool marked = false;             ///< "<<<" stands behind it, and its arrow is doubled.
+  bool marked = false;             ///< "<<<" follows it, and its arrow is doubled.
   std::string note;                ///< Stands behind the row: "ignored: J4-SEQ".
 
   // For pictures.
@@ -29,6 +29,7 @@ struct SequenceRow {
   std::string detail;              ///< The label with what matters of the message.
   std::string full;                ///< All of it.
   std::vector<std::size_t> missed; ///< Columns that it was for and that never got it.
+  bool absent = false;             ///< It should have happened: its arrow ends in a cross.
   bool stimulus = false;           ///< Given from outside, by nobody that is drawn.
   std::vector<std::size_t> ignored_by;  ///< Columns of `to` that made nothing of it.
   std::vector<std::size_t> lines;  ///< Of the log, that this row stands for.

@@ -1,14 +1,20 @@
 #include "conformance/suite/report/html_data.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <tuple>
 #include <utility>
 
-#include <nlohmann/json.hpp>
-
 #include "codec/reflect/fault_text.h"
+#include "conformance/report/sequence_svg.h"
+#include "conformance/report/text.h"
 #include "conformance/suite/report/case_source.h"
+#include "conformance/suite/report/chart.h"
 #include "conformance/suite/report/frame_view.h"
 #include "conformance/suite/report/log_lines.h"
 #include "conformance/suite/report/words.h"
@@ -78,6 +84,41 @@ class Frames {
   Json frames_ = Json::array();
 };
 
+/// Charts of all cases, each of them once.
+class Charts {
+ public:
+  /// Null where there is nothing to draw. Of many rows only those around the first that is marked.
+  Json index_of(report::Sequence sequence) {
+    std::vector<report::SequenceRow>& rows = sequence.rows;
+    if (rows.empty()) return nullptr;
+    std::string title = report::counted(rows.size(), "event");
+    if (rows.size() > kRowsMax) {
+      title = fmt::format("{} of {}", kRowsMax, title);
+      const auto marked =
+          std::find_if(rows.begin(), rows.end(), [](const auto& row) { return row.marked; });
+      const auto at = marked == rows.end() ? 0 : marked - rows.begin();
+      const auto half = static_cast<std::ptrdiff_t>(kRowsMax / 2);
+      const auto last = static_cast<std::ptrdiff_t>(rows.size() - kRowsMax);
+      const auto from = std::clamp<std::ptrdiff_t>(at - half, 0, last);
+      rows.erase(rows.begin(), rows.begin() + from);
+      rows.resize(kRowsMax);
+    }
+    const std::string svg =
+        report::sequence_svg(sequence, {"chart", "Sequence chart: " + title, true});
+    const auto [found, added] = known_.try_emplace(svg, charts_.size());
+    if (added) charts_.push_back(svg);
+    return found->second;
+  }
+
+  Json take() { return std::move(charts_); }
+
+ private:
+  static constexpr std::size_t kRowsMax = 400;
+
+  std::map<std::string, std::size_t> known_;
+  Json charts_ = Json::array();
+};
+
 class Data {
  public:
   Data(const SuiteRun& run, const EarlierRun* earlier,
@@ -88,6 +129,7 @@ class Data {
     Json implementations = Json::array();
     for (std::size_t i = 0; i < run_.implementations.size(); ++i) {
       implementations.push_back(implementation(run_, i));
+      implementations.back()["join"] = join(i);
       for (std::size_t k = 0; k < run_.implementations[i].cases.size(); ++k) add(i, k);
     }
     Json stale = Json::array();
@@ -104,6 +146,7 @@ class Data {
             {"rules", rules()},
             {"implementations", std::move(implementations)},
             {"frames", frames_.take()},
+            {"charts", charts_.take()},
             {"cases", std::move(cases_)}};
   }
 
@@ -138,7 +181,7 @@ class Data {
     const std::vector<const Line*> lines = one.result.log.lines();
     Json failures = Json::array();
     for (const runner::Failure& each : one.result.failures) {
-      failures.push_back(failure(each, one.nodes, lines));
+      failures.push_back(failure(each, lines));
     }
     return {{"implementation", i},
             {"repeat", one.repeat},
@@ -158,8 +201,27 @@ class Data {
             {"rtr", links_[i][index].rtr},
             {"pcapng", links_[i][index].pcapng},
             {"nodes", nodes_of(one)},
+            {"chart", charts_.index_of(failure_chart(one))},
             {"failures", std::move(failures)},
             {"log", log(one, lines)}};
+  }
+
+  // The paper's figure, of the best run for it: one that passed, of a case that was made for it.
+  Json join(std::size_t implementation) {
+    static constexpr std::array kCases = {"timeline", "j4.accept", "home.network"};
+    const CaseRun* best = nullptr;
+    std::pair<bool, std::ptrdiff_t> best_rank;
+    for (const CaseRun& one : run_.implementations[implementation].cases) {
+      const std::pair rank(one.result.verdict > runner::CaseVerdict::kWeak,
+                           std::find(kCases.begin(), kCases.end(), one.name) - kCases.begin());
+      if ((best && best_rank <= rank) || !join_chart(one)) continue;
+      best = &one;
+      best_rank = rank;
+    }
+    if (!best) return nullptr;
+    return {{"name", best->name},
+            {"repeat", best->repeat},
+            {"chart", charts_.index_of(*join_chart(*best))}};
   }
 
   Json gone() const {
@@ -173,9 +235,7 @@ class Data {
     return out;
   }
 
-  Json failure(const runner::Failure& one, const std::vector<trace::NodeHeader>& nodes,
-               const std::vector<const Line*>& lines) {
-    const std::optional<Line> asked = asked_line(one);
+  Json failure(const runner::Failure& one, const std::vector<const Line*>& lines) {
     Json row = -1;
     for (std::size_t i = 0; i < lines.size() && row == -1; ++i) {
       if (is_broken_by(one, *lines[i])) row = i;
@@ -193,10 +253,6 @@ class Data {
             {"to", one.to},
             {"expected", one.expected},
             {"text", one.text},
-            {"node", asked ? asked->node : ""},
-            {"link", asked ? asked->link : ""},
-            {"short", asked ? short_text(asked->message) : ""},
-            {"peers", asked ? peers_of(nodes, *asked) : std::vector<std::size_t>()},
             {"row", row}};
   }
 
@@ -218,10 +274,9 @@ class Data {
     trace::Scope scope;
     scope.nodes = one.nodes;
     scope.links = one.links;
-    const std::vector<std::size_t> before = first_seen(lines);
     Json out = Json::array();
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-      const Line& line = *lines[i];
+    for (const Line* each : lines) {
+      const Line& line = *each;
       const trace::LinkKind kind = scope.link(line.link).value_or(trace::LinkKind::kAny);
       Json row = {{"time", line.time.from},
                   {"node", line.node},
@@ -234,9 +289,6 @@ class Data {
       } else {
         row["text"] = trace::print(line.message);
       }
-      const std::vector<std::size_t> peers = peers_of(one.nodes, line);
-      if (!peers.empty()) row["peers"] = peers;
-      if (before[i] != kNoLine) row["of"] = before[i];
       out.push_back(std::move(row));
     }
     return out;
@@ -260,6 +312,7 @@ class Data {
   const std::vector<std::vector<CaseLinks>>& links_;
   CaseSources sources_;
   Frames frames_;
+  Charts charts_;
   std::set<ReqId> rules_;
   std::map<std::string, std::size_t> by_name_;
   Json cases_ = Json::array();
