@@ -49,7 +49,7 @@ function neighbours(one, run) {
 function aboutCase(one, run) {
   const others = one.runs.filter((each) => each !== run);
   return facts([
-    ['Rules', h('span', { class: 'rules' }, one.rules.map(ruleLink))],
+    ['Rules', h('span', { class: 'rules' }, one.requirements.map(ruleLink))],
     ['Known failure', run.expected_reason],
     ['Nodes', h('ul', { class: 'plain' }, run.nodes.map((node) => h('li', {},
       h('span', { class: 'mono' }, node.name), ' ', node.role.replace('_', ' '),
@@ -90,11 +90,11 @@ function failureView(failure, run) {
   const asked = failure.expected !== '';
   return h('section', { class: 'failure' + (failure.weak ? ' is-weak' : '') +
       (run.verdict === 'error' ? ' is-error' : '') },
-  h('h3', {}, failure.rules.length
-    ? failure.rules.map((id, i) => [i ? ' ' : '', ruleLink(id)])
+  h('h3', {}, failure.requirements.length
+    ? failure.requirements.map((id, i) => [i ? ' ' : '', ruleLink(id)])
     : asked ? 'A line without a rule' : 'It broke',
   failure.weak && h('span', { class: 'flag' }, 'SHOULD')),
-  failure.rules.map((id) => ruleOf(id) && h('p', {}, ruleOf(id).sentence)),
+  failure.requirements.map((id) => ruleOf(id) && h('p', {}, ruleOf(id).sentence)),
   h('dl', { class: 'facts' },
     asked && h('div', {},
       h('dt', {}, failure.forbidden ? 'Forbidden' : 'Expected'),
