@@ -23,7 +23,6 @@ constexpr std::size_t kFramesBefore = 3;
 constexpr std::size_t kFramesAfter = 2;
 constexpr std::size_t kFactLines = 6;    // More are run together.
 constexpr std::size_t kLinesOfRule = 3;  // Of a rule and severity, without --verbose.
-constexpr std::string_view kIndent = "  ";
 
 class TextReport {
  public:
@@ -62,10 +61,6 @@ class TextReport {
     return story_.outcome.expected_by[i] != kUnexpected;
   }
 
-  std::string painted(std::string_view style, std::string_view text) const {
-    return options_.color ? fmt::format("\033[{}m{}\033[0m", style, text) : std::string(text);
-  }
-
   std::string_view style_of(Severity severity) const {
     switch (severity) {
       case Severity::kFail: return "1;31";
@@ -78,9 +73,7 @@ class TextReport {
   }
 
   void styled_line(std::string_view style, std::string_view head, std::string_view rest) {
-    const std::string line = fmt::format("{} {}", head, rest);
-    const std::string lines = wrapped("", line, options_.width, kIndent.size());
-    out_ += painted(style, head) + lines.substr(head.size());
+    out_ += styled(options_, style, head, rest);
   }
 
   void about_the_run() {
@@ -134,16 +127,9 @@ class TextReport {
   }
 
   std::string head(std::size_t i) const {
-    std::string name(severity_name(story_.report.findings[i].severity));
-    std::transform(name.begin(), name.end(), name.begin(),
-                   [](char c) { return static_cast<char>(c >= 'a' && c <= 'z' ? c - 32 : c); });
+    std::string name = in_capitals(severity_name(story_.report.findings[i].severity));
     if (is_expected(i)) name = "EXPECTED " + name;
     return options_.head.empty() ? name : options_.head + " " + name;
-  }
-
-  void field(std::string_view name, std::string_view text) {
-    if (text.empty()) return;
-    out_ += wrapped(fmt::format("{}{:<9} ", kIndent, name), text, options_.width);
   }
 
   void in_full(std::size_t i) {
@@ -153,12 +139,15 @@ class TextReport {
     out_ += wrapped(kIndent, finding.text, options_.width);
     const reflect::Requirement& rule = reflect::requirement(finding.requirement);
     if (finding.requirement != ReqId::kNone) {
-      field("Rule:", fmt::format("{} ({} {}; {})", rule.sentence, rule.level, rule.id,
-                                 *rule.source == '\0' ? rule.clause : rule.source));
+      out_ += field("Rule:",
+                    fmt::format("{} ({} {}; {})", rule.sentence, rule.level, rule.id,
+                                *rule.source == '\0' ? rule.clause : rule.source),
+                    options_);
     }
-    field("Allowed:", finding.expected);
+    out_ += field("Allowed:", finding.expected, options_);
     if (is_expected(i)) {
-      field("Expected:", story_.expected.entries[story_.outcome.expected_by[i]].reason);
+      out_ += field("Expected:", story_.expected.entries[story_.outcome.expected_by[i]].reason,
+                    options_);
     }
     hypotheses(finding);
     frames(finding);

@@ -5,6 +5,7 @@
 
 #include "conformance/oracle/report/expect.h"
 #include "conformance/oracle/report/window.h"
+#include "conformance/report/text.h"
 
 namespace rubric::report {
 
@@ -17,9 +18,7 @@ struct Story {
   const Outcome& outcome;
 };
 
-struct TextOptions {
-  std::size_t width = 100;
-  bool color = false;
+struct TextOptions : TextStyle {
   bool verbose = false;        ///< Every finding in full.
   /// The command that made this run, ready for a shell: program and options, and its files. Empty
   /// where the run cannot be had again.
