@@ -20,8 +20,8 @@ struct SequenceRow {
   std::size_t from = kNoColumn;
   std::vector<std::size_t> to;     ///< Columns.
   bool sent = false;               ///< Somebody may take it, though no column does.
-  bool marked = false;             ///< Has "<<<" after it, and a doubled arrow.
-  std::string note;                ///< Comes after the row: "ignored: J4-SEQ".
+  bool marked = false;             ///< "<<<" follows it, and its arrow is doubled.
+  std::string note;                ///< Stands behind the row: "ignored: J4-SEQ".
 
   // For pictures.
   enum class Way : std::uint8_t { kRadio, kSerial, kPeis, kCall, kState };
@@ -29,7 +29,8 @@ struct SequenceRow {
   std::string detail;              ///< The label with what matters of the message.
   std::string full;                ///< All of it.
   std::vector<std::size_t> missed; ///< Columns that it was for and that never got it.
-  bool stimulus = false;           ///< Given from outside the chart.
+  bool absent = false;             ///< It should have happened: its arrow ends in a cross.
+  bool stimulus = false;           ///< Given from outside, by nobody that is drawn.
   std::vector<std::size_t> ignored_by;  ///< Columns of `to` that made nothing of it.
   std::vector<std::size_t> lines;  ///< Lines of the log that this row shows.
 };

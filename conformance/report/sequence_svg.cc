@@ -98,9 +98,17 @@ class Picture {
     }
     y += 14;
     lives(from, y, "rc-life");
+    std::string signs;
+    y += legend(y, signs);
     std::string heads = head_row(head);
-    y += legend(y, heads);
-    return begin(y + kMargin) + heads + lives_ + rows + "</svg>\n";
+    if (words_.in_page) {
+      heads = fmt::format(
+          "<g class=\"rc-heads\"><rect class=\"rc-band\" width=\"100%\" "
+          "height=\"{:.0f}\"/>{}</g>",
+          head + kHeadHeight + 2, heads);
+      return begin(y + kMargin) + lives_ + rows + signs + heads + "</svg>\n";
+    }
+    return begin(y + kMargin) + heads + signs + lives_ + rows + "</svg>\n";
   }
 
  private:
@@ -180,7 +188,7 @@ class Picture {
         "height=\"{2:.0f}\">\n<title id=\"{0}-title\">{3}</title>\n<desc id=\"{0}-desc\">{4}"
         "</desc>\n",
         xml_text(words_.id), width_, height, xml_text(words_.title), xml_text(description()));
-    return out.append(kSequenceStyle) + '\n';
+    return words_.in_page ? out : fmt::format("{}<style>{}</style>\n", out, kSequenceStyle);
   }
 
   std::string name_of(std::size_t column) const { return sequence_.columns[column]; }
@@ -189,7 +197,7 @@ class Picture {
   std::string description() const {
     std::string out = fmt::format("{} between {}.", counted(sequence_.rows.size(), "event"),
                                   fmt::join(sequence_.columns, ", "));
-    if (sequence_.rows.size() > kDescribedMax) return out;
+    if (words_.in_page || sequence_.rows.size() > kDescribedMax) return out;
     for (const SequenceRow& row : sequence_.rows) {
       std::vector<std::string> to;
       for (const std::size_t c : row.to) to.push_back(name_of(c));
@@ -235,8 +243,15 @@ class Picture {
   }
 
   void draw(const SequenceRow& row, double y, bool tells_time, std::string& out) const {
-    out += fmt::format("<g class=\"rc-row\" data-lines=\"{}\"><title>{}</title>",
-                       fmt::join(row.lines, " "), xml_text(row.full));
+    out += fmt::format("<g class=\"rc-row{}\" data-lines=\"{}\">", row.marked ? " rc-marked" : "",
+                       fmt::join(row.lines, " "));
+    if (words_.in_page) {
+      const double height = span_of(row).single() ? kRowStub : kRowArrow;
+      out += fmt::format("<rect class=\"rc-band\" y=\"{:.1f}\" width=\"100%\" height=\"{}\"/>",
+                         y + 8 - height, height);
+    } else {
+      out += "<title>" + xml_text(row.full) + "</title>";
+    }
     if (tells_time) {
       out += fmt::format("<text class=\"rc-time\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", time_,
                          y + 4, row.number);
@@ -291,6 +306,11 @@ class Picture {
                        open ? "rc-open" : "rc-tip", x, y, back);
   }
 
+  static std::string cross(double x, double y) {
+    return fmt::format("<path class=\"rc-lost\" d=\"M{:.1f} {:.1f}l10 10m0 -10l-10 10\"/>", x - 5,
+                       y - 5);
+  }
+
   static bool ignores(const SequenceRow& row, std::size_t column) {
     return std::find(row.ignored_by.begin(), row.ignored_by.end(), column) !=
            row.ignored_by.end();
@@ -307,10 +327,11 @@ class Picture {
       out += fmt::format(
           "<rect class=\"rc-open\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"9\" height=\"9\"/>", x - 4.5,
           y - 4.5);
-    } else if (row.from != kNoColumn && row.way == Way::kCall) {
-      out += line(x, x - kStub + 4, y, line_class(row)) + tip(x - kStub, y, false, false);
     } else if (row.from != kNoColumn) {
-      out += line(x, x + kStub - 4, y, line_class(row)) + tip(x + kStub, y, true, false);
+      const double way = row.way == Way::kCall ? -kStub : kStub;
+      const double end = x + way;
+      out += line(x, end - way / 8.5, y, line_class(row)) +
+             (row.absent ? cross(end, y) : tip(end, y, way > 0, false));
     } else {
       out += line(x - kStub, x - 4, y, line_class(row)) + tip(x, y, true, !row.ignored_by.empty());
     }
@@ -333,9 +354,7 @@ class Picture {
     }
     for (const std::size_t c : row.missed) {
       const double end = x_[c] + (x_[c] > x_[from] ? -14 : 14);
-      out += line(x_[from], end, y, line_class(row)) +
-             fmt::format("<path class=\"rc-lost\" d=\"M{:.1f} {:.1f}l10 10m0 -10l-10 10\"/>",
-                         end - 5, y - 5);
+      out += line(x_[from], end, y, line_class(row)) + cross(end, y);
     }
   }
 

@@ -21,7 +21,23 @@ inline std::string wrapped(std::string_view first, std::string_view text, std::s
   return wrapped(first, text, width, first.size());
 }
 
-/// Returns the length of the UTF-8 sequence that `text` begins with; 0 if it begins with none.
+/// How a report for people looks.
+struct TextStyle {
+  std::size_t width = 100;
+  bool color = false;
+};
+inline constexpr std::string_view kIndent = "  ";
+
+/// In a style of the terminal ("1;31"), if colours are wanted.
+std::string painted(const TextStyle& look, std::string_view style, std::string_view text);
+std::string in_capitals(std::string_view text);
+/// A coloured first word, and the rest broken into lines.
+std::string styled(const TextStyle& look, std::string_view style, std::string_view head,
+                   std::string_view rest);
+/// "  Rule:     text", broken into lines; empty for an empty text.
+std::string field(std::string_view name, std::string_view text, const TextStyle& look);
+
+/// Length of the UTF-8 sequence that `text` begins with; 0 if it begins with none.
 std::size_t utf8_length(std::string_view text);
 
 /// Returns `text` as a JSON string with quotes. Bytes that are not UTF-8 become U+FFFD.

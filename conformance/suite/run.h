@@ -22,7 +22,7 @@ struct Plan {
                                       ///< up to kSeedMax.
   std::uint32_t repeats = 1;
   unsigned jobs = 1;                  ///< Attachments at once; one only where time is real.
-  ExpectedFailures expected;
+  report::KnownFailures expected;
 };
 
 /// Makes one more attachment to the same implementation. Throws nothing.

@@ -54,7 +54,7 @@ void refers_to_what_is_there(const oracle::Run& run, const oracle::Report& repor
 }
 
 std::string reports(const report::Story& story) {
-  const std::string json = report::json_report(story);
+  const std::string json = report::json_report(story).text();
   record::parse_json(json);
   report::TextOptions options;
   if (story.run.seen.size() <= kSearchedMax) options.judge = oracle::judge;
@@ -76,7 +76,7 @@ std::string checked(std::string_view bytes, const oracle::Options& given) {
   if (!oracle::drop_duplicates(run, options, error)) return error;
   const oracle::Report found = oracle::judge(run, options);
   refers_to_what_is_there(run, found);
-  const report::ExpectationFile expected;
+  const report::KnownFailures expected;
   const report::Outcome outcome = report::compare(run, options, found, expected);
   return reports({run, options, found, expected, outcome});
 }

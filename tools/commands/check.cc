@@ -71,7 +71,7 @@ int check_files(const CheckOptions& options) {
   if (record::overwrites(options.out, files)) {
     throw cli::UsageError("--out", options.out + " is one of the files to read");
   }
-  const report::ExpectationFile expected = expectations(options);
+  const report::KnownFailures expected = expectations(options);
   oracle::Run whole = read_run(options);
   oracle::Run part = ranges.empty() ? std::move(whole) : report::part_of(whole, ranges, judged);
   if (std::string error; !oracle::drop_duplicates(part, judged, error)) {

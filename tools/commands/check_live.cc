@@ -173,7 +173,7 @@ class Session {
 
   const CheckOptions& options_;
   const oracle::Options judged_;
-  const report::ExpectationFile expected_;
+  const report::KnownFailures expected_;
   oracle::RunReader reader_;
   oracle::Watch watch_;
   CheckNews news_;

@@ -28,8 +28,8 @@ class CheckNews {
   /// Prints, at a terminal, that a wait begins.
   void begin() const;
   void tell(const oracle::Run& run, const oracle::Options& judged, const oracle::Change& change,
-            const report::ExpectationFile& expected);
-  /// Makes earlier output readable.
+            const report::KnownFailures& expected);
+  /// What was told can be read then.
   void flush() { output_.flush(); }
   /// Returns whether anybody still reads it.
   bool open() const;

@@ -129,15 +129,15 @@ std::vector<report::FrameRange> frame_ranges(const CheckOptions& options) {
   return out;
 }
 
-report::ExpectationFile expectations(const CheckOptions& options) {
+report::KnownFailures expectations(const CheckOptions& options) {
   const std::string& path = options.expect;
-  report::ExpectationFile file;
-  if (path.empty()) return file;
-  std::string error;
-  if (!report::parse_expectations(cli::text_of_file(kCheckCommand, path), path, file, error)) {
-    throw cli::UsageError("--expect", error);
+  if (path.empty()) return {};
+  const std::string text = cli::text_of_file(kCheckCommand, path);
+  try {
+    return report::parse_expectations(text, path);
+  } catch (const std::runtime_error& mistake) {
+    throw cli::UsageError("--expect", mistake.what());
   }
-  return file;
 }
 
 oracle::ReadAs read_as(const CheckOptions& options) {

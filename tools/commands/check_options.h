@@ -42,8 +42,8 @@ struct CheckOptions {
 /// Returns the judge's options. Throws cli::UsageError, as the next two do.
 oracle::Options oracle_options(const CheckOptions& options);
 std::vector<report::FrameRange> frame_ranges(const CheckOptions& options);
-/// Returns the entries of the --expect file; nothing without it.
-report::ExpectationFile expectations(const CheckOptions& options);
+/// What the file --expect names says; nothing without it.
+report::KnownFailures expectations(const CheckOptions& options);
 
 /// Returns the format of captures by --input-format.
 oracle::ReadAs read_as(const CheckOptions& options);

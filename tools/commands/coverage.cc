@@ -18,7 +18,7 @@
 #include "codec/generated/requirements_table.h"
 #include "conformance/explorer/search.h"
 #include "conformance/mutants/generated.h"
-#include "conformance/report/text.h"
+#include "conformance/report/json.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/output.h"
 #include "tools/cli/command.h"
@@ -26,7 +26,7 @@
 namespace rubric::tools {
 namespace {
 
-using report::json_string;
+using report::Json;
 
 constexpr std::size_t kRules = std::size(kRequirements);
 
@@ -210,37 +210,34 @@ std::string text_of(const Coverage& coverage) {
 }
 
 std::string json_of(const Coverage& coverage) {
-  std::string out = "{\"schema\":\"rubric.coverage/1\",\"rules\":[";
-  const char* comma = "";
+  std::vector<Json> rules;
   for (std::size_t i = 1; i < kRules; ++i) {
     if (is_wire(i)) continue;
     const Touch& touch = coverage.rules[i];
-    out += fmt::format(
-        "{}{{\"id\":{},\"level\":{},\"positive\":{},\"negative\":{},\"transitions\":{},"
-        "\"ignores\":{},\"explored\":{},\"mutants\":{}}}",
-        comma, json_string(kRequirements[i].id), json_string(kRequirements[i].level),
-        touch.positive.size(), touch.negative.size(), touch.transitions, touch.ignores,
-        touch.explored, touch.mutants);
-    comma = ",";
+    rules.push_back(Json::object({{"id", kRequirements[i].id},
+                                  {"level", kRequirements[i].level},
+                                  {"positive", touch.positive.size()},
+                                  {"negative", touch.negative.size()},
+                                  {"transitions", touch.transitions},
+                                  {"ignores", touch.ignores},
+                                  {"explored", touch.explored},
+                                  {"mutants", touch.mutants}}));
   }
   const Totals totals = total(coverage);
-  out += fmt::format(
-      "],\"cases\":{},\"totals\":{{\"rules\":{},\"with_case\":{},\"positive\":{},\"negative\":{},"
-      "\"exercised\":{},\"explored\":{},\"with_mutant\":{}}},\"wire\":{{",
-      coverage.cases, totals.rules, totals.with_case, totals.positive, totals.negative,
-      totals.exercised, totals.explored, totals.mutated);
-  comma = "";
-  for (const auto& [level, count] : wire_levels()) {
-    out += fmt::format("{}{}:{}", comma, json_string(level), count);
-    comma = ",";
-  }
-  out += "},\"problems\":[";
-  comma = "";
-  for (const std::string& problem : coverage.problems) {
-    out += comma + json_string(problem);
-    comma = ",";
-  }
-  return out + "]}\n";
+  const std::map<std::string, std::size_t> levels = wire_levels();
+  const Json out = Json::object({{"schema", "rubric.coverage/1"},
+                                 {"rules", Json::array(rules)},
+                                 {"cases", coverage.cases},
+                                 {"totals", Json::object({{"rules", totals.rules},
+                                                          {"with_case", totals.with_case},
+                                                          {"positive", totals.positive},
+                                                          {"negative", totals.negative},
+                                                          {"exercised", totals.exercised},
+                                                          {"explored", totals.explored},
+                                                          {"with_mutant", totals.mutated}})},
+                                 {"wire", Json::object({levels.begin(), levels.end()})},
+                                 {"problems", Json::array(coverage.problems)}});
+  return out.text() + '\n';
 }
 
 int run_coverage(const CoverageOptions& options) {

@@ -17,7 +17,7 @@
 #include "conformance/explorer/search.h"
 #include "conformance/flaws/flaws.h"
 #include "conformance/generated/profiles.h"
-#include "conformance/report/text.h"
+#include "conformance/report/json.h"
 #include "conformance/trace/print.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/input.h"
@@ -32,8 +32,7 @@ using explorer::Mask;
 using explorer::Progress;
 using explorer::Result;
 using explorer::Scope;
-using report::json_string;
-using report::json_string_or_null;
+using report::Json;
 
 struct ExploreOptions {
   explorer::Options network;
@@ -228,30 +227,31 @@ std::string text_of(const Result& result, const Verdict& verdict) {
   return out;
 }
 
-std::string json_list(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + json_string(name);
-  return "[" + text + "]";
-}
-
 std::string json_of(const ExploreOptions& options, const Result& result, const Verdict& verdict,
                     const std::string& trace) {
   const Progress& p = result.progress;
-  const Mask broken = result.violation ? result.violation->violated : 0;
-  return fmt::format(
-      "{{\"schema\": \"rubric.explore/1\", \"verdict\": \"{}\",\n"
-      " \"profile\": {}, \"flaw\": {}, \"limit\": {},\n"
-      " \"broken\": {},\n \"reached\": {},\n \"never\": {},\n"
-      " \"states\": {}, \"transitions\": {}, \"depth\": {}, \"seconds\": {:.3f},\n"
-      " \"memory_bytes\": {}, \"memory_per_state_bytes\": {},\n"
-      " \"node_states\": {}, \"frames\": {}, \"known_weak_states\": {},\n"
-      " \"omission_probability\": {:e}, \"trace\": {}}}\n",
-      verdict.text, json_string(options.profile), json_string_or_null(options.flaw),
-      json_string_or_null(verdict.limit), json_list(property_names(broken)),
-      json_list(goal_names(result.goals)), json_list(goal_names(verdict.never)), p.states,
-      p.transitions, p.depth, p.seconds, result.memory_bytes, result.memory_per_state_bytes,
-      result.node_states, result.frames, result.known_weak_states, omission_probability(p.states),
-      json_string_or_null(trace));
+  const Json out = Json::object(
+      {{"schema", "rubric.explore/1"},
+       {"verdict", verdict.text},
+       {"profile", options.profile},
+       {"flaw", Json::or_null(options.flaw)},
+       {"limit", Json::or_null(verdict.limit)},
+       {"broken", Json::array(property_names(result.violation ? result.violation->violated : 0))},
+       {"reached", Json::array(goal_names(result.goals))},
+       {"never", Json::array(goal_names(verdict.never))},
+       {"states", p.states},
+       {"transitions", p.transitions},
+       {"depth", p.depth},
+       {"seconds", Json::raw(fmt::format("{:.3f}", p.seconds))},
+       {"memory_bytes", result.memory_bytes},
+       {"memory_per_state_bytes", result.memory_per_state_bytes},
+       {"node_states", result.node_states},
+       {"frames", result.frames},
+       {"known_weak_states", result.known_weak_states},
+       {"omission_probability", Json::raw(fmt::format("{:e}", omission_probability(p.states)))},
+       {"trace", Json::or_null(trace)}},
+      "\n ");
+  return out.text() + '\n';
 }
 
 // A line on stderr that is redrawn twice a second; nothing if that is no terminal.

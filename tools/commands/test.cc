@@ -92,7 +92,7 @@ suite::Cases read_cases(const TestOptions& options) {
   }
 }
 
-suite::ExpectedFailures read_expected(const TestOptions& options) {
+report::KnownFailures read_expected(const TestOptions& options) {
   if (options.expect.empty()) return {};
   const std::string text = cli::text_of_file(kCommand, options.expect);
   try {

@@ -7,14 +7,14 @@
 #include <map>
 #include <utility>
 
-#include "conformance/report/text.h"
+#include "conformance/report/json.h"
 
 namespace rubric::tools {
 namespace {
 
 using explorer::Diagram;
 using explorer::Transition;
-using report::json_string;
+using report::Json;
 
 std::string one_line(std::string text) {
   std::replace(text.begin(), text.end(), '\n', ' ');
@@ -28,32 +28,29 @@ std::string trigger_of(const Transition& t) {
   return out;
 }
 
-std::string list_of(const std::vector<std::string>& items) {
-  std::string out;
-  for (const std::string& item : items) out += (out.empty() ? "" : ", ") + json_string(item);
-  return "[" + out + "]";
+Json json_of(const Transition& t) {
+  std::vector<std::string> way;
+  for (const explorer::Given& given : t.witness.events) way.push_back(given.text());
+  return Json::object({{"from", t.from},
+                       {"to", t.to},
+                       {"trigger", t.trigger},
+                       {"guards", Json::array(t.guards)},
+                       {"outputs", Json::array(t.outputs)},
+                       {"rules", Json::array(t.rules)},
+                       {"ignored", t.ignored},
+                       {"witness", Json::array(way)}},
+                      " ");
 }
 
-std::string json_of(const Diagram& diagram) {
-  std::vector<std::string> states;
-  for (const std::string& state : diagram.states) states.push_back(one_line(state));
-  std::string out = fmt::format(
-      "  {{\"name\": {}, \"title\": {}, \"complete\": {}, \"worlds\": {},\n   \"states\": {},\n"
-      "   \"transitions\": [",
-      json_string(diagram.name), json_string(diagram.title), diagram.complete, diagram.worlds,
-      list_of(states));
-  bool first = true;
-  for (const Transition& t : diagram.transitions) {
-    std::vector<std::string> way;
-    for (const explorer::Given& given : t.witness.events) way.push_back(given.text());
-    out += fmt::format(
-        "{}\n    {{\"from\": {}, \"to\": {}, \"trigger\": {}, \"guards\": {},\n"
-        "     \"outputs\": {}, \"rules\": {}, \"ignored\": {},\n     \"witness\": {}}}",
-        first ? "" : ",", t.from, t.to, json_string(t.trigger), list_of(t.guards),
-        list_of(t.outputs), list_of(t.rules), t.ignored, list_of(way));
-    first = false;
-  }
-  return out + "]}";
+Json json_of(const Diagram& diagram) {
+  const auto transition = [](const Transition& t) { return json_of(t); };
+  return Json::object({{"name", diagram.name},
+                       {"title", diagram.title},
+                       {"complete", diagram.complete},
+                       {"worlds", diagram.worlds},
+                       {"states", Json::array(diagram.states, one_line)},
+                       {"transitions", Json::array(diagram.transitions, transition, "\n    ")}},
+                      "\n   ");
 }
 
 // Escapes text for HTML-like labels of Graphviz.
@@ -156,7 +153,7 @@ std::string dot_of(const Diagram& diagram) {
       "  node [shape=box, style=rounded, fontname=\"Courier\", fontsize=12, margin=\"0.05\"];\n"
       "  edge [fontname=\"Courier\", fontsize=12, arrowsize=0.8];\n"
       "  start [shape=point, width=0.12];\n",
-      diagram.name, json_string(diagram.title));
+      diagram.name, report::json_string(diagram.title));
   std::vector<bool> reached(diagram.states.size());
   reached[0] = true;
   Edges edges;
@@ -212,12 +209,13 @@ std::string transitions_text(const std::vector<Diagram>& diagrams) {
 
 std::string transitions_json(const std::vector<Diagram>& diagrams, const std::string& profile,
                              const std::string& flaw) {
-  std::string all;
-  for (const Diagram& diagram : diagrams) all += (all.empty() ? "\n" : ",\n") + json_of(diagram);
-  return fmt::format(
-      "{{\"schema\": \"rubric.transitions/1\", \"profile\": {}, \"flaw\": {},\n"
-      " \"parts\": [{}]}}\n",
-      json_string(profile), report::json_string_or_null(flaw), all);
+  const auto part = [](const Diagram& diagram) { return json_of(diagram); };
+  const Json out = Json::object({{"schema", "rubric.transitions/1"},
+                                 {"profile", profile},
+                                 {"flaw", Json::or_null(flaw)},
+                                 {"parts", Json::array(diagrams, part, "\n  ")}},
+                                "\n ");
+  return out.text() + '\n';
 }
 
 std::string transitions_dot(const std::vector<Diagram>& diagrams) {

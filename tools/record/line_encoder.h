@@ -31,13 +31,8 @@ struct LineOptions {
 /// Adds FILE, --spec, --as, --am-type, --dest, --src and --group to a subcommand.
 void add_line_options(cli::Command& app, LineOptions& options);
 /// Adds --carrier.
-<<<<<<<O
 void add_carrier_option(cli::Command& app, LineOptions& options);
-/// Throws cli::UsageError where an option came that goes with --as alone.
-=======
-void add_carrier_option(CLI::App& app, LineOptions& options);
-/// Throws CLI::ValidationError if an option is given that needs --as.
->>>>>>>
+/// Throws cli::UsageError if an option is given that needs --as.
 void check_line_options(const LineOptions& options);
 
 /// Turns a line into a packet.

@@ -1,4 +1,4 @@
-// Expectation files: known failures, each with the reason why it is known.
+// What became of the failures that a report was expected to show.
 #pragma once
 
 #include <cstdint>
@@ -7,26 +7,11 @@
 #include <vector>
 
 #include "conformance/oracle/observation.h"
+#include "conformance/report/known_failures.h"
 
 namespace rubric::report {
 
-/// A known failure. Empty texts match anything, but message and reason are required.
-struct Expectation {
-  ReqId requirement = ReqId::kNone;
-  std::string node;     ///< The finding's node, exactly.
-  std::string file;     ///< A glob that the file's path or name matches.
-  std::string profile;  ///< "paper" or "deployed": holds under that one only.
-  std::string message;  ///< Part of the finding's text.
-  std::string reason;
-  std::uint32_t line = 0;  ///< Line number in its file.
-};
-
-struct ExpectationFile {
-  std::string name;
-  std::vector<Expectation> expectations;
-};
-
-/// The outcome of an expectation.
+/// What an expectation came to.
 enum class Came : std::uint8_t {
   kTrue,          ///< A failure is just so.
   kStale,         ///< Nothing failed that way any more.
@@ -58,11 +43,10 @@ struct Outcome {
   int exit_code() const { return !as_expected() ? 1 : nothing_judged ? 3 : 0; }
 };
 
-/// Reads a file's text. Returns false, with `error` as "file:line: what", if it makes no sense.
-bool parse_expectations(std::string_view text, const std::string& name, ExpectationFile& out,
-                        std::string& error);
+/// Reads a file's text as parse_known_failures() does.
+KnownFailures parse_expectations(std::string_view text, const std::string& name);
 
 Outcome compare(const oracle::Run& run, const oracle::Options& options,
-                const oracle::Report& report, const ExpectationFile& file);
+                const oracle::Report& report, const KnownFailures& known);
 
 }  // namespace rubric::report

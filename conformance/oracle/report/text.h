@@ -5,6 +5,7 @@
 
 #include "conformance/oracle/report/expect.h"
 #include "conformance/oracle/report/window.h"
+#include "conformance/report/text.h"
 
 namespace rubric::report {
 
@@ -13,13 +14,11 @@ struct Story {
   const oracle::Run& run;
   const oracle::Options& options;
   const oracle::Report& report;
-  const ExpectationFile& expected;
+  const KnownFailures& expected;
   const Outcome& outcome;
 };
 
-struct TextOptions {
-  std::size_t width = 100;
-  bool color = false;
+struct TextOptions : TextStyle {
   bool verbose = false;        ///< Every finding in full.
   /// The command that made this run, ready for a shell: program and options, and its files. Empty
   /// if the run cannot be repeated.

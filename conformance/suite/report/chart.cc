@@ -100,13 +100,16 @@ std::string fields_text(const trace::Message& message) {
   return message.name + (out.empty() ? "" : "(" + out + ")");
 }
 
-SequenceRow::Way way_of(const Line& line, const CaseRun& one) {
+// `is_frame`: what stands for a frame though it has no addresses.
+SequenceRow::Way way_of(const Line& line, const CaseRun& one, bool is_frame) {
   using Way = SequenceRow::Way;
   trace::Scope scope;
   scope.nodes = one.nodes;
   scope.links = one.links;
-  if (!line.am) return line.link == "app" && line.message.name != "busy" &&
-                               line.message.name != "idle" ? Way::kCall : Way::kState;
+  if (!is_frame)
+    return line.link == "app" && line.message.name != "busy" && line.message.name != "idle"
+               ? Way::kCall
+               : Way::kState;
   switch (scope.link(line.link).value_or(trace::LinkKind::kAny)) {
     case trace::LinkKind::kSerial: return Way::kSerial;
     case trace::LinkKind::kPeis: return Way::kPeis;
@@ -134,6 +137,13 @@ std::string rules_text(const std::vector<ReqId>& rules) {
   return out;
 }
 
+// The names of the nodes that a line is from and for.
+std::set<std::string> ends_of(const CaseRun& one, const Line& line) {
+  std::set<std::string> out = {line.node};
+  for (const std::size_t i : peers_of(one.nodes, line)) out.insert(one.nodes[i].name);
+  return out;
+}
+
 void add_note(std::string& note, const std::string& more) {
   if (more.empty()) return;
   note += (note.empty() ? "" : ", ") + more;
@@ -142,10 +152,10 @@ void add_note(std::string& note, const std::string& more) {
 /// Makes the rows of a log, in its order.
 class Chart {
  public:
-  Chart(const CaseRun& one, const Heeds& heeds)
-      : one_(one), heeds_(heeds), stage_(one), lines_(one.result.log.lines()) {}
+  Chart(const CaseRun& one, const Heeds& heeds, Stage::Apps apps = Stage::Apps::kAlone)
+      : one_(one), heeds_(heeds), stage_(one, apps), lines_(one.result.log.lines()) {}
 
-  report::Sequence take() {
+  report::Sequence take(bool with_failures = false) {
     const std::vector<std::size_t> before = first_seen(lines_);
     find_heeds();
     find_links();
@@ -158,6 +168,9 @@ class Chart {
       }
     }
     for (std::size_t i = 0; i < rows_.size(); ++i) complete(i);
+    if (with_failures) {
+      for (const runner::Failure& failure : one_.result.failures) mark(failure);
+    }
     report::Sequence out;
     out.columns = stage_.names();
     out.about = stage_.about();
@@ -193,7 +206,7 @@ class Chart {
     row.number = std::to_string(line.time.from);
     row.detail = key_text(line.message, report::kSvgLabelMax);
     row.full = full_text(line);
-    row.way = way_of(line, one_);
+    row.way = way_of(line, one_, line.am.has_value());
     if (row.way == SequenceRow::Way::kRadio && row.from == kNoColumn) {
       row.detail += " (from " + trace::value_text(line.am->source) + ")";
     } else if (row.way == SequenceRow::Way::kRadio && row.to.empty()) {
@@ -258,6 +271,38 @@ class Chart {
     }
   }
 
+  void mark(const runner::Failure& failure) {
+    const auto breaks = [&](std::size_t line) { return is_broken_by(failure, *lines_[line]); };
+    const auto broken = std::find_if(rows_.begin(), rows_.end(), [&](const SequenceRow& row) {
+      return std::any_of(row.lines.begin(), row.lines.end(), breaks);
+    });
+    if (broken != rows_.end()) {
+      point_at(*broken);
+      return;
+    }
+    SequenceRow row;
+    const std::optional<Line> asked = asked_line(failure);
+    if (asked) {
+      row = stage_.row(*asked);
+      row.missed = std::move(row.to);
+      row.to.clear();
+      row.way = way_of(*asked, one_, asked->link != "app");
+    }
+    row.absent = true;
+    row.number = std::to_string(failure.to);
+    row.detail = asked ? "no " + short_text(asked->message) : "it broke";
+    point_at(row);
+    const auto next = std::find_if(rows_.begin(), rows_.end(), [&](const SequenceRow& other) {
+      return std::stoull(other.number) > failure.time;
+    });
+    rows_.insert(next, std::move(row));
+  }
+
+  static void point_at(SequenceRow& row) {
+    if (!row.marked) row.detail = "\u25c0 " + row.detail;
+    row.marked = true;
+  }
+
   static void drop_idle_columns(report::Sequence& sequence) {
     std::set<std::size_t> used;
     for (const SequenceRow& row : sequence.rows) {
@@ -308,11 +353,23 @@ MachineRun run_on_machine(const SuiteCase& one) {
   return out;
 }
 
-Stage::Stage(const CaseRun& one) : nodes_(one.nodes) {
+Stage::Stage(const CaseRun& one, Apps apps) : nodes_(one.nodes) {
+  if (apps == Apps::kAll) {
+    for (const trace::NodeHeader& node : nodes_) {
+      const bool mote = node.role == trace::Role::kMote;
+      const std::size_t first = names_.size();
+      apps_[first + mote] = first + !mote;
+      names_.insert(names_.end(), 2, "application");
+      names_[first + mote] = node.name;
+    }
+    return;
+  }
   const auto tested = std::count_if(nodes_.begin(), nodes_.end(),
                                     [](const trace::NodeHeader& node) { return node.iut; });
-  app_ = tested == 1;
-  if (app_) names_.emplace_back("app");
+  if (tested == 1) {
+    names_.emplace_back("app");
+    apps_[1] = 0;
+  }
   for (const bool under_test : {true, false}) {  // The others beside whom they talk to.
     for (const trace::NodeHeader& node : nodes_) {
       if (node.iut == under_test) names_.push_back(node.name);
@@ -334,8 +391,8 @@ SequenceRow Stage::row(const Line& line) const {
   std::vector<std::size_t> peers;
   if (frame) {
     for (const std::size_t i : peers_of(nodes_, line)) peers.push_back(column(nodes_[i].name));
-  } else if (app_ && line.link == "app") {
-    peers = {0};
+  } else if (const auto app = apps_.find(node); line.link == "app" && app != apps_.end()) {
+    peers = {app->second};
   }
   if (!given) {
     row.from = node;
@@ -343,7 +400,7 @@ SequenceRow Stage::row(const Line& line) const {
     row.sent = frame;
   } else {
     if (peers.size() == 1) row.from = peers.front();
-    row.to = {node};
+    if (node != kNoColumn) row.to = {node};
   }
   return row;
 }
@@ -385,5 +442,42 @@ std::string key_text(const trace::Message& message, std::size_t length_max) {
 }
 
 report::Sequence chart(const CaseRun& one, const Heeds& heeds) { return Chart(one, heeds).take(); }
+
+report::Sequence failure_chart(const CaseRun& one) {
+  return Chart(one, {}).take(true);
+}
+
+std::optional<report::Sequence> join_chart(const CaseRun& one) {
+  constexpr std::int64_t kNoticeTicks = 600;  // A sink reports the mote so long after its ack.
+  static const std::set<std::string> kWords = {"join",     "join_request", "join_reply",
+                                               "ack_join", "joined",       "mote_joined"};
+  const std::vector<const Line*> lines = one.result.log.lines();
+  const auto ack = std::find_if(lines.begin(), lines.end(), [](const Line* line) {
+    return line->message.name == "ack_join" && line->op == Op::kEmits && line->am;
+  });
+  if (ack == lines.end()) return std::nullopt;
+  const std::string& mote = (*ack)->node;
+  std::set<std::string> party;  // The mote and the sinks that answer it.
+  bool asked = false;
+  for (const Line* line : lines) {
+    const std::set<std::string> ends = ends_of(one, *line);
+    if (!ends.contains(mote)) continue;
+    asked = asked || line->message.name == "join_request";
+    if (line->message.name == "join_reply") party.insert(ends.begin(), ends.end());
+  }
+  if (!asked || party.empty()) return std::nullopt;
+  CaseRun figure = one;
+  figure.result.log.items.clear();
+  for (auto line = lines.begin(); line != lines.end(); ++line) {
+    const std::string& word = (*line)->message.name;
+    if ((*line)->time.from > (*ack)->time.from + kNoticeTicks) break;
+    const bool shown =
+        (*line)->am ? ends_of(one, **line).contains(mote) : party.contains((*line)->node);
+    if (!kWords.contains(word) || !shown) continue;
+    figure.result.log.add(**line);
+    if (line > ack && word == "mote_joined") break;
+  }
+  return Chart(figure, {}, Stage::Apps::kAll).take();
+}
 
 }  // namespace rubric::suite

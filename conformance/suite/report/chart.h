@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -30,7 +31,10 @@ MachineRun run_on_machine(const SuiteCase& one);
 /// The nodes of a case as columns, and the columns between which a line passes.
 class Stage {
  public:
-  explicit Stage(const CaseRun& one);
+  enum class Apps { kAlone, kAll };
+
+  /// Applications have a column where one node alone is under test, or each node's has one.
+  explicit Stage(const CaseRun& one, Apps apps = Apps::kAlone);
 
   const std::vector<std::string>& names() const { return names_; }
   std::size_t column(std::string_view name) const;
@@ -41,7 +45,7 @@ class Stage {
  private:
   const std::vector<trace::NodeHeader>& nodes_;
   std::vector<std::string> names_;
-  bool app_ = false;
+  std::map<std::size_t, std::size_t> apps_;  ///< Columns of applications, by those of nodes.
 };
 
 /// Returns the message with its key fields: "ack_join 11:5->11:1 seq 1000".
@@ -50,5 +54,13 @@ std::string key_text(const trace::Message& message, std::size_t length_max);
 /// Charts the whole log: a row for each frame, however many nodes hear it, and for all other
 /// events. Leaves out columns without any part in it.
 report::Sequence chart(const CaseRun& one, const Heeds& heeds = {});
+
+/// The same with the failures: rows that break a line of the case are marked, and what is missing
+/// has a row.
+report::Sequence failure_chart(const CaseRun& one);
+
+/// The paper's figure of a join: what passes between the first mote that joins, the sinks that
+/// answer it, and their applications. Nothing where the log shows no whole join.
+std::optional<report::Sequence> join_chart(const CaseRun& one);
 
 }  // namespace rubric::suite

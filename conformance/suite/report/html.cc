@@ -1,5 +1,7 @@
 #include "conformance/suite/report/html.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <random>
@@ -7,8 +9,7 @@
 #include <string>
 #include <vector>
 
-#include <fmt/format.h>
-
+#include "conformance/report/sequence_style.h"
 #include "conformance/suite/report/case_files.h"
 #include "conformance/suite/report/folder.h"
 #include "conformance/suite/report/html_assets.h"
@@ -99,7 +100,8 @@ void write_html_report(const SuiteRun& run, const EarlierRun* earlier, const fs:
   }
   const std::string nonce = random_nonce();
   const std::string data = html_data(run, earlier, links);
-  folder.write("index.html", filled(kPage, {nonce, kStyle, data, kScript}));
+  const std::string style = fmt::format("{}\n{}", report::kSequenceStyle, kStyle);
+  folder.write("index.html", filled(kPage, {nonce, style, data, kScript}));
   folder.finish();
 }
 

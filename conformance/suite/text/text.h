@@ -3,14 +3,13 @@
 
 #include <string>
 
+#include "conformance/report/text.h"
 #include "conformance/suite/report/json.h"
 #include "conformance/suite/result.h"
 
 namespace rubric::suite {
 
-struct TextOptions {
-  std::size_t width = 100;
-  bool color = false;
+struct TextOptions : report::TextStyle {
   bool quiet = false;    ///< Only what makes the run fail has a line.
   bool verbose = false;  ///< Each failure in full, not the first of each rule alone.
   bool times = false;    ///< Prints durations. Without, the same run gives the same text.

@@ -3,9 +3,9 @@
 const ruleFilter = { text: '', state: 'all' };
 
 const casesOf = new Map(Object.keys(data.rules).map((id) => [id, []]));
-for (const one of data.cases) for (const id of one.rules) casesOf.get(id)?.push(one);
+for (const one of data.cases) for (const id of one.requirements) casesOf.get(id)?.push(one);
 
-const breaks = (run, id) => run.failures.some((failure) => failure.rules.includes(id));
+const breaks = (run, id) => run.failures.some((failure) => failure.requirements.includes(id));
 
 // Returns a rule's state for an implementation: a verdict's name for its colour, and words.
 function stateOf(id, implementation) {

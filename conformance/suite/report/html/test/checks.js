@@ -79,21 +79,22 @@ async function failing(page, go) {
     assert.ok(first.includes(words), `${words}: ${first}`);
   }
   // The arrows that break a rule, and the one that is missing.
-  assert.deepStrictEqual(await texts(page, '.chart .row.marked .label'),
-    ['\u25c0 joined success', '\u25c0 ack_join 1001', '\u25c0 no ack_join']);
+  assert.deepStrictEqual(await texts(page, '.rc-marked .rc-label'),
+    ['\u25c0 joined(12:5 success)', '\u25c0 ack_join 12:5->12:1 seq 1001',
+      '\u25c0 no ack_join']);
   const look = await page.evaluate(() => {
-    const lanes = [...document.querySelectorAll('.heads text')];
+    const lanes = [...document.querySelectorAll('.rc-heads .rc-name')];
     const mote = lanes.find((one) => one.textContent === 'm5').getAttribute('x');
-    const [, ack, missing] = document.querySelectorAll('.chart .row.marked');
+    const [, ack, missing] = document.querySelectorAll('.rc-marked');
     const red = getComputedStyle(document.documentElement).getPropertyValue('--fail').trim();
     const swatch = document.createElement('i');
     swatch.style.color = red;
     document.body.append(swatch);
-    return { mote, from: ack.querySelector('.arrow').getAttribute('x1'),
-      color: getComputedStyle(ack.querySelector('.arrow')).stroke,
+    return { mote, from: ack.querySelector('.rc-line').getAttribute('x1'),
+      color: getComputedStyle(ack.querySelector('.rc-line')).stroke,
       red: getComputedStyle(swatch).color, plain: getComputedStyle(
-        document.querySelector('.chart .row:not(.marked) .arrow')).stroke,
-      heads: ack.querySelectorAll('.head').length, cross: !!missing.querySelector('.cross') };
+        document.querySelector('.rc-row:not(.rc-marked) .rc-line')).stroke,
+      heads: ack.querySelectorAll('.rc-tip').length, cross: !!missing.querySelector('.rc-lost') };
   });
   assert.strictEqual(look.from, look.mote);
   assert.strictEqual(look.color, look.red);
@@ -107,7 +108,7 @@ async function failing(page, go) {
 
 async function bytes(page, go) {
   await go(kFailing);
-  await page.locator('.chart .row.marked').nth(1).click();  // Leads to its line in the log.
+  await page.locator('.rc-marked').nth(1).click();  // Leads to its line in the log.
   const entry = page.locator('details.entry[open]');
   assert.strictEqual(await entry.count(), 1);
   assert.ok(await entry.evaluate((one) => one.classList.contains('marked')));
@@ -153,9 +154,9 @@ async function rules(page, go) {
 async function figures(page, go) {
   await go('#/figures');
   assert.deepStrictEqual(
-    (await texts(page, '.sequence .row > text:last-child')).map((text) => text.split('(')[0]),
+    (await texts(page, 'figure .rc-label')).map((text) => text.split(/[( ]/)[0]),
     ['join', 'join_request', 'join_reply', 'joined', 'ack_join', 'mote_joined']);
-  assert.deepStrictEqual(await texts(page, '.heads text:not(.small)'),
+  assert.deepStrictEqual(await texts(page, '.rc-heads text:not(.rc-about)'),
     ['tick', 'application', 'm2', 'sA', 'application']);
   // As in the paper: motes 2, 4 and 3, then a reading every 500 ms.
   assert.deepStrictEqual(await texts(page, '.timeline text.iut'), ['m2', 'm4', 'm3']);
