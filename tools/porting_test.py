@@ -18,6 +18,8 @@ import unittest
 
 import yaml
 
+from readme.number import readme_number
+
 RUBRIC = str(pathlib.Path(sys.argv[1]).resolve())
 ROOT = pathlib.Path(sys.argv[2]).resolve()
 PORTING = ROOT / "conformance/PORTING.md"
@@ -38,7 +40,7 @@ def rubric(*words, folder=ROOT):
     return subprocess.run([RUBRIC, *words], cwd=folder, capture_output=True, text=True, env=plain)
 
 
-LINES_MAX = 50    # An adapter needs no more.
+LINES_MAX = readme_number("traces: # lines around it")
 
 
 def loop():

@@ -11,6 +11,7 @@
 #include "codec/containers/serial_frame.h"
 #include "codec/containers/testing.h"
 #include "codec/runtime/hdlc.h"
+#include "tools/readme/number.h"
 
 namespace rubric {
 namespace {
@@ -166,6 +167,7 @@ TEST(WireHdlcFlag, IntactFramesAreFoundAmongCorruptedOnes) {
   std::cout << tally.corruptions << " corruptions in " << tally.frames << " frames; "
             << tally.intact << " left intact, " << tally.missed << " of them missed; "
             << tally.sound << " packets without fault\n";
+  EXPECT_EQ(tally.corruptions, readme_number("# seeded corruptions"));
   EXPECT_EQ(tally.missed, 0u);
   EXPECT_GT(tally.intact, tally.frames / 4);
   EXPECT_LT(tally.intact, tally.frames);
@@ -234,6 +236,7 @@ TEST(WireHdlcFlag, TheMotesDeframerFindsTheSameFrames) {
   std::cout << tally.corruptions << " corruptions in " << tally.frames << " frames; "
             << tally.intact << " left intact, " << tally.missed << " of them missed by the mote's; "
             << compared << " frames the same from both, " << tally.sound << " without fault\n";
+  EXPECT_EQ(tally.corruptions, readme_number("# seeded corruptions"));
   EXPECT_EQ(tally.missed, 0u);
   EXPECT_GT(tally.intact, tally.frames / 4);
   EXPECT_GT(compared, tally.sound);

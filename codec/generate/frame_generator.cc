@@ -15,13 +15,8 @@ constexpr int kTries = 200;
 constexpr int kBreakTries = 60;
 constexpr double kBodyShare = 0.3;
 constexpr double kValueShare = 0.3;
-constexpr std::size_t kFcsBytes = 2;
 // TinyOS's serial line has room for this many bytes with kind, sequence number and CRC around.
 constexpr std::size_t kSerialBytesMax = 252;
-
-bool is_radio(const reflect::Route& route) {
-  return std::string_view(route.carrier).starts_with("radio");
-}
 
 std::size_t most_bytes(bool radio) {
   return radio ? kRadioFrameMax - kFcsBytes : kSerialBytesMax;
@@ -57,6 +52,10 @@ bool break_somehow(const Draft& draft, std::size_t max_bytes, const reflect::Typ
 }
 
 }  // namespace
+
+bool is_radio(const reflect::Route& route) {
+  return std::string_view(route.carrier).starts_with("radio");
+}
 
 Draft FrameGenerator::draft(const reflect::Route& route) {
   const reflect::Type* carrier = reflect::find_carrier(protocol_, route.carrier);

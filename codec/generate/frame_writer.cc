@@ -30,7 +30,7 @@ std::uint32_t index32(std::size_t n) {
 }
 
 // Returns the offset of the one number that the expression is; -1 if it is more.
-std::int32_t lone_load(const Expr& expr) {
+std::int32_t lone_load_offset(const Expr& expr) {
   if (expr.count != 1 || expr.steps[0].op == Op::kConst) return -1;
   return expr.steps[0].value;
 }
@@ -67,7 +67,7 @@ void FrameWriter::close_part(std::uint32_t part) {
 }
 
 std::uint32_t FrameWriter::measure_of(const Expr& expr, const Place& place) const {
-  const std::int32_t load = lone_load(expr);
+  const std::int32_t load = lone_load_offset(expr);
   if (load < 0) return kNone;
   const std::size_t at = place.base + static_cast<std::size_t>(load);
   for (std::uint32_t i = 0; i < draft_.parts.size(); ++i) {
@@ -130,10 +130,10 @@ std::int64_t FrameWriter::most_for(const Field& f, const Place& place) const {
   const auto at = static_cast<std::int32_t>(size() - place.base);
   const std::size_t behind = left(place) - f.width_bytes;
   for (const Field* g = &f + 1; g < place.type.fields + place.type.field_count; ++g) {
-    if (g->repeat == Repeat::kCount && lone_load(g->count) == at) {
+    if (g->repeat == Repeat::kCount && lone_load_offset(g->count) == at) {
       return static_cast<std::int64_t>(behind / element_bytes(*g));
     }
-    if (g->extent == Extent::kSize && lone_load(g->size) == at) {
+    if (g->extent == Extent::kSize && lone_load_offset(g->size) == at) {
       return static_cast<std::int64_t>(behind);
     }
   }
@@ -144,7 +144,7 @@ bool FrameWriter::measures_room(const Field& f, const Place& place) const {
   const auto at = static_cast<std::int32_t>(size() - place.base);
   for (const Field* g = &f + 1; g < place.type.fields + place.type.field_count; ++g) {
     if (g->kind == Kind::kStruct && g->repeat == Repeat::kOnce && g->extent == Extent::kSize &&
-        lone_load(g->size) == at) {
+        lone_load_offset(g->size) == at) {
       return true;
     }
   }

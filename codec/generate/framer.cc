@@ -13,12 +13,7 @@
 namespace rubric::generate {
 namespace {
 
-constexpr std::size_t kFcsBytes = 2;
 constexpr std::size_t kExcessMost = 40;
-
-bool is_radio(const reflect::Route& route) {
-  return std::string_view(route.carrier).starts_with("radio");
-}
 
 Bytes view(const std::vector<std::uint8_t>& bytes) {
   return Bytes(bytes.data(), bytes.size());

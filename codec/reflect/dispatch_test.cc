@@ -3,6 +3,7 @@
 // choose the same messages, refuse the same frames, and read the same values.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <map>
 #include <set>
 #include <string>
@@ -11,14 +12,12 @@
 #include "codec/generated/rubicon/tables.h"
 #include "codec/reflect/compare_view.h"
 #include "codec/reflect/test_frames.h"
+#include "tools/readme/number.h"
 
 namespace rubric::reflect {
 namespace {
 
 using namespace rubicon;
-
-constexpr std::size_t kMadeFrames = 1000000;
-constexpr long kLeastChoices = 20;
 
 /// Returns the spec's name of a view's structure.
 template <class View>
@@ -248,8 +247,9 @@ TEST(Dispatch, ViewsChooseWhatTheTablesChoose_Captures) {
 
 TEST(Dispatch, ViewsChooseWhatTheTablesChoose_MadeFrames) {
   Tally tally;
+  const std::size_t made = readme_number("# made-up frames");
   FrameMaker maker(captured_frames("spec/captures"), tables::kProtocol, 20);
-  for (std::size_t i = 0; i < kMadeFrames && !::testing::Test::HasFailure(); ++i) {
+  for (std::size_t i = 0; i < made && !::testing::Test::HasFailure(); ++i) {
     hold(maker.make(), tally);
   }
   print("made", tally);
@@ -259,9 +259,12 @@ TEST(Dispatch, ViewsChooseWhatTheTablesChoose_MadeFrames) {
     add_paths(*type, type->id, paths);
   }
   std::printf("%zu paths that the tables have\n", paths.size());
-  EXPECT_GE(paths.size(), 90U);
-  for (const std::string& path : paths) EXPECT_GE(reached(tally, path), kLeastChoices) << path;
-  EXPECT_GE(tally.refused, static_cast<long>(kMadeFrames / 10));
+  EXPECT_EQ(paths.size(), readme_number("# ways to a message"));
+  const auto least = static_cast<long>(readme_number("taken at least # times"));
+  for (const std::string& path : paths) EXPECT_GE(reached(tally, path), least) << path;
+  EXPECT_EQ(std::lround(static_cast<double>(tally.numbers) / 1e6),
+            static_cast<long>(readme_number("# million numbers")));
+  EXPECT_GE(tally.refused, static_cast<long>(made / 10));
 }
 
 }  // namespace

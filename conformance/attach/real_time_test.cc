@@ -276,8 +276,8 @@ TEST(RealTime, NobodyThere) {
   };
   const Absent absent[] = {
       {fmt::format("sf-server:{}", port), fmt::format("nobody connects to 127.0.0.1:{}", port)},
-      {fmt::format("sf:localhost:{}", port),
-       fmt::format("cannot connect to localhost:{}: Connection refused", port)},
+      {fmt::format("sf:127.0.0.1:{}", port),
+       fmt::format("cannot connect to 127.0.0.1:{}: Connection refused", port)},
       {fmt::format("serial:tcp:127.0.0.1:{}", port),
        fmt::format("cannot connect to 127.0.0.1:{}: Connection refused", port)},
       {"serial:/dev/no_such_line:57600",

@@ -74,8 +74,6 @@ class Listener {
   ByteStream accept(SteadyTime deadline);
 
  private:
-  void listen();
-
   HostPort at_;
   Descriptor descriptor_;
 };

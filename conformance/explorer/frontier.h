@@ -9,7 +9,7 @@
 namespace rubric::explorer {
 
 /// The state, and the index among its successors, from which a state was reached first.
-struct Link {
+struct PathLink {
   static constexpr std::uint16_t kStart = 0xFFFF;
   std::uint32_t index = 0;   ///< Index among the states of its thread.
   std::uint16_t thread = 0;

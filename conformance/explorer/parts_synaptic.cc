@@ -18,18 +18,18 @@ const machine::ChannelId kOutId = machine::channel_id(kSink.devid, kPeer.devid);
 const machine::ChannelId kInId = machine::channel_id(kPeer.devid, kSink.devid);
 constexpr machine::Timer kTick{machine::TimerKind::kSynaptic, 0};
 
-enum Life : std::size_t { kNone, kStopped, kStarted };
+enum Life : std::size_t { kAbsent, kStopped, kStarted };
 
 template <class List>
 std::size_t life_of(const List& channels) {
-  if (channels.empty()) return kNone;
+  if (channels.empty()) return kAbsent;
   return channels[0].started ? kStarted : kStopped;
 }
 
 std::size_t output_state(const State& state) { return life_of(state.synaptic.out); }
 std::size_t input_state(const State& state) { return life_of(state.synaptic.in); }
 
-bool is_sink(const machine::Config& config) { return config.role == machine::Role::kSink; }
+bool has_sink_role(const machine::Config& config) { return config.role == machine::Role::kSink; }
 
 Given given(const machine::Event& event) { return {event, std::nullopt}; }
 
@@ -114,13 +114,13 @@ std::vector<Given> input_alphabet(const machine::Profile& profile) {
 PartInfo synaptic_output() {
   return {"output", "An output channel of synaptic communication",
           {"no channel", "stopped", "started"},
-          is_sink, output_state, output_trigger, nullptr, output_alphabet};
+          has_sink_role, output_state, output_trigger, nullptr, output_alphabet};
 }
 
 PartInfo synaptic_input() {
   return {"input", "An input channel of synaptic communication",
           {"no channel", "stopped", "started"},
-          is_sink, input_state, input_trigger, nullptr, input_alphabet};
+          has_sink_role, input_state, input_trigger, nullptr, input_alphabet};
 }
 
 }  // namespace rubric::explorer

@@ -22,7 +22,7 @@ constexpr std::size_t kBatchMin = 16384;       // States between two looks at th
 
 /// A state that breaks something, or has a known weakness.
 struct Find {
-  Link link;
+  PathLink link;
   Mask violated = 0;
 };
 
@@ -45,7 +45,7 @@ class Worker {
 
   Network network;
   Frontier next;
-  std::vector<Link> links;  ///< For every state that this thread found, in order.
+  std::vector<PathLink> links;  ///< For every state that this thread found, in order.
   std::vector<Find> violations;
   std::vector<Find> weaknesses;
   std::uint64_t transitions = 0;
@@ -54,7 +54,7 @@ class Worker {
 
  private:
   struct Pending {
-    Link self;
+    PathLink self;
     Successors ways_on;
     std::vector<std::uint64_t> fingerprints;
   };
@@ -74,7 +74,7 @@ class Worker {
   }
 
   // Computes the successors, and prefetches their places in the visited set.
-  void look(Pending& pending, Link self) {
+  void look(Pending& pending, PathLink self) {
     pending.self = self;
     network.successors(world_, pending.ways_on);
     pending.fingerprints.clear();
@@ -96,7 +96,7 @@ class Worker {
       goals |= s.goals;
       const bool is_new = visited_.insert(pending.fingerprints[i]);
       if (!is_new && s.violated == 0) continue;
-      const Link link{pending.self.index, pending.self.thread, static_cast<std::uint16_t>(i)};
+      const PathLink link{pending.self.index, pending.self.thread, static_cast<std::uint16_t>(i)};
       if (is_new) {
         ++inserted;
         add(s.world, link);
@@ -106,7 +106,7 @@ class Worker {
     }
   }
 
-  void add(const World& world, Link link) {
+  void add(const World& world, PathLink link) {
     next.add(network, world, static_cast<std::uint32_t>(links.size()), number_);
     links.push_back(link);
   }
@@ -219,12 +219,11 @@ class Search {
     return p;
   }
 
-  // Returns the moves that lead to a state: follows its links back, and walks them again from the
-  // start.
-  Path path_to(Link last, Mask violated) {
+  // Returns the moves that lead to a state: follows its links back, and walks them forward.
+  Path path_to(PathLink last, Mask violated) {
     std::vector<std::uint16_t> ways;
-    const bool at_start = last.way == Link::kStart;
-    for (Link link = last; !at_start && link.way != Link::kStart;
+    const bool at_start = last.way == PathLink::kStart;
+    for (PathLink link = last; !at_start && link.way != PathLink::kStart;
          link = workers_[link.thread]->links[link.index]) {
       ways.push_back(link.way);
     }
@@ -253,7 +252,7 @@ class Search {
         }
       }
       if (best == nullptr) continue;
-      const Link last =
+      const PathLink last =
           of_states ? workers_[best->link.thread]->links[best->link.index] : best->link;
       return path_to(last, best->violated);
     }
@@ -280,7 +279,7 @@ class Search {
     result.node_states = nodes_.states();
     result.frames = nodes_.frames();
     std::size_t links = 0;
-    for (const auto& worker : workers_) links += worker->links.capacity() * sizeof(Link);
+    for (const auto& worker : workers_) links += worker->links.capacity() * sizeof(PathLink);
     result.memory_bytes = visited_.memory_bytes() + links + nodes_.memory_bytes();
     result.memory_per_state_bytes =
         (visited_.memory_bytes() + links) / std::max<std::size_t>(visited_.size(), 1);

@@ -20,7 +20,7 @@ using machine::Action;
 using machine::Actions;
 
 constexpr std::size_t kWorldsMax = 400'000;
-constexpr std::uint32_t kNone = ~std::uint32_t{0};
+constexpr std::uint32_t kNoState = ~std::uint32_t{0};
 
 template <class T>
 void add_once(std::vector<T>& all, const T& one) {
@@ -167,7 +167,7 @@ class Tour {
 
   /// Visits the states of the network. Returns false if there are too many.
   bool run(std::uint64_t& worlds) {
-    visit(network_.initial(), kNone, {});
+    visit(network_.initial(), kNoState, {});
     Successors ways_on;
     for (std::uint32_t i = 0; i < all_.size() && all_.size() <= kWorldsMax; ++i) {
       const World world = all_[i].world;
@@ -228,7 +228,7 @@ class Tour {
   // Returns the events of the node on the path to that state.
   Witness witness(std::uint32_t index, std::size_t node) const {
     std::vector<std::uint32_t> way;
-    for (; all_[index].parent != kNone; index = all_[index].parent) way.push_back(index);
+    for (; all_[index].parent != kNoState; index = all_[index].parent) way.push_back(index);
     Witness out{nodes_->config_of(node), {}};
     for (auto it = way.rbegin(); it != way.rend(); ++it) {
       const NodeState& before = nodes_->state(all_[all_[*it].parent].world.node[node]);
@@ -262,7 +262,7 @@ class Alone {
 
   /// Returns false if there are too many states.
   bool run(std::uint64_t& worlds) {
-    visit(machine::start(config_), kNone, 0);
+    visit(machine::start(config_), kNoState, 0);
     for (std::uint32_t i = 0; i < all_.size() && all_.size() <= kWorldsMax; ++i) {
       for (std::size_t k = 0; k < alphabet_.size(); ++k) look(i, k);
     }
@@ -285,7 +285,7 @@ class Alone {
     auto found = Step(part_, step_).take(state, given);
     if (found && !found_.holds(*found)) {
       found->witness = {config_, {given}};
-      for (std::uint32_t i = index; all_[i].parent != kNone; i = all_[i].parent) {
+      for (std::uint32_t i = index; all_[i].parent != kNoState; i = all_[i].parent) {
         found->witness.events.insert(found->witness.events.begin(), alphabet_[all_[i].letter]);
       }
       found_.add(std::move(*found));

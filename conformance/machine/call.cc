@@ -18,7 +18,7 @@ std::uint16_t join_seq_num(State& state) {
   return again ? next_seq_num(state.sequence, state.awaited) : seq_num;
 }
 
-struct Caller {
+struct NodeCall {
   Node& node;
 
   void result(bool success, ReqId requirement) {
@@ -109,6 +109,6 @@ struct Caller {
 
 }  // namespace
 
-void call(Node& node, const Call& call) { std::visit(Caller{node, call}, call); }
+void call(Node& node, const Call& call) { std::visit(NodeCall{node, call}, call); }
 
 }  // namespace rubric::machine

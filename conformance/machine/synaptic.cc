@@ -42,7 +42,7 @@ bool is_local(const Channel& channel, Address own) {
 }
 
 // One call on the channels of one node.
-struct Caller {
+struct SynapticCall {
   Synaptic& synaptic;
   const Config& config;
   Address own;
@@ -216,7 +216,7 @@ ChannelId channel_id(std::uint16_t source_devid, std::uint16_t destination_devid
 void call_synaptic(Synaptic& synaptic, const Config& config, Address own, Ticks now,
                    const Call& call, Actions& actions) {
   if (synaptic.period_ticks == 0) synaptic.period_ticks = config.profile.synaptic_period_ticks;
-  std::visit(Caller{synaptic, config, own, now, actions}, call);
+  std::visit(SynapticCall{synaptic, config, own, now, actions}, call);
 }
 
 void hear_synaptic(Synaptic& synaptic, Address own, Address src, Bytes floats, Actions& actions) {

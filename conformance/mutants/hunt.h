@@ -50,13 +50,14 @@ Found hunt(const Golden& golden, const Mutant& mutant);
 /// Hunts all of them on so many threads.
 std::vector<Found> hunt_all(const Golden& golden, const Mutants& mutants, unsigned threads);
 
-/// A mutant that no golden trace can be required to find, and why. In names `*` matches anything.
-struct Equivalent {
+/// A mutant that no golden trace finds, and why. In names `*` matches anything.
+struct Survivor {
   const char* name;
   const char* reason;
+  bool equivalent = true;  ///< The change is free or unseen. False: it is merely not judged.
 };
-std::span<const Equivalent> equivalents();
+std::span<const Survivor> survivors();
 /// Returns the entry for a mutant of this name, or null.
-const Equivalent* find_equivalent(std::string_view name);
+const Survivor* find_survivor(std::string_view name);
 
 }  // namespace rubric::mutants

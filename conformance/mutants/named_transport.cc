@@ -22,7 +22,7 @@ bool is_for_us(const Moment& moment, const Frame& frame) {
          get(frame, net::kDestDevid) == own(moment).devid;
 }
 
-void add_acks(Mutants& out) {
+void add_message_acks(Mutants& out) {
   out.push_back({"no_ack", "A node never acks.", {req::kT2Ack}, drop_sent(is_ack_sent)});
   out.push_back(
       {"ack_twice", "A node sends each ack twice.", {req::kT2Once}, double_sent(is_ack_sent)});
@@ -324,7 +324,7 @@ void add_sender(Mutants& out) {
 
 Mutants transport_mutants() {
   Mutants out;
-  add_acks(out);
+  add_message_acks(out);
   add_needless_acks(out);
   add_sender(out);
   return out;

@@ -1,3 +1,4 @@
+#include "conformance/oracle/links.h"
 #include "conformance/oracle/align_frames.h"
 
 #include <algorithm>
@@ -16,8 +17,6 @@ namespace {
 
 using Kind = Observation::Kind;
 
-constexpr std::int64_t kByteUs = 32;       // On the air.
-constexpr std::int64_t kAroundBytes = 19;  // Preamble, SFD, length, MAC header, type, FCS.
 constexpr std::int64_t kRepeatUs = 500'000;    // The link repeats a frame within it.
 constexpr std::uint32_t kRepeatFrames = 8;     // The same without stamps.
 constexpr std::size_t kGroupMax = 32;          // Frames of one key that are told apart by content.
@@ -200,7 +199,7 @@ class Pairing {
     // Radio stamps mark the start of a frame, serial stamps its end.
     if (sign != 0 && cause.kind == Kind::kRadio) {
       const auto bytes = static_cast<std::int64_t>(cause.frame.payload.size()) + kAroundBytes;
-      pair.lag_min_us = bytes * kByteUs;
+      pair.lag_min_us = bytes * kRadioByteUs;
     }
     return pair;
   }

@@ -10,8 +10,8 @@
 namespace rubric::oracle {
 namespace {
 
-constexpr std::size_t kFramesMin = 3;
-constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
+constexpr std::size_t kOrderFramesMin = 3;
+constexpr std::int64_t kNeverUs = std::numeric_limits<std::int64_t>::max();
 
 // A frame of the file that another file has as well, and the times at which it can have come.
 struct Anchor {
@@ -87,13 +87,13 @@ class Ordering {
     });
     anchors_ = longest_in_order(all);
     out.frames = anchors_.size();
-    if (all.size() < kFramesMin) {
+    if (all.size() < kOrderFramesMin) {
       out.why = all.empty()       ? "no frame that comes but once is in both"
                 : all.size() == 1 ? "only 1 frame is in both, and 3 are needed"
                                   : "only 2 frames are in both, and 3 are needed";
       return out;
     }
-    if (anchors_.size() < kFramesMin || 4 * anchors_.size() < 3 * all.size()) {
+    if (anchors_.size() < kOrderFramesMin || 4 * anchors_.size() < 3 * all.size()) {
       out.why = "the " + std::to_string(all.size()) + " frames that are in both are in another "
                 "order in each";
       return out;
@@ -127,7 +127,7 @@ class Ordering {
   // allows, none later than one after it.
   void place(OrderFit& out) {
     std::vector<std::uint32_t> frames;
-    std::int64_t first_us = kNever;
+    std::int64_t first_us = kNeverUs;
     std::int64_t last_us = kNoStamp;
     for (std::uint32_t i = 0; i < run_.seen.size(); ++i) {
       const Place& place = run_.seen[i].place;

@@ -8,7 +8,7 @@ namespace {
 using Phase = machine::JoinMote::Phase;
 
 constexpr std::uint8_t kRequestsMin = 4;   // In a call that fails (decision 101).
-constexpr std::size_t kCrowd = 6;          // Frames; then a buffer may have been full.
+constexpr std::size_t kJoinCrowd = 6;          // Frames; then a buffer may have been full.
 constexpr std::int64_t kClockOffMs = 1000; // (decision 119)
 constexpr std::uint16_t kReservedFrom = 0xFFFD;
 
@@ -145,12 +145,12 @@ void JoinWatch::settle(std::uint16_t node, std::int64_t now_us, bool end) {
 bool JoinWatch::crowded(std::uint16_t node, const Debt& debt) const {
   const std::vector<Observation>& seen = context_.run.seen;
   std::size_t frames = 0;
-  for (std::size_t i = debt.index; i < seen.size() && frames <= kCrowd; ++i) {
+  for (std::size_t i = debt.index; i < seen.size() && frames <= kJoinCrowd; ++i) {
     if (seen[i].place.time_us > debt.due_us) break;
     const Mark& mark = context_.who.marks[i];
     if (mark.device == node || mark.receiver == node) ++frames;
   }
-  return frames > kCrowd;
+  return frames > kJoinCrowd;
 }
 
 void JoinWatch::missing(std::uint16_t node, const Debt& debt, Severity severity) {

@@ -11,7 +11,7 @@ using Onward = machine::Route::Onward;
 
 // How long a host waits for the confirmation of a packet before it sends the next one.
 constexpr std::int64_t kConfirmationUs = 1'100'000;
-constexpr std::size_t kCrowd = 2;  // So many at once may have found a buffer full (decision 122).
+constexpr std::size_t kPeisCrowd = 2;  // So many at once may have found a buffer full (decision 122).
 
 machine::Router base_station(machine::Address own, std::uint16_t sink_am) {
   return {Role::kBaseStation, own, true, sink_am};
@@ -155,7 +155,7 @@ void PeisWatch::overdue(std::uint16_t base, Messages& messages, bool up, std::in
     if (!message.owed || now_us - message.place.time_us <= wait) continue;
     message.owed = false;
     context_.report(up ? req::kN8Peis : req::kN8Incoming,
-                    waiting > kCrowd ? Severity::kInconclusive : Severity::kFail, message.place,
+                    waiting > kPeisCrowd ? Severity::kInconclusive : Severity::kFail, message.place,
                     base,
                     {"The base station got " + name_of(message.net) + " from " +
                          (up ? "its sink and did not put it on PEIS."

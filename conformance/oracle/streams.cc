@@ -14,7 +14,7 @@ constexpr std::size_t kStreamsMax = 4096;
 constexpr int kLookMax = 16;  // Streams of one address that may go on, newest first.
 
 // Points that speak for a frame being of a stream. Island agreement ranks above the DSN.
-constexpr int kNever = -1000;
+constexpr int kNoMatch = -1000;
 constexpr int kStrongIsland = 20;
 constexpr int kNextDsn = 6;
 constexpr int kNearDsn = 3;
@@ -62,21 +62,21 @@ IslandHint Streams::hint_of(const machine::Frame& frame) const {
 
 int Streams::score(const Stream& stream, const Observation& seen, const IslandHint& hint) const {
   const auto ahead = static_cast<std::uint8_t>(seen.dsn - stream.dsn);
-  if (ahead == 0 || ahead > kGapMax) return kNever;
+  if (ahead == 0 || ahead > kGapMax) return kNoMatch;
   int points = ahead == 1 ? kNextDsn : kNearDsn;
   if (stream.island == 0) return points;
   // Motes of two islands may have the same id; but one mote may also change its island.
   if (!stream.sink) {
     if (hint.mote == 0) return points;
     points += hint.mote == stream.island ? kMoteIsland : -kMoteIsland;
-    return points > 0 ? points : kNever;
+    return points > 0 ? points : kNoMatch;
   }
   const bool stale = hint.strong != 0 && hint.strong == stream.last_island;
   const bool other = hint.strong != 0 && hint.strong != stream.island && !stale;
-  if (other) return stream.given ? points : kNever;  // Rather than two sinks, one given wrongly.
+  if (other) return stream.given ? points : kNoMatch;  // Rather than two sinks, one given wrongly.
   if (hint.strong != 0 && !stale) points += kStrongIsland;
   // A message from another island's base station to that island is the other sink's.
-  if (hint.src != 0 && hint.src == hint.dest && hint.src != stream.island) return kNever;
+  if (hint.src != 0 && hint.src == hint.dest && hint.src != stream.island) return kNoMatch;
   if (hint.src == stream.island) points += kSrcIsland;
   if (hint.dest == stream.island) points += kDestIsland;
   if (hint.line == stream.island && hint.line != 0) points += kStrongIsland;
@@ -88,7 +88,7 @@ std::uint16_t Streams::assign(std::uint32_t index, bool& repeat) {
   const std::int64_t now = seen.place.time_us;
   const IslandHint hint = hint_of(seen.frame);
   std::uint16_t best = kLast;
-  int best_score = kNever;
+  int best_score = kNoMatch;
   bool even = false;
   int candidates = 0;
   int looked_at = 0;
@@ -104,8 +104,8 @@ std::uint16_t Streams::assign(std::uint32_t index, bool& repeat) {
       return i;
     }
     const int points = score(stream, seen, hint);
-    if (points != kNever) ++candidates;
-    even = points == best_score && points != kNever;
+    if (points != kNoMatch) ++candidates;
+    even = points == best_score && points != kNoMatch;
     if (points <= best_score) continue;
     best = i;
     best_score = points;

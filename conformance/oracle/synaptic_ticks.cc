@@ -8,7 +8,7 @@
 namespace rubric::oracle {
 namespace {
 
-constexpr std::size_t kCrowd = 2;       // So many other frames may have filled a buffer.
+constexpr std::size_t kTickCrowd = 2;       // So many other frames may have filled a buffer.
 constexpr std::size_t kBufferMax = 4;   // And so many channels (decision 122).
 
 }  // namespace
@@ -174,7 +174,7 @@ bool SynapticWatch::crowded(std::uint16_t device, std::int64_t from_us, std::int
                       net.sound && net.trans_id == component::kSynChannel;
     if (context_.who.marks[i].device == device && !data) ++others;
   }
-  return others > kCrowd || nodes_[device].outs.size() > kBufferMax;
+  return others > kTickCrowd || nodes_[device].outs.size() > kBufferMax;
 }
 
 void SynapticWatch::settle_outputs(std::uint16_t device, std::int64_t now_us,

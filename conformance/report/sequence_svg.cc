@@ -17,7 +17,7 @@ namespace {
 constexpr double kCharacter = 7.3;      // In a label, 12 px high.
 constexpr double kSmall = 6.7;          // In a note, 11 px high.
 constexpr double kStub = 34;            // An arrow that one end of has no column.
-constexpr double kGapMin = 96;          // Between columns.
+constexpr double kGapPixelsMin = 96;          // Between columns.
 constexpr double kLabelRoom = 26;       // An arrow is longer than its label by this.
 constexpr double kRowArrow = 31;
 constexpr double kRowStub = 25;
@@ -111,7 +111,7 @@ class Picture {
       time_width = std::max(time_width, length_of(row.number, kSmall));
     }
     time_ = kMargin + time_width;
-    std::vector<double> gap(columns_ > 1 ? columns_ - 1 : 0, kGapMin);
+    std::vector<double> gap(columns_ > 1 ? columns_ - 1 : 0, kGapPixelsMin);
     for (std::size_t c = 0; c + 1 < columns_; ++c) {
       gap[c] = std::max(gap[c], (head_width(c) + head_width(c + 1)) / 2 + 12);
     }

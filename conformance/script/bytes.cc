@@ -86,10 +86,10 @@ class Writer {
 constexpr Link kLinesOf[][2] = {{Link::kRadio, Link::kRadio},
                                 {Link::kRadio, Link::kSerial},
                                 {Link::kSerial, Link::kPeis}};
-Link line_of(Role role, std::size_t number) {
+Link link_of(Role role, std::size_t number) {
   return kLinesOf[static_cast<std::size_t>(role)][number];
 }
-std::size_t number_of(Role role, Link line) { return line_of(role, 0) == line ? 0 : 1; }
+std::size_t number_of(Role role, Link line) { return link_of(role, 0) == line ? 0 : 1; }
 
 machine::Config read_config(Reader& in) {
   machine::Config config;
@@ -232,7 +232,7 @@ Step read_step(Role role, Reader& in) {
       step.event = machine::SendDone{Link::kRadio, in.flag()};
       return step;
     case kLineBusy: {
-      const Link line = role == Role::kBaseStation ? Link::kSerial : line_of(role, in.below(2));
+      const Link line = role == Role::kBaseStation ? Link::kSerial : link_of(role, in.below(2));
       step.event = machine::LinkBusy{line, in.flag()};
       return step;
     }
@@ -253,7 +253,7 @@ Step read_step(Role role, Reader& in) {
     return step;
   }
   machine::Frame frame;
-  frame.link = line_of(role, in.below(2));
+  frame.link = link_of(role, in.below(2));
   frame.dest = in.u16();
   frame.src = in.u16();
   frame.type = in.u8();

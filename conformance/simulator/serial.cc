@@ -8,19 +8,19 @@
 namespace rubric::simulator {
 namespace {
 
-constexpr std::size_t kHeaderBytes = 8;  // Dispatch and AM header.
+constexpr std::size_t kSerialHeaderBytes = 8;  // Dispatch and AM header.
 constexpr Micros kBaud = 115'200;
 constexpr Micros kBitsPerByte = 10;
 constexpr Micros kResendUs = 1'000'000;  // A host misses its confirmation.
 constexpr int kTriesMax = 25;
 
 std::vector<std::uint8_t> packet_of(const machine::Frame& am) {
-  std::vector<std::uint8_t> bytes(kHeaderBytes + am.payload.size());
+  std::vector<std::uint8_t> bytes(kSerialHeaderBytes + am.payload.size());
   store_be16(bytes.data() + 1, am.dest);
   store_be16(bytes.data() + 3, am.src);
   bytes[5] = static_cast<std::uint8_t>(am.payload.size());
   bytes[7] = am.type;
-  std::copy(am.payload.begin(), am.payload.end(), bytes.begin() + kHeaderBytes);
+  std::copy(am.payload.begin(), am.payload.end(), bytes.begin() + kSerialHeaderBytes);
   return bytes;
 }
 
@@ -43,7 +43,7 @@ void Serial::send(NodeId from, const machine::Frame& frame) {
   held->packet = packet_of(frame);
   held->am = frame;
   held->am.link = machine::Link::kSerial;
-  held->am.payload = Bytes(held->packet.data(), held->packet.size()).from(kHeaderBytes);
+  held->am.payload = Bytes(held->packet.data(), held->packet.size()).from(kSerialHeaderBytes);
   if (from == plan_.base_station) return try_host(held);
   shift_out(false, kSerialPacketNoAck, -1, held, [this, held](bool intact) {
     deliver(plan_.base_station, *held, intact);

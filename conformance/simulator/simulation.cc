@@ -14,7 +14,7 @@ using machine::Ticks;
 
 namespace {
 
-constexpr Micros kDoubleUs[] = {500, 20'000};  // A message's double comes after this.
+constexpr Micros kRepeatUs[] = {500, 20'000};  // A message's double comes after this.
 
 // A call that owns its bytes.
 class OwnedCall {
@@ -199,7 +199,7 @@ void Simulation::to_peis(NodeId from, const machine::Transmit& frame) {
     const Micros delay = network_.peis_delay_us + random_.between(0, faults.delay_max_us);
     queue_.after(delay, [this, to, frame] { peis_heard(to, frame); });
     if (!random_.chance(faults.duplication)) continue;
-    queue_.after(delay + random_.between(kDoubleUs[0], kDoubleUs[1]), [this, to, frame] {
+    queue_.after(delay + random_.between(kRepeatUs[0], kRepeatUs[1]), [this, to, frame] {
       mishap(queue_.now(), to, Mishap::kDoubled, frame.frame());
       peis_heard(to, frame);
     });

@@ -11,7 +11,7 @@ set(include_dir ${CMAKE_INSTALL_INCLUDEDIR}/rubric)
 # of codec and conformance belong to it, without those of tests, fuzzing, commands and compiler.
 get_property(libraries GLOBAL PROPERTY RUBRIC_LIBRARIES)
 list(FILTER libraries EXCLUDE REGEX
-  "^firmware_|^rubric_(compiler|commands|cli|format|fuzz.*|legal.*|.*mutator|record.*)$")
+  "^firmware_|^rubric_(compiler|commands|cli|command_line|format|fuzz.*|legal.*|.*mutator|record.*)$")
 list(FILTER libraries EXCLUDE REGEX "^rubric_(cpp_node.*|forward|lines|live|script)$")
 add_library(rubric_conformance INTERFACE)
 target_link_libraries(rubric_conformance INTERFACE ${libraries})

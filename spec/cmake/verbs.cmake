@@ -27,10 +27,14 @@ if(RUBRIC_FUZZ AND RUBRIC_FUZZ_ENGINE STREQUAL "-fsanitize=fuzzer")
   target_compile_options(rubric_options INTERFACE -fsanitize=fuzzer-no-link)
 endif()
 
-# rubric_library(NAME SOURCES a.cc ... [DEPS lib ...]): a static library.
+# rubric_library(NAME [COLD] SOURCES a.cc ... [DEPS lib ...]): a static library. COLD: no benchmark
+# depends on its speed, so that it is compiled in less time.
 function(rubric_library name)
-  cmake_parse_arguments(arg "" "" "SOURCES;DEPS" ${ARGN})
+  cmake_parse_arguments(arg "COLD" "" "SOURCES;DEPS" ${ARGN})
   add_library(${name} STATIC ${arg_SOURCES})
+  if(arg_COLD)
+    target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+  endif()
   # Our warnings are for us: who uses an installed library has options of his own.
   target_link_libraries(${name} PUBLIC $<BUILD_INTERFACE:rubric_options> ${arg_DEPS})
   target_compile_features(${name} PUBLIC cxx_std_20)
@@ -57,6 +61,7 @@ function(rubric_test name)
     set(arg_LABEL fast)
   endif()
   add_executable(${name} ${arg_SOURCES})
+  set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
   target_link_libraries(${name} PRIVATE rubric_options ${arg_DEPS} GTest::gmock GTest::gtest_main)
   add_test(NAME ${name} COMMAND ${name} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
   set_tests_properties(${name} PROPERTIES LABELS ${arg_LABEL} TIMEOUT 600)
@@ -73,6 +78,28 @@ function(rubric_script_test name)
   endif()
   add_test(NAME ${name} COMMAND ${arg_COMMAND} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
   set_tests_properties(${name} PROPERTIES LABELS ${arg_LABEL} TIMEOUT 900)
+endfunction()
+
+# rubric_have_tools(RESULT WHAT VARIABLE ...): RESULT says whether find_program or find_library set
+# all of the variables. Where one is missing, WHAT is not built and not tested: that is a warning,
+# and an error with RUBRIC_ALL_TOOLS.
+function(rubric_have_tools result what)
+  set(${result} TRUE PARENT_SCOPE)
+  foreach(variable ${ARGN})
+    if(NOT ${variable})
+      list(APPEND missing ${variable})
+    endif()
+  endforeach()
+  if(missing)
+    set(${result} FALSE PARENT_SCOPE)
+    set(severity WARNING)
+    if(RUBRIC_ALL_TOOLS)
+      set(severity SEND_ERROR)
+    endif()
+    list(JOIN missing ", " missing)
+    message(${severity} "${what} is not built or tested, without ${missing}; "
+      "`tools/install-packages test` installs what is needed.")
+  endif()
 endfunction()
 
 # rubric_must_not_compile(NAME SOURCE x.cc EXPECT regex): compiling x.cc must fail with a message

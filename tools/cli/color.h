@@ -1,13 +1,13 @@
 // Colour of output.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "tools/cli/command.h"
 #include <string>
 
 namespace rubric::cli {
 
 /// Adds --color auto|always|never.
-void add_color_option(CLI::App& app, std::string& when);
+void add_color_option(Command& app, std::string& when);
 
 /// Returns whether output to `fd` is coloured: with "auto" on a terminal, unless NO_COLOR is set
 /// and not empty or TERM is dumb.

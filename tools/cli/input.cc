@@ -271,27 +271,23 @@ std::vector<std::string> protocol_names() {
   return names;
 }
 
-bool is_digits(const std::string& text) {
-  return !text.empty() && text.find_first_not_of("0123456789") == text.npos;
-}
-
 }  // namespace
 
-void add_input_options(CLI::App& app, InputOptions& options) {
+void add_input_options(Command& app, InputOptions& options) {
   app.add_option("FILE", options.files, "Captures, in order; none or - is stdin");
   app.add_option("--input-format", options.format,
                  "What the input is: auto, hdlc (bytes of a serial line), sf (serial forwarder), "
                  "pcap, pcapng, hex (text, from the dispatch byte on), hex-radio (text, 802.15.4 "
                  "without FCS), bare (one message, with --as)")
-      ->check(CLI::IsMember({"auto", "hdlc", "sf", "pcap", "pcapng", "hex", kHexRadio, "bare"}))
-      ->capture_default_str();
-  app.add_option("--spec", options.spec, "Protocol above the AM layer")->capture_default_str();
+      .one_of({"auto", "hdlc", "sf", "pcap", "pcapng", "hex", kHexRadio, "bare"})
+      .show_default();
+  app.add_option("--spec", options.spec, "Protocol above the AM layer").show_default();
   app.add_option("--as", options.as_message,
                  "The input is this message alone: each line of hex text, or a binary file whole")
-      ->check(given());
+      .check(given);
 }
 
-void add_live_options(CLI::App& app, InputOptions& options) {
+void add_live_options(Command& app, InputOptions& options) {
   const auto check = [](const std::string& text) {
     try {
       live::parse_address(text);
@@ -300,7 +296,7 @@ void add_live_options(CLI::App& app, InputOptions& options) {
       return std::string(error.what());
     }
   };
-  app.get_option("FILE")->check(CLI::Validator(check, ""))->description(
+  app.get_option("FILE").check(check).description(
       "Captures, in order; none or - is stdin. Or lines in use: serial@DEVICE:BAUD (or a platform, "
       "as serial@/dev/ttyUSB0:telosb), network@HOST:PORT, sf@HOST:PORT");
   app.add_flag("--follow", options.follow, "At the end of a file wait for more of it");
@@ -309,33 +305,10 @@ void add_live_options(CLI::App& app, InputOptions& options) {
   app.add_flag("--reconnect", options.reconnect, "Open a line that is gone again, when it is back");
 }
 
-CLI::Validator given() {
-  const auto check = [](const std::string& text) {
-    return text.empty() ? std::string("is empty") : std::string();
-  };
-  return {check, ""};
-}
-
-CLI::Validator whole_number() {
-  const auto check = [](const std::string& text) {
-    if (is_digits(text)) return std::string();
-    return fmt::format("expected a number of 0 or more, given '{}'", text);
-  };
-  return {check, ""};
-}
-
-CLI::Validator at_least_one() {
-  const auto check = [](const std::string& text) {
-    if (is_digits(text) && text.find_first_not_of('0') != text.npos) return std::string();
-    return fmt::format("expected a number of 1 or more, given '{}'", text);
-  };
-  return {check, ""};
-}
-
 const reflect::Protocol& chosen_protocol(const InputOptions& options) {
   const reflect::Protocol* protocol = reflect::find_protocol(options.spec);
   if (protocol) return *protocol;
-  throw CLI::ValidationError("--spec",
+  throw UsageError("--spec",
                              fmt::format("unknown protocol '{}'{}", options.spec,
                                          reflect::did_you_mean(options.spec, protocol_names())));
 }
@@ -344,16 +317,16 @@ const reflect::Type* chosen_message(const InputOptions& options,
                                     const reflect::Protocol& protocol) {
   if (options.as_message.empty()) {
     if (options.format != "bare") return nullptr;
-    throw CLI::ValidationError("--input-format", "bare needs --as MESSAGE");
+    throw UsageError("--input-format", "bare needs --as MESSAGE");
   }
   if (options.format != "auto" && options.format != "hex" && options.format != "bare") {
-    throw CLI::ValidationError("--as", "takes hex text or a binary file, not " + options.format);
+    throw UsageError("--as", "takes hex text or a binary file, not " + options.format);
   }
   const reflect::Type* type = reflect::find_type(protocol, options.as_message);
   if (type) return type;
   std::vector<std::string> names;
   for (int i = 0; i < protocol.type_count; ++i) names.emplace_back(protocol.types[i]->name);
-  throw CLI::ValidationError("--as", fmt::format("unknown message '{}'{}", options.as_message,
+  throw UsageError("--as", fmt::format("unknown message '{}'{}", options.as_message,
                                                  reflect::did_you_mean(options.as_message, names)));
 }
 

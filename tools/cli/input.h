@@ -1,7 +1,7 @@
 // Input of all subcommands that read packets: files, formats, protocol.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "tools/cli/command.h"
 #include <functional>
 #include <string>
 #include <string_view>
@@ -25,23 +25,15 @@ struct InputOptions {
 };
 
 /// Adds FILE..., --input-format, --spec and --as to a subcommand.
-void add_input_options(CLI::App& app, InputOptions& options);
+void add_input_options(Command& app, InputOptions& options);
 
 /// Adds --follow, --listen-only and --reconnect: for subcommands whose files may be lines in
 /// use (live/line.h). Without FILE, at a terminal, $MOTECOM is taken.
-void add_live_options(CLI::App& app, InputOptions& options);
+void add_live_options(Command& app, InputOptions& options);
 
-/// Returns a check that an option's text is not empty, as that of a shell's unset variable is.
-CLI::Validator given();
-/// Returns a check for a whole number of 1 or more.
-CLI::Validator at_least_one();
-/// Returns a check for a whole number of 0 or more: CLI11 alone takes -1 for the greatest one.
-CLI::Validator whole_number();
-
-/// Returns the protocol of --spec; throws CLI::ValidationError with the nearest name if there is
-/// none.
+/// Returns the protocol of --spec; throws UsageError with the nearest name if there is none.
 const reflect::Protocol& chosen_protocol(const InputOptions& options);
-/// Returns the message of --as, null if it is not given; throws CLI::ValidationError as above.
+/// Returns the message of --as, null if it is not given; throws UsageError as above.
 const reflect::Type* chosen_message(const InputOptions& options,
                                     const reflect::Protocol& protocol);
 

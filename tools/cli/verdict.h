@@ -4,13 +4,13 @@
 #include <functional>
 #include <string>
 
-#include <CLI/CLI.hpp>
+#include "tools/cli/command.h"
 
 namespace rubric::cli {
 
 /// Makes the subcommand end with the result of `run`, one of VerdictCode. An exception other than
-/// CLI::Error is printed, and means that the kit broke.
-void set_verdict(CLI::App& command, std::function<int()> run);
+/// Ending is printed, and means that the kit broke.
+void set_verdict(Command& command, std::function<int()> run);
 
 /// Ends the subcommand because its input cannot be read. `what` may be a list of lines.
 [[noreturn]] void unreadable(const char* command, std::string what);

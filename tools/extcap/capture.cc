@@ -95,7 +95,7 @@ int capture(const CaptureOptions& options) {
     return Capture(options, file).run();
   } catch (const format::FilterError& error) {
     return usage("capture filter: " + error.explain(options.filter));
-  } catch (const CLI::Error& error) {
+  } catch (const cli::Ending& error) {
     return usage(error.what());
   } catch (const std::invalid_argument& error) {
     return usage(fmt::format("source {}", error.what()));

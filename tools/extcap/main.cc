@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
+#include "tools/cli/command.h"
 #include <fmt/format.h>
 
 #include "tools/cli/exit_codes.h"
@@ -78,7 +78,7 @@ int main(int argc, char** argv) {
   try {
     return rubric::extcap::run(
         rubric::extcap::CommandLine(std::vector<std::string>(argv + 1, argv + argc)));
-  } catch (const CLI::Error& error) {
+  } catch (const cli::Ending& error) {
     return rubric::extcap::complain(error.what());
   }
 }

@@ -40,9 +40,9 @@ bool is_name_of(const Node& node, const std::string& name) {
   return type && name == type->name;
 }
 
-constexpr std::size_t kMaxDepth = 2 * Decoded::kMaxPath;
+constexpr std::size_t kMaxPathDepth = 2 * Decoded::kMaxPath;
 struct Around {  // The structures around a node, from the outside in.
-  std::size_t nodes[kMaxDepth];
+  std::size_t nodes[kMaxPathDepth];
   std::size_t depth = 0;
 };
 
@@ -197,7 +197,7 @@ void Path::find(const Record& record, bool first_only, Visitor visit) const {
       if (!give_node(*here, decoded, i, visit)) return;
     }
     const bool structure = node.kind == NodeKind::kStruct || node.kind == NodeKind::kStructArray;
-    if (structure && around.depth < kMaxDepth) around.nodes[around.depth++] = i;
+    if (structure && around.depth < kMaxPathDepth) around.nodes[around.depth++] = i;
   }
 }
 

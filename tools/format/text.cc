@@ -14,7 +14,6 @@ namespace {
 using reflect::Frame;
 
 constexpr std::uint16_t kAmBroadcast = 0xffff;
-constexpr std::size_t kMaxHexBytes = 24;
 
 // Fills up to `column` characters since `start`, and one more space.
 void pad(Buffer& out, std::size_t start, std::size_t column) {

@@ -18,7 +18,6 @@ using reflect::Kind;
 using reflect::Node;
 using reflect::NodeKind;
 
-constexpr std::size_t kMaxHexBytes = 24;
 constexpr std::uint32_t kMaxElements = 24;
 
 /// Prints the nodes of one frame, counting leaves as the hex dump does.

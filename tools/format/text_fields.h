@@ -6,6 +6,9 @@
 
 namespace rubric::format {
 
+/// Bytes of an opaque field or frame that a line shows.
+inline constexpr std::size_t kMaxHexBytes = 24;
+
 struct FieldStyle {
   bool units = false;      ///< Values with a unit are shown converted.
   bool in_turns = false;   ///< Values in the colours of the hex dump.

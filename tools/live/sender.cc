@@ -29,9 +29,9 @@ constexpr Milliseconds kGreetTime{5000};
 constexpr Milliseconds kWriteTime{5000};
 constexpr Milliseconds kCloseTime{5000};
 constexpr Milliseconds kQuietTime{500};
-/// How long any wait takes before checking whether to stop: a signal may come just before the wait
-/// begins.
-constexpr Milliseconds kPatience{100};
+/// How long any wait takes before checking whether to stop: a signal may come just
+/// before the wait begins.
+constexpr Milliseconds kSendPatience{100};
 constexpr std::size_t kReadBytes = 4096;
 /// A forwarder that sends more than so many times kReadBytes at once is read on after the packet.
 constexpr int kReadsMost = 256;
@@ -72,7 +72,7 @@ void Sender::greet() {
       throw TargetBroken("the other end does not begin a serial forwarder's connection");
     }
     size += line_.read(MutableBytes(hello + size, sizeof hello - size),
-                       steady_clock::now() + kPatience);
+                       steady_clock::now() + kSendPatience);
   }
   if (hello[0] != kSfMagic || hello[1] < kSfVersion) {
     throw TargetBroken(fmt::format("the other end is no serial forwarder's: it begins with "
@@ -122,7 +122,7 @@ Sender::Result Sender::send_to_forwarder(Bytes packet) {
     out_.insert(out_.end(), packet.begin(), packet.end());
     result.tries = 1;
     flush();
-    while (!out_.empty() && !stop_requested()) step(steady_clock::now() + kPatience, -1);
+    while (!out_.empty() && !stop_requested()) step(steady_clock::now() + kSendPatience, -1);
     result.done = out_.empty();
   } catch (const TargetBroken& error) {
     result.broken = error.what();
@@ -145,7 +145,7 @@ bool Sender::step(SteadyTime until, int fd) {
   const auto left = std::chrono::ceil<Milliseconds>(until - steady_clock::now());
   const auto wanted = static_cast<short>(POLLIN | (output().empty() ? 0 : POLLOUT));
   pollfd both[] = {{line_.fd(), wanted, 0}, {fd, POLLIN, 0}};
-  const auto wait = std::clamp(left, Milliseconds{0}, kPatience);
+  const auto wait = std::clamp(left, Milliseconds{0}, kSendPatience);
   const int ready = ::poll(both, 2, static_cast<int>(wait.count()));
   if (ready < 0 && errno != EINTR) throw TargetBroken(std::strerror(errno));
   if (ready > 0 && (both[0].revents & ~POLLOUT) != 0) read();

@@ -2,7 +2,7 @@
 // alone.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "tools/cli/command.h"
 
 #include <functional>
 #include <optional>
@@ -29,17 +29,17 @@ struct LineOptions {
 };
 
 /// Adds FILE, --spec, --as, --am-type, --dest, --src and --group to a subcommand.
-void add_line_options(CLI::App& app, LineOptions& options);
+void add_line_options(cli::Command& app, LineOptions& options);
 /// Adds --carrier.
-void add_carrier_option(CLI::App& app, LineOptions& options);
-/// Throws CLI::ValidationError if an option is given that needs --as.
+void add_carrier_option(cli::Command& app, LineOptions& options);
+/// Throws cli::UsageError if an option is given that needs --as.
 void check_line_options(const LineOptions& options);
 
 /// Turns a line into a packet.
 class LineEncoder {
  public:
-  /// `serial_framing`: "hdlc" or "sf", for a single message on a serial line. Throws
-  /// CLI::ValidationError if nothing carries the message.
+  /// `serial_framing`: "hdlc" or "sf", for a single message on a serial line.
+  /// Throws cli::UsageError if nothing carries the message.
   LineEncoder(const LineOptions& options, const reflect::Protocol& protocol,
               const reflect::Type* message, std::string_view serial_framing);
 

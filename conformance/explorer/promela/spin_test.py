@@ -11,6 +11,9 @@ import subprocess
 import sys
 import tempfile
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "tools"))
+from readme.number import readme_number  # pylint: disable=wrong-import-position
+
 MODEL = pathlib.Path(__file__).resolve().parent / "join.pml"
 PROPERTIES = ["joined_after_reply", "ack_right_seq", "requests_bounded", "one_terminal",
               "one_island", "listed_acked", "listed_silent", "admitted", "one_report",
@@ -105,6 +108,9 @@ def compare(rubric, flaw, claims):
 def main():
     rubric = str(pathlib.Path(sys.argv[1]).resolve())
     claims = sys.argv[2:] or PROPERTIES
+    assert len(PROPERTIES) == readme_number("explorer on # properties")
+    assert len(FLAWS) - 1 == readme_number("properties, # flaws")
+    assert len(NETWORKS) == readme_number("flaws and # networks")
     wrong = 0
     print(f"{'broken in':<20}" + "".join(f"{flaw or 'no flaw':<20}" for flaw in FLAWS))
     columns = []

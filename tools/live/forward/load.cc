@@ -8,7 +8,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cerrno>
@@ -26,6 +25,7 @@
 #include "codec/runtime/hdlc.h"
 #include "conformance/attach/stream.h"
 #include "conformance/runner/target.h"
+#include "tools/cli/command.h"
 #include "tools/live/forward/sockets.h"
 
 namespace rubric::forward {
@@ -343,23 +343,28 @@ int run(const LoadOptions& options) {
 }  // namespace rubric::forward
 
 int main(int argc, char** argv) {
-  CLI::App app{"Loads 'rubric forward' with a busy line and many clients, checks and measures."};
+  rubric::cli::Command program("forward_load",
+                               "Loads 'rubric forward' with a busy line and many clients, checks "
+                               "and measures.");
   rubric::forward::LoadOptions options;
-  app.add_option("RUBRIC", options.program, "The program")->required();
-  app.add_option("--clients", options.clients)->capture_default_str();
-  app.add_option("--stalled", options.stalled, "More clients, which read nothing")
-      ->capture_default_str();
-  app.add_option("--rate", options.rate, "Packets a second")->capture_default_str();
-  app.add_option("--seconds", options.seconds)->capture_default_str();
-  app.add_option("--bytes", options.packet_bytes, "Of a packet")
-      ->check(CLI::Range(24, 252))
-      ->capture_default_str();
-  app.add_option("--growth", options.growth_kib_max, "KiB by which its memory may grow when warm")
-      ->capture_default_str();
-  CLI11_PARSE(app, argc, argv);
-  try {
-    return rubric::forward::run(options);
-  } catch (const rubric::runner::TargetBroken& broken) {
-    rubric::forward::give_up(broken.what());
-  }
+  program.add_option("RUBRIC", options.program, "The program").required();
+  program.add_option("--clients", options.clients).show_default();
+  program.add_option("--stalled", options.stalled, "More clients, which read nothing")
+      .show_default();
+  program.add_option("--rate", options.rate, "Packets a second").show_default();
+  program.add_option("--seconds", options.seconds).show_default();
+  program.add_option("--bytes", options.packet_bytes, "Bytes of a packet")
+      .between(24, 252)
+      .show_default();
+  program.add_option("--growth", options.growth_kib_max,
+                     "KiB by which its memory may grow when warm")
+      .show_default();
+  program.exit_code_of([&] {
+    try {
+      return rubric::forward::run(options);
+    } catch (const rubric::runner::TargetBroken& broken) {
+      rubric::forward::give_up(broken.what());
+    }
+  });
+  return program.parse_and_run(argc, argv);
 }
