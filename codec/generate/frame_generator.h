@@ -14,7 +14,7 @@
 
 namespace rubric::generate {
 
-inline constexpr std::size_t kFcsBytes = 2;  ///< Of a frame on the air. (IEEE 802.15.4, 7.2.1.9)
+inline constexpr std::size_t kFcsBytes = 2;  ///< In a frame on the air. (IEEE 802.15.4, 7.2.1.9)
 
 /// Returns whether the route's frames go over the air, not along a serial line.
 bool is_radio(const reflect::Route& route);

@@ -19,7 +19,7 @@ namespace {
 
 using namespace rubicon;
 
-/// The spec's name of a view's structure.
+/// Returns the spec's name of a view's structure.
 template <class View>
 const std::string& id_of() {
   static const std::string id = [] {

@@ -27,7 +27,7 @@ TEST(ExploreSlow, TwoMotesAndTwoSinks) {
     EXPECT_EQ(result.progress.states, alone.states);
     EXPECT_EQ(result.progress.transitions, alone.transitions);
     EXPECT_EQ(result.progress.states, readme_number("are # states"));
-    // Each with several ways on: with fewer something was left out.
+    // Each with several successors: fewer would mean a gap.
     EXPECT_GT(result.progress.transitions, 5 * result.progress.states);
   }
 }

@@ -45,7 +45,7 @@ class Worker {
 
   Network network;
   Frontier next;
-  std::vector<PathLink> links;  ///< Of every state that this thread found, in order.
+  std::vector<PathLink> links;  ///< For every state that this thread found, in order.
   std::vector<Find> violations;
   std::vector<Find> weaknesses;
   std::uint64_t transitions = 0;
@@ -219,8 +219,7 @@ class Search {
     return p;
   }
 
-  // Returns the moves that lead to a state: follows its links back, and walks them again from the
-  // start.
+  // Returns the moves that lead to a state: follows its links back, and walks them forward.
   Path path_to(PathLink last, Mask violated) {
     std::vector<std::uint16_t> ways;
     const bool at_start = last.way == PathLink::kStart;

@@ -1,5 +1,5 @@
-// Mutants that no golden trace finds. Most are equivalent to a correct node: what they change is
-// free, or cannot be seen. The others differ in a way that traces do not judge.
+// Mutants that no golden trace finds. Most are equivalent to a correct node: the change is
+// allowed, or invisible. The others differ in a way that traces do not judge.
 #include <array>
 
 #include "conformance/mutants/hunt.h"

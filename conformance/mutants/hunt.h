@@ -50,14 +50,14 @@ Found hunt(const Golden& golden, const Mutant& mutant);
 /// Hunts all of them on so many threads.
 std::vector<Found> hunt_all(const Golden& golden, const Mutants& mutants, unsigned threads);
 
-/// A mutant that no golden trace finds, and why. In names `*` stands for anything.
+/// A mutant that no golden trace finds, and why. In names `*` matches anything.
 struct Survivor {
   const char* name;
   const char* reason;
-  bool equivalent = true;  ///< What it changes is free or unseen. False: it is merely not judged.
+  bool equivalent = true;  ///< The change is free or unseen. False: it is merely not judged.
 };
 std::span<const Survivor> survivors();
-/// The entry for a mutant of this name, or null.
+/// Returns the entry for a mutant of this name, or null.
 const Survivor* find_survivor(std::string_view name);
 
 }  // namespace rubric::mutants

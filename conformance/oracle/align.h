@@ -34,9 +34,9 @@
 // causes would come after effects, or kUnwaitedUs where frames went one way only. A drift is taken
 // out only if kDriftFrames pairs over kDriftSpanUs show it well beyond their scatter.
 //
-// An order (align_order.cc) for a file without stamps needs kFramesMin pairs too, three quarters of
-// them in one order in both files, and the same majority over missing frames. Each pair then bounds
-// its neighbours: an effect comes after its cause, within the response time.
+// An order (align_order.cc) for a file without stamps needs kOrderFramesMin pairs too, three
+// quarters of them in one order in both files, and the same majority over missing frames. Each pair
+// then bounds its neighbours: an effect comes after its cause, within the response time.
 //
 // Cannot know: how long each frame waited; that a sink holds back every message by the same time,
 // which looks like a clock; that two recordings with the same frames are of different runs; which

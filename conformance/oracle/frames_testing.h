@@ -1,4 +1,4 @@
-// Which frames some runs have, for tests that say how many different ones they judged.
+// The frames of some runs, for tests that print how many different ones they judged.
 #pragma once
 
 #include <cstdint>

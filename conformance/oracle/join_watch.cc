@@ -7,7 +7,7 @@ namespace {
 
 using Phase = machine::JoinMote::Phase;
 
-constexpr std::uint8_t kRequestsMin = 4;   // Of a call that fails (decision 101).
+constexpr std::uint8_t kRequestsMin = 4;   // In a call that fails (decision 101).
 constexpr std::size_t kJoinCrowd = 6;          // Frames; then a buffer may have been full.
 constexpr std::int64_t kClockOffMs = 1000; // (decision 119)
 constexpr std::uint16_t kReservedFrom = 0xFFFD;

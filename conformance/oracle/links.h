@@ -11,8 +11,8 @@ inline constexpr std::int64_t kRadioByteUs = 32;  ///< 250 kbit/s. (IEEE 802.15.
 /// Bytes of a frame on the air around its payload: preamble, SFD, length, MAC header, type, FCS.
 inline constexpr std::int64_t kAroundBytes = 19;
 
-/// Returns whether an 802.15.4 acknowledgement with the DSN of radio frame `index` was seen 0 to
-/// 2.5 ms after its end. It proves that *some* node of that address received it; its absence proves
+/// Returns whether the 802.15.4 acknowledgement of radio frame `index`, by its DSN, came 0 to 2.5
+/// ms after its end. It proves that *some* node of that address received it; its absence proves
 /// nothing.
 bool link_acked(const Run& run, std::uint32_t index);
 

@@ -135,7 +135,7 @@ Run in_one_order(Run run, const AlignOptions& options) {
 struct RunReader::State {
   ReadAs as;
   Run run;
-  std::vector<ReadSource> growing;  // By file; of others unused.
+  std::vector<ReadSource> growing;  // By file; others are unused.
   // One file that is read whole.
   std::unique_ptr<Reader> reader;
   ReadSource source;

@@ -14,7 +14,7 @@ using machine::Ticks;
 
 namespace {
 
-constexpr Micros kRepeatUs[] = {500, 20'000};  // How long after a message its double comes.
+constexpr Micros kRepeatUs[] = {500, 20'000};  // A message's double comes after this.
 
 // A call that owns its bytes.
 class OwnedCall {

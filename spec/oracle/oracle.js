@@ -23,7 +23,7 @@ const faultOfError = {
   ValidationLessThanError: 'out_of_range',
   ValidationGreaterThanError: 'out_of_range',
 };
-// What is run, and its share of COUNT.
+// The runs, and their share of COUNT.
 const suites = [
   {carrier: 'serial', spec: 'rubicon', share: 0.7},
   {carrier: 'radio_i_frame', spec: 'rubicon', share: 0.15, as: 'RadioIFrame'},
@@ -95,7 +95,7 @@ async function loadSuite({spec, as}) {
 
 const count = (counts, key) => counts[key] = (counts[key] || 0) + 1;
 
-/// How many frames there are of each origin; `mutated` grows by those that it does not have yet.
+/// Counts the frames of each origin; adds those that `mutated` does not have yet to it.
 function census(frames, mutated) {
   const origins = {};
   for (const {origin, bytes} of frames) {

@@ -9,7 +9,7 @@
 namespace rubric::cli {
 
 /// Makes the subcommand end with the result of `run`, one of VerdictCode. An exception other than
-/// cli::Ending is printed, and means that the kit broke.
+/// Ending is printed, and means that the kit broke.
 void set_verdict(Command& command, std::function<int()> run);
 
 /// Ends the subcommand because its input cannot be read. `what` may be a list of lines.

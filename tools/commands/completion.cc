@@ -109,7 +109,7 @@ complete -F _rubric rubric
 )");
 }
 
-/// '(-o --output)'{-o,--output}'[what it is]:value:(a b)'
+/// Returns '(-o --output)'{-o,--output}'[what it is]:value:(a b)'.
 std::string zsh_argument(const cli::OptionInfo& flag) {
   const std::vector<std::string> names = dashed(flag);
   const std::string help = shell_quoted("[" + flag.description + "]");

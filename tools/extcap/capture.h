@@ -17,8 +17,7 @@ struct CaptureOptions {
 /// Captures until it is stopped. Returns the exit code; prints mistakes on stderr.
 int capture(const CaptureOptions& options);
 
-/// Returns what is wrong with a filter; empty if nothing is. Throws cli::UsageError for an
-/// unknown `spec`.
+/// Returns what is wrong with a filter, or nothing. Throws cli::UsageError for an unknown `spec`.
 std::string filter_error(const std::string& filter, const std::string& spec);
 
 }  // namespace rubric::extcap

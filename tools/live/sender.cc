@@ -29,8 +29,8 @@ constexpr Milliseconds kGreetTime{5000};
 constexpr Milliseconds kWriteTime{5000};
 constexpr Milliseconds kCloseTime{5000};
 constexpr Milliseconds kQuietTime{500};
-/// How long any wait takes before checking whether to stop: a signal may come just before the wait
-/// begins.
+/// How long any wait takes before checking whether to stop: a signal may come just
+/// before the wait begins.
 constexpr Milliseconds kSendPatience{100};
 constexpr std::size_t kReadBytes = 4096;
 /// A forwarder that sends more than so many times kReadBytes at once is read on after the packet.

@@ -13,7 +13,7 @@ def readme():
 
 
 def matches(words, text):
-    """Where the text has the words, with a number at their '#'."""
+    """Returns the places of the words in the text, with a number at their '#'."""
     before, after = map(re.escape, words.split("#"))
     return list(re.finditer(before + NUMBER + after, text))
 

@@ -38,8 +38,8 @@ void check_line_options(const LineOptions& options);
 /// Turns a line into a packet.
 class LineEncoder {
  public:
-  /// `serial_framing`: "hdlc" or "sf", for a single message on a serial line. Throws
-  /// cli::UsageError if nothing carries the message.
+  /// `serial_framing`: "hdlc" or "sf", for a single message on a serial line.
+  /// Throws cli::UsageError if nothing carries the message.
   LineEncoder(const LineOptions& options, const reflect::Protocol& protocol,
               const reflect::Type* message, std::string_view serial_framing);
 

@@ -26,7 +26,7 @@ namespace {
 using reflect::Value;
 
 const reflect::Protocol& kProtocol = rubicon::tables::kProtocol;
-constexpr int kDamagedCopies = 50;  // Of each capture.
+constexpr int kDamagedCopies = 50;  // For each capture.
 
 std::vector<std::string> captures() {
   std::vector<std::string> files;
