@@ -19,7 +19,7 @@ inline constexpr std::uint32_t kEnhancedPacket = 6;
 inline constexpr std::uint32_t kByteOrderMagic = 0x1A2B3C4D;
 inline constexpr std::uint16_t kMajorVersion = 1;
 
-// Sizes in bytes, type and both lengths included unless told otherwise.
+// Sizes in bytes, type and both lengths included unless noted.
 inline constexpr std::size_t kBlockMin = 12;
 inline constexpr std::size_t kBlockTrailerBytes = 4;
 inline constexpr std::size_t kSectionHeaderMin = 28;

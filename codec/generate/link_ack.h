@@ -1,4 +1,4 @@
-// The link layer's acknowledgement, which stands under every protocol: the way to it, for a
+// The link layer's acknowledgement, which exists below every protocol: its route, for a
 // FrameGenerator of tinyos::tables::kProtocol.
 #pragma once
 

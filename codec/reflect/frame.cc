@@ -47,7 +47,7 @@ void not_decoded(Frame& out, std::int64_t kind) {
   out.decoded.add_note({NoteKind::kNotDecoded, 0, nullptr, nullptr, kind});
 }
 
-// The message's fields are the last child of the carrier's structure, where decoding got that far.
+// Finds the message's fields: the last child of the carrier's structure, if decoding got that far.
 void find_payload(Frame& out) {
   const Decoded& decoded = out.decoded;
   if (decoded.node_count() == 0) return;

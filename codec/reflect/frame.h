@@ -1,4 +1,4 @@
-// A packet decoded: the TinyOS frames (serial packet, 802.15.4) around the messages of a protocol.
+// Decodes packets: the TinyOS frames (serial packet, 802.15.4) around the messages of a protocol.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace rubric::reflect {
 
-/// The active-message header, wherever it was read from. On the radio length counts the bytes
-/// behind the AM type and group is the low byte of the PAN.
+/// The active-message header, wherever it was read from. On the radio length counts the bytes after
+/// the AM type and group is the low byte of the PAN.
 struct ActiveMessage {
   bool present = false;
   std::uint16_t dest = 0;
@@ -52,11 +52,11 @@ struct Envelope {
   Error error{Fault::kNone, 0, ReqId::kNone};
 };
 
-/// The choice of the messages in this carrier's frames; null if it has none. A serial packet with a
-/// message of the radio's is how a trace and an adapter write a radio frame (rct/1).
+/// Returns the choice of the messages in this carrier's frames; null if it has none. Traces and
+/// adapters write a radio frame as a serial packet with a message of the radio's (rct/1).
 const Switch* payload_choice(const Protocol& protocol, std::string_view carrier);
 
-/// What a decoded packet amounts to. `packet` and the bytes are borrowed.
+/// A decoded packet. `packet` and the bytes are borrowed.
 struct Frame {
   const Packet* packet = nullptr;
   Decoded decoded;                  ///< Empty (no nodes) where the bytes are not a message.
@@ -64,8 +64,8 @@ struct Frame {
   bool has_payload = false;         ///< payload_node names a structure or opaque bytes.
   ActiveMessage am;
   MacHeader mac;
-  /// Of the framing, else of the content. The offset counts from the first byte of packet->bytes; a
-  /// fault of the frame's check sum stands right behind them.
+  /// The fault of the framing, else of the content. The offset counts from the first byte of
+  /// packet->bytes; a fault of the frame's check sum is right after them.
   Error error{Fault::kNone, 0, ReqId::kNone};
   bool malformed() const { return error.fault != Fault::kNone; }
 };

@@ -21,8 +21,8 @@ using std::chrono::steady_clock;
 
 constexpr Milliseconds kQuiet{60};
 constexpr Milliseconds kQuietMax{2000};     // A node that never pauses is used as it is.
-constexpr Ticks kStepTicks = 5;             // Of several nodes that go on together.
-constexpr std::size_t kOutputsMax = 100'000;  // Of a case.
+constexpr Ticks kStepTicks = 5;             // For several nodes that go on together.
+constexpr std::size_t kOutputsMax = 100'000;  // In a case.
 constexpr std::uint32_t kFrameBits = (1 + 8 + machine::kAmPayloadMax + 4) * 10;
 
 // Keeps an attachment's one node in use while it lives.
@@ -48,7 +48,7 @@ void LineTarget::reset(const machine::Config& config) {
     throw Unsupported(fmt::format("the id of the sink cannot be set to {}", config.id));
   }
   line_.open(step_deadline());
-  if (!is_mote()) let_settle();  // Of a mote nothing is looked at.
+  if (!is_mote()) let_settle();  // A mote's line shows nothing.
   if (role == machine::Role::kSink) {
     set_island(config.island == 1 ? 2 : 1);
     set_island(config.island);
@@ -107,7 +107,7 @@ Ticks LineTarget::run_until(Ticks time) {
   return now_;
 }
 
-// False when it is none of the node's.
+// Takes a packet. Returns false if it is not the node's.
 bool LineTarget::take(const TimedPacket& packet) {
   if (is_mote()) return false;
   using At = tinyos::AmHeaderLayout::DispatchAt;
@@ -170,7 +170,7 @@ std::unique_ptr<runner::Target> LineAttachment::target() {
   return std::make_unique<UsedLineTarget>(*line_, node_, options_, notes_, std::move(use));
 }
 
-// Only what starts and then comes by itself is waited for that long.
+// Waits that long only for a node that starts and then connects by itself.
 void LineAttachment::open() {
   const bool starts = node_.comes_to_us && (!opened_ || node_.restarts);
   line_->open(steady_clock::now() + (starts ? options_.start_timeout : options_.step_timeout));

@@ -96,7 +96,7 @@ void told_joined(Watch& w, const machine::Joined& joined) {
   if (island == 0 || (m.heard & island) == 0 || !own) w.breaks(Property::kJoinedAfterReply);
   if (m.view != 0) w.breaks(Property::kOneIsland);
   m.view = island;
-  m.heard = static_cast<std::uint8_t>(m.heard & island);  // What else it heard matters no more.
+  m.heard = static_cast<std::uint8_t>(m.heard & island);  // Its other answers matter no more.
   m.requests = 0;
   if (island == 1) w.reach(Goal::kJoinedFirst);
   if (island == 2) w.reach(Goal::kJoinedSecond);
@@ -203,7 +203,7 @@ void notified(Watch& w, const machine::Notice& notice) {
   if (std::holds_alternative<machine::Received>(notice)) told_received(w);
 }
 
-// What the event itself says, before its consequences.
+// Notes the event itself, before its consequences.
 void begins(Watch& w) {
   Monitor& m = w.monitor;
   if (const auto* called = std::get_if<machine::Called>(&w.step.event)) {
@@ -231,7 +231,7 @@ void begins(Watch& w) {
   }
 }
 
-// An ack that reaches its message's sender; awaited acks were looked up before the step.
+// Checks an ack that reaches its message's sender; awaited acks were read before the step.
 void check_ack(Watch& w, const Frame& frame, const Monitor& before) {
   const auto message = rubicon::NetMsgView::parse(frame.payload);
   if (!message || TransIdAt::load(frame.payload.data()) != rubicon::Component::kRubiconAck) return;
@@ -250,7 +250,7 @@ void check_ack(Watch& w, const Frame& frame, const Monitor& before) {
   }
 }
 
-// Lists and buffers after the step.
+// Checks lists and buffers after the step.
 void check_bounds(Watch& w) {
   const machine::State& s = w.step.after;
   const std::size_t motes = w.step.options.motes;
@@ -279,7 +279,7 @@ void ends(Watch& w) {
     if (m.view != 0 && pid != 0 && island_bit(w.step.options, pid) != m.view) {
       w.breaks(Property::kOneIsland);
     }
-    // This profile's calls may end without a word.
+    // This profile's calls may end without an event.
     const bool silent = !w.step.options.profile.join_fail_signalled;
     if (silent && m.open && after.join.phase == Phase::kOutside) m.open = false;
   }

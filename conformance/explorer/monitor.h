@@ -1,5 +1,5 @@
-// What a node looks like from outside: the history that the properties of its own steps need. It
-// never looks into the machine's state where frames and events of the application tell enough.
+// A node's history as seen from outside, as far as the properties of its own steps need it. It
+// never reads the machine's state where frames and events of the application are enough.
 #pragma once
 
 #include <array>
@@ -16,11 +16,11 @@ struct OpenSend {
   friend bool operator==(const OpenSend&, const OpenSend&) = default;
 };
 
-/// What a sink said to one mote.
+/// A sink's answer to one mote.
 struct Answered {
   bool ever = false;
   bool armed = false;         ///< Since the last moteJoined.
-  std::uint16_t seq_num = 0;  ///< Of the last join_reply.
+  std::uint16_t seq_num = 0;  ///< In the last join_reply.
   friend bool operator==(const Answered&, const Answered&) = default;
 };
 
@@ -29,20 +29,20 @@ struct Monitor {
   std::uint8_t calls = 0;
   std::uint8_t reboots = 0;
   std::uint8_t sends = 0;
-  // A mote. Sets of islands are bits, the first sink's the lowest.
+  // For a mote. Sets of islands are bits, the first sink's the lowest.
   bool open = false;             ///< A call without its terminal event.
   bool asked = false;            ///< It has sent a request: the next three are known.
-  std::uint8_t requests = 0;     ///< Of the present call.
-  std::uint16_t present_seq = 0; ///< Of its last request.
+  std::uint8_t requests = 0;     ///< In the present call.
+  std::uint16_t present_seq = 0; ///< In its last request.
   std::uint8_t heard = 0;        ///< Islands that answered that number during the call.
   std::uint8_t chosen = 0;       ///< Islands acked for this call.
   std::uint8_t acked_ever = 0;   ///< Islands ever acked; survives a reboot.
-  std::uint8_t view = 0;         ///< The island that joined(SUCCESS) told the application of.
+  std::uint8_t view = 0;         ///< The island in the joined(SUCCESS) event.
   std::uint16_t on_air = 0;      ///< The frame whose link ack the radio awaits; 0: none.
-  // A sink.
+  // For a sink.
   std::array<Answered, kMotesMax> answered{};
   std::int8_t owed_reports = 0;  ///< moteJoined without serial_joined yet.
-  // Both.
+  // For both.
   std::uint8_t open_sends = 0;
   std::array<OpenSend, 4> open_send{};
 
@@ -58,18 +58,18 @@ struct Observed {
   const machine::State& after;
 };
 
-/// What a step showed.
+/// Results of a step.
 struct Noted {
   Mask violated = 0;
   Mask goals = 0;
 };
 
-/// Follows one step.
+/// Updates the monitor for one step.
 void observe(Monitor& monitor, const Observed& step, Noted& noted);
 
-/// The bit of an island in the sets above; 0 for one that no sink has.
+/// Returns the bit of an island in the sets above; 0 for one that no sink has.
 std::uint8_t island_bit(const Options& options, std::uint16_t pid);
-/// The number of a mote, from its TinyOS id; -1 for others.
+/// Returns the number of a mote, from its TinyOS id; -1 for others.
 int mote_number(const Options& options, std::uint16_t devid);
 
 }  // namespace rubric::explorer

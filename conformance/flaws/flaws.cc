@@ -55,7 +55,7 @@ class Forged {
   std::array<std::uint8_t, machine::kAmPayloadMax> bytes_{};
 };
 
-// A join_reply for this mote, while it is joining, with another number than its request has.
+// Returns a join_reply for this mote, while it is joining, with another number than its request's.
 const Frame* wrong_reply(const State& state, const Event& event) {
   const Frame* const frame = heard(event, am::kJoinReply);
   const bool joining = state.config.role == Role::kMote && state.join.phase == Phase::kJoining;
@@ -77,7 +77,7 @@ void one_pending_seq(State& state, Ticks now, const Event& event, Actions& actio
   while (state.sink.pending.size() > 1) state.sink.pending.erase(0);  // The newest is the last.
 }
 
-// ack_join for a reply that was not accepted. Its address is remembered where a member's stands.
+// Sends ack_join for a reply that was not accepted. Keeps its address where a member's is.
 void ack_wrong_reply(State& state, const Frame& frame, Actions& actions) {
   auto& radio = state.radio;
   if (!radio.on || radio.sending || radio.taken) return;

@@ -28,7 +28,7 @@ Link link_of(Route::Onward onward) {
   return Link::kRadio;
 }
 
-// On the serial line a net_msg always has its full length.
+// Ends a net_msg; on the serial line it always has its full length.
 void end_net_msg(const Place& place, Link link, std::size_t size_bytes) {
   if (link == Link::kSerial) {
     std::fill(place.payload + size_bytes, place.payload + kAmPayloadMax, std::uint8_t{0});
@@ -106,12 +106,13 @@ void hear_connless(Node& node, rubicon::NetMsgView message, std::uint8_t app_id,
   }
   //= T2-ACK: A reliable Connectionless message to the node itself, with an APPID that it knows, is
   //= answered by an ack.
-  // Not one for another island's sink, which is delivered by its devid (decision 126).
+  // A message for another island's sink, which is delivered by its devid, gets no ack (decision
+  // 126).
   if (dest != own_address(node.state)) return actions.followed(req::kT2Ack);
   send_ack(node, src, app_id, message.seq_num());
 }
 
-// The message dispatcher.
+// Delivers by the message dispatcher.
 void deliver(Node& node, rubicon::NetMsgView message) {
   const Bytes payload = message.payload();
   using App = rubicon::AppMsgLayout;
@@ -139,7 +140,7 @@ void deliver(Node& node, rubicon::NetMsgView message) {
   node.actions.ignored(req::kT1Unknown);
 }
 
-// Room for a message that asks for an ack; without a timeout the oldest is given up.
+// Makes room for a message that asks for an ack; without a timeout the oldest is given up.
 bool can_await(AwaitedList& list, const Profile& profile) {
   if (!list.full()) return true;
   if (profile.ack_timeout_ticks != 0) return false;
@@ -160,7 +161,7 @@ std::uint16_t send_own(Node& node, const OwnMessage& message, ReqId& refused) {
   const Route route = route_own(router, dest);
   const Link link = link_of(route.onward);
   refused = route.onward == Route::Onward::kNowhere ? route.requirement : line_refusal(state, link);
-  // A caller can be told of an ack only if there is a place to remember that it waits for it.
+  // A message can ask for an ack only if there is a place to remember that it is awaited.
   if (refused == ReqId::kNone && message.reliable && !can_await(state.awaited, node.profile())) {
     refused = req::kN1Full;
   }
@@ -181,7 +182,7 @@ std::uint16_t send_own(Node& node, const OwnMessage& message, ReqId& refused) {
 
 void hear_net_msg(Node& node, Link from, Bytes bytes) {
   const Router router = router_of(node.state);
-  // J11-HEAR: a node without an address does not look at them.
+  // J11-HEAR: a node without an address ignores them.
   if (!router.member) return node.actions.ignored(req::kJ11Hear);
   const auto message = rubicon::NetMsgView::parse(bytes);
   if (!message) {
@@ -207,7 +208,7 @@ void hear_net_msg(Node& node, Link from, Bytes bytes) {
 void report_joined(Node& node, const Admission& member) {
   State& state = node.state;
   //= J6-REPORT: A sink reports each new member to its base station with one serial_joined.
-  // Nobody would ask for it again, so it must not be lost where there is no room.
+  // Nothing would repeat it, so it must not be lost if there is no room.
   if (line_refusal(state, Link::kSerial) != ReqId::kNone) {
     auto& owed = state.sink.unreported;
     if (owed.full()) owed.erase(0);  // Some mote joined again and again; its last report stays.

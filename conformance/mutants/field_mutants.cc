@@ -1,4 +1,4 @@
-// Mutants that change one field of what is sent or told.
+// Mutants that change one field of a frame or notice.
 #include <algorithm>
 #include <memory>
 #include <set>
@@ -20,7 +20,7 @@ std::size_t header_bytes(Link link) {
 
 enum class Change : std::uint8_t { kPlusOne, kHighBit };
 
-// The places below node `i`, whose name is `path`; of arrays the first element.
+// Collects the places below node `i`, whose name is `path`; for arrays the first element.
 void collect(const reflect::Decoded& decoded, std::size_t i, const std::string& path,
              std::size_t header, std::vector<Place>& out) {
   const reflect::Node& node = decoded[i];
@@ -40,7 +40,7 @@ void collect(const reflect::Decoded& decoded, std::size_t i, const std::string& 
   out.push_back(std::move(place));
 }
 
-// As it would be captured: which messages there are depends on the line.
+// Returns the frame as a packet on its line, which decides how it decodes.
 std::vector<std::uint8_t> packet_of(const Transmit& frame) {
   if (frame.link != Link::kRadio) {
     return reflect::serial_packet({tinyos::Dispatch::kActiveMessage, 0, 0, 0, 0, frame.type},
@@ -78,7 +78,7 @@ std::string link_text(Link link) {
   return link == Link::kRadio ? "radio" : link == Link::kSerial ? "serial" : "peis";
 }
 
-// "J3-REPLY join_reply by radio"
+// Returns "J3-REPLY join_reply by radio".
 std::string sent_kind(const Action& action, const Transmit& frame, const Anatomy& parts) {
   return std::string(trace::requirement_text(action.requirement)) + " " + parts.name + " by " +
          link_text(frame.link);
@@ -110,7 +110,7 @@ void change(trace::Leaf& leaf, Change how) {
   }
 }
 
-// The bytes of a changed notice must last until it is read.
+// Keeps the bytes of a changed notice until it is read.
 using Lasting = std::shared_ptr<std::vector<std::unique_ptr<trace::Concrete>>>;
 
 StepMaker changed_notice(const std::string& kind, const std::string& path, Change how) {
@@ -135,8 +135,8 @@ StepMaker changed_notice(const std::string& kind, const std::string& path, Chang
   };
 }
 
-// Whether the node itself made what stands behind APPID; else an application did, and its kind does
-// not matter to the protocol.
+// Returns whether the node itself made the body after APPID; an application's body does not matter
+// to the protocol.
 bool is_own_body(const Transmit& frame) {
   return is_ack(frame) || is_synaptic(frame) ||
          (is_net(frame) && frame.payload[net::kBody] == net::kReport);

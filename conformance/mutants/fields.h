@@ -1,4 +1,4 @@
-// Where the fields stand in the frames that mutants meddle with.
+// Offsets of the fields that mutants change.
 #pragma once
 
 #include <algorithm>
@@ -141,17 +141,17 @@ inline bool is_ack(const Frame& frame) {
 inline bool is_synaptic(const Transmit& frame) {
   return is_net(frame) && frame.payload[net::kTransId] == component::kSynChannel;
 }
-/// A net_msg that this step's call of send made.
+/// Returns whether this step's call of send made the net_msg.
 inline bool is_send(const Moment& moment, const Transmit& frame) {
   return is_net(frame) && moment.called<machine::Send>() != nullptr;
 }
-/// A net_msg that was heard in this step and goes on.
+/// Returns whether the net_msg was heard in this step and is passed on.
 inline bool is_forward(const Moment& moment, const Transmit& frame) {
   const Frame* const heard = moment.heard(am::kNet);
   return heard != nullptr && is_net(frame) && heard->link != frame.link && !is_ack(frame);
 }
 
-/// The address under which a node is reached now.
+/// Returns the address under which a node is reached now.
 inline machine::Address own(const Moment& moment) {
   return machine::own_address(moment.state);
 }
@@ -162,7 +162,7 @@ inline bool is_joining(const Moment& moment) {
   return moment.state.join.phase == machine::JoinMote::Phase::kJoining;
 }
 
-/// A wrapper with a memory of its own, which begins as Memory{}.
+/// Makes a wrapper with a memory of its own, which begins as Memory{}.
 template <class Memory>
 StepMaker remembering(void (*step)(Moment&, Memory&)) {
   return [step]() -> Step {
@@ -179,7 +179,7 @@ inline StepMaker double_sent(bool (*which)(const Moment&, const Transmit&)) {
     return which(moment, frame) ? Fate::kTwice : Fate::kKeep;
   });
 }
-/// Frames of a type with a field that is something else.
+/// Makes a wrapper that changes a field in frames of a type.
 template <class Field>
 StepMaker sent_field(std::uint8_t am_type, Field field,
                      unsigned (*other)(const Moment&, unsigned)) {
@@ -188,7 +188,7 @@ StepMaker sent_field(std::uint8_t am_type, Field field,
     return Fate::kKeep;
   });
 }
-/// Ignores no such frame: makes it acceptable first.
+/// Makes a wrapper that ignores no such frame: it mends the frame first.
 inline StepMaker mended(bool (*wrong)(const Moment&, const Frame&),
                         void (*mend)(Moment&, Forged&)) {
   return on_heard([=](Moment& moment, Forged& forged) {

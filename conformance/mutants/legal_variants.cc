@@ -13,7 +13,7 @@ using machine::Received;
 using machine::TimerKind;
 using Variants = std::vector<LegalVariant>;
 
-// Answers to what was heard come later; all by the same time, so that their order stays.
+// Delays all answers to received frames by the same time, so that their order stays.
 template <Ticks kTicks>
 void slow(Moment& moment) {
   moment.honest();
@@ -58,7 +58,7 @@ struct Renumbered {
   std::uint16_t before = 0;
 };
 
-// The request that is sent last has a number of its own, which is the one that counts.
+// Gives the request that is sent last a number of its own, which is the one that counts.
 void number_for_each_request(Moment& moment, Renumbered& memory) {
   moment.honest();
   moment.rewrite([&](const Action& action) {
@@ -74,7 +74,7 @@ void number_for_each_request(Moment& moment, Renumbered& memory) {
   });
 }
 
-// joined(SUCCESS) waits for the link ack of ack_join.
+// Delays joined(SUCCESS) until the link ack of ack_join.
 void joined_on_confirmation(Moment& moment, bool& told) {
   const bool was_acked = moment.state.join.acked;
   moment.honest();
@@ -108,7 +108,7 @@ void add_joins(Variants& out) {
                  })});
 }
 
-// The paper's form of an ack: the number alone.
+// Sends the paper's form of an ack: the number alone.
 Fate short_ack(Moment& moment, const Action&, Transmit& frame) {
   const bool mine = is_ack(frame) && get(frame, net::kSrcDevid) == own(moment).devid &&
                     get(frame, net::kSrcPid) == own(moment).pid;
@@ -152,7 +152,7 @@ void delivers_once(Moment& moment, std::vector<std::vector<std::uint8_t>>& seen)
   });
 }
 
-// A sink sends on, once, what one of its motes sent it for another (115).
+// Lets a sink send on, once, what one of its motes sent it for another (115).
 void relays(Moment& moment) {
   moment.honest();
   const Frame* const frame = moment.heard(am::kNet);
@@ -170,7 +170,7 @@ void relays(Moment& moment) {
   sent.size_bytes = static_cast<std::uint8_t>(size);
 }
 
-// A reliable message for an application that nobody knows is acked all the same (111).
+// Acks a reliable message for an unknown application all the same (111).
 void acks_unknown_apps(Moment& moment) {
   moment.honest();
   const Frame* const frame = moment.heard(am::kNet);
@@ -193,7 +193,7 @@ void acks_unknown_apps(Moment& moment) {
   ack.size_bytes = net::kPaperSeq.kEnd;
 }
 
-// What goes by different lines, and what the application is told, has no order among itself.
+// Reorders frames of different lines and notices, which have no order among themselves.
 void other_order(Moment& moment) {
   moment.honest();
   std::vector<Action> rest;

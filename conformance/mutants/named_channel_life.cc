@@ -56,7 +56,7 @@ void drops_local(Moment& moment) {
   }
 }
 
-// Data of a channel that nobody has created end up in the first one.
+// Puts data of an unknown channel into the first one.
 void stores_unknown(Moment& moment) {
   using Values = rubicon::SynapticDataLayout::ValuesAt;
   const Frame* const frame = moment.heard(am::kNet);
@@ -205,7 +205,7 @@ void append(Mutants& out, const Mutants& more) {
   out.insert(out.end(), more.begin(), more.end());
 }
 
-// Those of release 1.0 are steps without a memory.
+// Returns the mutants of release 1.0, which are steps without a memory.
 Mutants release_mutants() {
   Mutants out;
   for (const flaws::Flaw& flaw : flaws::all()) {

@@ -1,4 +1,4 @@
-// Mistakes of sinks and base stations: what they hand up, down and across, and island ids.
+// Mistakes of sinks and base stations: messages that they pass up, down and across, and island ids.
 #include <algorithm>
 
 #include "conformance/mutants/fields.h"

@@ -1,4 +1,4 @@
-// Mistakes of motes with a join_reply: which they accept, what they make of it, ack_join.
+// Mistakes of motes with a join_reply: which they accept, what they do with it, ack_join.
 #include <algorithm>
 
 #include "conformance/mutants/fields.h"
@@ -138,7 +138,7 @@ void add_acceptance(Mutants& out) {
                  })});
 }
 
-// What the link layer says of ack_join.
+// The link ack of ack_join.
 
 struct Confirmed {
   Transmit ack;

@@ -104,7 +104,7 @@ void succeeds_twice(Moment& moment) {
   if (confirmed) moment.actions.notify(Joined{own(moment), true}, req::kJ5Once);
 }
 
-void add_ends(Mutants& out) {
+void add_join_ends(Mutants& out) {
   out.push_back({"joined_with_own_id_only",
                  "joined(SUCCESS) tells an address without the island.",
                  {req::kJ5Success},
@@ -295,7 +295,7 @@ void add_outside(Mutants& out) {
 Mutants mote_join_mutants() {
   Mutants out;
   add_requests(out);
-  add_ends(out);
+  add_join_ends(out);
   add_timer(out);
   add_outside(out);
   return out;

@@ -1,4 +1,4 @@
-// Mistakes in Rubicon ACK: which messages are acked, how, and what their sender makes of it.
+// Mistakes in Rubicon ACK: which messages are acked, how, and what their sender does then.
 #include <algorithm>
 
 #include "conformance/machine/transport.h"
@@ -16,13 +16,13 @@ bool is_ack_sent(const Moment& moment, const Transmit& frame) {
   return is_ack(frame) && moment.heard(am::kNet) != nullptr;
 }
 
-// A net_msg for this very node, with something of it.
+// Returns whether it is a net_msg for this very node, of that kind.
 bool is_for_us(const Moment& moment, const Frame& frame) {
   return is_net(frame) && get(frame, net::kDestPid) == own(moment).pid &&
          get(frame, net::kDestDevid) == own(moment).devid;
 }
 
-void add_acks(Mutants& out) {
+void add_message_acks(Mutants& out) {
   out.push_back({"no_ack", "A node never acks.", {req::kT2Ack}, drop_sent(is_ack_sent)});
   out.push_back(
       {"ack_twice", "A node sends each ack twice.", {req::kT2Once}, double_sent(is_ack_sent)});
@@ -108,7 +108,8 @@ void add_acks(Mutants& out) {
                      })});
 }
 
-// What must not be acked is acked: as if it were reliable, plain, or for this node alone.
+// Adds mutants that ack what must not be acked: as if it were reliable, plain, or for this node
+// alone.
 void add_needless_acks(Mutants& out) {
   out.push_back({"unreliable_acked",
                  "An unreliable message is acked.",
@@ -325,7 +326,7 @@ void add_sender(Mutants& out) {
 
 Mutants transport_mutants() {
   Mutants out;
-  add_acks(out);
+  add_message_acks(out);
   add_needless_acks(out);
   add_sender(out);
   return out;

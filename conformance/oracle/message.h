@@ -21,7 +21,7 @@ namespace component = machine::component;
 using NetAt = rubicon::NetMsgLayout;
 constexpr std::size_t kNetHeaderBytes = NetAt::PayloadAt::kAt;
 
-/// A net_msg. `sound` is N11: nbytes is in its range and no more than what came.
+/// A net_msg. It is `sound` (N11) if nbytes is in its range and no more than the bytes that came.
 struct Net {
   machine::Address dest;
   machine::Address src;
@@ -29,7 +29,7 @@ struct Net {
   std::uint8_t nbytes = 0;
   std::uint16_t seq_num = 0;
   bool sound = false;
-  std::uint8_t trans_id = 0;  ///< Where sound.
+  std::uint8_t trans_id = 0;  ///< Valid if sound.
   std::uint8_t app_id = 0;
   Bytes payload;              ///< nbytes of it where sound, else what came.
   Bytes body() const { return payload.from(rubicon::AppMsgLayout::PayloadAt::kAt); }
@@ -38,15 +38,15 @@ struct Net {
   bool broadcast() const {
     return dest.pid == machine::kBroadcastPid || dest.devid == machine::kBroadcastDevid;
   }
-  /// What names a message: both addresses and the number.
+  /// Returns both addresses, which with the number identify a message.
   std::uint64_t addresses() const {
     return std::uint64_t{dest.pid} << 48 | std::uint64_t{dest.devid} << 32 |
            std::uint64_t{src.pid} << 16 | src.devid;
   }
 };
 
-/// False: shorter than a header. A header that breaks a rule is read nevertheless, which the view
-/// of a net_msg would not: what a node sends is judged, and others may have taken it.
+/// Reads a net_msg. Returns false if it is shorter than a header. Unlike the view of a net_msg it
+/// reads a header that breaks a rule: its sender is judged, and others may have taken it.
 inline bool parse_net(Bytes bytes, Net& out) {
   using App = rubicon::AppMsgLayout;
   if (bytes.size() < kNetHeaderBytes) return false;
@@ -69,7 +69,7 @@ inline bool parse_net(Bytes bytes, Net& out) {
   return true;
 }
 
-/// The same addresses, reliable and number; and the same payload.
+/// Returns whether addresses, reliable, number and payload are the same.
 inline bool same_message(const Net& a, const Net& b) {
   return a.addresses() == b.addresses() && a.seq_num == b.seq_num && a.reliable == b.reliable;
 }
@@ -77,8 +77,8 @@ inline bool same_payload(const Net& a, const Net& b) {
   return a.nbytes == b.nbytes && equal(a.payload, b.payload);
 }
 
-/// The same message of one sender on one link, whatever stands behind its content: an underlying
-/// buffer may be longer.
+/// Returns whether both are the same message of one sender on one link, whatever follows its
+/// content: an underlying buffer may be longer.
 inline bool same_content(const machine::Frame& a, const machine::Frame& b) {
   if (a.src != b.src || a.type != b.type) return false;
   Net one;
@@ -142,8 +142,8 @@ inline bool parse_serial_joined(const Net& net, SerialJoined& out) {
   return true;
 }
 
-/// The island id that a SET_ISLAND_ID config message sets; -1: another message, or none
-/// that a sink can have.
+/// Returns the island id of a SET_ISLAND_ID config message; -1 for another message, or an id that
+/// no sink can have.
 inline std::int32_t set_island_id(const machine::Frame& frame) {
   if (frame.type != am::kConfig) return -1;
   const auto view = rubicon::ConfigView::parse(frame.payload);

@@ -86,7 +86,7 @@ void Originals::judge_content(std::uint16_t node, const Observation& seen, const
 void Originals::judge_address(std::uint16_t node, const Observation& seen, const Net& net,
                               Link link, machine::Address own) {
   const Device& device = context_.device(node);
-  // Sent to the broadcast island everything is fine (decision 114); to oneself nothing is said.
+  // A message to the broadcast island may go anywhere (decision 114); one to oneself is not judged.
   if (net.dest.pid == machine::kBroadcastPid || net.dest.pid == machine::kLocalPid) return;
   const Route route = machine::route_own({device.role, own, true, context_.sink_am}, net.dest);
   const bool up = route.onward == Route::Onward::kSerial;
@@ -234,7 +234,7 @@ void Originals::finish(std::int64_t end_us) {
   }
 }
 
-// Whether an ack that fits the message in everything was heard.
+// Returns whether an ack that fits the message in everything was heard.
 bool Originals::rightly_acked(std::uint16_t node, const Net& message) {
   Ring<Ack, kRoom>& ring = acks_[node];
   for (std::size_t i = 0; i < ring.size(); ++i) {
@@ -259,7 +259,7 @@ void Originals::told(std::uint16_t node, const Observation& seen,
   const std::string what = "receive_ack(" + std::string(ack.success ? "success" : "failure") +
                            ", number " + number(ack.seq_num) + ")";
   if (match == nullptr) {
-    // What a base station sends to other islands goes where no log and no tap is read.
+    // Messages from a base station to other islands pass where no log and no tap is read.
     const Device& device = context_.device(node);
     context_.report(ack.success ? req::kT3Success : req::kT3Match,
                     device.role == Role::kBaseStation && !logs_peis(context_.run, node)

@@ -27,7 +27,7 @@ namespace am = machine::am;
 using App = rubicon::AppMsgLayout;
 using Phase = machine::JoinMote::Phase;
 
-// Whether the node's lines bring it this frame at all.
+// Returns whether the node's lines bring it this frame at all.
 bool reaches(const State& state, const Frame& frame) {
   const Role role = state.config.role;
   if (frame.link == Link::kPeis) return role == Role::kBaseStation && frame.dest == state.island;
@@ -45,7 +45,7 @@ std::size_t waiting_replies(const State& state, std::uint16_t dest) {
   return count;
 }
 
-// serial_joined that wait for the line. Others may send what looks like one.
+// Counts serial_joined that wait for the line. Other messages may look like one.
 int waiting_reports(const State& state) {
   int count = 0;
   for (std::size_t i = 0; i < state.serial.out.size(); ++i) {
@@ -275,7 +275,7 @@ void Watched::told(const Seen& seen, const machine::Notice& notice) {
   }
 }
 
-// An ack that was good before the step has ended its message.
+// Checks that an ack that was good before the step has ended its message.
 void Watched::ack_handled(const Seen& seen, const Frame& frame) {
   const auto message = rubicon::NetMsgView::parse(frame.payload);
   const Bytes payload = message ? message->payload() : Bytes();
@@ -293,7 +293,7 @@ void Watched::ack_handled(const Seen& seen, const Frame& frame) {
   }
 }
 
-// An ack_join that was good before the step has made a member.
+// Checks that an ack_join that was good before the step has made a member.
 void Watched::ack_join_handled(const Seen& seen, const Frame& frame) {
   const State& before = seen.before;
   if (before.config.role != Role::kSink || frame.link != Link::kRadio) return;
@@ -307,7 +307,7 @@ void Watched::ack_join_handled(const Seen& seen, const Frame& frame) {
   const bool room = before.sink.members.size() + seen.handled.size() <=
                     config_.profile.members_max;
   if (!good || !room || history_.stored_too_many || seen.after.island != before.island) return;
-  // Where several frames were handled, a later request may have come behind it.
+  // If several frames were handled, a later request may have come after it.
   if (seen.handled.size() == 1) breaks(Property::kAdmitted, seen.now);
 }
 

@@ -17,7 +17,7 @@ constexpr Micros kCongestionBackoffUs[] = {305, 2'410};
 constexpr Micros kTurnaroundUs = 192;       // From listening to sending. (IEEE 802.15.4, 6.4.1)
 constexpr Micros kLinkAckUs[] = {192, 2'500};  // The acknowledgement is software's.
 constexpr Micros kLinkAckWaitUs = 8'000;
-constexpr Micros kDoubleUs[] = {500, 20'000};  // How long after a frame the link repeats it.
+constexpr Micros kDoubleUs[] = {500, 20'000};  // The link repeats a frame after this.
 
 constexpr std::size_t kHeaderBytes = reflect::kRadioIHeaderBytes;
 
@@ -59,7 +59,7 @@ void Radio::try_channel(const Shared& frame, Micros backoff_us) {
       const Micros wait = random_.between(kCongestionBackoffUs[0], kCongestionBackoffUs[1]);
       return try_channel(frame, wait);
     }
-    // Whoever finds the channel free within the turnaround sends as well: a collision.
+    // Stations that find the channel free within the turnaround send as well: a collision.
     queue_.after(kTurnaroundUs, [this, frame] {
       const Station& then = stations_[frame->sender];
       if (then.life != frame->life) return;
@@ -89,14 +89,14 @@ const Faults& Radio::faults(const Station& from, const Station& to) const {
 bool Radio::is_busy(std::size_t station) const {
   if (stations_[station].sending) return true;  // Its link ack.
   return std::any_of(air_.begin(), air_.end(), [&](const Shared& frame) {
-    // One that only sends is told by nobody whom it hears; it hears all.
+    // A station that only sends has no list of whom it hears; it hears all.
     return !stations_[station].node || hears(station, frame->sender);
   });
 }
 
 void Radio::begin(const Shared& frame) {
   Station& from = stations_[frame->sender];
-  // A radio sends or listens: what it was hearing is gone.
+  // A radio sends or listens: it loses the frame that it was hearing.
   for (const Shared& other : air_) {
     for (Reception& reception : other->receptions) {
       if (reception.station == frame->sender) reception.destroyed = true;
@@ -139,8 +139,8 @@ bool Radio::may_double() const {
          std::any_of(plan_.link_faults.begin(), plan_.link_faults.end(), doubles);
 }
 
-// A receiver gets a frame twice because the sender's link, which missed the acknowledgement, sends
-// it twice. For the sender that is one transmission.
+// Sends a frame again: a receiver gets it twice because the sender's link missed the
+// acknowledgement. For the sender that is one transmission.
 void Radio::repeat(const Shared& frame, std::vector<std::size_t> had_it) {
   auto copy = std::make_shared<OnAir>(*frame);
   copy->am.payload = Bytes(copy->bytes.data(), copy->bytes.size()).from(kHeaderBytes);
@@ -151,7 +151,7 @@ void Radio::repeat(const Shared& frame, std::vector<std::size_t> had_it) {
   try_channel(copy, wait + random_.between(kDoubleUs[0], kDoubleUs[1]));
 }
 
-// The sender's side of the end of a frame.
+// Handles the end of a frame at the sender.
 void Radio::sent(const Shared& frame) {
   const std::size_t station = frame->sender;
   Station& from = stations_[station];
@@ -212,7 +212,7 @@ void Radio::deliver(const Shared& frame, std::size_t station) {
   user_.heard(*to.node, frame->am);
 }
 
-// The link acknowledgement of a frame, with its number and without listening first.
+// Sends the link acknowledgement of a frame, with its number and without listening first.
 void Radio::answer(const OnAir& frame, std::size_t station) {
   auto ack = std::make_shared<OnAir>();
   ack->sender = station;

@@ -11,10 +11,10 @@ namespace {
 
 constexpr Micros kBaud = 115'200;
 constexpr Micros kBitsPerByte = 10;
-constexpr Micros kResendUs = 1'000'000;  // Of a host that misses its confirmation.
+constexpr Micros kResendUs = 1'000'000;  // A host misses its confirmation.
 constexpr int kTriesMax = 25;
 
-// How long the frame takes, flags and escapes included.
+// Returns how long the frame takes, flags and escapes included.
 Micros shift_us(std::uint8_t kind, std::int32_t seq, Bytes packet) {
   std::array<std::uint8_t, hdlc_frame_room(kSerialAfterHeaderMax + 2)> room;
   HdlcFramer framer(MutableBytes(room.data(), room.size()));
@@ -42,7 +42,7 @@ void Serial::send(NodeId from, const machine::Frame& frame) {
   });
 }
 
-// Puts a frame behind what this end is sending; `done` at its end. Returns when that is.
+// Queues a frame after what this end is sending; calls `done` at its end. Returns when that is.
 Micros Serial::shift_out(bool to_sink, std::uint8_t kind, std::int32_t seq, const Shared& held,
                          Done done) {
   End& end = to_sink ? base_station_ : sink_;

@@ -14,7 +14,7 @@
 namespace rubric::trace {
 namespace {
 
-// Reserved numbers by the names that are used in address shorthand.
+// Returns reserved numbers by their names in address shorthand.
 Value pid_value(std::uint16_t pid) {
   if (pid == 0xFFFF) return Value::names("all");
   if (pid == 0xFFFE) return Value::names("local");
@@ -233,7 +233,7 @@ const Case* File::find(std::string_view case_name) const {
 
 namespace {
 
-// What a case says of nodes, or of links, stands in place of all that the file says of them.
+// Applies headers: a case's headers of nodes, or of links, replace all such headers of the file.
 void apply(const std::vector<Item>& items, Scope& scope) {
   bool nodes = false;
   bool links = false;

@@ -26,8 +26,8 @@ void put(std::vector<std::uint8_t>& out, std::size_t at, std::size_t width, bool
   }
 }
 
-// Whether the bytes lead to the route's message by their types. Wider choices are addresses, which
-// may be any but one as well.
+// Returns whether the bytes lead to the route's message by their types. Wider choices are
+// addresses, of which any but one may occur as well.
 bool follows(const reflect::Route& route, const std::vector<std::uint8_t>& bytes) {
   for (std::size_t i = 0; i < route.choice_count; ++i) {
     const reflect::RouteChoice& choice = route.choices[i];
@@ -44,7 +44,7 @@ const char* carrier_of(const StreamPacket& packet) {
   return network ? "radio_i" : "radio_t";
 }
 
-// The serial packet that says what an I-frame does.
+// Returns the serial packet with the contents of an I-frame.
 std::vector<std::uint8_t> as_serial(const std::vector<std::uint8_t>& frame) {
   if (frame.size() < reflect::kRadioIHeaderBytes) return frame;
   const std::uint8_t* const p = frame.data();

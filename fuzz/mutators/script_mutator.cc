@@ -53,7 +53,7 @@ Step heard(const Frame& frame, std::vector<std::uint8_t> payload) {
   return {0, machine::Heard{frame}, std::move(payload)};
 }
 
-// The serial form of a frame, whatever line brings it: the table has it for every message.
+// Returns the serial form of a frame, whatever line brings it: the table has it for every message.
 std::vector<std::uint8_t> packet_of(const Frame& frame, const std::vector<std::uint8_t>& payload) {
   return reflect::serial_packet(
       {tinyos::Dispatch::kActiveMessage, frame.dest, frame.src, 0, 0, frame.type},
@@ -144,7 +144,7 @@ void ScriptMutator::insert(Script& script) {
   script.steps.insert(script.steps.begin() + static_cast<std::ptrdiff_t>(at), std::move(*step));
 }
 
-// To one of the last frames that the node has sent before that step.
+// Returns an answer to one of the last frames that the node has sent before that step.
 std::optional<Step> ScriptMutator::answer(const Script& script, const History& history,
                                           std::size_t at) {
   const std::size_t shown = history.before[at].outputs;
@@ -183,7 +183,7 @@ std::optional<Step> ScriptMutator::answer_to(const Script& script, const Transmi
   }
   const auto message = rubicon::NetMsgView::parse(sent.bytes());
   if (sent.type != am::kNet || !message) return {};
-  // An ack, from whom it was for.
+  // An ack, from the message's destination.
   rubicon::RubiconAck body;
   body.type = rubicon::AmType::kLearningNotification;
   body.seq_num = message->seq_num();
@@ -200,13 +200,13 @@ std::optional<Step> ScriptMutator::answer_to(const Script& script, const Transmi
   return heard(frame, bytes_of(ack));
 }
 
-// From the table, mostly valid, for this node and from somebody who was there before.
+// Returns a message from the table, mostly valid, for this node and from an earlier sender.
 Step ScriptMutator::message(const Script& script, const History& history, std::size_t at) {
   const reflect::Route& route = *routes_[below(routes_.size())];
   const generate::Generated made =
       one_in(5) ? generator_.near_valid(route) : generator_.valid(route);
   const bool radio = made.framing == Framing::kRadio;
-  // Behind the 802.15.4 header stands the AM type, in most networks behind their own byte.
+  // The AM type follows the 802.15.4 header, in most networks after their own byte.
   std::size_t begin = kAmHeaderBytes;
   if (radio) {
     const bool network = std::string_view(route.carrier) == "radio_i";
@@ -233,7 +233,7 @@ void ScriptMutator::fit_message(const Script& script, const History& history, st
   const bool peis = frame.link == Link::kPeis;
   frame.dest = one_in(12) ? machine::kAmBroadcast : peis ? config.island : config.id;
   frame.src = static_cast<std::uint16_t>(one_in(4) ? 1 : 2 + below(8));
-  // Addresses and numbers of frames that the node sent, or that somebody sent to it.
+  // Addresses and numbers of frames that the node sent or received.
   const std::size_t shown = history.before[at].outputs;
   if (frame.type != am::kNet || payload.size() < NetMsgLayout::SeqNumAt::kEnd) return;
   const std::uint16_t island = config.role == Role::kMote ? 11 : config.island;
@@ -253,12 +253,12 @@ void ScriptMutator::fit_message(const Script& script, const History& history, st
   }
 }
 
-// A call, a line busy, power: a kind of step with small numbers in it.
+// Returns a call, a busy line, power: a kind of step with small numbers in it.
 Step ScriptMutator::happening(const Script& script) {
   Script head{script.config, {}, 0};
   std::vector<std::uint8_t> bytes = script::encode(head);
   constexpr std::uint8_t kFirst = 5;
-  constexpr std::size_t kKinds = 20;  // Behind frames, see bytes.cc.
+  constexpr std::size_t kKinds = 20;  // Apart from frames, see bytes.cc.
   bytes.push_back(static_cast<std::uint8_t>(kFirst + below(kKinds)));
   bytes.push_back(0);
   bytes.push_back(static_cast<std::uint8_t>(below(60)));
@@ -272,7 +272,7 @@ Step ScriptMutator::happening(const Script& script) {
   return one.steps.at(0);
 }
 
-// To when something is due, just before it or just after; or to anything.
+// Sets a delay to when something is due, just before it or just after; or to anything.
 void ScriptMutator::change_delay(Script& script) {
   const std::size_t at = below(script.steps.size());
   machine::Ticks& delay = script.steps[at].delay;

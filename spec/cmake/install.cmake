@@ -1,4 +1,4 @@
-# What `cmake --install` lays down, and the Debian packages that `cpack` makes of it:
+# Files of `cmake --install`, and the Debian packages that `cpack` makes of them:
 #   tool  the programs rubric, rubricc and rubric-extcap, their manual pages, completions, the
 #         Wireshark dissector
 #   dev   headers and libraries, for find_package(rubric) and pkg-config

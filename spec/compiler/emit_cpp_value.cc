@@ -1,4 +1,4 @@
-// Values: plain structures, and how they are written.
+// Emits values: plain structures, and how they are written.
 #include <algorithm>
 #include <stdexcept>
 
@@ -69,7 +69,7 @@ std::string value_of(const Field& f) { return "value." + f.id; }
 
 std::string length_text(const Field& holder) { return value_of(holder) + ".size()"; }
 
-// Fields of expressions as members of `value`.
+// Prints fields of expressions as members of `value`.
 Leaf value_leaf(const Layout& layout) {
   return [&layout](const Expr& expr) {
     if (expr.field->is_instance) {
@@ -245,7 +245,7 @@ std::string store_field(const Layout& layout, std::size_t i, const Spec& spec) {
          ");\n}\n";
 }
 
-// The type that says where a field is, and what number it holds; empty where the place varies.
+// Names the type that says where a field is, and what number it holds; nothing if the place varies.
 std::string place(const FieldLayout& l, const Spec& spec) {
   const Field& f = *l.field;
   if (f.fixed_offset < 0) return "";
@@ -262,7 +262,7 @@ std::string place(const FieldLayout& l, const Spec& spec) {
   return "using " + pascal(f.id) + "At = " + type + ";\n";
 }
 
-// What the bytes can still break once the lengths are right.
+// Returns whether the bytes can still break a rule once the lengths are right.
 bool needs_verify(const Layout& layout) {
   const auto leaf_rule = [&](const FrontLeaf& leaf) {
     const auto derived = [&](const FieldLayout& l) {

@@ -1,4 +1,4 @@
-// The page about the wire: its frame, specs, enums and requirements.
+// Emits the page about the wire: its frame, specs, enums and requirements.
 #include "spec/compiler/emit_doc.h"
 
 #include <map>
@@ -107,7 +107,7 @@ std::string doc_spec(const Spec& spec) {
                       {"dispatch", dispatch}, {"types", types}, {"enums", enums}});
 }
 
-/// Types that name a requirement, themselves or by a field.
+/// Returns the types that name a requirement, themselves or by a field.
 std::map<std::string, std::string> uses(const Model& model) {
   std::map<std::string, std::string> out;
   for (const auto& spec : model.specs) {
@@ -135,8 +135,7 @@ std::string roles_text(const Requirement& one) {
   return out;
 }
 
-/// Rules that name who must follow them, and what each profile does not hold against an
-/// implementation.
+/// Prints rules that name who must follow them, with the differences that each profile accepts.
 std::string doc_behaviour(const Model& model) {
   HtmlTable table{"Behaviour",
                   {"id", "level", "clause", "sentence", "for", "says what must not happen",

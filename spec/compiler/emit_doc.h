@@ -7,15 +7,15 @@
 
 namespace rubricc {
 
-/// Bytes in rows of sixteen, a cell a field.
+/// Prints bytes in rows of sixteen, a cell a field.
 std::string doc_layout(const Type& type);
-/// Heading, facts, layout, fields and interpretations of a structure, or the bits of a mask.
+/// Prints heading, facts, layout, fields and interpretations of a structure, or the bits of a mask.
 std::string doc_type(const Type& type);
 std::string doc_enum(const Enum& one);
-/// What leads from a carrier's frames to each message, as nested lists.
+/// Prints the numbers that lead from a carrier's frames to each message, as nested lists.
 std::string doc_dispatch(const Type& carrier);
 
-/// "4", "2 to 102", "0 and more".
+/// Returns "4", "2 to 102", "0 and more".
 std::string doc_range(std::uint64_t min, std::uint64_t max);
 
 }  // namespace rubricc

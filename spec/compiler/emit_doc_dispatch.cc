@@ -1,4 +1,4 @@
-// The page about the wire: which numbers lead to which message.
+// The page about the wire: the numbers that lead to each message.
 #include <set>
 
 #include <fmt/format.h>
@@ -10,7 +10,7 @@
 namespace rubricc {
 namespace {
 
-/// Nested lists; what leads on from a type is listed where it comes first.
+/// Nested lists; the continuation of a type is listed where the type comes first.
 class Tree {
  public:
   std::string under(const Type& type) {

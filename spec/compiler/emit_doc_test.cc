@@ -23,7 +23,7 @@ std::string page_of(const std::vector<std::string>& files) {
   return emit_doc(model).at(0).text;
 }
 
-/// What stands between each `before` and the next of `ends`.
+/// Returns the texts between each `before` and the next of `ends`.
 std::vector<std::string> all(const std::string& text, const std::string& before,
                              const char* ends) {
   std::vector<std::string> out;
@@ -34,7 +34,7 @@ std::vector<std::string> all(const std::string& text, const std::string& before,
   return out;
 }
 
-/// The first tag that closes what is not open; empty if all is well.
+/// Returns the first tag that closes nothing open; empty if all is well.
 std::string first_unbalanced(const std::string& text) {
   const std::set<std::string> alone{"meta", "!DOCTYPE", "!--"};
   std::vector<std::string> open;

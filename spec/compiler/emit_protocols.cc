@@ -1,4 +1,4 @@
-// protocols.h: the list of all protocols. route_tables.h: the ways to their messages.
+// Emits protocols.h: the list of all protocols. route_tables.h: the routes to their messages.
 #include <algorithm>
 
 #include "spec/compiler/cpp_text.h"

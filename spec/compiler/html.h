@@ -11,9 +11,9 @@ namespace rubricc {
 
 std::string html_escaped(std::string_view text);
 std::string html_code(std::string_view text);
-/// A link to a place of this page.
+/// Returns a link to a place of this page.
 std::string html_link(std::string_view anchor, std::string_view text);
-/// An element with escaped text in it: html_element("p", "a < b").
+/// Returns an element with escaped text in it: html_element("p", "a < b").
 std::string html_element(std::string_view tag, std::string_view text);
 
 /// A table whose cells are HTML already; the first cell of each row is its header. `anchors` may be

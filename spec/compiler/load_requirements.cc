@@ -27,7 +27,7 @@ bool is_requirement_id(std::string_view id) {
   return true;
 }
 
-/// The bits of `roles`, in the order of kRoles.
+/// Returns the bits of `roles`, in the order of kRoles.
 std::uint8_t read_roles(const YamlInput& input, const YAML::Node& node) {
   std::uint8_t out = 0;
   const auto items = yaml_items(input, node, "roles");
@@ -99,7 +99,7 @@ void load_requirements_text(const std::string& file, const std::string& text, Mo
   if (!root) return;
   int budget = kNodeBudget;
   const YamlInput input{file, diagnostics, budget};
-  std::map<std::string, int> lines;  // By name in C++, since that must differ too.
+  std::map<std::string, int> lines;  // By name in C++, which must be unique too.
   for (const YAML::Node& item : yaml_items(input, *root, "requirements")) {
     Requirement found = read_requirement(input, item);
     if (found.id.empty()) continue;

@@ -66,7 +66,7 @@ rubricc::GeneratedFiles emit(const Options& options, const rubricc::Model& model
 
 bool write(const std::filesystem::path& folder, const rubricc::GeneratedFile& file) {
   const std::filesystem::path path = folder / file.path;
-  // What is as it was keeps its time, so that nothing is compiled again for it.
+  // An unchanged file keeps its time, so that nothing is compiled again for it.
   std::ifstream old(path, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(old), {}};
   if (old.is_open() && text == file.text) return true;
@@ -139,7 +139,7 @@ int main(int argc, char** argv) {
   emit->needs(out);
   std::vector<std::string> words(argv + 1, argv + argc);
   if (!words.empty() && words[0] == "doc") words[0] = "--emit=doc";
-  std::reverse(words.begin(), words.end());  // As CLI11 takes them.
+  std::reverse(words.begin(), words.end());  // CLI11 takes them so.
   try {
     app.parse(words);
     if (!options.check && options.emit.empty()) throw CLI::RequiredError("--check or --emit");

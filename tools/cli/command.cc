@@ -14,7 +14,7 @@
 namespace rubric::cli {
 namespace {
 
-/// What exit_with() throws.
+/// Thrown by exit_with().
 struct Exit : Ending {
   explicit Exit(int with) : Ending("exit"), code(with) {}
   int code;
@@ -24,7 +24,8 @@ bool is_digits(const std::string& text) {
   return !text.empty() && text.find_first_not_of("0123456789") == text.npos;
 }
 
-/// CLI11 lists the members of a set in the name of the type: "TEXT:{text,jsonl,csv}".
+/// Returns the members of a set, which CLI11 lists in the name of the type:
+/// "TEXT:{text,jsonl,csv}".
 std::vector<std::string> choices_of(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   const std::size_t open = type.find('{');
@@ -216,7 +217,7 @@ std::vector<std::string> Command::subcommand_names() const {
   return names;
 }
 
-/// The subcommand that was given, or the program itself.
+/// Returns the given subcommand, or the program itself.
 const Command& Command::innermost() const {
   for (const Command& command : subcommands_) {
     if (command.app_->parsed()) return command.innermost();

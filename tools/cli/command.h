@@ -21,7 +21,7 @@ class Option;
 
 namespace rubric::cli {
 
-/// What ends a command early: a UsageError or an exit code.
+/// Ends a command early: a UsageError or an exit code.
 class Ending : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -61,14 +61,14 @@ class Option {
   Option& show_default();
   /// Takes one value each time the option is given, so that positional arguments may follow.
   Option& one_at_a_time();
-  /// As one_at_a_time(); the help shows a single value.
+  /// Does the same as one_at_a_time(); the help shows a single value.
   Option& repeatable();
   Option& type_name(const std::string& name);
   Option& description(const std::string& text);
   Option& delimiter(char separator);
   Option& needs(Option other);
   Option& excludes(Option other);
-  /// Whether the command line has it.
+  /// Returns whether the command line has it.
   bool is_given() const;
 
  private:
@@ -77,7 +77,7 @@ class Option {
   CLI::Option* option_;
 };
 
-/// What a completion needs to know of an option.
+/// The facts about an option that a completion needs.
 struct OptionInfo {
   std::vector<std::string> long_names;   ///< Without dashes.
   std::vector<std::string> short_names;  ///< Without dashes.
@@ -97,12 +97,12 @@ class Command {
   Command(const Command&) = delete;
 
   Command& add_subcommand(const std::string& name, const std::string& description);
-  /// `names` as in "-o,--output" or, for a positional argument, "FILE". Targets are texts, whole
-  /// and floating-point numbers, std::optional of these, and vectors of texts.
+  /// Adds an option; `names` as in "-o,--output" or, for a positional argument, "FILE". Targets are
+  /// texts, whole and floating-point numbers, std::optional of these, and vectors of texts.
   template <class Target>
   Option add_option(const std::string& names, Target& target, const std::string& description = {});
   Option add_flag(const std::string& names, bool& target, const std::string& description = {});
-  /// An option that is there; throws if it is not.
+  /// Returns an existing option; throws if there is none of that name.
   Option get_option(const std::string& name);
   /// Forbids `option` together with any other option present now, but for those named.
   void exclude_all_but(Option option, std::initializer_list<std::string_view> allowed);
@@ -110,19 +110,19 @@ class Command {
   void version(const std::string& text);
   /// Sets what runs when the command is given.
   void callback(std::function<void()> run);
-  /// As callback(); the program ends with the code that `run` returns.
+  /// Does the same as callback(); the program ends with the code that `run` returns.
   void exit_code_of(std::function<int()> run);
-  /// Sets the exit code of a bad command line; 2 where nothing is set.
+  /// Sets the exit code of a bad command line; 2 by default.
   void set_usage_exit_code(int code) { usage_exit_code_ = code; }
 
   std::string name() const;
   std::string description() const;
-  /// The options that the help lists, without positional arguments.
+  /// Returns the options that the help lists, without positional arguments.
   std::vector<OptionInfo> options() const;
   const std::deque<Command>& subcommands() const { return subcommands_; }
 
-  /// Parses, runs what was chosen and returns the program's exit code. Mistakes go to stderr, with
-  /// the nearest subcommand or option.
+  /// Parses, runs the chosen command and returns the program's exit code. Mistakes go to stderr,
+  /// with the nearest subcommand or option.
   int parse_and_run(int argc, char** argv);
 
  private:

@@ -28,7 +28,7 @@ namespace {
 constexpr std::size_t kChunkBytes = 256 * 1024;
 constexpr std::size_t kDetectBytes = 4096;
 constexpr std::size_t kDetectMost = 64 * 1024;
-/// A bare message of a binary file: a bound, so that memory stays flat whatever is read.
+/// Bound of a bare message in a binary file, so that memory stays flat whatever is read.
 constexpr std::size_t kBareMost = kDetectMost;
 
 constexpr std::chrono::milliseconds kReconnectEvery{1000};
@@ -59,7 +59,7 @@ InputFormat find_format(std::string_view name) {
   return InputFormat::kUnknown;
 }
 
-/// No FILE: $MOTECOM where somebody sits at a terminal, who would else have to type frames.
+/// Returns the files. Without FILE at a terminal it is $MOTECOM, since nobody types frames.
 std::vector<std::string> names_of(const InputOptions& options) {
   if (!options.files.empty()) return options.files;
   return {live::asked_by_motecom() ? live::default_address() : "-"};
@@ -114,11 +114,11 @@ class Run {
     fmt::print(stderr, "rubric: {}: {}\n", name, what);
   }
 
-  // A line in use, until it ends or the user says so.
+  // Reads a line in use, until it ends or the user stops it.
   void line(const live::Address& address) {
     live::stop_on_signals();
     result_.live = true;
-    const bool failed_before = result_.failed;  // What another line could not do stays so.
+    const bool failed_before = result_.failed;  // Failures of other lines stay.
     lost_ = false;
     live::Line line(address, options_.listen_only);
     source_.format = format_name(line.format());
@@ -158,7 +158,7 @@ class Run {
         if (on_idle_) on_idle_();
       }
     } catch (const runner::TargetBroken&) {
-      reader.finish(deliver);  // What there is of a frame that was on its way.
+      reader.finish(deliver);  // With an unfinished frame.
       throw;
     }
   }
@@ -196,7 +196,7 @@ class Run {
     pump(file, *reader, size);
   }
 
-  // Reads until the content tells its format.
+  // Reads until the content shows its format.
   std::size_t look(InputFile& file, InputFormat& format) {
     std::size_t size = 0;
     bool ended = false;
@@ -224,7 +224,7 @@ class Run {
     reader.finish(deliver);
   }
 
-  // A binary file as one message.
+  // Reads a binary file as one message.
   void whole(InputFile& file, std::size_t size) {
     std::vector<std::uint8_t> bytes(chunk_.get(), chunk_.get() + size);
     Packet packet;
@@ -242,7 +242,7 @@ class Run {
   }
 
   void give(const Packet& packet, const std::vector<Interface>& interfaces) {
-    if (result_.stopped) return;  // What is left of the chunk.
+    if (result_.stopped) return;  // Drops the rest of the chunk.
     source_.interface_name = packet.interface_id < interfaces.size()
                                  ? std::string_view(interfaces[packet.interface_id].name)
                                  : std::string_view{};

@@ -24,7 +24,7 @@
 namespace rubric::tools {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kChartFooter =
     "A case is one of the kit's own golden traces (rubric test --list) or one of a file of yours:\n"
     "FILE.rtr, or FILE.rtr:CASE. Its stimuli are given to the reference machine and what comes of\n"
     "them is drawn: who sends what to whom, when (a tick is 1/1024 s), and by which rule; behind\n"
@@ -37,7 +37,7 @@ constexpr const char* kFooter =
     "Exit codes: 0 drawn, 1 drawn, but the trace was not kept, 2 the trace cannot be worked or\n"
     "the output not be written, 64 usage, 66 the file cannot be read.";
 
-struct Options {
+struct ChartOptions {
   std::string what;
   std::string format = "text";
   std::string target;
@@ -50,7 +50,7 @@ struct Options {
   cli::exit_with(cli::kVerdictInput);
 }
 
-// The cases that the user means; they point into `cases`.
+// Returns the cases that the user means; they point into `cases`.
 std::vector<const suite::SuiteCase*> chosen(const std::string& what, suite::Cases& cases) {
   constexpr std::string_view kEnding = ".rtr";
   const std::size_t colon = what.rfind(".rtr:");
@@ -94,7 +94,7 @@ suite::MachineRun work(const suite::SuiteCase& one, const std::string& target) {
   }
 }
 
-// Says what is wrong with the run; the program's exit code.
+// Prints what is wrong with the run; returns the program's exit code.
 int judged(const suite::CaseRun& run) {
   using runner::CaseVerdict;
   switch (run.result.verdict) {
@@ -123,7 +123,7 @@ std::string text_of(const suite::MachineRun& one, std::size_t width) {
   return out + report::sequence_text(sequence, 2, width);
 }
 
-void run(const Options& options) {
+void run_chart(const ChartOptions& options) {
   suite::Cases cases;
   const std::vector<const suite::SuiteCase*> all = chosen(options.what, cases);
   const bool picture = options.format == "svg";
@@ -155,9 +155,9 @@ void run(const Options& options) {
 }  // namespace
 
 void add_chart(cli::Command& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ChartOptions>();
   cli::Command& sub = app.add_subcommand("chart", "Draw a golden trace as a sequence chart");
-  sub.footer(kFooter);
+  sub.footer(kChartFooter);
   sub.set_usage_exit_code(cli::kVerdictUsage);
   sub.add_option("case", options->what, "A case's name, FILE.rtr or FILE.rtr:CASE")
       .required()
@@ -172,7 +172,7 @@ void add_chart(cli::Command& app) {
       .show_default();
   sub.add_option("--width", options->width, "Text: columns (those of the terminal, else 100)")
       .between(60, 1000);
-  sub.callback([options] { run(*options); });
+  sub.callback([options] { run_chart(*options); });
 }
 
 }  // namespace rubric::tools

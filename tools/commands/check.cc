@@ -23,7 +23,7 @@
 namespace rubric::tools {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kCheckFooter =
     "All files are one run: taps of the same network, and .rtr logs with what applications did.\n"
     "Examples:\n"
     "  rubric check capture.pcapng\n"
@@ -71,7 +71,7 @@ int check_files(const CheckOptions& options) {
   if (record::overwrites(options.out, files)) {
     throw cli::UsageError("--out", options.out + " is one of the files to read");
   }
-  const report::ExpectationFile expected = expectations(options);
+  const report::KnownFailures expected = expectations(options);
   oracle::Run whole = read_run(options);
   oracle::Run part = ranges.empty() ? std::move(whole) : report::part_of(whole, ranges, judged);
   if (std::string error; !oracle::drop_duplicates(part, judged, error)) {
@@ -86,7 +86,7 @@ int check_files(const CheckOptions& options) {
   return written ? outcome.exit_code() : cli::kVerdictBroken;
 }
 
-int run(CheckOptions options) {
+int run_check(CheckOptions options) {
   if (options.input.files.empty()) {
     if (!live::asked_by_motecom()) throw cli::UsageError("FILE is required");
     options.input.files.push_back(live::default_address());
@@ -164,8 +164,8 @@ void add_check(cli::Command& app) {
   cli::Command& command = app.add_subcommand(kCheckCommand, "Hold captures and logs against the rules");
   auto options = std::make_shared<CheckOptions>();
   add_options(command, *options);
-  command.footer(kFooter);
-  cli::set_verdict(command, [options] { return run(*options); });
+  command.footer(kCheckFooter);
+  cli::set_verdict(command, [options] { return run_check(*options); });
 }
 
 }  // namespace rubric::tools

@@ -33,21 +33,21 @@ namespace {
 using std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kTick{100};
-/// A run is judged anew no more often than this, and for a tenth of the time at most.
+/// The least time between two judgements of a run, which also take a tenth of the time at most.
 constexpr std::chrono::milliseconds kJudgeEvery{500};
 constexpr int kJudgeShare = 10;
-/// Beyond the time that a node may take and the skew of the taps: what is in buffers.
+/// Time for data in buffers, beyond the time that a node may take and the skew of the taps.
 constexpr std::int64_t kSettleUs = 1'000'000;
-/// As long it may be that one file is behind another that has the same.
+/// How long one file may be behind another that has the same.
 constexpr std::int64_t kRefusedUs = 5'000'000;
-constexpr std::int64_t kResponseUs = 292'969;  // 300 ticks, where nobody says otherwise.
+constexpr std::int64_t kResponseUs = 292'969;  // 300 ticks, unless stated otherwise.
 
 std::int64_t now_us() {
   return steady_clock::now().time_since_epoch() / std::chrono::microseconds(1);
 }
 
-// What lines in use send is one capture, so that the run is what a report of the file kept by
-// --write is about: its frames have the numbers, offsets and interfaces that they have there.
+// Writes the frames of lines in use as one capture, so that they have the numbers, offsets and
+// interfaces of the file kept by --write.
 class LineCapture {
  public:
   LineCapture() : reader_(make_reader(InputFormat::kPcapng)) { writer_.begin(bytes_); }
@@ -100,7 +100,7 @@ class Session {
   }
 
  private:
-  // Lines are the first file, where there are any; the others follow in their order.
+  // Names files: lines are the first one, if there are any; the others follow in their order.
   void name_files() {
     std::string lines;
     for (const std::string& name : options_.input.files) {
@@ -173,7 +173,7 @@ class Session {
 
   const CheckOptions& options_;
   const oracle::Options judged_;
-  const report::ExpectationFile expected_;
+  const report::KnownFailures expected_;
   oracle::RunReader reader_;
   oracle::Watch watch_;
   CheckNews news_;

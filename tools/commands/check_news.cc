@@ -21,43 +21,42 @@ namespace rubric::tools {
 namespace {
 
 using oracle::Change;
-
-// One line of it: its line ends are between its items, those of texts are escaped.
-std::string in_a_line(std::string json) {
-  std::erase(json, '\n');
-  return json;
-}
+using report::Json;
 
 // "at" is when it was said, in seconds since 1970; null of a run that is over.
-std::string event(std::string_view name, bool live, std::string_view members) {
+std::string event(std::string_view name, bool live, const Json::Members& more) {
   const auto now = std::chrono::system_clock::now().time_since_epoch();
   const double seconds = std::chrono::duration<double>(now).count();
-  return fmt::format("{{\"schema\":\"rubric.check.event/1\",\"event\":\"{}\",\"at\":{}{}}}\n", name,
-                     live ? fmt::format("{:.3f}", seconds) : "null", members);
+  Json::Members all = {{"schema", "rubric.check.event/1"},
+                       {"event", name},
+                       {"at", Json::raw(live ? fmt::format("{:.3f}", seconds) : "")}};
+  all.insert(all.end(), more.begin(), more.end());
+  std::string out = Json::object(all).text();
+  std::erase(out, '\n');  // Line ends are between items only: those of texts are escaped.
+  return out + '\n';
 }
 
 std::string report_event(const report::Story& story, bool live) {
-  return event("report", live, ",\"report\":" + in_a_line(report::json_report(story)));
+  return event("report", live, {{"report", report::json_report(story)}});
 }
 
 std::string change_event(const report::Story& story, const Change& change) {
-  const std::string finding = ",\"finding\":" + report::json_finding(story, 0);
+  const Json finding = report::json_finding(story, 0);
   switch (change.what) {
-    case Change::What::kFound:
-      return event("found", true, finding);
+    case Change::What::kFound: return event("found", true, {{"finding", finding}});
     case Change::What::kChanged:
-      return event("changed", true, fmt::format(",\"was\":\"{}\"{}",
-                                                report::severity_name(change.before), finding));
+      return event("changed", true,
+                   {{"was", report::severity_name(change.before)}, {"finding", finding}});
     case Change::What::kWithdrawn:
       break;
   }
-  return event("withdrawn", true, ",\"why\":" + report::json_string(change.why) + finding);
+  return event("withdrawn", true, {{"why", change.why}, {"finding", finding}});
 }
 
 std::string all_events(const report::Story& story) {
   std::string out;
   for (std::size_t i = 0; i < story.report.findings.size(); ++i) {
-    out += event("found", false, ",\"finding\":" + report::json_finding(story, i));
+    out += event("found", false, {{"finding", report::json_finding(story, i)}});
   }
   return out + report_event(story, false);
 }
@@ -78,7 +77,7 @@ int file_of_news(const CheckOptions& options) {
 
 std::string report_text(const CheckOptions& options, const report::Story& story, int fd,
                         const std::vector<std::string>& files) {
-  if (options.format == "json") return report::json_report(story);
+  if (options.format == "json") return report::json_report(story).text() + '\n';
   if (options.format == "jsonl") return all_events(story);
   if (options.format == "junit") return report::junit_report(story);
   report::TextOptions text = text_options(options, fd);
@@ -109,7 +108,7 @@ void CheckNews::begin() const {
 }
 
 void CheckNews::tell(const oracle::Run& run, const oracle::Options& judged, const Change& change,
-                     const report::ExpectationFile& expected) {
+                     const report::KnownFailures& expected) {
   if (change.finding.severity == oracle::Severity::kNote && !options_.verbose &&
       options_.format != "jsonl") {
     return;

@@ -1,4 +1,4 @@
-// What `rubric check` says: findings as they come, and the report.
+// Output of `rubric check`: findings as they come, and the report.
 #pragma once
 
 #include <string>
@@ -10,30 +10,30 @@
 
 namespace rubric::tools {
 
-/// The report in the format that is asked for. `fd` is a terminal's or -1; `files` are those that
-/// the same run can be read from again, none where it cannot.
+/// Returns the report in the chosen format. `fd` is a terminal's or -1; `files` are those from
+/// which the same run can be read again, none if it cannot.
 std::string report_text(const CheckOptions& options, const report::Story& story, int fd,
                         const std::vector<std::string>& files);
 
-/// News of a run that goes on: text on stdout, jsonl where the report goes. Where stdout is for
-/// a report of another format, text goes to stderr.
+/// Prints news of a growing run: text on stdout, jsonl where the report goes. If stdout is for a
+/// report of another format, text goes to stderr.
 class CheckNews {
  public:
-  /// Throws std::system_error where a file cannot be written.
+  /// Throws std::system_error if a file cannot be written.
   explicit CheckNews(const CheckOptions& options);
   ~CheckNews();
   CheckNews(const CheckNews&) = delete;
   CheckNews& operator=(const CheckNews&) = delete;
 
-  /// Says at a terminal that there is something to wait for.
+  /// Prints, at a terminal, that a wait begins.
   void begin() const;
   void tell(const oracle::Run& run, const oracle::Options& judged, const oracle::Change& change,
-            const report::ExpectationFile& expected);
+            const report::KnownFailures& expected);
   /// What was told can be read then.
   void flush() { output_.flush(); }
-  /// Whether somebody still reads it.
+  /// Returns whether anybody still reads it.
   bool open() const;
-  /// The end. False, having said why, if something could not be written.
+  /// Prints the end. Returns false, having printed why, if something could not be written.
   bool report(const report::Story& story, const std::vector<std::string>& files);
 
  private:
@@ -41,7 +41,7 @@ class CheckNews {
 
   const CheckOptions& options_;
   int fd_;
-  int file_ = -1;  // Of jsonl that goes to a file.
+  int file_ = -1;  // For jsonl that goes to a file.
   cli::Output output_;
   bool told_ = false;
 };

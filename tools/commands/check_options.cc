@@ -18,7 +18,7 @@
 namespace rubric::tools {
 namespace {
 
-constexpr std::size_t kLogLook = 4096;  // Comments stand before its header.
+constexpr std::size_t kLogLook = 4096;  // Comments may precede its header.
 
 std::uint16_t address(const std::string& option, std::string_view text) {
   std::uint32_t value = 0;
@@ -33,7 +33,7 @@ std::uint16_t address(const std::string& option, std::string_view text) {
   return static_cast<std::uint16_t>(value);
 }
 
-/// "2=mote", split.
+/// Splits "2=mote".
 std::pair<std::string, std::string> pair_of(const std::string& option, const std::string& text,
                                             const char* form) {
   const std::size_t equals = text.find('=');
@@ -129,15 +129,15 @@ std::vector<report::FrameRange> frame_ranges(const CheckOptions& options) {
   return out;
 }
 
-report::ExpectationFile expectations(const CheckOptions& options) {
+report::KnownFailures expectations(const CheckOptions& options) {
   const std::string& path = options.expect;
-  report::ExpectationFile file;
-  if (path.empty()) return file;
-  std::string error;
-  if (!report::parse_expectations(cli::text_of_file(kCheckCommand, path), path, file, error)) {
-    throw cli::UsageError("--expect", error);
+  if (path.empty()) return {};
+  const std::string text = cli::text_of_file(kCheckCommand, path);
+  try {
+    return report::parse_expectations(text, path);
+  } catch (const std::runtime_error& mistake) {
+    throw cli::UsageError("--expect", mistake.what());
   }
-  return file;
 }
 
 oracle::ReadAs read_as(const CheckOptions& options) {
@@ -156,7 +156,7 @@ oracle::ReadAs read_as(const CheckOptions& options) {
 }
 
 bool is_log(const std::string& name) {
-  // What is read of a pipe here is gone for those who read it later.
+  // Data read from a pipe here would be missing later.
   std::error_code none;
   if (!std::filesystem::is_regular_file(name, none)) return false;
   std::ifstream file(name, std::ios::binary);

@@ -1,4 +1,4 @@
-// What `rubric check` is told, and what of it the judge gets.
+// Options of `rubric check`, and their use by the judge.
 #pragma once
 
 #include <cstdint>
@@ -39,20 +39,20 @@ struct CheckOptions {
   std::string write;  ///< A capture of what lines in use send; empty: none.
 };
 
-/// What the judge is told of the run. Throws cli::UsageError, as the next two do.
+/// Returns the judge's options. Throws cli::UsageError, as the next two do.
 oracle::Options oracle_options(const CheckOptions& options);
 std::vector<report::FrameRange> frame_ranges(const CheckOptions& options);
 /// What the file --expect names says; nothing without it.
-report::ExpectationFile expectations(const CheckOptions& options);
+report::KnownFailures expectations(const CheckOptions& options);
 
-/// What --input-format says captures are.
+/// Returns the format of captures by --input-format.
 oracle::ReadAs read_as(const CheckOptions& options);
-/// Whether there is a file of that name, and an .rtr log in it.
+/// Returns whether there is a file of that name with an .rtr log in it.
 bool is_log(const std::string& name);
 
-/// The options that a verdict depends on, so that the command can be given again.
+/// Returns the options that a verdict depends on, so that the command can be repeated.
 std::string command_of(const CheckOptions& options);
-/// How text goes to `fd`, -1 for a file; without the command and the judge.
+/// Returns how text goes to `fd`, -1 for a file; without the command and the judge.
 report::TextOptions text_options(const CheckOptions& options, int fd);
 
 }  // namespace rubric::tools

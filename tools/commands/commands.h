@@ -7,7 +7,7 @@ namespace rubric::tools {
 
 void add_chart(cli::Command& program);
 void add_check(cli::Command& program);
-/// The other subcommands have to be there when it runs.
+/// Adds the subcommand; the others must exist when it runs.
 void add_completion(cli::Command& program);
 void add_convert(cli::Command& program);
 void add_coverage(cli::Command& program);

@@ -20,7 +20,7 @@ struct NamedCommand {
   std::vector<cli::OptionInfo> flags;
 };
 
-/// The first sentence of a description, on one line.
+/// Returns the first sentence of a description, on one line.
 std::string brief(const std::string& text) {
   return text.substr(0, text.find_first_of(";\n"));
 }
@@ -34,14 +34,14 @@ std::vector<NamedCommand> commands_of(const cli::Command& program) {
   return out;
 }
 
-std::string joined(const std::vector<std::string>& words) {
+std::string spaced(const std::vector<std::string>& words) {
   return fmt::format("{}", fmt::join(words, " "));
 }
 
 std::string names_of(const std::vector<NamedCommand>& commands) {
   std::vector<std::string> names;
   for (const NamedCommand& command : commands) names.push_back(command.name);
-  return joined(names);
+  return spaced(names);
 }
 
 std::vector<std::string> dashed(const cli::OptionInfo& flag) {
@@ -51,7 +51,8 @@ std::vector<std::string> dashed(const cli::OptionInfo& flag) {
   return out;
 }
 
-/// In single quotes as every shell reads them, without the signs that zsh gives a meaning.
+/// Returns text in single quotes as every shell reads them, without characters that are special in
+/// zsh.
 std::string shell_quoted(std::string_view text) {
   std::string out = "'";
   for (const char c : text) {
@@ -81,7 +82,7 @@ _rubric() {{
       for (const std::string& name : dashed(flag)) {
         patterns.push_back(fmt::format("'{} {}'", command.name, name));
       }
-      fmt::print("    {}) words='{}' ;;\n", fmt::join(patterns, " | "), joined(flag.choices));
+      fmt::print("    {}) words='{}' ;;\n", fmt::join(patterns, " | "), spaced(flag.choices));
     }
   }
   fmt::print(R"(  esac
@@ -93,7 +94,7 @@ _rubric() {{
     for (const cli::OptionInfo& flag : command.flags) {
       for (std::string& name : dashed(flag)) names.push_back(std::move(name));
     }
-    fmt::print("      {}) words='{}' ;;\n", command.name, joined(names));
+    fmt::print("      {}) words='{}' ;;\n", command.name, spaced(names));
   }
   fmt::print(R"(    esac
   fi
@@ -108,19 +109,19 @@ complete -F _rubric rubric
 )");
 }
 
-/// '(-o --output)'{-o,--output}'[what it is]:value:(a b)'
+/// Returns '(-o --output)'{-o,--output}'[what it is]:value:(a b)'.
 std::string zsh_argument(const cli::OptionInfo& flag) {
   const std::vector<std::string> names = dashed(flag);
   const std::string help = shell_quoted("[" + flag.description + "]");
   std::string tail;
   if (flag.takes_value) {
     tail = ":value:" + (flag.choices.empty() ? std::string("_files")
-                                             : "(" + joined(flag.choices) + ")");
+                                             : "(" + spaced(flag.choices) + ")");
   }
-  // The brackets around the description mean something, those within it were replaced.
+  // The brackets around the description are special; those within it were replaced.
   std::string body = "'[" + help.substr(2, help.size() - 4) + "]" + tail + "'";
   if (names.size() == 1) return names[0] + body;
-  return fmt::format("'({})'{{{}}}{}", joined(names), fmt::join(names, ","), body);
+  return fmt::format("'({})'{{{}}}{}", spaced(names), fmt::join(names, ","), body);
 }
 
 void print_zsh(const std::vector<NamedCommand>& commands) {
@@ -160,7 +161,7 @@ void print_fish(const std::vector<NamedCommand>& commands) {
       for (const std::string& name : flag.short_names) fmt::print(" -s {}", name);
       for (const std::string& name : flag.long_names) fmt::print(" -l {}", name);
       if (!flag.choices.empty()) {
-        fmt::print(" -x -a '{}'", joined(flag.choices));
+        fmt::print(" -x -a '{}'", spaced(flag.choices));
       } else if (flag.takes_value) {
         fmt::print(" -r");
       }

@@ -15,14 +15,14 @@
 namespace rubric::tools {
 namespace {
 
-struct Options {
+struct ConvertOptions {
   cli::InputOptions input;
   std::string format;
   std::string output;
   std::string only;
 };
 
-constexpr const char* kFooter =
+constexpr const char* kConvertFooter =
     "What the target cannot hold is said on stderr. pcap holds one link type, that of the first\n"
     "packet; --only chooses among serial and radio.\n"
     "Exit codes: 0 converted, 2 usage, 3 input cannot be read or output cannot be written.";
@@ -44,7 +44,7 @@ std::string container_of(std::string_view file) {
   return {};
 }
 
-/// What the target could not hold.
+/// Data that the target could not hold.
 struct Losses {
   std::uint64_t packets = 0;
   std::uint64_t written = 0;
@@ -52,7 +52,7 @@ struct Losses {
   std::uint64_t directions = 0;
   std::uint64_t interfaces = 0;
   std::uint64_t comments = 0;
-  std::uint64_t sequence_numbers = 0;  // Of the serial line.
+  std::uint64_t sequence_numbers = 0;  // From the serial line.
   std::uint64_t radio = 0;             // Among those written.
   std::map<std::string, std::uint64_t> refused;  // By reason: a handful.
 };
@@ -88,8 +88,8 @@ void report(const Losses& losses, const std::string& container) {
   }
 }
 
-// Several files and no -o: the last one is the target, as with cp.
-void settle_target(Options& options) {
+// Settles the target: with several files and no -o it is the last one, as with cp.
+void settle_target(ConvertOptions& options) {
   if (options.output.empty() && options.input.files.size() > 1) {
     options.output = options.input.files.back();
     options.input.files.pop_back();
@@ -106,7 +106,7 @@ void settle_target(Options& options) {
   }
 }
 
-int run(const Options& options) {
+int run_convert(const ConvertOptions& options) {
   Losses losses;
   const record::Holds holds = record::holds(options.format);
   cli::InputResult result;
@@ -133,7 +133,7 @@ int run(const Options& options) {
       return output.open();
     };
     result = cli::read_packets(options.input, on_packet);
-    // A name that was mistyped must not cost the file that would have been replaced.
+    // A mistyped name must not cost the file that would have been replaced.
     if (!result.failed || losses.packets > 0) failure = output.finish();
   } catch (const std::system_error& error) {
     failure = error.code().message();
@@ -146,9 +146,9 @@ int run(const Options& options) {
 }  // namespace
 
 void add_convert(cli::Command& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ConvertOptions>();
   cli::Command& sub = app.add_subcommand("convert", "Packets from one container into another");
-  sub.footer(kFooter);
+  sub.footer(kConvertFooter);
   sub.add_option("FILE", options->input.files,
                   "Captures, and last the target unless -o names it; - is stdin or stdout");
   sub.add_option("-o,--output", options->output, "Where to; - is stdout").check(cli::given);
@@ -163,7 +163,7 @@ void add_convert(cli::Command& app) {
       .one_of({"hdlc", "sf", "radio"});
   sub.callback([options] {
     settle_target(*options);
-    const int code = run(*options);
+    const int code = run_convert(*options);
     if (code != cli::kExitClean) cli::exit_with(code);
   });
 }

@@ -18,7 +18,7 @@
 #include "codec/generated/requirements_table.h"
 #include "conformance/explorer/search.h"
 #include "conformance/mutants/generated.h"
-#include "conformance/report/text.h"
+#include "conformance/report/json.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/output.h"
 #include "tools/cli/command.h"
@@ -26,16 +26,16 @@
 namespace rubric::tools {
 namespace {
 
-using report::json_string;
+using report::Json;
 
 constexpr std::size_t kRules = std::size(kRequirements);
 
-struct Options {
+struct CoverageOptions {
   std::string cases = "conformance/cases";
   std::string format = "text";
 };
 
-// What touches a rule.
+// A test or tool that touches a rule.
 struct Touch {
   std::set<std::string> positive;  // Golden traces.
   std::set<std::string> negative;
@@ -92,7 +92,7 @@ void run_cases(const mutants::Golden& golden, Coverage& coverage) {
   });
 }
 
-// The explorer takes a plain function, so what that sees stands here.
+// The explorer takes a plain function, so its results are kept here.
 std::array<std::atomic<bool>, kRules> g_explored;
 
 void seen_step(machine::State& state, machine::Ticks now, const machine::Event& event,
@@ -103,7 +103,8 @@ void seen_step(machine::State& state, machine::Ticks now, const machine::Event& 
   }
 }
 
-// Small networks: two sinks and a lossy air in join scope, messages between a mote and its sink.
+// Explores small networks: two sinks and a lossy air in join scope, messages between a mote and its
+// sink.
 void explore(Coverage& coverage) {
   explorer::Options join;
   join.step = seen_step;
@@ -134,7 +135,7 @@ void judge(Coverage& coverage) {
   }
 }
 
-Coverage measure(const Options& options) {
+Coverage measure(const CoverageOptions& options) {
   Coverage coverage;
   const mutants::Golden golden(options.cases);
   read_cases(golden, coverage);
@@ -149,7 +150,7 @@ Coverage measure(const Options& options) {
   return coverage;
 }
 
-// Wire rules by level: those that are MUST, and the others.
+// Counts wire rules by level: those that are MUST, and the others.
 std::map<std::string, std::size_t> wire_levels() {
   std::map<std::string, std::size_t> levels;
   for (std::size_t i = 1; i < kRules; ++i) {
@@ -209,40 +210,37 @@ std::string text_of(const Coverage& coverage) {
 }
 
 std::string json_of(const Coverage& coverage) {
-  std::string out = "{\"schema\":\"rubric.coverage/1\",\"rules\":[";
-  const char* comma = "";
+  std::vector<Json> rules;
   for (std::size_t i = 1; i < kRules; ++i) {
     if (is_wire(i)) continue;
     const Touch& touch = coverage.rules[i];
-    out += fmt::format(
-        "{}{{\"id\":{},\"level\":{},\"positive\":{},\"negative\":{},\"transitions\":{},"
-        "\"ignores\":{},\"explored\":{},\"mutants\":{}}}",
-        comma, json_string(kRequirements[i].id), json_string(kRequirements[i].level),
-        touch.positive.size(), touch.negative.size(), touch.transitions, touch.ignores,
-        touch.explored, touch.mutants);
-    comma = ",";
+    rules.push_back(Json::object({{"id", kRequirements[i].id},
+                                  {"level", kRequirements[i].level},
+                                  {"positive", touch.positive.size()},
+                                  {"negative", touch.negative.size()},
+                                  {"transitions", touch.transitions},
+                                  {"ignores", touch.ignores},
+                                  {"explored", touch.explored},
+                                  {"mutants", touch.mutants}}));
   }
   const Totals totals = total(coverage);
-  out += fmt::format(
-      "],\"cases\":{},\"totals\":{{\"rules\":{},\"with_case\":{},\"positive\":{},\"negative\":{},"
-      "\"exercised\":{},\"explored\":{},\"with_mutant\":{}}},\"wire\":{{",
-      coverage.cases, totals.rules, totals.with_case, totals.positive, totals.negative,
-      totals.exercised, totals.explored, totals.mutated);
-  comma = "";
-  for (const auto& [level, count] : wire_levels()) {
-    out += fmt::format("{}{}:{}", comma, json_string(level), count);
-    comma = ",";
-  }
-  out += "},\"problems\":[";
-  comma = "";
-  for (const std::string& problem : coverage.problems) {
-    out += comma + json_string(problem);
-    comma = ",";
-  }
-  return out + "]}\n";
+  const std::map<std::string, std::size_t> levels = wire_levels();
+  const Json out = Json::object({{"schema", "rubric.coverage/1"},
+                                 {"rules", Json::array(rules)},
+                                 {"cases", coverage.cases},
+                                 {"totals", Json::object({{"rules", totals.rules},
+                                                          {"with_case", totals.with_case},
+                                                          {"positive", totals.positive},
+                                                          {"negative", totals.negative},
+                                                          {"exercised", totals.exercised},
+                                                          {"explored", totals.explored},
+                                                          {"with_mutant", totals.mutated}})},
+                                 {"wire", Json::object({levels.begin(), levels.end()})},
+                                 {"problems", Json::array(coverage.problems)}});
+  return out.text() + '\n';
 }
 
-int run(const Options& options) {
+int run_coverage(const CoverageOptions& options) {
   Coverage coverage;
   try {
     coverage = measure(options);
@@ -258,7 +256,7 @@ int run(const Options& options) {
 }  // namespace
 
 void add_coverage(cli::Command& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CoverageOptions>();
   cli::Command& sub = app.add_subcommand("coverage", "Which rules are tested, and by what");
   sub.footer(
       "Counts, for each rule of behaviour, golden traces that ask for it and that forbid "
@@ -274,10 +272,7 @@ void add_coverage(cli::Command& app) {
       .one_of({"text", "json"})
       .show_default();
   sub.set_usage_exit_code(cli::kVerdictUsage);
-  sub.callback([options] {
-    const int code = run(*options);
-    if (code != cli::kVerdictExpected) cli::exit_with(code);
-  });
+  sub.exit_code_of([options] { return run_coverage(*options); });
 }
 
 }  // namespace rubric::tools

@@ -74,13 +74,13 @@ std::optional<format::Filter> make_filter(const DecodeOptions& options,
   }
 }
 
-/// Times as --time wants them.
+/// Times in the form of --time.
 class Clock {
  public:
   explicit Clock(const std::string& mode)
       : none_(mode == "none"), zero_(mode == "zero"), delta_(mode == "delta") {}
 
-  /// For a frame that is printed.
+  /// Returns the time to show for a frame.
   std::int64_t shown(std::int64_t time_ns) {
     if (none_ || time_ns == kNoTime) return kNoTime;
     if (!zero_ && !delta_) return time_ns;
@@ -131,7 +131,7 @@ class Decode {
       fmt::print(stderr, "rubric: cannot write: {}\n", reason);
       return cli::kExitInput;
     }
-    if (!output_.open()) return cli::kExitClean;  // Who closed the pipe has seen enough.
+    if (!output_.open()) return cli::kExitClean;  // A closed pipe ends the output.
     if (result.failed) return cli::kExitInput;
     return malformed_ ? cli::kExitMalformed : cli::kExitClean;
   }
@@ -205,7 +205,7 @@ void add_decode(cli::Command& app) {
       "  echo 0a000c | rubric decode --as config\n"
       "  rubric decode serial@/dev/ttyUSB0:telosb --write run.pcapng    # until Ctrl-C\n"
       "Exit codes: 0 clean, 1 something malformed was read, 2 usage, 3 input cannot be read.");
-  command.callback([options] { cli::exit_with(Decode(*options).run()); });
+  command.exit_code_of([options] { return Decode(*options).run(); });
 }
 
 }  // namespace rubric::tools

@@ -17,7 +17,7 @@
 namespace rubric::tools {
 namespace {
 
-struct Options {
+struct DiffOptions {
   std::vector<std::string> traces;
   std::vector<std::string> targets;
   std::vector<std::string> profiles;
@@ -25,7 +25,7 @@ struct Options {
   PlayerOptions shared;
 };
 
-constexpr const char* kFooter =
+constexpr const char* kDiffFooter =
     "Two implementations differ where one keeps a line of a golden trace that the other breaks;\n"
     "freedom within the rules is no difference. The eight smallest traces that tell them apart\n"
     "are made as small as they can be, and the shortest is printed.\n"
@@ -35,7 +35,7 @@ constexpr const char* kFooter =
     "Exit codes: 0 no difference, 1 they differ, 2 the kit or an implementation broke,\n"
     "3 no case could be compared, 64 usage, 66 a trace cannot be read.";
 
-void compare(const Options& options) {
+void compare(const DiffOptions& options) {
   if (options.targets.size() != 2) throw cli::UsageError("--target has to stand twice");
   if (!options.profiles.empty() && options.profiles.size() != 2) {
     throw cli::UsageError("--profile has to stand twice, once for each target");
@@ -79,10 +79,10 @@ void compare(const Options& options) {
 }  // namespace
 
 void add_diff(cli::Command& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<DiffOptions>();
   cli::Command& sub =
       app.add_subcommand("diff", "Find the shortest trace on which two implementations differ");
-  sub.footer(kFooter);
+  sub.footer(kDiffFooter);
   sub.add_option("traces", options->traces,
                   "Golden traces and folders of them; default: those of the kit")
       .type_name("TRACE");

@@ -15,13 +15,13 @@
 namespace rubric::tools {
 namespace {
 
-struct Options {
+struct EncodeOptions {
   record::LineOptions lines;
   std::string format = "hex";
   std::string output = "-";
 };
 
-constexpr const char* kFooter =
+constexpr const char* kEncodeFooter =
     "A line with \"raw\" is encoded from it. Where it also has \"fields\" and is not marked\n"
     "malformed, both must say the same: delete \"raw\", and \"crc\" or \"fcs\" in\n"
     "\"frame\", to encode changed fields. Sizes, counts and check sums that are missing are\n"
@@ -29,14 +29,14 @@ constexpr const char* kFooter =
     "  echo '{\"type\":10,\"value\":12}' | rubric encode --as config\n"
     "Exit codes: 0 all lines encoded, 2 usage, 3 some line or file could not be read or encoded.";
 
-/// What a message alone goes into on its way to such an output.
+/// Returns the framing of a single message on its way to such an output.
 std::string_view serial_framing(const std::string& format) {
   const bool in_capture = format == "pcap" || format == "pcapng";
   return format == "hdlc" || in_capture ? "hdlc" : "sf";
 }
 
-/// Whether all lines were written.
-bool write_all(const Options& options, record::LineEncoder& encoder, record::PacketOutput& output,
+/// Writes all lines. Returns whether all were written.
+bool write_all(const EncodeOptions& options, record::LineEncoder& encoder, record::PacketOutput& output,
                bool& any) {
   std::string last_place;
   const auto put = [&](record::EncodedLines& lines, const record::OwnedPacket& packet,
@@ -55,7 +55,7 @@ bool write_all(const Options& options, record::LineEncoder& encoder, record::Pac
   return good;
 }
 
-int run(const Options& options) {
+int run_encode(const EncodeOptions& options) {
   const reflect::Protocol& protocol = cli::chosen_protocol(options.lines.input);
   const reflect::Type* message = cli::chosen_message(options.lines.input, protocol);
   record::LineEncoder encoder(options.lines, protocol, message, serial_framing(options.format));
@@ -63,7 +63,7 @@ int run(const Options& options) {
     record::PacketOutput output(options.format, options.output);
     bool any = false;
     const bool good = write_all(options, encoder, output, any);
-    // A name that was mistyped must not cost the file that would have been replaced.
+    // A mistyped name must not cost the file that would have been replaced.
     if (!good && !any) return cli::kExitInput;
     const std::string failure = output.finish();
     if (failure.empty()) return good ? cli::kExitClean : cli::kExitInput;
@@ -74,7 +74,7 @@ int run(const Options& options) {
   return cli::kExitInput;
 }
 
-void check_target(const Options& options) {
+void check_target(const EncodeOptions& options) {
   if (record::overwrites(options.output, options.lines.input.files)) {
     throw cli::UsageError("--output", "'" + options.output + "' is also the input");
   }
@@ -83,10 +83,10 @@ void check_target(const Options& options) {
 }  // namespace
 
 void add_encode(cli::Command& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<EncodeOptions>();
   cli::Command& sub = app.add_subcommand(
       "encode", "Frames from the JSON lines of 'rubric decode', or from fields alone");
-  sub.footer(kFooter);
+  sub.footer(kEncodeFooter);
   record::add_line_options(sub, options->lines);
   record::add_carrier_option(sub, options->lines);
   sub.add_option("--format", options->format, "What to write: hex, hdlc, sf, pcap, pcapng")
@@ -98,7 +98,7 @@ void add_encode(cli::Command& app) {
   sub.callback([options] {
     record::check_line_options(options->lines);
     check_target(*options);
-    const int code = run(*options);
+    const int code = run_encode(*options);
     if (code != cli::kExitClean) cli::exit_with(code);
   });
 }

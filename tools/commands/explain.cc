@@ -26,25 +26,25 @@ namespace {
 
 using reflect::Protocol;
 
-struct Options {
+struct ExplainOptions {
   cli::InputOptions input;  // The protocol, and the message that bytes are.
   std::vector<std::string> words;
   std::string framing = "auto";
   bool all_cases = false;
 };
 
-constexpr const char* kFooter =
+constexpr const char* kExplainFooter =
     "X is a message, a rule (WIRE-NET-NBYTES) or a group of them (J4), an enum or a mask, or the\n"
     "hex bytes of a frame: a serial packet as Listen prints it, a serial frame with its kind\n"
     "byte, an 802.15.4 frame.\n"
     "Exit codes: 0 explained, 1 the frame is malformed, 2 usage or nothing of that name.";
 
-// The protocol above and the frames below, where names are looked for.
+// Returns the protocol above and the frames below, in which names are looked up.
 std::vector<const Protocol*> layers(const Protocol& protocol) {
   return {&protocol, &tinyos::tables::kProtocol};
 }
 
-// Empty if nothing has this name.
+// Returns an empty text if nothing has this name.
 std::string explain_name(const Protocol& protocol, const std::string& name, bool all_cases) {
   std::string out;
   const auto add = [&](std::string text) { out += (out.empty() ? "" : "\n") + std::move(text); };
@@ -90,7 +90,7 @@ std::string in_case(std::string text, int (*to_case)(int)) {
   return text;
 }
 
-// What rules there are, for a name that looks like one's: those of its group, else the groups.
+// Returns the rules with a similar name: those of its group, else the groups.
 std::string rules_like(const std::string& name) {
   const std::string group = in_case(name.substr(0, name.find('-')), std::toupper);
   const bool letter_and_number = group.size() > 1 && std::isalpha(group[0]) != 0 &&
@@ -127,7 +127,7 @@ bool parse_frame(const std::vector<std::string>& words, std::vector<std::uint8_t
   return decode_hex_line(text, bytes).fault == Fault::kNone && !bytes.empty();
 }
 
-int explain_bytes(const Options& options, const Protocol& protocol,
+int explain_bytes(const ExplainOptions& options, const Protocol& protocol,
                   const std::vector<std::uint8_t>& bytes, std::string& out) {
   const reflect::Type* message = cli::chosen_message(options.input, protocol);
   auto given = layout::take_frame(bytes, message ? "bare" : options.framing);
@@ -136,7 +136,7 @@ int explain_bytes(const Options& options, const Protocol& protocol,
         "X", "these bytes begin like no frame; --framing or --as says what they are");
   }
   if (message) given->what = fmt::format("the message {} alone", message->id);
-  // Moving the bytes left them in their place, so that the packet still points at them.
+  // Moving the bytes left them in their place, so the packet still points at them.
   reflect::Frame frame;
   reflect::FrameDecoder(protocol, message).decode(given->packet, frame);
   out = fmt::format("Taken as {}, {} bytes.\n\n", given->what, given->bytes.size());
@@ -144,7 +144,7 @@ int explain_bytes(const Options& options, const Protocol& protocol,
   return frame.malformed() ? cli::kExitMalformed : cli::kExitClean;
 }
 
-int run(const Options& options) {
+int run_explain(const ExplainOptions& options) {
   const Protocol& protocol = cli::chosen_protocol(options.input);
   const bool as_bytes = !options.input.as_message.empty() || options.framing != "auto";
   std::string text;
@@ -173,9 +173,9 @@ int run(const Options& options) {
 }  // namespace
 
 void add_explain(cli::Command& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ExplainOptions>();
   cli::Command& sub = app.add_subcommand("explain", "What a message, a rule, a name or a frame means");
-  sub.footer(kFooter);
+  sub.footer(kExplainFooter);
   sub.add_option("X", options->words, "A name, or hex bytes in one word or several").required();
   sub.add_option("--spec", options->input.spec, "Protocol above the AM layer")
       .show_default();
@@ -187,10 +187,7 @@ void add_explain(cli::Command& app) {
       .one_of({"auto", "sf", "hdlc", "radio"})
       .show_default();
   sub.add_flag("--cases", options->all_cases, "All golden traces that name a rule, however many");
-  sub.callback([options] {
-    const int code = run(*options);
-    if (code != cli::kExitClean) cli::exit_with(code);
-  });
+  sub.exit_code_of([options] { return run_explain(*options); });
 }
 
 }  // namespace rubric::tools

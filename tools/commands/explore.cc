@@ -17,7 +17,7 @@
 #include "conformance/explorer/search.h"
 #include "conformance/flaws/flaws.h"
 #include "conformance/generated/profiles.h"
-#include "conformance/report/text.h"
+#include "conformance/report/json.h"
 #include "conformance/trace/print.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/input.h"
@@ -32,10 +32,9 @@ using explorer::Mask;
 using explorer::Progress;
 using explorer::Result;
 using explorer::Scope;
-using report::json_string;
-using report::json_string_or_null;
+using report::Json;
 
-struct Options {
+struct ExploreOptions {
   explorer::Options network;
   std::string profile = "paper";
   std::string flaw;
@@ -50,7 +49,7 @@ struct Options {
   unsigned acks = 0;
 };
 
-std::string footer() {
+std::string explore_footer() {
   std::string text = "Properties:\n";
   for (const auto& p : explorer::properties()) {
     text += fmt::format("  {:<19} {}\n", p.name, p.sentence);
@@ -80,21 +79,21 @@ template <class Table>
   usage(fmt::format("unknown {} '{}'{}", what, word, reflect::did_you_mean(word, names)));
 }
 
-machine::Profile chosen_profile(const Options& options) {
+machine::Profile chosen_profile(const ExploreOptions& options) {
   const machine::NamedProfile* const profile = machine::find_profile(options.profile);
   if (profile == nullptr) unknown("profile", options.profile, machine::kProfiles);
   return profile->profile;
 }
 
-// Null: none is asked for.
-const flaws::Flaw* chosen_flaw(const Options& options) {
+// Returns the chosen flaw, or null.
+const flaws::Flaw* chosen_flaw(const ExploreOptions& options) {
   const flaws::Flaw* const flaw = flaws::find(options.flaw);
   if (flaw == nullptr && !options.flaw.empty()) unknown("flaw", options.flaw, flaws::all());
   return flaw;
 }
 
-// What the options' words mean.
-explorer::Options resolve(const Options& options) {
+// Returns the meaning of the options' words.
+explorer::Options resolve(const ExploreOptions& options) {
   explorer::Options network = options.network;
   network.profile = chosen_profile(options);
   if (options.requests != 0) {
@@ -106,7 +105,7 @@ explorer::Options resolve(const Options& options) {
     usage(fmt::format("at most {} motes and sinks together", explorer::kNodesMax));
   }
   if (options.reboot) network.reboots = std::max<std::uint8_t>(network.reboots, 1);
-  // Every message that is heard again is answered by a new number: without a limit there is no end.
+  // Messages that are heard again are answered with new numbers: without a limit there is no end.
   const bool endless = network.scope == Scope::kFull && network.dup && network.dups == 0;
   if (endless) network.dups = 1;
   if (const flaws::Flaw* const flaw = chosen_flaw(options)) {
@@ -127,7 +126,7 @@ explorer::Options resolve(const Options& options) {
   return network;
 }
 
-// The names in a mask, in their order.
+// Returns the names in a mask, in order.
 template <class Table, class Key>
 std::vector<std::string> names_in(Mask mask, const Table& table, Key key) {
   std::vector<std::string> names;
@@ -150,7 +149,7 @@ struct Verdict {
   std::string limit;  ///< Why nothing was decided.
 };
 
-// What could be given so that more happens in the network.
+// Returns options that would make more happen in the network.
 std::string ways_to_widen(const explorer::Options& network) {
   std::vector<std::string> ways;
   const auto way = [&](bool open, const char* words) {
@@ -167,7 +166,7 @@ std::string ways_to_widen(const explorer::Options& network) {
   return fmt::format("{}", fmt::join(ways, ", "));
 }
 
-Verdict judge(const Options& options, const explorer::Options& network, const Result& result) {
+Verdict judge(const ExploreOptions& options, const explorer::Options& network, const Result& result) {
   if (result.violation) return {"broken", cli::kVerdictFailed, 0, {}};
   if (!result.complete) return {"inconclusive", cli::kVerdictInconclusive, 0, result.limit};
   if (!options.flaw.empty() && !result.step_acted) {
@@ -180,7 +179,7 @@ Verdict judge(const Options& options, const explorer::Options& network, const Re
   return {"holds", cli::kVerdictExpected, 0, {}};
 }
 
-// That two different states have the same fingerprint, and one is so left out: at most this.
+// Returns a bound for the probability that two states share a fingerprint, so that one is left out.
 double omission_probability(std::uint64_t states) {
   const auto n = static_cast<double>(states);
   return n * n / 2 / 18446744073709551616.0;
@@ -228,33 +227,34 @@ std::string text_of(const Result& result, const Verdict& verdict) {
   return out;
 }
 
-std::string json_list(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + json_string(name);
-  return "[" + text + "]";
-}
-
-std::string json_of(const Options& options, const Result& result, const Verdict& verdict,
+std::string json_of(const ExploreOptions& options, const Result& result, const Verdict& verdict,
                     const std::string& trace) {
   const Progress& p = result.progress;
-  const Mask broken = result.violation ? result.violation->violated : 0;
-  return fmt::format(
-      "{{\"schema\": \"rubric.explore/1\", \"verdict\": \"{}\",\n"
-      " \"profile\": {}, \"flaw\": {}, \"limit\": {},\n"
-      " \"broken\": {},\n \"reached\": {},\n \"never\": {},\n"
-      " \"states\": {}, \"transitions\": {}, \"depth\": {}, \"seconds\": {:.3f},\n"
-      " \"memory_bytes\": {}, \"memory_per_state_bytes\": {},\n"
-      " \"node_states\": {}, \"frames\": {}, \"known_weak_states\": {},\n"
-      " \"omission_probability\": {:e}, \"trace\": {}}}\n",
-      verdict.text, json_string(options.profile), json_string_or_null(options.flaw),
-      json_string_or_null(verdict.limit), json_list(property_names(broken)),
-      json_list(goal_names(result.goals)), json_list(goal_names(verdict.never)), p.states,
-      p.transitions, p.depth, p.seconds, result.memory_bytes, result.memory_per_state_bytes,
-      result.node_states, result.frames, result.known_weak_states, omission_probability(p.states),
-      json_string_or_null(trace));
+  const Json out = Json::object(
+      {{"schema", "rubric.explore/1"},
+       {"verdict", verdict.text},
+       {"profile", options.profile},
+       {"flaw", Json::or_null(options.flaw)},
+       {"limit", Json::or_null(verdict.limit)},
+       {"broken", Json::array(property_names(result.violation ? result.violation->violated : 0))},
+       {"reached", Json::array(goal_names(result.goals))},
+       {"never", Json::array(goal_names(verdict.never))},
+       {"states", p.states},
+       {"transitions", p.transitions},
+       {"depth", p.depth},
+       {"seconds", Json::raw(fmt::format("{:.3f}", p.seconds))},
+       {"memory_bytes", result.memory_bytes},
+       {"memory_per_state_bytes", result.memory_per_state_bytes},
+       {"node_states", result.node_states},
+       {"frames", result.frames},
+       {"known_weak_states", result.known_weak_states},
+       {"omission_probability", Json::raw(fmt::format("{:e}", omission_probability(p.states)))},
+       {"trace", Json::or_null(trace)}},
+      "\n ");
+  return out.text() + '\n';
 }
 
-// A line on stderr that is drawn over, twice a second; nothing where that is no terminal.
+// A line on stderr that is redrawn twice a second; nothing if that is no terminal.
 class ProgressLine {
  public:
   explicit ProgressLine(bool wanted) : active_(wanted && isatty(2) != 0) {}
@@ -276,7 +276,7 @@ class ProgressLine {
   double next_ = 1;
 };
 
-std::string trace_text(explorer::Nodes& nodes, const Options& options, const explorer::Path& path,
+std::string trace_text(explorer::Nodes& nodes, const ExploreOptions& options, const explorer::Path& path,
                        const std::string& name) {
   std::string note = fmt::format("Found by rubric explore: {} motes, {} sinks, profile {}",
                                  nodes.options().motes, nodes.options().sinks, options.profile);
@@ -284,7 +284,7 @@ std::string trace_text(explorer::Nodes& nodes, const Options& options, const exp
   return trace::print(explorer::counterexample(nodes, path, {options.profile, name, note}));
 }
 
-void run(const Options& options) {
+void run_explore(const ExploreOptions& options) {
   if (options.transitions.wanted) {
     const flaws::Flaw* const flaw = chosen_flaw(options);
     return print_transitions(options.transitions,
@@ -311,7 +311,7 @@ void run(const Options& options) {
         trace_text(*nodes, options, *result.known_weakness, "explore.known_weakness");
     good = cli::write_file(options.weakness_out, weakness) && good;
   }
-  // A trace on stdout stands alone there, so that it can be given on.
+  // A trace on stdout is printed alone, so that it can be piped on.
   const bool trace_alone = options.format == "text" && !text.empty() && !in_file;
   if (options.format == "json") {
     good = cli::write_file("-", json_of(options, result, verdict, text)) && good;
@@ -325,7 +325,7 @@ void run(const Options& options) {
   if (verdict.exit_code != cli::kVerdictExpected) cli::exit_with(verdict.exit_code);
 }
 
-void add_faults(cli::Command& sub, Options& options) {
+void add_faults(cli::Command& sub, ExploreOptions& options) {
   explorer::Options& n = options.network;
   sub.add_flag("--loss", n.loss, "Frames and link acks may be lost");
   sub.add_flag("--dup", n.dup, "Frames may be heard again");
@@ -341,7 +341,7 @@ void add_faults(cli::Command& sub, Options& options) {
       .show_default();
 }
 
-void add_bounds(cli::Command& sub, Options& options) {
+void add_bounds(cli::Command& sub, ExploreOptions& options) {
   explorer::Options& n = options.network;
   sub.add_option("--calls", n.calls, "Calls of joinIsland, each mote")
       .between(1, 8)
@@ -366,10 +366,10 @@ void add_bounds(cli::Command& sub, Options& options) {
 }  // namespace
 
 void add_explore(cli::Command& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ExploreOptions>();
   cli::Command& sub =
       app.add_subcommand("explore", "Try everything that can happen in a small network");
-  sub.footer(footer());
+  sub.footer(explore_footer());
   sub.set_usage_exit_code(cli::kVerdictUsage);
   sub.add_option("--motes", options->network.motes, "How many")
       .between(1, int{explorer::kMotesMax})
@@ -394,7 +394,7 @@ void add_explore(cli::Command& app) {
   add_transition_options(sub, options->transitions);
   sub.add_option("--out-known", options->weakness_out,
                   "File for the shortest way to a known weakness");
-  sub.callback([options] { run(*options); });
+  sub.callback([options] { run_explore(*options); });
 }
 
 }  // namespace rubric::tools

@@ -1,4 +1,5 @@
-// rubric explore --transitions: state diagrams of the parts of a node, as the machine makes them.
+// rubric explore --transitions: draws state diagrams of the parts of a node, from the machine's
+// steps.
 #pragma once
 
 #include "tools/cli/command.h"
@@ -14,11 +15,11 @@ struct TransitionOptions {
   std::vector<std::string> parts;  ///< None: all.
 };
 
-/// Adds --transitions and --part; what they show is chosen for them, so that of the options that
-/// are there already only those for profile, flaw and output may be given with them.
+/// Adds --transitions and --part; they choose the network, so of the existing options only those
+/// for profile, flaw and output may be given with them.
 void add_transition_options(cli::Command& sub, TransitionOptions& options);
 
-/// What is explored, by name.
+/// The machine to explore, by name.
 struct ExploredMachine {
   std::string profile;
   machine::Profile values;
@@ -26,7 +27,7 @@ struct ExploredMachine {
   explorer::StepFunction step = machine::step;
 };
 
-/// Prints the diagrams and ends the subcommand where that or the search failed.
+/// Prints the diagrams and ends the subcommand if that or the search failed.
 void print_transitions(const TransitionOptions& options, const ExploredMachine& machine,
                        const std::string& format, const std::string& out);
 

@@ -23,7 +23,7 @@ struct ForwardOptions {
   std::uint64_t buffer_kib = 1024;
   std::uint32_t patience_s = 10;
   std::uint32_t ack_wait_ms = 1000;
-  int retries = 24;  ///< As TinyOS's Java host.
+  int retries = 24;  ///< TinyOS's Java host has the same.
   forward::Options server;
 };
 
@@ -38,7 +38,8 @@ live::Address source_of(const std::string& given) {
   }
 }
 
-// All clients wait while the capture is written: it must not be a pipe, which may take nothing.
+// Checks that the capture is no pipe: all clients wait while it is written, and a pipe may take
+// nothing.
 void check_capture(const std::string& path) {
   std::error_code none;
   const auto status = std::filesystem::status(path, none);
@@ -57,7 +58,7 @@ void print_summary(const std::string& source, const forward::Counts& counts) {
   fmt::print(stderr, "\n");
 }
 
-int run(ForwardOptions& options) {
+int run_forward(ForwardOptions& options) {
   options.server.source.address = source_of(options.source);
   check_capture(options.server.write);
   options.server.source.link.ack_wait = attach::Milliseconds(options.ack_wait_ms);
@@ -136,7 +137,7 @@ void add_forward(cli::Command& app) {
       "  rubric forward sf@lab:9002 --port 9003 --reconnect --write run.pcapng\n"
       "Exit codes: 0 ended by Ctrl-C, 2 usage, 3 the source is gone, the port is taken or the\n"
       "capture cannot be written.");
-  command.callback([options] { cli::exit_with(run(*options)); });
+  command.exit_code_of([options] { return run_forward(*options); });
 }
 
 }  // namespace rubric::tools

@@ -32,11 +32,11 @@ using generate::FrameGenerator;
 using generate::Framer;
 using reflect::Route;
 
-constexpr double kFramingShare = 0.15;  // Of the broken frames, where a format has framing.
+constexpr double kFramingShare = 0.15;  // Share of the broken frames, if a format has framing.
 constexpr std::int64_t kBetweenFramesNs = 1'000'000;
 constexpr std::uint64_t kAckSeed = 0x61636B;  // The acknowledgement has a generator of its own.
 
-struct Options {
+struct GenerateOptions {
   cli::InputOptions input;  // Only the choice of the protocol.
   std::uint64_t count = 1000;
   std::uint64_t seed = 1;
@@ -48,7 +48,7 @@ struct Options {
   bool fields = false;
 };
 
-constexpr const char* kFooter =
+constexpr const char* kGenerateFooter =
     "Each message in turn comes up, on each way that leads to it. The expectation of a frame\n"
     "(schema rubric.generate/1, see tools/generate_format.md) says which fault of which rule\n"
     "stands where, by construction: no decoder is asked. jsonl carries it in line, with the frame\n"
@@ -81,7 +81,7 @@ InputFormat format_of(std::string_view name) {
   return InputFormat::kUnknown;
 }
 
-/// A message, and the ways to it that the format can hold.
+/// A message, and its routes that the format can hold.
 struct Message {
   std::string name;
   std::vector<const Route*> routes;
@@ -103,7 +103,7 @@ void add_routes(const reflect::RouteTable& table, bool of_link, const Framer& fr
   }
 }
 
-/// A file or stdout that counts what it was given.
+/// A file or stdout that counts its input.
 class CountedOutput {
  public:
   explicit CountedOutput(const std::string& path) : path_(path) {
@@ -127,9 +127,9 @@ class CountedOutput {
     output_->buffer().append(text);
     output_->drain();
   }
-  /// Whether somebody takes more.
+  /// Returns whether the reader is still there.
   bool open() const { return fd_ >= 0 && output_->open(); }
-  /// False, having said why, if writing failed.
+  /// Ends the output. Returns false, having printed why, if writing failed.
   bool finish() {
     if (fd_ >= 0) output_->flush();
     if (fd_ >= 0 && !output_->failed(&reason_)) return true;
@@ -148,7 +148,7 @@ class CountedOutput {
 /// One run.
 class Run {
  public:
-  Run(const Options& options, const reflect::Protocol& protocol)
+  Run(const GenerateOptions& options, const reflect::Protocol& protocol)
       : options_(options),
         format_(format_of(options.format)),
         frames_(protocol, *generate::routes_of(protocol), options.seed),
@@ -178,7 +178,7 @@ class Run {
   }
 
  private:
-  // Those that were asked for, or all that the format holds; in an order of the seed's.
+  // Chooses the requested messages, or all that the format holds; in an order of the seed's.
   void choose_messages() {
     std::vector<std::string> names;
     for (const Message& message : messages_) names.push_back(message.name);
@@ -237,7 +237,7 @@ class Run {
     return framer_.sound(generator.near_valid(route));
   }
 
-  /// Writes a frame; its expectation.
+  /// Writes a frame; returns its expectation.
   std::string one(std::uint64_t index, CountedOutput& out) {
     Framed framed = make(index);
     const std::uint64_t number = index + 1;
@@ -257,16 +257,16 @@ class Run {
     return expectation(number, std::to_string(begin + frame_begin()), framed, options_.fields);
   }
 
-  // Where in what was written last the frame begins, as a reader counts.
+  // Returns where the frame begins in the last output, as a reader counts.
   std::size_t frame_begin() const {
-    if (format_ == InputFormat::kHdlc) return 1;  // Behind the flag.
+    if (format_ == InputFormat::kHdlc) return 1;  // After the flag.
     if (format_ != InputFormat::kPcapng) return 0;
-    // A description of an interface may stand before it. The block's length stands at both ends.
+    // A description of an interface may precede it.
     const auto* const bytes = reinterpret_cast<const std::uint8_t*>(text_.data());
     return pcapng::last_data_at(Bytes(bytes, text_.size()));
   }
 
-  const Options& options_;
+  const GenerateOptions& options_;
   InputFormat format_;
   FrameGenerator frames_;
   FrameGenerator acks_;
@@ -283,7 +283,7 @@ std::string share(const std::string& text) {
   return "expected a share from 0 to 1, given " + text;
 }
 
-void check_outputs(const Options& options) {
+void check_outputs(const GenerateOptions& options) {
   if (options.expect.empty()) return;
   if (options.format == "jsonl") {
     throw cli::UsageError("--expect", "jsonl carries the expectations in line");
@@ -301,10 +301,10 @@ void check_outputs(const Options& options) {
 }  // namespace
 
 void add_generate(cli::Command& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<GenerateOptions>();
   cli::Command& sub = app.add_subcommand(
       "generate", "Valid and near-valid frames, and what a decoder must say of each");
-  sub.footer(kFooter);
+  sub.footer(kGenerateFooter);
   sub.add_option("--count", options->count, "How many frames")
       .check(cli::at_least_one)
       .show_default();

@@ -5,7 +5,7 @@
 #include <iterator>
 
 #include "codec/reflect/fault_text.h"
-#include "conformance/report/text.h"
+#include "conformance/report/json.h"
 #include "tools/format/put.h"
 #include "tools/format/record.h"
 
@@ -13,24 +13,20 @@ namespace rubric::tools {
 namespace {
 
 using generate::Framed;
-using report::json_string;
+using report::Json;
 
-std::string error_json(const Error& error, std::string_view more = {}) {
-  if (error.fault == Fault::kNone) return "null";
-  return fmt::format("{{\"fault\":\"{}\",\"offset\":{},\"requirement\":\"{}\"{}}}",
-                     reflect::fault_name(error.fault), error.offset_bytes,
-                     reflect::requirement(error.requirement).id, more);
+Json error_json(const Error& error, const Json::Members& more = {}) {
+  if (error.fault == Fault::kNone) return Json::raw("");
+  Json::Members out = {{"fault", reflect::fault_name(error.fault)},
+                       {"offset", error.offset_bytes},
+                       {"requirement", reflect::requirement(error.requirement).id}};
+  out.insert(out.end(), more.begin(), more.end());
+  return Json::object(out);
 }
 
-std::string fields_json(const Framed& framed) {
-  if (!framed.valid()) return "null";
-  std::string text;
-  for (const generate::NumberAt& number : framed.numbers) {
-    fmt::format_to(std::back_inserter(text), "{}{{\"field\":\"{}.{}\",\"offset\":{},\"value\":{}}}",
-                   text.empty() ? "[" : ",", number.message->name, number.field->name,
-                   number.offset_bytes, number.value);
-  }
-  return text + "]";
+Json number_json(const generate::NumberAt& number) {
+  const std::string field = fmt::format("{}.{}", number.message->name, number.field->name);
+  return Json::object({{"field", field}, {"offset", number.offset_bytes}, {"value", number.value}});
 }
 
 }  // namespace
@@ -46,23 +42,29 @@ std::string joined(const std::vector<std::string>& words, std::string_view betwe
 
 std::string expectation(std::uint64_t number, const std::string& offset, const Framed& framed,
                         bool with_fields) {
-  std::vector<std::string> path;
-  for (const reflect::Type* type : framed.path) path.push_back(json_string(type->name));
+  const Json null = Json::raw("");
+  const bool valid = framed.valid();
   std::string raw(2 * framed.bytes.size(), '0');
   format::put_hex(raw.data(), framed.view().bytes);
-  const std::string unfit =
-      framed.unfit_message
-          ? error_json(framed.unfit, fmt::format(",\"message\":\"{}\"", framed.unfit_message->name))
-          : "null";
-  return fmt::format(
-      "{{\"schema\":\"rubric.generate/1\",\"number\":{},\"offset\":{},\"carrier\":\"{}\","
-      "\"framing\":\"{}\",\"message\":\"{}\",\"verdict\":\"{}\",\"path\":{},\"error\":{},"
-      "\"unfit\":{},\"what\":{},{}\"raw\":\"{}\"}}",
-      number, offset, framed.route->carrier, format::framing_name(framed.packet.framing),
-      framed.route->type->name, framed.valid() ? "valid" : "malformed",
-      framed.valid() ? fmt::format("[{}]", joined(path, ",")) : "null", error_json(framed.error),
-      unfit, json_string(framed.what), with_fields ? "\"fields\":" + fields_json(framed) + "," : "",
-      raw);
+  Json::Members out = {
+      {"schema", "rubric.generate/1"},
+      {"number", number},
+      {"offset", Json::raw(offset)},
+      {"carrier", framed.route->carrier},
+      {"framing", format::framing_name(framed.packet.framing)},
+      {"message", framed.route->type->name},
+      {"verdict", valid ? "valid" : "malformed"},
+      {"path", valid ? Json::array(framed.path, &reflect::Type::name) : null},
+      {"error", error_json(framed.error)},
+      {"unfit", framed.unfit_message
+                    ? error_json(framed.unfit, {{"message", framed.unfit_message->name}})
+                    : null},
+      {"what", framed.what}};
+  if (with_fields) {
+    out.emplace_back("fields", valid ? Json::array(framed.numbers, number_json) : null);
+  }
+  out.emplace_back("raw", raw);
+  return Json::object(out).text();
 }
 
 std::string comment(const Framed& framed) {

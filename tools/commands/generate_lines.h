@@ -1,4 +1,4 @@
-// What rubric generate says of its frames; tools/generate_format.md describes it.
+// Prints the expectations of rubric generate; tools/generate_format.md describes them.
 #pragma once
 
 #include <cstdint>
@@ -10,15 +10,15 @@
 
 namespace rubric::tools {
 
-/// The JSON line of a frame, schema rubric.generate/1, without its end. `offset`: where it begins
-/// in its file, or null.
+/// Returns the JSON line of a frame, schema rubric.generate/1, without its end. `offset`: where it
+/// begins in its file, or null.
 std::string expectation(std::uint64_t number, const std::string& offset,
                         const generate::Framed& framed, bool with_fields);
 
-/// What a person reads beside the packet, in one line.
+/// Returns one line for people about the packet.
 std::string comment(const generate::Framed& framed);
 
-/// The words with `between` between them.
+/// Joins the words with `between`.
 std::string joined(const std::vector<std::string>& words, std::string_view between);
 
 }  // namespace rubric::tools

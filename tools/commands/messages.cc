@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <memory>
 
-#include "conformance/report/text.h"
+#include "conformance/report/json.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/input.h"
 #include "tools/cli/output.h"
@@ -17,21 +17,21 @@
 namespace rubric::tools {
 namespace {
 
-using report::json_string;
 using layout::Reach;
 using reflect::Protocol;
 using reflect::Type;
+using report::Json;
 
-struct Options {
+struct MessagesOptions {
   cli::InputOptions input;  // Only the choice of the protocol.
   std::string format = "text";
 };
 
-constexpr const char* kFooter =
+constexpr const char* kMessagesFooter =
     "\nAM is a message's own number; it stands in frames under that number where 'in' is serial\n"
     "or radio. No frame leads to a message 'by name', only --as; see 'rubric explain NAME'.\n";
 
-// The name that is shown, where that of the type says no more: several of one shown name lead on.
+// Returns the shown name, or that of the type if several types share the shown one.
 std::string place(const Reach& reach, const std::vector<Reach>& reaches) {
   if (!reach.carrier.empty()) return reach.carrier;
   const std::string_view name = reach.parent->name;
@@ -41,7 +41,7 @@ std::string place(const Reach& reach, const std::vector<Reach>& reaches) {
   return several ? reach.parent->name : reach.parent->id;
 }
 
-// What it stands in: frames of which carrier, which other messages.
+// Returns the places of a message: frames of which carrier, which other messages.
 std::string places(const std::vector<Reach>& reaches) {
   std::vector<std::string> names;
   for (const Reach& reach : reaches) {
@@ -68,49 +68,51 @@ std::string text(const Protocol& protocol) {
     table.add({am_text(type, reaches), type.id, layout::size_text(type), places(reaches),
                layout::first_sentence(type.doc)});
   }
-  return table.text_within(layout::kColumns) + kFooter;
+  return table.text_within(layout::kColumns) + kMessagesFooter;
 }
 
-std::string json(const Reach& reach) {
+Json json(const Reach& reach) {
   if (!reach.carrier.empty()) {
-    return fmt::format(R"({{"carrier":{},"am_types":[{}]}})", json_string(reach.carrier),
-                       fmt::join(reach.values, ","));
+    return Json::object({{"carrier", reach.carrier}, {"am_types", Json::array(reach.values)}});
   }
-  std::string out = fmt::format(R"({{"in":{},"field":{})", json_string(reach.parent->id),
-                                json_string(reach.field->name));
-  out += ",\"if\":" + report::json_string_or_null(reach.condition);
-  out += ",\"key\":" + report::json_string_or_null(reach.key);
-  return out + fmt::format(R"(,"values":[{}],"otherwise":{}}})", fmt::join(reach.values, ","),
-                           reach.otherwise);
+  return Json::object({{"in", reach.parent->id},
+                       {"field", reach.field->name},
+                       {"if", Json::or_null(reach.condition)},
+                       {"key", Json::or_null(reach.key)},
+                       {"values", Json::array(reach.values)},
+                       {"otherwise", reach.otherwise}});
+}
+
+Json json(const Protocol& protocol, const Type& type) {
+  const std::vector<Reach> reaches = layout::reaches(protocol, type);
+  return Json::object(
+      {{"id", type.id},
+       {"name", type.name},
+       {"am_types", Json::array(layout::am_types(reaches))},
+       {"min_size", type.min_size},
+       {"max_size", type.max_size == UINT32_MAX ? Json::raw("") : Json(type.max_size)},
+       {"reached", Json::array(reaches, [](const Reach& reach) { return json(reach); })},
+       {"doc", type.doc ? type.doc : ""},
+       {"doc_ref", type.doc_ref ? type.doc_ref : ""}});
 }
 
 std::string json(const Protocol& protocol) {
-  std::string out =
-      fmt::format(R"({{"schema":"rubric.messages/1","spec":{},"title":{},"messages":[)",
-                  json_string(protocol.id), json_string(protocol.title));
-  const char* separator = "\n";
+  std::vector<Json> messages;
   for (int i = 0; i < protocol.type_count; ++i) {
     const Type& type = *protocol.types[i];
-    if (layout::is_carrier(protocol, type)) continue;
-    const std::vector<Reach> reaches = layout::reaches(protocol, type);
-    out += separator;
-    separator = ",\n";
-    out += fmt::format(R"({{"id":{},"name":{},"am_types":[{}],"min_size":{},"max_size":{})",
-                       json_string(type.id), json_string(type.name),
-                       fmt::join(layout::am_types(reaches), ","), type.min_size,
-                       type.max_size == UINT32_MAX ? "null" : std::to_string(type.max_size));
-    out += ",\"reached\":[";
-    for (std::size_t k = 0; k < reaches.size(); ++k) out += (k ? "," : "") + json(reaches[k]);
-    out += fmt::format(R"(],"doc":{},"doc_ref":{}}})", json_string(type.doc ? type.doc : ""),
-                       json_string(type.doc_ref ? type.doc_ref : ""));
+    if (!layout::is_carrier(protocol, type)) messages.push_back(json(protocol, type));
   }
-  return out + "\n]}\n";
+  const Json out = Json::object({{"schema", "rubric.messages/1"},
+                                 {"spec", protocol.id},
+                                 {"title", protocol.title},
+                                 {"messages", Json::array(messages, {}, "\n", "\n")}});
+  return out.text() + '\n';
 }
 
 }  // namespace
 
 void add_messages(cli::Command& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<MessagesOptions>();
   cli::Command& sub = app.add_subcommand("messages", "The messages of a protocol");
   sub.add_option("--spec", options->input.spec, "Protocol above the AM layer")
       .show_default();

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kFooter =
+constexpr const char* kNewAdapterFooter =
     "What it writes answers every command of rct/1 and runs a node that does almost nothing; TODO\n"
     "marks where your implementation goes. conformance/PORTING.md goes on from there.\n"
     "Files that exist are never overwritten.\n"
@@ -25,7 +25,7 @@ constexpr const char* kFooter =
 struct Language {
   const char* name;
   const char* build;   ///< Within the folder; empty: nothing to build.
-  const char* target;  ///< Of rubric test.
+  const char* target;  ///< For rubric test.
 };
 constexpr Language kLanguages[] = {
     {"python", "", "python3 adapter.py"},
@@ -33,7 +33,7 @@ constexpr Language kLanguages[] = {
     {"java", "javac *.java", "java -cp . Adapter"},
 };
 
-struct Options {
+struct NewAdapterOptions {
   std::string language;
   std::string out = ".";
 };
@@ -50,7 +50,7 @@ const Language& language_of(const std::string& name) {
   cli::exit_with(cli::kExitInput);
 }
 
-void write_skeleton(const Options& options) {
+void write_skeleton(const NewAdapterOptions& options) {
   const Language& language = language_of(options.language);
   std::error_code error;
   fs::create_directories(options.out, error);
@@ -78,10 +78,10 @@ void write_skeleton(const Options& options) {
 }  // namespace
 
 void add_new_adapter(cli::Command& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<NewAdapterOptions>();
   cli::Command& sub = app.add_subcommand("new-adapter",
                                      "Write an adapter to fill with an implementation");
-  sub.footer(kFooter);
+  sub.footer(kNewAdapterFooter);
   sub.add_option("LANGUAGE", options->language, "python, cpp or java")
       .required()
       .one_of({"python", "cpp", "java"});

@@ -11,7 +11,7 @@ struct SkeletonFile {
   std::string_view name;
   std::string_view text;
 };
-/// The files of tools/skeletons, which the program carries with it.
+/// Returns the files of tools/skeletons, which the program contains.
 const std::vector<SkeletonFile>& skeleton_files();
 
 }  // namespace rubric::tools

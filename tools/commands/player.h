@@ -1,4 +1,4 @@
-// Implementations as the subcommands that work traces one by one use them.
+// Opens a `--target` for subcommands that run one trace at a time.
 #pragma once
 
 #include "tools/cli/command.h"
@@ -14,21 +14,21 @@
 
 namespace rubric::tools {
 
-/// What such subcommands have in common.
+/// The common options of such subcommands.
 struct PlayerOptions {
-  std::string out = "-";                ///< Where the trace goes.
+  std::string out = "-";                ///< The trace's destination.
   double timeout_seconds = 5;
-  std::optional<std::uint64_t> seed;    ///< Of the nodes, where a trace has none.
+  std::optional<std::uint64_t> seed;    ///< For the nodes, if a trace has none.
 };
 
 /// Adds --out, --timeout and --seed, and the exit codes of verdicts.
 void add_player_options(cli::Command& app, PlayerOptions& options);
 
-/// `work` with its exceptions as what the user reads on stderr and as exit codes: 2 the kit or an
+/// Runs `work`; prints its exceptions on stderr and turns them into exit codes: 2 the kit or an
 /// implementation broke, 64 usage, 66 a trace cannot be read.
 void run_player_command(const cli::Command& app, const std::function<void()>& work);
 
-/// One case of a file, with the headers that hold for it and the seed if it has none.
+/// Returns one case of a file, with the headers that apply to it and the seed if it has none.
 trace::File seeded(const trace::File& file, const trace::Case& one, const PlayerOptions& options);
 
 /// An attached implementation that plays traces. Throws std::invalid_argument (the target makes no
@@ -37,9 +37,9 @@ class AttachedPlayer {
  public:
   AttachedPlayer(const std::string& target, const PlayerOptions& options, std::string profile);
 
-  /// Valid as long as this lives.
+  /// Returns a player, valid as long as this lives.
   shrink::Player player();
-  /// "tiny_mote 0.3".
+  /// Returns "tiny_mote 0.3".
   std::string name();
 
  private:
@@ -47,10 +47,10 @@ class AttachedPlayer {
   std::string profile_;
 };
 
-/// "fails (J4-SEQ: ...)", "passes".
+/// Returns "fails (J4-SEQ: ...)", "passes".
 std::string outcome_text(const runner::CaseResult& result);
 
-/// The file as text, with comments behind the case's name.
+/// Returns the file as text, with comments after the case's name.
 std::string shrunk_text(const shrink::Shrunk& shrunk, const std::string& name,
                         const std::vector<std::string>& comments);
 

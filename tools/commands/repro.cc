@@ -24,7 +24,7 @@
 namespace rubric::tools {
 namespace {
 
-struct Options {
+struct ReproOptions {
   std::string fuzzer;
   std::string input;
   std::string target = "machine";
@@ -32,7 +32,7 @@ struct Options {
   bool exact = false;
 };
 
-constexpr const char* kFooter =
+constexpr const char* kReproFooter =
     "The trace gives a node what the input gives it and asks for what the reference machine does\n"
     "then; of machine:FLAW it says which promise it breaks. An input of nodes_fuzz is written so\n"
     "that every implementation may use its freedom, and tells on what the two nodes differ.\n"
@@ -44,7 +44,7 @@ constexpr const char* kFooter =
     "Exit codes: 0 nothing is broken, 1 something is, 2 the trace cannot be written, 64 usage,\n"
     "66 the input cannot be read.";
 
-// What is written, and what was found, or nothing.
+// The output, with the broken promise or nothing.
 struct Repro {
   trace::File file;
   std::string found;
@@ -60,7 +60,7 @@ flaws::StepFunction step_of(const std::string& target) {
                              ": expected machine or machine:FLAW, as rubric explore lists them");
 }
 
-Repro repro_machine(Bytes bytes, const Options& options) {
+Repro repro_machine(Bytes bytes, const ReproOptions& options) {
   const flaws::StepFunction step = step_of(options.target);
   const script::Script input = script::decode(bytes);
   const auto broken = script::watch(input, step);
@@ -84,7 +84,7 @@ Repro repro_nodes(Bytes bytes) {
   return {difference.file, difference.text};
 }
 
-Repro repro_network(Bytes bytes, const Options& options) {
+Repro repro_network(Bytes bytes, const ReproOptions& options) {
   const explorer::Options network =
       script::walk_options(script::walk_scope(bytes), step_of(options.target));
   const auto nodes = std::make_unique<explorer::Nodes>(network);
@@ -99,7 +99,7 @@ Repro repro_network(Bytes bytes, const Options& options) {
   return {explorer::counterexample(*nodes, path, {"paper", name, ""}), found};
 }
 
-void run(const Options& options) {
+void run_repro(const ReproOptions& options) {
   std::string text;
   std::string error;
   if (!cli::read_file(options.input, text, error)) {
@@ -120,10 +120,10 @@ void run(const Options& options) {
 }  // namespace
 
 void add_repro(cli::Command& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ReproOptions>();
   cli::Command& sub =
       app.add_subcommand("repro", "Write an input of a stateful fuzz target as a trace");
-  sub.footer(kFooter);
+  sub.footer(kReproFooter);
   sub.add_option("fuzzer", options->fuzzer, "Whose input it is")
       .required()
       .one_of({"machine", "nodes", "network"});
@@ -134,7 +134,7 @@ void add_repro(cli::Command& app) {
   sub.add_option("-o,--out", options->out, "Where the trace goes; - is stdout")
       .show_default();
   sub.set_usage_exit_code(cli::kVerdictUsage);
-  sub.callback([options] { run(*options); });
+  sub.callback([options] { run_repro(*options); });
 }
 
 }  // namespace rubric::tools

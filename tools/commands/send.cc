@@ -36,7 +36,7 @@ constexpr int kWaitMostMs = 3'600'000;
 constexpr int kRetriesMost = 10'000;
 constexpr double kListenMostS = 86'400;
 
-struct Options {
+struct SendOptions {
   record::LineOptions lines;
   std::string to;                ///< Empty: $MOTECOM.
   int timeout_ms = 1000;
@@ -48,7 +48,7 @@ struct Options {
   std::string color = "auto";
 };
 
-constexpr const char* kFooter =
+constexpr const char* kSendFooter =
     "Packets go one at a time. On a serial line each is sent again, as TinyOS hosts do, until the\n"
     "mote confirms it; what the mote wants confirmed is confirmed, too. A serial forwarder\n"
     "confirms nothing. Frames without a packet, as confirmations in a capture, are left out.\n"
@@ -61,7 +61,7 @@ constexpr const char* kFooter =
     "file could not be read or encoded, and was not sent, 4 a packet was not confirmed, or the\n"
     "line cannot be had or is gone.";
 
-live::Address address_of(const Options& options) {
+live::Address address_of(const SendOptions& options) {
   const std::string text = options.to.empty() ? live::default_address() : options.to;
   const char* const whence = options.to.empty() ? "$MOTECOM" : "--to";
   try {
@@ -71,14 +71,14 @@ live::Address address_of(const Options& options) {
   }
 }
 
-attach::HostLinkOptions link_options(const Options& options) {
+attach::HostLinkOptions link_options(const SendOptions& options) {
   attach::HostLinkOptions out;
   out.ack_wait = Milliseconds{options.timeout_ms};
   out.tries = options.retries + 1;
   return out;
 }
 
-std::unique_ptr<format::Formatter> make_formatter(const Options& options,
+std::unique_ptr<format::Formatter> make_formatter(const SendOptions& options,
                                                   const reflect::Protocol& protocol) {
   if (options.format == "jsonl") {
     return std::make_unique<format::JsonlFormatter>(protocol, false, std::vector<format::Path>{});
@@ -95,7 +95,7 @@ std::string counted(int count, const char* one, const char* many) {
 /// One run of the subcommand.
 class Send {
  public:
-  Send(const Options& options, live::Address address)
+  Send(const SendOptions& options, live::Address address)
       : options_(options),
         protocol_(cli::chosen_protocol(options.lines.input)),
         encoder_(options.lines, protocol_, cli::chosen_message(options.lines.input, protocol_),
@@ -142,7 +142,7 @@ class Send {
     return lines.all();
   }
 
-  // Why this cannot be sent, or nothing.
+  // Returns why this cannot be sent, or nothing.
   std::string refusal(const Packet& packet) const {
     if (packet.framing == Framing::kRadio) return "expected a serial packet, given a radio frame";
     if (packet.framing == Framing::kBare) {
@@ -160,7 +160,7 @@ class Send {
                        packet.bytes.size());
   }
 
-  // Whether to go on.
+  // Sends one packet. Returns whether to go on.
   bool one(EncodedLines& lines, const OwnedPacket& owned, const std::string& place) {
     const Packet packet = owned.view();
     const std::string why = refusal(packet);
@@ -198,7 +198,7 @@ class Send {
     return frame_.am.present ? fmt::format("AM type {}", frame_.am.type) : "packet";
   }
 
-  // The packet's line.
+  // Prints the packet's line.
   void report(const Packet& packet, const live::Sender::Result& result) {
     ++packets_;
     done_ += result.done;
@@ -222,7 +222,7 @@ class Send {
     output_.flush();
   }
 
-  // A frame came.
+  // Handles a frame from the line.
   void came(const Packet& packet) {
     const bool confirmation = packet.framing == Framing::kHdlc && packet.kind == kSerialAck &&
                               packet.error.fault == Fault::kNone;
@@ -235,7 +235,7 @@ class Send {
     record.time_ns = packet.time_ns;
     record.frame = &frame_;
     formatter_->print(record, output_.buffer());
-    // Who closed the pipe has seen enough; what is to be sent is sent all the same.
+    // A closed pipe ends the listening; packets are sent all the same.
     if (!output_.flush() && listening_) live::request_stop();
   }
 
@@ -259,7 +259,7 @@ class Send {
     fmt::print(stderr, "rubric: {}\n", text);
   }
 
-  const Options& options_;
+  const SendOptions& options_;
   const reflect::Protocol& protocol_;
   record::LineEncoder encoder_;
   reflect::FrameDecoder decoder_;
@@ -268,15 +268,15 @@ class Send {
   cli::Output output_;
   reflect::Frame frame_;
   live::Sender sender_;
-  int packets_ = 0;   // That were sent, whatever became of them.
+  int packets_ = 0;   // Sent packets, whatever their result.
   int done_ = 0;
   int left_out_ = 0;
-  std::uint64_t frames_ = 0;  // That came and were shown.
+  std::uint64_t frames_ = 0;  // Received and shown.
   bool unsent_ = false;
   bool listening_ = false;    // All that there was to send was sent.
 };
 
-void add_timing_options(cli::Command& app, Options& options) {
+void add_timing_options(cli::Command& app, SendOptions& options) {
   app.add_option("--timeout", options.timeout_ms,
                  "Serial lines: ms until a packet that is not confirmed is sent again")
       .between(1, kWaitMostMs)
@@ -298,11 +298,11 @@ void add_timing_options(cli::Command& app, Options& options) {
 }  // namespace
 
 void add_send(cli::Command& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<SendOptions>();
   options->lines.to_line = true;
   cli::Command& sub = app.add_subcommand(
       "send", "Packets to a mote: JSON lines of 'rubric decode', or fields alone");
-  sub.footer(kFooter);
+  sub.footer(kSendFooter);
   record::add_line_options(sub, options->lines);
   sub.get_option("FILE").check([](const std::string& text) {
     return text.find('@') != text.npos && (text.starts_with("serial@") || text.starts_with("sf@") ||

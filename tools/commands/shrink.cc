@@ -19,7 +19,7 @@ namespace {
 using runner::CaseResult;
 using runner::CaseVerdict;
 
-struct Options {
+struct ShrinkOptions {
   std::string trace;
   std::string target;
   std::string case_name;
@@ -27,7 +27,7 @@ struct Options {
   PlayerOptions shared;
 };
 
-constexpr const char* kFooter =
+constexpr const char* kShrinkFooter =
     "The result fails by the same rule, and the reference machine passes it if it passes the\n"
     "original; without any one of its lines it would not. It is a golden trace of its own.\n"
     "Examples:\n"
@@ -48,7 +48,7 @@ struct Failing {
   CaseResult result;
 };
 
-std::optional<Failing> find_failing(const suite::Cases& cases, const Options& options,
+std::optional<Failing> find_failing(const suite::Cases& cases, const ShrinkOptions& options,
                                     const shrink::Player& player) {
   for (const suite::SuiteCase& each : cases.all()) {
     if (!options.case_name.empty() && each.one->name != options.case_name) continue;
@@ -59,7 +59,7 @@ std::optional<Failing> find_failing(const suite::Cases& cases, const Options& op
   return std::nullopt;
 }
 
-void shrink_it(const Options& options) {
+void shrink_it(const ShrinkOptions& options) {
   const suite::Cases cases = suite::Cases::of({options.trace});
   if (!options.case_name.empty() && !cases.find(options.case_name)) {
     throw cli::UsageError(options.trace + " has no case " + options.case_name);
@@ -95,9 +95,9 @@ void shrink_it(const Options& options) {
 }  // namespace
 
 void add_shrink(cli::Command& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ShrinkOptions>();
   cli::Command& sub = app.add_subcommand("shrink", "Make a failing trace as small as it can be");
-  sub.footer(kFooter);
+  sub.footer(kShrinkFooter);
   sub.add_option("trace", options->trace, "A .rtr file").required().type_name("TRACE");
   sub.add_option("--target", options->target, "The implementation, as in rubric test").required();
   sub.add_option("--case", options->case_name, "Which case; default: the first that fails");

@@ -26,15 +26,15 @@ using simulator::Statistics;
 
 constexpr const char* kFree = "free";
 
-struct Options {
+struct SimulateOptions {
   simulator::ScenarioOptions network;
   std::string scenario = kFree;
-  double seconds = 0;  ///< 0: as long as the scenario takes to be told.
+  double seconds = 0;  ///< 0: as long as the scenario's story.
   std::string rtr;
   std::string pcapng;
 };
 
-std::string footer() {
+std::string simulate_footer() {
   std::string text = "Scenarios:\n";
   for (const Scenario& scenario : simulator::scenarios()) {
     text += fmt::format("  {:<13} {} ({} s)\n", scenario.name, scenario.doc,
@@ -63,7 +63,7 @@ std::string summary(const Statistics& s) {
       s.doubled, s.unheard, s.serial_frames, s.peis_messages);
 }
 
-void run(const Options& options) {
+void run_simulate(const SimulateOptions& options) {
   const Scenario& scenario = *simulator::find_scenario(options.scenario);
   const auto length_us =
       options.seconds == 0
@@ -95,11 +95,11 @@ std::vector<std::string> scenario_names() {
 
 void add_simulate(cli::Command& app) {
   constexpr std::size_t kMotesMax = 200;  // Anchors have the addresses above.
-  constexpr std::size_t kSinksMax = 26;   // Islands are told apart by a letter.
+  constexpr std::size_t kSinksMax = 26;   // A letter distinguishes each island.
   constexpr double kSecondsMax = 86'400;
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<SimulateOptions>();
   cli::Command& sub = app.add_subcommand("simulate", "Run a network of reference machines");
-  sub.footer(footer());
+  sub.footer(simulate_footer());
   const cli::Option motes = sub.add_option("--motes", options->network.motes, "How many, in scenario free")
                     .between(std::size_t{0}, kMotesMax)
                     .show_default();
@@ -134,7 +134,7 @@ void add_simulate(cli::Command& app) {
     if (options->rtr == "-" && options->pcapng == "-") {
       throw cli::UsageError("--out-rtr and --out-pcapng cannot both be stdout");
     }
-    run(*options);
+    run_simulate(*options);
   });
 }
 

@@ -15,18 +15,18 @@
 namespace rubric::tools {
 namespace {
 
-struct Options {
+struct StatsOptions {
   cli::InputOptions input;
   std::string format = "text";
 };
 
-constexpr const char* kFooter =
+constexpr const char* kStatsFooter =
     "A gap is the time between neighbouring frames of one file. A frame counts as repeated if the\n"
     "one before it with the same addresses, message and interface had the same seq_num.\n"
     "A line in use, and with --follow a file that grows, is counted until Ctrl-C.\n"
     "Exit codes: 0 clean, 1 malformed frames were seen, 2 usage, 3 input cannot be read.";
 
-int run(const Options& options) {
+int run_stats(const StatsOptions& options) {
   const reflect::Protocol& protocol = cli::chosen_protocol(options.input);
   const reflect::FrameDecoder decoder(protocol, cli::chosen_message(options.input, protocol));
   reflect::Frame frame;
@@ -54,19 +54,16 @@ int run(const Options& options) {
 }  // namespace
 
 void add_stats(cli::Command& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<StatsOptions>();
   cli::Command& sub = app.add_subcommand(
       "stats", "Counts by message, addresses and fault; rates, gaps, repetitions");
-  sub.footer(kFooter);
+  sub.footer(kStatsFooter);
   cli::add_input_options(sub, options->input);
   cli::add_live_options(sub, options->input);
   sub.add_option("--format", options->format, "text or json")
       .one_of({"text", "json"})
       .show_default();
-  sub.callback([options] {
-    const int code = run(*options);
-    if (code != cli::kExitClean) cli::exit_with(code);
-  });
+  sub.exit_code_of([options] { return run_stats(*options); });
 }
 
 }  // namespace rubric::tools

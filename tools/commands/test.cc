@@ -38,7 +38,7 @@ using Milliseconds = std::chrono::milliseconds;
 
 constexpr const char* kCommand = "test";
 
-constexpr const char* kFooter =
+constexpr const char* kTestFooter =
     "A target is a command that speaks rct/1, a real node at its own line, or the reference\n"
     "machine in this program (conformance/PORTING.md):\n"
     "  './my_adapter --fast'     started as a child process\n"
@@ -92,7 +92,7 @@ suite::Cases read_cases(const TestOptions& options) {
   }
 }
 
-suite::ExpectedFailures read_expected(const TestOptions& options) {
+report::KnownFailures read_expected(const TestOptions& options) {
   if (options.expect.empty()) return {};
   const std::string text = cli::text_of_file(kCommand, options.expect);
   try {
@@ -170,7 +170,7 @@ void check_seeds(const TestOptions& options) {
   }
 }
 
-// Text appears as it is made, on a terminal each line at once; in a file when it is whole.
+// Prints text as it is made, on a terminal each line at once; to a file when it is whole.
 class Text {
  public:
   Text(const TestOptions& options, bool wanted)
@@ -237,7 +237,7 @@ suite::SuiteRun work(const TestOptions& options, const suite::Cases& cases, suit
   return all;
 }
 
-// Everything into one folder: the page with what belongs to it, and what programs read.
+// Writes everything into one folder: the page with its files, and reports for programs.
 bool write_folder(const TestOptions& options, const suite::SuiteRun& run,
                   const std::optional<suite::EarlierRun>& earlier) {
   suite::write_html_report(run, earlier ? &*earlier : nullptr, options.report);
@@ -260,7 +260,7 @@ bool write_formats(const TestOptions& options, const suite::SuiteRun& run,
   return (options.report.empty() || write_folder(options, run, earlier)) && good;
 }
 
-int run(const TestOptions& options) {
+int run_test(const TestOptions& options) {
   const suite::Cases cases = read_cases(options);
   suite::Plan plan;
   plan.expected = read_expected(options);
@@ -362,8 +362,8 @@ void add_test(cli::Command& app) {
   cli::Command& command = app.add_subcommand(kCommand, "Try implementations with golden traces");
   auto options = std::make_shared<TestOptions>();
   add_options(command, *options);
-  command.footer(kFooter);
-  cli::set_verdict(command, [options] { return run(*options); });
+  command.footer(kTestFooter);
+  cli::set_verdict(command, [options] { return run_test(*options); });
 }
 
 }  // namespace rubric::tools

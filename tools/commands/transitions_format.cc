@@ -7,56 +7,53 @@
 #include <map>
 #include <utility>
 
-#include "conformance/report/text.h"
+#include "conformance/report/json.h"
 
 namespace rubric::tools {
 namespace {
 
 using explorer::Diagram;
 using explorer::Transition;
-using report::json_string;
+using report::Json;
 
 std::string one_line(std::string text) {
   std::replace(text.begin(), text.end(), '\n', ' ');
   return text;
 }
 
-// "join_reply, another number"
+// Returns "join_reply, another number".
 std::string trigger_of(const Transition& t) {
   std::string out = t.trigger;
   if (!t.guards.empty()) out += fmt::format(", {}", fmt::join(t.guards, " or "));
   return out;
 }
 
-std::string list_of(const std::vector<std::string>& items) {
-  std::string out;
-  for (const std::string& item : items) out += (out.empty() ? "" : ", ") + json_string(item);
-  return "[" + out + "]";
+Json json_of(const Transition& t) {
+  std::vector<std::string> way;
+  for (const explorer::Given& given : t.witness.events) way.push_back(given.text());
+  return Json::object({{"from", t.from},
+                       {"to", t.to},
+                       {"trigger", t.trigger},
+                       {"guards", Json::array(t.guards)},
+                       {"outputs", Json::array(t.outputs)},
+                       {"rules", Json::array(t.rules)},
+                       {"ignored", t.ignored},
+                       {"witness", Json::array(way)}},
+                      " ");
 }
 
-std::string json_of(const Diagram& diagram) {
-  std::vector<std::string> states;
-  for (const std::string& state : diagram.states) states.push_back(one_line(state));
-  std::string out = fmt::format(
-      "  {{\"name\": {}, \"title\": {}, \"complete\": {}, \"worlds\": {},\n   \"states\": {},\n"
-      "   \"transitions\": [",
-      json_string(diagram.name), json_string(diagram.title), diagram.complete, diagram.worlds,
-      list_of(states));
-  bool first = true;
-  for (const Transition& t : diagram.transitions) {
-    std::vector<std::string> way;
-    for (const explorer::Given& given : t.witness.events) way.push_back(given.text());
-    out += fmt::format(
-        "{}\n    {{\"from\": {}, \"to\": {}, \"trigger\": {}, \"guards\": {},\n"
-        "     \"outputs\": {}, \"rules\": {}, \"ignored\": {},\n     \"witness\": {}}}",
-        first ? "" : ",", t.from, t.to, json_string(t.trigger), list_of(t.guards),
-        list_of(t.outputs), list_of(t.rules), t.ignored, list_of(way));
-    first = false;
-  }
-  return out + "]}";
+Json json_of(const Diagram& diagram) {
+  const auto transition = [](const Transition& t) { return json_of(t); };
+  return Json::object({{"name", diagram.name},
+                       {"title", diagram.title},
+                       {"complete", diagram.complete},
+                       {"worlds", diagram.worlds},
+                       {"states", Json::array(diagram.states, one_line)},
+                       {"transitions", Json::array(diagram.transitions, transition, "\n    ")}},
+                      "\n   ");
 }
 
-// HTML-like labels of Graphviz.
+// Escapes text for HTML-like labels of Graphviz.
 std::string html(std::string_view text) {
   std::string out;
   for (const char c : report::xml_text(text)) {
@@ -82,7 +79,7 @@ std::string guarded(const Transition& t) {
   return out;
 }
 
-// Lines: a trigger in bold with its guard, what comes out, the rules.
+// Returns lines: a trigger in bold with its guard, the output, the rules.
 std::string lines_of(const Transition& t) {
   std::string out = "<B>" + html(t.trigger) + "</B>";
   if (!t.guards.empty()) out += html(fmt::format("{}[{}]", kBlank, fmt::join(t.guards, " or ")));
@@ -107,7 +104,7 @@ std::string cell(const std::string& lines) {
   return "<TR><TD ALIGN=\"LEFT\" BALIGN=\"LEFT\">" + lines + "</TD></TR>";
 }
 
-// A state's name, what happens in it without leaving it, and what has no effect there.
+// Returns a state's name, the steps that stay in it, and the triggers without effect there.
 std::string node_of(const Diagram& diagram, std::size_t state) {
   std::string inside;
   std::string ignored;
@@ -129,7 +126,8 @@ std::string node_of(const Diagram& diagram, std::size_t state) {
 
 using Edges = std::map<std::pair<std::size_t, std::size_t>, std::vector<const Transition*>>;
 
-// Takes out what leads from every other state to the first, such as a reboot; its lines.
+// Removes edges present from every state to the initial one (a reboot, for example) and returns
+// them as text.
 std::string from_everywhere(Edges& edges, const std::vector<bool>& reached) {
   std::string out;
   const auto others = std::count(reached.begin() + 1, reached.end(), true);
@@ -155,7 +153,7 @@ std::string dot_of(const Diagram& diagram) {
       "  node [shape=box, style=rounded, fontname=\"Courier\", fontsize=12, margin=\"0.05\"];\n"
       "  edge [fontname=\"Courier\", fontsize=12, arrowsize=0.8];\n"
       "  start [shape=point, width=0.12];\n",
-      diagram.name, json_string(diagram.title));
+      diagram.name, report::json_string(diagram.title));
   std::vector<bool> reached(diagram.states.size());
   reached[0] = true;
   Edges edges;
@@ -211,12 +209,13 @@ std::string transitions_text(const std::vector<Diagram>& diagrams) {
 
 std::string transitions_json(const std::vector<Diagram>& diagrams, const std::string& profile,
                              const std::string& flaw) {
-  std::string all;
-  for (const Diagram& diagram : diagrams) all += (all.empty() ? "\n" : ",\n") + json_of(diagram);
-  return fmt::format(
-      "{{\"schema\": \"rubric.transitions/1\", \"profile\": {}, \"flaw\": {},\n"
-      " \"parts\": [{}]}}\n",
-      json_string(profile), report::json_string_or_null(flaw), all);
+  const auto part = [](const Diagram& diagram) { return json_of(diagram); };
+  const Json out = Json::object({{"schema", "rubric.transitions/1"},
+                                 {"profile", profile},
+                                 {"flaw", Json::or_null(flaw)},
+                                 {"parts", Json::array(diagrams, part, "\n  ")}},
+                                "\n ");
+  return out.text() + '\n';
 }
 
 std::string transitions_dot(const std::vector<Diagram>& diagrams) {

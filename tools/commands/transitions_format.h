@@ -1,4 +1,4 @@
-// rubric explore --transitions: state diagrams of the parts of a node, as the machine makes them.
+// Prints the state diagrams of rubric explore --transitions.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace rubric::tools {
 
-/// The diagrams as text for people, as JSON (rubric.transitions/1, explore_format.md), or in the
-/// language of Graphviz. `flaw` may be empty.
+/// Returns the diagrams as text for people, as JSON (rubric.transitions/1, explore_format.md), or
+/// in the language of Graphviz. `flaw` may be empty.
 std::string transitions_text(const std::vector<explorer::Diagram>& diagrams);
 std::string transitions_json(const std::vector<explorer::Diagram>& diagrams,
                              const std::string& profile, const std::string& flaw);

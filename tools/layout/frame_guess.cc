@@ -20,7 +20,7 @@ constexpr std::size_t kFcsBytes = 2;
 
 Bytes view(const ByteList& bytes) { return {bytes.data(), bytes.size()}; }
 
-// Flags around and escapes within, as on the line itself.
+// Removes the flags around and the escapes within, as on the line itself.
 ByteList without_flags(const ByteList& given) {
   ByteList content;
   std::size_t begin = 0;

@@ -18,7 +18,7 @@ using reflect::Value;
 
 namespace {
 
-// What the frames of a message that comes alone say, where the command line says nothing else.
+// Defaults of the frames around a single message, unless the command line gives others.
 constexpr int kBroadcast = 0xffff;
 constexpr int kSerialGroup = 0;
 constexpr int kRadioGroup = 0x22;  // TinyOS's default.
@@ -77,7 +77,7 @@ std::int64_t LineEncoder::am_type(std::string_view carrier_name) const {
                           options_.to_line ? "" : ", or use --carrier none", message_->id));
 }
 
-// The line around the fields.
+// Returns the line around the fields.
 Value LineEncoder::around() {
   const std::string_view carrier = carrier_name();
   const bool radio = carrier == "radio";

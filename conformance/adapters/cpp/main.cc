@@ -1,5 +1,5 @@
 // The node behind rct/1, the protocol of conformance/PORTING.md: reads commands, drives the node,
-// writes what happens. All that is special to an implementation stands in call() and in the events.
+// writes its outputs. All that is special to an implementation is in call() and in the events.
 #include <cmath>
 #include <iostream>
 #include <memory>
@@ -39,7 +39,7 @@ std::string text(float value) {
 
 class Adapter : public World {
  public:
-  /// Answers one command; false after the last.
+  /// Answers one command; returns false after the last.
   bool answer(const std::string& line);
 
   void transmit(Line line, const Frame& frame) override;
@@ -108,7 +108,7 @@ std::string Adapter::closing(const std::vector<std::string>& words) {
   return work(words, number_of(words[1]));
 }
 
-// A command with a time, which is its second word.
+// Runs a command with a time, which is its second word.
 std::string Adapter::work(const std::vector<std::string>& words, Ticks time) {
   const std::string& command = words[0];
   wrote_ = false;

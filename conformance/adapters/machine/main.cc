@@ -1,5 +1,5 @@
 // The reference machine behind rct/1, or a broken or unusual one: a first implementation to attach,
-// and what a suite is tried on.
+// and a subject to try a suite on.
 #include <algorithm>
 #include <cstdio>
 #include <memory>

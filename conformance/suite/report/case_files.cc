@@ -31,7 +31,7 @@ std::vector<std::uint8_t> radio_frame(const trace::AmFrame& am, std::uint8_t dsn
                               Bytes(am.payload.data(), am.payload.size()));
 }
 
-/// Writes the frames of one case, each once however many nodes hear it.
+/// Writes the frames of one case, each once, however many nodes hear it.
 class Capture {
  public:
   explicit Capture(const CaseRun& one) : one_(one) {

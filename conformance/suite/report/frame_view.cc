@@ -100,7 +100,7 @@ void add_head(Bytes packet, std::vector<FrameField>& out) {
   }
 }
 
-// Stale bytes behind a message, and whatever else has no name.
+// Adds stale bytes after a message, and other bytes without a name.
 void add_gaps(std::size_t size, std::vector<FrameField>& fields) {
   std::stable_sort(fields.begin(), fields.end(), [](const FrameField& a, const FrameField& b) {
     return a.offset_bytes < b.offset_bytes;

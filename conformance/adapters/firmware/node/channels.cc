@@ -194,7 +194,8 @@ void Channels::hear(Address own, Address src, Bytes floats, Application& applica
     return application.syn_data_received(id, DataStatus::kUnknownChannel);
   }
   if (!channel->started) return;
-  // The data do not say how many connections their sender meant; both sides know. (decision 8)
+  // The data do not show how many connections their sender meant; takes what both sides have.
+  // (decision 8)
   size_t count = floats.size() / kFloatBytes;
   if (count > channel->size) count = channel->size;
   if (count == 0) return;
@@ -205,7 +206,7 @@ void Channels::hear(Address own, Address src, Bytes floats, Application& applica
 bool Channels::tick(Ticks now) {
   if (!running_ || !is_reached(due_, now)) return false;
   //= S2-TICK: A channel sends at most once a tick, and ticks are no closer than the clock's period.
-  // One that is handled late, in a tick that has partly gone, must not bring the next one closer.
+  // A tick that is handled late, when it has partly gone, must not bring the next one closer.
   due_ = now == due_ ? now + period_ : now + period_ + 1;
   phase_ = 0;
   return true;

@@ -1,4 +1,4 @@
-// What a node does with what it hears: whether it is for it, who handles it, and when.
+// Handles received frames: decides whether they are for the node, who handles them, and when.
 #include "codec/generated/rubicon/learning_notification.h"
 #include "codec/generated/rubicon/rubicon_ack.h"
 #include "codec/generated/rubicon/rubicon_ack_seq_only.h"
@@ -11,15 +11,16 @@ namespace {
 
 using rubicon::Component;
 
-// Components above the transport level; the others nobody reaches through Connectionless.
+// Returns whether a component is above the transport level; Connectionless reaches no others.
 bool is_application(uint8_t app_id) {
   return app_id == number(Component::kMockup) || app_id == number(Component::kLearning) ||
          app_id == number(Component::kApplicationMd) ||
          app_id == number(Component::kControlLayer) || app_id == number(Component::kEsnData);
 }
 
-// The number in the body of an ack, in the paper's form or in release 1.0's (decision 108); false:
-// it is neither. A sink of release 1.0 sets nbytes to 102, so that bytes stand behind it.
+// Reads the number in the body of an ack, in the paper's form or in release 1.0's (decision 108);
+// returns false if it is neither. A sink of release 1.0 sets nbytes to 102, so that bytes follow
+// it.
 bool acked_number(Bytes body, uint16_t& seq_num) {
   using Paper = rubicon::RubiconAckSeqOnlyLayout::SeqNumAt;
   using Ack = rubicon::RubiconAckLayout;

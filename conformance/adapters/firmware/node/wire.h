@@ -1,4 +1,4 @@
-// Between the codec's enumerators and the numbers of frames.
+// Converts between the codec's enumerators and the numbers of frames.
 #pragma once
 
 #include "codec/generated/rubicon/enums.h"
