@@ -4,6 +4,7 @@
 
 #include "codec/generate/interpret.h"
 #include "codec/generate/values.h"
+#include "codec/generated/tinyos/mac_header.h"
 #include "codec/reflect/decode.h"
 #include "codec/reflect/encode_number.h"
 
@@ -14,7 +15,7 @@ using reflect::Field;
 using reflect::Type;
 using std::to_string;
 
-constexpr std::uint32_t kMacHeaderBytes = 9;
+constexpr std::uint32_t kMacHeaderBytes = tinyos::MacHeaderView::kMaxSizeBytes;
 
 /// One frame being broken.
 class Breaker {

@@ -5,6 +5,7 @@
 #include "codec/generate/interpret.h"
 #include "codec/generate/routes.h"
 #include "codec/generate/values.h"
+#include "codec/generated/tinyos/enums.h"
 #include "codec/reflect/decode.h"
 #include "codec/reflect/encode_number.h"
 
@@ -19,11 +20,6 @@ using reflect::Kind;
 using reflect::Op;
 using reflect::Repeat;
 using reflect::Type;
-
-// IEEE 802.15.4-2006, section 7.2.1.1: a data frame with short addresses in one PAN; the other bit
-// asks for an acknowledgement.
-constexpr std::int64_t kDataFrame = 0x8841;
-constexpr std::int64_t kAckRequest = 0x0020;
 
 std::uint32_t index32(std::size_t n) {
   return static_cast<std::uint32_t>(n);
@@ -121,7 +117,9 @@ bool FrameWriter::forced(const Field& f, std::size_t at, std::int64_t& value) {
     return true;
   }
   if (!draft_.radio || at != 0) return false;
-  value = kDataFrame | (random_.chance(0.5) ? kAckRequest : 0);
+  using tinyos::FrameControl;
+  const bool asks = random_.chance(0.5);
+  value = static_cast<std::int64_t>(asks ? FrameControl::kDataAckRequest : FrameControl::kData);
   return true;
 }
 

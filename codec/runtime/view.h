@@ -102,6 +102,44 @@ struct F32 {
 using F32Be = F32<U32Be>;
 using F32Le = F32<U32Le>;
 
+/// Where a structure has a field that always begins at the same byte. Converts to that offset.
+template <size_t kOffset>
+struct PlaceAt {
+  static constexpr size_t kAt = kOffset;
+  constexpr operator size_t() const { return kOffset; }
+};
+/// The same for a number, which it reads and writes whatever the rest of the structure holds.
+template <size_t kOffset, class Wire>
+struct NumberAt : PlaceAt<kOffset> {
+  using Number = Wire;
+  using Value = typename Wire::Value;
+  static constexpr size_t kEnd = kOffset + Wire::kSizeBytes;
+  static Value load(const uint8_t* structure) { return Wire::load(structure + kOffset); }
+  static void store(uint8_t* structure, Value value) { Wire::store(structure + kOffset, value); }
+};
+/// The same for a number that must lie in a range.
+template <size_t kOffset, class Wire, int64_t kLeast, int64_t kMost>
+struct RangedAt : NumberAt<kOffset, Wire> {
+  static constexpr int64_t kMin = kLeast;
+  static constexpr int64_t kMax = kMost;
+  static constexpr bool allows(int64_t value) { return value >= kLeast && value <= kMost; }
+};
+/// The same for an array of numbers.
+template <size_t kOffset, class Wire>
+struct ArrayAt : PlaceAt<kOffset> {
+  using Value = typename Wire::Value;
+  static constexpr size_t kUnitBytes = Wire::kSizeBytes;
+  static Value load(const uint8_t* structure, size_t i) {
+    return Wire::load(structure + kOffset + i * kUnitBytes);
+  }
+  static void store(uint8_t* structure, size_t i, Value value) {
+    Wire::store(structure + kOffset + i * kUnitBytes, value);
+  }
+};
+/// Field `Inner` of the structure that is field `Outer`.
+template <class Outer, class Inner>
+using Within = NumberAt<Outer::kAt + Inner::kAt, typename Inner::Number>;
+
 /// An array of values with room for kCapacity; the first `count` are meant.
 template <class T, size_t kCapacity>
 struct Array {

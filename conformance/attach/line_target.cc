@@ -1,12 +1,13 @@
 #include "conformance/attach/line_target.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
-#include <fmt/format.h>
-
 #include "codec/generated/rubicon/config.h"
 #include "codec/generated/rubicon/enums.h"
+#include "codec/generated/tinyos/am_header.h"
 #include "conformance/attach/rct_text.h"
 #include "conformance/trace/trace.h"
 
@@ -109,9 +110,11 @@ Ticks LineTarget::run_until(Ticks time) {
 // Takes a packet. Returns false if it is not the node's.
 bool LineTarget::take(const TimedPacket& packet) {
   if (is_mote()) return false;
-  if (packet.bytes.empty() || packet.bytes[0] != 0) {
+  using At = tinyos::AmHeaderLayout::DispatchAt;
+  const std::uint8_t dispatch = packet.bytes.size() < At::kEnd ? 0 : packet.bytes[At::kAt];
+  if (packet.bytes.empty() || !At::allows(dispatch)) {
     notes_ += fmt::format("a packet of dispatch {:02x}, which is no active message, is ignored\n",
-                          packet.bytes.empty() ? 0 : packet.bytes[0]);
+                          dispatch);
     return false;
   }
   trace::AmFrame frame;

@@ -6,6 +6,7 @@
 #include "codec/generated/rubicon/join_reply.h"
 #include "codec/generated/rubicon/join_request.h"
 #include "codec/generated/rubicon/net_msg.h"
+#include "codec/generated/rubicon/serial_joined.h"
 #include "conformance/machine/join.h"
 #include "conformance/machine/messages.h"
 #include "conformance/machine/transport.h"
@@ -19,9 +20,10 @@ using machine::Link;
 using machine::Role;
 namespace am = machine::am;
 
-constexpr std::uint8_t kSerialJoinedType = 16;
-constexpr std::size_t kTransIdOffset = 12;
-constexpr std::size_t kBodyTypeOffset = 14;  // After net_msg's header, TRANSID and APPID.
+using TransIdAt = Within<rubicon::NetMsgLayout::PayloadAt, rubicon::AppMsgLayout::TransIdAt>;
+using BodyTypeAt =
+    Within<rubicon::NetMsgLayout::PayloadAt,
+           Within<rubicon::AppMsgLayout::PayloadAt, rubicon::SerialJoinedLayout::MsgTypeAt>>;
 
 struct Watch {
   Monitor& monitor;
@@ -143,8 +145,8 @@ void told_mote_joined(Watch& w, const machine::MoteJoined& joined) {
 void sends(Watch& w, const machine::Transmit& transmit) {
   const Bytes payload = transmit.bytes();
   if (transmit.link == Link::kSerial) {
-    const bool report = transmit.type == am::kNet && payload.size() > kBodyTypeOffset &&
-                        payload[kBodyTypeOffset] == kSerialJoinedType;
+    const bool report = transmit.type == am::kNet && payload.size() >= BodyTypeAt::kEnd &&
+                        BodyTypeAt::load(payload.data()) == rubicon::AmType::kSerialJoined;
     if (report) --w.monitor.owed_reports;
     return;
   }
@@ -232,7 +234,7 @@ void begins(Watch& w) {
 // Checks an ack that reaches its message's sender; awaited acks were read before the step.
 void check_ack(Watch& w, const Frame& frame, const Monitor& before) {
   const auto message = rubicon::NetMsgView::parse(frame.payload);
-  if (!message || frame.payload[kTransIdOffset] != machine::component::kRubiconAck) return;
+  if (!message || TransIdAt::load(frame.payload.data()) != rubicon::Component::kRubiconAck) return;
   const machine::Address own = machine::own_address(w.step.before);
   const Bytes body = message->payload().from(2);
   const std::int32_t seq_num = machine::acked_seq_num(body);

@@ -11,8 +11,6 @@
 namespace rubric::machine {
 namespace {
 
-constexpr std::size_t kCurTimeOffset = 4;  // In join_reply.
-
 // Calls `use` with the line; both lines have the same members, but not the same type.
 template <class Use>
 auto with_line(State& state, Link link, Use use) {
@@ -50,7 +48,7 @@ bool is_stale(const Node& node, const Buffered& frame) {
 //= still for a second or more between replies.
 // Sets the time of a reply that waited for the radio to that at which it leaves.
 void set_time(std::uint8_t* join_reply, const Node& node) {
-  store_be32(join_reply + kCurTimeOffset, clock_ms(node));
+  rubicon::JoinReplyLayout::CurTimeAt::store(join_reply, clock_ms(node));
 }
 
 template <std::size_t kRoom>

@@ -12,8 +12,8 @@
 namespace rubric::machine {
 namespace {
 
-constexpr std::size_t kNetHeaderBytes = 12;
-constexpr std::size_t kAppHeaderBytes = 2;
+constexpr std::size_t kNetHeaderBytes = rubicon::NetMsgLayout::PayloadAt::kAt;
+constexpr std::size_t kAppHeaderBytes = rubicon::AppMsgLayout::PayloadAt::kAt;
 
 Link link_of(Route::Onward onward) {
   switch (onward) {
@@ -56,9 +56,9 @@ void fill_net_msg(const Place& place, Link link, const NetHeader& header, std::u
   //= T1-WRAP: The payload of a net_msg begins with TRANSID CONNLESS and the APPID of the sender for
   //= what Connectionless.send was given.
   std::uint8_t* const body = p + kNetHeaderBytes;
-  body[0] = trans_id;
-  body[1] = app_id;
-  std::copy_n(data.data(), data.size(), body + kAppHeaderBytes);
+  rubicon::AppMsgLayout::store(
+      {static_cast<rubicon::Component>(trans_id), static_cast<rubicon::Component>(app_id), data},
+      body);
   wire.payload = {body, nbytes};
   rubicon::NetMsgLayout::store(wire, p);
   end_net_msg(place, link, kNetHeaderBytes + nbytes);
@@ -115,8 +115,9 @@ void hear_connless(Node& node, rubicon::NetMsgView message, std::uint8_t app_id,
 // Delivers by the message dispatcher.
 void deliver(Node& node, rubicon::NetMsgView message) {
   const Bytes payload = message.payload();
-  const std::uint8_t trans_id = payload[0];
-  const std::uint8_t app_id = payload[1];
+  using App = rubicon::AppMsgLayout;
+  const auto trans_id = static_cast<std::uint8_t>(App::TransIdAt::load(payload.data()));
+  const auto app_id = static_cast<std::uint8_t>(App::AppIdAt::load(payload.data()));
   const Bytes body = payload.from(kAppHeaderBytes);
   switch (trans_id) {
     case component::kConnless:
@@ -251,9 +252,12 @@ void tick(Node& node) {
   for (const SynapticSend& send : sends) {
     //= S2-CONTENT: Synaptic data has TRANSID SYN_CHANNEL, APPID LEARNING or ESN_DATA, and one
     //= little-endian binary32 for each connection, in order, unreliable.
-    std::uint8_t floats[4 * kConnectionsMax];
-    for (std::size_t i = 0; i < send.size; ++i) store_le32(floats + 4 * i, send.value_bits[i]);
-    const Bytes data(floats, std::size_t{4} * send.size);
+    using Values = rubicon::SynapticDataLayout::ValuesAt;
+    std::uint8_t floats[Values::kUnitBytes * kConnectionsMax];
+    for (std::size_t i = 0; i < send.size; ++i) {
+      Values::store(floats, i, float_of_bits(send.value_bits[i]));
+    }
+    const Bytes data(floats, Values::kUnitBytes * send.size);
     ReqId refused = ReqId::kNone;
     send_own(node,
              {send.dest, component::kSynChannel, component::kEsnData, false, data,

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <variant>
 
+#include "codec/generated/rubicon/synaptic_data.h"
+
 namespace rubric::machine {
 namespace {
 
 using ChannelList = BoundedList<Channel, kChannelsRoom>;
 
-constexpr std::size_t kFloatBytes = 4;
+using Values = rubicon::SynapticDataLayout::ValuesAt;
 
 Channel* find(ChannelList& list, ChannelId id) {
   auto* const found =
@@ -229,10 +231,10 @@ void hear_synaptic(Synaptic& synaptic, Address own, Address src, Bytes floats, A
   if (!in->started) return actions.ignored(req::kS6Stopped);
   // The data do not show how many connections the sender meant (decision 8); takes what both sides
   // have.
-  const std::size_t count = std::min<std::size_t>(in->size, floats.size() / kFloatBytes);
+  const std::size_t count = std::min<std::size_t>(in->size, floats.size() / Values::kUnitBytes);
   if (count == 0) return actions.ignored(req::kS2Content);
   for (std::size_t i = 0; i < count; ++i) {
-    in->value_bits[i] = load_le32(floats.data() + kFloatBytes * i);
+    in->value_bits[i] = bits_of_float(Values::load(floats.data(), i));
   }
   in->fresh = true;
   actions.followed(req::kS1Read);

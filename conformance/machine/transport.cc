@@ -1,6 +1,8 @@
 #include "conformance/machine/transport.h"
 
 #include "codec/generated/rubicon/enums.h"
+#include "codec/generated/rubicon/rubicon_ack.h"
+#include "codec/generated/rubicon/rubicon_ack_seq_only.h"
 
 namespace rubric::machine {
 namespace {
@@ -114,15 +116,16 @@ bool must_ack(bool reliable, Address dest, std::uint8_t trans_id, std::uint8_t a
 }
 
 std::int32_t acked_seq_num(Bytes body) {
-  if (body.size() == 2) return load_be16(body.data());
+  using Paper = rubicon::RubiconAckSeqOnlyLayout::SeqNumAt;
+  using Deployed = rubicon::RubiconAckLayout;
+  if (body.size() == Paper::kEnd) return Paper::load(body.data());
   // The deployed form, maybe with stale bytes after it where a sink has set nbytes to 102.
-  constexpr std::size_t kDeployedBytes = 4;
-  const bool deployed = body.size() >= kDeployedBytes &&
-                        body[0] == static_cast<std::uint8_t>(AmType::kLearningNotification);
-  if (deployed) return load_be16(body.data() + 1);
+  const bool deployed = body.size() >= rubicon::RubiconAckView::kMinSizeBytes &&
+                        Deployed::TypeAt::load(body.data()) == AmType::kLearningNotification;
+  if (deployed) return Deployed::SeqNumAt::load(body.data());
   // The paper's form after such a sink. (One whose number begins with 23 looks deployed; that is
   // the price of two forms without a mark.)
-  if (body.size() == kAppDataMax) return load_be16(body.data());
+  if (body.size() == kAppDataMax) return Paper::load(body.data());
   return -1;
 }
 

@@ -103,8 +103,7 @@ void add_joins(Variants& out) {
   out.push_back({"clock_of_another_origin", "A sink's clock began a day ago (119).",
                  on_sent([](Moment&, const Action&, Transmit& frame) {
                    if (frame.type != am::kJoinReply) return Fate::kKeep;
-                   std::uint8_t* const time = frame.payload.data() + join_reply::kTime;
-                   store_be32(time, load_be32(time) + 86'400'000U);
+                   put(frame, join_reply::kTime, get(frame, join_reply::kTime) + 86'400'000U);
                    return Fate::kKeep;
                  })});
 }
@@ -113,14 +112,15 @@ void add_joins(Variants& out) {
 Fate short_ack(Moment& moment, const Action&, Transmit& frame) {
   const bool mine = is_ack(frame) && get(frame, net::kSrcDevid) == own(moment).devid &&
                     get(frame, net::kSrcPid) == own(moment).pid;
-  if (!mine || frame.payload[net::kNbytes] != 6) return Fate::kKeep;
-  put(frame, net::kBody, get(frame, net::kAckedSeq));
-  frame.payload[net::kNbytes] = 4;
+  if (!mine || frame.payload[net::kNbytes] != net::kAckNbytes) return Fate::kKeep;
+  put(frame, net::kPaperSeq, get(frame, net::kAckedSeq));
+  frame.payload[net::kNbytes] = net::kPaperAckNbytes;
   const bool serial = frame.link == Link::kSerial;
   if (serial) {
-    frame.payload[net::kBody + 2] = frame.payload[net::kBody + 3] = 0;
+    std::fill_n(frame.payload.begin() + net::kPaperSeq.kEnd, net::kAckNbytes - net::kPaperAckNbytes,
+                0);
   } else {
-    frame.size_bytes = net::kBody + 2;
+    frame.size_bytes = net::kPaperSeq.kEnd;
   }
   return Fate::kKeep;
 }
@@ -132,7 +132,7 @@ Fate stale_on_serial(Moment& moment, const Action&, Transmit& frame) {
   for (std::size_t i = end; i < frame.payload.size(); ++i) {
     frame.payload[i] = static_cast<std::uint8_t>(0xA5 ^ i);
   }
-  frame.payload[net::kNbytes] = 102;
+  frame.payload[net::kNbytes] = net::kNbytes.kMax;
   return Fate::kKeep;
 }
 
@@ -183,14 +183,14 @@ void acks_unknown_apps(Moment& moment) {
   if (!asked || !moment.actions.transmits().empty() || moment.state.radio.sending) return;
   moment.state.radio.sending = true;
   Transmit& ack = moment.send(Link::kRadio, am::kNet, get(*frame, net::kSrcDevid), req::kT2Ack);
-  std::copy_n(frame->payload.begin() + net::kSrcPid, 4, ack.payload.begin());
-  std::copy_n(frame->payload.begin(), 4, ack.payload.begin() + net::kSrcPid);
+  copy_address(*frame, net::kSrcPid, ack, net::kDestPid);
+  copy_address(*frame, net::kDestPid, ack, net::kSrcPid);
   put(ack, net::kSeqNum, 4711);
-  ack.payload[net::kNbytes] = 4;
+  ack.payload[net::kNbytes] = net::kPaperAckNbytes;
   ack.payload[net::kTransId] = component::kRubiconAck;
   ack.payload[net::kAppId] = frame->payload[net::kAppId];
-  put(ack, net::kBody, get(*frame, net::kSeqNum));
-  ack.size_bytes = net::kBody + 2;
+  put(ack, net::kPaperSeq, get(*frame, net::kSeqNum));
+  ack.size_bytes = net::kPaperSeq.kEnd;
 }
 
 // Reorders frames of different lines and notices, which have no order among themselves.

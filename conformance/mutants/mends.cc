@@ -263,7 +263,7 @@ bool outgoing_oldest_gives_way(Moment& moment) {
 
 bool config_obeyed(Moment& moment) {
   return hear_changed(moment, am::kConfig, 3, [](Forged& forged) {
-    forged.bytes[0] = 10;  // SET_ISLAND_ID.
+    forged.bytes[config::kType] = config::kSetIslandId;
     return true;
   });
 }

@@ -32,7 +32,8 @@ void add_acceptance(Mutants& out) {
                  {req::kJ4Content},
                  on_sent([](Moment&, const Action&, Transmit& frame) {
                    if (frame.type != am::kAckJoin) return Fate::kKeep;
-                   std::swap_ranges(frame.payload.begin(), frame.payload.begin() + 4,
+                   std::swap_ranges(frame.payload.begin() + ack_join::kDestPid,
+                                    frame.payload.begin() + ack_join::kDestDevid.kEnd,
                                     frame.payload.begin() + ack_join::kSrcPid);
                    return Fate::kKeep;
                  })});

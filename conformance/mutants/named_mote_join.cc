@@ -14,7 +14,7 @@ using Phase = machine::JoinMote::Phase;
 
 Transmit& send_request(Moment& moment) {
   Transmit& request = moment.send(Link::kRadio, am::kJoin, 1, req::kJ1Request);
-  request.size_bytes = 6;
+  request.size_bytes = rubicon::JoinRequestView::kMaxSizeBytes;
   put(request, join_request::kSeqNum, moment.state.join.seq_num);
   const machine::Descriptor& d = moment.state.join.descriptor;
   request.payload[join_request::kMoteType] = d.mote_type;
@@ -31,7 +31,8 @@ void add_requests(Mutants& out) {
                  {req::kJ1Request},
                  on_sent([](Moment&, const Action&, Transmit& frame) {
                    if (frame.type == am::kJoin) {
-                     std::fill_n(frame.payload.begin() + join_request::kMoteType, 4, 0);
+                     std::fill_n(frame.payload.begin() + join_request::kMoteType,
+                                 rubicon::MoteDescView::kMaxSizeBytes, 0);
                    }
                    return Fate::kKeep;
                  })});
@@ -244,7 +245,7 @@ void add_outside(Mutants& out) {
                    if (request == nullptr || !moment.is(Role::kMote)) return;
                    Transmit& reply =
                        moment.send(Link::kRadio, am::kJoinReply, request->src, req::kJ10Mote);
-                   reply.size_bytes = 10;
+                   reply.size_bytes = rubicon::JoinReplyView::kMaxSizeBytes;
                    put(reply, join_reply::kMote, request->src);
                  })});
   out.push_back({"mote_lists_members",

@@ -51,7 +51,8 @@ void add_message_acks(Mutants& out) {
                  {req::kT2Content, req::kT2Ack},
                  on_sent([](Moment&, const Action&, Transmit& frame) {
                    if (is_ack(frame)) {
-                     std::swap(frame.payload[net::kAckedSeq], frame.payload[net::kAckedSeq + 1]);
+                     std::reverse(frame.payload.begin() + net::kAckedSeq,
+                                  frame.payload.begin() + net::kAckedSeq.kEnd);
                    }
                    return Fate::kKeep;
                  })});
@@ -124,13 +125,13 @@ void add_needless_acks(Mutants& out) {
                    const Frame* const frame = moment.heard(am::kNet);
                    if (frame == nullptr || !is_ack(*frame) || !is_for_us(moment, *frame)) return;
                    Transmit& ack = moment.send(Link::kRadio, am::kNet, frame->src, req::kT2Loop);
-                   ack.size_bytes = 18;
-                   std::copy_n(frame->payload.begin(), 4, ack.payload.begin() + net::kSrcPid);
-                   std::copy_n(frame->payload.begin() + net::kSrcPid, 4, ack.payload.begin());
-                   ack.payload[net::kNbytes] = 6;
+                   ack.size_bytes = net::kBody + rubicon::RubiconAckView::kMaxSizeBytes;
+                   copy_address(*frame, net::kDestPid, ack, net::kSrcPid);
+                   copy_address(*frame, net::kSrcPid, ack, net::kDestPid);
+                   ack.payload[net::kNbytes] = net::kAckNbytes;
                    ack.payload[net::kTransId] = component::kRubiconAck;
                    ack.payload[net::kAppId] = frame->payload[net::kAppId];
-                   ack.payload[net::kBody] = 23;
+                   ack.payload[net::kBody] = net::kAck;
                    put(ack, net::kAckedSeq, get(*frame, net::kSeqNum));
                  })});
   out.push_back({"broadcast_acked",
@@ -163,7 +164,7 @@ void add_needless_acks(Mutants& out) {
                                       frame->payload[net::kReliable] == 1;
                    if (!asked || !is_for_us(moment, *frame)) return;
                    Transmit& ack = moment.send(Link::kRadio, am::kNet, frame->src, req::kT2Loop);
-                   ack.size_bytes = 18;
+                   ack.size_bytes = net::kBody + rubicon::RubiconAckView::kMaxSizeBytes;
                    ack.payload[net::kTransId] = component::kRubiconAck;
                  })});
 }
@@ -264,14 +265,15 @@ void add_sender(Mutants& out) {
                  "An ack in the paper's form is not understood.",
                  {req::kT3Success},
                  on_heard([](Moment&, Forged& forged) {
-                   return !is_net(forged.frame) || forged.bytes[net::kNbytes] != 4 ||
+                   return !is_net(forged.frame) ||
+                          forged.bytes[net::kNbytes] != net::kPaperAckNbytes ||
                           forged.bytes[net::kTransId] != component::kRubiconAck;
                  })});
   out.push_back({"knows_the_papers_acks_only",
                  "An ack in the deployed form is not understood.",
                  {req::kT3Success},
                  on_heard([](Moment&, Forged& forged) {
-                   return !is_net(forged.frame) || forged.bytes[net::kNbytes] != 6 ||
+                   return !is_net(forged.frame) || forged.bytes[net::kNbytes] != net::kAckNbytes ||
                           forged.bytes[net::kTransId] != component::kRubiconAck;
                  })});
   out.push_back({"ack_timeout_short",

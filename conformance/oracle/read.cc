@@ -6,7 +6,7 @@
 #include <cstring>
 #include <limits>
 
-#include "codec/generated/rubicon/enums.h"
+#include "conformance/oracle/message.h"
 #include "conformance/oracle/read_packet.h"
 #include "conformance/oracle/read_trace.h"
 #include "conformance/oracle/storage.h"
@@ -263,12 +263,10 @@ void merge(Run& run) {
 }
 
 bool looks_towards_sink(const machine::Frame& frame) {
-  if (frame.type == static_cast<std::uint8_t>(rubicon::AmType::kConfig)) return true;
-  const bool net = frame.type == static_cast<std::uint8_t>(rubicon::AmType::kNet);
-  if (!net || frame.payload.size() < 8) return false;
-  const std::uint16_t dest_devid = load_be16(frame.payload.data() + 2);
-  const std::uint16_t src_devid = load_be16(frame.payload.data() + 6);
-  return src_devid == machine::kNullDevid && dest_devid != machine::kNullDevid;
+  if (frame.type == am::kConfig) return true;
+  Net net;
+  return frame.type == am::kNet && parse_net(frame.payload, net) &&
+         net.src.devid == machine::kNullDevid && net.dest.devid != machine::kNullDevid;
 }
 
 }  // namespace rubric::oracle

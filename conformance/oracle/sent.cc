@@ -14,7 +14,7 @@ using rubicon::Component;
 
 constexpr std::int64_t kAtOnceUs = 50'000;
 constexpr std::int64_t kTimeouts = 2;  // After so many of the stated ones there is no event.
-constexpr std::size_t kFloatBytes = 4;
+constexpr std::size_t kFloatBytes = rubicon::SynapticDataLayout::ValuesAt::kUnitBytes;
 
 bool known_trans(std::uint8_t trans_id) {
   return trans_id == component::kConnless || trans_id == component::kSynChannel ||
@@ -48,7 +48,7 @@ void Originals::sent(std::uint16_t node, const Observation& seen, const Net& net
 
 void Originals::judge_content(std::uint16_t node, const Observation& seen, const Net& net) {
   if (!net.sound) {
-    const bool range = net.nbytes < 2 || net.nbytes > kNetPayloadMax;
+    const bool range = !NetAt::NbytesAt::allows(net.nbytes);
     context_.report(range ? req::kWireNetNbytes : req::kWireNetPayload, Severity::kFail,
                     seen.place, node,
                     {"nbytes is " + number(net.nbytes) + " in a message of " +
@@ -60,7 +60,7 @@ void Originals::judge_content(std::uint16_t node, const Observation& seen, const
   if (seen.kind == Observation::Kind::kRadio && came > net.nbytes) {
     stale_[node].add(seen.place, net.nbytes, came);
   }
-  if (net.reliable > 1) {
+  if (!NetAt::ReliableAt::allows(net.reliable)) {
     context_.report(req::kWireNetReliable, Severity::kFail, seen.place, node,
                     {"reliable is " + number(net.reliable) + ".", "0 or 1.", {}});
   }

@@ -106,9 +106,10 @@ void SynapticWatch::sent(std::uint16_t device, const Observation& seen, const Ne
   const machine::Channel* const channel = oracle::find(node.channels, out->id);
   // A write just before the data may have missed its tick; then they have the values before it.
   bool current = true;
+  using Values = rubicon::SynapticDataLayout::ValuesAt;
   for (std::size_t i = 0; channel != nullptr && i < channel->size; ++i) {
-    current = current && 4 * i + 4 <= net.body().size() &&
-              load_le32(net.body().data() + 4 * i) == channel->value_bits[i];
+    current = current && (i + 1) * Values::kUnitBytes <= net.body().size() &&
+              bits_of_float(Values::load(net.body().data(), i)) == channel->value_bits[i];
   }
   if (current || out->wrote_us < now - context_.response_us()) out->wrote_us = -1;
   // Data in the outgoing buffer may still leave.

@@ -38,11 +38,19 @@ bool is_known_to_all(std::uint8_t app_id) {
          id == rubicon::Component::kControlLayer;
 }
 
+using PaperAck = rubicon::RubiconAckSeqOnlyLayout::SeqNumAt;
+using DeployedAck = rubicon::RubiconAckLayout;
+constexpr std::size_t kDeployedAckBytes = rubicon::RubiconAckView::kMinSizeBytes;
+constexpr std::size_t kBodyAt = rubicon::AppMsgLayout::PayloadAt::kAt;
+
 bool is_ack_body(Bytes body) {
-  if (body.size() == 2) return true;
-  constexpr std::size_t kDeployedBytes = 4;
-  return body.size() >= kDeployedBytes &&
-         body[0] == static_cast<std::uint8_t>(rubicon::AmType::kLearningNotification);
+  if (body.size() == PaperAck::kEnd) return true;
+  return body.size() >= kDeployedAckBytes &&
+         DeployedAck::TypeAt::load(body.data()) == rubicon::AmType::kLearningNotification;
+}
+
+std::uint8_t trans_id_of(Bytes payload) {
+  return static_cast<std::uint8_t>(rubicon::AppMsgLayout::TransIdAt::load(payload.data()));
 }
 
 // Returns whether no node has this address, so that it can be nobody's source.
@@ -54,18 +62,21 @@ bool is_nobody(Address src) {
 bool is_decided(const machine::Config& config, const Frame& frame, rubicon::NetMsgView message) {
   const Address dest = machine::address_of(message.dest());
   const Bytes payload = message.payload();
+  const std::uint8_t trans_id = trans_id_of(payload);
+  const auto app_id =
+      static_cast<std::uint8_t>(rubicon::AppMsgLayout::AppIdAt::load(payload.data()));
   const bool base = config.role == Role::kBaseStation;
   if (is_nobody(machine::address_of(message.src()))) return false;
-  if (payload[0] == component::kConnless && machine::is_known_app(payload[1]) &&
-      !is_known_to_all(payload[1])) {
+  if (trans_id == component::kConnless && machine::is_known_app(app_id) &&
+      !is_known_to_all(app_id)) {
     return false;
   }
-  if (payload[0] == component::kRubiconAck && !is_ack_body(payload.from(2))) return false;
+  if (trans_id == component::kRubiconAck && !is_ack_body(payload.from(kBodyAt))) return false;
   // Every island, and a base station among all devices: decision 114.
   const bool everywhere = dest.pid == machine::kBroadcastPid;
   if (everywhere && (base || frame.link == Link::kSerial)) return false;
   if (base && dest.devid == machine::kBroadcastDevid) return false;
-  return !base || payload[0] != component::kSynChannel;  // It has no channels.
+  return !base || trans_id != component::kSynChannel;  // It has no channels.
 }
 
 // Returns whether a waiting frame's fate is decided: a net_msg waits for a busy application, the
@@ -234,18 +245,19 @@ Script before(Script script, Ticks end) {
 
 // Returns where a frame that the node hears has the number that it answers; null if nowhere.
 std::uint8_t* answered_number(const Frame& frame, std::vector<std::uint8_t>& bytes) {
-  constexpr std::size_t kReplySeqOffset = 8;
-  constexpr std::size_t kBodyOffset = 14;  // In a net_msg, after TRANSID and APPID.
-  constexpr std::size_t kCodeBodyBytes = 4;
-  if (frame.type == am::kJoinReply && bytes.size() >= kReplySeqOffset + 2) {
-    return bytes.data() + kReplySeqOffset;
+  using Reply = rubicon::JoinReplyLayout::SeqNumAt;
+  if (frame.type == am::kJoinReply && bytes.size() >= Reply::kEnd) {
+    return bytes.data() + Reply::kAt;
   }
   const auto message = rubicon::NetMsgView::parse(Bytes(bytes.data(), bytes.size()));
   if (frame.type != am::kNet || !message) return nullptr;
   const Bytes payload = message->payload();
-  if (payload[0] != component::kRubiconAck || !is_ack_body(payload.from(2))) return nullptr;
-  const bool with_code = payload.size() >= 2 + kCodeBodyBytes;
-  return bytes.data() + kBodyOffset + (with_code ? 1 : 0);
+  if (trans_id_of(payload) != component::kRubiconAck || !is_ack_body(payload.from(kBodyAt))) {
+    return nullptr;
+  }
+  const bool with_code = payload.size() >= kBodyAt + kDeployedAckBytes;
+  return bytes.data() + rubicon::NetMsgLayout::PayloadAt::kAt + kBodyAt +
+         (with_code ? DeployedAck::SeqNumAt::kAt : PaperAck::kAt);
 }
 
 void add_numbers(const Output& output, std::set<std::uint16_t>& numbers) {
@@ -270,9 +282,9 @@ Script without_guesses(Script script, flaws::StepFunction step) {
     Step& one = script.steps[i];
     const auto* heard = std::get_if<machine::Heard>(&one.event);
     std::uint8_t* const number = heard ? answered_number(heard->frame, one.bytes) : nullptr;
-    if (!number || numbers.contains(load_be16(number))) continue;
+    if (!number || numbers.contains(PaperAck::load(number))) continue;
     constexpr std::uint16_t kFar = 0x4000;  // No script lets a node use so many.
-    store_be16(number, static_cast<std::uint16_t>(script.config.first_seq - kFar));
+    PaperAck::store(number, static_cast<std::uint16_t>(script.config.first_seq - kFar));
   }
   return script;
 }

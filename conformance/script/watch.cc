@@ -24,6 +24,7 @@ using machine::Role;
 using machine::State;
 using machine::Transmit;
 namespace am = machine::am;
+using App = rubicon::AppMsgLayout;
 using Phase = machine::JoinMote::Phase;
 
 // Returns whether the node's lines bring it this frame at all.
@@ -235,8 +236,9 @@ void Watched::told_received(const Seen& seen, const machine::Received& received)
     const auto message = rubicon::NetMsgView::parse(frame.payload);
     if (frame.type != am::kNet || !message) continue;
     const Bytes body = message->payload();
-    if (machine::address_of(message->src()) != received.src || body[1] != received.app_id) continue;
-    if (!equal(body.from(2), received.data)) continue;
+    const auto app_id = static_cast<std::uint8_t>(App::AppIdAt::load(body.data()));
+    if (machine::address_of(message->src()) != received.src || app_id != received.app_id) continue;
+    if (!equal(body.from(App::PayloadAt::kAt), received.data)) continue;
     const Address dest = machine::address_of(message->dest());
     // Every island may be delivered (decision 114), and a sink trusts its base station (126).
     const bool trusted = sink && frame.link == Link::kSerial;
@@ -276,14 +278,15 @@ void Watched::told(const Seen& seen, const machine::Notice& notice) {
 // Checks that an ack that was good before the step has ended its message.
 void Watched::ack_handled(const Seen& seen, const Frame& frame) {
   const auto message = rubicon::NetMsgView::parse(frame.payload);
+  const Bytes payload = message ? message->payload() : Bytes();
   const bool ack = frame.type == am::kNet && message &&
-                   message->payload()[0] == machine::component::kRubiconAck;
+                   App::TransIdAt::load(payload.data()) == rubicon::Component::kRubiconAck;
   // A new island may have come before it.
   if (!ack || (seen.handled.size() > 1 && seen.after.island != seen.before.island)) return;
   if (machine::address_of(message->dest()) != machine::own_address(seen.before)) return;
   const Address from = machine::address_of(message->src());
-  const std::uint8_t app_id = message->payload()[1];
-  const std::int32_t seq_num = machine::acked_seq_num(message->payload().from(2));
+  const auto app_id = static_cast<std::uint8_t>(App::AppIdAt::load(payload.data()));
+  const std::int32_t seq_num = machine::acked_seq_num(payload.from(App::PayloadAt::kAt));
   for (const History::Sent& one : history_.sends) {  // Those that are still open.
     if (one.seq_num != seq_num || one.app_id != app_id || one.dest != from) continue;
     if (!is_broadcast(one.dest)) breaks(Property::kAckCounts, seen.now);

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "codec/generated/rubicon/net_msg.h"
+#include "codec/generated/tinyos/am_header.h"
 #include "conformance/events/app_events.h"
 #include "conformance/machine/join.h"
 #include "conformance/machine/lines.h"
@@ -23,7 +24,7 @@ using machine::State;
 using machine::Transmit;
 namespace am = machine::am;
 
-constexpr std::size_t kAmHeaderBytes = 8;
+constexpr std::size_t kAmHeaderBytes = tinyos::AmHeaderView::kMaxSizeBytes;
 constexpr std::size_t kNoticesEvery = 8;  // They are compared as text, which takes its time.
 constexpr std::size_t kMessageBytesMax = 122;  // (paper: Memory Occupation)
 

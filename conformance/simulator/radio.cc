@@ -2,8 +2,13 @@
 
 #include <algorithm>
 
+#include "codec/generated/tinyos/mac_ack.h"
+#include "codec/reflect/am_frames.h"
+
 namespace rubric::simulator {
 namespace {
+
+using tinyos::FrameControl;
 
 // Times of TinyOS' CC2420 stack: random waits in ticks of its 32 kHz timer, 10 to 329 before the
 // first attempt, 10 to 79 after the channel was found taken.
@@ -14,24 +19,12 @@ constexpr Micros kLinkAckUs[] = {192, 2'500};  // The acknowledgement is softwar
 constexpr Micros kLinkAckWaitUs = 8'000;
 constexpr Micros kDoubleUs[] = {500, 20'000};  // The link repeats a frame after this.
 
-constexpr std::uint16_t kFcfData = 0x8841;  // Short addresses in one PAN.
-constexpr std::uint16_t kFcfDataAck = 0x8861;
-constexpr std::uint16_t kFcfAck = 0x0002;
-constexpr std::uint8_t kNetwork6Lowpan = 0x3F;
-constexpr std::size_t kHeaderBytes = 11;
-constexpr std::size_t kAckBytes = 3;
+constexpr std::size_t kHeaderBytes = reflect::kRadioIHeaderBytes;
 
 std::vector<std::uint8_t> data_frame(const machine::Frame& am, std::uint8_t dsn, bool asks_ack) {
-  std::vector<std::uint8_t> bytes(kHeaderBytes + am.payload.size());
-  store_le16(bytes.data(), asks_ack ? kFcfDataAck : kFcfData);
-  bytes[2] = dsn;
-  store_le16(bytes.data() + 3, kPanId);
-  store_le16(bytes.data() + 5, am.dest);
-  store_le16(bytes.data() + 7, am.src);
-  bytes[9] = kNetwork6Lowpan;
-  bytes[10] = am.type;
-  std::copy(am.payload.begin(), am.payload.end(), bytes.begin() + kHeaderBytes);
-  return bytes;
+  const auto fcf = asks_ack ? FrameControl::kDataAckRequest : FrameControl::kData;
+  return reflect::radio_frame({reflect::fcf_of(fcf), dsn, kPanId, am.dest, am.src}, am.type,
+                              am.payload);
 }
 
 }  // namespace
@@ -225,9 +218,8 @@ void Radio::answer(const OnAir& frame, std::size_t station) {
   ack->sender = station;
   ack->is_ack = true;
   ack->dsn = frame.dsn;
-  ack->bytes.resize(kAckBytes);
-  store_le16(ack->bytes.data(), kFcfAck);
-  ack->bytes[2] = frame.dsn;
+  ack->bytes.resize(tinyos::MacAckView::kMaxSizeBytes);
+  tinyos::MacAckLayout::store({reflect::fcf_of(FrameControl::kAck), frame.dsn}, ack->bytes.data());
   ack->life = stations_[station].life;
   queue_.after(random_.between(kLinkAckUs[0], kLinkAckUs[1]), [this, ack] {
     const Station& from = stations_[ack->sender];

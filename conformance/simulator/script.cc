@@ -2,7 +2,7 @@
 
 #include <variant>
 
-#include "codec/generated/rubicon/enums.h"
+#include "codec/generated/rubicon/updates.h"
 #include "codec/runtime/bytes.h"
 
 namespace rubric::simulator {
@@ -18,15 +18,15 @@ constexpr std::uint32_t kCuts = 2'000;
 constexpr int kReadingMax = 1023;  // The motes have 10-bit converters.
 
 std::vector<std::uint8_t> readings(std::uint16_t transducers, Random& random) {
-  std::vector<std::uint8_t> body = {static_cast<std::uint8_t>(rubicon::AmType::kUpdates), 0};
+  rubicon::Updates updates;
+  updates.type = rubicon::AmType::kUpdates;
   for (unsigned bit = 1; bit <= transducers; bit <<= 1) {
     if ((transducers & bit) == 0) continue;
-    std::uint8_t pair[4];
-    store_be16(pair, static_cast<std::uint16_t>(bit));
-    store_be16(pair + 2, static_cast<std::uint16_t>(random.between(0, kReadingMax)));
-    body.insert(body.end(), pair, pair + sizeof(pair));
-    ++body[1];
+    updates.updates.push({rubicon::TransducerMask(static_cast<std::uint16_t>(bit)),
+                          static_cast<std::uint16_t>(random.between(0, kReadingMax))});
   }
+  std::vector<std::uint8_t> body(rubicon::UpdatesLayout::size_bytes(updates));
+  rubicon::UpdatesLayout::store(updates, body.data());
   return body;
 }
 

@@ -3,26 +3,16 @@
 #include <algorithm>
 #include <array>
 
+#include "codec/reflect/am_frames.h"
 #include "codec/runtime/hdlc.h"
 
 namespace rubric::simulator {
 namespace {
 
-constexpr std::size_t kSerialHeaderBytes = 8;  // Dispatch and AM header.
 constexpr Micros kBaud = 115'200;
 constexpr Micros kBitsPerByte = 10;
 constexpr Micros kResendUs = 1'000'000;  // A host misses its confirmation.
 constexpr int kTriesMax = 25;
-
-std::vector<std::uint8_t> packet_of(const machine::Frame& am) {
-  std::vector<std::uint8_t> bytes(kSerialHeaderBytes + am.payload.size());
-  store_be16(bytes.data() + 1, am.dest);
-  store_be16(bytes.data() + 3, am.src);
-  bytes[5] = static_cast<std::uint8_t>(am.payload.size());
-  bytes[7] = am.type;
-  std::copy(am.payload.begin(), am.payload.end(), bytes.begin() + kSerialHeaderBytes);
-  return bytes;
-}
 
 // Returns how long the frame takes, flags and escapes included.
 Micros shift_us(std::uint8_t kind, std::int32_t seq, Bytes packet) {
@@ -40,10 +30,11 @@ Micros shift_us(std::uint8_t kind, std::int32_t seq, Bytes packet) {
 
 void Serial::send(NodeId from, const machine::Frame& frame) {
   auto held = std::make_shared<Held>();
-  held->packet = packet_of(frame);
+  held->packet = reflect::serial_packet(
+      {tinyos::Dispatch::kActiveMessage, frame.dest, frame.src, 0, 0, frame.type}, frame.payload);
   held->am = frame;
   held->am.link = machine::Link::kSerial;
-  held->am.payload = Bytes(held->packet.data(), held->packet.size()).from(kSerialHeaderBytes);
+  held->am.payload = Bytes(held->packet.data(), held->packet.size()).from(reflect::kAmHeaderBytes);
   if (from == plan_.base_station) return try_host(held);
   shift_out(false, kSerialPacketNoAck, -1, held, [this, held](bool intact) {
     deliver(plan_.base_station, *held, intact);

@@ -11,7 +11,10 @@
 #include "codec/generated/rubicon/join_request.h"
 #include "codec/generated/rubicon/messages.h"
 #include "codec/generated/rubicon/net_msg.h"
+#include "codec/generated/rubicon/radio_i_frame.h"
+#include "codec/generated/rubicon/radio_t_frame.h"
 #include "codec/generated/rubicon/rubicon_ack.h"
+#include "codec/reflect/am_frames.h"
 #include "codec/reflect/registry.h"
 #include "conformance/machine/messages.h"
 #include "conformance/runner/subject_target.h"
@@ -28,9 +31,8 @@ using script::Script;
 using script::Step;
 namespace am = machine::am;
 
-constexpr std::size_t kAmHeaderBytes = 8;
-constexpr std::size_t kSrcOffset = 4;  // In a net_msg: dest, src, reliable, number.
-constexpr std::size_t kSeqOffset = 9;
+using reflect::kAmHeaderBytes;
+using rubicon::NetMsgLayout;
 
 template <class Value>
 std::vector<std::uint8_t> bytes_of(const Value& value) {
@@ -42,6 +44,10 @@ std::vector<std::uint8_t> bytes_of(const Value& value) {
 
 const reflect::Protocol& protocol() { return *reflect::find_protocol("rubicon"); }
 
+void store_address(std::vector<std::uint8_t>& payload, std::size_t at, machine::Address address) {
+  rubicon::RAddrLayout::store(machine::wire_of(address), payload.data() + at);
+}
+
 Step heard(const Frame& frame, std::vector<std::uint8_t> payload) {
   payload.resize(std::min<std::size_t>(payload.size(), machine::kAmPayloadMax));
   return {0, machine::Heard{frame}, std::move(payload)};
@@ -49,13 +55,9 @@ Step heard(const Frame& frame, std::vector<std::uint8_t> payload) {
 
 // Returns the serial form of a frame, whatever line brings it: the table has it for every message.
 std::vector<std::uint8_t> packet_of(const Frame& frame, const std::vector<std::uint8_t>& payload) {
-  std::vector<std::uint8_t> out(kAmHeaderBytes + payload.size());
-  store_be16(&out[1], frame.dest);
-  store_be16(&out[3], frame.src);
-  out[5] = static_cast<std::uint8_t>(payload.size());
-  out[7] = frame.type;
-  std::copy(payload.begin(), payload.end(), out.begin() + kAmHeaderBytes);
-  return out;
+  return reflect::serial_packet(
+      {tinyos::Dispatch::kActiveMessage, frame.dest, frame.src, 0, 0, frame.type},
+      Bytes(payload.data(), payload.size()));
 }
 
 }  // namespace
@@ -206,7 +208,11 @@ Step ScriptMutator::message(const Script& script, const History& history, std::s
   const bool radio = made.framing == Framing::kRadio;
   // The AM type follows the 802.15.4 header, in most networks after their own byte.
   std::size_t begin = kAmHeaderBytes;
-  if (radio) begin = std::string_view(route.carrier) == "radio_i" ? 11 : 10;
+  if (radio) {
+    const bool network = std::string_view(route.carrier) == "radio_i";
+    begin = network ? rubicon::RadioIFrameLayout::PayloadAt::kAt
+                    : rubicon::RadioTFrameLayout::PayloadAt::kAt;
+  }
   Frame frame;
   std::vector<std::uint8_t> payload;
   if (made.bytes.size() > begin) {
@@ -229,24 +235,21 @@ void ScriptMutator::fit_message(const Script& script, const History& history, st
   frame.src = static_cast<std::uint16_t>(one_in(4) ? 1 : 2 + below(8));
   // Addresses and numbers of frames that the node sent or received.
   const std::size_t shown = history.before[at].outputs;
-  if (frame.type != am::kNet || payload.size() < kSeqOffset + 2) return;
+  if (frame.type != am::kNet || payload.size() < NetMsgLayout::SeqNumAt::kEnd) return;
   const std::uint16_t island = config.role == Role::kMote ? 11 : config.island;
   if (!one_in(6)) {
-    store_be16(payload.data(), island);
     const auto own = config.role == Role::kBaseStation ? machine::kNullDevid : config.id;
-    store_be16(payload.data() + 2, one_in(4) ? std::uint16_t{machine::kBroadcastDevid} : own);
-    store_be16(payload.data() + kSrcOffset, island);
-    store_be16(payload.data() + kSrcOffset + 2, frame.src);
+    const std::uint16_t dest = one_in(4) ? std::uint16_t{machine::kBroadcastDevid} : own;
+    store_address(payload, NetMsgLayout::DestAt::kAt, {island, dest});
+    store_address(payload, NetMsgLayout::SrcAt::kAt, {island, frame.src});
   }
   if (shown == 0) return;
   const runner::Output& output = history.outputs[below(shown)];
   const auto sent = rubicon::NetMsgView::parse(output.frame.bytes());
   if (!output.is_frame || output.frame.type != am::kNet || !sent) return;
-  if (one_in(2)) store_be16(payload.data() + kSeqOffset, sent->seq_num());
+  if (one_in(2)) NetMsgLayout::SeqNumAt::store(payload.data(), sent->seq_num());
   if (one_in(2)) {
-    const machine::Address peer = machine::address_of(sent->dest());
-    store_be16(payload.data() + kSrcOffset, peer.pid);
-    store_be16(payload.data() + kSrcOffset + 2, peer.devid);
+    store_address(payload, NetMsgLayout::SrcAt::kAt, machine::address_of(sent->dest()));
   }
 }
 
@@ -294,9 +297,9 @@ void ScriptMutator::change_field(Script& script) {
     constexpr std::size_t kMax = kAmHeaderBytes + machine::kAmPayloadMax;
     if (!generate::change_field(protocol(), Framing::kSf, packet, kMax, random())) return;
     if (packet.size() < kAmHeaderBytes) return;
-    frame->frame.dest = load_be16(&packet[1]);
-    frame->frame.src = load_be16(&packet[3]);
-    frame->frame.type = packet[7];
+    frame->frame.dest = tinyos::AmHeaderLayout::DestAt::load(packet.data());
+    frame->frame.src = tinyos::AmHeaderLayout::SrcAt::load(packet.data());
+    frame->frame.type = tinyos::AmHeaderLayout::TypeAt::load(packet.data());
     step.bytes.assign(packet.begin() + kAmHeaderBytes, packet.end());
     return;
   }

@@ -24,10 +24,11 @@ constexpr std::array<std::string_view, 37> kMembers{
 static_assert(std::is_sorted(kMembers.begin(), kMembers.end()));
 
 // Classes of the runtime that generated headers use.
-constexpr std::array<std::string_view, 25> kClasses{
-    "Array", "As", "Bytes", "Error", "F32", "F32Be", "F32Le", "Failure", "Fault", "MessageCodec",
-    "MutableBytes", "NumberArrayView", "ReqId", "Result", "S16Be", "S16Le", "S32Be", "S32Le", "S8",
-    "StructArrayView", "U16Be", "U16Le", "U32Be", "U32Le", "U8"};
+constexpr std::array<std::string_view, 30> kClasses{
+    "Array", "ArrayAt", "As", "Bytes", "Error", "F32", "F32Be", "F32Le", "Failure", "Fault",
+    "MessageCodec", "MutableBytes", "NumberArrayView", "NumberAt", "PlaceAt", "RangedAt", "ReqId",
+    "Result", "S16Be", "S16Le", "S32Be", "S32Le", "S8", "StructArrayView", "U16Be", "U16Le",
+    "U32Be", "U32Le", "U8", "Within"};
 static_assert(std::is_sorted(kClasses.begin(), kClasses.end()));
 
 /// The generated names of one class or namespace, with the line of the spec of each.
@@ -123,6 +124,7 @@ class Structure {
       const Place& place = field->place;
       const bool structure = field->kind == ValueKind::kStruct && !field->choice;
       view.claim(field->id, place);
+      view.claim(pascal(field->id) + "At", place);
       if (field->condition) view.claim("has_" + field->id, place);
       builder.claim("set_" + field->id, place);
       if (structure) builder.claim(field->id, place);

@@ -1,5 +1,3 @@
-#include "tools/commands/commands.h"
-
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
@@ -14,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "codec/containers/pcapng_format.h"
 #include "codec/containers/writer.h"
 #include "codec/generate/framer.h"
 #include "codec/generate/link_ack.h"
@@ -22,6 +21,7 @@
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/input.h"
 #include "tools/cli/output.h"
+#include "tools/commands/commands.h"
 #include "tools/commands/generate_lines.h"
 
 namespace rubric::tools {
@@ -35,7 +35,6 @@ using reflect::Route;
 constexpr double kFramingShare = 0.15;  // Share of the broken frames, if a format has framing.
 constexpr std::int64_t kBetweenFramesNs = 1'000'000;
 constexpr std::uint64_t kAckSeed = 0x61636B;  // The acknowledgement has a generator of its own.
-constexpr std::size_t kPcapngDataAt = 28;     // In an enhanced packet block.
 
 struct GenerateOptions {
   cli::InputOptions input;  // Only the choice of the protocol.
@@ -262,9 +261,9 @@ class Run {
   std::size_t frame_begin() const {
     if (format_ == InputFormat::kHdlc) return 1;  // After the flag.
     if (format_ != InputFormat::kPcapng) return 0;
-    // A description of an interface may precede it. The block's length is at both ends.
-    const auto* const end = reinterpret_cast<const std::uint8_t*>(text_.data()) + text_.size();
-    return text_.size() - load_le32(end - 4) + kPcapngDataAt;
+    // A description of an interface may precede it.
+    const auto* const bytes = reinterpret_cast<const std::uint8_t*>(text_.data());
+    return pcapng::last_data_at(Bytes(bytes, text_.size()));
   }
 
   const GenerateOptions& options_;

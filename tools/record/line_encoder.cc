@@ -6,6 +6,7 @@
 #include <system_error>
 #include <utility>
 
+#include "codec/generated/tinyos/enums.h"
 #include "codec/reflect/encode_number.h"
 #include "codec/reflect/registry.h"
 #include "tools/record/carriers.h"
@@ -20,8 +21,7 @@ namespace {
 // Defaults of the frames around a single message, unless the command line gives others.
 constexpr int kBroadcast = 0xffff;
 constexpr int kSerialGroup = 0;
-constexpr int kRadioGroup = 0x22;   // TinyOS's default.
-constexpr int kRadioFcf = 0x8841;   // Data, short addresses, one PAN, no acknowledgement wanted.
+constexpr int kRadioGroup = 0x22;  // TinyOS's default.
 
 }  // namespace
 
@@ -97,7 +97,7 @@ Value LineEncoder::around() {
   line.set("am", std::move(am));
   Value frame = Value::of_object();
   if (radio) {
-    frame.set("fcf", number(kRadioFcf));
+    frame.set("fcf", number(static_cast<std::int64_t>(tinyos::FrameControl::kData)));
     frame.set("destpan", number(group));
   }
   frame_index_ = line.items.size();

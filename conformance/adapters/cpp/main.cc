@@ -4,6 +4,7 @@
 #include <iostream>
 #include <memory>
 
+#include "codec/generated/tinyos/am_header.h"
 #include "conformance/adapters/cpp/base_station.h"
 #include "conformance/adapters/cpp/mote.h"
 #include "conformance/adapters/cpp/sink.h"
@@ -176,22 +177,24 @@ void Adapter::power(const std::string& what) {
 
 void Adapter::rx(const std::string& line, const std::string& hex) {
   const Data packet = bytes_of_hex(hex);
-  constexpr std::size_t kHeader = 8;
-  if (packet.size() < kHeader) throw Unsupported("a frame without its header");
+  const auto header = tinyos::AmHeaderView::parse(Bytes(packet.data(), packet.size()));
+  if (!header) throw Unsupported("a frame without its header");
   Frame frame;
-  frame.dest = load_be16(&packet[1]);
-  frame.src = load_be16(&packet[3]);
-  frame.type = static_cast<AmType>(packet[7]);
-  frame.payload.assign(packet.begin() + kHeader, packet.end());
+  frame.dest = header->dest();
+  frame.src = header->src();
+  frame.type = static_cast<AmType>(header->type());
+  frame.payload.assign(header->stale().begin(), header->stale().end());
   node_->heard(line_of(line), frame);
 }
 
 void Adapter::transmit(Line line, const Frame& frame) {
-  Data packet(8);
-  store_be16(&packet[1], frame.dest);
-  store_be16(&packet[3], frame.src);
-  packet[5] = static_cast<std::uint8_t>(frame.payload.size());
-  packet[7] = static_cast<std::uint8_t>(frame.type);
+  tinyos::AmHeader header;
+  header.dest = frame.dest;
+  header.src = frame.src;
+  header.length = static_cast<std::uint8_t>(frame.payload.size());
+  header.type = static_cast<std::uint8_t>(frame.type);
+  Data packet(tinyos::AmHeaderView::kMaxSizeBytes);
+  tinyos::AmHeaderLayout::store(header, packet.data());
   packet.insert(packet.end(), frame.payload.begin(), frame.payload.end());
   write("tx", kLines[static_cast<std::size_t>(line)] + " " +
                   hex_of(Bytes(packet.data(), packet.size())) +

@@ -2,6 +2,7 @@
 // gets every packet in order, and measures the time. Prints one JSON object; exits with 0 if
 // nothing was lost and the forwarder's memory did not grow.
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <poll.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
@@ -19,9 +20,8 @@
 #include <string>
 #include <vector>
 
-#include <fmt/format.h>
-
 #include "codec/containers/sf_reader.h"
+#include "codec/generated/tinyos/am_header.h"
 #include "codec/runtime/hdlc.h"
 #include "conformance/attach/stream.h"
 #include "conformance/runner/target.h"
@@ -35,7 +35,7 @@ using attach::Descriptor;
 using std::chrono::duration;
 using std::chrono::steady_clock;
 
-constexpr std::size_t kHeaderBytes = 8;   // Dispatch byte and AM header.
+constexpr std::size_t kHeaderBytes = tinyos::AmHeaderView::kMaxSizeBytes;
 constexpr std::size_t kStampBytes = 16;   // The packet's number, and when it was sent.
 constexpr std::size_t kLatencies = 4096;  // A millisecond each; the last one holds the rest.
 constexpr std::chrono::seconds kPatience{30};
@@ -187,7 +187,8 @@ class Line {
  public:
   Line(Descriptor socket, const LoadOptions& options)
       : socket_(std::move(socket)), packet_(options.packet_bytes) {
-    packet_[5] = static_cast<std::uint8_t>(options.packet_bytes - kHeaderBytes);
+    tinyos::AmHeaderLayout::LengthAt::store(
+        packet_.data(), static_cast<std::uint8_t>(options.packet_bytes - kHeaderBytes));
     for (std::size_t i = kHeaderBytes + kStampBytes; i < packet_.size(); ++i) {
       packet_[i] = static_cast<std::uint8_t>(0x70 + i % 16);  // Flags and escapes among them.
     }

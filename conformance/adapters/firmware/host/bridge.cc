@@ -1,9 +1,11 @@
 #include "conformance/adapters/firmware/host/bridge.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
-#include <fmt/format.h>
+#include "codec/generated/tinyos/am_header.h"
 
 namespace rubric::firmware {
 namespace {
@@ -16,7 +18,7 @@ constexpr Instant kSerialPatience = 40 * kInstantsPerTick;
 // its tick falls into the same tick of the bench.
 constexpr Instant kNodeIsLate = kInstantsPerTick / 8;
 constexpr std::size_t kPacketMax = kRecordMax - 1;
-constexpr std::size_t kPacketHeaderBytes = 8;
+constexpr std::size_t kPacketHeaderBytes = tinyos::AmHeaderView::kMaxSizeBytes;
 
 // Returns the air time with preamble, header and FCS besides the payload, at 250 kbit/s.
 Instant air_time(std::size_t packet_bytes) {

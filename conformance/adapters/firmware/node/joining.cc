@@ -168,8 +168,8 @@ void Node::report_members() {
     uint8_t* const body = message->room() + kNetHeaderBytes;
     //= J6-CONTENT: serial_joined carries the member's address and descriptor in an unreliable
     //= net_msg from <island, mote> to <island, NULL>, TRANSID CONNLESS, APPID CONTROL_LAYER.
-    body[0] = number(rubicon::Component::kConnless);
-    body[1] = number(rubicon::Component::kControlLayer);
+    rubicon::AppMsgLayout::TransIdAt::store(body, rubicon::Component::kConnless);
+    rubicon::AppMsgLayout::AppIdAt::store(body, rubicon::Component::kControlLayer);
     rubicon::SerialJoined joined;
     joined.msg_type = rubicon::AmType::kSerialJoined;
     joined.island_addr = island_;

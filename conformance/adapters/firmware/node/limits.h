@@ -4,6 +4,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "codec/generated/tinyos/am_header.h"
+
 #ifndef RUBRIC_FIRMWARE_SINK
 #define RUBRIC_FIRMWARE_SINK 0  // 1: firmware of a sink.
 #endif
@@ -46,7 +48,7 @@ constexpr uint8_t kAckJoinsMax = 5;          ///< For one accepted reply. (decis
 constexpr uint16_t kSinkId = 1;  ///< AM address and devid of every sink.
 
 constexpr size_t kAmPayloadMax = 114;
-constexpr size_t kAmHeaderBytes = 8;
+constexpr size_t kAmHeaderBytes = tinyos::AmHeaderView::kMaxSizeBytes;
 constexpr size_t kAppDataMax = 100;  ///< After TRANSID and APPID.
 
 }  // namespace firmware

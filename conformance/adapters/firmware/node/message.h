@@ -21,22 +21,24 @@ class Message {
     header.src = src;
     header.length = static_cast<uint8_t>(payload_bytes);
     header.type = type;
-    tinyos::AmHeaderLayout::store(header, bytes_);
+    Header::store(header, bytes_);
   }
-  uint16_t dest() const { return load_be16(bytes_ + kDestAt); }
-  uint16_t src() const { return load_be16(bytes_ + kSrcAt); }
-  uint8_t type() const { return bytes_[kTypeAt]; }
-  Bytes packet() const { return Bytes(bytes_, kAmHeaderBytes + bytes_[kLengthAt]); }
-  Bytes payload() const { return Bytes(bytes_ + kAmHeaderBytes, bytes_[kLengthAt]); }
+  uint16_t dest() const { return Header::DestAt::load(bytes_); }
+  uint16_t src() const { return Header::SrcAt::load(bytes_); }
+  uint8_t type() const { return Header::TypeAt::load(bytes_); }
+  Bytes packet() const { return Bytes(bytes_, kAmHeaderBytes + payload_bytes()); }
+  Bytes payload() const { return Bytes(bytes_ + kAmHeaderBytes, payload_bytes()); }
   uint8_t* room() { return bytes_ + kAmHeaderBytes; }
 
   /// Sets, for a message that waits for the application, how many arrived before it, modulo 256.
   /// The group means nothing within the node.
-  void set_arrival(uint8_t arrival) { bytes_[kGroupAt] = arrival; }
-  uint8_t arrival() const { return bytes_[kGroupAt]; }
+  void set_arrival(uint8_t arrival) { Header::GroupAt::store(bytes_, arrival); }
+  uint8_t arrival() const { return Header::GroupAt::load(bytes_); }
 
  private:
-  enum : uint8_t { kDestAt = 1, kSrcAt = 3, kLengthAt = 5, kGroupAt = 6, kTypeAt = 7 };
+  using Header = tinyos::AmHeaderLayout;
+  size_t payload_bytes() const { return Header::LengthAt::load(bytes_); }
+
   uint8_t bytes_[kAmHeaderBytes + kAmPayloadMax];
 };
 static_assert(sizeof(Message) <= kPaperMessageBytes, "a message is larger than the paper's");

@@ -101,8 +101,8 @@ uint16_t Node::send_own(const OwnMessage& own) {
   if (message == nullptr) return kNoSeq;
 
   uint8_t* const body = message->room() + kNetHeaderBytes;
-  body[0] = own.trans_id;
-  body[1] = own.app_id;
+  rubicon::AppMsgLayout::TransIdAt::store(body, rubicon::Component(own.trans_id));
+  rubicon::AppMsgLayout::AppIdAt::store(body, rubicon::Component(own.app_id));
   if (!own.data.empty()) memcpy(body + kAppHeaderBytes, own.data.data(), own.data.size());
   rubicon::NetMsg wire;
   wire.dest = wire_of(dest);
