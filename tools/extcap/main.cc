@@ -78,7 +78,7 @@ int main(int argc, char** argv) {
   try {
     return rubric::extcap::run(
         rubric::extcap::CommandLine(std::vector<std::string>(argv + 1, argv + argc)));
-  } catch (const cli::Ending& error) {
+  } catch (const rubric::cli::Ending& error) {
     return rubric::extcap::complain(error.what());
   }
 }
