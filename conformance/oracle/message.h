@@ -31,7 +31,7 @@ struct Net {
   bool sound = false;
   std::uint8_t trans_id = 0;  ///< Valid if sound.
   std::uint8_t app_id = 0;
-  Bytes payload;              ///< nbytes of it where sound, else what came.
+  Bytes payload;  ///< nbytes of it where sound, else what came.
   Bytes body() const { return payload.from(rubicon::AppMsgLayout::PayloadAt::kAt); }
 
   bool is_ack() const { return sound && trans_id == component::kRubiconAck; }
@@ -45,17 +45,21 @@ struct Net {
   }
 };
 
+template <class Field>
+machine::Address address_at(const std::uint8_t* structure) {
+  using Address = rubicon::RAddrLayout;
+  return {static_cast<std::uint16_t>(Within<Field, Address::PidAt>::load(structure)),
+          static_cast<std::uint16_t>(Within<Field, Address::DevidAt>::load(structure))};
+}
+
 /// Reads a net_msg. Returns false if it is shorter than a header. Unlike the view of a net_msg it
 /// reads a header that breaks a rule: its sender is judged, and others may have taken it.
 inline bool parse_net(Bytes bytes, Net& out) {
   using App = rubicon::AppMsgLayout;
   if (bytes.size() < kNetHeaderBytes) return false;
-  const auto address = [&](std::size_t at) {
-    return machine::address_of(rubicon::RAddrView::parse(bytes.from(at)).value());
-  };
   const std::uint8_t* const p = bytes.data();
-  out.dest = address(NetAt::DestAt::kAt);
-  out.src = address(NetAt::SrcAt::kAt);
+  out.dest = address_at<NetAt::DestAt>(p);
+  out.src = address_at<NetAt::SrcAt>(p);
   out.reliable = NetAt::ReliableAt::load(p);
   out.seq_num = NetAt::SeqNumAt::load(p);
   out.nbytes = NetAt::NbytesAt::load(p);
@@ -85,8 +89,7 @@ inline bool same_content(const machine::Frame& a, const machine::Frame& b) {
   Net other;
   const bool sound = a.type == am::kNet && parse_net(a.payload, one) && one.sound &&
                      parse_net(b.payload, other) && other.sound;
-  return sound ? same_message(one, other) && same_payload(one, other)
-               : equal(a.payload, b.payload);
+  return sound ? same_message(one, other) && same_payload(one, other) : equal(a.payload, b.payload);
 }
 
 struct Request {

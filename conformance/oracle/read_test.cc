@@ -16,7 +16,7 @@
 namespace rubric::oracle {
 namespace {
 
-constexpr const char* kFirmware = "spec/captures/firmware/";
+const std::string kFirmware = "spec/captures/firmware/";
 
 oracle::Run must_read(const std::vector<std::string>& files) {
   std::string error;
@@ -26,7 +26,7 @@ oracle::Run must_read(const std::vector<std::string>& files) {
 }
 
 TEST(Read, TapsAndNumbersOfACapture) {
-  const oracle::Run run = must_read({std::string(kFirmware) + "c_two_islands.pcapng"});
+  const oracle::Run run = must_read({kFirmware + "c_two_islands.pcapng"});
   ASSERT_EQ(run.taps.size(), 3U);
   ASSERT_FALSE(run.seen.empty());
   const Observation& first = run.seen.front();
@@ -41,8 +41,8 @@ TEST(Read, TapsAndNumbersOfACapture) {
 
 // Reads packets of two files, each a few at a time.
 TEST(Read, ARunThatGrowsEndsAsItsFiles) {
-  const std::vector<std::string> files = {std::string(kFirmware) + "a_join_data.pcapng",
-                                          std::string(kFirmware) + "c_two_islands.pcapng"};
+  const std::vector<std::string> files = {kFirmware + "a_join_data.pcapng",
+                                          kFirmware + "c_two_islands.pcapng"};
   constexpr std::size_t kPieceBytes = 501;
   RunReader growing;
   std::vector<std::string> bytes;
@@ -82,7 +82,7 @@ TEST(Read, ARunThatGrowsEndsAsItsFiles) {
 }
 
 TEST(Read, TwoSinksOfOneAddressAreTwoDevices) {
-  const oracle::Run run = must_read({std::string(kFirmware) + "c_two_islands.pcapng"});
+  const oracle::Run run = must_read({kFirmware + "c_two_islands.pcapng"});
   const Identity who = identify(run, Options{});
   std::vector<std::uint16_t> islands;
   for (const Device& device : who.devices) {
@@ -96,8 +96,7 @@ TEST(Read, TwoSinksOfOneAddressAreTwoDevices) {
 }
 
 TEST(Read, ADamagedSerialFrameIsHeardByNobody) {
-  const oracle::Run run =
-      must_read({std::string(kFirmware) + "h10_hdlc_escape_and_bad_serial.pcapng"});
+  const oracle::Run run = must_read({kFirmware + "h10_hdlc_escape_and_bad_serial.pcapng"});
   int damaged = 0;
   for (const Observation& seen : run.seen) {
     if (seen.kind != Observation::Kind::kDamaged) continue;
@@ -109,7 +108,7 @@ TEST(Read, ADamagedSerialFrameIsHeardByNobody) {
 
 TEST(Read, FilesOfOneRunShareTheirClock) {
   const std::string log = "conformance/oracle/testdata/b_reliable.app.rtr";
-  const oracle::Run run = must_read({std::string(kFirmware) + "b_reliable.pcapng", log});
+  const oracle::Run run = must_read({kFirmware + "b_reliable.pcapng", log});
   ASSERT_EQ(run.nodes.size(), 3U);
   for (std::size_t i = 1; i < run.seen.size(); ++i) {
     EXPECT_LE(run.seen[i - 1].place.time_us, run.seen[i].place.time_us);

@@ -55,9 +55,8 @@ Step heard(const Frame& frame, std::vector<std::uint8_t> payload) {
 
 // Returns the serial form of a frame, whatever line brings it: the table has it for every message.
 std::vector<std::uint8_t> packet_of(const Frame& frame, const std::vector<std::uint8_t>& payload) {
-  return reflect::serial_packet(
-      {tinyos::Dispatch::kActiveMessage, frame.dest, frame.src, 0, 0, frame.type},
-      Bytes(payload.data(), payload.size()));
+  return reflect::serial_packet({.dest = frame.dest, .src = frame.src, .type = frame.type},
+                                Bytes(payload.data(), payload.size()));
 }
 
 }  // namespace
