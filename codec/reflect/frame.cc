@@ -17,7 +17,6 @@ using Mac = tinyos::MacHeaderLayout;
 using tinyos::FrameControl;
 using tinyos::FrameControlPart;
 
-constexpr std::size_t kAmHeaderBytes = tinyos::AmHeaderView::kMaxSizeBytes;
 constexpr std::size_t kMacHeaderBytes = tinyos::MacHeaderView::kMaxSizeBytes;
 
 const Field& last_field(const Type& type) { return type.fields[type.field_count - 1]; }
