@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "codec/reflect/frame.h"
+#include "codec/reflect/requirements.h"
 #include "codec/runtime/result.h"
 
 namespace rubric::reflect {
@@ -16,11 +17,6 @@ std::string_view fault_name(Fault fault);
 std::optional<Fault> find_fault(std::string_view name);
 /// What a fault means, without its full stop.
 std::string_view fault_sentence(Fault fault);
-
-/// A requirement's entry: id, level, clause, sentence, source. All are empty for kNone.
-const Requirement& requirement(ReqId id);
-/// By id ("WIRE-NET-NBYTES"), in any case; kNone if there is none.
-ReqId find_requirement(std::string_view id);
 
 /// One sentence for a malformed frame's error, with the numbers that the rule is broken by, without
 /// its full stop: "nbytes is 119, allowed are 2 to 102".

@@ -107,13 +107,13 @@ void Judge::hears(std::uint16_t node, const machine::Router& router, machine::Li
   // Every island: taken or ignored, as a node likes (decision 114).
   const bool free = route.deliver || net.dest.pid == machine::kBroadcastPid;
   const bool off = interfaces_.off(node, from, seen.place.time_us);
-  const ReqId forbidden = off ? req::kN10Off : free ? ReqId::kNone : route.requirement;
+  const ReqId forbidden = off ? "N10-OFF"_rule : free ? ReqId::kNone : route.requirement;
   // Straight from a foreign mote: likewise (decision 116).
   // So is what a base station hands its sink for another island's (decision 126).
   const bool radio = from == machine::Link::kRadio;
   const bool straight = net.dest.pid != router.own.pid ||
                         (radio && net.src.pid != net.dest.pid && !is(sender, Role::kSink));
-  acks_.arrived(node, seen, sender, net, {forbidden, forbidden == req::kN6Other,
+  acks_.arrived(node, seen, sender, net, {forbidden, forbidden == "N6-OTHER"_rule,
                                         sure && !interfaces_.switched_off(node, from), straight});
   if (sure && !off && route.deliver) synaptic_.given(node, seen, net);
 }

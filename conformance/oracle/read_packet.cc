@@ -26,7 +26,7 @@ bool damaged(ReqId broken, Observation& out) {
 }
 
 bool observe_radio(Bytes bytes, RunStorage& storage, Observation& out) {
-  if (bytes.size() < 3) return damaged(req::kWireRadioHeader, out);
+  if (bytes.size() < 3) return damaged("WIRE-RADIO-HEADER"_rule, out);
   const std::uint16_t fcf = load_le16(bytes.data());
   out.dsn = bytes[2];
   out.has_dsn = true;
@@ -47,7 +47,7 @@ bool observe_radio(Bytes bytes, RunStorage& storage, Observation& out) {
   // is no AM type of this protocol.
   const bool lowpan = bytes[kMacHeaderBytes] == kNetworkLowpan;
   const std::size_t type_at = kMacHeaderBytes + (lowpan ? 1 : 0);
-  if (bytes.size() <= type_at) return damaged(req::kWireRadioHeader, out);
+  if (bytes.size() <= type_at) return damaged("WIRE-RADIO-HEADER"_rule, out);
   out.frame.type = bytes[type_at];
   out.frame.payload = storage.keep(bytes.from(type_at + 1));
   return true;
@@ -59,7 +59,7 @@ bool observe_am(Bytes bytes, RunStorage& storage, Observation& out) {
   if (!header) return damaged(header.error().requirement, out);
   const Bytes behind = bytes.from(tinyos::AmHeaderView::kMinSizeBytes);
   const std::size_t length = bytes[5];
-  if (behind.size() < length) return damaged(req::kWireAmLength, out);
+  if (behind.size() < length) return damaged("WIRE-AM-LENGTH"_rule, out);
   out.kind = Observation::Kind::kSerial;
   out.frame.link = machine::Link::kSerial;
   out.frame.dest = load_be16(bytes.data() + 1);

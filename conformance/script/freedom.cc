@@ -134,11 +134,11 @@ class Probe : public runner::Machine {
       const bool heard = std::holds_alternative<machine::Heard>(event) ||
                          std::holds_alternative<machine::AppBusy>(event);
       // Values for a channel that is stopped may be kept; too few of them are not of the wire.
-      if (heard && action.requirement == req::kS6Stopped) return true;
-      if (heard && action.requirement == req::kS2Content) return true;
-      if (action.requirement == req::kS4Local) return true;
+      if (heard && action.requirement == "S6-STOPPED"_rule) return true;
+      if (heard && action.requirement == "S2-CONTENT"_rule) return true;
+      if (action.requirement == "S4-LOCAL"_rule) return true;
       // A sink may trust its base station with the island (decision 126).
-      if (heard && action.requirement == req::kN7Foreign) return true;
+      if (heard && action.requirement == "N7-FOREIGN"_rule) return true;
     }
     if (const auto* called = std::get_if<machine::Called>(&event)) {
       return !before.off && is_free(before, called->call);

@@ -48,7 +48,7 @@ std::size_t waiting_replies(const State& state, std::uint16_t dest) {
 int waiting_reports(const State& state) {
   int count = 0;
   for (std::size_t i = 0; i < state.serial.out.size(); ++i) {
-    count += state.serial.out[i].requirement == req::kJ6Report;
+    count += state.serial.out[i].requirement == "J6-REPORT"_rule;
   }
   return count;
 }
@@ -210,7 +210,7 @@ void Watched::mote_sends(const Seen& seen, const Transmit& transmit) {
 }
 
 void Watched::sink_sends(const Seen& seen, const Transmit& transmit, ReqId rule) {
-  if (rule == req::kJ6Report) --history_.reports_owed;
+  if (rule == "J6-REPORT"_rule) --history_.reports_owed;
   if (transmit.type == am::kJoinReply && --history_.heard_requests[transmit.dest] < 0) {
     breaks(Property::kListedSilent, seen.now);
   }

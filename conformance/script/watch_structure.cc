@@ -150,19 +150,19 @@ void Watched::check_frames(const Seen& seen) {
   for (const Transmit& one : seen.actions.transmits()) {
     must(parses(one), "Whatever a node sends is a message of the wire spec.", seen.now);
     must(one.size_bytes + kAmHeaderBytes <= kMessageBytesMax, "No message is over 122 bytes.",
-         seen.now, req::kWireAmLength);
+         seen.now, "WIRE-AM-LENGTH"_rule);
     must(machine::has_line(config_.role, one.link), "A node sends on its own lines.", seen.now);
     on_radio += one.link == Link::kRadio;
     on_serial += one.link == Link::kSerial;
     if (one.link == Link::kPeis) continue;
     const bool sending = one.link == Link::kRadio ? seen.after.radio.sending
                                                   : seen.after.serial.sending;
-    must(sending, "What is sent takes its line.", seen.now, req::kN2Busy);
+    must(sending, "What is sent takes its line.", seen.now, "N2-BUSY"_rule);
   }
   must(on_radio <= 1 && on_serial <= 1, "One line carries one frame at a time.", seen.now,
-       req::kN2Busy);
+       "N2-BUSY"_rule);
   must(!seen.after.off || seen.actions.notices().empty(), "Without power nothing happens.",
-       seen.now, req::kN10Off);
+       seen.now, "N10-OFF"_rule);
 }
 
 void Watched::check_bounds(const Seen& seen) {
@@ -198,7 +198,7 @@ void Watched::check_bounds(const Seen& seen) {
   for (std::size_t i = 0; i < s.awaited.size(); ++i) {
     for (std::size_t k = 0; k < i; ++k) {
       must(s.awaited[i].seq_num != s.awaited[k].seq_num, "No number is awaited twice.", seen.now,
-           req::kN12Reuse);
+           "N12-REUSE"_rule);
     }
   }
   const bool waits_for_something = moves(s.radio) && moves(s.serial);

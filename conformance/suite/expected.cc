@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "codec/generated/requirements_table.h"
+#include "codec/reflect/requirements.h"
 #include "conformance/generated/profiles.h"
 #include "conformance/report/entries.h"
 #include "conformance/suite/select.h"
@@ -23,8 +23,9 @@ constexpr const char* kOfProfile =
 
 std::string mistake(std::string_view key, const std::string& value) {
   if (key == "requirement" && value != kNoRule &&
-      std::none_of(std::begin(kRequirements), std::end(kRequirements),
-                   [&](const reflect::Requirement& rule) { return is_of(rule.id, value); })) {
+      std::ranges::none_of(reflect::requirements(), [&](const reflect::Requirement& rule) {
+        return is_of(rule.id, value);
+      })) {
     return fmt::format("no requirement is called '{}'; '{}' is for lines that name none", value,
                        kNoRule);
   }

@@ -253,9 +253,9 @@ TEST(Results, RulesThatBroke) {
     one.result.verdict = verdict;
     if (!broken.empty()) one.result.failures.emplace_back().requirements = std::move(broken);
   };
-  add(CaseVerdict::kPass, {req::kJ4Seq, req::kJ4Ack}, {});
-  add(CaseVerdict::kFail, {req::kJ4Seq, req::kJ5Once, req::kJ8Limit}, {"J4-SEQ"});
-  add(CaseVerdict::kSkip, {req::kT1Wrap}, {});
+  add(CaseVerdict::kPass, {"J4-SEQ"_rule, "J4-ACK"_rule}, {});
+  add(CaseVerdict::kFail, {"J4-SEQ"_rule, "J5-ONCE"_rule, "J8-LIMIT"_rule}, {"J4-SEQ"});
+  add(CaseVerdict::kSkip, {"T1-WRAP"_rule}, {});
   const RuleTotals rules = rule_totals(run);
   EXPECT_EQ(rules.kept, 1U) << "J4-ACK";
   EXPECT_EQ(rules.broken, 1U) << "J4-SEQ";

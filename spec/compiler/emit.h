@@ -8,7 +8,7 @@ namespace rubricc {
 
 /// codec/generated/<spec>/tables.h: reflection tables, see codec/reflect/schema.h.
 GeneratedFiles emit_tables(const Spec& spec);
-/// codec/generated/requirements.h and requirements_table.h.
+/// codec/generated/requirements_table.h.
 GeneratedFiles emit_requirements(const Model& model, const std::string& file);
 /// codec/generated/protocols.h, the list of all protocols, and route_tables.h, the ways to their
 /// messages (of the emitter `messages`); nothing if there is none.

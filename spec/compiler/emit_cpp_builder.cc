@@ -1,6 +1,7 @@
 // Builders: write a structure in place, field by field.
 #include <algorithm>
 
+#include "spec/compiler/cpp_text.h"
 #include "spec/compiler/emit_cpp_parts.h"
 #include "spec/compiler/emit_cpp_text.h"
 #include "spec/compiler/template.h"
@@ -267,7 +268,7 @@ std::string emit_builder(const Layout& layout, const Spec& spec) {
   }
   const std::string room =
       guard("out.size() < " + name + "View::kMinSizeBytes",
-            "return fail(Fault::kNoRoom, out.size(), " + req(type.requirement) + ");");
+            "return fail(Fault::kNoRoom, out.size(), " + cpp_rule(type.requirement) + ");");
   std::string written = "out_";
   std::string size;
   std::string present;
@@ -283,7 +284,7 @@ std::string emit_builder(const Layout& layout, const Spec& spec) {
     const std::string before = context.at(layout.fields.size() - 1);
     size = "const size_t size = " + (before == "0" ? "" : before + " + ") + "tail_;\n" +
            guard("out_.size() < size",
-                 "return fail(Fault::kNoRoom, out_.size(), " + req(type.requirement) + ");");
+                 "return fail(Fault::kNoRoom, out_.size(), " + cpp_rule(type.requirement) + ");");
   }
   return fill(kBuilder, {{"name", type.name},
                          {"class", name},

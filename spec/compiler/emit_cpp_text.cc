@@ -97,13 +97,6 @@ std::string pascal(std::string_view id) {
 
 std::string constant(std::string_view id) { return "k" + pascal(id); }
 
-std::string req(const std::string& id) {
-  if (id.empty()) return "ReqId::kNone";
-  std::string lower;
-  for (const char c : id) lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return "req::" + constant(lower);
-}
-
 std::string class_of(const Type& type, const Spec& spec) {
   return (type.spec != &spec ? type.spec->id + "::" : "") + pascal(type.id);
 }

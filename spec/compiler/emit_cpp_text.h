@@ -14,8 +14,6 @@ namespace rubricc::cpp {
 std::string pascal(std::string_view id);
 /// "null" -> "kNull".
 std::string constant(std::string_view id);
-/// "WIRE-NET-NBYTES" -> "req::kWireNetNbytes"; none -> "ReqId::kNone".
-std::string req(const std::string& id);
 
 /// A type's class as seen from `spec`: "RAddr" or "tinyos::AmHeader".
 std::string class_of(const Type& type, const Spec& spec);

@@ -115,7 +115,7 @@ bool rebuildable(const Value& line) {
 
 // What no file can hold again: bytes that are no packet.
 bool is_lost(const Packet& packet) {
-  return packet.error.requirement == ReqId::kWireSfHandshake ||
+  return packet.error.requirement == "WIRE-SF-HANDSHAKE"_rule ||
          (packet.error.fault == Fault::kTooLong && packet.dropped_bytes > 0);
 }
 

@@ -145,7 +145,7 @@ class Junit {
   }
 
   const Story& story_;
-  std::map<ReqId, Case> cases_;
+  std::map<ReqId, Case, reflect::CatalogueOrder> cases_;
   std::string body_;
   std::uint64_t tests_ = 0;
   std::uint64_t failures_ = 0;

@@ -260,7 +260,7 @@ class Data {
   const std::vector<std::vector<CaseLinks>>& links_;
   CaseSources sources_;
   Frames frames_;
-  std::set<ReqId> rules_;
+  std::set<ReqId, reflect::CatalogueOrder> rules_;
   std::map<std::string, std::size_t> by_name_;
   Json cases_ = Json::array();
 };
