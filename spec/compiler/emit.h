@@ -21,8 +21,6 @@ GeneratedFiles emit_messages(const Spec& spec);
 GeneratedFiles emit_profiles(const Model& model);
 /// conformance/generated/cases.h; `folder` is where the cases are from.
 GeneratedFiles emit_cases(const Model& model, const std::string& folder);
-/// doc/wire.html: all specs on one page.
-GeneratedFiles emit_doc(const Model& model);
 /// doc/wire.json: the model for programs that print it.
 GeneratedFiles emit_json(const Model& model);
 

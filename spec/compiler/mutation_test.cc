@@ -98,7 +98,7 @@ TEST(Mutations, AreReportedOrCompiled) {
         EXPECT_FALSE(emit_cpp(*spec).empty());
         EXPECT_FALSE(emit_java(*spec).empty());
       }
-      EXPECT_FALSE(emit_doc(model).empty());
+      EXPECT_FALSE(emit_json(model).empty());
     }
   }
   EXPECT_GT(compiled, 20);
