@@ -11,6 +11,7 @@
 
 #include "codec/generate/known_protocols.h"
 #include "codec/generated/rubicon/all.h"
+#include "codec/generated/rubicon/messages.h"
 #include "codec/reflect/frame.h"
 
 namespace rubric::generate {
@@ -69,9 +70,9 @@ void check_numbers(const Generated& made, const reflect::Decoded& decoded) {
   ASSERT_EQ(met, made.numbers.size()) << described(made);
 }
 
-class Generator : public ::testing::TestWithParam<int> {
+class Generator : public ::testing::TestWithParam<Known> {
  protected:
-  const Known& known() const { return kKnown[GetParam()]; }
+  const Known& known() const { return GetParam(); }
 };
 
 TEST_P(Generator, ValidFramesLeadToTheirMessage) {
@@ -275,7 +276,8 @@ TEST(NearValid, ViewsReportTheFaults) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Protocols, Generator, ::testing::Range(0, kKnownCount));
+INSTANTIATE_TEST_SUITE_P(Protocols, Generator, ::testing::ValuesIn(all_known()),
+                         [](const auto& one) { return std::string(one.param.protocol.id); });
 
 }  // namespace
 }  // namespace rubric::generate

@@ -92,7 +92,7 @@ void round_trip(const Known& known, InputFormat container, const std::vector<Fra
 }
 
 TEST(Framer, ReadersReportWhatTheFramerBroke) {
-  for (const Known& known : kKnown) {
+  for (const Known& known : all_known()) {
     for (const InputFormat container : kContainers) {
       for (std::uint64_t seed = 1; seed <= 5; ++seed) {
         RuleSet broken;
@@ -136,7 +136,7 @@ TEST(Routes, EveryProtocolHasThem) {
 
 TEST(Framer, BreaksEveryRuleOfTheWireThatAFrameCanBreak) {
   RuleSet broken;
-  for (const Known& known : kKnown) {
+  for (const Known& known : all_known()) {
     for (const InputFormat container : kContainers) {
       for (std::uint64_t seed = 11; seed <= 16; ++seed) {
         for (const Framed& framed : frames_of(known, container, seed)) {

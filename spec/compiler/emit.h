@@ -10,8 +10,9 @@ namespace rubricc {
 GeneratedFiles emit_tables(const Spec& spec);
 /// codec/generated/requirements_table.h.
 GeneratedFiles emit_requirements(const Model& model, const std::string& file);
-/// codec/generated/protocols.h, the list of all protocols, and route_tables.h, the ways to their
-/// messages (of the emitter `messages`); nothing if there is none.
+/// codec/generated/protocols.h, the list of all protocols, route_tables.h, the ways to their
+/// messages (of the emitter `messages`), and every_spec.h, the views of all specs for tests;
+/// nothing if there is no protocol.
 GeneratedFiles emit_protocols(const Model& model);
 /// fuzz/dictionaries/<spec>.dict for libFuzzer.
 GeneratedFiles emit_dictionary(const Spec& spec);

@@ -9,6 +9,7 @@
 #include "spec/compiler/emit_cpp.h"
 #include "spec/compiler/load.h"
 #include "spec/compiler/routes.h"
+#include "spec/compiler/wire_specs.h"
 
 namespace rubricc {
 namespace {
@@ -18,8 +19,7 @@ const Model& wire() {
     auto* model = new Model;
     Diagnostics diagnostics;
     load_requirements("spec/requirements.yaml", *model, diagnostics);
-    load_specs({"spec/wire/rubicon.ksy", "spec/wire/tinyos.ksy", "spec/wire/oscilloscope.ksy"},
-               *model, diagnostics);
+    load_specs(wire_specs(), *model, diagnostics);
     check_model(*model, diagnostics);
     EXPECT_EQ(diagnostics.print(), "");
     return model;

@@ -5,9 +5,9 @@
 
 #include "codec/generated/oscilloscope/tables.h"
 #include "codec/generated/rubicon/tables.h"
-#include "codec/generated/tinyos/tables.h"
 #include "codec/reflect/encode.h"
 #include "codec/reflect/frame.h"
+#include "codec/reflect/registry.h"
 #include "tools/layout/explain_frame.h"
 #include "tools/layout/explain_rule.h"
 #include "tools/layout/explain_type.h"
@@ -117,8 +117,7 @@ TEST(Reach, Ways) {
 }
 
 TEST(Explain, EveryTypeEnumAndMask) {
-  for (const reflect::Protocol* protocol :
-       {&kRubicon, &tinyos::tables::kProtocol, &oscilloscope::tables::kProtocol}) {
+  for (const reflect::Protocol* protocol : reflect::specs()) {
     for (int i = 0; i < protocol->type_count; ++i) {
       const Type& each = *protocol->types[i];
       const std::string text = explain_type(*protocol, each);
