@@ -10,13 +10,13 @@
 #include "codec/generated/rubicon/join_reply.h"
 #include "codec/generated/rubicon/join_request.h"
 #include "codec/generated/rubicon/net_msg.h"
+#include "conformance/explorer/history.h"
 #include "conformance/generated/profiles.h"
 #include "conformance/machine/lines.h"
 #include "conformance/machine/messages.h"
 #include "conformance/machine/transport.h"
 #include "conformance/runner/subject_target.h"
 #include "conformance/script/difference.h"
-#include "conformance/script/watch.h"
 
 namespace rubric::script {
 namespace {
@@ -207,7 +207,7 @@ class Probe : public runner::Machine {
       for (const machine::Awaited& awaited : state_.awaited) {
         if (awaited.seq_num != one.seq_num || now < soonest) continue;
         const bool left_late = awaited.due != 0 && awaited.due != soonest;
-        if (left_late || waits_for_line(state_, one.seq_num)) free_at(soonest);
+        if (left_late || explorer::waits_for_line(state_, one.seq_num)) free_at(soonest);
       }
     }
   }
