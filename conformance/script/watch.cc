@@ -6,6 +6,7 @@
 
 #include "codec/generated/rubicon/net_msg.h"
 #include "conformance/events/app_events.h"
+#include "conformance/events/lines.h"
 #include "conformance/machine/join.h"
 #include "conformance/machine/lines.h"
 #include "conformance/machine/messages.h"
@@ -64,14 +65,9 @@ bool is_result(const machine::Notice& notice) {
          std::holds_alternative<machine::Clock>(notice);
 }
 
-trace::LinkKind kind_of(Link link) {
-  if (link == Link::kRadio) return trace::LinkKind::kRadio;
-  return link == Link::kSerial ? trace::LinkKind::kSerial : trace::LinkKind::kPeis;
-}
-
 bool parses(const Transmit& t) {
   const trace::AmFrame frame{t.dest, t.src, 0, t.type, {t.bytes().begin(), t.bytes().end()}};
-  return trace::decode(frame, kind_of(t.link)).name != trace::kFrameName;
+  return trace::decode(frame, events::kind_of(t.link)).name != trace::kFrameName;
 }
 
 // Whether somebody looks at frames of this type on that line.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "codec/reflect/requirements.h"
 #include "conformance/suite/canary.h"
 #include "conformance/suite/select.h"
 #include "conformance/suite/testing.h"
@@ -264,7 +265,7 @@ TEST(Results, RulesThatBroke) {
   const std::vector<RequirementSummary> all = by_requirement(run);
   ASSERT_EQ(all.size(), 5U);
   EXPECT_TRUE(std::is_sorted(all.begin(), all.end(), [](const auto& a, const auto& b) {
-    return a.requirement < b.requirement;
+    return reflect::CatalogueOrder()(a.requirement, b.requirement);
   }));
 }
 
