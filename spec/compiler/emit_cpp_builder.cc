@@ -1,7 +1,6 @@
 // Builders: write a structure in place, field by field.
 #include <algorithm>
 
-#include "spec/compiler/cpp_text.h"
 #include "spec/compiler/emit_cpp_parts.h"
 #include "spec/compiler/emit_cpp_text.h"
 #include "spec/compiler/template.h"

@@ -1,7 +1,6 @@
 // TView::check: the rules that bytes can break, in field order.
 #include <stdexcept>
 
-#include "spec/compiler/cpp_text.h"
 #include "spec/compiler/emit_cpp_parts.h"
 #include "spec/compiler/emit_cpp_text.h"
 #include "spec/compiler/template.h"

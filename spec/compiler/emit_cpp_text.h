@@ -6,14 +6,11 @@
 #include <string_view>
 #include <vector>
 
+#include "spec/compiler/cpp_text.h"
 #include "spec/compiler/model.h"
 
 namespace rubricc::cpp {
 
-/// "net_msg" -> "NetMsg".
-std::string pascal(std::string_view id);
-/// "null" -> "kNull".
-std::string constant(std::string_view id);
 
 /// A type's class as seen from `spec`: "RAddr" or "tinyos::AmHeader".
 std::string class_of(const Type& type, const Spec& spec);

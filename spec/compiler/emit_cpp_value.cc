@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "spec/compiler/cpp_text.h"
 #include "spec/compiler/emit_cpp_parts.h"
 #include "spec/compiler/emit_cpp_text.h"
 #include "spec/compiler/template.h"
