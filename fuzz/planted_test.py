@@ -39,7 +39,7 @@ def processor_s():
 
 
 def run(program, seed, *options):
-    """Whether the trap was found, after how many runs and seconds of a processor's time."""
+    """Returns whether the trap was found, and after how many runs and seconds of CPU time."""
     with tempfile.TemporaryDirectory() as work:
         corpus = pathlib.Path(work, "corpus")
         corpus.mkdir()

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What the original firmware and base station sent, through `rubric decode`.
+"""Captures of the original firmware and base station, through `rubric decode`.
 
 Usage: captures_test.py RUBRIC. Every frame of every capture must decode as the records beside the
 capture say, and exactly the frames that were made bad on purpose must be malformed.
@@ -10,6 +10,8 @@ import pathlib
 import subprocess
 import sys
 import unittest
+
+from readme.number import readme_number
 
 CAPTURES = pathlib.Path("spec/captures")
 FIRMWARE = CAPTURES / "firmware"
@@ -74,7 +76,8 @@ class Captures(unittest.TestCase):
                 self.assertEqual(found, MALFORMED.get(path.name, []))
                 self.assertEqual(code, 1 if found else 0)
                 self.assertEqual([line["index"] for line in lines], list(range(len(lines))))
-        self.assertEqual(frames, 933)
+        self.assertEqual(frames, readme_number("beside it: # frames"))
+        self.assertEqual(sum(map(len, MALFORMED.values())), readme_number("purpose, # by the same"))
         names = {path.name for path in captures()}
         self.assertEqual(set(MALFORMED) - names, set())
 
@@ -154,7 +157,7 @@ class Captures(unittest.TestCase):
         self.assertGreater(compared, 60)
 
     def test_stale_bytes_and_fields_make_up_the_frame(self):
-        """What the fields of a serial_joined hold, by hand, and nothing else than what follows."""
+        """Checks the fields of a serial_joined by hand, and that nothing else follows."""
         line = decode(FIRMWARE / "a_join_data.serial.bin")[1][0]
         self.assertEqual(line["message"], "serial_joined")
         self.assertEqual(line["fields"]["payload"]["body"]["transducers"], 0x0043)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""`rubric chart`: every golden trace as text and as a picture, held against the log of its run.
+"""`rubric chart`: every golden trace as text and as a picture, compared with the log of its run.
 
 Usage: chart_test.py RUBRIC, in the project's folder.
 """
@@ -127,7 +127,7 @@ class EveryCase(unittest.TestCase):
 
 
 class Chart(unittest.TestCase):
-    """What single cases show, and the command line."""
+    """Single cases, and the command line."""
 
     def test_what_is_ignored_says_why(self):
         text = chart("j4.wrong_seq").stdout

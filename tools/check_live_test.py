@@ -120,7 +120,7 @@ class CheckLive(CheckTest):
         request = until_packet(whole, 1)
         path.write_bytes(whole[:request])
         running = self.started(path, "--follow", "--format", "jsonl")
-        # Nothing comes, and that no reply came is told.
+        # Nothing comes, and the missing reply is reported.
         silent = running.event("found", "J3-REPLY")["finding"]
         self.assertEqual((silent["severity"], silent["frame"]), ("inconclusive", 1))
         with open(path, "ab", buffering=0) as file:

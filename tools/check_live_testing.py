@@ -1,4 +1,4 @@
-"""What tests of `rubric check` on runs that go on share: captures, and who waits for findings."""
+"""Helpers of the tests of `rubric check` on growing runs: captures, and a reader of findings."""
 
 import json
 import os
@@ -42,7 +42,7 @@ def is_packet(block):
 
 
 def until_packet(capture, count):
-    """What of a capture goes up to that packet, which is within."""
+    """Returns the size in bytes of a capture up to that packet, included."""
     size = 0
     for block in blocks(capture):
         size += len(block)
@@ -77,7 +77,7 @@ class Checked(live_testing.Running):
                 return event
 
     def text(self, wanted, stream=None):
-        """What is printed until that text is."""
+        """Returns the output up to that text."""
         stream = stream or self.process.stdout
         got = b""
         deadline = time.monotonic() + PATIENCE_S
@@ -119,7 +119,7 @@ def of_findings(findings):
 
 
 def standing(events):
-    """What was told and not withdrawn."""
+    """Returns the findings that were reported and not withdrawn."""
     out = {}
     for event in events:
         if event["event"] in ("found", "changed"):

@@ -96,7 +96,7 @@ class Text(Folder):
         self.assertGreater(seen, 20)
 
     def test_again_shows_the_same_finding(self):
-        """Every command below a failure, as it stands there."""
+        """Runs every command below a failure, as it is printed."""
         ran = 0
         for file in capture_files():
             for more in [[], ["--profile", "deployed"], ["--sniffer", "complete"],

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What `rubric completion` prints works in bash, zsh and fish themselves.
+"""The output of `rubric completion` works in bash, zsh and fish themselves.
 
 Usage: completion_test.py RUBRIC. Needs the three shells.
 """

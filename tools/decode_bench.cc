@@ -1,5 +1,5 @@
-// How fast a serial line becomes JSON lines, step by step, against memcpy of the same bytes in the
-// same run. Run it from the project's folder: it reads spec/captures.
+// Measures how fast a serial line becomes JSON lines, step by step, compared with memcpy of the
+// same bytes in the same run. Run it from the project's folder: it reads spec/captures.
 #include <benchmark/benchmark.h>
 
 #include <time.h>
@@ -28,7 +28,7 @@ constexpr std::size_t kStreamBytes = 32 * 1024 * 1024;
 constexpr std::size_t kChunkBytes = 256 * 1024;
 constexpr std::size_t kOutputBytes = 192 * 1024;
 
-// What real sinks sent, again and again.
+// Returns frames of real sinks, repeated.
 const std::string& stream() {
   static const std::string repeated = [] {
     std::string once;
@@ -48,7 +48,7 @@ Bytes stream_bytes() {
   return Bytes(reinterpret_cast<const std::uint8_t*>(stream().data()), stream().size());
 }
 
-// Of this thread alone: others may be busy here.
+// Returns the time of this thread alone: others may be busy here.
 double cpu_seconds() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
@@ -70,7 +70,7 @@ double seconds_of_memcpy() {
   return best;
 }
 
-/// Feeds the stream to `take` and counts what that cost.
+/// Feeds the stream to `take` and measures the cost.
 template <class Take>
 void run(benchmark::State& state, Take take) {
   if (stream().empty()) {
@@ -108,7 +108,7 @@ void deframe(benchmark::State& state) {
   benchmark::DoNotOptimize(sum);
 }
 
-// Down to what the body of the message is, by the generated views.
+// Validates down to the body of the message, by the generated views.
 bool valid_to_the_body(Bytes bytes) {
   const auto packet = rubicon::RubiconView::parse(bytes);
   if (!packet) return false;

@@ -1,7 +1,7 @@
 # cmake -DROOT=project -DOUT=embedded_skeletons.cc -P embed_skeletons.cmake: the files that
 # `rubric new-adapter` writes, as C++ text. Python's loop is that of the adapter that ships.
 set(text "// Generated from tools/skeletons when the program is built.
-#include \"tools/new_adapter.h\"
+#include \"tools/commands/new_adapter.h\"
 
 namespace rubric::tools {
 

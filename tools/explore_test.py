@@ -38,7 +38,7 @@ class Explore(unittest.TestCase):
     def test_says_what_it_found(self):
         done = explore("--motes", "1", "--sinks", "2", *FAULTS)
         self.assertEqual(done.returncode, 0, done.stderr)
-        # How many is the machine's business; explorer_test holds one network's exact numbers.
+        # The machine decides how many; explorer_test has one network's exact numbers.
         self.assertRegex(done.stdout, r"states +[1-9]\d{2,}\n")
         self.assertRegex(done.stdout, r"transitions +[1-9]\d{2,}\n")
         for line in ("depth        ", "bytes a state", "million states/s", "left out",

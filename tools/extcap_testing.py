@@ -1,4 +1,4 @@
-"""What the tests of rubric-extcap share: sources on this host, and programs to be ended."""
+"""Helpers of the tests of rubric-extcap: sources on this host, and programs to be ended."""
 
 import json
 import os
@@ -16,7 +16,7 @@ PACKET = bytes.fromhex("00ffff000003002514000c")  # A config message.
 
 
 class Given:
-    """Of the command line."""
+    """Paths from the command line."""
     rubric = ""
     extcap = ""
     root = pathlib.Path()

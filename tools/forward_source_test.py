@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Where `rubric forward` has its packets from, and where it listens.
+"""The sources of `rubric forward`, and where it listens.
 
 Usage: forward_source_test.py RUBRIC. All of it on this host, bounded in time.
 """
@@ -136,7 +136,7 @@ class Sources(unittest.TestCase):
     def test_a_forwarder_of_itself(self):
         with socket.create_server(("127.0.0.1", 0)) as free:
             port = free.getsockname()[1]
-        done = subprocess.run([RUBRIC, "forward", f"sf@localhost:{port}", "--port", str(port)],
+        done = subprocess.run([RUBRIC, "forward", f"sf@127.0.0.1:{port}", "--port", str(port)],
                               capture_output=True, text=True, check=False, timeout=PATIENCE_S)
         self.assertEqual(done.returncode, 3)
         self.assertIn("this is where this forwarder itself listens", done.stderr)

@@ -1,4 +1,4 @@
-"""What the tests of `rubric forward` share: a serial line's far end, and a client.
+"""Helpers of the tests of `rubric forward`: a serial line's far end, and a client.
 
 Written from the protocols, without code of the program: Debian has no client of TinyOS's Serial
 Forwarder.
@@ -92,7 +92,7 @@ class Running:
 
 
 class Client:
-    """Of a serial forwarder: 'U ' both ways, then a length byte and that many bytes."""
+    """A serial forwarder's client: 'U ' both ways, then a length byte and that many bytes."""
 
     def __init__(self, test, running, hello=b"U ", receive_bytes=None):
         family = socket.AF_INET6 if ":" in running.host else socket.AF_INET

@@ -66,7 +66,7 @@ class Generate(unittest.TestCase):
         return target, lines(beside.read_bytes())
 
     def assert_agrees(self, record, wanted):
-        """What decode says of a frame is what was expected of it."""
+        """decode agrees with the expectation of a frame."""
         place = f"frame {wanted['number']}: {wanted['what']}"
         error = record["error"]
         if error is not None:

@@ -22,7 +22,7 @@ CONFIG = pathlib.Path(".config/wireshark/extcap/rubric-extcap")
 
 
 class Wireshark(Base):
-    """What tshark makes of it."""
+    """The installed files in tshark."""
 
     def setUp(self):
         super().setUp()
@@ -259,7 +259,7 @@ class Install(Base):
         self.assertEqual(self.tree(), [])
 
     def test_the_program_itself_stays(self):
-        """Where it stands in the folder of Wireshark's, as somebody may have put it."""
+        """The program itself is in Wireshark's folder, where somebody may have put it."""
         folder = self.home / "extcap"
         folder.mkdir()
         for name, path in (("rubric", Given.rubric), ("rubric-extcap", Given.extcap)):
@@ -279,7 +279,7 @@ class Install(Base):
         self.assertEqual((folder / "rubric-extcap").read_bytes(), whole)
 
     def test_a_full_disk(self):
-        """What was there stays; nothing half written does."""
+        """The old files stay, and no half-written ones."""
         def fill():
             signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
             resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))

@@ -1,4 +1,4 @@
-"""What the tests of lines in use share: the program, and the other ends of lines.
+"""Helpers of the tests of lines in use: the program, and the other ends of lines.
 
 Their arguments are RUBRIC PROJECT_FOLDER. All of it is on this host, and bounded in time.
 """

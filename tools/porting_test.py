@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What conformance/PORTING.md shows is what happens: the loop, the conversations, the failure.
+"""conformance/PORTING.md shows what happens: the loop, the conversations, the failure.
 
 Usage: porting_test.py RUBRIC PROJECT_FOLDER [--regenerate]
 --regenerate writes the loop and the failure into the text.
@@ -17,6 +17,8 @@ import tempfile
 import unittest
 
 import yaml
+
+from readme.number import readme_number
 
 RUBRIC = str(pathlib.Path(sys.argv[1]).resolve())
 ROOT = pathlib.Path(sys.argv[2]).resolve()
@@ -38,7 +40,7 @@ def rubric(*words, folder=ROOT):
     return subprocess.run([RUBRIC, *words], cwd=folder, capture_output=True, text=True, env=plain)
 
 
-LINES_MAX = 50    # An adapter needs no more.
+LINES_MAX = readme_number("traces: # lines around it")
 
 
 def loop():

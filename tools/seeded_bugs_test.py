@@ -107,7 +107,7 @@ def broken_rules(report, verdicts=("fail", "weak")):
 
 
 def judge(bug, code, report):
-    """What is wrong with how the bug was found; empty: nothing."""
+    """Returns what is wrong with how the bug was found; empty if nothing is."""
     rules = broken_rules(report)
     verdicts = sorted({case["verdict"] for case in cases_of(report)})
     wanted = CODE_OF[bug["verdict"]]

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""`rubric send` on serial lines: what stands on the wire, what is said, and what becomes of it.
+"""`rubric send` on serial lines: bytes on the wire, output, and results of packets.
 
 Usage: send_test.py RUBRIC PROJECT_FOLDER. The other ends are motes of this test's, on pseudo
 terminals and sockets.
@@ -88,7 +88,7 @@ class Serial(Base):
                               r"came\n$")
 
     def test_a_slow_mote_gets_each_once_more_at_most(self):
-        """What it confirms late is confirmed, and is no confirmation of what comes next."""
+        """A late confirmation counts, and does not confirm the next packet."""
         def answer(_, seq, __):
             time.sleep(0.15)
             return hdlc(bytes([ACK, seq]))
@@ -104,7 +104,7 @@ class Serial(Base):
         self.assertEqual(sorted(set(order), key=order.index), [config(i) for i in range(5)])
 
     def test_noise_and_questions_between(self):
-        """What makes no sense is passed over; what asks for it is answered."""
+        """Nonsense is ignored; frames that ask for an answer get one."""
         noise = b"\x00\x11\x22\x7e" + hdlc(b"\x45\x00\x01")[:-2] + b"\x7e\x7d\x7e"
         asked = hdlc(bytes([PACKET_ACK, 0x2a]) + config(1)) + hdlc(b"\x99\x01\x02")
 
@@ -262,7 +262,7 @@ class Serial(Base):
         self.assertEqual(len(mote.packets), 4)
 
     def test_what_was_decoded_is_sent_again(self):
-        """Of a capture of both directions; its confirmations are no packets."""
+        """Sends a capture of both directions, whose confirmations are no packets."""
         to, mote = self.mote(confirms)
         path = self.folder / "run.jsonl"
         rows = lines_of(DEMO)[:20]

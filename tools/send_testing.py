@@ -1,4 +1,4 @@
-"""What the tests of `rubric send` share: packets, and who gets them."""
+"""Helpers of the tests of `rubric send`: packets, and their receivers."""
 
 import json
 import os
@@ -36,13 +36,13 @@ def send(*arguments, text="", env=None):
 
 class Base(LiveTest):
     def mote(self, answer):
-        """Where to send, and the mote there."""
+        """Returns an address, and the mote there."""
         device = Pty(self)
         return f"serial@{device.name}:telosb", Mote(self, device.fd, answer)
 
     def forwarder(self, serve, receive_bytes=None):
-        """Where to send; `serve(connection)` runs in a thread. There is little room for what comes
-        where it has receive_bytes."""
+        """Returns an address; `serve(connection)` runs in a thread. Its socket's buffer is small
+        if receive_bytes is given."""
         server = Forwarder(self)
         if receive_bytes:
             server.listener.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, receive_bytes)

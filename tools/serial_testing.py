@@ -1,4 +1,4 @@
-"""What tests of serial lines share: frames, the far end of a line, and patience."""
+"""Helpers of the tests of serial lines: frames, the far end of a line, and patience."""
 
 import os
 import pathlib
@@ -51,7 +51,7 @@ def wait_for(holds, what):
 
 
 def holds(process, path):
-    """Whether it has the file open."""
+    """Returns whether it has the file open."""
     folder = pathlib.Path(f"/proc/{process.pid}/fd")
     return os.path.realpath(path) in map(os.path.realpath, folder.iterdir())
 
@@ -67,7 +67,7 @@ class Pty:
         test.addCleanup(os.close, other)
 
     def read(self, seconds):
-        """What comes in that time."""
+        """Returns the bytes of that time."""
         got = b""
         deadline = time.monotonic() + seconds
         while select.select([self.fd], [], [], max(0, deadline - time.monotonic()))[0]:

@@ -107,7 +107,7 @@ class Formats(Folder):
         self.assertNotEqual(err, "")
 
     def test_compare(self):
-        """What changed since an earlier run."""
+        """The changes since an earlier run."""
         args = ["--requirement", "J8", "--role", "mote"]
         test("--target", HONEST, *args, "--report", self.folder / "before")
         before = self.folder / "before" / "report.json"

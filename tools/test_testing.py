@@ -1,4 +1,4 @@
-"""What the tests of `rubric test` share: the program, and implementations that misbehave."""
+"""Helpers of the tests of `rubric test`: the program, and implementations that misbehave."""
 
 import os
 import pathlib
@@ -75,7 +75,7 @@ def is_dead(pid):
 
 
 def comes(condition):
-    """Whether it comes true in a time that nothing takes, however busy the host is."""
+    """Returns whether it comes true in a time that is ample on any busy host."""
     end = time.monotonic() + 60
     while time.monotonic() < end:
         if condition():

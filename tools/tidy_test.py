@@ -37,6 +37,38 @@ CODE = {".cc", ".h", ".py", ".js", ".java", ".nc", ".c", ".pml", ".cmake"}
 SOURCES = CODE | {".ksy", ".md", ".sh", ".yaml"}
 MAX_COLUMNS = 100
 MAX_LINES = 600
+# The wire is read in one way: by generated views and places (`NetMsgLayout::SeqNumAt`) and by the
+# reflection tables, both made from spec/wire. What reads or writes its bytes by hand looks so:
+WIRE_BY_HAND = [
+    (re.compile(r"\b(?:load|store)_(?:u8|[bl]e(?:16|32))\("), "a number of the wire by hand"),
+    (re.compile(r"\b0x(?:88[046][01]|cc[04][0f])\b|\b0x[46]1\b.*\b0x88\b", re.I),
+     "a frame control field of 802.15.4"),
+    (re.compile(r"[=(,{] ?0x3f\b", re.I), "the network byte of an I-frame"),
+    (re.compile(r"\bconstexpr [\w:]+ k\w*(?:Offset|At|HeaderBytes|HeadBytes) ?= ?[1-9]"),
+     "an offset or the size of a header"),
+    (re.compile(r"(?<!char )(?<!uint8_t )\b(?:payload|packet|body|bytes|frame)_?(?:\(\))?"
+                r"(?:(?:\.data\(\))?\[\d+\]|\.(?:data|begin)\(\) \+ [1-9])"),
+     "a byte of a frame by its number"),
+    (re.compile(r"\] ?<< ?(?:8|16|24)\b"), "a number of the wire by hand"),
+]
+# Where bytes are read by hand for a reason, besides tests, which state what they expect.
+HAND_MADE = {
+    "codec/runtime/": "the loads and stores themselves, and the framing of serial lines",
+    "codec/containers/": "framing: capture files, check sums, records",
+    "codec/reflect/decode.cc": "loads what the tables say",
+    "codec/reflect/encode_number.cc": "stores what the tables say",
+    "codec/codec_bench/": "compares views with hand-written code",
+    "codec/codec_test/": "tests",
+    "conformance/legal/": "independent of what it tests, see its README",
+    "conformance/adapters/firmware/bench/": "records between a board and its bench, not frames",
+    "conformance/adapters/firmware/host/bridge.cc": "the same records",
+    "conformance/adapters/firmware/host/words.cc": "the same records",
+    "conformance/attach/forwarder.cc": "framing: packets of a serial forwarder",
+    "conformance/script/bytes.": "scripts as the fuzzers' bytes",
+    "conformance/script/walk.": "walks as the fuzzers' bytes",
+    "fuzz/": "what fuzz targets compare the codec with",
+    "spec/compiler/": "writes the code that loads",
+}
 INCLUDE = re.compile(r'#include "([^"]+)"')
 # A quotation of a rule beside the code that keeps it: `//= J4-SEQ: the sentence`, perhaps going on
 # in the next `//=` line.
@@ -103,6 +135,21 @@ def include_breaches(path, lines):
             yield f"{path}:{number}: {area} may not include {found[1]}"
 
 
+def wire_breaches(path, lines):
+    """Lines of C++ that know where a structure of the wire has its fields."""
+    name = str(path)
+    test = path.stem.endswith(("_test", "_bench", "_fixture")) \
+        or path.stem in {"testing", "test_frames"}
+    if path.suffix not in {".cc", ".h"} or test or "generated" in path.parts \
+            or name.startswith(tuple(HAND_MADE)):
+        return
+    for number, line in enumerate(lines, 1):
+        code = line.split("//")[0]
+        for pattern, what in WIRE_BY_HAND:
+            if pattern.search(code):
+                yield f"{path}:{number}: {what}; spec/wire and what is generated from it say that"
+
+
 def breaches(root, path, sentences):
     generated = "generated" in path.parts or "captures" in path.parts or "vectors" in path.parts
     code = path.suffix in CODE or path.name == "CMakeLists.txt"
@@ -110,6 +157,7 @@ def breaches(root, path, sentences):
         return
     lines = (root / path).read_text(encoding="utf-8").splitlines()
     yield from include_breaches(path, lines)
+    yield from wire_breaches(path, lines)
     quoting = path.suffix in {".cc", ".h", ".java"}
     yield from quote_breaches(path, lines if quoting else [], sentences)
     yield from name_breaches(path, lines if quoting else [], sentences)
@@ -125,7 +173,40 @@ def breaches(root, path, sentences):
         yield f"{path}: no #pragma once"
 
 
+# What people wrote before there was one reader, and the lines that took its place.
+PLANTED = [
+    "  out = {load_be16(p), load_be16(p + 2), load_be32(p + 4), load_be16(p + 8)};",
+    "  store_le16(bytes.data() + 3, kPanId);",
+    "constexpr std::uint16_t kFcfData = 0x8841;  // Short addresses in one PAN.",
+    "constexpr std::uint16_t kFcfAddressing = 0xCC00;",
+    "constexpr std::uint8_t kNetworkLowpan = 0x3F;",
+    "constexpr std::size_t kMacHeaderBytes = 9;",
+    "constexpr std::size_t kReplySeqOffset = 8;",
+    "  const std::uint8_t trans_id = payload[0];",
+    "  std::copy_n(frame.payload.begin() + 4, 4, ack.payload.begin());",
+    "  out.type = packet.data()[7];",
+    "  const int value = bytes[i] << 8 | bytes[i + 1];",
+]
+SOUND = [
+    "  out.seq_num = NetMsgLayout::SeqNumAt::load(p);",
+    "constexpr std::size_t kMacHeaderBytes = tinyos::MacHeaderView::kMaxSizeBytes;",
+    "  const auto reply = rubicon::JoinReplyView::parse(frame.payload);",
+    "  std::uint8_t bytes[4096];",
+    "  return payload.data();  // Not load_be16(p): the view does.",
+]
+
+
+def self_test():
+    """Each planted line is found in each place where it may not be, and nothing else is."""
+    reader = pathlib.PurePath("conformance/oracle/read_packet.cc")
+    for line in PLANTED:
+        assert list(wire_breaches(reader, [line])), f"not found: {line}"
+        assert not list(wire_breaches(pathlib.PurePath("conformance/legal/air.cc"), [line])), line
+    assert not list(wire_breaches(reader, SOUND)), list(wire_breaches(reader, SOUND))
+
+
 def main():
+    self_test()
     root = pathlib.Path(sys.argv[1])
     files = tracked(root)
     sentences = catalogue(root)

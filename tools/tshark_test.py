@@ -16,7 +16,7 @@ CAPTURES = pathlib.Path("spec/captures")
 FIRMWARE = CAPTURES / "firmware"
 BASE_STATION = CAPTURES / "basestation"
 
-# How tshark numbers the link types IEEE802_15_4_WITHFCS, USER0 and USER1.
+# tshark's numbers of the link types IEEE802_15_4_WITHFCS, USER0 and USER1.
 RADIO, SERIAL, SF = "104", "45", "46"
 
 RUBRIC = None
@@ -100,7 +100,7 @@ class Tshark(unittest.TestCase):
         return self.said[path]
 
     def converted(self, source, name, *arguments):
-        """What tshark says of the source as rubric writes it."""
+        """Returns tshark's output for the source as rubric writes it."""
         key = (source, name, *arguments)
         if key not in self.said:
             self.said[key] = tshark(self.convert(source, name, *arguments))

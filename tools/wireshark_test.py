@@ -17,7 +17,7 @@ import unittest
 RUBRIC = ""
 ROOT = pathlib.Path()
 FIRMWARE = pathlib.Path("spec/captures/firmware")
-# What the dissector adds of its own; not bytes of a field.
+# Fields that the dissector adds; not bytes of a field.
 ADDED = {"rubric.am_type", "rubric.path", "rubric.message", "rubric.fault", "rubric.fault_offset",
          "rubric.rule", "rubric.stale", "rubric.note", "rubric.malformed"}
 FT_NONE, FT_FLOAT = 0, 22  # Of epan/ftypes, as tshark -x prints it.
@@ -152,7 +152,7 @@ class Dissector(unittest.TestCase):
         return target
 
     def compare(self, path):
-        """Returns how many fields were held against each other."""
+        """Returns how many fields were compared with each other."""
         records = [json.loads(line, parse_int=number_of) for line in
                    run(RUBRIC, "decode", path, "--format", "jsonl").stdout.splitlines()]
         packets = dissected(path, self.script)

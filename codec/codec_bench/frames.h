@@ -7,7 +7,7 @@
 
 namespace rubric::bench {
 
-/// What the bodies are.
+/// Kinds of message bodies.
 enum Mix : int { kUpdates = 0, kReadUpdates = 1, kSynaptic = 2, kMixed = 3 };
 constexpr std::size_t kFrameCount = 1024;
 using Frame = std::vector<std::uint8_t>;

@@ -1,4 +1,4 @@
-// The generated codec against what one would write by hand for these messages: a packed structure,
+// Compares the generated codec with code written by hand for these messages: a packed structure,
 // the same checks, byte swaps. Compare pairs of the same run; the ratio is what counts.
 #include <cstdlib>
 #include <cstring>
@@ -147,7 +147,7 @@ void BM_ReadByView(benchmark::State& state) {
 BENCHMARK(BM_ReadByHand)->DenseRange(bench::kUpdates, bench::kMixed);
 BENCHMARK(BM_ReadByView)->DenseRange(bench::kUpdates, bench::kMixed);
 
-// Values that the compiler does not know.
+// Values unknown to the compiler.
 struct Input {
   std::uint16_t seq_num = 1;
   std::uint8_t reliable = 1;
@@ -226,7 +226,7 @@ void BM_WriteByBuilder(benchmark::State& state) {
 }
 BENCHMARK(BM_WriteByBuilder);
 
-// A whole active message behind the deframer, header and payload checked, as a pipeline does.
+// Checks a whole active message after the deframer, header and payload, as a pipeline does.
 void BM_ValidateActiveMessage(benchmark::State& state) {
   std::vector<Frame> frames = bench::make_frames(static_cast<int>(state.range(0)));
   for (Frame& f : frames) {

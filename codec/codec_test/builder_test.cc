@@ -1,4 +1,4 @@
-// Builders: frames made in place, and what they refuse.
+// Builders make frames in place, and refuse what does not fit.
 #include <cstring>
 
 #include <gtest/gtest.h>

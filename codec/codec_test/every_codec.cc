@@ -1,10 +1,10 @@
-// All generated code in one unit, for every compiler that firmware is built with; never run.
+// All generated code in one unit, for every compiler used for firmware; never run.
 #include "codec/generated/every_spec.h"
 
 namespace rubric {
 namespace {
 
-// Takes any number of any fields: instantiates the getters of views and the members of values.
+// Accepts any number of any fields: instantiates the getters of views and the members of values.
 struct Touch {
   template <class T>
   void operator()(const char*, const T& field) {

@@ -1,4 +1,4 @@
-// Every structure of every spec, for tests that hold for all of them.
+// Every structure of every spec, for tests that cover all of them.
 #pragma once
 
 #include <string>

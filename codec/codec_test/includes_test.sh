@@ -7,7 +7,7 @@ command -v g++ >/dev/null || { echo "g++ is missing; see tools/install-packages"
 firmware=$(find codec/generated -name '*.h' ! -name '*table*' ! -name messages.h)
 firmware="$firmware $(find codec/runtime -name '*.h')"
 allowed='"codec/(runtime|generated)/[a-z0-9_/]+\.h"|<(stdint|stddef|string|assert)\.h>'
-# Hosts with C++20 also get <span>, behind a check of the preprocessor.
+# Hosts with C++20 also get <span>, after a check of the preprocessor.
 host='^codec/runtime/bytes.h:[0-9]+:#include <span>$'
 found=$(grep -n '#include' $firmware | grep -Ev "#include ($allowed)\$|$host")
 lines=$(cat $firmware | grep -c '#include')

@@ -1,5 +1,5 @@
-// What a mote does with its messages: the functions whose size on an ATmega128 code_size_test.sh
-// bounds. A function is a message and a use.
+// A mote's uses of its messages: code_size_test.sh bounds the size of these functions on an
+// ATmega128. A function is a message and a use.
 #include "codec/generated/rubicon/ack_join.h"
 #include "codec/generated/rubicon/join_reply.h"
 #include "codec/generated/rubicon/join_request.h"
@@ -70,7 +70,7 @@ MOTE_USE size_t rubicon_ack_write(const RubiconAck& value, uint8_t* p, size_t n)
   const Result<MutableBytes> out = write(value, MutableBytes(p, n));
   return out ? out->size() : 0;
 }
-// Only where a message is for this mote, and its number.
+// Returns only whether a message is for this mote, and its number.
 MOTE_USE uint16_t net_msg_view(const uint8_t* p, size_t n, uint16_t devid) {
   const Result<NetMsgView> view = NetMsgView::parse(Bytes(p, n));
   if (!view || view->dest().devid() != Devid(devid)) return 0xffff;

@@ -24,10 +24,10 @@ struct Vector {
   std::map<std::string, std::string> fields;  // Valid ones: path to value, as text.
 };
 
-/// Reads all of `folder`; throws where a file is not as the README says.
+/// Reads all of `folder`; throws if a file is not as the README says.
 std::vector<Vector> load_vectors(const std::string& folder);
 
-/// A number as 64 bits, however it is written.
+/// Returns a number as 64 bits, however it is written.
 std::string canonical(const std::string& value);
 
 }  // namespace rubric

@@ -159,7 +159,7 @@ TEST(View, SerialFrameHasItsNumberOnlyWhereTheKindSaysSo) {
   EXPECT_EQ(tinyos::SerialFrameView::parse(without)->packet().size(), 2U);
 }
 
-// Behind a greatest size nothing is part of a structure that takes all bytes there are.
+// A structure that takes all bytes ends at its greatest size.
 TEST(View, TheGreatestSizeEndsAStructure) {
   std::uint8_t bytes[120] = {1, 11};
   EXPECT_EQ(AppMsgView::parse(bytes)->bytes().size(), 102U);

@@ -1,5 +1,5 @@
-// Parse and write as each other's opposite, over all structures: what write makes, parse takes, and
-// the other way round.
+// Parse and write are inverse over all structures: parse takes what write makes, and the other way
+// round.
 #include <cstdlib>
 #include <cstring>
 #include <iostream>
@@ -84,13 +84,13 @@ void write_then_parse(const std::string& name, int& written) {
   if (!view) RC_FAIL(name + ": parse refuses what write made");
   RC_ASSERT(view->bytes().size() == bytes->size());
   RC_ASSERT(view->stale().empty());
-  // What is absent is not part of the value: write it once more.
+  // An absent field is not part of the value: write it once more.
   std::uint8_t again[512];
   const Result<MutableBytes> second = write(view->to_value(), MutableBytes(again));
   RC_ASSERT(second.has_value());
   RC_ASSERT(equal(*bytes, *second));
   if (name != "tinyos.serial_frame") RC_ASSERT(view->to_value() == value);
-  // A byte less of room is too little, and nothing else is wrong.
+  // One byte less of room is too little, and nothing else is wrong.
   if (!bytes->empty()) {
     const auto less = write(value, MutableBytes(out).first(bytes->size() - 1));
     RC_ASSERT(!less.has_value());
@@ -114,7 +114,7 @@ TEST(WriteProperty, ParseGivesTheValueBack) {
   std::cout << structures << " structures, " << all << " values written and parsed\n";
 }
 
-// Bytes that look like the structure: what write makes of anything, or anything; then changed, cut
+// Returns bytes that look like the structure: written from anything, or anything; then changed, cut
 // or lengthened.
 template <class View>
 std::vector<std::uint8_t> near_bytes() {
@@ -156,7 +156,7 @@ void parse_then_write(Tally& tally) {
   const Result<View> view = View::parse(Bytes(bytes.data(), bytes.size()));
   ++(view ? tally.taken : tally.refused);
   if (!view) {
-    // The place of the fault is within the bytes or right behind them.
+    // The place of the fault is within the bytes or right after them.
     RC_ASSERT(view.error().offset_bytes <= bytes.size());
     RC_ASSERT((view.error().fault == Fault::kTruncated ||
                view.error().fault == Fault::kUnexpected ||
@@ -182,7 +182,7 @@ TEST(WriteProperty, ParseTakesOnlyWhatWriteMakesAgain) {
   std::cout << all.taken << " byte strings taken, " << all.refused << " refused\n";
 }
 
-// What is wrong stays wrong while the bytes up to it are there, whatever follows or is missing.
+// A fault stays while the bytes up to it are there, whatever follows or is missing.
 TEST(WriteProperty, LaterBytesDoNotHealAFault) {
   long faults = 0;
   for_each_view_of_all([&faults]<class View>(const std::string& name, ViewTag<View>) {

@@ -8,7 +8,7 @@
 #if defined(__x86_64__)
 #include <immintrin.h>
 #if defined(__GNUC__) && !defined(__clang__)
-// g++ 12 finds its own AVX-512 intrinsics at fault (GCC bug 105593).
+// g++ 12 warns about its own AVX-512 intrinsics (GCC bug 105593).
 #pragma GCC diagnostic ignored "-Wuninitialized"
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #endif
@@ -20,7 +20,7 @@ namespace {
 constexpr std::uint64_t kOnes = 0x0101010101010101;
 constexpr std::uint64_t kHighs = 0x8080808080808080;
 
-// The high bit of every byte that is zero, exact in the lowest such byte.
+// Returns the high bit of every byte that is zero, exact in the lowest such byte.
 constexpr std::uint64_t zero_bytes(std::uint64_t v) { return (v - kOnes) & ~v & kHighs; }
 
 bool is_special(std::uint8_t byte) { return byte == kHdlcFlag || byte == kHdlcEscape; }
@@ -128,7 +128,7 @@ RUBRIC_AVX2 std::uint8_t* unescape_vector(const std::uint8_t* begin, const std::
   const std::uint8_t* p = begin;
   const __m256i escape = _mm256_set1_epi8(kHdlcEscape);
   while (end - p >= 34) {
-    // Write all 32 bytes, then keep those up to the escape: the branch on where it stands goes.
+    // Write all 32 bytes, then keep those up to the escape: saves the branch on its position.
     const __m256i v = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(p));
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(out), v);
     const auto mask =

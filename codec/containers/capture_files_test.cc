@@ -1,4 +1,4 @@
-// Capture files: both formats, both byte orders, damage, and what the writers make.
+// Capture files: both formats, both byte orders, damage, and the writers' output.
 #include <gtest/gtest.h>
 
 #include "codec/containers/link_record.h"
@@ -19,7 +19,7 @@ using testing::view;
 
 constexpr Error kSound{Fault::kNone, 0, ReqId::kNone};
 
-// Puts files together by hand, in either byte order.
+// Builds files by hand, in either byte order.
 struct File {
   bool big = false;
   std::string out;
@@ -154,7 +154,7 @@ struct Damage {
   // Puts something wrong between two good packets.
   void (*put)(File&);
   Error error;
-  std::uint64_t dropped;  // Of 0: the bad block is delivered whole.
+  std::uint64_t dropped;  // 0: the bad block is delivered whole.
 };
 const Damage kDamages[] = {
     {"LengthsDisagree",
@@ -233,7 +233,7 @@ TEST(WirePcapng, FilesThatEndOrBeginWrong) {
   }
   EXPECT_EQ(read(InputFormat::kPcapng, "").at(0).packet.error,
             (Error{Fault::kCut, 0, "WIRE-PCAPNG"_rule}));
-  // What is no pcapng at all in front of a section.
+  // Bytes before a section that are no pcapng at all.
   const std::vector<Kept> got = read(InputFormat::kPcapng, std::string(50, 'x') + file.out);
   ASSERT_EQ(got.size(), 3u);
   EXPECT_EQ(got[0].packet.error, (Error{Fault::kContainer, 0, "WIRE-PCAPNG"_rule}));
@@ -250,7 +250,7 @@ TEST(WirePcapng, FilesThatEndOrBeginWrong) {
   EXPECT_EQ(versions[1].packet.error, kSound);
 }
 
-// Damage full of what might be blocks, each of them nearly as long as the search lets be.
+// Damage full of bytes that look like blocks, each nearly as long as the search allows.
 TEST(WirePcapng, TheSearchIsNotLedAstray) {
   File file;
   file.section();

@@ -24,7 +24,7 @@ void put32(std::uint64_t value, std::string& out) {
   put16(value >> 16 & 0xFFFF, out);
 }
 
-// pcapng wants 64-bit times as two halves, the high one first.
+// Writes a time in the form of pcapng: two halves of 64 bits, the high one first.
 void put_time(std::uint64_t ns, std::string& out) {
   put32(ns >> 32, out);
   put32(ns, out);
@@ -39,7 +39,7 @@ void put_option(std::uint16_t code, std::string_view value, std::string& out) {
   pad(value.size(), out);
 }
 
-// A block from `begin` on, whose length field is still to be filled in.
+// Opens a block at `begin`, whose length field is filled in later.
 std::size_t open_block(std::uint32_t type, std::string& out) {
   const std::size_t begin = out.size();
   put32(type, out);
@@ -56,10 +56,10 @@ void close_block(std::size_t begin, std::string& out) {
 
 std::uint16_t radio_link_type(const Packet& packet) {
   const Fault fault = packet.error.fault;
-  // A TAP header that was understood is no longer there, one that was not is all there is.
+  // A TAP header that was understood is gone, one that was not is all there is.
   const bool header_gone =
       packet.link_type == kLinkRadioTap && packet.error.requirement != "WIRE-RADIO-TAP"_rule;
-  // A malformed frame stays under the type that it was malformed by.
+  // A malformed frame keeps the type under which it was found malformed.
   if (fault != Fault::kNone && packet.link_type != 0 && !header_gone) return packet.link_type;
   const bool has_fcs = packet.fcs != kAbsent || fault == Fault::kTooShort;
   return has_fcs ? kLinkRadioFcs : kLinkRadioNoFcs;

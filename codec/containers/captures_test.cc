@@ -1,4 +1,4 @@
-// What the original firmware and base station sent, read by every reader that can.
+// Captures of the original firmware and base station, read by every reader that can.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -43,7 +43,7 @@ std::vector<std::string> files(const std::string& folder, const std::string& suf
   return found;
 }
 
-// The number behind ".node" in a file's name, or `otherwise`.
+// Returns the number after ".node" in a file's name, or `otherwise`.
 int node_of(const std::string& path, int otherwise) {
   const std::size_t at = path.find(".node");
   return at == std::string::npos ? otherwise : std::stoi(path.substr(at + 5));
@@ -129,7 +129,7 @@ TEST(Captures, ForwarderStreamsAreThePacketsListed) {
   EXPECT_EQ(streams, 12u);
 }
 
-// A capture file's packets as lines that sort and compare.
+// Returns a capture file's packets as lines that sort and compare.
 std::string line(std::int64_t time_us, const std::string& interface, Direction direction,
                  const std::string& bytes) {
   return std::to_string(time_us) + ' ' + interface + ' ' +

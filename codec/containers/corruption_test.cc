@@ -11,6 +11,7 @@
 #include "codec/containers/serial_frame.h"
 #include "codec/containers/testing.h"
 #include "codec/runtime/hdlc.h"
+#include "tools/readme/number.h"
 
 namespace rubric {
 namespace {
@@ -21,7 +22,7 @@ using testing::read_all;
 using testing::read_file;
 using testing::read_split;
 
-// The frames of all firmware captures, flags included, as their lists have them.
+// Returns the frames of all firmware captures, flags included, from their lists.
 std::vector<std::string> captured_frames() {
   std::vector<std::string> paths;
   for (const auto& entry : std::filesystem::directory_iterator("spec/captures/firmware")) {
@@ -39,7 +40,7 @@ std::vector<std::string> captured_frames() {
   return frames;
 }
 
-// A byte that remembers where it comes from; frame -1 for one that the corruption made.
+// A byte that remembers its origin; frame -1 for one that the corruption made.
 struct Traced {
   std::uint8_t byte;
   int frame;
@@ -56,7 +57,7 @@ std::vector<Traced> trace(const std::vector<std::string>& frames) {
   return stream;
 }
 
-// One random flip, drop, insertion or truncation; every third works on flags and escapes.
+// Makes one random flip, drop, insertion or truncation; every third hits flags and escapes.
 void corrupt(std::vector<Traced>& stream, std::mt19937& random) {
   const std::uint8_t nasty[] = {kHdlcFlag, kHdlcEscape, 0x5E, 0x00};
   const auto made = [&] {
@@ -97,7 +98,8 @@ void corrupt(std::vector<Traced>& stream, std::mt19937& random) {
   }
 }
 
-// Where in the stream each intact frame's content begins: all its bytes in order, flags included.
+// Returns where in the stream each intact frame's content begins: all its bytes in order, flags
+// included.
 std::map<std::uint64_t, int> intact_frames(const std::vector<Traced>& stream,
                                            const std::vector<std::string>& frames) {
   std::map<std::uint64_t, int> found;
@@ -165,12 +167,14 @@ TEST(WireHdlcFlag, IntactFramesAreFoundAmongCorruptedOnes) {
   std::cout << tally.corruptions << " corruptions in " << tally.frames << " frames; "
             << tally.intact << " left intact, " << tally.missed << " of them missed; "
             << tally.sound << " packets without fault\n";
+  EXPECT_EQ(tally.corruptions, readme_number("# seeded corruptions"));
   EXPECT_EQ(tally.missed, 0u);
   EXPECT_GT(tally.intact, tally.frames / 4);
   EXPECT_LT(tally.intact, tally.frames);
 }
 
-// The mote's deframer, byte by byte. It knows no offsets: a frame begins behind the flag before it.
+// Runs the mote's deframer, byte by byte. It knows no offsets: a frame begins after the flag before
+// it.
 std::vector<Kept> deframe_as_a_mote(Bytes stream) {
   std::vector<Kept> kept;
   std::uint8_t buffer[serial_content_max(kSerialPacketAck)];
@@ -182,7 +186,7 @@ std::vector<Kept> deframe_as_a_mote(Bytes stream) {
       Packet packet;
       packet.framing = Framing::kHdlc;
       packet.offset_bytes = begin;
-      // Of a sound frame the buffer still holds the CRC behind the content.
+      // For a sound frame the buffer still holds the CRC after the content.
       const std::size_t crc_bytes = event == HdlcEvent::kFrame ? kSerialCrcBytes : 0;
       split_serial_content(Bytes(buffer, deframer.content().size() + crc_bytes), packet);
       packet.error = deframer.error();
@@ -193,8 +197,9 @@ std::vector<Kept> deframe_as_a_mote(Bytes stream) {
   return kept;
 }
 
-// What two deframers must have in common: all but the rest of a stream without its flag, of which a
-// mote says nothing, and the bytes of what was too long or aborted, of which each keeps its own.
+// Returns the common part of two deframers' results: all but the rest of a stream without its flag,
+// which a mote does not report, and the bytes of a frame that was too long or aborted, of which
+// each keeps its own.
 std::vector<Kept> comparable(const std::vector<Kept>& all) {
   std::vector<Kept> out;
   for (const Kept& kept : all) {
@@ -231,12 +236,13 @@ TEST(WireHdlcFlag, TheMotesDeframerFindsTheSameFrames) {
   std::cout << tally.corruptions << " corruptions in " << tally.frames << " frames; "
             << tally.intact << " left intact, " << tally.missed << " of them missed by the mote's; "
             << compared << " frames the same from both, " << tally.sound << " without fault\n";
+  EXPECT_EQ(tally.corruptions, readme_number("# seeded corruptions"));
   EXPECT_EQ(tally.missed, 0u);
   EXPECT_GT(tally.intact, tally.frames / 4);
   EXPECT_GT(compared, tally.sound);
 }
 
-// A deframer with a mistake that is easily made: flags strictly open and close by turns.
+// A deframer with a common mistake: flags strictly open and close by turns.
 std::vector<Kept> deframe_by_turns(Bytes stream) {
   std::vector<Kept> kept;
   bool inside = false;

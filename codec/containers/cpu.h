@@ -1,4 +1,4 @@
-// Which of the implementations of the hot loops runs.
+// Selects the implementation of the hot loops.
 #pragma once
 
 #include <cstdint>
@@ -11,10 +11,10 @@ enum class CpuPath : std::uint8_t {
   kWide,      ///< AVX-512 and VPCLMULQDQ.
 };
 
-/// Whether this processor can run it.
+/// Returns whether this processor can run it.
 bool cpu_has(CpuPath path);
 
-/// The fastest path of this processor, found out once.
+/// Returns the fastest path of this processor, determined once.
 CpuPath best_cpu_path();
 
 }  // namespace rubric

@@ -1,4 +1,4 @@
-// What everything that sums by carry-less multiplication shares; x86-64 only, empty elsewhere.
+// Shared parts of all sums by carry-less multiplication; x86-64 only, empty elsewhere.
 //
 // Every block of 16 bytes is multiplied by a factor of its own, a power of x modulo the polynomial,
 // so no product waits for another; the sum of the products, 80 bits, is reduced once.
@@ -12,7 +12,7 @@
 #include <cstdint>
 
 #if defined(__GNUC__) && !defined(__clang__)
-// g++ 12 finds its own AVX-512 intrinsics at fault (GCC bug 105593).
+// g++ 12 warns about its own AVX-512 intrinsics (GCC bug 105593).
 #pragma GCC diagnostic ignored "-Wuninitialized"
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #endif
@@ -69,8 +69,8 @@ constexpr Factors make_factors() {
 }
 inline constexpr Factors kFactors = make_factors();
 
-// From kReverse + 16 - n: a shuffle that turns the first n bytes around, the last one lowest, and
-// puts zeros above them. Zeros in front do not change a sum that starts at 0.
+// From kReverse + 16 - n: a shuffle that reverses the first n bytes, the last one lowest, and puts
+// zeros above them. Zeros in front do not change a sum that starts at 0.
 alignas(16) inline constexpr std::uint8_t kReverse[32] = {
     15,   14,   13,   12,   11,   10,   9,    8,    7,    6,    5,
     4,    3,    2,    1,    0,    0x80, 0x80, 0x80, 0x80, 0x80, 0x80,
@@ -80,7 +80,7 @@ RUBRIC_CLMUL inline __m128i load128(const void* p) {
   return _mm_loadu_si128(static_cast<const __m128i*>(p));
 }
 
-// Turns every byte's bits around: a reflected sum is the plain one of mirrored bytes, mirrored.
+// Reverses every byte's bits: a reflected sum is the plain one of mirrored bytes, mirrored.
 RUBRIC_CLMUL inline __m128i mirror(__m128i v) {
   const __m128i nibble = _mm_set1_epi8(0x0F);
   const __m128i mirrored_low = _mm_setr_epi8(0, static_cast<char>(0x80), 0x40,
@@ -97,7 +97,7 @@ RUBRIC_CLMUL inline __m128i mirror(__m128i v) {
   return _mm_or_si128(low, _mm_and_si128(_mm_srli_epi16(high, 4), nibble));
 }
 
-// The remainder of an 80-bit sum of products.
+// Returns the remainder of an 80-bit sum of products.
 RUBRIC_CLMUL inline std::uint16_t reduce(__m128i sum) {
   const __m128i fold = _mm_cvtsi64_si128(static_cast<long long>(power_of_x(64)));
   const __m128i mu = _mm_cvtsi64_si128(static_cast<long long>(barrett_quotient()));
@@ -115,7 +115,7 @@ RUBRIC_CLMUL inline __m128i multiply(__m128i block, std::size_t blocks_behind) {
                        _mm_clmulepi64_si128(block, factor, 0x11));
 }
 
-// The same for the four blocks of a chunk of 64 bytes that `chunks_behind` chunks follow.
+// Does the same for the four blocks of a chunk of 64 bytes that `chunks_behind` chunks follow.
 RUBRIC_WIDE inline __m512i multiply_wide(__m512i chunk, std::size_t chunks_behind) {
   const __m512i factor = _mm512_loadu_si512(kFactors.of[kGroup - 4 - 4 * chunks_behind]);
   return _mm512_xor_si512(_mm512_clmulepi64_epi128(chunk, factor, 0x00),

@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kSlices = 16;
 using Tables = std::array<std::array<std::uint16_t, 256>, kSlices>;
 
-// tables[k][b]: what the byte b has become after k zero bytes have followed it.
+// tables[k][b]: the effect of byte b after k zero bytes.
 template <std::uint16_t (*kStep)(std::uint16_t, std::uint8_t)>
 constexpr Tables make_tables() {
   Tables tables{};
@@ -52,16 +52,16 @@ std::uint16_t slice_by_8(const std::uint8_t* p, std::size_t left, std::uint16_t 
   return crc;
 }
 
-// Folding without multiplication. The polynomial is sparse, and squaring keeps it so:
+// Folds without multiplication. The polynomial is sparse, and squaring keeps it so:
 //   x^16 = x^12 + x^5 + 1, hence x^256 = x^192 + x^80 + 1 and x^128 = x^96 + x^40 + 1.
-// So a word of 64 bits may be added to the word behind it (192 = 256 - 64), to the bits 176 behind
-// it (two words and 48 bits) and to the word four behind it, and be gone. All distances are whole
-// bytes: words stay in memory order, and the reflected sum differs in nothing but its tables.
-// The same with words of 32 bits and x^128.
+// So a word of 64 bits may be added to the word after it (192 = 256 - 64), to the bits 176 after it
+// (two words and 48 bits) and to the word four after it, and be gone. All distances are whole
+// bytes: words stay in memory order, and the reflected sum differs only in its tables. The same
+// holds for words of 32 bits and x^128.
 struct Window64 {
   std::uint64_t w[4];
 
-  // Folds w[kAt] away and puts the word four behind it in its place.
+  // Folds w[kAt] away and puts the word four after it in its place.
   template <int kAt>
   RUBRIC_INLINE void step(std::uint64_t next) {
     const std::uint64_t gone = w[kAt];

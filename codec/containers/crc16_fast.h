@@ -9,15 +9,16 @@
 
 namespace rubric {
 
-/// CRC-16/XMODEM of `bytes` going on from `crc`, in plain C++.
+/// Returns the CRC-16/XMODEM of `bytes`, continued from `crc`, in plain C++.
 std::uint16_t crc16_portable(Bytes bytes, std::uint16_t crc = 0);
-/// The same by carry-less multiplication, 16 or 64 bytes at a time; only where cpu_has() the path.
+/// Does the same by carry-less multiplication, 16 or 64 bytes at a time; only if cpu_has() the
+/// path.
 std::uint16_t crc16_vector(Bytes bytes, std::uint16_t crc = 0);
 std::uint16_t crc16_wide(Bytes bytes, std::uint16_t crc = 0);
-/// The same by whichever `path` says.
+/// Does the same by the given `path`.
 std::uint16_t crc16_fast(Bytes bytes, std::uint16_t crc = 0, CpuPath path = best_cpu_path());
 
-/// FCS of 802.15.4 (CRC-16 of ITU-T, reflected, initial value 0), the same ways.
+/// Return the FCS of 802.15.4 (CRC-16 of ITU-T, reflected, initial value 0) in the same ways.
 std::uint16_t fcs_portable(Bytes bytes);
 std::uint16_t fcs_vector(Bytes bytes);
 std::uint16_t fcs_fast(Bytes bytes, CpuPath path = best_cpu_path());

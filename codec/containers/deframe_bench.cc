@@ -1,4 +1,5 @@
-// How fast frames are found and checked, against memcpy of the same bytes in the same run.
+// Measures how fast frames are found and checked, compared with memcpy of the same bytes in the
+// same run.
 #include <benchmark/benchmark.h>
 
 #include <cstring>
@@ -15,9 +16,9 @@
 namespace rubric {
 namespace {
 
-// What the payload of a frame is made of.
+// Contents of frames.
 enum Traffic : std::int64_t {
-  kSink,    // As sinks send: headers, some readings, zeros; an escape in one frame of fourteen.
+  kSink,    // As from sinks: headers, readings, zeros; an escape in one frame of fourteen.
   kRandom,  // Every byte value alike: two frames in three have an escape.
 };
 
@@ -88,7 +89,7 @@ void deframe(benchmark::State& state) {
   state.SetItemsProcessed(static_cast<std::int64_t>(good));
 }
 
-// As the TinyOS host tools do it: a byte at a time, CRC by shifts.
+// Works like the TinyOS host tools: a byte at a time, CRC by shifts.
 void deframe_bytewise(benchmark::State& state) {
   const std::string& stream =
       stream_of(static_cast<std::size_t>(state.range(0)), static_cast<Traffic>(state.range(1)));

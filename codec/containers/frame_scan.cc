@@ -18,7 +18,7 @@ constexpr std::ptrdiff_t kReach = kScanReach;
 
 #define RUBRIC_VECTOR __attribute__((target("avx2,bmi,pclmul,ssse3,sse4.1")))
 
-// The first flag or escape behind p, at most kReach bytes on (then p + kReach).
+// Returns the first flag or escape from p on, at most kReach bytes on (then p + kReach).
 RUBRIC_VECTOR inline Pointer find_near_vector(Pointer p) {
   const __m256i flag = _mm256_set1_epi8(kHdlcFlag);
   const __m256i escape = _mm256_set1_epi8(kHdlcEscape);
@@ -44,7 +44,7 @@ RUBRIC_WIDE inline Pointer find_near_wide(Pointer p) {
   return stop;
 }
 
-// The first flag behind p, at most up to `stop`.
+// Returns the first flag from p on, at most up to `stop`.
 RUBRIC_VECTOR inline Pointer find_flag_near(Pointer p, Pointer stop) {
   const __m256i flag = _mm256_set1_epi8(kHdlcFlag);
   for (; p < stop; p += 32) {
@@ -55,8 +55,8 @@ RUBRIC_VECTOR inline Pointer find_flag_near(Pointer p, Pointer stop) {
   return stop;
 }
 
-// Undoes the escapes in [begin, end), at most kReach bytes; returns the end of what it wrote, or
-// null where an escape is followed by another or by the end: rare enough for slower code.
+// Undoes the escapes in [begin, end), at most kReach bytes; returns the end of its output, or null
+// if an escape is followed by another or by the end: rare enough for slower code.
 RUBRIC_WIDE inline std::uint8_t* unescape_wide(Pointer begin, Pointer end, std::uint8_t* out) {
   const __m512i escape = _mm512_set1_epi8(kHdlcEscape);
   const __m512i flip = _mm512_set1_epi8(kHdlcXor);
@@ -88,13 +88,13 @@ bool is_usual(std::ptrdiff_t size) {
          size <= static_cast<std::ptrdiff_t>(kScanContentMax);
 }
 
-// The loop that finds frames, the same for both paths but for the vectors in it.
+// Finds frames; the loop is the same for both paths except for the vectors in it.
 template <class FindSpecial, class Unescape>
 RUBRIC_INLINE Pointer find_frames(Pointer p, Pointer end, ScanBatch& batch,
                                   FindSpecial find_special, Unescape unescape) {
   std::size_t count = 0;
   std::uint8_t* out = batch.unescaped;
-  // Within reach of the end vectors might be loaded from beyond it.
+  // Close to the end vectors might be loaded from beyond it.
   while (count != kScanBatch && end - p > 2 * kReach) {
     if (*p == kHdlcFlag) {
       ++p;
@@ -122,14 +122,14 @@ RUBRIC_INLINE Pointer find_frames(Pointer p, Pointer end, ScanBatch& batch,
   return p;
 }
 
-// The sum of products over `size` bytes, 1 to 256, of which at least 16 may be read. All but the
-// last four blocks are folded by shifts, which are cheaper than multiplications: the square of
-// x^256 = x^192 + x^80 + 1 (see crc16_fast.cc) is x^512 = x^384 + x^160 + 1, so a block goes to the
-// one behind it, to 44 bytes behind it and to the one four behind it.
+// Returns the sum of products over `size` bytes, 1 to 256, of which at least 16 may be read. All
+// but the last four blocks are folded by shifts, which are cheaper than multiplications: the square
+// of x^256 = x^192 + x^80 + 1 (see crc16_fast.cc) is x^512 = x^384 + x^160 + 1, so a block goes to
+// the one after it, to 44 bytes after it and to the one four after it.
 RUBRIC_VECTOR inline __m128i multiply_frame(Pointer p, std::size_t size) {
   const __m128i reverse = load128(kReverse);
   const std::size_t head = (size - 1) % 16 + 1;
-  // Turned around, the first byte is the highest, so shifts to the right go towards the end.
+  // Reversed, the first byte is the highest, so shifts to the right go towards the end.
   __m128i a = _mm_shuffle_epi8(load128(p), load128(kReverse + 16 - head));
   std::size_t behind = (size - 1) / 16;
   p += head;
@@ -189,7 +189,7 @@ RUBRIC_WIDE inline __m512i constant(std::uint64_t value) {
   return _mm512_set1_epi64(static_cast<long long>(value));
 }
 
-// As reduce, for four sums at a time.
+// Reduces four sums at a time.
 RUBRIC_WIDE inline __m512i reduce_four(__m512i sum) {
   const __m512i value =
       _mm512_xor_si512(sum, _mm512_clmulepi64_epi128(sum, constant(power_of_x(64)), 0x01));

@@ -1,4 +1,4 @@
-// Random input of every kind: nothing crashes, and how it is cut up does not matter.
+// Random input of every kind: nothing crashes, and the splits of the input do not matter.
 #include <gtest/gtest.h>
 
 #include "codec/containers/testing.h"
@@ -57,7 +57,7 @@ TEST(Garbage, RandomBytes) {
   }
 }
 
-// Good files with some bytes changed, dropped or doubled come deeper than noise does.
+// Good files with some bytes changed, dropped or doubled get further than noise does.
 TEST(Garbage, DamagedFiles) {
   const std::pair<InputFormat, const char*> kInputs[] = {
       {InputFormat::kHdlc, "spec/captures/firmware/h10_hdlc_escape_and_bad_serial.serial.bin"},
@@ -108,7 +108,7 @@ TEST(Garbage, PcapngFindsItsWayBack) {
   std::mt19937 random(79);
   for (int round = 0; round < 300; ++round) {
     std::string input = good;
-    // Behind section header and interfaces; those are needed for all that follows.
+    // After section header and interfaces, which all later blocks need.
     const std::size_t at = 0x80 + random() % (input.size() - 0x80);
     if (round % 2 == 0) {
       input[at] = static_cast<char>(input[at] ^ 1 << random() % 8);

@@ -140,7 +140,7 @@ void HdlcReader::deliver(Bytes content, PacketSink sink) {
   const std::size_t size = content.size();
   const int kind = content[0];
   if (size < kSerialContentMin || size > serial_content_max(kind)) {
-    // Also what stands in place keeps to the bound, so that splits do not matter.
+    // Frames delivered in place keep the bound too, so that splits do not matter.
     packet_.dropped_bytes = size > kHdlcKeptMax ? size - kHdlcKeptMax : 0;
     content = content.first(std::min(size, kHdlcKeptMax));
     return deliver_damaged(content, check_serial_content(content, kPath), sink);

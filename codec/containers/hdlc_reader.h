@@ -9,19 +9,19 @@
 
 namespace rubric {
 
-/// Bytes of a frame's content that are kept at most; the rest is counted in dropped_bytes.
+/// The most bytes of a frame's content that are kept; the rest is counted in dropped_bytes.
 inline constexpr std::size_t kHdlcKeptMax = 4096;
 
 /// A streaming deframer: any split of the input gives the same packets.
 ///
 /// Every flag ends the frame before it and opens the next one, whatever came before, so one damaged
-/// frame never costs the next intact one. Flags in a row are idle time. What stands before the
-/// first flag is treated as a frame, too: a capture may begin in the middle of one.
-/// A frame that lies in one chunk without escapes is delivered in place, any other from a buffer.
+/// frame never costs the next intact one. Flags in a row are idle time. Bytes before the first flag
+/// are treated as a frame, too: a capture may begin in the middle of one. A frame that lies in one
+/// chunk without escapes is delivered in place, any other from a buffer.
 ///
 /// Faults (offsets count in the unescaped content from the kind byte): kAborted, kTooLong,
 /// kTooShort, kCrc, kCut, looked for in this order, kCut first at the end of the input. An unknown
-/// kind is none. How the pieces of a malformed frame are filled in: see serial_frame.h.
+/// kind is no fault. serial_frame.h explains how the pieces of a malformed frame are filled in.
 /// Source: TEP 113, section 3.1; RFC 1662, section 4.
 class HdlcReader final : public Reader {
  public:
@@ -45,7 +45,7 @@ class HdlcReader final : public Reader {
 
   CpuPath path_;
   Packet packet_;                  // The fields that are the same for all stay filled in.
-  std::uint64_t chunk_offset_ = 0;  // Of the present chunk in the input.
+  std::uint64_t chunk_offset_ = 0;  // Offset of the present chunk in the input.
   // The frame that an earlier chunk began or that has escapes, unescaped.
   bool open_ = false;
   bool escaping_ = false;  // Its last byte so far was an escape.

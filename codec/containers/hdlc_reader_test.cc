@@ -154,7 +154,7 @@ TEST(WireHdlcLong, LimitsOfLength) {
   EXPECT_EQ(one(framed(std::string(254, '\x44'))).packet.error, kSound);
   EXPECT_EQ(one(framed(std::string(255, '\x44'))).packet.error,
             (Error{Fault::kTooLong, 256, "WIRE-HDLC-LONG"_rule}));
-  // Beyond what is kept, with and without escapes; the next frame is found.
+  // Longer than the kept part, with and without escapes; the next frame is found.
   for (const char* filler : {"\x11", "\x7d\x31"}) {
     std::string stream = "\x7e";
     for (std::size_t i = 0; i < 100'000; ++i) stream += filler;
@@ -172,7 +172,7 @@ TEST(WireHdlcLong, LimitsOfLength) {
   }
 }
 
-// reader(writer(packet)) == packet, also for what is malformed.
+// Expects reader(writer(packet)) == packet, for malformed ones too.
 void comes_back(const std::string& content, const std::string& stream) {
   HdlcReader reader;
   const std::vector<Kept> first = read_all(reader, view(stream));
@@ -226,7 +226,7 @@ RC_GTEST_PROP(WireHdlcFlag, AnySplitOfAnyBytesGivesTheSame, ()) {
   }
 }
 
-// Long enough for the vector scan, and full of what it leaves to slower code.
+// Long enough for the vector scan, and full of cases for slower code.
 TEST(WireHdlcEscape, PathsAgreeOnLongStreamsOfOddities) {
   std::mt19937 random(12);
   const std::uint8_t odd[] = {kHdlcFlag, kHdlcFlag, kHdlcEscape, kHdlcEscape, 0x5D, 0x5E, 0x45};

@@ -36,7 +36,7 @@ std::uint16_t link_type_of(const ReaderOptions& options) {
 
 Error decode_hex_line(Bytes text, std::vector<std::uint8_t>& bytes) {
   bytes.clear();
-  bool at_token = true;  // Where a 0x may stand.
+  bool at_token = true;  // Where a 0x may begin.
   for (std::size_t i = 0; i < text.size();) {
     if (is_space(text[i])) {
       at_token = true;
@@ -48,7 +48,7 @@ Error decode_hex_line(Bytes text, std::vector<std::uint8_t>& bytes) {
     if (at_token && pair && text[i] == '0' && (text[i + 1] | 0x20) == 'x') {
       i += 2;
       at_token = false;
-      // A 0x with nothing behind it is no byte.
+      // A 0x with nothing after it is no byte.
       if (i < text.size() && hex_digit(text[i]) != kNoDigit) continue;
       return fail(Fault::kUnexpected, i, "WIRE-HEX"_rule).error;
     }

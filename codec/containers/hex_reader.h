@@ -7,12 +7,12 @@
 
 namespace rubric {
 
-/// Characters of a line that are kept at most.
+/// The most characters of a line that are kept.
 inline constexpr std::size_t kHexLineMax = 64 * 1024;
 
 /// Reads a packet a line: two hex digits of either case for each byte, with or without white space
-/// between bytes, each byte or run of bytes optionally led by 0x. Empty lines and everything
-/// behind a '#' are skipped. What the lines are is an option (hex_framing).
+/// between bytes, each byte or run of bytes optionally led by 0x. Skips empty lines and everything
+/// after a '#'. An option gives the framing of the lines (hex_framing).
 ///
 /// Faults: kUnexpected (a line that is no hex text: the line itself is delivered, the offset counts
 /// its characters), kTooLong (a line beyond kHexLineMax), kCut never: the last line needs no end;
@@ -34,7 +34,7 @@ class HexReader final : public Reader {
   std::uint64_t line_offset_ = 0;
   std::uint64_t dropped_ = 0;
   std::vector<std::uint8_t> held_;   // The beginning of a line that spans chunks.
-  std::vector<std::uint8_t> bytes_;  // Of the present line, decoded.
+  std::vector<std::uint8_t> bytes_;  // The present line, decoded.
 };
 
 /// Decodes one line into `bytes`, which is cleared first. The error's offset counts characters.

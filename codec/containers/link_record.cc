@@ -21,7 +21,7 @@ Error tap_error(Fault fault, std::size_t at) {
   return fail(fault, at, "WIRE-RADIO-TAP"_rule).error;
 }
 
-// Reads a TAP header: its size and what it says of the FCS. An absent FCS type means no FCS.
+// Reads a TAP header: its size and its FCS type. An absent FCS type means no FCS.
 Error read_tap(Bytes record, std::size_t* size, FcsType* fcs_type) {
   *fcs_type = FcsType::kNone;
   if (record.size() < kTapHeaderBytes) return tap_error(Fault::kTruncated, record.size());
@@ -117,7 +117,7 @@ void decode_record(Bytes record, std::uint64_t original_bytes, std::uint16_t lin
       packet.error = fail(Fault::kUnsupported, 0, container).error;
       return;
   }
-  // A serial frame's error counts from the kind byte, which stands before `bytes`.
+  // A serial frame's error counts from the kind byte, which precedes `bytes`.
   const std::size_t end = link_type == kLinkSerial ? record.size() : packet.bytes.size();
   if (cut) packet.error = fail(Fault::kCut, end, container).error;
 }

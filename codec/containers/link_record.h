@@ -1,4 +1,4 @@
-// A record of a capture file, read as its link type says.
+// Reads a record of a capture file by its link type.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace rubric {
 
-// LINKTYPE_ values. USER0 and USER1 are what this kit uses them for.
+// LINKTYPE_ values, with this kit's use of USER0 and USER1.
 inline constexpr std::uint16_t kLinkSerial = 147;   ///< Serial frame, kind byte to CRC, unescaped.
 inline constexpr std::uint16_t kLinkSf = 148;       ///< Serial forwarder packet, no length byte.
 inline constexpr std::uint16_t kLinkRadioFcs = 195;    ///< IEEE802_15_4_WITHFCS.
@@ -17,17 +17,17 @@ inline constexpr std::uint16_t kLinkRadioTap = 283;    ///< IEEE802_15_4_TAP.
 inline constexpr std::size_t kRadioFrameMax = 127;  ///< FCS included.
 
 /// Reads the radio frame in `record`, which is whole: fills framing, bytes, fcs, error, and moves
-/// offset_bytes from the record's first byte to the frame control field.
-/// Faults: kEmpty, kTooShort (no room for the FCS), kTooLong, kFcs; of a TAP header kTruncated,
-/// kUnexpected (version, FCS type), kOutOfRange (length), kUnsupported (32-bit FCS), with offsets
-/// from the record's first byte. What some sniffers put in place of the FCS is not guessed.
-/// Source: IEEE 802.15.4-2006, sections 6.4.1 and 7.2.1; LINKTYPE_IEEE802_15_4_TAP.
+/// offset_bytes from the record's first byte to the frame control field. Faults: kEmpty, kTooShort
+/// (no room for the FCS), kTooLong, kFcs; for a TAP header kTruncated, kUnexpected (version, FCS
+/// type), kOutOfRange (length), kUnsupported (32-bit FCS), with offsets from the record's first
+/// byte. Does not guess what some sniffers put in place of the FCS. Source: IEEE 802.15.4-2006,
+/// sections 6.4.1 and 7.2.1; LINKTYPE_IEEE802_15_4_TAP.
 void decode_radio_record(Bytes record, std::uint16_t link_type, Packet& packet);
 
-/// Reads a record of any link type of which `record` is what was captured and `original_bytes` the
-/// size that it had. `packet` comes with offset_bytes of the record's first byte.
-/// Faults: those of the link type, kCut (not captured whole; by rule `container`), kUnsupported
-/// (another link type: kBare and the bytes as they are).
+/// Reads a record of any link type; `record` is the captured part and `original_bytes` the original
+/// size. `packet` comes with offset_bytes of the record's first byte. Faults: those of the link
+/// type, kCut (not captured whole; by rule `container`), kUnsupported (another link type: kBare and
+/// the bytes as they are).
 void decode_record(Bytes record, std::uint64_t original_bytes, std::uint16_t link_type,
                    ReqId container, Packet& packet);
 

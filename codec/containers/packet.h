@@ -1,4 +1,4 @@
-// A packet as a container or a line delivers it: its bytes, and everything the bytes lack.
+// A packet from a container or a line: its bytes, and everything that the bytes lack.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace rubric {
 
-/// How a packet was framed, and so what its bytes begin with.
+/// The framing of a packet, which decides how its bytes begin.
 enum class Framing : std::uint8_t {
   kHdlc,   ///< Serial line; bytes from the dispatch byte on.
   kSf,     ///< Serial forwarder; bytes from the dispatch byte on.
@@ -23,7 +23,7 @@ enum class Direction : std::uint8_t { kUnknown, kInbound, kOutbound };
 inline constexpr std::int64_t kNoTime = INT64_MIN;
 inline constexpr std::int32_t kAbsent = -1;
 
-/// One packet. `bytes` belong to the reader and live until the callback that got them returns.
+/// One packet. `bytes` belong to the reader and live until the callback returns.
 struct Packet {
   Framing framing = Framing::kBare;
   Direction direction = Direction::kUnknown;
@@ -34,19 +34,19 @@ struct Packet {
   std::int64_t time_ns = kNoTime;      ///< Since the epoch of the input, or kNoTime.
   std::uint32_t interface_id = 0;      ///< Index into the reader's interfaces().
   std::uint16_t link_type = 0;         ///< LINKTYPE_ of a capture file, 0 elsewhere.
-  // Serial line (kHdlc): what stands around `bytes`; kAbsent where the frame was too short for it.
+  // Serial line (kHdlc): the parts around `bytes`; kAbsent if the frame was too short for one.
   std::int32_t kind = kAbsent;         ///< Packet kind.
   std::int32_t serial_seq = kAbsent;   ///< Sequence number; only kinds ACK and PACKET_ACK have one.
   std::int32_t crc = kAbsent;          ///< As received.
   // Radio (kRadio).
   std::int32_t fcs = kAbsent;          ///< As received; kAbsent where the capture has none.
   std::string_view comment;            ///< The capture file's; lives as long as `bytes`.
-  /// What the framing itself breaks; fault kNone where it is sound. Its offset counts from the
-  /// first byte of the frame (kind byte, length byte or frame control field).
+  /// The fault of the framing itself; kNone if it is sound. Its offset counts from the first byte
+  /// of the frame (kind byte, length byte or frame control field).
   Error error{Fault::kNone, 0, ReqId::kNone};
-  /// Bytes of the packet that are not in `bytes`: it grew beyond every bound (Fault::kTooLong), the
-  /// capture kept only its beginning (Fault::kCut), or they could not be read at all
-  /// (Fault::kContainer).
+  /// Number of bytes of the packet that are not in `bytes`: it grew beyond every bound
+  /// (Fault::kTooLong), the capture kept only its beginning (Fault::kCut), or they could not be
+  /// read at all (Fault::kContainer).
   std::uint64_t dropped_bytes = 0;
 };
 

@@ -48,7 +48,7 @@ UnitReader::Step PcapReader::file_header(Bytes input) {
     return damage(input.first(kFileHeaderBytes), 0);
   }
   interface.ticks_per_second = magic == kMagicNano ? 1'000'000'000 : 1'000'000;
-  // The upper half of the field tells the length of an Ethernet FCS; nothing for us.
+  // The upper half of the field is the length of an Ethernet FCS, which is ignored.
   interface.link_type = static_cast<std::uint16_t>(load32(input.data() + 20));
   interfaces_.assign(1, interface);
   has_header_ = true;

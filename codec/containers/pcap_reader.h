@@ -10,10 +10,10 @@ inline constexpr std::size_t kCaptureRecordMax = 256 * 1024;
 
 /// Reads both byte orders, microseconds and nanoseconds.
 ///
-/// Faults: kContainer (no pcap file, or a record whose length cannot be; the format has no mark to
-/// find the next record by, so all that follows is counted in dropped_bytes), kCut (the file ends
-/// within its header or a record), and those of link_record.h. Offsets of the first two count from
-/// the header at fault. Source: draft-ietf-opsawg-pcap.
+/// Faults: kContainer (no pcap file, or a record with an impossible length; the format has no mark
+/// to find the next record by, so all later bytes are counted in dropped_bytes), kCut (the file
+/// ends within its header or a record), and those of link_record.h. Offsets of the first two count
+/// from the header at fault. Source: draft-ietf-opsawg-pcap.
 class PcapReader final : public UnitReader {
  protected:
   Step step(Bytes input, PacketSink sink) override;

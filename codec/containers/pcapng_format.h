@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "codec/runtime/bytes.h"
+
 namespace rubric::pcapng {
 
 // Block types.
@@ -17,7 +19,7 @@ inline constexpr std::uint32_t kEnhancedPacket = 6;
 inline constexpr std::uint32_t kByteOrderMagic = 0x1A2B3C4D;
 inline constexpr std::uint16_t kMajorVersion = 1;
 
-// Sizes in bytes, type and both lengths included unless told otherwise.
+// Sizes in bytes, type and both lengths included unless noted.
 inline constexpr std::size_t kBlockMin = 12;
 inline constexpr std::size_t kBlockTrailerBytes = 4;
 inline constexpr std::size_t kSectionHeaderMin = 28;
@@ -40,5 +42,10 @@ inline constexpr std::uint16_t kOptIsbIfRecv = 4;
 inline constexpr std::uint32_t kDirectionMask = 3;
 inline constexpr std::uint32_t kDirectionInbound = 1;
 inline constexpr std::uint32_t kDirectionOutbound = 2;
+
+/// Where the data of the last packet begins in a file that was just written, little-endian as here.
+inline std::size_t last_data_at(Bytes file) {
+  return file.size() - load_le32(file.end() - kBlockTrailerBytes) + kEnhancedPacketFixed;
+}
 
 }  // namespace rubric::pcapng

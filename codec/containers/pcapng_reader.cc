@@ -11,11 +11,11 @@ namespace {
 
 using namespace pcapng;
 
-// Bounds on what interface descriptions may make a reader keep.
+// Bounds on memory for interface descriptions.
 constexpr std::size_t kInterfacesMax = 65536;
 constexpr std::size_t kTextMax = 1024;
 
-// What the search for a sound block takes for one at most: a longest packet and its options.
+// The largest block that the search for a sound one accepts: a longest packet and its options.
 constexpr std::size_t kSearchBlockMax = 2 * kCaptureRecordMax;
 
 std::string_view text_of(Bytes value) {
@@ -78,7 +78,8 @@ void PcapngReader::section(Bytes bytes, PacketSink sink) {
   }
 }
 
-// Takes the next option off `options`. False at their end; `*sound` is false if they overrun.
+// Takes the next option off `options`. Returns false at their end; `*sound` is false if they
+// overrun.
 bool PcapngReader::next_option(Bytes& options, Option* option, bool* sound) const {
   *sound = true;
   if (options.size() < 4) return false;
@@ -164,7 +165,7 @@ void PcapngReader::deliver(Bytes bytes, const Captured& captured, PacketSink sin
   if (captured.ticks) packet.time_ns = time_ns_of_ticks(*captured.ticks, interface);
   if (captured.has_options) {
     const std::size_t at = captured.data_at + (captured.captured_bytes + 3) / 4 * 4;
-    // Unpadded data at the end of a block that is too small for it is let pass.
+    // Accepts unpadded data at the end of a block that is too small for it.
     Bytes options = bytes.sub(std::min(at, content_end(bytes)),
                               content_end(bytes) - std::min(at, content_end(bytes)));
     Option option;
@@ -199,12 +200,12 @@ UnitReader::Step PcapngReader::damage(Bytes header, std::uint32_t offset_bytes) 
   damage_.error = Error{Fault::kContainer, offset_bytes, "WIRE-PCAPNG"_rule};
   std::copy(header.begin(), header.end(), damaged_header_.begin());
   damage_.bytes = Bytes(damaged_header_.data(), damaged_header_.size());
-  // The next sound block may begin anywhere behind the first byte, also within these twelve.
+  // The next sound block may begin anywhere after the first byte, even within these twelve.
   return used(1);
 }
 
 void PcapngReader::deliver_damage(PacketSink sink) {
-  // Of what was passed over, the first twelve bytes are in the packet.
+  // The first twelve of the skipped bytes are in the packet.
   const std::uint64_t passed = offset() - damage_.offset_bytes;
   damage_.bytes = damage_.bytes.first(std::min<std::size_t>(damage_.bytes.size(), passed));
   damage_.dropped_bytes = passed - damage_.bytes.size();
@@ -212,7 +213,8 @@ void PcapngReader::deliver_damage(PacketSink sink) {
   sink(damage_);
 }
 
-// The size that a block at the front of `input` (at least 12 bytes) would have, if it can be one.
+// Returns the size that a block at the front of `input` (at least 12 bytes) would have, if it can
+// be one.
 std::optional<std::size_t> PcapngReader::plausible_block(Bytes input, bool* big_endian) const {
   const std::uint8_t* const p = input.data();
   *big_endian = big_endian_;
@@ -228,8 +230,8 @@ std::optional<std::size_t> PcapngReader::plausible_block(Bytes input, bool* big_
   return size;
 }
 
-// Where the first sound block in `input` begins, or what may become one when more input comes
-// (then *wanted tells how many bytes it needs); input.size() if there is none.
+// Returns where the first sound block in `input` begins, or one that may become sound when more
+// input comes (then *wanted is the number of bytes it needs); input.size() if there is none.
 std::size_t PcapngReader::find_block(Bytes input, std::size_t* wanted) const {
   *wanted = 0;
   for (std::size_t at = 0; at < input.size(); ++at) {

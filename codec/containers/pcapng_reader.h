@@ -12,15 +12,15 @@ namespace rubric {
 inline constexpr std::size_t kPcapngBlockMax = 16 * 1024 * 1024;
 
 /// Reads both byte orders, any number of sections, interfaces of any link types; enhanced, simple
-/// and obsolete packet blocks with their time, direction and comment. Other blocks are skipped.
+/// and obsolete packet blocks with their time, direction and comment. Skips other blocks.
 /// interfaces() counts on over the sections.
 ///
 /// Faults, all with offsets from the block's first byte and framing kBare: kContainer (a damaged
-/// block; its header of 12 bytes is delivered, the search for the next sound block goes on behind
-/// it, dropped_bytes counts what it passed over; or a sound block whose content does not fit it,
+/// block; its header of 12 bytes is delivered, the search for the next sound block continues after
+/// it, dropped_bytes counts the skipped bytes; or a sound block whose content does not fit it,
 /// delivered whole), kUnsupported (a section of another major version, skipped), kCut (the file
-/// ends within a block; what there is of it is delivered). Packets may have those of link_record.h.
-/// Source: draft-ietf-opsawg-pcapng.
+/// ends within a block; its part is delivered). Packets may have those of link_record.h. Source:
+/// draft-ietf-opsawg-pcapng.
 class PcapngReader final : public UnitReader {
  protected:
   Step step(Bytes input, PacketSink sink) override;
@@ -31,7 +31,7 @@ class PcapngReader final : public UnitReader {
     std::uint16_t code;
     Bytes value;
   };
-  struct Captured {  // What the three kinds of packet block have in common.
+  struct Captured {  // The common part of the three kinds of packet block.
     std::size_t interface;
     std::optional<std::uint64_t> ticks;
     std::size_t data_at;
@@ -62,10 +62,10 @@ class PcapngReader final : public UnitReader {
 
   bool big_endian_ = false;
   bool in_section_ = false;
-  bool supported_ = true;        // Of the section's major version.
+  bool supported_ = true;        // The section's major version is known.
   bool final_ = false;           // No more input will come.
-  std::size_t first_interface_ = 0;  // Of the present section in interfaces_.
-  std::vector<std::uint32_t> snap_lengths_;  // Of the present section's interfaces.
+  std::size_t first_interface_ = 0;  // Begin of the present section in interfaces_.
+  std::vector<std::uint32_t> snap_lengths_;  // For the present section's interfaces.
   bool damaged_ = false;
   Packet damage_;  // Delivered when the next sound block is found.
   std::array<std::uint8_t, 12> damaged_header_{};

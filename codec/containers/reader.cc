@@ -32,7 +32,7 @@ bool is_json(Bytes first) {
   return false;
 }
 
-// Every line is hex text, a comment or empty, and not all of them are empty.
+// Returns whether every line is hex text, a comment or empty, and not all are empty.
 bool is_hex_text(Bytes sample) {
   std::vector<std::uint8_t> bytes;
   bool any = false;
@@ -49,7 +49,8 @@ bool is_hex_text(Bytes sample) {
   return any;
 }
 
-// An intact frame anywhere, or at least the beginning of one: a stream may begin in mid-frame.
+// Returns whether there is an intact frame anywhere, or at least the beginning of one: a stream may
+// begin in mid-frame.
 bool is_hdlc(Bytes sample) {
   bool found = false;
   auto look = [&](const Packet& packet) {

@@ -1,4 +1,4 @@
-// One interface for everything that packets are read from.
+// One interface for all sources of packets.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace rubric {
 
-/// Where packets of a capture were heard. A stream has one interface, a capture file many.
+/// A place where packets of a capture were heard. A stream has one interface, a capture file many.
 struct Interface {
   std::string name;                               ///< if_name; empty where there is none.
   std::string comment;                            ///< opt_comment of its description.
@@ -20,8 +20,8 @@ struct Interface {
 };
 
 /// Reads packets from bytes that come in chunks of any size; the chunks' borders do not matter.
-/// Bounded memory whatever the input says. A reader never fails: what is malformed is delivered
-/// as a packet with an error, and the packets behind it are found where the format lets them be.
+/// Uses bounded memory for any input. A reader never fails: it delivers malformed data as a packet
+/// with an error, and finds the packets after it where the format allows.
 class Reader {
  public:
   virtual ~Reader() = default;
@@ -29,11 +29,11 @@ class Reader {
   /// Takes the next bytes and delivers the packets that they complete.
   virtual void feed(Bytes chunk, PacketSink sink) = 0;
 
-  /// The input has ended: delivers what is left of it. Afterwards the reader takes a new input;
-  /// interfaces() stays until then.
+  /// Ends the input: delivers the rest of it. Afterwards the reader takes a new input; interfaces()
+  /// stays until then.
   virtual void finish(PacketSink sink) = 0;
 
-  /// The interfaces met so far; a Packet's interface_id counts in them.
+  /// Returns the interfaces met so far; a Packet's interface_id is an index into them.
   const std::vector<Interface>& interfaces() const { return interfaces_; }
 
  protected:
@@ -50,19 +50,19 @@ enum class InputFormat : std::uint8_t {
   kJsonl,   ///< JSON lines; no reader here.
 };
 
-/// What the input itself does not say.
+/// Facts that the input itself lacks.
 struct ReaderOptions {
-  Direction direction = Direction::kUnknown;  ///< Of the packets of a stream or of hex text.
-  std::string interface_name;                 ///< Of a stream or of hex text.
-  Framing hex_framing = Framing::kSf;         ///< What the lines of hex text are.
-  bool hex_has_fcs = false;                   ///< Whether lines of kRadio end with an FCS.
+  Direction direction = Direction::kUnknown;  ///< For packets of a stream or of hex text.
+  std::string interface_name;                 ///< For a stream or hex text.
+  Framing hex_framing = Framing::kSf;         ///< Framing of the lines of hex text.
+  bool hex_has_fcs = false;                   ///< Lines of kRadio end with an FCS.
 };
 
-/// A reader of that format; null for kUnknown and kJsonl.
+/// Returns a reader of that format; null for kUnknown and kJsonl.
 std::unique_ptr<Reader> make_reader(InputFormat format, const ReaderOptions& options = {});
 
-/// The format of an input that begins with these bytes (a few kilobytes are plenty), by content
-/// alone.
+/// Returns the format of an input that begins with these bytes (a few kilobytes are plenty), by
+/// content alone.
 InputFormat detect(Bytes first_bytes);
 
 }  // namespace rubric

@@ -3,7 +3,7 @@
 namespace rubric {
 namespace {
 
-constexpr Error kSound{Fault::kNone, 0, ReqId::kNone};
+constexpr Error kSfSound{Fault::kNone, 0, ReqId::kNone};
 
 }  // namespace
 
@@ -32,7 +32,7 @@ UnitReader::Step SfReader::step(Bytes input, PacketSink sink) {
     return used(1);
   }
   if (input.size() <= size) return want(1 + size);
-  deliver(input.sub(1, size), size, kSound, sink);
+  deliver(input.sub(1, size), size, kSfSound, sink);
   return used(1 + size);
 }
 

@@ -1,4 +1,4 @@
-// Packets of one direction of a serial forwarder connection.
+// Reads packets of one direction of a serial forwarder connection.
 #pragma once
 
 #include "codec/containers/unit_reader.h"
@@ -7,7 +7,7 @@ namespace rubric {
 
 inline constexpr std::uint8_t kSfMagic = 0x55;    ///< 'U', the first byte of the handshake.
 inline constexpr std::uint8_t kSfVersion = 0x20;  ///< The lowest version there is.
-inline constexpr std::size_t kSfPacketMax = 255;  ///< What a length byte can say.
+inline constexpr std::size_t kSfPacketMax = 255;  ///< The largest length byte.
 
 /// Reads the handshake, then packets of a length byte and that many bytes.
 ///

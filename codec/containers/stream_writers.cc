@@ -13,7 +13,7 @@ void append(Bytes bytes, std::string& out) {
   out.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
 }
 
-// Escapes what out holds from `begin` on.
+// Escapes the bytes of `out` from `begin` on.
 void escape_from(std::size_t begin, std::string& out) {
   const auto* const data = reinterpret_cast<const std::uint8_t*>(out.data());
   const std::uint8_t* const end = data + out.size();
@@ -53,7 +53,7 @@ bool HdlcWriter::write(const Packet& packet, std::string_view, std::string& out)
   }
   escape_from(begin, out);
   if (packet.framing == Framing::kHdlc) {
-    // Of a frame cut behind an escape, its first byte, only that escape was ever there.
+    // If a frame is cut after an escape that is its first byte, only that escape was ever there.
     const bool nothing = out.size() == begin;
     if (packet.error.fault == Fault::kCut && nothing) out += static_cast<char>(kHdlcEscape);
     if (packet.error.fault == Fault::kCut) return true;

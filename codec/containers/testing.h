@@ -1,4 +1,4 @@
-// What the tests of readers and writers share.
+// Helpers of the tests of readers and writers.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@ inline Bytes view(const std::string& text) {
   return Bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
 }
 
-/// Bytes of hex digits; blanks are skipped.
+/// Returns the bytes of hex digits; skips blanks.
 inline std::string from_hex(std::string_view text) {
   std::string out;
   std::string digits;
@@ -84,7 +84,7 @@ struct Kept {
   }
 };
 
-/// Everything that `reader` makes of `input`, fed whole.
+/// Returns everything that `reader` makes of `input`, fed whole.
 inline std::vector<Kept> read_all(Reader& reader, Bytes input) {
   std::vector<Kept> kept;
   auto sink = [&](const Packet& packet) { kept.emplace_back(packet); };
@@ -93,7 +93,7 @@ inline std::vector<Kept> read_all(Reader& reader, Bytes input) {
   return kept;
 }
 
-/// The same, fed in random pieces; each is its own heap block, gone after the call.
+/// Returns the same, fed in random pieces; each is its own heap block, gone after the call.
 template <class Random>
 std::vector<Kept> read_split(Reader& reader, Bytes input, Random& random, std::size_t piece_max) {
   std::vector<Kept> kept;

@@ -31,8 +31,8 @@ void UnitReader::feed(Bytes chunk, PacketSink sink) {
   }
 }
 
-// Moves the rest to the front only when that is no more than what goes: input that is used up in
-// tiny steps must not cost a move each.
+// Moves the rest to the front only if it is no larger than the dropped part: tiny steps must not
+// cost a move each.
 void UnitReader::drop_held(std::size_t bytes) {
   held_begin_ += bytes;
   if (held_begin_ < held_.size() - held_begin_) return;

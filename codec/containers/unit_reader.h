@@ -1,4 +1,4 @@
-// What readers of length-prefixed containers share: joining what spans two chunks.
+// The common part of readers of length-prefixed containers: joins what spans two chunks.
 #pragma once
 
 #include <cstddef>
@@ -9,17 +9,17 @@
 
 namespace rubric {
 
-/// Reads an input that is a row of units, each of which tells its size near its beginning. A unit
-/// that lies in one chunk is handed on in place; one that spans chunks is joined in a buffer, which
-/// grows with the bytes that really came, never with what a length claims.
+/// Reads an input that is a row of units, each of which gives its size near its beginning. Passes
+/// on a unit that lies in one chunk in place; joins one that spans chunks in a buffer, which grows
+/// with the bytes that really came, never with what a length claims.
 class UnitReader : public Reader {
  public:
   void feed(Bytes chunk, PacketSink sink) final;
   void finish(PacketSink sink) final;
 
  protected:
-  /// What step made of its input: the bytes that it is done with, or, where it is done with none,
-  /// how many it wants to see together (more than it saw).
+  /// The result of a step: the bytes that it has finished, or, if none, how many it needs to see
+  /// together (more than it saw).
   struct Step {
     std::size_t used_bytes;
     std::size_t wanted_bytes;
@@ -29,10 +29,10 @@ class UnitReader : public Reader {
 
   /// Takes units off the front of `input`, which is not empty and begins at offset().
   virtual Step step(Bytes input, PacketSink sink) = 0;
-  /// The input has ended with `rest`, of which step wanted more. Leaves the reader as new.
+  /// Ends the input with `rest`, of which step wanted more. Resets the reader.
   virtual void end(Bytes rest, PacketSink sink) = 0;
 
-  /// Of the first byte that step or end sees, in the whole input.
+  /// Returns the offset in the whole input of the first byte that step or end sees.
   std::uint64_t offset() const { return offset_; }
   void advance(std::size_t bytes) { offset_ += bytes; }
 
@@ -42,7 +42,7 @@ class UnitReader : public Reader {
   void drop_held(std::size_t bytes);
 
   std::vector<std::uint8_t> held_;
-  std::size_t held_begin_ = 0;  // What step was done with before it is still there.
+  std::size_t held_begin_ = 0;  // Finished bytes before it remain.
   std::size_t wanted_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// One interface for everything that packets are written to.
+// One interface for all destinations of packets.
 #pragma once
 
 #include <cstdint>
@@ -12,37 +12,37 @@
 
 namespace rubric {
 
-/// Writes packets as bytes that are appended to a string; where they go is the caller's matter.
+/// Writes packets as bytes that are appended to a string; the caller stores them.
 class Writer {
  public:
   virtual ~Writer() = default;
 
-  /// Appends what the format begins with.
+  /// Appends the begin of the format.
   virtual void begin(std::string& out);
 
-  /// Appends a packet heard on the interface of that name. False, and nothing appended, if the
-  /// format cannot hold such a packet.
+  /// Appends a packet heard on the interface of that name. Returns false, and appends nothing, if
+  /// the format cannot hold such a packet.
   virtual bool write(const Packet& packet, std::string_view interface_name, std::string& out) = 0;
   bool write(const Packet& packet, std::string& out) { return write(packet, {}, out); }
 
-  /// Appends what the format ends with.
+  /// Appends the end of the format.
   virtual void finish(std::string& out);
 };
 
-/// Serial frames, each between two flags of its own, since motes drop a frame that shares its
-/// opening flag. A kHdlc packet is put together from its pieces, the CRC as received, so that a
-/// malformed one comes out as it went in; an aborted one ends with escape and flag, one that was
-/// cut without any flag. A kSf packet becomes a PACKET_NOACK frame with a fresh CRC. Others are
-/// refused. Source: TEP 113, section 3.1.
+/// Writes serial frames, each between two flags of its own, since motes drop a frame that shares
+/// its opening flag. Joins a kHdlc packet from its pieces, the CRC as received, so that a malformed
+/// one comes out as it went in; an aborted one ends with escape and flag, one that was cut without
+/// any flag. A kSf packet becomes a PACKET_NOACK frame with a fresh CRC. Refuses others. Source:
+/// TEP 113, section 3.1.
 class HdlcWriter final : public Writer {
  public:
   using Writer::write;
   bool write(const Packet& packet, std::string_view interface_name, std::string& out) override;
 };
 
-/// One direction of a serial forwarder connection: handshake, then length byte and packet. Takes
-/// kSf packets, empty and cut ones included, and sound kHdlc ones that carry a packet of 1 to 255
-/// bytes. Source: TinyOS serial forwarder protocol, version 2.
+/// Writes one direction of a serial forwarder connection: handshake, then length byte and packet.
+/// Takes kSf packets, empty and cut ones included, and sound kHdlc ones that carry a packet of 1 to
+/// 255 bytes. Source: TinyOS serial forwarder protocol, version 2.
 class SfWriter final : public Writer {
  public:
   using Writer::write;
@@ -50,10 +50,10 @@ class SfWriter final : public Writer {
   bool write(const Packet& packet, std::string_view interface_name, std::string& out) override;
 };
 
-/// A pcap file of one link type (see link_record.h), little-endian, nanoseconds. Packets of other
-/// framings, and kBare ones without link type, are refused; a missing time is written as 0, as is
-/// one before 1970, and one beyond the 32 bits of its seconds (2106) as the last that there is.
-/// Source: draft-ietf-opsawg-pcap.
+/// Writes a pcap file of one link type (see link_record.h), little-endian, nanoseconds. Refuses
+/// packets of other framings, and kBare ones without link type. Writes a missing time as 0, as one
+/// before 1970, and one beyond the 32 bits of its seconds (2106) as the last possible one. Source:
+/// draft-ietf-opsawg-pcap.
 class PcapWriter final : public Writer {
  public:
   explicit PcapWriter(std::uint16_t link_type) : link_type_(link_type) {}
@@ -65,11 +65,11 @@ class PcapWriter final : public Writer {
   std::uint16_t link_type_;
 };
 
-/// A pcapng file: an interface for each pair of link type and interface name, described before its
-/// first packet; times in nanoseconds; direction flags; comments; at the end statistics with the
-/// times of the first and the last packet. Takes everything but a kBare packet without link type.
-/// A packet without time is written with the time of the one before it.
-/// Source: draft-ietf-opsawg-pcapng.
+/// Writes a pcapng file: an interface for each pair of link type and interface name, described
+/// before its first packet; times in nanoseconds; direction flags; comments; at the end statistics
+/// with the times of the first and the last packet. Takes everything but a kBare packet without
+/// link type. Writes a packet without time with the time of the one before it. Source:
+/// draft-ietf-opsawg-pcapng.
 class PcapngWriter final : public Writer {
  public:
   using Writer::write;
@@ -92,9 +92,9 @@ class PcapngWriter final : public Writer {
   std::int64_t latest_ns_ = kNoTime;
 };
 
-/// A packet a line in hex, bytes separated by spaces, as Listen prints them (from the dispatch byte
-/// on; a radio frame from the frame control field on, without FCS). Malformed packets and frames
-/// that carry no packet are refused. Source: TinyOS Listen tool.
+/// Writes a packet a line in hex, bytes separated by spaces, as Listen prints them (from the
+/// dispatch byte on; a radio frame from the frame control field on, without FCS). Refuses malformed
+/// packets and frames that carry no packet. Source: TinyOS Listen tool.
 class HexWriter final : public Writer {
  public:
   explicit HexWriter(bool upper_case = true) : upper_case_(upper_case) {}
@@ -105,14 +105,14 @@ class HexWriter final : public Writer {
   bool upper_case_;
 };
 
-/// A writer of that format, with its defaults; null for kUnknown and kJsonl. `link_type` is that of
-/// a pcap file, which can hold but one.
+/// Returns a writer of that format, with its defaults; null for kUnknown and kJsonl. `link_type` is
+/// that of a pcap file, which can hold only one.
 std::unique_ptr<Writer> make_writer(InputFormat format, std::uint16_t link_type = 0);
 
-/// The link type that a capture file holds `packet` under; 0 if under none.
+/// Returns the link type under which a capture file holds `packet`; 0 if none.
 std::uint16_t link_type_of(const Packet& packet);
 
-/// What a capture file holds of `packet`: the record that link_record.h reads back.
+/// Appends the record of `packet` in a capture file, as link_record.h reads it back.
 void append_record(const Packet& packet, std::string& out);
 
 }  // namespace rubric

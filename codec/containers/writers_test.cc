@@ -1,4 +1,4 @@
-// What writers make of packets that are hard to say: damaged ones, and times beyond a format.
+// Writers and difficult packets: damaged ones, and times beyond a format.
 #include "codec/containers/writer.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ using testing::read_all;
 using testing::view;
 
 constexpr Error kSound{Fault::kNone, 0, ReqId::kNone};
-const std::string kTap = from_hex("0000 0c00 0000 0100 01000000");  // With a 16-bit FCS.
+const std::string kTap = from_hex("0000 0c00 0000 0100 01000000");  // 16-bit FCS.
 
 Packet of_record(const std::string& record, std::uint16_t link_type, std::size_t missing = 0) {
   Packet packet;
@@ -27,7 +27,7 @@ Packet of_record(const std::string& record, std::uint16_t link_type, std::size_t
 
 struct TapCase {
   const char* name;
-  const char* frame;  ///< Behind the TAP header.
+  const char* frame;  ///< After the TAP header.
   std::size_t missing;
   Error error;
   std::uint16_t link_type;  ///< Under which it is written.

@@ -4,6 +4,7 @@
 
 #include "codec/generate/interpret.h"
 #include "codec/generate/values.h"
+#include "codec/generated/tinyos/mac_header.h"
 #include "codec/reflect/decode.h"
 #include "codec/reflect/encode_number.h"
 
@@ -14,7 +15,7 @@ using reflect::Field;
 using reflect::Type;
 using std::to_string;
 
-constexpr std::uint32_t kMacHeaderBytes = 9;
+constexpr std::uint32_t kMacHeaderBytes = tinyos::MacHeaderView::kMaxSizeBytes;
 
 /// One frame being broken.
 class Breaker {
@@ -32,7 +33,7 @@ class Breaker {
 
   bool value() {
     return value_of(pick([&](const Part& p) {
-      // By the numbers of its own a radio frame's carrier is told from the others.
+      // Numbers of its own tell a radio frame's carrier from the others.
       const bool shape = draft_.radio && p.scope == 0;
       return p.kind == PartKind::kNumber && !shape &&
              p.field->valid.kind != reflect::ValidKind::kAny;
@@ -115,7 +116,7 @@ class Breaker {
                      text + "; " + name(draft_.parts[first]) + " needs more");
       });
     }
-    // Bytes behind the end of an inner part are stale; behind that of the frame they are too many.
+    // Bytes after the end of an inner part are stale; after that of the frame they are too many.
     if (p.scope != 0) return false;
     return lie(measure, number, [&] { return fault(Fault::kTrailing, end, *p.field, text); });
   }
@@ -156,7 +157,7 @@ class Breaker {
     return to_string(count) + " " + unit + (count == 1 ? "" : "s");
   }
 
-  /// A number alone says the size of this part, and it is the first of which it does.
+  /// Returns whether a number alone gives the size of this part, and this is the first such part.
   bool counts(const Part& p) const {
     if (p.measure == kNone) return false;
     for (const Part& other : draft_.parts) {
@@ -170,8 +171,8 @@ class Breaker {
     return p.field == &type.fields[type.field_count - 1];
   }
 
-  /// Puts bytes where the measure `part` now says more than there are, if the sizes around allow
-  /// it: else a decoder that does not know the rule would refuse the frame for what is missing.
+  /// Adds bytes where the measure `part` now promises more than there are, if the sizes around
+  /// allow it: else a decoder that does not know the rule would refuse the frame for missing bytes.
   void agree(std::uint32_t part, std::int64_t number) {
     const auto parts = static_cast<std::uint32_t>(draft_.parts.size());
     std::uint32_t measured = part + 1;
@@ -195,7 +196,7 @@ class Breaker {
     out_.bytes.insert(out_.bytes.begin() + m.at + m.size, noise.begin(), noise.end());
   }
 
-  // Of the message in opaque bytes.
+  // Breaks of the message in opaque bytes.
 
   bool body_value() {
     return value_of(pick_inside([&](const Part& p) {
@@ -205,7 +206,7 @@ class Breaker {
   bool body_more() {
     return more_than(pick_inside([&](const Part& p) { return counts(p); }));
   }
-  // Takes bytes from the message's end, with what is stale behind it, and repairs all sizes.
+  // Removes bytes from the message's end, with the stale ones after it, and repairs all sizes.
   bool body_cut() {
     const Body& b = draft_.body;
     const Part& place = draft_.parts[b.part];
@@ -232,7 +233,7 @@ class Breaker {
   std::uint32_t pick_inside(const Fits& fits) {
     return pick_of(draft_.body.part + 1, draft_.body.last_inside, fits);
   }
-  /// One of the parts that a decoder insists on and that fit; kNone if there is none.
+  /// Returns one of the parts that a decoder requires and that fit; kNone if there is none.
   template <class Fits>
   std::uint32_t pick(const Fits& fits) {
     const auto parts = static_cast<std::uint32_t>(draft_.parts.size());

@@ -1,6 +1,6 @@
-// Breaks one thing of a valid frame, and says what that does: which rule it breaks, and where a
+// Breaks one thing of a valid frame, and reports the effect: which rule it breaks, and where a
 // decoder that reads front to back first sees it. This follows from the layout of the frame and
-// from the change alone; no decoder is asked.
+// from the change alone, without asking any decoder.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ enum class Breakage : std::uint8_t {
   kCutRepaired,  ///< The same, and some of the lengths around the cut agree with it.
   kMore,         ///< A size or count that is larger than what there is.
   kLess,         ///< A size that is smaller than what is in it, or than what there is.
-  kTrailing,     ///< Bytes behind the end.
+  kTrailing,     ///< Bytes after the end.
 };
 inline constexpr std::size_t kBreakages = 6;
 
@@ -29,14 +29,14 @@ struct Broken {
   std::string what;
 };
 
-/// Breaks the body of `draft`, so that the frame stays valid, but these bytes are no longer the
-/// message that they are meant to be, nor another. `error`, of which the offset counts from the
-/// frame's start, is what keeps them from fitting. False as below.
+/// Breaks the body of `draft`, so that the frame stays valid, but its body bytes are no longer the
+/// meant message, nor another. `error`, whose offset counts from the frame's start, is why they do
+/// not fit. Returns false as below.
 bool break_body(const Draft& draft, std::size_t max_bytes, Random& random, Broken& out);
 
-/// Breaks `draft` in that way; false if it cannot be, or chance found nothing. `max_bytes`: of the
-/// frame. `short_radio`: the structure that a radio frame is taken for which ends with its MAC
-/// header; null if none.
+/// Breaks `draft` in that way; returns false if it cannot be, or chance found nothing. `max_bytes`:
+/// of the frame. `short_radio`: the structure of a radio frame that ends with its MAC header; null
+/// if none.
 bool break_one(const Draft& draft, Breakage how, std::size_t max_bytes,
                const reflect::Type* short_radio, Random& random, Broken& out);
 

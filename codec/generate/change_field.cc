@@ -1,4 +1,4 @@
-// Changes one field of a frame that may be valid or not, by what a decoder makes of it.
+// Changes one field of a frame, valid or not, by the result of a decoder.
 #include <algorithm>
 
 #include "codec/generate/frame_generator.h"
@@ -17,7 +17,7 @@ using reflect::NodeKind;
 using reflect::Op;
 using reflect::Repeat;
 
-/// The number in a structure that an expression consists of.
+/// The number in a structure that is the whole of an expression.
 struct Load {
   bool lone = false;
   std::size_t offset = 0;  ///< From the start of the structure.
@@ -115,11 +115,11 @@ class FieldChange {
     return false;
   }
 
-  /// An element of `width` bytes comes or goes.
+  /// Adds or removes an element of `width` bytes.
   bool elements(std::size_t node, std::size_t width) {
     const Node& n = decoded_[node];
     const Field& f = *n.field;
-    // As many as a constant says are always whole.
+    // A constant number of elements is always whole.
     if (f.repeat == Repeat::kCount && !lone_load(f.count).lone) return false;
     const std::size_t count = n.size / width;
     const bool more = count == 0 || random_.chance(0.5);
@@ -141,7 +141,7 @@ class FieldChange {
     return true;
   }
 
-  /// Sizes of what is around the node change with it.
+  /// Repairs the sizes around the node.
   void repair(std::size_t node, std::int64_t delta) {
     for (std::size_t at = node; at != 0;) {
       const std::size_t parent = parent_of(at);

@@ -18,7 +18,7 @@ std::uint32_t Draft::first_cut(std::uint32_t limit, std::uint32_t from, std::uin
     const Part& part = parts[i];
     if ((hard && !part.hard) || part.at + part.size <= limit) continue;
     if (std::find(passed.begin(), passed.end(), i) != passed.end()) continue;
-    // What is left of an open array must still be whole elements.
+    // The rest of an open array must still be whole elements.
     if (!part.open || (limit - part.at) % part.element_bytes != 0) return i;
   }
   return kNone;

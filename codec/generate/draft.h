@@ -1,5 +1,4 @@
-// A frame in the making: its bytes, and what each of them is, so that whoever breaks one thing
-// knows what that does.
+// A frame in the making: its bytes with their meaning, so that the effect of a change is known.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +10,7 @@ namespace rubric::generate {
 
 inline constexpr std::uint32_t kNone = UINT32_MAX;
 
-/// A structure: where it begins, and where what surrounds it makes it end.
+/// A structure: where it begins, and where its surroundings make it end.
 struct Scope {
   std::uint32_t parent;  ///< Index of the scope around it; kNone for the outermost.
   std::uint32_t base;    ///< In bytes from the start of the frame.
@@ -26,7 +25,7 @@ enum class PartKind : std::uint8_t {
   kRoom,   ///< The place of a structure whose size is said elsewhere, or that takes what is left.
 };
 
-/// A field of the frame, in the order in which a decoder comes to it.
+/// A field of the frame, in the order in which a decoder reaches it.
 struct Part {
   PartKind kind;
   const reflect::Field* field;
@@ -35,7 +34,7 @@ struct Part {
   std::uint32_t size;           ///< In bytes.
   std::uint32_t element_bytes;  ///< Arrays: of an element; else 1.
   std::uint32_t measure;        ///< Part with the number that alone says its size; kNone if none.
-  std::uint32_t last_inside;    ///< Index behind the last part within it.
+  std::uint32_t last_inside;    ///< Index after the last part within it.
   bool open;                    ///< It takes what is left, so that a shorter one is as good.
   bool hard;                    ///< False within an interpretation: what does not fit stays opaque.
 };
@@ -45,9 +44,9 @@ struct Body {
   const reflect::Type* type = nullptr;   ///< The message; null where there is none.
   const reflect::Type* owner = nullptr;  ///< The structure whose field the bytes are.
   std::uint16_t field = 0;               ///< Index in the owner's fields.
-  std::uint32_t base = 0;                ///< Where the owner begins.
-  std::uint32_t part = 0;                ///< Of the bytes; those of the message follow it.
-  std::uint32_t last_inside = 0;         ///< Index behind the last of them.
+  std::uint32_t base = 0;                ///< Start of the owner.
+  std::uint32_t part = 0;                ///< Index of the bytes; the message's follow.
+  std::uint32_t last_inside = 0;         ///< Index after the last of them.
 };
 
 struct Draft {
@@ -58,11 +57,11 @@ struct Draft {
   Body body;
   bool radio = false;
 
-  /// Where a decoder of this frame stops the structure.
+  /// Returns where a decoder of this frame stops the structure.
   std::uint32_t limit(std::uint32_t scope) const;
-  /// The first part that lacks bytes where all ends at `limit`, among [from, to); kNone where
+  /// Returns the first part that lacks bytes if all ends at `limit`, among [from, to); kNone if
   /// none does. `passed`: parts whose measure was made to agree. `hard`: only among those that a
-  /// decoder insists on.
+  /// decoder requires.
   std::uint32_t first_cut(std::uint32_t limit, std::uint32_t from, std::uint32_t to,
                           const std::vector<std::uint32_t>& passed, bool hard = true) const;
 };

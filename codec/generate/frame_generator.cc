@@ -15,19 +15,14 @@ constexpr int kTries = 200;
 constexpr int kBreakTries = 60;
 constexpr double kBodyShare = 0.3;
 constexpr double kValueShare = 0.3;
-constexpr std::size_t kFcsBytes = 2;
 // TinyOS's serial line has room for this many bytes with kind, sequence number and CRC around.
 constexpr std::size_t kSerialBytesMax = 252;
-
-bool is_radio(const reflect::Route& route) {
-  return std::string_view(route.carrier).starts_with("radio");
-}
 
 std::size_t most_bytes(bool radio) {
   return radio ? kRadioFrameMax - kFcsBytes : kSerialBytesMax;
 }
 
-// What stands in `bytes`, which differ from the draft's at most in and behind its body.
+// Returns the numbers in `bytes`, which differ from the draft's at most in and after its body.
 std::vector<NumberAt> numbers_of(const Draft& draft, const std::vector<std::uint8_t>& bytes,
                                  bool with_body) {
   std::vector<NumberAt> out;
@@ -39,8 +34,8 @@ std::vector<NumberAt> numbers_of(const Draft& draft, const std::vector<std::uint
   return out;
 }
 
-// Tries the ways in any order, values more often first, since rules are most often about these;
-// few messages can be broken in all ways.
+// Tries the ways in any order, values more often first, since most rules are about these; few
+// messages can be broken in all ways.
 bool break_somehow(const Draft& draft, std::size_t max_bytes, const reflect::Type* short_radio,
                    Random& random, Broken& out) {
   if (random.chance(kValueShare) &&
@@ -57,6 +52,10 @@ bool break_somehow(const Draft& draft, std::size_t max_bytes, const reflect::Typ
 }
 
 }  // namespace
+
+bool is_radio(const reflect::Route& route) {
+  return std::string_view(route.carrier).starts_with("radio");
+}
 
 Draft FrameGenerator::draft(const reflect::Route& route) {
   const reflect::Type* carrier = reflect::find_carrier(protocol_, route.carrier);

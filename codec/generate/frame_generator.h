@@ -1,5 +1,5 @@
-// Makes frames of a protocol's messages from its tables: valid ones, and ones with a single fault
-// that is known. For fuzzers, ours and other people's.
+// Makes frames of a protocol's messages from its tables: valid ones, and ones with a single known
+// fault. For fuzzers.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,12 @@
 
 namespace rubric::generate {
 
-/// A number of a frame; elements of arrays of numbers are none.
+inline constexpr std::size_t kFcsBytes = 2;  ///< In a frame on the air. (IEEE 802.15.4, 7.2.1.9)
+
+/// Returns whether the route's frames go over the air, not along a serial line.
+bool is_radio(const reflect::Route& route);
+
+/// A number of a frame; elements of arrays of numbers do not count.
 struct NumberAt {
   const reflect::Type* message;  ///< The structure that it belongs to.
   const reflect::Field* field;
@@ -22,21 +27,21 @@ struct NumberAt {
   std::int64_t value;          ///< A float as its 32 bits.
 };
 
-/// A frame, and what a decoder must say of it.
+/// A frame, and the result that a decoder must give.
 struct Generated {
   Framing framing = Framing::kSf;         ///< kSf for the serial line, kRadio for the air.
-  std::vector<std::uint8_t> bytes;        ///< As Packet::bytes.
+  std::vector<std::uint8_t> bytes;        ///< Like Packet::bytes.
   const reflect::Route* route = nullptr;  ///< To which message it leads, or nearly leads.
-  /// Of a valid frame: the messages that it is, from the outermost in. Where the route's message
-  /// always holds others, these follow it.
+  /// For a valid frame: its messages, from the outermost in. Messages that the route's message
+  /// always holds follow it.
   std::vector<const reflect::Type*> path;
-  /// By construction, not by asking a decoder: Fault::kNone where the frame is valid. The offset
+  /// By construction, without asking a decoder: Fault::kNone if the frame is valid. The offset
   /// counts from bytes[0].
   Error error{Fault::kNone, 0, ReqId::kNone};
-  /// Of a valid frame: its numbers, in ascending order of offset.
+  /// For a valid frame: its numbers, in ascending order of offset.
   std::vector<NumberAt> numbers;
-  /// Of a valid frame whose innermost bytes break a rule of the message that they are meant to be:
-  /// which rule, and where. A decoder leaves these bytes opaque; `path` ends before that message.
+  /// For a valid frame whose innermost bytes break a rule of the meant message: which rule, and
+  /// where. A decoder leaves these bytes opaque; `path` ends before that message.
   Error unfit{Fault::kNone, 0, ReqId::kNone};
   const reflect::Type* unfit_message = nullptr;
   std::string what;  ///< "valid", or what is wrong: "join_request.type is 7, allowed are 1 to 5".
@@ -44,8 +49,8 @@ struct Generated {
   bool fits() const { return unfit.fault == Fault::kNone; }
 };
 
-/// Frames of one protocol. The same seed gives the same frames, whatever the machine. Throws
-/// std::logic_error for a route that no frame of the protocol can take.
+/// Generates frames of one protocol. The same seed gives the same frames, whatever the machine.
+/// Throws std::logic_error for a route that no frame of the protocol can take.
 class FrameGenerator {
  public:
   FrameGenerator(const reflect::Protocol& protocol, const reflect::RouteTable& routes,
@@ -55,15 +60,15 @@ class FrameGenerator {
   const reflect::RouteTable& routes() const { return routes_; }
   Random& random() { return random_; }
 
-  /// A valid frame that leads to the message of that route: every field within what its rule
-  /// allows, bounds and reserved values more often than chance has them; sizes and counts agree.
+  /// Returns a valid frame that leads to the message of that route: every field within its rule,
+  /// bounds and reserved values more often than by chance; sizes and counts agree.
   Generated valid(const reflect::Route& route);
-  /// The same with one rule broken: a field just outside what is allowed, a count that lies, bytes
-  /// missing at the end, a length byte off by one, ... Where the message is one that applications
-  /// put into opaque bytes, it may be its rule, and the frame is valid but does not fit (`unfit`).
-  /// Falls back on a valid frame only for a message that no change of one thing makes invalid.
+  /// Returns the same with one rule broken: a field just outside its range, a count that lies,
+  /// bytes missing at the end, a length byte off by one, ... For a message that applications put
+  /// into opaque bytes, it may be that message's rule, and the frame is valid but does not fit
+  /// (`unfit`). Returns a valid frame only for a message that no single change makes invalid.
   Generated near_valid(const reflect::Route& route);
-  /// The valid frame with what each of its bytes is.
+  /// Returns the valid frame with the meaning of each byte.
   Draft draft(const reflect::Route& route);
 
  private:
@@ -73,9 +78,9 @@ class FrameGenerator {
 };
 
 /// Changes a field of `bytes`, a frame of that framing, in place, by its type: another allowed
-/// value, a bound, a neighbour, a bit, an element more or less of an array; lengths and counts
-/// around it are repaired, so that what was valid mostly stays so. False, and nothing changed,
-/// where nothing of the frame can be read. `max_size` in bytes.
+/// value, a bound, a neighbour, a bit, an element more or less of an array; repairs lengths and
+/// counts around it, so that a valid frame mostly stays valid. Returns false, with nothing changed,
+/// if nothing of the frame can be read. `max_size` in bytes.
 bool change_field(const reflect::Protocol& protocol, Framing framing,
                   std::vector<std::uint8_t>& bytes, std::size_t max_size, Random& random);
 

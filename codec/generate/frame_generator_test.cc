@@ -1,4 +1,4 @@
-// What the generator says of its frames is what the decoder says of them.
+// The generator and the decoder agree about the generator's frames.
 #include "codec/generate/frame_generator.h"
 
 #include <gtest/gtest.h>
@@ -27,8 +27,8 @@ Packet packet_of(const Generated& made) {
   return packet;
 }
 
-/// The bytes that do not fit stay opaque, and as the message that they were meant to be they are
-/// refused with the fault that the generator names.
+/// Expects the bytes that do not fit to stay opaque, and to be refused, as the message that they
+/// were meant to be, with the fault that the generator names.
 void check_unfit(const Generated& made, const reflect::Decoded& decoded) {
   ASSERT_TRUE(made.valid());
   ASSERT_EQ(names(made.path.data(), made.path.size()), names(decoded.path(), decoded.path_count()))
@@ -45,7 +45,7 @@ void check_unfit(const Generated& made, const reflect::Decoded& decoded) {
   ASSERT_NE(opaque, 0U);
   const Bytes body(made.bytes.data() + note.offset, decoded[opaque].size);
   reflect::Decoded alone;
-  // Where several are tried, the note is about the last, which does not fit either.
+  // If several are tried, the note is about the last, which does not fit either.
   reflect::decode(*note.type, body, reflect::Tail::kStale, true, alone);
   ASSERT_NE(alone.error.fault, Fault::kNone) << described(made);
   reflect::decode(*made.unfit_message, body, reflect::Tail::kStale, true, alone);
@@ -55,7 +55,7 @@ void check_unfit(const Generated& made, const reflect::Decoded& decoded) {
                                << "\nthe generator: " << text(made.unfit);
 }
 
-/// All numbers that the decoder reads, and no others, are those that the generator names.
+/// Expects the generator to name exactly the numbers that the decoder reads.
 void check_numbers(const Generated& made, const reflect::Decoded& decoded) {
   std::size_t met = 0;
   for (std::size_t i = 0; i < decoded.node_count(); ++i) {
@@ -173,7 +173,7 @@ TEST(ChangeField, LeavesAloneWhatCannotBeRead) {
 }
 
 /// With the bound moved by one a decoder must take the frames whose number is just beyond it, else
-/// they show nothing of the bound.
+/// they prove nothing about the bound.
 TEST(NearValid, NumbersBeyondABoundOfASizeComeWithTheBytes) {
   FrameGenerator generator(rubicon::tables::kProtocol, rubicon::messages::kRoutes, 4);
   std::map<std::string, int> met;
@@ -219,14 +219,15 @@ TEST(NearValid, CutAtEachPlace) {
   EXPECT_EQ(repaired, (std::set<std::uint32_t>{8, 9, 10}));
 }
 
-/// How often the number at `at` is off by -1 and by +1 from what it counts, and nothing else is.
+/// Counts how often the number at `at` is off by -1 and by +1 from what it counts, and nothing else
+/// is.
 std::map<int, int> off_by_one(const char* message, std::size_t at, std::size_t from, ReqId rule) {
   FrameGenerator generator(rubicon::tables::kProtocol, rubicon::messages::kRoutes, 7);
   std::map<int, int> met;
   for (int k = 0; k < kSeeds; ++k) {
     const Generated made = generator.near_valid(serial_route(message));
     if (made.error.requirement != rule || made.bytes.size() <= at) continue;
-    if (made.what.find(" is ") == std::string::npos) continue;  // A cut, or bytes behind the end.
+    if (made.what.find(" is ") == std::string::npos) continue;  // A cut, or bytes after the end.
     ++met[made.bytes[at] - static_cast<int>(made.bytes.size() - from)];
   }
   return met;
@@ -243,11 +244,11 @@ TEST(NearValid, LengthsAreOffByOneInBothDirections) {
   EXPECT_GT(count[1], 20);
 }
 
-/// The generated views are another decoder than that of the tables.
+/// The generated views are a second decoder beside the tables.
 template <class View>
 void expect_view_reports(const Generated& made) {
   const Result<View> view = View::parse(Bytes(made.bytes.data(), made.bytes.size()));
-  // What follows the frame is for the view's caller to judge, it only shows it.
+  // Bytes after the frame are for the view's caller to judge; the view only shows them.
   if (made.error.fault == Fault::kTrailing) {
     ASSERT_TRUE(view.has_value()) << described(made);
     ASSERT_EQ(made.error.offset_bytes + view->stale().size(), made.bytes.size());

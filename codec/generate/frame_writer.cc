@@ -5,6 +5,7 @@
 #include "codec/generate/interpret.h"
 #include "codec/generate/routes.h"
 #include "codec/generate/values.h"
+#include "codec/generated/tinyos/enums.h"
 #include "codec/reflect/decode.h"
 #include "codec/reflect/encode_number.h"
 
@@ -20,17 +21,12 @@ using reflect::Op;
 using reflect::Repeat;
 using reflect::Type;
 
-// IEEE 802.15.4-2006, section 7.2.1.1: a data frame with short addresses in one PAN; the other bit
-// asks for an acknowledgement.
-constexpr std::int64_t kDataFrame = 0x8841;
-constexpr std::int64_t kAckRequest = 0x0020;
-
 std::uint32_t index32(std::size_t n) {
   return static_cast<std::uint32_t>(n);
 }
 
-// Offset of the one number that the expression is; -1 if it is more.
-std::int32_t lone_load(const Expr& expr) {
+// Returns the offset of the one number that the expression is; -1 if it is more.
+std::int32_t lone_load_offset(const Expr& expr) {
   if (expr.count != 1 || expr.steps[0].op == Op::kConst) return -1;
   return expr.steps[0].value;
 }
@@ -67,7 +63,7 @@ void FrameWriter::close_part(std::uint32_t part) {
 }
 
 std::uint32_t FrameWriter::measure_of(const Expr& expr, const Place& place) const {
-  const std::int32_t load = lone_load(expr);
+  const std::int32_t load = lone_load_offset(expr);
   if (load < 0) return kNone;
   const std::size_t at = place.base + static_cast<std::size_t>(load);
   for (std::uint32_t i = 0; i < draft_.parts.size(); ++i) {
@@ -103,7 +99,7 @@ bool FrameWriter::number(const Field& f, const Place& place) {
   std::int64_t value = 0;
   const bool given = forced(f, size(), value);
   if (given && !is_allowed(f, value)) return false;
-  // What measures a structure is put right when that is written.
+  // The measure of a structure is corrected when the structure is written.
   if (!given)
     value =
         measures_room(f, place) ? allowed(f).min : allowed_value(f, most_for(f, place), random_);
@@ -121,19 +117,21 @@ bool FrameWriter::forced(const Field& f, std::size_t at, std::int64_t& value) {
     return true;
   }
   if (!draft_.radio || at != 0) return false;
-  value = kDataFrame | (random_.chance(0.5) ? kAckRequest : 0);
+  using tinyos::FrameControl;
+  const bool asks = random_.chance(0.5);
+  value = static_cast<std::int64_t>(asks ? FrameControl::kDataAckRequest : FrameControl::kData);
   return true;
 }
 
-// The most that a number may be so that the array which it counts has room.
+// Returns the most that a number may be so that the array which it counts has room.
 std::int64_t FrameWriter::most_for(const Field& f, const Place& place) const {
   const auto at = static_cast<std::int32_t>(size() - place.base);
   const std::size_t behind = left(place) - f.width_bytes;
   for (const Field* g = &f + 1; g < place.type.fields + place.type.field_count; ++g) {
-    if (g->repeat == Repeat::kCount && lone_load(g->count) == at) {
+    if (g->repeat == Repeat::kCount && lone_load_offset(g->count) == at) {
       return static_cast<std::int64_t>(behind / element_bytes(*g));
     }
-    if (g->extent == Extent::kSize && lone_load(g->size) == at) {
+    if (g->extent == Extent::kSize && lone_load_offset(g->size) == at) {
       return static_cast<std::int64_t>(behind);
     }
   }
@@ -144,7 +142,7 @@ bool FrameWriter::measures_room(const Field& f, const Place& place) const {
   const auto at = static_cast<std::int32_t>(size() - place.base);
   for (const Field* g = &f + 1; g < place.type.fields + place.type.field_count; ++g) {
     if (g->kind == Kind::kStruct && g->repeat == Repeat::kOnce && g->extent == Extent::kSize &&
-        lone_load(g->size) == at) {
+        lone_load_offset(g->size) == at) {
       return true;
     }
   }
@@ -261,7 +259,7 @@ bool FrameWriter::sized(const Field& f, const Type& type, std::uint32_t part, co
   return true;
 }
 
-// Whether bytes behind what was written last would belong to it.
+// Returns whether bytes after the last ones written would belong to it.
 bool FrameWriter::takes_all(std::uint32_t first_part) const {
   for (std::size_t i = first_part; i < draft_.parts.size(); ++i) {
     const Part& part = draft_.parts[i];
@@ -298,7 +296,7 @@ bool FrameWriter::interpreted(const Field& f, std::uint16_t index, const Place& 
 }
 
 bool FrameWriter::inside(std::uint16_t index, const Place& place) {
-  // The key of the choice is mostly the first byte, and the route knows it.
+  // The key of the choice is mostly the first byte, and the route has it.
   const std::size_t at = size();
   for (int i = 0; i < route_.choice_count; ++i) {
     const reflect::RouteChoice& choice = route_.choices[i];

@@ -1,4 +1,4 @@
-// Writes a valid frame by the tables, from the carrier's first field on, along a route.
+// Writes a valid frame from the tables, from the carrier's first field on, along a route.
 #pragma once
 
 #include "codec/generate/draft.h"
@@ -8,14 +8,14 @@
 
 namespace rubric::generate {
 
-/// One attempt. Chance may run into what cannot be (a count that leaves no room, application
+/// One attempt. Chance may lead to something impossible (a count that leaves no room, application
 /// numbers that happen to name another message): then it fails, and the next one may not.
 class FrameWriter {
  public:
-  /// `max_bytes`: of the frame, as the framing has it.
+  /// `max_bytes`: of the frame, in its framing.
   FrameWriter(const reflect::Route& route, bool radio, std::size_t max_bytes, Random& random);
 
-  /// False if the attempt failed.
+  /// Writes the frame. Returns false if the attempt failed.
   bool write(const reflect::Type& carrier);
 
   Draft& draft() { return draft_; }
@@ -24,12 +24,12 @@ class FrameWriter {
   using Field = reflect::Field;
   using Type = reflect::Type;
 
-  /// What a field is written into.
+  /// The structure that a field is written into.
   struct Place {
     const Type& type;
     std::uint32_t scope;
     std::size_t base;
-    std::size_t end;  ///< No byte of it stands behind this.
+    std::size_t end;  ///< None of its bytes is after this.
     bool hard;
   };
 

@@ -13,12 +13,7 @@
 namespace rubric::generate {
 namespace {
 
-constexpr std::size_t kFcsBytes = 2;
 constexpr std::size_t kExcessMost = 40;
-
-bool is_radio(const reflect::Route& route) {
-  return std::string_view(route.carrier).starts_with("radio");
-}
 
 Bytes view(const std::vector<std::uint8_t>& bytes) {
   return Bytes(bytes.data(), bytes.size());
@@ -30,7 +25,7 @@ std::vector<std::uint8_t> content_of(const Framed& framed) {
   return std::vector<std::uint8_t>(text.begin(), text.end());
 }
 
-// Bytes of a serial frame before those of the packet.
+// Returns the number of bytes of a serial frame before those of the packet.
 std::uint32_t head_of(const Packet& packet) {
   return (packet.kind != kAbsent ? 1u : 0u) + (packet.serial_seq != kAbsent ? 1u : 0u);
 }
@@ -59,7 +54,7 @@ Framed taken(Generated made) {
   return out;
 }
 
-// The framing is broken: no message is promised any more.
+// Marks the framing as broken: no message is promised any more.
 void set_fault(Fault fault, std::size_t at, ReqId requirement, const char* what, Framed& out) {
   out.error = fail(fault, at, requirement).error;
   out.packet.error = out.error;

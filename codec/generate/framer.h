@@ -1,5 +1,5 @@
-// Puts generated frames into what carries them: serial line, serial forwarder, radio. Where a
-// container has faults of its own (check sums, frames too short or given up), it makes those, too.
+// Puts generated frames into their carriers: serial line, serial forwarder, radio. Also makes the
+// containers' own faults (check sums, frames too short or given up).
 #pragma once
 
 #include <cstdint>
@@ -13,21 +13,21 @@
 
 namespace rubric::generate {
 
-/// A frame with what stands around it, for a Writer of the container.
+/// A frame with its surroundings, for a Writer of the container.
 struct Framed {
   Packet
-      packet;  ///< Without its bytes; with what the framing itself breaks, as a reader reports it.
+      packet;  ///< Without its bytes; with the framing's own fault, as a reader reports it.
   std::vector<std::uint8_t> bytes;
   const reflect::Route* route = nullptr;
-  std::vector<const reflect::Type*> path;      ///< As Generated::path.
-  std::vector<NumberAt> numbers;               ///< As Generated::numbers.
-  Error error{Fault::kNone, 0, ReqId::kNone};  ///< What reflect::Frame::error must be.
-  Error unfit{Fault::kNone, 0, ReqId::kNone};  ///< As Generated::unfit.
+  std::vector<const reflect::Type*> path;      ///< Like Generated::path.
+  std::vector<NumberAt> numbers;               ///< Like Generated::numbers.
+  Error error{Fault::kNone, 0, ReqId::kNone};  ///< The required reflect::Frame::error.
+  Error unfit{Fault::kNone, 0, ReqId::kNone};  ///< Like Generated::unfit.
   const reflect::Type* unfit_message = nullptr;
   std::string what;
 
   bool valid() const { return error.fault == Fault::kNone; }
-  /// The packet with its bytes; valid until this object changes.
+  /// Returns the packet with its bytes; valid until this object changes.
   Packet view() const {
     Packet whole = packet;
     whole.bytes = Bytes(bytes.data(), bytes.size());
@@ -35,19 +35,19 @@ struct Framed {
   }
 };
 
-/// How frames are carried in one container: kHdlc, kSf, kPcapng (any of them, a record each), or
-/// kHex and kJsonl (bare of any framing).
+/// Carries frames in one container: kHdlc, kSf, kPcapng (any of them, a record each), or kHex and
+/// kJsonl (without any framing).
 class Framer {
  public:
   Framer(InputFormat container, Random& random) : container_(container), random_(random) {}
 
-  /// Whether the container can hold a frame of that carrier.
+  /// Returns whether the container can hold a frame of that carrier.
   bool holds(const reflect::Route& route) const;
 
-  /// The frame in sound framing.
+  /// Returns the frame in sound framing.
   Framed sound(Generated made);
-  /// A valid frame whose framing is broken; false if the container has no framing to be broken.
-  /// `last`: nothing follows it, so that a stream may end in the middle of it.
+  /// Makes a valid frame with broken framing; returns false if the container has no framing to
+  /// break. `last`: nothing follows it, so that a stream may end in the middle of it.
   bool broken(Generated valid, bool last, Framed& out);
 
  private:

@@ -1,4 +1,4 @@
-// What the framer says of its frames is what the readers say of the containers that hold them.
+// The framer and the readers agree about the framer's containers.
 #include "codec/generate/framer.h"
 
 #include <gtest/gtest.h>
@@ -52,14 +52,14 @@ std::vector<Framed> frames_of(const Known& known, InputFormat container, std::ui
 
 using RuleSet = std::set<ReqId, reflect::CatalogueOrder>;
 
-/// Writes and reads the frames; what does not come back as it should is a failure.
+/// Writes and reads the frames; a frame that does not come back as it should is a failure.
 void round_trip(const Known& known, InputFormat container, const std::vector<Framed>& frames,
                 RuleSet& broken) {
   const auto writer = make_writer(container);
   std::string file;
   writer->begin(file);
   for (const Framed& framed : frames) {
-    // Hex text says nothing of a fault in the content, and has no other.
+    // Hex text shows no fault in the content, and has no other.
     ASSERT_TRUE(writer->write(framed.view(), {}, file)) << described(framed);
   }
   writer->finish(file);

@@ -1,4 +1,4 @@
-// Which interpretations of opaque bytes a decoder would try.
+// Finds the interpretations of opaque bytes that a decoder would try.
 #pragma once
 
 #include <cstdint>
@@ -8,12 +8,12 @@
 
 namespace rubric::generate {
 
-/// What an interpretation reads its bytes as, by its condition and its key; null if it does not.
-/// `structure`: from the start of the structure that it belongs to.
+/// Returns the type as which an interpretation reads its bytes, by its condition and its key; null
+/// if it does not. `structure`: from the start of the structure that it belongs to.
 const reflect::Type* reading(const reflect::Interpretation& one, Bytes structure);
 
-/// Whether another message than `wanted` might fit the last `size` bytes of `structure`, which are
-/// field `index` of `type`. `before_only`: among those that are tried before `wanted`.
+/// Returns whether another message than `wanted` might fit the last `size` bytes of `structure`,
+/// which are field `index` of `type`. `before_only`: among those that are tried before `wanted`.
 bool may_fit_another(const reflect::Type& type, std::uint16_t index, Bytes structure,
                      std::size_t size, const reflect::Type* wanted, bool before_only);
 

@@ -1,4 +1,4 @@
-// What the generator's tests share: the protocols with their routes, and words for failures.
+// Helpers of the generator's tests: the protocols with their routes, and words for failures.
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@ namespace rubric::generate {
 struct Known {
   const reflect::Protocol& protocol;
   const reflect::RouteTable& routes;
-  const reflect::Protocol& reader;  ///< Whose decoder reads them.
+  const reflect::Protocol& reader;  ///< Its decoder reads them.
 };
 inline std::vector<Known> all_known() {
   std::vector<Known> out;
@@ -31,14 +31,14 @@ inline std::string text(const Error& error) {
          std::to_string(error.offset_bytes) + " by " + reflect::requirement(error.requirement).id;
 }
 
-/// Types by name: their addresses differ between files.
+/// Returns names of types: their addresses differ between files.
 inline std::vector<std::string> names(const reflect::Type* const* path, std::size_t count) {
   std::vector<std::string> out;
   for (std::size_t i = 0; i < count; ++i) out.emplace_back(path[i]->id);
   return out;
 }
 
-/// Of a Generated or a Framed.
+/// Describes a Generated or a Framed.
 template <class Made>
 std::string described(const Made& made) {
   return std::string(made.route->carrier) + "/" + made.route->type->id + ", " + made.what + ", " +

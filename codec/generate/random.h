@@ -17,15 +17,15 @@ class Random {
     z = (z ^ z >> 27) * 0x94D049BB133111EBu;
     return z ^ z >> 31;
   }
-  /// From 0 to n - 1; 0 if n is 0.
+  /// Returns a number from 0 to n - 1; 0 if n is 0.
   std::size_t below(std::size_t n) { return n == 0 ? 0 : static_cast<std::size_t>(next() % n); }
-  /// From min to max, both included.
+  /// Returns a number from min to max, both included.
   std::int64_t between(std::int64_t min, std::int64_t max) {
     const auto span = static_cast<std::uint64_t>(max) - static_cast<std::uint64_t>(min) + 1;
     const std::uint64_t more = span == 0 ? next() : next() % span;
     return static_cast<std::int64_t>(static_cast<std::uint64_t>(min) + more);
   }
-  /// True with that probability.
+  /// Returns true with that probability.
   bool chance(double probability) {
     return static_cast<double>(next() >> 11) * 0x1p-53 < probability;
   }

@@ -26,7 +26,7 @@ std::int64_t clamp_to(Span span, std::int64_t value) {
   return std::clamp(value, span.min, span.max);
 }
 
-// A value within the span, by what tends to break things.
+// Returns a value within the span that tends to break things.
 std::int64_t notable(Span span, Random& random) {
   switch (random.below(6)) {
     case 0: return span.min;

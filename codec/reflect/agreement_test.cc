@@ -23,7 +23,7 @@ const Type* type_of(const std::string& name) {
   return spec ? find_type(*spec, name.substr(dot + 1)) : nullptr;
 }
 
-/// Bytes that often hold the structure: small counts, real sizes, short and long ones.
+/// Returns bytes that often hold the structure: small counts, real sizes, short and long ones.
 std::vector<std::uint8_t> make_bytes(std::mt19937_64& random, const Type& type) {
   const std::size_t most = std::min<std::size_t>(type.max_size, 130);
   std::size_t size = random() % (most + 4);
@@ -31,7 +31,7 @@ std::vector<std::uint8_t> make_bytes(std::mt19937_64& random, const Type& type) 
   std::vector<std::uint8_t> bytes(size);
   const std::uint64_t ceiling = random() % 3 ? 26 : 256;
   for (auto& byte : bytes) byte = static_cast<std::uint8_t>(random() % ceiling);
-  // The places where sizes, kinds and sources stand in the outer structures.
+  // The places of sizes, kinds and sources in the outer structures.
   for (const auto& [at, value] : {std::pair<std::size_t, int>{0, 0}, {5, 100}, {9, 0x3f}}) {
     if (at < size && random() % 3 == 0) bytes[at] = static_cast<std::uint8_t>(value);
   }

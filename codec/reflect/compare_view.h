@@ -1,4 +1,4 @@
-// Holds generated views against the nodes that the tables made of the same bytes, for tests.
+// Compares generated views with the nodes that the tables made of the same bytes, for tests.
 #pragma once
 
 #include <string>
@@ -9,14 +9,14 @@
 
 namespace rubric::reflect {
 
-/// Visits the fields of a view beside the children of its node. They are matched by their order, so
+/// Visits the fields of a view and the children of its node. They are matched by their order, so
 /// that a field which only one of the two has is a difference and not skipped.
 class ViewComparer {
  public:
   explicit ViewComparer(const Decoded& decoded) : decoded_(decoded) {}
 
   /// Compares all of `view` with the node. Returns the node of the structure that the tables chose
-  /// in place of its bytes, or 0 where they left them opaque.
+  /// in place of its bytes, or 0 if they left them opaque.
   template <class View>
   std::size_t structure(const View& view, std::size_t node) {
     const Place before = place_;
@@ -51,7 +51,7 @@ class ViewComparer {
     if (difference_.empty()) difference_ = what + ": " + how;
   }
 
-  /// The first difference; empty where there is none.
+  /// Returns the first difference; empty if there is none.
   const std::string& difference() const { return difference_; }
   long numbers() const { return numbers_; }    ///< Compared, outside of arrays.
   long elements() const { return elements_; }  ///< Compared, of arrays of either kind.
@@ -96,7 +96,7 @@ class ViewComparer {
     const Node& n = decoded_[node];
     if (n.kind == NodeKind::kBytes) return extent(name, field, n);
     if (n.kind != NodeKind::kStruct) return differ(name, "not bytes");
-    // What the tables chose; bytes behind it are stale.
+    // Chosen by the tables; bytes after it are stale.
     if (n.size > field.size()) differ(name, "larger than its room");
     place(name, field, n);
     place_.chosen = node;

@@ -7,7 +7,7 @@ namespace rubric::reflect {
 
 namespace {
 
-// In a header's place: the decoder wants it inlined, others call load_number.
+// Declared here and not in a header: the decoder wants it inlined, others call load_number.
 RUBRIC_INLINE std::int64_t load(const Field& field, const std::uint8_t* at) {
   std::uint32_t raw = 0;
   if (field.width_bytes == 1) {
@@ -84,7 +84,7 @@ std::int64_t evaluate(const Expr& expr, Bytes structure) {
       stack[top++] = step.value;
     } else if (step.op <= Op::kLoadLe32) {
       std::int64_t value = load_step(step, structure);
-      // "field == constant" is what most conditions are made of.
+      // Most conditions are "field == constant".
       if (i + 2 < expr.count && step_of(expr, i + 1) == Op::kConst &&
           step_of(expr, i + 2) == Op::kEq) {
         value = value == expr.steps[i + 1].value;
@@ -262,7 +262,7 @@ class Decoder {
     return nested(f, base, at, end, limit);
   }
 
-  // What there is of a field that is cut off stays visible.
+  // The available part of a field that is cut off stays visible.
   bool truncated(const Field& f, std::uint32_t at, std::uint32_t limit, std::int64_t needed) {
     if (at < limit) push(NodeKind::kBytes, &f, at, limit - at);
     return set_error(Fault::kTruncated, limit, f, needed);
@@ -295,7 +295,8 @@ class Decoder {
     return true;
   }
 
-  /// A message of another carrier; true if there is one for the key, opaque where it does not fit.
+  /// Decodes a message of another carrier; returns true if there is one for the key, opaque if it
+  /// does not fit.
   bool radio_only(const Field& f, std::int64_t key, std::uint32_t& at, std::uint32_t end) {
     const Type* type = choose(*more_, key);
     if (!type) return false;
@@ -336,7 +337,7 @@ class Decoder {
     return good;
   }
 
-  /// Tries the interpretations of field `i`; true if one fits. Leaves notes where none does.
+  /// Tries the interpretations of field `i`; returns true if one fits. Leaves notes if none does.
   bool interpret(const Type& type, std::uint16_t i, std::uint32_t base, std::uint32_t at,
                  std::uint32_t limit) {
     const Type* unfit = nullptr;
@@ -385,7 +386,7 @@ class Decoder {
   Decoded& out_;
   const Switch* more_;
   Node* nodes_ = nullptr;
-  std::size_t count_ = 0;  // Of nodes; `out_` learns it at the end.
+  std::size_t count_ = 0;  // Number of nodes; set in `out_` at the end.
 };
 
 void decode(const Type& type, Bytes bytes, Tail tail, bool is_message, Decoded& out,

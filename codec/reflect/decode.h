@@ -12,7 +12,7 @@
 
 namespace rubric::reflect {
 
-/// What a node of a decoded frame is.
+/// The kind of a node of a decoded frame.
 enum class NodeKind : std::uint8_t {
   kNumber,       ///< kUint, kSint, kFloat or kMask of the field; `value` holds it.
   kNumberArray,  ///< `count` numbers in a row, to be read from the bytes.
@@ -21,19 +21,19 @@ enum class NodeKind : std::uint8_t {
   kStructArray,  ///< `count` kStruct children.
 };
 
-/// A field of a decoded frame. Nodes stand in preorder; children of node i are i + 1 up to `end`.
+/// A field of a decoded frame. Nodes are in preorder; children of node i are i + 1 up to `end`.
 struct Node {
   const Field* field;         ///< Null for the outermost structure.
-  const Type* type;           ///< Of structures; null elsewhere.
+  const Type* type;           ///< For structures; null elsewhere.
   std::int64_t value;         ///< Numbers; a float as its 32 bits.
   std::uint32_t offset;       ///< In bytes, from the start of the frame.
   std::uint32_t size;         ///< In bytes, without stale bytes.
-  std::uint32_t end;          ///< Index of the first node behind this one's children.
+  std::uint32_t end;          ///< Index of the first node after this one's children.
   std::uint32_t count;        ///< Elements of an array.
   NodeKind kind;
 };
 
-/// Something remarkable that does not make a frame malformed.
+/// A remarkable fact that does not make a frame malformed.
 enum class NoteKind : std::uint8_t {
   kUnknownMessage,   ///< No message has this key; the bytes stay opaque.
   kDoesNotFit,       ///< The bytes do not fit the message that their key names; they stay opaque.
@@ -44,8 +44,8 @@ enum class NoteKind : std::uint8_t {
 struct Note {
   NoteKind kind;
   std::uint32_t offset;   ///< In bytes, from the start of the frame.
-  const Field* field;     ///< That the note is about.
-  const Type* type;       ///< kDoesNotFit, kRadioOnly: the message that it was held against.
+  const Field* field;     ///< The note's field.
+  const Type* type;       ///< kDoesNotFit, kRadioOnly: the message that was tried.
   std::int64_t value;     ///< The key, or the value.
 };
 
@@ -62,9 +62,9 @@ class Decoded {
   static constexpr std::size_t kMaxStale = 8;
 
   Bytes bytes;                              ///< The frame; borrowed.
-  Error error{Fault::kNone, 0, ReqId::kNone};  ///< Of the first rule that the bytes break.
-  /// With an error: the field that it is about, null where it is about none, and a number: the
-  /// field's value, for kTruncated the bytes that it needs, for kTrailing the bytes too many.
+  Error error{Fault::kNone, 0, ReqId::kNone};  ///< For the first rule that the bytes break.
+  /// With an error: its field, or null, and a number: the field's value, for kTruncated the bytes
+  /// that it needs, for kTrailing the bytes too many.
   const Field* error_field = nullptr;
   std::int64_t error_value = 0;
 
@@ -75,13 +75,13 @@ class Decoded {
   const Note* notes() const { return notes_; }
   std::size_t note_count() const { return note_count_; }
 
-  /// The chosen messages from the outermost in.
+  /// Returns the chosen messages from the outermost in.
   const Type* const* path() const { return path_; }
   std::size_t path_count() const { return path_count_; }
-  /// The innermost message, or null.
+  /// Returns the innermost message, or null.
   const Type* message() const { return path_count_ ? path_[path_count_ - 1] : nullptr; }
 
-  /// Bytes behind the meant content, in ascending order of offset.
+  /// Returns the bytes after the meant content, in ascending order of offset.
   const Range* stale() const { return stale_; }
   std::size_t stale_count() const { return stale_count_; }
 
@@ -90,7 +90,7 @@ class Decoded {
   /// Adds a note of the framing; beyond kMaxNotes it is dropped.
   void add_note(const Note& note);
 
-  /// Index of the child of `parent` with this name, or 0 (which is never a child).
+  /// Returns the index of the child of `parent` with this name, or 0 (which is never a child).
   std::size_t child(std::size_t parent, std::string_view name) const;
 
  private:
@@ -106,31 +106,31 @@ class Decoded {
   Range stale_[kMaxStale];
 };
 
-/// Whether bytes behind the outermost structure are stale or a fault (Fault::kTrailing).
+/// Says whether bytes after the outermost structure are stale or a fault (Fault::kTrailing).
 enum class Tail : std::uint8_t { kStale, kFault };
 
-/// Decodes `bytes` as `type`. `is_message`: the type itself is the first name of the path. What was
-/// decoded before a fault stays in `out`. Bytes must not exceed 2^31. `more`: chooses for keys that
-/// the outermost structure's own choice has no type for; what it chooses is noted as kRadioOnly,
-/// and stays opaque where it does not fit.
+/// Decodes `bytes` as `type`. `is_message`: the type itself is the first name of the path.
+/// Everything decoded before a fault stays in `out`. Bytes must not exceed 2^31. `more`: chooses
+/// for keys that the outermost structure's own choice has no type for; its choice is noted as
+/// kRadioOnly, and stays opaque if it does not fit.
 void decode(const Type& type, Bytes bytes, Tail tail, bool is_message, Decoded& out,
             const Switch* more = nullptr);
 
-/// The value of an expression over the structure that begins at `base`, whose loads lie within
-/// `bytes` (the spec compiler proves it, loads beyond the end give 0).
+/// Returns the value of an expression over the structure that begins at `base`, whose loads lie
+/// within `bytes` (the spec compiler proves it, loads beyond the end give 0).
 std::int64_t evaluate(const Expr& expr, Bytes structure);
 
-/// The type that the switch chooses for the key; null for opaque.
+/// Returns the type that the switch chooses for the key; null for opaque.
 const Type* choose(const Switch& choice, std::int64_t key);
 
-/// Looks up by name as shown or by id; null if there is none.
+/// Looks up by name as shown or by id; returns null if there is none.
 const Type* find_type(const Protocol& protocol, std::string_view name);
-/// The carrier's structure; null if the protocol does not travel on it.
+/// Returns the carrier's structure; null if the protocol does not travel on it.
 const Type* find_carrier(const Protocol& protocol, std::string_view carrier);
-/// The entry's name, or null.
+/// Returns the entry's name, or null.
 const char* enum_name(const EnumTable& table, std::int64_t value);
 
-/// Element `i` of a number array, or the number itself for i = 0; a float as its 32 bits.
+/// Returns element `i` of a number array, or the number itself for i = 0; a float as its 32 bits.
 std::int64_t load_number(const Field& field, const std::uint8_t* at);
 
 }  // namespace rubric::reflect

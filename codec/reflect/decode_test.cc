@@ -54,7 +54,7 @@ TEST(Decode, JoinReply_EveryFieldInOrder) {
 }
 
 TEST(Decode, Updates_PathNestingAndStaleBytesOnBothLevels) {
-  // nbytes 16 of which the updates take 10; two bytes behind the network message.
+  // nbytes 16 of which the updates take 10; two bytes after the network message.
   const Message m("net_msg", kNetToSink + "10 030a 23 02 0001 012e 0040 04b2 aabbccdd eeff");
   ASSERT_EQ(m->error.fault, Fault::kNone);
   EXPECT_EQ(m.path(), "net_msg app_msg updates");

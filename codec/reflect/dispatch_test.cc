@@ -1,8 +1,9 @@
-// Which message a frame holds is decided twice: by the tables and by the generated views (those of
-// the carriers, payload_kind(), body_kind()). Over all captured frames and many made ones both must
+// The message in a frame is decided twice: by the tables and by the generated views (those of the
+// carriers, payload_kind(), body_kind()). Over all captured frames and many made ones both must
 // choose the same messages, refuse the same frames, and read the same values.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <map>
 #include <set>
 #include <string>
@@ -11,16 +12,14 @@
 #include "codec/generated/rubicon/tables.h"
 #include "codec/reflect/compare_view.h"
 #include "codec/reflect/test_frames.h"
+#include "tools/readme/number.h"
 
 namespace rubric::reflect {
 namespace {
 
 using namespace rubicon;
 
-constexpr std::size_t kMadeFrames = 1000000;
-constexpr long kLeastChoices = 20;
-
-/// The spec's name of a view's structure.
+/// Returns the spec's name of a view's structure.
 template <class View>
 const std::string& id_of() {
   static const std::string id = [] {
@@ -34,7 +33,7 @@ const std::string& id_of() {
   return id;
 }
 
-/// Follows the views' own choices from a carrier in, and holds each view against the nodes.
+/// Follows the views' own choices from a carrier in, and compares each view with the nodes.
 class Follower {
  public:
   explicit Follower(const Decoded& decoded) : decoded_(decoded), comparer_(decoded) {}
@@ -59,7 +58,7 @@ class Follower {
     if (chosen) differ(std::string("only the tables read a ") + decoded_[chosen].type->id);
   }
 
-  // Messages that hold no others.
+  // Handles messages that hold no others.
   template <class View>
   void inside(const View&, std::size_t chosen) {
     opaque(chosen);
@@ -163,7 +162,7 @@ struct Tally {
   std::map<std::string, long> chosen;  // By the views, as the whole path.
 };
 
-/// Where the two differ over a frame of the carrier; empty where they agree.
+/// Returns where the two differ over a frame of the carrier; empty if they agree.
 template <class View>
 std::string difference(const char* carrier, Bytes frame, Tally& tally) {
   static thread_local Decoded decoded;
@@ -171,7 +170,7 @@ std::string difference(const char* carrier, Bytes frame, Tally& tally) {
   decode(*type, frame, Tail::kFault, false, decoded);
   ++tally.frames;
   const Result<View> view = View::parse(frame);
-  // What follows the frame is for the view's caller to judge, it only shows it.
+  // Bytes after the frame are for the view's caller to judge; the view only shows them.
   const bool trailing = decoded.error.fault == Fault::kTrailing;
   const Error wanted = trailing ? Error{Fault::kNone, 0, ReqId::kNone} : decoded.error;
   if (!(view.error() == wanted)) return "other errors";
@@ -193,7 +192,7 @@ std::string difference(const char* carrier, Bytes frame, Tally& tally) {
   return "";
 }
 
-/// Both readers over a frame; radio frames as I-frame and as T-frame, whatever they are.
+/// Runs both readers on a frame; radio frames as I-frame and as T-frame, whatever they are.
 void hold(const TestFrame& frame, Tally& tally) {
   const Bytes bytes(frame.bytes.data(), frame.bytes.size());
   const std::string found =
@@ -210,7 +209,7 @@ void print(const char* what, const Tally& tally) {
   for (const auto& [path, count] : tally.chosen) std::printf("%8ld %s\n", count, path.c_str());
 }
 
-/// How often the views chose this path, or one that goes on from it.
+/// Counts how often the views chose this path, or one that extends it.
 long reached(const Tally& tally, const std::string& path) {
   long sum = 0;
   for (const auto& [longer, count] : tally.chosen) {
@@ -219,7 +218,7 @@ long reached(const Tally& tally, const std::string& path) {
   return sum;
 }
 
-/// Every path that the tables can choose below `type`.
+/// Adds every path that the tables can choose below `type`.
 void add_paths(const Type& type, const std::string& path, std::set<std::string>& out) {
   const auto add = [&](const Field& field) {
     const auto step = [&](const Type* inner) {
@@ -248,8 +247,9 @@ TEST(Dispatch, ViewsChooseWhatTheTablesChoose_Captures) {
 
 TEST(Dispatch, ViewsChooseWhatTheTablesChoose_MadeFrames) {
   Tally tally;
+  const std::size_t made = readme_number("# made-up frames");
   FrameMaker maker(captured_frames("spec/captures"), tables::kProtocol, 20);
-  for (std::size_t i = 0; i < kMadeFrames && !::testing::Test::HasFailure(); ++i) {
+  for (std::size_t i = 0; i < made && !::testing::Test::HasFailure(); ++i) {
     hold(maker.make(), tally);
   }
   print("made", tally);
@@ -259,9 +259,12 @@ TEST(Dispatch, ViewsChooseWhatTheTablesChoose_MadeFrames) {
     add_paths(*type, type->id, paths);
   }
   std::printf("%zu paths that the tables have\n", paths.size());
-  EXPECT_GE(paths.size(), 90U);
-  for (const std::string& path : paths) EXPECT_GE(reached(tally, path), kLeastChoices) << path;
-  EXPECT_GE(tally.refused, static_cast<long>(kMadeFrames / 10));
+  EXPECT_EQ(paths.size(), readme_number("# ways to a message"));
+  const auto least = static_cast<long>(readme_number("taken at least # times"));
+  for (const std::string& path : paths) EXPECT_GE(reached(tally, path), least) << path;
+  EXPECT_EQ(std::lround(static_cast<double>(tally.numbers) / 1e6),
+            static_cast<long>(readme_number("# million numbers")));
+  EXPECT_GE(tally.refused, static_cast<long>(made / 10));
 }
 
 }  // namespace

@@ -11,15 +11,15 @@ namespace {
 
 using std::to_string;
 
-/// Where the bytes of a part of the output end; no limit while its measure is missing.
+/// The end of a part of the output; no limit while its measure is missing.
 using Limit = std::optional<std::size_t>;
 
 std::string bytes_text(std::size_t n) { return to_string(n) + (n == 1 ? " byte" : " bytes"); }
 
 }  // namespace
 
-/// One encoding. Structures are written front to back, so that what an expression reads is there;
-/// only measures that are missing are filled in later.
+/// One encoding. Structures are written front to back, so that expressions find what they read;
+/// only missing measures are filled in later.
 class Encoder {
  public:
   Encoder(Bytes stale, std::vector<std::uint8_t>& out, const Switch* more)
@@ -53,7 +53,7 @@ class Encoder {
     stale_used_ += n;
   }
 
-  // What an expression reads has to be there when something depends on it.
+  // Requires the number that an expression reads, since something depends on it.
   void require_given(const Expr& expr, std::size_t base) {
     if (const Measure* measure = measures_.missing_in(expr, base)) {
       throw EncodeError(measure->path, "is missing, and what follows depends on it",
@@ -61,7 +61,7 @@ class Encoder {
     }
   }
 
-  /// Makes `expr`, which measures `what` at the present path, come to `actual`.
+  /// Makes `expr`, which measures `what` at the present path, equal `actual`.
   void settle(const Expr& expr, std::size_t base, std::size_t actual, const std::string& what,
               const Field& measured) {
     Measure* measure = measures_.of(expr, base);
@@ -82,7 +82,7 @@ class Encoder {
       store_number(field, value, out_.data() + measure.offset);
       return evaluate(expr, from(base));
     };
-    // Sizes grow with what measures them, so the least value that is large enough is the one.
+    // Sizes grow with their measure, so the least value that is large enough is the right one.
     std::int64_t value = 0;
     std::int64_t above = (std::int64_t{1} << (8 * field.width_bytes)) - 1;
     while (value < above) {
@@ -263,7 +263,7 @@ class Encoder {
     part(f, *type, value, base, limit);
   }
 
-  /// A structure whose size is said elsewhere; stale bytes may stand behind its content.
+  /// Encodes a structure whose size is given elsewhere; stale bytes may follow its content.
   void part(const Field& f, const Type& type, const Value& value, std::size_t base, Limit limit) {
     const std::size_t at = out_.size();
     Limit end = limit;
@@ -297,8 +297,8 @@ class Encoder {
     }
   }
 
-  // Interpretations. Their key may be their own first byte, so they are tried until one is chosen
-  // by the very bytes that it came to.
+  // Encodes interpretations. Their key may be their own first byte, so they are tried until one is
+  // chosen by its own bytes.
 
   struct Mark {
     std::size_t size, stale, path;
@@ -341,7 +341,7 @@ class Encoder {
           path_.resize(before.path);
           if (chosen) return true;
         } catch (const EncodeError& e) {
-          // A key that is not given is taken to be that of whatever is tried.
+          // A missing key is taken to be that of whatever is tried.
           const int rank = 2 * chosen + has_members(*tried, *value);
           if (rank > error_rank) error = e;
           error_rank = std::max(error_rank, rank);
@@ -355,7 +355,7 @@ class Encoder {
     fail("no message of " + std::string(type.name) + " has these fields here", type.requirement);
   }
 
-  /// Whether every member of the object is one of the type's, if only by what it begins with.
+  /// Returns whether every member of the object is one of the type's, if only by its beginning.
   static bool has_members(const Type& type, const Value& object) {
     return std::all_of(object.keys.begin(), object.keys.end(), [&](const std::string& key) {
       return std::any_of(type.fields, type.fields + type.field_count,

@@ -1,5 +1,5 @@
-// The numbers of an encoding that say how much of something follows. They may be missing: then they
-// are filled in once the content that they measure is written.
+// Numbers of an encoding that give the size of something that follows. They may be missing: then
+// they are filled in once the content that they measure is written.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ struct Measure {
 /// The measures met so far. Copyable, so that an attempt can be taken back.
 class Measures {
  public:
-  /// A structure of this type begins at `base`: what its sizes and counts read are measures.
+  /// Notes that a structure of this type begins at `base`: its sizes and counts read measures.
   void expect(const Type& type, std::size_t base) {
     for (int i = 0; i < type.field_count; ++i) {
       for (const Expr* expr : {&type.fields[i].size, &type.fields[i].count}) {
@@ -32,7 +32,7 @@ class Measures {
     }
   }
 
-  /// The measure at this offset; null if the number there measures nothing.
+  /// Returns the measure at this offset; null if the number there measures nothing.
   Measure* find(std::size_t offset) {
     for (Measure& measure : all_) {
       if (measure.offset == offset) return &measure;
@@ -40,13 +40,14 @@ class Measures {
     return nullptr;
   }
 
-  /// The measure that `expr` of the structure at `base` reads; null unless it is a single one.
+  /// Returns the measure that `expr` of the structure at `base` reads; null unless it is a single
+  /// one.
   Measure* of(const Expr& expr, std::size_t base) {
     const ExprStep* load = only_load(expr);
     return load ? find(place(*load, base)) : nullptr;
   }
 
-  /// A measure that `expr` reads and that is missing; null if there is none.
+  /// Returns a measure that `expr` reads and that is missing; null if there is none.
   const Measure* missing_in(const Expr& expr, std::size_t base) {
     for (int i = 0; i < expr.count; ++i) {
       if (!is_load(expr.steps[i])) continue;
@@ -56,7 +57,7 @@ class Measures {
     return nullptr;
   }
 
-  /// A measure that nothing filled in; null if there is none.
+  /// Returns a measure that nothing filled in; null if there is none.
   const Measure* first_missing() const {
     for (const Measure& measure : all_) {
       if (measure.missing) return &measure;

@@ -106,7 +106,7 @@ NumberResult plain(const Field& f, const Value& value) {
   return problem("expected " + expectation(f) + ", given " + value_text(value));
 }
 
-/// Holds "x" against the "x_name" or "x_bits" beside it.
+/// Compares "x" with the "x_name" or "x_bits" beside it.
 NumberResult beside(const Field& f, const std::string& key, const Value& other,
                     const NumberResult* given) {
   // Decoding shows null for a value without a name.
@@ -128,7 +128,7 @@ NumberResult beside(const Field& f, const std::string& key, const Value& other,
   return result;
 }
 
-/// The value that can be meant where none is given.
+/// Returns the only possible value if none is given.
 std::optional<std::int64_t> implied(const Field& f) {
   if (f.expect >= 0) return f.expect;
   if (f.valid.kind == ValidKind::kOneOf && f.valid.one_of_count == 1) return f.valid.one_of[0];

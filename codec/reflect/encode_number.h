@@ -1,4 +1,4 @@
-// A number of the encoder: from what the fields give to its value, and from there to bytes.
+// Numbers of the encoder: from the given fields to a value, and from there to bytes.
 #pragma once
 
 #include <cstdint>
@@ -9,28 +9,28 @@
 
 namespace rubric::reflect {
 
-/// What the fields say about a number.
+/// The fields' statement about a number.
 struct NumberResult {
   bool present = false;     ///< Given, or the only value that can be meant.
   std::int64_t value = 0;   ///< A float as its 32 bits.
   std::size_t members = 0;  ///< Members of the object that say it ("x" and "x_name": 2).
-  std::string problem;      ///< What was expected and given; empty if nothing is wrong.
+  std::string problem;      ///< Expected and given; empty if nothing is wrong.
 };
 
-/// The value of field `f`, given as `value` (null if missing) beside the names and bits in
+/// Returns the value of field `f`, given as `value` (null if missing) beside the names and bits in
 /// `object`.
 NumberResult number_of(const Field& f, const Value& object, const Value* value);
 
-/// What is wrong with this value for the field, or empty.
+/// Returns what is wrong with this value for the field, or an empty text.
 std::string number_problem(const Field& f, std::int64_t value);
 
-/// What the field takes: "a number from 2 to 102".
+/// Returns what the field takes: "a number from 2 to 102".
 std::string expectation(const Field& f);
 
 /// Writes width_bytes bytes.
 void store_number(const Field& f, std::int64_t value, std::uint8_t* at);
 
-/// A value as an error message quotes it.
+/// Returns a value as an error message quotes it.
 std::string value_text(const Value& value);
 
 }  // namespace rubric::reflect

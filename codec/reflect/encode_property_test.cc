@@ -20,8 +20,8 @@ std::int64_t pick(std::int64_t min, std::int64_t max) {
 }
 bool chance(int percent) { return pick(0, 99) < percent; }
 
-/// Grows a tree of values of a type. Beside it grows the same tree as decoding shows it: every
-/// number there, by its value.
+/// Grows a tree of values of a type, and the same tree as decoding shows it: every number there, by
+/// its value.
 class Grower {
  public:
   struct Trees {
@@ -42,7 +42,7 @@ class Grower {
     return trees;
   }
 
-  std::vector<std::uint8_t> bytes_;  // What expressions read of what grew so far.
+  std::vector<std::uint8_t> bytes_;  // The bytes grown so far, for expressions.
 
  private:
   Bytes from(std::size_t base) const { return Bytes(bytes_.data() + base, bytes_.size() - base); }
@@ -75,7 +75,7 @@ class Grower {
     if (f.extent == Extent::kSize) settle(f, base, bytes_.size() - at, trees);
   }
 
-  // The size was grown at random, before there was anything to measure.
+  // Settles a size that was grown at random, before there was anything to measure.
   void settle(const Field& f, std::size_t base, std::size_t size, Trees& trees) {
     const auto at = base + static_cast<std::size_t>(f.size.steps[0].value);
     ASSERT_EQ(f.size.count, 1);
@@ -144,7 +144,7 @@ class Grower {
     store_number(f, value, bytes_.data() + bytes_.size() - f.width_bytes);
   }
 
-  // Whether a size or count of the same structure reads the number at this offset.
+  // Returns whether a size or count of the same structure reads the number at this offset.
   static bool is_measure(const Type& type, std::size_t offset) {
     for (int i = 0; i < type.field_count; ++i) {
       for (const Expr* expr : {&type.fields[i].size, &type.fields[i].count}) {
@@ -172,7 +172,7 @@ class Grower {
     spell(f, value, trees.given);
   }
 
-  // One of the ways in which a number may be given.
+  // Spells a number in one of its possible ways.
   static void spell(const Field& f, std::int64_t value, Value& given) {
     const std::string beside = std::string(f.name) + (f.mask ? "_bits" : "_name");
     Value other;
@@ -192,7 +192,8 @@ class Grower {
     if (way >= 2) given.set(beside, other);
   }
 
-  // Grows the first interpretation that decoding would take; false if the bytes stay opaque.
+  // Grows the first interpretation that decoding would take; returns false if the bytes stay
+  // opaque.
   bool interpretation(const Type& type, std::uint16_t index, std::size_t base, std::size_t room,
                       Trees& trees) {
     for (int k = 0; k < type.interpretation_count; ++k) {
@@ -220,7 +221,7 @@ class Grower {
   std::map<std::size_t, std::string> measures_;    // Names of sizes, by their place.
 };
 
-// Decoded nodes as a tree.
+// Returns decoded nodes as a tree.
 Value tree_of(const Decoded& decoded, std::size_t i) {
   const Node& node = decoded[i];
   const auto number = [&](std::int64_t value) {
@@ -280,7 +281,7 @@ void round_trip(const Type& type) {
   const Grower::Trees trees = grower.structure(type, std::min<std::uint32_t>(type.max_size, 200));
   std::vector<std::uint8_t> bytes;
   std::vector<std::uint8_t> stale(static_cast<std::size_t>(chance(30) ? pick(1, 9) : 0), 0xee);
-  // Behind a structure that reaches to the end nothing can be stale.
+  // Nothing can be stale after a structure that reaches to the end.
   if (type.max_size == UINT32_MAX || type.interpretation_count) stale.clear();
   const Field& last = type.fields[type.field_count - 1];
   if (last.repeat == Repeat::kToEnd || last.extent == Extent::kToEnd) stale.clear();

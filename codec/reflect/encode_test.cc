@@ -22,7 +22,7 @@ Value object(Pairs pairs) {
 }
 Value pair(int a, int b) { return object({{"a", integer(a)}, {"b", integer(b)}}); }
 
-// `fields` with some members replaced, added, or (null) removed.
+// Returns `fields` with some members replaced, added, or (null) removed.
 Value changed(const Value& fields, const Pairs& changes) {
   Value result = Value::of_object();
   for (std::size_t i = 0; i < fields.keys.size(); ++i) {
@@ -60,7 +60,7 @@ std::string encoded(const Type& type, const Value& fields, std::string_view stal
   return hex(out);
 }
 
-// Either the bytes or "path: problem".
+// Returns the bytes or "path: problem".
 std::string outcome(const Type& type, const Value& fields, std::string_view stale = "",
                     Tail tail = Tail::kFault) {
   try {
@@ -209,7 +209,7 @@ TEST(Encode, CountChecked) {
   EXPECT_EQ(outcome(toy::kArrays, fields),
             "twice_and_one: expected 1, given 2: pairs has 1 element");
   fields = changed(fields, {{"twice_and_one", integer(4)}});
-  EXPECT_EQ(outcome(toy::kArrays, fields), "04" "0102");  // What decoding divides is accepted.
+  EXPECT_EQ(outcome(toy::kArrays, fields), "04" "0102");  // Decoding divides, so this is accepted.
 }
 
 TEST(Encode, CountBeyondItsBound) {

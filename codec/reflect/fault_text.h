@@ -1,4 +1,4 @@
-// Words for what is wrong: codes travel, text is made where it is shown.
+// Words for faults: codes travel, text is made where it is shown.
 #pragma once
 
 #include <optional>
@@ -11,25 +11,25 @@
 
 namespace rubric::reflect {
 
-/// The name of a fault as programs read it, "out_of_range"; "none" for kNone. Stable.
+/// Returns the name of a fault as programs read it, "out_of_range"; "none" for kNone. Stable.
 std::string_view fault_name(Fault fault);
-/// The other way round.
+/// Returns the fault of a name.
 std::optional<Fault> find_fault(std::string_view name);
-/// What a fault means, without its full stop.
+/// Returns a fault's meaning, without its full stop.
 std::string_view fault_sentence(Fault fault);
 
-/// One sentence for a malformed frame's error, with the numbers that the rule is broken by, without
-/// its full stop: "nbytes is 119, allowed are 2 to 102".
+/// Returns one sentence for a malformed frame's error, with the numbers that break the rule,
+/// without its full stop: "nbytes is 119, allowed are 2 to 102".
 std::string error_text(const Frame& frame);
-/// The same for a message that was decoded alone.
+/// Returns the same for a message that was decoded alone.
 std::string error_text(const Decoded& decoded);
 
-/// The name of a note's kind as programs read it: "does_not_fit".
+/// Returns the name of a note's kind as programs read it: "does_not_fit".
 std::string_view note_name(NoteKind kind);
-/// One sentence for a note, without its full stop.
+/// Returns one sentence for a note, without its full stop.
 std::string note_text(const Note& note);
 
-/// A field's number with its name where it has one: "1 (cc1000)".
+/// Returns a field's number with its name if it has one: "1 (cc1000)".
 std::string number_text(const Field& field, std::int64_t value);
 
 }  // namespace rubric::reflect

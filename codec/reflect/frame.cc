@@ -2,20 +2,36 @@
 
 #include <algorithm>
 
+#include "codec/generated/tinyos/am_header.h"
+#include "codec/generated/tinyos/enums.h"
+#include "codec/generated/tinyos/mac_ack.h"
+#include "codec/generated/tinyos/mac_header.h"
 #include "codec/generated/tinyos/tables.h"
 #include "codec/runtime/hdlc.h"
 
 namespace rubric::reflect {
 namespace {
 
-// IEEE 802.15.4-2006, section 7.2.1.1: frame type, security, PAN id compression, address modes.
-constexpr std::uint16_t kFrameTypeMask = 0x0007;
-constexpr std::uint16_t kFrameTypeAck = 2;
-constexpr std::uint16_t kShapeMask = 0xcc4f;
-constexpr std::uint16_t kShapeShortAddresses = 0x8841;
-constexpr std::size_t kMacHeaderBytes = 9;
-constexpr std::size_t kAmHeaderBytes = 8;
-constexpr std::uint8_t kNalpNetwork = 0x3f;
+using Am = tinyos::AmHeaderLayout;
+using Mac = tinyos::MacHeaderLayout;
+using tinyos::FrameControl;
+using tinyos::FrameControlPart;
+
+constexpr std::size_t kAmHeaderBytes = tinyos::AmHeaderView::kMaxSizeBytes;
+constexpr std::size_t kMacHeaderBytes = tinyos::MacHeaderView::kMaxSizeBytes;
+
+const Field& last_field(const Type& type) { return type.fields[type.field_count - 1]; }
+
+// The byte after the 802.15.4 header, which tells the two kinds of radio frames apart.
+bool is_network(const Type& radio_i, std::uint8_t byte) {
+  for (std::uint16_t i = 0; i < radio_i.field_count; ++i) {
+    const Field& field = radio_i.fields[i];
+    if (field.fixed_offset == static_cast<std::int32_t>(kMacHeaderBytes)) {
+      return field.valid.kind == ValidKind::kOneOf && field.valid.one_of[0] == byte;
+    }
+  }
+  return false;
+}
 
 void clear(Frame& out, const Packet& packet) {
   out.packet = &packet;
@@ -31,14 +47,13 @@ void not_decoded(Frame& out, std::int64_t kind) {
   out.decoded.add_note({NoteKind::kNotDecoded, 0, nullptr, nullptr, kind});
 }
 
-// The message's fields are the last child of the carrier's structure, where decoding got that far.
+// Finds the message's fields: the last child of the carrier's structure, if decoding got that far.
 void find_payload(Frame& out) {
   const Decoded& decoded = out.decoded;
   if (decoded.node_count() == 0) return;
   std::size_t last = 0;
   for (std::size_t i = 1; i < decoded[0].end; i = decoded[i].end) last = i;
-  const Type* type = decoded[0].type;
-  if (last && decoded[last].field == &type->fields[type->field_count - 1]) {
+  if (last && decoded[last].field == &last_field(*decoded[0].type)) {
     out.payload_node = static_cast<std::uint32_t>(last);
     out.has_payload = true;
   }
@@ -48,7 +63,7 @@ void find_payload(Frame& out) {
 
 const Switch* payload_choice(const Protocol& protocol, std::string_view carrier) {
   const Type* type = find_carrier(protocol, carrier);
-  return type && type->field_count ? type->fields[type->field_count - 1].choice : nullptr;
+  return type && type->field_count ? last_field(*type).choice : nullptr;
 }
 
 FrameDecoder::FrameDecoder(const Protocol& protocol, const Type* bare)
@@ -57,21 +72,27 @@ FrameDecoder::FrameDecoder(const Protocol& protocol, const Type* bare)
       serial_(find_carrier(protocol, "serial")),
       radio_i_(find_carrier(protocol, "radio_i")),
       radio_t_(find_carrier(protocol, "radio_t")),
+      radio_ack_(find_carrier(tinyos::tables::kProtocol, "radio_ack")),
       radio_choice_(payload_choice(protocol, "radio_i")) {}
 
 void FrameDecoder::decode(const Packet& packet, Frame& out) const {
   clear(out, packet);
-  switch (packet.framing) {
-    case Framing::kHdlc:
-      if (packet.kind == kSerialPacketAck || packet.kind == kSerialPacketNoAck) {
-        decode_serial(out);
-      } else if (packet.kind != kAbsent && packet.kind != kSerialAck) {
-        not_decoded(out, packet.kind);
-      }
+  const Envelope envelope = headers(packet);
+  out.am = envelope.am;
+  out.mac = envelope.mac;
+  switch (envelope.kind) {
+    case Envelope::Kind::kNothing: break;
+    case Envelope::Kind::kOpaque:
+      not_decoded(out, envelope.key);
       break;
-    case Framing::kSf: decode_serial(out); break;
-    case Framing::kRadio: decode_radio(out); break;
-    case Framing::kBare:
+    case Envelope::Kind::kLinkAck:
+      if (envelope.carrier) decode_carrier(*envelope.carrier, packet.bytes, out.decoded);
+      break;
+    case Envelope::Kind::kMessage:
+      decode_carrier(*envelope.carrier, packet.bytes, out.decoded);
+      find_payload(out);
+      break;
+    case Envelope::Kind::kBare:
       if (bare_) {
         reflect::decode(*bare_, packet.bytes, Tail::kStale, true, out.decoded);
         out.has_payload = true;
@@ -91,53 +112,113 @@ void FrameDecoder::decode(const Packet& packet, Frame& out) const {
   out.error.offset_bytes -= std::min(out.error.offset_bytes, head);
 }
 
-void FrameDecoder::decode_serial(Frame& out) const {
-  const Bytes bytes = out.packet->bytes;
-  if (bytes.size() >= kAmHeaderBytes && bytes[0] == 0) {
-    const std::uint8_t* p = bytes.data();
-    out.am = {true, load_be16(p + 1), load_be16(p + 3), p[5], p[6], p[7]};
-  }
-  if (!serial_) return not_decoded(out, out.packet->kind);
-  reflect::decode(*serial_, bytes, Tail::kFault, false, out.decoded, radio_choice_);
-  find_payload(out);
+void FrameDecoder::decode_carrier(const Type& carrier, Bytes bytes, Decoded& out) const {
+  const bool ack = &carrier == radio_ack_;
+  const Switch* const more = &carrier == serial_ ? radio_choice_ : nullptr;
+  reflect::decode(carrier, bytes, Tail::kFault, ack, out, more);
 }
 
-void FrameDecoder::decode_radio(Frame& out) const {
-  const Bytes bytes = out.packet->bytes;
+Envelope FrameDecoder::open(const Packet& packet) const {
+  Envelope out = headers(packet);
+  out.error = packet.error;
+  if (out.error.fault != Fault::kNone || !out.carrier) return out;
+  const Bytes bytes = packet.bytes;
+  bool sound = false;
+  if (out.kind == Envelope::Kind::kLinkAck) {
+    sound = bytes.size() == tinyos::MacAckView::kMaxSizeBytes;
+  } else if (out.carrier == serial_) {
+    sound = out.am.present && Am::LengthAt::allows(out.am.length) &&
+            bytes.size() - kAmHeaderBytes == out.am.length;
+  } else {
+    sound = out.am.present;
+  }
+  if (sound) {
+    if (out.am.present) out.payload = bytes.from(bytes.size() - out.am.length);
+    return out;
+  }
+  Decoded decoded;  // Says which rule the bytes break, and where.
+  decode_carrier(*out.carrier, bytes, decoded);
+  out.error = decoded.error;
+  return out;
+}
+
+Envelope FrameDecoder::headers(const Packet& packet) const {
+  Envelope out;
+  out.key = packet.kind;
+  switch (packet.framing) {
+    case Framing::kHdlc:
+      if (packet.kind == kSerialPacketAck || packet.kind == kSerialPacketNoAck) {
+        serial_headers(packet.bytes, out);
+      } else if (packet.kind == kSerialAck) {
+        out.kind = Envelope::Kind::kLinkAck;
+      } else if (packet.kind != kAbsent) {
+        out.kind = Envelope::Kind::kOpaque;
+      }
+      break;
+    case Framing::kSf: serial_headers(packet.bytes, out); break;
+    case Framing::kRadio: radio_headers(packet.bytes, out); break;
+    case Framing::kBare: out.kind = Envelope::Kind::kBare; break;
+  }
+  return out;
+}
+
+void FrameDecoder::serial_headers(Bytes bytes, Envelope& out) const {
   const std::uint8_t* p = bytes.data();
-  const std::uint16_t fcf = bytes.size() >= 2 ? load_le16(p) : kShapeShortAddresses;
-  if (bytes.size() >= 3) {
+  if (bytes.size() >= kAmHeaderBytes && Am::DispatchAt::allows(p[Am::DispatchAt::kAt])) {
+    out.am = {true,
+              Am::DestAt::load(p),
+              Am::SrcAt::load(p),
+              Am::LengthAt::load(p),
+              Am::GroupAt::load(p),
+              Am::TypeAt::load(p)};
+  }
+  out.carrier = serial_;
+  out.kind = serial_ ? Envelope::Kind::kMessage : Envelope::Kind::kOpaque;
+}
+
+void FrameDecoder::radio_headers(Bytes bytes, Envelope& out) const {
+  const auto part = [](std::uint16_t fcf, FrameControlPart mask) {
+    return fcf & static_cast<std::uint16_t>(mask);
+  };
+  constexpr auto kAck = static_cast<std::uint16_t>(FrameControl::kAck);
+  constexpr auto kData = static_cast<std::uint16_t>(FrameControl::kData);
+  const std::uint8_t* p = bytes.data();
+  const std::uint16_t fcf = bytes.size() >= Mac::FcfAt::kEnd ? Mac::FcfAt::load(p) : kData;
+  if (bytes.size() >= Mac::DsnAt::kEnd) {
     out.mac.present = true;
     out.mac.fcf = fcf;
-    out.mac.dsn = p[2];
+    out.mac.dsn = Mac::DsnAt::load(p);
   }
-  if ((fcf & kFrameTypeMask) == kFrameTypeAck) {
-    const Type* ack = find_carrier(tinyos::tables::kProtocol, "radio_ack");
-    reflect::decode(*ack, bytes, Tail::kFault, true, out.decoded);
+  if (part(fcf, FrameControlPart::kType) == kAck) {
+    out.kind = Envelope::Kind::kLinkAck;
+    out.carrier = radio_ack_;
     return;
   }
-  if ((fcf & kShapeMask) != kShapeShortAddresses) return not_decoded(out, fcf);
+  out.kind = Envelope::Kind::kOpaque;
+  out.key = fcf;
+  if (part(fcf, FrameControlPart::kShape) != kData) return;
   if (bytes.size() >= kMacHeaderBytes) {
     out.mac.has_addresses = true;
-    out.mac.destpan = load_le16(p + 3);
-    out.mac.dest = load_le16(p + 5);
-    out.mac.src = load_le16(p + 7);
+    out.mac.destpan = Mac::DestpanAt::load(p);
+    out.mac.dest = Mac::DestAt::load(p);
+    out.mac.src = Mac::SrcAt::load(p);
   }
-  const bool i_frame = bytes.size() <= kMacHeaderBytes || p[kMacHeaderBytes] == kNalpNetwork;
-  out.mac.has_network = i_frame && bytes.size() > kMacHeaderBytes;
-  const std::size_t head = kMacHeaderBytes + (i_frame ? 2 : 1);
-  if (bytes.size() >= head) {
-    out.am = {true,
-              out.mac.dest,
-              out.mac.src,
-              static_cast<std::uint16_t>(bytes.size() - head),
-              static_cast<std::uint8_t>(out.mac.destpan),
-              p[head - 1]};
-  }
-  const Type* carrier = i_frame ? radio_i_ : radio_t_;
-  if (!carrier) return not_decoded(out, fcf);
-  reflect::decode(*carrier, bytes, Tail::kFault, false, out.decoded);
-  find_payload(out);
+  const bool longer = bytes.size() > kMacHeaderBytes;
+  const bool i_frame = radio_i_ && (!longer || is_network(*radio_i_, p[kMacHeaderBytes]));
+  out.mac.has_network = i_frame && longer;
+  if (out.mac.has_network) out.mac.network = p[kMacHeaderBytes];
+  out.carrier = i_frame ? radio_i_ : radio_t_;
+  if (!out.carrier) return;
+  out.kind = Envelope::Kind::kMessage;
+  const Field& payload = last_field(*out.carrier);
+  const auto head = static_cast<std::size_t>(payload.fixed_offset);
+  if (bytes.size() < head) return;
+  out.am = {true,
+            out.mac.dest,
+            out.mac.src,
+            static_cast<std::uint16_t>(bytes.size() - head),
+            static_cast<std::uint8_t>(out.mac.destpan),
+            static_cast<std::uint8_t>(evaluate(payload.choice->key, bytes))};
 }
 
 }  // namespace rubric::reflect

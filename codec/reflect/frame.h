@@ -1,4 +1,4 @@
-// A packet decoded: the TinyOS frames (serial packet, 802.15.4) around the messages of a protocol.
+// Decodes packets: the TinyOS frames (serial packet, 802.15.4) around the messages of a protocol.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace rubric::reflect {
 
-/// The active-message header, wherever it was read from. On the radio length counts the bytes
-/// behind the AM type and group is the low byte of the PAN.
+/// The active-message header, wherever it was read from. On the radio length counts the bytes after
+/// the AM type and group is the low byte of the PAN.
 struct ActiveMessage {
   bool present = false;
   std::uint16_t dest = 0;
@@ -27,16 +27,36 @@ struct MacHeader {
   bool has_network = false;  ///< I-frame.
   std::uint16_t fcf = 0;
   std::uint8_t dsn = 0;
+  std::uint8_t network = 0;  ///< Where has_network.
   std::uint16_t destpan = 0;
   std::uint16_t dest = 0;
   std::uint16_t src = 0;
 };
 
-/// The choice of the messages in this carrier's frames; null if it has none. A serial packet with a
-/// message of the radio's is how a trace and an adapter write a radio frame (rct/1).
+/// A packet taken apart down to its active message, whose own bytes nobody has looked at yet.
+struct Envelope {
+  enum class Kind : std::uint8_t {
+    kNothing,  ///< Too short for a kind.
+    kOpaque,   ///< Of a kind that carries no message known here, such as a secured radio frame.
+    kLinkAck,  ///< An acknowledgement of the serial line or of 802.15.4.
+    kMessage,  ///< A frame of `carrier`.
+    kBare,     ///< The message alone.
+  };
+  Kind kind = Kind::kNothing;
+  std::int64_t key = 0;           ///< kOpaque: the kind of the packet, or the frame control field.
+  ActiveMessage am;
+  MacHeader mac;
+  const Type* carrier = nullptr;  ///< kMessage and acknowledgements of 802.15.4.
+  Bytes payload;                  ///< kMessage without an error: that of the active message.
+  /// Of the framing, else of the headers; those of the message are not known yet.
+  Error error{Fault::kNone, 0, ReqId::kNone};
+};
+
+/// Returns the choice of the messages in this carrier's frames; null if it has none. Traces and
+/// adapters write a radio frame as a serial packet with a message of the radio's (rct/1).
 const Switch* payload_choice(const Protocol& protocol, std::string_view carrier);
 
-/// What a decoded packet amounts to. `packet` and the bytes are borrowed.
+/// A decoded packet. `packet` and the bytes are borrowed.
 struct Frame {
   const Packet* packet = nullptr;
   Decoded decoded;                  ///< Empty (no nodes) where the bytes are not a message.
@@ -44,8 +64,8 @@ struct Frame {
   bool has_payload = false;         ///< payload_node names a structure or opaque bytes.
   ActiveMessage am;
   MacHeader mac;
-  /// Of the framing, else of the content. The offset counts from the first byte of packet->bytes; a
-  /// fault of the frame's check sum stands right behind them.
+  /// The fault of the framing, else of the content. The offset counts from the first byte of
+  /// packet->bytes; a fault of the frame's check sum is right after them.
   Error error{Fault::kNone, 0, ReqId::kNone};
   bool malformed() const { return error.fault != Fault::kNone; }
 };
@@ -58,18 +78,23 @@ class FrameDecoder {
 
   /// Decodes `packet` into `out`, which borrows it. Reuse `out`.
   void decode(const Packet& packet, Frame& out) const;
+  /// Reads the headers alone, as decode() does, for who reads the message by its generated view.
+  Envelope open(const Packet& packet) const;
 
   const Protocol& protocol() const { return protocol_; }
 
  private:
-  void decode_serial(Frame& out) const;
-  void decode_radio(Frame& out) const;
+  Envelope headers(const Packet& packet) const;
+  void serial_headers(Bytes bytes, Envelope& out) const;
+  void radio_headers(Bytes bytes, Envelope& out) const;
+  void decode_carrier(const Type& carrier, Bytes bytes, Decoded& out) const;
 
   const Protocol& protocol_;
   const Type* bare_;
   const Type* serial_;
   const Type* radio_i_;
   const Type* radio_t_;
+  const Type* radio_ack_;
   const Switch* radio_choice_;
 };
 

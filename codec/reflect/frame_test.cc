@@ -123,7 +123,7 @@ TEST(Frame, CutForwarderPacket_CountsFromTheDispatchByte) {
   stream.packet.error = Error{Fault::kCut, 3, "WIRE-SF-LENGTH"_rule};  // From the length byte on.
   EXPECT_EQ(stream.decode().error, (Error{Fault::kCut, 2, "WIRE-SF-LENGTH"_rule}));
   Case record(Framing::kSf, "0001");
-  record.packet.link_type = 148;  // Without a length byte.
+  record.packet.link_type = 148;  // No length byte.
   record.packet.error = Error{Fault::kTooLong, 255, "WIRE-SF-LENGTH"_rule};
   EXPECT_EQ(record.decode().error, (Error{Fault::kTooLong, 255, "WIRE-SF-LENGTH"_rule}));
 }

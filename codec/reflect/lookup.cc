@@ -1,4 +1,4 @@
-// What stands in the tables, by name or by value.
+// Looks things up in the tables, by name or by value.
 #include <algorithm>
 
 #include "codec/reflect/decode.h"

@@ -9,10 +9,10 @@
 
 namespace rubric::reflect {
 
-/// All protocols that stand above the active-message layer.
+/// Returns all protocols above the active-message layer.
 const std::vector<const Protocol*>& protocols();
 
-/// By id; null if there is none.
+/// Returns the protocol of this id; null if there is none.
 const Protocol* find_protocol(std::string_view id);
 
 /// The tables of all specs: of the protocols, and of what they stand on.

@@ -1,4 +1,4 @@
-// What the reflection tables are made of: a protocol as constant data. The spec compiler emits the
+// The form of the reflection tables: a protocol as constant data. The spec compiler emits the
 // tables (codec/generated/*/tables.h); the decoder, the encoder and the tools only read them, so
 // none of them knows a protocol. Plain C++14 data without constructors or allocation.
 #pragma once
@@ -23,7 +23,7 @@ struct EnumTable {
   uint16_t count;
 };
 
-/// bit_names[i] names bit i (from the least significant); null where it has no name.
+/// bit_names[i] names bit i (from the least significant); null if it has no name.
 struct MaskTable {
   const char* name;
   const char* const* bit_names;
@@ -48,7 +48,7 @@ struct Expr {
 };
 constexpr int kMaxExprDepth = 8;
 
-/// What an integer may be. Values compare as unsigned (as signed for Kind::kSint).
+/// The allowed values of an integer. Values compare as unsigned (as signed for Kind::kSint).
 enum class ValidKind : uint8_t { kAny, kRange, kOneOf };
 struct Valid {
   ValidKind kind;
@@ -88,23 +88,23 @@ enum class Kind : uint8_t {
 };
 enum class Repeat : uint8_t { kOnce, kCount, kToEnd };
 enum class Extent : uint8_t {
-  kOwn,    ///< As large as its kind says.
-  kSize,   ///< As many bytes as `size` says.
+  kOwn,    ///< The size of its kind.
+  kSize,   ///< `size` bytes.
   kToEnd,  ///< All bytes that the enclosing structure has left.
 };
 
 struct Field {
-  const char* name;       ///< As shown, which is `-name` where the spec has one.
+  const char* name;       ///< As shown: the spec's `-name` if there is one.
   const char* json_key;   ///< The same with quotes and colon: "\"seq_num\":".
   uint8_t json_key_size;
   Kind kind;
-  uint8_t width_bytes;    ///< Of a number or mask; 0 for bytes and structures.
+  uint8_t width_bytes;    ///< For a number or mask; 0 for bytes and structures.
   bool little_endian;
   Repeat repeat;
   Extent extent;
-  /// Offset in bytes from the start of the structure, -1 where what comes before varies in size.
+  /// Offset in bytes from the start of the structure, -1 if the fields before it vary in size.
   int32_t fixed_offset;
-  /// Least and greatest value, as Valid says; structures and bytes have ValidKind::kAny.
+  /// Least and greatest value, in the form of Valid; structures and bytes have ValidKind::kAny.
   Valid valid;
   /// A value that is expected but not required (noted, not refused); -1 if none.
   int64_t expect;
@@ -130,7 +130,7 @@ struct Interpretation {
 
 struct Type {
   const char* id;         ///< Name in the spec.
-  const char* name;       ///< As shown, which is `-name` where the spec has one.
+  const char* name;       ///< As shown: the spec's `-name` if there is one.
   const Field* fields;
   uint16_t field_count;
   const Interpretation* interpretations;
@@ -177,11 +177,11 @@ struct RouteLength {
   uint16_t from;
 };
 /// How a frame reaches a message (codec/generated/*/messages.h), for the structure-aware fuzzer and
-/// for whoever builds frames; what the message itself is made of stands in its Type.
+/// other builders of frames; the message's own contents are in its Type.
 struct Route {
-  const char* carrier;    ///< Whose frames: "serial", "radio_i", ...
+  const char* carrier;    ///< Carrier of the frames: "serial", "radio_i", ...
   const Type* type;       ///< The message.
-  uint16_t offset;        ///< Where it begins.
+  uint16_t offset;        ///< Offset of its begin.
   uint32_t room;          ///< The most bytes that it can have there; UINT32_MAX if unbounded.
   const RouteChoice* choices;
   uint8_t choice_count;
@@ -193,7 +193,7 @@ struct RouteTable {
   uint16_t count;
 };
 
-/// Who must follow a requirement.
+/// The roles that must follow a requirement.
 enum Roles : uint8_t { kRoleMote = 1, kRoleSink = 2, kRoleBaseStation = 4 };
 
 /// A requirement's texts; codec/reflect/requirements.h has them all.
@@ -205,7 +205,7 @@ struct Requirement {
   const char* source;
   uint8_t roles;         ///< Bits of Roles; 0 where the rule names none (those of the wire).
   bool forbids;          ///< It says what must not happen: a case has to attempt it.
-  const char* deployed;  ///< How release 1.0 differs; empty where it does not.
+  const char* deployed;  ///< The difference of release 1.0; empty if there is none.
 
   constexpr ReqId number() const { return *id == '\0' ? ReqId::kNone : rule_number(id); }
 };

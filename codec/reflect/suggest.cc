@@ -26,12 +26,12 @@ int edit_distance(std::string_view a, std::string_view b) {
 }
 
 std::string_view nearest(std::string_view word, const std::vector<std::string>& names) {
-  constexpr std::size_t kLongest = 64;  // What is longer is no name.
+  constexpr std::size_t kLongest = 64;  // Longer words are no names.
   if (word.size() > kLongest) return {};
   std::string_view best;
   int best_distance = 0;
   for (const std::string& name : names) {
-    // A beginning counts as near: whoever types "dec" means "decode".
+    // A beginning counts as near: "dec" means "decode".
     const bool begins = word.size() >= 2 && name.starts_with(word);
     const int distance = begins ? 1 : edit_distance(word, name);
     if (best.empty() || distance < best_distance) {

@@ -7,14 +7,14 @@
 
 namespace rubric::reflect {
 
-/// Steps (insert, delete, replace, swap neighbours) from `a` to `b`.
+/// Returns the steps (insert, delete, replace, swap neighbours) from `a` to `b`.
 int edit_distance(std::string_view a, std::string_view b);
 
-/// The nearest of `names`, or empty if none is near enough to be what was meant; the
-/// first of them where several are as near.
+/// Returns the nearest of `names`, or an empty text if none is near enough to be meant; the first
+/// of several equally near ones.
 std::string_view nearest(std::string_view word, const std::vector<std::string>& names);
 
-/// " (did you mean 'x'?)", or empty.
+/// Returns " (did you mean 'x'?)", or an empty text.
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& names);
 
 }  // namespace rubric::reflect

@@ -86,7 +86,7 @@ TestFrame FrameMaker::carried(const Shape& shape, int am_type,
   return frame;
 }
 
-// A net_msg with a body whose kind, size and counts are near what the protocol knows.
+// Returns a net_msg with a body whose kind, size and counts are near real ones.
 std::vector<std::uint8_t> FrameMaker::net_msg() {
   const std::size_t size = chance(30) ? 100 : below(101);
   std::vector<std::uint8_t> out(kNetHead + 2 + size);
@@ -96,7 +96,7 @@ std::vector<std::uint8_t> FrameMaker::net_msg() {
     body[0] = static_cast<std::uint8_t>(
         one_of({1, 8, 9, 10, 11, 12, 13, 16, 18, 20, 22, 23, 24, 25, 28, 34, 35, 36}));
   }
-  for (const std::size_t at : {1u, 3u, 7u, 13u, 34u}) {  // Where counts stand in some body.
+  for (const std::size_t at : {1u, 3u, 7u, 13u, 34u}) {  // Places of counts in some body.
     if (at < size && chance(70)) body[at] = static_cast<std::uint8_t>(below(26));
   }
   store_be16(out.data() + 6, chance(50) ? 0xfffd : chance(80) ? 2 : 0xfffe);
@@ -108,7 +108,7 @@ std::vector<std::uint8_t> FrameMaker::net_msg() {
   return out;
 }
 
-// A message that travels as an AM type of its own, of about the size that it needs.
+// Returns a message that travels as an AM type of its own, of about the size that it needs.
 TestFrame FrameMaker::other_type(const Shape& shape) {
   const Switch& choice = *shape.carrier->fields[shape.carrier->field_count - 1].choice;
   const SwitchCase& chosen = choice.cases[below(choice.count)];
@@ -134,7 +134,7 @@ void FrameMaker::mutate(TestFrame& frame, std::size_t head_bytes) {
   }
 }
 
-// Changes a number that decides over what follows it.
+// Changes a number that decides about the fields after it.
 void FrameMaker::change(TestFrame& frame, std::size_t head_bytes) {
   const auto set = [&](std::size_t at, int value) {
     if (at < frame.bytes.size()) frame.bytes[at] = static_cast<std::uint8_t>(value);

@@ -1,5 +1,5 @@
-// Frames to hold both decoders against: captured ones, and made-up ones near what the protocol
-// knows (as spec/oracle/frames.js makes them), mutated where parsers go wrong. Seeded.
+// Frames to compare both decoders on: captured ones, and made-up ones near real ones (as
+// spec/oracle/frames.js makes them), mutated where parsers go wrong. Seeded.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,8 @@ struct TestFrame {
   std::vector<std::uint8_t> bytes;
 };
 
-/// All frames of the serial streams, serial forwarder streams and capture files below `folder`.
+/// Returns all frames of the serial streams, serial forwarder streams and capture files below
+/// `folder`.
 std::vector<TestFrame> captured_frames(const std::string& folder);
 
 std::string hex(const std::vector<std::uint8_t>& bytes);
@@ -29,7 +30,7 @@ class FrameMaker {
   TestFrame make();
 
  private:
-  /// Where a frame's headers end and its message begins.
+  /// The end of a frame's headers, where its message begins.
   struct Shape {
     const Type* carrier;
     bool radio;

@@ -19,7 +19,7 @@ inline constexpr Unit kMillivolt = {"mV", 0.5, 0};
 inline constexpr Valid kAny = {ValidKind::kAny, 0, 0, nullptr, 0};
 inline constexpr Expr kNoExpr = {nullptr, 0};
 
-/// A field with the defaults of most; the tests' tables change what differs.
+/// Returns a field with the most common defaults; the tests' tables change the rest.
 constexpr Field field(const char* name, Kind kind, std::uint8_t width, std::int32_t offset) {
   Field f{};
   f.name = name;
@@ -117,7 +117,7 @@ inline constexpr Field kScalarFields[] = {
 };
 inline constexpr Type kScalars = type("scalars", kScalarFields);
 
-// pair: what arrays and switches hold.
+// pair: the content of arrays and switches.
 inline constexpr Field kPairFields[] = {field("a", Kind::kUint, 1, 0),
                                         field("b", Kind::kUint, 1, 1)};
 inline constexpr Type kPair = [] {
@@ -126,7 +126,7 @@ inline constexpr Type kPair = [] {
   return t;
 }();
 
-// arrays: a count that is half of what is given, plus one; an array to the end.
+// arrays: a count that is half of the given number, plus one; an array to the end.
 inline constexpr ExprStep kCountSteps[] = {
     {Op::kLoadU8, 0}, {Op::kConst, 1}, {Op::kSub, 0}, {Op::kConst, 2}, {Op::kDiv, 0}};
 inline constexpr Field kArrayFields[] = {
@@ -163,7 +163,7 @@ inline constexpr Type kBody = [] {
   return t;
 }();
 
-// frame: a header in a structure of its own says how large the payload is, and its key, what.
+// frame: a header in a structure of its own gives the size of the payload, and its key the type.
 inline constexpr Field kHeaderFields[] = {field("size", Kind::kUint, 1, 0),
                                           field("key", Kind::kUint, 1, 1)};
 inline constexpr Type kHeader = type("header", kHeaderFields);

@@ -1,5 +1,5 @@
-// A tree of values as JSON has them: what the encoder writes bytes from. Whoever reads JSON (or
-// anything like it) builds one; nothing here knows a text format.
+// A tree of values like those of JSON, from which the encoder writes bytes. Readers of JSON (or
+// similar formats) build one; nothing here knows a text format.
 #pragma once
 
 #include <cstdint>
@@ -52,7 +52,7 @@ struct Value {
 
   bool is(Kind k) const { return kind == k; }
 
-  /// The member of an object, or null if there is none.
+  /// Returns the member of an object, or null if there is none.
   const Value* find(std::string_view key) const {
     for (std::size_t i = 0; i < keys.size(); ++i) {
       if (keys[i] == key) return &items[i];

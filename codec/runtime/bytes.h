@@ -1,5 +1,5 @@
-// Byte ranges that somebody else owns, and loads and stores of numbers at any alignment.
-// Freestanding C++14; on C++20 the ranges convert to and from std::span.
+// Borrowed byte ranges, and loads and stores of numbers at any alignment. Freestanding C++14; on
+// C++20 the ranges convert to and from std::span.
 #pragma once
 
 #include <assert.h>
@@ -35,11 +35,11 @@ class Bytes {
   constexpr const uint8_t* end() const { return data_ + size_; }
   constexpr const uint8_t& operator[](size_t i) const { return data_[i]; }
 
-  /// The first `n` bytes; n <= size().
+  /// Returns the first `n` bytes; n <= size().
   constexpr Bytes first(size_t n) const { return Bytes(data_, n); }
-  /// All but the first `n` bytes; n <= size().
+  /// Returns all but the first `n` bytes; n <= size().
   constexpr Bytes from(size_t n) const { return Bytes(data_ + n, size_ - n); }
-  /// `n` bytes from `offset`; offset + n <= size().
+  /// Returns `n` bytes from `offset`; offset + n <= size().
   constexpr Bytes sub(size_t offset, size_t n) const { return Bytes(data_ + offset, n); }
 
  private:
@@ -47,7 +47,7 @@ class Bytes {
   size_t size_ = 0;
 };
 
-/// Same bytes, same length.
+/// Returns whether bytes and lengths are the same.
 inline bool equal(Bytes a, Bytes b) {
   return a.size() == b.size() && (a.empty() || memcmp(a.data(), b.data(), a.size()) == 0);
 }
@@ -118,7 +118,7 @@ RUBRIC_INLINE void store_le32(uint8_t* p, uint32_t v) {
   p[3] = static_cast<uint8_t>(v >> 24);
 }
 
-/// IEEE 754 binary32 from and to its bit pattern; NaN payloads survive.
+/// Converts IEEE 754 binary32 from and to its bit pattern; NaN payloads survive.
 RUBRIC_INLINE float float_of_bits(uint32_t bits) {
   float value;
   static_assert(sizeof(value) == sizeof(bits), "float must be binary32");

@@ -5,8 +5,8 @@
 
 namespace rubric {
 
-/// One byte of CRC-16/XMODEM: polynomial 0x1021, initial value 0, no reflection, no final xor.
-/// Source: TEP 113, section 3.1.
+/// Adds one byte to a CRC-16/XMODEM: polynomial 0x1021, initial value 0, no reflection, no final
+/// xor. Source: TEP 113, section 3.1.
 ///
 /// With x the byte that leaves the register, x * 0x1021 falls apart into shifts of x once its high
 /// nibble is folded onto the low one: a dozen instructions on an 8-bit processor, no table.
@@ -19,7 +19,7 @@ constexpr uint16_t crc16_step(uint16_t crc, uint8_t byte) {
                                static_cast<uint16_t>(wide << 5) ^ wide);
 }
 
-/// The CRC of `bytes`, going on from `crc`. The check value of "123456789" is 0x31C3.
+/// Returns the CRC of `bytes`, continued from `crc`. The check value of "123456789" is 0x31C3.
 constexpr uint16_t crc16(Bytes bytes, uint16_t crc = 0) {
   for (size_t i = 0; i < bytes.size(); ++i) crc = crc16_step(crc, bytes[i]);
   return crc;

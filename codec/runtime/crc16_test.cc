@@ -7,7 +7,7 @@
 namespace rubric {
 namespace {
 
-// The definitions, bit by bit, as an independent opinion.
+// The definitions, bit by bit, as an independent reference.
 uint16_t crc16_bitwise(uint16_t crc, uint8_t byte) {
   uint32_t rest = crc ^ static_cast<uint32_t>(byte) << 8;
   for (int bit = 0; bit < 8; ++bit) {

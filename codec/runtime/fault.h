@@ -1,11 +1,11 @@
-// What can be wrong with bytes: the fault codes of every reader and writer.
+// The fault codes of every reader and writer.
 #pragma once
 
 #include <stdint.h>
 
 namespace rubric {
 
-/// The kind of a fault. The place and the rule travel beside it, see Error.
+/// The kind of a fault. Its place and rule travel beside it, see Error.
 enum class Fault : uint8_t {
   kNone = 0,
   kTruncated,      ///< The bytes end before the field does, or hold less than a length says.

@@ -1,4 +1,4 @@
-// Frames of the TinyOS serial line, one byte at a time: what a mote needs to send and receive.
+// Frames of the TinyOS serial line, one byte at a time: enough for a mote to send and receive.
 // Hosts read with codec/containers/hdlc_reader.h.
 #pragma once
 
@@ -10,7 +10,7 @@ namespace rubric {
 
 constexpr uint8_t kHdlcFlag = 0x7E;
 constexpr uint8_t kHdlcEscape = 0x7D;
-constexpr uint8_t kHdlcXor = 0x20;  ///< What an escaped byte is combined with.
+constexpr uint8_t kHdlcXor = 0x20;  ///< Escaped bytes are combined with it.
 
 /// The packet kinds of TEP 113, section 3.1. Any other value is kept, too.
 constexpr uint8_t kSerialAck = 0x43;
@@ -18,23 +18,24 @@ constexpr uint8_t kSerialPacketAck = 0x44;
 constexpr uint8_t kSerialPacketNoAck = 0x45;
 constexpr uint8_t kSerialUnknown = 0xFF;
 
-/// Whether a sequence number follows the packet kind.
+/// Returns whether a sequence number follows the packet kind.
 constexpr bool serial_kind_has_seq(int kind) {
   return kind == kSerialAck || kind == kSerialPacketAck;
 }
 
 constexpr size_t kSerialCrcBytes = 2;
-/// Kind, one more byte, CRC: hosts ignore what is shorter (WIRE-HDLC-SHORT).
+/// Kind, one more byte, CRC: hosts ignore shorter frames (WIRE-HDLC-SHORT).
 constexpr size_t kSerialContentMin = 4;
 /// Bytes after kind and sequence number, CRC included (WIRE-HDLC-LONG).
 constexpr size_t kSerialAfterHeaderMax = 254;
 
-/// The longest content (kind to CRC) that a frame of this kind may have, in bytes.
+/// Returns the longest content (kind to CRC) that a frame of this kind may have, in bytes.
 constexpr size_t serial_content_max(int kind) {
   return kSerialAfterHeaderMax + (serial_kind_has_seq(kind) ? 2 : 1);
 }
 
-/// Room that surely holds the frame of `content_bytes` bytes (kind to CRC): all of them escaped.
+/// Returns room that surely holds the frame of `content_bytes` bytes (kind to CRC): all of them
+/// escaped.
 constexpr size_t hdlc_frame_room(size_t content_bytes) { return 2 * content_bytes + 2; }
 
 /// Writes a frame piece by piece: open, put..., close.
@@ -44,7 +45,7 @@ class HdlcFramer {
 
   void open() { raw(kHdlcFlag); }
 
-  /// A byte of the content, escaped where it must be, counted into the CRC.
+  /// Writes a byte of the content, escaped where it must be, and counts it into the CRC.
   void put(uint8_t byte) {
     crc_ = crc16_step(crc_, byte);
     escaped(byte);
@@ -53,7 +54,7 @@ class HdlcFramer {
     for (size_t i = 0; i < bytes.size(); ++i) put(bytes[i]);
   }
 
-  /// The CRC and the closing flag. Returns the size of the whole frame in bytes, or
+  /// Writes the CRC and the closing flag. Returns the size of the whole frame in bytes, or
   /// Fault::kNoRoom at the size of the output.
   Result<size_t> close() {
     const uint16_t crc = crc_;
@@ -86,8 +87,8 @@ class HdlcFramer {
   bool full_ = false;
 };
 
-/// A whole frame (flag, escaped content and CRC, flag) around `content`, which begins with the
-/// kind byte and lacks the CRC. Returns the frame's size in bytes. Errors: kTooLong (beyond
+/// Writes a whole frame (flag, escaped content and CRC, flag) around `content`, which begins with
+/// the kind byte and lacks the CRC. Returns the frame's size in bytes. Errors: kTooLong (beyond
 /// serial_content_max), kNoRoom. Source: TEP 113, section 3.1.
 inline Result<size_t> write_hdlc_frame(Bytes content, MutableBytes out) {
   const size_t max = serial_content_max(content.empty() ? 0 : content[0]) - kSerialCrcBytes;
@@ -98,7 +99,8 @@ inline Result<size_t> write_hdlc_frame(Bytes content, MutableBytes out) {
   return framer.close();
 }
 
-/// The frame of a packet (from its dispatch byte on) that asks for no confirmation, as motes send.
+/// Writes the frame of a packet (from its dispatch byte on) that asks for no confirmation, as motes
+/// send.
 inline Result<size_t> write_serial_packet(Bytes packet, MutableBytes out) {
   const size_t max = kSerialAfterHeaderMax - kSerialCrcBytes;
   if (packet.size() > max) return fail(Fault::kTooLong, 1 + max, "WIRE-HDLC-LONG"_rule);
@@ -109,7 +111,7 @@ inline Result<size_t> write_serial_packet(Bytes packet, MutableBytes out) {
   return framer.close();
 }
 
-/// The frame of a packet whose sender wants it confirmed under `seq`, as hosts send.
+/// Writes the frame of a packet whose sender wants it confirmed under `seq`, as hosts send.
 inline Result<size_t> write_serial_packet_ack(uint8_t seq, Bytes packet, MutableBytes out) {
   const size_t max = kSerialAfterHeaderMax - kSerialCrcBytes;
   if (packet.size() > max) return fail(Fault::kTooLong, 2 + max, "WIRE-HDLC-LONG"_rule);
@@ -121,13 +123,13 @@ inline Result<size_t> write_serial_packet_ack(uint8_t seq, Bytes packet, Mutable
   return framer.close();
 }
 
-/// The frame that confirms the packet sent under `seq`.
+/// Writes the frame that confirms the packet sent under `seq`.
 inline Result<size_t> write_serial_ack(uint8_t seq, MutableBytes out) {
   const uint8_t content[] = {kSerialAck, seq};
   return write_hdlc_frame(content, out);
 }
 
-/// What a byte did to a HdlcDeframer.
+/// The effect of a byte on a HdlcDeframer.
 enum class HdlcEvent : uint8_t {
   kNone,   ///< Nothing yet.
   kFrame,  ///< An intact frame: see content().
@@ -140,7 +142,7 @@ class HdlcDeframer {
  public:
   explicit HdlcDeframer(MutableBytes buffer) : buffer_(buffer) {}
 
-  /// content() and error() hold from an event to the next push.
+  /// Takes a byte. content() and error() are valid from an event to the next push.
   HdlcEvent push(uint8_t byte) {
     if (done_) restart();
     if (byte == kHdlcFlag) return flag();
@@ -154,7 +156,8 @@ class HdlcDeframer {
     return HdlcEvent::kNone;
   }
 
-  /// Kind byte to the last byte before the CRC; of a bad frame, everything that was kept of it.
+  /// Returns kind byte to the last byte before the CRC; for a bad frame, everything that was kept
+  /// of it.
   Bytes content() const { return Bytes(buffer_.data(), content_size_); }
   const Error& error() const { return error_; }
 
@@ -173,7 +176,7 @@ class HdlcDeframer {
       return;
     }
     buffer_[size_++] = byte;
-    // Two bytes behind, since the last two of the frame are the CRC itself.
+    // Two bytes late, since the last two of the frame are the CRC itself.
     if (size_ > kSerialCrcBytes) crc_ = crc16_step(crc_, buffer_[size_ - 1 - kSerialCrcBytes]);
   }
 

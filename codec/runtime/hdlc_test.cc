@@ -29,7 +29,7 @@ struct FrameCase {
   const char* content;
   const char* frame;
 };
-// The first two as the firmware sent them.
+// The firmware sent the first two.
 const FrameCase kFrames[] = {
     {"Ack0", "43 00", "7e 43 00 9f 58 7e"},
     {"Ack1", "43 01", "7e 43 01 be 48 7e"},
@@ -129,7 +129,7 @@ TEST(WireHdlcEscape, RandomContentsComeBack) {
   HdlcDeframer deframer(buffer);
   for (int round = 0; round < 2000; ++round) {
     std::vector<uint8_t> content(2 + random() % 250);
-    // Half of the bytes are ones that need care.
+    // Half of the bytes need escapes.
     for (uint8_t& byte : content) {
       byte = static_cast<uint8_t>(random() % 2 ? random() : 0x7C + random() % 4);
     }

@@ -1,4 +1,4 @@
-// A structure as functions behind a name, for tests and tools that choose messages at run time.
+// A structure as functions with a name, for tests and tools that choose messages at run time.
 #pragma once
 
 #include "codec/runtime/view.h"
@@ -9,7 +9,7 @@ struct MessageCodec {
   const char* name;
   size_t min_size_bytes;
   size_t max_size_bytes;  ///< SIZE_MAX where it is as large as its surroundings.
-  /// The meant bytes.
+  /// Returns the meant bytes.
   Result<Bytes> (*parse)(Bytes bytes);
   /// Parses, and writes the parsed value.
   Result<MutableBytes> (*rewrite)(Bytes bytes, MutableBytes out);

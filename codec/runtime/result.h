@@ -1,4 +1,4 @@
-// A value or an error: what every parse and write returns. Freestanding C++14, no exceptions.
+// A value or an error: the result of every parse and write. Freestanding C++14, no exceptions.
 #pragma once
 
 #include <assert.h>
@@ -10,11 +10,11 @@
 
 namespace rubric {
 
-/// What is wrong, where, and by which rule. Cheap to return: no text, no allocation; the text is
-/// made where it is shown.
+/// A fault, its place, and its rule. Cheap to return: no text, no allocation; the text is made
+/// where it is shown.
 struct Error {
   Fault fault;
-  uint32_t offset_bytes;  ///< Of the first byte that breaks the rule, from the start of the input.
+  uint32_t offset_bytes;  ///< Offset in the input of the first byte that breaks the rule.
   ReqId requirement;      ///< The rule that it breaks.
 };
 constexpr bool operator==(const Error& a, const Error& b) {
@@ -30,7 +30,7 @@ constexpr Failure fail(Fault fault, size_t offset_bytes, ReqId requirement) {
   return Failure{Error{fault, static_cast<uint32_t>(offset_bytes), requirement}};
 }
 
-/// A value, or the error that kept it from being. T is default constructible.
+/// A value, or the error that prevented it. T is default constructible.
 template <class T>
 class Result {
  public:

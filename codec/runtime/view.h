@@ -1,5 +1,5 @@
-// What generated messages are made of: numbers by byte order, lenses on arrays, arrays of values,
-// and the small functions that every parse and write uses. Freestanding C++14.
+// The parts of generated messages: numbers by byte order, lenses on arrays, arrays of values, and
+// the small functions that every parse and write uses. Freestanding C++14.
 #pragma once
 
 #include <assert.h>
@@ -13,7 +13,7 @@
 
 #define RUBRIC_LIKELY(x) __builtin_expect(!!(x), 1)
 #define RUBRIC_UNLIKELY(x) __builtin_expect(!!(x), 0)
-// For what reports a failure: the hot path does not carry its code.
+// Marks functions that report a failure: the hot path does not carry their code.
 #define RUBRIC_COLD __attribute__((cold, noinline))
 #define RUBRIC_MUST_USE __attribute__((warn_unused_result))
 
@@ -24,19 +24,19 @@ constexpr bool is_error(const Error& error) { return error.fault != Fault::kNone
 constexpr Error error_at(Fault fault, size_t offset_bytes, ReqId requirement) {
   return Error{fault, static_cast<uint32_t>(offset_bytes), requirement};
 }
-/// The field of this requirement misses bytes; the place is where the bytes end.
+/// Returns the error of a requirement's field that misses bytes; the place is where the bytes end.
 constexpr Error truncated(Bytes bytes, ReqId requirement) {
   return error_at(Fault::kTruncated, bytes.size(), requirement);
 }
-/// The error of a nested structure, seen from the structure around it.
+/// Returns the error of a nested structure, seen from the structure around it.
 constexpr Error moved(const Error& error, size_t by_bytes) {
   return error_at(error.fault, error.offset_bytes + by_bytes, error.requirement);
 }
-/// What a structure takes that has a greatest size; what lies behind it is not its.
+/// Returns the bytes that a structure with a greatest size may take; later bytes are not its.
 constexpr Bytes at_most(Bytes bytes, size_t size_bytes) {
   return bytes.size() > size_bytes ? bytes.first(size_bytes) : bytes;
 }
-/// A payload or array of `have` bytes or elements where `want` are announced.
+/// Returns the error of a payload or array of `have` bytes or elements where `want` are announced.
 constexpr Error wrong_length(size_t have, size_t want, size_t offset_bytes, ReqId requirement) {
   return error_at(have < want ? Fault::kTruncated : Fault::kTrailing, offset_bytes, requirement);
 }
@@ -77,7 +77,7 @@ RUBRIC_WIRE_NUMBER(S32Be, int32_t, 32, be, __BYTE_ORDER__ == __ORDER_LITTLE_ENDI
 RUBRIC_WIRE_NUMBER(S32Le, int32_t, 32, le, __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__)
 #undef RUBRIC_WIRE_NUMBER
 
-/// What another wire number carries under another type: T is an enum, a mask or int8_t.
+/// Carries another wire number under another type: T is an enum, a mask or int8_t.
 template <class T, class Number>
 struct As {
   using Value = T;
@@ -102,6 +102,44 @@ struct F32 {
 using F32Be = F32<U32Be>;
 using F32Le = F32<U32Le>;
 
+/// Where a structure has a field that always begins at the same byte. Converts to that offset.
+template <size_t kOffset>
+struct PlaceAt {
+  static constexpr size_t kAt = kOffset;
+  constexpr operator size_t() const { return kOffset; }
+};
+/// The same for a number, which it reads and writes whatever the rest of the structure holds.
+template <size_t kOffset, class Wire>
+struct NumberAt : PlaceAt<kOffset> {
+  using Number = Wire;
+  using Value = typename Wire::Value;
+  static constexpr size_t kEnd = kOffset + Wire::kSizeBytes;
+  static Value load(const uint8_t* structure) { return Wire::load(structure + kOffset); }
+  static void store(uint8_t* structure, Value value) { Wire::store(structure + kOffset, value); }
+};
+/// The same for a number that must lie in a range.
+template <size_t kOffset, class Wire, int64_t kLeast, int64_t kMost>
+struct RangedAt : NumberAt<kOffset, Wire> {
+  static constexpr int64_t kMin = kLeast;
+  static constexpr int64_t kMax = kMost;
+  static constexpr bool allows(int64_t value) { return value >= kLeast && value <= kMost; }
+};
+/// The same for an array of numbers.
+template <size_t kOffset, class Wire>
+struct ArrayAt : PlaceAt<kOffset> {
+  using Value = typename Wire::Value;
+  static constexpr size_t kUnitBytes = Wire::kSizeBytes;
+  static Value load(const uint8_t* structure, size_t i) {
+    return Wire::load(structure + kOffset + i * kUnitBytes);
+  }
+  static void store(uint8_t* structure, size_t i, Value value) {
+    Wire::store(structure + kOffset + i * kUnitBytes, value);
+  }
+};
+/// Field `Inner` of the structure that is field `Outer`.
+template <class Outer, class Inner>
+using Within = NumberAt<Outer::kAt + Inner::kAt, typename Inner::Number>;
+
 /// An array of values with room for kCapacity; the first `count` are meant.
 template <class T, size_t kCapacity>
 struct Array {
@@ -114,7 +152,7 @@ struct Array {
   constexpr T& operator[](size_t i) { return items[i]; }
   constexpr const T* begin() const { return items; }
   constexpr const T* end() const { return items + count; }
-  /// Appends; false, and nothing happens, where there is no room.
+  /// Appends; returns false, and does nothing, if there is no room.
   constexpr bool push(const T& item) {
     if (count >= kCapacity) return false;
     items[count++] = item;
@@ -137,7 +175,7 @@ struct Access {
   }
 };
 
-/// Floats are the same value if their bits are, so that NaN compares too.
+/// Returns whether values are the same: floats are if their bits are, so that NaN compares too.
 constexpr bool same(uint8_t a, uint8_t b) { return a == b; }
 inline bool same(float a, float b) { return bits_of_float(a) == bits_of_float(b); }
 inline bool same(Bytes a, Bytes b) { return equal(a, b); }
@@ -171,27 +209,27 @@ void store_numbers(uint8_t* p, const typename Number::Value* from, size_t count)
 
 }  // namespace detail
 
-/// A lens on an array of numbers in bytes that somebody else owns; whole elements only.
+/// A lens on a borrowed array of numbers in bytes; whole elements only.
 template <class Number>
 class NumberArrayView {
  public:
   using Value = typename Number::Value;
   constexpr NumberArrayView() = default;
 
-  /// Elements.
+  /// Returns the number of elements.
   constexpr size_t size() const { return bytes_.size() / Number::kSizeBytes; }
   constexpr bool empty() const { return bytes_.empty(); }
-  /// i < size().
+  /// Returns an element; i < size().
   Value operator[](size_t i) const {
     assert(i < size());
     return Number::load(bytes_.data() + i * Number::kSizeBytes);
   }
   constexpr Bytes bytes() const { return bytes_; }
-  /// The same bytes.
+  /// Returns whether the bytes are the same.
   friend bool operator==(NumberArrayView a, NumberArrayView b) { return equal(a.bytes_, b.bytes_); }
   friend bool operator!=(NumberArrayView a, NumberArrayView b) { return !(a == b); }
 
-  /// Copies the first `n` elements, or all where there are fewer; returns how many.
+  /// Copies the first `n` elements, or all if there are fewer; returns how many.
   size_t copy_to(Value* out, size_t n) const {
     if (n > size()) n = size();
     const uint8_t* p = bytes_.data();
@@ -231,20 +269,20 @@ class StructArrayView {
   using Value = typename View::Value;
   constexpr StructArrayView() = default;
 
-  /// Elements.
+  /// Returns the number of elements.
   constexpr size_t size() const { return bytes_.size() / View::kMaxSizeBytes; }
   constexpr bool empty() const { return bytes_.empty(); }
-  /// i < size().
+  /// Returns an element; i < size().
   View operator[](size_t i) const {
     assert(i < size());
     return detail::Access::view<View>(bytes_.sub(i * View::kMaxSizeBytes, View::kMaxSizeBytes));
   }
   constexpr Bytes bytes() const { return bytes_; }
-  /// The same bytes.
+  /// Returns whether the bytes are the same.
   friend bool operator==(StructArrayView a, StructArrayView b) { return equal(a.bytes_, b.bytes_); }
   friend bool operator!=(StructArrayView a, StructArrayView b) { return !(a == b); }
 
-  /// Copies the first `n` elements, or all where there are fewer; returns how many.
+  /// Copies the first `n` elements, or all if there are fewer; returns how many.
   size_t copy_to(Value* out, size_t n) const {
     if (n > size()) n = size();
     for (size_t i = 0; i < n; ++i) out[i] = (*this)[i].to_value();

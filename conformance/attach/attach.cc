@@ -16,10 +16,10 @@ namespace {
 
 using machine::Role;
 
-constexpr std::uint32_t kForwarderBaud = 57600;  // Nobody tells; the slower of the common ones.
+constexpr std::uint32_t kForwarderBaud = 57600;  // The slower common one; not reported.
 constexpr std::uint32_t kSerialBaud = 115200;
 
-/// With a fault of release 1.0 around it.
+/// Wraps the machine's step in a named release-1.0 flaw.
 class FlawedMachine : public runner::Machine {
  public:
   explicit FlawedMachine(flaws::StepFunction flawed) : step_(flawed) {}
@@ -31,7 +31,7 @@ class FlawedMachine : public runner::Machine {
   flaws::StepFunction step_;
 };
 
-/// The reference machine in this process, perhaps with a fault.
+/// The reference machine in this process, perhaps with a flaw.
 class MachineAttachment : public Attachment {
  public:
   explicit MachineAttachment(const flaws::Flaw* flaw) : flaw_(flaw) {
@@ -61,7 +61,7 @@ std::unique_ptr<Attachment> flawed_machine(std::string_view name) {
                                           fmt::join(names, ", ")));
 }
 
-// Takes `prefix` off the text.
+// Removes `prefix` from the text.
 bool cut(std::string_view& text, std::string_view prefix) {
   if (!text.starts_with(prefix)) return false;
   text.remove_prefix(prefix.size());
@@ -80,7 +80,7 @@ LineNode real_node(Role role, const char* where, std::uint32_t baud) {
   return node;
 }
 
-// Takes the role off that may stand at the end of what is no server.
+// Removes the role that may end a target that is no server.
 Role cut_role(std::string_view& text) {
   if (cut_end(text, ":mote")) return Role::kMote;
   cut_end(text, ":sink");

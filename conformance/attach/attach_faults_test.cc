@@ -1,4 +1,5 @@
-// Whatever a process does to us: an error of that case, in bounded time, and the next case passes.
+// Whatever a process does to us is an error of that case, in bounded time, and the next case
+// passes.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -23,7 +24,7 @@ using runner::CaseVerdict;
 using std::chrono::milliseconds;
 
 constexpr milliseconds kStepTimeout{600};
-constexpr milliseconds kFaultMax{6000};  // With the start of an interpreter on a busy host.
+constexpr milliseconds kFaultMax{6000};  // Includes an interpreter's start on a busy host.
 
 struct Fault {
   const char* name;
@@ -87,7 +88,7 @@ class AttachFaults : public testing::Test {
                               fault, flag(), RUBRIC_MACHINE_ADAPTER),
                   {kStepTimeout, milliseconds(20000)});
   }
-  // Has an adapter do what nobody asks for, and waits until it is done.
+  // Makes an adapter do something unasked, and waits until it is done.
   void do_it_now(std::string_view fault) const {
     std::ofstream(flag() + ".now") << "1";
     pid_t pid = 0;
@@ -173,7 +174,7 @@ TEST_F(AttachFaults, EndBetweenCasesIsNoFaultOfTheNext) {
   ASSERT_EQ(::waitid(P_PID, static_cast<id_t>(child), &info, WEXITED | WNOWAIT), 0);
   EXPECT_TRUE(attachment->take_mishaps().empty());
   EXPECT_EQ(run(*attachment).verdict, CaseVerdict::kPass);
-  const std::vector<Mishap> mishaps = attachment->take_mishaps();  // But it is told.
+  const std::vector<Mishap> mishaps = attachment->take_mishaps();  // But it is reported.
   ASSERT_EQ(mishaps.size(), 1U);
   EXPECT_EQ(mishaps[0].text, "was killed by signal 9 (Killed)");
   EXPECT_TRUE(mishaps[0].broke);
@@ -181,7 +182,7 @@ TEST_F(AttachFaults, EndBetweenCasesIsNoFaultOfTheNext) {
   EXPECT_TRUE(attachment->take_mishaps().empty());
 }
 
-// An adapter that passes the case, and does something where nothing is asked.
+// An adapter that passes the case, and does something when nothing is asked.
 TEST_F(AttachFaults, WhatHappensOutsideOfCasesIsTold) {
   struct Odd {
     const char* fault;
@@ -246,7 +247,7 @@ TEST_F(AttachFaults, RealTimeIsOurs) {
   EXPECT_LT(std::chrono::steady_clock::now() - before, kFaultMax);
 }
 
-// The machine's sleepless relative: answers when the time has come.
+// A machine that answers in real time: when the time has come.
 TEST_F(AttachFaults, RealTimeAdapterIsWaitedFor) {
   const auto patient = attach(
       "while read -r word time rest; do case $word in "

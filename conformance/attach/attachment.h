@@ -1,4 +1,4 @@
-// An implementation under test as the suite sees it, wherever it runs: a child process that speaks
+// An implementation under test as the suite sees it, wherever it runs: a child process that uses
 // rct/1 (PORTING.md), a Serial Forwarder, a serial line, or this very process.
 #pragma once
 
@@ -14,57 +14,57 @@ namespace rubric::attach {
 struct Identity {
   std::string name;
   std::string version;
-  std::vector<machine::Role> roles;  ///< That it can play.
+  std::vector<machine::Role> roles;  ///< The roles that it can play.
   bool real_time = false;            ///< Its clock cannot be turned.
 };
 
-/// What went wrong while no case was at work.
+/// A fault while no case was running.
 struct Mishap {
   std::string text;         ///< "was killed by signal 9 (Killed)".
-  /// It died or spoke when nobody had asked: what it said before can hardly be believed. Else only
-  /// its end was none as `bye` asks for.
+  /// True if it died or wrote something unasked: its earlier output can hardly be believed. Else
+  /// only its end did not follow `bye` as it should.
   bool broke = false;
   std::string stderr_text;  ///< Its last words.
 };
 
-/// For one thread. Targets must be gone before it.
+/// For one thread. Destroy its targets before it.
 class Attachment {
  public:
   virtual ~Attachment() = default;
 
-  /// Starts it if need be. Throws runner::TargetBroken.
+  /// Starts it if needed. Throws runner::TargetBroken.
   virtual const Identity& identity() = 0;
-  /// The target of one node of one case, to be destroyed when the case is over. A case with several
-  /// nodes asks for several at once. What broke in an earlier case is started anew. Throws
-  /// runner::TargetBroken.
+  /// Returns the target of one node of one case, to be destroyed when the case is over. A case with
+  /// several nodes calls this several times. Restarts a process that broke in an earlier case.
+  /// Throws runner::TargetBroken.
   virtual std::unique_ptr<runner::Target> target() = 0;
-  /// Sends something that nobody can know and returns what is wrong with the answer; empty: it was
-  /// refused, as it must be. Nothing to ask, nothing wrong.
+  /// Sends something that nobody can know and returns what is wrong with the answer; empty if it
+  /// was refused, as it must be, or if there is nothing to ask.
   virtual std::string honesty() = 0;
-  /// What the implementation wrote to its standard error since the last call, its last 64 KiB; the
-  /// notes of an adapter are among it.
+  /// Returns the implementation's standard error since the last call, its last 64 KiB, with the
+  /// adapter's notes.
   virtual std::string take_stderr() = 0;
-  /// What has gone wrong since the last call without being an error of a case.
+  /// Returns faults since the last call that are no error of a case.
   virtual std::vector<Mishap> take_mishaps() { return {}; }
-  /// Ends what waits for the next case. Its mishaps can be taken afterwards.
+  /// Ends processes that wait for the next case. Their mishaps can be taken afterwards.
   virtual void finish() {}
 };
 
-/// Who the reference machine says that it is.
+/// Returns the reference machine's identity.
 Identity machine_identity();
 
 struct Options {
-  /// Wall-clock time for the answer to a command, and until a line is open.
+  /// Wall-clock limit for the answer to a command, and for opening a line.
   std::chrono::milliseconds step_timeout{5000};
-  /// The same for the first one, `hello`, while an interpreter or an emulator starts, and for a
-  /// node that comes to us.
+  /// The same for the first command, `hello`, while an interpreter or an emulator starts, and for a
+  /// node that connects to us.
   std::chrono::milliseconds start_timeout{20000};
 };
 
-/// By what the user wrote: `machine`, `machine:FLAW` (conformance/flaws), `sf-server:PORT`,
-/// `sf:HOST:PORT`, `serial:DEVICE[:BAUD]`, `serial:tcp:HOST:PORT`, the last three also with `:mote`
-/// at their end, else a shell command that speaks rct/1. Starts nothing yet. Throws
-/// std::invalid_argument where the text makes no sense.
+/// Opens the target that the user wrote: `machine`, `machine:FLAW` (conformance/flaws),
+/// `sf-server:PORT`, `sf:HOST:PORT`, `serial:DEVICE[:BAUD]`, `serial:tcp:HOST:PORT`, the last three
+/// perhaps with `:mote` at the end, else a shell command that uses rct/1. Starts nothing yet.
+/// Throws std::invalid_argument if the text makes no sense.
 std::unique_ptr<Attachment> attach(const std::string& target, const Options& options);
 
 }  // namespace rubric::attach

@@ -1,4 +1,4 @@
-// The clock of a target that nobody can turn, and how far its times may be off.
+// The clock of a target that cannot be turned, and the error of its times.
 #pragma once
 
 #include <chrono>
@@ -14,18 +14,18 @@ class RealClock {
 
   void start() { start_ = Steady::now(); }
   runner::Ticks now() const { return tick_of(Steady::now()); }
-  /// Of a moment that is not before the start; else 0.
+  /// Returns the tick of a moment; 0 if that is before the start.
   runner::Ticks tick_of(Steady::time_point moment) const;
-  /// When this tick begins.
+  /// Returns when this tick begins.
   Steady::time_point begin_of(runner::Ticks ticks) const;
 
  private:
   Steady::time_point start_ = Steady::now();
 };
 
-/// Measured once, in the first 200 ms that it is asked for: twice the worst delay with which this
-/// host wakes a sleeping thread, at least 10 ticks. Early as well as late: times are compared with
-/// others that were taken late.
+/// Returns the tolerance, measured once in the first 200 ms of use: twice the worst delay with
+/// which this host wakes a sleeping thread, at least 10 ticks. It counts for early times too, as
+/// times are compared with others that were taken late.
 runner::Tolerance tolerance_of_this_host();
 
 }  // namespace rubric::attach

@@ -13,18 +13,18 @@ namespace {
 constexpr std::size_t kGroupsMax = 4096;
 constexpr int kTermWaitMs = 100;  // For an orderly end, before there is another.
 constexpr pid_t kFree = 0;
-constexpr pid_t kTaken = -1;      // By a child that is to start.
+constexpr pid_t kTaken = -1;      // Taken by a child that is about to start.
 constexpr int kSignals[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT};
 
-// What the handler looks at: nothing else may be touched by it.
+// The only data that the handler may touch.
 std::array<std::atomic<pid_t>, kGroupsMax> groups{};
 std::atomic<int> starting = 0;      // Children whose groups are not known yet.
 std::atomic<bool> ending = false;   // The handler is at work.
 static_assert(std::atomic<pid_t>::is_always_lock_free);
 
-void sleep_ms(int ms) { ::poll(nullptr, 0, ms); }  // Which handlers may call.
+void sleep_ms(int ms) { ::poll(nullptr, 0, ms); }  // Handlers may call this.
 
-// The handler ends this process: nothing is to be begun any more.
+// Waits for the handler to end this process: nothing may be started any more.
 void wait_for_end() {
   while (ending) sleep_ms(-1);
 }
@@ -83,7 +83,7 @@ GroupStart::GroupStart() : place_(take_place()) {
   const sigset_t all = all_signals();
   ::pthread_sigmask(SIG_BLOCK, &all, &before_);
   ++starting;
-  if (ending) {  // Another thread's handler may have looked already.
+  if (ending) {  // Another thread's handler may have been first.
     --starting;
     wait_for_end();
   }

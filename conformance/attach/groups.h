@@ -1,5 +1,5 @@
-// Process groups of children that have to end with this process, even when a signal ends it: they
-// are none of the terminal's, so Ctrl-C does not reach them.
+// Process groups of children that have to end with this process, even if a signal ends it. They do
+// not belong to the terminal, so Ctrl-C does not reach them.
 #pragma once
 
 #include <csignal>
@@ -9,24 +9,24 @@
 
 namespace rubric::attach {
 
-/// SIGINT, SIGTERM, SIGHUP and SIGQUIT kill all groups from now on, whatever these do against it,
-/// and then this process as they would have without. A signal that is ignored stays ignored. For
-/// programs that attach processes, once, while there is one thread.
+/// Lets SIGINT, SIGTERM, SIGHUP and SIGQUIT kill all groups from now on, whatever these do against
+/// it, and then this process as they would have without. A signal that is ignored stays ignored.
+/// For programs that attach processes; called once, while there is one thread.
 void end_groups_on_signals();
 
-/// Stands around the start of a child: signals that would end this process wait until it is known
-/// which group it has. Several threads may start children at once.
+/// Guards the start of a child: signals that would end this process wait until the child's group is
+/// known. Several threads may start children at once.
 class GroupStart {
  public:
-  /// Throws runner::TargetBroken when there are too many groups.
+  /// Throws runner::TargetBroken if there are too many groups.
   GroupStart();
   ~GroupStart();
   GroupStart(const GroupStart&) = delete;
   GroupStart& operator=(const GroupStart&) = delete;
 
-  /// The group is there. Returns its place, for forget_group.
+  /// Notes that the group exists. Returns its place, for forget_group.
   std::size_t started(pid_t group);
-  /// In the forked child: nothing of this is its own.
+  /// Resets, in the forked child, what belongs to the parent.
   void in_child();
 
  private:
@@ -35,7 +35,7 @@ class GroupStart {
   bool started_ = false;
 };
 
-/// The group was killed, and its number may be another's from the return on.
+/// Notes that the group was killed; its number may belong to another one after this returns.
 void forget_group(std::size_t place);
 
 }  // namespace rubric::attach

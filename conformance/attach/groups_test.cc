@@ -28,7 +28,7 @@ constexpr const char* kStubborn =
 
 SteadyTime soon() { return steady_clock::now() + std::chrono::seconds(20); }
 
-// A program with attached processes: `body` runs in it, and says lines to us.
+// A program with attached processes: `body` runs in it, and writes lines to us.
 class Program {
  public:
   using Say = std::function<void(const std::string&)>;
@@ -61,7 +61,7 @@ class Program {
   }
   void send(int signal) const { ::kill(pid_, signal); }
   bool runs() { return ::waitpid(pid_, &status_, WNOHANG) == 0; }
-  /// How it ended; -1: it does not.
+  /// Returns the signal that ended it; -1 if it does not end.
   int ending_signal() {
     ended_ = comes([&] { return ::waitpid(pid_, &status_, WNOHANG) == pid_; });
     return ended_ && WIFSIGNALED(status_) ? WTERMSIG(status_) : -1;
@@ -100,7 +100,7 @@ TEST(Groups, EndWithEachSignal) {
 
 TEST(Groups, IgnoredSignalsStayIgnored) {
   Program program([](const Program::Say& say) {
-    ::signal(SIGHUP, SIG_IGN);  // As nohup does.
+    ::signal(SIGHUP, SIG_IGN);  // nohup does the same.
     end_groups_on_signals();
     attach_stubborn(say);
   });
@@ -116,7 +116,7 @@ TEST(Groups, IgnoredSignalsStayIgnored) {
   EXPECT_TRUE(comes([&] { return is_dead(child); }));
 }
 
-// Processes whose command line has this in it.
+// Counts processes with this in their command line.
 std::size_t count_with(const std::string& words) {
   std::size_t count = 0;
   for (const auto& entry : std::filesystem::directory_iterator("/proc")) {

@@ -7,7 +7,7 @@
 namespace rubric::attach {
 namespace {
 
-// Numbers older than half a round are nobody's any more.
+// Numbers older than half a round have expired.
 constexpr int kNumbersKept = 128;
 
 }  // namespace
@@ -46,7 +46,7 @@ HostLink::Submitted HostLink::submit(Bytes packet, SteadyTime now) {
   return Submitted::kTaken;
 }
 
-// The next try of the first packet.
+// Sends the next try of the first packet.
 void HostLink::send(SteadyTime now) {
   if (current_.tries == 0) {
     current_.packet = waiting_.front().number;
@@ -55,7 +55,7 @@ void HostLink::send(SteadyTime now) {
   }
   ++turns_;
   due_ = now + options_.ack_wait;
-  // Where the try before could not be written yet, a second one would not help the mote.
+  // While the try before could not be written, a second one would not help the mote.
   if (current_.tries > 0 && !output_.empty()) return;
   const std::vector<std::uint8_t>& bytes = waiting_.front().bytes;
   std::uint8_t out[hdlc_frame_room(kSerialAfterHeaderMax + 2)];
@@ -95,13 +95,13 @@ void HostLink::heard(const Packet& packet, SteadyTime now) {
   if (output_.size() + size <= kOutputMax) put(Bytes(out, size));
 }
 
-// Whether one of the present packet's tries has this number.
+// Returns whether one of the present packet's tries has this number.
 bool HostLink::is_ours(std::uint8_t seq) const {
   const int age = static_cast<std::uint8_t>(seq_ - seq);  // 1: the last try's.
   return age >= 1 && age <= std::min(current_.tries, kNumbersKept);
 }
 
-// The first packet is done; the next one's turn.
+// Ends the first packet; the next one follows.
 void HostLink::end(bool confirmed, SteadyTime now) {
   Outcome outcome = std::exchange(current_, Outcome{});
   outcome.confirmed = confirmed;

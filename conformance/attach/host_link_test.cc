@@ -35,12 +35,12 @@ Octets sent(std::uint8_t seq, const Octets& packet) {
 }
 Octets ack(std::uint8_t seq) { return frame({kSerialAck, seq}); }
 
-/// A link, and what it said.
+/// A link and its output.
 struct Host {
   explicit Host(const HostLinkOptions& options = {})
       : link(options, [this](const HostLink::Outcome& one) { outcomes.push_back(one); }) {}
 
-  /// What it wants to write now.
+  /// Returns its present output.
   Octets wrote() {
     const Octets out(link.output().begin(), link.output().end());
     link.written(out.size());
@@ -55,7 +55,7 @@ struct Host {
   }
 
   std::vector<HostLink::Outcome> outcomes;
-  std::vector<int> kinds;  ///< Of the frames that came; -1: a malformed one.
+  std::vector<int> kinds;  ///< The kinds of frames that came; -1: malformed.
   int packets = 0;
   HostLink link;
 };
@@ -112,7 +112,7 @@ TEST(HostLink, SentAgainUnderTheNextNumberThenGivenUp) {
   ASSERT_EQ(host.outcomes.size(), 1U);
   EXPECT_FALSE(host.outcomes[0].confirmed);
   EXPECT_EQ(host.outcomes[0].tries, 3);
-  host.take(ack(16), 3008);  // Too late, and nobody's.
+  host.take(ack(16), 3008);  // Too late, and for no packet.
   host.link.submit(view(kOther), at(3009));
   EXPECT_EQ(host.wrote(), sent(17, kOther));
   host.take(ack(16), 3010);
@@ -231,7 +231,7 @@ TEST(HostLink, ALineThatTakesNothing) {
   EXPECT_EQ(host.wrote(), sent(15, kConfig));
   host.take(ack(14), 4500);
   ASSERT_EQ(host.outcomes.size(), 1U);
-  EXPECT_EQ(host.outcomes[0].tries, 2);  // Of five turns.
+  EXPECT_EQ(host.outcomes[0].tries, 2);  // After five turns.
 }
 
 TEST(HostLink, ALineThatTakesNothingIsGivenUpInTime) {
@@ -247,7 +247,7 @@ TEST(HostLink, ALineThatTakesNothingIsGivenUpInTime) {
   ASSERT_EQ(host.outcomes.size(), 1U);
   EXPECT_FALSE(host.outcomes[0].confirmed);
   EXPECT_EQ(host.outcomes[0].tries, 1);
-  host.take(ack(15), 3001);  // The next one's, which was put behind it.
+  host.take(ack(15), 3001);  // For the next packet.
   ASSERT_EQ(host.outcomes.size(), 2U);
   EXPECT_EQ(host.outcomes[1].tries, 1);
 }
@@ -292,7 +292,7 @@ TEST(HostLink, TheOutcomeMaySubmit) {
   EXPECT_EQ(link.pending(), 0U);
 }
 
-// Whatever comes when: packets end in order, each once, and no try is beyond the bound.
+// Whatever bytes come when: packets end in order, each once, and no try is beyond the bound.
 TEST(HostLink, AnyBytesAnyTimes) {
   std::mt19937 random(11);
   for (int round = 0; round < 300; ++round) {

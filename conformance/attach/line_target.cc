@@ -1,12 +1,13 @@
 #include "conformance/attach/line_target.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
-#include <fmt/format.h>
-
 #include "codec/generated/rubicon/config.h"
 #include "codec/generated/rubicon/enums.h"
+#include "codec/generated/tinyos/am_header.h"
 #include "conformance/attach/rct_text.h"
 #include "conformance/trace/trace.h"
 
@@ -20,8 +21,8 @@ using std::chrono::steady_clock;
 
 constexpr Milliseconds kQuiet{60};
 constexpr Milliseconds kQuietMax{2000};     // A node that never pauses is used as it is.
-constexpr Ticks kStepTicks = 5;             // Of several nodes that go on together.
-constexpr std::size_t kOutputsMax = 100'000;  // Of a case.
+constexpr Ticks kStepTicks = 5;             // For several nodes that go on together.
+constexpr std::size_t kOutputsMax = 100'000;  // In a case.
 constexpr std::uint32_t kFrameBits = (1 + 8 + machine::kAmPayloadMax + 4) * 10;
 
 // Keeps an attachment's one node in use while it lives.
@@ -47,7 +48,7 @@ void LineTarget::reset(const machine::Config& config) {
     throw Unsupported(fmt::format("the id of the sink cannot be set to {}", config.id));
   }
   line_.open(step_deadline());
-  if (!is_mote()) let_settle();  // Of a mote nothing is looked at.
+  if (!is_mote()) let_settle();  // A mote's line shows nothing.
   if (role == machine::Role::kSink) {
     set_island(config.island == 1 ? 2 : 1);
     set_island(config.island);
@@ -106,12 +107,14 @@ Ticks LineTarget::run_until(Ticks time) {
   return now_;
 }
 
-// False when it is none of the node's.
+// Takes a packet. Returns false if it is not the node's.
 bool LineTarget::take(const TimedPacket& packet) {
   if (is_mote()) return false;
-  if (packet.bytes.empty() || packet.bytes[0] != 0) {
+  using At = tinyos::AmHeaderLayout::DispatchAt;
+  const std::uint8_t dispatch = packet.bytes.size() < At::kEnd ? 0 : packet.bytes[At::kAt];
+  if (packet.bytes.empty() || !At::allows(dispatch)) {
     notes_ += fmt::format("a packet of dispatch {:02x}, which is no active message, is ignored\n",
-                          packet.bytes.empty() ? 0 : packet.bytes[0]);
+                          dispatch);
     return false;
   }
   trace::AmFrame frame;
@@ -167,7 +170,7 @@ std::unique_ptr<runner::Target> LineAttachment::target() {
   return std::make_unique<UsedLineTarget>(*line_, node_, options_, notes_, std::move(use));
 }
 
-// Only what starts and then comes by itself is waited for that long.
+// Waits that long only for a node that starts and then connects by itself.
 void LineAttachment::open() {
   const bool starts = node_.comes_to_us && (!opened_ || node_.restarts);
   line_->open(steady_clock::now() + (starts ? options_.start_timeout : options_.step_timeout));

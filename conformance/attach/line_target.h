@@ -1,15 +1,16 @@
-// A real node of which one sees its serial line, in real time.
+// A real node that is visible only through its serial line, in real time.
 //
-// A node cannot be started anew through its line. What reset does instead:
-// - the line is opened if it is not, and what comes is dropped until nothing comes for 60 ms;
-// - a sink is told another island and then that of the case, by which it forgets its members (N9);
-// - where the attachment says `restart`, the connection of an earlier case is closed first, and one
-//   waits for the node to connect again: for a base station that is started anew by a script.
-// All else stays as the case before left it: sequence numbers, acks that are awaited, channels. The
-// id of a sink must be 1, and a base station's island that of the cases, 11.
+// A node cannot be restarted through its line. Instead reset does this:
+// - the line is opened if it is not, and input is dropped until nothing comes for 60 ms;
+// - a sink is sent another island and then that of the case, which makes it forget its members
+//   (N9);
+// - where the attachment says `restart`, the connection of an earlier case is closed first, and the
+//   node has to connect again: for a base station that a script restarts.
+// All else stays as the case before left it: sequence numbers, awaited acks, channels. The id of a
+// sink must be 1, and a base station's island that of the cases, 11.
 //
-// A mote says all that the rules know by radio. Nothing can be judged at its serial line, whatever
-// comes there (what debugs it, say), so nothing of it is shown; but that the line holds is seen.
+// The rules of a mote are about its radio. Its serial line cannot break them, whatever comes there
+// (debug output, say), so none of it is shown; but a broken line is noticed.
 #pragma once
 
 #include <memory>
@@ -22,7 +23,7 @@
 
 namespace rubric::attach {
 
-/// Who is behind a line, and how far away.
+/// The node on a line, and its distance.
 struct LineNode {
   Identity identity;         ///< With the one role that it plays.
   bool comes_to_us = false;  ///< It opens the connection, when it has started.
@@ -43,7 +44,8 @@ class LineTarget : public runner::Target {
   const std::vector<runner::Output>& outputs() const override { return outputs_; }
   void hold_link_acks(bool) override {}
   runner::Reach reach() const override { return {false, !is_mote(), false, false}; }
-  /// Of this host, and the time that a stimulus and its answer take on the serial line.
+  /// Returns the tolerance of this host plus the time of a stimulus and its answer on the serial
+  /// line.
   runner::Tolerance tolerance() const override;
 
  private:
@@ -69,7 +71,7 @@ class LineAttachment : public Attachment {
       : line_(std::move(line)), node_(std::move(node)), options_(options) {}
 
   const Identity& identity() override;
-  /// One at a time: runner::Unsupported where a case has several nodes.
+  /// Returns one target at a time; throws runner::Unsupported if a case has several nodes.
   std::unique_ptr<runner::Target> target() override;
   std::string honesty() override { return {}; }
   std::string take_stderr() override;
@@ -83,7 +85,7 @@ class LineAttachment : public Attachment {
   std::string notes_;
   bool opened_ = false;          // Once, at least.
   bool used_ = false;
-  std::weak_ptr<int> in_use_;    // By the target that holds it.
+  std::weak_ptr<int> in_use_;    // Held by the target in use.
 };
 
 }  // namespace rubric::attach

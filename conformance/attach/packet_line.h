@@ -1,4 +1,4 @@
-// The serial line of a real node, whatever carries it.
+// The serial line of a real node over any carrier.
 #pragma once
 
 #include <cstdint>
@@ -10,13 +10,13 @@
 
 namespace rubric::attach {
 
-/// A serial forwarder packet and when its last byte came.
+/// A serial forwarder packet and the time of its last byte.
 struct TimedPacket {
   SteadyTime time;
   std::vector<std::uint8_t> bytes;
 };
 
-/// All throw runner::TargetBroken when the line breaks or carries what makes no sense; it is closed
+/// All functions throw runner::TargetBroken if the line breaks or carries nonsense; it is closed
 /// then, and open() opens it anew.
 class PacketLine {
  public:
@@ -25,7 +25,7 @@ class PacketLine {
   virtual void open(SteadyTime deadline) = 0;
   virtual void close() = 0;
   virtual void send(const std::vector<std::uint8_t>& packet, SteadyTime deadline) = 0;
-  /// The next packet; nothing when the time is over first.
+  /// Returns the next packet; nothing if the time is over first.
   virtual std::optional<TimedPacket> receive(SteadyTime deadline) = 0;
 };
 

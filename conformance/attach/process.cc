@@ -28,7 +28,7 @@ using runner::TargetBroken;
 using std::chrono::steady_clock;
 
 constexpr std::size_t kReadBytes = 65536;
-constexpr Milliseconds kDeathWait{300};  // From a closed pipe to the end of the process behind it.
+constexpr Milliseconds kDeathWait{300};  // From a closed pipe to the end of its process.
 constexpr Milliseconds kTermWait{100};   // For an orderly end of what is not needed any more.
 constexpr Milliseconds kPause{1};
 constexpr int kShellSignals = 128;  // A shell adds this to the signal that ended its child.
@@ -148,7 +148,7 @@ std::unique_ptr<Process> Process::copy(const std::function<int(int, int)>& body)
     close_fd(pipes.err.read_fd);
     ::_exit(body(pipes.in.read_fd, pipes.out.write_fd));
   }
-  ::setpgid(pid, pid);  // Whoever comes first: it must be so before it is killed.
+  ::setpgid(pid, pid);  // In parent and child: it must be so before it is killed.
   return std::unique_ptr<Process>(new Process(pid, start.started(pid), pipes));
 }
 
@@ -205,7 +205,7 @@ std::string Process::read_line(SteadyTime deadline) {
       throw TargetBroken(size == 0 ? "gave no answer in time"
                                    : fmt::format("did not end its line of {} bytes in time", size));
     }
-    if (out_at_ > 0) {  // What was handed out need not be kept.
+    if (out_at_ > 0) {  // Lines already returned need not be kept.
       output_.erase(0, out_at_);
       searched -= out_at_;
       out_at_ = 0;
@@ -224,7 +224,7 @@ std::string Process::take_stderr() {
   return std::exchange(stderr_, {});
 }
 
-// Until its output, or room in its input, is there; its standard error is read meanwhile. False
+// Waits for its output, or for room in its input; reads its standard error meanwhile. Returns false
 // when the time is over.
 bool Process::wait_for_pipes(bool want_write, SteadyTime deadline) {
   while (true) {
@@ -242,7 +242,7 @@ bool Process::wait_for_pipes(bool want_write, SteadyTime deadline) {
   }
 }
 
-// What is there now, a bounded piece of it.
+// Reads a bounded piece of the output at hand.
 void Process::drain_output() {
   if (out_fd_ < 0) return;
   const std::size_t before = output_.size();
@@ -254,7 +254,7 @@ void Process::drain_output() {
 
 void Process::drain_stderr() {
   char bytes[4096];
-  // A bounded piece: what never stops writing must not hold us here.
+  // A bounded piece: a process that never stops writing must not hold us here.
   for (std::size_t round = 0; err_fd_ >= 0 && round < kReadBytes / sizeof bytes; ++round) {
     const ssize_t count = ::read(err_fd_, bytes, sizeof bytes);
     if (count > 0) {
@@ -268,7 +268,7 @@ void Process::drain_stderr() {
   if (stderr_.size() > kStderrBytesMax) stderr_.erase(0, stderr_.size() - kStderrBytesMax);
 }
 
-// Whether it ends within this time; it is not waited for, so that its group keeps its number.
+// Returns whether it ends within this time; it is not reaped, so that its group keeps its number.
 bool Process::exited(Milliseconds within) {
   const SteadyTime deadline = steady_clock::now() + within;
   while (true) {

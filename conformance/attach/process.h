@@ -1,4 +1,4 @@
-// A child process that is talked to line by line, under a watchdog. Whatever it does - dies, hangs,
+// A child process behind pipes, line by line, under a watchdog. Whatever it does - dies, hangs,
 // floods, closes its pipes - no call here takes longer than its deadline, and no process is left.
 #pragma once
 
@@ -22,13 +22,13 @@ using Milliseconds = std::chrono::milliseconds;
 /// end its children too where end_groups_on_signals() was called.
 class Process {
  public:
-  static constexpr std::size_t kLineBytesMax = 65535;    ///< Without the line feed.
+  static constexpr std::size_t kLineBytesMax = 65535;    ///< Not counting the line feed.
   static constexpr std::size_t kStderrBytesMax = 65536;  ///< Its last ones are kept.
 
   /// Runs `/bin/sh -c command` as the leader of a process group of its own.
   static std::unique_ptr<Process> run(const std::string& command);
-  /// Runs `body` in a copy of this process and ends that with the status which it returns. Only
-  /// where no other thread may hold a lock.
+  /// Runs `body` in a copy of this process, which exits with the status that it returns. Only where
+  /// no other thread may hold a lock.
   static std::unique_ptr<Process> copy(const std::function<int(int in_fd, int out_fd)>& body);
 
   Process(const Process&) = delete;
@@ -38,17 +38,17 @@ class Process {
 
   /// Writes all of `text`.
   void write(std::string_view text, SteadyTime deadline);
-  /// The next line of its standard output, without the line feed.
+  /// Returns the next line of its standard output, without the line feed.
   std::string read_line(SteadyTime deadline);
-  /// Whether it has written something that was not read.
+  /// Returns whether it has written something that was not read.
   bool has_output();
-  /// Whether its standard output was seen to end.
+  /// Returns whether its standard output was seen to end.
   bool closed() const { return out_fd_ < 0; }
-  /// The last of what it wrote to its standard error since the last call.
+  /// Returns the end of its standard error since the last call.
   std::string take_stderr();
 
-  /// Closes its standard input and gives it `grace` to end; then it is killed. Returns what was
-  /// wrong with its end; empty: it ended by itself, silently, with status 0.
+  /// Closes its standard input, gives it `grace` to end, and then kills it. Returns what was wrong
+  /// with its end; empty if it ended by itself, silently, with status 0.
   std::string end(Milliseconds grace);
   /// Ends the whole group, and waits until the process is gone. Its standard error can be taken
   /// afterwards.
@@ -73,8 +73,8 @@ class Process {
   [[noreturn]] void ended_early();
 
   pid_t pid_ = -1;      // -1: gone, and waited for.
-  std::size_t place_;   // Of its group, while it is not gone.
-  int status_ = 0;      // When it is gone.
+  std::size_t place_;   // Place of its group, while it is not gone.
+  int status_ = 0;      // Once it is gone.
   int in_fd_ = -1;      // Its standard input, written here; -1: closed.
   int out_fd_ = -1;
   int err_fd_ = -1;

@@ -41,7 +41,7 @@ TEST(Process, LinesGoBothWays) {
 TEST(Process, LongestLine) {
   const auto cat = Process::run("cat");
   const std::string longest(Process::kLineBytesMax, 'x');
-  // More than a pipe holds: both ends have to be served at once for cat to go on.
+  // More than a pipe holds: both ends must be served at once for cat to go on.
   cat->write(longest + '\n', in(5000));
   EXPECT_EQ(cat->read_line(in(5000)), longest);
   cat->write(longest + "x\n", in(5000));
@@ -106,7 +106,7 @@ TEST(Process, SignalsOfOurOwnDoNotHurt) {
   struct sigaction count {};
   struct sigaction before {};
   static volatile std::sig_atomic_t counted = 0;
-  count.sa_handler = [](int) { counted = counted + 1; };  // Without SA_RESTART: EINTR everywhere.
+  count.sa_handler = [](int) { counted = counted + 1; };  // No SA_RESTART: EINTR everywhere.
   ASSERT_EQ(::sigaction(SIGALRM, &count, &before), 0);
   itimerval timer{{0, 3000}, {0, 3000}};
   ASSERT_EQ(::setitimer(ITIMER_REAL, &timer, nullptr), 0);

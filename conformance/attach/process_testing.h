@@ -1,4 +1,4 @@
-// What tests of processes need: whether others live.
+// Helpers for tests of processes: whether others are alive.
 #pragma once
 
 #include <sys/types.h>
@@ -12,7 +12,7 @@
 
 namespace rubric::attach {
 
-/// Gone, or dead and not yet waited for by whoever inherited it.
+/// Returns whether it is gone, or dead and not yet reaped by its new parent.
 inline bool is_dead(pid_t pid) {
   std::ifstream file(fmt::format("/proc/{}/stat", pid));
   std::string word;
@@ -20,7 +20,7 @@ inline bool is_dead(pid_t pid) {
   return !(file >> word >> word >> state) || state == "Z";
 }
 
-/// Whether it comes true in a time that nothing here takes, however busy the host is.
+/// Returns whether the condition comes true in a time that is ample on any busy host.
 template <class Condition>
 bool comes(Condition condition) {
   using Clock = std::chrono::steady_clock;

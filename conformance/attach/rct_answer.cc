@@ -15,8 +15,8 @@ namespace {
 using runner::TargetBroken;
 using trace::quoted;
 
-constexpr std::size_t kLinesMax = 10'000;  // Of an answer.
-constexpr std::size_t kShownMax = 100;     // Of a line, in an error.
+constexpr std::size_t kLinesMax = 10'000;  // In an answer.
+constexpr std::size_t kShownMax = 100;     // From a line, in an error.
 
 // These two return what is wrong.
 std::string read_roles(std::string_view list, std::vector<machine::Role>& out) {
@@ -108,7 +108,8 @@ Ticks AnswerReader::output_time(Words& words) {
   return at;
 }
 
-// Takes the rules at the end, `[J4-ACK]`, off the line; the first that is more than a family.
+// Removes the rules at the end, `[J4-ACK]`, from the line; returns the first that is more than a
+// family.
 ReqId AnswerReader::requirement(std::string_view& line) const {
   const std::size_t open = line.ends_with(']') ? line.rfind(" [") : std::string_view::npos;
   if (open == std::string_view::npos) return ReqId::kNone;
@@ -242,7 +243,7 @@ Identity read_hello(const std::string& line) {
     }
     const std::string_view key = word.substr(0, size);
     const std::string_view value = word.substr(size + 1);
-    if (key != "roles" && key != "time") continue;  // Of a later runner's interest.
+    if (key != "roles" && key != "time") continue;  // For later runners.
     if (!keys.insert(key).second) throw broken(fmt::format("it says {}= twice", key));
     const std::string wrong = key == "roles" ? read_roles(value, out.roles)
                                              : read_time(value, out.real_time);

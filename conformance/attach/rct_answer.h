@@ -1,4 +1,4 @@
-// Reads the answer to a command of rct/1, line by line, and believes nothing.
+// Reads the answer to a command of rct/1, line by line, and trusts none of it.
 #pragma once
 
 #include <optional>
@@ -14,31 +14,31 @@ namespace rubric::attach {
 struct Answer {
   std::vector<Output> outputs;
   bool has_next = false;
-  std::optional<Ticks> next;  ///< Of a `next` line; nothing: never.
+  std::optional<Ticks> next;  ///< From a `next` line; nothing: never.
   Ticks done = 0;
   std::vector<std::string> notes;
 };
 
-/// What a command may be answered with.
+/// The answers that a command allows.
 struct Asked {
   std::string command;
   std::string closing = "done";  ///< Its word: done, ready or hello. `unsupported` always may.
   Ticks from = 0;                ///< No T lies before it.
-  Ticks to = 0;                  ///< Nor behind it.
+  Ticks to = 0;                  ///< Nor after it.
   bool passes_time = false;      ///< It is `until`.
-  bool real_time = false;        ///< Nobody turns the clock: T may lie behind `to`.
+  bool real_time = false;        ///< Nobody turns the clock: T may be after `to`.
 };
 
 class AnswerReader {
  public:
   explicit AnswerReader(const Asked& asked) : asked_(asked) {}
 
-  /// Takes a line; true: it closed the answer. Throws runner::TargetBroken, with the number of the
-  /// line and what is wrong with it, and runner::Unsupported.
+  /// Takes a line. Returns true if it closed the answer. Throws runner::TargetBroken, with the
+  /// number of the line and what is wrong with it, and runner::Unsupported.
   bool take(std::string_view line);
 
   const Answer& answer() const { return answer_; }
-  /// The whole closing line.
+  /// Returns the whole closing line.
   const std::string& closing() const { return closing_; }
 
  private:
@@ -58,10 +58,10 @@ class AnswerReader {
   std::size_t lines_ = 0;
 };
 
-/// A line in an error: in quotes, its first bytes, what is not printable as \xff.
+/// Quotes a line for an error: its first bytes, unprintable ones as \xff.
 std::string shown(std::string_view line);
 
-/// The identity that a closing `hello` line tells. Throws runner::TargetBroken.
+/// Returns the identity in a closing `hello` line. Throws runner::TargetBroken.
 Identity read_hello(const std::string& line);
 
 }  // namespace rubric::attach

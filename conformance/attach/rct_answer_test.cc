@@ -24,7 +24,7 @@ Asked call() {
   return asked;
 }
 
-// What is wrong with an answer; empty if it is a whole one.
+// Returns what is wrong with an answer; empty if it is complete and right.
 std::string wrong_with(const Asked& asked, const std::vector<std::string>& lines) {
   AnswerReader reader(asked);
   try {
@@ -90,7 +90,7 @@ TEST(RctAnswer, Unsupported) {
 
 struct Bad {
   std::vector<std::string> lines;
-  const char* wrong;  ///< Behind "line N of the answer to `until 300`: ".
+  const char* wrong;  ///< After "line N of the answer to `until 300`: ".
 };
 const Bad kBad[] = {
     {{"done"}, "'' is no time in ticks"},

@@ -52,7 +52,7 @@ void RctAttachment::give_back(std::unique_ptr<RctClient> client) {
   if (!client->broken()) idle_.push_back(std::move(client));
 }
 
-// False, and a mishap, where it did something since its last answer.
+// Returns whether it waits. If it did something since its last answer, notes a mishap.
 bool RctAttachment::waits(RctClient& client) {
   std::string what = client.unasked();
   if (!what.empty()) mishaps_.push_back({std::move(what), true, client.take_stderr()});

@@ -1,4 +1,4 @@
-// Processes that speak rct/1, kept for re-use.
+// Processes that use rct/1, kept for reuse.
 #pragma once
 
 #include <functional>
@@ -14,8 +14,8 @@ namespace rubric::attach {
 /// Starts a process. Throws runner::TargetBroken.
 using Starter = std::function<std::unique_ptr<Process>()>;
 
-/// Each target is a process of its own, and goes back to the pool when it is whole. Targets must
-/// not outlive it.
+/// Gives each target a process of its own, which goes back to the pool while it is sound. Targets
+/// must not outlive it.
 class RctAttachment : public Attachment {
  public:
   RctAttachment(Starter start, const Options& options)

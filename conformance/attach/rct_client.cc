@@ -10,7 +10,7 @@ namespace {
 using runner::TargetBroken;
 using std::chrono::steady_clock;
 
-constexpr Milliseconds kGrace{500};  // From `bye` to the end, where nobody asks about it.
+constexpr Milliseconds kGrace{500};  // From `bye` to the end, if nobody asks about it.
 constexpr Milliseconds kAtOnce{0};
 constexpr std::size_t kNotesBytesMax = 65536;  // The last ones are kept.
 
@@ -78,7 +78,7 @@ void RctClient::say_bye() {
   said_bye_ = true;
   try {
     process_->write("bye\n", steady_clock::now() + kGrace);
-  } catch (const TargetBroken&) {  // How it ended is seen at its end.
+  } catch (const TargetBroken&) {  // end() reports how it ended.
   }
 }
 
@@ -95,7 +95,7 @@ AnswerReader RctClient::converse(const Asked& asked, Milliseconds timeout) {
   if (broken_) throw TargetBroken("it broke before");
   const SteadyTime deadline = steady_clock::now() + timeout;
   AnswerReader reader(asked);
-  bool reading = false;  // Lines, whose errors tell their number.
+  bool reading = false;  // Errors in lines have their number.
   try {
     if (process_->has_output()) throw TargetBroken("something was written before it was asked");
     process_->write(asked.command + '\n', deadline);

@@ -1,4 +1,4 @@
-// The runner's end of one rct/1 conversation: a process, what it is asked, and how it answers.
+// The runner's end of one rct/1 conversation: a process, commands, and their answers.
 #pragma once
 
 #include <memory>
@@ -9,8 +9,8 @@
 
 namespace rubric::attach {
 
-/// Once anything throws runner::TargetBroken the process has been killed, and whatever is asked
-/// afterwards throws it too. runner::Unsupported does no harm.
+/// Once anything throws runner::TargetBroken the process has been killed, and all later calls throw
+/// it too. runner::Unsupported does no harm.
 class RctClient {
  public:
   RctClient(std::unique_ptr<Process> process, const Options& options)
@@ -18,27 +18,27 @@ class RctClient {
   /// Ends it, if that was not done.
   ~RctClient();
 
-  /// Asks who it is, at first.
+  /// Returns its identity, asking at first.
   const Identity& hello();
-  /// `longer` is added to the time that an answer may take.
+  /// Sends a command and returns the answer; `longer` is added to its time limit.
   Answer ask(const Asked& asked, Milliseconds longer = Milliseconds(0));
-  /// What is wrong with its answer to a command that there is not; or nothing.
+  /// Returns what is wrong with its answer to a command that does not exist; or nothing.
   std::string honesty();
 
   /// Kills it: it cannot be believed any more.
   void give_up();
-  /// It was given up, by whoever threw runner::TargetBroken for it.
+  /// Returns whether it was given up because of a runner::TargetBroken.
   bool broken() const { return broken_; }
-  /// What it has done since its last answer, when it was to wait: that it died, or what it wrote.
-  /// It is given up then. Empty: it waits, as far as one can see.
+  /// Returns what it has done since its last answer, when it should have waited: that it died, or
+  /// what it wrote. It is given up then. Empty if it waits, as far as one can see.
   std::string unasked();
-  /// Says `bye`. Several may be told before they are waited for.
+  /// Sends `bye`. Several may get it before the first is waited for.
   void say_bye();
-  /// Waits for its end, and kills what does not go. Returns what was wrong with its end, or
-  /// nothing. It is given up.
+  /// Waits for its end, and kills it if it does not go. Returns what was wrong with its end, or
+  /// nothing. Gives it up.
   std::string end(Milliseconds grace);
   const Identity& identity() const { return identity_; }
-  /// Of standard error, and its notes.
+  /// Returns standard error with notes.
   std::string take_stderr();
 
  private:

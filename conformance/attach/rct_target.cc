@@ -16,10 +16,10 @@ using machine::Link;
 using runner::TargetBroken;
 using runner::Unsupported;
 
-constexpr std::size_t kOutputsAtOnceMax = 1000;  // Of an instant.
+constexpr std::size_t kOutputsAtOnceMax = 1000;  // At one instant.
 constexpr Ticks kClockSlackTicks = 50;
 
-// 257 has an inverse: the seed that makes this first number, as runner::config_of takes it.
+// 257 has an inverse: returns the seed that makes this first number, as runner::config_of takes it.
 constexpr std::uint16_t seed_of(std::uint16_t first_seq) {
   return static_cast<std::uint16_t>((first_seq - 1000) * 65281);
 }
@@ -34,7 +34,7 @@ std::string_view profile_of(const machine::Profile& profile) {
   throw Unsupported("the profile of the case has no name");
 }
 
-/// The command that makes an event happen.
+/// Builds the command that makes an event happen.
 struct CommandOf {
   Ticks now;
 
@@ -126,8 +126,8 @@ Ticks RctTarget::run_until(Ticks time) {
   return let_pass(time);
 }
 
-// As run_until, but for link acks. Silence is what the adapter says when it is asked, not what it
-// has foretold; and what it has foretold has to be so.
+// Does the work of run_until, but for link acks. Does not trust `next`: asks with `until` anyway,
+// and then holds the adapter to its `next`.
 Ticks RctTarget::let_pass(Ticks time) {
   time = std::max(time, now_);
   if (settled_ && time <= now_) return now_;
@@ -179,12 +179,12 @@ Answer RctTarget::answer_to(const Asked& asked, Milliseconds more) {
     return client_->ask(asked, more);
   } catch (const Unsupported& error) {
     if (!asked.passes_time) throw;
-    client_->give_up();  // Whoever has started lets time pass.
+    client_->give_up();  // A started node lets time pass.
     throw TargetBroken(std::string("unsupported ") + error.what());
   }
 }
 
-// A clock that is ahead would have us believe in a silence that nobody heard.
+// Compares clocks: with a clock that is ahead, silence would be reported that nobody observed.
 void RctTarget::compare_clocks(const std::string& command) {
   const Ticks passed = clock_.now();
   if (now_ <= passed + passed / 4 + tolerance_.late + kClockSlackTicks) return;

@@ -12,13 +12,13 @@
 
 namespace rubric::attach {
 
-/// Without a `next` line an adapter is asked again after so many ticks when several nodes go on
+/// How often an adapter without a `next` line is asked, in ticks, when several nodes go on
 /// together.
 constexpr Ticks kUnknownNextTicks = 5;
 
 class RctTarget : public runner::Target {
  public:
-  /// `give_back` gets the client when the target is destroyed.
+  /// Gets the client when the target is destroyed.
   using GiveBack = std::function<void(std::unique_ptr<RctClient>)>;
   RctTarget(std::unique_ptr<RctClient> client, runner::Tolerance tolerance, GiveBack give_back)
       : client_(std::move(client)), tolerance_(tolerance), give_back_(std::move(give_back)) {}
@@ -33,7 +33,7 @@ class RctTarget : public runner::Target {
   runner::Tolerance tolerance() const override { return tolerance_; }
 
  private:
-  /// Asks, and keeps what comes. Returns the instant of `done`.
+  /// Sends a command and keeps its outputs. Returns the instant of `done`.
   Ticks ask(std::string command, Ticks time, bool passes_time);
   Answer answer_to(const Asked& asked, Milliseconds more);
   Ticks let_pass(Ticks time);
@@ -44,7 +44,7 @@ class RctTarget : public runner::Target {
   GiveBack give_back_;
   RealClock clock_;                // Since reset; of what runs in real time.
   std::vector<Output> outputs_;
-  std::deque<Ticks> link_acks_;    // When the transmissions that ask for one end.
+  std::deque<Ticks> link_acks_;    // Ends of transmissions that ask for one.
   bool hold_link_acks_ = false;
   Ticks now_ = 0;                  // Everything before it is done,
   bool settled_ = false;           // and everything at it.

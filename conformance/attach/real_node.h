@@ -1,4 +1,4 @@
-// What tests of real lines need: the reference machine at the other end of one, in real time.
+// The reference machine at the other end of a real line, in real time, for tests.
 #pragma once
 
 #include <atomic>
@@ -15,8 +15,8 @@
 
 namespace rubric::attach {
 
-/// A subject that runs in a thread until it is destroyed or its line ends. Whenever the line can be
-/// opened again it is, and the subject is new then.
+/// Runs a subject in a thread until it is destroyed or its line ends. Opens the line whenever it
+/// can, each time with a new subject.
 class RealNode {
  public:
   RealNode(std::unique_ptr<PacketLine> line, const machine::Config& config,

@@ -1,5 +1,6 @@
-// The machine behind each kind of real line, on this host: what it keeps passes, what it breaks
-// fails, what the line does not show is inconclusive, and a line that breaks is an error.
+// The machine on each kind of real line, on this host: rules that it keeps pass, those that it
+// breaks fail, those that the line does not show are inconclusive, and a line that breaks is an
+// error.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <netinet/in.h>
@@ -25,7 +26,7 @@ using std::chrono::steady_clock;
 
 constexpr Options kOptions{Milliseconds(4000), Milliseconds(5000)};
 
-// Short ones; conformance/cases/serial_line.rtr has the whole of it.
+// Short ones; conformance/cases/serial_line.rtr has the full set.
 constexpr const char* kData = "payload.trans_id=connless payload.app_id=mockup payload.payload=x01";
 constexpr const char* kAck =
     "payload.trans_id=rubicon_ack payload.app_id=mockup payload.body.seq_num";
@@ -115,7 +116,7 @@ std::unique_ptr<PacketLine> forwarder_to(std::uint16_t port) {
       [port](SteadyTime by) { return connect_tcp({"127.0.0.1", port}, by); });
 }
 
-// A sink whose acks tell a wrong number.
+// A sink whose acks have a wrong number.
 class WrongAcks : public runner::Machine {
  public:
   void step(machine::Ticks now, const machine::Event& event, machine::Actions& actions) override {
@@ -126,12 +127,12 @@ class WrongAcks : public runner::Machine {
       if (action.what != machine::Action::What::kTransmit) continue;
       machine::Transmit& changed = actions.transmit(action.requirement);
       changed = honest.transmit_of(action);
-      changed.payload[12 + 2 + 1] ^= 1;  // Of the ack's body.
+      changed.payload[12 + 2 + 1] ^= 1;  // In the ack's body.
     }
   }
 };
 
-// Says something all the time, as debugging aids do.
+// Writes all the time, as debugging aids do.
 class Talker {
  public:
   explicit Talker(std::unique_ptr<PacketLine> line)
@@ -148,7 +149,7 @@ class Talker {
         line_->open(steady_clock::now() + Milliseconds(10));
         line_->send(trace::packet_of({0xFFFF, 5, 0, 100, {'h', 'i'}}),
                     steady_clock::now() + Milliseconds(10));
-      } catch (const runner::TargetBroken&) {  // Nobody is there, or not any more.
+      } catch (const runner::TargetBroken&) {  // The other end is not there yet, or gone.
       }
       std::this_thread::sleep_for(Milliseconds(1));
     }
@@ -185,7 +186,7 @@ TEST(RealTime, SinkBehindAForwarder) {
   EXPECT_EQ(attachment->honesty(), "");
 }
 
-// The rules know nothing of a mote's line: nothing passes there, nothing fails, whatever comes.
+// The rules do not cover a mote's line: nothing passes there, nothing fails, whatever comes.
 TEST(RealTime, MoteBehindAForwarder) {
   const std::uint16_t port = free_port();
   const Talker mote(forwarder_at(port));
@@ -275,8 +276,8 @@ TEST(RealTime, NobodyThere) {
   };
   const Absent absent[] = {
       {fmt::format("sf-server:{}", port), fmt::format("nobody connects to 127.0.0.1:{}", port)},
-      {fmt::format("sf:localhost:{}", port),
-       fmt::format("cannot connect to localhost:{}: Connection refused", port)},
+      {fmt::format("sf:127.0.0.1:{}", port),
+       fmt::format("cannot connect to 127.0.0.1:{}: Connection refused", port)},
       {fmt::format("serial:tcp:127.0.0.1:{}", port),
        fmt::format("cannot connect to 127.0.0.1:{}: Connection refused", port)},
       {"serial:/dev/no_such_line:57600",
@@ -293,7 +294,7 @@ TEST(RealTime, NobodyThere) {
   EXPECT_LT(steady_clock::now() - before, Milliseconds(6000));
 }
 
-// Who is not there when we come is none that is about to start.
+// A node that is not there when we connect is not about to start.
 TEST(RealTime, NobodyThereIsNoLongWait) {
   const Options patient{Milliseconds(200), Milliseconds(60000)};
   const std::uint16_t port = free_port();
@@ -306,7 +307,7 @@ TEST(RealTime, NobodyThereIsNoLongWait) {
   EXPECT_LT(steady_clock::now() - before, Milliseconds(20000));
 }
 
-// The other end of a forwarder's connection: writes the handshake, hears a while, writes the rest.
+// The other end of a forwarder's connection: writes the handshake, reads a while, writes the rest.
 class Peer {
  public:
   Peer(std::uint16_t port, std::vector<std::uint8_t> script)
@@ -365,7 +366,7 @@ TEST(RealTime, TextThatMakesNoSense) {
   }
 }
 
-// All golden traces that a serial line alone can decide.
+// Runs all golden traces that a serial line alone can decide.
 TEST(RealTime, GoldenTracesOfALine) {
   const std::uint16_t port = free_port();
   const RealNode sink(forwarder_at(port), config_of(machine::Role::kSink, 3));

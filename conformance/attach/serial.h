@@ -1,4 +1,4 @@
-// The serial line of a mote, as a device or through TCP: framed as TEP 113 has it.
+// The serial line of a mote, as a device or through TCP: framed as in TEP 113.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +11,14 @@
 
 namespace rubric::attach {
 
-/// Bits per second of a number or of a platform's name (telosb, micaz, ...), if there is such a
-/// speed.
+/// Returns the bits per second of a number or of a platform's name (telosb, micaz, ...), if there
+/// is such a speed.
 std::optional<std::uint32_t> baud_of(std::string_view text);
 
 /// Opens a terminal device, raw and at this speed. Throws runner::TargetBroken.
 ByteStream open_serial_device(const std::string& path, std::uint32_t baud);
 
-/// Packets are sent as hosts do it: each is confirmed by the node, and sent again if it is not.
+/// Sends packets as hosts do: the node confirms each, and an unconfirmed one is sent again.
 class SerialLine : public StreamLine {
  public:
   static constexpr Milliseconds kAckWait{1000};
@@ -35,13 +35,13 @@ class SerialLine : public StreamLine {
   void take(Bytes bytes) override;
   void flush(SteadyTime deadline);
 
-  std::optional<bool> confirmed_;  // Whether the packet that was sent last was; nothing: not yet.
+  std::optional<bool> confirmed_;  // The last packet was confirmed; nothing: not yet.
   HostLink link_{link_options(),
                  [this](const HostLink::Outcome& outcome) {
                    if (outcome.packet + 1 == link_.taken()) confirmed_ = outcome.confirmed;
                  }};
   std::deque<TimedPacket> packets_;
-  bool synchronised_ = false;  // What comes before the first good frame is noise.
+  bool synchronised_ = false;  // Input before the first good frame is noise.
 };
 
 }  // namespace rubric::attach

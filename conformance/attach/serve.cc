@@ -34,13 +34,13 @@ machine::Link line_of(std::string_view word) {
   return *link;
 }
 
-// Which of two words it is.
+// Returns whether it is the second of two words.
 bool choice(std::string_view word, std::string_view no, std::string_view yes) {
   if (word != no && word != yes) throw Unsupported(fmt::format("{} is no {} or {}", word, no, yes));
   return word == yes;
 }
 
-// What a command tells besides its time, and the bytes that its event refers to.
+// The parts of a command besides its time, and the bytes that its event refers to.
 struct Told {
   Event event;
   std::vector<std::uint8_t> bytes;
@@ -138,7 +138,7 @@ std::string Server::answer(std::string_view command) {
   Words words(command);
   const std::string_view word = words.next();
   try {
-    // An answer quotes its command, and has to be printable itself.
+    // An answer quotes its command, so that has to be printable itself.
     if (std::string wrong = unprintable(command); !wrong.empty()) throw Unsupported(wrong);
     if (word == "hello") return hello(words.rest());
     if (word == "bye") {

@@ -12,11 +12,11 @@ namespace rubric::attach {
 /// Answers commands one at a time.
 class Server {
  public:
-  /// The target's frames wait for `linkack` commands.
+  /// Makes the target's frames wait for `linkack` commands.
   Server(runner::Target& target, const Identity& identity)
       : target_(target), identity_(identity) {}
 
-  /// The lines of the answer, each with its line feed; empty after `bye`.
+  /// Returns the lines of the answer, each with its line feed; empty after `bye`.
   std::string answer(std::string_view command);
   bool ended() const { return ended_; }
 

@@ -1,7 +1,6 @@
 #include "conformance/attach/stream.h"
 
 #include <fcntl.h>
-#include <netdb.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
@@ -13,12 +12,12 @@
 #include <charconv>
 #include <chrono>
 #include <cstring>
-#include <memory>
 #include <stdexcept>
 #include <thread>
 
 #include <fmt/format.h>
 
+#include "conformance/attach/address.h"
 #include "conformance/runner/target.h"
 
 namespace rubric::attach {
@@ -30,7 +29,7 @@ using std::chrono::steady_clock;
 constexpr Milliseconds kRetry{50};
 constexpr const char* kThisHost = "127.0.0.1";
 
-// Whether the descriptor is ready before the deadline; interruptions do not count.
+// Returns whether the descriptor is ready before the deadline; continues after interruptions.
 bool wait_for(int fd, short events, SteadyTime deadline) {
   while (true) {
     const auto left = std::chrono::ceil<Milliseconds>(deadline - steady_clock::now());
@@ -45,36 +44,16 @@ bool wait_for(int fd, short events, SteadyTime deadline) {
 
 bool would_block(int error) { return error == EAGAIN || error == EWOULDBLOCK || error == EINTR; }
 
-struct FreeAddresses {
-  void operator()(addrinfo* list) const { ::freeaddrinfo(list); }
-};
-using Addresses = std::unique_ptr<addrinfo, FreeAddresses>;
-
-Addresses addresses_of(const HostPort& at) {
-  addrinfo hints{};
-  hints.ai_socktype = SOCK_STREAM;
-  addrinfo* found = nullptr;
-  const int error = ::getaddrinfo(at.host.c_str(), std::to_string(at.port).c_str(), &hints, &found);
-  if (error != 0) throw TargetBroken(fmt::format("{}: {}", at.host, ::gai_strerror(error)));
-  return Addresses(found);
-}
-
-Descriptor socket_for(const addrinfo& address) {
-  return Descriptor(::socket(address.ai_family,
-                             address.ai_socktype | SOCK_CLOEXEC | SOCK_NONBLOCK,
-                             address.ai_protocol));
-}
-
 ByteStream stream_of(Descriptor connection) {
   const int on = 1;  // Packets are short and each is waited for.
   ::setsockopt(connection.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
   return ByteStream(std::move(connection));
 }
 
-// 0, or what went wrong.
-int connect_once(const Descriptor& connection, const addrinfo& address, SteadyTime deadline) {
+// Connects once. Returns 0, or the error.
+int connect_once(const Descriptor& connection, const SocketAddress& address, SteadyTime deadline) {
   if (!connection.is_open()) return errno;
-  if (::connect(connection.get(), address.ai_addr, address.ai_addrlen) == 0) return 0;
+  if (::connect(connection.get(), address.get(), address.size_bytes) == 0) return 0;
   if (errno != EINPROGRESS && errno != EINTR) return errno;
   if (!wait_for(connection.get(), POLLOUT, deadline)) return ETIMEDOUT;
   int error = 0;
@@ -157,10 +136,9 @@ HostPort read_host_port(std::string_view text) {
 ByteStream connect_tcp(const HostPort& to, SteadyTime deadline) {
   while (true) {
     int error = 0;
-    const Addresses all = addresses_of(to);
-    for (const addrinfo* one = all.get(); one; one = one->ai_next) {
-      Descriptor connection = socket_for(*one);
-      error = connect_once(connection, *one, deadline);
+    for (const SocketAddress& address : resolve(to.host, to.port, false)) {
+      Descriptor connection = open_socket(address);
+      error = connect_once(connection, address, deadline);
       if (error == 0) return stream_of(std::move(connection));
     }
     if (steady_clock::now() + kRetry >= deadline) {
@@ -171,25 +149,8 @@ ByteStream connect_tcp(const HostPort& to, SteadyTime deadline) {
   }
 }
 
-void Listener::listen() {
-  int error = 0;
-  const Addresses all = addresses_of(at_);
-  for (const addrinfo* one = all.get(); one; one = one->ai_next) {
-    Descriptor made = socket_for(*one);
-    const int on = 1;
-    ::setsockopt(made.get(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
-    if (::bind(made.get(), one->ai_addr, one->ai_addrlen) == 0 && ::listen(made.get(), 4) == 0) {
-      descriptor_ = std::move(made);
-      return;
-    }
-    error = errno;
-  }
-  throw TargetBroken(
-      fmt::format("cannot listen at {}:{}: {}", at_.host, at_.port, std::strerror(error)));
-}
-
 ByteStream Listener::accept(SteadyTime deadline) {
-  if (!descriptor_.is_open()) listen();
+  if (!descriptor_.is_open()) descriptor_ = listen_at(at_.host, at_.port);
   while (true) {
     const int fd = ::accept4(descriptor_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
     if (fd >= 0) return stream_of(Descriptor(fd));

@@ -27,24 +27,27 @@ class Descriptor {
   int fd_ = -1;
 };
 
-/// Both throw runner::TargetBroken: when the other end is gone, and `write` when the time is over.
+/// Both functions throw runner::TargetBroken if the other end is gone, and `write` if the time is
+/// over.
 class ByteStream {
  public:
   ByteStream() = default;
-  /// Of a descriptor that does not block from now on.
+  /// Takes a descriptor, which does not block from now on.
   explicit ByteStream(Descriptor descriptor);
 
   void write(Bytes bytes, SteadyTime deadline);
-  /// How many of the bytes could be written without a wait; 0: none.
+  /// Writes without waiting and returns how many bytes went; 0: none.
   std::size_t write_some(Bytes bytes);
-  /// How many bytes there are now, at most out.size(); 0 when the time is over first.
+  /// Reads the bytes at hand, at most out.size(), and returns their number; 0 if the time is over
+  /// first.
   std::size_t read(MutableBytes out, SteadyTime deadline);
 
   bool is_open() const { return descriptor_.is_open(); }
   void close() { descriptor_.close(); }
-  /// For those who wait for several at once. -1: it is not open.
+  /// Returns the descriptor, to wait for several at once. -1: it is not open.
   int fd() const { return descriptor_.get(); }
-  /// Tells the other end of a connection that nothing more comes from here. Of a device: nothing.
+  /// Signals the other end of a connection that nothing more comes from here. Does nothing for a
+  /// device.
   void end_output();
 
  private:
@@ -56,23 +59,21 @@ struct HostPort {
   std::string host;
   std::uint16_t port = 0;
 };
-/// "HOST:PORT", or a port alone, which is on this host. Throws std::invalid_argument.
+/// Parses "HOST:PORT", or a port alone, which is on this host. Throws std::invalid_argument.
 HostPort read_host_port(std::string_view text);
 
-/// Tries until `deadline`. Throws runner::TargetBroken.
+/// Connects, trying until `deadline`. Throws runner::TargetBroken.
 ByteStream connect_tcp(const HostPort& to, SteadyTime deadline);
 
 /// A port that others connect to.
 class Listener {
  public:
-  /// Takes the port when it is first asked for a connection.
+  /// Stores the address; binds it when first asked for a connection.
   explicit Listener(HostPort at) : at_(std::move(at)) {}
-  /// The next connection. Throws runner::TargetBroken when nobody comes before `deadline`.
+  /// Returns the next connection. Throws runner::TargetBroken if none comes before `deadline`.
   ByteStream accept(SteadyTime deadline);
 
  private:
-  void listen();
-
   HostPort at_;
   Descriptor descriptor_;
 };

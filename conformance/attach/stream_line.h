@@ -1,4 +1,4 @@
-// What all lines have in common that are a stream of bytes.
+// The common part of all lines that are a stream of bytes.
 #pragma once
 
 #include <functional>
@@ -19,12 +19,12 @@ class StreamLine : public PacketLine {
   void close() override { stream_.close(); }
 
  protected:
-  /// The stream is new: what was read of an earlier one is nothing any more.
+  /// Starts a new stream and drops what was read from an earlier one.
   virtual void begin(SteadyTime deadline) = 0;
-  /// Bytes came.
+  /// Takes bytes.
   virtual void take(Bytes bytes) = 0;
 
-  /// False when the time is over.
+  /// Reads some bytes. Returns false when the time is over.
   bool read_some(SteadyTime deadline);
   /// Closes it, and throws runner::TargetBroken.
   [[noreturn]] void broken(const std::string& why);

@@ -17,7 +17,7 @@ using trace::Value;
 
 namespace {
 
-// A message of the application table in the making: its fields in the order of the table.
+// Builds a message of the application table, with its fields in the order of the table.
 class Writer {
  public:
   explicit Writer(std::string_view name)
@@ -48,7 +48,7 @@ class Writer {
   std::size_t next_ = 0;
 };
 
-// The values of such a message, in the order of the table.
+// Reads the values of such a message, in the order of the table.
 class Reader {
  public:
   explicit Reader(const Concrete& from) : from_(from) {

@@ -1,4 +1,4 @@
-// Calls and news survive the way into a trace's words and back.
+// Calls and news survive the conversion to a trace's words and back.
 #include "conformance/events/app_events.h"
 
 #include <gtest/gtest.h>

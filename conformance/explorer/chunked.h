@@ -1,4 +1,4 @@
-// A list that grows without moving what it holds, so that others may read while one appends.
+// A list that grows without moving its elements, so that others may read while one appends.
 #pragma once
 
 #include <array>
@@ -8,8 +8,8 @@
 
 namespace rubric::explorer {
 
-/// Appending needs a lock; reading an element that one learned of through that lock, or through a
-/// barrier after it, needs none.
+/// Appending needs a lock. Reading an element learned of through that lock, or through a barrier
+/// after it, needs none.
 template <typename T, std::size_t kChunk = 1024, std::size_t kChunks = 16384>
 class ChunkedList {
  public:

@@ -89,7 +89,7 @@ class Walk {
     }
   }
 
-  // Long after: whatever should have come has had its time.
+  // Lets so much time pass that all that is due has come.
   void silence() {
     now_ += kSilencePeriods * nodes_.options().profile.join_period_ticks;
     const Event clock = machine::Called{machine::GetClock{}};
@@ -114,7 +114,8 @@ class Walk {
     }
   }
 
-  // One of the explorer's steps: the event, and the ends of transmissions that nobody waits for.
+  // Makes one of the explorer's steps: the event, and the ends of transmissions that nobody waits
+  // for.
   void happens(std::size_t node, std::uint32_t what, const Transmit* frame = nullptr) {
     Actor& actor = actors_[node];
     wait_for_timer(actor, what);
@@ -162,7 +163,8 @@ class Walk {
     }
   }
 
-  // Of the same frame only the newest copy is followed, as many as there may be in flight.
+  // Puts a copy in the air. Of the same frame only the newest copies are followed, as many as there
+  // may be in flight.
   void fly(Copy copy, const Transmit& transmit) {
     std::size_t same = 0;
     for (const Flying& flying : air_) same += flying.copy == copy ? 1 : 0;
@@ -197,7 +199,7 @@ class Walk {
     }
   }
 
-  // Those that a frame was for and that never heard it have lost it.
+  // Marks a frame as lost for all addressees that never heard it.
   void gone(const Flying& flying, const std::string& why) {
     for (std::size_t i = 0; i < actors_.size(); ++i) {
       const std::uint16_t dest = flying.transmit.dest;

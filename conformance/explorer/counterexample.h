@@ -1,4 +1,4 @@
-// A way through the network as a trace that people read and the offline checker judges.
+// Prints a path through the network as a trace that people read and the offline checker judges.
 #pragma once
 
 #include <string>
@@ -8,16 +8,16 @@
 
 namespace rubric::explorer {
 
-/// What the trace says about itself.
+/// Titles in the trace.
 struct Title {
   std::string profile;    ///< "paper" or "deployed".
-  std::string case_name;  ///< As `explore.one_terminal`.
+  std::string case_name;  ///< For example `explore.one_terminal`.
   std::string note;       ///< For the head; may be empty.
 };
 
-/// Walks the path on fresh nodes with a clock that runs: a timer fires when it is due, or later
-/// where something else had to happen before, and what is heard takes two ticks. Ends with a
-/// question for a node's clock long after, so that what did not happen can be seen.
+/// Walks the path on fresh nodes with a clock that runs: a timer fires when it is due, or later if
+/// something else had to happen before, and a hearing takes two ticks. Ends with a question for a
+/// node's clock long after, so that the trace shows what did not happen.
 trace::File counterexample(Nodes& nodes, const Path& path, const Title& title);
 
 }  // namespace rubric::explorer

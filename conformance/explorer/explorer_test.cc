@@ -45,7 +45,7 @@ std::string goal_names(Mask mask) {
   return text;
 }
 
-// Everything was searched, nothing is broken, and what must be possible is.
+// Expects a complete search in which nothing breaks and every goal is reached.
 void expect_holds(const Options& options, const Result& result) {
   EXPECT_TRUE(result.complete) << result.limit;
   EXPECT_EQ(names(result.violation ? result.violation->violated : 0), "");
@@ -69,22 +69,22 @@ std::unique_ptr<Result> same_with_threads(std::uint8_t motes, std::uint8_t sinks
 
 TEST(Explore, CountsDoNotDependOnThreads) {
   const auto small = same_with_threads(1, 1);
-  // The numbers change with the machine's states, and only then: look at why.
+  // The numbers change only with the machine's states; find out why.
   EXPECT_EQ(small->progress.states, 101U);
   EXPECT_EQ(small->progress.transitions, 421U);
   EXPECT_EQ(small->progress.depth, 10U);
-  // A second sink, unheard, leaves all that was possible, and its one offer more must be seen.
+  // A second sink, unheard, leaves all that was possible, and its one more offer must show.
   const auto two_sinks = same_with_threads(1, 2);
   EXPECT_GT(two_sinks->progress.states, 2 * small->progress.states);
   EXPECT_GT(two_sinks->progress.depth, small->progress.depth);
-  // Two motes mind only their own frames, so nearly every pair of what one alone can be comes up.
+  // Two motes ignore each other's frames, so nearly every pair of states of one alone occurs.
   const auto two_motes = same_with_threads(2, 1);
   EXPECT_GT(two_motes->progress.states, small->progress.states * small->progress.states / 2);
   EXPECT_EQ(two_motes->progress.depth, 2 * small->progress.depth);
 }
 
-// States that differ in nothing that matters any more may be one: with and without, the verdict and
-// what is reached are the same.
+// States that differ only in their past may be merged: verdict and goals are the same with and
+// without.
 TEST(Explore, ForgettingThePastChangesNoVerdict) {
   for (const auto& [motes, sinks] : {std::pair{1, 1}, std::pair{1, 2}, std::pair{2, 1}}) {
     for (const flaws::Flaw& flaw : flaws::all()) {
@@ -185,7 +185,7 @@ struct Found {
   std::uint8_t motes;
   std::uint8_t sinks;
   Property property;
-  std::size_t moves;  ///< Of the shortest way to break it.
+  std::size_t moves;  ///< In the shortest way to break it.
   bool reorder = false;
 };
 
@@ -210,7 +210,7 @@ TEST_P(ExploreFlaws, AreFoundByTheShortestTrace) {
   ASSERT_TRUE(result.violation.has_value());
   EXPECT_EQ(names(result.violation->violated), info(found.property).name);
   EXPECT_EQ(result.violation->moves.size(), found.moves);
-  // One of the rules that the flaw is said to break stands behind the property.
+  // The property covers one of the rules that the flaw breaks.
   bool named = false;
   for (const ReqId broken : flaw->requirements) {
     for (const ReqId rule : info(found.property).requirements) {
@@ -239,7 +239,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Found{"misread_acks", 1, 1, Property::kAckCounts, 7}),
     [](const auto& param) { return std::string(param.param.flaw); });
 
-// Where a flaw has nothing to act on, that nothing breaks says nothing.
+// If a flaw never acts, an unbroken run proves nothing.
 TEST(ExploreFlaws, WhetherOneActedIsTold) {
   Options options = network(1, 1);
   EXPECT_FALSE(run(options).step_acted);  // The machine itself.
@@ -254,7 +254,7 @@ TEST(ExploreFlaws, WhetherOneActedIsTold) {
   EXPECT_TRUE(harmless.step_acted);
 }
 
-// Each that is found in a network acted there, be it in frames, in state or in what is signalled.
+// Each flaw that is found acted in that network, be it in frames, in state or in signals.
 TEST(ExploreFlaws, AllOfTheJoinActWithOldReplies) {
   for (const flaws::Flaw& flaw : flaws::all()) {
     if (flaw.seen != flaws::Seen::kJoin) continue;
@@ -268,7 +268,7 @@ TEST(ExploreFlaws, AllOfTheJoinActWithOldReplies) {
   }
 }
 
-// A flaw that nobody looks for would be a gap.
+// A flaw that no property covers would be a gap.
 TEST(ExploreFlaws, AllThatCanBeSeenAreLookedFor) {
   std::size_t seen = 0;
   for (const flaws::Flaw& flaw : flaws::all()) seen += flaw.seen != flaws::Seen::kTime ? 1 : 0;

@@ -1,4 +1,4 @@
-// States that wait for their ways on to be explored, packed one behind the other.
+// States that wait to be expanded, packed one after the other.
 #pragma once
 
 #include <cstdint>
@@ -8,10 +8,10 @@
 
 namespace rubric::explorer {
 
-/// From which state, and by which of its ways on, a state was reached first.
-struct Link {
+/// The state, and the index among its successors, from which a state was reached first.
+struct PathLink {
   static constexpr std::uint16_t kStart = 0xFFFF;
-  std::uint32_t index = 0;   ///< Of the state, among those of its thread.
+  std::uint32_t index = 0;   ///< Index among the states of its thread.
   std::uint16_t thread = 0;
   std::uint16_t way = kStart;
 };

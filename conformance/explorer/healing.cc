@@ -14,7 +14,7 @@ void Healing::happen(World& world, std::size_t node, std::uint32_t what) {
   world.copies = 0;
 }
 
-// One thing happens; false: nothing is left to happen.
+// Makes one thing happen. Returns false if nothing is left.
 bool Healing::advance(World& world) {
   if (!air_.empty()) {
     const Copy copy = air_.front();

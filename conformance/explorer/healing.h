@@ -1,5 +1,5 @@
-// What follows once faults have stopped: frames arrive in the order in which they were sent, link
-// acks come, timers fire only when nothing else happens.
+// Runs the network after faults have stopped: frames arrive in the order in which they were sent,
+// link acks come, timers fire only when nothing else happens.
 #pragma once
 
 #include <deque>
@@ -12,9 +12,10 @@ class Healing {
  public:
   explicit Healing(Network& network) : network_(network) {}
 
-  /// From a state in which no node has anything to do: whether a call of each mote that is no
-  /// member, alone and after the others', makes it one that its sink lists. `weak`: one could not
-  /// since it has rebooted and a sink still lists it (spec/membership.md), which is known.
+  /// Returns, for a state in which no node has anything to do, whether a call of each mote that is
+  /// no member, alone and after the others', makes it one that its sink lists. Sets `weak` if one
+  /// could not because it has rebooted and a sink still lists it (spec/membership.md), which is
+  /// known.
   bool succeeds(const World& world, bool& weak);
 
  private:

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "codec/generated/rubicon/ack_join.h"
+#include "codec/generated/rubicon/app_msg.h"
 #include "codec/generated/rubicon/join_reply.h"
 #include "codec/generated/rubicon/join_request.h"
 #include "codec/generated/rubicon/net_msg.h"
@@ -23,6 +24,7 @@ using machine::Role;
 using machine::State;
 using machine::Transmit;
 namespace am = machine::am;
+using App = rubicon::AppMsgLayout;
 
 // Whether the node's lines bring it this frame at all.
 bool reaches(const State& state, const Frame& frame) {
@@ -149,7 +151,7 @@ class Observer {
   static bool is_report(const Transmit& transmit) {
     const auto message = rubicon::NetMsgView::parse(transmit.bytes());
     return transmit.link == Link::kSerial && transmit.type == am::kNet && message &&
-           rubicon::SerialJoinedView::parse(message->payload().from(2));
+           rubicon::SerialJoinedView::parse(message->payload().from(App::PayloadAt::kAt));
   }
 
   void mote_sends(const Transmit& transmit) {
@@ -248,8 +250,10 @@ class Observer {
       const auto message = rubicon::NetMsgView::parse(frame.payload);
       if (frame.type != am::kNet || !message) continue;
       const Bytes body = message->payload();
+      const auto app_id = static_cast<std::uint8_t>(App::AppIdAt::load(body.data()));
       const bool same = machine::address_of(message->src()) == received.src &&
-                        body[1] == received.app_id && equal(body.from(2), received.data);
+                        app_id == received.app_id &&
+                        equal(body.from(App::PayloadAt::kAt), received.data);
       if (same && may_deliver(frame, machine::address_of(message->dest()).pid)) return;
     }
     breaks(Property::kOwnIslandOnly);
@@ -266,15 +270,16 @@ class Observer {
   // An ack that was good before the step has ended its message.
   void ack_handled(const Frame& frame) {
     const auto message = rubicon::NetMsgView::parse(frame.payload);
+    const Bytes payload = message ? message->payload() : Bytes();
     const bool ack = frame.type == am::kNet && message &&
-                     message->payload()[0] == machine::component::kRubiconAck;
+                     App::TransIdAt::load(payload.data()) == rubicon::Component::kRubiconAck;
     // A new island may have come before it.
     const bool moved = handled_.size() > 1 && step_.after.island != step_.before.island;
     if (!ack || moved) return;
     if (machine::address_of(message->dest()) != machine::own_address(step_.before)) return;
     const Address from = machine::address_of(message->src());
-    const std::uint8_t app_id = message->payload()[1];
-    const std::int32_t seq_num = machine::acked_seq_num(message->payload().from(2));
+    const auto app_id = static_cast<std::uint8_t>(App::AppIdAt::load(payload.data()));
+    const std::int32_t seq_num = machine::acked_seq_num(payload.from(App::PayloadAt::kAt));
     for (const OpenSend& one : history_.sends) {  // Those that are still open.
       if (one.seq_num != seq_num || one.app_id != app_id || one.dest != from) continue;
       if (!is_broadcast(one.dest)) breaks(Property::kAckCounts);

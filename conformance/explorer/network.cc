@@ -26,7 +26,7 @@ World Network::initial() const {
   return world;
 }
 
-// A copy starts to fly, unless as many of the same are in flight as may be.
+// Puts a copy in the air, unless as many of the same are in flight as may be.
 void Network::fly(World& world, Copy copy) {
   const Options& options = nodes_.options();
   std::size_t same = 0;
@@ -63,7 +63,7 @@ bool Network::in_flight(const World& world, Copy copy) const {
   return std::find(world.copy.data(), end, copy) != end;
 }
 
-// A node's step and what it puts on the air.
+// Applies a node's step and sends its frames.
 void Network::apply(World& world, std::size_t node, std::uint32_t what, Successor* successor) {
   const Outcome& outcome = outcomes_(world.node[node], what);
   if (successor != nullptr) {
@@ -102,26 +102,26 @@ void Network::node_moves(const World& world, std::size_t node, Successors& out) 
   if (f.serial_sending) add_step(world, node, event::kDoneSerial, out);
   if (f.radio_sending && f.on_air == 0) add_step(world, node, event::kDoneAcked, out);
   if (f.radio_sending && f.on_air != 0) {
-    // Without loss no link ack stays away while the frame may yet be heard.
+    // Without loss the link ack comes as long as the frame may yet be heard.
     const bool none = options.loss || !in_flight(world, Copy::of(f.on_air, node));
     if (none) add_step(world, node, event::kDoneUnacked, out);
   }
   if (f.may_reboot) add_step(world, node, event::kReboot, out);
 }
 
-// Whether nothing that its sender sent before it is still in flight.
+// Returns whether no earlier frame of its sender is still in flight.
 bool Network::is_first(const World& world, std::size_t i) const {
   return nodes_.options().reorder || i == 0 || world.copy[i - 1].sender() != world.copy[i].sender();
 }
 
-// Whether a copy that is heard may be heard again.
+// Returns whether a copy that is heard may be heard again.
 bool Network::may_stay(const World& world) const {
   const Options& options = nodes_.options();
   return options.dup && (options.dups == 0 || world.doubled < options.dups);
 }
 
-// The radio answers at once whatever is addressed to it, before anybody looks into the frame; with
-// loss, the answer may not arrive.
+// Delivers a copy. The radio answers at once whatever is addressed to it, before any node reads the
+// frame; with loss, the answer may not arrive.
 void Network::deliver(const World& world, std::size_t i, NodeSet hearers, bool stays,
                       Successors& out) {
   const Copy copy = world.copy[i];
@@ -150,7 +150,7 @@ void Network::copy_moves(const World& world, std::size_t i, Successors& out) {
   const NodeSet all = addressed(copy);
   for (unsigned hearers = all; hearers != 0; hearers = (hearers - 1) & all) {
     if (hearers != all && !options.loss) continue;  // Without loss all hear it.
-    // A copy that some heard and that is gone is one that stayed, and was lost.
+    // Hearing by some that ends the copy equals a copy that stays and is then lost.
     const bool twice = options.loss && options.dup && options.dups == 0 && hearers != all;
     if (!twice) deliver(world, i, static_cast<NodeSet>(hearers), false, out);
     if (may_stay(world)) deliver(world, i, static_cast<NodeSet>(hearers), true, out);
@@ -223,7 +223,7 @@ Mask Network::violated(const World& world, const Successors& ways_on) {
     }
   }
   if (world.copies == 0) {
-    // New calls and reboots come from outside: the node itself must have a way on.
+    // New calls and reboots come from outside: the node itself must have a next step.
     const bool way_on = std::any_of(ways_on.begin(), ways_on.end(), [](const Successor& s) {
       return s.move.what != event::kCall && s.move.what != event::kReboot &&
              (s.move.what < event::kSend || s.move.what >= event::kFrame);

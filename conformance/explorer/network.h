@@ -1,4 +1,4 @@
-// A network's state, as a few numbers, and every way on from it.
+// A network's state, as a few numbers, and all its successors.
 #pragma once
 
 #include <array>
@@ -25,13 +25,13 @@ struct Copy {
 /// A set of nodes, one bit each.
 using NodeSet = std::uint8_t;
 
-/// Nodes and what is in flight between them. Copies are in order of their sender, then of sending,
-/// or, where the air does not keep its order, of frame.
+/// Nodes and the frames in flight between them. Copies are ordered by sender, then by sending, or,
+/// where the air does not keep its order, by frame.
 struct World {
   static constexpr std::size_t kCopiesMax = 32;
   std::array<NodeId, kNodesMax> node{};
   std::uint32_t copies = 0;
-  std::uint32_t doubled = 0;  ///< How often a copy stayed, where that is limited.
+  std::uint32_t doubled = 0;  ///< How often a copy stayed, if that is limited.
   std::array<Copy, kCopiesMax> copy;
 
   World() = default;
@@ -49,7 +49,7 @@ struct World {
   }
 };
 
-/// What happens between one state of the network and the next.
+/// A move from one state of the network to the next.
 struct Move {
   enum class Kind : std::uint8_t {
     kStep,     ///< `what` happens at `node`.
@@ -68,7 +68,7 @@ struct Move {
   Copy other;
 };
 
-/// A state that follows, and how.
+/// A successor state, and the move to it.
 struct Successor {
   World world;
   Move move;
@@ -80,7 +80,7 @@ struct Successor {
 class Successors {
  public:
   void clear() { count_ = 0; }
-  /// One more, whose state is `world` until it is changed.
+  /// Adds one, whose state is `world` until it is changed.
   Successor& push(const World& world) {
     if (count_ == items_.size()) items_.emplace_back();
     Successor& next = items_[count_++];
@@ -105,17 +105,18 @@ class Network {
   explicit Network(Nodes& nodes);
 
   World initial() const;
-  /// All ways on.
+  /// Fills in all successors.
   void successors(const World& world, Successors& out);
-  /// What this state itself breaks, and what it shows. `ways_on`: its successors.
+  /// Returns the properties that this state itself breaks. `ways_on`: its successors.
   Mask violated(const World& world, const Successors& ways_on);
   Mask goals(const World& world) const;
-  /// Whether nothing is left to do: no call open, nothing in flight or waiting.
+  /// Returns whether nothing is left to do: no call open, nothing in flight or waiting.
   bool at_rest(const World& world) const;
 
-  /// Whether a frame did not find room in flight: the search is then not complete.
+  /// Returns whether a frame did not find room in flight: the search is then not complete.
   bool overflowed() const { return overflowed_; }
-  /// States at rest from which a mote cannot join, since it has rebooted and its sink lists it.
+  /// Counts states at rest from which a mote cannot join, since it has rebooted and its sink lists
+  /// it.
   std::uint64_t known_weak() const { return known_weak_; }
 
   std::size_t pack(const World& world, std::uint8_t* out) const;

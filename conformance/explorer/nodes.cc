@@ -56,9 +56,9 @@ std::string key_of(const machine::Transmit& t) {
   return key.append(reinterpret_cast<const char*>(t.payload.data()), t.size_bytes);
 }
 
-// Takes out what a node will never look at again, so that states which differ in nothing else are
-// one: how many requests a call that is over took, how often a confirmed ack_join was sent, and in
-// which order a sink's lists (never full here) came about. A test explores without this, too.
+// Clears what a node never reads again, so that states that differ in nothing else are one: how
+// many requests a finished call took, how often a confirmed ack_join was sent, and the order of a
+// sink's lists (never full here). A test explores without this, too.
 void forget_the_past(machine::State& state) {
   machine::JoinMote& join = state.join;
   if (join.phase != machine::JoinMote::Phase::kJoining) join.requests = 0;
@@ -161,7 +161,7 @@ Noted Nodes::observe(History& history, const machine::State& before, const machi
   return noted;
 }
 
-// The same state, the same frames, and the same history by what the application was told.
+// Compares states, frames, and the history of application events.
 bool Nodes::same_as_machine(const NodeState& before, const machine::Event& event,
                             const NodeState& after, const machine::Actions& actions) const {
   NodeState honest = before;
@@ -220,7 +220,7 @@ Outcome Nodes::compute(NodeId id, std::uint32_t what) {
   const machine::Transmit* frame =
       what >= event::kFrame ? &frames_[what - event::kFrame] : nullptr;
   step(node, event_of(node.state, node.monitor, what, frame), outcome);
-  // A line is free again at once, but while a link ack may still come.
+  // A line is free again at once, unless a link ack may still come.
   for (int i = 0; !options_.busy && i < 64; ++i) {
     if (node.state.radio.sending && node.monitor.on_air == 0) {
       step(node, machine::SendDone{Link::kRadio, true}, outcome);

@@ -1,5 +1,5 @@
-// Nodes one by one: every state that a node was ever in, each kept once under a number, and what
-// step() makes of it for each event, computed once. A network's state is then a few numbers.
+// Single nodes: every state that a node was ever in, each kept once under a number, and the result
+// of step() for each event, computed once. A network's state is then a few numbers.
 #pragma once
 
 #include <cstdint>
@@ -14,10 +14,10 @@
 
 namespace rubric::explorer {
 
-using NodeId = std::uint32_t;   ///< Of a node's state with its monitor.
-using FrameId = std::uint16_t;  ///< Of a frame on the radio; 0 stands for a link ack.
+using NodeId = std::uint32_t;   ///< A node's state with its monitor.
+using FrameId = std::uint16_t;  ///< A frame on the radio; 0 is a link ack.
 
-/// What can happen to a node, as a number: one of these, or kFrame + the frame that it hears.
+/// An event of a node, as a number: one of these, or kFrame + the frame that it hears.
 namespace event {
 constexpr std::uint32_t kCall = 0;         ///< joinIsland.
 constexpr std::uint32_t kJoinTimer = 1;
@@ -47,7 +47,7 @@ struct NodeState {
   friend bool operator==(const NodeState&, const NodeState&) = default;
 };
 
-/// What the network needs to know of a node's state.
+/// The facts about a node's state that the network needs.
 struct NodeFacts {
   bool join_timer = false;
   bool may_call = false;
@@ -59,14 +59,14 @@ struct NodeFacts {
   bool waiting = false;         ///< Something is in a buffer.
   std::uint8_t ack_timers = 0;
   std::uint8_t sends = 0;       ///< Messages to choose from; 0: it may not send.
-  std::uint8_t view = 0;        ///< Of a mote: the island that it is in, as a bit.
+  std::uint8_t view = 0;        ///< For a mote: its island, as a bit.
   std::uint8_t acked_ever = 0;  ///< Islands that it ever acked, as bits.
-  std::uint8_t listed = 0;      ///< Of a sink: the motes that it lists, as bits.
+  std::uint8_t listed = 0;      ///< For a sink: the motes that it lists, as bits.
   std::uint8_t reboots = 0;
   FrameId on_air = 0;           ///< The frame whose link ack it awaits.
 };
 
-/// What an event made of a node.
+/// The result of an event at a node.
 struct Outcome {
   static constexpr std::size_t kFramesMax = 11;
   NodeId next = 0;
@@ -90,7 +90,7 @@ class Nodes {
   const Options& options() const { return options_; }
   std::size_t count() const { return std::size_t{options_.motes} + options_.sinks; }
   bool is_mote(std::size_t node) const { return node < options_.motes; }
-  /// Node numbers: motes first.
+  /// Returns a node's configuration; motes come first.
   machine::Config config_of(std::size_t node) const;
   NodeId initial(std::size_t node) const { return initial_[node]; }
 
@@ -98,19 +98,19 @@ class Nodes {
   const NodeFacts& facts(NodeId id) const { return states_[id].facts; }
   const machine::Transmit& frame(FrameId id) const { return frames_[id]; }
 
-  /// By several threads at once; the result stays where it is.
+  /// Returns the outcome, at a stable address. Thread-safe.
   const Outcome& outcome(NodeId node, std::uint32_t what);
 
   std::size_t states() const { return states_.size(); }
   std::size_t frames() const { return frames_.size() - 1; }
   std::size_t memory_bytes() const;
-  /// Whether the given step ever did something that the machine's own would not have done, as far
-  /// as anybody could see it. False where the two are the same.
+  /// Returns whether the given step ever visibly did something that the machine's own would not
+  /// have done. False if the two are the same.
   bool step_acted() const { return step_acted_; }
-  /// Whether a table is full: then outcomes are not to be trusted and the search has to stop.
+  /// Returns whether a table is full: then outcomes are wrong and the search has to stop.
   bool full() const { return full_; }
 
-  /// The machine's event; `frame` must stay while it is used.
+  /// Returns the machine's event; `frame` must stay while it is used.
   machine::Event event_of(const machine::State& state, const Monitor& monitor, std::uint32_t what,
                           const machine::Transmit* frame) const;
   std::vector<SendChoice> choices(const machine::State& state, const Monitor& monitor) const;
@@ -143,7 +143,7 @@ class Nodes {
   bool step_acted_ = false;
 };
 
-/// A thread's own way to the outcomes, without locks for those that it has asked for before.
+/// A thread's own cache of outcomes, without locks for those that it has asked for before.
 class OutcomeCache {
  public:
   explicit OutcomeCache(Nodes& nodes) : nodes_(nodes), slots_(1U << 12) {}

@@ -1,4 +1,4 @@
-// What is explored: how many nodes, which faults, how much of each.
+// The options of a search: how many nodes, which faults, how much of each.
 #pragma once
 
 #include <cstdint>
@@ -34,8 +34,8 @@ struct Options {
   bool prompt = false;    ///< No frame outlives a timer: timers fire when the air is empty.
   bool busy = false;      ///< The end of each transmission is a step of its own.
   bool exact = false;     ///< Keeps apart states that differ in nothing that matters any more.
-  std::uint8_t reboots = 0;    ///< Of each mote.
-  std::uint8_t calls = 1;      ///< Of joinIsland, each mote.
+  std::uint8_t reboots = 0;    ///< For each mote.
+  std::uint8_t calls = 1;      ///< joinIsland calls of each mote.
   std::uint8_t sends = 1;      ///< Messages of each node, in full scope.
   std::uint8_t dups = 0;       ///< Frames heard again, in all; 0: any number.
   std::uint8_t in_flight = 1;  ///< Copies of one frame on their way to one node.

@@ -15,7 +15,7 @@ using machine::State;
 using trace::Message;
 using trace::Value;
 
-// Whose joins and messages are looked at: the first mote's, and the first sink's.
+// The parts are the joins and messages of the first mote and the first sink.
 constexpr std::uint16_t kMote = kFirstMoteId;
 
 bool is_mote(const machine::Config& config) {
@@ -30,7 +30,7 @@ std::int64_t number_at(const Message& message, std::string_view path) {
   return value != nullptr && value->is(Value::Kind::kNumber) ? value->number : -1;
 }
 
-// One half of an address such as 11:5; -1 for a reserved one.
+// Returns one half of an address such as 11:5; -1 for a reserved one.
 std::int64_t half_at(const Message& message, std::string_view path, std::size_t half) {
   const Value* value = message.find(path);
   if (value == nullptr || value->items.size() != 2) return -1;
@@ -158,7 +158,7 @@ enum Sending : std::size_t { kIdle, kAwaited };
 std::size_t message_state(const State& state) { return state.awaited.empty() ? kIdle : kAwaited; }
 
 std::optional<Trigger> message_trigger(const State& state, const Given& given) {
-  if (state.awaited.size() > 1) return std::nullopt;  // One message is looked at.
+  if (state.awaited.size() > 1) return std::nullopt;  // The diagram follows one message.
   if (given.heard) {
     const Message message = message_of(*given.heard);
     const Value* kind = message.find("payload.trans_id");

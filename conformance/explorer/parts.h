@@ -1,4 +1,4 @@
-// The parts of a node whose transitions are drawn: their states, and what can happen to them.
+// The parts of a node whose transitions are drawn: their states and triggers.
 #pragma once
 
 #include <optional>
@@ -11,22 +11,23 @@
 
 namespace rubric::explorer {
 
-/// What makes a part go on, as it is drawn.
+/// A trigger of a transition, as it is drawn.
 struct Trigger {
   std::string name;
   std::string guard;  ///< Empty: none.
 };
 
-/// One part: a view of a node's state, and what shows all of it.
+/// One part: a view of a node's state, and the networks that show all of it.
 struct PartInfo {
   const char* name;
   const char* title;
   std::vector<std::string> states;
   bool (*concerns)(const machine::Config& config);
   std::size_t (*state_of)(const machine::State& state);
-  /// Nothing: the event has nothing to do with the part.
+  /// Returns the trigger; nothing if the event does not concern the part.
   std::optional<Trigger> (*trigger_of)(const machine::State& before, const Given& given);
-  /// The networks that show the part; or null, and what a sink is given that shows it alone.
+  /// Returns the networks that show the part; null if instead a sink alone, given these inputs,
+  /// shows it.
   std::vector<Options> (*networks)(const machine::Profile& profile);
   std::vector<Given> (*alphabet)(const machine::Profile& profile);
 };
@@ -34,13 +35,13 @@ struct PartInfo {
 PartInfo synaptic_output();
 PartInfo synaptic_input();
 
-/// All parts, each with a name of its own, in the order in which they are drawn; they live as long
-/// as the program.
+/// Returns all parts, with unique names, in the order in which they are drawn; they live as long as
+/// the program.
 std::span<const PartInfo> parts();
-/// Null: there is none of that name.
+/// Returns the part of that name, or null.
 const PartInfo* find_part(std::string_view name);
 
-/// A frame of the radio as a trace has it.
+/// Returns a frame of the radio as a trace has it.
 trace::Message message_of(const machine::Transmit& frame);
 
 }  // namespace rubric::explorer

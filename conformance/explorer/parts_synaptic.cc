@@ -1,5 +1,5 @@
-// Synaptic channels: the explored networks have none, so that a sink is looked at alone, with the
-// calls and the data that concern one channel.
+// Synaptic channels: the explored networks have none, so a sink is explored alone, with the calls
+// and the data of one channel.
 #include "conformance/events/app_events.h"
 #include "conformance/explorer/parts.h"
 #include "conformance/machine/synaptic.h"
@@ -18,18 +18,18 @@ const machine::ChannelId kOutId = machine::channel_id(kSink.devid, kPeer.devid);
 const machine::ChannelId kInId = machine::channel_id(kPeer.devid, kSink.devid);
 constexpr machine::Timer kTick{machine::TimerKind::kSynaptic, 0};
 
-enum Life : std::size_t { kNone, kStopped, kStarted };
+enum Life : std::size_t { kAbsent, kStopped, kStarted };
 
 template <class List>
 std::size_t life_of(const List& channels) {
-  if (channels.empty()) return kNone;
+  if (channels.empty()) return kAbsent;
   return channels[0].started ? kStarted : kStopped;
 }
 
 std::size_t output_state(const State& state) { return life_of(state.synaptic.out); }
 std::size_t input_state(const State& state) { return life_of(state.synaptic.in); }
 
-bool is_sink(const machine::Config& config) { return config.role == machine::Role::kSink; }
+bool has_sink_role(const machine::Config& config) { return config.role == machine::Role::kSink; }
 
 Given given(const machine::Event& event) { return {event, std::nullopt}; }
 
@@ -38,7 +38,7 @@ std::vector<Given> alphabet(const Calls&... calls) {
   return {given(Called{calls})..., given(machine::TimerDue{kTick}), given(machine::Reboot{})};
 }
 
-// A call's name, "tick", "data" or "reboot".
+// Returns a call's name, "tick", "data" or "reboot".
 std::string name_of(const Given& given) {
   if (given.heard) return "data";
   if (const auto* called = std::get_if<Called>(&given.what)) {
@@ -83,7 +83,7 @@ std::vector<Given> output_alphabet(const machine::Profile&) {
                   machine::WriteOutput{kOutId, 0, 2.0F});
 }
 
-// What the other end sends at its tick.
+// Returns the data that the other end sends at its tick.
 machine::Transmit data(const machine::Profile& profile) {
   machine::Config config;
   config.id = kPeer.devid;
@@ -114,13 +114,13 @@ std::vector<Given> input_alphabet(const machine::Profile& profile) {
 PartInfo synaptic_output() {
   return {"output", "An output channel of synaptic communication",
           {"no channel", "stopped", "started"},
-          is_sink, output_state, output_trigger, nullptr, output_alphabet};
+          has_sink_role, output_state, output_trigger, nullptr, output_alphabet};
 }
 
 PartInfo synaptic_input() {
   return {"input", "An input channel of synaptic communication",
           {"no channel", "stopped", "started"},
-          is_sink, input_state, input_trigger, nullptr, input_alphabet};
+          has_sink_role, input_state, input_trigger, nullptr, input_alphabet};
 }
 
 }  // namespace rubric::explorer

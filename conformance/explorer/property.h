@@ -1,4 +1,4 @@
-// What must hold in every state and step of a network, and what must be possible in some.
+// Properties that every state and step of a network must have, and goals that some must reach.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@ namespace rubric::explorer {
 /// A set of properties, or of goals, one bit each.
 using Mask = std::uint32_t;
 
-/// The properties. Where one state breaks several, the first of this order is reported.
+/// The properties. If one state breaks several, the first of this order is reported.
 enum class Property : std::uint8_t {
   kJoinedAfterReply,
   kAckRightSeq,
@@ -41,14 +41,14 @@ struct PropertyInfo {
   Property property;
   const char* name;
   const char* sentence;
-  std::array<ReqId, 3> requirements;  ///< The rules that it stands for; kNone fills up.
+  std::array<ReqId, 3> requirements;  ///< The rules that it covers; kNone fills up.
 };
-/// In the order of the enumeration.
+/// Returns all, in the order of the enumeration.
 std::span<const PropertyInfo, kPropertyCount> properties();
 const PropertyInfo& info(Property property);
 std::optional<Property> property_named(std::string_view name);
 
-/// What some state or step must show, or the properties are true of nothing.
+/// Events that some state or step must show, or the properties are true of nothing.
 enum class Goal : std::uint8_t {
   kJoinedFirst,      ///< A mote joined the first sink's island,
   kJoinedSecond,     ///< and the second's.

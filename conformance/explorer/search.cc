@@ -16,13 +16,13 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kLookahead = 16;         // States whose ways on are looked up together.
-constexpr std::size_t kWaysOnMax = 256;        // Of one state; room is kept for so many.
+constexpr std::size_t kLookahead = 16;         // States whose successors are looked up together.
+constexpr std::size_t kWaysOnMax = 256;        // For one state; room is kept for so many.
 constexpr std::size_t kBatchMin = 16384;       // States between two looks at the room.
 
-/// A state that breaks something, or is weak in a known way.
+/// A state that breaks something, or has a known weakness.
 struct Find {
-  Link link;
+  PathLink link;
   Mask violated = 0;
 };
 
@@ -38,14 +38,14 @@ class Worker {
     add(world, {});
   }
 
-  /// Takes chunks until none is left or one holds a violation.
+  /// Takes chunks until none is left.
   void work(const std::vector<Chunk>& chunks, std::atomic<std::size_t>& taken) {
     for (std::size_t i = taken++; i < chunks.size(); i = taken++) expand(chunks[i]);
   }
 
   Network network;
   Frontier next;
-  std::vector<Link> links;  ///< Of every state that this thread found, in order.
+  std::vector<PathLink> links;  ///< For every state that this thread found, in order.
   std::vector<Find> violations;
   std::vector<Find> weaknesses;
   std::uint64_t transitions = 0;
@@ -54,7 +54,7 @@ class Worker {
 
  private:
   struct Pending {
-    Link self;
+    PathLink self;
     Successors ways_on;
     std::vector<std::uint64_t> fingerprints;
   };
@@ -73,8 +73,8 @@ class Worker {
     }
   }
 
-  // Computes the ways on, and asks memory for the places where they may be known.
-  void look(Pending& pending, Link self) {
+  // Computes the successors, and prefetches their places in the visited set.
+  void look(Pending& pending, PathLink self) {
     pending.self = self;
     network.successors(world_, pending.ways_on);
     pending.fingerprints.clear();
@@ -96,7 +96,7 @@ class Worker {
       goals |= s.goals;
       const bool is_new = visited_.insert(pending.fingerprints[i]);
       if (!is_new && s.violated == 0) continue;
-      const Link link{pending.self.index, pending.self.thread, static_cast<std::uint16_t>(i)};
+      const PathLink link{pending.self.index, pending.self.thread, static_cast<std::uint16_t>(i)};
       if (is_new) {
         ++inserted;
         add(s.world, link);
@@ -106,7 +106,7 @@ class Worker {
     }
   }
 
-  void add(const World& world, Link link) {
+  void add(const World& world, PathLink link) {
     next.add(network, world, static_cast<std::uint32_t>(links.size()), number_);
     links.push_back(link);
   }
@@ -117,7 +117,7 @@ class Worker {
   std::array<Pending, kLookahead> pending_;
 
  public:
-  std::vector<Find> step_violations;  ///< By the link of the step that breaks something.
+  std::vector<Find> step_violations;  ///< Links are the steps that break something.
 };
 
 class Search {
@@ -137,7 +137,7 @@ class Search {
   }
 
  private:
-  // Expands every state of one depth. False: nothing is left, or the search has to stop.
+  // Expands every state of one depth. Returns false if nothing is left, or the search has to stop.
   bool level() {
     std::vector<Frontier> frontiers;
     std::vector<Chunk> chunks;
@@ -159,7 +159,7 @@ class Search {
     return !found_violation();
   }
 
-  // As many chunks as surely find room for what follows them.
+  // Returns how many chunks surely find room for their successors.
   std::size_t batch_size(const std::vector<Chunk>& chunks, std::size_t first) {
     std::size_t wanted = 0;
     for (std::size_t i = first; i < chunks.size() && wanted < kBatchMin; ++i) {
@@ -219,11 +219,11 @@ class Search {
     return p;
   }
 
-  // The moves that lead to a state: its links, from last to first, walked again from the start.
-  Path path_to(Link last, Mask violated) {
+  // Returns the moves that lead to a state: follows its links back, and walks them forward.
+  Path path_to(PathLink last, Mask violated) {
     std::vector<std::uint16_t> ways;
-    const bool at_start = last.way == Link::kStart;
-    for (Link link = last; !at_start && link.way != Link::kStart;
+    const bool at_start = last.way == PathLink::kStart;
+    for (PathLink link = last; !at_start && link.way != PathLink::kStart;
          link = workers_[link.thread]->links[link.index]) {
       ways.push_back(link.way);
     }
@@ -240,8 +240,9 @@ class Search {
     return path;
   }
 
-  // Violations of a step are one shorter to find than those of the state that it leads to, but the
-  // states of a level are looked at when their steps are taken: those of states come first.
+  // Returns the shortest violation. A step's violation is one move shorter than that of the state
+  // that it leads to, but states of a level are checked when their steps are taken: those of states
+  // come first.
   std::optional<Path> shortest_violation() {
     for (const bool of_states : {true, false}) {
       const Find* best = nullptr;
@@ -251,7 +252,7 @@ class Search {
         }
       }
       if (best == nullptr) continue;
-      const Link last =
+      const PathLink last =
           of_states ? workers_[best->link.thread]->links[best->link.index] : best->link;
       return path_to(last, best->violated);
     }
@@ -278,7 +279,7 @@ class Search {
     result.node_states = nodes_.states();
     result.frames = nodes_.frames();
     std::size_t links = 0;
-    for (const auto& worker : workers_) links += worker->links.capacity() * sizeof(Link);
+    for (const auto& worker : workers_) links += worker->links.capacity() * sizeof(PathLink);
     result.memory_bytes = visited_.memory_bytes() + links + nodes_.memory_bytes();
     result.memory_per_state_bytes =
         (visited_.memory_bytes() + links) / std::max<std::size_t>(visited_.size(), 1);

@@ -20,7 +20,7 @@ using machine::Action;
 using machine::Actions;
 
 constexpr std::size_t kWorldsMax = 400'000;
-constexpr std::uint32_t kNone = ~std::uint32_t{0};
+constexpr std::uint32_t kNoState = ~std::uint32_t{0};
 
 template <class T>
 void add_once(std::vector<T>& all, const T& one) {
@@ -33,7 +33,7 @@ std::string name_of(const machine::Transmit& frame) {
   return kind != nullptr && kind->text == "rubicon_ack" ? "ack" : message.name;
 }
 
-// "joined(success)", "mote_joined".
+// Returns "joined(success)", "mote_joined".
 std::string name_of(const machine::Notice& notice) {
   const auto* sent = std::get_if<machine::SendResult>(&notice);
   if (sent != nullptr && sent->seq_num == machine::kNoSeq) return "send_result(error)";
@@ -43,12 +43,12 @@ std::string name_of(const machine::Notice& notice) {
   return result == nullptr ? message.name : message.name + "(" + result->text + ")";
 }
 
-// What one event makes of a node, with the ends of transmissions that nobody waits for.
+// Computes the effect of one event on a node, with the ends of transmissions that nobody waits for.
 class Step {
  public:
   Step(const PartInfo& part, StepFunction step) : part_(part), step_(step) {}
 
-  /// Changes the state. Nothing: the event has nothing to do with the part.
+  /// Changes the state. Returns nothing if the event does not concern the part.
   std::optional<Transition> take(machine::State& state, const Given& given) {
     const std::optional<Trigger> trigger = part_.trigger_of(state, given);
     Transition out;
@@ -94,7 +94,7 @@ class Step {
   bool ignored_ = false;
 };
 
-// What happens to one node in a move of the network.
+// The event of one node in a move of the network.
 struct Happening {
   std::size_t node;
   std::uint32_t what;
@@ -117,10 +117,10 @@ Key key_of(const Transition& t) {
   return {t.from, t.to, t.trigger, t.outputs, t.rules, t.ignored};
 }
 
-/// All that was found of one part.
+/// Everything found of one part.
 class Found {
  public:
-  /// Whether this is new.
+  /// Returns whether a transition is known.
   bool holds(const Transition& t) const {
     const auto found = all_.find(key_of(t));
     return found != all_.end() && contains(found->second.guards, t.guards.front());
@@ -137,7 +137,7 @@ class Found {
     }
   }
 
-  // A guard says nothing where the same comes of all of several.
+  // Returns the transitions; drops guards where several cases have the same result.
   std::vector<Transition> take() {
     std::vector<Transition> out;
     for (auto& [key, t] : all_) {
@@ -165,9 +165,9 @@ class Tour {
   Tour(const PartInfo& part, const Options& options, Found& found)
       : part_(part), nodes_(std::make_unique<Nodes>(options)), network_(*nodes_), found_(found) {}
 
-  /// The states of the network; false: there were too many.
+  /// Visits the states of the network. Returns false if there are too many.
   bool run(std::uint64_t& worlds) {
-    visit(network_.initial(), kNone, {});
+    visit(network_.initial(), kNoState, {});
     Successors ways_on;
     for (std::uint32_t i = 0; i < all_.size() && all_.size() <= kWorldsMax; ++i) {
       const World world = all_[i].world;
@@ -203,7 +203,7 @@ class Tour {
     return out;
   }
 
-  // What the network does not do by itself, or has done as often as it may.
+  // Tries events that the network does not have by itself, or has had as often as it may.
   void try_all(const World& world, std::uint32_t index) {
     for (std::size_t node = 0; node < nodes_->count(); ++node) {
       if (nodes_->is_mote(node)) look(world, index, {node, event::kCall});
@@ -225,10 +225,10 @@ class Tour {
     found_.add(std::move(*found));
   }
 
-  // What happened to the node on the way to that state.
+  // Returns the events of the node on the path to that state.
   Witness witness(std::uint32_t index, std::size_t node) const {
     std::vector<std::uint32_t> way;
-    for (; all_[index].parent != kNone; index = all_[index].parent) way.push_back(index);
+    for (; all_[index].parent != kNoState; index = all_[index].parent) way.push_back(index);
     Witness out{nodes_->config_of(node), {}};
     for (auto it = way.rbegin(); it != way.rend(); ++it) {
       const NodeState& before = nodes_->state(all_[all_[*it].parent].world.node[node]);
@@ -260,9 +260,9 @@ class Alone {
     alphabet_ = part.alphabet(profile);
   }
 
-  /// False: there were too many states.
+  /// Returns false if there are too many states.
   bool run(std::uint64_t& worlds) {
-    visit(machine::start(config_), kNone, 0);
+    visit(machine::start(config_), kNoState, 0);
     for (std::uint32_t i = 0; i < all_.size() && all_.size() <= kWorldsMax; ++i) {
       for (std::size_t k = 0; k < alphabet_.size(); ++k) look(i, k);
     }
@@ -285,7 +285,7 @@ class Alone {
     auto found = Step(part_, step_).take(state, given);
     if (found && !found_.holds(*found)) {
       found->witness = {config_, {given}};
-      for (std::uint32_t i = index; all_[i].parent != kNone; i = all_[i].parent) {
+      for (std::uint32_t i = index; all_[i].parent != kNoState; i = all_[i].parent) {
         found->witness.events.insert(found->witness.events.begin(), alphabet_[all_[i].letter]);
       }
       found_.add(std::move(*found));

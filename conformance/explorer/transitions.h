@@ -1,9 +1,10 @@
-// State diagrams of the parts of a node, found by exploring small networks: what the machine does,
-// not what somebody drew.
+// State diagrams of the parts of a node, found by exploring small networks: they show the machine's
+// behaviour, not a drawing of it.
 //
 // A part (a mote's join, a sink's view of one mote, a reliable message) has a few states, each a
 // predicate over a node's whole state. Every step that a node makes anywhere in the network becomes
-// a transition: from which of these states to which, on what, what comes out, and by which rules.
+// a transition: from which of these states to which, on what trigger, with what output, by which
+// rules.
 #pragma once
 
 #include <optional>
@@ -24,8 +25,8 @@ struct Given {
   std::string text() const;               ///< "join_reply(island_addr=11 ...)".
 };
 
-/// What a node was given from its start on. The ends of transmissions that nobody waits for are
-/// not among it: they come at once.
+/// The inputs of a node from its start on. The ends of transmissions that nobody waits for are left
+/// out: they come at once.
 struct Witness {
   machine::Config config;
   std::vector<Given> events;
@@ -39,12 +40,12 @@ struct Transition {
   std::string trigger;                 ///< "join_reply", "join timer".
   std::vector<std::string> guards;     ///< Any of them holds; none: always.
   std::vector<std::string> outputs;    ///< "ack_join", "joined(success)", in their order.
-  std::vector<std::string> rules;      ///< That the machine named, each once.
+  std::vector<std::string> rules;      ///< Named by the machine, each once.
   bool ignored = false;                ///< Nothing came of it, and a rule says so.
-  Witness witness;                     ///< Of a shortest way through the network to it.
+  Witness witness;                     ///< A shortest path through the network to it.
 };
 
-/// All that one part of a node does, as the networks that were explored show it.
+/// All transitions of one part of a node in the networks that were explored.
 struct Diagram {
   std::string name;                    ///< "join"
   std::string title;
@@ -54,20 +55,21 @@ struct Diagram {
   bool complete = true;                ///< All of them.
 };
 
-/// What a part is called: on the command line, and above its diagram.
+/// The names of a part: on the command line, and above its diagram.
 struct PartName {
   const char* name;
   const char* title;
 };
-/// Of each of parts() (parts.h), in their order; they live as long as the program.
+/// Returns the names of parts() (parts.h), in order; they live as long as the program.
 std::span<const PartName> part_names();
 
-/// Explores what shows this part. `part` is one of part_names(), `step` the machine's or a flaw's.
+/// Explores the networks that show this part. `part` is one of part_names(), `step` the machine's
+/// or a flaw's.
 Diagram transitions_of(std::string_view part, const machine::Profile& profile,
                        StepFunction step = machine::step);
 
-/// Gives a fresh node what the witness says; its last step as a transition of the part, with one
-/// guard at most. Nothing where that step does not concern the part.
+/// Gives a fresh node the witness's inputs. Returns its last step as a transition of the part, with
+/// one guard at most; nothing if that step does not concern the part.
 std::optional<Transition> replay(std::string_view part, const Witness& witness,
                                  StepFunction step = machine::step);
 

@@ -17,7 +17,7 @@ Diagram explored(std::string_view part, StepFunction step = machine::step) {
   return transitions_of(part, machine::kPaper, step);
 }
 
-// Explored once for all tests.
+// Returns a diagram; each is explored once for all tests.
 const Diagram& paper(const std::string& part) {
   static std::map<std::string, Diagram> known;
   const auto found = known.find(part);
@@ -30,7 +30,7 @@ std::string joined(const std::vector<std::string>& words, const char* between) {
   return out;
 }
 
-// "request out --join_reply [another number]--> request out" with outputs and rules.
+// Returns "request out --join_reply [another number]--> request out" with outputs and rules.
 std::string text_of(const Diagram& diagram, const Transition& t) {
   std::string out = diagram.states[t.from] + " --" + t.trigger;
   if (!t.guards.empty()) out += " [" + joined(t.guards, "|") + "]";
@@ -45,7 +45,7 @@ std::set<std::string> texts_of(const Diagram& diagram) {
   return out;
 }
 
-// From the catalogue's sentences, not from the output.
+// Taken from the catalogue's sentences, not from the output.
 const std::set<std::string> kEssential{
     // J1, J8: requests, their repetition, and the end of a call.
     "not a member --joinIsland() / join_request--> request out J1-REQUEST",
@@ -106,7 +106,7 @@ TEST(Transitions, NothingElseMakesAMember) {
   }
 }
 
-// Each transition is made by the machine alone, in a node that is given what its witness says.
+// The machine alone makes each transition, in a node that is given its witness.
 TEST(Transitions, EachHasAWitness) {
   for (const PartName& part : part_names()) {
     const Diagram& diagram = paper(part.name);

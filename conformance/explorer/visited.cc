@@ -16,7 +16,7 @@ void Visited::Release::operator()(std::atomic<std::uint64_t>* slots) const {
   if (slots != nullptr) munmap(slots, bytes);
 }
 
-// Straight from the system: zeroed, and in large pages where there are any.
+// Allocates zeroed memory from the system, in large pages if there are any.
 void Visited::allocate(std::size_t slots) {
   const std::size_t bytes = slots * sizeof(std::uint64_t);
   void* const memory =

@@ -1,4 +1,4 @@
-// The set of states that were seen, by their fingerprints of 64 bits: eight bytes a place.
+// The set of visited states, as fingerprints of 64 bits: eight bytes a place.
 #pragma once
 
 #include <atomic>
@@ -7,20 +7,21 @@
 
 namespace rubric::explorer {
 
-/// Open addressing; several threads insert at once without locks. It grows between, not during.
+/// Open addressing; several threads insert at once without locks. It grows between batches, not
+/// during one.
 class Visited {
  public:
   Visited() { allocate(std::size_t{1} << 18); }
 
   /// Makes room for so many more. No thread may insert meanwhile.
   void reserve(std::size_t more);
-  /// How many more fit without growing.
+  /// Returns how many more fit without growing.
   std::size_t room() const;
-  /// Brings the place of a fingerprint nearer, for an insert soon.
+  /// Prefetches the place of a fingerprint, for an insert soon.
   void prefetch(std::uint64_t fingerprint) const {
     __builtin_prefetch(&slots_[fingerprint & mask_], 1, 1);
   }
-  /// True: it was not there. `fingerprint` is not 0.
+  /// Inserts `fingerprint`, which is not 0. Returns true if it is new.
   bool insert(std::uint64_t fingerprint) {
     for (std::size_t i = fingerprint & mask_;; i = (i + 1) & mask_) {
       std::uint64_t there = slots_[i].load(std::memory_order_relaxed);
@@ -32,7 +33,7 @@ class Visited {
       if (there == fingerprint) return false;
     }
   }
-  /// Told after a batch, since counting each would cost more than inserting.
+  /// Counts inserted states after a batch, since counting each would cost more than inserting.
   void add_to_size(std::size_t inserted) { size_ += inserted; }
   std::size_t size() const { return size_; }
   std::size_t memory_bytes() const { return (mask_ + 1) * sizeof(std::uint64_t); }

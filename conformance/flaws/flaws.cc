@@ -24,10 +24,11 @@ using machine::Transmit;
 using Phase = machine::JoinMote::Phase;
 namespace am = machine::am;
 
-constexpr std::size_t kReplySeqOffset = 8;     // Of join_reply.
-constexpr std::size_t kReplyTimeOffset = 4;
-constexpr std::size_t kTransIdOffset = 12;     // Of net_msg.
-constexpr std::size_t kAckedSeqOffset = 15;    // Behind TRANSID, APPID and the type of the body.
+using rubicon::AppMsgLayout;
+using rubicon::NetMsgLayout;
+using AckAt = Within<NetMsgLayout::PayloadAt,
+                     Within<AppMsgLayout::PayloadAt, rubicon::RubiconAckLayout::SeqNumAt>>;
+using TransIdAt = Within<NetMsgLayout::PayloadAt, AppMsgLayout::TransIdAt>;
 
 const Frame* heard(const Event& event, std::uint8_t type) {
   const auto* h = std::get_if<machine::Heard>(&event);
@@ -54,7 +55,7 @@ class Forged {
   std::array<std::uint8_t, machine::kAmPayloadMax> bytes_{};
 };
 
-// A join_reply for this mote, while it is joining, with another number than its request has.
+// Returns a join_reply for this mote, while it is joining, with another number than its request's.
 const Frame* wrong_reply(const State& state, const Event& event) {
   const Frame* const frame = heard(event, am::kJoinReply);
   const bool joining = state.config.role == Role::kMote && state.join.phase == Phase::kJoining;
@@ -67,7 +68,7 @@ void accepts_wrong_seq(State& state, Ticks now, const Event& event, Actions& act
   const Frame* const frame = wrong_reply(state, event);
   if (frame == nullptr) return machine::step(state, now, event, actions);
   Forged forged(*frame);
-  store_be16(forged.bytes() + kReplySeqOffset, state.join.seq_num);
+  rubicon::JoinReplyLayout::SeqNumAt::store(forged.bytes(), state.join.seq_num);
   machine::step(state, now, forged.event(), actions);
 }
 
@@ -76,7 +77,7 @@ void one_pending_seq(State& state, Ticks now, const Event& event, Actions& actio
   while (state.sink.pending.size() > 1) state.sink.pending.erase(0);  // The newest is the last.
 }
 
-// ack_join for a reply that was not accepted. Its address is remembered where a member's stands.
+// Sends ack_join for a reply that was not accepted. Keeps its address where a member's is.
 void ack_wrong_reply(State& state, const Frame& frame, Actions& actions) {
   auto& radio = state.radio;
   if (!radio.on || radio.sending || radio.taken) return;
@@ -146,7 +147,8 @@ void time_of_boot(State& state, Ticks now, const Event& event, Actions& actions)
         Transmit& transmit = actions.transmit(action.requirement);
         transmit = honest.transmit_of(action);
         if (transmit.type == am::kJoinReply) {
-          store_be32(transmit.payload.data() + kReplyTimeOffset, state.clock_offset_ms);
+          rubicon::JoinReplyLayout::CurTimeAt::store(transmit.payload.data(),
+                                                     state.clock_offset_ms);
         }
         break;
       }
@@ -171,11 +173,11 @@ void no_ack_timeout(State& state, Ticks now, const Event& event, Actions& action
 
 void misread_acks(State& state, Ticks now, const Event& event, Actions& actions) {
   const Frame* const frame = heard(event, am::kNet);
-  const bool ack = frame != nullptr && frame->payload.size() > kAckedSeqOffset + 1 &&
-                   frame->payload[kTransIdOffset] == machine::component::kRubiconAck;
+  const bool ack = frame != nullptr && frame->payload.size() >= AckAt::kEnd &&
+                   TransIdAt::load(frame->payload.data()) == rubicon::Component::kRubiconAck;
   if (!ack) return machine::step(state, now, event, actions);
   Forged forged(*frame);
-  std::swap(forged.bytes()[kAckedSeqOffset], forged.bytes()[kAckedSeqOffset + 1]);
+  std::reverse(forged.bytes() + AckAt::kAt, forged.bytes() + AckAt::kEnd);
   machine::step(state, now, forged.event(), actions);
 }
 

@@ -1,6 +1,5 @@
-// Named flaws of release 1.0, each a wrapper around the machine's step: what broken motes and sinks
-// do, without a switch inside the machine. The explorer must find them; broken implementations for
-// the runner are made of them.
+// Named flaws of release 1.0, each a wrapper around the machine's step, without a switch inside the
+// machine. The explorer must find them; broken implementations for the runner are made of them.
 #pragma once
 
 #include <array>
@@ -12,11 +11,11 @@
 
 namespace rubric::flaws {
 
-/// As machine::step; without a state of its own.
+/// Like machine::step; without a state of its own.
 using StepFunction = void (*)(machine::State&, machine::Ticks, const machine::Event&,
                               machine::Actions&);
 
-/// Where a flaw can be seen at all.
+/// Where a flaw is visible at all.
 enum class Seen : std::uint8_t {
   kJoin,      ///< In joins.
   kMessages,  ///< In reliable messages after a join.
@@ -25,14 +24,14 @@ enum class Seen : std::uint8_t {
 
 struct Flaw {
   const char* name;
-  const char* description;            ///< What a flawed node does.
-  std::array<ReqId, 3> requirements;  ///< That it breaks; kNone fills up.
+  const char* description;            ///< The behaviour of a flawed node.
+  std::array<ReqId, 3> requirements;  ///< The rules that it breaks; kNone fills up.
   Seen seen;
   StepFunction step;
 };
 
 std::span<const Flaw> all();
-/// Null: there is none of that name.
+/// Returns the flaw of that name, or null.
 const Flaw* find(std::string_view name);
 
 }  // namespace rubric::flaws

@@ -36,7 +36,7 @@ TEST(Flaws, HaveNamesRulesAndSteps) {
   EXPECT_EQ(find("none"), nullptr);
 }
 
-// Away from what is flawed a flawed node is the machine.
+// Apart from its flaw a flawed node equals the machine.
 TEST(Flaws, LeaveAnUndisturbedJoinAlone) {
   for (const Flaw& flaw : all()) {
     machine::State honest = machine::start(mote());
@@ -64,7 +64,7 @@ TEST(Flaws, LeaveAnUndisturbedJoinAlone) {
   }
 }
 
-// cur_time cannot be seen where time does not run, so the explorer does not look for it.
+// cur_time is invisible where time does not run, so the explorer does not check it.
 TEST(Flaws, TimeOfBootTellsNoOtherTime) {
   machine::State state = machine::start(sink());
   machine::Actions actions;

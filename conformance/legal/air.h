@@ -1,4 +1,4 @@
-// The radio channel and what sits at its ends.
+// The radio channel and the devices on it.
 #pragma once
 
 #include <cstdint>
@@ -43,8 +43,8 @@ class Device {
  protected:
   using Done = std::function<void(bool acked)>;
 
-  /// Queues a frame; `done` is called when it is sent, with whether its link ack came.
-  /// `keep_dsn`: takes the frame's dsn instead of the next one.
+  /// Queues a frame; calls `done` when it is sent, with whether its link ack came. With `keep_dsn`
+  /// it takes the frame's dsn instead of the next one.
   void transmit(RadioFrame frame, Done done = nullptr, bool keep_dsn = false);
   void power(bool on);
   std::uint8_t last_dsn() const { return static_cast<std::uint8_t>(next_dsn_ - 1); }
@@ -87,10 +87,11 @@ class Air {
   std::int64_t busy_until_us_ = 0;
 };
 
-/// The frame from frame control field to FCS. Sources: TEP 125; IEEE 802.15.4-2006, section 7.2.1.
+/// Returns the frame from frame control field to FCS. Sources: TEP 125; IEEE 802.15.4-2006, section
+/// 7.2.1.
 Octets radio_record(const RadioFrame& frame);
 Octets link_ack_record(std::uint8_t dsn);
-/// Time on the air, preamble included.
+/// Returns the time on the air, preamble included.
 std::int64_t airtime_us(std::size_t record_bytes);
 
 }  // namespace rubric::legal

@@ -18,7 +18,7 @@ class BaseStation final : public Endpoint {
   void serial_heard(std::uint8_t am_type, const Octets& payload);
   void peis_heard(const NetMessage& message);
   void set_island(std::uint16_t island);
-  /// Hands its sink bytes as they are, as a tester would.
+  /// Sends its sink bytes as they are, as a tester would.
   void raw(std::uint8_t am_type, const Octets& payload);
   /// Sends a message to its own sink whatever its destination.
   void send_to_sink(const NetMessage& message);
@@ -28,7 +28,7 @@ class BaseStation final : public Endpoint {
 
  private:
   SerialLine* line_ = nullptr;
-  std::int64_t last_work_us_ = 0;  ///< What arrives is handled in order.
+  std::int64_t last_work_us_ = 0;  ///< Arrivals are handled in order.
 };
 
 }  // namespace rubric::legal

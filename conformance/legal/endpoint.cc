@@ -37,7 +37,7 @@ void Endpoint::event(const std::string& name, const std::string& fields) const {
 
 void Endpoint::forget_transport() {
   pending_.clear();
-  // A counter may begin anywhere after a reboot, but not where acks of before can still come.
+  // A counter may begin anywhere after a reboot, but not where acks from before can still come.
   next_seq_ = static_cast<std::uint16_t>(next_seq_ + 200);
 }
 
@@ -46,7 +46,7 @@ std::uint16_t Endpoint::fresh_seq() {
   std::uint16_t seq = 0;
   do {
     seq = random ? world_.random().number16() : next_seq_++;
-    // 0xFFFF is the error value of send; numbers of late are not used again.
+    // 0xFFFF is the error value of send; recent numbers are not used again.
   } while ((seq == kNoSeq && !world_.traits().uses_ffff) || pending_.count(seq) != 0 ||
            std::find(recent_.begin(), recent_.end(), seq) != recent_.end());
   recent_.push_back(seq);
@@ -71,7 +71,7 @@ std::uint16_t Endpoint::send_message(Address dest, std::uint8_t app, const Octet
                             address_fields("dest", dest), reliable ? 1 : 0, app, body.size(),
                             taken ? message.seq : kNoSeq));
   if (!taken) return kNoSeq;
-  // The sender of a reliable broadcast is told of failure at the timeout, so it waits, too.
+  // The sender of a reliable broadcast is notified of failure at the timeout, so it waits, too.
   if (reliable) {
     const std::uint64_t token = next_token_++;
     pending_[message.seq] = {dest, app, body, tries, token};

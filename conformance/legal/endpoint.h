@@ -1,4 +1,4 @@
-// The transport level: what motes, sinks and base stations have in common.
+// The transport level of motes, sinks and base stations.
 #pragma once
 
 #include <cstdint>
@@ -26,12 +26,12 @@ class Endpoint {
   std::uint16_t send(Address dest, std::uint8_t app, const Octets& body, bool reliable);
 
  protected:
-  /// The network level takes a message that has everything; false when its buffer is full.
+  /// Takes a complete message at the network level; returns false when its buffer is full.
   virtual bool route(const NetMessage& message) = 0;
-  /// What the application does with a message.
+  /// Handles a message in the application.
   virtual void on_app(const NetMessage& message);
 
-  /// Hands a message that is for this node to transport and application.
+  /// Passes a message that is for this node to transport and application.
   void arrived(const NetMessage& message);
   bool send_unreliable(Address dest, const Octets& payload);
   std::uint16_t fresh_seq();

@@ -1,4 +1,4 @@
-// What variants of joining must show.
+// Features that variants of joining must show.
 #include <algorithm>
 #include <set>
 
@@ -38,7 +38,7 @@ std::size_t distinct_dsns(const Frames& frames) {
   for (const Seen& frame : frames) dsns.insert(frame.dsn);
   return dsns.size();
 }
-/// Whether that many requests of mote 2 went out in vain.
+/// Returns whether that many requests of mote 2 went unanswered.
 bool in_vain(const Traffic& t, const Frames& f, std::size_t number, std::size_t seqs) {
   const Frames sent = requests(f, 2);
   return sent.size() == number && distinct_seqs(sent) == seqs && periods_hold(sent) &&
@@ -133,7 +133,8 @@ bool full_list_answers(const Traffic&, const Frames& f) {
   return count(f, [](const Seen& s) { return s.serial_joined(); }) == 20 &&
          !replies(f, 23).empty() && reports_of(f, 23) == 0;
 }
-/// The place of the reply that each mote took among those to its request: 1 or 2; 0 for both.
+/// Returns the place of the reply that each mote took among those to its request: 1 or 2; 0 for
+/// both.
 std::multiset<int> choices(const Frames& f) {
   std::multiset<int> out;
   for (std::uint16_t mote = 2; mote <= 5; ++mote) {

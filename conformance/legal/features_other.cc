@@ -1,4 +1,4 @@
-// What variants of channels, clocks and captures must show.
+// Features that variants of channels, clocks and captures must show.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -23,7 +23,7 @@ bool usual(const Traffic&, const Frames& f) {
          count(f, [](const Seen& s) { return s.serial_joined(); }) == 3;
 }
 
-/// What a node sends on its channel to `dest`.
+/// Returns a node's frames on its channel to `dest`.
 Frames channel(const Frames& f, std::uint16_t from, std::uint16_t dest) {
   return pick(f, [&](const Seen& s) {
     return s.radio && s.app(Component::kSynChannel) && s.am_src == from &&
@@ -96,7 +96,7 @@ bool faster_clock(const Traffic&, const Frames& f) {
   return all_gaps(channel(f, 2, 1), [](std::int64_t gap) { return gap < 270'000; });
 }
 
-/// The longest time from a request to its reply.
+/// Returns the longest time from a request to its reply.
 std::int64_t slowest_reply(const Frames& f) {
   std::int64_t out = 0;
   std::map<std::uint16_t, std::int64_t> asked;
@@ -109,7 +109,7 @@ std::int64_t slowest_reply(const Frames& f) {
 bool slow(const Traffic&, const Frames& f) {
   return slowest_reply(f) > 100'000 && slowest_reply(f) < 300'000;
 }
-/// The mean time between requests of mote 2.
+/// Returns the mean time between requests of mote 2.
 std::int64_t mean_gap(const Frames& f) {
   const Frames sent = requests(f, 2);
   if (sent.size() < 4) return 0;
@@ -126,7 +126,8 @@ bool timers_fast(const Traffic&, const Frames& f) {
 bool timers_real(const Traffic&, const Frames& f) {
   return std::abs(mean_gap(f) - 500'000) < 4'000;
 }
-/// What cur_time grew by from the first to the last reply of the sink, and the time that passed.
+/// Returns the growth of cur_time from the first to the last reply of the sink, and the time that
+/// passed.
 std::pair<std::uint32_t, std::int64_t> clock_growth(const Frames& f) {
   const Frames some = pick(f, [](const Seen& s) { return s.is(AmType::kJoinReply); });
   return {some.back().cur_time() - some.front().cur_time(),

@@ -1,4 +1,4 @@
-// What variants of transport and network must show.
+// Features that variants of transport and network must show.
 #include <algorithm>
 #include <map>
 #include <set>
@@ -29,7 +29,7 @@ bool ack_deployed(const Traffic&, const Frames& f) { return ack_sizes(f, false, 
 bool ack_paper(const Traffic&, const Frames& f) { return ack_sizes(f, true, false); }
 bool ack_per_node(const Traffic&, const Frames& f) { return ack_sizes(f, true, true); }
 
-/// Whether an ack failed, and each `wait_us` after its send.
+/// Returns whether an ack failed, and each failure came `wait_us` after its send.
 bool fails_after(const Traffic& t, std::int64_t wait_us) {
   int fails = 0;
   for (const AppEvent& fail : t.events) {
@@ -48,7 +48,7 @@ bool fails_after(const Traffic& t, std::int64_t wait_us) {
 bool timeout_short(const Traffic& t, const Frames&) { return fails_after(t, 400'000); }
 bool timeout_long(const Traffic& t, const Frames&) { return fails_after(t, 3'000'000); }
 
-/// Whether some message came again from its source, later than any timeout.
+/// Returns whether some message came again from its source, later than any timeout.
 bool comes_again(const Frames& f, bool same_seq) {
   const auto wanted = [](const Seen& s) {
     return s.net && s.net->reliable && s.app(Component::kConnless) && (s.radio || !s.inbound) &&
@@ -186,7 +186,7 @@ bool wide_refused(const Traffic&, const Frames& f) {
   return any(f, [](const Seen& s) { return wide(s) && in(s); }) &&
          !any(f, [](const Seen& s) { return wide(s) && s.radio && s.am_src == kSinkAm; });
 }
-/// Each of them on the air at most once by its source and once by each sink.
+/// Returns whether each of them is on the air at most once by its source and once by each sink.
 bool no_storm(const Frames& f) {
   std::map<std::pair<std::uint16_t, std::uint16_t>, int> copies;
   for (const Seen& s : f) {
@@ -203,7 +203,7 @@ bool wide_to_sink(const Traffic& t, const Frames& f) {
            return wide(s) && s.radio && s.am_dst == kSinkAm;
          });
 }
-/// The most copies of one message from island 11 to a mote of 12 that a sink radiated.
+/// Returns the most copies of one message from island 11 to a mote of 12 that a sink radiated.
 int copies_by_sinks(const Frames& f) {
   std::map<std::uint16_t, int> copies;
   for (const Seen& s : f) {
@@ -257,7 +257,8 @@ bool serial_whole(const Traffic&, const Frames& f) { return forwarded_with(f, 10
 bool dest_zero(const Traffic&, const Frames& f) {
   return any(f, in) && !any(f, [](const Seen& s) { return in(s) && s.am_dst != 0; });
 }
-/// Whether the host sent one message in two good or, with `damaged`, one bad and one good frame.
+/// Returns whether the host sent one message in two good or, with `damaged`, one bad and one good
+/// frame.
 bool host_repeats(const Frames& f, bool damaged) {
   const Frames sent = pick(f, [](const Seen& s) {
     return !s.radio && s.inbound && s.is(AmType::kNet);

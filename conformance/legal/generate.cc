@@ -1,4 +1,4 @@
-// From a variant's name to traffic.
+// Turns a variant's name into traffic.
 #include "conformance/legal/generate.h"
 
 #include <algorithm>
@@ -47,7 +47,7 @@ Traffic generate(std::string_view variant, std::uint64_t seed) {
   }
   Plan plan = common_plan(random);
   for (const Variant* part : chosen) part->configure(plan, random);
-  // With nbytes 102 nobody could tell the paper's form of an ack.
+  // With nbytes 102 the paper's form of an ack would be unrecognizable.
   if (plan.traits.ack_form != AckForm::kDeployed) plan.traits.serial_true_nbytes = true;
   Traffic traffic = World(std::move(plan), random.next()).run();
   traffic.variant = variant;

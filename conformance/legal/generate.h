@@ -1,4 +1,4 @@
-// Legal traffic: what `rubric check` must not find a failure in under profile paper.
+// Legal traffic: `rubric check` must not find a failure in it under profile paper.
 //
 // Written from the rules alone; it shares no code with the reference machine and the oracle.
 #pragma once
@@ -12,15 +12,17 @@
 
 namespace rubric::legal {
 
-/// A run of the variant of that name, or of `mixed`: several that go together, chosen by the seed.
-/// The same name and seed give the same traffic. Throws std::invalid_argument for another name.
+/// Returns a run of the variant of that name, or of `mixed`: several compatible ones, chosen by the
+/// seed. The same name and seed give the same traffic. Throws std::invalid_argument for another
+/// name.
 Traffic generate(std::string_view variant, std::uint64_t seed);
 
-/// The same, written as a pcapng file: interfaces `radio` and `serial:ID`.
+/// Returns it as a pcapng file: interfaces `radio` and `serial:ID`.
 std::string to_pcapng(const Traffic& traffic);
-/// What is in it, as JSON (schema rubric.legal/1).
+/// Returns its contents as JSON (schema rubric.legal/1).
 std::string to_truth_json(const Traffic& traffic);
-/// The events at the applications, a JSON object a line, as in the captures of the firmware.
+/// Returns the events at the applications, one JSON object per line, as in the captures of the
+/// firmware.
 std::string to_app_jsonl(const Traffic& traffic);
 
 }  // namespace rubric::legal

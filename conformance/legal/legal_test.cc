@@ -1,4 +1,4 @@
-// The generator: determinism, well-formed output, and that each variant shows what it says.
+// The generator: determinism, well-formed output, and the features of each variant.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -51,7 +51,7 @@ TEST(Legal, SameSeedSameTraffic) {
 }
 
 TEST(Legal, KnownBytes) {
-  // The same with every compiler and library. When the generator changes on purpose, take over the
+  // The same with every compiler and library. When the generator changes on purpose, copy the
   // number that this prints.
   std::uint64_t sum = 14695981039346656037u;
   const auto add = [&sum](const Traffic& traffic) {
@@ -88,7 +88,7 @@ TEST(Legal, EachVariantShowsItsFeature) {
 TEST(Legal, FeaturesAreNotInCommonTraffic) {
   // A feature that any traffic shows would prove nothing; those of the defaults are listed.
   const std::set<std::string> common{"usual", "ack_deployed", "seq_random", "serial_whole"};
-  // These look at retries or channels, which common traffic may not have at all.
+  // These are about retries or channels, which common traffic may not have at all.
   const auto elsewhere = [](std::string_view name) {
     return name.substr(0, 6) == "timers" || name.substr(0, 4) == "syn_" || name == "busy_channel";
   };

@@ -2,12 +2,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 
 #include "conformance/legal/generate.h"
+#include "tools/cli/command.h"
 
 namespace {
 
@@ -42,52 +42,60 @@ bool write_traffic(const std::filesystem::path& folder, const Traffic& traffic) 
          write_file(folder / (name + ".app.jsonl"), to_app_jsonl(traffic));
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  CLI::App app{"Captures of legal RUBICON networks, to test checkers for false alarms."};
-  app.name("rubric_legal");
+struct Options {
   std::string variant = "all";
   std::string folder;
   std::uint64_t seed = 1;
   std::uint64_t count = 1;
-  bool only_list = false;
-  app.add_option("--variant", variant, "A variant's name, all (each once), or mixed")
-      ->capture_default_str();
-  app.add_option("--seed", seed, "The first seed")->capture_default_str();
-  app.add_option("--count", count, "Networks of each variant, with seeds that count up")
-      ->capture_default_str();
-  app.add_option("--out", folder, "Folder for NAME-SEED.pcapng, .json and .app.jsonl");
-  app.add_flag("--list", only_list, "Print the variants with the decisions they are readings of");
-  app.footer("Exit codes: 0 written, 2 usage, 3 cannot be written.");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
+  bool list = false;
+};
+
+std::vector<std::string> chosen(const std::string& variant) {
+  if (variant == "mixed" || find_variant(variant) != nullptr) return {variant};
+  if (variant != "all") {
+    throw rubric::cli::UsageError("no variant is named " + variant + "; --list shows them");
   }
-  if (only_list) {
+  std::vector<std::string> names;
+  for (const Variant& each : variants()) names.emplace_back(each.name);
+  return names;
+}
+
+int run(const Options& options) {
+  if (options.list) {
     list();
     return 0;
   }
-  std::vector<std::string> names;
-  if (variant == "all") {
-    for (const Variant& one : variants()) names.emplace_back(one.name);
-  } else if (variant == "mixed" || find_variant(variant) != nullptr) {
-    names.push_back(variant);
-  } else {
-    fmt::print(stderr, "no variant is named {}; --list shows them\n", variant);
-    return 2;
-  }
-  if (folder.empty()) {
-    fmt::print(stderr, "--out is required\n");
-    return 2;
-  }
+  const std::vector<std::string> names = chosen(options.variant);
+  if (options.folder.empty()) throw rubric::cli::UsageError("--out is required");
   std::error_code ignored;
-  std::filesystem::create_directories(folder, ignored);
+  std::filesystem::create_directories(options.folder, ignored);
   for (const std::string& name : names) {
-    for (std::uint64_t i = 0; i < count; ++i) {
-      if (!write_traffic(folder, generate(name, seed + i))) return kCannotWrite;
+    for (std::uint64_t i = 0; i < options.count; ++i) {
+      if (!write_traffic(options.folder, generate(name, options.seed + i))) return kCannotWrite;
     }
   }
   return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  rubric::cli::Command program("rubric_legal",
+                               "Captures of legal RUBICON networks, to test checkers for false "
+                               "alarms.");
+  Options options;
+  program.add_option("--variant", options.variant,
+                     "A variant's name, all (each once), or mixed")
+      .show_default();
+  program.add_option("--seed", options.seed, "The first seed").show_default();
+  program.add_option("--count", options.count,
+                     "Networks of each variant, with seeds that count up")
+      .show_default();
+  program.add_option("--out", options.folder,
+                     "Folder for NAME-SEED.pcapng, .json and .app.jsonl");
+  program.add_flag("--list", options.list,
+                   "Print the variants with the decisions they are readings of");
+  program.footer("Exit codes: 0 written, 2 usage, 3 cannot be written.");
+  program.exit_code_of([&] { return run(options); });
+  return program.parse_and_run(argc, argv);
 }

@@ -14,7 +14,7 @@ using Octets = std::vector<std::uint8_t>;
 inline constexpr std::uint16_t kAllNodes = 0xFFFF;  ///< Broadcast as pid, devid or AM address.
 inline constexpr std::uint16_t kNull = 0xFFFD;      ///< devid of a PC or robot.
 inline constexpr std::uint16_t kSinkAm = 1;         ///< AM address and devid of every sink.
-inline constexpr std::uint16_t kNoSeq = 0xFFFF;     ///< What send returns when it refuses.
+inline constexpr std::uint16_t kNoSeq = 0xFFFF;     ///< Returned when send refuses.
 inline constexpr std::uint8_t kUnknownApp = 77;     ///< An APPID that names no application.
 
 struct Address {
@@ -40,7 +40,7 @@ struct Descriptor {
 inline Bytes view(const Octets& octets) { return Bytes(octets.data(), octets.size()); }
 
 Octets encode(const NetMessage& message);
-/// Nothing where the codec finds a fault.
+/// Returns nothing if the codec finds a fault.
 std::optional<NetMessage> decode_net(Bytes bytes);
 
 Octets join_request(std::uint16_t seq, const Descriptor& descriptor);
@@ -48,7 +48,7 @@ Octets join_reply(Address address, std::uint32_t cur_time_ms, std::uint16_t seq)
 Octets ack_join(Address sink, Address mote, std::uint16_t seq, const Descriptor& descriptor);
 Octets config(rubicon::CommandCode code, std::uint16_t value);
 
-/// TRANSID, APPID and `body`.
+/// Returns TRANSID, APPID and `body`.
 Octets app_msg(rubicon::Component trans, std::uint8_t app, const Octets& body);
 Octets updates_body(const std::vector<std::pair<std::uint16_t, std::uint16_t>>& pairs);
 Octets demo_body(std::uint16_t transducers, std::uint16_t period_ms);

@@ -72,7 +72,8 @@ void Mote::start_join_timer() {
 void Mote::expired() {
   const Traits& traits = world().traits();
   if (requests_ >= traits.requests_max) return failed();
-  // FAIL comes at the last expiry all the same; after acceptance nothing is asked for until then.
+  // FAIL comes at the last expiry all the same; after acceptance no more requests are sent until
+  // then.
   if (accepted_ && traits.unconfirmed == Unconfirmed::kFail) {
     ++requests_;
     return start_join_timer();

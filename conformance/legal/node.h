@@ -1,4 +1,4 @@
-// What motes and sinks have in common: a radio, a clock, buffers, synaptic channels.
+// The common part of motes and sinks: a radio, a clock, buffers, synaptic channels.
 #pragma once
 
 #include <cstdint>
@@ -38,7 +38,7 @@ class Node : public Device, public Endpoint {
   World& world() const { return Device::world_; }
   /// Calls after `local_us` of this node's clock, unless it was rebooted.
   void timer(std::int64_t local_us, std::function<void()> call);
-  /// Handles what arrived: after this node's delay, in order of arrival; dropped when the buffer of
+  /// Handles an arrival: after this node's delay, in order of arrival; dropped if the buffer of
   /// incoming messages is full and the message is `buffered`.
   void work(bool buffered, std::function<void()> call);
   bool radio_full() const;

@@ -1,4 +1,4 @@
-// What a variant decides about a network before it runs.
+// A variant's decisions about a network before it runs.
 #pragma once
 
 #include <cstdint>
@@ -15,13 +15,13 @@ class Device;
 struct RadioFrame;
 
 enum class JoinedWhen : std::uint8_t { kAcceptance, kLinkAck };
-/// What a mote does that has acked a reply but saw no link ack of it, when its timer expires.
+/// The act of a mote that has acked a reply but saw no link ack for it, when its timer expires.
 enum class Unconfirmed : std::uint8_t { kFail, kRequestAgain };
 enum class SeqMode : std::uint8_t { kRandom, kCounting, kNearTheEnd };
 enum class AckForm : std::uint8_t { kDeployed, kPaper, kPerNode };
-/// What a sink does with pid 0xFFFF from its own island. kRefuse: sends none of its own either.
+/// A sink's treatment of pid 0xFFFF from its own island. kRefuse: sends none of its own either.
 enum class WidePid : std::uint8_t { kIgnore, kForward, kRefuse };
-/// What a receiver does with `reliable` other than 0 or 1.
+/// A receiver's treatment of `reliable` other than 0 or 1.
 enum class OddReliable : std::uint8_t { kDrop, kUnreliable };
 
 /// Every freedom that the rules leave. The defaults are those of a common network.
@@ -95,9 +95,9 @@ struct MotePlan {
 };
 
 using Script = std::function<void(World&)>;
-/// Whether `to` misses `frame`.
+/// Returns whether `to` misses `frame`.
 using Loss = std::function<bool(World&, const RadioFrame& frame, const Device& to)>;
-/// Whether the sender of `frame` misses its link ack.
+/// Returns whether the sender of `frame` misses its link ack.
 using AckLoss = std::function<bool(World&, const RadioFrame& frame)>;
 
 struct Plan {
@@ -108,12 +108,12 @@ struct Plan {
   std::int64_t end_us = 10'000'000;
   int chats = 12;                    ///< Messages of applications in random directions.
   bool foreign_chats = true;
-  int net_loss_percent = 1;          ///< Of receptions of net_msg.
+  int net_loss_percent = 1;          ///< Receptions of net_msg.
   std::vector<Loss> losses;
   std::vector<AckLoss> ack_losses;
   std::vector<std::pair<std::int64_t, Script>> script;
-  int corrupt_percent = 0;           ///< Of radio frames; nobody takes them.
-  int serial_corrupt_percent = 0;    ///< Of frames from host to mote.
+  int corrupt_percent = 0;           ///< Radio frames; nobody takes them.
+  int serial_corrupt_percent = 0;    ///< Frames from host to mote.
   int serial_ack_corrupt_percent = 0;
   // The capture.
   int sniffer_misses_percent = 0;

@@ -19,9 +19,9 @@ class Random {
     z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
     return z ^ (z >> 31);
   }
-  /// From 0 to n - 1; n > 0.
+  /// Returns a number from 0 to n - 1; n > 0.
   std::size_t below(std::size_t n) { return static_cast<std::size_t>(next() % n); }
-  /// From `low` to `high`, both included.
+  /// Returns a number from `low` to `high`, both included.
   std::int64_t between(std::int64_t low, std::int64_t high) {
     const auto span = static_cast<std::uint64_t>(high - low) + 1;
     return low + static_cast<std::int64_t>(next() % span);

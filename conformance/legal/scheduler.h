@@ -8,7 +8,7 @@
 
 namespace rubric::legal {
 
-/// Runs what is due, in order of time and, at one time, in order of scheduling.
+/// Runs events in order of time and, at one time, in order of scheduling.
 class Scheduler {
  public:
   std::int64_t now_us() const { return now_us_; }

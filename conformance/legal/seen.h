@@ -1,4 +1,4 @@
-// What tests of the generator look at: packets taken apart by their offsets, not by the generator.
+// Helpers of the generator's tests: packets taken apart by their offsets, not by the generator.
 #pragma once
 
 #include <cstdint>
@@ -23,25 +23,25 @@ struct Seen {
   std::uint16_t am_dst = 0;
   std::uint16_t am_src = 0;
   int am_type = -1;
-  Octets payload;               ///< Of the AM frame.
+  Octets payload;               ///< In the AM frame.
   std::optional<NetMessage> net;
 
   bool is(rubicon::AmType type) const { return am_type == static_cast<int>(type); }
   bool from(rubicon::AmType type, std::uint16_t src) const {
     return radio && is(type) && am_src == src;
   }
-  /// seq_num of the messages of joining.
+  /// Returns seq_num of the join messages.
   std::uint16_t join_seq() const;
-  /// island_addr of a join_reply, dest.pid of an ack_join.
+  /// Returns island_addr of a join_reply, dest.pid of an ack_join.
   std::uint16_t join_island() const { return load_be16(payload.data()); }
   std::uint32_t cur_time() const { return load_be32(payload.data() + 4); }
   bool app(rubicon::Component trans) const {
     return net && net->payload[0] == static_cast<std::uint8_t>(trans);
   }
-  /// The type byte of a Connectionless body; -1 where there is none.
+  /// Returns the type byte of a Connectionless body; -1 if there is none.
   int body_type() const;
   bool serial_joined() const { return !radio && !inbound && body_type() == 16; }
-  /// The number that a Rubicon ack acknowledges.
+  /// Returns the number that a Rubicon ack acknowledges.
   std::uint16_t acked() const;
 };
 
@@ -56,13 +56,13 @@ Frames requests(const Frames& frames, std::uint16_t mote);
 Frames replies(const Frames& frames, std::uint16_t mote);
 Frames ack_joins(const Frames& frames, std::uint16_t mote);
 std::size_t distinct_seqs(const Frames& joins);
-/// Times between neighbours.
+/// Returns times between neighbours.
 std::vector<std::int64_t> gaps(const Frames& frames);
-/// Events of that name at that node whose fields contain `part`.
+/// Returns events of that name at that node whose fields contain `part`.
 std::vector<AppEvent> events(const Traffic& traffic, int node, const std::string& name,
                              const std::string& part = "");
 
-/// A table of what each variant must show.
+/// A feature that a variant must show; a table of these covers all.
 struct Feature {
   const char* variant;
   bool (*shown)(const Traffic& traffic, const Frames& frames);

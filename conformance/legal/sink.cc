@@ -13,14 +13,14 @@ namespace rubric::legal {
 namespace {
 
 constexpr std::size_t kNetHeaderBytes = 12;
-constexpr std::size_t kNetMsgBytes = 114;
+constexpr std::size_t kNetBytes = 114;
 constexpr std::uint8_t kMaxNbytes = 102;
-constexpr auto kNet = static_cast<std::uint8_t>(rubicon::AmType::kNet);
+constexpr auto kNetType = static_cast<std::uint8_t>(rubicon::AmType::kNet);
 
 }  // namespace
 
 Sink::Sink(World& world, int number, int island_index, std::uint16_t island)
-    : Node(world, number, kSinkAm, island_index, "sink"), serial_memory_(kNetMsgBytes) {
+    : Node(world, number, kSinkAm, island_index, "sink"), serial_memory_(kNetBytes) {
   address_ = {island, kSinkAm};
 }
 
@@ -131,7 +131,7 @@ void Sink::serial_heard(std::uint8_t am_type, const Octets& payload) {
       event("island_set", fmt::format(",\"island\":{}", island));
     });
   }
-  if (am_type != kNet) return;
+  if (am_type != kNetType) return;
   work(true, [this, payload] {
     const auto message = decode_net(view(payload));
     if (message) on_serial_net(*message);
@@ -159,12 +159,12 @@ void Sink::on_serial_net(const NetMessage& message) {
 void Sink::by_radio(const NetMessage& message) { transmit_net(message, message.dest.devid); }
 
 void Sink::to_host(const NetMessage& message, bool own) {
-  // The serial line always carries a whole message; what is behind the content is left over.
+  // The serial line always carries a whole message; the bytes after the content are left over.
   const Octets bytes = encode(message);
   std::copy(bytes.begin(), bytes.end(), serial_memory_.begin());
   const bool lies = !own && !world().traits().serial_true_nbytes;
   if (lies) serial_memory_[kNetHeaderBytes - 1] = kMaxNbytes;
-  line_->to_host(kNet, serial_memory_);
+  line_->to_host(kNetType, serial_memory_);
 }
 
 bool Sink::route(const NetMessage& message) {

@@ -44,7 +44,7 @@ class Sink final : public Node {
   SerialLine* line_ = nullptr;
   std::map<std::uint16_t, Joining> joining_;
   std::set<std::uint16_t> members_;
-  Octets serial_memory_;  ///< What the last message left there.
+  Octets serial_memory_;  ///< Left by the last message.
   std::set<std::pair<std::uint32_t, std::uint16_t>> seen_;
 };
 

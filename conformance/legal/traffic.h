@@ -1,4 +1,4 @@
-// What the generator hands out: packets as capture files hold them, and the truth about them.
+// The generator's output: packets as capture files hold them, and the truth about them.
 #pragma once
 
 #include <cstdint>
@@ -33,10 +33,10 @@ enum class Role : std::uint8_t {
 };
 
 struct NodeInfo {
-  int number = 0;             ///< As in the interface's name; a base station has its sink's.
+  int number = 0;             ///< From the interface's name; a base station has its sink's.
   Role role = Role::kMote;
   std::uint16_t id = 0;       ///< TinyOS id, which is the AM address and the devid.
-  std::uint16_t island = 0;   ///< That it joins or serves at the start; 0 for none.
+  std::uint16_t island = 0;   ///< Joined or served at the start; 0 for none.
 };
 
 /// An event at an application.
@@ -54,9 +54,9 @@ enum class Worst : std::uint8_t { kPass, kWeak };
 
 /// One run of a network.
 struct Traffic {
-  std::string variant;                ///< As asked for.
-  std::vector<std::string> variants;  ///< What is in it; several for `mixed`.
-  std::vector<int> decisions;         ///< Of spec/decisions: those that it is a reading of.
+  std::string variant;                ///< As requested.
+  std::vector<std::string> variants;  ///< Contained variants; several for `mixed`.
+  std::vector<int> decisions;         ///< Decisions of spec/decisions that it shows readings of.
   std::uint64_t seed = 0;
   Worst worst = Worst::kPass;
   bool sniffer_complete = true;

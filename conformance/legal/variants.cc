@@ -1,4 +1,4 @@
-// The list of variants and what they build on.
+// The list of variants and their common plans.
 #include "conformance/legal/variants.h"
 
 #include <utility>

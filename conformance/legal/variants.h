@@ -1,4 +1,4 @@
-// The legal variants: each is one honest way to follow the rules, or something legal that happens.
+// The legal variants: each is one honest way to follow the rules, or a legal event.
 #pragma once
 
 #include <span>
@@ -14,24 +14,24 @@ namespace rubric::legal {
 struct Variant {
   std::string_view name;
   std::string_view summary;
-  std::vector<int> decisions;   ///< Of spec/decisions, 101 to 132: those that it is a reading of.
+  std::vector<int> decisions;   ///< Decisions, 101 to 132, that it shows readings of.
   void (*configure)(Plan& plan, Random& random);
   bool mixes = false;           ///< May be part of `mixed`.
   Worst worst = Worst::kPass;
 };
 
-/// All variants, in the order in which they are listed.
+/// Returns all variants, in the order in which they are listed.
 const std::vector<Variant>& variants();
 const Variant* find_variant(std::string_view name);
 
-/// A decision of which no variant shows a reading, and why.
+/// A decision without a variant, and why.
 struct WithoutVariant {
   int decision;
   std::string_view reason;
 };
 std::span<const WithoutVariant> without_variant();
 
-/// One island, a sink, three motes with readings, some messages in every direction.
+/// Returns one island, a sink, three motes with readings, some messages in every direction.
 Plan common_plan(Random& random);
 
 std::vector<Variant> join_variants();
@@ -41,11 +41,11 @@ std::vector<Variant> synaptic_variants();
 std::vector<Variant> timing_variants();
 std::vector<Variant> capture_variants();
 
-// What several groups use.
+// Helpers of several groups.
 MotePlan mote_plan(std::uint16_t id, int island, std::int64_t boot_us);
-/// Islands 11 and 12 with two motes each.
+/// Makes islands 11 and 12 with two motes each.
 void two_islands(Plan& plan, bool apart, Random& random);
-/// Everybody misses frames of that type from AM address `src` before `until_us`.
+/// Makes every node miss frames of that type from AM address `src` before `until_us`.
 Loss lose(rubicon::AmType type, std::uint16_t src, std::int64_t until_us);
 
 }  // namespace rubric::legal

@@ -1,4 +1,4 @@
-// Variants of what else is on the air, and of what a capture holds.
+// Variants of other traffic on the air, and of the contents of a capture.
 #include "conformance/legal/variants.h"
 #include "conformance/legal/world.h"
 

@@ -1,4 +1,4 @@
-// Variants of joining. Mote 2 (index 0 of the common plan) is the one that things happen to.
+// Variants of joining. They change mote 2 (index 0 of the common plan).
 #include "conformance/legal/air.h"
 #include "conformance/legal/variants.h"
 #include "conformance/legal/world.h"
@@ -15,7 +15,7 @@ bool is_ack_join(const RadioFrame& frame, std::uint16_t src) {
   return frame.type == static_cast<std::uint8_t>(AmType::kAckJoin) && frame.src == src;
 }
 
-/// Mote 2 misses its link acks before `until_us`.
+/// Makes mote 2 miss its link acks before `until_us`.
 AckLoss lose_link_acks(std::int64_t until_us) {
   return [until_us](World& world, const RadioFrame& frame) {
     return frame.src == kMote && world.now_us() < until_us;

@@ -5,10 +5,10 @@
 namespace rubric::legal {
 namespace {
 
-constexpr auto kMockup = static_cast<std::uint8_t>(rubicon::Component::kMockup);
+constexpr auto kMockupType = static_cast<std::uint8_t>(rubicon::Component::kMockup);
 
-/// A mote, the sink and the base station of the first island each send to `devid` of pid, or of
-/// their own island where pid is 0.
+/// Makes a mote, the sink and the base station of the first island each send to `devid` of pid, or
+/// of their own island if pid is 0.
 void everybody_sends(Plan& plan, std::uint16_t pid, std::uint16_t devid, bool reliable) {
   std::int64_t time = 3'000'000;
   for (int round = 0; round < 2; ++round) {
@@ -19,7 +19,7 @@ void everybody_sends(Plan& plan, std::uint16_t pid, std::uint16_t devid, bool re
                          : who == 1 ? static_cast<Endpoint&>(world.sink(0))
                                     : static_cast<Endpoint&>(world.base(0));
         const Address dest{pid == 0 ? from.address().pid : pid, devid};
-        from.send(dest, kMockup, {0xB0, static_cast<std::uint8_t>(who)}, reliable);
+        from.send(dest, kMockupType, {0xB0, static_cast<std::uint8_t>(who)}, reliable);
       }});
       time += 600'000;
     }
@@ -54,7 +54,7 @@ void wide_to_sink(Plan& plan, Random& random) {
   plan.traits.wide_pid_to_all = false;
 }
 
-/// Motes of the first island send to `devid` of the second, or to its motes where devid is 0.
+/// Makes motes of the first island send to `devid` of the second, or to its motes if devid is 0.
 void across(Plan& plan, std::uint16_t devid, bool reliable) {
   for (std::int64_t time = 2'600'000; time < 7'500'000; time += 700'000) {
     plan.script.push_back({time, [devid, reliable](World& world) {
@@ -68,7 +68,7 @@ void across(Plan& plan, std::uint16_t devid, bool reliable) {
       if (from == nullptr || to == nullptr) return;
       const std::uint16_t pid = to->address().pid;
       const Address dest{pid, devid == 0 ? to->am() : devid};
-      from->send(dest, kMockup, {0xC0, 1, 2, 3}, reliable);
+      from->send(dest, kMockupType, {0xC0, 1, 2, 3}, reliable);
     }});
   }
 }

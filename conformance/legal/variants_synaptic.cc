@@ -8,8 +8,8 @@ namespace {
 constexpr std::int64_t kStartUs = 2'600'000;
 constexpr std::int64_t kWriteUs = 210'000;
 
-/// Mote 2: a channel to the sink and one to mote 3; mote 3: one to itself and one to the sink; the
-/// sink: one to mote 4. Values change now and then.
+/// Creates channels. Mote 2: one to the sink and one to mote 3; mote 3: one to itself and one to
+/// the sink; the sink: one to mote 4. Values change now and then.
 void channels(Plan& plan, bool power_save, int change_percent) {
   plan.chats = 6;
   plan.script.push_back({kStartUs, [power_save](World& world) {
@@ -36,7 +36,7 @@ void channels(Plan& plan, bool power_save, int change_percent) {
     }});
   }
 }
-/// Mote 2 stops its first channel for a while.
+/// Makes mote 2 stop its first channel for a while.
 void stop_and_start(Plan& plan) {
   plan.script.push_back({5'000'000, [](World& world) {
     if (world.mote(0).joined() && world.mote(1).joined()) world.mote(0).stop(0);

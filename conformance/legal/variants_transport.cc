@@ -10,24 +10,24 @@ namespace {
 
 using rubicon::AmType;
 
-constexpr auto kMockup = static_cast<std::uint8_t>(rubicon::Component::kMockup);
+constexpr auto kMockupMessage = static_cast<std::uint8_t>(rubicon::Component::kMockup);
 constexpr std::uint16_t kTesterAm = 66;
 
-/// What mote 3 sends between 3.0 and 3.5 s is lost, and it sends a reliable message then.
+/// Loses the frames of mote 3 between 3.0 and 3.5 s, when it sends a reliable message.
 void lose_a_message(Plan& plan) {
   plan.losses.push_back([](World& world, const RadioFrame& frame, const Device&) {
     return frame.src == 3 && world.now_us() > 3'000'000 && world.now_us() < 3'500'000;
   });
   plan.script.push_back({3'100'000, [](World& world) {
     if (!world.mote(1).joined()) return;
-    world.mote(1).send(world.base(0).address(), kMockup, {0xA2, 1, 2, 3, 4, 5, 6, 7}, true);
+    world.mote(1).send(world.base(0).address(), kMockupMessage, {0xA2, 1, 2, 3, 4, 5, 6, 7}, true);
   }});
 }
 void ack_deployed(Plan& plan, Random&) { plan.chats = 25; }
 void ack_paper(Plan& plan, Random&) {
   plan.chats = 25;
   plan.traits.ack_form = AckForm::kPaper;
-  plan.traits.serial_true_nbytes = true;  // With 102 bytes nobody could tell this form.
+  plan.traits.serial_true_nbytes = true;  // 102 bytes would hide this form.
 }
 void ack_per_node(Plan& plan, Random&) {
   plan.chats = 25;
@@ -79,7 +79,7 @@ void unknown_app_silent(Plan& plan, Random&) {
   unknown_app(plan);
 }
 
-/// A tester's net_msg to mote `index` with the byte at `offset` changed.
+/// Returns a tester's net_msg to mote `index` with the byte at `offset` changed.
 Script patched(std::size_t index, std::size_t offset, std::uint8_t value) {
   return [index, offset, value](World& world) {
     NetMessage message;
@@ -87,7 +87,7 @@ Script patched(std::size_t index, std::size_t offset, std::uint8_t value) {
     message.src = {message.dest.pid, kTesterAm};
     message.seq = static_cast<std::uint16_t>(world.random().between(1, 60'000));
     message.payload =
-        app_msg(rubicon::Component::kConnless, kMockup, demo_body(0x0041, 600));
+        app_msg(rubicon::Component::kConnless, kMockupMessage, demo_body(0x0041, 600));
     Octets bytes = encode(message);
     bytes[offset] = value;
     world.outsider(kTesterAm, Role::kTester)
@@ -123,7 +123,7 @@ void host_nbytes(Plan& plan, Random&) {
       message.dest = {world.sink(0).address().pid, world.mote(0).am()};
       message.src = world.base(0).address();
       message.payload =
-          app_msg(rubicon::Component::kConnless, kMockup, demo_body(0x0041, 600));
+          app_msg(rubicon::Component::kConnless, kMockupMessage, demo_body(0x0041, 600));
       Octets bytes = encode(message);
       bytes[11] = value;
       bytes.resize(114);
@@ -145,7 +145,7 @@ void answer_before_ack(Plan& plan, Random&) {
     plan.script.push_back({time, [](World& world) {
       Mote& mote = world.mote(world.random().below(world.motes()));
       if (!mote.joined()) return;
-      world.base(0).send(mote.address(), kMockup, demo_body(0x0041, 600), true);
+      world.base(0).send(mote.address(), kMockupMessage, demo_body(0x0041, 600), true);
     }});
   }
 }
@@ -154,12 +154,12 @@ void message_to_nonmember(Plan& plan, Random&) {
   plan.traits.app_resends = 1;
   const auto to_mote = [](World& world) {
     const Address dest{world.sink(0).address().pid, world.mote(0).am()};
-    world.base(0).send(dest, kMockup, {0xA0, 1}, true);
+    world.base(0).send(dest, kMockupMessage, {0xA0, 1}, true);
   };
   plan.script.push_back({800'000, to_mote});
   plan.script.push_back({2'050'000, [](World& world) {
     const Address all{world.sink(0).address().pid, kAllNodes};
-    world.sink(0).send(all, kMockup, {0xA0, 2}, false);
+    world.sink(0).send(all, kMockupMessage, {0xA0, 2}, false);
   }});
 }
 void in_full(Plan& plan, Random&) {
@@ -173,7 +173,7 @@ void in_full(Plan& plan, Random&) {
       for (std::uint8_t i = 0; i < 5; ++i) {
         for (std::size_t m = 0; m < world.motes(); ++m) {
           if (!world.mote(m).joined()) continue;
-          world.mote(m).send(world.sink(0).address(), kMockup, {0xA0, i}, true);
+          world.mote(m).send(world.sink(0).address(), kMockupMessage, {0xA0, i}, true);
         }
       }
     }});
@@ -185,7 +185,7 @@ void out_full(Plan& plan, Random&) {
     plan.script.push_back({time, [](World& world) {
       if (!world.mote(0).joined()) return;
       for (std::uint8_t i = 0; i < 9; ++i) {
-        world.mote(0).send(world.base(0).address(), kMockup, {0xA1, i}, i % 2 == 0);
+        world.mote(0).send(world.base(0).address(), kMockupMessage, {0xA1, i}, i % 2 == 0);
       }
     }});
   }

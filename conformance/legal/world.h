@@ -31,7 +31,7 @@ class World {
   World(Plan plan, std::uint64_t seed);
   ~World();
 
-  /// Runs the plan to its end and returns what the capture holds.
+  /// Runs the plan to its end and returns the contents of the capture.
   Traffic run();
 
   const Plan& plan() const { return plan_; }
@@ -40,17 +40,18 @@ class World {
   Scheduler& scheduler() { return scheduler_; }
   Air& air() { return air_; }
   std::int64_t now_us() const { return scheduler_.now_us(); }
-  /// Applications begin nothing later, so that the capture ends without open ends.
+  /// Returns when applications stop starting new messages, so that the capture ends without open
+  /// ends.
   std::int64_t last_send_us() const { return plan_.end_us - 1'300'000; }
 
   const std::vector<Device*>& devices() const { return devices_; }
-  /// In the order of the plan.
+  /// By their order in the plan.
   Mote& mote(std::size_t index) { return *motes_[index]; }
   std::size_t motes() const { return motes_.size(); }
   Sink& sink(std::size_t island_index) { return *sinks_[island_index]; }
   BaseStation& base(std::size_t island_index) { return *bases_[island_index]; }
   std::size_t islands() const { return sinks_.size(); }
-  /// Made when first asked for.
+  /// Returns an outsider, made when first asked for.
   Outsider& outsider(std::uint16_t am, Role role);
 
   /// Carries a message from a base station to those of its destination.

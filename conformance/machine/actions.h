@@ -1,4 +1,4 @@
-// What a step did: frames to put on a line, news for the application, and the rule behind each.
+// The results of a step: frames to put on a line, news for the application, and the rule for each.
 #pragma once
 
 #include <array>
@@ -25,7 +25,7 @@ struct Transmit {
   Frame frame() const { return {link, dest, src, type, bytes()}; }
 };
 
-/// One labelled consequence. What: kFollowed changed the state or kept a rule without a word;
+/// One labelled consequence. kFollowed changed the state or kept a rule without any output;
 /// kIgnored had no effect because of the rule.
 struct Action {
   enum class What : std::uint8_t { kTransmit, kNotify, kFollowed, kIgnored };
@@ -34,7 +34,7 @@ struct Action {
   std::uint8_t index = 0;  ///< Among the transmissions, or among the notices.
 };
 
-/// The consequences of one step, in their order. Bounded, no heap; cleared by step().
+/// The consequences of one step, in order. Bounded, no heap; cleared by step().
 class Actions {
  public:
   static constexpr std::size_t kTransmitsMax = 8;
@@ -42,7 +42,7 @@ class Actions {
   static constexpr std::size_t kActionsMax = 64;
 
   void clear() { count_ = transmits_ = notices_ = 0; }
-  /// Room for one more frame; its fields are to be filled at once.
+  /// Returns room for one more frame, to be filled at once.
   Transmit& transmit(ReqId requirement) {
     assert(transmits_ < kTransmitsMax);
     add(Action::What::kTransmit, requirement, transmits_);

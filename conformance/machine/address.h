@@ -12,7 +12,7 @@ constexpr std::uint16_t kBroadcastDevid = 0xFFFF;
 constexpr std::uint16_t kLocalDevid = 0xFFFE;  ///< The node itself.
 constexpr std::uint16_t kNullDevid = 0xFFFD;  ///< Not for a mote: for the island's PC or robot.
 constexpr std::uint16_t kAmBroadcast = 0xFFFF;
-constexpr std::uint16_t kNoSeq = 0xFFFF;  ///< What send returns when it refuses.
+constexpr std::uint16_t kNoSeq = 0xFFFF;  ///< Returned when send refuses.
 
 /// <pid, devid>: an island and a mote in it.
 struct Address {
@@ -24,7 +24,7 @@ struct Address {
 /// Island ids and devids that name no one island or mote. (decision 132)
 constexpr bool is_reserved(std::uint16_t id) { return id >= kNullDevid; }
 
-/// What a mote tells of itself when it joins.
+/// A mote's description of itself when it joins.
 struct Descriptor {
   std::uint8_t mote_type = 0;
   std::uint8_t actuators = 0;

@@ -1,4 +1,4 @@
-// Containers of fixed room, without a heap; two are equal when what they hold is.
+// Containers of fixed room, without a heap; two are equal if their contents are.
 #pragma once
 
 #include <array>
@@ -16,12 +16,12 @@ class BoundedQueue {
   bool full() const { return count_ == kRoom; }
   std::size_t size() const { return count_; }
   static constexpr std::size_t room() { return kRoom; }
-  /// The i-th oldest; i < size().
+  /// Returns the i-th oldest; i < size().
   T& operator[](std::size_t i) { return items_[(head_ + i) % kRoom]; }
   const T& operator[](std::size_t i) const { return items_[(head_ + i) % kRoom]; }
   T& front() { return items_[head_]; }
   const T& front() const { return items_[head_]; }
-  /// A place behind the last, to be filled; not when full().
+  /// Appends a place to be filled; not when full().
   T& push() {
     assert(!full());
     return items_[(head_ + count_++) % kRoom];
@@ -31,7 +31,7 @@ class BoundedQueue {
     head_ = static_cast<std::uint8_t>((head_ + 1) % kRoom);
     --count_;
   }
-  /// Takes out the i-th oldest; the others keep their order.
+  /// Removes the i-th oldest; the others keep their order.
   void erase(std::size_t i) {
     assert(i < count_);
     for (std::size_t k = i + 1; k < count_; ++k) (*this)[k - 1] = (*this)[k];

@@ -1,4 +1,4 @@
-// The calls of the application.
+// Handles the application's calls.
 #include <variant>
 
 #include "codec/generated/rubicon/config.h"
@@ -10,7 +10,7 @@
 namespace rubric::machine {
 namespace {
 
-// A new call's number is not that of the call before.
+// Returns a number for a new call that differs from that of the call before.
 std::uint16_t join_seq_num(State& state) {
   const std::uint16_t seq_num = next_seq_num(state.sequence, state.awaited);
   //= J1-SEQ: A new joinIsland call uses a sequence number other than the one of the call before it.
@@ -18,7 +18,7 @@ std::uint16_t join_seq_num(State& state) {
   return again ? next_seq_num(state.sequence, state.awaited) : seq_num;
 }
 
-struct Caller {
+struct NodeCall {
   Node& node;
 
   void result(bool success, ReqId requirement) {
@@ -88,7 +88,7 @@ struct Caller {
     node.actions.notify(Clock{clock_ms(node)}, "J4-CLOCK"_rule);
   }
 
-  // The others are those of synaptic channels, which a base station does not have.
+  // The other calls are about synaptic channels, which a base station does not have.
   void operator()(const CreateChannel&) { synaptic(ChannelResult{0, false}); }
   void operator()(const ReadInput&) { synaptic(InputValue{0, false}); }
   template <class Other>
@@ -109,6 +109,6 @@ struct Caller {
 
 }  // namespace
 
-void call(Node& node, const Call& call) { std::visit(Caller{node, call}, call); }
+void call(Node& node, const Call& call) { std::visit(NodeCall{node, call}, call); }
 
 }  // namespace rubric::machine

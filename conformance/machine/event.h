@@ -1,4 +1,4 @@
-// What happens to a node, and what it may do: the whole interface of the machine.
+// Events of a node, and its outputs: the whole interface of the machine.
 #pragma once
 
 #include <cstdint>
@@ -12,10 +12,10 @@
 namespace rubric::machine {
 
 constexpr std::uint8_t kAmPayloadMax = 114;
-constexpr std::uint8_t kAppDataMax = 100;  ///< Behind TRANSID and APPID.
+constexpr std::uint8_t kAppDataMax = 100;  ///< After TRANSID and APPID.
 
-/// An active message. Over PEIS dest and src are islands and the payload is a net_msg.
-/// The bytes are somebody else's; a step keeps none of them.
+/// An active message. Over PEIS dest and src are islands and the payload is a net_msg. Borrows its
+/// bytes; a step keeps none of them.
 struct Frame {
   Link link = Link::kRadio;
   std::uint16_t dest = 0;
@@ -49,7 +49,7 @@ struct StopAllChannels {};
 struct WriteOutput { ChannelId id = 0; std::uint8_t pos = 0; float value = 0; };
 struct ReadInput { ChannelId id = 0; std::uint8_t pos = 0; };
 struct SetTimeStep { std::uint16_t ticks = 0; };
-struct SetIslandId { std::uint16_t island = 0; };  ///< A base station tells its sink.
+struct SetIslandId { std::uint16_t island = 0; };  ///< From a base station.
 struct GetClock {};
 
 using Call = std::variant<JoinIsland, Send, SetInterface, GetInterface, CreateChannel,
@@ -58,7 +58,7 @@ using Call = std::variant<JoinIsland, Send, SetInterface, GetInterface, CreateCh
                           GetClock>;
 
 enum class TimerKind : std::uint8_t { kJoin, kAck, kSynaptic };
-/// Which of a node's timers: the join timer, the ack timeout of awaited message `index`, the clock.
+/// One of a node's timers: the join timer, the ack timeout of awaited message `index`, the clock.
 struct Timer {
   TimerKind kind = TimerKind::kJoin;
   std::uint8_t index = 0;
@@ -78,7 +78,7 @@ struct PowerOff {};                     ///< The same, and nothing has an effect
 using Event = std::variant<Heard, Called, TimerDue, SendDone, LinkBusy, AppBusy, Reboot,
                            PowerOff>;
 
-// What the application is told; results of calls among it.
+// Notices for the application, results of calls among them.
 struct Joined { Address address; bool success = false; };
 struct MoteJoined { Address address; Descriptor descriptor; };
 struct SendResult { std::uint16_t seq_num = kNoSeq; };
@@ -87,7 +87,7 @@ struct AckReceived { std::uint8_t app_id = 0; std::uint16_t seq_num = 0; bool su
 enum class DataStatus : std::uint8_t { kNew, kOld, kUnknownChannel };
 struct SynDataReceived { ChannelId id = 0; DataStatus status = DataStatus::kNew; };
 struct ChannelResult { ChannelId id = 0; bool success = false; };
-struct OperationResult { bool success = false; };  ///< Of the calls that return nothing else.
+struct OperationResult { bool success = false; };  ///< For calls without other results.
 struct InputValue { float value = 0; bool success = false; };
 struct InterfaceState { Link link = Link::kRadio; bool on = false; };
 struct Clock { std::uint32_t ms = 0; };

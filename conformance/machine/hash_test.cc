@@ -1,4 +1,4 @@
-// Equal states hash equal, and what makes states differ makes their hashes differ.
+// Equal states hash equal, and every difference between states changes their hashes.
 #include <functional>
 #include <set>
 
@@ -9,7 +9,7 @@ namespace {
 
 using Phase = JoinMote::Phase;
 
-// Nothing in it is at its start: every field has something to lose.
+// Returns a state in which every field differs from its start.
 State busy_state() {
   Config config = sink_config();
   config.random_seq = true;
@@ -107,7 +107,8 @@ TEST(Hash, EveryDifferenceCounts) {
   }
 }
 
-// The same content reached by two ways compares equal and hashes the same, whatever lies around it.
+// The same content reached by two ways compares equal and hashes the same, whatever the memory
+// around it.
 TEST(Hash, EqualStatesHashEqual) {
   Device turned(mote_config(5));
   for (int i = 0; i < 3; ++i) {  // Turns the circular buffers.

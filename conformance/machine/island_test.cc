@@ -76,7 +76,7 @@ TEST(IslandId, BaseStationTellsItsSink) {
   EXPECT_EQ(frame.dest, 1);
   EXPECT_EQ(frame.src, 0);
   EXPECT_EQ(frame.type, 37);
-  EXPECT_EQ(base.only_payload(), (Payload{0x0A, 0x00, 0x0C}));  // As the original sends it.
+  EXPECT_EQ(base.only_payload(), (Payload{0x0A, 0x00, 0x0C}));  // The original sends it so.
   EXPECT_TRUE(base.notice<OperationResult>().success);
   EXPECT_EQ(own_address(base.state), (Address{12, kNullDevid}));
 }

@@ -25,7 +25,7 @@ bool list_is_full(const JoinSink& sink, const Profile& profile) {
   return sink.members.full() || sink.members.size() >= profile.members_max;
 }
 
-// An ack_join of a mote whose request is answered.
+// Admits a mote whose request was answered, on its ack_join.
 bool admit(JoinSink& sink, const JoinContext& context, std::size_t pending, Actions& actions) {
   const Admission admission = sink.pending[pending];
   const std::size_t listed = index_of(sink.members, admission.devid);
@@ -162,7 +162,7 @@ bool hear_request(JoinSink& sink, const JoinContext& context, std::uint16_t from
   //= number and descriptor.
   const std::size_t before = index_of(sink.pending, from);
   if (before != kAbsent) {
-    sink.pending.erase(before);  // What it asked before is forgotten; now it is the newest.
+    sink.pending.erase(before);  // Its older request is forgotten; now it is the newest.
   } else if (sink.pending.full()) {
     sink.pending.erase(0);
   }

@@ -11,9 +11,7 @@
 namespace rubric::machine {
 namespace {
 
-constexpr std::size_t kCurTimeOffset = 4;  // Of join_reply.
-
-// Both lines have the same members, but not the same type.
+// Calls `use` with the line; both lines have the same members, but not the same type.
 template <class Use>
 auto with_line(State& state, Link link, Use use) {
   return link == Link::kRadio ? use(state.radio) : use(state.serial);
@@ -28,8 +26,8 @@ std::uint16_t am_source(const State& state, Link link) {
   return link == Link::kPeis ? state.island : 0;
 }
 
-// The period of a join_request, and the timeout of a reliable message, count from when the line has
-// it.
+// Starts the times that count from when the line takes a frame: the period of a join_request, and
+// the timeout of a reliable message.
 void left(Node& node, Link link, std::uint8_t type, std::uint16_t awaited) {
   if (awaited != kNoSeq) start_ack_timer(node.state.awaited, node.profile(), node.now, awaited);
   JoinMote& join = node.state.join;
@@ -39,7 +37,7 @@ void left(Node& node, Link link, std::uint8_t type, std::uint16_t awaited) {
   join.asked = true;
 }
 
-// A repeated ack_join that had to wait too long must not be sent any more.
+// Returns whether a repeated ack_join has waited too long to be sent.
 bool is_stale(const Node& node, const Buffered& frame) {
   const JoinMote& join = node.state.join;
   return frame.type == am::kAckJoin && join.acks > 1 &&
@@ -48,9 +46,9 @@ bool is_stale(const Node& node, const Buffered& frame) {
 
 //= J3-TIME: cur_time of a join_reply is the sink's clock in ms when it replies; it does not stand
 //= still for a second or more between replies.
-// So one that waited for the radio tells the time at which it leaves.
+// Sets the time of a reply that waited for the radio to that at which it leaves.
 void set_time(std::uint8_t* join_reply, const Node& node) {
-  store_be32(join_reply + kCurTimeOffset, clock_ms(node));
+  rubicon::JoinReplyLayout::CurTimeAt::store(join_reply, clock_ms(node));
 }
 
 template <std::size_t kRoom>
@@ -170,7 +168,7 @@ void send_done(Node& node, const SendDone& event) {
     return was;
   };
   const bool was_sending = event.link != Link::kPeis && with_line(node.state, event.link, end);
-  if (!was_sending) return node.actions.ignored(ReqId::kNone);  // Of before a reboot, maybe.
+  if (!was_sending) return node.actions.ignored(ReqId::kNone);  // Perhaps of before a reboot.
   if (event.link == Link::kRadio && node.state.radio.sending_ack_join) {
     node.state.radio.sending_ack_join = false;
     const JoinContext context = join_context(node);
@@ -188,7 +186,7 @@ void line_busy(Node& node, const LinkBusy& event) {
 }
 
 void send_join_request(Node& node, ReqId requirement) {
-  // While the one before still waits for the radio it stands for this one, too.
+  // While the one before still waits for the radio it covers this one, too.
   if (is_waiting(node.state, am::kJoin)) return node.actions.followed("J8-PERIOD"_rule);
   const JoinMote& join = node.state.join;
   //= J1-DEST: A join_request is sent to the AM address of the sink, 1.

@@ -1,12 +1,12 @@
-// The lines of a node: what is sent goes out now or waits in a circular buffer until the line is
-// free. (paper: The Network level)
+// The lines of a node: a frame leaves now or waits in a circular buffer until the line is free.
+// (paper: The Network level)
 #pragma once
 
 #include "conformance/machine/node.h"
 
 namespace rubric::machine {
 
-/// A frame to send, but for its payload.
+/// A frame to send, without its payload.
 struct Header {
   Link link = Link::kRadio;
   std::uint8_t type = 0;
@@ -16,7 +16,7 @@ struct Header {
   std::uint16_t awaited = kNoSeq;  ///< Its number, if its ack is awaited once it has left.
 };
 
-/// Where the payload of an accepted frame goes, so that it is written once and in its place.
+/// Where to write the payload of an accepted frame, so that it is written once and in place.
 struct Place {
   std::uint8_t* payload = nullptr;  ///< Room for kAmPayloadMax bytes; null when refused.
   std::uint8_t* size_bytes = nullptr;
@@ -24,26 +24,26 @@ struct Place {
   MutableBytes room() const { return {payload, kAmPayloadMax}; }
 };
 
-/// Whether a role has such a line.
+/// Returns whether a role has such a line.
 bool has_line(Role role, Link link);
-/// Why the line takes nothing now: kN10Off, kN1Full; kNone: it takes a frame.
+/// Returns why the line refuses frames now: kN10Off, kN1Full; kNone if it takes one.
 ReqId line_refusal(const State& state, Link link);
-/// Takes a frame: it leaves now, or waits. Refused: says so as ignored, and returns no place. The
-/// place is to be filled at once.
+/// Takes a frame: it leaves now, or waits. If refused, labels it as ignored, and returns no place.
+/// The place is to be filled at once.
 Place put(Node& node, const Header& header);
-/// Sends the first frame that waits, if the line allows.
+/// Sends the first waiting frame, if the line allows.
 void flush(Node& node, Link link);
 /// Forgets frames of this AM type that wait for the radio.
 void forget_waiting(State& state, std::uint8_t type);
-/// Whether one waits.
+/// Returns whether one waits.
 bool is_waiting(const State& state, std::uint8_t type);
 
-/// The last transmission has ended.
+/// Handles the end of the last transmission.
 void send_done(Node& node, const SendDone& event);
-/// Somebody else takes the line or leaves it.
+/// Handles that another station takes the line or leaves it.
 void line_busy(Node& node, const LinkBusy& event);
 
-/// A mote's or sink's join messages.
+/// Send the join messages of motes and sinks.
 void send_join_request(Node& node, ReqId requirement);
 void send_ack_join(Node& node, ReqId requirement);
 void send_join_reply(Node& node, std::uint16_t dest, std::uint16_t seq_num);

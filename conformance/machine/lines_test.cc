@@ -22,7 +22,7 @@ OwnFrame heard_on_serial(std::uint8_t mark) {
           padded(net_msg({{kIsland, 1}, {kIsland, kNullDevid}, false, 1, {3, 10, mark}}))};
 }
 
-// Marks of what the application got in the last step.
+// Returns marks of what the application got in the last step.
 std::vector<std::uint8_t> received(const Device& node) {
   std::vector<std::uint8_t> marks;
   for (const Notice& notice : node.actions.notices()) {
@@ -291,7 +291,7 @@ TEST(Queue, EraseKeepsTheOrderOfTheOthers) {
   }
 }
 
-// Nobody can have answered what has not left: a number may be guessed, or of a boot before.
+// A frame that has not left has no answer: a number may be guessed, or from before a reboot.
 TEST(Outgoing, J4_NoRequestOutstandingBeforeItLeaves) {
   Device mote(mote_config(5));
   mote.step(LinkBusy{Link::kRadio, true});

@@ -1,5 +1,5 @@
-// How many events a second one core steps through: a mote and its sink join, exchange data with
-// acks, and reboot; and parts of that alone.
+// Measures how many events a second one core steps through: a mote and its sink join, exchange data
+// with acks, and reboot; and parts of that alone.
 #include <benchmark/benchmark.h>
 
 #include "conformance/machine/step.h"
@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::uint8_t kReading[] = {34, 0, 1, 2, 3, 4, 5, 6, 7, 8};
 
-/// A mote in range of its sink, whose base station takes what comes and says nothing.
+/// A mote in range of its sink, whose base station takes everything and sends nothing.
 class Pair {
  public:
   Pair() : mote_(start(mote())), sink_(start(sink())) {}
@@ -22,14 +22,14 @@ class Pair {
     step(sink_, now_, SendDone{Link::kSerial, true}, from_sink_);
     ++events_;
   }
-  /// A reliable message from the mote and its ack.
+  /// Sends a reliable message from the mote and its ack.
   void exchange() {
     now_ += 2;
     step(mote_, now_, Called{Send{{11, 1}, 5, true, kReading}}, from_mote_);
     to_sink();
     to_mote();
   }
-  /// A message that the sink hands on to its base station.
+  /// Sends a message that the sink passes up to its base station.
   void forward() {
     now_ += 2;
     step(mote_, now_, Called{Send{{11, kNullDevid}, 5, false, kReading}}, from_mote_);
@@ -80,7 +80,7 @@ class Pair {
   std::int64_t events_ = 0;
 };
 
-// A join, then ten reliable messages with their acks and ten readings for the PC.
+// Measures a join, then ten reliable messages with their acks and ten readings for the PC.
 void BM_MixedTraffic(benchmark::State& bench) {
   Pair pair;
   for (auto _ : bench) {

@@ -1,5 +1,5 @@
-// What the tests of the machine share: nodes with a clock, frames made by the codec, and looks at
-// what a step did.
+// Helpers of the machine's tests: nodes with a clock, frames made by the codec, and checks of a
+// step's results.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -104,13 +104,13 @@ struct Device {
     return *this;
   }
   Device& hear(const OwnFrame& frame) {
-    heard = frame;  // What was received stays readable until the next step.
+    heard = frame;  // The frame stays readable until the next step.
     return step(Heard{heard.frame()});
   }
   Device& hear(const Transmit& transmit) { return step(Heard{transmit.frame()}); }
   Device& call(const Call& what) { return step(Called{what}); }
   Device& done(Link link = Link::kRadio, bool acked = true) { return step(SendDone{link, acked}); }
-  /// The join timer fires when it is due.
+  /// Lets the join timer fire when it is due.
   Device& join_timer() {
     now = state.join.due;
     return step(TimerDue{{TimerKind::kJoin, 0}});
@@ -121,7 +121,8 @@ struct Device {
     for (const Action& action : actions.all()) all.push_back({action.what, action.requirement});
     return all;
   }
-  /// The one notice of this kind in the last step; fails the test when there is another number.
+  /// Returns the one notice of this kind in the last step; fails the test if there is another
+  /// number.
   template <class Kind>
   Kind notice() const {
     Kind found{};
@@ -132,7 +133,7 @@ struct Device {
     EXPECT_EQ(count, 1);
     return found;
   }
-  /// The one frame of the last step.
+  /// Returns the one frame of the last step.
   const Transmit& only_frame() const {
     EXPECT_EQ(actions.transmits().size(), 1U);
     static const Transmit kNothing{};
@@ -173,7 +174,7 @@ inline Config base_config(std::uint16_t island = kIsland) {
   return config;
 }
 
-/// A mote that is a member of kIsland and has nothing to send.
+/// Returns a mote that is a member of kIsland and has nothing to send.
 inline Device member(std::uint16_t id, const Config* config = nullptr) {
   Device mote(config == nullptr ? mote_config(id) : *config);
   mote.call(JoinIsland{kDescriptor}).done();
@@ -181,7 +182,7 @@ inline Device member(std::uint16_t id, const Config* config = nullptr) {
   EXPECT_EQ(mote.state.join.phase, JoinMote::Phase::kMember);
   return mote;
 }
-/// A sink of kIsland that lists `id`.
+/// Makes a sink of kIsland list `id`.
 inline void list_member(Device& sink, std::uint16_t id, std::uint16_t seq_num = 100) {
   sink.hear(join_request(id, seq_num, kDescriptor)).done();
   sink.hear(ack_join({kIsland, 1}, {kIsland, id}, seq_num, kDescriptor)).done(Link::kSerial);

@@ -1,4 +1,4 @@
-// Between the codec's messages and the machine's plain numbers.
+// Converts between the codec's messages and the machine's plain numbers.
 #pragma once
 
 #include "codec/generated/rubicon/enums.h"
@@ -17,7 +17,7 @@ constexpr auto kNet = static_cast<std::uint8_t>(rubicon::AmType::kNet);
 constexpr auto kConfig = static_cast<std::uint8_t>(rubicon::AmType::kConfig);
 }  // namespace am
 
-/// TRANSID and APPID values that the machine sends or looks for.
+/// TRANSID and APPID values that the machine sends or checks.
 namespace component {
 constexpr auto kSynChannel = static_cast<std::uint8_t>(rubicon::Component::kSynChannel);
 constexpr auto kConnless = static_cast<std::uint8_t>(rubicon::Component::kConnless);

@@ -12,8 +12,8 @@
 namespace rubric::machine {
 namespace {
 
-constexpr std::size_t kNetHeaderBytes = 12;
-constexpr std::size_t kAppHeaderBytes = 2;
+constexpr std::size_t kNetHeaderBytes = rubicon::NetMsgLayout::PayloadAt::kAt;
+constexpr std::size_t kAppHeaderBytes = rubicon::AppMsgLayout::PayloadAt::kAt;
 
 Link link_of(Route::Onward onward) {
   switch (onward) {
@@ -28,7 +28,7 @@ Link link_of(Route::Onward onward) {
   return Link::kRadio;
 }
 
-// On the serial line a net_msg always has its full length.
+// Ends a net_msg; on the serial line it always has its full length.
 void end_net_msg(const Place& place, Link link, std::size_t size_bytes) {
   if (link == Link::kSerial) {
     std::fill(place.payload + size_bytes, place.payload + kAmPayloadMax, std::uint8_t{0});
@@ -56,9 +56,9 @@ void fill_net_msg(const Place& place, Link link, const NetHeader& header, std::u
   //= T1-WRAP: The payload of a net_msg begins with TRANSID CONNLESS and the APPID of the sender for
   //= what Connectionless.send was given.
   std::uint8_t* const body = p + kNetHeaderBytes;
-  body[0] = trans_id;
-  body[1] = app_id;
-  std::copy_n(data.data(), data.size(), body + kAppHeaderBytes);
+  rubicon::AppMsgLayout::store(
+      {static_cast<rubicon::Component>(trans_id), static_cast<rubicon::Component>(app_id), data},
+      body);
   wire.payload = {body, nbytes};
   rubicon::NetMsgLayout::store(wire, p);
   end_net_msg(place, link, kNetHeaderBytes + nbytes);
@@ -106,16 +106,18 @@ void hear_connless(Node& node, rubicon::NetMsgView message, std::uint8_t app_id,
   }
   //= T2-ACK: A reliable Connectionless message to the node itself, with an APPID that it knows, is
   //= answered by an ack.
-  // Not one for another island's sink, which is delivered by its devid (decision 126).
+  // A message for another island's sink, which is delivered by its devid, gets no ack (decision
+  // 126).
   if (dest != own_address(node.state)) return actions.followed("T2-ACK"_rule);
   send_ack(node, src, app_id, message.seq_num());
 }
 
-// The message dispatcher.
+// Delivers by the message dispatcher.
 void deliver(Node& node, rubicon::NetMsgView message) {
   const Bytes payload = message.payload();
-  const std::uint8_t trans_id = payload[0];
-  const std::uint8_t app_id = payload[1];
+  using App = rubicon::AppMsgLayout;
+  const auto trans_id = static_cast<std::uint8_t>(App::TransIdAt::load(payload.data()));
+  const auto app_id = static_cast<std::uint8_t>(App::AppIdAt::load(payload.data()));
   const Bytes body = payload.from(kAppHeaderBytes);
   switch (trans_id) {
     case component::kConnless:
@@ -138,7 +140,7 @@ void deliver(Node& node, rubicon::NetMsgView message) {
   node.actions.ignored("T1-UNKNOWN"_rule);
 }
 
-// Room for a message that asks for an ack; without a timeout the oldest is given up.
+// Makes room for a message that asks for an ack; without a timeout the oldest is given up.
 bool can_await(AwaitedList& list, const Profile& profile) {
   if (!list.full()) return true;
   if (profile.ack_timeout_ticks != 0) return false;
@@ -159,7 +161,7 @@ std::uint16_t send_own(Node& node, const OwnMessage& message, ReqId& refused) {
   const Route route = route_own(router, dest);
   const Link link = link_of(route.onward);
   refused = route.onward == Route::Onward::kNowhere ? route.requirement : line_refusal(state, link);
-  // A caller can be told of an ack only if there is a place to remember that it waits for it.
+  // A message can ask for an ack only if there is a place to remember that it is awaited.
   if (refused == ReqId::kNone && message.reliable && !can_await(state.awaited, node.profile())) {
     refused = "N1-FULL"_rule;
   }
@@ -180,7 +182,7 @@ std::uint16_t send_own(Node& node, const OwnMessage& message, ReqId& refused) {
 
 void hear_net_msg(Node& node, Link from, Bytes bytes) {
   const Router router = router_of(node.state);
-  // J11-HEAR: a node without an address does not look at them.
+  // J11-HEAR: a node without an address ignores them.
   if (!router.member) return node.actions.ignored("J11-HEAR"_rule);
   const auto message = rubicon::NetMsgView::parse(bytes);
   if (!message) {
@@ -206,7 +208,7 @@ void hear_net_msg(Node& node, Link from, Bytes bytes) {
 void report_joined(Node& node, const Admission& member) {
   State& state = node.state;
   //= J6-REPORT: A sink reports each new member to its base station with one serial_joined.
-  // Nobody would ask for it again, so it must not be lost where there is no room.
+  // Nothing would repeat it, so it must not be lost if there is no room.
   if (line_refusal(state, Link::kSerial) != ReqId::kNone) {
     auto& owed = state.sink.unreported;
     if (owed.full()) owed.erase(0);  // Some mote joined again and again; its last report stays.
@@ -250,9 +252,12 @@ void tick(Node& node) {
   for (const SynapticSend& send : sends) {
     //= S2-CONTENT: Synaptic data has TRANSID SYN_CHANNEL, APPID LEARNING or ESN_DATA, and one
     //= little-endian binary32 for each connection, in order, unreliable.
-    std::uint8_t floats[4 * kConnectionsMax];
-    for (std::size_t i = 0; i < send.size; ++i) store_le32(floats + 4 * i, send.value_bits[i]);
-    const Bytes data(floats, std::size_t{4} * send.size);
+    using Values = rubicon::SynapticDataLayout::ValuesAt;
+    std::uint8_t floats[Values::kUnitBytes * kConnectionsMax];
+    for (std::size_t i = 0; i < send.size; ++i) {
+      Values::store(floats, i, float_of_bits(send.value_bits[i]));
+    }
+    const Bytes data(floats, Values::kUnitBytes * send.size);
     ReqId refused = ReqId::kNone;
     send_own(node,
              {send.dest, component::kSynChannel, component::kEsnData, false, data,

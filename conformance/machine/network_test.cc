@@ -135,7 +135,7 @@ TEST(Receive, T2_ReliableIsDeliveredAndAckedEachTime) {
                                           sent("T2-ACK"_rule)}));
     const auto ack = rubicon::NetMsgView::parse(mote.only_frame().bytes());
     ASSERT_TRUE(ack);
-    EXPECT_EQ(mote.only_frame().dest, 1);  // The PC is behind the sink.
+    EXPECT_EQ(mote.only_frame().dest, 1);  // The sink leads to the PC.
     EXPECT_EQ(address_of(ack->dest()), (Address{kIsland, kNullDevid}));
     EXPECT_EQ(ack->reliable(), 0);
     const Bytes body = ack->payload();
@@ -151,7 +151,7 @@ TEST(Receive, T2_BroadcastIsDeliveredAndNotAcked) {
                                         followed("T2-BROADCAST"_rule)}));
 }
 
-// By its devid a sink delivers what came by serial for another island's sink; it is not its to ack.
+// A sink delivers by its devid what came by serial for another island's sink; it does not ack it.
 TEST(Receive, T2Ack_NotForAnotherIslandsSink) {
   Device sink(sink_config());
   sink.hear(on_serial({{kOther, 1}, {13, kNullDevid}, true}));
@@ -161,7 +161,7 @@ TEST(Receive, T2Ack_NotForAnotherIslandsSink) {
   EXPECT_EQ(sink.only_frame().link, Link::kSerial);
 }
 
-// Somebody sent in its name.
+// Another node sent in its name.
 TEST(Receive, N4Self_NoAckToItself) {
   Device mote = member(5);
   mote.hear(on_radio(5, {{kIsland, 5}, {kIsland, 5}, true}));
@@ -378,7 +378,7 @@ TEST(Synaptic, S3Changed_ChangeSurvivesARadioThatIsOff) {
   EXPECT_EQ(tick(), 1U);
   EXPECT_EQ(mote.labels(), (std::vector{sent("S3-CHANGED"_rule)}));
   mote.done();
-  EXPECT_EQ(tick(), 0U);  // Told once.
+  EXPECT_EQ(tick(), 0U);  // Notified once.
   EXPECT_EQ(mote.labels(), (std::vector{followed("S3-UNCHANGED"_rule)}));
 }
 

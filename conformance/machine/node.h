@@ -1,4 +1,4 @@
-// A node in the middle of a step: what the files of the machine hand each other.
+// A node in the middle of a step: functions that the machine's files share.
 #pragma once
 
 #include "conformance/machine/actions.h"
@@ -18,7 +18,7 @@ struct Node {
   const Profile& profile() const { return state.config.profile; }
 };
 
-/// Virtual time in ms.
+/// Converts virtual time to ms.
 inline std::uint32_t ms_of(const Node& node) {
   const std::uint64_t per_second = node.profile().ticks_per_second;
   return static_cast<std::uint32_t>(std::uint64_t{node.now} * 1000 / per_second);
@@ -40,16 +40,16 @@ inline JoinContext join_context(const Node& node) {
 
 // receive.cc
 
-/// A line brought a frame.
+/// Handles a frame from a line.
 void hear(Node& node, const Frame& frame);
-/// The application has time again: what waited is handled. (N2)
+/// Handles waiting frames when the application has time again. (N2)
 void handle_waiting(Node& node);
 
 // network.cc
 
-/// A net_msg of this node's own; dest.pid may be kLocalPid. Returns its sequence number, or kNoSeq
-/// and in `refused` the rule. `requirement` is the transmission's unless it is kNone; then the
-/// route says it.
+/// Sends a net_msg of this node's own; dest.pid may be kLocalPid. Returns its sequence number, or
+/// kNoSeq with the rule in `refused`. `requirement` is the transmission's; if it is kNone, the
+/// route's.
 struct OwnMessage {
   Address dest;
   std::uint8_t trans_id = 0;
@@ -59,15 +59,15 @@ struct OwnMessage {
   ReqId requirement = ReqId::kNone;
 };
 std::uint16_t send_own(Node& node, const OwnMessage& message, ReqId& refused);
-/// A net_msg that was heard.
+/// Handles a net_msg from a line.
 void hear_net_msg(Node& node, Link from, Bytes bytes);
-/// A sink tells its base station of a new member, or remembers that it has to. (J6)
+/// Reports a new member to a sink's base station, or remembers that it is owed. (J6)
 void report_joined(Node& node, const Admission& member);
-/// Reports that found the serial line full or off, and now find room.
+/// Sends reports that found the serial line full or off, and now have room.
 void report_owed(Node& node);
-/// The synaptic clock ticks.
+/// Handles a tick of the synaptic clock.
 void tick(Node& node);
-/// A sink's or base station's island changes. (N9)
+/// Changes a sink's or base station's island. (N9)
 void set_island(Node& node, std::uint16_t island);
 
 // call.cc

@@ -14,7 +14,7 @@ TEST(Reboot, OnlyTheConfigurationStays) {
   EXPECT_TRUE(mote.state.awaited.empty());
   EXPECT_TRUE(timers(mote.state).empty());
   EXPECT_EQ(mote.call(GetClock{}).notice<Clock>().ms, 0U);
-  mote.done();  // Of the frame that was on the air.
+  mote.done();  // The frame on the air ended.
   EXPECT_TRUE(mote.silent());
   const std::uint16_t last = mote.state.sequence.last;
   mote.call(JoinIsland{kDescriptor});
@@ -27,7 +27,7 @@ TEST(Reboot, OnlyTheConfigurationStays) {
   EXPECT_EQ(sink.state, start(sink_config()));
 }
 
-// Numbers go on: what answers a request of before must not fit the request after.
+// Numbers continue: a reply to a request from before must not fit the request after.
 TEST(Reboot, J4Seq_ReplyToARequestOfBeforeIsIgnored) {
   for (const bool powered_off : {false, true}) {
     Device mote(mote_config(5));
@@ -97,7 +97,7 @@ TEST(PowerOff, NothingHasAnEffectUntilReboot) {
   EXPECT_EQ(mote.call(JoinIsland{kDescriptor}).only_frame().type, am::kJoin);
 }
 
-// The line's other users need no power of this node.
+// Other users of the line need no power of this node.
 TEST(PowerOff, TheLineIsTakenAndFreedMeanwhile) {
   Device sink(sink_config());
   sink.step(LinkBusy{Link::kRadio, true}).step(LinkBusy{Link::kSerial, true});

@@ -1,5 +1,5 @@
 // Whatever happens to a node, in any order and with any content: it stays within its bounds, keeps
-// the promises of the join protocol, and does the same again when the same happens again.
+// the promises of the join protocol, and repeats itself when the same happens again.
 #include <cstring>
 #include <random>
 
@@ -165,7 +165,7 @@ void happen(Random& random, const State& state, Happening& now) {
   if (one_in(random, 400)) now.event = PowerOff{};
 }
 
-// What must hold after every step, and what the steps so far have added up to.
+// Properties that hold after every step, and totals of the steps so far.
 struct Watch {
   int open_calls = 0;  // joinIsland calls without their joined notice.
   int requests = 0;    // On the air for the present call.
@@ -277,7 +277,7 @@ struct Watch {
 
 struct Outcome {
   std::uint64_t digest = 0;
-  int members = 0;    // How often a mote became one, or a sink listed one: not vacuous.
+  int members = 0;    // New members and list entries: not vacuous.
   int deliveries = 0;
 };
 

@@ -1,4 +1,5 @@
-// What a node does with frames: whether they are for it, whether they must wait, who handles them.
+// Handles received frames: decides whether they are for the node, whether they wait, and who
+// handles them.
 #include <algorithm>
 
 #include "codec/generated/rubicon/ack_join.h"
@@ -18,7 +19,7 @@ void hear_join_request(Node& node, const Frame& frame) {
   if (!is_sink(node)) return node.actions.ignored("J10-MOTE"_rule);
   const auto request = rubicon::JoinRequestView::parse(frame.payload);
   if (!request) return node.actions.ignored(request.error().requirement);
-  // No mote has such a TinyOS id, so none could be told in a reply. (decision 132)
+  // No mote has such a TinyOS id, so no reply could name it. (decision 132)
   if (is_reserved(frame.src) || frame.src == node.config().id) {
     return node.actions.ignored("J3-ADDRESS"_rule);
   }
@@ -81,7 +82,7 @@ void hear_config(Node& node, const Frame& frame) {
   set_island(node, config->value());
 }
 
-// Whether somebody listens for such frames; TinyOS drops the others before anybody sees them.
+// Returns whether a role listens to such frames; TinyOS drops the others first.
 bool is_known_type(Role role, Link link, std::uint8_t type) {
   if (type == am::kNet) return true;
   if (link == Link::kSerial) return type == am::kConfig && role == Role::kSink;
@@ -106,13 +107,14 @@ void handle(Node& node, const Frame& frame) {
   }
 }
 
-// Whether a line that is off, or a header that names another, keeps the frame away.
+// Returns whether the frame reaches the node: not if the line is off or the header names another
+// node.
 bool is_for_us(Node& node, const Frame& frame) {
   const State& state = node.state;
   const Role role = node.config().role;
   const bool has = frame.link == Link::kSerial ? role != Role::kMote : has_line(role, frame.link);
   bool on = true;
-  bool addressed = true;  // The serial stack does not look.
+  bool addressed = true;  // The serial stack ignores it.
   if (frame.link == Link::kRadio) {
     on = state.radio.on;
     addressed = frame.dest == node.config().id || frame.dest == kAmBroadcast;

@@ -49,13 +49,13 @@ Route sink_from_serial(const Router& router, Address dest) {
   const bool here = for_own_island(router, dest);
   //= N6-ONCE: A sink forwards each received message once, and sends none that came by serial back
   //= over serial.
-  // So a message of its base station for its base station has come the wrong way.
+  // A message of its base station for its base station has come the wrong way.
   if (here && dest.devid == kNullDevid) return nowhere("N6-ONCE"_rule);
   Route route;
   //= N7-FOREIGN: A sink does not send a net_msg from serial for another island on the radio.
   if (!here) route.requirement = "N7-FOREIGN"_rule;
   if (for_own_device(router, dest)) {
-    // The rule looks at the devid alone: a base station is trusted with the island.
+    // The rule uses the devid alone: a base station is trusted with the island.
     route.deliver = true;
     route.delivered = "N7-DELIVER"_rule;
   }
@@ -80,7 +80,7 @@ Route base_station_received(const Router& router, Link from, Address dest) {
     route.delivered = "N8-DELIVER"_rule;
   }
   if (dest.devid == kNullDevid) return route;
-  // Sent back it would go round for ever.
+  // Sent back it would circulate for ever.
   if (from_sink || dest.pid == kBroadcastPid) return route;
   route.onward = Onward::kSerial;
   route.am_dest = router.sink_am;
@@ -137,8 +137,7 @@ Route route_own(const Router& router, Address dest) {
       //= N8-PEIS: A base station sends a message for another island, its own or its sink's, through
       //= PEIS to that island's base station.
       if (!here) return onward(Onward::kPeis, dest.pid, "N8-PEIS"_rule);
-      if (dest.devid == kNullDevid)
-        return nowhere("N4-SELF"_rule);  // Of every island: its own, too.
+      if (dest.devid == kNullDevid) return nowhere("N4-SELF"_rule);  // Its own, in any island.
       route = onward(Onward::kSerial, router.sink_am, "N8-SERIAL"_rule);
       break;
   }

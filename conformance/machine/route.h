@@ -1,5 +1,5 @@
-// Where a net_msg goes: a pure function of who has it, where it came from, and its addresses.
-// (paper: Island Collision Resolution and Safe Join, The Inter-Island Connectivity)
+// Routes a net_msg: a pure function of who has it, where it came from, and its addresses. (paper:
+// Island Collision Resolution and Safe Join, The Inter-Island Connectivity)
 #pragma once
 
 #include "codec/runtime/rule.h"
@@ -7,7 +7,7 @@
 
 namespace rubric::machine {
 
-/// Who asks.
+/// The node that routes.
 struct Router {
   Role role = Role::kMote;
   Address own;          ///< A base station's devid is kNullDevid; pid is the island.
@@ -15,7 +15,7 @@ struct Router {
   std::uint16_t sink_am = 1;  ///< The AM address of sinks.
 };
 
-/// What happens to a message. Both parts may be: a broadcast from serial is delivered and radiated.
+/// The route of a message. Both parts may apply: a broadcast from serial is delivered and radiated.
 struct Route {
   enum class Onward : std::uint8_t { kNowhere, kRadio, kSerial, kPeis };
   bool deliver = false;
@@ -25,9 +25,9 @@ struct Route {
   ReqId delivered = ReqId::kNone;    ///< Why it is delivered.
 };
 
-/// A message that came over `from`.
+/// Routes a message that came over `from`.
 Route route_received(const Router& router, Link from, Address dest, Address src);
-/// A message of this node's own; dest.pid is not kLocalPid any more. Going nowhere: refused.
+/// Routes a message of this node's own; dest.pid is no longer kLocalPid. Nowhere means refused.
 Route route_own(const Router& router, Address dest);
 
 }  // namespace rubric::machine

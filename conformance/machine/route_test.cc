@@ -1,4 +1,4 @@
-// Where each message goes: every role, line, kind of destination and kind of source.
+// The route of each message: every role, line, kind of destination and kind of source.
 #include "conformance/machine/route.h"
 
 #include <gtest/gtest.h>
@@ -221,7 +221,7 @@ TEST(RouteOwn, BaseStation) {
                                                 self, down, down, self}));
 }
 
-// Whatever the addresses: what goes on the radio is for this island, and nothing is turned round.
+// Whatever the addresses: radio messages are for this island, and none is sent back.
 TEST(RouteReceived, NeverBackWhereItCameFrom) {
   const std::uint16_t kSome[] = {0, 1, 5, 9, 11, 12, kNullDevid, kLocalPid, 0xFFFF};
   int checked = 0;

@@ -1,6 +1,6 @@
 // The state of a node: a plain value made of small parts, each with the functions that change it.
-// The parts stand alone, so that the offline oracle can follow one mote's join, or one sink's view
-// of one mote, without a whole node.
+// The parts are independent, so that the offline oracle can follow one mote's join, or one sink's
+// view of one mote, without a whole node.
 #pragma once
 
 #include <array>
@@ -13,18 +13,18 @@
 
 namespace rubric::machine {
 
-constexpr std::size_t kMembersMax = 20;   ///< Of an island, in a sink's list (release 1.0).
+constexpr std::size_t kMembersMax = 20;   ///< In a sink's list (release 1.0).
 constexpr std::size_t kPendingMax = 20;   ///< Joins that a sink has answered and not seen acked.
 constexpr std::size_t kAwaitedMax = 8;    ///< Reliable messages whose ack is awaited at once.
-/// Of each direction, at most; Profile::channels_max says how many a node has (decision 129).
+/// In each direction, at most; Profile::channels_max is the number of a node (decision 129).
 constexpr std::size_t kChannelsRoom = 8;
 constexpr std::size_t kConnectionsMax = 10;
 
-/// What does not change while a node runs.
+/// Properties that do not change while a node runs.
 struct Config {
   Role role = Role::kMote;
   std::uint16_t id = 0;      ///< TinyOS id: the AM address and the devid. A base station has none.
-  std::uint16_t island = 0;  ///< Of a sink or a base station when it starts.
+  std::uint16_t island = 0;  ///< Start value of a sink or base station.
   Profile profile;
   std::uint16_t first_seq = 1;  ///< Sequence numbers start here.
   bool random_seq = false;      ///< Else they count.
@@ -35,15 +35,15 @@ struct Config {
 struct JoinMote {
   enum class Phase : std::uint8_t { kOutside, kJoining, kMember };
   Phase phase = Phase::kOutside;
-  std::uint8_t requests = 0;   ///< Of the present or last call; the first and one an expiry.
+  std::uint8_t requests = 0;   ///< In the present or last call; the first and one an expiry.
   std::uint8_t acks = 0;       ///< ack_join sent for the accepted reply.
   bool acked = false;          ///< The link layer confirmed ack_join.
-  std::uint16_t seq_num = 0;   ///< Of the present or last call's requests.
+  std::uint16_t seq_num = 0;   ///< In the present or last call's requests.
   std::uint16_t sink_devid = 0;
   Address address;             ///< While a member.
   Descriptor descriptor;
-  Ticks due = 0;               ///< When the timer fires, while joining; else 0.
-  Ticks accepted = 0;          ///< When the reply was accepted.
+  Ticks due = 0;               ///< The timer's expiry, while joining; else 0.
+  Ticks accepted = 0;          ///< Time of the accepted reply.
   bool asked = false;          ///< A request of the present or last call has left.
   friend bool operator==(const JoinMote&, const JoinMote&) = default;
 };
@@ -51,8 +51,8 @@ struct JoinMote {
 /// A sink's view of one mote: a request answered, or a member.
 struct Admission {
   std::uint16_t devid = 0;
-  std::uint16_t seq_num = 0;  ///< Of the request answered last.
-  Descriptor descriptor;      ///< Of the same.
+  std::uint16_t seq_num = 0;  ///< In the request answered last.
+  Descriptor descriptor;      ///< In the same request.
   friend bool operator==(const Admission&, const Admission&) = default;
 };
 
@@ -69,7 +69,7 @@ struct Awaited {
   std::uint16_t seq_num = 0;
   std::uint8_t app_id = 0;
   Address dest;
-  Ticks due = 0;  ///< When its time is over; 0: it waits for the line, or there is no timeout.
+  Ticks due = 0;  ///< End of its time; 0: it waits for the line, or there is no timeout.
   friend bool operator==(const Awaited&, const Awaited&) = default;
 };
 
@@ -97,12 +97,12 @@ struct Buffered {
   }
 };
 
-/// A line: on or off, free or not, and what waits for it.
+/// A line: on or off, free or not, with its waiting frames.
 template <std::size_t kRoom>
 struct Interface {
   bool on = true;
   bool sending = false;       ///< Until SendDone.
-  bool sending_ack_join = false;  ///< What is being sent is an ack_join.
+  bool sending_ack_join = false;  ///< The frame being sent is an ack_join.
   bool taken = false;         ///< Somebody else has the line.
   BoundedQueue<Buffered, kRoom> out;
   BoundedQueue<Buffered, kRoom> in;
@@ -127,14 +127,14 @@ struct Synaptic {
   BoundedList<Channel, kChannelsRoom> in;
   std::uint16_t period_ticks = 0;
   Ticks due = 0;  ///< Next tick; 0 while no channel is started.
-  Ticks phase_ticks = 0;  ///< By which the clock's first tick is late; 0 from that tick on.
+  Ticks phase_ticks = 0;  ///< Delay of the clock's first tick; 0 from that tick on.
   friend bool operator==(const Synaptic&, const Synaptic&) = default;
 };
 
 /// A node. Plain, comparable, hashable (hash_value), no heap.
 struct State {
   Config config;
-  std::uint16_t island = 0;      ///< Of a sink or a base station now.
+  std::uint16_t island = 0;      ///< A sink's or base station's, now.
   std::uint32_t clock_offset_ms = 0;  ///< Own clock = time since start + this.
   bool off = false;              ///< Without power, until Reboot; all else is as at start.
   bool app_busy = false;

@@ -34,8 +34,8 @@ void app_busy(Node& node, bool busy) {
   if (!busy) handle_waiting(node);
 }
 
-// Memory is lost; who else uses the lines does not care. Numbers go on, as those of a mote that
-// draws them at random would be others: a late reply must not fit its next request.
+// Clears the memory; other users of the lines are unaffected. Numbers continue, like those of a
+// mote that draws them at random: a late reply must not fit its next request.
 void lose_memory(State& state) {
   const bool radio_taken = state.radio.taken;
   const bool serial_taken = state.serial.taken;
@@ -60,7 +60,7 @@ void power_off(Node& node) {
   node.actions.followed("N10-OFF"_rule);
 }
 
-// What others do on a line goes on without the node.
+// Handles events of a line that need no power.
 void without_power(Node& node, const Event& event) {
   if (const auto* busy = std::get_if<LinkBusy>(&event)) {
     if (busy->link == Link::kRadio) node.state.radio.taken = busy->busy;

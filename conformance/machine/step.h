@@ -10,12 +10,12 @@
 
 namespace rubric::machine {
 
-/// A node that has just started.
+/// Returns a node that has just started.
 State start(const Config& config);
 
-/// Makes `event`, which happens at `now`, take effect: changes the state in place and says in
-/// `actions` (cleared first) what follows and by which rule. Never fails: what cannot be, such as
-/// a timer that is not set, is ignored. `now` does not go backwards.
+/// Applies `event`, which happens at `now`: changes the state in place and fills `actions` (cleared
+/// first) with the consequences and their rules. Never fails: an impossible event, such as a timer
+/// that is not set, is ignored. `now` does not go backwards.
 void step(State& state, Ticks now, const Event& event, Actions& actions);
 
 /// A timer that is set, and when it is due.
@@ -23,13 +23,13 @@ struct DueTimer {
   Ticks due = 0;
   Timer timer;
 };
-/// All timers that are set: at most 1 + kAwaitedMax + 1, unordered.
+/// Returns all timers that are set: at most 1 + kAwaitedMax + 1, unordered.
 BoundedList<DueTimer, 2 + kAwaitedMax> timers(const State& state);
 
-/// Own address now: pid 0 when a mote is not a member.
+/// Returns the own address now: pid 0 if a mote is not a member.
 Address own_address(const State& state);
 
-/// Of everything that step() can see.
+/// Hashes everything that step() can see.
 std::uint64_t hash_value(const State& state);
 
 }  // namespace rubric::machine

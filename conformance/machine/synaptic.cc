@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <variant>
 
+#include "codec/generated/rubicon/synaptic_data.h"
+
 namespace rubric::machine {
 namespace {
 
 using ChannelList = BoundedList<Channel, kChannelsRoom>;
 
-constexpr std::size_t kFloatBytes = 4;
+using Values = rubicon::SynapticDataLayout::ValuesAt;
 
 Channel* find(ChannelList& list, ChannelId id) {
   auto* const found =
@@ -35,14 +37,14 @@ bool is_in_island(const Channel& channel, Address own, std::uint16_t pid) {
   return island(channel.peer.pid) == island(pid);
 }
 
-// A channel from a node to itself. Every sink is mote 1 of its island, so the devid alone says too
-// little.
+// Returns whether a channel leads from a node to itself. Every sink is mote 1 of its island, so the
+// devid alone is not enough.
 bool is_local(const Channel& channel, Address own) {
   return channel.peer.devid == own.devid && is_in_island(channel, own, own.pid);
 }
 
 // One call on the channels of one node.
-struct Caller {
+struct SynapticCall {
   Synaptic& synaptic;
   const Config& config;
   Address own;
@@ -69,7 +71,8 @@ struct Caller {
     if (!any_started(synaptic)) synaptic.due = synaptic.phase_ticks = 0;
   }
 
-  // An output sends at its first tick in either mode. An input has nothing new yet.
+  // Starts a channel. An output sends at its first tick in either mode. An input has nothing new
+  // yet.
   static void start(Channel& channel, bool out) {
     if (channel.started) return;
     channel.started = true;
@@ -93,7 +96,7 @@ struct Caller {
     }
     //= S1-ID: Creating a channel returns its id: source devid in the upper, destination devid in
     //= the lower 16 bits.
-    // So one to the same devid in another island would be taken for this one.
+    // A channel to the same devid in another island would be taken for this one.
     if (existing != nullptr && !is_in_island(*existing, own, call.peer.pid)) {
       return actions.notify(ChannelResult{id, false}, "S1-ID"_rule);
     }
@@ -194,7 +197,7 @@ struct Caller {
   }
 };
 
-// The other end of a channel from a node to itself.
+// Passes values on to the other end of a channel from a node to itself.
 void hand_over(const Channel& out, ChannelList& inputs, Address own, Actions& actions) {
   //= S4-LOCAL: A channel from a node to itself hands its values over at the tick without sending
   //= anything.
@@ -215,7 +218,7 @@ ChannelId channel_id(std::uint16_t source_devid, std::uint16_t destination_devid
 void call_synaptic(Synaptic& synaptic, const Config& config, Address own, Ticks now,
                    const Call& call, Actions& actions) {
   if (synaptic.period_ticks == 0) synaptic.period_ticks = config.profile.synaptic_period_ticks;
-  std::visit(Caller{synaptic, config, own, now, actions}, call);
+  std::visit(SynapticCall{synaptic, config, own, now, actions}, call);
 }
 
 void hear_synaptic(Synaptic& synaptic, Address own, Address src, Bytes floats, Actions& actions) {
@@ -226,11 +229,12 @@ void hear_synaptic(Synaptic& synaptic, Address own, Address src, Bytes floats, A
     return actions.notify(SynDataReceived{id, DataStatus::kUnknownChannel}, "S5-UNKNOWN"_rule);
   }
   if (!in->started) return actions.ignored("S6-STOPPED"_rule);
-  // How many connections the sender meant is not in the data (decision 8): what both sides know.
-  const std::size_t count = std::min<std::size_t>(in->size, floats.size() / kFloatBytes);
+  // The data do not show how many connections the sender meant (decision 8); takes what both sides
+  // have.
+  const std::size_t count = std::min<std::size_t>(in->size, floats.size() / Values::kUnitBytes);
   if (count == 0) return actions.ignored("S2-CONTENT"_rule);
   for (std::size_t i = 0; i < count; ++i) {
-    in->value_bits[i] = load_le32(floats.data() + kFloatBytes * i);
+    in->value_bits[i] = bits_of_float(Values::load(floats.data(), i));
   }
   in->fresh = true;
   actions.followed("S1-READ"_rule);

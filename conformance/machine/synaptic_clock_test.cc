@@ -1,4 +1,4 @@
-// What the clock of synaptic channels does. A test's name begins with its rule.
+// The clock of synaptic channels. A test's name begins with its rule.
 #include "conformance/machine/synaptic_fixture.h"
 
 namespace rubric::machine {
@@ -99,7 +99,7 @@ TEST_F(SynapticClock, S2_Signal_NewThenOld) {
   EXPECT_EQ(tick(), (std::vector<Signal>{{kFromPeer, DataStatus::kOld}}));
   EXPECT_EQ(rule(), "S3-OLD"_rule);
   hear(kPeer, {42});
-  EXPECT_TRUE(actions_.notices().empty());  // Told at the tick, not before.
+  EXPECT_TRUE(actions_.notices().empty());  // Notified at the tick, not before.
   hear(kPeer, {43});
   EXPECT_EQ(tick(), (std::vector<Signal>{{kFromPeer, DataStatus::kNew}}));
   EXPECT_EQ(rule(), "S2-SIGNAL"_rule);
@@ -147,7 +147,7 @@ TEST_F(SynapticClock, S3_PowerSave_FirstTickAfterEachStart) {
     call(StartChannel{kToSink});
     tick();
     EXPECT_EQ(sends_.size(), 1U);
-    call(StartChannel{kToSink});  // Of a started channel: changes nothing.
+    call(StartChannel{kToSink});  // It is started, so nothing changes.
     tick();
     EXPECT_TRUE(sends_.empty());
     call(StopChannel{kToSink});

@@ -1,4 +1,4 @@
-// One node reduced to its synaptic part, for the tests of it.
+// One node reduced to its synaptic part, for its tests.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// Virtual time, and what a microsecond is worth in it: nodes count binary milliseconds, captures,
-// the simulator and the oracle count microseconds.
+// Virtual time and its relation to microseconds: nodes count binary milliseconds, captures, the
+// simulator and the oracle count microseconds.
 #pragma once
 
 #include <cstdint>
@@ -14,18 +14,18 @@ using Micros = std::int64_t;
 inline constexpr Micros kUsPerSecond = 1'000'000;
 inline constexpr Micros kTicksPerSecond = 1024;
 
-/// The tick that has begun at `time`, counted in units of which `per_second` make a second. `time`
-/// may be 0 to 2^53.
+/// Returns the tick that has begun at `time`, counted in units of which `per_second` make a second.
+/// `time` may be 0 to 2^53.
 constexpr Ticks ticks_of(std::int64_t time, std::int64_t per_second = kUsPerSecond) {
   return static_cast<Ticks>(time * kTicksPerSecond / per_second);
 }
 
-/// The fewest ticks that last at least `us` microseconds.
+/// Returns the fewest ticks that last at least `us` microseconds.
 constexpr Ticks ticks_to_hold(Micros us) {
   return static_cast<Ticks>((us * kTicksPerSecond + kUsPerSecond - 1) / kUsPerSecond);
 }
 
-/// The first whole microsecond of a tick: ticks_of(us_of(t)) == t.
+/// Returns the first whole microsecond of a tick: ticks_of(us_of(t)) == t.
 constexpr Micros us_of(Ticks ticks) {
   return (ticks * kUsPerSecond + kTicksPerSecond - 1) / kTicksPerSecond;
 }

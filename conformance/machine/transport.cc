@@ -1,6 +1,8 @@
 #include "conformance/machine/transport.h"
 
 #include "codec/generated/rubicon/enums.h"
+#include "codec/generated/rubicon/rubicon_ack.h"
+#include "codec/generated/rubicon/rubicon_ack_seq_only.h"
 
 namespace rubric::machine {
 namespace {
@@ -41,12 +43,12 @@ void hear_ack(AwaitedList& list, Address from, std::uint8_t app_id, std::uint16_
     if (awaited.seq_num != seq_num) continue;
     //= T3-SENDER: An ack counts only if it comes from the message's destination and carries its
     //= APPID.
-    // Nobody acks a broadcast (T2-BROADCAST), so whoever claims to is not its destination either.
+    // Nobody acks a broadcast (T2-BROADCAST), so no claimed source is its destination either.
     if (is_broadcast(awaited.dest) || awaited.dest != from || awaited.app_id != app_id) {
       return actions.ignored("T3-SENDER"_rule);
     }
     actions.notify(AckReceived{app_id, seq_num, true}, "T3-SUCCESS"_rule);
-    return list.erase(i);  // What comes later with this number finds nothing: T3-ONCE.
+    return list.erase(i);  // A later ack with this number finds nothing: T3-ONCE.
   }
   //= T3-MATCH: An ack whose sequence number is that of no message awaiting its ack changes nothing.
   actions.ignored("T3-MATCH"_rule);
@@ -83,7 +85,7 @@ bool is_known_app(std::uint8_t app_id) {
   // TRANSID and APPID share one numbering. An application is a component above the transport level:
   // those whose bodies the wire spec knows under CONNLESS (MOCKUP, LEARNING, CONTROL_LAYER), the
   // learning networks' data (ESN_DATA) and the dispatcher of applications (APPLICATION_MD). The
-  // rest belongs to transport and network, which nobody reaches through Connectionless.
+  // rest belongs to transport and network, which Connectionless does not reach.
   switch (static_cast<Component>(app_id)) {
     case Component::kMockup:
     case Component::kLearning:
@@ -114,15 +116,16 @@ bool must_ack(bool reliable, Address dest, std::uint8_t trans_id, std::uint8_t a
 }
 
 std::int32_t acked_seq_num(Bytes body) {
-  if (body.size() == 2) return load_be16(body.data());
-  // The deployed form, maybe with stale bytes behind it where a sink has set nbytes to 102.
-  constexpr std::size_t kDeployedBytes = 4;
-  const bool deployed = body.size() >= kDeployedBytes &&
-                        body[0] == static_cast<std::uint8_t>(AmType::kLearningNotification);
-  if (deployed) return load_be16(body.data() + 1);
+  using Paper = rubicon::RubiconAckSeqOnlyLayout::SeqNumAt;
+  using Deployed = rubicon::RubiconAckLayout;
+  if (body.size() == Paper::kEnd) return Paper::load(body.data());
+  // The deployed form, maybe with stale bytes after it where a sink has set nbytes to 102.
+  const bool deployed = body.size() >= rubicon::RubiconAckView::kMinSizeBytes &&
+                        Deployed::TypeAt::load(body.data()) == AmType::kLearningNotification;
+  if (deployed) return Deployed::SeqNumAt::load(body.data());
   // The paper's form after such a sink. (One whose number begins with 23 looks deployed; that is
   // the price of two forms without a mark.)
-  if (body.size() == kAppDataMax) return load_be16(body.data());
+  if (body.size() == kAppDataMax) return Paper::load(body.data());
   return -1;
 }
 

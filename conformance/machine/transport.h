@@ -1,4 +1,4 @@
-// Connectionless and Rubicon ACK: awaited acks, and what is answered. (paper: Rubicon ACK)
+// Connectionless and Rubicon ACK: awaited acks, and the messages to be acked. (paper: Rubicon ACK)
 #pragma once
 
 #include "conformance/machine/actions.h"
@@ -8,26 +8,26 @@ namespace rubric::machine {
 
 using AwaitedList = BoundedList<Awaited, kAwaitedMax>;
 
-/// A reliable message is accepted: its ack is awaited. Not when the list is full.
+/// Notes that a reliable message is accepted and its ack is awaited. Not when the list is full.
 void await_ack(AwaitedList& list, std::uint16_t seq_num, std::uint8_t app_id, Address dest);
-/// It leaves: its time begins. (decision 110)
+/// Starts its time when it leaves. (decision 110)
 void start_ack_timer(AwaitedList& list, const Profile& profile, Ticks now, std::uint16_t seq_num);
-/// An ack arrives: T3-SUCCESS, T3-MATCH, T3-ONCE, T3-SENDER.
+/// Handles an ack: T3-SUCCESS, T3-MATCH, T3-ONCE, T3-SENDER.
 void hear_ack(AwaitedList& list, Address from, std::uint8_t app_id, std::uint16_t seq_num,
               Actions& actions);
-/// The timeout of list[index] expires: T3-TIMEOUT.
+/// Handles the timeout of list[index]: T3-TIMEOUT.
 void ack_timeout(AwaitedList& list, std::size_t index, Actions& actions);
-/// True: a sequence number that must not be used now (N12-REUSE).
+/// Returns whether a sequence number must not be used now (N12-REUSE).
 bool is_awaited(const AwaitedList& list, std::uint16_t seq_num);
-/// The next number: N12-REUSE, N12-ERROR.
+/// Returns the next number: N12-REUSE, N12-ERROR.
 std::uint16_t next_seq_num(Sequence& sequence, const AwaitedList& list);
 
-/// Application components that a Connectionless message may name (T1-UNKNOWN).
+/// Returns whether a Connectionless message may name this application component (T1-UNKNOWN).
 bool is_known_app(std::uint8_t app_id);
-/// Whether Connectionless answers a message with an ack: T2.
+/// Returns whether Connectionless answers a message with an ack: T2.
 bool must_ack(bool reliable, Address dest, std::uint8_t trans_id, std::uint8_t app_id);
-/// The acknowledged number in the body of an ack, paper's form (2 bytes) or deployed form (type,
-/// number, code); -1 when it is neither.
+/// Returns the acknowledged number in the body of an ack, paper's form (2 bytes) or deployed form
+/// (type, number, code); -1 if it is neither.
 std::int32_t acked_seq_num(Bytes body);
 
 }  // namespace rubric::machine

@@ -1,4 +1,4 @@
-// Awaited acks, what is answered, and sequence numbers. A test's name begins with its rule.
+// Awaited acks, messages to be acked, and sequence numbers. A test's name begins with its rule.
 #include "conformance/machine/transport.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ constexpr std::uint8_t kControl = 10;
 constexpr std::uint8_t kMockup = 5;
 constexpr std::uint8_t kConnless = 3;
 
-// A reliable message that the line took at once.
+// Adds a reliable message that the line took at once.
 void sent(AwaitedList& list, const Profile& profile, Ticks now, std::uint16_t seq_num,
           std::uint8_t app_id, Address dest) {
   await_ack(list, seq_num, app_id, dest);
@@ -25,10 +25,10 @@ void sent(AwaitedList& list, const Profile& profile, Ticks now, std::uint16_t se
 
 struct AckCase {
   const char* name;
-  Address dest;          // Of the message.
-  Address from;          // Of the ack.
-  std::uint8_t app_id;   // Of the ack; the message's is kControl.
-  std::uint16_t seq_num;  // Of the ack; the message's is 100.
+  Address dest;          // In the message.
+  Address from;          // In the ack.
+  std::uint8_t app_id;   // In the ack; the message's is kControl.
+  std::uint16_t seq_num;  // In the ack; the message's is 100.
   bool counts;
   ReqId requirement;
 };

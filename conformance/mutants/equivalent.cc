@@ -1,5 +1,5 @@
-// Mutants that the golden traces cannot tell from a correct node, or may not: what they change is
-// free, or cannot be seen.
+// Mutants that no golden trace finds. Most are equivalent to a correct node: the change is
+// allowed, or invisible. The others differ in a way that traces do not judge.
 #include <array>
 
 #include "conformance/mutants/hunt.h"
@@ -28,47 +28,50 @@ constexpr const char* kRepeats =
 constexpr const char* kOrigin =
     "Where a sink's clock begins is free, and a second is allowed for (decision 119).";
 
-constexpr std::array kEquivalents{
-    Equivalent{"* by serial: am.dest", kSerialAm},
-    Equivalent{"* by serial: am.src", kSerialAm},
-    Equivalent{"plus one: J6-REPORT * by serial: nbytes", kSerialNbytes},
-    Equivalent{"plus one: N6-* by serial: nbytes", kSerialNbytes},
-    Equivalent{"plus one: T2-ACK * by serial: nbytes", kSerialNbytes},
-    Equivalent{"* J6-REPORT net_msg serial_joined by serial: seq_num", kFreeNumber},
-    Equivalent{"* synaptic_data by radio: seq_num", kFreeNumber},
-    Equivalent{"* synaptic_data by serial: seq_num", kFreeNumber},
-    Equivalent{"* T2-ACK net_msg rubicon_ack by *: seq_num", kFreeNumber},
-    Equivalent{"* T2-ACK net_msg rubicon_ack by *: payload.body.ack", kAckCode},
-    Equivalent{"double: send N9-SET config", "The same island id a second time changes nothing."},
-    Equivalent{"double: tell J11-SEND send_result", kResultTwice},
-    Equivalent{"double: tell N10-OFF send_result", kResultTwice},
-    Equivalent{"double: tell N9-SET op_result", kResultTwice},
-    Equivalent{"double: tell J4-CLOCK clock", kResultTwice},
-    Equivalent{"plus one: tell J4-CLOCK clock: ms", kOrigin},
-    Equivalent{"* J3-REPLY join_reply by radio: cur_time", kOrigin},
-    Equivalent{"* tell J8-FAIL joined: address.*", kFailAddress},
-    Equivalent{"* tell J8-JOINED joined: address.*", kFailAddress},
-    Equivalent{"* tell S1-LIMIT channel_result: channel.*", kRefusedId},
-    Equivalent{"* tell N10-OFF send_result: seq_num", kWhileOff},
-    Equivalent{"accept: S6-STOPPED mote channels started",
-               "It keeps what comes for a stopped channel, but signals nothing: that is free."},
-    Equivalent{"late_ack_takes_a_members_place",
-               "The list is as full as before, so the member that was pushed out gets no answer "
-               "either way; and a list may be longer than 20 (decision 107)."},
-    Equivalent{"double: send J4-ACK ack_join", kRepeats},
-    Equivalent{"drop: send J4-REPEAT ack_join", kRepeats},
-    Equivalent{
-        "delay: tell J8-FAIL joined",
-        "Five timers that are each a little late end a call as late as that (decision 128)."},
-    Equivalent{"double: tell N1-SIZE send_result", kResultTwice},
-    Equivalent{"double: tell N4-SELF send_result", kResultTwice},
-    Equivalent{
-        "* N6-OWN net_msg by serial: payload.payload",
-        "Stale bytes may follow on the serial line, so that cases compare bodies that can be "
-        "told from them, those of demo messages."},
-    Equivalent{"plus one: N8-INCOMING net_msg rubicon_ack by serial: nbytes", kSerialNbytes},
-    Equivalent{"* tell J11-SEND send_result: seq_num",
-               "A mote may keep what is sent before it joins, and tell its number (decision 118)."},
+constexpr bool kNotJudged = false;
+
+constexpr std::array kSurvivors{
+    Survivor{"* by serial: am.dest", kSerialAm},
+    Survivor{"* by serial: am.src", kSerialAm},
+    Survivor{"plus one: J6-REPORT * by serial: nbytes", kSerialNbytes},
+    Survivor{"plus one: N6-* by serial: nbytes", kSerialNbytes},
+    Survivor{"plus one: T2-ACK * by serial: nbytes", kSerialNbytes},
+    Survivor{"* J6-REPORT net_msg serial_joined by serial: seq_num", kFreeNumber},
+    Survivor{"* synaptic_data by radio: seq_num", kFreeNumber},
+    Survivor{"* synaptic_data by serial: seq_num", kFreeNumber},
+    Survivor{"* T2-ACK net_msg rubicon_ack by *: seq_num", kFreeNumber},
+    Survivor{"* T2-ACK net_msg rubicon_ack by *: payload.body.ack", kAckCode},
+    Survivor{"double: send N9-SET config", "The same island id a second time changes nothing."},
+    Survivor{"double: tell J11-SEND send_result", kResultTwice, kNotJudged},
+    Survivor{"double: tell N10-OFF send_result", kResultTwice, kNotJudged},
+    Survivor{"double: tell N9-SET op_result", kResultTwice, kNotJudged},
+    Survivor{"double: tell J4-CLOCK clock", kResultTwice, kNotJudged},
+    Survivor{"plus one: tell J4-CLOCK clock: ms", kOrigin},
+    Survivor{"* J3-REPLY join_reply by radio: cur_time", kOrigin},
+    Survivor{"* tell J8-FAIL joined: address.*", kFailAddress},
+    Survivor{"* tell J8-JOINED joined: address.*", kFailAddress},
+    Survivor{"* tell S1-LIMIT channel_result: channel.*", kRefusedId},
+    Survivor{"* tell N10-OFF send_result: seq_num", kWhileOff, kNotJudged},
+    Survivor{"accept: S6-STOPPED mote channels started",
+             "It keeps what comes for a stopped channel, but signals nothing: that is free."},
+    Survivor{"late_ack_takes_a_members_place",
+             "The list is as full as before, so the member that was pushed out gets no answer "
+             "either way; and a list may be longer than 20 (decision 107)."},
+    Survivor{"double: send J4-ACK ack_join", kRepeats},
+    Survivor{"drop: send J4-REPEAT ack_join", kRepeats},
+    Survivor{"delay: tell J8-FAIL joined",
+             "Five timers that are each a little late end a call as late as that (decision 128)."},
+    Survivor{"double: tell N1-SIZE send_result", kResultTwice, kNotJudged},
+    Survivor{"double: tell N4-SELF send_result", kResultTwice, kNotJudged},
+    Survivor{"* N6-OWN net_msg by serial: payload.payload",
+             "Stale bytes may follow on the serial line, so that cases compare bodies that can be "
+             "told from them, those of demo messages.",
+             kNotJudged},
+    Survivor{"plus one: N8-INCOMING net_msg rubicon_ack by serial: nbytes", kSerialNbytes},
+    Survivor{"* tell J11-SEND send_result: seq_num",
+             "A mote may keep what is sent before it joins, and tell its number (decision 118). No "
+             "trace holds the number against what it then sends.",
+             kNotJudged},
 };
 
 bool fits(std::string_view pattern, std::string_view name) {
@@ -83,12 +86,12 @@ bool fits(std::string_view pattern, std::string_view name) {
 
 }  // namespace
 
-std::span<const Equivalent> equivalents() {
-  return kEquivalents;
+std::span<const Survivor> survivors() {
+  return kSurvivors;
 }
 
-const Equivalent* find_equivalent(std::string_view name) {
-  for (const Equivalent& one : kEquivalents) {
+const Survivor* find_survivor(std::string_view name) {
+  for (const Survivor& one : kSurvivors) {
     if (fits(one.name, name)) return &one;
   }
   return nullptr;

@@ -1,9 +1,10 @@
-// Mutants that change one field of what is sent or told.
+// Mutants that change one field of a frame or notice.
 #include <algorithm>
 #include <memory>
 #include <set>
 
 #include "codec/generated/rubicon/tables.h"
+#include "codec/reflect/am_frames.h"
 #include "codec/reflect/frame.h"
 #include "conformance/events/app_events.h"
 #include "conformance/mutants/fields.h"
@@ -13,16 +14,13 @@
 namespace rubric::mutants {
 namespace {
 
-constexpr std::size_t kSerialHeaderBytes = 8;  // Dispatch byte and AM header.
-constexpr std::size_t kRadioHeaderBytes = 11;  // 802.15.4 header, network byte and AM type.
-
 std::size_t header_bytes(Link link) {
-  return link == Link::kRadio ? kRadioHeaderBytes : kSerialHeaderBytes;
+  return link == Link::kRadio ? reflect::kRadioIHeaderBytes : reflect::kAmHeaderBytes;
 }
 
 enum class Change : std::uint8_t { kPlusOne, kHighBit };
 
-// The places below node `i`, whose name is `path`; of arrays the first element.
+// Collects the places below node `i`, whose name is `path`; for arrays the first element.
 void collect(const reflect::Decoded& decoded, std::size_t i, const std::string& path,
              std::size_t header, std::vector<Place>& out) {
   const reflect::Node& node = decoded[i];
@@ -42,22 +40,14 @@ void collect(const reflect::Decoded& decoded, std::size_t i, const std::string& 
   out.push_back(std::move(place));
 }
 
-// As it would be captured: which messages there are depends on the line.
+// Returns the frame as a packet on its line, which decides how it decodes.
 std::vector<std::uint8_t> packet_of(const Transmit& frame) {
-  const std::size_t header = header_bytes(frame.link);
-  std::vector<std::uint8_t> bytes(header + frame.size_bytes);
-  if (frame.link == Link::kRadio) {
-    bytes[0] = 0x41;  // A data frame with short addresses in one PAN.
-    bytes[1] = 0x88;
-    bytes[9] = 0x3F;
-    bytes[10] = frame.type;
-  } else {
-    bytes[5] = frame.size_bytes;
-    bytes[7] = frame.type;
+  if (frame.link != Link::kRadio) {
+    return reflect::serial_packet({tinyos::Dispatch::kActiveMessage, 0, 0, 0, 0, frame.type},
+                                  frame.bytes());
   }
-  std::copy_n(frame.payload.begin(), frame.size_bytes,
-              bytes.begin() + static_cast<std::ptrdiff_t>(header));
-  return bytes;
+  const std::uint16_t fcf = reflect::fcf_of(tinyos::FrameControl::kData);
+  return reflect::radio_frame({fcf, 0, 0, 0, 0}, frame.type, frame.bytes());
 }
 
 void add_one(Transmit& frame, const Place& place) {
@@ -88,7 +78,7 @@ std::string link_text(Link link) {
   return link == Link::kRadio ? "radio" : link == Link::kSerial ? "serial" : "peis";
 }
 
-// "J3-REPLY join_reply by radio"
+// Returns "J3-REPLY join_reply by radio".
 std::string sent_kind(const Action& action, const Transmit& frame, const Anatomy& parts) {
   return std::string(trace::requirement_text(action.requirement)) + " " + parts.name + " by " +
          link_text(frame.link);
@@ -108,7 +98,8 @@ StepMaker changed_frame(const std::string& kind, const std::string& path, Change
 void change(trace::Leaf& leaf, Change how) {
   if (leaf.domain.kind == trace::Domain::Kind::kBytes) {
     if (leaf.bytes.empty()) return;
-    leaf.bytes[0] = static_cast<char>(leaf.bytes[0] ^ (how == Change::kPlusOne ? 1 : 0x80));
+    char& first = leaf.bytes.front();
+    first = static_cast<char>(first ^ (how == Change::kPlusOne ? 1 : 0x80));
   } else if (leaf.domain.kind == trace::Domain::Kind::kReal) {
     leaf.number ^= how == Change::kPlusOne ? 0x00400000 : 0x80000000;
   } else if (how == Change::kPlusOne) {
@@ -119,7 +110,7 @@ void change(trace::Leaf& leaf, Change how) {
   }
 }
 
-// The bytes of a changed notice must last until it is read.
+// Keeps the bytes of a changed notice until it is read.
 using Lasting = std::shared_ptr<std::vector<std::unique_ptr<trace::Concrete>>>;
 
 StepMaker changed_notice(const std::string& kind, const std::string& path, Change how) {
@@ -144,11 +135,11 @@ StepMaker changed_notice(const std::string& kind, const std::string& path, Chang
   };
 }
 
-// Whether the node itself made what stands behind APPID; else an application did, and its kind does
-// not matter to the protocol.
+// Returns whether the node itself made the body after APPID; an application's body does not matter
+// to the protocol.
 bool is_own_body(const Transmit& frame) {
   return is_ack(frame) || is_synaptic(frame) ||
-         (is_net(frame) && frame.payload[net::kBody] == 16);  // serial_joined.
+         (is_net(frame) && frame.payload[net::kBody] == net::kReport);
 }
 
 struct Field {

@@ -12,7 +12,7 @@
 namespace rubric::mutants {
 namespace {
 
-constexpr Ticks kPeriodTicks = 1000;  // Of the ack timeout; two of the join timer and the clock.
+constexpr Ticks kPeriodTicks = 1000;  // For the ack timeout; two of the join timer and the clock.
 
 class Watched : public runner::Machine {
  public:
@@ -67,7 +67,7 @@ struct Ignored {
 };
 using Ways = std::map<Ignored, std::set<std::size_t>>;  // Indices of mends().
 
-// Which ways make a difference, for every `ignored` of the golden traces.
+// Returns the ways that make a difference, for every `ignored` of the golden traces.
 Ways ways_to_accept(const Golden& golden) {
   Ways ways;
   watch(golden, [&](const State& before, Ticks now, const Event& event, const State&,

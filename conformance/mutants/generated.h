@@ -1,5 +1,5 @@
-// Mutants that nobody thought of: made of what the machine is seen to do in the golden traces, so
-// that a new message, notice or rule is covered by itself.
+// Mutants made from the machine's observed actions in the golden traces, so that a new message,
+// notice or rule is covered without further work.
 #pragma once
 
 #include <functional>
@@ -16,7 +16,8 @@ using Witness = std::function<void(const State& before, Ticks now, const Event&,
                                    const Actions&)>;
 void watch(const Golden& golden, const Witness& see);
 
-/// What an action is: "send J3-REPLY join_reply", "tell J5-SUCCESS joined"; empty for labels.
+/// Returns the kind of an action: "send J3-REPLY join_reply", "tell J5-SUCCESS joined"; empty for
+/// labels.
 std::string kind_of(const Action& action, const Actions& actions);
 
 /// A field of a frame that can be changed.
@@ -33,21 +34,22 @@ struct Anatomy {
 };
 Anatomy anatomy(const Transmit& frame);
 
-/// Each kind of action dropped, doubled, and delayed by a period.
+/// Returns mutants that drop, double, or delay by a period each kind of action.
 Mutants action_mutants(const Golden& golden);
-/// Each field of each frame, and of each notice, plus one, and with its highest bit turned.
+/// Returns mutants that change each field of each frame and notice: plus one, and its highest bit.
 Mutants field_mutants(const Golden& golden);
-/// Each `ignored` of a rule turned into acceptance, in each way that leaves nothing to ignore.
+/// Returns mutants that accept where an `ignored` names a rule, in each way that leaves nothing to
+/// ignore.
 Mutants acceptance_mutants(const Golden& golden);
-/// The rules that are named by an `ignored` which no way turned into acceptance.
+/// Returns the rules of an `ignored` that no way turned into acceptance.
 std::vector<std::string> never_accepted(const Golden& golden);
 
 Mutants generated_mutants(const Golden& golden);
 
-/// A way to take what a rule ignores: mends the frame, or the state for this one step.
+/// A way to accept what a rule ignores: mends the frame, or the state for this one step.
 struct Mend {
   const char* name;
-  /// False: not applicable; nothing was done then.
+  /// Returns false if it is not applicable; it did nothing then.
   bool (*step)(Moment&);
 };
 std::span<const Mend> mends();

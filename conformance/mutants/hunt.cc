@@ -27,7 +27,7 @@ bool speaks_of(const trace::Case& one, const Mutant& mutant) {
                      [&](const trace::Line* line) { return names(line->requirements, mutant); });
 }
 
-// False: go on with the next case.
+// Returns false to go on with the next case.
 bool judge(const CaseRef& ref, const Mutant& mutant, Found& found) {
   const CaseResult result = run(ref, mutant.factory());
   if (result.verdict == CaseVerdict::kPass) return false;

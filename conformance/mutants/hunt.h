@@ -1,4 +1,4 @@
-// Holds mutants against golden traces: which trace finds it, and by which rule.
+// Runs mutants on golden traces: which trace finds a mutant, and by which rule.
 #pragma once
 
 #include <span>
@@ -21,12 +21,12 @@ struct CaseRef {
 /// The golden traces.
 class Golden {
  public:
-  /// All .rtr files below the folder. Throws std::runtime_error.
+  /// Reads all .rtr files below the folder. Throws std::runtime_error.
   explicit Golden(const std::string& folder);
 
-  /// Those that the machine passes: no other can tell a mutant from it.
+  /// Returns the traces that the machine passes: no other can tell a mutant from it.
   const std::vector<CaseRef>& cases() const { return cases_; }
-  /// Those that it does not pass.
+  /// Returns the traces that it does not pass.
   const std::vector<CaseRef>& broken() const { return broken_; }
   const std::vector<trace::Parsed>& files() const { return files_; }
 
@@ -40,23 +40,24 @@ struct Found {
   bool killed = false;
   bool named = false;  ///< A failing line names one of the mutant's rules, or it names none.
   std::string by;      ///< The trace that killed it; the one that named its rule, if any.
-  std::string lines;   ///< What failed there.
+  std::string lines;   ///< The failures there.
 };
 
-/// Works the case on it. Everything but a pass kills: the machine itself passes.
+/// Runs the case on it. Everything but a pass kills: the machine itself passes.
 runner::CaseResult run(const CaseRef& ref, const runner::SubjectFactory& make);
 /// Tries the cases, those first that name one of the rules, until one kills it by such a rule.
 Found hunt(const Golden& golden, const Mutant& mutant);
-/// All of them, on so many threads.
+/// Hunts all of them on so many threads.
 std::vector<Found> hunt_all(const Golden& golden, const Mutants& mutants, unsigned threads);
 
-/// A mutant that no golden trace may be asked to find, and why. In names `*` stands for anything.
-struct Equivalent {
+/// A mutant that no golden trace finds, and why. In names `*` matches anything.
+struct Survivor {
   const char* name;
   const char* reason;
+  bool equivalent = true;  ///< The change is free or unseen. False: it is merely not judged.
 };
-std::span<const Equivalent> equivalents();
-/// The entry for a mutant of this name, or null.
-const Equivalent* find_equivalent(std::string_view name);
+std::span<const Survivor> survivors();
+/// Returns the entry for a mutant of this name, or null.
+const Survivor* find_survivor(std::string_view name);
 
 }  // namespace rubric::mutants

@@ -1,5 +1,5 @@
-// Unusual nodes that keep every rule, in ways that the decisions leave open: no golden trace may
-// fail on one.
+// Unusual nodes that keep every rule, in ways that the decisions allow: no golden trace may fail on
+// one.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@ namespace rubric::mutants {
 
 struct LegalVariant {
   std::string name;
-  std::string reading;  ///< What it does, and by which decision it may.
+  std::string reading;  ///< Its behaviour, and the decision that allows it.
   StepMaker step;
   bool weak = false;  ///< A decision calls it weak.
 };

@@ -13,7 +13,7 @@ using machine::Received;
 using machine::TimerKind;
 using Variants = std::vector<LegalVariant>;
 
-// Answers to what was heard come later; all by the same time, so that their order stays.
+// Delays all answers to received frames by the same time, so that their order stays.
 template <Ticks kTicks>
 void slow(Moment& moment) {
   moment.honest();
@@ -58,7 +58,7 @@ struct Renumbered {
   std::uint16_t before = 0;
 };
 
-// The request that is sent last has a number of its own, which is the one that counts.
+// Gives the request that is sent last a number of its own, which is the one that counts.
 void number_for_each_request(Moment& moment, Renumbered& memory) {
   moment.honest();
   moment.rewrite([&](const Action& action) {
@@ -74,7 +74,7 @@ void number_for_each_request(Moment& moment, Renumbered& memory) {
   });
 }
 
-// joined(SUCCESS) waits for the link ack of ack_join.
+// Delays joined(SUCCESS) until the link ack of ack_join.
 void joined_on_confirmation(Moment& moment, bool& told) {
   const bool was_acked = moment.state.join.acked;
   moment.honest();
@@ -103,24 +103,24 @@ void add_joins(Variants& out) {
   out.push_back({"clock_of_another_origin", "A sink's clock began a day ago (119).",
                  on_sent([](Moment&, const Action&, Transmit& frame) {
                    if (frame.type != am::kJoinReply) return Fate::kKeep;
-                   std::uint8_t* const time = frame.payload.data() + join_reply::kTime;
-                   store_be32(time, load_be32(time) + 86'400'000U);
+                   put(frame, join_reply::kTime, get(frame, join_reply::kTime) + 86'400'000U);
                    return Fate::kKeep;
                  })});
 }
 
-// The paper's form of an ack: the number alone.
+// Sends the paper's form of an ack: the number alone.
 Fate short_ack(Moment& moment, const Action&, Transmit& frame) {
   const bool mine = is_ack(frame) && get(frame, net::kSrcDevid) == own(moment).devid &&
                     get(frame, net::kSrcPid) == own(moment).pid;
-  if (!mine || frame.payload[net::kNbytes] != 6) return Fate::kKeep;
-  put(frame, net::kBody, get(frame, net::kAckedSeq));
-  frame.payload[net::kNbytes] = 4;
+  if (!mine || frame.payload[net::kNbytes] != net::kAckNbytes) return Fate::kKeep;
+  put(frame, net::kPaperSeq, get(frame, net::kAckedSeq));
+  frame.payload[net::kNbytes] = net::kPaperAckNbytes;
   const bool serial = frame.link == Link::kSerial;
   if (serial) {
-    frame.payload[net::kBody + 2] = frame.payload[net::kBody + 3] = 0;
+    std::fill_n(frame.payload.begin() + net::kPaperSeq.kEnd, net::kAckNbytes - net::kPaperAckNbytes,
+                0);
   } else {
-    frame.size_bytes = net::kBody + 2;
+    frame.size_bytes = net::kPaperSeq.kEnd;
   }
   return Fate::kKeep;
 }
@@ -132,7 +132,7 @@ Fate stale_on_serial(Moment& moment, const Action&, Transmit& frame) {
   for (std::size_t i = end; i < frame.payload.size(); ++i) {
     frame.payload[i] = static_cast<std::uint8_t>(0xA5 ^ i);
   }
-  frame.payload[net::kNbytes] = 102;
+  frame.payload[net::kNbytes] = net::kNbytes.kMax;
   return Fate::kKeep;
 }
 
@@ -152,7 +152,7 @@ void delivers_once(Moment& moment, std::vector<std::vector<std::uint8_t>>& seen)
   });
 }
 
-// A sink sends on, once, what one of its motes sent it for another (115).
+// Lets a sink send on, once, what one of its motes sent it for another (115).
 void relays(Moment& moment) {
   moment.honest();
   const Frame* const frame = moment.heard(am::kNet);
@@ -172,7 +172,7 @@ void relays(Moment& moment) {
   sent.size_bytes = static_cast<std::uint8_t>(size);
 }
 
-// A reliable message for an application that nobody knows is acked all the same (111).
+// Acks a reliable message for an unknown application all the same (111).
 void acks_unknown_apps(Moment& moment) {
   moment.honest();
   const Frame* const frame = moment.heard(am::kNet);
@@ -185,17 +185,17 @@ void acks_unknown_apps(Moment& moment) {
   if (!asked || !moment.actions.transmits().empty() || moment.state.radio.sending) return;
   moment.state.radio.sending = true;
   Transmit& ack = moment.send(Link::kRadio, am::kNet, get(*frame, net::kSrcDevid), "T2-ACK"_rule);
-  std::copy_n(frame->payload.begin() + net::kSrcPid, 4, ack.payload.begin());
-  std::copy_n(frame->payload.begin(), 4, ack.payload.begin() + net::kSrcPid);
+  copy_address(*frame, net::kSrcPid, ack, net::kDestPid);
+  copy_address(*frame, net::kDestPid, ack, net::kSrcPid);
   put(ack, net::kSeqNum, 4711);
-  ack.payload[net::kNbytes] = 4;
+  ack.payload[net::kNbytes] = net::kPaperAckNbytes;
   ack.payload[net::kTransId] = component::kRubiconAck;
   ack.payload[net::kAppId] = frame->payload[net::kAppId];
-  put(ack, net::kBody, get(*frame, net::kSeqNum));
-  ack.size_bytes = net::kBody + 2;
+  put(ack, net::kPaperSeq, get(*frame, net::kSeqNum));
+  ack.size_bytes = net::kPaperSeq.kEnd;
 }
 
-// What goes by different lines, and what the application is told, has no order among itself.
+// Reorders frames of different lines and notices, which have no order among themselves.
 void other_order(Moment& moment) {
   moment.honest();
   std::vector<Action> rest;

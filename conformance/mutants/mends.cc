@@ -1,4 +1,4 @@
-// Ways to take what a rule ignores. Each is a machine that does not know one of the rules.
+// Ways to accept what a rule ignores. Each is a machine that does not know one of the rules.
 #include <algorithm>
 #include <array>
 #include <utility>
@@ -14,7 +14,7 @@ namespace {
 using machine::Address;
 using Phase = machine::JoinMote::Phase;
 
-// The node hears the frame with some of it changed.
+// Makes the node hear the frame with a change.
 template <class Edit>
 bool hear_changed(Moment& moment, std::uint8_t am_type, std::size_t least_bytes, Edit edit) {
   const Frame* const frame = moment.heard(am_type);
@@ -234,7 +234,7 @@ bool switched_on(Moment& moment) {
   return true;
 }
 
-// Incoming buffers lose what waits longest.
+// Incoming buffers lose their oldest frame.
 bool oldest_gives_way(Moment& moment) {
   const Frame* const frame = moment.heard();
   if (frame == nullptr || moment.state.waiting.empty()) return false;
@@ -263,7 +263,7 @@ bool outgoing_oldest_gives_way(Moment& moment) {
 
 bool config_obeyed(Moment& moment) {
   return hear_changed(moment, am::kConfig, 3, [](Forged& forged) {
-    forged.bytes[0] = 10;  // SET_ISLAND_ID.
+    forged.bytes[config::kType] = config::kSetIslandId;
     return true;
   });
 }

@@ -12,14 +12,14 @@ namespace rubric::mutants {
 struct Mutant {
   std::string name;
   std::string breaks;               ///< In a sentence.
-  std::vector<ReqId> requirements;  ///< That it breaks: a failing line must name one of them.
+  std::vector<ReqId> requirements;  ///< Rules that it breaks: a failing line must name one.
   StepMaker step;
 
   runner::SubjectFactory factory() const { return wrapped(step); }
 };
 using Mutants = std::vector<Mutant>;
 
-/// Mistakes that people make, by the family of the rule that they break. Names are unique.
+/// Return common mistakes, by the family of the rule that they break. Names are unique.
 Mutants network_mutants();       ///< N1 to N5.
 Mutants island_mutants();        ///< N6 to N9.
 Mutants control_mutants();       ///< N10 to N12.
@@ -30,7 +30,7 @@ Mutants delivery_mutants();      ///< T1, T2: to and from applications.
 Mutants transport_mutants();     ///< T2 to T4: acks.
 Mutants synaptic_mutants();      ///< S1 to S3.
 Mutants channel_life_mutants();  ///< S4 to S6.
-/// All of these, and the flaws of release 1.0 (conformance/flaws).
+/// Returns all of these, and the flaws of release 1.0 (conformance/flaws).
 Mutants named_mutants();
 
 }  // namespace rubric::mutants

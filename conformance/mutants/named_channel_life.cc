@@ -31,10 +31,12 @@ void sends_local(Moment& moment) {
   for (const Channel& channel : moment.state.synaptic.out) {
     if (!channel.started || channel.peer != own(moment)) continue;
     Transmit& frame = moment.send(Link::kRadio, am::kNet, channel.peer.devid, "S4-LOCAL"_rule);
-    frame.size_bytes = 18;
+    const std::size_t nbytes =
+        rubicon::AppMsgLayout::PayloadAt::kAt + rubicon::SynapticDataLayout::ValuesAt::kUnitBytes;
+    frame.size_bytes = static_cast<std::uint8_t>(net::kTransId + nbytes);
     put(frame, net::kDestPid, channel.peer.pid);
     put(frame, net::kDestDevid, channel.peer.devid);
-    frame.payload[net::kNbytes] = 6;
+    frame.payload[net::kNbytes] = nbytes;
     frame.payload[net::kTransId] = component::kSynChannel;
     frame.payload[net::kAppId] = component::kEsnData;
     return;
@@ -54,8 +56,9 @@ void drops_local(Moment& moment) {
   }
 }
 
-// Data of a channel that nobody has created end up in the first one.
+// Puts data of an unknown channel into the first one.
 void stores_unknown(Moment& moment) {
+  using Values = rubicon::SynapticDataLayout::ValuesAt;
   const Frame* const frame = moment.heard(am::kNet);
   auto& inputs = moment.state.synaptic.in;
   const bool data = frame != nullptr && is_net(*frame) && !inputs.empty() &&
@@ -64,8 +67,8 @@ void stores_unknown(Moment& moment) {
   const bool known =
       data && has(moment.state.synaptic, machine::channel_id(devid, own(moment).devid));
   moment.honest();
-  if (!data || known || frame->payload.size() < net::kBody + 4) return;
-  inputs[0].value_bits[0] = load_le32(frame->payload.data() + net::kBody);
+  if (!data || known || frame->payload.size() < net::kBody + Values::kUnitBytes) return;
+  inputs[0].value_bits[0] = bits_of_float(Values::load(frame->payload.data() + net::kBody, 0));
   inputs[0].fresh = true;
 }
 
@@ -202,7 +205,7 @@ void append(Mutants& out, const Mutants& more) {
   out.insert(out.end(), more.begin(), more.end());
 }
 
-// Those of release 1.0 are steps without a memory.
+// Returns the mutants of release 1.0, which are steps without a memory.
 Mutants release_mutants() {
   Mutants out;
   for (const flaws::Flaw& flaw : flaws::all()) {

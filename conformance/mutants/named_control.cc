@@ -11,7 +11,7 @@ using machine::Send;
 using machine::SendResult;
 using machine::SetInterface;
 
-// Both lines seem to be on for this step.
+// Makes both lines seem to be on for this step.
 void as_if_on(Moment& moment) {
   const bool radio = moment.state.radio.on;
   const bool serial = moment.state.serial.on;
@@ -81,7 +81,7 @@ void add_switches(Mutants& out) {
                  })});
 }
 
-// What nbytes promises stands in old memory.
+// Old memory that holds the rest of a message whose nbytes is too large.
 struct Memory {
   std::array<std::uint8_t, machine::kAmPayloadMax> bytes{};
 };
@@ -162,7 +162,7 @@ void add_malformed(Mutants& out) {
                  })});
 }
 
-// A number for what send was given, in the message, in the result and among the awaited.
+// Sets a number for a send: in the message, in the result and among the awaited.
 void renumber(Moment& moment, std::uint16_t number) {
   const std::size_t before = moment.state.awaited.size();
   moment.honest();

@@ -1,4 +1,5 @@
-// Mistakes in Connectionless: how applications' messages are wrapped, and who gets them.
+// Mistakes in Connectionless: how applications' messages are wrapped, and which applications get
+// them.
 #include <utility>
 
 #include "conformance/machine/transport.h"

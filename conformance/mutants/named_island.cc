@@ -1,4 +1,4 @@
-// Mistakes of sinks and base stations: what they hand up, down and across, and island ids.
+// Mistakes of sinks and base stations: messages that they pass up, down and across, and island ids.
 #include <algorithm>
 
 #include "conformance/mutants/fields.h"
@@ -115,7 +115,7 @@ void add_sink_up(Mutants& out) {
                    const auto sent = moment.actions.transmits();
                    if (!reliable || sent.empty() || sent[0].link != Link::kSerial) return;
                    Transmit& ack = moment.send(Link::kRadio, am::kNet, heard->src, "T2-ACK"_rule);
-                   ack.size_bytes = 18;
+                   ack.size_bytes = net::kBody + rubicon::RubiconAckView::kMaxSizeBytes;
                    ack.payload[net::kTransId] = component::kRubiconAck;
                  })});
   out.push_back({"sink_delivers_others",
@@ -184,7 +184,7 @@ void add_sink_down(Mutants& out) {
                    if (!down(moment, frame)) return Fate::kKeep;
                    const auto end = frame.payload.begin() + frame.size_bytes;
                    std::fill(end, frame.payload.end(), std::uint8_t{0});
-                   frame.payload[net::kNbytes] = 102;
+                   frame.payload[net::kNbytes] = net::kNbytes.kMax;
                    frame.size_bytes = machine::kAmPayloadMax;
                    return Fate::kKeep;
                  })});
@@ -289,7 +289,7 @@ void add_island_id(Mutants& out) {
                  {"N9-SET"_rule},
                  on_heard([](Moment&, Forged& forged) {
                    if (forged.frame.type == am::kConfig)
-                     std::swap(forged.bytes[1], forged.bytes[2]);
+                     std::swap(forged.bytes[config::kValue], forged.bytes[config::kValue.kEnd - 1]);
                    return true;
                  })});
   out.push_back({"island_id_in_replies_only",
@@ -309,7 +309,9 @@ void add_island_id(Mutants& out) {
                  "Any config message sets the island id.",
                  {"N9-OTHER"_rule},
                  on_heard([](Moment&, Forged& forged) {
-                   if (forged.frame.type == am::kConfig) forged.bytes[0] = 10;
+                   if (forged.frame.type == am::kConfig) {
+                     forged.bytes[config::kType] = config::kSetIslandId;
+                   }
                    return true;
                  })});
   out.push_back({"members_of_the_old_island_kept",

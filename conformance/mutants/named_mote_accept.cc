@@ -1,4 +1,4 @@
-// Mistakes of motes with a join_reply: which they accept, what they make of it, ack_join.
+// Mistakes of motes with a join_reply: which they accept, what they do with it, ack_join.
 #include <algorithm>
 
 #include "conformance/mutants/fields.h"
@@ -32,7 +32,8 @@ void add_acceptance(Mutants& out) {
                  {"J4-CONTENT"_rule},
                  on_sent([](Moment&, const Action&, Transmit& frame) {
                    if (frame.type != am::kAckJoin) return Fate::kKeep;
-                   std::swap_ranges(frame.payload.begin(), frame.payload.begin() + 4,
+                   std::swap_ranges(frame.payload.begin() + ack_join::kDestPid,
+                                    frame.payload.begin() + ack_join::kDestDevid.kEnd,
                                     frame.payload.begin() + ack_join::kSrcPid);
                    return Fate::kKeep;
                  })});
@@ -137,7 +138,7 @@ void add_acceptance(Mutants& out) {
                  })});
 }
 
-// What the link layer says of ack_join.
+// The link ack of ack_join.
 
 struct Confirmed {
   Transmit ack;

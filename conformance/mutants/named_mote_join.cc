@@ -14,7 +14,7 @@ using Phase = machine::JoinMote::Phase;
 
 Transmit& send_request(Moment& moment) {
   Transmit& request = moment.send(Link::kRadio, am::kJoin, 1, "J1-REQUEST"_rule);
-  request.size_bytes = 6;
+  request.size_bytes = rubicon::JoinRequestView::kMaxSizeBytes;
   put(request, join_request::kSeqNum, moment.state.join.seq_num);
   const machine::Descriptor& d = moment.state.join.descriptor;
   request.payload[join_request::kMoteType] = d.mote_type;
@@ -31,7 +31,8 @@ void add_requests(Mutants& out) {
                  {"J1-REQUEST"_rule},
                  on_sent([](Moment&, const Action&, Transmit& frame) {
                    if (frame.type == am::kJoin) {
-                     std::fill_n(frame.payload.begin() + join_request::kMoteType, 4, 0);
+                     std::fill_n(frame.payload.begin() + join_request::kMoteType,
+                                 rubicon::MoteDescView::kMaxSizeBytes, 0);
                    }
                    return Fate::kKeep;
                  })});
@@ -103,7 +104,7 @@ void succeeds_twice(Moment& moment) {
   if (confirmed) moment.actions.notify(Joined{own(moment), true}, "J5-ONCE"_rule);
 }
 
-void add_ends(Mutants& out) {
+void add_join_ends(Mutants& out) {
   out.push_back({"joined_with_own_id_only",
                  "joined(SUCCESS) tells an address without the island.",
                  {"J5-SUCCESS"_rule},
@@ -244,7 +245,7 @@ void add_outside(Mutants& out) {
                    if (request == nullptr || !moment.is(Role::kMote)) return;
                    Transmit& reply =
                        moment.send(Link::kRadio, am::kJoinReply, request->src, "J10-MOTE"_rule);
-                   reply.size_bytes = 10;
+                   reply.size_bytes = rubicon::JoinReplyView::kMaxSizeBytes;
                    put(reply, join_reply::kMote, request->src);
                  })});
   out.push_back({"mote_lists_members",
@@ -294,7 +295,7 @@ void add_outside(Mutants& out) {
 Mutants mote_join_mutants() {
   Mutants out;
   add_requests(out);
-  add_ends(out);
+  add_join_ends(out);
   add_timer(out);
   add_outside(out);
   return out;

@@ -1,4 +1,5 @@
-// Mistakes of the network level: sending, buffers, addressing, what motes and sinks take.
+// Mistakes of the network level: sending, buffers, addressing, messages that motes and sinks
+// accept.
 #include <algorithm>
 
 #include "conformance/mutants/fields.h"

@@ -10,9 +10,6 @@ namespace {
 
 using machine::MoteJoined;
 
-constexpr std::size_t kReportedMote = net::kBody + 3;  // In serial_joined.
-constexpr std::size_t kReportedTransducers = net::kBody + 6;
-
 bool is_reply(const Moment&, const Transmit& frame) {
   return frame.type == am::kJoinReply;
 }
@@ -40,7 +37,7 @@ void add_replies(Mutants& out) {
                    if (frame == nullptr || !moment.is(Role::kSink) || !room) return;
                    Transmit& reply =
                        moment.send(Link::kRadio, am::kJoinReply, frame->src, "J3-ONCE"_rule);
-                   reply.size_bytes = 10;
+                   reply.size_bytes = rubicon::JoinReplyView::kMaxSizeBytes;
                    put(reply, join_reply::kIsland, moment.state.island);
                    put(reply, join_reply::kMote, frame->src);
                  })});
@@ -53,7 +50,7 @@ void add_replies(Mutants& out) {
                    if (frame == nullptr || !moment.is(Role::kSink)) return;
                    Transmit& reply =
                        moment.send(Link::kRadio, am::kJoinReply, frame->src, "J3-ONCE"_rule);
-                   reply.size_bytes = 10;
+                   reply.size_bytes = rubicon::JoinReplyView::kMaxSizeBytes;
                    put(reply, join_reply::kIsland, moment.state.island);
                    put(reply, join_reply::kMote, frame->src);
                  })});
@@ -89,8 +86,7 @@ void add_replies(Mutants& out) {
                  {"J3-DRIFT"_rule, "J3-TIME"_rule},
                  on_sent([](Moment&, const Action&, Transmit& frame) {
                    if (frame.type != am::kJoinReply) return Fate::kKeep;
-                   std::uint8_t* const time = frame.payload.data() + join_reply::kTime;
-                   store_be32(time, load_be32(time) / 1000);
+                   put(frame, join_reply::kTime, get(frame, join_reply::kTime) / 1000);
                    return Fate::kKeep;
                  })});
   out.push_back({"cur_time_constant",
@@ -98,7 +94,7 @@ void add_replies(Mutants& out) {
                  {"J3-TIME"_rule},
                  on_sent([](Moment&, const Action&, Transmit& frame) {
                    if (frame.type != am::kJoinReply) return Fate::kKeep;
-                   store_be32(frame.payload.data() + join_reply::kTime, 12345);
+                   put(frame, join_reply::kTime, 12345);
                    return Fate::kKeep;
                  })});
 }
@@ -268,14 +264,14 @@ void add_acks(Mutants& out) {
                  "serial_joined has no transducers.",
                  {"J6-CONTENT"_rule},
                  on_sent([](Moment& moment, const Action&, Transmit& frame) {
-                   if (is_report(moment, frame)) put(frame, kReportedTransducers, 0);
+                   if (is_report(moment, frame)) put(frame, net::kReportedTransducers, 0);
                    return Fate::kKeep;
                  })});
   out.push_back({"serial_joined_of_the_sink",
                  "serial_joined names the sink as the new member.",
                  {"J6-CONTENT"_rule},
                  on_sent([](Moment& moment, const Action&, Transmit& frame) {
-                   if (is_report(moment, frame)) put(frame, kReportedMote, 1);
+                   if (is_report(moment, frame)) put(frame, net::kReportedMote, 1);
                    return Fate::kKeep;
                  })});
   out.push_back({"serial_joined_signed_by_the_sink",
@@ -299,10 +295,10 @@ void add_acks(Mutants& out) {
                    put(report, net::kDestDevid, machine::kNullDevid);
                    put(report, net::kSrcPid, moment.state.island);
                    put(report, net::kSrcDevid, request->src);
-                   report.payload[net::kNbytes] = 11;
+                   report.payload[net::kNbytes] = net::kReportNbytes;
                    report.payload[net::kTransId] = component::kConnless;
                    report.payload[net::kAppId] = component::kControlLayer;
-                   report.payload[net::kBody] = 16;
+                   report.payload[net::kBody] = net::kReport;
                  })});
   out.push_back({"sink_becomes_a_member",
                  "A sink that hears a join_reply acks it.",
@@ -313,7 +309,7 @@ void add_acks(Mutants& out) {
                    if (reply == nullptr || !moment.is(Role::kSink)) return;
                    Transmit& ack =
                        moment.send(Link::kRadio, am::kAckJoin, reply->src, "J10-SINK"_rule);
-                   ack.size_bytes = 14;
+                   ack.size_bytes = rubicon::AckJoinView::kMaxSizeBytes;
                  })});
   out.push_back({"sink_takes_the_island_of_a_reply",
                  "A sink adopts the island of a join_reply.",

@@ -9,6 +9,8 @@
 namespace rubric::mutants {
 namespace {
 
+constexpr std::size_t kUnit = rubicon::SynapticDataLayout::ValuesAt::kUnitBytes;
+
 using machine::Channel;
 using machine::ChannelResult;
 using machine::CreateChannel;
@@ -147,9 +149,9 @@ void add_operations(Mutants& out) {
                    const bool data = is_net(forged.frame) &&
                                      forged.bytes[net::kTransId] == component::kSynChannel;
                    if (!data) return true;
-                   for (std::size_t i = net::kBody; i + 4 <= forged.size(); i += 4) {
+                   for (std::size_t i = net::kBody; i + kUnit <= forged.size(); i += kUnit) {
                      std::reverse(forged.bytes.begin() + static_cast<std::ptrdiff_t>(i),
-                                  forged.bytes.begin() + static_cast<std::ptrdiff_t>(i) + 4);
+                                  forged.bytes.begin() + static_cast<std::ptrdiff_t>(i + kUnit));
                    }
                    return true;
                  })});
@@ -224,8 +226,8 @@ void add_ticks(Mutants& out) {
                  {"S2-CONTENT"_rule, "S1-WRITE"_rule, "S1-ENLARGE"_rule},
                  on_sent([](Moment&, const Action&, Transmit& frame) {
                    if (!is_synaptic(frame)) return Fate::kKeep;
-                   for (std::size_t i = net::kBody; i + 4 <= frame.size_bytes; i += 4) {
-                     std::reverse(frame.payload.begin() + i, frame.payload.begin() + i + 4);
+                   for (std::size_t i = net::kBody; i + kUnit <= frame.size_bytes; i += kUnit) {
+                     std::reverse(frame.payload.begin() + i, frame.payload.begin() + i + kUnit);
                    }
                    return Fate::kKeep;
                  })});
@@ -236,8 +238,8 @@ void add_ticks(Mutants& out) {
                    if (!is_synaptic(frame)) return Fate::kKeep;
                    std::reverse(frame.payload.begin() + net::kBody,
                                 frame.payload.begin() + frame.size_bytes);
-                   for (std::size_t i = net::kBody; i + 4 <= frame.size_bytes; i += 4) {
-                     std::reverse(frame.payload.begin() + i, frame.payload.begin() + i + 4);
+                   for (std::size_t i = net::kBody; i + kUnit <= frame.size_bytes; i += kUnit) {
+                     std::reverse(frame.payload.begin() + i, frame.payload.begin() + i + kUnit);
                    }
                    return Fate::kKeep;
                  })});

@@ -1,4 +1,4 @@
-// Mistakes in Rubicon ACK: which messages are acked, how, and what their sender makes of it.
+// Mistakes in Rubicon ACK: which messages are acked, how, and what their sender does then.
 #include <algorithm>
 
 #include "conformance/machine/transport.h"
@@ -16,13 +16,13 @@ bool is_ack_sent(const Moment& moment, const Transmit& frame) {
   return is_ack(frame) && moment.heard(am::kNet) != nullptr;
 }
 
-// A net_msg for this very node, with something of it.
+// Returns whether it is a net_msg for this very node, of that kind.
 bool is_for_us(const Moment& moment, const Frame& frame) {
   return is_net(frame) && get(frame, net::kDestPid) == own(moment).pid &&
          get(frame, net::kDestDevid) == own(moment).devid;
 }
 
-void add_acks(Mutants& out) {
+void add_message_acks(Mutants& out) {
   out.push_back({"no_ack", "A node never acks.", {"T2-ACK"_rule}, drop_sent(is_ack_sent)});
   out.push_back(
       {"ack_twice", "A node sends each ack twice.", {"T2-ONCE"_rule}, double_sent(is_ack_sent)});
@@ -51,7 +51,8 @@ void add_acks(Mutants& out) {
                  {"T2-CONTENT"_rule, "T2-ACK"_rule},
                  on_sent([](Moment&, const Action&, Transmit& frame) {
                    if (is_ack(frame)) {
-                     std::swap(frame.payload[net::kAckedSeq], frame.payload[net::kAckedSeq + 1]);
+                     std::reverse(frame.payload.begin() + net::kAckedSeq,
+                                  frame.payload.begin() + net::kAckedSeq.kEnd);
                    }
                    return Fate::kKeep;
                  })});
@@ -107,7 +108,8 @@ void add_acks(Mutants& out) {
                      })});
 }
 
-// What must not be acked is acked: as if it were reliable, plain, or for this node alone.
+// Adds mutants that ack what must not be acked: as if it were reliable, plain, or for this node
+// alone.
 void add_needless_acks(Mutants& out) {
   out.push_back({"unreliable_acked",
                  "An unreliable message is acked.",
@@ -123,13 +125,13 @@ void add_needless_acks(Mutants& out) {
                    const Frame* const frame = moment.heard(am::kNet);
                    if (frame == nullptr || !is_ack(*frame) || !is_for_us(moment, *frame)) return;
                    Transmit& ack = moment.send(Link::kRadio, am::kNet, frame->src, "T2-LOOP"_rule);
-                   ack.size_bytes = 18;
-                   std::copy_n(frame->payload.begin(), 4, ack.payload.begin() + net::kSrcPid);
-                   std::copy_n(frame->payload.begin() + net::kSrcPid, 4, ack.payload.begin());
-                   ack.payload[net::kNbytes] = 6;
+                   ack.size_bytes = net::kBody + rubicon::RubiconAckView::kMaxSizeBytes;
+                   copy_address(*frame, net::kDestPid, ack, net::kSrcPid);
+                   copy_address(*frame, net::kSrcPid, ack, net::kDestPid);
+                   ack.payload[net::kNbytes] = net::kAckNbytes;
                    ack.payload[net::kTransId] = component::kRubiconAck;
                    ack.payload[net::kAppId] = frame->payload[net::kAppId];
-                   ack.payload[net::kBody] = 23;
+                   ack.payload[net::kBody] = net::kAck;
                    put(ack, net::kAckedSeq, get(*frame, net::kSeqNum));
                  })});
   out.push_back({"broadcast_acked",
@@ -162,7 +164,7 @@ void add_needless_acks(Mutants& out) {
                                       frame->payload[net::kReliable] == 1;
                    if (!asked || !is_for_us(moment, *frame)) return;
                    Transmit& ack = moment.send(Link::kRadio, am::kNet, frame->src, "T2-LOOP"_rule);
-                   ack.size_bytes = 18;
+                   ack.size_bytes = net::kBody + rubicon::RubiconAckView::kMaxSizeBytes;
                    ack.payload[net::kTransId] = component::kRubiconAck;
                  })});
 }
@@ -263,14 +265,15 @@ void add_sender(Mutants& out) {
                  "An ack in the paper's form is not understood.",
                  {"T3-SUCCESS"_rule},
                  on_heard([](Moment&, Forged& forged) {
-                   return !is_net(forged.frame) || forged.bytes[net::kNbytes] != 4 ||
+                   return !is_net(forged.frame) ||
+                          forged.bytes[net::kNbytes] != net::kPaperAckNbytes ||
                           forged.bytes[net::kTransId] != component::kRubiconAck;
                  })});
   out.push_back({"knows_the_papers_acks_only",
                  "An ack in the deployed form is not understood.",
                  {"T3-SUCCESS"_rule},
                  on_heard([](Moment&, Forged& forged) {
-                   return !is_net(forged.frame) || forged.bytes[net::kNbytes] != 6 ||
+                   return !is_net(forged.frame) || forged.bytes[net::kNbytes] != net::kAckNbytes ||
                           forged.bytes[net::kTransId] != component::kRubiconAck;
                  })});
   out.push_back({"ack_timeout_short",
@@ -323,7 +326,7 @@ void add_sender(Mutants& out) {
 
 Mutants transport_mutants() {
   Mutants out;
-  add_acks(out);
+  add_message_acks(out);
   add_needless_acks(out);
   add_sender(out);
   return out;

@@ -105,7 +105,7 @@ runner::DueTimers Wrapped::timers() const {
   runner::DueTimers timers = machine::timers(body_.state);
   const auto soonest = std::min_element(body_.held.begin(), body_.held.end(),
                                         [](const Held& a, const Held& b) { return a.due < b.due; });
-  // The machine never has all its timers set: who joins awaits no acks.
+  // The machine never has all its timers set: a joining mote awaits no acks.
   if (soonest != body_.held.end() && !timers.full()) {
     timers.push({soonest->due, {machine::TimerKind::kSynaptic, kWakeUp}});
   }

@@ -1,5 +1,5 @@
-// A node made by wrapping the machine's step: what it hears, what it does and what it remembers may
-// be changed between the machine and the world, the machine itself never.
+// A node made by wrapping the machine's step: the wrapper may change inputs, outputs and memory
+// between the machine and the world, but never the machine itself.
 #pragma once
 
 #include <deque>
@@ -28,7 +28,7 @@ struct Held {
   Action action;
   Transmit transmit;
   Notice notice;
-  std::vector<std::uint8_t> data;  ///< Of Received.
+  std::vector<std::uint8_t> data;  ///< For Received.
 };
 
 /// A frame whose bytes and addresses may be changed. It lasts until the next step.
@@ -40,15 +40,15 @@ struct Forged {
   std::size_t size() const { return frame.payload.size(); }
 };
 
-/// What a wrapped node keeps between steps.
+/// A wrapped node's state between steps.
 struct Body {
   State state;
   Forged forged;
   std::deque<Held> held;
-  std::vector<std::vector<std::uint8_t>> data;  ///< That this step's notices point at.
+  std::vector<std::vector<std::uint8_t>> data;  ///< This step's notices point at these.
 };
 
-/// One step, in the hands of a wrapper.
+/// One step, for a wrapper to change.
 class Moment {
  public:
   Moment(Body& body, Ticks at, const Event& what, Actions& out)
@@ -59,14 +59,14 @@ class Moment {
   const Event& event;
   Actions& actions;
 
-  /// What the machine does.
+  /// Runs the machine's step.
   void honest() { machine::step(state, now, event, actions); }
-  /// What the machine would do if something else happened.
+  /// Runs the machine's step for another event.
   void honest(const Event& other) { machine::step(state, now, other, actions); }
   void nothing() { actions.clear(); }
 
   bool is(Role role) const { return state.config.role == role; }
-  /// The frame that is heard, of that type if one is given; or null.
+  /// Returns the frame that is heard, of that type if one is given; or null.
   const Frame* heard() const;
   const Frame* heard(std::uint8_t am_type) const;
   template <class T>
@@ -78,11 +78,11 @@ class Moment {
     const auto* due = std::get_if<machine::TimerDue>(&event);
     return due != nullptr && due->timer.kind == kind;
   }
-  /// A copy of a frame, to be changed and heard in its place.
+  /// Returns a copy of a frame, to be changed and heard in its place.
   Forged& forge(const Frame& frame);
 
-  /// Gives `edit(action)` each action of this step; what it does not keep() is dropped. Valid for
-  /// reading inside: sent(action) and told(action).
+  /// Calls `edit(action)` for each action of this step; drops those for which it does not call
+  /// keep(). sent(action) and told(action) may be used inside.
   template <class Edit>
   void rewrite(Edit edit) {
     honest_ = actions;
@@ -105,9 +105,9 @@ class Moment {
   Actions honest_;
 };
 
-/// One step of a wrapper; what it remembers is its own.
+/// One step of a wrapper; its memory is its own.
 using Step = std::function<void(Moment&)>;
-/// Makes a wrapper that has not seen anything yet.
+/// Makes a wrapper with an empty memory.
 using StepMaker = std::function<Step()>;
 
 /// The machine with a wrapper around its step.
@@ -132,18 +132,18 @@ runner::SubjectFactory wrapped(StepMaker make);
 
 enum class Fate : std::uint8_t { kKeep, kDrop, kTwice };
 
-/// Nothing to remember.
+/// Makes a wrapper without a memory.
 StepMaker always(void (*step)(Moment&));
-/// Changes, drops or doubles what is sent.
+/// Changes, drops or doubles frames that are sent.
 using SentEdit = std::function<Fate(Moment&, const Action&, Transmit&)>;
 StepMaker on_sent(SentEdit edit);
-/// Changes, drops or doubles what the application is told.
+/// Changes, drops or doubles notices to the application.
 using ToldEdit = std::function<Fate(Moment&, const Action&, Notice&)>;
 StepMaker on_told(ToldEdit edit);
-/// Changes what is heard; false: it is not heard at all.
+/// Changes frames that are heard; returns false to drop one.
 using HeardEdit = std::function<bool(Moment&, Forged&)>;
 StepMaker on_heard(HeardEdit edit);
-/// Another profile in force.
+/// Makes a wrapper that uses another profile.
 StepMaker with_profile(std::function<void(machine::Profile&)> edit);
 
 template <class T>

@@ -64,7 +64,7 @@ void Acks::sent(std::uint16_t node, const Observation& seen, const Net& ack) {
   const std::int64_t now = seen.place.time_us;
   const std::int32_t acked = machine::acked_seq_num(ack.body());
   Ring<Arrived, kRoom>& ring = arrived_[node];
-  // The best of what came with that number: one that waits for its ack.
+  // Picks the best message with that number: one that waits for its ack.
   Arrived* best = nullptr;
   const auto rank = [](const Arrived& a) {
     if (a.forbidden != ReqId::kNone) return 0;
@@ -173,7 +173,7 @@ void Acks::delivered(std::uint16_t node, const Observation& seen,
                   !equal(arrived.net.body(), received.data))) {
       continue;
     }
-    // Of a malformed message anything may have been made.
+    // A node may make anything of a malformed message.
     const std::size_t came = arrived.net.payload.size();
     if (!sound && came > 2 &&
         (received.data.size() < came - 2 ||
@@ -183,7 +183,7 @@ void Acks::delivered(std::uint16_t node, const Observation& seen,
     if (best == nullptr || rank(arrived) > rank(*best)) best = &arrived;
   }
   if (best == nullptr) {
-    // What comes to a base station from other islands passes by where no log and no tap is read.
+    // Messages to a base station from other islands pass where no log and no tap is read.
     const Device& device = context_.device(node);
     const bool by_peis = device.role == machine::Role::kBaseStation &&
                          received.src.pid != device.island && !logs_peis(context_.run, node);
@@ -229,7 +229,7 @@ void Acks::showed_life(std::uint16_t node, std::int64_t now_us) {
     --owed_[node];
     arrived.must_ack = false;
     const Device& device = context_.device(node);
-    // A radio frame of it may have escaped; a serial line is seen whole.
+    // A radio frame of the node may have escaped; a serial line is seen whole.
     const bool by_radio = device.role == machine::Role::kMote ||
                           (device.role == machine::Role::kSink &&
                            arrived.net.src.devid != machine::kNullDevid);

@@ -23,11 +23,11 @@ std::string decimal(double value, int places, const char* unit) {
 }
 
 struct File {
-  bool frames = false;       // Of captures.
+  bool frames = false;       // It is a capture.
   bool timed = false;        // Some have stamps.
   bool radio = false;
   bool serial = false;
-  bool moved = false;        // By the frames that another one has.
+  bool moved = false;        // It was shifted by frames it shares with another.
   bool settled = false;      // On a clock, or left as it is.
   std::uint32_t clock = 0;   // The first file on the same one.
   std::int64_t first_us = 0;
@@ -70,7 +70,7 @@ class Alignment {
     }
   }
 
-  // The first, or one that nothing puts beside those before.
+  // Returns the first file that is not settled, which begins a clock of its own.
   std::optional<std::uint32_t> first_unsettled() {
     for (std::uint32_t i = 0; i < files_.size(); ++i) {
       if (!files_[i].timed || files_[i].settled) continue;
@@ -82,7 +82,7 @@ class Alignment {
     return std::nullopt;
   }
 
-  // Takes the file that has most in common with one of those that are settled.
+  // Settles the file that has most in common with a settled one.
   bool settle_one() {
     std::optional<ClockFit> best;
     std::uint32_t best_a = 0;
@@ -109,8 +109,8 @@ class Alignment {
     return fit_clock(run_, common_of(a, b), options_);
   }
 
-  // What two files with stamps have in common; of a line and a sniffer, what the line has in common
-  // with all sniffers on that one's clock: one of them may have missed frames, or hear them late.
+  // Returns the frames that two files with stamps have in common. A line is compared with all
+  // sniffers on the clock of `a`, since one of them may have missed frames or heard them late.
   CommonFrames common_of(std::uint32_t a, std::uint32_t b) {
     const auto sniffer = [](const File& file) { return file.timed && file.radio && !file.serial; };
     if (!sniffer(files_[a]) || files_[b].radio) {
@@ -141,8 +141,8 @@ class Alignment {
     run_.facts.push_back(text + ")");
   }
 
-  // Says why file `b` is on no clock of those before. Its own is taken to be theirs only where
-  // there is nothing to tell that it is not.
+  // Says why file `b` shares no clock with those before. It is taken to share one only where
+  // nothing suggests otherwise.
   void stay(std::uint32_t b) {
     bool said = false;
     for (std::uint32_t a = 0; a < files_.size(); ++a) {
@@ -163,7 +163,7 @@ class Alignment {
     }
   }
 
-  // Puts a file without stamps among those on the air's clock.
+  // Orders a file without stamps among those on the air's clock.
   void order(std::uint32_t b) {
     const std::optional<std::uint32_t> air = air_file();
     if (!air) return;
@@ -190,14 +190,14 @@ class Alignment {
                          " frames lie");
   }
 
-  // What `b` has in common with the air. Of sniffers that hear the same each frame counts once.
+  // Returns what `b` has in common with the air. A frame that several sniffers heard counts once.
   OrderEvidence evidence_of(std::uint32_t b, std::uint32_t air) {
     std::vector<const std::vector<Sighting>*> timed;
     for (std::uint32_t a = 0; a < files_.size(); ++a) {
       if (files_[a].timed && files_[a].clock == files_[air].clock) timed.push_back(&sightings_[a]);
     }
     std::vector<Sighting> others = each_once(run_, timed, options_.skew_us);
-    if (!files_[b].radio) {  // What is on another line passes to none.
+    if (!files_[b].radio) {  // Frames of another line pass to no other.
       std::erase_if(others, [&](const Sighting& one) {
         return run_.seen[one.index].kind != Observation::Kind::kRadio;
       });
@@ -209,7 +209,7 @@ class Alignment {
     return {std::move(common.pairs), std::move(common.only_a), std::move(common.only_b)};
   }
 
-  // Frames of `b` that a line with stamps has as well.
+  // Counts the frames of `b` that a line with stamps has as well.
   std::size_t shared_with_timed(std::uint32_t b, std::uint32_t air) {
     std::set<std::uint32_t> same;
     for (std::uint32_t a = 0; a < files_.size(); ++a) {
@@ -221,7 +221,7 @@ class Alignment {
     return same.size();
   }
 
-  // These frames of `b` go the other way.
+  // Reverses the direction of these frames of `b`.
   void turn(const std::vector<std::uint32_t>& frames, std::uint32_t b) {
     if (frames.empty()) return;
     for (const std::uint32_t i : frames) run_.seen[i].to_mote = !run_.seen[i].to_mote;
@@ -235,7 +235,7 @@ class Alignment {
     return static_cast<std::uint32_t>(air - files_.begin());
   }
 
-  // Lines on another clock than the air's first capture, and those that were put on it.
+  // Marks lines on another clock than the air's first capture, and those that were put on it.
   void mark_lines() {
     const std::optional<std::uint32_t> air = air_file();
     if (!air) return;

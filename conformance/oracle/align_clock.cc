@@ -10,18 +10,18 @@ namespace {
 
 constexpr std::size_t kFramesMin = 3;
 constexpr std::int64_t kSlackUs = 100'000;     // Beyond the response time: a queue, a repetition.
-constexpr double kDriftMax = 300e-6;           // Of two crystals, and some more.
+constexpr double kDriftMax = 300e-6;           // Two crystals, with a margin.
 constexpr std::size_t kTrack = 9;              // Neighbours that say where the next one lies.
 constexpr std::size_t kSlopePoints = 300;      // Enough for a slope; pairs of them are counted.
-constexpr std::int64_t kUnwaitedUs = 20'000;   // That even the fastest frame may have waited.
-constexpr double kRoundedUs = 2;               // What rounding may take from an order.
+constexpr std::int64_t kUnwaitedUs = 20'000;   // Even the fastest frame may have waited so long.
+constexpr double kRoundedUs = 2;               // Rounding may take this from an order.
 constexpr double kTrimmed = 0.02;              // Pairs that are a chance, or a message held up.
-constexpr double kSigma = 1.4826;              // Of a median deviation.
+constexpr double kSigma = 1.4826;              // Scales a median deviation.
 constexpr std::size_t kDriftFrames = 8;
 constexpr std::int64_t kDriftSpanUs = 10'000'000;
 constexpr double kDriftShownUs = 200;          // Less than that, over all, is none.
 
-// One pair: the second file's stamp, how far it is ahead, and which way the frame went.
+// One pair: the second file's stamp, how far that clock is ahead, and which way the frame went.
 struct Point {
   std::int64_t at_us = 0;
   std::int64_t ahead_us = 0;
@@ -29,7 +29,7 @@ struct Point {
   std::int64_t lag_min_us = 0;
   bool up = false;  // From the air to a line.
   bool inlier = false;
-  double rest_us = 0;  // Without drift.
+  double rest_us = 0;  // The remainder after drift.
 };
 
 using Points = std::vector<Point>;
@@ -55,7 +55,7 @@ T median(std::vector<T> values) {
   return *middle;
 }
 
-// The value that `part` of them, 0 to 1, are not above.
+// Returns the value that `part` (0 to 1) of them do not exceed.
 double quantile(std::vector<double> values, double part) {
   const double rank = part * static_cast<double>(values.size() - 1);
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(std::llround(rank));
@@ -63,7 +63,7 @@ double quantile(std::vector<double> values, double part) {
   return *at;
 }
 
-// The most that lie within `width` of each other, of those that are not inliers.
+// The most points, inliers aside, that lie within `width` of each other.
 struct Cluster {
   std::size_t size = 0;
   std::int64_t from_us = 0;
@@ -84,7 +84,7 @@ Cluster densest(const Points& points, std::int64_t width_us) {
   return out;
 }
 
-// Marks what goes on from the densest part: drift moves it slowly.
+// Marks the points that continue the densest part, which drift moves slowly.
 class Tracking {
  public:
   Tracking(Points& points, std::int64_t width_us) : points_(points), width_us_(width_us) {}
@@ -122,7 +122,7 @@ class Tracking {
   std::int64_t width_us_;
 };
 
-// The middle slope between pairs that went the same way (Theil and Sen).
+// Returns the median slope between pairs that went the same way (Theil and Sen).
 double slope_of(const Points& in) {
   std::vector<double> slopes;
   const std::size_t stride = std::max<std::size_t>(1, in.size() / kSlopePoints);
@@ -145,7 +145,7 @@ std::vector<double> rests(const Points& in, int lag_sign) {
   return out;
 }
 
-// How far points are from the middle one of those that went the same way.
+// Returns how far each point is from the median of those that went the same way.
 std::vector<double> deviations(const Points& in) {
   std::vector<double> out;
   for (const int sign : {-1, 0, 1}) {
@@ -164,8 +164,8 @@ void set_rests(Points& in, std::int64_t base_us, double drift) {
   }
 }
 
-// A slope that the scatter of the points cannot feign, and that clocks can have; else 0. Leaves the
-// rests without it.
+// Returns a slope that clocks can have and that the scatter of the points cannot feign, else 0.
+// Sets the remainders accordingly.
 double drift_of(Points& in, std::int64_t base_us) {
   set_rests(in, base_us, 0);
   const std::int64_t span_us = in.back().at_us - in.front().at_us;
@@ -185,13 +185,13 @@ double drift_of(Points& in, std::int64_t base_us) {
   return 0;
 }
 
-// Where the offset can lie: no effect stands before its cause.
+// The range of the offset, since no effect comes before its cause.
 struct Bounds {
-  std::optional<double> low;   // By frames whose cause is in the second file.
-  std::optional<double> high;  // By those whose cause is in the first one.
+  std::optional<double> low;   // From frames whose cause is in the second file.
+  std::optional<double> high;  // From frames whose cause is in the first one.
 };
 
-// The least of them, without those that are far from all others.
+// Returns the least value, ignoring those that are far from all others.
 std::optional<double> least(const std::vector<double>& values, double far_us) {
   if (values.empty()) return std::nullopt;
   const double usual = quantile(values, kTrimmed);
@@ -216,9 +216,9 @@ Bounds bounds_of(const Points& in, const AlignOptions& options) {
   return out;
 }
 
-// How far the second clock is ahead of rest 0: as far as the same frames say, else so that the
-// fastest frame from the air to the line waited for nothing. The line's stamps are then as early as
-// they can be, so that what came down it stands before its effect on the air, however fast.
+// Returns how far the second clock is ahead of remainder 0: as far as frames that are the same say,
+// else so that the fastest frame from the air to the line waited for nothing. The line's stamps are
+// then as early as they can be, so whatever came down it precedes its effect on the air.
 double ahead_of(const Points& in, const AlignOptions& options) {
   const std::vector<double> same = rests(in, 0);
   if (!same.empty()) return median(same);
@@ -278,7 +278,7 @@ class Fit {
     return out_;
   }
 
-  // Most of them are as frames of one clock: nothing is to be shown.
+  // Returns whether most pairs look like those of one clock, so that nothing needs to be shown.
   bool near_zero() const {
     Points near;
     const std::int64_t most = options_.response_us + kSlackUs + options_.skew_us;
@@ -294,9 +294,9 @@ class Fit {
     return drifted <= skew_us && std::abs(ahead_of(near, options_)) <= skew_us;
   }
 
-  // Most of those that repeat can be pairs of one clock.
+  // Returns whether most repeating frames can be pairs of one clock.
   bool guesses_near_zero() const {
-    std::map<std::uint32_t, bool> near;  // By frame of the second file.
+    std::map<std::uint32_t, bool> near;  // By frame index in the second file.
     for (const Pair& pair : common_.guesses) {
       const std::int64_t a = run_.seen[pair.a].place.time_us;
       const std::int64_t b = run_.seen[pair.b].place.time_us;
@@ -311,8 +311,8 @@ class Fit {
     return 2 * static_cast<std::size_t>(count) > near.size();
   }
 
-  // In the time that both were recorded one file has no more frames that the other has not than
-  // frames that it has.
+  // Returns whether, in the time that both files cover, at least one of them misses no more frames
+  // of the other than it shares with it.
   bool covers() const {
     const std::int64_t ahead_us = in_[in_.size() / 2].ahead_us;
     const auto at = [&](std::uint32_t index) { return run_.seen[index].place.time_us; };

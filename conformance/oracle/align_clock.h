@@ -1,4 +1,5 @@
-// How far the clock of one capture is ahead of that of another, by the frames that both have.
+// Computes how far the clock of one capture is ahead of another's, from the frames that both have;
+// align.h says what this rests on.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +11,9 @@
 
 namespace rubric::oracle {
 
-/// What came of it.
+/// The result of a comparison.
 enum class Clocks : std::uint8_t {
-  kAgree,   ///< As far as the frames tell they are one clock, or good for the rules as they are.
+  kAgree,   ///< The frames suggest one clock, or close enough for the rules.
   kDiffer,  ///< By offset and drift.
   kUnsure,  ///< The frames do not say; `why` says why.
 };
@@ -28,7 +29,7 @@ struct ClockFit {
 
   std::int64_t slack_us = 0;  ///< Stamps of the two files are that good after moved().
 
-  /// A stamp of the second file on the first one's clock.
+  /// Returns a stamp of the second file on the first one's clock.
   std::int64_t moved(std::int64_t time_us) const;
 };
 

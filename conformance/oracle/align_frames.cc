@@ -1,3 +1,4 @@
+#include "conformance/oracle/links.h"
 #include "conformance/oracle/align_frames.h"
 
 #include <algorithm>
@@ -16,13 +17,11 @@ namespace {
 
 using Kind = Observation::Kind;
 
-constexpr std::int64_t kByteUs = 32;       // On the air.
-constexpr std::int64_t kAroundBytes = 19;  // Preamble, SFD, length, MAC header, type, FCS.
 constexpr std::int64_t kRepeatUs = 500'000;    // The link repeats a frame within it.
 constexpr std::uint32_t kRepeatFrames = 8;     // The same without stamps.
 constexpr std::size_t kGroupMax = 32;          // Frames of one key that are told apart by content.
 
-// FNV-1a; whoever meets under one key is compared byte by byte.
+// FNV-1a. Frames with equal keys are compared byte by byte.
 class Hash {
  public:
   Hash& add(std::uint64_t value, int bytes) {
@@ -50,7 +49,7 @@ std::uint64_t key_of(machine::Address mote, const machine::Descriptor& what) {
       .value();
 }
 
-// Neither nbytes nor what lies behind the payload: a serial line may have others.
+// Leaves out nbytes and the bytes after the payload, which differ on a serial line.
 std::uint64_t key_of(const Net& net) {
   return Hash()
       .add(net.addresses(), 8)
@@ -69,7 +68,8 @@ std::uint64_t key_of(const Observation& seen) {
   return hash.add(seen.frame.payload).value();
 }
 
-// What of this frame may pass from the air to a line or back. False: nothing.
+// Fills `out` with the part of a frame that may pass between the air and a line. Returns false if
+// nothing may.
 bool passes(const Observation& seen, Sighting& out) {
   const bool radio = seen.kind == Kind::kRadio;
   out.cause = radio;
@@ -85,10 +85,10 @@ bool passes(const Observation& seen, Sighting& out) {
   }
   out.key = key_of(net);
   if (radio) {
-    // Who sends for another one has it from a line.
+    // A node that sends another one's message has it from a line.
     out.how = seen.frame.src == net.src.devid ? Common::kUp : Common::kDown;
     out.cause = out.how == Common::kUp;
-    // A sink's own to its motes comes from no line and goes to none.
+    // A sink's own message to its motes comes from no line and goes to none.
     return net.src.devid != machine::Profile{}.sink_id;
   }
   SerialJoined joined;
@@ -108,7 +108,7 @@ bool whole(const Observation& a, const Observation& b) {
          equal(a.frame.payload, b.frame.payload);
 }
 
-// Whether the two, which have one key, may be one message.
+// Returns whether two frames with one key may be one message.
 bool fits(const Run& run, Common how, const Sighting& cause, const Sighting& effect) {
   const Observation& from = run.seen[cause.index];
   const Observation& to = run.seen[effect.index];
@@ -124,7 +124,7 @@ bool fits(const Run& run, Common how, const Sighting& cause, const Sighting& eff
          equal(on_line.payload.first(size), on_air.payload);
 }
 
-// The link's own repetitions count once.
+// Returns whether `after` is the link's own repetition of `before`.
 bool repeats(const Run& run, const Sighting& before, const Sighting& after) {
   const Observation& a = run.seen[before.index];
   const Observation& b = run.seen[after.index];
@@ -150,7 +150,7 @@ class Pairing {
  public:
   Pairing(const Run& run, CommonFrames& out) : run_(run), out_(out) {}
 
-  // Both of one key; `sign` as in Pair.
+  // Matches frames of one key; `sign` is Pair::lag_sign.
   void match(Common how, Group of_a, Group of_b, int sign) {
     const std::vector<Sighting> a = once(run_, of_a);
     const std::vector<Sighting> b = once(run_, of_b);
@@ -182,7 +182,7 @@ class Pairing {
   }
 
  private:
-  // Too many to compare each with each: those next to each other by their stamps.
+  // Pairs neighbours by their stamps where there are too many to compare each with each.
   void guess(Common how, Group a, Group b, int sign) {
     const auto at = [&](const Sighting& one) { return run_.seen[one.index].place.time_us; };
     std::size_t i = 0;
@@ -196,10 +196,10 @@ class Pairing {
   Pair pair_of(Common how, const Sighting& a, const Sighting& b, int sign) const {
     Pair pair{a.index, b.index, how, sign, 0};
     const Observation& cause = run_.seen[sign < 0 ? b.index : a.index];
-    // Radio stamps are starts of frames, and serial stamps ends.
+    // Radio stamps mark the start of a frame, serial stamps its end.
     if (sign != 0 && cause.kind == Kind::kRadio) {
       const auto bytes = static_cast<std::int64_t>(cause.frame.payload.size()) + kAroundBytes;
-      pair.lag_min_us = bytes * kByteUs;
+      pair.lag_min_us = bytes * kRadioByteUs;
     }
     return pair;
   }
@@ -212,7 +212,7 @@ auto order_of(const Sighting& one) {
   return std::tuple(one.how, one.key, one.cause, one.index);
 }
 
-// The part of `all`, which is sorted, with this name; `at` moves behind it.
+// Returns the part of `all`, which is sorted, with this name; `at` moves past it.
 Group take(const std::vector<Sighting>& all, std::size_t& at, Common how, std::uint64_t key,
            bool cause) {
   const std::size_t from = at;
@@ -296,7 +296,7 @@ std::vector<Sighting> each_once(const Run& run,
       const auto may_be = [&](const Heard& other) {
         return other.file != place.file && whole(run.seen[other.index], run.seen[one.index]);
       };
-      std::size_t tries = kGroupMax;  // More of one key at one time cannot be told apart.
+      std::size_t tries = kGroupMax;  // More frames of one key at one time look alike.
       while (same != end && !may_be(same->second)) {
         if (--tries == 0) {
           same = end;

@@ -1,4 +1,4 @@
-// Frames that two files of one run both have: what puts their clocks, or their order, together.
+// Frames that two files of one run both have. They relate the files' clocks, or their order.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace rubric::oracle {
 
-/// What a frame of one file is to one of another.
+/// How a frame of one file relates to one of another.
 enum class Common : std::uint8_t {
   kSame,    ///< The very frame: the same air, or the same serial line, recorded twice.
   kUp,      ///< A net_msg on the air, and on the line of the sink that forwards it (N6-CONTENT).
@@ -28,28 +28,29 @@ struct Pair {
 
 struct CommonFrames {
   std::vector<Pair> pairs;            ///< In the order of the first file.
-  std::vector<std::uint32_t> only_a;  ///< Of a kind that passes between the files, yet in one only.
+  std::vector<std::uint32_t> only_a;  ///< Could pass between the files, but is in one only.
   std::vector<std::uint32_t> only_b;
-  /// Frames that repeat, so that pairs are a guess: each with each that it could be.
+  /// Frames that repeat: each with each frame that it could be, so these pairs are guesses.
   std::vector<Pair> guesses;
 };
 
-/// One frame, as something that may be in another file as well.
+/// A frame that may be in another file as well.
 struct Sighting {
-  std::uint64_t key = 0;    ///< Of what both forms have.
+  std::uint64_t key = 0;    ///< Hash of the content that both forms share.
   std::uint32_t index = 0;  ///< Into Run::seen.
   Common how = Common::kSame;
   bool cause = false;
 };
 
-/// What the frames of captures are, by file. Lines of .rtr logs are none.
+/// Returns the sightings in captures, by file. Lines of .rtr logs have none.
 std::vector<std::vector<Sighting>> sightings_of(const Run& run);
 
-/// Pairs among the sightings of two files; each is sorted by it.
+/// Returns the pairs among the sightings of two files, and sorts both.
 CommonFrames common_frames(const Run& run, std::vector<Sighting>& a, std::vector<Sighting>& b);
 
-/// What may pass between the air and a line of several files on one clock, by file: a frame that
-/// two of them have within `skew_us` is of the one that has more frames, or the first.
+/// Returns the frames of several files on one clock that may pass between the air and a line. If
+/// two files have a frame within `skew_us`, that of the file with more frames counts, or of the
+/// first.
 std::vector<Sighting> each_once(const Run& run,
                                 const std::vector<const std::vector<Sighting>*>& files,
                                 std::int64_t skew_us);

@@ -20,7 +20,7 @@ bool blames(const Finding& finding) {
   return finding.severity == Severity::kFail || finding.severity == Severity::kWeak;
 }
 
-// What a finding is about; its words may say other times.
+// Identifies a finding; its text may have other times.
 using Name = std::tuple<std::size_t, std::string, std::uint32_t, std::uint64_t>;
 Name name_of(const Finding& finding) {
   return {reflect::requirement_index(finding.requirement), finding.node, finding.place.file,
@@ -44,7 +44,7 @@ const LoosePlace* place_of(const Run& run, const Place& place) {
   return found ? &*at : nullptr;
 }
 
-// When all of the loose files were surely recorded.
+// Returns the span in which all loose files were surely recorded.
 std::pair<std::int64_t, std::int64_t> between_of(const Run& run) {
   constexpr std::int64_t kNone = std::numeric_limits<std::int64_t>::max();
   std::map<std::uint32_t, std::pair<std::int64_t, std::int64_t>> of_file;
@@ -62,8 +62,8 @@ std::pair<std::int64_t, std::int64_t> between_of(const Run& run) {
   return out;
 }
 
-// Of loose frames their likely times, the earliest, the latest, or none; of lines with slack the
-// earliest, half of the slack later, all of it.
+// Loose frames are at their likely, earliest or latest times, or left out; lines with slack are
+// where they are, later by half of the slack, or by all of it.
 enum class When : std::uint8_t { kLikely, kEarly, kLate, kNever };
 
 Report judge_with(const Run& run, const Options& options, When when) {
@@ -88,7 +88,7 @@ Report judge_with(const Run& run, const Options& options, When when) {
   }
   merge(now);
   now.has_time = run.has_time;
-  now.start_us = run.start_us;  // Of a part they are what its maker said.
+  now.start_us = run.start_us;  // For a part of a run its maker sets these.
   now.end_us = run.end_us;
   return judge(now, options);
 }

@@ -1,4 +1,4 @@
-// Legal traffic, recorded apart: nothing fails, whatever the clocks are.
+// Legal traffic, recorded by several clocks: nothing fails, whatever they show.
 #include <gtest/gtest.h>
 
 #include <cstdio>

@@ -10,27 +10,27 @@
 namespace rubric::oracle {
 namespace {
 
-constexpr std::size_t kFramesMin = 3;
-constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
+constexpr std::size_t kOrderFramesMin = 3;
+constexpr std::int64_t kNeverUs = std::numeric_limits<std::int64_t>::max();
 
-// A frame of the file that another file has as well, and when it must have come.
+// A frame of the file that another file has as well, and the times at which it can have come.
 struct Anchor {
   std::uint32_t index = 0;  // Into Run::seen.
   std::int64_t at_us = 0;   // The other one's stamp.
   std::int64_t from_us = 0;
   std::int64_t to_us = 0;
-  bool effect = false;      // Of the other one.
+  bool effect = false;      // It is the other one's effect.
 };
 
 Anchor anchor_of(const Run& run, const Pair& pair, std::int64_t response_us) {
   Anchor out{pair.b, run.seen[pair.a].place.time_us, 0, 0, pair.lag_sign > 0};
-  // An effect comes behind its cause, and within the time that a node may take.
+  // An effect comes after its cause, within the time that a node may take.
   out.from_us = out.effect ? out.at_us + pair.lag_min_us : out.at_us - response_us;
   out.to_us = out.effect ? out.at_us + pair.lag_min_us + response_us : out.at_us - 1;
   return out;
 }
 
-// The most of them whose stamps never go back.
+// Returns the longest subsequence whose stamps never go back.
 std::vector<Anchor> longest_in_order(const std::vector<Anchor>& all) {
   std::vector<std::size_t> tails;  // The last of the best sequence of each length.
   std::vector<std::size_t> before(all.size(), SIZE_MAX);
@@ -53,8 +53,8 @@ std::vector<Anchor> longest_in_order(const std::vector<Anchor>& all) {
   return out;
 }
 
-// From one island to another, and no telling from where the line has it: a host may hand down what
-// it got.
+// Returns whether a message between islands may have gone either way: a host may send down the line
+// what it got from it.
 bool may_be_either(const Run& run, const Observation& seen) {
   Net net;
   return seen.kind == Observation::Kind::kSerial && !run.taps[seen.tap].has_direction &&
@@ -62,7 +62,7 @@ bool may_be_either(const Run& run, const Observation& seen) {
          net.src.devid != machine::kNullDevid && net.dest.pid != net.src.pid;
 }
 
-// The island of the line that this message shows, whichever way it went; 0: it shows none.
+// Returns the line's island that this message shows, whichever way it went; 0 if it shows none.
 std::uint16_t island_shown(const Observation& seen, const Net& net) {
   SerialJoined joined;
   if (!seen.to_mote && parse_serial_joined(net, joined)) return joined.address.pid;
@@ -87,13 +87,13 @@ class Ordering {
     });
     anchors_ = longest_in_order(all);
     out.frames = anchors_.size();
-    if (all.size() < kFramesMin) {
+    if (all.size() < kOrderFramesMin) {
       out.why = all.empty()       ? "no frame that comes but once is in both"
                 : all.size() == 1 ? "only 1 frame is in both, and 3 are needed"
                                   : "only 2 frames are in both, and 3 are needed";
       return out;
     }
-    if (anchors_.size() < kFramesMin || 4 * anchors_.size() < 3 * all.size()) {
+    if (anchors_.size() < kOrderFramesMin || 4 * anchors_.size() < 3 * all.size()) {
       out.why = "the " + std::to_string(all.size()) + " frames that are in both are in another "
                 "order in each";
       return out;
@@ -123,11 +123,11 @@ class Ordering {
         }));
   }
 
-  // Frames keep their order: none is earlier than an anchor before it may be, none later than one
-  // behind it.
+  // Bounds each frame's time; frames keep their order. None is earlier than an anchor before it
+  // allows, none later than one after it.
   void place(OrderFit& out) {
     std::vector<std::uint32_t> frames;
-    std::int64_t first_us = kNever;
+    std::int64_t first_us = kNeverUs;
     std::int64_t last_us = kNoStamp;
     for (std::uint32_t i = 0; i < run_.seen.size(); ++i) {
       const Place& place = run_.seen[i].place;
@@ -165,7 +165,7 @@ class Ordering {
     run_.loose.insert(run_.loose.end(), places.begin(), places.end());
   }
 
-  // An effect right behind its cause, a cause right before its effect, others evenly between.
+  // Puts an effect right after its cause, a cause right before its effect, others evenly between.
   void set_likely(const std::vector<std::uint32_t>& frames,
                   const std::vector<LoosePlace>& places) {
     std::vector<std::pair<std::size_t, std::int64_t>> known;
@@ -221,7 +221,7 @@ std::optional<std::vector<std::uint32_t>> wrong_ways(const Run& run, std::uint32
     if (may_be_either(run, seen)) open.push_back(i);
     const bool within = net.src.devid != machine::kNullDevid &&
                         net.dest.devid != machine::kNullDevid && net.dest.pid == net.src.pid;
-    if (within) return std::nullopt;  // A sink hands on no such message.
+    if (within) return std::nullopt;  // A sink passes no such message on.
   }
   if (open.empty()) return open;
   if (islands.size() != 1) return std::nullopt;

@@ -1,4 +1,4 @@
-// The order of a file without stamps among files with them.
+// Orders a file without stamps among files with stamps.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,8 @@
 
 namespace rubric::oracle {
 
-/// What the frames of one file, which has no stamps, have in common with those of files on one
-/// clock; of each pair `b` is in that one, and in no other pair.
+/// The frames that a file without stamps has in common with files on one clock; `b` of a pair is in
+/// the file without stamps and in no other pair.
 struct OrderEvidence {
   std::vector<Pair> pairs;
   std::vector<std::uint32_t> only_a;  ///< See CommonFrames.
@@ -27,13 +27,13 @@ struct OrderFit {
   std::size_t all = 0;
 };
 
-/// Frames of `file`, bytes that do not say which way they went, that went the other way than they
-/// seem to: messages from another island on a line whose island the others show. Nothing where
-/// some message may have gone either way.
+/// Returns the frames of `file` that went the other way than it seems, where its bytes have no
+/// direction: messages from another island on a line whose island the others show. Returns nothing
+/// where some message may have gone either way.
 std::optional<std::vector<std::uint32_t>> wrong_ways(const Run& run, std::uint32_t file);
 
-/// Gives the frames of `file` likely stamps, Place::loose and their bounds in Run::loose, where the
-/// pairs say so. Stamps are those of the files, as in align().
+/// Gives the frames of `file` likely stamps and Place::loose, and fills Run::loose with their
+/// bounds, if the pairs allow it. Stamps are those of the files, as in align().
 OrderFit fit_order(Run& run, std::uint32_t file, const OrderEvidence& evidence,
                    const AlignOptions& options);
 

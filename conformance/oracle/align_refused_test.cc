@@ -1,4 +1,4 @@
-// Captures that belong to no run together, or that any shift would fit: left as they are.
+// Captures that are of different runs, or that any shift would fit, are left as they are.
 #include <gtest/gtest.h>
 
 #include "conformance/oracle/align.h"
@@ -18,7 +18,7 @@ oracle::Run together(const std::vector<Part>& parts) {
   return reader.finish();
 }
 
-// A run of two files with the times of files: the air, and a line.
+// A run of two files that keep their own times: the air, and a line.
 struct Tapes {
   Script script;
   std::int64_t line_ahead_us = 0;
@@ -37,7 +37,7 @@ struct Tapes {
     }
     return out;
   }
-  // Number `seq_num` on the air at `s`, on the line 10 ms later; either may not be recorded.
+  // Sends number `seq_num` on the air at `s`, on the line 10 ms later; either may not be recorded.
   void forward(double s, std::uint16_t seq_num, bool on_air, bool on_line) {
     NetFields net;
     net.dest = {11, machine::kNullDevid};
@@ -119,7 +119,7 @@ TEST(AlignRefused, LessThanThreeFrames) {
   }
 }
 
-// Clocks run up to 100 ppm fast or slow; one that runs twice as fast is none.
+// Clocks run up to 100 ppm fast or slow; one that runs twice as fast is no clock.
 TEST(AlignRefused, WhatNoClockDoes) {
   Tapes tapes;
   for (int i = 0; i < 60; ++i) {

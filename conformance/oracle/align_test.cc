@@ -28,7 +28,7 @@ std::string simulated(const simulator::Scenario& scenario,
   return recorder.finish();
 }
 
-// The worst difference between stamps of the line, apart and in the whole, in ms.
+// Returns the worst difference between stamps of the line, apart and in the whole, in ms.
 double worst_ms(const oracle::Run& run, const Apart& apart) {
   const oracle::Run whole = whole_run(apart);
   std::vector<std::int64_t> times(whole.seen.size() + 1);
@@ -50,10 +50,10 @@ double worst_ms(const oracle::Run& run, const Apart& apart) {
   return static_cast<double>(out_us) / 1000;
 }
 
-double worst = 0;  // Of all tests.
+double worst = 0;  // Over all tests.
 
-// What is found apart is what is found in the whole; where the files could not be aligned nothing
-// fails that the whole has not. Returns whether they were, or needed not be.
+// Expects the same findings apart and in the whole. Where the files could not be aligned, nothing
+// fails that the whole does not have. Returns whether they were aligned or needed no alignment.
 bool expect_as_whole(const std::string& name, const Apart& parts, const Options& options,
                      bool complete = true) {
   const oracle::Run run = put_together(parts);
@@ -132,7 +132,7 @@ TEST(Align, TheFindingsOfSimulatedNetworksStay) {
   std::printf("%zu of %zu aligned, stamps within %.3f ms\n", aligned, all, worst);
 }
 
-// Two sniffers of one air with clocks of their own: their frames are judged once.
+// Two sniffers of one air with their own clocks: their frames are judged once.
 TEST(Align, TwoSniffersOfOneAir) {
   SerialClock one;
   SerialClock other;
@@ -157,7 +157,7 @@ TEST(Align, TwoSniffersOfOneAir) {
             findings_of(judge(whole, {}), nullptr, false));
 }
 
-// The lines of two sinks, each on a clock of its own, before the air.
+// The lines of two sinks, each on its own clock, given before the air.
 TEST(Align, EveryFileHasItsClock) {
   const std::string bytes = capture("c_two_islands");
   SerialClock raw;
@@ -181,11 +181,12 @@ TEST(Align, EveryFileHasItsClock) {
             findings_of(judge(whole_run(apart), {}), nullptr, false));
 }
 
-// Failures of a line without stamps, in order by common frames, that the whole has, too.
+// Counts failures of a line without stamps that is in order by common frames; the whole has them
+// too.
 struct Kept {
   std::size_t runs = 0;
   std::size_t aligned = 0;
-  std::size_t fails = 0;         // Of wholes.
+  std::size_t fails = 0;         // In wholes.
   std::size_t fails_apart = 0;
   std::size_t fails_before = 0;  // Without alignment.
   std::size_t open = 0;          // Inconclusive ones.

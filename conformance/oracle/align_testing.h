@@ -1,5 +1,5 @@
-// One capture as two files, recorded apart, for tests: the air, and the serial lines with another
-// clock or none.
+// Splits one capture into files with clocks of their own, for tests: the air, and the serial lines
+// with another clock or none.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@
 
 namespace rubric::oracle {
 
-/// A capture of the firmware.
+/// Reads a capture of the firmware.
 inline std::string capture(const std::string& name) {
   std::ifstream file("spec/captures/firmware/" + name + ".pcapng", std::ios::binary);
   EXPECT_TRUE(file) << name;
@@ -40,8 +40,8 @@ struct SerialClock {
   bool stamps = true;
   double begin_s = 0;       ///< Into the run; nothing before is in the serial file.
   double lost = 0;          ///< Part of all frames that neither file has.
-  std::uint64_t seed = 1;   ///< Of the loss.
-  double base_s = 1'000'000'000;  ///< What both clocks show at the start of the run.
+  std::uint64_t seed = 1;   ///< For the loss.
+  double base_s = 1'000'000'000;  ///< Both clocks at the start of the run.
 };
 
 /// One file of a run.
@@ -51,8 +51,8 @@ struct Part {
   std::vector<std::uint64_t> frames{0};  ///< Number in the whole by number in this one.
 };
 
-/// The air, then the lines: all of them in one file, or in one each without stamps. And the same
-/// frames in one file by one clock.
+/// The air, then the lines: all in one file, or each in its own without stamps. `whole` has the
+/// same frames in one file by one clock.
 struct Apart {
   std::vector<Part> parts;
   std::string whole;
@@ -106,7 +106,7 @@ inline Apart take_apart(std::string_view pcapng, const SerialClock& clock) {
   return out;
 }
 
-/// What one interface of a pcapng file has, as a file of its own.
+/// Returns the frames of one interface of a pcapng file as a file of its own.
 inline Part only_interface(std::string_view pcapng, const std::string& name) {
   Part out{name, {}, {0}};
   PcapngWriter writer;
@@ -123,7 +123,7 @@ inline Part only_interface(std::string_view pcapng, const std::string& name) {
   return out;
 }
 
-/// The files as one run.
+/// Reads the files as one run.
 inline Run put_together(const Apart& apart, const AlignOptions& options = {}) {
   ReadAs as;
   as.align = options;
@@ -139,7 +139,7 @@ inline Run whole_run(const Apart& apart) {
   return reader.finish();
 }
 
-/// Findings as "N6-FORWARD fail 17 sink of island 11", the frame numbered as in the whole.
+/// Returns findings as "N6-FORWARD fail 17 sink of island 11", with frame numbers of the whole.
 inline std::multiset<std::string> findings_of(const Report& report, const Apart* apart,
                                               bool fails_only) {
   constexpr const char* kSeverities[] = {"note", "weak", "stray", "inconclusive", "fail"};
@@ -155,7 +155,7 @@ inline std::multiset<std::string> findings_of(const Report& report, const Apart*
   return out;
 }
 
-/// What Run::facts says of the alignment; empty where there was nothing to do.
+/// Returns the fact about the alignment, or an empty text if there was nothing to do.
 inline std::string aligned_fact(const Run& run) {
   for (const std::string& fact : run.facts) {
     if (fact.find("aligned with") != fact.npos || fact.find("in order with") != fact.npos) {

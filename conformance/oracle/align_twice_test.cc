@@ -1,4 +1,4 @@
-// One air or one line that was recorded twice beside others: as if it were recorded once.
+// One air or line that was recorded twice beside others gives the findings of one recording.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -12,7 +12,7 @@
 namespace rubric::oracle {
 namespace {
 
-// Longer than the clocks of two sniffers may differ: else these share no time.
+// Each lasts longer than the clocks of two sniffers may differ; else the two share no time.
 constexpr const char* kCaptures[] = {
     "a2_join_data_sensible_start", "a_join_data",     "b_reliable",
     "c_two_islands",               "d1_lose_request", "e1_simultaneous_join",
@@ -20,7 +20,7 @@ constexpr const char* kCaptures[] = {
 constexpr double kShifts_s[] = {0, 0.004, -0.004, 0.03, -0.03};
 
 struct Outcome {
-  std::vector<std::string> facts;  // Of the lines, as if each sniffer were the first.
+  std::vector<std::string> facts;  // About lines, as if each sniffer were the first.
   std::size_t loose = 0;
   Report report;
 };
@@ -51,7 +51,7 @@ void expect_same(const Outcome& twice, const Outcome& once, const std::string& w
   EXPECT_EQ(twice.report.exercised, once.report.exercised) << what;
 }
 
-// Some frames of a file, by their numbers, which count from 1.
+// Keeps some frames of a file, by their numbers from 1.
 std::string frames_of(const std::string& bytes,
                       const std::function<bool(std::size_t number)>& taken) {
   std::string out;
@@ -70,7 +70,7 @@ std::string frames_of(const std::string& bytes,
   return out;
 }
 
-// The air by two sniffers, of which one may miss frames, before the lines.
+// Expects two sniffers of the air, one of which may miss frames, to count as one.
 void expect_one_air(const std::string& name, const SerialClock& clock) {
   const std::string bytes = capture(name);
   const Apart apart = take_apart(bytes, clock);
@@ -87,7 +87,7 @@ void expect_one_air(const std::string& name, const SerialClock& clock) {
                                std::to_string(lost);
       parts.insert(parts.begin() + 1, second);
       expect_same(outcome_of(parts), once, what);
-      if (lost == 0) continue;  // Of two that have the same the first one counts.
+      if (lost == 0) continue;  // If both have the same, the first counts.
       std::swap(parts[0], parts[1]);
       expect_same(outcome_of(parts), once, what + " by the first");
     }
@@ -152,7 +152,7 @@ TEST(AlignTwice, TwoSniffersThatBothMissFrames) {
   }
 }
 
-// Only the line of one sink has no stamps; that of the other one says nothing of it.
+// Only the line of one sink has no stamps; the other sink's line shows nothing of it.
 TEST(AlignTwice, ALineWithStampsBesideOneWithout) {
   SerialClock raw;
   raw.stamps = false;
@@ -169,7 +169,7 @@ TEST(AlignTwice, ALineWithStampsBesideOneWithout) {
   }
 }
 
-// A line without stamps that is given twice is in order as it is alone.
+// A line without stamps that is given twice is ordered as it is alone.
 TEST(AlignTwice, OneLineTwice) {
   SerialClock raw;
   raw.stamps = false;

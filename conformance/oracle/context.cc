@@ -68,7 +68,7 @@ bool Context::rests_on_order(ReqId requirement, const Place& at, std::uint16_t n
   if (!unordered || is_of(requirement, "WIRE-")) return false;
   if (!at.in_order()) return true;
   if (node == kNobody) return false;
-  // Replies to requests are on the air alone; reports of joins that stand somewhere are not.
+  // Replies to requests are on the air alone; reports of joins on a line are not.
   const bool air = is_of(requirement, "J3-") || is_of(requirement, "J10-");
   if (air && (run.unordered_taps.empty() || requirement == "J3-TIME"_rule)) return false;
   const Device& d = device(node);
@@ -90,7 +90,7 @@ bool Context::half_heard(std::uint16_t node) const {
 
 std::int64_t Context::ack_timeout_us() const {
   if (options.ack_timeout_us) return *options.ack_timeout_us;
-  // A profile without one says what its nodes do, not how long others wait (decision 110).
+  // A profile without a timeout describes its nodes, not how long others wait (decision 110).
   const std::uint16_t own = profile().ack_timeout_ticks;
   return machine::us_of(own != 0 ? own : machine::Profile{}.ack_timeout_ticks);
 }

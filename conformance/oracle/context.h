@@ -1,4 +1,4 @@
-// What every part of the judgement shares: the run, who is who, and how to say something.
+// State shared by every part of the judgement: the run, who is who, and how to report.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@
 
 namespace rubric::oracle {
 
-/// What a finding says; see Finding.
+/// The text of a finding; see Finding.
 struct Said {
   std::string text;
   std::string expected;
@@ -36,25 +36,25 @@ struct Context {
   Findings& findings;
   bool hears_radio = false;   ///< Some tap is on the air.
   std::uint16_t sink_am = 1;  ///< AM address of sinks.
-  machine::Actions actions;   ///< Of the parts of the machine; nobody reads them here.
+  machine::Actions actions;   ///< For the machine's functions; not read here.
 
   const machine::Profile& profile() const { return findings.profile(); }
   const Device& device(std::uint16_t i) const { return who.devices[i]; }
-  /// The one sink on the air, or kNobody where there are none or several.
+  /// The only sink on the air; kNobody if there are none or several.
   std::uint16_t only_sink = kNobody;
 
   std::vector<std::uint16_t> sinks;       ///< Known ones.
   std::vector<std::uint16_t> mote_of_am;  ///< The last known mote of each AM address.
   std::vector<std::uint16_t> next_of_am;  ///< By device: another mote of the same address.
 
-  /// Files are in no known order to each other, as raw bytes beside a capture with stamps are.
+  /// The order of files to each other is unknown, as of raw bytes beside a capture with stamps.
   bool unordered = false;
-  std::vector<bool> untimed_taps;         ///< Where unordered: those with frames without a stamp,
+  std::vector<bool> untimed_taps;         ///< If unordered: taps with frames without a stamp,
                                           ///< or on a clock of their own.
 
-  std::vector<bool> down_taps;            ///< With frames to a sink.
+  std::vector<bool> down_taps;            ///< Taps with frames to a sink.
 
-  /// Fills in all of these. Before anything else.
+  /// Fills in all of these. Called before anything else.
   void look_up();
   /// Calls `call` with each known mote of that address.
   template <class Call>
@@ -73,24 +73,26 @@ struct Context {
     return {profile(), id, island, 0, machine::ticks_of(now_us)};
   }
 
-  /// How grave "X without an earlier Y of `cause`" is: kFail only where no Y can have escaped.
+  /// Returns the severity of "X without an earlier Y of `cause`": kFail only if no Y can have
+  /// escaped.
   Severity without(std::uint16_t cause, std::int64_t from_us, std::int64_t to_us) const;
-  /// The same where Y may lie any time before, even before the capture.
+  /// Returns the same where Y may lie any time before, even before the capture.
   Severity without_ever(std::uint16_t cause, std::int64_t to_us) const;
 
-  /// Judges device `node` at `at`. Nothing is said of testers; of unknown senders at most kStray.
+  /// Reports a finding about device `node` at `at`: none about testers, at most kStray about
+  /// unknown senders.
   void report(ReqId requirement, Severity severity, const Place& at, std::uint16_t node,
               Said said);
-  /// Whether a finding of this kind rests on an order that nobody knows.
+  /// Returns whether such a finding depends on an order that is unknown.
   bool rests_on_order(ReqId requirement, const Place& at, std::uint16_t node) const;
-  /// A sink's line of which only its own frames are in the run, as of a line in use that others
-  /// write to: what came down it is not known.
+  /// Returns whether a sink's line has only the sink's own frames in the run, as if recorded from a
+  /// line in use that others write to: whatever came down it is unknown.
   bool half_heard(std::uint16_t node) const;
-  /// A frame of an unknown sender.
+  /// Reports a frame of an unknown sender.
   void report_stranger(const Observation& seen, std::uint16_t node);
 };
 
-// Text.
+// Texts for findings.
 std::string text_of(machine::Address address);
 std::string name_of(const Net& net);  ///< "the message <..> to <..> with number 7"
 std::string ms_text(std::int64_t us);

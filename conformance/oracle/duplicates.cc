@@ -12,7 +12,7 @@ namespace {
 
 using machine::Link;
 
-// A tap of a capture and its frames, in order.
+// A tap of a capture with its frames in order.
 struct Source {
   std::uint32_t tap = 0;
   std::uint32_t file = 0;
@@ -29,7 +29,7 @@ bool same_frame(const Observation& a, const Observation& b) {
          equal(a.frame.payload, b.frame.payload);
 }
 
-// What two sources have of each other.
+// How two sources overlap.
 struct Shared {
   std::size_t of_a = 0;       // Frames of each that could be in the other.
   std::size_t of_b = 0;
@@ -84,7 +84,7 @@ class Duplicates {
 
   std::string file(std::uint32_t index) const { return run_.files[index]; }
 
-  // Logs name who did what; their frames cannot be told from those of a capture.
+  // Checks that logs and captures do not overlap: their frames cannot be told apart.
   bool logs_fit(std::string& error) const {
     std::map<std::string_view, std::uint32_t> log_of;
     for (const Observation& seen : run_.seen) {
@@ -111,7 +111,7 @@ class Duplicates {
     return true;
   }
 
-  // Frames of both within `lo` to `hi`, one for one.
+  // Counts frames that both have between `lo` and `hi`, one for one.
   Shared shared(const Source& a, const Source& b, std::int64_t lo, std::int64_t hi) const {
     Shared out;
     const bool timed = a.timed && b.timed;
@@ -175,7 +175,7 @@ class Duplicates {
     return false;
   }
 
-  // All of `which` there is in `other`.
+  // Drops all of `which` that `other` has too.
   bool drop(const Source& which, const Source& other, const Shared& what, std::int64_t lo,
             std::int64_t hi) {
     for (std::size_t i = 0; i < run_.seen.size(); ++i) {

@@ -63,7 +63,7 @@ Report judge_text(const std::string& text) {
   return judge(reader.finish(), options);
 }
 
-// The shortest trace there is must fail by a rule that the flaw is said to break.
+// Expects the shortest trace to fail by a rule that the flaw breaks.
 void expect_failure(const explorer::Options& options, const flaws::Flaw& flaw) {
   const auto nodes = std::make_unique<explorer::Nodes>(options);
   const explorer::Result result = explorer::explore(*nodes);
@@ -89,7 +89,7 @@ TEST_P(ExplorerFlaws, FailByARequirementOfTheFlaw) {
   expect_failure(network_of(GetParam(), *flaw), *flaw);
 }
 
-// As the program looks for them: whatever breaks first.
+// Takes the first property that breaks, as the program does.
 TEST_P(ExplorerFlaws, FailWhateverPropertyBreaksFirst) {
   const flaws::Flaw* const flaw = flaws::find(GetParam().flaw);
   ASSERT_NE(flaw, nullptr);

@@ -1,4 +1,4 @@
-// Collects what is found: accepts what the profile accepts, groups repeats, keeps within bounds.
+// Collects findings: accepts differences of the profile, groups repeats, keeps within bounds.
 #pragma once
 
 #include <cstdint>
@@ -15,14 +15,14 @@ class Findings {
  public:
   explicit Findings(bool deployed);
 
-  /// Repeats of a rule by a node within 600 ms of the last one are one episode. A difference that
-  /// the profile accepts becomes a note.
+  /// Adds a finding. Repeats of a rule by a node within 600 ms of the last one are one episode. A
+  /// difference that the profile accepts becomes a note.
   void add(Finding finding);
-  /// A rule had its chance to be broken and was kept.
+  /// Counts that a rule could have been broken and was kept.
   void kept(ReqId requirement) { ++kept_[reflect::requirement_index(requirement)]; }
 
   const machine::Profile& profile() const { return profile_; }
-  /// In order of place; what did not fit any more is counted in dropped().
+  /// Returns the findings in order of place; dropped() counts those that did not fit.
   std::vector<Finding> take();
   std::uint64_t dropped() const { return dropped_; }
   std::vector<std::pair<ReqId, std::uint64_t>> exercised() const;
@@ -43,7 +43,7 @@ class Findings {
   std::vector<std::uint64_t> kept_;  // By place in the catalogue.
 };
 
-/// The gravest of them; a note leaves a pass.
+/// Returns the gravest verdict of all findings; notes leave a pass.
 Verdict verdict_of(const std::vector<Finding>& findings);
 
 }  // namespace rubric::oracle

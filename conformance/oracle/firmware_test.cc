@@ -1,4 +1,4 @@
-// The captures of the original firmware against the list of what is to be found in them:
+// Compares the findings in captures of the original firmware with the expected list:
 // testdata/firmware_findings.tsv, explained in firmware_findings.md.
 #include <gtest/gtest.h>
 

@@ -9,14 +9,14 @@ using machine::Link;
 using machine::Role;
 using machine::Route;
 
-constexpr std::int64_t kStartUs = 5'000'000;     // What a buffer may hold from before the capture.
+constexpr std::int64_t kStartUs = 5'000'000;     // A buffer may hold older frames until then.
 constexpr std::int64_t kIslandSlackUs = 1'000'000;
 constexpr std::size_t kTwinsLook = 64;
 
-// On the serial line nbytes and what lies behind the payload may differ (N6-CONTENT).
+// On the serial line nbytes and the bytes after the payload may differ (N6-CONTENT).
 bool begins_with(const Net& serial, const Net& radio) {
   const std::size_t n = radio.payload.size();
-  // What came over serial is whole, even where its nbytes is wrong.
+  // The serial payload is whole, even if its nbytes is wrong.
   const Bytes whole(serial.payload.data(), std::max<std::size_t>(serial.payload.size(), 0));
   return whole.size() >= n && equal(whole.first(n), radio.payload);
 }
@@ -86,7 +86,7 @@ void Forwarding::heard_on_radio(const Observation& seen, std::uint16_t sender, c
                                 std::uint16_t surely_received_by) {
   for (Line& line : lines_) {
     if (line.sink == sender || !line.serial || line.island == 0) continue;
-    // A sink whose log has what it was given hears nothing else, and that in its own order.
+    // A sink with a log of what it was given hears nothing else, and hears it in its own order.
     const bool sure = surely_received_by == line.sink;
     if (context_.device(line.sink).hearing ? !sure : seen.received) continue;
     if (seen.frame.dest != line.am && seen.frame.dest != machine::kAmBroadcast) continue;
@@ -107,7 +107,7 @@ void Forwarding::heard_on_radio(const Observation& seen, std::uint16_t sender, c
     }
     passing.owed = onward && !line.off && net.sound && net.reliable <= 1 &&
                    net.src.pid == line.island && sure;
-    // Seen on the serial line already, if the two taps' clocks differ.
+    // The message may be on the serial line already, if the two taps' clocks differ.
     bool early = false;
     for (std::size_t i = 0; i < line.early.size(); ++i) {
       Passing& before = line.early.newest(i);
@@ -282,7 +282,7 @@ void Forwarding::refuse_up(Line& line, const Observation& seen, const Net& net) 
   line.early.push(early);
 }
 
-// Serial frames for which no radio frame came, not even within the skew of the taps.
+// Reports serial frames for which no radio frame came, not even within the skew of the taps.
 void Forwarding::expire_early(Line& line, std::int64_t now_us) {
   for (std::size_t i = 0; i < line.early.size(); ++i) {
     Passing& early = line.early.oldest(i);

@@ -1,4 +1,4 @@
-// What sinks pass on: from the radio to their serial line and back.
+// Judges what sinks pass on: from the radio to their serial line and back.
 #pragma once
 
 #include <cstdint>
@@ -11,13 +11,13 @@
 
 namespace rubric::oracle {
 
-/// A message that a sink may have got, on its way through.
+/// A message that a sink may have received, on its way through.
 struct Passing {
   Net net;
   Place place;
-  std::uint64_t order = 0;       ///< Of arrival at the sink.
+  std::uint64_t order = 0;       ///< Counts arrivals at the sink.
   std::uint16_t sender = kNobody;
-  std::uint16_t am_dest = 0;     ///< Where the radio frame goes.
+  std::uint16_t am_dest = 0;     ///< The radio frame's destination.
   ReqId forbidden = ReqId::kNone;  ///< Passing it on breaks this rule.
   bool weak = false;             ///< And that rule is a SHOULD.
   bool owed = false;             ///< Surely received, and not yet passed on.
@@ -30,25 +30,26 @@ class Forwarding {
  public:
   Forwarding(Context& context);
 
-  /// On the air, from somebody else, to the address of sinks or to all.
+  /// Takes a message on the air, from somebody else, to the address of sinks or to all.
   void heard_on_radio(const Observation& seen, std::uint16_t sender, const Net& net,
                       std::uint16_t surely_received_by);
-  /// The link repeated the frame: on the air, or down the serial line of `sink`.
+  /// Notes that the link repeated the frame: on the air, or down the serial line of `sink`.
   void repeated(const Net& net, std::uint16_t sink);
-  /// Down the serial line of `sink`.
+  /// Takes a message down the serial line of `sink`.
   void heard_on_serial(std::uint16_t sink, std::uint16_t base, const Observation& seen,
                        const Net& net, bool surely_received);
-  /// The same message came down the sink's serial line and was not yet radiated.
+  /// Returns whether the same message came down the sink's serial line and was not yet radiated.
   bool came_down(std::uint16_t sink, const Net& net);
-  /// `sink` put a message on its serial line that is not its own.
+  /// Judges a message on its serial line that is not the sink's own.
   void sent_on_serial(std::uint16_t sink, const Observation& seen, const Net& net);
-  /// `sink` sent a message by radio that is not its own.
+  /// Judges a message by radio that is not the sink's own.
   void sent_on_radio(std::uint16_t sink, const Observation& seen, const Net& net);
-  /// The sink's serial line is switched on or off; meanwhile it owes nothing there.
+  /// Notes that the sink's serial line is switched on or off; while off, the sink owes nothing
+  /// there.
   void serial_set(std::uint16_t sink, bool on);
-  /// One of the sinks, no telling which, sent this by radio.
+  /// Notes that one of the sinks, unknown which, sent this by radio.
   void somebody_sent(const Net& net);
-  /// The sink's island, from now on.
+  /// Sets the sink's island from now on.
   void set_island(std::uint16_t sink, std::uint16_t island, std::int64_t now_us);
   void begin_life(std::uint16_t sink);
   void finish(std::int64_t end_us);

@@ -88,7 +88,7 @@ bool Forwarding::came_down(std::uint16_t sink, const Net& net) {
   return false;
 }
 
-// By its log one of the sink's lines was busy while it should have passed this on.
+// Returns whether by its log one of the sink's lines was busy while the message was due.
 bool Forwarding::busy(const Line& line, std::int64_t came_us) const {
   if (line.sink >= context_.run.nodes.size()) return false;
   const auto& times = context_.run.nodes[line.sink].busy_us;
@@ -97,7 +97,8 @@ bool Forwarding::busy(const Line& line, std::int64_t came_us) const {
   });
 }
 
-// So much came around that time that a buffer may have been full (decision 122).
+// Returns whether so many messages came around that time that a buffer may have been full (decision
+// 122).
 bool Forwarding::crowded(Line& line, std::int64_t time_us) {
   constexpr std::size_t kCrowd = 2;
   constexpr std::int64_t kAroundUs = 100'000;
@@ -150,7 +151,7 @@ void Forwarding::refuse_down(Line& line, const Observation& seen, const Net& net
   if (best->passed < 255) ++best->passed;
 }
 
-// Surely received, and the sink has shown life long after: it will not come any more.
+// Reports what was surely received and is missing though the sink has shown life long after.
 void Forwarding::overdue_up(Line& line, std::int64_t now_us) {
   if (now_us < 0) return;
   for (std::size_t i = 0; i < line.up.size(); ++i) {

@@ -1,4 +1,4 @@
-// What the user says of nodes, and what is said where the run shows something else.
+// The user's statements about nodes, and the contradictions that a run shows.
 #pragma once
 
 #include <cstdint>
@@ -11,49 +11,50 @@
 
 namespace rubric::oracle {
 
-/// `--node`, `--sink`. Names no node at all where nothing is given.
+/// `--node` and `--sink`. Names no node if neither is given.
 class Given {
  public:
   explicit Given(const Options& options) : nodes_(options.nodes) {}
 
   bool empty() const { return nodes_.empty(); }
   const std::vector<KnownNode>& nodes() const { return nodes_; }
-  /// Of the node with this AM address.
+  /// Returns the role of the node with this AM address.
   std::optional<machine::Role> role(std::uint16_t am) const;
-  /// The one island that is given of sinks with this address; 0: none, or several.
+  /// Returns the one island that is given for sinks with this address; 0 for none or several.
   std::uint16_t only_island(std::uint16_t am) const;
-  /// The one island that is given of any sink; 0: none, or several.
+  /// Returns the one island that is given for any sink; 0 for none or several.
   std::uint16_t only_island() const;
-  /// Whether a node of this address is given which may be one of that island. 0: of any.
+  /// Returns whether a node of this address is given that may be in that island; 0 means any
+  /// island.
   bool names(std::uint16_t am, std::uint16_t island) const;
-  /// The AM address of sinks, where one is given.
+  /// Returns the AM address of sinks, if one is given.
   std::optional<std::uint16_t> sink_am() const;
 
  private:
   const std::vector<KnownNode>& nodes_;
 };
 
-/// The run shows something else of a node than the user says. The run is believed.
+/// The run shows something else about a node than the user says. The run is believed.
 struct Contradiction {
   std::uint32_t index = 0;     ///< The observation that shows it.
-  ReqId requirement = ReqId::kNone;  ///< What the node breaks if the user is right.
+  ReqId requirement = ReqId::kNone;  ///< The rule that the node breaks if the user is right.
   std::string text;
   std::string expected;
 };
 
-/// A node of `role` was given, and it does only what nodes of `shown` do.
+/// Describes a node that was given as `role` and does only what nodes of `shown` do.
 Contradiction role_contradiction(std::uint16_t am, machine::Role role, machine::Role shown,
                                  std::uint32_t index);
 
-/// Holds given roles against what nodes do in joins.
+/// Compares given roles with what nodes do in joins.
 class GivenRoles {
  public:
   explicit GivenRoles(const Given& given) : given_(given) {}
 
   /// Learns from a radio frame, observation `index`.
   void look(const machine::Frame& frame, std::uint32_t index);
-  /// As given, unless all that the address does in joins is for the other role; a base station has
-  /// no radio. `guess` where nothing is given. After all frames were looked at.
+  /// Returns the given role, unless all that the address does in joins is for the other role; a
+  /// base station has no radio. Returns `guess` where nothing is given. Called after all frames.
   machine::Role role_of(std::uint16_t am, machine::Role guess) const;
   void contradict(std::vector<Contradiction>& out) const;
 
@@ -75,7 +76,8 @@ struct Shown {
   std::uint32_t index = 0;
 };
 
-/// What the islands that sinks show say against the given ones. `shown` in order of the run.
+/// Returns the contradictions between the given islands and those in `shown`, which is in order of
+/// the run.
 std::vector<Contradiction> island_contradictions(const Run& run, const Given& given,
                                                  const std::vector<Shown>& shown);
 

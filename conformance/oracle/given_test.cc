@@ -1,4 +1,4 @@
-// What the user says of nodes (`--node`, `--sink`), right and wrong.
+// The user's statements about nodes (`--node`, `--sink`), right and wrong.
 #include "conformance/oracle/given.h"
 
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ std::vector<std::string> names_of(const oracle::Run& run, const Options& options
   return out;
 }
 
-// Those that say that the user may be wrong.
+// Returns the findings that say that the user may be wrong.
 std::vector<Finding> doubts(const Report& report) {
   std::vector<Finding> out;
   for (const Finding& finding : report.findings) {
@@ -60,7 +60,7 @@ TEST(Given, ANamedSinkIsNoUnknownSender) {
   for (const Finding& finding : report.findings) {
     EXPECT_NE(finding.severity, Severity::kStray) << finding.text;
   }
-  // A reply of another island is not that sink's.
+  // A reply for another island is not that sink's.
   EXPECT_EQ(names_of(run, with({{1, Role::kSink, 11}})), names_of(run, {}));
 }
 
@@ -77,7 +77,7 @@ TEST(Given, ANamedMotesLostFramesMakeNoStrangers) {
   EXPECT_EQ(std::count(named.begin(), named.end(), "mote 2"), 1);
 }
 
-// Without a join in sight only where a message goes suggests a sink's island.
+// Without a join in sight only the destination of a message suggests a sink's island.
 TEST(Given, AnIslandWinsOverAGuess) {
   Script script;
   for (int i = 0; i < 4; ++i) {
@@ -134,7 +134,8 @@ TEST(Given, ASinkThatIsRenamedHadItsGivenIslandBefore) {
   script.run.taps.pop_back();
   ASSERT_EQ(set_island_id(script.run.seen[1].frame), 12);
   EXPECT_TRUE(doubts(judge(script.run, with({{1, Role::kSink, 11}}))).empty());
-  // It was renamed to neither of these, and of several nothing says which one it had before.
+  // It was renamed to neither of these, and with several given nothing shows which one it had
+  // before.
   EXPECT_EQ(doubts(judge(script.run, with({{1, Role::kSink, 13}, {1, Role::kSink, 14}}))).size(),
             1U);
 }

@@ -1,4 +1,4 @@
-// What the reference machine does in the golden traces is right: none of its logs may be blamed.
+// The reference machine is right in the golden traces: none of its logs may be blamed.
 #include <gtest/gtest.h>
 
 #include "conformance/oracle/testing_log.h"

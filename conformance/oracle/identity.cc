@@ -66,7 +66,7 @@ class Identifier {
     return kNobody;
   }
 
-  // First look at one observation.
+  // Takes a first look at one observation.
   void look(std::uint32_t index) {
     const Observation& seen = run_.seen[index];
     Mark& mark = out_.marks[index];
@@ -124,8 +124,8 @@ class Identifier {
     if (seen.kind == Observation::Kind::kSerial) mark.device = base_station_of(node);
   }
 
-  // Who of the log's nodes a frame given to `receiver` comes from, if that is certain. Of a
-  // marked node the log has all that it sent, and this is none of it.
+  // Returns the log's node that sent a frame given to `receiver`, if that is certain. A log has all
+  // frames of its marked nodes, so it is none of these.
   std::uint16_t logged_sender(const machine::Frame& frame, std::uint16_t receiver) const {
     std::uint16_t found = kNobody;
     for (std::size_t i = 0; i < run_.nodes.size(); ++i) {
@@ -154,7 +154,7 @@ class Identifier {
     requests_[request_next_++ % requests_.size()] = {seen.frame.src, request.seq_num};
   }
 
-  // A sink of which only one reply was heard, which answers nothing, could be anybody.
+  // A sink that is known by one reply alone, to a request that nobody sent, could be anybody.
   bool answers_nothing(const Stream& stream) const {
     if (!stream.sink || stream.frames != 1) return false;
     const machine::Frame& frame = run_.seen[stream.first].frame;
@@ -176,7 +176,7 @@ class Identifier {
     for (std::size_t i = 0; i < streams.size(); ++i) {
       const Stream& stream = streams[i];
       const std::uint16_t before = earlier_device(stream);
-      // A second mote with the same id, in another island, shows by going on beside the first.
+      // A second mote with the same id, in another island, sends while the first does.
       const bool another = role_of(stream) == Role::kMote && stream.frames >= kResumeFrames;
       const bool named = given_.names(stream.am, stream.plain_island);
       const bool goes_on = before != kNobody && follows(stream, before);
@@ -233,7 +233,7 @@ class Identifier {
     }
   }
 
-  // What the user says of nodes, beside what was found.
+  // Compares the user's statements with what was found.
   void compare_with_given() {
     for (const KnownNode& node : given_.nodes()) {
       const bool seen = std::any_of(out_.devices.begin(), out_.devices.end(), [&](const auto& d) {
@@ -261,7 +261,7 @@ class Identifier {
     }
   }
 
-  // The device that a stream would belong to, were its DSNs to follow: one that has ended before
+  // Returns the device that the stream would belong to if its DSNs followed: one that ended before
   // the stream begins, if there is any.
   std::uint16_t earlier_device(const Stream& stream) const {
     std::uint16_t found = kNobody;
@@ -279,7 +279,7 @@ class Identifier {
     return found;
   }
 
-  // Of a sink's streams so far the last; SET_ISLAND_ID may have changed it.
+  // Returns the sink's island in its last stream so far; SET_ISLAND_ID may have changed it.
   std::uint16_t last_island(const Device& device) const {
     std::uint16_t island = device.island;
     for (std::size_t i = 0; i < streams_.all().size(); ++i) {
@@ -333,7 +333,7 @@ class Identifier {
       if (device.island == line.island || device.island == line.first) return only;
       ++sinks;
     }
-    // Of the one sink in sight, whatever island was given of it.
+    // The line of the only sink in sight, whatever island was given for it.
     return line.given && sinks == 1 ? only : kNobody;
   }
 
@@ -383,7 +383,7 @@ class Identifier {
   Streams streams_;
   SerialLines lines_;
   Identity out_;
-  std::map<std::uint32_t, std::uint16_t> logged_sink_;  // By tap: who uses it, by a log.
+  std::map<std::uint32_t, std::uint16_t> logged_sink_;  // User of a tap, by a log.
   std::vector<std::uint16_t> device_of_stream_;
   std::vector<bool> starts_life_;
   std::array<std::uint32_t, kRecentFrames> recent_{};  // Observation + 1.

@@ -1,4 +1,4 @@
-// What the first pass found out, in words; and what the sniffer may have missed.
+// The first pass's results in words, and the frames that the sniffer may have missed.
 #include <algorithm>
 #include <string>
 
@@ -10,7 +10,7 @@ using machine::Role;
 
 namespace {
 
-// "1 frame", "2 frames".
+// Returns "1 frame", "2 frames".
 std::string counted(std::uint64_t n, const std::string& what) {
   return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
 }

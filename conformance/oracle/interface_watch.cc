@@ -84,7 +84,7 @@ bool InterfaceWatch::switched_off(std::uint16_t device, Link link) const {
 }
 
 void InterfaceWatch::sent(std::uint16_t device, const Observation& seen) {
-  // What was on its way when the interface was switched off may still end.
+  // Frames on their way when the interface was switched off may still arrive.
   if (!context_.run.has_time || !off(device, seen.frame.link, seen.place.time_us)) return;
   context_.report("N10-OFF"_rule, Severity::kFail, seen.place, device,
                   {std::string("A frame leaves through the ") +

@@ -1,4 +1,4 @@
-// Interfaces that applications switch, where a log has their calls.
+// Judges interfaces that applications switch, where a log has their calls.
 #pragma once
 
 #include <array>
@@ -17,13 +17,13 @@ class InterfaceWatch {
   void begin_life(std::uint16_t node);
   void called(std::uint16_t node, const Observation& seen);
   void told(std::uint16_t node, const Observation& seen);
-  /// `node` sends a frame over `link`.
+  /// Judges a frame that `node` sends over `link`.
   void sent(std::uint16_t node, const Observation& seen);
-  /// It sends a message of its own.
+  /// Notes a message of the node's own.
   void own_message(std::uint16_t node, std::uint16_t seq_num);
-  /// Whether the interface was off, and for so long that nothing came before it was.
+  /// Returns whether the interface was off for so long that no frame from before can still come.
   bool off(std::uint16_t node, machine::Link link, std::int64_t now_us) const;
-  /// Whether it is switched off; what was on its way just then may still have come.
+  /// Returns whether it is switched off; frames that were just on their way may still have come.
   bool switched_off(std::uint16_t node, machine::Link link) const;
   void finish(std::int64_t end_us);
 

@@ -71,7 +71,7 @@ TEST(InterfaceWatch, ItsStateIsTold) {
   EXPECT_EQ(all(kOff + asked + on), "N10-STATE");
 }
 
-// Mote 2 sends to mote 7, reliably; the ack has these addresses and APPID.
+// Mote 2 sends a reliable message to mote 7; the ack has these addresses and APPID.
 std::string acked(const std::string& ack) {
   return m2(600, "< app send(dest=11:7 app_id=5 reliable=1 data=xbeef)") +
          m2(600, "> app send_result(seq_num=119)") +
@@ -101,7 +101,7 @@ std::string admitted(const std::string& addresses) {
 
 TEST(AckJoinSender, IsTheMoteThatAsked) {
   EXPECT_EQ(all(admitted("am=3->1 ack_join(dest=11:1 src=11:3")), "");
-  // J4-CONTENT is the mote's.
+  // J4-CONTENT is the mote's finding.
   EXPECT_EQ(all(admitted("am=3->1 ack_join(dest=11:4 src=11:3")), "J4-CONTENT J6-SENDER");
   EXPECT_EQ(all(admitted("am=4->1 ack_join(dest=11:1 src=11:3")), "J6-SENDER");
   EXPECT_EQ(all(admitted("am=3->1 ack_join(dest=11:1 src=12:3")), "J4-CONTENT J6-SENDER");

@@ -7,8 +7,8 @@ namespace {
 
 using Phase = machine::JoinMote::Phase;
 
-constexpr std::uint8_t kRequestsMin = 4;   // Of a call that fails (decision 101).
-constexpr std::size_t kCrowd = 6;          // Frames; then a buffer may have been full.
+constexpr std::uint8_t kRequestsMin = 4;   // In a call that fails (decision 101).
+constexpr std::size_t kJoinCrowd = 6;          // Frames; then a buffer may have been full.
 constexpr std::int64_t kClockOffMs = 1000; // (decision 119)
 constexpr std::uint16_t kReservedFrom = 0xFFFD;
 
@@ -42,7 +42,7 @@ void JoinWatch::owe(std::uint16_t node, const Debt& debt) {
 void JoinWatch::asked(std::uint16_t mote, std::uint32_t index) {
   std::vector<Debt>& debts = debts_[mote];
   std::erase_if(debts, [](const Debt& debt) { return debt.owes == Owes::kRetry; });
-  // A capture does not tell a mote that gave up from one that was switched off (decision 101).
+  // In a capture a mote that gave up looks like one that was switched off (decision 101).
   const Device& device = context_.device(mote);
   if (!device.hearing || !device.application || !waits(mote)) return;
   Debt debt;
@@ -93,7 +93,7 @@ void JoinWatch::surely_offered(std::uint16_t mote, std::uint32_t index, const Re
   if (still_owed(mote, debt)) owe(mote, debt);
 }
 
-// Whether every explanation of the node owes it.
+// Returns whether every explanation of the node owes it.
 bool JoinWatch::still_owed(std::uint16_t node, const Debt& debt) {
   const Observation& cause = context_.run.seen[debt.index];
   const std::int64_t from = cause.place.time_us;
@@ -130,7 +130,7 @@ void JoinWatch::settle(std::uint16_t node, std::int64_t now_us, bool end) {
     if (!still_owed(node, debt)) return true;
     if (now_us <= debt.due_us && (!end || device.hearing)) return false;
     const std::int64_t from = context_.run.seen[debt.index].place.time_us;
-    // At its end a log of what the node was given needs no sign of life, a capture does.
+    // At its end a log of what the node was given needs no sign of life; a capture does.
     const bool sure = !context_.who.damaged(from, now_us) &&
                       (device.hearing ||
                        (!end && context_.without(node, from, now_us) == Severity::kFail));
@@ -140,16 +140,17 @@ void JoinWatch::settle(std::uint16_t node, std::int64_t now_us, bool end) {
   });
 }
 
-// So much went through the node around that time that a buffer may have been full (decision 122).
+// Returns whether so many frames went through the node around that time that a buffer may have been
+// full (decision 122).
 bool JoinWatch::crowded(std::uint16_t node, const Debt& debt) const {
   const std::vector<Observation>& seen = context_.run.seen;
   std::size_t frames = 0;
-  for (std::size_t i = debt.index; i < seen.size() && frames <= kCrowd; ++i) {
+  for (std::size_t i = debt.index; i < seen.size() && frames <= kJoinCrowd; ++i) {
     if (seen[i].place.time_us > debt.due_us) break;
     const Mark& mark = context_.who.marks[i];
     if (mark.device == node || mark.receiver == node) ++frames;
   }
-  return frames > kCrowd;
+  return frames > kJoinCrowd;
 }
 
 void JoinWatch::missing(std::uint16_t node, const Debt& debt, Severity severity) {
@@ -192,7 +193,7 @@ void JoinWatch::clock_told(std::uint16_t mote, const Observation& seen, std::uin
   for (const MoteHypothesis& h : set) {
     const machine::Frame& frame = context_.run.seen[h.reply].frame;
     Reply reply;
-    // A clock before the join says nothing; nor does one after a reply that nobody saw.
+    // A clock before the join shows nothing; nor does one after a reply that nobody saw.
     if (h.unknown || h.join.phase != Phase::kMember || frame.type != am::kJoinReply ||
         !parse_reply(frame.payload, reply) || reply.seq_num != h.join.seq_num) {
       return;

@@ -1,5 +1,5 @@
-// What joins surely owe and do not give, and the clock that a join sets. What is sent is judged by
-// MoteJoins and SinkJoins; this asks them what can only be waited for.
+// Judges what joins surely owe and do not deliver, and the clock that a join sets. MoteJoins and
+// SinkJoins judge what is sent; this asks them for what is still due.
 #pragma once
 
 #include <cstdint>
@@ -14,26 +14,26 @@ class JoinWatch {
  public:
   JoinWatch(Context& context, MoteJoins& motes, SinkJoins& sinks, std::size_t devices);
 
-  /// A log says when the node lost its memory.
+  /// Notes that by a log the node lost its memory.
   void rebooted(std::uint16_t node, std::int64_t now_us);
-  /// A capture shows that it did, some time before.
+  /// Notes that by a capture it did, some time before.
   void begin_life(std::uint16_t node) { debts_[node].clear(); }
-  /// Its application switches its radio on or off.
+  /// Notes that its application switches its radio on or off.
   void radio_set(std::uint16_t node, bool on, std::int64_t now_us);
-  /// The node sends a frame on the air: what it owed since long it will not send any more.
+  /// Notes that the node sends a frame on the air, so whatever it still owes is overdue.
   void showed_life(std::uint16_t node, std::int64_t now_us) { settle(node, now_us, false); }
 
-  // Each behind the same call of MoteJoins or SinkJoins.
+  // Called after the same function of MoteJoins or SinkJoins.
   void asked(std::uint16_t mote, std::uint32_t index);
   void surely_asked(std::uint16_t sink, std::uint32_t index, std::uint16_t seq_num);
   void answered(std::uint16_t sink, std::uint16_t mote_am, std::int64_t now_us);
   void surely_offered(std::uint16_t mote, std::uint32_t index, const Reply& reply);
-  /// The application of `mote` is told its clock.
+  /// Judges the clock that the application of `mote` is given.
   void clock_told(std::uint16_t mote, const Observation& seen, std::uint32_t ms);
   void finish(std::int64_t end_us);
 
  private:
-  static constexpr std::size_t kRoom = 64;  // Of a node; more is not waited for.
+  static constexpr std::size_t kRoom = 64;  // For each node; no more are awaited.
 
   enum class Owes : std::uint8_t { kRetry, kAck, kReply };
   struct Debt {

@@ -1,4 +1,4 @@
-// What joins owe, in logs that have all that nodes were given; and the clock that a join sets.
+// Missing parts of joins, in logs of all that nodes were given; and the clock that a join sets.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -43,7 +43,7 @@ std::string ack(int ms, int mote = 2) {
 std::string joined(int ms, int mote = 2) {
   return request(ms, true, mote) + reply(ms + 4, true, mote) + ack(ms + 8, mote);
 }
-// Something that is given to both nodes, so that the log goes on.
+// Gives something to both nodes, so that the log goes on.
 std::string end(int ms) {
   return at(ms, "m2 < rA am=9->0xffff am(9 x01)") + at(ms, "sA < rA am=9->0xffff am(9 x01)");
 }
@@ -102,7 +102,7 @@ TEST(JoinWatch, TheClockIsSet) {
   EXPECT_EQ(all(at(0, "m2 < app get_clock()") + at(0, "m2 > app clock(ms=77)")), "");
 }
 
-// Captures, where the link's acknowledgement is the proof.
+// Captures, in which the link's acknowledgement is the proof.
 std::string seen(const Script& script, bool complete) {
   Options options;
   options.start_cold = true;

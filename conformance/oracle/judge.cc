@@ -106,7 +106,7 @@ void Judge::begin_life(std::uint16_t device) {
   interfaces_.begin_life(device);
 }
 
-// Who surely received a frame for the sinks' address.
+// Returns the sink that surely received a frame for the sinks' address.
 std::uint16_t Judge::sure_sink(std::uint32_t index) const {
   if (who_.marks[index].receiver != kNobody) return who_.marks[index].receiver;
   return context_.only_sink != kNobody && link_acked(run_, index) ? context_.only_sink : kNobody;
@@ -164,8 +164,8 @@ void Judge::radio(std::uint32_t index, const Observation& seen, const Mark& mark
   }
 }
 
-// A join message that is known from its sender: a log's line that gives it to a node, or the
-// link's repetition, which a node may have heard in place of the first or as well.
+// Takes a join message that is known from its sender: a log's line that gives it to a node, or the
+// link's repetition, which a node may have heard instead of the first or as well.
 void Judge::joins_heard(std::uint32_t index, const Observation& seen, const Mark& mark) {
   Request request;
   Reply reply;
@@ -180,7 +180,7 @@ void Judge::joins_heard(std::uint32_t index, const Observation& seen, const Mark
   }
 }
 
-// Motes whose log has what they were given hear nothing else.
+// Takes a reply. Motes whose log has what they were given hear nothing else.
 void Judge::replied(std::uint32_t index, const Observation& seen, const Mark& mark,
                     const Reply& reply) {
   context_.for_motes(seen.frame.dest, [&](std::uint16_t mote) {

@@ -1,5 +1,5 @@
-// How many frames a second one core judges: a clean capture of a network of twelve motes and two
-// sinks, read and judged, and judged alone.
+// Measures how many frames a second one core judges: a clean capture of a network of twelve motes
+// and two sinks, read and judged, and judged alone.
 #include <benchmark/benchmark.h>
 
 #include <string>
@@ -44,7 +44,7 @@ bool read_capture(benchmark::State& state, Run& run) {
   return true;
 }
 
-// The frames that were judged; 0: something failed.
+// Returns the number of judged frames; 0 if something failed.
 std::uint64_t judged(benchmark::State& state, const Run& run) {
   Options options;
   options.sniffer_complete = options.start_cold = true;

@@ -8,7 +8,7 @@ namespace rubric::oracle {
 using machine::Role;
 using Kind = Observation::Kind;
 
-// The link's own repetition, or a log's line that says who received a frame.
+// Takes the link's own repetition, or a log's line that shows who received a frame.
 void Judge::repeated(std::uint32_t index, const Observation& seen, const Mark& mark) {
   if (seen.kind == Kind::kRadio) joins_heard(index, seen, mark);
   Net net;
@@ -21,7 +21,7 @@ void Judge::repeated(std::uint32_t index, const Observation& seen, const Mark& m
   for (const std::uint16_t sink : context_.sinks) acks_.repeated(sink, net);
 }
 
-// A log's line that gives a node a message that is known from its sender.
+// Takes a log's line that gives a node a message that is known from its sender.
 void Judge::surely(const Observation& seen, const Mark& mark, const Net& net) {
   if (interfaces_.switched_off(mark.receiver, seen.frame.link)) return;
   acks_.surely(mark.receiver, net);
@@ -79,7 +79,7 @@ void Judge::radio_net(std::uint32_t index, const Observation& seen, const Mark& 
   }
 }
 
-// A message of the node's own.
+// Takes a message of the node's own.
 void Judge::own_message(std::uint16_t node, const Observation& seen, const Net& net,
                         machine::Link link, machine::Address own) {
   acks_.showed_life(node, seen.place.time_us);
@@ -93,7 +93,7 @@ void Judge::mote_hears(std::uint16_t mote, const Observation& seen, const Mark& 
                        const Net& net) {
   const std::uint16_t am = who_.devices[mote].am;
   const std::optional<machine::Address> own = motes_.address(mote);
-  // Its island is not known for sure: then anything for its devid may be for it.
+  // If its island is uncertain, anything for its devid may be for it.
   const machine::Address presumed = own.value_or(machine::Address{net.dest.pid, am});
   hears(mote, {Role::kMote, presumed, true, context_.sink_am}, machine::Link::kRadio, seen,
         mark.device, net, mark.receiver == mote);
@@ -104,12 +104,12 @@ void Judge::hears(std::uint16_t node, const machine::Router& router, machine::Li
   if (router.own.pid == 0) return;  // A sink of which no island is known.
   const machine::Route route = machine::route_received(router, from, net.dest, net.src);
   if (!route.deliver && route.onward != machine::Route::Onward::kNowhere) return;
-  // Every island: taken or ignored, as a node likes (decision 114).
+  // A message to every island may be taken or ignored (decision 114).
   const bool free = route.deliver || net.dest.pid == machine::kBroadcastPid;
   const bool off = interfaces_.off(node, from, seen.place.time_us);
   const ReqId forbidden = off ? "N10-OFF"_rule : free ? ReqId::kNone : route.requirement;
-  // Straight from a foreign mote: likewise (decision 116).
-  // So is what a base station hands its sink for another island's (decision 126).
+  // So may one straight from a foreign mote (decision 116), and one for another island that a base
+  // station sends down to its sink (decision 126).
   const bool radio = from == machine::Link::kRadio;
   const bool straight = net.dest.pid != router.own.pid ||
                         (radio && net.src.pid != net.dest.pid && !is(sender, Role::kSink));
@@ -118,7 +118,7 @@ void Judge::hears(std::uint16_t node, const machine::Router& router, machine::Li
   if (sure && !off && route.deliver) synaptic_.given(node, seen, net);
 }
 
-// An ack counts at the originator of what it acks.
+// Counts an ack at the originator of the acked message.
 void Judge::ack_comes(const Net& ack) {
   const std::int32_t acked = machine::acked_seq_num(ack.body());
   if (acked < 0) return;
@@ -137,7 +137,7 @@ void Judge::ack_comes(const Net& ack) {
 
 void Judge::serial(std::uint32_t index, const Observation& seen, const Mark& mark) {
   const std::uint16_t sink = seen.to_mote ? who_.devices[mark.device].partner : mark.device;
-  if (sink == kNobody) {  // Of the sink nothing is known: a part of a run, say.
+  if (sink == kNobody) {  // Nothing is known of the sink, as in a part of a run.
     Net net;
     const bool handed = seen.to_mote && !seen.received && seen.frame.type == am::kNet;
     const machine::Address base{who_.devices[mark.device].island, machine::kNullDevid};
@@ -206,7 +206,7 @@ void Judge::down_serial(std::uint32_t index, const Observation& seen, const Mark
         mark.device, net, sure);
 }
 
-// A message between base stations, by the log of `base`.
+// Takes a message between base stations, by the log of `base`.
 void Judge::peis(const Observation& seen, std::uint16_t base) {
   Net net;
   if (!is(base, Role::kBaseStation) || seen.frame.type != am::kNet) return;

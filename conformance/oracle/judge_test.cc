@@ -1,5 +1,5 @@
-// One fault after the other in a run that is right: each must be found by its rule, and nothing
-// else must be; and what is right must not be blamed.
+// One fault at a time in a run that is right: its rule must find it, and nothing else may be
+// blamed.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -31,7 +31,7 @@ NetFields reliable(Address src, Address dest, std::uint16_t seq_num) {
   return net;
 }
 
-// Two motes have joined at 0 and 100 ms; both have sent something by 300 ms.
+// Two motes join at 0 and 100 ms; both have sent something by 300 ms.
 Script two_motes() {
   Script script;
   script.join(0, 11, 2, 100).join(100, 11, 3, 200);
@@ -39,7 +39,7 @@ Script two_motes() {
   script.net(250, 3, 1, update(3, 2)).up(265, update(3, 2).forwarded());
   return script;
 }
-// Every node shows life at the end.
+// Lets every node show life at the end.
 void end_well(Script& script, double ms) {
   script.net(ms, 2, 1, update(2, 901)).up(ms + 15, update(2, 901).forwarded());
   script.net(ms + 50, 3, 1, update(3, 902)).up(ms + 65, update(3, 902).forwarded());

@@ -7,8 +7,10 @@
 #include "codec/reflect/requirements.h"
 #include "conformance/legal/generate.h"
 #include "conformance/legal/variants.h"
+#include "conformance/oracle/frames_testing.h"
 #include "conformance/oracle/judge.h"
 #include "conformance/oracle/read.h"
+#include "tools/readme/number.h"
 
 namespace rubric::oracle {
 namespace {
@@ -17,8 +19,8 @@ constexpr std::uint64_t kSeeds = 4;
 constexpr std::uint64_t kMixedSeeds = 60;
 
 struct Count {
-  std::uint64_t runs = 0;
-  std::uint64_t frames = 0;
+  std::uint64_t judgements = 0;
+  FrameSet frames;
   std::uint64_t fails = 0;
 };
 
@@ -28,8 +30,8 @@ void judge_one(const legal::Traffic& traffic, const Options& options, Count& cou
   ASSERT_TRUE(reader.add_bytes(traffic.variant, legal::to_pcapng(traffic), error)) << error;
   const oracle::Run run = reader.finish();
   const Report report = judge(run, options);
-  ++count.runs;
-  count.frames += report.frames;
+  ++count.judgements;
+  add_frames(run, count.frames);
   for (const Finding& finding : report.findings) {
     const bool fails = finding.severity == Severity::kFail;
     count.fails += fails ? 1 : 0;
@@ -46,7 +48,7 @@ void judge_both(const std::string& variant, std::uint64_t seed, Count& count) {
   for (const legal::NodeInfo& node : traffic.nodes) {
     if (node.role == legal::Role::kTester) options.testers.push_back(node.id);
   }
-  // Where a host sends malformed messages on purpose it is the tester.
+  // A host that sends malformed messages on purpose is the tester.
   if (!traffic.all_well_formed) options.testers.push_back(0);
   judge_one(traffic, options, count);
   options.sniffer_complete = traffic.sniffer_complete;
@@ -63,11 +65,11 @@ TEST(Legal, NothingFails) {
   }
   const std::uint64_t variants = legal::variants().size();
   for (std::uint64_t seed = 1; seed <= kMixedSeeds; ++seed) judge_both("mixed", seed, count);
-  std::printf("%llu legal variants, %llu judgements, %llu frames, %llu false alarms\n",
+  std::printf("%llu legal variants, %llu judgements of %zu frames, %llu false alarms\n",
               static_cast<unsigned long long>(variants),
-              static_cast<unsigned long long>(count.runs),
-              static_cast<unsigned long long>(count.frames),
+              static_cast<unsigned long long>(count.judgements), count.frames.size(),
               static_cast<unsigned long long>(count.fails));
+  EXPECT_EQ(count.frames.size(), readme_number("alarm in # different frames"));
   EXPECT_GE(variants, 20U);
 }
 

@@ -3,8 +3,6 @@
 namespace rubric::oracle {
 namespace {
 
-constexpr std::int64_t kByteUs = 32;        // 250 kbit/s.
-constexpr std::int64_t kAroundBytes = 19;   // Preamble, SFD, length, MAC header, type, FCS.
 constexpr std::int64_t kAckWithinUs = 2500;
 constexpr std::int64_t kSerialAckWithinUs = 100'000;
 
@@ -14,7 +12,7 @@ bool link_acked(const Run& run, std::uint32_t index) {
   const Observation& sent = run.seen[index];
   if (!sent.ack_request || !sent.has_dsn || sent.kind != Observation::Kind::kRadio) return false;
   const auto bytes = static_cast<std::int64_t>(sent.frame.payload.size()) + kAroundBytes;
-  const std::int64_t last = sent.place.time_us + bytes * kByteUs + kAckWithinUs;
+  const std::int64_t last = sent.place.time_us + bytes * kRadioByteUs + kAckWithinUs;
   for (std::size_t i = index + 1; i < run.seen.size(); ++i) {
     const Observation& seen = run.seen[i];
     if (seen.place.time_us > last) return false;

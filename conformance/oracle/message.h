@@ -2,10 +2,13 @@
 #pragma once
 
 #include <cstdint>
-#include <cstring>
 
-#include "codec/generated/rubicon/enums.h"
-#include "codec/runtime/bytes.h"
+#include "codec/generated/rubicon/ack_join.h"
+#include "codec/generated/rubicon/config.h"
+#include "codec/generated/rubicon/join_reply.h"
+#include "codec/generated/rubicon/join_request.h"
+#include "codec/generated/rubicon/net_msg.h"
+#include "codec/generated/rubicon/serial_joined.h"
 #include "conformance/machine/address.h"
 #include "conformance/machine/event.h"
 #include "conformance/machine/messages.h"
@@ -15,10 +18,10 @@ namespace rubric::oracle {
 namespace am = machine::am;
 namespace component = machine::component;
 
-constexpr std::size_t kNetHeaderBytes = 12;
-constexpr std::uint8_t kNetPayloadMax = 102;
+using NetAt = rubicon::NetMsgLayout;
+constexpr std::size_t kNetHeaderBytes = NetAt::PayloadAt::kAt;
 
-/// A net_msg. `sound` is N11: nbytes is 2 to 102 and no more than what came.
+/// A net_msg. It is `sound` (N11) if nbytes is in its range and no more than the bytes that came.
 struct Net {
   machine::Address dest;
   machine::Address src;
@@ -26,42 +29,47 @@ struct Net {
   std::uint8_t nbytes = 0;
   std::uint16_t seq_num = 0;
   bool sound = false;
-  std::uint8_t trans_id = 0;  ///< Where sound.
+  std::uint8_t trans_id = 0;  ///< Valid if sound.
   std::uint8_t app_id = 0;
   Bytes payload;              ///< nbytes of it where sound, else what came.
-  Bytes body() const { return payload.from(2); }
+  Bytes body() const { return payload.from(rubicon::AppMsgLayout::PayloadAt::kAt); }
 
   bool is_ack() const { return sound && trans_id == component::kRubiconAck; }
   bool broadcast() const {
     return dest.pid == machine::kBroadcastPid || dest.devid == machine::kBroadcastDevid;
   }
-  /// What names a message: both addresses and the number.
+  /// Returns both addresses, which with the number identify a message.
   std::uint64_t addresses() const {
     return std::uint64_t{dest.pid} << 48 | std::uint64_t{dest.devid} << 32 |
            std::uint64_t{src.pid} << 16 | src.devid;
   }
 };
 
-/// False: shorter than a header.
+/// Reads a net_msg. Returns false if it is shorter than a header. Unlike the view of a net_msg it
+/// reads a header that breaks a rule: its sender is judged, and others may have taken it.
 inline bool parse_net(Bytes bytes, Net& out) {
+  using App = rubicon::AppMsgLayout;
   if (bytes.size() < kNetHeaderBytes) return false;
+  const auto address = [&](std::size_t at) {
+    return machine::address_of(rubicon::RAddrView::parse(bytes.from(at)).value());
+  };
   const std::uint8_t* const p = bytes.data();
-  out.dest = {load_be16(p), load_be16(p + 2)};
-  out.src = {load_be16(p + 4), load_be16(p + 6)};
-  out.reliable = p[8];
-  out.seq_num = load_be16(p + 9);
-  out.nbytes = p[11];
+  out.dest = address(NetAt::DestAt::kAt);
+  out.src = address(NetAt::SrcAt::kAt);
+  out.reliable = NetAt::ReliableAt::load(p);
+  out.seq_num = NetAt::SeqNumAt::load(p);
+  out.nbytes = NetAt::NbytesAt::load(p);
   out.payload = bytes.from(kNetHeaderBytes);
-  out.sound = out.nbytes >= 2 && out.nbytes <= kNetPayloadMax && out.nbytes <= out.payload.size();
+  out.sound = NetAt::NbytesAt::allows(out.nbytes) && out.nbytes <= out.payload.size();
   if (out.sound) {
     out.payload = out.payload.first(out.nbytes);
-    out.trans_id = out.payload[0];
-    out.app_id = out.payload[1];
+    out.trans_id = static_cast<std::uint8_t>(App::TransIdAt::load(out.payload.data()));
+    out.app_id = static_cast<std::uint8_t>(App::AppIdAt::load(out.payload.data()));
   }
   return true;
 }
 
-/// The same addresses, reliable and number; and the same payload.
+/// Returns whether addresses, reliable, number and payload are the same.
 inline bool same_message(const Net& a, const Net& b) {
   return a.addresses() == b.addresses() && a.seq_num == b.seq_num && a.reliable == b.reliable;
 }
@@ -69,12 +77,8 @@ inline bool same_payload(const Net& a, const Net& b) {
   return a.nbytes == b.nbytes && equal(a.payload, b.payload);
 }
 
-inline machine::Descriptor parse_descriptor(const std::uint8_t* p) {
-  return {p[0], p[3], load_be16(p + 1)};
-}
-
-/// The same message of one sender on one link, whatever stands behind its content: an underlying
-/// buffer may be longer.
+/// Returns whether both are the same message of one sender on one link, whatever follows its
+/// content: an underlying buffer may be longer.
 inline bool same_content(const machine::Frame& a, const machine::Frame& b) {
   if (a.src != b.src || a.type != b.type) return false;
   Net one;
@@ -90,9 +94,9 @@ struct Request {
   machine::Descriptor descriptor;
 };
 inline bool parse_request(Bytes bytes, Request& out) {
-  if (bytes.size() < 6) return false;
-  out = {load_be16(bytes.data()), parse_descriptor(bytes.data() + 2)};
-  return true;
+  const auto view = rubicon::JoinRequestView::parse(bytes);
+  if (view) out = {view->seq_num(), machine::descriptor_of(view->mote_desc())};
+  return view.has_value();
 }
 
 struct Reply {
@@ -102,10 +106,9 @@ struct Reply {
   std::uint16_t seq_num = 0;
 };
 inline bool parse_reply(Bytes bytes, Reply& out) {
-  if (bytes.size() < 10) return false;
-  const std::uint8_t* const p = bytes.data();
-  out = {load_be16(p), load_be16(p + 2), load_be32(p + 4), load_be16(p + 8)};
-  return true;
+  const auto view = rubicon::JoinReplyView::parse(bytes);
+  if (view) out = {view->island_addr(), view->mote_addr(), view->cur_time(), view->seq_num()};
+  return view.has_value();
 }
 
 struct AckJoin {
@@ -116,12 +119,10 @@ struct AckJoin {
   friend bool operator==(const AckJoin&, const AckJoin&) = default;
 };
 inline bool parse_ack_join(Bytes bytes, AckJoin& out) {
-  if (bytes.size() < 14) return false;
-  const std::uint8_t* const p = bytes.data();
-  out.dest = {load_be16(p), load_be16(p + 2)};
-  out.src = {load_be16(p + 4), load_be16(p + 6)};
-  out.seq_num = load_be16(p + 8);
-  out.descriptor = parse_descriptor(p + 10);
+  const auto view = rubicon::AckJoinView::parse(bytes);
+  if (!view) return false;
+  out = {machine::address_of(view->dest()), machine::address_of(view->src()), view->seq_num(),
+         machine::descriptor_of(view->mote_desc())};
   return true;
 }
 
@@ -132,24 +133,24 @@ struct SerialJoined {
 };
 inline bool parse_serial_joined(const Net& net, SerialJoined& out) {
   constexpr auto kControl = static_cast<std::uint8_t>(rubicon::Component::kControlLayer);
-  constexpr auto kJoined = static_cast<std::uint8_t>(rubicon::AmType::kSerialJoined);
   if (!net.sound || net.trans_id != component::kConnless || net.app_id != kControl) return false;
-  const Bytes body = net.body();
-  if (body.size() < 9 || body[0] != kJoined) return false;
-  const std::uint8_t* const p = body.data();
-  out.address = {load_be16(p + 1), load_be16(p + 3)};
-  out.descriptor = parse_descriptor(p + 5);
+  const auto view = rubicon::SerialJoinedView::parse(net.body());
+  if (!view || view->msg_type() != rubicon::AmType::kSerialJoined) return false;
+  out.address = {view->island_addr(), view->mote_addr()};
+  out.descriptor = {static_cast<std::uint8_t>(view->mote_type()), view->actuators().raw(),
+                    view->transducers().raw()};
   return true;
 }
 
-/// The island id that a SET_ISLAND_ID config message sets; -1: another message, or none
-/// that a sink can have.
+/// Returns the island id of a SET_ISLAND_ID config message; -1 for another message, or an id that
+/// no sink can have.
 inline std::int32_t set_island_id(const machine::Frame& frame) {
-  if (frame.type != am::kConfig || frame.payload.size() < 3) return -1;
-  constexpr auto kSet = static_cast<std::uint8_t>(rubicon::CommandCode::kSetIslandId);
-  const std::uint16_t island = load_be16(frame.payload.data() + 1);
+  if (frame.type != am::kConfig) return -1;
+  const auto view = rubicon::ConfigView::parse(frame.payload);
+  if (!view || view->type() != rubicon::CommandCode::kSetIslandId) return -1;
+  const std::uint16_t island = view->value();
   const bool usable = island != machine::kLocalPid && island != machine::kBroadcastPid;
-  return frame.payload[0] == kSet && usable ? island : -1;
+  return usable ? island : -1;
 }
 
 }  // namespace rubric::oracle

@@ -1,4 +1,4 @@
-// ack_join, and what a mote's application was told of its join.
+// MoteJoins: ack_join, and the joined events of a mote's application. See mote_join.h.
 #include <algorithm>
 
 #include "conformance/oracle/mote_join.h"
@@ -28,13 +28,13 @@ std::string ack_text(const AckJoin& ack) {
 
 }  // namespace
 
-// kNone: the hypothesis allows this ack_join.
+// Returns the rule that forbids this ack_join to the hypothesis; kNone if it is allowed.
 ReqId MoteJoins::why_not_ack(const MoteHypothesis& h, const Observation& seen,
                              const AckJoin& ack) const {
   if (h.unknown) return ReqId::kNone;
   if (h.join.phase != Phase::kMember) return "J4-JOINED"_rule;
   AckJoin want = expected_ack(h);
-  // Of a call that began before the capture only some is known.
+  // If the call began before the capture only a part of it is known.
   if (h.join.seq_num == 0) want.seq_num = ack.seq_num, want.descriptor = ack.descriptor;
   if (h.join.seq_num == 0 || h.join.sink_devid == 0) want.dest = ack.dest;
   if (ack != want) {
@@ -107,7 +107,7 @@ void MoteJoins::refuse_ack(std::uint16_t mote, const Observation& seen, const Ac
                 number(seen.frame.dest) + ".";
     said.expected = ack_text(expected_ack(h)) + ", to AM address " + number(context_.sink_am) + ".";
   } else {
-    // It acks what it should not have accepted; of what, the last replies may tell.
+    // It acks a reply that it should not have accepted; the last replies may show which.
     const bool recent = watch.wrong_reply && now - watch.wrong_place.time_us <= kRecentUs;
     const bool asked = h.join.phase == Phase::kJoining;
     const bool own = asked && ack.seq_num == h.join.seq_num &&
@@ -131,7 +131,7 @@ void MoteJoins::refuse_ack(std::uint16_t mote, const Observation& seen, const Ac
     if (!asked && h.first_request_us == 0) severity = context_.without_ever(mote, now);
   }
   context_.report(rule, severity, seen.place, mote, std::move(said));
-  // Whatever it is now, it takes itself for a member; and it may still be asking.
+  // From now on it takes itself for a member; and it may still be asking.
   MoteHypothesis next = h;
   if (rule == "J4-REPEAT"_rule) {
     next.accepted_us = now;  // One finding for each late repeat.
@@ -224,8 +224,8 @@ void MoteJoins::finish(std::int64_t end_us) {
     const std::int64_t expiries = context_.profile().join_requests_max * context_.join_period_us();
     const std::int64_t last = h.first_request_us + expiries + context_.response_us();
     if (h.unknown || h.join.phase != Phase::kJoining || end_us <= last) continue;
-    if (h.first_request_us < 0) continue;  // Nobody knows how long it has been.
-    if (watch.calls_logged && watch.joined_calls == 0) continue;  // It was told.
+    if (h.first_request_us < 0) continue;  // The begin is unknown.
+    if (watch.calls_logged && watch.joined_calls == 0) continue;  // It had its event.
     Place at;
     at.time_us = h.first_request_us;
     context_.report("J8-FAIL"_rule, Severity::kFail, at, static_cast<std::uint16_t>(i),

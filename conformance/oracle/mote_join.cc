@@ -14,7 +14,7 @@ MoteJoins::MoteJoins(Context& context, std::size_t devices) : context_(context),
     start.unknown = !context.options.start_cold;
     motes_[i].set.push_back(start);
   }
-  // Only a log that has join calls can say that there was none.
+  // Only a log that has join calls can show that there was none.
   for (std::size_t i = 0; i < context.run.seen.size(); ++i) {
     const Observation& seen = context.run.seen[i];
     const std::uint16_t node = context.who.marks[i].device;
@@ -35,7 +35,7 @@ bool MoteJoins::may_have_failed(const MoteHypothesis& h, std::int64_t now_us) co
   return now_us - h.first_request_us >= expiries - context_.early_us();
 }
 
-// What a request makes of a hypothesis; false: the hypothesis does not allow it.
+// Applies a request to a hypothesis. Returns false if the hypothesis does not allow it.
 bool MoteJoins::next_request(const MoteHypothesis& h, std::uint16_t id, std::int64_t now_us,
                              const Request& request, std::vector<MoteHypothesis>& out) {
   machine::JoinContext join_context = context_.join_context(id, 0, now_us);
@@ -198,7 +198,7 @@ void MoteJoins::reply(std::uint16_t mote, const Observation& seen, std::uint32_t
   keep(watch, next_, mote, seen);
 }
 
-// Merges what is the same but for its age; the youngest is the most permissive.
+// Merges hypotheses that differ only in age; the youngest is the most permissive.
 void MoteJoins::keep(MoteWatch& watch, std::vector<MoteHypothesis>& next, std::uint16_t mote,
                      const Observation& seen) {
   watch.set.clear();

@@ -1,4 +1,4 @@
-// What a run shows: the frames of its files in one order of time, and what the user knows of it.
+// A run: the frames of its files in one order of time, and what the user knows about it.
 #pragma once
 
 #include <cstdint>
@@ -21,10 +21,10 @@ struct Observation {
     kRadio,     ///< An active message on the air; time_us is the start of the frame.
     kLinkAck,   ///< An 802.15.4 acknowledgement, or that of a serial line; dsn says of what.
     kSerial,    ///< An active message on a serial line; time_us is the end of the frame.
-    kDamaged,   ///< Bytes that are no frame (bad CRC and the like): heard by nobody.
+    kDamaged,   ///< Bytes that are no frame (bad CRC and the like); no node hears them.
     kCall,      ///< An application's call, from a .rtr log.
     kPeis,      ///< A message given to PEIS, or by it to a base station, from a .rtr log.
-    kNotice,    ///< What an application was told, from a .rtr log.
+    kNotice,    ///< A notice to an application, from a .rtr log.
     kReboot,    ///< The node lost its memory or its power, by a .rtr log.
   };
   Kind kind = Kind::kRadio;
@@ -51,11 +51,11 @@ struct Tap {
   bool has_direction = false;  ///< The capture says which way a frame went.
 };
 
-/// What the user says of a node (`--node 2=mote`, `--sink 1=11`).
+/// A node as the user describes it (`--node 2=mote`, `--sink 1=11`).
 struct KnownNode {
   std::uint16_t id = 0;
   machine::Role role = machine::Role::kMote;
-  std::uint16_t island = 0;  ///< Of a sink; 0: unknown.
+  std::uint16_t island = 0;  ///< For a sink; 0: unknown.
 };
 
 struct Options {
@@ -71,13 +71,13 @@ struct Options {
   std::vector<std::uint16_t> testers;   ///< AM addresses of senders that are no node under test.
 };
 
-/// What a .rtr log says of a node.
+/// A node as a .rtr log describes it.
 struct LoggedNode {
   std::string name;
   machine::Role role = machine::Role::kMote;
   std::uint16_t id = 0;
   std::uint16_t island = 0;   ///< 0: not said.
-  bool under_test = true;     ///< Where a log marks some nodes as under test the others are not.
+  bool under_test = true;     ///< If a log marks some nodes as under test, the others are not.
   bool application = false;   ///< The log has its application's calls and events.
   bool hearing = false;       ///< The log has what its radio was given.
   bool peis = false;          ///< The log has its lines of PEIS.
@@ -85,17 +85,18 @@ struct LoggedNode {
   std::vector<std::pair<std::int64_t, std::int64_t>> busy_us;  ///< From when to when.
 };
 
-/// Between which times a frame of a file without stamps must lie, by frames that other files have.
+/// The times between which a frame of a file without stamps must lie, by frames that other files
+/// have.
 struct LoosePlace {
   std::uint32_t file = 0;
   std::uint64_t frame = 0;
   std::int64_t early_us = 0;
   std::int64_t late_us = 0;
-  /// Two of those frames are around it, and it is plain which way it went; else it blames nobody.
+  /// Two of those frames surround it, and its direction is plain; else it blames no node.
   bool between = false;
 };
 
-/// Holds what observations point to.
+/// Holds the objects that observations point to.
 struct RunStorage;
 
 struct Run {
@@ -105,22 +106,22 @@ struct Run {
   bool marked = false;
   std::shared_ptr<RunStorage> storage;
   std::vector<Tap> taps;
-  std::vector<std::string> facts;  ///< What the reading found out, a sentence each.
+  std::vector<std::string> facts;  ///< Results of the reading, a sentence each.
   std::vector<Observation> seen;   ///< In order of cause: see merge() in read.h.
   std::int64_t start_us = 0;       ///< The first stamp.
   std::int64_t end_us = 0;
-  /// Everything has a stamp. Raw bytes carry none: no rule about their times is judged, and where
-  /// other files are beside them nothing that rests on the order between the two fails.
+  /// Everything has a stamp. Raw bytes carry none: no rule about their times is judged, and beside
+  /// other files nothing fails that depends on the order between the two.
   bool has_time = true;
-  /// By tap: its clock has nothing to do with that of the air, as far as anybody knows, and nothing
-  /// that rests on the order between the two fails. Empty: there is no such tap.
+  /// By tap: its clock is not known to be that of the air, so nothing fails that depends on the
+  /// order between the two. Empty if there is no such tap.
   std::vector<bool> unordered_taps;
-  /// Lines on clocks of their own were put on that of the air, as early as they can be; they may
-  /// be so much later. What is blamed on anybody stands wherever in that time they are.
+  /// Lines on clocks of their own were put on that of the air, as early as they can be; they may be
+  /// later by this. A failure must be found wherever in that time they are.
   std::int64_t slack_us = 0;
   std::vector<bool> slack_taps;  ///< By tap: those lines; empty: none.
-  /// Of files without stamps that are in order with others, by file and frame. What is blamed on
-  /// anybody stands in each order that these allow.
+  /// Frames of files without stamps that are in order with others, by file and frame. A failure
+  /// must be found in each order that these bounds allow.
   std::vector<LoosePlace> loose;
 };
 
@@ -129,13 +130,13 @@ struct Report {
   Verdict verdict = Verdict::kPass;
   std::vector<Finding> findings;   ///< In order of place.
   std::uint64_t frames = 0;        ///< Judged.
-  /// What was found out about the run: one sentence each (nodes, roles, islands, holes).
+  /// Facts about the run, one sentence each (nodes, roles, islands, holes).
   std::vector<std::string> facts;
-  /// Rules that were exercised at least once, with how often.
+  /// Rules that were exercised at least once, with their counts.
   std::vector<std::pair<ReqId, std::uint64_t>> exercised;
 };
 
-/// Judges a run. Never fails on any input; bounded memory.
+/// Judges a run. Never fails on any input; uses bounded memory.
 Report judge(const Run& run, const Options& options);
 
 }  // namespace rubric::oracle

@@ -9,15 +9,15 @@ using machine::Link;
 using machine::Role;
 using Onward = machine::Route::Onward;
 
-// A host waits that long for the confirmation of a packet before it sends the next one.
+// How long a host waits for the confirmation of a packet before it sends the next one.
 constexpr std::int64_t kConfirmationUs = 1'100'000;
-constexpr std::size_t kCrowd = 2;  // So many at once may have found a buffer full (decision 122).
+constexpr std::size_t kPeisCrowd = 2;  // So many at once may have found a buffer full (decision 122).
 
 machine::Router base_station(machine::Address own, std::uint16_t sink_am) {
   return {Role::kBaseStation, own, true, sink_am};
 }
 
-// On the serial line nbytes and what lies behind the payload may differ (N6-CONTENT).
+// On the serial line nbytes and the bytes after the payload may differ (N6-CONTENT).
 bool same_content(const Net& serial, const Net& peis) {
   return same_message(serial, peis) && serial.payload.size() >= peis.payload.size() &&
          equal(serial.payload.first(peis.payload.size()), peis.payload);
@@ -90,7 +90,7 @@ void PeisWatch::given(std::uint16_t base, const Observation& seen, const Net& ne
   const machine::Route route = machine::route_received(base_station(own, context_.sink_am),
                                                        Link::kPeis, net.dest, net.src);
   const bool onward = route.onward == Onward::kSerial && net.sound;
-  // A broadcast to every island may be handed on, or not (decision 114).
+  // A base station may pass a broadcast to every island on, or not (decision 114).
   if (onward || net.dest.pid == machine::kBroadcastPid) {
     bases_[base].down.push({net, seen.place, onward, false});
   }
@@ -110,7 +110,7 @@ void PeisWatch::went_down(std::uint16_t base, const Observation& seen, const Net
   overdue(base, watch.down, false, seen.place.time_us, false);
 }
 
-// Nothing that came, and is not yet passed on, is this message.
+// Reports a message that matches nothing that came and is not yet passed on.
 void PeisWatch::refuse(std::uint16_t base, const Observation& seen, const Net& net,
                        Messages& messages, bool up) {
   const std::string way = up ? "through PEIS" : "to its sink";
@@ -155,7 +155,7 @@ void PeisWatch::overdue(std::uint16_t base, Messages& messages, bool up, std::in
     if (!message.owed || now_us - message.place.time_us <= wait) continue;
     message.owed = false;
     context_.report(up ? "N8-PEIS"_rule : "N8-INCOMING"_rule,
-                    waiting > kCrowd ? Severity::kInconclusive : Severity::kFail, message.place,
+                    waiting > kPeisCrowd ? Severity::kInconclusive : Severity::kFail, message.place,
                     base,
                     {"The base station got " + name_of(message.net) + " from " +
                          (up ? "its sink and did not put it on PEIS."

@@ -1,4 +1,4 @@
-// What base stations pass on between their sinks and PEIS, where a log has its lines.
+// Judges what base stations pass on between their sinks and PEIS, where a log has these lines.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace rubric::oracle {
 
-/// Whether the log has what `node` gave to PEIS and what PEIS gave to it.
+/// Returns whether the log has the messages from `node` to PEIS and back.
 bool logs_peis(const Run& run, std::uint16_t node);
 
 class PeisWatch {
@@ -17,16 +17,16 @@ class PeisWatch {
   PeisWatch(Context& context, std::size_t devices);
 
   void begin_life(std::uint16_t base) { bases_[base] = Base{}; }
-  /// From the sink of `base`, which is in `island`; surely, if a log says so.
+  /// Takes a message from the sink of `base`, in `island`; `surely` if a log has it.
   void came_up(std::uint16_t base, std::uint16_t island, const Observation& seen, const Net& net,
                bool surely);
-  /// The log gives `base` a message that came up before.
+  /// Notes that the log gives `base` a message that came up before.
   void surely_up(std::uint16_t base, const Net& net);
-  /// `base` puts a message on PEIS; `own` is its address.
+  /// Judges a message that `base` gives to PEIS; `own` is its address.
   void sent(std::uint16_t base, const Observation& seen, const Net& net, machine::Address own);
-  /// PEIS gives `base` a message.
+  /// Takes a message from PEIS to `base`.
   void given(std::uint16_t base, const Observation& seen, const Net& net, machine::Address own);
-  /// `base` hands a message that is not its own to its sink.
+  /// Judges a message that `base` sends down to its sink and that is not its own.
   void went_down(std::uint16_t base, const Observation& seen, const Net& net);
   void finish(std::int64_t end_us);
 

@@ -46,7 +46,8 @@ std::string peis(int ms, const std::string& message) {
 const std::string kEnd = at(4000, "sA > app mote_joined(11:9 type=1 transducers=1 actuators=1)");
 
 std::string fails(const std::string& log) { return found(kBegin + log, Severity::kFail); }
-// kEnd announces a mote that never asked, so that the log goes on for a while.
+// Judges a log with a mote announced at its end that never asked, so that the log goes on for a
+// while.
 std::string found_by_end(const std::string& log) {
   std::string all = found(kBegin + log + kEnd, Severity::kInconclusive);
   const std::string end = "J6-ADD";

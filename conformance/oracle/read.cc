@@ -6,7 +6,7 @@
 #include <cstring>
 #include <limits>
 
-#include "codec/generated/rubicon/enums.h"
+#include "conformance/oracle/message.h"
 #include "conformance/oracle/read_packet.h"
 #include "conformance/oracle/read_trace.h"
 #include "conformance/oracle/storage.h"
@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::int64_t kNsPerUs = 1000;
 constexpr std::size_t kChunkBytes = 1024 * 1024;
-constexpr std::size_t kLookBytes = 4096;  // Enough to tell a format.
+constexpr std::size_t kLookBytes = 4096;  // Enough to recognize a format.
 
 struct FileCloser {
   void operator()(std::FILE* file) const { std::fclose(file); }
@@ -45,14 +45,14 @@ std::string_view RunStorage::keep(std::string_view text) {
 
 namespace {
 
-// One file in the reading.
-struct Source {
+// A file that is being read.
+struct ReadSource {
   std::uint32_t file = 0;
-  std::vector<std::uint32_t> taps;  // Of its interfaces.
+  std::vector<std::uint32_t> taps;  // For its interfaces.
   std::uint64_t frames = 0;
 };
 
-std::uint32_t tap_of(const Packet& packet, std::string_view interface_name, Source& source,
+std::uint32_t tap_of(const Packet& packet, std::string_view interface_name, ReadSource& source,
                      Run& run) {
   constexpr std::uint32_t kNone = UINT32_MAX;
   if (source.taps.size() <= packet.interface_id) source.taps.resize(packet.interface_id + 1, kNone);
@@ -71,7 +71,7 @@ std::uint32_t tap_of(const Packet& packet, std::string_view interface_name, Sour
   return index;
 }
 
-void observe(const Packet& packet, std::string_view interface_name, Source& source, Run& run) {
+void observe(const Packet& packet, std::string_view interface_name, ReadSource& source, Run& run) {
   ++source.frames;
   Observation seen;
   if (!observe_packet(packet, *run.storage, seen)) return;
@@ -90,7 +90,7 @@ void observe(const Packet& packet, std::string_view interface_name, Source& sour
   run.seen.push_back(seen);
 }
 
-// Times count from the first one, and what several taps saw is in one order.
+// Makes times count from the first one, and orders what several taps saw.
 Run in_one_order(Run run, const AlignOptions& options) {
   const auto by_file = [](const Observation& a, const Observation& b) {
     return a.place.file < b.place.file;
@@ -135,10 +135,10 @@ Run in_one_order(Run run, const AlignOptions& options) {
 struct RunReader::State {
   ReadAs as;
   Run run;
-  std::vector<Source> growing;  // By file; of others unused.
+  std::vector<ReadSource> growing;  // By file; others are unused.
   // One file that is read whole.
   std::unique_ptr<Reader> reader;
-  Source source;
+  ReadSource source;
 
   void take(const Packet& packet) {
     const auto& interfaces = reader->interfaces();
@@ -153,7 +153,7 @@ struct RunReader::State {
     options.interface_name = interface_name;
     options.hex_framing = as.hex_framing;
     reader = make_reader(as.format == InputFormat::kUnknown ? detect(start) : as.format, options);
-    source = Source{static_cast<std::uint32_t>(run.files.size() - 1), {}, 0};
+    source = ReadSource{static_cast<std::uint32_t>(run.files.size() - 1), {}, 0};
   }
 };
 
@@ -263,12 +263,10 @@ void merge(Run& run) {
 }
 
 bool looks_towards_sink(const machine::Frame& frame) {
-  if (frame.type == static_cast<std::uint8_t>(rubicon::AmType::kConfig)) return true;
-  const bool net = frame.type == static_cast<std::uint8_t>(rubicon::AmType::kNet);
-  if (!net || frame.payload.size() < 8) return false;
-  const std::uint16_t dest_devid = load_be16(frame.payload.data() + 2);
-  const std::uint16_t src_devid = load_be16(frame.payload.data() + 6);
-  return src_devid == machine::kNullDevid && dest_devid != machine::kNullDevid;
+  if (frame.type == am::kConfig) return true;
+  Net net;
+  return frame.type == am::kNet && parse_net(frame.payload, net) &&
+         net.src.devid == machine::kNullDevid && net.dest.devid != machine::kNullDevid;
 }
 
 }  // namespace rubric::oracle

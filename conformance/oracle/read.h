@@ -1,4 +1,4 @@
-// From files to a Run: whatever was captured, in one order of time.
+// Reads files into a Run, in one order of time.
 #pragma once
 
 #include <memory>
@@ -13,11 +13,11 @@
 
 namespace rubric::oracle {
 
-/// What captures are; .rtr logs are known by their first line in any case.
+/// Formats of captures; .rtr logs are recognized by their first line in any case.
 struct ReadAs {
   InputFormat format = InputFormat::kUnknown;  ///< kUnknown: found out from the content.
-  Framing hex_framing = Framing::kSf;          ///< What the lines of hex text are.
-  AlignOptions align = {};                     ///< How captures are put on one clock.
+  Framing hex_framing = Framing::kSf;          ///< Framing of the lines of hex text.
+  AlignOptions align = {};                     ///< Options of the alignment.
 };
 
 /// Collects files to one run. Damaged bytes are observed as such and never stop the reading.
@@ -28,20 +28,21 @@ class RunReader {
   RunReader(const RunReader&) = delete;
   RunReader& operator=(const RunReader&) = delete;
 
-  /// The file at `path`, format by content, .rtr text included. False, with `error` saying file and
-  /// reason, where it cannot be read at all.
+  /// Adds the file at `path`, .rtr text included; the format is found from its content. Returns
+  /// false, with `error` naming file and reason, if it cannot be read at all.
   bool add_file(const std::string& path, std::string& error);
-  /// The same for bytes at hand; `name` is how reports call them.
+  /// Adds bytes at hand; reports use `name`.
   bool add_bytes(const std::string& name, std::string_view bytes, std::string& error);
-  /// A file or line whose packets come one by one; returns its index among the run's files.
+  /// Opens a file or line whose packets come one by one; returns its index among the run's files.
   std::uint32_t open(const std::string& name);
-  /// The next packet of file `file`, which open() gave; the name is that of the packet's interface,
-  /// empty where it has none.
+  /// Takes the next packet of file `file`, which open() returned; the name is that of the packet's
+  /// interface, empty if it has none.
   void take(std::uint32_t file, const Packet& packet, std::string_view interface_name);
-  /// What finish() would give now; more may be added afterwards. The bytes of frames are shared.
+  /// Returns what finish() would return now; more may be added afterwards. The bytes of frames are
+  /// shared.
   Run snapshot() const;
 
-  /// Everything that was added, in one order (see merge()). The reader is empty afterwards.
+  /// Returns everything that was added, in one order (see merge()), and empties the reader.
   Run finish();
 
  private:
@@ -49,18 +50,17 @@ class RunReader {
   std::unique_ptr<State> state_;
 };
 
-/// All of `files` as one run.
+/// Reads all of `files` as one run.
 std::optional<Run> read(const std::vector<std::string>& files, std::string& error);
 
-/// Orders by time what several taps saw; what came at the same time keeps the order of its file,
-/// and files the order in which they were given. Radio stamps are starts of frames and serial
-/// stamps their ends, so a cause stands before what it caused as long as the taps share a clock.
-/// What has no time stands behind what has, makes has_time false, and says nothing of the run's
-/// end.
+/// Orders by time what several taps saw. At equal times frames keep the order of their file, and
+/// files the order in which they were given. Radio stamps mark starts of frames and serial stamps
+/// their ends, so a cause precedes its effect as long as the taps share a clock. Frames without a
+/// time come after those with one, make has_time false, and do not change the run's end.
 void merge(Run& run);
 
-/// Which way a frame on a serial line goes where the capture does not say: a sink's frames carry
-/// AM source 0 and destination 0xFFFF just as a host's may, so the message decides.
+/// Returns whether a frame on a serial line goes to the sink, if the capture does not say: a sink's
+/// frames have AM source 0 and destination 0xFFFF just as a host's may, so the message decides.
 bool looks_towards_sink(const machine::Frame& frame);
 
 }  // namespace rubric::oracle

@@ -1,4 +1,4 @@
-// One captured packet as an observation.
+// Turns one captured packet into an observation.
 #pragma once
 
 #include "codec/containers/packet.h"
@@ -7,8 +7,8 @@
 
 namespace rubric::oracle {
 
-/// Fills kind, frame, dsn and flags; tap, place and direction are the caller's. False: nothing
-/// that this kit looks at (such as a beacon of another protocol).
+/// Fills kind, frame, dsn and flags; the caller fills tap, place and direction. Returns false for
+/// packets that this kit ignores (such as a beacon of another protocol).
 bool observe_packet(const Packet& packet, RunStorage& storage, Observation& out);
 
 }  // namespace rubric::oracle

@@ -39,7 +39,7 @@ TEST(Read, TapsAndNumbersOfACapture) {
   EXPECT_TRUE(run.has_time);
 }
 
-// Packets of two files, each a few at a time.
+// Reads packets of two files, each a few at a time.
 TEST(Read, ARunThatGrowsEndsAsItsFiles) {
   const std::vector<std::string> files = {std::string(kFirmware) + "a_join_data.pcapng",
                                           std::string(kFirmware) + "c_two_islands.pcapng"};
@@ -114,7 +114,7 @@ TEST(Read, FilesOfOneRunShareTheirClock) {
   for (std::size_t i = 1; i < run.seen.size(); ++i) {
     EXPECT_LE(run.seen[i - 1].place.time_us, run.seen[i].place.time_us);
   }
-  // moteJoined stands between ack_join and serial_joined.
+  // moteJoined comes between ack_join and serial_joined.
   std::int64_t ack_us = 0, told_us = 0, report_us = 0;
   for (const Observation& seen : run.seen) {
     const bool serial = seen.kind == Observation::Kind::kSerial;

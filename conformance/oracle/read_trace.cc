@@ -55,8 +55,8 @@ class LogReader {
       applications = applications || run_.nodes.back().application;
     }
     run_.marked = run_.marked || marked;
-    // A log that has applications and what a radio was given has that node's application as well,
-    // though it may never have been told anything.
+    // If a log has applications, a node with radio input has its application as well, even if that
+    // was never called.
     for (LoggedNode& node : run_.nodes) {
       node.application = node.application || (applications && node.hearing);
     }
@@ -64,7 +64,7 @@ class LogReader {
   }
 
  private:
-  // News of the line itself, not a frame.
+  // Returns whether the line is about the link itself, not a frame.
   static bool is_state(const Line& line) {
     const std::string& name = line.message.name;
     return name == "linkack" || name == "busy" || name == "idle";
@@ -100,7 +100,7 @@ class LogReader {
     }
   }
 
-  // One state for all its lines: what follows only has to wait for the longest.
+  // Keeps one state for all its lines: later checks only wait for the longest.
   void take_busy(const Line& line, std::int64_t time_us) {
     const bool busy = line.message.name == "busy";
     if (!busy && line.message.name != "idle") return;
@@ -126,7 +126,7 @@ class LogReader {
     seen.tap = tap_of(line.link, seen.frame.link);
     const trace::NodeHeader* const node = scope_.node(line.node);
     const bool sink = node != nullptr && node->role == trace::Role::kSink;
-    // Given to a sink, or sent by its host.
+    // The line was given to a sink, or sent by its host.
     if (kind == LinkKind::kSerial) seen.to_mote = sink == seen.received;
     run_.seen.push_back(seen);
   }

@@ -1,4 +1,4 @@
-// The last things of a kind, within fixed room.
+// A ring that keeps the last things pushed.
 #pragma once
 
 #include <cstddef>
@@ -6,16 +6,16 @@
 
 namespace rubric::oracle {
 
-/// Holds the last `kRoom` things that were pushed; what is older is forgotten. Takes its memory
-/// with the first one.
+/// Holds the last `kRoom` things that were pushed and forgets older ones. Allocates with the first
+/// one.
 template <typename T, std::size_t kRoom>
 class Ring {
  public:
   std::size_t size() const { return count_; }
   bool full() const { return count_ == kRoom; }
-  /// The i-th newest; i < size().
+  /// Returns the i-th newest; i < size().
   T& newest(std::size_t i) { return items_[(next_ + kRoom - 1 - i) % kRoom]; }
-  /// The i-th oldest; i < size().
+  /// Returns the i-th oldest; i < size().
   T& oldest(std::size_t i) { return items_[(next_ + kRoom - count_ + i) % kRoom]; }
   T& push(const T& item) {
     if (items_.empty()) items_.resize(kRoom);

@@ -14,7 +14,7 @@ using rubicon::Component;
 
 constexpr std::int64_t kAtOnceUs = 50'000;
 constexpr std::int64_t kTimeouts = 2;  // After so many of the stated ones there is no event.
-constexpr std::size_t kFloatBytes = 4;
+constexpr std::size_t kFloatBytes = rubicon::SynapticDataLayout::ValuesAt::kUnitBytes;
 
 bool known_trans(std::uint8_t trans_id) {
   return trans_id == component::kConnless || trans_id == component::kSynChannel ||
@@ -48,7 +48,7 @@ void Originals::sent(std::uint16_t node, const Observation& seen, const Net& net
 
 void Originals::judge_content(std::uint16_t node, const Observation& seen, const Net& net) {
   if (!net.sound) {
-    const bool range = net.nbytes < 2 || net.nbytes > kNetPayloadMax;
+    const bool range = !NetAt::NbytesAt::allows(net.nbytes);
     context_.report(range ? "WIRE-NET-NBYTES"_rule : "WIRE-NET-PAYLOAD"_rule, Severity::kFail,
                     seen.place, node,
                     {"nbytes is " + number(net.nbytes) + " in a message of " +
@@ -60,7 +60,7 @@ void Originals::judge_content(std::uint16_t node, const Observation& seen, const
   if (seen.kind == Observation::Kind::kRadio && came > net.nbytes) {
     stale_[node].add(seen.place, net.nbytes, came);
   }
-  if (net.reliable > 1) {
+  if (!NetAt::ReliableAt::allows(net.reliable)) {
     context_.report("WIRE-NET-RELIABLE"_rule, Severity::kFail, seen.place, node,
                     {"reliable is " + number(net.reliable) + ".", "0 or 1.", {}});
   }
@@ -86,7 +86,7 @@ void Originals::judge_content(std::uint16_t node, const Observation& seen, const
 void Originals::judge_address(std::uint16_t node, const Observation& seen, const Net& net,
                               Link link, machine::Address own) {
   const Device& device = context_.device(node);
-  // Sent to the broadcast island everything is fine (decision 114); to oneself nothing is said.
+  // A message to the broadcast island may go anywhere (decision 114); one to oneself is not judged.
   if (net.dest.pid == machine::kBroadcastPid || net.dest.pid == machine::kLocalPid) return;
   const Route route = machine::route_own({device.role, own, true, context_.sink_am}, net.dest);
   const bool up = route.onward == Route::Onward::kSerial;
@@ -234,7 +234,7 @@ void Originals::finish(std::int64_t end_us) {
   }
 }
 
-// Whether an ack that fits the message in everything was heard.
+// Returns whether an ack that fits the message in everything was heard.
 bool Originals::rightly_acked(std::uint16_t node, const Net& message) {
   Ring<Ack, kRoom>& ring = acks_[node];
   for (std::size_t i = 0; i < ring.size(); ++i) {
@@ -259,7 +259,7 @@ void Originals::told(std::uint16_t node, const Observation& seen,
   const std::string what = "receive_ack(" + std::string(ack.success ? "success" : "failure") +
                            ", number " + number(ack.seq_num) + ")";
   if (match == nullptr) {
-    // What a base station sends to other islands goes where no log and no tap is read.
+    // Messages from a base station to other islands pass where no log and no tap is read.
     const Device& device = context_.device(node);
     context_.report(ack.success ? "T3-SUCCESS"_rule : "T3-MATCH"_rule,
                     device.role == Role::kBaseStation && !logs_peis(context_.run, node)

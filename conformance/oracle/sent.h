@@ -1,4 +1,4 @@
-// What nodes send of their own: addressing, numbers, repetitions, synaptic data.
+// Judges messages that nodes send of their own: addressing, numbers, repetitions, synaptic data.
 #pragma once
 
 #include <cstdint>
@@ -26,23 +26,23 @@ class Originals {
   Originals(Context& context, std::size_t devices);
 
   void begin_life(std::uint16_t node);
-  /// `node`, whose address is `own`, sends a message of its own over `link`.
+  /// Judges a message of its own that `node`, whose address is `own`, sends over `link`.
   void sent(std::uint16_t node, const Observation& seen, const Net& net, machine::Link link,
             machine::Address own);
-  /// Any other frame of the node on the air.
+  /// Counts any other frame of the node on the air.
   void counted(std::uint16_t node) { ++orders_[node]; }
-  /// An ack of `number` is on the air to `node`, or down its serial line.
+  /// Notes that an ack of `number` is on the air to `node`, or down its serial line.
   void ack_heard(std::uint16_t node, const Net& ack, std::uint16_t number);
-  /// By a log the node was given this ack.
+  /// Notes that by a log the node was given this ack.
   void ack_given(std::uint16_t node, const Net& ack, std::int64_t now_us);
-  /// receive_ack, by a log.
+  /// Judges receive_ack, by a log.
   void told(std::uint16_t node, const Observation& seen, const machine::AckReceived& ack);
   void finish(std::int64_t end_us);
 
  private:
   static constexpr std::size_t kRoom = 32;
 
-  /// The message will not be looked at any more: did its application hear of its end?
+  /// Judges the end of a message that is forgotten now: was its application notified?
   void close(std::uint16_t node, std::size_t newest, std::int64_t now_us);
   void judge_content(std::uint16_t node, const Observation& seen, const Net& net);
   void judge_address(std::uint16_t node, const Observation& seen, const Net& net,

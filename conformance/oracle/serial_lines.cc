@@ -8,7 +8,8 @@ namespace {
 constexpr std::int64_t kSerialRepeatUs = 1'500'000;  // TinyOS hosts wait 1000 ms.
 constexpr std::size_t kShownMax = 256;
 
-// From serial_joined or the source of what passes, never from where it goes. 0: it says nothing.
+// Returns the island that serial_joined or the source of a passing message shows, never its
+// destination; 0 if neither does.
 std::uint16_t island_of(const Observation& seen, const Net& net, std::uint16_t sink_am) {
   SerialJoined joined;
   if (!seen.to_mote && parse_serial_joined(net, joined)) return joined.address.pid;
@@ -23,7 +24,7 @@ std::uint16_t island_of(const Observation& seen, const Net& net, std::uint16_t s
 
 SerialLines::SerialLines(const Run& run, const Given& given, Streams& streams)
     : run_(run), streams_(streams), lines_(run.taps.size()) {
-  // The one line of the one sink that is given.
+  // The one line belongs to the one sink that is given.
   SerialLine* only = nullptr;
   for (std::size_t tap = 0; tap < lines_.size(); ++tap) {
     if (run.taps[tap].link != machine::Link::kSerial) continue;

@@ -1,4 +1,4 @@
-// Serial lines in the first pass: whose they are.
+// Serial lines in the first pass: finds the sink of each.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace rubric::oracle {
 struct SerialLine {
   std::uint16_t island = 0;     ///< Now; 0: not known.
   std::uint16_t first = 0;
-  bool given = false;           ///< By the user; nothing on the line has shown it so far.
+  bool given = false;           ///< By the user; no frame has shown it so far.
   bool used = false;            ///< Some net_msg came.
   std::uint32_t last_down = 0;  ///< The last packet to the sink that asked for confirmation, + 1.
 };
@@ -23,11 +23,11 @@ class SerialLines {
 
   /// Learns from observation `index`, a serial one.
   void look(std::uint32_t index);
-  /// Whether it is the host's repetition: the same packet with the next number, while its
-  /// confirmation does not come.
+  /// Returns whether it is the host's repetition: the same packet with the next number, while its
+  /// confirmation is missing.
   bool repeats(std::uint32_t index);
   const SerialLine& at(std::uint32_t tap) const { return lines_[tap]; }
-  /// What lines showed of islands.
+  /// Returns the islands that lines showed.
   const std::vector<Shown>& shown() const { return shown_; }
 
  private:

@@ -1,4 +1,4 @@
-// The simulator's networks are made of reference machines: nothing in their logs and captures may
+// The simulator's networks consist of reference machines: nothing in their logs and captures may
 // fail.
 #include <gtest/gtest.h>
 
@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "codec/reflect/requirements.h"
+#include "conformance/oracle/frames_testing.h"
 #include "conformance/oracle/judge.h"
 #include "conformance/oracle/read.h"
 #include "conformance/oracle/watch.h"
@@ -16,6 +17,7 @@
 #include "conformance/simulator/simulation.h"
 #include "conformance/simulator/trace_recorder.h"
 #include "conformance/trace/print.h"
+#include "tools/readme/number.h"
 
 namespace rubric::oracle {
 namespace {
@@ -27,7 +29,7 @@ constexpr double kDoubled = 0.3;
 struct Count {
   std::uint64_t networks = 0;
   std::uint64_t judgements = 0;
-  std::uint64_t frames = 0;
+  FrameSet frames;
   std::uint64_t fails = 0;
 };
 
@@ -44,7 +46,6 @@ void expect_no_fail(const std::string& name, const Run& run, Count& count) {
   const Report report = judge(run, options);
   EXPECT_GT(report.frames, 0U) << name;
   ++count.judgements;
-  count.frames += report.frames;
   for (const Finding& finding : report.findings) {
     if (finding.severity != Severity::kFail) continue;
     ++count.fails;
@@ -69,15 +70,16 @@ void judge_network(const simulator::Scenario& scenario, const simulator::Scenari
   ++count.networks;
   expect_no_fail(std::string(name) + " .rtr", run_of(name, trace::print(log.file())), count);
   Run captured = run_of(name, capture.finish());
+  add_frames(captured, count.frames);
   expect_no_fail(std::string(name) + " .pcapng", captured, count);
-  // A line in use shows what comes from the sink.
+  // A line in use shows only the sink's own frames.
   std::erase_if(captured.seen, [](const Observation& seen) {
     return seen.kind == Observation::Kind::kSerial && seen.to_mote;
   });
   expect_no_fail(std::string(name) + " one way", captured, count);
 }
 
-// What is told while a run grows, judged every half second.
+// News while a run grows, judged every half second.
 struct Told {
   std::uint64_t found = 0;
   std::uint64_t withdrawn = 0;
@@ -107,14 +109,13 @@ void grow(const std::string& name, const Run& whole, Told& told) {
 }
 
 void print(const char* what, const Count& count) {
-  std::printf("%s: %llu networks, %llu judgements, %llu frames, %llu false alarms\n", what,
+  std::printf("%s: %llu networks, %llu judgements of %zu frames, %llu false alarms\n", what,
               static_cast<unsigned long long>(count.networks),
-              static_cast<unsigned long long>(count.judgements),
-              static_cast<unsigned long long>(count.frames),
+              static_cast<unsigned long long>(count.judgements), count.frames.size(),
               static_cast<unsigned long long>(count.fails));
 }
 
-// Any part of a run can be judged, also one in which half of the nodes are not seen.
+// Any part of a run can be judged, even one in which half of the nodes are not seen.
 TEST(Simulated, PartsOfRunsAreJudged) {
   std::size_t parts = 0;
   for (const simulator::Scenario& scenario : simulator::scenarios()) {
@@ -169,6 +170,7 @@ TEST(Simulated, ScenariosHaveNoFail) {
     }
   }
   print("scenarios", count);
+  EXPECT_EQ(count.frames.size(), readme_number("nor in # of the simulator's scenarios"));
   EXPECT_EQ(count.judgements, 6 * kScenarioSeeds * simulator::scenarios().size());
 }
 
@@ -186,6 +188,7 @@ TEST(Simulated, FreeNetworksHaveNoFail) {
     }
   }
   print("free networks", count);
+  EXPECT_EQ(count.frames.size(), readme_number("scenarios and # of its free networks"));
   EXPECT_EQ(count.judgements, 3 * 10 * kFreeSeeds);
 }
 

@@ -81,7 +81,7 @@ void SinkJoins::set_island(std::uint16_t sink, std::uint16_t island, const Place
   watch->debts = 0;
 }
 
-// A sink whose log has what it was given hears nothing else.
+// Returns whether the sink may hear it. A sink with a log of what it was given hears nothing else.
 bool SinkJoins::hears(const Device& device, const Observation& seen, bool sure) const {
   if (!device.known || seen.frame.dest != device.am) return false;
   return device.hearing ? sure : !seen.received;
@@ -147,7 +147,7 @@ void SinkJoins::request(std::uint16_t mote_device, const Observation& seen,
 void SinkJoins::close_unanswered(std::uint16_t mote_am, Unanswered& unanswered) {
   if (!unanswered.open) return;
   unanswered.open = false;
-  // Logs of all sinks say who received it.
+  // If all sinks have logs, these show who received it.
   const auto hearing = [&](const SinkWatch& sink) { return context_.device(sink.device).hearing; };
   if (!sinks_.empty() && std::all_of(sinks_.begin(), sinks_.end(), hearing)) return;
   for (SinkWatch& sink : sinks_) {  // A sink that lists it is right not to answer.
@@ -303,7 +303,7 @@ void SinkJoins::refuse_reply(SinkWatch& sink, PairWatch& watch, const Observatio
   }
   context_.report(rule, severity, seen.place, sink.device, std::move(said));
   SinkHypothesis next = h;
-  next.unknown = true;  // What it stored is anybody's guess.
+  next.unknown = true;  // Its stored request is unknown now.
   next.owed = 0;
   watch.set.assign(1, next);
 }

@@ -1,4 +1,4 @@
-// ack_join at a sink, and what the sink then says of its new member.
+// SinkJoins: ack_join at a sink, and the announcements that follow. See sink_join.h.
 #include <algorithm>
 
 #include "conformance/oracle/sink_join.h"
@@ -22,8 +22,8 @@ void SinkJoins::ack_join(std::uint16_t, const Observation& seen, const AckJoin& 
     for (const SinkHypothesis& h : watch.set) {
       SinkHypothesis heard = h;
       const Admission accepted{ack.src.devid, ack.seq_num, ack.descriptor};
-      // What a sink stored before the capture, or in answer to a request that nobody saw, can only
-      // be told from what it acts on.
+      // Only its later acts show what a sink stored before the capture, or for a request that
+      // nobody saw.
       const bool open = h.unknown || (h.pending && h.pending->descriptor == machine::Descriptor{});
       if (open && heard.pending) heard.pending->descriptor = ack.descriptor;
       if (open && !heard.pending) heard.pending = accepted;
@@ -81,7 +81,7 @@ void SinkJoins::told(std::uint16_t sink_device, const Observation& seen,
   if (sink != nullptr) announce(*sink, seen.place, joined.address, joined.descriptor, true);
 }
 
-// serial_joined, or moteJoined (`notice`), of a mote.
+// Judges serial_joined, or moteJoined (`notice`), of a mote.
 void SinkJoins::announce(SinkWatch& sink, const Place& at, machine::Address address,
                          const machine::Descriptor& descriptor, bool notice) {
   PairWatch& watch = pair(sink, address.devid);
@@ -122,7 +122,7 @@ void SinkJoins::announce(SinkWatch& sink, const Place& at, machine::Address addr
     return;
   }
   if (stored && *stored != descriptor) {
-    // The descriptor of another mote's request is what a sink with one memory for all would say.
+    // A sink with one memory for all motes would announce the descriptor of another mote's request.
     context_.report(content, Severity::kFail, at, sink.device,
                     {"The descriptor of " + text_of(address) + " is announced as type " +
                          number(descriptor.mote_type) + ", transducers " +
@@ -210,7 +210,7 @@ void SinkJoins::showed_life(std::uint16_t sink_device, std::int64_t now_us, bool
   }
 }
 
-// By a log the sink surely got the ack_join, and its application was told nothing of it.
+// Reports an ack_join that by a log the sink surely got and its application never heard of.
 void SinkJoins::unannounced(const SinkWatch& sink, std::uint16_t mote_am, const PairWatch& watch,
                             std::int64_t end_us) {
   const Device& device = context_.device(sink.device);

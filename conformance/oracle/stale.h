@@ -1,5 +1,5 @@
-// Bytes of a message that are no content: what was in the sender's buffer before. Legal on a serial
-// line (N6-CONTENT); a note says where they are, since readers take them for content.
+// Bytes of a message that are no content: left over in the sender's buffer. Legal on a serial line
+// (N6-CONTENT); a note shows where they are, since readers take them for content.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +13,8 @@ struct Stale {
   Place first;
   Place last;
   std::uint64_t frames = 0;
-  std::size_t content_bytes = 0;  ///< Of the first: behind its header.
-  std::size_t stated_bytes = 0;   ///< What its nbytes says, or the frame has.
+  std::size_t content_bytes = 0;  ///< In the first frame: after its header.
+  std::size_t stated_bytes = 0;   ///< By its nbytes, or the length of the frame.
 
   void add(const Place& at, std::size_t content, std::size_t stated) {
     last = at;
@@ -25,7 +25,7 @@ struct Stale {
   }
 };
 
-/// One note of the first, with how many there are.
+/// Adds one note about the first frame, with the number of all.
 inline void note_stale(Context& context, std::uint16_t node, ReqId requirement,
                        const Stale& stale, const char* what) {
   if (stale.frames == 0) return;

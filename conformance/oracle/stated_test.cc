@@ -1,4 +1,5 @@
-// Times that an implementation may state, and what holds while it does not (decisions 110, 125).
+// Times that an implementation may state, and the assumptions while it does not (decisions 110,
+// 125).
 #include <gtest/gtest.h>
 
 #include "conformance/oracle/judge.h"
@@ -17,8 +18,8 @@ std::size_t failures_of(const Report& report, ReqId rule) {
   return count;
 }
 
-// A sink that has surely got an ack_join at 20 ms reports it never, and sends another frame
-// `later_ms` after it.
+// A sink that surely got an ack_join at 20 ms never reports it, and sends another frame `later_ms`
+// after it.
 Report unreported(double later_ms, const Options& options) {
   Script script;
   script.request(0, 2, 100).reply(10, 11, 2, 100, 10).ack_join(20, 11, 2, 100).link_ack();
@@ -39,7 +40,7 @@ TEST(Stated, TheResponseTimeIsTheProfilesUnlessStated) {
   EXPECT_EQ(failures_of(unreported(301, options), "J6-REPORT"_rule), 1U);
 }
 
-// Receives a log in which a node is told of a timeout `after_ms` after its message.
+// Judges a log in which a node is notified of a timeout `after_ms` after its message.
 Report told_early(double after_ms, const Options& options) {
   Script script;
   LoggedNode node;

@@ -1,4 +1,5 @@
-// What a Run's observations point to: payloads, names, calls and notices, at addresses that stay.
+// Storage for what a Run's observations point to: payloads, names, calls and notices, at stable
+// addresses.
 #pragma once
 
 #include <deque>
@@ -13,13 +14,13 @@
 namespace rubric::oracle {
 
 struct RunStorage {
-  /// A copy that lives as long as this.
+  /// Returns a copy that lives as long as this.
   Bytes keep(Bytes bytes);
   std::string_view keep(std::string_view text);
 
   std::deque<machine::Call> calls;
   std::deque<machine::Notice> notices;
-  std::vector<std::shared_ptr<const void>> owned;  ///< What calls and notices borrow from.
+  std::vector<std::shared_ptr<const void>> owned;  ///< Calls and notices borrow from these.
 
  private:
   static constexpr std::size_t kBlockBytes = 256 * 1024;

@@ -13,12 +13,12 @@ constexpr std::size_t kHolesMax = 256;
 constexpr std::size_t kStreamsMax = 4096;
 constexpr int kLookMax = 16;  // Streams of one address that may go on, newest first.
 
-// How much speaks for a frame being a stream's. Island agreement ranks above the DSN.
-constexpr int kNever = -1000;
+// Points that speak for a frame being of a stream. Island agreement ranks above the DSN.
+constexpr int kNoMatch = -1000;
 constexpr int kStrongIsland = 20;
 constexpr int kNextDsn = 6;
 constexpr int kNearDsn = 3;
-constexpr int kDestIsland = 3;  // Whose island a message is for, that sink should send it on.
+constexpr int kDestIsland = 3;  // The sink of that island should send it on.
 constexpr int kSrcIsland = 1;
 constexpr int kMoteIsland = 4;
 constexpr std::uint16_t kBothLines = 0xFFFF;
@@ -41,7 +41,7 @@ IslandHint Streams::hint_of(const machine::Frame& frame) const {
     hint.mote = ack.src.pid;
   } else if (frame.type == am::kNet && parse_net(frame.payload, net)) {
     hint.mote = net.src.pid;
-    // What another island's sink sent may be passed on; it looks like the sink's own.
+    // A message of another island's sink may be passed on; it looks like the sink's own.
     if (net.src.devid == frame.src && net.src.pid == net.dest.pid) {
       hint.strong = net.src.pid;
     } else if (net.src.devid == frame.src) {
@@ -62,21 +62,21 @@ IslandHint Streams::hint_of(const machine::Frame& frame) const {
 
 int Streams::score(const Stream& stream, const Observation& seen, const IslandHint& hint) const {
   const auto ahead = static_cast<std::uint8_t>(seen.dsn - stream.dsn);
-  if (ahead == 0 || ahead > kGapMax) return kNever;
+  if (ahead == 0 || ahead > kGapMax) return kNoMatch;
   int points = ahead == 1 ? kNextDsn : kNearDsn;
   if (stream.island == 0) return points;
   // Motes of two islands may have the same id; but one mote may also change its island.
   if (!stream.sink) {
     if (hint.mote == 0) return points;
     points += hint.mote == stream.island ? kMoteIsland : -kMoteIsland;
-    return points > 0 ? points : kNever;
+    return points > 0 ? points : kNoMatch;
   }
   const bool stale = hint.strong != 0 && hint.strong == stream.last_island;
   const bool other = hint.strong != 0 && hint.strong != stream.island && !stale;
-  if (other) return stream.given ? points : kNever;  // Rather than two sinks, one given wrongly.
+  if (other) return stream.given ? points : kNoMatch;  // Rather than two sinks, one given wrongly.
   if (hint.strong != 0 && !stale) points += kStrongIsland;
-  // From another island's base station to that island: the other sink's.
-  if (hint.src != 0 && hint.src == hint.dest && hint.src != stream.island) return kNever;
+  // A message from another island's base station to that island is the other sink's.
+  if (hint.src != 0 && hint.src == hint.dest && hint.src != stream.island) return kNoMatch;
   if (hint.src == stream.island) points += kSrcIsland;
   if (hint.dest == stream.island) points += kDestIsland;
   if (hint.line == stream.island && hint.line != 0) points += kStrongIsland;
@@ -88,7 +88,7 @@ std::uint16_t Streams::assign(std::uint32_t index, bool& repeat) {
   const std::int64_t now = seen.place.time_us;
   const IslandHint hint = hint_of(seen.frame);
   std::uint16_t best = kLast;
-  int best_score = kNever;
+  int best_score = kNoMatch;
   bool even = false;
   int candidates = 0;
   int looked_at = 0;
@@ -104,14 +104,15 @@ std::uint16_t Streams::assign(std::uint32_t index, bool& repeat) {
       return i;
     }
     const int points = score(stream, seen, hint);
-    if (points != kNever) ++candidates;
-    even = points == best_score && points != kNever;
+    if (points != kNoMatch) ++candidates;
+    even = points == best_score && points != kNoMatch;
     if (points <= best_score) continue;
     best = i;
     best_score = points;
   }
   if (even) return kNobody;
-  // Which of several sinks sent what says nothing of an island, a DSN alone does not tell.
+  // With several sinks a frame that shows no island belongs to none for certain: a DSN alone does
+  // not decide.
   const bool told = hint.strong != 0 || hint.src != 0 || hint.dest != 0 || hint.mote != 0 ||
                     (hint.line != 0 && hint.line != kBothLines);
   if (candidates > 1 && (!told || (streams_[best].sink && hint.strong == 0 && hint.src == 0 &&
@@ -138,7 +139,8 @@ std::uint16_t Streams::assign(std::uint32_t index, bool& repeat) {
   return best;
 }
 
-// What a frame says plainly comes before what the user says, and that before what it suggests.
+// Sets the stream's island. A frame's plain statement ranks above the user's, and that above a
+// frame's suggestion.
 void Streams::guess_island(Stream& stream, std::uint32_t index, const IslandHint& hint) const {
   if (hint.strong != 0 && hint.strong != stream.last_island && stream.plain == 0) {
     stream.plain = index + 1;

@@ -11,18 +11,18 @@
 
 namespace rubric::oracle {
 
-/// What a frame says of its sender's island, and how much that weighs.
+/// A frame's hints about its sender's island, and their weight.
 struct IslandHint {
   std::uint16_t strong = 0;   ///< A reply's island, or the pid of the sink's own address.
-  std::uint16_t src = 0;      ///< Of a message from a base station: its pid.
-  std::uint16_t dest = 0;     ///< Of a message that is passed on: where it goes.
+  std::uint16_t src = 0;      ///< pid of a message from a base station.
+  std::uint16_t dest = 0;     ///< Destination of a message that is passed on.
   std::uint16_t mote = 0;     ///< Were it a mote's: its island.
-  std::uint16_t line = 0;     ///< Of the serial line down which the same message came lately.
+  std::uint16_t line = 0;     ///< The serial line down which the same message came lately.
 };
 
 struct Stream {
   std::uint16_t am = 0;
-  std::uint8_t dsn = 0;              ///< Of the last frame.
+  std::uint8_t dsn = 0;              ///< In the last frame.
   bool sink = false;
   bool joins = false;                ///< Its first frame was a join_request.
   bool asked = false;                ///< It sent a join_request.
@@ -44,14 +44,15 @@ struct Stream {
 class Streams {
  public:
   Streams(const Run& run, const Options& options);
-  /// The stream of observation `index`, a radio frame with DSN; kNobody: it could be of two.
+  /// Returns the stream of observation `index`, a radio frame with DSN; kNobody if it could be of
+  /// two.
   std::uint16_t assign(std::uint32_t index, bool& repeat);
   const std::vector<Stream>& all() const { return streams_; }
-  /// A base station hands the sink of `island` a message, which it may radiate.
+  /// Notes that a base station sends the sink of `island` a message, which it may radiate.
   void heard_on_serial(const Net& net, std::uint16_t island);
   std::uint16_t sink_am() const { return sink_am_; }
   bool has_sink() const;
-  /// A base station told the sink with frames of island `from` that it is now `to`.
+  /// Notes that a base station changed the island of the sink with frames of island `from` to `to`.
   void rename_island(std::uint16_t from, std::uint16_t to);
 
  private:
@@ -73,7 +74,7 @@ class Streams {
   const Given given_;
   std::uint16_t sink_am_;
   std::vector<Stream> streams_;
-  std::vector<std::uint16_t> next_;      // Of the same address.
+  std::vector<std::uint16_t> next_;      // Links streams of the same address.
   std::vector<std::uint16_t> first_of_;  // By AM address.
 };
 

@@ -1,4 +1,5 @@
-// What each tick of a node's synaptic clock owes: data of its outputs, signals of its inputs.
+// SynapticWatch: what each tick of a node's synaptic clock owes: data of outputs, signals of
+// inputs.
 #include <algorithm>
 #include <cstdlib>
 
@@ -7,7 +8,7 @@
 namespace rubric::oracle {
 namespace {
 
-constexpr std::size_t kCrowd = 2;       // So many other frames may have filled a buffer.
+constexpr std::size_t kTickCrowd = 2;       // So many other frames may have filled a buffer.
 constexpr std::size_t kBufferMax = 4;   // And so many channels (decision 122).
 
 }  // namespace
@@ -34,7 +35,7 @@ void SynapticWatch::able(std::uint16_t device, bool radio_on, std::int64_t now_u
   nodes_[device].on_us = radio_on ? now_us : -1;
 }
 
-// Which inputs began or ended by a call.
+// Notes which inputs a call began or ended.
 void SynapticWatch::note_inputs(Node& node, const machine::Synaptic& before, std::int64_t now_us) {
   const auto started = [](const machine::Synaptic& channels, machine::ChannelId id) {
     for (const machine::Channel& channel : channels.in) {
@@ -62,7 +63,7 @@ void SynapticWatch::note_inputs(Node& node, const machine::Synaptic& before, std
   }
 }
 
-// Since when the node can send at all; -1: it cannot, or nobody knows.
+// Returns since when the node can send at all; -1 if it cannot, or that is unknown.
 std::int64_t SynapticWatch::able_since(std::uint16_t device) const {
   const Node& node = nodes_[device];
   const bool sink = context_.device(device).role == machine::Role::kSink;
@@ -72,7 +73,7 @@ std::int64_t SynapticWatch::able_since(std::uint16_t device) const {
   return std::max(node.on_us, sink ? 0 : node.member_us);
 }
 
-// How long a channel may be silent. Before its first tick a node's clock may be shifted.
+// Returns how long a channel may be silent. Before its first tick a node's clock may be shifted.
 std::int64_t SynapticWatch::patience_us(std::uint16_t device, bool first) const {
   const std::uint32_t shift = context_.profile().synaptic_phase_ticks *
                               static_cast<std::uint32_t>(context_.device(device).am);
@@ -110,12 +111,12 @@ void SynapticWatch::told(std::uint16_t device, const Observation& seen,
   const bool fresh = data.status == machine::DataStatus::kNew;
   const bool knows = context_.device(device).hearing && !in->local;
   const std::int64_t since = std::max(in->told_us, in->begun_us);
-  // Data at about the time of a tick may count for this one or the next.
+  // Data that came close to a tick may count for this one or the next.
   const auto came = [&](std::int64_t from, std::int64_t to) {
     return std::any_of(in->data_us.begin(), in->data_us.end(),
                        [&](std::int64_t at) { return at >= 0 && at >= from && at <= to; });
   };
-  // Of data that came before the start the first signal may speak.
+  // The first signal may be about data that came before the start.
   const bool early = in->before && in->told_us < in->begun_us;
   if (knows && fresh && !early && !came(since - response, now)) {
     context_.report("S3-OLD"_rule, Severity::kFail, seen.place, device,
@@ -142,7 +143,7 @@ void SynapticWatch::judge_grid(std::uint16_t device, const Observation& seen, co
   const auto& at = ticks.at_us;
   if (node.restart_us < 0 || node.shifted || ticks.count < at.size() || period == 0) return;
   if (at[1] > node.restart_us || at[2] <= node.restart_us || node.step_us > at[0]) return;
-  // Two ticks before and two behind, each a period apart: two grids.
+  // Two ticks before and two after, each a period apart: two grids.
   const std::int64_t off = context_.early_us();
   const auto steady = [&](std::int64_t from, std::int64_t to) {
     return std::abs(to - from - period) <= off / 2;
@@ -158,7 +159,7 @@ void SynapticWatch::judge_grid(std::uint16_t device, const Observation& seen, co
                    "The same clock as before.", {}});
 }
 
-// Other frames may have filled the outgoing buffer; then a tick's data are refused.
+// Returns whether other frames may have filled the outgoing buffer; then a tick's data are refused.
 bool SynapticWatch::crowded(std::uint16_t device, std::int64_t from_us, std::int64_t to_us) const {
   const std::vector<Observation>& seen = context_.run.seen;
   const auto from = std::lower_bound(
@@ -173,7 +174,7 @@ bool SynapticWatch::crowded(std::uint16_t device, std::int64_t from_us, std::int
                       net.sound && net.trans_id == component::kSynChannel;
     if (context_.who.marks[i].device == device && !data) ++others;
   }
-  return others > kCrowd || nodes_[device].outs.size() > kBufferMax;
+  return others > kTickCrowd || nodes_[device].outs.size() > kBufferMax;
 }
 
 void SynapticWatch::settle_outputs(std::uint16_t device, std::int64_t now_us,

@@ -1,4 +1,4 @@
-// What the ticks of a synaptic clock owe, in logs that have the calls and what was given.
+// Duties of the ticks of a synaptic clock, in logs that have the calls and what was given.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -29,7 +29,7 @@ case log
 std::string m2(int ms, const std::string& rest) { return at(ms, "m2 " + rest); }
 std::string sink(int ms, const std::string& rest) { return at(ms, "sA " + rest); }
 std::string digit(int n) { return std::to_string(n); }
-// Data of m2 to the sink, or to mote 3.
+// Returns data of m2 to the sink, or to mote 3.
 std::string data(int ms, int seq) {
   return m2(ms, "> rA am=2->1 am(28 x000b0001000b000200000" + digit(seq) + "06010b0000803f)");
 }
@@ -110,7 +110,7 @@ TEST(SynapticTicks, TheStatusSaysWhetherDataCame) {
   EXPECT_EQ(all(sends + in(told(600, "old") + told(1090, "new") + end(1100))), "S2-SEND S3-OLD");
   EXPECT_EQ(all(sends + in(told(600, "old") + to_sink(700, 1) + told(1090, "old") + end(1100))),
             "S2-SIGNAL");
-  // At about a tick either may be said.
+  // Close to a tick either may be signalled.
   EXPECT_EQ(all(sends + in(told(460, "old") + to_sink(940, 1) + told(950, "old") +
                            told(1440, "new") + end(1450))),
             "");

@@ -51,7 +51,7 @@ void SynapticWatch::called(std::uint16_t device, const Observation& seen, machin
   note_inputs(node, before, seen.place.time_us);
 }
 
-// What a call changed: channels that began, ended, or got another value.
+// Notes what a call changed: channels that began, ended, or got another value.
 void SynapticWatch::note(Node& node, const machine::Synaptic& before, std::int64_t now_us) {
   for (const machine::Channel& channel : node.channels.out) {
     Out* out = find(node, channel.id);
@@ -106,12 +106,13 @@ void SynapticWatch::sent(std::uint16_t device, const Observation& seen, const Ne
   const machine::Channel* const channel = oracle::find(node.channels, out->id);
   // A write just before the data may have missed its tick; then they have the values before it.
   bool current = true;
+  using Values = rubicon::SynapticDataLayout::ValuesAt;
   for (std::size_t i = 0; channel != nullptr && i < channel->size; ++i) {
-    current = current && 4 * i + 4 <= net.body().size() &&
-              load_le32(net.body().data() + 4 * i) == channel->value_bits[i];
+    current = current && (i + 1) * Values::kUnitBytes <= net.body().size() &&
+              bits_of_float(Values::load(net.body().data(), i)) == channel->value_bits[i];
   }
   if (current || out->wrote_us < now - context_.response_us()) out->wrote_us = -1;
-  // What was in the outgoing buffer may still leave.
+  // Data in the outgoing buffer may still leave.
   if (out->silent_us >= 0 && now - out->silent_us > context_.response_us()) {
     context_.report(out->disposed ? "S6-DISPOSED"_rule : "S6-STOPPED"_rule, Severity::kFail,
                     seen.place, device,

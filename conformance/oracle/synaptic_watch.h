@@ -1,4 +1,4 @@
-// Synaptic data against what an application's log says of the channels. Without a log, silent.
+// Compares synaptic data with the channels in an application's log. Without a log, silent.
 #pragma once
 
 #include <array>
@@ -15,24 +15,24 @@ class SynapticWatch {
   SynapticWatch(Context& context, std::size_t devices);
 
   void begin_life(std::uint16_t node);
-  /// The application of `node`, whose address is `own`, calls an operation of the channels.
+  /// Takes an operation on channels that the application of `node`, whose address is `own`, calls.
   void called(std::uint16_t node, const Observation& seen, machine::Address own);
-  /// The mote has joined; until then it sends nothing.
+  /// Notes that the mote has joined; until then it sends nothing.
   void member(std::uint16_t node, std::int64_t now_us);
-  /// Its radio is switched on or off.
+  /// Notes that its radio is switched on or off.
   void able(std::uint16_t node, bool radio_on, std::int64_t now_us);
-  /// By a log it was given a message for itself.
+  /// Notes that by a log it was given a message for itself.
   void given(std::uint16_t node, const Observation& seen, const Net& net);
-  /// synData_received.
+  /// Judges synData_received.
   void told(std::uint16_t node, const Observation& seen, const machine::SynDataReceived& data);
   void finish(std::int64_t end_us);
-  /// `node` sends synaptic data, a sound net_msg.
+  /// Judges synaptic data, a sound net_msg, that `node` sends.
   void sent(std::uint16_t node, const Observation& seen, const Net& net);
 
  private:
   static constexpr std::size_t kChannelsMax = 16;
 
-  /// When a channel did something, newest last; to find the grid of the clock's ticks.
+  /// Times at which a channel did something, newest last; shows the grid of the clock's ticks.
   struct Ticks {
     std::array<std::int64_t, 4> at_us{};
     std::uint8_t count = 0;
@@ -66,7 +66,7 @@ class SynapticWatch {
     std::int64_t member_us = -1;   ///< A mote: joined since; a sink always is.
     std::int64_t on_us = 0;        ///< Its radio is on since; -1: it is off.
     std::int64_t restart_us = -1;  ///< A channel was started while others ran.
-    bool shifted = false;          ///< That shifted the ticks, and it was said.
+    bool shifted = false;          ///< That shifted the ticks, and was reported.
     std::vector<In> ins;
     machine::Synaptic channels;
     std::int64_t step_us = -1;     ///< The last set_time_step.

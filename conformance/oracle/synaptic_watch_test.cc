@@ -1,4 +1,4 @@
-// Synaptic channels of which a log has the calls.
+// Synaptic channels in logs that have the calls.
 #include <gtest/gtest.h>
 
 #include <string>

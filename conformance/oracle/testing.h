@@ -1,4 +1,4 @@
-// Runs made by hand, for tests: what nodes send, frame by frame.
+// Runs made by hand, for tests: the frames of nodes one by one.
 #pragma once
 
 #include <cstdint>
@@ -30,7 +30,7 @@ inline void put(Payload& out, const machine::Descriptor& descriptor) {
   out.push_back(descriptor.actuators);
 }
 
-/// A net_msg to be; change what must be wrong.
+/// A net_msg to be; tests change the fields that must be wrong.
 struct NetFields {
   machine::Address dest;
   machine::Address src;
@@ -40,7 +40,7 @@ struct NetFields {
   std::uint8_t trans_id = component::kConnless;
   std::uint8_t app_id = 5;
   int nbytes = -1;  ///< -1: as it must be.
-  std::size_t size = 0;  ///< Of the whole, filled with zeros; 0: as it must be.
+  std::size_t size = 0;  ///< Whole size, filled with zeros; 0: as needed.
 
   Payload bytes() const {
     Payload out;
@@ -56,14 +56,14 @@ struct NetFields {
     if (out.size() < size) out.resize(size);
     return out;
   }
-  /// As a sink puts it on its serial line.
+  /// Returns the message as a sink puts it on its serial line.
   NetFields forwarded() const {
     NetFields out = *this;
     out.nbytes = 102;
     out.size = 114;
     return out;
   }
-  /// The ack of it.
+  /// Returns its ack.
   NetFields ack(std::uint16_t own_seq_num) const {
     NetFields out;
     out.dest = src;
@@ -155,7 +155,7 @@ class Script {
     put(net.body, descriptor);
     return serial(ms, false, am::kNet, net.forwarded().bytes(), tap);
   }
-  /// A whole join: request, reply, ack_join, report.
+  /// Adds a whole join: request, reply, ack_join, report.
   Script& join(double ms, std::uint16_t island, std::uint16_t mote, std::uint16_t seq_num,
                std::uint32_t tap = 1) {
     request(ms, mote, seq_num);

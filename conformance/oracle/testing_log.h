@@ -1,4 +1,4 @@
-// Logs made by hand, for tests: what was given to nodes and what they did, line by line.
+// Logs made by hand, for tests: frames that nodes were given and sent, line by line.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ inline Report judge_log(const std::string& log) {
   return judge(run, options);
 }
 
-/// The rules that are found, in order, with a severity of at least `least`.
+/// Returns the rules that are found, in order, with a severity of at least `least`.
 inline std::string found(const std::string& log, Severity least) {
   std::string out;
   for (const Finding& finding : judge_log(log).findings) {
@@ -32,7 +32,7 @@ inline std::string found(const std::string& log, Severity least) {
   return out;
 }
 
-/// One line at so many ms.
+/// Returns one line at so many ms.
 inline std::string at(int ms, const std::string& rest) {
   return "   @" + std::to_string(ms) + " " + rest + "\n";
 }

@@ -15,7 +15,7 @@ constexpr const char* kCaptures[] = {"a_join_data",    "b_reliable",           "
                                      "d3_lose_ack",    "e1_simultaneous_join", "f_synaptic",
                                      "h4_stale_bytes", "h10_hdlc_escape_and_bad_serial"};
 
-// What came over serial lines is of a second file, which has no stamps.
+// Moves the frames of serial lines to a second file, which has no stamps.
 void lose_serial_times(Run& run) {
   run.files.push_back("serial.bin");
   for (Observation& seen : run.seen) {
@@ -74,7 +74,7 @@ TEST(Times, NothingFailsForAnOrderThatNobodyKnows) {
 }
 
 
-// Joins and sends a message, which goes up the line.
+// A mote joins and sends a message, which goes up the line.
 Script one_mote() {
   Script script;
   NetFields up;

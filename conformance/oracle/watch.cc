@@ -8,7 +8,7 @@
 namespace rubric::oracle {
 namespace {
 
-// What a fact is about: "mote 2" of "mote 2: 35 frames on the air", whose numbers grow.
+// Returns the subject of a fact: "mote 2" of "mote 2: 35 frames on the air", whose numbers grow.
 std::string subject(const std::string& fact) { return fact.substr(0, fact.find(':')); }
 
 std::string name_of(ReqId id) {
@@ -16,7 +16,7 @@ std::string name_of(ReqId id) {
   return reflect::requirement(id).id;
 }
 
-// One episode that has grown over it, or begins earlier than it seemed.
+// Returns whether an episode has grown over the finding, or begins earlier than it seemed.
 bool counts(const Finding& episode, const Finding& finding) {
   return episode.requirement == finding.requirement && episode.node == finding.node &&
          episode.place.file == finding.place.file && episode.count > 1 &&

@@ -46,7 +46,7 @@ TEST(WatchTest, WhatIsExplainedBeforeIsNeverTold) {
   Watch watch(kSettleUs);
   EXPECT_TRUE(watch.update(report({finding(3, "mote 2")}), 0).empty());
   EXPECT_TRUE(watch.update(report({}), kSettleUs - 1).empty());
-  // It stands anew, and its time begins anew.
+  // It holds anew, and its time begins anew.
   EXPECT_TRUE(watch.update(report({finding(3, "mote 2")}), kSettleUs).empty());
   EXPECT_EQ(watch.update(report({finding(3, "mote 2")}), 2 * kSettleUs).size(), 1u);
 }

@@ -27,7 +27,7 @@ int write_file(const std::string& path, std::string_view text) {
   const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (fd < 0) return errno;
   const int error = write_all(fd, text);
-  // What a full disk refuses may show only here.
+  // A full disk may show only here.
   return ::close(fd) != 0 && error == 0 ? errno : error;
 }
 

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t kGapMin = 12;     // Between two columns.
 constexpr std::size_t kGapMax = 30;
-constexpr std::size_t kArrowExtra = 6;  // Of an arrow beside its label.
+constexpr std::size_t kArrowExtra = 6;  // An arrow has so much besides its label.
 
 class Drawing {
  public:
@@ -67,7 +67,7 @@ class Drawing {
     return out + '\n';
   }
 
-  // An arrow from one column to those of `targets` that lie on one side of it.
+  // Draws an arrow from one column to those of `targets` that are on one side of it.
   void draw(std::string& cells, std::size_t from, const std::vector<std::size_t>& targets,
             bool doubled) {
     const bool right = targets.front() > from;
@@ -83,7 +83,7 @@ class Drawing {
     for (const std::size_t t : targets) cells[right ? at(t) - 1 : at(t) + 1] = right ? '>' : '<';
   }
 
-  // Writes the label over the first part of an arrow; false if it does not fit.
+  // Writes the label over the first part of an arrow; returns false if it does not fit.
   bool put_label(std::string& cells, std::size_t from, std::size_t to, const std::string& label) {
     const std::size_t next = to > from ? from + 1 : from - 1;
     const std::size_t begin = std::min(at(from), at(next)) + 2;
@@ -104,7 +104,7 @@ class Drawing {
     }
     bool labelled = false;
     if (row.from == kNoColumn) {
-      // From somebody without a column: it ends where it arrives.
+      // From a sender without a column: the arrow ends where it arrives.
       for (const std::size_t c : left) cells[at(c)] = '*';
       if (left.empty()) cells += "  ";
     } else {
@@ -113,7 +113,7 @@ class Drawing {
         draw(cells, from, *side, row.marked);
         labelled = labelled || put_label(cells, from, side->front(), row.label);
       }
-      // To nobody that is known, or nothing that is sent.
+      // To no known receiver, or nothing that is sent.
       if (left.empty() && right.empty() && !(row.sent && from + 1 == columns_)) {
         cells[at(from)] = '*';
       } else if (left.empty() && right.empty()) {

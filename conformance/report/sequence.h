@@ -1,4 +1,4 @@
-// Sequence charts: who sends what to whom, as text (here) and as a picture (sequence_svg.h).
+// Sequence charts of messages between nodes, as text (here) and as a picture (sequence_svg.h).
 #pragma once
 
 #include <cstddef>
@@ -9,10 +9,10 @@
 
 namespace rubric::report {
 
-/// No column: somebody who has none.
+/// Index of a node without a column.
 constexpr std::size_t kNoColumn = std::numeric_limits<std::size_t>::max();
 
-/// Something that was sent, or that happened at one node.
+/// A message that was sent, or an event at one node.
 struct SequenceRow {
   std::string time;                ///< May be empty.
   std::string number;
@@ -20,7 +20,7 @@ struct SequenceRow {
   std::size_t from = kNoColumn;
   std::vector<std::size_t> to;     ///< Columns.
   bool sent = false;               ///< Somebody may take it, though no column does.
-  bool marked = false;             ///< "<<<" stands behind it, and its arrow is doubled.
+  bool marked = false;             ///< "<<<" follows it, and its arrow is doubled.
   std::string note;                ///< Stands behind the row: "ignored: J4-SEQ".
 
   // For pictures.
@@ -29,13 +29,14 @@ struct SequenceRow {
   std::string detail;              ///< The label with what matters of the message.
   std::string full;                ///< All of it.
   std::vector<std::size_t> missed; ///< Columns that it was for and that never got it.
+  bool absent = false;             ///< It should have happened: its arrow ends in a cross.
   bool stimulus = false;           ///< Given from outside, by nobody that is drawn.
   std::vector<std::size_t> ignored_by;  ///< Columns of `to` that made nothing of it.
-  std::vector<std::size_t> lines;  ///< Of the log, that this row stands for.
+  std::vector<std::size_t> lines;  ///< Lines of the log that this row shows.
 };
 
-/// One column a node, one row an event. `|` is a node's time line, `*` what goes to nobody known,
-/// or comes from nobody known.
+/// A chart: one column a node, one row an event. `|` is a node's time line, `*` an arrow's end at
+/// no known node.
 struct Sequence {
   std::vector<std::string> columns;
   std::vector<std::string> about;  ///< For pictures: a few words on each column, or empty.
@@ -43,7 +44,8 @@ struct Sequence {
   std::vector<SequenceRow> rows;
 };
 
-/// Fits `width` where it can; each line behind `indent` blanks. Empty without columns.
+/// Returns the chart as text. Fits `width` where it can; each line begins with `indent` blanks.
+/// Empty without columns.
 std::string sequence_text(const Sequence& sequence, std::size_t indent, std::size_t width);
 
 }  // namespace rubric::report

@@ -1,4 +1,5 @@
-// How sequence charts look. All names begin with rc-, since an inlined style is the whole page's.
+// The style sheet of sequence charts. All names begin with rc-, since an inlined style is the whole
+// page's.
 #pragma once
 
 #include <string_view>
@@ -6,7 +7,6 @@
 namespace rubric::report {
 
 inline constexpr std::string_view kSequenceStyle =
-    "<style>"
     "svg.rubric-chart:root{color-scheme:light dark;color:CanvasText;background:Canvas}"
     ".rubric-chart text{font:12px ui-monospace,'DejaVu Sans Mono',Menlo,Consolas,monospace;"
     "fill:currentColor;stroke:none}"
@@ -26,7 +26,6 @@ inline constexpr std::string_view kSequenceStyle =
     ".rubric-chart .rc-serial{stroke-dasharray:9 4}"
     ".rubric-chart .rc-peis{stroke-dasharray:2.5 3.5}"
     ".rubric-chart .rc-call{stroke-width:1}"
-    ".rubric-chart .rc-lost{stroke:var(--rubric-lost,#d33a2c);stroke-width:2;fill:none}"
-    "</style>";
+    ".rubric-chart .rc-lost{stroke:var(--rubric-lost,#d33a2c);stroke-width:2;fill:none}";
 
 }  // namespace rubric::report

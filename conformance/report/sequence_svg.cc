@@ -13,15 +13,15 @@
 namespace rubric::report {
 namespace {
 
-// In pixels. Fonts are monospaced, so that widths are known before anybody draws.
-constexpr double kCharacter = 7.3;      // Of a label, 12 px high.
-constexpr double kSmall = 6.7;          // Of a note, 11 px high.
+// In pixels. Fonts are monospaced, so that widths are known before drawing.
+constexpr double kCharacter = 7.3;      // In a label, 12 px high.
+constexpr double kSmall = 6.7;          // In a note, 11 px high.
 constexpr double kStub = 34;            // An arrow that one end of has no column.
-constexpr double kGapMin = 96;          // Between columns.
-constexpr double kLabelRoom = 26;       // That an arrow is longer than its label.
+constexpr double kGapPixelsMin = 96;          // Between columns.
+constexpr double kLabelRoom = 26;       // An arrow is longer than its label by this.
 constexpr double kRowArrow = 31;
 constexpr double kRowStub = 25;
-constexpr double kPause = 16;           // Of a long time.
+constexpr double kPause = 16;           // For a long time.
 constexpr double kHeadHeight = 38;
 constexpr double kMargin = 10;
 constexpr long long kPauseTicks = 100;  // A longer time is drawn as a pause.
@@ -54,7 +54,7 @@ const char* way_class(Way way) {
   return "";
 }
 
-// The columns between which something is drawn: all that it is from and for.
+// The columns between which a row is drawn: all its senders and receivers.
 struct Span {
   std::size_t first = kNoColumn;
   std::size_t last = kNoColumn;
@@ -98,20 +98,28 @@ class Picture {
     }
     y += 14;
     lives(from, y, "rc-life");
+    std::string signs;
+    y += legend(y, signs);
     std::string heads = head_row(head);
-    y += legend(y, heads);
-    return begin(y + kMargin) + heads + lives_ + rows + "</svg>\n";
+    if (words_.in_page) {
+      heads = fmt::format(
+          "<g class=\"rc-heads\"><rect class=\"rc-band\" width=\"100%\" "
+          "height=\"{:.0f}\"/>{}</g>",
+          head + kHeadHeight + 2, heads);
+      return begin(y + kMargin) + lives_ + rows + signs + heads + "</svg>\n";
+    }
+    return begin(y + kMargin) + heads + signs + lives_ + rows + "</svg>\n";
   }
 
  private:
-  // Columns stand as far apart as the labels between them need.
+  // Places columns as far apart as the labels between them need.
   void place() {
     double time_width = length_of(sequence_.number_title, kSmall);
     for (const SequenceRow& row : sequence_.rows) {
       time_width = std::max(time_width, length_of(row.number, kSmall));
     }
     time_ = kMargin + time_width;
-    std::vector<double> gap(columns_ > 1 ? columns_ - 1 : 0, kGapMin);
+    std::vector<double> gap(columns_ > 1 ? columns_ - 1 : 0, kGapPixelsMin);
     for (std::size_t c = 0; c + 1 < columns_; ++c) {
       gap[c] = std::max(gap[c], (head_width(c) + head_width(c + 1)) / 2 + 12);
     }
@@ -145,7 +153,7 @@ class Picture {
     for (std::size_t c = span.first; c < span.last; ++c) gap[c] += more;
   }
 
-  // Where notes begin, and how wide all is.
+  // Measures where notes begin, and the width of all.
   void measure() {
     double right = columns_ == 0 ? time_ : x_.back() + head_width(columns_ - 1) / 2;
     double notes = 0;
@@ -166,7 +174,7 @@ class Picture {
                      length_of(about, 6.4) + 14});
   }
 
-  // Of a row that has one column only.
+  // Returns where the label of a row with only one column begins.
   double label_begin(const SequenceRow& row) const {
     const bool leaves = row.from != kNoColumn && row.to.empty() && row.way != Way::kCall &&
                         row.way != Way::kState;
@@ -180,16 +188,16 @@ class Picture {
         "height=\"{2:.0f}\">\n<title id=\"{0}-title\">{3}</title>\n<desc id=\"{0}-desc\">{4}"
         "</desc>\n",
         xml_text(words_.id), width_, height, xml_text(words_.title), xml_text(description()));
-    return out.append(kSequenceStyle) + '\n';
+    return words_.in_page ? out : fmt::format("{}<style>{}</style>\n", out, kSequenceStyle);
   }
 
   std::string name_of(std::size_t column) const { return sequence_.columns[column]; }
 
-  // What somebody hears who does not see the picture.
+  // Returns the text for readers who do not see the picture.
   std::string description() const {
     std::string out = fmt::format("{} between {}.", counted(sequence_.rows.size(), "event"),
                                   fmt::join(sequence_.columns, ", "));
-    if (sequence_.rows.size() > kDescribedMax) return out;
+    if (words_.in_page || sequence_.rows.size() > kDescribedMax) return out;
     for (const SequenceRow& row : sequence_.rows) {
       std::vector<std::string> to;
       for (const std::size_t c : row.to) to.push_back(name_of(c));
@@ -235,8 +243,15 @@ class Picture {
   }
 
   void draw(const SequenceRow& row, double y, bool tells_time, std::string& out) const {
-    out += fmt::format("<g class=\"rc-row\" data-lines=\"{}\"><title>{}</title>",
-                       fmt::join(row.lines, " "), xml_text(row.full));
+    out += fmt::format("<g class=\"rc-row{}\" data-lines=\"{}\">", row.marked ? " rc-marked" : "",
+                       fmt::join(row.lines, " "));
+    if (words_.in_page) {
+      const double height = span_of(row).single() ? kRowStub : kRowArrow;
+      out += fmt::format("<rect class=\"rc-band\" y=\"{:.1f}\" width=\"100%\" height=\"{}\"/>",
+                         y + 8 - height, height);
+    } else {
+      out += "<title>" + xml_text(row.full) + "</title>";
+    }
     if (tells_time) {
       out += fmt::format("<text class=\"rc-time\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", time_,
                          y + 4, row.number);
@@ -256,7 +271,7 @@ class Picture {
     out += "</g>\n";
   }
 
-  // Rules are words in capitals with a number: J4-SEQ.
+  // Marks rules: words in capitals with a number, such as J4-SEQ.
   static std::string with_rules(const std::string& note) {
     std::string out;
     for (std::size_t i = 0; i < note.size();) {
@@ -291,6 +306,11 @@ class Picture {
                        open ? "rc-open" : "rc-tip", x, y, back);
   }
 
+  static std::string cross(double x, double y) {
+    return fmt::format("<path class=\"rc-lost\" d=\"M{:.1f} {:.1f}l10 10m0 -10l-10 10\"/>", x - 5,
+                       y - 5);
+  }
+
   static bool ignores(const SequenceRow& row, std::size_t column) {
     return std::find(row.ignored_by.begin(), row.ignored_by.end(), column) !=
            row.ignored_by.end();
@@ -300,17 +320,18 @@ class Picture {
     return std::string("rc-line") + way_class(row.way);
   }
 
-  // To or from somebody without a column, or something that happens at one node.
+  // Draws a row to or from a node without a column, or an event at one node.
   void draw_stub(const SequenceRow& row, double y, std::string& out) const {
     const double x = x_[span_of(row).first];
     if (row.way == Way::kState) {
       out += fmt::format(
           "<rect class=\"rc-open\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"9\" height=\"9\"/>", x - 4.5,
           y - 4.5);
-    } else if (row.from != kNoColumn && row.way == Way::kCall) {
-      out += line(x, x - kStub + 4, y, line_class(row)) + tip(x - kStub, y, false, false);
     } else if (row.from != kNoColumn) {
-      out += line(x, x + kStub - 4, y, line_class(row)) + tip(x + kStub, y, true, false);
+      const double way = row.way == Way::kCall ? -kStub : kStub;
+      const double end = x + way;
+      out += line(x, end - way / 8.5, y, line_class(row)) +
+             (row.absent ? cross(end, y) : tip(end, y, way > 0, false));
     } else {
       out += line(x - kStub, x - 4, y, line_class(row)) + tip(x, y, true, !row.ignored_by.empty());
     }
@@ -333,13 +354,11 @@ class Picture {
     }
     for (const std::size_t c : row.missed) {
       const double end = x_[c] + (x_[c] > x_[from] ? -14 : 14);
-      out += line(x_[from], end, y, line_class(row)) +
-             fmt::format("<path class=\"rc-lost\" d=\"M{:.1f} {:.1f}l10 10m0 -10l-10 10\"/>",
-                         end - 5, y - 5);
+      out += line(x_[from], end, y, line_class(row)) + cross(end, y);
     }
   }
 
-  // How the lines of a picture that has several kinds of them are to be read; its height.
+  // Draws the legend of a picture with several kinds of lines; returns its height.
   double legend(double y, std::string& out) {
     std::vector<std::pair<Way, const char*>> kinds;
     for (const auto& [way, name] : {std::pair{Way::kRadio, "radio"}, {Way::kSerial, "serial line"},

@@ -1,4 +1,4 @@
-// Commands that a reader can give again.
+// Commands that a reader can copy.
 #pragma once
 
 #include <string>
@@ -6,7 +6,8 @@
 
 namespace rubric::report {
 
-/// The text as one word of a POSIX shell: as it is where nothing in it is special, else in quotes.
+/// Returns the text as one word of a POSIX shell: unchanged if nothing in it is special, else in
+/// quotes.
 std::string shell_word(std::string_view text);
 
 }  // namespace rubric::report

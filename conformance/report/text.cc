@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
 
 namespace rubric::report {
@@ -50,7 +51,7 @@ std::string wrapped(std::string_view first, std::string_view text, std::size_t w
                     std::size_t hang) {
   std::string out(first);
   std::size_t column = first.size();
-  bool fresh = true;  // Nothing stands in this line yet.
+  bool fresh = true;  // The line is empty yet.
   while (!text.empty()) {
     const std::size_t begin = text.find_first_not_of(" \n\t\r");
     if (begin == std::string_view::npos) break;
@@ -70,6 +71,29 @@ std::string wrapped(std::string_view first, std::string_view text, std::size_t w
   }
   while (!out.empty() && out.back() == ' ') out.pop_back();
   return out + '\n';
+}
+
+std::string painted(const TextStyle& look, std::string_view style, std::string_view text) {
+  return look.color ? fmt::format("\033[{}m{}\033[0m", style, text) : std::string(text);
+}
+
+std::string in_capitals(std::string_view text) {
+  std::string out(text);
+  std::transform(out.begin(), out.end(), out.begin(),
+                 [](char c) { return static_cast<char>(c >= 'a' && c <= 'z' ? c - 32 : c); });
+  return out;
+}
+
+std::string styled(const TextStyle& look, std::string_view style, std::string_view head,
+                   std::string_view rest) {
+  const std::string lines =
+      wrapped("", fmt::format("{} {}", head, rest), look.width, kIndent.size());
+  return painted(look, style, head) + lines.substr(head.size());
+}
+
+std::string field(std::string_view name, std::string_view text, const TextStyle& look) {
+  if (text.empty()) return {};
+  return wrapped(fmt::format("{}{:<9} ", kIndent, name), text, look.width);
 }
 
 std::size_t utf8_length(std::string_view text) {

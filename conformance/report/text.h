@@ -7,33 +7,50 @@
 
 namespace rubric::report {
 
-/// "3.842100"; empty without a time, which is a negative one.
+/// Returns "3.842100"; empty without a time, which is a negative one.
 std::string seconds_text(std::int64_t time_us);
-/// "1 frame", "2 frames".
+/// Returns "1 frame", "2 frames".
 std::string counted(std::uint64_t number, std::string_view singular, std::string_view plural = {});
 
-/// Lines of at most `width` characters, broken at blanks, each with its end: the first behind
-/// `first`, the others behind `hang` blanks. A word that is longer stands alone.
+/// Returns lines of at most `width` characters, broken at blanks, each with its end: the first
+/// after `first`, the others after `hang` blanks. A longer word has a line of its own.
 std::string wrapped(std::string_view first, std::string_view text, std::size_t width,
                     std::size_t hang);
-/// The others behind as many blanks as `first` has characters.
+/// Returns the same with as many blanks as `first` has characters.
 inline std::string wrapped(std::string_view first, std::string_view text, std::size_t width) {
   return wrapped(first, text, width, first.size());
 }
 
+/// How a report for people looks.
+struct TextStyle {
+  std::size_t width = 100;
+  bool color = false;
+};
+inline constexpr std::string_view kIndent = "  ";
+
+/// In a style of the terminal ("1;31"), if colours are wanted.
+std::string painted(const TextStyle& look, std::string_view style, std::string_view text);
+std::string in_capitals(std::string_view text);
+/// A coloured first word, and the rest broken into lines.
+std::string styled(const TextStyle& look, std::string_view style, std::string_view head,
+                   std::string_view rest);
+/// "  Rule:     text", broken into lines; empty for an empty text.
+std::string field(std::string_view name, std::string_view text, const TextStyle& look);
+
 /// Length of the UTF-8 sequence that `text` begins with; 0 if it begins with none.
 std::size_t utf8_length(std::string_view text);
 
-/// `text` as a JSON string with quotes. Bytes that are not UTF-8 become U+FFFD.
+/// Returns `text` as a JSON string with quotes. Bytes that are not UTF-8 become U+FFFD.
 std::string json_string(std::string_view text);
-/// The same, or null for an empty text.
+/// Returns the same, or null for an empty text.
 inline std::string json_string_or_null(std::string_view text) {
   return text.empty() ? "null" : json_string(text);
 }
-/// The same at a place that has room for 6 * text.size() + 2 characters; the place behind.
+/// Writes the same at a place that has room for 6 * text.size() + 2 characters; returns its end.
 char* put_json_string(char* at, std::string_view text);
 
-/// For attributes and content of XML 1.0 alike; what it cannot hold becomes U+FFFD.
+/// Returns text for attributes and content of XML 1.0 alike; characters that it cannot hold become
+/// U+FFFD.
 std::string xml_text(std::string_view text);
 
 }  // namespace rubric::report

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "conformance/report/json.h"
+
 namespace rubric::report {
 namespace {
 
@@ -19,6 +21,25 @@ TEST(Text, JsonStrings) {
   EXPECT_EQ(json_string("\xC3\xA4"), "\"\xC3\xA4\"");
   EXPECT_EQ(json_string("\xFFx\xC3"), "\"\xEF\xBF\xBDx\xEF\xBF\xBD\"");
   EXPECT_EQ(json_string("\xED\xA0\x80"), "\"\xEF\xBF\xBD\xEF\xBF\xBD\xEF\xBF\xBD\"");
+}
+
+TEST(Json, ObjectsAndListsKeepTheirOrder) {
+  const std::vector<int> numbers = {3, -1};
+  const std::vector<std::string> none;
+  const Json twice = Json::array(
+      numbers, [](int i) { return 2 * i; }, "\n ", "\n");
+  EXPECT_EQ(twice.text(), "[\n 6,\n -2\n]");
+  EXPECT_EQ(Json::object({{"z", "a\"b"},
+                          {"a", true},
+                          {"time", Json::raw("0.500000")},
+                          {"no_time", Json::raw("")},
+                          {"name", Json::or_null("")},
+                          {"list", Json::array(numbers)},
+                          {"none", Json::array(none, {}, "\n", "\n")}},
+                         "\n")
+                .text(),
+            "{\"z\":\"a\\\"b\",\n\"a\":true,\n\"time\":0.500000,\n\"no_time\":null,\n"
+            "\"name\":null,\n\"list\":[3,-1],\n\"none\":[]}");
 }
 
 TEST(Text, XmlText) {

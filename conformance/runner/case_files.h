@@ -1,4 +1,4 @@
-// Golden traces from a folder.
+// Reads golden traces from a folder.
 #pragma once
 
 #include <filesystem>
@@ -9,8 +9,8 @@
 
 namespace rubric::runner {
 
-/// All .rtr files below `folder`, by name. Throws std::runtime_error with what is wrong in them, or
-/// when there is none.
+/// Reads all .rtr files below `folder`, by name. Throws std::runtime_error with the faults in them,
+/// or if there is none.
 std::vector<trace::Parsed> load_cases(const std::filesystem::path& folder);
 
 }  // namespace rubric::runner

@@ -29,7 +29,7 @@ Names names_of(const Line& line) {
   return out;
 }
 
-// Whether times that say nothing else count from this line on.
+// Returns whether later lines without another reference count their times from this one.
 bool is_counted_from(const Line& line) { return line.op != Op::kMustNot && line.op != Op::kMay; }
 
 }  // namespace

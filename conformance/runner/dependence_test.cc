@@ -1,4 +1,5 @@
-// Where a target shows only a serial line: what can be judged is, and nothing else.
+// A target that shows only a serial line: whatever that line can decide is judged, and nothing
+// else.
 #include "conformance/runner/dependence.h"
 
 #include <gtest/gtest.h>
@@ -49,7 +50,7 @@ CaseResult run(const trace::File& file, const trace::Case& one) {
   });
 }
 
-// For each line of a case: whether a later one needs it.
+// Returns for each line of a case whether a later one needs it.
 std::string needed(const std::string& lines) {
   const trace::Parsed parsed = trace::parse_syntax("%rtr 1\ncase a\n" + lines, "a.rtr");
   EXPECT_TRUE(parsed.ok()) << parsed.errors();

@@ -6,16 +6,16 @@
 
 namespace rubric::runner {
 
-/// Both ends belong to it.
+/// A span of time with both ends included.
 struct Window {
   Ticks from = 0;
   Ticks to = 0;
   bool holds(Ticks time) const { return from <= time && time <= to; }
 };
 
-/// A time of a trace in ticks of the machine, 1024 to the second.
+/// Converts a time of a trace to ticks of the machine, 1024 to the second.
 Ticks ticks_of(trace::Tick unit, std::int64_t time);
-/// Whether breaking this line is weak: it names rules, and all of them are SHOULD.
+/// Returns whether breaking this line is weak: it names rules, and all of them are SHOULD.
 bool is_weak(const trace::Line& line);
 
 }  // namespace rubric::runner

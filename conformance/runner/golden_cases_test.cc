@@ -34,7 +34,7 @@ TEST(GoldenCases, NamesAreUnique) {
   }
 }
 
-// A log of what the machine did holds for the machine again: logs are golden traces.
+// A log of the machine holds for the machine again: logs are golden traces.
 TEST(GoldenCases, LogsHoldAgain) {
   for (const trace::Parsed& file : load_cases("conformance/cases")) {
     for (const trace::Case& one : file.file.cases) {

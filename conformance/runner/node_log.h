@@ -1,4 +1,4 @@
-// A node under test in a case: its target, what came back from it, and which of that was asked for.
+// A node under test in a case: its target, the outputs so far, and which of them a line has taken.
 #pragma once
 
 #include <map>
@@ -28,17 +28,19 @@ class NodeLog {
   const std::vector<LoggedLine>& log() const { return log_; }
 
   Ticks run_until(Ticks time);
-  /// A `<` line. Throws trace::TraceError.
+  /// Runs a `<` line. Throws trace::TraceError.
   void give(const trace::Line& line, Ticks now, const trace::Scope& scope,
             const trace::Bindings& bindings);
-  /// The output that a `>` line takes, and binds; null: none so far.
+  /// Takes the output that fits a `>` line, and binds its variables. Returns null if there is none
+  /// so far.
   const Output* take(const trace::Line& line, const Window& window, trace::Bindings& bindings);
-  /// A `?>` line takes the first output in its window that no line has taken, in whatever order.
+  /// Lets a `?>` line take the first output in its window that no line has taken, in whatever
+  /// order.
   void allow(const trace::Line& line, const Window& window, const trace::Bindings& bindings);
-  /// The first output that breaks a `!>` line, or null.
+  /// Returns the first output that breaks a `!>` line, or null.
   const Output* forbidden(const trace::Line& line, const Window& window,
                           const trace::Bindings& bindings) const;
-  /// Why no output was taken: the closest one and how it differs.
+  /// Explains why no output was taken: the closest one and how it differs.
   std::string nearest_miss(const trace::Line& line, const Window& window,
                            const trace::Bindings& bindings) const;
   std::string text_of(const Output& output) const;
@@ -58,7 +60,7 @@ class NodeLog {
   std::unique_ptr<Target> target_;
   std::map<machine::Link, std::string> link_names_;
   std::vector<Seen> seen_;                 // One for each output of the target.
-  std::map<std::string, std::size_t> next_;  // By link: behind the output that was taken last.
+  std::map<std::string, std::size_t> next_;  // By link: the output after the last taken one.
   std::vector<LoggedLine> log_;
 };
 

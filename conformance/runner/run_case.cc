@@ -21,9 +21,9 @@ namespace {
 using trace::Line;
 using trace::Op;
 
-constexpr Ticks kLateTicks = 1500;  // How far beyond its time a missing output is looked for.
+constexpr Ticks kLateTicks = 1500;  // How long a missing output is awaited beyond its time.
 
-// One case on its way.
+// One case while it runs.
 class Run {
  public:
   Run(const trace::File& file, const trace::Case& one, const TargetFactory& make)
@@ -61,7 +61,7 @@ class Run {
   }
 
  private:
-  struct Pending {  // Looked at when the case is over.
+  struct Pending {  // Judged when the case is over.
     const Line* line;
     Window window;
   };
@@ -71,7 +71,7 @@ class Run {
       if (header.iut) nodes_.emplace_back(scope_, case_, header, make_(header));
     }
     if (nodes_.empty()) throw std::runtime_error("no node of this case is under test");
-    // When all are there: where time is real, those reset first would be far ahead of one whose
+    // Resets nodes when all are there: in real time the first ones would be far ahead of one whose
     // process has yet to start.
     auto node = nodes_.begin();
     for (const trace::NodeHeader& header : scope_.nodes) {
@@ -113,8 +113,8 @@ class Run {
     if (!line.label.empty()) labels_[line.label] = time;
   }
 
-  // Lets time pass to `end`, or to the first instant at which a node may emit something. One node
-  // stops there by itself; several go on together.
+  // Lets time pass to `end`, or to the first instant at which a node may emit something. A node
+  // alone stops there by itself; several go on together.
   void pass(Ticks end) {
     Ticks to = std::max(end, now_);
     if (nodes_.size() == 1) {
@@ -136,7 +136,7 @@ class Run {
     while (now_ < end);
   }
 
-  // False when the case cannot go on.
+  // Runs a line. Returns false if the case cannot go on.
   bool work(const Line& line, CaseResult& result) {
     const Window window = window_of(line);
     NodeLog* node = node_of(line);
@@ -145,7 +145,8 @@ class Run {
       return true;
     }
     if (!is_seen(*node, line)) {
-      // What is seen may break what goes for every link; to keep it takes more.
+      // A visible output may break a rule about every link; a part of the links cannot show that it
+      // was kept.
       if (line.op == Op::kMustNot && is_seen_in_part(*node, line)) {
         forbidden_.push_back({&line, window});
       }
@@ -190,8 +191,8 @@ class Run {
            (reach.radio || reach.serial || reach.peis || reach.app);
   }
 
-  // A line of which the target shows nothing, or not all. False when the case cannot go on without
-  // it.
+  // Passes over a line of which the target shows nothing, or not all. Returns false if the case
+  // cannot go on without it.
   bool pass_over(const Line& line) {
     const bool needed = line.op == Op::kGiven ||
                         (line.op == Op::kEmits && is_needed_later(case_, line));
@@ -225,7 +226,7 @@ class Run {
     return false;
   }
 
-  // What a `!>` line forbids for sure, where the target's times are not exact.
+  // Returns the span that a `!>` line surely forbids, where the target's times are not exact.
   static Window narrowed(const Window& window, const Tolerance& tolerance) {
     return {window.from + tolerance.late, window.to - std::min(window.to, tolerance.early)};
   }
@@ -237,9 +238,8 @@ class Run {
     judge_outputs(result);
   }
 
-  // Nothing more is to be had of the target; what it has done is done. Of the lines that were not
-  // reached those that forbid count where their window is known, and the others may have had what
-  // came.
+  // Judges after the target stopped, by the outputs so far. Of the lines that were not reached,
+  // those that forbid count if their window is known; the others may take outputs.
   void judge_what_came(CaseResult& result) {
     bool reached = true;
     for (const Line* line : case_.lines()) {
@@ -304,7 +304,7 @@ class Run {
   const trace::Case& case_;
   const trace::Scope scope_;
   const TargetFactory& make_;
-  trace::Place place_;   // Of the line that is worked.
+  trace::Place place_;   // Place of the current line.
   std::string unseen_;   // The first line of which the target shows nothing.
   std::vector<NodeLog> nodes_;
   std::vector<Pending> forbidden_;

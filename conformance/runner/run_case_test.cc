@@ -1,4 +1,4 @@
-// What a case asks for is held against what a target does: one row for each way to differ.
+// A case's requirements compared with a target's outputs: one row for each way to differ.
 #include "conformance/runner/run_case.h"
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 namespace rubric::runner {
 namespace {
 
-// Tells its application at each of these times how late it is.
+// Notifies its application at each of these times of its delay.
 class Ticker : public Target {
  public:
   explicit Ticker(std::vector<Ticks> times) : times_(std::move(times)) {}
@@ -53,7 +53,7 @@ struct Row {
   const char* lines;
   std::vector<Ticks> times;
   CaseVerdict verdict;
-  const char* text;  // Of the first failure.
+  const char* text;  // In the first failure.
 };
 
 class Rows : public testing::TestWithParam<Row> {};
@@ -163,7 +163,7 @@ TEST(RunCase, WhatWasBrokenBeforeStaysBroken) {
   }
 }
 
-// Says when it is reset.
+// Records when it is reset.
 class Started : public Ticker {
  public:
   explicit Started(std::string& happened) : Ticker({}), happened_(happened) {}
@@ -173,7 +173,7 @@ class Started : public Ticker {
   std::string& happened_;
 };
 
-TEST(RunCase, NoNodeIsResetBeforeAllAreThere) {  // Where time is real they would be out of step.
+TEST(RunCase, NoNodeIsResetBeforeAllAreThere) {  // In real time they would be out of step.
   const trace::Parsed parsed = trace::parse(
       "%rtr 1\n%profile paper\n%node m2 mote id=2 iut\n%node m5 mote id=5 iut\ncase x\n"
       "0..50 m5 !> app clock(*)\n", "x.rtr");

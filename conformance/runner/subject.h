@@ -1,5 +1,5 @@
-// An implementation that lives in this process and is stepped as the machine is: the machine
-// itself, or a broken or unusual one around it.
+// An implementation in this process that is stepped as the machine is: the machine itself, or a
+// broken or unusual one around it.
 #pragma once
 
 #include <functional>
@@ -14,7 +14,7 @@ using DueTimers = machine::BoundedList<machine::DueTimer, 2 + machine::kAwaitedM
 class Subject {
  public:
   virtual ~Subject() = default;
-  /// Forgets everything and starts as `config` says.
+  /// Forgets everything and starts with `config`.
   virtual void start(const machine::Config& config) = 0;
   virtual void step(machine::Ticks now, const machine::Event& event, machine::Actions& actions) = 0;
   virtual DueTimers timers() const = 0;

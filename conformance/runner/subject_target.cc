@@ -64,7 +64,7 @@ Ticks SubjectTarget::run_until(Ticks time) {
   return outputs_.size() > before ? instant_ : time;
 }
 
-// The first thing that is due now.
+// Lets the first event happen that is due now.
 void SubjectTarget::let_happen(Ticks now) {
   const auto ending = std::find_if(endings_.begin(), endings_.end(),
                                    [&](const Ending& one) { return one.due == now; });

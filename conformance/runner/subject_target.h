@@ -1,5 +1,5 @@
-// A Subject behind the runner's clock: its timers fire when due, its transmissions take the time
-// that they take on the line, and the radio confirms what asks for it.
+// A Subject with the runner's clock: its timers fire when due, its transmissions take their time on
+// the line, and the radio confirms frames that ask for it.
 #pragma once
 
 #include <memory>
@@ -10,8 +10,8 @@
 
 namespace rubric::runner {
 
-/// How long a frame of so many payload bytes occupies a line: 802.15.4 at 250 kbit/s, serial at
-/// 115200 baud; rounded up to a tick.
+/// Returns how long a frame of so many payload bytes occupies a line: 802.15.4 at 250 kbit/s,
+/// serial at 115200 baud; rounded up to a tick.
 Ticks transmission_ticks(machine::Link link, std::size_t payload_bytes);
 
 class SubjectTarget : public Target {
@@ -25,7 +25,7 @@ class SubjectTarget : public Target {
   const std::vector<Output>& outputs() const override { return outputs_; }
   void hold_link_acks(bool hold) override { hold_link_acks_ = hold; }
 
-  /// Every rule that a step named since reset, with what it did about it.
+  /// Returns every rule that a step named since reset, with the action.
   const std::vector<machine::Action>& labels() const { return labels_; }
   Subject& subject() { return *subject_; }
 
@@ -42,7 +42,7 @@ class SubjectTarget : public Target {
   machine::Actions actions_;
   std::vector<Output> outputs_;
   std::vector<machine::Action> labels_;
-  std::vector<Ending> endings_;  // Of transmissions under way, at most one a line.
+  std::vector<Ending> endings_;  // Transmissions under way, at most one a line.
   bool hold_link_acks_ = false;
   Ticks instant_ = 0;
   int steps_at_instant_ = 0;

@@ -1,4 +1,4 @@
-// An implementation under test on a clock that the runner turns, whatever stands behind it.
+// An implementation under test on a clock that the runner turns, wherever it runs.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace rubric::runner {
 
 using machine::Ticks;
 
-/// Something that the implementation did: a frame on a line, or news for its application.
+/// An output of the implementation: a frame on a line, or news for its application.
 struct Output {
   Ticks time = 0;
   bool is_frame = false;
@@ -23,18 +23,19 @@ struct Output {
   ReqId requirement = ReqId::kNone;    ///< The rule that the implementation names; often none.
 };
 
-/// The target broke: it died, hangs, or says what makes no sense. An error of the case.
+/// The target broke: it died, hangs, or sends nonsense. An error of the case.
 class TargetBroken : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
-/// The target says that it cannot do this. The case is skipped.
+/// The target reports that it cannot do this. The case is skipped.
 class Unsupported : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// What a target lets the runner see and do. A node behind a serial line shows only that.
+/// The part of a node that a target lets the runner see and do. A node behind a serial line shows
+/// only that line.
 struct Reach {
   bool radio = true;
   bool serial = true;
@@ -42,7 +43,7 @@ struct Reach {
   bool app = true;    ///< Calls, events, power, and whether lines are busy.
 };
 
-/// How far from the tick a target's times may be. Zeros: its clock is turned by the runner.
+/// How many ticks a target's times may be off. Zeros if the runner turns its clock.
 struct Tolerance {
   Ticks early = 0;
   Ticks late = 0;
@@ -52,16 +53,17 @@ struct Tolerance {
 class Target {
  public:
   virtual ~Target() = default;
-  /// A node that has just started, at tick 0.
+  /// Makes it a node that has just started, at tick 0.
   virtual void reset(const machine::Config& config) = 0;
-  /// An event from outside. Time does not go backwards.
+  /// Gives an event from outside. Time does not go backwards.
   virtual void give(Ticks now, const machine::Event& event) = 0;
-  /// Before when it surely does nothing on its own, unless it is given something; nothing: never.
+  /// Returns the time before which it surely does nothing on its own, unless it is given something;
+  /// nothing: never.
   virtual std::optional<Ticks> next() const = 0;
   /// Lets time pass up to and including `time`, but stops at the first instant at which it emits
   /// something, when all of that instant is done. Returns the instant that is reached.
   virtual Ticks run_until(Ticks time) = 0;
-  /// All outputs since reset, in their order.
+  /// Returns all outputs since reset, in order.
   virtual const std::vector<Output>& outputs() const = 0;
   /// While set, frames that ask for a link ack end when the runner gives SendDone, not before.
   virtual void hold_link_acks(bool hold) = 0;

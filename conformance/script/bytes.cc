@@ -12,7 +12,7 @@ namespace {
 using machine::Link;
 using machine::Role;
 
-// Frames stand more often among the kinds than anything else, as they do in what happens.
+// Frames occur more often among the kinds than anything else, as they do in real runs.
 enum Kind : std::uint8_t {
   kHeard = 0,
   kCall = 5,  // And which of the calls.
@@ -82,14 +82,14 @@ class Writer {
   std::vector<std::uint8_t> out_;
 };
 
-// The lines that a node has: two, of which a mote's are one.
+// The two lines of a node; a mote's are the same.
 constexpr Link kLinesOf[][2] = {{Link::kRadio, Link::kRadio},
                                 {Link::kRadio, Link::kSerial},
                                 {Link::kSerial, Link::kPeis}};
-Link line_of(Role role, std::size_t number) {
+Link link_of(Role role, std::size_t number) {
   return kLinesOf[static_cast<std::size_t>(role)][number];
 }
-std::size_t number_of(Role role, Link line) { return line_of(role, 0) == line ? 0 : 1; }
+std::size_t number_of(Role role, Link line) { return link_of(role, 0) == line ? 0 : 1; }
 
 machine::Config read_config(Reader& in) {
   machine::Config config;
@@ -102,7 +102,7 @@ machine::Config read_config(Reader& in) {
   const std::size_t channels = in.below(machine::kChannelsRoom);
   config.first_seq = in.u16();
   if (config.role == Role::kMote) {
-    // Not a sink's, and not 0, which older parts of release 1.0 have for the sink.
+    // Not a sink's, and not 0, which means the sink in older parts of release 1.0.
     const bool good = id > config.profile.sink_id && !machine::is_reserved(id);
     config.id = good ? id : static_cast<std::uint16_t>(5);
   } else {
@@ -232,7 +232,7 @@ Step read_step(Role role, Reader& in) {
       step.event = machine::SendDone{Link::kRadio, in.flag()};
       return step;
     case kLineBusy: {
-      const Link line = role == Role::kBaseStation ? Link::kSerial : line_of(role, in.below(2));
+      const Link line = role == Role::kBaseStation ? Link::kSerial : link_of(role, in.below(2));
       step.event = machine::LinkBusy{line, in.flag()};
       return step;
     }
@@ -253,7 +253,7 @@ Step read_step(Role role, Reader& in) {
     return step;
   }
   machine::Frame frame;
-  frame.link = line_of(role, in.below(2));
+  frame.link = link_of(role, in.below(2));
   frame.dest = in.u16();
   frame.src = in.u16();
   frame.type = in.u8();

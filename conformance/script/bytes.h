@@ -3,7 +3,7 @@
 //   head   role and profile u8, id u16, island u16, channels u8, first number u16, rest u16
 //   steps  kind u8, delay u16, what the kind needs
 //
-// all big-endian. A number out of range stands for one in range, and what is missing at the end for
+// all big-endian. A number out of range is mapped into the range, and missing bytes at the end are
 // zeros.
 #pragma once
 
@@ -17,18 +17,18 @@ namespace rubric::script {
 
 constexpr std::size_t kHeadBytes = 10;
 
-/// Total: whatever the bytes are.
+/// Decodes any bytes.
 Script decode(Bytes bytes);
-/// decode(encode(s)) is s, for every script that decode() makes.
+/// Encodes a script: decode(encode(s)) is s, for every script that decode() makes.
 std::vector<std::uint8_t> encode(const Script& script);
 
-/// Where each step begins in the bytes that encode() makes, and after the last their end.
+/// Returns where each step begins in the bytes that encode() makes, and after the last their end.
 std::vector<std::size_t> step_offsets(const Script& script);
 
-/// Delays beyond 0x8000 ticks are whole multiples of kLongTicks more.
+/// Longer delays, beyond 0x8000 ticks, add whole multiples of kLongTicks.
 constexpr Ticks kShortDelayMax = 0x8000;
 constexpr Ticks kLongTicks = 4;
-/// The nearest delay that there is.
+/// Returns the nearest delay that can be encoded.
 Ticks fitting_delay(Ticks delay);
 
 }  // namespace rubric::script

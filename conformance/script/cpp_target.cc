@@ -23,7 +23,7 @@ namespace node = cpp_node;
 
 constexpr int kRunsAtOnceMax = 1000;
 
-node::Line line_of(Link link) { return static_cast<node::Line>(link); }
+node::Line node_line(Link link) { return static_cast<node::Line>(link); }
 Link link_of(node::Line line) { return static_cast<Link>(line); }
 node::Address address_of(Address one) { return {one.pid, one.devid}; }
 Address address_of(node::Address one) { return {one.island, one.device}; }
@@ -82,7 +82,7 @@ class CppTarget : public runner::Target, public node::World {
 
  private:
   struct Line {
-    bool taken = false;         // By somebody else,
+    bool taken = false;         // By another station,
     bool sending = false;       // or by the node's own frame,
     bool unconfirmed = false;   // which asked for a link ack,
     std::optional<Ticks> ends;  // and ends by itself.
@@ -109,10 +109,10 @@ class CppTarget : public runner::Target, public node::World {
   }
 
   void tell_busy(Link link) {
-    if (node_) node_->set_busy(line_of(link), at(link).taken || at(link).sending);
+    if (node_) node_->set_busy(node_line(link), at(link).taken || at(link).sending);
   }
 
-  // The end of a transmission that is due now; false: there is none.
+  // Ends one transmission that is due now; returns false if there is none.
   bool end_one() {
     for (const Link link : {Link::kRadio, Link::kSerial, Link::kPeis}) {
       if (at(link).ends != now_) continue;
@@ -139,7 +139,7 @@ class CppTarget : public runner::Target, public node::World {
     given.src = frame.src;
     given.type = static_cast<node::AmType>(frame.type);
     given.payload.assign(frame.payload.begin(), frame.payload.end());
-    node_->heard(line_of(frame.link), given);
+    node_->heard(node_line(frame.link), given);
   }
   void happens(const machine::Called& called) {
     if (node_) std::visit([this](const auto& one) { call(one); }, called.call);
@@ -175,9 +175,9 @@ class CppTarget : public runner::Target, public node::World {
     tell(machine::SendResult{
         node_->send(address_of(c.dest), application, c.reliable, c.data)});
   }
-  void call(const machine::SetInterface& c) { result(node_->set_interface(line_of(c.link), c.on)); }
+  void call(const machine::SetInterface& c) { result(node_->set_interface(node_line(c.link), c.on)); }
   void call(const machine::GetInterface& c) {
-    const auto on = node_->interface(line_of(c.link));
+    const auto on = node_->interface(node_line(c.link));
     if (!on) return result(false);
     tell(machine::InterfaceState{c.link, *on});
   }

@@ -1,5 +1,5 @@
-// The independent C++ node of conformance/adapters/cpp in this process, on lines that take as long
-// as the machine's: what two implementations do then differs in nothing but themselves.
+// The independent C++ node of conformance/adapters/cpp in this process, on lines with the machine's
+// timing, so that two implementations differ only in their own behaviour.
 #pragma once
 
 #include <memory>

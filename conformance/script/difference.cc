@@ -50,7 +50,7 @@ void free_field(Line& line, std::string_view path) {
   if (FieldValue* found = field(line, path)) found->value = Value::any();
 }
 
-// A clock may be a millisecond off, by how it rounds.
+// Lets a clock be a millisecond off, by how it rounds.
 void loosen(FieldValue* found) {
   if (!found || !found->value.is(Value::Kind::kNumber)) return;
   const std::int64_t ms = found->value.number;
@@ -58,16 +58,16 @@ void loosen(FieldValue* found) {
   found->value = Value::range(std::max<std::int64_t>(ms - 1, 0), std::min(ms + 1, kMax));
 }
 
-// The node's own numbers are whatever it chooses: variables, one for each that it used.
+// Replaces the node's own numbers, which it chooses freely, by variables, one for each.
 class Numbers {
  public:
-  /// What stands for this number from now on: its first use binds it.
+  /// Returns the variable for this number, whose first use binds it.
   Value chosen(std::uint16_t number) {
     auto [at, fresh] = names_.try_emplace(number);
     if (fresh) at->second = "q" + std::to_string(++count_);
     return Value::variable(at->second);
   }
-  /// Nothing: the node has not used it.
+  /// Returns its variable; nothing if the node has not used the number.
   std::optional<Value> known(std::uint16_t number) const {
     const auto at = names_.find(number);
     if (at == names_.end()) return {};
@@ -151,9 +151,9 @@ class Lenient {
 
   void loosen_frame(const Output& output, Line& line) {
     const std::uint8_t type = output.frame.type;
-    if (output.frame.link == Link::kSerial) line.am.reset();  // Nobody looks (FACTS 2).
+    if (output.frame.link == Link::kSerial) line.am.reset();  // Not compared (FACTS 2).
     if (type == am::kJoinReply) {
-      // One that waited for the radio may tell the time of its request.
+      // A reply that waited for the radio may have the time of its request.
       if (output.time != heard_at_) free_field(line, "cur_time");
       loosen(field(line, "cur_time"));
     }
@@ -195,7 +195,7 @@ class Lenient {
     }
   }
 
-  // A frame that answers the node says the number that the node chose.
+  // Returns the line of a step; a frame that answers the node has the number that the node chose.
   Line given(const Step& step, Ticks now) {
     Line line = line_of(step, now, node_);
     // Success and failure are both right for it (decision 108).
@@ -217,7 +217,8 @@ class Lenient {
     return line;
   }
 
-  // Whether the fields of a frame's line say all that its bytes do, but for left-over ones behind.
+  // Returns whether the fields of a frame's line cover all its bytes, except for left-over ones at
+  // the end.
   bool is_whole(Line line) const {
     trace::AmFrame exact = trace::frame_of(line, {});
     line.bytes.reset();

@@ -1,4 +1,4 @@
-// The machine and the independent node do the same, as far as the rules say.
+// The machine and the independent node agree as far as the rules decide.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -35,7 +35,7 @@ TEST(Difference, NoneInGoldenTraces) {
   for (const CaseScript& each : golden_scripts()) {
     const Difference difference = script::difference(each.script);
     EXPECT_EQ(difference.text, "") << each.node << "\n" << trace::print(difference.file);
-    // Also where they do the very same, so that nothing had to be left open.
+    // Here they do exactly the same, so that nothing had to be left open.
     const Script decided = until_free(without_undecided(each.script));
     runner::SubjectTarget target(std::make_unique<runner::Machine>());
     const trace::File file = lenient_file(decided, play(decided, target), {"x", {}, {}});
@@ -49,7 +49,7 @@ TEST(Difference, NoneInGoldenTraces) {
     compared += difference.steps;
   }
   std::printf("%zu of %zu steps compared\n", compared, steps);
-  EXPECT_GT(compared * 10, steps * 7);  // What is free must not swallow what is not.
+  EXPECT_GT(compared * 10, steps * 7);  // Free steps must not swallow others.
 }
 
 TEST(Difference, NoneInChangedOnes) {
@@ -71,7 +71,7 @@ TEST(Difference, NoneInChangedOnes) {
   }
 }
 
-// What is free hides no flaw but those that the C++ node's own freedom covers.
+// The choices that the rules leave hide only flaws that the C++ node's own choices cover.
 TEST(Difference, FlawsDiffer) {
   const std::vector<CaseScript> scripts = golden_scripts();
   for (const flaws::Flaw& flaw : flaws::all()) {

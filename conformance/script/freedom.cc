@@ -1,4 +1,4 @@
-// What the rules leave free: steps that are not compared, and moments from which on two good nodes
+// Choices that the rules leave: steps that are not compared, and moments from which two good nodes
 // may differ. Each has its line in README.md.
 #include <algorithm>
 #include <memory>
@@ -30,21 +30,30 @@ using machine::State;
 namespace am = machine::am;
 namespace component = machine::component;
 
-// What every implementation knows: the applications whose bodies the wire spec has. (T1-UNKNOWN)
+// Returns whether every implementation knows the application: its body is in the wire spec.
+// (T1-UNKNOWN)
 bool is_known_to_all(std::uint8_t app_id) {
   const auto id = static_cast<rubicon::Component>(app_id);
   return id == rubicon::Component::kMockup || id == rubicon::Component::kLearning ||
          id == rubicon::Component::kControlLayer;
 }
 
+using PaperAck = rubicon::RubiconAckSeqOnlyLayout::SeqNumAt;
+using DeployedAck = rubicon::RubiconAckLayout;
+constexpr std::size_t kDeployedAckBytes = rubicon::RubiconAckView::kMinSizeBytes;
+constexpr std::size_t kBodyAt = rubicon::AppMsgLayout::PayloadAt::kAt;
+
 bool is_ack_body(Bytes body) {
-  if (body.size() == 2) return true;
-  constexpr std::size_t kDeployedBytes = 4;
-  return body.size() >= kDeployedBytes &&
-         body[0] == static_cast<std::uint8_t>(rubicon::AmType::kLearningNotification);
+  if (body.size() == PaperAck::kEnd) return true;
+  return body.size() >= kDeployedAckBytes &&
+         DeployedAck::TypeAt::load(body.data()) == rubicon::AmType::kLearningNotification;
 }
 
-// Addresses that no node has: nobody is their source.
+std::uint8_t trans_id_of(Bytes payload) {
+  return static_cast<std::uint8_t>(rubicon::AppMsgLayout::TransIdAt::load(payload.data()));
+}
+
+// Returns whether no node has this address, so that it can be nobody's source.
 bool is_nobody(Address src) {
   return machine::is_reserved(src.pid) ||
          (machine::is_reserved(src.devid) && src.devid != machine::kNullDevid);
@@ -53,21 +62,25 @@ bool is_nobody(Address src) {
 bool is_decided(const machine::Config& config, const Frame& frame, rubicon::NetMsgView message) {
   const Address dest = machine::address_of(message.dest());
   const Bytes payload = message.payload();
+  const std::uint8_t trans_id = trans_id_of(payload);
+  const auto app_id =
+      static_cast<std::uint8_t>(rubicon::AppMsgLayout::AppIdAt::load(payload.data()));
   const bool base = config.role == Role::kBaseStation;
   if (is_nobody(machine::address_of(message.src()))) return false;
-  if (payload[0] == component::kConnless && machine::is_known_app(payload[1]) &&
-      !is_known_to_all(payload[1])) {
+  if (trans_id == component::kConnless && machine::is_known_app(app_id) &&
+      !is_known_to_all(app_id)) {
     return false;
   }
-  if (payload[0] == component::kRubiconAck && !is_ack_body(payload.from(2))) return false;
+  if (trans_id == component::kRubiconAck && !is_ack_body(payload.from(kBodyAt))) return false;
   // Every island, and a base station among all devices: decision 114.
   const bool everywhere = dest.pid == machine::kBroadcastPid;
   if (everywhere && (base || frame.link == Link::kSerial)) return false;
   if (base && dest.devid == machine::kBroadcastDevid) return false;
-  return !base || payload[0] != component::kSynChannel;  // It has no channels.
+  return !base || trans_id != component::kSynChannel;  // It has no channels.
 }
 
-// Frames that wait for a busy application: a net_msg does, the rest is each node's own.
+// Returns whether a waiting frame's fate is decided: a net_msg waits for a busy application, the
+// rest is each node's choice.
 bool is_decided(const machine::Config& config, const Frame& frame, bool app_busy) {
   if (frame.link == Link::kPeis && (app_busy || frame.dest == machine::kAmBroadcast)) return false;
   if (frame.type != am::kNet) return !app_busy;
@@ -94,7 +107,7 @@ bool is_decided(const machine::Config& config, const machine::Call& call) {
   if (const auto* set = std::get_if<machine::SetInterface>(&call)) return has(set->link);
   if (const auto* get = std::get_if<machine::GetInterface>(&call)) return has(get->link);
   if (const auto* send = std::get_if<machine::Send>(&call)) {
-    // Decision 114; and N3-LOCAL speaks of islands alone.
+    // Decision 114; and N3-LOCAL is about islands alone.
     return send->dest.pid != machine::kBroadcastPid && send->dest.devid != machine::kLocalDevid;
   }
   if (const auto* create = std::get_if<machine::CreateChannel>(&call)) {
@@ -106,7 +119,7 @@ bool is_decided(const machine::Config& config, const machine::Call& call) {
   return config.role != Role::kBaseStation || !is_of_channels(call);
 }
 
-// The machine, and the first moment from which on others may go on in another way.
+// The machine, and the first moment from which others may differ.
 class Probe : public runner::Machine {
  public:
   explicit Probe(flaws::StepFunction of) : step_(of) {}
@@ -133,7 +146,7 @@ class Probe : public runner::Machine {
       if (action.what != machine::Action::What::kIgnored) continue;
       const bool heard = std::holds_alternative<machine::Heard>(event) ||
                          std::holds_alternative<machine::AppBusy>(event);
-      // Values for a channel that is stopped may be kept; too few of them are not of the wire.
+      // Values for a channel that is stopped may be kept; too few values are malformed.
       if (heard && action.requirement == "S6-STOPPED"_rule) return true;
       if (heard && action.requirement == "S2-CONTENT"_rule) return true;
       if (action.requirement == "S4-LOCAL"_rule) return true;
@@ -149,8 +162,8 @@ class Probe : public runner::Machine {
     return false;
   }
 
-  // Whether ack_join is repeated is the mote's affair, but within a period and with a free radio
-  // both do.
+  // Returns whether ack_join may be repeated or not; within a period and with a free radio both are
+  // right.
   static bool may_repeat(const State& before, Ticks now, const machine::SendDone& done) {
     if (done.link != Link::kRadio || !before.radio.sending_ack_join) return false;
     const bool free_radio = before.radio.on && !before.radio.taken && before.radio.out.empty();
@@ -173,7 +186,7 @@ class Probe : public runner::Machine {
                channel.mode == machine::Mode::kPowerSave && channel.started;
       });
     }
-    // What came since the last tick may be news after a stop, or not.
+    // Values since the last tick may be news after a stop, or not.
     const bool stops = std::holds_alternative<machine::StopChannel>(call) ||
                        std::holds_alternative<machine::StopAllChannels>(call);
     return stops && std::any_of(synaptic.in.begin(), synaptic.in.end(),
@@ -218,7 +231,7 @@ class Probe : public runner::Machine {
   std::vector<Sent> sent_;
 };
 
-// Nothing from that tick on.
+// Returns the script without everything from that tick on.
 Script before(Script script, Ticks end) {
   Ticks now = 0;
   std::size_t kept = 0;
@@ -230,20 +243,21 @@ Script before(Script script, Ticks end) {
   return script;
 }
 
-// Where a frame that the node hears says which of its numbers it answers; null: nowhere.
+// Returns where a frame that the node hears has the number that it answers; null if nowhere.
 std::uint8_t* answered_number(const Frame& frame, std::vector<std::uint8_t>& bytes) {
-  constexpr std::size_t kReplySeqOffset = 8;
-  constexpr std::size_t kBodyOffset = 14;  // Of a net_msg, behind TRANSID and APPID.
-  constexpr std::size_t kCodeBodyBytes = 4;
-  if (frame.type == am::kJoinReply && bytes.size() >= kReplySeqOffset + 2) {
-    return bytes.data() + kReplySeqOffset;
+  using Reply = rubicon::JoinReplyLayout::SeqNumAt;
+  if (frame.type == am::kJoinReply && bytes.size() >= Reply::kEnd) {
+    return bytes.data() + Reply::kAt;
   }
   const auto message = rubicon::NetMsgView::parse(Bytes(bytes.data(), bytes.size()));
   if (frame.type != am::kNet || !message) return nullptr;
   const Bytes payload = message->payload();
-  if (payload[0] != component::kRubiconAck || !is_ack_body(payload.from(2))) return nullptr;
-  const bool with_code = payload.size() >= 2 + kCodeBodyBytes;
-  return bytes.data() + kBodyOffset + (with_code ? 1 : 0);
+  if (trans_id_of(payload) != component::kRubiconAck || !is_ack_body(payload.from(kBodyAt))) {
+    return nullptr;
+  }
+  const bool with_code = payload.size() >= kBodyAt + kDeployedAckBytes;
+  return bytes.data() + rubicon::NetMsgLayout::PayloadAt::kAt + kBodyAt +
+         (with_code ? DeployedAck::SeqNumAt::kAt : PaperAck::kAt);
 }
 
 void add_numbers(const Output& output, std::set<std::uint16_t>& numbers) {
@@ -268,9 +282,9 @@ Script without_guesses(Script script, flaws::StepFunction step) {
     Step& one = script.steps[i];
     const auto* heard = std::get_if<machine::Heard>(&one.event);
     std::uint8_t* const number = heard ? answered_number(heard->frame, one.bytes) : nullptr;
-    if (!number || numbers.contains(load_be16(number))) continue;
+    if (!number || numbers.contains(PaperAck::load(number))) continue;
     constexpr std::uint16_t kFar = 0x4000;  // No script lets a node use so many.
-    store_be16(number, static_cast<std::uint16_t>(script.config.first_seq - kFar));
+    PaperAck::store(number, static_cast<std::uint16_t>(script.config.first_seq - kFar));
   }
   return script;
 }
@@ -283,7 +297,7 @@ Script without_undecided(const Script& script) {
   out.config.profile = machine::kPaper;
   out.config.profile.channels_max = channels;
   bool app_busy = false;
-  Ticks owed = 0;  // Of the steps that are left out.
+  Ticks owed = 0;  // For the steps that are left out.
   for (const Step& step : script.steps) {
     const machine::Event event = step.whole();
     bool decided = true;

@@ -15,7 +15,7 @@ using runner::Output;
 using trace::Message;
 using trace::Op;
 
-// config_of() of the runner, backwards: first numbers are 1000 + 257 * seed, modulo 2^16.
+// Inverts config_of() of the runner: first numbers are 1000 + 257 * seed, modulo 2^16.
 std::uint64_t seed_of(std::uint16_t first_seq) {
   constexpr std::uint32_t kInverseOf257 = 0xFF01;
   return static_cast<std::uint16_t>((first_seq - 1000U) * kInverseOf257);
@@ -23,7 +23,7 @@ std::uint64_t seed_of(std::uint16_t first_seq) {
 
 events::NodeNames names_of(const std::string& node) { return {node, "rA", "serA"}; }
 
-// The machine behind the runner, which remembers what it is given.
+// The machine as the runner's target, which records its inputs.
 class Recorder : public runner::SubjectTarget {
  public:
   explicit Recorder(Script& out) : SubjectTarget(std::make_unique<runner::Machine>()), out_(out) {}
@@ -55,7 +55,7 @@ class Recorder : public runner::SubjectTarget {
   Ticks last_ = 0;
 };
 
-// What keeps the outputs when the runner's target is gone.
+// Keeps the outputs after the runner's target is gone.
 class Keeper : public runner::Target {
  public:
   Keeper(CaseScript& out) : out_(out), target_(out.script) {}

@@ -1,5 +1,5 @@
-// What happens to one node: how it starts, and what it is given when. The input of the stateful
-// fuzz targets; bytes.h has its binary form, rtr.h leads from and to golden traces.
+// The events of one node: how it starts, and which inputs it gets when. This is the input of the
+// stateful fuzz targets; bytes.h has its binary form, rtr.h converts it from and to golden traces.
 #pragma once
 
 #include <cstdint>
@@ -13,21 +13,21 @@ namespace rubric::script {
 
 using machine::Ticks;
 
-/// Something from outside, `delay` ticks after the step before: a frame, a call, how a radio
-/// transmission that asked for a link ack ended, a line or the application busy, power.
+/// An input, `delay` ticks after the step before: a frame, a call, the end of a radio transmission
+/// that asked for a link ack, a line or the application busy, power.
 struct Step {
   Ticks delay = 0;
   machine::Event event;             ///< Its bytes are empty: they are `bytes`.
   std::vector<std::uint8_t> bytes;  ///< Payload of a frame, data of a send.
 
-  /// The event with its bytes, which are those of this step.
+  /// Returns the event with its bytes, which are those of this step.
   machine::Event whole() const;
 };
 
 struct Script {
   machine::Config config;
   std::vector<Step> steps;
-  Ticks rest = 0;  ///< What passes after the last step.
+  Ticks rest = 0;  ///< Time after the last step.
 
   Ticks length() const;
 };
@@ -38,17 +38,17 @@ constexpr Ticks kLengthMax = 1U << 17;  ///< All delays together; about two minu
 constexpr Ticks kRestMax = 0xFFFF;
 constexpr std::size_t kSendBytesMax = 120;  ///< More than a node accepts (N1-SIZE).
 
-/// What came back from a node, and when in it each step was given.
+/// A node's outputs, and when each step was given.
 struct Played {
   std::vector<runner::Output> outputs;
-  std::vector<std::size_t> before;  ///< Of each step: how many outputs had come.
+  std::vector<std::size_t> before;  ///< For each step: the number of outputs before it.
 };
 
-/// Gives a target the whole script from its reset on. Link acks as the runner has them: while steps
-/// with one are still to come, transmissions that ask for one end by them alone.
+/// Gives a target the whole script after a reset. Link acks are handled as by the runner: while
+/// steps with one are still to come, only these end transmissions that ask for one.
 Played play(const Script& script, runner::Target& target);
 
-/// A profile with another number of channels is the same profile.
+/// Returns whether it is `deployed`; the number of channels does not matter.
 bool is_deployed(const machine::Profile& profile);
 
 }  // namespace rubric::script

@@ -33,7 +33,7 @@ std::vector<std::string> lines_of(const std::vector<runner::Output>& outputs) {
   return out;
 }
 
-// The trace of a run is a good one, and the machine does what it asks for.
+// Expects the trace of a run to be valid, and the machine to keep it.
 void expect_holds(const Script& script, const std::string& name) {
   const Played run = run_on_machine(script);
   const trace::File file = to_file(script, run, {"x." + name, {"A comment."}, {"N2-ONCE"_rule}});
@@ -55,7 +55,7 @@ TEST(Script, GoldenTracesAreScripts) {
         const std::vector<std::uint8_t> bytes = encode(each.script);
         const Script decoded = decode(view(bytes));
         ASSERT_EQ(encode(decoded), bytes) << one.name;
-        // Alone and from its bytes the machine does what it did in the case, and for as long.
+        // Alone and from its bytes the machine repeats its run of the case, for as long.
         Played run = run_on_machine(decoded);
         ASSERT_GE(run.outputs.size(), each.outputs.size()) << one.name;
         run.outputs.resize(each.outputs.size());
@@ -68,7 +68,7 @@ TEST(Script, GoldenTracesAreScripts) {
   EXPECT_GT(scripts, 270);
 }
 
-// The runner itself may let time pass after the last line, to see what must not come.
+// The runner itself may let time pass after the last line, to check for forbidden outputs.
 TEST(Script, ARunHasNoMoreThanItsCase) {
   for (const trace::Parsed& file : runner::load_cases("conformance/cases")) {
     for (const trace::Case& one : file.file.cases) {
@@ -107,7 +107,7 @@ TEST(Script, NothingIsAMoteToWhichNothingHappens) {
   EXPECT_TRUE(run_on_machine(script).outputs.empty());
 }
 
-// Every kind of event is a script's, with all that it says.
+// Every kind of event survives in a script, with all its fields.
 TEST(Script, EveryKindOfEvent) {
   std::vector<std::uint8_t> bytes(kHeadBytes, 0);
   std::set<std::size_t> calls;

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "codec/generated/rubicon/net_msg.h"
+#include "codec/generated/tinyos/am_header.h"
 #include "conformance/events/app_events.h"
 #include "conformance/events/lines.h"
 #include "conformance/machine/join.h"
@@ -28,7 +29,7 @@ using machine::State;
 using machine::Transmit;
 namespace am = machine::am;
 
-constexpr std::size_t kAmHeaderBytes = 8;
+constexpr std::size_t kAmHeaderBytes = tinyos::AmHeaderView::kMaxSizeBytes;
 constexpr std::size_t kNoticesEvery = 8;  // They are compared as text, which takes its time.
 constexpr std::size_t kMessageBytesMax = 122;  // (paper: Memory Occupation)
 
@@ -55,7 +56,7 @@ bool same_notices(const Actions& a, const Actions& b) {
                     [&](const auto& x, const auto& y) { return text(x) == text(y); });
 }
 
-// The answer of a call that has one, whatever else happens.
+// Returns whether it is the result of a call that has one, whatever else happens.
 bool is_result(const machine::Notice& notice) {
   return std::holds_alternative<machine::SendResult>(notice) ||
          std::holds_alternative<machine::ChannelResult>(notice) ||
@@ -70,7 +71,7 @@ bool parses(const Transmit& t) {
   return trace::decode(frame, events::kind_of(t.link)).name != trace::kFrameName;
 }
 
-// Whether somebody looks at frames of this type on that line.
+// Returns whether the role listens to frames of this type on that line.
 bool listens(Role role, const machine::Frame& frame) {
   if (frame.type == am::kNet) return true;
   if (frame.link == Link::kSerial) return role == Role::kSink && frame.type == am::kConfig;
@@ -78,8 +79,9 @@ bool listens(Role role, const machine::Frame& frame) {
                                         frame.type == am::kAckJoin);
 }
 
-// No sink hands its base station what is for a mote of their island, and no base station another
-// what is for every island: no rule says what then.
+// Returns whether the frame is for nobody: no sink gives its base station a message for a mote of
+// their island, and no base station gives another one a message for every island, so no rule covers
+// it.
 bool is_for_nobody(const machine::Frame& frame, std::uint16_t island) {
   const auto message = rubicon::NetMsgView::parse(frame.payload);
   if (!message) return false;
@@ -174,7 +176,7 @@ void Watched::same_again(const Seen& seen) {
 void Watched::check_labels(const Seen& seen) {
   const auto* heard = std::get_if<machine::Heard>(&seen.event);
   const auto* called = std::get_if<machine::Called>(&seen.event);
-  // Where the protocol says nothing: what TinyOS keeps away, ends of nothing, power.
+  // The protocol does not cover these: frames that TinyOS keeps away, ends of nothing, power.
   const bool kept_away = heard && (seen.handled.empty() || !listens(config_.role, heard->frame));
   const bool astray =
       config_.role == Role::kBaseStation &&

@@ -1,5 +1,5 @@
-// The promises of one node, held against whatever happens to it: the explorer's properties without
-// its small world, and what holds for the machine as a function. README.md says which are which.
+// Checks the promises of one node in any run: the explorer's properties without its small world,
+// and properties of the machine as a function. README.md lists them.
 #pragma once
 
 #include <optional>
@@ -17,15 +17,15 @@ using machine::Ticks;
 
 /// The first promise that was broken.
 struct Broken {
-  std::string name;      ///< Of the explorer's property, or `structure`.
-  std::string sentence;  ///< What should have held.
+  std::string name;      ///< The explorer's property, or `structure`.
+  std::string sentence;  ///< The property that should have held.
   std::vector<ReqId> requirements;
   Ticks time = 0;
-  /// "one_terminal at 3000 (J5-ONCE J8-FAIL): Each joinIsland call ends ..."
+  /// Returns "one_terminal at 3000 (J5-ONCE J8-FAIL): Each joinIsland call ends ..."
   std::string text() const;
 };
 
-/// The machine, or a flaw around it, that is watched at every step.
+/// The machine, or a flaw around it, checked at every step.
 class Watched : public runner::Subject {
  public:
   explicit Watched(flaws::StepFunction of = machine::step) : step_(of) {}
@@ -34,15 +34,15 @@ class Watched : public runner::Subject {
   void step(Ticks now, const machine::Event& event, machine::Actions& actions) override;
   runner::DueTimers timers() const override;
 
-  /// The script is over: what should have ended by now has.
+  /// Checks, after the script, that everything that should have ended has.
   void finish(Ticks now);
   const std::optional<Broken>& broken() const { return broken_; }
-  /// Of this many steps the node gets its timers; a clock of a tick could run for ever.
+  /// The node gets its timers in this many steps; a clock of one tick could run for ever.
   static constexpr std::size_t kTimedStepsMax = 2000;
 
  private:
   struct Seen : explorer::Observed {
-    std::vector<machine::Frame> handled;  // Frames that were looked at in this step, in order.
+    std::vector<machine::Frame> handled;  // Frames handled in this step, in order.
   };
 
   void breaks(explorer::Property property, Ticks now);
@@ -55,7 +55,7 @@ class Watched : public runner::Subject {
   void check_bounds(const Seen& seen);
 
   flaws::StepFunction step_;
-  machine::Config config_;  // As it started: a flaw may change the state's.
+  machine::Config config_;  // The start value: a flaw may change the state's.
   machine::State state_;
   explorer::History history_;
   std::optional<Broken> broken_;
@@ -63,7 +63,8 @@ class Watched : public runner::Subject {
   std::size_t steps_ = 0;
 };
 
-/// Lets a script happen to the machine, or to a flaw around it. Nothing: all promises were kept.
+/// Runs a script on the machine, or on a flaw around it. Returns the broken promise; nothing if all
+/// were kept.
 std::optional<Broken> watch(const Script& script, flaws::StepFunction step = machine::step);
 
 }  // namespace rubric::script

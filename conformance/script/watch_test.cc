@@ -60,8 +60,8 @@ TEST(Watched, AndInChangedOnes) {
   EXPECT_GT(runs, 5000);
 }
 
-// What a golden trace leads a flaw to is a promise broken; all but the one that needs two looks at
-// the same clock.
+// Golden traces that lead a flaw astray break a promise; except for the flaw that needs two looks
+// at the same clock.
 TEST(Watched, FlawsBreakPromises) {
   const std::vector<Script> scripts = golden_scripts();
   for (const flaws::Flaw& flaw : flaws::all()) {

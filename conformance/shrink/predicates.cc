@@ -22,7 +22,7 @@ bool kept(const CaseResult& result) {
   return result.verdict == CaseVerdict::kPass || result.verdict == CaseVerdict::kWeak;
 }
 
-// First numbers as they come, 0 and 65535: see runner::config_of.
+// Default first numbers, 0 and 65535: see runner::config_of.
 constexpr std::uint64_t kSeeds[] = {0, 58392, 58647};
 
 bool keeps(const trace::File& file, const Player& reference) {

@@ -1,4 +1,4 @@
-// What a trace can be kept for: a failure of one implementation, or a difference between two.
+// Reasons to keep a trace: a failure of one implementation, or a difference between two.
 #pragma once
 
 #include <optional>
@@ -10,30 +10,30 @@
 
 namespace rubric::shrink {
 
-/// An implementation, and the profile that it is asked to play; empty: as the trace says.
+/// An implementation, and the profile that it is to play; empty: the trace's.
 struct Player {
   runner::TargetFactory make;
   std::string profile;
 };
 
-/// One case of a file, with the headers that hold for it.
+/// Returns one case of a file, with the headers that apply to it.
 trace::File only(const trace::File& file, const trace::Case& one);
-/// Works the only case of `file`.
+/// Runs the only case of `file`.
 runner::CaseResult play(const trace::File& file, const Player& player);
 
-/// Asks for a failure of `player` that names the same rules as the first failure of `first`, or for
-/// the same error. While `reference` passes the original it must pass what is left of it, for else
-/// the trace would ask for what no rule asks for; with whatever sequence number it begins.
+/// Returns a predicate: `player` fails by the same rules as in the first failure of `first`, or
+/// with the same error. If `reference` passes the original it must pass the shrunk trace too, with
+/// any first sequence number; else the trace would require what no rule requires.
 StillShows fails_alike(const runner::CaseResult& first, const Player& player,
                        const std::optional<Player>& reference);
 
-/// Whether one keeps what the other breaks. Freedom within the rules is no difference.
+/// Returns whether one keeps what the other breaks. Freedom within the rules is no difference.
 bool differ(const runner::CaseResult& a, const runner::CaseResult& b);
 
 struct Difference {
   Shrunk shrunk;
-  std::string case_name;  ///< Of the trace that it was made of.
-  runner::CaseResult a;   ///< Of the shrunk trace.
+  std::string case_name;  ///< In the trace from which it was made.
+  runner::CaseResult a;   ///< On the shrunk trace.
   runner::CaseResult b;
 };
 
@@ -44,8 +44,8 @@ struct DifferenceSearch {
   std::vector<std::string> different;   ///< Names of all cases that differ.
 };
 
-/// Works all cases on both, shrinks those that differ, beginning with the smallest and at most
-/// `shrunk_max` of them, and keeps the shortest. Throws runner::TargetBroken where one breaks.
+/// Runs all cases on both, shrinks those that differ, beginning with the smallest and at most
+/// `shrunk_max` of them, and keeps the shortest. Throws runner::TargetBroken if one breaks.
 DifferenceSearch find_difference(const std::vector<const trace::File*>& files, const Player& a,
                                  const Player& b, std::size_t shrunk_max = 8);
 

@@ -15,7 +15,7 @@ using trace::Line;
 using trace::Message;
 using trace::Op;
 
-// The headers that hold for the case, and its lines alone: no comments, no blanks.
+// Returns the case's lines with the headers that apply to it: no comments, no blanks.
 trace::File alone(const trace::File& file, const trace::Case& one) {
   trace::File out;
   const auto has_own = [&](std::size_t kind) {
@@ -91,7 +91,7 @@ class Shrinker {
     return out;
   }
 
-  // ddmin's complements: pieces from a half down to single lines.
+  // Tries ddmin's complements: pieces from a half down to single lines.
   void drop_lines() {
     std::size_t pieces = 2;
     while (size() >= 2 && pieces <= size()) {
@@ -110,8 +110,8 @@ class Shrinker {
     }
   }
 
-  // From the end, where lines that others count from have lost their followers; else these count
-  // from whatever then stands before them.
+  // Starts from the end, where lines that others count from have lost their successors; else these
+  // count from the line that is then before them.
   void drop_each_line() {
     for (std::size_t i = size(); i-- > 0 && size() > 1;) {
       if (try_it(without(i, i + 1)) || line(i).label.empty()) continue;
@@ -147,14 +147,14 @@ class Shrinker {
     }
   }
 
-  // A field less is a wildcard in what is expected, and zero in a stimulus.
+  // Drops fields: a missing one is a wildcard in an expectation, and zero in a stimulus.
   void drop_fields(std::size_t i) {
     const bool fits = line(i).message.form == Message::Form::kFields;
     for (std::size_t f = line(i).message.fields.size(); fits && f-- > 0;) {
       try_edit(i, [f](Line& one) {
         auto& fields = one.message.fields;
         if (fields[f].path.empty()) return;  // Its place among the others is its name.
-        // Zero may be just what the variable stands for, or just what it does not.
+        // Zero may or may not equal the variable's value.
         if (one.op == Op::kGiven && names_variable(fields[f].value)) return;
         fields.erase(fields.begin() + static_cast<std::ptrdiff_t>(f));
         one.message.open = true;
@@ -162,7 +162,7 @@ class Shrinker {
     }
   }
 
-  // A stimulus as soon as it can be, by bisection.
+  // Moves a stimulus as early as possible, by bisection.
   void hurry(std::size_t i) {
     if (!line(i).time.exact()) return;
     std::int64_t low = 0;

@@ -82,8 +82,8 @@ TEST(Shrink, WhatDoesNotShowItStaysAsItWas) {
   EXPECT_EQ(out.lines, file.file.cases[0].lines().size());
 }
 
-// Every named mutant of the join: its first failing case shrinks to one that still fails alike,
-// that the machine passes, and that no line can be taken from.
+// For every named mutant of the join, its first failing case shrinks to one that still fails alike,
+// that the machine passes, and of which no line can be dropped.
 TEST(Shrink, FailuresOfMutants) {
   std::size_t before = 0;
   std::size_t after = 0;

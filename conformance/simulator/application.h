@@ -1,4 +1,4 @@
-// What runs on top of a node: it calls the layer and is told what happens.
+// Applications, which run on a node: they call the layer and are notified by it.
 #pragma once
 
 #include <cstddef>
@@ -15,11 +15,12 @@ class Host {
  public:
   virtual ~Host() = default;
   virtual Micros now() const = 0;
-  /// Makes the call as soon as what the node is doing now is done; bytes are copied.
+  /// Makes the call as soon as the node has finished its present step; copies bytes.
   virtual void call(const machine::Call& call) = 0;
-  /// woken(token) after a delay, unless the node's power fails before.
+  /// Calls woken(token) after a delay, unless the node's power fails before.
   virtual void wake_after(Micros delay_us, std::uint32_t token) = 0;
-  /// Power off, and on again; booted() follows. A negative delay: never on again.
+  /// Switches the power off, and on again, after which booted() is called. A negative delay means
+  /// never.
   virtual void power_off(Micros on_after_us) = 0;
   virtual Random& random() = 0;
 };
@@ -27,10 +28,10 @@ class Host {
 class Application {
  public:
   virtual ~Application() = default;
-  /// The node has power: at the start of the run, and after each power_off().
+  /// Called when the node has power: at the start of the run, and after each power_off().
   virtual void booted(Host&) {}
   virtual void woken(Host&, std::uint32_t /*token*/) {}
-  /// Bytes of the notice live until this returns.
+  /// Called with a notice; its bytes live until this returns.
   virtual void told(Host&, const machine::Notice&) {}
 };
 

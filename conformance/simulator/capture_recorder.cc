@@ -18,7 +18,7 @@ CaptureRecorder::CaptureRecorder(const Network& network) {
   for (const RadioPlan& radio : network.radios) {
     radio_names_.push_back(network.radios.size() == 1 ? "radio" : "radio:" + radio.name);
   }
-  // Every sink has the TinyOS id 1, which so cannot tell them apart.
+  // Every sink has the TinyOS id 1, so the id cannot tell them apart.
   for (std::size_t i = 0; i < network.serials.size(); ++i) {
     const machine::Config& sink = network.nodes.at(network.serials[i].sink).config;
     serial_names_.push_back("serial:" + std::to_string(100 * i + sink.id));

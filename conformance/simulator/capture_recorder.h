@@ -1,5 +1,5 @@
-// The frames of a run as a pcapng capture, as a perfect sniffer and taps on the serial lines have
-// them: the layout of the captures in spec/captures/firmware.
+// Writes the frames of a run as a pcapng capture, as a perfect sniffer and taps on the serial lines
+// see them: the layout of the captures in spec/captures/firmware.
 #pragma once
 
 #include <string>
@@ -22,7 +22,7 @@ class CaptureRecorder final : public Recorder {
   void on_serial(Micros time_us, std::size_t line, bool to_sink,
                  const SerialFrame& frame) override;
 
-  /// The whole file. Call once, at the end of the run.
+  /// Returns the whole file. Call once, at the end of the run.
   std::string finish();
 
  private:

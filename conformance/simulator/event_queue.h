@@ -1,4 +1,4 @@
-// What will happen, in the order of time; what is due at the same time, in the order of asking.
+// Future events in the order of time; at equal times in the order of scheduling.
 #pragma once
 
 #include <cstddef>
@@ -21,10 +21,10 @@ class EventQueue {
   }
   void after(Micros delay_us, Work work) { at(now_us_ + delay_us, std::move(work)); }
 
-  /// Does everything that is due up to and including `end_us`, where time stands then.
+  /// Runs everything that is due up to and including `end_us`, which is then the time.
   void run_until(Micros end_us) {
     while (!queue_.empty() && queue_.top().time_us <= end_us) {
-      // The queue only lends its top; what is moved out is popped at once.
+      // The queue only lends its top; a moved item is popped at once.
       Item item = std::move(const_cast<Item&>(queue_.top()));
       queue_.pop();
       now_us_ = item.time_us;

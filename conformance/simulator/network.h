@@ -1,4 +1,4 @@
-// What is simulated: nodes, the lines between them, and what goes wrong on those.
+// A network to simulate: nodes, the lines between them, and the faults of the lines.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +17,7 @@ class Application;
 /// An index into Network::nodes.
 using NodeId = std::size_t;
 
-/// What a line does to frames, independently of one another.
+/// Faults of a line, independent of one another.
 struct Faults {
   double loss = 0;           ///< Probability that a receiver does not get a frame.
   double duplication = 0;    ///< Probability that it gets it twice.
@@ -31,7 +31,7 @@ struct NodePlan {
   std::size_t radio = 0;         ///< Motes and sinks: index into Network::radios.
 };
 
-/// Nodes whose radios share the air. All hear one another but for `deaf`.
+/// Nodes whose radios share the air. All hear one another except for `deaf`.
 struct RadioPlan {
   std::string name;  ///< rA
   Faults faults;

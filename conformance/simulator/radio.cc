@@ -2,8 +2,13 @@
 
 #include <algorithm>
 
+#include "codec/generated/tinyos/mac_ack.h"
+#include "codec/reflect/am_frames.h"
+
 namespace rubric::simulator {
 namespace {
+
+using tinyos::FrameControl;
 
 // Times of TinyOS' CC2420 stack: random waits in ticks of its 32 kHz timer, 10 to 329 before the
 // first attempt, 10 to 79 after the channel was found taken.
@@ -12,26 +17,14 @@ constexpr Micros kCongestionBackoffUs[] = {305, 2'410};
 constexpr Micros kTurnaroundUs = 192;       // From listening to sending. (IEEE 802.15.4, 6.4.1)
 constexpr Micros kLinkAckUs[] = {192, 2'500};  // The acknowledgement is software's.
 constexpr Micros kLinkAckWaitUs = 8'000;
-constexpr Micros kDoubleUs[] = {500, 20'000};  // How long after a frame the link repeats it.
+constexpr Micros kDoubleUs[] = {500, 20'000};  // The link repeats a frame after this.
 
-constexpr std::uint16_t kFcfData = 0x8841;  // Short addresses in one PAN.
-constexpr std::uint16_t kFcfDataAck = 0x8861;
-constexpr std::uint16_t kFcfAck = 0x0002;
-constexpr std::uint8_t kNetwork6Lowpan = 0x3F;
-constexpr std::size_t kHeaderBytes = 11;
-constexpr std::size_t kAckBytes = 3;
+constexpr std::size_t kHeaderBytes = reflect::kRadioIHeaderBytes;
 
 std::vector<std::uint8_t> data_frame(const machine::Frame& am, std::uint8_t dsn, bool asks_ack) {
-  std::vector<std::uint8_t> bytes(kHeaderBytes + am.payload.size());
-  store_le16(bytes.data(), asks_ack ? kFcfDataAck : kFcfData);
-  bytes[2] = dsn;
-  store_le16(bytes.data() + 3, kPanId);
-  store_le16(bytes.data() + 5, am.dest);
-  store_le16(bytes.data() + 7, am.src);
-  bytes[9] = kNetwork6Lowpan;
-  bytes[10] = am.type;
-  std::copy(am.payload.begin(), am.payload.end(), bytes.begin() + kHeaderBytes);
-  return bytes;
+  const auto fcf = asks_ack ? FrameControl::kDataAckRequest : FrameControl::kData;
+  return reflect::radio_frame({reflect::fcf_of(fcf), dsn, kPanId, am.dest, am.src}, am.type,
+                              am.payload);
 }
 
 }  // namespace
@@ -66,7 +59,7 @@ void Radio::try_channel(const Shared& frame, Micros backoff_us) {
       const Micros wait = random_.between(kCongestionBackoffUs[0], kCongestionBackoffUs[1]);
       return try_channel(frame, wait);
     }
-    // Whoever finds the channel free within the turnaround sends as well: a collision.
+    // Stations that find the channel free within the turnaround send as well: a collision.
     queue_.after(kTurnaroundUs, [this, frame] {
       const Station& then = stations_[frame->sender];
       if (then.life != frame->life) return;
@@ -96,14 +89,14 @@ const Faults& Radio::faults(const Station& from, const Station& to) const {
 bool Radio::is_busy(std::size_t station) const {
   if (stations_[station].sending) return true;  // Its link ack.
   return std::any_of(air_.begin(), air_.end(), [&](const Shared& frame) {
-    // One that only sends is told by nobody whom it hears; it hears all.
+    // A station that only sends has no list of whom it hears; it hears all.
     return !stations_[station].node || hears(station, frame->sender);
   });
 }
 
 void Radio::begin(const Shared& frame) {
   Station& from = stations_[frame->sender];
-  // A radio sends or listens: what it was hearing is gone.
+  // A radio sends or listens: it loses the frame that it was hearing.
   for (const Shared& other : air_) {
     for (Reception& reception : other->receptions) {
       if (reception.station == frame->sender) reception.destroyed = true;
@@ -146,8 +139,8 @@ bool Radio::may_double() const {
          std::any_of(plan_.link_faults.begin(), plan_.link_faults.end(), doubles);
 }
 
-// A receiver gets a frame twice because the sender's link, which missed the acknowledgement, sends
-// it twice. For the sender that is one transmission.
+// Sends a frame again: a receiver gets it twice because the sender's link missed the
+// acknowledgement. For the sender that is one transmission.
 void Radio::repeat(const Shared& frame, std::vector<std::size_t> had_it) {
   auto copy = std::make_shared<OnAir>(*frame);
   copy->am.payload = Bytes(copy->bytes.data(), copy->bytes.size()).from(kHeaderBytes);
@@ -158,7 +151,7 @@ void Radio::repeat(const Shared& frame, std::vector<std::size_t> had_it) {
   try_channel(copy, wait + random_.between(kDoubleUs[0], kDoubleUs[1]));
 }
 
-// The sender's side of the end of a frame.
+// Handles the end of a frame at the sender.
 void Radio::sent(const Shared& frame) {
   const std::size_t station = frame->sender;
   Station& from = stations_[station];
@@ -219,15 +212,14 @@ void Radio::deliver(const Shared& frame, std::size_t station) {
   user_.heard(*to.node, frame->am);
 }
 
-// The link acknowledgement of a frame, with its number and without listening first.
+// Sends the link acknowledgement of a frame, with its number and without listening first.
 void Radio::answer(const OnAir& frame, std::size_t station) {
   auto ack = std::make_shared<OnAir>();
   ack->sender = station;
   ack->is_ack = true;
   ack->dsn = frame.dsn;
-  ack->bytes.resize(kAckBytes);
-  store_le16(ack->bytes.data(), kFcfAck);
-  ack->bytes[2] = frame.dsn;
+  ack->bytes.resize(tinyos::MacAckView::kMaxSizeBytes);
+  tinyos::MacAckLayout::store({reflect::fcf_of(FrameControl::kAck), frame.dsn}, ack->bytes.data());
   ack->life = stations_[station].life;
   queue_.after(random_.between(kLinkAckUs[0], kLinkAckUs[1]), [this, ack] {
     const Station& from = stations_[ack->sender];

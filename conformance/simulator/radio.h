@@ -20,19 +20,19 @@ inline constexpr std::uint16_t kPanId = 0x0022;
 /// Preamble, start of frame and length.
 inline constexpr std::size_t kPhyBytes = 6;
 inline constexpr std::size_t kFcsBytes = 2;
-/// How long a frame of so many bytes, FCS excluded, is in the air.
+/// Returns how long a frame of so many bytes, FCS excluded, is in the air.
 constexpr Micros air_us(std::size_t frame_bytes) {
   return static_cast<Micros>(kPhyBytes + frame_bytes + kFcsBytes) * kRadioByteUs;
 }
 
-/// Whose radio it is.
+/// The owner of radios.
 class RadioUser {
  public:
   virtual ~RadioUser() = default;
-  /// Power and radio are on.
+  /// Returns whether power and radio are on.
   virtual bool listens(NodeId node) const = 0;
   virtual void heard(NodeId node, const machine::Frame& frame) = 0;
-  /// The frame given to send() has left; `acked` is true where no ack was asked for.
+  /// Called when the frame given to send() has left; `acked` is true if no ack was asked for.
   virtual void radio_sent(NodeId node, bool acked) = 0;
 };
 
@@ -43,11 +43,11 @@ class Radio {
       : index_(index), plan_(plan), queue_(queue), random_(random), recorder_(recorder),
         user_(user) {}
 
-  /// A node's station, or, without node, one that only sends.
+  /// Adds a node's station, or, without a node, one that only sends.
   std::size_t add_station(std::optional<NodeId> node, std::uint16_t am_address);
   /// Takes a frame; the user waits for radio_sent() before the next.
   void send(std::size_t station, const machine::Frame& frame, bool link_ack);
-  /// The station starts anew: it forgets what it was going to send, and counts frames from 0.
+  /// Restarts the station: it forgets pending frames, and counts frames from 0.
   void reset(std::size_t station) {
     ++stations_[station].life;
     stations_[station].dsn = 0;
@@ -90,7 +90,7 @@ class Radio {
   void end(const Shared& frame);
   bool may_double() const;
   void repeat(const Shared& frame, std::vector<std::size_t> had_it);
-  /// True where the receiver got the frame and is to get it twice.
+  /// Returns whether the receiver got the frame and is to get it twice.
   bool receive(const OnAir& frame, const Reception& reception);
   void deliver(const Shared& frame, std::size_t station);
   void answer(const OnAir& frame, std::size_t station);

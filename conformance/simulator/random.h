@@ -16,13 +16,13 @@ class Random {
     z = (z ^ (z >> 27)) * 0x94D049BB133111EB;
     return z ^ (z >> 31);
   }
-  /// From `least` to `most`, both included.
+  /// Returns a number from `least` to `most`, both included.
   std::int64_t between(std::int64_t least, std::int64_t most) {
     const auto width = static_cast<std::uint64_t>(most - least) + 1;
     return least + static_cast<std::int64_t>(width == 0 ? next() : next() % width);
   }
-  /// True with probability `p`. Draws even when it is 0 or 1, so that a fault which is switched on
-  /// leaves the rest of the run as it was for as long as it can.
+  /// Returns true with probability `p`. Draws even if it is 0 or 1, so that a fault which is
+  /// switched on leaves the rest of the run unchanged for as long as it can.
   bool chance(double p) { return static_cast<double>(next() >> 11) * 0x1p-53 < p; }
 
  private:

@@ -1,4 +1,4 @@
-// What a run shows to those who write it down.
+// The interface through which a run is written down.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace rubric::simulator {
 
-/// What a line did to a frame on its way to a node.
+/// The fate of a frame on its way to a node.
 enum class Mishap : std::uint8_t {
   kLost,       ///< By chance.
   kCollided,   ///< Another frame was in the air at the receiver, or the receiver was sending.
@@ -27,17 +27,16 @@ struct SerialFrame {
 class Recorder {
  public:
   virtual ~Recorder() = default;
-  /// Before node steps: Heard, Called, Reboot, PowerOff. (Timers and SendDone are the node's own
-  /// affair.)
+  /// Called before node steps: Heard, Called, Reboot, PowerOff. (Timers and SendDone are internal.)
   virtual void given(Micros, NodeId, const machine::Event&) {}
-  /// After it stepped.
+  /// Called after it stepped.
   virtual void did(Micros, NodeId, const machine::Actions&) {}
   virtual void mishap(Micros, NodeId /*receiver*/, Mishap, const machine::Frame&) {}
-  /// The end of an asked-for link acknowledgement: it came, or it did not.
+  /// Called at the end of an awaited link acknowledgement: it came, or it did not.
   virtual void link_ack(Micros, NodeId, bool /*acked*/) {}
-  /// An 802.15.4 frame began, without FCS. `radio` is an index into Network::radios.
+  /// Called when an 802.15.4 frame begins; without FCS. `radio` is an index into Network::radios.
   virtual void on_air(Micros, std::size_t /*radio*/, Bytes /*frame*/) {}
-  /// A serial frame ended. `line` is an index into Network::serials.
+  /// Called when a serial frame ends. `line` is an index into Network::serials.
   virtual void on_serial(Micros, std::size_t /*line*/, bool /*to_sink*/, const SerialFrame&) {}
 };
 

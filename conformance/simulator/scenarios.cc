@@ -37,7 +37,7 @@ constexpr machine::Descriptor kDoor{1, kOpen, kLight};
 
 std::vector<std::uint8_t> bytes_of(std::string_view text) { return {text.begin(), text.end()}; }
 
-// Puts networks together.
+// Builds networks.
 class Builder {
  public:
   explicit Builder(const ScenarioOptions& options) : options_(options) {
@@ -55,7 +55,7 @@ class Builder {
   NodeId mote(std::uint16_t id, std::size_t radio, Script script) {
     return node("m" + std::to_string(id), machine::Role::kMote, id, 0, radio, std::move(script));
   }
-  /// A sink, its base station, and the line between them. Letters tell islands apart.
+  /// Adds a sink, its base station, and the line between them. Letters tell islands apart.
   void island(char letter, std::uint16_t island, std::size_t radio, Script sink = {},
               Script base_station = {}) {
     SerialPlan line;
@@ -70,7 +70,7 @@ class Builder {
     BeaconPlan beacon;
     beacon.radio = radio;
     beacon.am_address = static_cast<std::uint16_t>(200 + number);
-    beacon.am_type = static_cast<std::uint8_t>(rubicon::AmType::kTemp);  // As release 1.0 does.
+    beacon.am_type = static_cast<std::uint8_t>(rubicon::AmType::kTemp);  // Release 1.0 uses it too.
     beacon.payload = {number};
     beacon.first_us = number * 10'000;  // One after the other.
     beacon.period_us = kHalfSecondUs;
@@ -88,7 +88,7 @@ class Builder {
     plan.config.island = island;
     plan.config.profile = machine::kPaper;
     plan.config.random_seq = true;
-    // Numbers that look unlike one another, and the same for the same seed.
+    // Distinct numbers, the same for the same seed.
     Random random(options_.seed * 1'000 + network_.nodes.size());
     plan.config.first_seq = static_cast<std::uint16_t>(random.between(1, 0xFFFE));
     plan.application = std::make_unique<ScriptedApplication>(std::move(script));
@@ -108,7 +108,7 @@ Script joining(Micros join_us, machine::Descriptor descriptor) {
   return script;
 }
 
-// To the PC of its island, through the sink.
+// Sends updates to the PC of its island, through the sink.
 ScriptedSend updates(std::uint16_t transducers, Micros period_us = kHalfSecondUs) {
   ScriptedSend send;
   send.dest = {kLocalPid, kNullDevid};
@@ -202,7 +202,7 @@ Network home(const ScenarioOptions& options) {
   return builder.done();
 }
 
-// Paper: Message Dispatcher. The PC has a mote open a door.
+// Paper: Message Dispatcher. The PC makes a mote open a door.
 Network open_door(const ScenarioOptions& options) {
   constexpr std::uint16_t kDoorId = 4;
   Builder builder(options);

@@ -12,23 +12,23 @@ namespace rubric::simulator {
 
 struct ScenarioOptions {
   std::uint64_t seed = 1;
-  double loss = 0;         ///< Of every radio frame at every receiver.
+  double loss = 0;         ///< Share of lost radio frames at every receiver.
   double duplication = 0;
-  std::size_t motes = 3;   ///< Of the scenario `free` only.
+  std::size_t motes = 3;   ///< For the scenario `free` only.
   std::size_t sinks = 1;
 };
 
 struct Scenario {
   const char* name;
   const char* doc;
-  Micros length_us;        ///< How long it takes to be told.
+  Micros length_us;        ///< How long its story takes.
 };
 
-/// All there are, `free` last.
+/// Returns all scenarios, `free` last.
 std::span<const Scenario> scenarios();
-/// Null if there is none of this name.
+/// Returns the scenario of this name, or null.
 const Scenario* find_scenario(std::string_view name);
-/// The network of one of them.
+/// Returns the network of a scenario.
 Network make_network(const Scenario& scenario, const ScenarioOptions& options);
 
 }  // namespace rubric::simulator

@@ -1,4 +1,4 @@
-// The paper's scenarios whole, and that what is written of them can be read.
+// The paper's scenarios as a whole, and the readability of their captures and logs.
 #include "conformance/simulator/scenarios.h"
 
 #include <gtest/gtest.h>
@@ -48,7 +48,7 @@ Outcome run(const char* name, const ScenarioOptions& options = {}) {
   return result;
 }
 
-// Lines of that node, operation and message.
+// Returns the lines of that node, operation and message.
 std::vector<const trace::Line*> lines(const Outcome& result, std::string_view node, trace::Op op,
                                       std::string_view message) {
   std::vector<const trace::Line*> found;
@@ -197,13 +197,13 @@ TEST(Home, ThirteenJoinAndOneIsLeftOutAfterItsReboot) {
   ASSERT_GE(ends.size(), 2U);
   EXPECT_EQ(*ends[0]->message.find("result"), trace::Value::names("success"));
   EXPECT_EQ(*ends[1]->message.find("result"), trace::Value::names("fail"));
-  // The bracelet is silent while it is away, and goes on when it is back.
+  // The bracelet is silent while it is away, and continues when it is back.
   std::set<std::int64_t> seconds;
   for (const trace::Line* line : lines(once, "m20", trace::Op::kEmits, "net_msg")) {
     seconds.insert(line->time.from / 1024);
   }
   EXPECT_TRUE(seconds.count(5) == 1 && seconds.count(8) == 0 && seconds.count(13) == 1);
-  // The mote that fails for good is not heard of again.
+  // The mote that fails for good is not heard again.
   const auto off = lines(once, "m9", trace::Op::kGiven, "off");
   ASSERT_EQ(off.size(), 1U);
   EXPECT_EQ(off[0]->time.from, 9000);

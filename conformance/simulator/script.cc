@@ -2,31 +2,31 @@
 
 #include <variant>
 
-#include "codec/generated/rubicon/enums.h"
+#include "codec/generated/rubicon/updates.h"
 #include "codec/runtime/bytes.h"
 
 namespace rubric::simulator {
 namespace {
 
-// What a node is woken for; sends and cuts count on from their first.
+// Reasons to wake; sends and cuts are numbered from their first.
 constexpr std::uint32_t kJoin = 0;
 constexpr std::uint32_t kCompute = 1;
 constexpr std::uint32_t kRadioOn = 2;
 constexpr std::uint32_t kSends = 1'000;
 constexpr std::uint32_t kCuts = 2'000;
 
-constexpr int kReadingMax = 1023;  // Of the motes' 10-bit converters.
+constexpr int kReadingMax = 1023;  // The motes have 10-bit converters.
 
 std::vector<std::uint8_t> readings(std::uint16_t transducers, Random& random) {
-  std::vector<std::uint8_t> body = {static_cast<std::uint8_t>(rubicon::AmType::kUpdates), 0};
+  rubicon::Updates updates;
+  updates.type = rubicon::AmType::kUpdates;
   for (unsigned bit = 1; bit <= transducers; bit <<= 1) {
     if ((transducers & bit) == 0) continue;
-    std::uint8_t pair[4];
-    store_be16(pair, static_cast<std::uint16_t>(bit));
-    store_be16(pair + 2, static_cast<std::uint16_t>(random.between(0, kReadingMax)));
-    body.insert(body.end(), pair, pair + sizeof(pair));
-    ++body[1];
+    updates.updates.push({rubicon::TransducerMask(static_cast<std::uint16_t>(bit)),
+                          static_cast<std::uint16_t>(random.between(0, kReadingMax))});
   }
+  std::vector<std::uint8_t> body(rubicon::UpdatesLayout::size_bytes(updates));
+  rubicon::UpdatesLayout::store(updates, body.data());
   return body;
 }
 
@@ -89,7 +89,7 @@ void ScriptedApplication::send(Host& host, std::size_t index) {
   host.wake_after(send.period_us, kSends + static_cast<std::uint32_t>(index));
 }
 
-// The learning network's output of this cycle, for the next tick.
+// Computes the learning network's output of this cycle, for the next tick.
 void ScriptedApplication::compute(Host& host) {
   bool any = false;
   for (std::size_t i = 0; i < outputs_.size(); ++i) {

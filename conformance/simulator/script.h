@@ -1,4 +1,4 @@
-// An application that does what a list says: joins, sends, runs synaptic channels, fails.
+// An application that follows a list: joins, sends, runs synaptic channels, fails.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace rubric::simulator {
 
-/// A message, once or again and again. Times count from when the node is ready: a mote when it has
-/// joined, others when they have started.
+/// A message, once or repeatedly. Times count from when the node is ready: for a mote when it has
+/// joined, for others when they have started.
 struct ScriptedSend {
   machine::Address dest;
   std::uint8_t app_id = 0;
@@ -62,7 +62,7 @@ class ScriptedApplication final : public Application {
 
   Script script_;
   bool booted_before_ = false;
-  std::vector<machine::ChannelId> outputs_;  ///< By channel, 0 where it is none or was refused.
+  std::vector<machine::ChannelId> outputs_;  ///< By channel, 0 if it is no output or was refused.
   std::size_t created_ = 0;
 };
 

@@ -3,28 +3,18 @@
 #include <algorithm>
 #include <array>
 
+#include "codec/reflect/am_frames.h"
 #include "codec/runtime/hdlc.h"
 
 namespace rubric::simulator {
 namespace {
 
-constexpr std::size_t kHeaderBytes = 8;  // Dispatch and AM header.
 constexpr Micros kBaud = 115'200;
 constexpr Micros kBitsPerByte = 10;
-constexpr Micros kResendUs = 1'000'000;  // Of a host that misses its confirmation.
+constexpr Micros kResendUs = 1'000'000;  // A host misses its confirmation.
 constexpr int kTriesMax = 25;
 
-std::vector<std::uint8_t> packet_of(const machine::Frame& am) {
-  std::vector<std::uint8_t> bytes(kHeaderBytes + am.payload.size());
-  store_be16(bytes.data() + 1, am.dest);
-  store_be16(bytes.data() + 3, am.src);
-  bytes[5] = static_cast<std::uint8_t>(am.payload.size());
-  bytes[7] = am.type;
-  std::copy(am.payload.begin(), am.payload.end(), bytes.begin() + kHeaderBytes);
-  return bytes;
-}
-
-// How long the frame takes, flags and escapes included.
+// Returns how long the frame takes, flags and escapes included.
 Micros shift_us(std::uint8_t kind, std::int32_t seq, Bytes packet) {
   std::array<std::uint8_t, hdlc_frame_room(kSerialAfterHeaderMax + 2)> room;
   HdlcFramer framer(MutableBytes(room.data(), room.size()));
@@ -40,10 +30,11 @@ Micros shift_us(std::uint8_t kind, std::int32_t seq, Bytes packet) {
 
 void Serial::send(NodeId from, const machine::Frame& frame) {
   auto held = std::make_shared<Held>();
-  held->packet = packet_of(frame);
+  held->packet = reflect::serial_packet(
+      {tinyos::Dispatch::kActiveMessage, frame.dest, frame.src, 0, 0, frame.type}, frame.payload);
   held->am = frame;
   held->am.link = machine::Link::kSerial;
-  held->am.payload = Bytes(held->packet.data(), held->packet.size()).from(kHeaderBytes);
+  held->am.payload = Bytes(held->packet.data(), held->packet.size()).from(reflect::kAmHeaderBytes);
   if (from == plan_.base_station) return try_host(held);
   shift_out(false, kSerialPacketNoAck, -1, held, [this, held](bool intact) {
     deliver(plan_.base_station, *held, intact);
@@ -51,7 +42,7 @@ void Serial::send(NodeId from, const machine::Frame& frame) {
   });
 }
 
-// Puts a frame behind what this end is sending; `done` at its end. Returns when that is.
+// Queues a frame after what this end is sending; calls `done` at its end. Returns when that is.
 Micros Serial::shift_out(bool to_sink, std::uint8_t kind, std::int32_t seq, const Shared& held,
                          Done done) {
   End& end = to_sink ? base_station_ : sink_;

@@ -1,5 +1,5 @@
 // The serial line between a sink and its base station: 115200 baud, TinyOS' serial stack. The base
-// station sends PACKET_ACK frames and repeats what the sink did not confirm; the sink sends
+// station sends PACKET_ACK frames and repeats those that the sink did not confirm; the sink sends
 // PACKET_NOACK frames. (TEP 113)
 #pragma once
 
@@ -17,11 +17,11 @@
 
 namespace rubric::simulator {
 
-/// Whose serial line it is.
+/// The owner of a serial line.
 class SerialUser {
  public:
   virtual ~SerialUser() = default;
-  /// Power and serial interface are on.
+  /// Returns whether power and serial interface are on.
   virtual bool serial_on(NodeId node) const = 0;
   virtual void serial_heard(NodeId node, const machine::Frame& frame) = 0;
   virtual void serial_sent(NodeId node) = 0;
@@ -34,16 +34,17 @@ class Serial {
       : index_(index), plan_(plan), queue_(queue), random_(random), recorder_(recorder),
         user_(user) {}
 
-  /// Takes a frame of the sink or of the base station, who waits for serial_sent() before the next.
+  /// Takes a frame from the sink or the base station, which waits for serial_sent() before the
+  /// next.
   void send(NodeId from, const machine::Frame& frame);
-  /// That end of the line forgets what it was going to send.
+  /// Makes that end of the line forget its pending frames.
   void reset(NodeId node) {
     ++end_of(node).life;
     end_of(node).awaited.reset();
   }
 
  private:
-  /// One end's outgoing direction.
+  /// The outgoing direction of one end.
   struct End {
     Micros free_us = 0;                   ///< The UART is busy until then.
     std::uint64_t life = 0;               ///< Work of a former life is not done.

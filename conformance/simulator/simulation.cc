@@ -14,7 +14,7 @@ using machine::Ticks;
 
 namespace {
 
-constexpr Micros kDoubleUs[] = {500, 20'000};  // How long after a message its double comes.
+constexpr Micros kRepeatUs[] = {500, 20'000};  // A message's double comes after this.
 
 // A call that owns its bytes.
 class OwnedCall {
@@ -37,7 +37,7 @@ class OwnedCall {
 
 }  // namespace
 
-// A node, and what its application sees of it.
+// A node as its application sees it.
 class Simulation::Node final : public Host {
  public:
   Node(Simulation& simulation, NodeId self) : simulation_(simulation), self_(self) {}
@@ -54,7 +54,7 @@ class Simulation::Node final : public Host {
     later(0, [this, on_after_us] { simulation_.turn_off(self_, on_after_us); });
   }
 
-  /// Unless the power fails before.
+  /// Runs `work` later, unless the power fails before.
   template <class Work>
   void later(Micros delay_us, Work work) {
     simulation_.queue_.after(delay_us, [this, work = std::move(work), then = life] {
@@ -67,7 +67,7 @@ class Simulation::Node final : public Host {
   bool on = false;
   bool started = false;
   std::uint64_t life = 0;
-  std::uint64_t timer_number = 0;  ///< Of the wake-up that counts.
+  std::uint64_t timer_number = 0;  ///< Number of the wake-up that counts.
   std::optional<std::size_t> station;
   Radio* radio = nullptr;
   Serial* serial = nullptr;
@@ -144,7 +144,7 @@ void Simulation::step(NodeId id, const machine::Event& event) {
   machine::step(node.state, ticks_of(queue_.now()), event, actions_);
   did(queue_.now(), id, actions_);
   for (const machine::Transmit& frame : actions_.transmits()) transmit(id, frame);
-  if (node.application() != nullptr) {  // What it calls happens after this: see Host::call.
+  if (node.application() != nullptr) {  // Its calls happen after this: see Host::call.
     for (const machine::Notice& notice : actions_.notices()) node.application()->told(node, notice);
   }
   set_timer(id);
@@ -178,7 +178,7 @@ void Simulation::transmit(NodeId id, const machine::Transmit& frame) {
       return node.radio->send(*node.station, frame.frame(), frame.link_ack);
     case Link::kSerial:
       if (node.serial != nullptr) return node.serial->send(id, frame.frame());
-      // Nobody at the other end: the bytes go into the void.
+      // Nothing is at the other end: the bytes are lost.
       return node.later(0, [this, id] { serial_sent(id); });
     case Link::kPeis:
       return to_peis(id, frame);
@@ -199,7 +199,7 @@ void Simulation::to_peis(NodeId from, const machine::Transmit& frame) {
     const Micros delay = network_.peis_delay_us + random_.between(0, faults.delay_max_us);
     queue_.after(delay, [this, to, frame] { peis_heard(to, frame); });
     if (!random_.chance(faults.duplication)) continue;
-    queue_.after(delay + random_.between(kDoubleUs[0], kDoubleUs[1]), [this, to, frame] {
+    queue_.after(delay + random_.between(kRepeatUs[0], kRepeatUs[1]), [this, to, frame] {
       mishap(queue_.now(), to, Mishap::kDoubled, frame.frame());
       peis_heard(to, frame);
     });

@@ -1,4 +1,4 @@
-// A run of a network in virtual time: reference machines, their lines, and their applications.
+// Runs a network in virtual time: reference machines, their lines, and their applications.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +18,7 @@
 
 namespace rubric::simulator {
 
-/// What a run came to.
+/// The results of a run in numbers.
 struct Statistics {
   std::uint64_t steps = 0;            ///< Events that machines took.
   std::uint64_t radio_frames = 0;     ///< Without link acks.
@@ -40,7 +40,8 @@ struct Statistics {
   friend bool operator==(const Statistics&, const Statistics&) = default;
 };
 
-/// The same network and seed give the same run, step by step. Recorders must outlive it.
+/// Runs the network. The same network and seed give the same run, step by step. Recorders must
+/// outlive it.
 class Simulation final : RadioUser, SerialUser, Recorder {
  public:
   explicit Simulation(Network network, std::vector<Recorder*> recorders = {});
@@ -65,7 +66,7 @@ class Simulation final : RadioUser, SerialUser, Recorder {
   bool serial_on(NodeId node) const override;
   void serial_heard(NodeId node, const machine::Frame& frame) override;
   void serial_sent(NodeId node) override;
-  // Recorder: counts, and tells all recorders.
+  // Recorder: counts, and calls all recorders.
   void given(Micros time_us, NodeId node, const machine::Event& event) override;
   void did(Micros time_us, NodeId node, const machine::Actions& actions) override;
   void mishap(Micros time_us, NodeId node, Mishap what, const machine::Frame& frame) override;

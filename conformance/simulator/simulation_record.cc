@@ -1,4 +1,4 @@
-// What a run came to, and who is told of it.
+// Simulation: counts events, and passes them to all recorders.
 #include <variant>
 
 #include "conformance/simulator/simulation.h"

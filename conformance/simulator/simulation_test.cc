@@ -18,7 +18,7 @@ using machine::Role;
 
 constexpr std::uint8_t kControl = 10;
 
-// Everything that a recorder sees, as text, and times of frames.
+// Keeps everything that a recorder gets, as text, and times of frames.
 class Notes final : public Recorder {
  public:
   struct OnAir {
@@ -140,7 +140,7 @@ TEST(Radio, FramesAsOnTheAirAndWithTheirTiming) {
   EXPECT_EQ(request.size(), 17U);
   const std::vector<std::uint8_t> header = {0x41, 0x88, 0, 0x22, 0, 1, 0, 2, 0, 0x3F, 14};
   EXPECT_TRUE(std::equal(header.begin(), header.end(), request.begin()));
-  // (6 + 17 + 2) * 32 us later the sink has it.
+  // The sink has it (6 + 17 + 2) * 32 us later.
   ASSERT_FALSE(notes.heard_us.empty());
   EXPECT_EQ(notes.heard_us[0], std::pair(NodeId{0}, notes.air[0].time_us + 800));
   EXPECT_EQ(notes.air[2].bytes[0], 0x61);  // ack_join asks for a link ack,
@@ -197,7 +197,7 @@ TEST(Radio, LossOfOneLinkOnly) {
   simulation.run_until(10'000'000);
   EXPECT_GT(simulation.statistics().lost, 50U);
   EXPECT_EQ(simulation.statistics().joins, 2U);
-  // From mote 2 to the sink nothing was lost: the sink missed only what mote 3 sent, about half.
+  // From mote 2 to the sink nothing was lost: the sink missed only frames of mote 3, about half.
   const auto lost_at_sink = std::count(notes.mishaps.begin(), notes.mishaps.end(),
                                        std::pair(NodeId{0}, Mishap::kLost));
   EXPECT_GT(lost_at_sink, 50);
@@ -216,7 +216,7 @@ TEST(Radio, DuplicatesArriveAndCount) {
   EXPECT_EQ(s.received, 3U);   // serial_joined once (J6-REPEAT), the message each time (T2-ONCE).
 }
 
-// A sniffer sees what the receivers get: every frame of a sender twice in a row, byte for byte.
+// A sniffer sees the receivers' frames: every frame of a sender twice in a row, byte for byte.
 TEST(Radio, DuplicatesAreOnTheAir) {
   Network network = island({sending(once({11, 1}, true, 500'000))});
   network.radios[0].faults.duplication = 1;

@@ -1,4 +1,4 @@
-// A run as a .rtr log: what each node was given and what it emitted, with the rule behind each.
+// Writes a run as a .rtr log: each node's inputs and outputs, with their rules.
 #pragma once
 
 #include <string>
@@ -10,8 +10,9 @@
 
 namespace rubric::simulator {
 
-/// One case with all lines, at absolute ticks; every node under test. Frames that a line loses,
-/// doubles, or that find their receiver off stand as the line's faults, the receiver in a comment.
+/// Writes one case with all lines, at absolute ticks; every node under test. Frames that a line
+/// loses, doubles, or that find their receiver off are shown as the line's faults, with the
+/// receiver in a comment.
 class TraceRecorder final : public Recorder {
  public:
   TraceRecorder(const Network& network, std::string_view case_name);

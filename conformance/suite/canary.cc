@@ -10,8 +10,8 @@
 namespace rubric::suite {
 namespace {
 
-// A mote that is told that it joined though nobody replied; a sink and a base station that say what
-// nobody gave them. Numbers and bytes are such that nobody says them by chance.
+// A mote that is notified that it joined though nobody replied; a sink and a base station that
+// report what nobody gave them. Numbers and bytes are too odd to come up by chance.
 constexpr const char* kCanaries = R"rtr(%rtr 1
 %profile paper
 
@@ -43,7 +43,7 @@ std::string try_canary(const SuiteCase& one, attach::Attachment& attachment) {
     case CaseVerdict::kWeak:
       return fmt::format("{} has to fail, for nothing causes what it asks for, but it passed",
                          one.blank.name);
-    case CaseVerdict::kError:  // What breaks here breaks in the cases too, and is shown there.
+    case CaseVerdict::kError:  // Other cases show this fault too.
     case CaseVerdict::kInconclusive:
     case CaseVerdict::kSkip:
     case CaseVerdict::kFail:

@@ -1,4 +1,4 @@
-// Cases that no honest implementation passes: they ask for what nothing in them causes.
+// Cases that no honest implementation passes: they require effects that nothing in them causes.
 #pragma once
 
 #include <string>
@@ -7,14 +7,14 @@
 
 namespace rubric::suite {
 
-/// What is wrong with an implementation, or with what attaches it; empty: it answers honestly.
-/// Asks for its identity, sends something that nobody can know, and works for each of its roles a
-/// golden trace that has to fail. Whether its times can be believed is not tried. Whoever draws
-/// conclusions from what an implementation does asks this first.
+/// Returns what is wrong with an implementation, or with its attachment; empty if it answers
+/// honestly. Asks for its identity, sends something that nobody can know, and for each of its roles
+/// runs a golden trace that has to fail. Does not try whether its times can be believed. Call this
+/// before drawing conclusions from what an implementation does.
 std::string dishonesty(attach::Attachment& attachment);
 
-/// The same for those who have nothing more to do then. Throws runner::TargetBroken with `target`,
-/// as the user wrote it, and what is wrong.
+/// Does the same, but throws runner::TargetBroken with `target`, as the user wrote it, and what is
+/// wrong.
 void require_honest(attach::Attachment& attachment, const std::string& target);
 
 }  // namespace rubric::suite

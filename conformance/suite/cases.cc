@@ -19,7 +19,7 @@ void add_once(std::vector<T>& all, const T& one) {
   if (std::find(all.begin(), all.end(), one) == all.end()) all.push_back(one);
 }
 
-// The comment lines that a case begins with, as one text.
+// Returns the comment lines at the begin of a case as one text.
 std::string comment_of(const trace::Case& one) {
   std::string out = one.comment;
   for (const trace::Item& item : one.items) {

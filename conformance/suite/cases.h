@@ -1,5 +1,4 @@
-// The golden traces that a suite is made of: the kit's own, which the program carries with it, or
-// files of the user.
+// The golden traces of a suite: the kit's own, which the program contains, or the user's files.
 #pragma once
 
 #include <list>
@@ -12,12 +11,12 @@
 
 namespace rubric::suite {
 
-/// A golden trace, and what is known of it before it is worked.
+/// A golden trace and its properties before it is run.
 struct SuiteCase {
   const trace::Parsed* file = nullptr;
   const trace::Case* one = nullptr;
   CaseRun blank;                           ///< All but what comes of it.
-  std::vector<std::string> rules;          ///< That its lines name, families too, each once.
+  std::vector<std::string> rules;          ///< Named by its lines, families too, each once.
 };
 
 /// Owns the files. Names of cases are unique, and each has a node under test.
@@ -26,17 +25,17 @@ class Cases {
   Cases() = default;
   Cases(Cases&&) = default;
   Cases& operator=(Cases&&) = default;
-  /// Those of conformance/cases as they were when the program was built.
+  /// Returns the cases of conformance/cases as they were when the program was built.
   static Cases own();
-  /// .rtr files, and folders of them. Throws std::runtime_error with what is wrong, by file, line
-  /// and column.
+  /// Reads .rtr files, and folders of them. Throws std::runtime_error with what is wrong, by file,
+  /// line and column.
   static Cases of(const std::vector<std::string>& paths);
-  /// One file's text.
+  /// Reads the text of one file.
   static Cases of_text(std::string_view text, const std::string& file_name);
 
-  /// In the order of files and lines.
+  /// Returns the cases in the order of files and lines.
   const std::vector<SuiteCase>& all() const { return cases_; }
-  /// Null: none is called so.
+  /// Returns the case of this name, or null.
   const SuiteCase* find(std::string_view name) const;
 
  private:
@@ -46,7 +45,7 @@ class Cases {
   std::vector<SuiteCase> cases_;
 };
 
-/// A golden trace as text, under its name in the project. Generated when the program is built.
+/// A golden trace as text, under its path in the project. Generated when the program is built.
 struct EmbeddedFile {
   const char* name;
   const char* text;

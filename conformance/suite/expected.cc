@@ -1,19 +1,19 @@
 #include "conformance/suite/expected.h"
 
-#include <algorithm>
-#include <iterator>
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <iterator>
+
 #include "codec/reflect/requirements.h"
 #include "conformance/generated/profiles.h"
-#include "conformance/report/entries.h"
 #include "conformance/suite/select.h"
 
 namespace rubric::suite {
 namespace {
 
+using report::KnownFailure;
 using runner::CaseVerdict;
 using runner::Failure;
 
@@ -21,21 +21,17 @@ constexpr const char* kNoRule = "none";
 constexpr const char* kOfProfile =
     "The numbers and switches of the profile say so: the reference machine does it as well.";
 
-std::string mistake(std::string_view key, const std::string& value) {
-  if (key == "requirement" && value != kNoRule &&
-      std::ranges::none_of(reflect::requirements(), [&](const reflect::Requirement& rule) {
-        return is_of(rule.id, value);
+std::string mistake(const std::string& rule) {
+  if (rule == kNoRule || std::ranges::any_of(reflect::requirements(), [&](const auto& each) {
+        return is_of(each.id, rule);
       })) {
-    return fmt::format("no requirement is called '{}'; '{}' is for lines that name none", value,
-                       kNoRule);
+    return {};
   }
-  if (key == "profile" && !machine::find_profile(value)) {
-    return fmt::format("profile is paper or deployed, not '{}'", value);
-  }
-  return {};
+  return fmt::format("no requirement is called '{}'; '{}' is for lines that name none", rule,
+                     kNoRule);
 }
 
-bool is_about(const ExpectedFailure& one, const ImplementationRun& implementation,
+bool is_about(const KnownFailure& one, const ImplementationRun& implementation,
               const CaseRun& run) {
   if (!is_like(one.cases, run.name)) return false;
   if (!one.profile.empty() && one.profile != run.profile) return false;
@@ -43,24 +39,24 @@ bool is_about(const ExpectedFailure& one, const ImplementationRun& implementatio
          is_like(one.target, implementation.identity.name);
 }
 
-bool has_message(const ExpectedFailure& one, const Failure& failure) {
+bool has_message(const KnownFailure& one, const Failure& failure) {
   return failure.text.find(one.message) != std::string::npos ||
          failure.expected.find(one.message) != std::string::npos;
 }
 
-bool has_rule(const ExpectedFailure& one, const Failure& failure) {
+bool has_rule(const KnownFailure& one, const Failure& failure) {
   if (one.requirement == kNoRule) return failure.requirements.empty();
   return std::any_of(failure.requirements.begin(), failure.requirements.end(),
                      [&](const std::string& rule) { return is_of(rule, one.requirement); });
 }
 
-bool is_so(const ExpectedFailure& one, const CaseRun& run) {
+bool is_so(const KnownFailure& one, const CaseRun& run) {
   return std::any_of(run.result.failures.begin(), run.result.failures.end(),
                      [&](const Failure& f) { return has_rule(one, f) && has_message(one, f); });
 }
 
-// What the profile accepts instead; null if it does not. One reason is enough not to emit what a
-// line asks for; what a line forbids has to be accepted by each rule that forbids it.
+// Returns the behaviour that the profile accepts instead, or null. For a missing output one
+// accepted rule is enough; for a forbidden output each rule that forbids it has to be accepted.
 const char* accepted(const machine::NamedProfile* profile, const Failure& failure) {
   const char* sentence = nullptr;
   for (const std::string& rule : failure.requirements) {
@@ -78,7 +74,7 @@ bool is_decided(const CaseRun& one) {
   return one.result.verdict <= CaseVerdict::kWeak || one.result.verdict == CaseVerdict::kFail;
 }
 
-std::string why_untrue(const ExpectedFailure& entry, const CaseRun& one) {
+std::string why_untrue(const KnownFailure& entry, const CaseRun& one) {
   const std::string was = fmt::format("{} was expected to break {} with \"{}\"", one.name,
                                       entry.requirement, entry.message);
   if (one.result.failures.empty()) {
@@ -89,7 +85,7 @@ std::string why_untrue(const ExpectedFailure& entry, const CaseRun& one) {
 }
 
 // The first that is not so tells the rest of those that a glob stands for.
-std::string why_untrue(const ExpectedFailure& entry, const std::vector<const CaseRun*>& untrue,
+std::string why_untrue(const KnownFailure& entry, const std::vector<const CaseRun*>& untrue,
                        std::size_t asked) {
   constexpr std::size_t kNamed = 5;
   std::string first = why_untrue(entry, *untrue.front());
@@ -108,25 +104,15 @@ std::string why_untrue(const ExpectedFailure& entry, const std::vector<const Cas
 
 }  // namespace
 
-ExpectedFailures parse_expected(std::string_view text, const std::string& name) {
-  const report::EntryForm form{
-      "expected failures",
-      {"case", "requirement", "message", "reason"},
-      {"case", "requirement", "message", "reason", "target", "profile"},
-      mistake};
-  ExpectedFailures out{name, {}};
-  for (const report::Entry& one : report::parse_entries(text, name, form)) {
-    out.entries.push_back({one.text("case"), one.text("requirement"), one.text("message"),
-                           one.text("reason"), one.text("target"), one.text("profile"), one.line});
-  }
-  return out;
+report::KnownFailures parse_expected(std::string_view text, const std::string& name) {
+  return report::parse_known_failures(text, name, report::KnownTo::kTest, mistake);
 }
 
-void expect(const ExpectedFailures& expected, const ImplementationRun& implementation,
+void expect(const report::KnownFailures& expected, const ImplementationRun& implementation,
             CaseRun& one) {
   if (!is_decided(one)) return;
-  std::vector<const ExpectedFailure*> entries;
-  for (const ExpectedFailure& entry : expected.entries) {
+  std::vector<const KnownFailure*> entries;
+  for (const KnownFailure& entry : expected.entries) {
     if (is_about(entry, implementation, one)) entries.push_back(&entry);
   }
   const machine::NamedProfile* dialect = machine::find_profile(one.profile);
@@ -137,7 +123,7 @@ void expect(const ExpectedFailures& expected, const ImplementationRun& implement
     if (!reason && std::find(lines.begin(), lines.end(), failure.place.line) != lines.end()) {
       reason = kOfProfile;
     }
-    for (const ExpectedFailure* entry : entries) {
+    for (const KnownFailure* entry : entries) {
       if (has_rule(*entry, failure) && has_message(*entry, failure)) reason = entry->reason.c_str();
     }
     if (reason && one.expected_reason.empty()) one.expected_reason = reason;
@@ -158,10 +144,10 @@ void expect(const ExpectedFailures& expected, const ImplementationRun& implement
   }
 }
 
-std::vector<StaleExpectation> untrue(const ExpectedFailures& expected, const SuiteRun& run,
+std::vector<StaleExpectation> untrue(const report::KnownFailures& expected, const SuiteRun& run,
                                      const Cases& all) {
   std::vector<StaleExpectation> out;
-  for (const ExpectedFailure& entry : expected.entries) {
+  for (const KnownFailure& entry : expected.entries) {
     const std::string place = fmt::format("{}:{}", expected.name, entry.line);
     const bool exists = std::any_of(all.all().begin(), all.all().end(), [&](const SuiteCase& one) {
       return is_like(entry.cases, one.blank.name);

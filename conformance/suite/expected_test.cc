@@ -1,4 +1,4 @@
-// Known failures: each way to be true, and each way not to be.
+// Known failures: each way in which an entry holds, and each in which it does not.
 #include "conformance/suite/expected.h"
 
 #include <gmock/gmock.h>
@@ -44,7 +44,7 @@ struct Outcome {
 
 Outcome hold(const std::string& yaml, CaseRun one, const char* target = "./node") {
   static const Cases all = Cases::own();
-  const ExpectedFailures expected = parse_expected(yaml, "known.yaml");
+  const report::KnownFailures expected = parse_expected(yaml, "known.yaml");
   SuiteRun run;
   ImplementationRun& implementation = run.implementations.emplace_back();
   implementation.target = target;
@@ -114,7 +114,7 @@ TEST(Expected, FamiliesGlobsAndLinesWithoutRule) {
 
 TEST(Expected, AnEntryIsNotTrueOnce) {
   static const Cases cases = Cases::own();
-  const ExpectedFailures file = parse_expected(
+  const report::KnownFailures file = parse_expected(
       "- {case: 'j*', requirement: J4, message: nothing, reason: Known.}\n", "known.yaml");
   SuiteRun run;
   ImplementationRun& node = run.implementations.emplace_back();

@@ -1,4 +1,4 @@
-// What a run of the suite found, as plain values: what all reports are made of.
+// The results of a suite's run as plain values, from which all reports are made.
 #pragma once
 
 #include <cstdint>
@@ -27,31 +27,31 @@ struct CaseRun {
   std::string comment;                 ///< The mistake that it catches, as the file says it.
   std::vector<trace::NodeHeader> nodes;  ///< All, with their names in the log.
   std::vector<trace::LinkHeader> links;  ///< Those whose names do not say of what kind they are.
-  std::vector<machine::Role> roles;    ///< Of its nodes under test, each once.
-  std::vector<ReqId> requirements;     ///< That its lines name, each once.
+  std::vector<machine::Role> roles;    ///< Roles of its nodes under test, each once.
+  std::vector<ReqId> requirements;     ///< Named by its lines, each once.
   std::uint32_t repeat = 0;            ///< Counted from 0 where --repeat asks for more than one.
-  std::uint64_t seed = 0;              ///< That its nodes began with.
-  std::string profile;                 ///< "paper" or "deployed": what they were told to keep to.
+  std::uint64_t seed = 0;              ///< Its nodes began with this.
+  std::string profile;                 ///< "paper" or "deployed": the profile set for it.
   runner::CaseResult result;           ///< With failures and log.
-  /// Lines that the reference machine does not keep either when it plays this profile: golden
-  /// traces are the paper's.
+  /// Lines that the reference machine breaks too when it plays this profile, since golden traces
+  /// follow the paper.
   std::vector<std::uint32_t> lines_of_profile;
   Expectation expectation = Expectation::kNone;
   std::string expected_reason;         ///< From the file.
   double wall_ms = 0;
-  std::string stderr_text;             ///< Of the implementation while it broke.
+  std::string stderr_text;             ///< Written while it broke.
 
-  /// It makes the run fail: an error, a failure that the file does not have just so, or a pass of
-  /// what was to fail.
+  /// Returns whether it makes the run fail: an error, a failure that the file does not have in this
+  /// form, or the pass of an expected failure.
   bool unexpected() const;
 };
 
-/// What went wrong outside of the cases.
+/// A fault outside of the cases.
 struct OutsideFault {
   std::string when;         ///< "before j1.request", "after its last case", "after `bye`".
   std::string text;         ///< "was killed by signal 9 (Killed)".
   bool broke = false;       ///< It died or spoke there; else it only did not end as `bye` asks for.
-  std::string stderr_text;  ///< Of the implementation then.
+  std::string stderr_text;  ///< Written then.
 };
 
 /// All cases on one implementation.
@@ -59,46 +59,46 @@ struct ImplementationRun {
   std::string target;         ///< As the user wrote it.
   attach::Identity identity;
   std::string dishonest;      ///< Why nothing else was run; mostly empty.
-  std::string stderr_text;    ///< What it wrote to its standard error then.
+  std::string stderr_text;    ///< Its standard error then.
   std::vector<CaseRun> cases; ///< In the order of files and cases.
   std::vector<OutsideFault> outside;  ///< In the order of the cases that they came before.
   double wall_ms = 0;
 };
 
-/// An entry of the file of expected failures that is not true: it names what there is not, or of
-/// its cases some pass or fail otherwise.
+/// An entry of the file of expected failures that does not hold: it matches no case, or some of its
+/// cases pass or fail otherwise.
 struct StaleExpectation {
   std::string place;  ///< "file:line".
   std::string text;
 };
 
 struct SuiteRun {
-  std::string profile = "paper";  ///< That the user asked for.
-  std::uint64_t seed = 0;     ///< Of the cases that state none; each repeat has one more.
+  std::string profile = "paper";  ///< As the user chose.
+  std::uint64_t seed = 0;     ///< For cases that state none; each repeat adds one.
   std::string shard;          ///< "2/8", or empty.
   std::vector<std::string> traces;  ///< Files and folders of the user; none: the kit's own cases.
   std::vector<ImplementationRun> implementations;
   std::vector<StaleExpectation> stale;
 };
 
-/// 0 as expected, 1 an unexpected failure or an expectation that is not true, 2 an error, a
-/// dishonest implementation, or one that broke between cases, 3 nothing was decided.
+/// Returns 0 as expected, 1 for an unexpected failure or an expectation that does not hold, 2 for
+/// an error, a dishonest implementation, or one that broke between cases, 3 if nothing was decided.
 int exit_code(const SuiteRun& run);
 
 using VerdictCounts = std::map<runner::CaseVerdict, std::size_t>;
 VerdictCounts count(const ImplementationRun& run);
 
-/// How the cases of one rule went; for the summary of requirements.
+/// Results of the cases of one rule, for the summary of requirements.
 struct RequirementSummary {
   ReqId requirement = ReqId::kNone;
   VerdictCounts cases;
   /// Cases with a failed line that names this rule.
   std::size_t broken = 0;
 };
-/// Of every rule that a case of the run names, in the catalogue's order.
+/// Returns every rule that a case of the run names, in the catalogue's order.
 std::vector<RequirementSummary> by_requirement(const ImplementationRun& run);
 
-/// How the rules of behaviour went, those of the wire apart: each counts once.
+/// Results of the rules of behaviour, those of the wire apart: each counts once.
 struct RuleTotals {
   std::size_t all = 0;     ///< In the catalogue.
   std::size_t kept = 0;    ///< A case that names it passed, and none broke it.

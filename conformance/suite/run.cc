@@ -24,7 +24,7 @@ double ms_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-// A case needs all roles of its nodes under test. Empty: it has them.
+// Returns the role that a case needs for a node under test and that is missing; empty if none is.
 std::string missing_role(const CaseRun& one, const attach::Identity& identity) {
   for (const machine::Role role : one.roles) {
     const auto& roles = identity.roles;
@@ -40,7 +40,7 @@ std::string missing_role(const CaseRun& one, const attach::Identity& identity) {
   return {};
 }
 
-// Works the cases of a plan, each repeat for itself, on several attachments.
+// Runs the cases of a plan, each repeat by itself, on several attachments.
 class Work {
  public:
   Work(const Plan& plan, const Watcher& watcher, ImplementationRun& run)
@@ -49,7 +49,7 @@ class Work {
     done_.resize(run_.cases.size());
   }
 
-  /// What went wrong when nothing was asked, noticed when the case `before` was to begin.
+  /// Keeps faults that happened when nothing was asked, noticed when case `before` was to begin.
   void keep_mishaps(attach::Attachment& attachment, std::size_t before) {
     for (attach::Mishap& one : attachment.take_mishaps()) {
       const char* const at_end = one.broke ? "after its last case" : "after `bye`";
@@ -60,7 +60,7 @@ class Work {
     }
   }
 
-  /// Of all attachments, when they are done.
+  /// Returns the faults of all attachments, after they are done.
   std::vector<OutsideFault> outside() {
     std::stable_sort(mishaps_.begin(), mishaps_.end(),
                      [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -118,7 +118,7 @@ CaseRun run_one(const SuiteCase& one, attach::Attachment& attachment, const std:
   CaseRun out = one.blank;
   const auto start = Clock::now();
   out.result.name = out.name;
-  trace::File head;  // The case stands for itself.
+  trace::File head;  // One case as a file.
   head.head = one.file->file.head;
   trace::Case itself = *one.one;
   if (!profile.empty()) {
@@ -167,7 +167,7 @@ ImplementationRun run(const std::string& target, const MakeAttachment& make, con
   Work work(plan, watcher, out);
   std::vector<std::thread> others;
   const unsigned jobs = out.identity.real_time ? 1 : plan.jobs;
-  std::vector<std::exception_ptr> broken(jobs);  // What a job could not go on after.
+  std::vector<std::exception_ptr> broken(jobs);  // Why a job stopped.
   for (unsigned i = 1; i < jobs; ++i) {
     others.emplace_back([&, i] {
       try {

@@ -19,7 +19,7 @@ using testing::FakeAttachment;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-// Attachments that `change` has changed.
+// Makes attachments changed by `change`.
 MakeAttachment fake(std::function<void(FakeAttachment&)> change = {}) {
   return [change] {
     auto out = std::make_unique<FakeAttachment>();
@@ -39,7 +39,7 @@ Plan plan(std::vector<std::string> globs = {}) {
   return out;
 }
 
-// Joined (success) for the canary of motes, whatever happens.
+// Reports joined (success) for the canary of motes, whatever happens.
 std::unique_ptr<runner::Target> parrot() {
   runner::Output joined;
   joined.time = 10;

@@ -87,7 +87,7 @@ bool is_of(std::string_view rule, std::string_view asked) {
   if (asked.empty() || rule.size() < asked.size()) return false;
   if (!std::equal(asked.begin(), asked.end(), rule.begin(), in_upper_case_equal)) return false;
   if (rule.size() == asked.size() || rule[asked.size()] == '-') return true;
-  // "J" is all of J1 to J11, but "J1" has nothing of J10.
+  // "J" covers all of J1 to J11, but "J1" covers nothing of J10.
   const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
   return is_digit(rule[asked.size()]) && !is_digit(asked.back());
 }

@@ -1,4 +1,4 @@
-// Which golden traces a run works.
+// Selects the golden traces of a run.
 #pragma once
 
 #include <optional>
@@ -15,24 +15,24 @@ struct Shard {
   unsigned index = 1;
   unsigned count = 1;
 };
-/// "2/8". Nothing where the text is none, or names a part that there is not.
+/// Parses "2/8". Returns nothing if the text is no shard, or names a part that does not exist.
 std::optional<Shard> parse_shard(std::string_view text);
 
-/// What all has to hold of a case; empty lists ask for nothing.
+/// Conditions on a case, all of which must hold; empty lists match everything.
 struct Selection {
   std::vector<std::string> globs;         ///< Its name is like one of them.
   std::vector<std::string> requirements;  ///< It names one: "J4-SEQ", or "J4" for all of J4.
-  std::optional<machine::Role> role;      ///< Of a node under test.
-  Shard shard;                            ///< Of what is left: every n-th case.
+  std::optional<machine::Role> role;      ///< Role of a node under test.
+  Shard shard;                            ///< Applied last: every n-th case.
 };
 
-/// `*` and `?` as in a shell.
+/// Matches `*` and `?` as a shell does.
 bool is_like(const std::string& glob, const std::string& name);
-/// Whether `rule` ("J4-SEQ") is `asked` or of its family ("J4", "J").
+/// Returns whether `rule` ("J4-SEQ") is `asked` or of its family ("J4", "J").
 bool is_of(std::string_view rule, std::string_view asked);
 
-/// Throws std::invalid_argument where a glob or a requirement fits no case at all, with the nearest
-/// name, or where nothing is left.
+/// Returns the selected cases. Throws std::invalid_argument if a glob or a requirement fits no case
+/// at all, with the nearest name, or if nothing is left.
 std::vector<SuiteCase> select(const Cases& cases, const Selection& selection);
 
 }  // namespace rubric::suite

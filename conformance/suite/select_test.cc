@@ -1,4 +1,4 @@
-// Which cases a run takes, and what the program carries with it.
+// The cases that a run takes, and those that the program contains.
 #include "conformance/suite/select.h"
 
 #include <gmock/gmock.h>

@@ -13,7 +13,7 @@
 
 namespace rubric::suite::testing {
 
-/// The machine behind a target that a test may change.
+/// Makes the machine as a target that a test may change.
 using Wrap = std::function<std::unique_ptr<runner::Target>()>;
 
 inline std::unique_ptr<runner::Target> machine_target() {
@@ -24,7 +24,7 @@ class FakeAttachment : public attach::Attachment {
  public:
   attach::Identity who = attach::machine_identity();
   Wrap make = machine_target;
-  std::string honest;       ///< What honesty() says.
+  std::string honest;       ///< Returned by honesty().
   std::string says;         ///< To its standard error, at each target.
   bool starts = true;
   int* targets = nullptr;   ///< Counts.
@@ -50,7 +50,7 @@ class FakeAttachment : public attach::Attachment {
   std::string stderr_;
 };
 
-/// Says what it is told to, whatever it is given.
+/// Emits a fixed output, whatever it is given.
 class Parrot : public runner::SubjectTarget {
  public:
   explicit Parrot(std::vector<runner::Output> says)

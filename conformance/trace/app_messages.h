@@ -1,5 +1,5 @@
-// What stands on a line besides the messages of the wire spec: calls and events of an application,
-// states of a link, the power of a node, and a frame that nothing decodes. The one table of them.
+// Messages of a line besides those of the wire spec: calls and events of an application, states of
+// a link, the power of a node, and a frame that nothing decodes. This is their only table.
 #pragma once
 
 #include <cstdint>
@@ -28,10 +28,10 @@ struct AppField {
 };
 
 enum class AppWhat : std::uint8_t {
-  kCall,    ///< Of the application to the node: `<` on app.
+  kCall,    ///< From the application to the node: `<` on app.
   kEvent,   ///< From the node to its application: `>` on app.
-  kState,   ///< Of a link or of the application: `<` on any of them.
-  kRadio,   ///< How the node's own last transmission ended: `<` on a radio.
+  kState,   ///< A link's or the application's: `<` on any of them.
+  kRadio,   ///< The end of the node's own last transmission: `<` on a radio.
   kPower,   ///< `<` on power.
   kFrame,   ///< On the links of frames, either way.
 };
@@ -119,7 +119,7 @@ constexpr AppMessage message(const char* name, AppWhat what) { return {name, wha
 
 }  // namespace app
 
-/// The name of the message that stands for a frame which nothing decodes.
+/// The name of the message for a frame that nothing decodes.
 constexpr const char* kFrameName = "am";
 
 constexpr AppMessage kAppMessages[] = {

@@ -13,7 +13,7 @@
 namespace rubric::trace {
 namespace {
 
-/// Ids and families ("J4" of "J4-SEQ") that the catalogue has.
+/// Returns the ids and families ("J4" of "J4-SEQ") of the catalogue.
 const std::unordered_set<std::string>& known_requirements() {
   static const std::unordered_set<std::string> known = [] {
     std::unordered_set<std::string> all;
@@ -45,7 +45,7 @@ class FileCheck {
   }
 
  private:
-  // What a file, or a case, says of itself.
+  // The headers of a file or a case.
   struct Said {
     bool version = false, profile = false, tick = false, seed = false;
     std::unordered_set<std::string> nodes, links;

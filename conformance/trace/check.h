@@ -1,5 +1,5 @@
-// What a grammar cannot say: names that exist, values that fit, labels and variables that come
-// before their use.
+// Checks beyond the grammar: names that exist, values that fit, labels and variables that are
+// defined before their use.
 #pragma once
 
 #include <string>
@@ -10,12 +10,12 @@
 
 namespace rubric::trace {
 
-/// Adds to the diagnostics of `parsed` whatever is wrong with its file.
+/// Adds everything that is wrong with the file of `parsed` to its diagnostics.
 void check(Parsed& parsed);
-/// Of a file that was built in code; empty where nothing is wrong.
+/// Checks a file that was built in code; returns nothing if it is right.
 std::vector<Diagnostic> check(const File& file);
 
-/// Bounded: beyond kDiagnosticsMax it only counts.
+/// Adds a diagnostic; beyond kDiagnosticsMax it only counts.
 void add_diagnostic(Parsed& parsed, Place place, std::string text);
 
 }  // namespace rubric::trace

@@ -12,7 +12,7 @@
 namespace rubric::trace {
 namespace {
 
-// What is wrong with a value for what a path leads to, or nothing.
+// Returns what is wrong with a value for a slot, or nothing.
 
 std::string leaf_misfit(const Value& value, const Domain& domain) {
   const bool number = domain.kind == Domain::Kind::kNumber;
@@ -106,7 +106,7 @@ class MessageCheck {
   }
 
   bool given() const { return line_.op == Op::kGiven; }
-  /// The bytes say what is given, so the fields need not.
+  /// Returns whether fields are required; with bytes they are not.
   bool must_be_whole() const { return given() && !line_.bytes; }
 
   void any() {
@@ -200,7 +200,7 @@ class MessageCheck {
     variables(one.value, one.place);
   }
 
-  // A stimulus has values.
+  // Checks that a stimulus has single values.
   void single(const Value& value, Place place) {
     if (value.is(Value::Kind::kAny)) fail(place, "'*' where a value has to be given");
     if (value.is(Value::Kind::kRange)) fail(place, "a range where a value has to be given");
@@ -223,7 +223,7 @@ class MessageCheck {
     }
   }
 
-  // Messages of an application are of one form, so that what is missing can be told.
+  // Reports missing fields; messages of an application have one form, so these are known.
   void missing(const std::vector<FieldValue>& whole, const Shape& shape) {
     if (!shape.app || line_.message.open || is_fault(line_.op)) return;
     for (const AppField& field : shape.app->all()) {
@@ -248,7 +248,7 @@ class MessageCheck {
                                "group, type, and as many bytes as length says");
     }
     Bindings bindings;
-    // What a variable was bound to is known only when the case runs.
+    // A variable's value is known only when the case runs.
     Line line = line_;
     line.bytes.reset();
     const auto soften = [](Value& value) {

@@ -1,4 +1,4 @@
-// Whether the message of a line can be one, there and in that direction.
+// Checks whether the message of a line is possible there and in that direction.
 #pragma once
 
 #include <functional>
@@ -13,7 +13,7 @@ using Report = std::function<void(Place, std::string)>;
 /// Variables of the case that some line before this one has bound.
 using BoundNames = std::unordered_set<std::string>;
 
-/// Reports what is wrong, and adds the variables that the line binds.
+/// Reports errors, and adds the variables that the line binds.
 void check_message(const Line& line, LinkKind link, BoundNames& bound, const Report& report);
 
 }  // namespace rubric::trace

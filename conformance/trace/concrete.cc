@@ -83,7 +83,7 @@ class Flatten {
     show(show_bytes(added.bytes));
   }
 
-  // The present path with another last name.
+  // Returns the present path with another last name.
   std::string sibling(std::string_view name) const {
     const std::size_t dot = path_.rfind('.');
     return (dot == std::string::npos ? "" : path_.substr(0, dot + 1)) + std::string(name);
@@ -150,10 +150,11 @@ class Flatten {
   const Decoded& decoded_;
   Concrete& out_;
   std::string path_;
-  bool inside_ = false;  // Of an address, which is shown as a whole.
+  bool inside_ = false;  // Inside an address, which is shown as a whole.
 };
 
-// Frames are named by what their payload is; that a whole frame was understood is for `decode`.
+// Frames are named by their payload; that a whole frame was understood is only of interest to
+// `decode`.
 bool decode_as(const reflect::Type& type, const AmFrame& frame, Concrete& out) {
   thread_local Decoded decoded;
   const Bytes bytes(frame.payload.data(), frame.payload.size());

@@ -1,4 +1,4 @@
-// Messages whose every field is known: decoded frames, and application messages.
+// Messages with known values in every field: decoded frames, and application messages.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace rubric::trace {
 
-/// A message that cannot be made, and which of its parts is why.
+/// A message that cannot be made, with the part that is to blame.
 class TraceError : public std::runtime_error {
  public:
   TraceError(Place place, const std::string& text) : std::runtime_error(text), place_(place) {}
@@ -24,8 +24,8 @@ class TraceError : public std::runtime_error {
   Place place_;
 };
 
-/// What `$q` and its like stand for in a case. Values are numbers, reals, bytes, and addresses,
-/// channels and lists of these.
+/// The values of `$q` and other variables in a case: numbers, reals, bytes, and addresses, channels
+/// and lists of these.
 class Bindings {
  public:
   const Value* find(std::string_view name) const;
@@ -43,9 +43,9 @@ struct Leaf {
   Domain domain;
   std::int64_t number = 0;  ///< Numbers; a real as its 32 bits.
   std::string bytes;
-  /// The number, real or bytes, without names.
+  /// Returns the number, real or bytes, without names.
   Value value() const;
-  /// The same with names.
+  /// Returns the same with names.
   Value show() const;
 };
 
@@ -54,46 +54,45 @@ struct Part {
   std::string path;
   std::string alias;
   Slot::Kind kind = Slot::Kind::kStruct;
-  std::size_t first = 0;    ///< Of its leaves.
+  std::size_t first = 0;    ///< Index of its first leaf.
   std::size_t end = 0;
-  std::string bytes;        ///< Of structures of the wire.
+  std::string bytes;        ///< For structures of the wire.
 };
 
 struct Concrete {
   std::string name;
-  std::optional<AmFrame> frame;  ///< Where it is one.
+  std::optional<AmFrame> frame;  ///< If it is one.
   std::vector<Leaf> leaves;      ///< In their order.
   std::vector<Part> parts;       ///< Outer ones first.
   Message message;               ///< As a log shows it: addresses, lists and names.
 
-  /// By its whole path; null if it has none.
+  /// Returns the leaf with this whole path, or null.
   const Leaf* leaf(std::string_view path) const;
   const Part* part(std::string_view path) const;
   std::optional<std::int64_t> number(std::string_view path) const;
-  /// pid and devid, or source and destination of a channel.
+  /// Returns pid and devid, or source and destination of a channel.
   std::optional<std::pair<std::uint16_t, std::uint16_t>> pair(std::string_view path) const;
 };
 
-/// Whatever the frame is: what the link makes of its AM type, or `am(type payload)` where it is
-/// unknown there or malformed.
+/// Decodes a frame: as the message that its AM type has on the link, or as `am(type payload)` if it
+/// is unknown there or malformed.
 Concrete decode(const AmFrame& frame, LinkKind link);
-/// As `am(type payload)` in any case.
+/// Decodes as `am(type payload)` in any case.
 Concrete decode_raw(const AmFrame& frame);
 
-/// A call, an event or another message of app_messages.h. Variables take what they are bound to;
-/// `...` leaves zeros; `!x` becomes another value. Throws TraceError where a field is missing or
-/// says more than one thing.
+/// Makes a call, an event or another message of app_messages.h. Variables take their values; `...`
+/// leaves zeros; `!x` becomes another value. Throws TraceError if a field is missing or ambiguous.
 Concrete concrete(const Message& message, const Bindings& bindings = {});
 
 // Lines of a log.
 
-/// With AM addresses, all fields and the exact bytes.
+/// Returns a line with AM addresses, all fields and the exact bytes.
 Line frame_line(std::int64_t ticks, std::string_view node, Op op, std::string_view link,
                 LinkKind kind, const AmFrame& frame);
-/// The link lost or doubled this frame; `op` is kLost or kDup.
+/// Returns the line of a frame that the link lost or doubled; `op` is kLost or kDup.
 Line fault_line(std::int64_t ticks, Op op, std::string_view link, LinkKind kind,
                 const AmFrame& frame);
-/// On app, power, or the state of a link.
+/// Returns a line on app, power, or about the state of a link.
 Line app_line(std::int64_t ticks, std::string_view node, Op op, std::string_view link,
               Message message);
 

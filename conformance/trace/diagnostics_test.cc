@@ -1,4 +1,4 @@
-// Each diagnostic of traces beside an input that provokes it.
+// Each diagnostic of traces with an input that provokes it.
 #include <gtest/gtest.h>
 
 #include <string>

@@ -1,5 +1,5 @@
-// A grammar in the notation of the XML specification, read and run: for the tests that hold the
-// parser to its grammar.
+// Reads and runs a grammar in the notation of the XML specification, for tests that compare the
+// parser with its grammar.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ namespace rubric::trace::testing {
 
 class Ebnf {
  public:
-  /// Throws std::runtime_error where the text is no grammar or a rule is missing.
+  /// Throws std::runtime_error if the text is no grammar or a rule is missing.
   explicit Ebnf(std::string_view text) : text_(text) {
     while (skip()) {
       const std::string name = word();
@@ -25,14 +25,14 @@ class Ebnf {
     for (const auto& [name, rule] : rules_) check(rule);
   }
 
-  /// Whether `rule` derives all of the text, which is UTF-8.
+  /// Returns whether `rule` derives all of the text, which is UTF-8.
   bool derives(const std::string& rule, std::string_view text) const {
     const std::u32string points = decode(text);
     const std::set<std::size_t> ends = match(rules_.at(rule), points, {0});
     return ends.contains(points.size());
   }
 
-  /// Some text that the rule derives; repetitions are short.
+  /// Returns some text that the rule derives; repetitions are short.
   std::string generate(const std::string& rule, std::mt19937& random) const {
     std::string out;
     generate(rules_.at(rule), random, out);
@@ -49,7 +49,7 @@ class Ebnf {
   enum class Kind : std::uint8_t { kChoice, kSequence, kLiteral, kSet, kRule, kRepeat };
   struct Node {
     Kind kind = Kind::kSequence;
-    std::string text;                                   // Of a literal or a rule's name.
+    std::string text;                                   // Text of a literal or a rule's name.
     std::vector<std::pair<char32_t, char32_t>> ranges;  // kSet.
     bool at_most_once = false;                          // kRepeat: ?
     bool at_least_once = false;                         // kRepeat: +

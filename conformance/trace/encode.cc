@@ -30,7 +30,7 @@ Tree tree_of_real(const std::string& text) {
   return Tree::of_real(text);
 }
 
-/// The tree of values that the codec's encoder takes.
+/// Builds the tree of values for the codec's encoder.
 class Builder {
  public:
   Builder(const Message& message, const Shape& shape, const Bindings& bindings, bool any)
@@ -63,7 +63,7 @@ class Builder {
     return tree_of(value, slots, field.place);
   }
 
-  // Some value that the pattern allows.
+  // Returns some value that the pattern allows.
   static Value sample(const Value& value, const Slot& slot) {
     const bool range = value.is(Value::Kind::kRange);
     if (range && value.text.empty()) return Value::of(value.number);
@@ -114,7 +114,7 @@ class Builder {
     return Tree::of_integer(number_in(domain, value, place));
   }
 
-  // Which enumeration it is may depend on other fields, so the encoder looks the name up.
+  // The enumeration may depend on other fields, so the encoder looks the name up.
   static Tree names(const Value& value, const Shape::Alternatives& slots, Place place) {
     bool known = false;
     for (const Slot& slot : slots) {
@@ -270,13 +270,13 @@ void check_possible(const Message& message) {
     const bool any = field.value.is(Value::Kind::kAny) || field.value.is(Value::Kind::kVariable) ||
                      field.value.negated;
     free = free || any;
-    // A wildcard for a whole part leaves nothing to hold against the spec.
+    // A wildcard for a whole part has no values to compare with the spec.
     if (any && kind != Slot::Kind::kLeaf && kind != Slot::Kind::kAddress) return;
   }
   try {
     encode_message(message, {}, true);
   } catch (const TraceError&) {
-    // What is free may decide what the other fields are.
+    // Free fields may decide which other fields exist.
     if (!free || !has_bodies(*shape->type)) throw;
   }
 }
@@ -295,7 +295,7 @@ std::uint16_t destination(const Line& line, const Scope& scope) {
   return node->id.value_or(kAmAll);
 }
 
-// Who can have sent it: the src field says, else nodes of the other role.
+// Returns the possible sender: the node in the src field, else nodes of the other role.
 std::uint16_t source(const Line& line, const Scope& scope, const AmFrame& frame) {
   const LinkKind link = scope.link(line.link).value_or(LinkKind::kRadio);
   if (line.op != Op::kGiven) {
@@ -310,7 +310,7 @@ std::uint16_t source(const Line& line, const Scope& scope, const AmFrame& frame)
     const auto known = [&](const NodeHeader& one) { return one.id == src->second; };
     if (std::any_of(scope.nodes.begin(), scope.nodes.end(), known)) return src->second;
   }
-  // Sinks hear motes; what else a mote hears, its sink has sent.
+  // Sinks hear motes; a mote's other frames come from its sink.
   const NodeHeader* hears = line.op == Op::kGiven ? scope.node(line.node) : nullptr;
   std::optional<std::uint16_t> found;
   for (const NodeHeader& one : scope.nodes) {

@@ -1,4 +1,4 @@
-// From a line that says what is given to a node to the frame that travels.
+// Turns a line's stimulus for a node into the frame that travels.
 #pragma once
 
 #include "conformance/trace/concrete.h"
@@ -7,20 +7,19 @@
 namespace rubric::trace {
 
 /// Makes the AM payload and type of a message of the wire spec, or of `am(type payload)`. Variables
-/// take what they are bound to, `!x` becomes another value; with `...` fields that are not given
-/// take the value that the spec implies, else the least one, and lists and bodies are empty.
-/// dest and src stay 0. Throws TraceError.
+/// take their values, `!x` becomes another value; with `...` missing fields take the value that the
+/// spec implies, else the least one, and lists and bodies are empty. dest and src stay 0. Throws
+/// TraceError.
 AmFrame encode(const Message& message, const Bindings& bindings = {});
 
-/// The frame of a line: its exact bytes if it has any, else its message with the addresses that
-/// `am=` says. Without `am=` a frame is for the node that it is given to, a join_request for all;
-/// its source is the devid of `src` if a node has that, else the one id that nodes of the other
-/// role have. Over PEIS islands stand in place of ids. Throws TraceError, also where no source can
-/// be told.
+/// Returns the frame of a line: its exact bytes if it has any, else its message with the addresses
+/// of `am=`. Without `am=` a frame is for the node that receives it, a join_request for all; its
+/// source is the devid of `src` if a node has that, else the one id that nodes of the other role
+/// have. Over PEIS islands replace ids. Throws TraceError, also if the source is ambiguous.
 AmFrame frame_of(const Line& line, const Scope& scope, const Bindings& bindings = {});
 
-/// Whether a message can be made of this pattern at all: variables, wildcards and ranges stand for
-/// any value that fits. Throws TraceError if not.
+/// Checks that this pattern allows a message: variables, wildcards and ranges match any value that
+/// fits. Throws TraceError if not.
 void check_possible(const Message& message);
 
 }  // namespace rubric::trace

@@ -48,8 +48,8 @@ void fill_structure(const Field& field, Tree& tree, Choices& choices) {
   if (!types.empty()) fill(*types[choices.take(types.size())], tree, choices);
 }
 
-/// The present member for the bytes of a field that bodies may overlay. The interpretations that
-/// share its name are alternatives.
+/// Adds the member for the bytes of a field that bodies may overlay. The interpretations that share
+/// its name are alternatives.
 bool fill_body(const Type& type, const Field& field, Tree& tree, Choices& choices) {
   std::vector<const reflect::Interpretation*> bodies;
   for (int i = 0; i < type.interpretation_count; ++i) {
@@ -69,7 +69,7 @@ bool fill_body(const Type& type, const Field& field, Tree& tree, Choices& choice
 
 Tree elements(const Field& field) {
   std::vector<Tree> items;
-  // A count that reads other fields is filled in by the encoder; a constant one is not.
+  // The encoder fills in a count that reads other fields; it does not fill in a constant one.
   if (field.repeat == reflect::Repeat::kCount && field.count.count == 1 &&
       field.count.steps[0].op == reflect::Op::kConst) {
     items.resize(static_cast<std::size_t>(field.count.steps[0].value), Tree::of_integer(0));

@@ -1,4 +1,4 @@
-// Fills in what `...` leaves open in a message that is given to a node.
+// Fills in the fields that `...` leaves open in a message that is given to a node.
 #pragma once
 
 #include <cstddef>
@@ -9,13 +9,13 @@
 
 namespace rubric::trace {
 
-/// Decisions that have several answers, tried one after the other: what a body is depends on fields
-/// that are filled in as well.
+/// Decisions with several answers, tried one after the other: a body's type depends on fields that
+/// are filled in as well.
 class Choices {
  public:
-  /// The answer to the next question, from 0 to count - 1.
+  /// Returns the answer to the next question, from 0 to count - 1.
   std::size_t take(std::size_t count);
-  /// Goes on to the next combination of answers; false when there is none.
+  /// Advances to the next combination of answers; returns false if there is none.
   bool next();
 
  private:
@@ -28,10 +28,10 @@ class Choices {
 };
 
 /// Adds the fields of `type` that `tree` lacks: the least value that is allowed, empty lists and
-/// bytes. Those that the encoder fills in by itself stay away.
+/// bytes. Leaves out those that the encoder fills in.
 void fill(const reflect::Type& type, reflect::Value& tree, Choices& choices);
 
-/// Bytes that are given in place of a body, which is a structure, go to the opaque field below it.
+/// Moves bytes given in place of a body, which is a structure, to the opaque field below it.
 void give_opaque(const reflect::Type& type, reflect::Value& tree);
 
 }  // namespace rubric::trace

@@ -1,4 +1,4 @@
-// The parser, the grammar in spec/trace and the examples beside it say the same.
+// The parser, the grammar in spec/trace and the examples beside it agree.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -31,7 +31,7 @@ const testing::Ebnf& grammar() {
   return grammar;
 }
 
-/// The examples of the document, marked as rtr.
+/// Returns the examples of the document that are marked as rtr.
 std::vector<std::string> examples() {
   const std::string text = read("spec/trace/README.md");
   const std::string open = "```rtr\n";
@@ -68,7 +68,8 @@ TEST(Grammar, ExamplesOfTheDocument) {
   EXPECT_TRUE(grammar().derives("file", all[1]));
 }
 
-// What the parser adds to the grammar: orders of numbers and sizes.
+// Returns whether the errors are limits that the parser adds to the grammar: orders of numbers and
+// sizes.
 bool is_limit(const std::string& errors) {
   for (const char* limit : {"is empty", "ends before it begins", "digits, given",
                             "a range of numbers", "from 0 to 65535", "from 1 to 8"}) {
@@ -87,7 +88,7 @@ TEST(Grammar, WhatItDerivesParses) {
     ASSERT_TRUE(parsed.ok() || is_limit(parsed.errors())) << line << "\n" << parsed.errors();
     if (!parsed.ok()) continue;
     ++parsed_lines;
-    // And what the parser makes of it, the grammar derives.
+    // The grammar derives what the parser makes of it.
     for (const std::string& printed : lines_of(print(parsed.file))) {
       ASSERT_TRUE(grammar().derives("line", printed)) << line << "\n" << printed;
     }
@@ -95,7 +96,7 @@ TEST(Grammar, WhatItDerivesParses) {
   EXPECT_GT(parsed_lines, 25000);
 }
 
-// A character changed here and there: neither accepts what the other refuses.
+// Changes characters: neither accepts a text that the other refuses.
 TEST(Grammar, RefusesWhatTheParserRefuses) {
   std::mt19937 random(2);
   const std::string characters = " ()[]!?*.=:;|%$@+-<>\"x0aJ_\\";

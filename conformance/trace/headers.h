@@ -1,4 +1,4 @@
-// Headers of a trace that is to be worked otherwise than it says.
+// Changes headers of a trace, to run it otherwise than it states.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace rubric::trace {
 
-/// Whether one of these lines is a header of this kind: SeedHeader, ProfileHeader, ...
+/// Returns whether one of these lines is a header of this kind: SeedHeader, ProfileHeader, ...
 template <class Kind>
 bool states(const std::vector<Item>& items) {
   return std::any_of(items.begin(), items.end(), [](const Item& item) {
@@ -19,7 +19,7 @@ bool states(const std::vector<Item>& items) {
   });
 }
 
-/// Puts `what` in place of the headers of its kind; false if there are none.
+/// Replaces the headers of its kind by `what`; returns false if there are none.
 template <class Kind>
 bool replace_header(std::vector<Item>& items, const Kind& what) {
   for (Item& item : items) {
@@ -29,15 +29,16 @@ bool replace_header(std::vector<Item>& items, const Kind& what) {
   return states<Kind>(items);
 }
 
-/// Lets `what` hold for the case, which need not stand in the file: in place of the headers of its
-/// kind that are there, else as one more of the file.
+/// Makes `what` apply to the case, which need not be in the file: replaces the headers of its kind,
+/// else adds one to the file.
 template <class Kind>
 void set_header(File& file, Case& one, const Kind& what) {
   const bool in_case = replace_header(one.items, what);
   if (!replace_header(file.head, what) && !in_case) file.header({what, {}, {}});
 }
 
-/// The same for a seed, but where neither file nor case states one; false if one does.
+/// Does the same for a seed, but only if neither file nor case states one; returns false if one
+/// does.
 inline bool set_seed_if_none(File& file, const Case& one, std::uint64_t seed) {
   if (states<SeedHeader>(one.items) || states<SeedHeader>(file.head)) return false;
   file.header({SeedHeader{seed}, {}, {}});

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kOtherMessage = 1000;
 
-/// One attempt; what it binds counts only if all of it matches.
+/// One attempt; its bindings count only if all of it matches.
 class Matcher {
  public:
   Matcher(const Concrete& seen, const Bindings& bindings)
@@ -78,7 +78,7 @@ class Matcher {
     match_.differences.push_back({std::string(path), std::move(expected), std::move(seen)});
   }
 
-  // "$q = 7", as the binding says.
+  // Returns "$q = 7", from the binding.
   std::string describe(const Value& want) const {
     std::string text = value_text(want);
     const auto add = [&](const Value& value) {
@@ -112,7 +112,7 @@ class Matcher {
     differ(field.path, describe(field.value), "no such field");
   }
 
-  // Fields that the pattern leaves out must have the one value that can be meant.
+  // Checks fields that the pattern leaves out, which must have their only possible value.
   void closed() {
     for (std::size_t i = 0; i < covered_.size(); ++i) {
       const Leaf& leaf = seen_.leaves[i];
@@ -132,7 +132,7 @@ class Matcher {
     return same(want, leaf) != want.negated;
   }
 
-  // A range that is counted from what a variable is bound to; with nothing bound it never matches.
+  // Matches a range that is relative to a variable; if that is unbound it never matches.
   bool near(const Value& want, const Leaf& leaf) const {
     const Value* base = bindings_.find(want.text);
     if (!base || !base->is(Value::Kind::kNumber)) return false;
@@ -168,7 +168,7 @@ class Matcher {
     }
   }
 
-  // Not a number is the same as any other that is none; else bit by bit, but for the sign of zero.
+  // Compares reals: any NaN equals any other; else bit by bit, except for the sign of zero.
   static bool same_real(float want, const Leaf& leaf) {
     const float seen = float_of_bits(static_cast<std::uint32_t>(leaf.number));
     return std::isnan(want) ? std::isnan(seen) : want == seen;
@@ -195,7 +195,7 @@ class Matcher {
     return all;
   }
 
-  /// What a variable is bound to.
+  /// Returns the value to bind a variable to.
   Value plain(const Part& part) const {
     if (part.kind == Slot::Kind::kStruct) return Value::bytes(part.bytes);
     Value value;
@@ -247,7 +247,7 @@ Message opened(const Message& message) {
 
 namespace {
 
-// `am(type payload)` asks for the frame as such, whatever can be made of it.
+// `am(type payload)` matches the frame as such, whatever it decodes to.
 Match match_message(const Message& pattern, const Line* line, const Concrete& seen,
                     Bindings& bindings) {
   if (pattern.name == kFrameName && seen.name != kFrameName && seen.frame) {

@@ -1,4 +1,4 @@
-// Whether a message is what a line asks for, and if not, how it differs.
+// Matches a message against a line, and describes how they differ.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace rubric::trace {
 
-/// A field that is not as the pattern has it. Path "message": it is another message; "am": other
-/// AM addresses; "bytes": other bytes.
+/// A field that differs from the pattern. Path "message": it is another message; "am": other AM
+/// addresses; "bytes": other bytes.
 struct Difference {
   std::string path;
   std::string expected;
@@ -22,20 +22,20 @@ struct Match {
   std::vector<Difference> differences;  ///< In the order of the pattern.
 
   explicit operator bool() const { return differences.empty(); }
-  /// How far from matching, to find the nearest miss: another message is further away than any
-  /// number of fields.
+  /// Returns how far it is from matching, to find the nearest miss: another message is further away
+  /// than any number of fields.
   std::size_t distance() const;
-  /// "seq_num: expected 7, seen 8; am: ...".
+  /// Returns "seq_num: expected 7, seen 8; am: ...".
   std::string text() const;
 };
 
-/// Holds `seen` against the message of a line, its AM addresses and exact bytes. Time, node and
-/// link are not looked at. Only where all matches are variables bound that were not yet; `!$q` and
-/// `$q+1..$q+2` with nothing bound to q never match.
+/// Compares `seen` with the message of a line, its AM addresses and exact bytes. Ignores time, node
+/// and link. Binds unbound variables only if everything matches; `!$q` and `$q+1..$q+2` never match
+/// while q is unbound.
 Match match(const Line& line, const Concrete& seen, Bindings& bindings);
-/// The message alone.
+/// Compares the message alone.
 Match match(const Message& pattern, const Concrete& seen, Bindings& bindings);
-/// Faults of a link look at the fields that they name only; everything else is free.
+/// Opens a message for faults of a link, which check only the fields that they name.
 Message opened(const Message& message);
 
 }  // namespace rubric::trace

@@ -9,7 +9,7 @@ namespace rubric::trace {
 namespace {
 
 
-/// Offset of the first byte that is no UTF-8 or a control character other than a tab.
+/// Returns the offset of the first byte that is no UTF-8 or a control character other than a tab.
 std::size_t find_foreign(std::string_view text) {
   const auto byte = [&](std::size_t i) {
     return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u;
@@ -75,7 +75,7 @@ class Parser {
     }
   }
 
-  // Quoted input may be as long as a line.
+  // Shortens quoted input, which may be as long as a line.
   static std::string shortened(const std::string& text) {
     constexpr std::size_t kMax = 240;
     if (text.size() <= kMax) return text;

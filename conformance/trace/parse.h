@@ -1,4 +1,4 @@
-// Reads .rtr text. The grammar stands in spec/trace/rtr.ebnf.
+// Reads .rtr text. The grammar is spec/trace/rtr.ebnf.
 #pragma once
 
 #include <cstdint>
@@ -10,13 +10,13 @@
 
 namespace rubric::trace {
 
-/// Something wrong with a trace.
+/// An error in a trace.
 struct Diagnostic {
   Place place;
   std::string text;
 };
 
-/// The file as far as it was understood, and all that is wrong with it, in order of place.
+/// The file as far as it was understood, with all its errors in order of place.
 struct Parsed {
   static constexpr std::size_t kDiagnosticsMax = 100;
   static constexpr std::size_t kLineBytesMax = 65536;
@@ -27,16 +27,16 @@ struct Parsed {
   std::size_t dropped = 0;  ///< Diagnostics beyond kDiagnosticsMax.
 
   bool ok() const { return diagnostics.empty(); }
-  /// A line "file:line:column: text" for each, and a last one if some were dropped.
+  /// Returns a line "file:line:column: text" for each, and a last one if some were dropped.
   std::string errors() const;
 };
 
 /// Reads a whole file and checks it (check.h).
 Parsed parse(std::string_view text, std::string_view file_name);
-/// The grammar alone: names, values and the order of lines are not checked.
+/// Checks the grammar alone: not names, values and the order of lines.
 Parsed parse_syntax(std::string_view text, std::string_view file_name);
 
-/// A message alone, "join_reply(seq_num=3 ...)"; returns what is wrong, or nothing.
+/// Reads a message alone, "join_reply(seq_num=3 ...)"; returns what is wrong, or nothing.
 std::string parse_message(std::string_view text, Message& out);
 
 }  // namespace rubric::trace

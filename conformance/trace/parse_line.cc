@@ -22,7 +22,7 @@ std::int64_t ticks(Scanner& in, std::string_view text) {
   return number;
 }
 
-// `12`, `0..50`
+// Reads `12` or `0..50`.
 void window(Scanner& in, std::string_view text, Time& time) {
   const std::size_t dots = text.find("..");
   time.from = time.to = ticks(in, text.substr(0, dots));
@@ -109,7 +109,7 @@ void parse_am(Scanner& in, Line& line) {
   in.skip_blanks();
 }
 
-// A field with its path, or a value alone.
+// Reads a field with its path, or a value alone.
 FieldValue parse_field(Scanner& in) {
   FieldValue field;
   field.place = in.place();
@@ -180,7 +180,7 @@ void parse_requirements(Scanner& in, Line& line) {
 void parse_bytes(Scanner& in, Line& line) {
   in.advance(1);
   const std::string_view text = trimmed(in.until([](char c) { return c == ';'; }));
-  // Blanks stand between bytes, not within one.
+  // Blanks come between bytes, not within one.
   line.bytes.emplace();
   for (std::size_t at = 0; at < text.size();) {
     if (text[at] == ' ' || text[at] == '\t') {
@@ -194,7 +194,7 @@ void parse_bytes(Scanner& in, Line& line) {
   if (line.bytes->empty()) in.fail_at(text, "expected bytes in hex behind '|'");
 }
 
-// Nothing, or `; text`.
+// Reads nothing, or `; text`.
 std::string parse_comment(Scanner& in) {
   in.skip_blanks();
   if (in.at_end()) return {};
@@ -260,7 +260,7 @@ Case parse_case(Scanner& in) {
 
 namespace {
 
-/// A word of a header; empty at its end.
+/// Returns a word of a header; empty at its end.
 std::string_view header_word(Scanner& in) {
   in.skip_blanks();
   if (in.peek() == '%' || in.peek() == ';') return in.rest().substr(0, 0);

@@ -1,4 +1,4 @@
-// The parts of a line of a trace. They throw LineError.
+// Parses the parts of a line of a trace. These functions throw LineError.
 #pragma once
 
 #include <vector>
@@ -9,9 +9,9 @@
 namespace rubric::trace {
 
 Line parse_line(Scanner& in);
-/// One or more headers that stand in a line.
+/// Parses one or more headers in a line.
 void parse_headers(Scanner& in, std::vector<Item>& out);
-/// Behind the word "case".
+/// Parses the rest of a line after the word "case".
 Case parse_case(Scanner& in);
 Message parse_message(Scanner& in);
 

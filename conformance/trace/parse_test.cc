@@ -15,7 +15,7 @@ constexpr const char* kHead =
     "%node bA base_station island=11\n";
 
 std::string errors(const std::string& text) { return parse(text, "t.rtr").errors(); }
-/// Of lines in a case behind the usual head: they begin in line 5.
+/// Returns the errors of lines in a case after the usual head: they begin in line 5.
 std::string line_errors(const std::string& lines) {
   return errors(std::string(kHead) + "case a\n" + lines);
 }
@@ -130,7 +130,7 @@ TEST(Parse, ManyMistakesAreCounted) {
   EXPECT_THAT(parsed.errors(), testing::EndsWith("t: and 150 more\n"));
 }
 
-// Hostile input is told, whatever it is.
+// Hostile input is reported, whatever it is.
 
 TEST(Hostile, LongLine) {
   const std::string line(10 << 20, 'a');

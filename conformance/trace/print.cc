@@ -11,7 +11,7 @@ constexpr std::size_t kNodeColumns = 3;
 constexpr std::size_t kOpColumns = 2;
 constexpr std::size_t kLinkColumns = 4;
 
-// A word and at least one blank behind it, in columns.
+// Prints a word and at least one blank after it, in columns.
 void put_padded(std::string_view word, std::size_t columns, std::string& out) {
   out += word;
   out.append(word.size() < columns ? columns - word.size() + 1 : 1, ' ');

@@ -226,7 +226,7 @@ TEST(RoundTrip, AnyFile) {
     RC_ASSERT(parsed.ok());
     RC_ASSERT(parsed.file == file);
     RC_ASSERT(print(parsed.file) == text);
-    // Whatever it says, checking it ends.
+    // Whatever it contains, checking it ends.
     parse(text, "f");
   }));
   EXPECT_GT(lines, 1000u);  // The generator makes files worth printing.

@@ -1,4 +1,4 @@
-// One line of a trace, word by word.
+// Scans one line of a trace, word by word.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace rubric::trace {
 
-/// What stops the reading of a line. Used inside of the parser only.
+/// Stops the reading of a line. Used inside the parser only.
 struct LineError {
   Place place;
   std::string text;
@@ -23,7 +23,7 @@ class Scanner {
     while (at_ < text_.size() && (text_[at_] == ' ' || text_[at_] == '\t')) ++at_;
   }
   bool at_end() const { return at_ == text_.size(); }
-  /// The present character; 0 at the end.
+  /// Returns the present character; 0 at the end.
   char peek() const { return at_end() ? '\0' : text_[at_]; }
   std::string_view rest() const { return text_.substr(at_); }
   void advance(std::size_t n) { at_ += n; }
@@ -32,9 +32,9 @@ class Scanner {
     ++at_;
     return true;
   }
-  /// Up to the next blank or the end; perhaps empty.
+  /// Returns the text up to the next blank or the end; perhaps empty.
   std::string_view word() { return until([](char c) { return c == ' ' || c == '\t'; }); }
-  /// Up to a character for which `stop` holds, or the end.
+  /// Returns the text up to a character for which `stop` holds, or the end.
   template <typename Stop>
   std::string_view until(Stop stop) {
     const std::size_t begin = at_;
@@ -43,7 +43,7 @@ class Scanner {
   }
 
   Place place() const { return place_at(at_); }
-  /// Of a part of the line.
+  /// Returns the place of a part of the line.
   Place place_of(std::string_view part) const {
     return place_at(static_cast<std::size_t>(part.data() - text_.data()));
   }

@@ -14,7 +14,7 @@ namespace {
 using reflect::Field;
 using reflect::Type;
 
-// Over PEIS nothing but messages of the network level travels.
+// Over PEIS only messages of the network level travel.
 constexpr std::string_view kPeisMessage = "net_msg";
 
 bool reads(const reflect::Expr& expr, std::int32_t offset) {
@@ -42,7 +42,7 @@ bool is_address(const Type& type) {
          std::strcmp(type.fields[1].name, "devid") == 0;
 }
 
-/// Collects the paths of a type and of whatever its bytes may be.
+/// Collects the paths of a type and of all types that its bytes may have.
 class Walk {
  public:
   explicit Walk(Shape& shape) : shape_(shape) {}
@@ -256,7 +256,7 @@ std::string Shape::resolve(std::string_view path, std::vector<std::string>* cand
     if (candidates) *candidates = found->second;
     return {};
   }
-  // Indexes in front of the tail are not known.
+  // Indexes before the tail are unknown.
   const std::string front = found->second[0].substr(0, found->second[0].size() - plain.size());
   if (front.find('[') != std::string::npos) {
     if (candidates) *candidates = found->second;

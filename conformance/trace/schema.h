@@ -1,4 +1,4 @@
-// The messages that a trace can name and the fields that they have: the codec's tables and those of
+// The messages that a trace can name, and their fields: the codec's tables and those of
 // app_messages.h, looked up by name and path.
 #pragma once
 
@@ -15,11 +15,11 @@
 
 namespace rubric::trace {
 
-/// What a leaf can be: a number with its names, a real, or bytes.
+/// The domain of a leaf: a number with its names, a real, or bytes.
 struct Domain {
   enum class Kind : std::uint8_t { kNumber, kReal, kBytes };
   Kind kind = Kind::kNumber;
-  bool derived = false;  ///< It says how much follows; whoever writes a message leaves it out.
+  bool derived = false;  ///< A size or count of what follows; messages leave it out.
   std::int64_t min = 0;
   std::int64_t max = 0;
   std::int64_t implied = -1;  ///< The only value, or the one that is expected; -1: none.
@@ -32,15 +32,15 @@ struct Domain {
   static Domain pid();
   static Domain devid();
 
-  /// The number that the names mean: an enumerator, bits of the mask, `all` for broadcast.
+  /// Returns the number that the names mean: an enumerator, bits of the mask, `all` for broadcast.
   std::optional<std::int64_t> number_of(std::string_view names) const;
-  /// By its name, if it has one; reals and numbers.
+  /// Returns a real or number, by its name if it has one.
   Value show(std::int64_t number) const;
-  /// "a number from 0 to 255 or a name of am_type (...)".
+  /// Returns "a number from 0 to 255 or a name of am_type (...)".
   std::string expectation() const;
 };
 
-/// What a path leads to.
+/// The target of a path.
 struct Slot {
   enum class Kind : std::uint8_t { kLeaf, kAddress, kChannel, kList, kStruct };
   Kind kind = Kind::kLeaf;
@@ -53,34 +53,34 @@ struct Shape {
   using Alternatives = std::vector<Slot>;
 
   std::string name;
-  const reflect::Type* type = nullptr;  ///< Of the wire spec, or null.
-  const AppMessage* app = nullptr;      ///< Of app_messages.h, or null.
-  bool radio = false;                   ///< Where it travels.
+  const reflect::Type* type = nullptr;  ///< In the wire spec, or null.
+  const AppMessage* app = nullptr;      ///< In app_messages.h, or null.
+  bool radio = false;                   ///< The links on which it travels.
   bool serial = false;
   bool peis = false;
-  std::uint8_t am_type = 0;             ///< Of messages of the wire spec.
-  /// Whole paths. What a body is depends on other fields, so a path may lead to several things.
+  std::uint8_t am_type = 0;             ///< For messages of the wire spec.
+  /// Whole paths. A body's type depends on other fields, so a path may lead to several things.
   std::unordered_map<std::string, Alternatives> slots;
   /// Tails of paths, and the whole paths that they may mean.
   std::unordered_map<std::string, std::vector<std::string>> tails;
 
   bool has_fields() const { return !slots.empty(); }
   bool travels(LinkKind link) const;
-  /// The whole path that `path` means, its indexes in place; empty if none or several, and then
+  /// Returns the whole path that `path` means, with its indexes; empty if none or several, and then
   /// `candidates` has them.
   std::string resolve(std::string_view path, std::vector<std::string>* candidates = nullptr) const;
-  /// Null if it has no such field. Takes a whole path.
+  /// Returns the slots of a whole path, or null.
   const Alternatives* find(std::string_view whole_path) const;
 };
 
 class Schema {
  public:
-  /// The one of this build's protocol.
+  /// Returns the schema of this build's protocol.
   static const Schema& get();
 
-  /// Null if there is none of this name.
+  /// Returns the shape of this name, or null.
   const Shape* find(std::string_view name) const;
-  /// Of the type that the key chooses on this link; null: none.
+  /// Returns the type that the key chooses on this link; null if none.
   const reflect::Type* payload_type(LinkKind link, std::uint8_t am_type) const;
   const std::unordered_map<std::string, Shape>& shapes() const { return shapes_; }
 
@@ -93,7 +93,7 @@ class Schema {
   const reflect::Switch* serial_ = nullptr;
 };
 
-/// "a.b[3].c" as "a.b[].c".
+/// Returns "a.b[3].c" as "a.b[].c".
 std::string without_indexes(std::string_view path);
 
 }  // namespace rubric::trace

@@ -1,4 +1,4 @@
-// Messages and frames as tests write them.
+// Helpers to write messages and frames in tests.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -6,15 +6,14 @@
 #include <iterator>
 #include <unordered_map>
 
+#include "codec/reflect/am_frames.h"
 #include "codec/reflect/requirements.h"
 #include "codec/runtime/bytes.h"
 
 namespace rubric::trace {
 namespace {
 
-constexpr std::size_t kAmHeaderBytes = 8;
-
-// Reserved numbers by the names that are used in address shorthand.
+// Returns reserved numbers by their names in address shorthand.
 Value pid_value(std::uint16_t pid) {
   if (pid == 0xFFFF) return Value::names("all");
   if (pid == 0xFFFE) return Value::names("local");
@@ -132,26 +131,26 @@ const Value* Message::find(std::string_view path) const {
 }
 
 std::vector<std::uint8_t> packet_of(const AmFrame& frame) {
-  std::vector<std::uint8_t> packet(kAmHeaderBytes + frame.payload.size());
-  store_be16(packet.data() + 1, frame.dest);
-  store_be16(packet.data() + 3, frame.src);
-  packet[5] = static_cast<std::uint8_t>(frame.payload.size());
-  packet[6] = frame.group;
-  packet[7] = frame.type;
-  std::copy(frame.payload.begin(), frame.payload.end(), packet.begin() + kAmHeaderBytes);
-  return packet;
+  return reflect::serial_packet(
+      {tinyos::Dispatch::kActiveMessage, frame.dest, frame.src, 0, frame.group, frame.type},
+      Bytes(frame.payload.data(), frame.payload.size()));
 }
 
 bool parse_packet(std::string_view bytes, AmFrame& out) {
-  const auto* p = reinterpret_cast<const std::uint8_t*>(bytes.data());
-  if (bytes.size() < kAmHeaderBytes || p[0] != 0 || p[5] != bytes.size() - kAmHeaderBytes) {
+  const Bytes packet(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+  if (packet.size() < reflect::kAmHeaderBytes) return false;
+  using Am = tinyos::AmHeaderLayout;
+  const std::uint8_t* const p = packet.data();
+  const Bytes payload = packet.from(reflect::kAmHeaderBytes);
+  if (Am::DispatchAt::load(p) != tinyos::Dispatch::kActiveMessage ||
+      Am::LengthAt::load(p) != payload.size()) {
     return false;
   }
-  out.dest = load_be16(p + 1);
-  out.src = load_be16(p + 3);
-  out.group = p[6];
-  out.type = p[7];
-  out.payload.assign(p + kAmHeaderBytes, p + bytes.size());
+  out.dest = Am::DestAt::load(p);
+  out.src = Am::SrcAt::load(p);
+  out.group = Am::GroupAt::load(p);
+  out.type = Am::TypeAt::load(p);
+  out.payload.assign(payload.begin(), payload.end());
   return true;
 }
 
@@ -233,7 +232,7 @@ const Case* File::find(std::string_view case_name) const {
 
 namespace {
 
-// What a case says of nodes, or of links, stands in place of all that the file says of them.
+// Applies headers: a case's headers of nodes, or of links, replace all such headers of the file.
 void apply(const std::vector<Item>& items, Scope& scope) {
   bool nodes = false;
   bool links = false;

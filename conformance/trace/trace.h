@@ -14,7 +14,7 @@
 
 namespace rubric::trace {
 
-/// Where something stands in its file, counted from 1; zeros for what was built in code. It is no
+/// The place of something in its file, counted from 1; zeros for what was built in code. It is no
 /// part of the value: places always compare equal.
 struct Place {
   std::uint32_t line = 0;
@@ -24,7 +24,7 @@ struct Place {
 
 // Values.
 
-/// What a field is, or must be.
+/// A field's value, or a pattern for it.
 struct Value {
   enum class Kind : std::uint8_t {
     kAny,       ///< `*`
@@ -52,7 +52,7 @@ struct Value {
   static Value any() { return {}; }
   static Value of(std::int64_t number);
   static Value range(std::int64_t min, std::int64_t max);
-  /// From min to max beyond what the variable is bound to.
+  /// From min to max beyond the variable's value.
   static Value range(std::string_view variable, std::int64_t min, std::int64_t max);
   /// As short as binary32 allows.
   static Value real(float number);
@@ -65,7 +65,7 @@ struct Value {
   static Value channel(Value source, Value destination);
   /// With the names of reserved devids and pids: `11:null`, `11:all`, `local:5`.
   static Value address(std::uint16_t pid, std::uint16_t devid);
-  /// Source devid in the upper 16 bits, as channel ids have it.
+  /// Source devid in the upper 16 bits, as in channel ids.
   static Value channel(std::uint32_t id);
   static Value list(std::vector<Value> items);
   static Value but(Value value);  ///< `!value`
@@ -83,25 +83,25 @@ struct FieldValue {
   friend bool operator==(const FieldValue&, const FieldValue&) = default;
 };
 
-/// A message, or what a message must look like.
+/// A message, or a pattern for one.
 struct Message {
-  /// How the fields stand: `join`, `join(*)` or `join(seq_num=$q ...)`. The first two are the same
-  /// for messages that have fields: any of that name.
+  /// The form of the fields: `join`, `join(*)` or `join(seq_num=$q ...)`. The first two are the
+  /// same for messages that have fields: any of that name.
   enum class Form : std::uint8_t { kBare, kAny, kFields };
 
-  std::string name = "*";  ///< As the wire spec or the application table has it; `*`: any message.
+  std::string name = "*";  ///< From the wire spec or the application table; `*`: any message.
   Form form = Form::kBare;
   bool open = false;       ///< `...`: fields that are not given are free.
   std::vector<FieldValue> fields;
   Place place;
 
   static Message any() { return {}; }
-  /// Add fields with `with`.
+  /// Makes a message; add fields with `with`.
   static Message named(std::string_view name);
   Message&& with(std::string_view path, Value value) &&;
   Message& with(std::string_view path, Value value) &;
 
-  /// The value given for exactly this path, or null.
+  /// Returns the value given for exactly this path, or null.
   const Value* find(std::string_view path) const;
   friend bool operator==(const Message&, const Message&) = default;
 };
@@ -124,14 +124,14 @@ struct AmFrame {
 };
 constexpr std::uint16_t kAmAll = 0xFFFF;
 
-/// The serial forwarder packet: dispatch 00, AM header, payload.
+/// Returns the serial forwarder packet: dispatch 00, AM header, payload.
 std::vector<std::uint8_t> packet_of(const AmFrame& frame);
-/// False when the bytes are no such packet, its length included.
+/// Parses such a packet. Returns false for other bytes, wrong lengths included.
 bool parse_packet(std::string_view bytes, AmFrame& out);
 
 // Lines.
 
-/// What a line says of its message.
+/// The role of a line's message.
 enum class Op : std::uint8_t {
   kGiven,    ///< `<`: given to the node.
   kEmits,    ///< `>`: the node must emit it.
@@ -143,7 +143,7 @@ enum class Op : std::uint8_t {
 std::string_view op_text(Op op);
 constexpr bool is_fault(Op op) { return op == Op::kLost || op == Op::kDup; }
 
-/// When, in ticks of the file: exactly `from`, or from `from` to `to`, both included.
+/// A time in ticks of the file: exactly `from`, or from `from` to `to`, both included.
 struct Time {
   enum class Base : std::uint8_t {
     kPrevious,  ///< `5`, `0..50`: after the line that was matched last.
@@ -174,7 +174,7 @@ struct Line {
   std::optional<AmAddresses> am;
   Message message;
   std::vector<std::string> requirements;  ///< "J4-SEQ", or "J4" for the family.
-  /// The serial forwarder packet, exactly. In a stimulus it is what the node is given.
+  /// The exact serial forwarder packet. In a stimulus it is what the node gets.
   std::optional<std::string> bytes;
   std::string comment;
   Place place;
@@ -189,7 +189,7 @@ enum class Tick : std::uint8_t { kBinaryMs, kMs, kUs };
 std::string_view role_text(Role role);
 std::string_view tick_text(Tick tick);
 std::string_view link_text(LinkKind kind);
-/// Ticks in a second: 1024, 1000 or 1000000.
+/// Returns ticks in a second: 1024, 1000 or 1000000.
 std::uint32_t ticks_per_second(Tick tick);
 
 struct VersionHeader {
@@ -204,16 +204,16 @@ struct TickHeader {
   Tick tick = Tick::kBinaryMs;
   friend bool operator==(const TickHeader&, const TickHeader&) = default;
 };
-/// Synaptic channels of a direction that a node may state (decision 129).
+/// The most synaptic channels of a direction that a node may state (decision 129).
 constexpr std::uint8_t kChannelsMax = 8;
 
 struct NodeHeader {
   std::string name;
   Role role = Role::kMote;
   std::optional<std::uint16_t> id;      ///< TinyOS id; motes and sinks have one.
-  std::optional<std::uint16_t> island;  ///< Of sinks and base stations when they start.
+  std::optional<std::uint16_t> island;  ///< For sinks and base stations when they start.
   bool iut = false;                     ///< Under test.
-  /// Synaptic channels of each direction, from 1 to kChannelsMax; else the profile says (S1-LIMIT).
+  /// Synaptic channels of each direction, from 1 to kChannelsMax; else the profile's (S1-LIMIT).
   std::optional<std::uint8_t> channels = {};
   friend bool operator==(const NodeHeader&, const NodeHeader&) = default;
 };
@@ -249,7 +249,7 @@ struct Blank {
 struct Comment {
   char marker = '#';      ///< '#' or ';'.
   bool indented = false;
-  std::string text;       ///< Behind the marker.
+  std::string text;       ///< After the marker.
   friend bool operator==(const Comment&, const Comment&) = default;
 };
 using Item = std::variant<Blank, Comment, Header, Line>;
@@ -263,7 +263,7 @@ struct Case {
   Case() = default;
   explicit Case(std::string_view case_name) : name(case_name) {}
   void add(Line line) { items.emplace_back(std::move(line)); }
-  /// The lines in their order; pointers into `items`.
+  /// Returns the lines in order; pointers into `items`.
   std::vector<const Line*> lines() const;
   friend bool operator==(const Case&, const Case&) = default;
 };
@@ -272,7 +272,7 @@ struct File {
   std::vector<Item> head;  ///< Before the first case.
   std::vector<Case> cases;
 
-  /// With the headers that every file begins with.
+  /// Returns a file with the headers that every file begins with.
   static File begin(std::string_view profile, Tick tick = Tick::kBinaryMs);
   File& node(NodeHeader header);
   File& header(Header header);
@@ -280,7 +280,7 @@ struct File {
   friend bool operator==(const File&, const File&) = default;
 };
 
-/// What the headers say for one case: its own where it has some of that kind, else the file's.
+/// The headers that apply to one case: its own where it has some of that kind, else the file's.
 struct Scope {
   std::string profile = "paper";
   Tick tick = Tick::kBinaryMs;
@@ -289,14 +289,14 @@ struct Scope {
   std::vector<LinkHeader> links;
 
   const NodeHeader* node(std::string_view name) const;
-  /// By %link, else by its name: r..., ser..., peis, app, power, `*`.
+  /// Returns the kind of a link by %link, else by its name: r..., ser..., peis, app, power, `*`.
   std::optional<LinkKind> link(std::string_view name) const;
 };
 Scope scope_of(const File& file, const Case& one);
 
-/// "J4-SEQ"; empty for ReqId::kNone.
+/// Returns "J4-SEQ"; empty for ReqId::kNone.
 std::string_view requirement_text(ReqId id);
-/// ReqId::kNone for a family ("J4") and for what the catalogue does not have.
+/// Returns the id; ReqId::kNone for a family ("J4") and for unknown rules.
 ReqId requirement_id(std::string_view text);
 
 }  // namespace rubric::trace

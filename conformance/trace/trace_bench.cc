@@ -1,4 +1,4 @@
-// How fast traces are read and written.
+// Measures how fast traces are read and written.
 #include <benchmark/benchmark.h>
 
 #include <string>
@@ -17,7 +17,7 @@ AmFrame join_reply() {
   return frame;
 }
 
-// A log as a run writes it: frames with their bytes, and news for the application.
+// Returns a log as a run writes it: frames with their bytes, and news for the application.
 std::string log_text() {
   std::string text =
       "%rtr 1\n%profile paper\n%node m5 mote id=5 iut\n%node sA sink id=1 island=11\ncase a\n";

@@ -20,7 +20,7 @@ int hex_digit(char c) {
   return -1;
 }
 
-/// Digits from `at` on; returns where they end.
+/// Skips digits from `at` on; returns where they end.
 std::size_t skip_digits(std::string_view text, std::size_t at) {
   while (at < text.size() && is_digit(text[at])) ++at;
   return at;
@@ -79,7 +79,7 @@ std::string read_quoted(std::string_view text, Value& out) {
   return {};
 }
 
-// A half of an address or of a channel.
+// Reads a half of an address or of a channel.
 bool read_half(std::string_view text, Value& out) {
   if (text == "*") {
     out = Value::any();
@@ -132,7 +132,7 @@ std::string read_number(std::string_view text, Value& out) {
          std::string(text) + "'";
 }
 
-// `$t+5` or `$t-5`.
+// Reads `$t+5` or `$t-5`.
 bool read_shift(std::string_view text, std::string& name, std::int64_t& shift) {
   const std::size_t sign = text.find_first_of("+-");
   if (!text.starts_with('$') || sign == std::string_view::npos) return false;
@@ -146,7 +146,7 @@ bool read_shift(std::string_view text, std::string& name, std::int64_t& shift) {
   return true;
 }
 
-// `$t+5..$t+9`
+// Reads `$t+5..$t+9`.
 std::string read_shifted(std::string_view text, Value& out) {
   const std::string quoted = "'" + std::string(text) + "'";
   const std::size_t at = text.find("..");
@@ -245,7 +245,7 @@ bool is_path(std::string_view text) {
       const std::size_t open = part.find('[');
       if (open == std::string_view::npos) return false;
       const std::string_view index = part.substr(open + 1, part.size() - open - 2);
-      // As it is counted, without leading zeros: there is one way to write a path.
+      // Indexes are counted without leading zeros, so that a path has one spelling.
       if (index.empty() || index.size() > 3 || (index[0] == '0' && index.size() > 1) ||
           !std::all_of(index.begin(), index.end(), is_digit)) {
         return false;
@@ -310,7 +310,7 @@ void put_integer(std::int64_t number, bool hex, std::string& out) {
   out.append(text, result.ptr);
 }
 
-// An end of a range, perhaps counted from a variable.
+// Prints an end of a range, perhaps relative to a variable.
 void put_bound(std::string_view variable, std::int64_t number, std::string& out) {
   if (!variable.empty()) {
     out += '$';

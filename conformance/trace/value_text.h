@@ -1,4 +1,4 @@
-// Single values of a trace as text.
+// Reads and prints single values of a trace.
 #pragma once
 
 #include <string>
@@ -14,25 +14,28 @@ std::string value_text(const Value& value);
 
 /// Reads one value; returns what is wrong with it, or nothing.
 std::string read_value(std::string_view text, Value& out);
-/// How far a value goes that begins at the first byte: to a blank, `)` or `]` that is not in quotes
-/// or brackets.
+/// Returns the size of a value that begins at the first byte: up to a blank, `)` or `]` that is not
+/// in quotes or brackets.
 std::size_t value_size(std::string_view text);
 
-/// A whole number in decimal or, behind 0x, in hex; false at anything else and beyond 15 digits.
+/// Reads a whole number in decimal or, after 0x, in hex; returns false at anything else and beyond
+/// 15 digits.
 bool read_integer(std::string_view text, std::int64_t& out);
-/// A letter or `_`, then letters, digits and `_`.
+/// Returns whether it is a letter or `_`, then letters, digits and `_`.
 bool is_name(std::string_view text);
-/// The same with `-` and `.` inside: names of nodes, links and cases; may begin with a digit.
+/// Returns the same with `-` and `.` inside: names of nodes, links and cases; may begin with a
+/// digit.
 bool is_dotted_name(std::string_view text);
-/// Names joined by dots, each perhaps with an index: "payload.body.updates[0].value".
+/// Returns whether it is names joined by dots, each perhaps with an index:
+/// "payload.body.updates[0].value".
 bool is_path(std::string_view text);
 
-/// Appends the bytes of hex digits, two a byte, without blanks; false at anything else.
+/// Appends the bytes of hex digits, two a byte, without blanks; returns false at anything else.
 bool read_hex_bytes(std::string_view digits, std::string& out);
-/// In single quotes, as diagnostics show words.
+/// Returns a word in single quotes, as diagnostics show it.
 std::string quoted(std::string_view text);
 
-/// Two hex digits a byte.
+/// Appends two hex digits a byte.
 void put_hex(std::string_view bytes, std::string& out);
 
 }  // namespace rubric::trace

@@ -32,7 +32,7 @@ def expectations(options):
 
 
 def wanted(frame):
-    """What should have happened, in words."""
+    """Returns the expected result in words."""
     if frame["error"] is None:
         return f"accepted as {'/'.join(frame['path'])}"
     error = frame["error"]
@@ -54,7 +54,7 @@ def wrong_field(frame, given):
 
 
 def disagreement(frame, answer):
-    """What is wrong with the answer, in words; None if nothing is."""
+    """Returns what is wrong with the answer, in words; None if nothing is."""
     accepts = answer.get("accept")
     if not isinstance(accepts, bool):
         return f"should have been {wanted(frame)}, but the answer was {json.dumps(answer)}"

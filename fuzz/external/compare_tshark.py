@@ -20,7 +20,7 @@ sys.dont_write_bytecode = True
 import compare  # noqa: E402: only now, lest it leave its bytecode beside it
 
 DISSECTOR = "tools/wireshark/generated/rubric.lua"
-# What the dissector says of its own, and what stands around a packet on its line.
+# Fields that the dissector adds, and those around a packet on its line.
 ADDED = {"rubric.am_type", "rubric.path", "rubric.message", "rubric.fault", "rubric.fault_offset",
          "rubric.rule", "rubric.stale", "rubric.serial.kind", "rubric.serial.seq_num",
          "rubric.serial.crc"}
@@ -90,7 +90,7 @@ def scalars(frames):
 
 
 def closer(frame, given, names):
-    """What is wrong with an answer whose verdict is right, in words; None if nothing is."""
+    """Returns what is wrong with an answer whose verdict is right; None if nothing is."""
     if frame["error"]:
         if given["error"] != frame["error"]:
             return f"should have been {compare.wanted(frame)}, was refused: {given['why']}"

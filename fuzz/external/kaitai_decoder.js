@@ -16,7 +16,7 @@ const readSpec = (name) =>
   yaml.load(fs.readFileSync(path.join(specFolder, `${name}.ksy`), 'utf8'));
 const snake = (name) => name.replace(/([A-Z])/g, (c) => '_' + c.toLowerCase()).replace(/^_/, '');
 
-/// The module of the parser for that spec.
+/// Loads the module of the parser for that spec.
 async function load(name) {
   const files = await compiler.compile('javascript', readSpec(name),
       {importYaml: async (imported) => readSpec(imported)}, false);
@@ -31,7 +31,7 @@ async function load(name) {
   return parser;
 }
 
-/// Names of types as the spec shows them, by their names in it.
+/// Returns the shown names of types, by their names in the spec.
 function shownNames(specs) {
   const names = {};
   for (const spec of specs) {
@@ -40,7 +40,7 @@ function shownNames(specs) {
   return names;
 }
 
-/// The numbers of an object and of the structures in it, by "structure.field".
+/// Collects the numbers of an object and of the structures in it, by "structure.field".
 function numbers(object, shown, out) {
   const type = snake(object.constructor.name);
   for (const [key, value] of Object.entries(object)) {
@@ -67,7 +67,7 @@ function answer(parsers, Stream, shown, line) {
     if (!stream.isEof()) return {accept: false, why: 'bytes behind the end'};
     return {accept: true, fields: numbers(object, shown, {})};
   } catch (error) {
-    // Anything else than these is a crash, not an opinion.
+    // Any other error is a crash, not a verdict.
     if (!/^(EOF|Validation\w*)Error$/.test(error.name)) return {crash: String(error)};
     return {accept: false, why: `${error.name}: ${error.message}`};
   }

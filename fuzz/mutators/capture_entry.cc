@@ -1,5 +1,5 @@
-// Entry points for targets whose input is a capture of any format, known by its content, or a log.
-// One of no known format becomes a capture file, which holds whatever was sent anywhere.
+// Entry points for targets whose input is a capture of any format, recognized by its content, or a
+// log. Input of no known format becomes a capture file, which can hold anything.
 #include "codec/containers/reader.h"
 #include "fuzz/mutators/entry.h"
 #include "fuzz/mutators/lines_mutator.h"

@@ -1,4 +1,4 @@
-// Entry points for decode_fuzz, whose input tells its format in a head of two bytes.
+// Entry points for decode_fuzz, whose input has its format in a head of two bytes.
 #include "fuzz/mutators/entry.h"
 #include "fuzz/support/decode_input.h"
 #include "fuzz/support/mutate_bytes.h"
@@ -22,7 +22,7 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
   fuzz::PacketMutator& mutator = fuzz::seeded_mutator(seed);
   if (max_size <= kHead) return fuzz::mutate_bytes(data, size, max_size, seed);
   if (size < kHead || mutator.random().below(32) == 0) {
-    // Another way to read the same.
+    // Pads the head with zeros, which reads the same.
     for (; size < kHead; ++size) data[size] = 0;
     data[0] = static_cast<std::uint8_t>(mutator.random().below(64));
     data[1] = static_cast<std::uint8_t>(mutator.random().below(256));

@@ -1,4 +1,4 @@
-// What the entry points for engines share.
+// The common part of the entry points for engines.
 #pragma once
 
 #include <algorithm>
@@ -13,18 +13,18 @@
 
 namespace rubric::fuzz {
 
-/// The mutator of RUBICON's streams, made once; the seed alone decides what it does next.
+/// Returns the mutator of RUBICON's streams, made once; the seed alone decides what it does next.
 inline PacketMutator& seeded_mutator(unsigned seed) {
   static PacketMutator mutator(*reflect::find_protocol("rubicon"), rubicon::messages::kRoutes, 0);
   mutator.reseed(seed);
   return mutator;
 }
 
-/// libFuzzer asks for a cross-over as often as for a mutant. One of so many is enough; for the
-/// others it asks again.
+/// libFuzzer asks for a cross-over as often as for a mutant. One of so many is enough; it asks
+/// again for the others.
 inline constexpr unsigned kCrossOversAsked = 4;
 
-/// Gives `out` to the engine, behind what `data` already begins with.
+/// Copies `out` to the engine, after the head that `data` already has.
 inline std::size_t give(const std::vector<std::uint8_t>& out, std::size_t head_bytes,
                         std::uint8_t* data, std::size_t max_size) {
   const std::size_t size = std::min(out.size(), max_size - head_bytes);

@@ -39,7 +39,7 @@ class Slips {
   std::string at(Span span) const { return text_.substr(span.at, span.size); }
   void put(Span where, const std::string& what) { text_.replace(where.at, where.size, what); }
 
-  /// A line with its end.
+  /// Returns a line with its end.
   Span line() {
     if (text_.empty()) return {};
     const std::size_t inside = below(text_.size());
@@ -61,7 +61,7 @@ class Slips {
     while (end < text_.size() && in_word(text_[end])) ++end;
     return {begin, end - begin};
   }
-  /// What stands behind the first `: ` or `=` of a line, or all of it.
+  /// Returns the text after the first `: ` or `=` of a line, or all of it.
   Span value() {
     const Span whole = line();
     const std::string_view content(text_.data() + whole.at, whole.size);

@@ -1,6 +1,6 @@
-// Changes text as a person's slip would: whole lines come twice, go or change places, and words and
-// values stand where others stood. For targets whose input is text: an engine that knows bytes only
-// breaks the text's outer form first and seldom reaches what its words mean.
+// Changes text as a person's slip would: doubles, drops or swaps whole lines, and swaps words and
+// values. For targets whose input is text: an engine that knows only bytes breaks the text's outer
+// form first and seldom reaches the meaning of its words.
 #pragma once
 
 #include <cstddef>

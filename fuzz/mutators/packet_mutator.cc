@@ -16,7 +16,7 @@ using Buffer = std::vector<std::uint8_t>;
 
 constexpr std::size_t kSerialMax = 255;
 constexpr std::size_t kRadioMax = 125;  // The FCS follows.
-// A look at more packets than these would cost more than it is worth.
+// Looking at more packets than these would cost more than it is worth.
 constexpr std::size_t kLookBack = 12;
 
 Buffer mutated_bytes(Bytes input, std::size_t max_size, generate::Random& random) {
@@ -124,7 +124,7 @@ void PacketMutator::insert_message(PacketStream& stream) {
   const generate::Generated made =
       near ? generator_.near_valid(*route) : generator_.valid(*route);
   std::vector<StreamPacket>& packets = stream.packets;
-  // Behind all others a message goes on with what they began.
+  // At the end a message continues what the others began.
   const bool last = random().below(4) != 0;
   const std::size_t at = last ? packets.size() : random().below(packets.size() + 1);
   StreamPacket packet = make_packet(made, stream, random());
@@ -138,8 +138,8 @@ void PacketMutator::insert_message(PacketStream& stream) {
   if (random().below(4) != 0) adopt_values(stream, at);
 }
 
-// A message that answers another repeats its numbers: those of the same name, and, as the same is
-// not called the same everywhere, others.
+// Repeats the numbers of an older message in its answer: those of the same name, and, as names
+// differ, others.
 void PacketMutator::adopt_values(PacketStream& stream, std::size_t at) {
   const std::vector<Number> known = numbers(stream, at - std::min(at, kLookBack), at);
   const std::vector<Number> own = numbers(stream, at, at + 1);
@@ -159,8 +159,8 @@ void PacketMutator::copy_number(PacketStream& stream) {
   repair_sums(stream.packets[at]);
 }
 
-// Takes one of `known` over into own[to], and perhaps what follows it into what follows: the parts
-// of an address stand in the same order everywhere.
+// Copies one of `known` into own[to], and perhaps its successors into the successors: the parts of
+// an address come in the same order everywhere.
 void PacketMutator::copy_some(PacketStream& stream, const std::vector<Number>& known,
                               const std::vector<Number>& own, std::size_t to, bool by_name) {
   const auto fits = [&](const Number& from) {
@@ -181,7 +181,7 @@ void PacketMutator::copy_some(PacketStream& stream, const std::vector<Number>& k
   }
 }
 
-// Unless the packet would no longer be the message that it is: lengths and types are no values.
+// Copies a number, unless the packet would become another message: lengths and types are no values.
 void PacketMutator::copy(PacketStream& stream, const Number& from, const Number& to,
                          const Message& message) {
   StreamPacket& packet = stream.packets[to.packet];
@@ -203,7 +203,7 @@ PacketMutator::Message PacketMutator::message_of(const StreamPacket& packet) {
   return {frame_.decoded.message(), frame_.decoded.error.fault};
 }
 
-// Those of the messages; what the headers around them say is mostly settled by the message.
+// Returns the numbers of the messages; the headers around them mostly follow from the message.
 std::vector<PacketMutator::Number> PacketMutator::numbers(const PacketStream& stream,
                                                           std::size_t begin, std::size_t end) {
   std::vector<Number> out;
@@ -240,14 +240,14 @@ void PacketMutator::change_packet(PacketStream& stream, std::size_t at) {
   if (packet.packet.fcs != kAbsent) packet.packet.fcs ^= flipped;
 }
 
-// Bytes without regard to what they are; half of the time the lengths around them are true.
+// Changes bytes regardless of their meaning; half of the time the lengths around them are repaired.
 void PacketMutator::change_frame(StreamPacket& packet) {
   const Bytes bytes(packet.bytes.data(), packet.bytes.size());
   packet.bytes = mutated_bytes(bytes, room_of(packet), random());
   if (random().below(2) == 0) repair_lengths(packet, routes_);
 }
 
-// What the packet's bytes lack: how it was framed, when and how it was heard.
+// Changes the facts besides the packet's bytes: its framing, its time, its interface.
 void PacketMutator::change_outside(StreamPacket& packet) {
   constexpr std::int32_t kKinds[] = {kSerialAck, kSerialPacketAck, kSerialPacketNoAck,
                                      kSerialUnknown, 0};
@@ -280,13 +280,13 @@ void PacketMutator::change_outside(StreamPacket& packet) {
   }
 }
 
-// The last packets are those that a sequence has come to.
+// Picks a packet; the last ones are the end of the present sequence.
 std::size_t PacketMutator::pick_packet(const PacketStream& stream) {
   const std::size_t count = stream.packets.size();
   return random().below(2) == 0 ? count - 1 : random().below(count);
 }
 
-// Whether a message of that type may tell again what one of `numbers` tells.
+// Returns whether a message of that type may repeat one of `numbers`.
 bool PacketMutator::answers(const reflect::Type& type, const std::vector<Number>& numbers) {
   for (std::size_t i = 0; i < type.field_count; ++i) {
     const reflect::Field& field = type.fields[i];
@@ -300,8 +300,8 @@ bool PacketMutator::answers(const reflect::Type& type, const std::vector<Number>
   return false;
 }
 
-// Every message as often as any other, however many ways lead to it; half of the time one that may
-// go on with the last packet. Null where none fits.
+// Picks a route: every message as often as any other, however many routes lead to it; half of the
+// time one that may continue the last packet. Returns null if none fits.
 const reflect::Route* PacketMutator::pick_route(const PacketStream& stream) {
   const bool radio = takes_radio(stream);
   const bool serial = takes_serial(stream);

@@ -1,4 +1,4 @@
-// Mutates streams of packets by what they mean: fields, messages, sequences; whatever engine asks.
+// Mutates streams of packets by their meaning: fields, messages, sequences; for any engine.
 #pragma once
 
 #include <cstddef>
@@ -12,27 +12,28 @@
 
 namespace rubric::fuzz {
 
-/// Mutants of the streams of one protocol. The same seed and calls give the same mutants.
+/// Makes mutants of the streams of one protocol. The same seed and calls give the same mutants.
 class PacketMutator {
  public:
   PacketMutator(const reflect::Protocol& protocol, const reflect::RouteTable& routes,
                 std::uint64_t seed);
 
-  /// A mutant of `input`, a stream or file of that format, of at most `max_size` bytes. Most are
-  /// what was read with a few changes and check sums that match; some are bytes changed anywhere.
+  /// Returns a mutant of `input`, a stream or file of that format, of at most `max_size` bytes.
+  /// Most are the packets with a few changes and check sums that match; some are bytes changed
+  /// anywhere.
   std::vector<std::uint8_t> mutate(InputFormat format, Bytes input, std::size_t max_size);
-  /// The packets of two inputs in one: the beginning of one and the end of the other, or some of
-  /// each in their order.
+  /// Returns the packets of two inputs in one: the beginning of one and the end of the other, or
+  /// some of each in their order.
   std::vector<std::uint8_t> cross_over(InputFormat format, Bytes one, Bytes other,
                                        std::size_t max_size);
 
-  /// One change of one or a few packets of the stream.
+  /// Makes one change to one or a few packets of the stream.
   void change(PacketStream& stream);
-  /// A change of what one packet holds, check sums repaired or, rarely, left wrong.
+  /// Changes the contents of one packet, with check sums repaired or, rarely, left wrong.
   void change_packet(PacketStream& stream, std::size_t at);
 
   generate::Random& random() { return generator_.random(); }
-  /// Goes on as a new mutator of that seed would.
+  /// Continues like a new mutator of that seed.
   void reseed(std::uint64_t seed) { random() = generate::Random(seed); }
 
  private:
@@ -44,7 +45,7 @@ class PacketMutator {
     bool little;
     const char* name;
   };
-  /// What a packet is: its innermost message, and what is wrong with it.
+  /// A packet's innermost message, and its fault.
   using Message = std::pair<const reflect::Type*, Fault>;
 
   void insert_message(PacketStream& stream);

@@ -132,7 +132,7 @@ TEST(PacketMutator, MakesEveryMessageOfTheTable) {
   }
 }
 
-// Also where nothing but the sums would tell.
+// Even where only the sums would show it.
 TEST(PacketMutator, ChangedPacketsHaveTheirCheckSums) {
   const std::string good = read_file("spec/captures/firmware/f_synaptic.pcapng");
   std::size_t changed = 0;
@@ -181,7 +181,7 @@ TEST(PacketMutator, AnswersRepeatWhatWasAsked) {
 
 TEST(PacketStream, LengthsFollowTheRoute) {
   StreamPacket packet;
-  // A net_msg of ten bytes of payload, of which the header and nbytes say something else.
+  // A net_msg of ten bytes of payload, whose header and nbytes disagree.
   const std::string bytes = testing::from_hex(
       "00 ffff 0000 ff 00 1c 000b fffd 000b 0002 00 b0d3 99 03 0a 24 0001 0040 1234 56");
   packet.bytes.assign(bytes.begin(), bytes.end());

@@ -7,15 +7,15 @@
 #include "codec/containers/crc16_fast.h"
 #include "codec/containers/link_record.h"
 #include "codec/containers/serial_frame.h"
+#include "codec/reflect/am_frames.h"
 #include "codec/runtime/hdlc.h"
 
 namespace rubric::fuzz {
 namespace {
 
-constexpr std::size_t kMacBytes = 9;      // Of the radio's header: control to source address.
-constexpr std::size_t kRadioIHead = 11;   // The AM payload of an I-frame.
+using IFrame = rubicon::RadioIFrameLayout;
+using Mac = tinyos::MacHeaderLayout;
 constexpr std::size_t kAmLengthMax = 255;
-constexpr std::uint8_t kNetwork = 0x3F;
 
 void put(std::vector<std::uint8_t>& out, std::size_t at, std::size_t width, bool little,
          std::uint32_t value) {
@@ -26,8 +26,8 @@ void put(std::vector<std::uint8_t>& out, std::size_t at, std::size_t width, bool
   }
 }
 
-// Whether the bytes lead to the route's message by their types. Wider choices are addresses, which
-// may be any but one as well.
+// Returns whether the bytes lead to the route's message by their types. Wider choices are
+// addresses, of which any but one may occur as well.
 bool follows(const reflect::Route& route, const std::vector<std::uint8_t>& bytes) {
   for (std::size_t i = 0; i < route.choice_count; ++i) {
     const reflect::RouteChoice& choice = route.choices[i];
@@ -39,18 +39,23 @@ bool follows(const reflect::Route& route, const std::vector<std::uint8_t>& bytes
 
 const char* carrier_of(const StreamPacket& packet) {
   if (packet.packet.framing != Framing::kRadio) return "serial";
-  const bool network = packet.bytes.size() > kMacBytes && packet.bytes[kMacBytes] == kNetwork;
+  const bool network = packet.bytes.size() >= IFrame::NetworkAt::kEnd &&
+                       IFrame::NetworkAt::allows(packet.bytes[IFrame::NetworkAt::kAt]);
   return network ? "radio_i" : "radio_t";
 }
 
-// The serial packet that says what an I-frame does.
+// Returns the serial packet with the contents of an I-frame.
 std::vector<std::uint8_t> as_serial(const std::vector<std::uint8_t>& frame) {
-  if (frame.size() < kRadioIHead) return frame;
-  const std::size_t length = std::min(frame.size() - kRadioIHead, kAmLengthMax);
-  std::vector<std::uint8_t> out = {0,        frame[6], frame[5],
-                                   frame[8], frame[7], static_cast<std::uint8_t>(length),
-                                   frame[3], frame[10]};
-  out.insert(out.end(), frame.begin() + kRadioIHead, frame.end());
+  if (frame.size() < reflect::kRadioIHeaderBytes) return frame;
+  const std::uint8_t* const p = frame.data();
+  const Bytes payload = Bytes(p, frame.size()).from(reflect::kRadioIHeaderBytes);
+  std::vector<std::uint8_t> out = reflect::serial_packet(
+      {tinyos::Dispatch::kActiveMessage, Mac::DestAt::load(p), Mac::SrcAt::load(p), 0,
+       static_cast<std::uint8_t>(Mac::DestpanAt::load(p)),
+       static_cast<std::uint8_t>(IFrame::TypeAt::load(p))},
+      payload);
+  const std::size_t length = std::min(payload.size(), kAmLengthMax);
+  tinyos::AmHeaderLayout::LengthAt::store(out.data(), static_cast<std::uint8_t>(length));
   return out;
 }
 

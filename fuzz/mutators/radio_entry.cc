@@ -8,7 +8,7 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
   using namespace rubric;
   constexpr std::size_t kHead = 2;
   fuzz::PacketMutator& mutator = fuzz::seeded_mutator(seed);
-  // Half of the time bytes, as they stand: a TAP header and odd frame controls are no messages.
+  // Half of the time mutates plain bytes: a TAP header and odd frame controls are no messages.
   if (max_size <= kHead || mutator.random().below(2) == 0) {
     return fuzz::mutate_bytes(data, size, max_size, seed);
   }

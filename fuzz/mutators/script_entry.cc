@@ -17,7 +17,7 @@ fuzz::ScriptMutator& seeded_mutator(unsigned seed) {
   return mutator;
 }
 
-// Whole steps, as many as there is room for.
+// Writes whole steps, as many as there is room for.
 std::size_t give(script::Script script, std::uint8_t* data, std::size_t max_size) {
   const std::vector<std::size_t> offsets = script::step_offsets(script);
   std::size_t steps = script.steps.size();

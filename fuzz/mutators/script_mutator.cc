@@ -11,7 +11,10 @@
 #include "codec/generated/rubicon/join_request.h"
 #include "codec/generated/rubicon/messages.h"
 #include "codec/generated/rubicon/net_msg.h"
+#include "codec/generated/rubicon/radio_i_frame.h"
+#include "codec/generated/rubicon/radio_t_frame.h"
 #include "codec/generated/rubicon/rubicon_ack.h"
+#include "codec/reflect/am_frames.h"
 #include "codec/reflect/registry.h"
 #include "conformance/machine/messages.h"
 #include "conformance/runner/subject_target.h"
@@ -28,9 +31,8 @@ using script::Script;
 using script::Step;
 namespace am = machine::am;
 
-constexpr std::size_t kAmHeaderBytes = 8;
-constexpr std::size_t kSrcOffset = 4;  // In a net_msg: dest, src, reliable, number.
-constexpr std::size_t kSeqOffset = 9;
+using reflect::kAmHeaderBytes;
+using rubicon::NetMsgLayout;
 
 template <class Value>
 std::vector<std::uint8_t> bytes_of(const Value& value) {
@@ -42,20 +44,20 @@ std::vector<std::uint8_t> bytes_of(const Value& value) {
 
 const reflect::Protocol& protocol() { return *reflect::find_protocol("rubicon"); }
 
+void store_address(std::vector<std::uint8_t>& payload, std::size_t at, machine::Address address) {
+  rubicon::RAddrLayout::store(machine::wire_of(address), payload.data() + at);
+}
+
 Step heard(const Frame& frame, std::vector<std::uint8_t> payload) {
   payload.resize(std::min<std::size_t>(payload.size(), machine::kAmPayloadMax));
   return {0, machine::Heard{frame}, std::move(payload)};
 }
 
-// The serial form of a frame, whatever line brings it: the table has it for every message.
+// Returns the serial form of a frame, whatever line brings it: the table has it for every message.
 std::vector<std::uint8_t> packet_of(const Frame& frame, const std::vector<std::uint8_t>& payload) {
-  std::vector<std::uint8_t> out(kAmHeaderBytes + payload.size());
-  store_be16(&out[1], frame.dest);
-  store_be16(&out[3], frame.src);
-  out[5] = static_cast<std::uint8_t>(payload.size());
-  out[7] = frame.type;
-  std::copy(payload.begin(), payload.end(), out.begin() + kAmHeaderBytes);
-  return out;
+  return reflect::serial_packet(
+      {tinyos::Dispatch::kActiveMessage, frame.dest, frame.src, 0, 0, frame.type},
+      Bytes(payload.data(), payload.size()));
 }
 
 }  // namespace
@@ -142,7 +144,7 @@ void ScriptMutator::insert(Script& script) {
   script.steps.insert(script.steps.begin() + static_cast<std::ptrdiff_t>(at), std::move(*step));
 }
 
-// To one of the last frames that the node has sent before that step.
+// Returns an answer to one of the last frames that the node has sent before that step.
 std::optional<Step> ScriptMutator::answer(const Script& script, const History& history,
                                           std::size_t at) {
   const std::size_t shown = history.before[at].outputs;
@@ -181,7 +183,7 @@ std::optional<Step> ScriptMutator::answer_to(const Script& script, const Transmi
   }
   const auto message = rubicon::NetMsgView::parse(sent.bytes());
   if (sent.type != am::kNet || !message) return {};
-  // An ack, from whom it was for.
+  // An ack, from the message's destination.
   rubicon::RubiconAck body;
   body.type = rubicon::AmType::kLearningNotification;
   body.seq_num = message->seq_num();
@@ -198,15 +200,19 @@ std::optional<Step> ScriptMutator::answer_to(const Script& script, const Transmi
   return heard(frame, bytes_of(ack));
 }
 
-// From the table, mostly valid, for this node and from somebody who was there before.
+// Returns a message from the table, mostly valid, for this node and from an earlier sender.
 Step ScriptMutator::message(const Script& script, const History& history, std::size_t at) {
   const reflect::Route& route = *routes_[below(routes_.size())];
   const generate::Generated made =
       one_in(5) ? generator_.near_valid(route) : generator_.valid(route);
   const bool radio = made.framing == Framing::kRadio;
-  // Behind the 802.15.4 header stands the AM type, in most networks behind their own byte.
+  // The AM type follows the 802.15.4 header, in most networks after their own byte.
   std::size_t begin = kAmHeaderBytes;
-  if (radio) begin = std::string_view(route.carrier) == "radio_i" ? 11 : 10;
+  if (radio) {
+    const bool network = std::string_view(route.carrier) == "radio_i";
+    begin = network ? rubicon::RadioIFrameLayout::PayloadAt::kAt
+                    : rubicon::RadioTFrameLayout::PayloadAt::kAt;
+  }
   Frame frame;
   std::vector<std::uint8_t> payload;
   if (made.bytes.size() > begin) {
@@ -227,35 +233,32 @@ void ScriptMutator::fit_message(const Script& script, const History& history, st
   const bool peis = frame.link == Link::kPeis;
   frame.dest = one_in(12) ? machine::kAmBroadcast : peis ? config.island : config.id;
   frame.src = static_cast<std::uint16_t>(one_in(4) ? 1 : 2 + below(8));
-  // Addresses and numbers of frames that the node sent, or that somebody sent to it.
+  // Addresses and numbers of frames that the node sent or received.
   const std::size_t shown = history.before[at].outputs;
-  if (frame.type != am::kNet || payload.size() < kSeqOffset + 2) return;
+  if (frame.type != am::kNet || payload.size() < NetMsgLayout::SeqNumAt::kEnd) return;
   const std::uint16_t island = config.role == Role::kMote ? 11 : config.island;
   if (!one_in(6)) {
-    store_be16(payload.data(), island);
     const auto own = config.role == Role::kBaseStation ? machine::kNullDevid : config.id;
-    store_be16(payload.data() + 2, one_in(4) ? std::uint16_t{machine::kBroadcastDevid} : own);
-    store_be16(payload.data() + kSrcOffset, island);
-    store_be16(payload.data() + kSrcOffset + 2, frame.src);
+    const std::uint16_t dest = one_in(4) ? std::uint16_t{machine::kBroadcastDevid} : own;
+    store_address(payload, NetMsgLayout::DestAt::kAt, {island, dest});
+    store_address(payload, NetMsgLayout::SrcAt::kAt, {island, frame.src});
   }
   if (shown == 0) return;
   const runner::Output& output = history.outputs[below(shown)];
   const auto sent = rubicon::NetMsgView::parse(output.frame.bytes());
   if (!output.is_frame || output.frame.type != am::kNet || !sent) return;
-  if (one_in(2)) store_be16(payload.data() + kSeqOffset, sent->seq_num());
+  if (one_in(2)) NetMsgLayout::SeqNumAt::store(payload.data(), sent->seq_num());
   if (one_in(2)) {
-    const machine::Address peer = machine::address_of(sent->dest());
-    store_be16(payload.data() + kSrcOffset, peer.pid);
-    store_be16(payload.data() + kSrcOffset + 2, peer.devid);
+    store_address(payload, NetMsgLayout::SrcAt::kAt, machine::address_of(sent->dest()));
   }
 }
 
-// A call, a line busy, power: a kind of step with small numbers in it.
+// Returns a call, a busy line, power: a kind of step with small numbers in it.
 Step ScriptMutator::happening(const Script& script) {
   Script head{script.config, {}, 0};
   std::vector<std::uint8_t> bytes = script::encode(head);
   constexpr std::uint8_t kFirst = 5;
-  constexpr std::size_t kKinds = 20;  // Behind frames, see bytes.cc.
+  constexpr std::size_t kKinds = 20;  // Apart from frames, see bytes.cc.
   bytes.push_back(static_cast<std::uint8_t>(kFirst + below(kKinds)));
   bytes.push_back(0);
   bytes.push_back(static_cast<std::uint8_t>(below(60)));
@@ -269,7 +272,7 @@ Step ScriptMutator::happening(const Script& script) {
   return one.steps.at(0);
 }
 
-// To when something is due, just before it or just after; or to anything.
+// Sets a delay to when something is due, just before it or just after; or to anything.
 void ScriptMutator::change_delay(Script& script) {
   const std::size_t at = below(script.steps.size());
   machine::Ticks& delay = script.steps[at].delay;
@@ -294,9 +297,9 @@ void ScriptMutator::change_field(Script& script) {
     constexpr std::size_t kMax = kAmHeaderBytes + machine::kAmPayloadMax;
     if (!generate::change_field(protocol(), Framing::kSf, packet, kMax, random())) return;
     if (packet.size() < kAmHeaderBytes) return;
-    frame->frame.dest = load_be16(&packet[1]);
-    frame->frame.src = load_be16(&packet[3]);
-    frame->frame.type = packet[7];
+    frame->frame.dest = tinyos::AmHeaderLayout::DestAt::load(packet.data());
+    frame->frame.src = tinyos::AmHeaderLayout::SrcAt::load(packet.data());
+    frame->frame.type = tinyos::AmHeaderLayout::TypeAt::load(packet.data());
     step.bytes.assign(packet.begin() + kAmHeaderBytes, packet.end());
     return;
   }

@@ -1,4 +1,4 @@
-// Mutates scripts of one node by what they mean: answers to what the node did, messages from the
+// Mutates scripts of one node by their meaning: answers to the node's output, messages from the
 // table, times at which something is due.
 #pragma once
 
@@ -12,27 +12,27 @@
 
 namespace rubric::fuzz {
 
-/// Mutants of scripts. The same seed and calls give the same mutants.
+/// Makes mutants of scripts. The same seed and calls give the same mutants.
 class ScriptMutator {
  public:
   explicit ScriptMutator(std::uint64_t seed);
 
-  /// A few changes. The script keeps the bounds of script::decode().
+  /// Makes a few changes. The script keeps the bounds of script::decode().
   void mutate(script::Script& script);
-  /// The beginning of one and the end of the other, or some steps of each in their order.
+  /// Returns the beginning of one and the end of the other, or some steps of each in their order.
   script::Script cross_over(const script::Script& one, const script::Script& other);
   void reseed(std::uint64_t seed) { random() = generate::Random(seed); }
 
  private:
   using Frame = machine::Frame;
-  // What the machine has done before a step of the script, and when it will do something.
+  // The machine's outputs before a step of the script, and the time of its next act.
   struct Moment {
     machine::Ticks now = 0;
     std::size_t outputs = 0;
     std::optional<machine::Ticks> due;
   };
   struct History {
-    std::vector<Moment> before;  // Of each step, and of the end.
+    std::vector<Moment> before;  // For each step, and the end.
     std::vector<runner::Output> outputs;
   };
   class Recorder;

@@ -18,7 +18,7 @@ sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../support"))
 import targets as fuzz  # pylint: disable=wrong-import-position
 
-# What every runner has: the C library, and the C++ library of its compiler.
+# Libraries of every runner: the C library, and the C++ library of its compiler.
 BASE = re.compile(r"(linux-vdso|ld-linux|libc|libm|libdl|librt|libpthread|libresolv|libgcc_s"
                   r"|libstdc\+\+)[-.]")
 NEEDED = re.compile(r"^\s*(\S+) => (\S.*?)(?: \(0x[0-9a-f]+\))?$", re.M)

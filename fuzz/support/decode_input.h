@@ -1,4 +1,4 @@
-// How decode_fuzz reads its input; its mutator has to know as well.
+// The form of decode_fuzz's input, shared with its mutator.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace rubric::fuzz {
 
-/// Two bytes tell what `rubric decode` would be told, the rest is what it would read.
+/// Two bytes with the options of `rubric decode`, then its input.
 struct DecodeInput {
   static constexpr std::size_t kHeadBytes = 2;
 
@@ -17,11 +17,11 @@ struct DecodeInput {
   bool hex = false;
   bool color = false;
   bool units = false;
-  Bytes first;  ///< What comes in the first read,
+  Bytes first;  ///< For the first read,
   Bytes rest;   ///< and in the second.
 };
 
-/// `size` is at least kHeadBytes. A format byte of 6 stands for finding the format out.
+/// Reads the head; `size` is at least kHeadBytes. A format byte of 6 means detecting the format.
 inline DecodeInput read_decode_input(const std::uint8_t* data, std::size_t size) {
   constexpr InputFormat kFormats[] = {InputFormat::kHdlc,   InputFormat::kSf,
                                       InputFormat::kPcap,   InputFormat::kPcapng,

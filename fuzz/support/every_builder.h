@@ -12,7 +12,7 @@
 
 namespace rubric::fuzz {
 
-// The names of all fields, those first that say where others stand or how many there are.
+// The names of all fields; those come first that place or count others.
 #define RUBRIC_EACH_FIELD(F)                                                                    \
   F(kind) F(mac) F(network) F(am) F(dest) F(src) F(type) F(fcf) F(dsn) F(destpan) F(dispatch)   \
   F(length) F(group) F(pid) F(devid) F(reliable) F(ack) F(seq_num) F(nbytes) F(trans_id)        \
@@ -54,8 +54,8 @@ void call(Call set) {
     }                                                                                           \
   }
 
-/// Gives each of `value`'s fields to the setter of its name, arrays whole and then one by one, and
-/// structures also through their own builders. What a setter refuses shows at the end.
+/// Passes each of `value`'s fields to the setter of its name, arrays whole and then one by one, and
+/// structures also through their own builders. A refusal shows at the end.
 template <class Builder, class Value>
 void set_every_field(Builder& builder, const Value& value) {
   if constexpr (requires { value.updates[0].value; }) {  // An array of structures.
@@ -100,7 +100,7 @@ void set_every_field(Builder& builder, const Value& value) {
     require(!builder.set_##field(std::uint8_t{255}), "255 is refused"); \
   }
 
-/// Gives each setter that can refuse more than any structure of `value`'s kind holds: it refuses,
+/// Passes each setter that can refuse more than any structure of `value`'s kind holds: it refuses,
 /// and changes nothing.
 template <class Builder, class Value>
 void set_too_much(Builder& builder, const Value& value) {

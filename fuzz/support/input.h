@@ -28,9 +28,9 @@ class Input {
     const std::uint32_t high = u16();
     return high << 16 | u16();
   }
-  /// From 0 to n - 1; n from 1 to 256.
+  /// Returns a number from 0 to n - 1; n from 1 to 256.
   std::size_t below(std::size_t n) { return u8() % n; }
-  /// The next `size` bytes, or as many as there are.
+  /// Returns the next `size` bytes, or as many as there are.
   Bytes bytes(std::size_t size) {
     const Bytes taken = rest_.first(std::min(size, rest_.size()));
     rest_ = rest_.from(taken.size());

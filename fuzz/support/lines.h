@@ -7,7 +7,7 @@
 
 namespace rubric::fuzz {
 
-/// Sizes in bytes of the lines of a text, without their ends; at least one.
+/// Returns sizes in bytes of the lines of a text, without their ends; at least one.
 inline std::vector<std::size_t> line_sizes(std::string_view text) {
   std::vector<std::size_t> out(1);
   for (const char c : text) {

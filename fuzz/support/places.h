@@ -1,4 +1,4 @@
-// Whether what a compiler or parser finds wrong stands within the text that it read.
+// Checks that the reported places of a compiler or parser are within the text that it read.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace rubric::fuzz {
 
-/// Of the mistakes in `file`: line 0 is the file as a whole, column 0 the line.
+/// Checks the mistakes in `file`: line 0 is the file as a whole, column 0 the line.
 inline void places_are_within(const rubricc::Diagnostics& diagnostics, const std::string& file,
                               std::string_view text) {
   const std::vector<std::size_t> sizes = line_sizes(text);

@@ -1,4 +1,4 @@
-// The deframer's rules as a plain program, one byte after the other, to hold the fast one against.
+// The deframer's rules as a plain program, one byte after the other, to check the fast one.
 #pragma once
 
 #include <vector>
@@ -7,8 +7,8 @@
 
 namespace rubric::fuzz {
 
-/// What a HdlcReader must make of the whole of `stream`. Written from TEP 113, section 3.1, and the
-/// rules in hdlc_reader.h and serial_frame.h; shares no code with the reader.
+/// Returns the required result of a HdlcReader for the whole of `stream`. Written from TEP 113,
+/// section 3.1, and the rules in hdlc_reader.h and serial_frame.h; shares no code with the reader.
 std::vector<testing::Kept> plain_deframe(Bytes stream);
 
 }  // namespace rubric::fuzz

@@ -56,7 +56,7 @@ std::string_view interface_name(const Reader& reader, const Packet& packet) {
 void require_in_place(const std::vector<Kept>& packets, Bytes input) {
   for (const Kept& kept : packets) {
     const Packet& packet = kept.packet;
-    // Of a serial frame kind and sequence number stand before the bytes.
+    // In a serial frame kind and sequence number precede the bytes.
     const std::uint64_t head = (packet.kind != kAbsent) + (packet.serial_seq != kAbsent);
     const std::uint64_t at = packet.offset_bytes + head;
     require(at <= input.size() && kept.bytes.size() <= input.size() - at,

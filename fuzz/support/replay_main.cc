@@ -1,4 +1,4 @@
-// Runs a fuzz target without a fuzzing engine: on each file of the given folders, and, where the
+// Runs a fuzz target without a fuzzing engine: on each file of the given folders, and, if the
 // target has a mutator of its own, on a fixed number of its mutations of each. A broken property
 // ends the process with a signal; the file is named before.
 #include <algorithm>

@@ -1,4 +1,4 @@
-// What a fuzz target says when its property does not hold.
+// Ends a fuzz target when its property does not hold.
 #pragma once
 
 #include <cstdio>

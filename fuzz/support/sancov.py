@@ -8,7 +8,7 @@ PC_TABLE = "__sancov_pcs"
 
 
 class Elf:
-    """What is needed of a 64-bit little-endian ELF file: its sections and relative relocations."""
+    """The sections and relative relocations of a 64-bit little-endian ELF file."""
 
     def __init__(self, path):
         with open(path, "rb") as file:

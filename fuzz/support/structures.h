@@ -1,4 +1,4 @@
-// Every structure of every spec, as a generated view and as the tables have it.
+// Every structure of every spec, as a generated view and as in the tables.
 #pragma once
 
 #include <string>

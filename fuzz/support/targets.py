@@ -185,7 +185,7 @@ class Run:
 
 
 class Result:
-    """What a run's log says: runs, runs_per_s, coverage, corpus_size, crashes, cause."""
+    """Reads a run's log: runs, runs_per_s, coverage, corpus_size, crashes, cause."""
 
     def __init__(self, run):
         text = run.text()

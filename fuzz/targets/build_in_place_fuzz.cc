@@ -1,5 +1,5 @@
-// Property: what a builder makes in place, by any order of setters that take or refuse, is what
-// write makes of a value with the same fields; nothing behind its room is touched.
+// Property: a builder in place, by any order of setters that take or refuse, makes what write makes
+// of a value with the same fields; bytes after its room stay untouched.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -20,7 +20,7 @@ using fuzz::require;
 constexpr std::uint8_t kUntouched = 0xA5;
 constexpr int kStepsMax = 24;
 
-// One setter of the builder, and the same of the value where it takes it.
+// Calls one setter of the builder, and sets the same in the value if it succeeds.
 
 void step(NetMsgBuilder& out, NetMsg& value, MutableBytes, Input& in) {
   switch (in.below(6)) {
@@ -112,7 +112,8 @@ void step(SynCreateCmdBuilder& out, SynCreateCmd& value, MutableBytes, Input& in
   }
 }
 
-// In order: where a packet stands depends on the kind, and what it overwrites was another field.
+// In order: the packet's place depends on the kind, and the bytes that it overwrites were another
+// field.
 void step(tinyos::SerialFrameBuilder& out, tinyos::SerialFrame& value, MutableBytes room,
           Input& in) {
   std::fill(room.data(), room.data() + room.size(), std::uint8_t{0});

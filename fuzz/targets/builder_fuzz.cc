@@ -1,5 +1,5 @@
-// Property: a value of any fields is written as bytes that parse and tables take and that give it
-// back, whatever the room, or refused by a rule of its structure; behind the room all stays.
+// Property: a value of any fields is written as bytes that parse and tables accept and that give it
+// back, whatever the room, or refused by a rule of its structure; bytes after the room stay.
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -22,7 +22,7 @@ constexpr std::size_t kRoom = 512;
 constexpr std::size_t kGuard = 16;
 constexpr std::uint8_t kUntouched = 0xA5;
 
-/// Gives each field what comes next in the input.
+/// Fills each field with the next part of the input.
 class Fill {
  public:
   explicit Fill(Input& input) : input_(input) {}
@@ -60,7 +60,7 @@ class Fill {
   Input& input_;
 };
 
-/// Room with something behind it that must stay as it is.
+/// Room followed by bytes that must stay as they are.
 class Guarded {
  public:
   explicit Guarded(std::size_t size) : size_(size) { all_.fill(kUntouched); }
@@ -76,7 +76,7 @@ class Guarded {
   std::size_t size_;
 };
 
-// Rules of a structure and of whatever may stand in it.
+// Returns whether a rule is of a structure or of any in it.
 bool is_rule_of(const reflect::Type& type, ReqId rule) {
   if (type.requirement == rule) return true;
   for (int i = 0; i < type.field_count; ++i) {

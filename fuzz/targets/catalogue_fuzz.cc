@@ -1,5 +1,5 @@
 // Property: any text read as a catalogue of rules, as a profile and as a golden trace gives
-// mistakes at places within it, or what is emitted whole and the same each time.
+// mistakes at places within it, or is emitted whole and the same each time.
 #include <cstddef>
 #include <cstdint>
 #include <string>

@@ -1,5 +1,5 @@
-// Property: whatever bytes `rubric check` is given as a capture or a log, it ends with a verdict
-// that its findings say, about frames that are there, in whole reports, the same each time.
+// Property: whatever bytes `rubric check` gets as a capture or a log, it ends with the verdict of
+// its findings, about existing frames, in whole reports, the same each time.
 #include <cstddef>
 #include <cstdint>
 #include <set>
@@ -25,7 +25,7 @@ using fuzz::require;
 // The text report judges parts of a run to find the least that shows a failure.
 constexpr std::size_t kSearchedMax = 12;
 
-// By the input's size, so that a capture is an input as it is.
+// Chooses options by the input's size, so that a capture is a valid input.
 oracle::Options options_for(std::size_t size) {
   oracle::Options out;
   out.deployed = (size & 1) != 0;
@@ -54,7 +54,7 @@ void refers_to_what_is_there(const oracle::Run& run, const oracle::Report& repor
 }
 
 std::string reports(const report::Story& story) {
-  const std::string json = report::json_report(story);
+  const std::string json = report::json_report(story).text();
   record::parse_json(json);
   report::TextOptions options;
   if (story.run.seen.size() <= kSearchedMax) options.judge = oracle::judge;
@@ -76,7 +76,7 @@ std::string checked(std::string_view bytes, const oracle::Options& given) {
   if (!oracle::drop_duplicates(run, options, error)) return error;
   const oracle::Report found = oracle::judge(run, options);
   refers_to_what_is_there(run, found);
-  const report::ExpectationFile expected;
+  const report::KnownFailures expected;
   const report::Outcome outcome = report::compare(run, options, found, expected);
   return reports({run, options, found, expected, outcome});
 }

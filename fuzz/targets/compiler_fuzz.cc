@@ -33,7 +33,7 @@ const std::vector<rubricc::Requirement>& rules() {
   return all;
 }
 
-// The input with the catalogue that it may quote, beside the spec that it may import.
+// Loads the input with the catalogue that it may quote, beside the spec that it may import.
 void load(const std::string& text, rubricc::Model& model, rubricc::Diagnostics& diagnostics) {
   model.requirements = rules();
   if (text.find("tinyos") != std::string::npos) {

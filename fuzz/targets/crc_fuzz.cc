@@ -1,5 +1,5 @@
 // Property: every way to sum a frame, from any state, whole or split anywhere, at any alignment,
-// gives what dividing by the polynomial bit by bit gives.
+// equals division by the polynomial bit by bit.
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -42,7 +42,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::uint16_t start = input.u16();
   const std::size_t cut = input.u16();
   const Bytes given = input.rest();
-  // The frame ends where the block does: sanitizers see a byte read behind it.
+  // The frame ends where the block does: sanitizers see a byte read after it.
   std::vector<std::uint8_t> block(alignment);
   block.insert(block.end(), given.begin(), given.end());
   const std::vector<std::uint8_t> exact(block.begin(), block.end());

@@ -1,6 +1,6 @@
 // Property: any split of a serial line's bytes, on every path of this processor, gives the frames,
-// places and faults that a plain byte-by-byte deframer finds, the mote's deframer agrees on what is
-// whole, and what is written from them reads back as the same; so do any bytes that a mote writes.
+// places and faults that a plain byte-by-byte deframer finds, the mote's deframer agrees on the
+// sound ones, and their output reads back as the same; so do any bytes that a mote writes.
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -18,7 +18,7 @@ using namespace rubric;
 using fuzz::Kept;
 using fuzz::require;
 
-// What a mote with a buffer of any size would say of the frames that a flag ends.
+// Checks the frames that a mote with a buffer of any size finds.
 void check_mote(Bytes stream, const std::vector<Kept>& wanted) {
   std::array<std::uint8_t, kHdlcKeptMax> buffer;
   HdlcDeframer deframer(MutableBytes(buffer.data(), buffer.size()));
@@ -58,7 +58,7 @@ void check_writer(const std::vector<Kept>& packets) {
   fuzz::require_same(again, wanted, "what is written reads back as the same");
 }
 
-// Any bytes as the content of a frame, in a buffer of just the size that they take.
+// Writes any bytes as the content of a frame, in a buffer of exactly their size.
 void check_mote_writer(Bytes content) {
   std::array<std::uint8_t, hdlc_frame_room(kHdlcKeptMax)> room;
   const std::size_t max = serial_content_max(content.empty() ? 0 : content[0]) - kSerialCrcBytes;

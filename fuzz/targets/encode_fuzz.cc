@@ -1,5 +1,5 @@
 // Property: any text as lines of `rubric encode` is refused with a reason, or makes packets which
-// decode to lines that make the same packets again, also without their raw bytes.
+// decode to lines that make the same packets again, even without their raw bytes.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -21,7 +21,7 @@ using reflect::Value;
 
 const reflect::Protocol& protocol() { return *reflect::find_protocol("rubicon"); }
 
-// False where the line is refused.
+// Returns false if the line is refused.
 bool read(const Value& line, OwnedPacket& out) {
   record::RecordReader reader(protocol());
   try {
@@ -46,7 +46,7 @@ std::string decoded(const OwnedPacket& owned, const reflect::Type* bare) {
   return std::string(out.view());
 }
 
-// The message that a bare packet is decoded as, which a line says itself.
+// Returns the type of a bare packet, which a line names itself.
 const reflect::Type* bare_type(const Value& line) {
   const Value* path = line.find("path");
   if (path && path->is(Value::Kind::kArray) && !path->items.empty()) {
@@ -69,7 +69,8 @@ void same(const OwnedPacket& a, const OwnedPacket& b) {
           "what the frame says is the same");
 }
 
-// A line says all of a frame in its fields but which NaN it was (tools/decode_format.md).
+// Returns whether a line's fields hold all of a frame, apart from which NaN it was
+// (tools/decode_format.md).
 bool is_whole(const Value& line, const std::string& text) {
   return line.find("fields")->is(Value::Kind::kObject) &&
          line.find("error")->is(Value::Kind::kNull) && text.find("\"NaN\"") == std::string::npos;

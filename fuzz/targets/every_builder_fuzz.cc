@@ -1,5 +1,5 @@
-// Property: a builder that is given every field of what parse took makes its bytes again, whatever
-// its room held before; the parts that a view hands out are those that parse finds in it.
+// Property: a builder that gets every field of a parsed structure makes its bytes again, whatever
+// its room held before; the parts that a view returns are those that parse finds in it.
 #include <cstddef>
 #include <cstdint>
 #include <vector>

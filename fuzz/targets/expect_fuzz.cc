@@ -1,5 +1,5 @@
-// Property: any text read as the failures that `rubric check` or `rubric test` is to expect is
-// refused at a line of it, or its entries are whole and read the same when they are written again.
+// Property: any text read as the expected failures of `rubric check` or `rubric test` is refused at
+// a line of it, or its entries are whole and read the same when they are written again.
 #include <cstddef>
 #include <cstdint>
 #include <stdexcept>
@@ -42,7 +42,7 @@ std::string entry_text(const Members& members) {
   return out;
 }
 
-// Both readers say "input.yaml:LINE: what".
+// Requires a line of the text in "input.yaml:LINE: what", as both readers print it.
 void line_is_within(const std::string& error, const std::string& text) {
   const std::string before = "input.yaml:";
   require(error.starts_with(before), "the file is named");
@@ -51,53 +51,46 @@ void line_is_within(const std::string& error, const std::string& text) {
   require(error.find(": ") + 2 < error.size(), "it says what is wrong");
 }
 
-bool of_check(const std::string& text, std::string& again) {
-  rubric::report::ExpectationFile file;
-  std::string error;
-  if (!rubric::report::parse_expectations(text, "input.yaml", file, error)) {
-    line_is_within(error, text);
-    return false;
-  }
-  for (const auto& one : file.expectations) {
-    require(one.requirement != rubric::ReqId::kNone, "a rule is named");
-    require(!one.message.empty() && !one.reason.empty(), "message and reason are there");
-    require(one.line <= rubric::fuzz::line_sizes(text).size(), "it has a line");
-    again += entry_text({{"requirement", rubric::reflect::requirement(one.requirement).id},
-                         {"node", one.node}, {"file", one.file}, {"profile", one.profile},
-                         {"message", one.message}, {"reason", one.reason}});
-  }
-  const auto outcome = rubric::report::compare({}, {}, {}, file);
-  require(outcome.results.size() == file.expectations.size(), "each comes to something");
-  return true;
-}
-
-bool of_test(const std::string& text, std::string& again) {
+// What is read, its entries written again; nothing where the text is refused.
+std::string read(const std::string& text, bool of_check) {
+  rubric::report::KnownFailures file;
   try {
-    for (const auto& one : rubric::suite::parse_expected(text, "input.yaml").entries) {
-      require(!one.cases.empty() && !one.requirement.empty(), "case and rule are there");
-      require(!one.message.empty() && !one.reason.empty(), "message and reason are there");
-      require(one.line <= rubric::fuzz::line_sizes(text).size(), "it has a line");
-      again += entry_text({{"case", one.cases}, {"requirement", one.requirement},
-                           {"message", one.message}, {"reason", one.reason},
-                           {"target", one.target}, {"profile", one.profile}});
-    }
-    return true;
+    file = of_check ? rubric::report::parse_expectations(text, "input.yaml")
+                    : rubric::suite::parse_expected(text, "input.yaml");
   } catch (const std::runtime_error& error) {
     line_is_within(error.what(), text);
-    return false;
+    return {};
   }
+  std::string again;
+  for (const auto& one : file.entries) {
+    const bool is_rule = rubric::reflect::find_requirement(one.requirement) != rubric::ReqId::kNone;
+    require(of_check ? is_rule : !one.cases.empty() && !one.requirement.empty(),
+            "a rule is named, and a case where there are cases");
+    require(!one.message.empty() && !one.reason.empty(), "message and reason are there");
+    require(one.line <= rubric::fuzz::line_sizes(text).size(), "it has a line");
+    again += entry_text({{"case", one.cases},
+                         {"requirement", one.requirement},
+                         {"node", one.node},
+                         {"file", one.file},
+                         {"message", one.message},
+                         {"reason", one.reason},
+                         {"target", one.target},
+                         {"profile", one.profile}});
+  }
+  if (of_check) {
+    const auto outcome = rubric::report::compare({}, {}, {}, file);
+    require(outcome.results.size() == file.entries.size(), "each comes to something");
+  }
+  return again;
 }
 
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string text(reinterpret_cast<const char*>(data), size);
-  for (bool (*read)(const std::string&, std::string&) : {&of_check, &of_test}) {
-    std::string written;
-    std::string again;
-    if (!read(text, written) || written.empty()) continue;
-    require(read(written, again), "what was written is read");
-    require(again == written, "and is the same");
+  for (const bool of_check : {true, false}) {
+    const std::string written = read(text, of_check);
+    require(read(written, of_check) == written, "what was written is read, and is the same");
   }
   return 0;
 }

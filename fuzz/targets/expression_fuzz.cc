@@ -1,5 +1,5 @@
-// Property: the steps of an expression come to what its tree means, read plainly, whatever bytes it
-// is about, also where it reads behind their end.
+// Property: the steps of an expression give the value of its tree, evaluated plainly, whatever the
+// bytes, even where it reads beyond their end.
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -15,7 +15,7 @@ using namespace rubric;
 using reflect::ExprStep;
 using reflect::Op;
 
-// What a tree means, and how far from 0 a tree of that form can come: rubricc sees to it that no
+// The value of a tree, and how far from 0 a tree of that form can be: rubricc makes sure that no
 // expression of a spec overflows.
 struct Meaning {
   std::int64_t value;

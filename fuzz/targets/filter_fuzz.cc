@@ -1,5 +1,5 @@
-// Property: of any text a filter expression is made or refused at a place within the text; what is
-// made says of every frame the same twice, and the opposite under `!`.
+// Property: any text gives a filter expression or is refused at a place within it; a filter says
+// the same twice of every frame, and the opposite under `!`.
 #include <cstddef>
 #include <cstdint>
 #include <deque>

@@ -1,5 +1,5 @@
-// Property: any split of hex text gives the same packets, one for each line that a plain parser
-// finds bytes in or cannot read; and what is written from the sound ones reads back as the same.
+// Property: any split of hex text gives the same packets, one for each line in which a plain parser
+// finds bytes or which it cannot read; and the output of the sound ones reads back as the same.
 #include <cctype>
 #include <cstddef>
 #include <cstdint>
@@ -16,7 +16,7 @@ using namespace rubric;
 using fuzz::Kept;
 using fuzz::require;
 
-// The bytes of a line; nothing if it is no hex text.
+// Returns the bytes of a line; nothing if it is no hex text.
 std::optional<std::string> plain_line(std::string line) {
   line = line.substr(0, line.find('#'));
   std::string bytes;
@@ -62,7 +62,7 @@ void check_writer(const std::vector<Kept>& packets, const ReaderOptions& options
     require(writer.write(kept.get(), written) == held, "sound packets can be written");
     if (!held) continue;
     wanted.push_back(fuzz::placeless(kept));
-    // Lines hold what is from the dispatch byte on, or up to the FCS.
+    // Lines begin at the dispatch byte, or end before the FCS.
     Packet& packet = wanted.back().packet;
     packet.kind = packet.serial_seq = packet.crc = packet.fcs = kAbsent;
     if (packet.framing == Framing::kHdlc) packet.framing = Framing::kSf;

@@ -1,7 +1,7 @@
 // Property: whatever happens to a node of the reference machine, it keeps the explorer's promises
 // and its own bounds, names its rules, and does the same again.
 //
-// RUBRIC_FLAW names a flaw of conformance/flaws that stands in for the machine: this must be found.
+// RUBRIC_FLAW names a flaw of conformance/flaws that replaces the machine: this must be found.
 #include <cstdio>
 #include <cstdlib>
 

@@ -1,5 +1,5 @@
-// Property: no way through a network of two motes and two sinks, with loss, duplicates, reordering,
-// collisions and reboots, breaks a property of the explorer.
+// Property: no path through a network of two motes and two sinks, with loss, duplicates,
+// reordering, collisions and reboots, breaks a property of the explorer.
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kMemoryMax = std::size_t{256} << 20;
 
-// What nodes did is remembered from input to input: a step costs more than a look.
+// Remembers the nodes' steps from input to input: a step costs more than a lookup.
 rubric::explorer::Nodes& nodes_for(rubric::explorer::Scope scope) {
   static std::array<std::unique_ptr<rubric::explorer::Nodes>, 2> kept;
   auto& nodes = kept[static_cast<std::size_t>(scope)];

@@ -1,5 +1,5 @@
-// Property: given the same, the reference machine and the independent C++ node do the same, up to
-// what the rules leave free (conformance/script/README.md).
+// Property: on the same inputs the reference machine and the independent C++ node do the same,
+// except where the rules leave a choice (conformance/script/README.md).
 #include <cstddef>
 #include <cstdint>
 

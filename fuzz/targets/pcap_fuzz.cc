@@ -1,5 +1,5 @@
 // Property: any split of a pcap file gives the same packets, one for each record that a plain loop
-// finds, all in the file where they say; what is written from them reads back as the same.
+// finds, all at their stated places in the file; their output reads back as the same.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -15,7 +15,8 @@ using namespace rubric;
 using fuzz::Kept;
 using fuzz::require;
 
-// The records of a file that begins with a sound header; what follows a damaged one is no record.
+// Counts the records of a file that begins with a sound header; bytes after a damaged one are no
+// record.
 std::size_t count_records(Bytes file, bool* rest) {
   const bool big = file[0] == 0xA1;
   std::size_t at = 24;
@@ -49,7 +50,7 @@ void check_writer(const std::vector<Kept>& packets, std::uint16_t link_type) {
       continue;
     }
     wanted.push_back(fuzz::placeless(kept));
-    // Where seconds and ticks are both beyond what they should be, there is no room for the sum.
+    // If seconds and ticks are both out of range, there is no room for the sum.
     std::int64_t& time_ns = wanted.back().packet.time_ns;
     time_ns = std::min<std::int64_t>(time_ns, 4294967295'999999999);
   }

@@ -1,5 +1,6 @@
-// Property: any split of a pcapng file gives the same packets and interfaces, all in the file where
-// they say; of sound blocks those that a plain walk finds; what is written reads back as the same.
+// Property: any split of a pcapng file gives the same packets and interfaces, all at their stated
+// places in the file; sound blocks are those that a plain walk finds; their output reads back as
+// the same.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -35,8 +36,8 @@ struct Walked {
   std::size_t interface;
 };
 
-// The enhanced packets of a little-endian file that is nothing but whole blocks of the usual kinds;
-// of any other file nothing.
+// Returns the enhanced packets of a little-endian file of whole blocks of the usual kinds only;
+// nothing for any other file.
 std::vector<Walked> plain_walk(Bytes file) {
   std::vector<Walked> packets;
   std::size_t first = 0;  // Interface of the present section.
@@ -53,7 +54,7 @@ std::vector<Walked> plain_walk(Bytes file) {
       if (load_le16(rest.data() + 12) != 1) return {};
       first = next;
     } else if (type == 1) {
-      if (size != 20) return {};  // Without options.
+      if (size != 20) return {};  // No options.
       ++next;
     } else if (type == 6) {
       if (size < 32) return {};
@@ -82,8 +83,8 @@ void check_walk(const std::vector<Kept>& packets, Bytes file) {
   }
 }
 
-// What the writer promises to change: times that are missing or before 1970, and the header that a
-// sniffer puts before radio frames.
+// Applies the writer's documented changes: times that are missing or before 1970, and the header
+// that a sniffer puts before radio frames.
 Kept as_written(const Kept& kept, std::int64_t* last_ns) {
   Kept wanted = kept;
   if (kept.packet.time_ns != kNoTime) *last_ns = std::max<std::int64_t>(kept.packet.time_ns, 0);

@@ -1,5 +1,5 @@
-// Property: none; a trap lies behind four valid messages in order, each of which has to repeat what
-// was said before. planted_test.py shows that the structure-aware mutator comes to it.
+// Property: none. A trap follows four valid messages in order, each of which has to repeat earlier
+// values. planted_test.py shows that the structure-aware mutator reaches it.
 #include <cstddef>
 #include <cstdint>
 
@@ -16,10 +16,10 @@ using namespace rubric;
 
 constexpr std::size_t kAmHeaderBytes = 8;
 
-/// A mote joins and sends something that is to be confirmed. Other messages may stand between.
+/// A mote joins and sends something that is to be confirmed. Other messages may come between.
 class Join {
  public:
-  /// Serial packets carry what goes on the radio as well, as in a trace.
+  /// Takes content. Serial packets carry radio messages as well, as in a trace.
   void take(Bytes content) {
     if (content.empty()) return;
     const std::size_t head = content[0] == kSerialPacketAck ? 2 : 1;
@@ -50,7 +50,7 @@ class Join {
   void request(Bytes payload) {
     const auto view = rubicon::JoinRequestView::parse(payload);
     if (!view || !view->stale().empty() || step_ != 0) return;
-    // Small numbers and special ones come from anywhere.
+    // Small and special numbers may come from anywhere.
     if (view->seq_num() < 256 || view->seq_num() == 0xFFFF) return;
     seq_num_ = view->seq_num();
     step_ = 1;

@@ -1,5 +1,5 @@
-// Property: a captured record of any radio link type is taken apart as a plain reading of 802.15.4
-// does it, FCS and addresses included, and what is appended from it reads back as the same.
+// Property: a captured record of any radio link type is split like a plain reading of 802.15.4, FCS
+// and addresses included, and its output reads back as the same.
 #include <cstddef>
 #include <cstdint>
 

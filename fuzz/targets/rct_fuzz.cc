@@ -1,6 +1,6 @@
-// Property: lines of rct/1 from anywhere break neither end. Each command to the adapter's end is
-// answered as the runner's end demands; each output that the runner's end takes is written again as
-// a line that gives the same.
+// Property: lines of rct/1 from anywhere break neither end. Each command to the adapter's end gets
+// an answer that the runner's end accepts; each output that the runner's end takes is written again
+// as an equal line.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -42,7 +42,7 @@ class Adapter {
     const std::string answer = server_.answer(command);
     if (server_.ended()) return require(answer.empty(), "`bye` is not answered");
     require(answer.ends_with('\n'), "an answer ends with its line");
-    // No runner turns the clock back; what comes of it must be no more than wrong.
+    // No runner turns the clock back; the result must be no worse than wrong.
     const bool anew = asked.closing == "ready";
     if (!anew && asked.to < now_) lost_ = true;
     if (anew || !lost_) read(answer, asked);
@@ -50,7 +50,7 @@ class Adapter {
   bool ended() const { return server_.ended(); }
 
  private:
-  // What a runner would expect of it.
+  // Returns a runner's expectation of it.
   Asked asked_by(std::string_view command) const {
     attach::Words words(command);
     const std::string_view word = words.next();
@@ -95,7 +95,7 @@ class Adapter {
   bool lost_ = false;
 };
 
-/// A runner's end that hears whatever is said.
+/// A runner's end that takes any lines.
 class Runner {
  public:
   Runner() {

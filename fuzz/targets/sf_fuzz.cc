@@ -1,6 +1,5 @@
 // Property: any split of a serial forwarder's stream gives the packets that a plain loop over its
-// length bytes finds, and what is written from them reads back as the same, also by way of a serial
-// line.
+// length bytes finds, and their output reads back as the same, even by way of a serial line.
 #include <cstddef>
 #include <cstdint>
 
@@ -82,7 +81,7 @@ void check_writer(const std::vector<Kept>& packets) {
   fuzz::require_same(again, wanted, "what is written reads back as the same");
 }
 
-// As `rubric convert` does it.
+// Converts as `rubric convert` does.
 void check_by_serial_line(const std::vector<Kept>& packets) {
   const auto to_line = make_writer(InputFormat::kHdlc, 0);
   const auto to_forwarder = make_writer(InputFormat::kSf, 0);

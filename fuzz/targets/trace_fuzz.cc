@@ -1,5 +1,5 @@
-// Property: what parses of any text prints as a text that parses to the same and prints the same;
-// mistakes stand within the text; a frame made of a line is what that line asks for.
+// Property: any parsed text prints as a text that parses to the same and prints the same; mistakes
+// are within the text; a frame made from a line matches that line.
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -30,7 +30,7 @@ void places_are_within(const Parsed& parsed, std::string_view text) {
   require(parsed.ok() == parsed.errors().empty(), "errors are shown");
 }
 
-// What the kit gives to a node for this line, heard again.
+// Requires the kit's frame for this line to match the line.
 void frame_is_asked_for(const Line& line, const Scope& scope) {
   const auto link = scope.link(line.link);
   if (line.op != Op::kGiven || !link || *link == LinkKind::kApp || *link == LinkKind::kPower) {

@@ -1,4 +1,4 @@
-// Property: of any bytes every structure's parse takes just what write makes again, and the
+// Property: for any bytes and every structure `write(parse(x)) == x` for the meant bytes, and the
 // reflection tables find the same fault at the same place by the same rule, or the same values.
 #include <cstddef>
 #include <cstdint>

@@ -1,4 +1,4 @@
-# What `cmake --install` lays down, and the Debian packages that `cpack` makes of it:
+# Files of `cmake --install`, and the Debian packages that `cpack` makes of them:
 #   tool  the programs rubric, rubricc and rubric-extcap, their manual pages, completions, the
 #         Wireshark dissector
 #   dev   headers and libraries, for find_package(rubric) and pkg-config
@@ -11,7 +11,7 @@ set(include_dir ${CMAKE_INSTALL_INCLUDEDIR}/rubric)
 # of codec and conformance belong to it, without those of tests, fuzzing, commands and compiler.
 get_property(libraries GLOBAL PROPERTY RUBRIC_LIBRARIES)
 list(FILTER libraries EXCLUDE REGEX
-  "^firmware_|^rubric_(compiler|commands|cli|format|fuzz.*|legal.*|.*mutator|record.*)$")
+  "^firmware_|^rubric_(compiler|commands|cli|command_line|format|fuzz.*|legal.*|.*mutator|record.*)$")
 list(FILTER libraries EXCLUDE REGEX "^rubric_(cpp_node.*|forward|lines|live|script)$")
 add_library(rubric_conformance INTERFACE)
 target_link_libraries(rubric_conformance INTERFACE ${libraries})

@@ -1,4 +1,4 @@
-# What cpack needs on the machine: without the first, packages would silently depend on nothing.
+# Tools that cpack needs: without the first, packages would silently depend on nothing.
 foreach(program dpkg-shlibdeps file)
   find_program(found_${program} ${program})
   if(NOT found_${program})

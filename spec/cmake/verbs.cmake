@@ -4,14 +4,18 @@ include_guard()
 set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 
-# What every target of the project is compiled with.
+# Options with which every target of the project is compiled.
 add_library(rubric_options INTERFACE)
 target_include_directories(rubric_options INTERFACE ${PROJECT_SOURCE_DIR})
 target_compile_features(rubric_options INTERFACE cxx_std_20)
 target_compile_options(rubric_options INTERFACE -Wall -Wextra -Wshadow -Wconversion)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
-  # It warns of overlap in its own std::string at -O2 and above (GCC bug 105651).
-  target_compile_options(rubric_options INTERFACE -Wno-restrict)
+  # It warns of overlap and bounds in its own std::string when it optimises (GCC bug 105651).
+  target_compile_options(rubric_options INTERFACE -Wno-restrict -Wno-array-bounds)
+endif()
+if(CMAKE_UNITY_BUILD)
+  # It takes a type of an anonymous namespace for shared where the file is included.
+  target_compile_options(rubric_options INTERFACE -Wno-subobject-linkage)
 endif()
 if(RUBRIC_WERROR)
   target_compile_options(rubric_options INTERFACE -Werror)
@@ -27,10 +31,14 @@ if(RUBRIC_FUZZ AND RUBRIC_FUZZ_ENGINE STREQUAL "-fsanitize=fuzzer")
   target_compile_options(rubric_options INTERFACE -fsanitize=fuzzer-no-link)
 endif()
 
-# rubric_library(NAME SOURCES a.cc ... [DEPS lib ...]): a static library.
+# rubric_library(NAME [COLD] SOURCES a.cc ... [DEPS lib ...]): a static library. COLD: no benchmark
+# depends on its speed, so that it is compiled in less time.
 function(rubric_library name)
-  cmake_parse_arguments(arg "" "" "SOURCES;DEPS" ${ARGN})
+  cmake_parse_arguments(arg "COLD" "" "SOURCES;DEPS" ${ARGN})
   add_library(${name} STATIC ${arg_SOURCES})
+  if(arg_COLD)
+    target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+  endif()
   # Our warnings are for us: who uses an installed library has options of his own.
   target_link_libraries(${name} PUBLIC $<BUILD_INTERFACE:rubric_options> ${arg_DEPS})
   target_compile_features(${name} PUBLIC cxx_std_20)
@@ -46,6 +54,18 @@ function(rubric_program name)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
 endfunction()
 
+# What all tests include, compiled once.
+if(RUBRIC_TESTS AND NOT RUBRIC_FUZZ)
+  find_package(GTest REQUIRED)
+  find_package(fmt REQUIRED)
+  # A program, as precompiled headers fit code of their own kind alone.
+  file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/test_headers.cc CONTENT "int main() {}\n")
+  add_executable(rubric_test_headers ${PROJECT_BINARY_DIR}/test_headers.cc)
+  target_link_libraries(rubric_test_headers PRIVATE rubric_options GTest::gmock fmt::fmt)
+  target_precompile_headers(rubric_test_headers PRIVATE <gmock/gmock.h> <gtest/gtest.h>
+    <fmt/format.h> <algorithm> <fstream> <map> <optional> <set> <string> <variant> <vector>)
+endif()
+
 # rubric_test(NAME SOURCES a_test.cc ... [DEPS lib ...] [LABEL fast|slow]): one GoogleTest program,
 # one ctest entry, run from the project's folder.
 function(rubric_test name)
@@ -57,7 +77,10 @@ function(rubric_test name)
     set(arg_LABEL fast)
   endif()
   add_executable(${name} ${arg_SOURCES})
-  target_link_libraries(${name} PRIVATE rubric_options ${arg_DEPS} GTest::gmock GTest::gtest_main)
+  set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
+  target_link_libraries(${name} PRIVATE rubric_options ${arg_DEPS} GTest::gmock GTest::gtest_main
+    fmt::fmt)
+  target_precompile_headers(${name} REUSE_FROM rubric_test_headers)
   add_test(NAME ${name} COMMAND ${name} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
   set_tests_properties(${name} PROPERTIES LABELS ${arg_LABEL} TIMEOUT 600)
 endfunction()
@@ -73,6 +96,28 @@ function(rubric_script_test name)
   endif()
   add_test(NAME ${name} COMMAND ${arg_COMMAND} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
   set_tests_properties(${name} PROPERTIES LABELS ${arg_LABEL} TIMEOUT 900)
+endfunction()
+
+# rubric_have_tools(RESULT WHAT VARIABLE ...): RESULT says whether find_program or find_library set
+# all of the variables. Where one is missing, WHAT is not built and not tested: that is a warning,
+# and an error with RUBRIC_ALL_TOOLS.
+function(rubric_have_tools result what)
+  set(${result} TRUE PARENT_SCOPE)
+  foreach(variable ${ARGN})
+    if(NOT ${variable})
+      list(APPEND missing ${variable})
+    endif()
+  endforeach()
+  if(missing)
+    set(${result} FALSE PARENT_SCOPE)
+    set(severity WARNING)
+    if(RUBRIC_ALL_TOOLS)
+      set(severity SEND_ERROR)
+    endif()
+    list(JOIN missing ", " missing)
+    message(${severity} "${what} is not built or tested, without ${missing}; "
+      "`tools/install-packages test` installs what is needed.")
+  endif()
 endfunction()
 
 # rubric_must_not_compile(NAME SOURCE x.cc EXPECT regex): compiling x.cc must fail with a message

@@ -1,4 +1,4 @@
-// Every file in bad/ holds a mistake and says in its first lines what must be reported:
+// Every file in bad/ holds a mistake and states in its first lines the expected report:
 //   # expect: line:column: text        (or another file before it)
 //   #   continued
 // In traces `;` begins such a line.
@@ -127,7 +127,7 @@ TEST(BadSpecs, AreAllThere) {
   EXPECT_GE(files_in(kFolder + "cases/", ".rtr").size(), 6U);
 }
 
-// What would be too large for a file beside the others.
+// Reports errors for a text that would be too large for a file beside the others.
 std::string reported_for(const std::string& text) {
   Model model;
   Diagnostics diagnostics;

@@ -1,5 +1,5 @@
-// The passes of check_model, in their order. Each reports what it finds and goes on; `open` keeps
-// what could not be resolved so that one mistake is not reported again as its consequences.
+// The passes of check_model, in order. Each reports what it finds and goes on; `open` keeps
+// unresolved things, so that one mistake is not reported again as its consequences.
 #pragma once
 
 #include <fmt/core.h>
@@ -28,14 +28,14 @@ struct Check {
   bool is_open(const void* thing) const { return open.contains(thing); }
 };
 
-/// What an expression yields.
+/// The result type of an expression.
 enum class Shape { kOpen, kInt, kBool, kEnum };
 struct ExprShape {
   Shape shape = Shape::kOpen;
   const Enum* enumeration = nullptr;
 };
 
-/// Where an expression stands: which fields it can read.
+/// The surroundings of an expression: which fields it can read.
 struct Scope {
   const Type& type;
   std::size_t fields_before;  // Fields of seq that are read before it.
@@ -43,30 +43,30 @@ struct Scope {
   bool wide = false;          // Constants may be as wide as a field, not just 32 bits.
 };
 
-/// Types, enums and overlaid names; duplicate names.
+/// Checks types, enums and overlaid names; duplicate names.
 void check_names(Check& check);
 const Enum* find_enum(const Spec& spec, const std::string& name);
 const Enum* find_enum(const Spec& spec, const std::vector<std::string>& path);
 /// Fills Check::order and Spec::dependency_order; reports types that contain themselves.
 void check_order(Check& check);
-/// Resolves `expr`: fields, offsets, enum values, range. kOpen after an error.
+/// Resolves `expr`: fields, offsets, enum values, range. Returns kOpen after an error.
 ExprShape resolve_expr(Check& check, Expr& expr, const Scope& scope);
-/// The value of an expression without fields: a value of `enumeration` if there is one, else a
-/// number. `what` names whose value it is.
+/// Returns the value of an expression without fields: a value of `enumeration` if there is one,
+/// else a number. `what` names whose value it is.
 std::optional<std::int64_t> resolve_constant(Check& check, Expr& expr, std::string_view what,
                                              const Enum* enumeration, const Scope& scope);
-/// Whether keys fit the kind of their field: `valid`, `enum`, -expect, -unit, size, repeat.
+/// Checks that keys fit the kind of their field: `valid`, `enum`, -expect, -unit, size, repeat.
 void check_field_shape(Check& check, Field& field);
-/// `valid`, -expect and the range of a number.
+/// Checks `valid`, -expect and the range of a number.
 void check_values(Check& check, Field& field, const Scope& scope);
 void check_switch(Check& check, Switch& choice, const Field& field, const Scope& scope);
-/// Sizes and offsets of the types in `order`.
+/// Computes sizes and offsets of the types in `order`.
 void check_layout(Check& check);
-/// Peeks and interpretations of a type whose seq is laid out.
+/// Checks peeks and interpretations of a type whose seq is laid out.
 void check_instances(Check& check, Type& type);
-/// Requirements, carriers, AM types.
+/// Checks requirements, carriers, AM types.
 void check_types(Check& check);
-/// Names and sizes that the generated C++ could not have.
+/// Checks for names and sizes that the generated C++ could not have.
 void check_cpp(Check& check);
 
 }  // namespace rubricc

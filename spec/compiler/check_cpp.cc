@@ -1,5 +1,5 @@
-// What generated C++ cannot hold: names that meet, arrays that are too long, tails that may be
-// absent. What this lets pass, emit_cpp prints.
+// Checks for what generated C++ cannot hold: names that collide, arrays that are too long, tails
+// that may be absent. emit_cpp prints whatever this accepts.
 #include <algorithm>
 #include <array>
 #include <map>
@@ -14,7 +14,7 @@ namespace {
 constexpr std::uint64_t kElementsMax = 65535;  // The count of the runtime's Array has 16 bits.
 constexpr std::uint64_t kNumbersMax = 4096;    // Nested structures are laid out number by number.
 
-// Members of views and builders, and what their bodies call: a field of that name would hide it.
+// Members of views and builders, and names in their bodies: a field of that name would hide it.
 constexpr std::array<std::string_view, 36> kMembers{
     "at_most", "bits_of_float", "bytes", "check", "check_short", "create", "detail", "equal",
     "error_at", "fail", "finish", "float_of_bits", "int16_t", "int32_t", "int64_t", "int8_t",
@@ -24,13 +24,14 @@ constexpr std::array<std::string_view, 36> kMembers{
 static_assert(std::is_sorted(kMembers.begin(), kMembers.end()));
 
 // Classes of the runtime that generated headers use.
-constexpr std::array<std::string_view, 25> kClasses{
-    "Array", "As", "Bytes", "Error", "F32", "F32Be", "F32Le", "Failure", "Fault", "MessageCodec",
-    "MutableBytes", "NumberArrayView", "ReqId", "Result", "S16Be", "S16Le", "S32Be", "S32Le", "S8",
-    "StructArrayView", "U16Be", "U16Le", "U32Be", "U32Le", "U8"};
+constexpr std::array<std::string_view, 30> kClasses{
+    "Array", "ArrayAt", "As", "Bytes", "Error", "F32", "F32Be", "F32Le", "Failure", "Fault",
+    "MessageCodec", "MutableBytes", "NumberArrayView", "NumberAt", "PlaceAt", "RangedAt", "ReqId",
+    "Result", "S16Be", "S16Le", "S32Be", "S32Le", "S8", "StructArrayView", "U16Be", "U16Le",
+    "U32Be", "U32Le", "U8", "Within"};
 static_assert(std::is_sorted(kClasses.begin(), kClasses.end()));
 
-/// The generated names of one class or namespace, and which line of the spec each is for.
+/// The generated names of one class or namespace, with the line of the spec of each.
 class Names {
  public:
   Names(Check& check, std::string where) : check_(check), where_(std::move(where)) {}
@@ -70,7 +71,7 @@ class Structure {
  public:
   Structure(Check& check, const Type& type) : check_(check), type_(type) {}
 
-  /// What is laid out only once the rest is right: the members that groups add.
+  /// Checks names that are known only once the rest is right: the members that groups add.
   bool check() {
     for (const auto& field : type_.fields) {
       check_name(*field);
@@ -123,6 +124,7 @@ class Structure {
       const Place& place = field->place;
       const bool structure = field->kind == ValueKind::kStruct && !field->choice;
       view.claim(field->id, place);
+      view.claim(pascal(field->id) + "At", place);
       if (field->condition) view.claim("has_" + field->id, place);
       builder.claim("set_" + field->id, place);
       if (structure) builder.claim(field->id, place);
@@ -147,7 +149,7 @@ class Structure {
   bool ok_ = true;
 };
 
-/// How many numbers and bytes the structure is made of, those of nested structures too.
+/// Counts the numbers and bytes of a structure, those of nested structures too.
 class Numbers {
  public:
   std::uint64_t of(const Type& type) {

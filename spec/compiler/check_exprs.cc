@@ -1,4 +1,4 @@
-// Expressions: what their names are, what they yield, and between which numbers.
+// Resolves expressions: their names, their result types, and their ranges.
 #include <algorithm>
 #include <array>
 #include <optional>
@@ -17,7 +17,7 @@ constexpr Interval kConstants{-2147483648LL, 2147483647LL};
 
 ExprShape open() { return {}; }
 
-/// What evaluating takes: values on the stack and steps in postfix order.
+/// The cost of evaluating: values on the stack and steps in postfix order.
 struct Cost {
   int stack = 1;
   int steps = 1;
@@ -93,7 +93,7 @@ class Resolver {
     return open();
   }
 
-  /// The field that the path begins with, or null after an error.
+  /// Returns the field that the path begins with, or null after an error.
   const Field* head(const Expr& expr) {
     const std::string& name = expr.path[0];
     if (scope_.wide) {
@@ -142,7 +142,7 @@ class Resolver {
     return nullptr;
   }
 
-  /// Whether `step` stands at a constant place in every frame.
+  /// Returns whether `step` is at a constant place in every frame.
   bool is_fixed(const Expr& expr, const Field& step) {
     const std::string what = quote(to_text(expr));
     if (step.repeat != RepeatKind::kOnce) {

@@ -1,4 +1,4 @@
-// Which keys fit which kind of field.
+// Checks which keys fit which kind of field.
 #include "spec/compiler/check.h"
 
 namespace rubricc {

@@ -1,4 +1,4 @@
-// Sizes and offsets, from the types that contain nothing up.
+// Computes sizes and offsets, beginning with the types that contain nothing.
 #include <algorithm>
 
 #include "spec/compiler/check.h"
@@ -48,7 +48,7 @@ class Layout {
     const bool count_ok = resolve_number(field, field.count, scope, "count");
     check_last(field, index);
     if (!extent_ok || !count_ok || check_.is_open(&field) || is_type_open(field)) {
-      // What follows stands somewhere, but nobody knows where: stay silent about it.
+      // Later fields have an unknown place: report nothing about them.
       check_.open.insert(&field);
       is_open_ = true;
     } else {
@@ -73,7 +73,7 @@ class Layout {
     return true;
   }
 
-  /// A size or a count: a number that is never negative.
+  /// Resolves a size or a count: a number that is never negative.
   bool resolve_number(Field& field, ExprPtr& expr, const Scope& scope, std::string_view what) {
     if (!expr) return what == "size" ? field.extent != ExtentKind::kSize
                                      : field.repeat != RepeatKind::kCount;
@@ -109,7 +109,7 @@ class Layout {
     }
   }
 
-  /// One element, before size, repeat and condition.
+  /// Returns the size of one element, before size, repeat and condition.
   Size element(const Field& field) const {
     switch (field.kind) {
       case ValueKind::kBytes: return {0, kUnbounded};

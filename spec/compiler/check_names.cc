@@ -1,4 +1,4 @@
-// Names: what they stand for, and that no two are the same.
+// Resolves names, and checks that no two are the same.
 #include <algorithm>
 #include <array>
 #include <map>
@@ -13,7 +13,7 @@ constexpr std::array<std::string_view, 16> kNumberTypes{
     "u1", "u2", "u4", "s1", "s2", "s4", "f4", "u2be", "u2le", "u4be", "u4le", "s2be", "s2le",
     "s4be", "s4le", "f4le"};
 
-/// Names that must differ, also once they are written in Pascal case.
+/// Names that must differ, even in Pascal case.
 class Names {
  public:
   Names(Check& check, std::string what) : check_(check), what_(std::move(what)) {}
@@ -45,7 +45,7 @@ const Spec* import_named(const Spec& spec, std::string_view id) {
   return nullptr;
 }
 
-/// The spec that "spec::name" or "name" is looked up in (null after an error), and the bare name.
+/// The spec in which "spec::name" or "name" is looked up (null after an error), and the bare name.
 struct Lookup {
   const Spec* spec;
   std::string name;

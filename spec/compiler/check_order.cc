@@ -1,4 +1,4 @@
-// The order of types: what a type contains before it; no type contains itself.
+// Orders types so that contained ones come first; no type contains itself.
 #include <functional>
 #include <map>
 

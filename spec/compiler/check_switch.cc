@@ -1,4 +1,4 @@
-// Switches: keys that can be, each once, and all that must be there.
+// Checks switches: possible keys, each once, and completeness.
 #include <algorithm>
 #include <map>
 
@@ -12,7 +12,7 @@ const Field* set_of(const Switch& choice) {
   return field != nullptr && field->valid && !field->valid->one_of.empty() ? field : nullptr;
 }
 
-/// Whether the key can be `value` at all.
+/// Returns whether the key can be `value` at all.
 bool is_possible(const Switch& choice, std::int64_t value) {
   if (const Field* field = set_of(choice)) {
     const auto& set = field->valid->one_of;
@@ -30,7 +30,7 @@ std::string name_of(const Enum* enumeration, std::int64_t value) {
   return std::to_string(value);
 }
 
-/// A key that `valid` limits to a set needs a case for each, unless `_` takes the rest.
+/// Requires a case for each key of a set given by `valid`, unless `_` takes the rest.
 void check_complete(Check& check, const Switch& choice, const Enum* enumeration) {
   const Field* field = set_of(choice);
   if (field == nullptr || choice.otherwise) return;

@@ -35,7 +35,8 @@ class Requirements {
     check_.error(place, fmt::format("unknown requirement {}", quote(id)), suggestion(id, ids_));
   }
 
-  /// The field's own, else that of the type it stands in, else that of the type it holds.
+  /// Inherits a requirement: the field's own, else that of its type, else that of the type it
+  /// holds.
   void inherit(const Type& type, Field& field) {
     known(field.requirement, place_of(field.places, "-requirement", field.place));
     if (field.requirement.empty()) field.requirement = type.requirement;

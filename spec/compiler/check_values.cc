@@ -1,4 +1,4 @@
-// What a number may be: `valid`, -expect, and the range that they leave.
+// Checks the values of a number: `valid`, -expect, and the range that they leave.
 #include <algorithm>
 
 #include "spec/compiler/check.h"

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Exit codes of rubricc, and that a mistake leaves no file behind.
+# Exit codes of rubricc, and no files left over after a mistake.
 # usage: spec/compiler/cli_test.sh RUBRICC   (in the project's folder)
 set -u
 rubricc=$1

@@ -18,7 +18,8 @@ std::string read(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
 
-/// The comments at the top of every bad input, lines joined, and the test that makes its own.
+/// Returns the comments at the top of every bad input, lines joined, and the test that makes its
+/// own.
 std::string expectations() {
   std::string out = read(kFolder + "bad_test.cc");
   for (const auto& entry : std::filesystem::recursive_directory_iterator(kFolder + "bad")) {
@@ -33,7 +34,7 @@ std::string expectations() {
   return out;
 }
 
-/// The string that begins with the quote at `at`, and the index behind it.
+/// Returns the string that begins with the quote at `at`, and the index after it.
 std::string literal_at(const std::string& text, std::size_t& at) {
   std::string out;
   for (++at; at < text.size() && text[at] != '"'; ++at) {
@@ -44,8 +45,8 @@ std::string literal_at(const std::string& text, std::size_t& at) {
   return out;
 }
 
-/// The strings among the arguments of the call whose bracket opens before `at`, but those of the
-/// first argument where `skip_first`: that is the place.
+/// Returns the strings among the arguments of the call whose bracket opens before `at`, except
+/// those of the first argument, the place, if `skip_first`.
 std::vector<std::string> literals_of_call(const std::string& text, std::size_t at,
                                           bool skip_first) {
   std::vector<std::string> out;
@@ -64,7 +65,7 @@ std::vector<std::string> literals_of_call(const std::string& text, std::size_t a
   return out;
 }
 
-/// Between the holes of a format string.
+/// Returns the longest text between the holes of a format string.
 std::string longest_constant_part(const std::string& format) {
   std::string best, part;
   bool hole = false;

@@ -51,7 +51,7 @@ std::string cpp_string(std::string_view text) {
 std::vector<std::string> cpp_string_pieces(std::string_view text, std::size_t width) {
   std::vector<std::string> out;
   std::string piece;
-  std::size_t break_at = 0;  // Behind the last space of `piece`.
+  std::size_t break_at = 0;  // After the last space of `piece`.
   for (const char c : text) {
     const std::string next = escaped(c);
     if (piece.size() + next.size() + 2 > width && !piece.empty()) {
@@ -73,7 +73,7 @@ std::string wrap(const std::vector<std::string>& words, std::size_t indent) {
   for (std::size_t i = 0; i < words.size(); ++i) {
     const bool first = line.size() == indent;
     const std::string word = words[i] + (i + 1 < words.size() ? "," : "");
-    // Room for what the caller puts behind the last word: "},".
+    // Leaves room for the caller's text after the last word: "},".
     if (!first && line.size() + 1 + word.size() + 2 > kColumns) {
       out += line + "\n";
       line.assign(indent, ' ');

@@ -1,4 +1,4 @@
-// How diagnostics are kept and printed, and what was probably meant.
+// Keeps and prints diagnostics, and suggests names.
 #include "spec/compiler/diagnostics.h"
 
 #include <algorithm>
@@ -19,7 +19,8 @@ std::string_view first_line(std::string_view text) {
   return text;
 }
 
-/// As wide as the first `count` bytes of `line`: tabs stay tabs, a UTF-8 character is one column.
+/// Returns blanks as wide as the first `count` bytes of `line`: tabs stay tabs, a UTF-8 character
+/// is one column.
 std::string blank_like(std::string_view line, std::size_t count) {
   std::string out;
   for (std::size_t i = 0; i < count; ++i) {
@@ -30,7 +31,8 @@ std::string blank_like(std::string_view line, std::size_t count) {
   return out;
 }
 
-/// Edits (insert, delete, replace, swap of neighbours count one each) that turn `a` into `b`.
+/// Returns the edits (insert, delete, replace, swap of neighbours count one each) that turn `a`
+/// into `b`.
 std::size_t distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before(b.size() + 1), last(b.size() + 1), next(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) last[j] = j;

@@ -1,4 +1,4 @@
-// Everything that is wrong with the input, collected in one run and printed in order.
+// All errors of the input, collected in one run and printed in order.
 #pragma once
 
 #include <map>
@@ -22,45 +22,45 @@ class Diagnostics {
  public:
   /// Remembers a file's text so that its lines can be shown.
   void add_source(const std::string& file, std::string text);
-  /// That text from a line on, which counts from 1; empty where there is no such file or line.
+  /// Returns that text from a line on, which counts from 1; empty if there is no such file or line.
   std::string_view source_from(const std::string& file, int line) const;
 
-  /// `expected` may be empty. The same error at the same place is kept once: an aliased YAML node
-  /// is read as often as it is used.
+  /// Adds an error; `expected` may be empty. The same error at the same place is kept once: an
+  /// aliased YAML node is read as often as it is used.
   void error(const Place& place, std::string what, std::string_view expected = {});
 
   bool empty() const { return found_.empty(); }
-  /// By file, line and column.
+  /// Returns the diagnostics by file, line and column.
   std::vector<Diagnostic> sorted() const;
-  /// Each as "file:line:column: error: text", the source line and a caret.
+  /// Returns each as "file:line:column: error: text", the source line and a caret.
   std::string print() const;
 
  private:
   using Key = std::tuple<std::string, int, int, std::string>;
   struct Source {
     std::string text;
-    std::vector<std::size_t> lines;  // Where each begins.
+    std::vector<std::size_t> lines;  // Begins of lines.
   };
   std::map<std::string, Source> sources_;
   std::map<Key, Diagnostic> found_;
 };
 
-/// The text of a file; nothing, after an error, where it cannot be read.
+/// Returns the text of a file; nothing, after an error, if it cannot be read.
 std::optional<std::string> text_of_file(const std::string& file, Diagnostics& diagnostics);
 
-/// `'word'`
+/// Returns `'word'`.
 std::string quote(std::string_view word);
 
-/// "1 byte", "2 bytes"
+/// Returns "1 byte", "2 bytes".
 std::string bytes_text(std::uint64_t count);
 
-/// The candidate that `word` was probably meant to be; empty if none is near.
+/// Returns the candidate that `word` was probably meant to be; empty if none is near.
 std::string nearest(std::string_view word, std::span<const std::string_view> candidates);
-/// "did you mean 'x'?" where something is near, else "known are a, b, c".
+/// Returns "did you mean 'x'?" if something is near, else "known are a, b, c".
 std::string suggestion(std::string_view word, std::span<const std::string_view> candidates);
 std::string suggestion(std::string_view word, const std::vector<std::string>& candidates);
 
-/// The ids of a list of pointers, for `suggestion`: enough of them, not all of very many.
+/// Returns the ids of a list of pointers, for `suggestion`: enough of them, not all of very many.
 template <class List>
 std::vector<std::string> ids_of(const List& list) {
   constexpr std::size_t kEnough = 300;

@@ -1,4 +1,4 @@
-// conformance/generated/cases.h: which golden traces name which rules.
+// Emits conformance/generated/cases.h: which golden traces name which rules.
 #include <fmt/core.h>
 
 #include "spec/compiler/cpp_text.h"
@@ -39,7 +39,7 @@ GeneratedFiles emit_cases(const Model& model, const std::string& folder) {
     const std::string name = cpp_string(one.case_name);
     const std::string rest = fmt::format("{}, {}, {}}},\n", cpp_string(one.file),
                                          cpp_rule(one.requirement), one.negative);
-    const bool fits = name.size() + rest.size() <= 93;  // Of 100 columns.
+    const bool fits = name.size() + rest.size() <= 93;  // In 100 columns.
     uses += fmt::format("    {{{},{}{}", name, fits ? " " : "\n     ", rest);
   }
   return {{"conformance/generated/cases.h",

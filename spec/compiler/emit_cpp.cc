@@ -53,7 +53,7 @@ std::string type_text(const FieldLayout& l, const Spec& spec) {
   return array ? out + "[]" : out;
 }
 
-// What the structure is, and where its fields lie.
+// Describes the structure, and where its fields are.
 std::string about(const Layout& layout, const Spec& spec) {
   const Type& type = *layout.type;
   std::string text = type.name + ".";

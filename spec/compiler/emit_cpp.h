@@ -7,7 +7,7 @@
 
 namespace rubricc {
 
-/// The codec of one checked spec: codec/generated/<spec>/*.h.
+/// Returns the codec of one checked spec: codec/generated/<spec>/*.h.
 std::vector<GeneratedFile> emit_cpp(const Spec& spec);
 
 }  // namespace rubricc

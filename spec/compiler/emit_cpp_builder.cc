@@ -1,4 +1,4 @@
-// Builders: write a structure in place, field by field.
+// Emits builders, which write a structure in place, field by field.
 #include <algorithm>
 
 #include "spec/compiler/emit_cpp_parts.h"
@@ -102,7 +102,7 @@ std::string refuse(const std::string& condition) {
   return guard(condition, "return false;", false);
 }
 
-// `value` is outside of what the field may be.
+// Returns the condition that `value` is outside of the field's range.
 std::string rule(const Field& f) {
   if (!has_rule(f)) return "";
   const std::string x =
@@ -121,7 +121,7 @@ std::string number(const Context& c, std::size_t i) {
     const auto is_it = [&](const FieldLayout& o) { return o.field == l.derived_from; };
     const auto holder = std::find_if(c.layout.fields.begin(), c.layout.fields.end(), is_it);
     const std::string at = c.at(static_cast<std::size_t>(holder - c.layout.fields.begin()));
-    // Of one byte elements the least size is as good as the room.
+    // For elements of one byte the least size is as good as the room.
     const std::string size =
         holder->unit == 1 ? "value" : "size_t{value} * " + std::to_string(holder->unit);
     checks += refuse(size + " > out_.size() - " + (at.find(' ') == at.npos ? at : "(" + at + ")"));
@@ -194,7 +194,7 @@ std::string payload(const Context& c, std::size_t i) {
                                 {"at", plus("out_.data()", at)}});
 }
 
-// `n` elements fit; says so to whatever holds their number.
+// Checks that `n` elements fit; sets the field that holds their number.
 std::string count_checks(const Context& c, std::size_t i) {
   const FieldLayout& l = c.layout.fields[i];
   const Field& f = *l.field;

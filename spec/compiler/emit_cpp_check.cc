@@ -1,4 +1,4 @@
-// TView::check: the rules that bytes can break, in field order.
+// Emits TView::check: the rules that bytes can break, in field order.
 #include <stdexcept>
 
 #include "spec/compiler/emit_cpp_parts.h"
@@ -36,7 +36,7 @@ switch (<<key>>) {
 if (RUBRIC_UNLIKELY(is_error(in_<<id>>))) return moved(in_<<id>>, <<at>>);
 )";
 
-// A rule of a number at `at`; empty if it has none.
+// Returns the check of a number's rule at `at`; empty if it has none.
 std::string rule(const Field& f, const std::string& pointer, const std::string& at) {
   if (!has_rule(f)) return "";
   const std::string x = load_integer(f, plus(pointer, at));
@@ -46,7 +46,7 @@ std::string rule(const Field& f, const std::string& pointer, const std::string& 
                "return error_at(" + fault + ", " + at + ", " + cpp_rule(f.requirement) + ");");
 }
 
-// The front part. Where it can only be too short, one comparison says all.
+// The front part. If it can only be too short, one comparison is enough.
 struct Front {
   std::string fast;
   std::string slow;  // The body of check_short, empty if not needed.
@@ -121,7 +121,7 @@ std::string nested(const Layout& layout, const Field& f, const Spec& spec,
                         {"at", at}});
 }
 
-// One field behind the front part. `at` is its offset; the size that it takes goes to `size`.
+// Checks one field after the front part. `at` is its offset; the size that it takes goes to `size`.
 std::string array_rest(const FieldLayout& l, const Spec& spec, const std::string& at,
                        const std::string& size) {
   const Field& f = *l.field;
@@ -150,7 +150,7 @@ struct Rest {
   std::string size;  // An expression.
 };
 
-// How many bytes the field delimits, and that they are there.
+// Checks that the bytes that the field delimits are there, and how many they are.
 Rest delimited(const FieldLayout& l, const Leaf& loads, const std::string& at, bool more) {
   const Field& f = *l.field;
   const std::string left = at == "0" ? "bytes.size()" : "bytes.size() - " + at;

@@ -1,4 +1,4 @@
-// enums.h and the headers of masks.
+// Emits enums.h and the headers of masks.
 #include <algorithm>
 
 #include "spec/compiler/emit_cpp_parts.h"
@@ -48,7 +48,7 @@ constexpr <<class>> operator|(<<class>>::Bit a, <<class>>::Bit b) {
 }
 )";
 
-// As wide as the widest field that holds it.
+// Returns the width of the widest field that holds it.
 int width_of(const Enum& e, const Spec& spec) {
   const std::int64_t most = e.entries.empty() ? 0 : e.entries.back().value;
   int width = most <= 0xff ? 1 : most <= 0xffff ? 2 : 4;

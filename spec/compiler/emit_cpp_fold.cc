@@ -1,4 +1,4 @@
-// Folds what the templates print to 100 columns.
+// Folds the output of templates to 100 columns.
 #include <algorithm>
 #include <vector>
 
@@ -20,7 +20,7 @@ std::string mark_of(const std::string& line) {
   return text.starts_with("// ") ? "//" : "";
 }
 
-// The last place within the columns where a line may end: the best kind of place first.
+// Returns the last place within the columns where a line may end: the best kind of place first.
 std::size_t break_of(const std::string& line, std::size_t indent) {
   for (const std::string_view text : {" && ", " || ", " ? ", ", ", " + ", "(", " = "}) {
     for (std::size_t at = line.rfind(text, kColumns - text.size());
@@ -69,7 +69,7 @@ std::string fold(const std::string& text) {
       fold_code(lines[i], out);
       continue;
     }
-    // The whole rest of the paragraph is filled again.
+    // Fills the whole rest of the paragraph again.
     const std::size_t indent = indent_of(lines[i]);
     std::string prose;
     for (; i < lines.size() && mark_of(lines[i]) == mark; ++i) {

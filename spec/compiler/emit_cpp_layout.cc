@@ -1,4 +1,4 @@
-// The layout that generated C++ follows: front part, lengths, groups.
+// Computes the layout that generated C++ follows: front part, lengths, groups.
 #include "spec/compiler/emit_cpp_layout.h"
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 namespace rubricc::cpp {
 namespace {
 
-// Only for what the checks let pass by mistake.
+// Only reached if the checks accept something by mistake.
 [[noreturn]] void unsupported(const Field& field, const std::string& what) {
   throw std::logic_error("emit_cpp: " + field.place.file + ":" +
                          std::to_string(field.place.line) + ": " + field.id + ": " + what);
@@ -39,7 +39,7 @@ Shape shape_of(const Field& f) {
   return f.extent == ExtentKind::kOwn ? Shape::kNested : Shape::kNestedRange;
 }
 
-// A length that the value does not hold itself, because the array or payload says it.
+// Returns the length that the value does not hold itself, because the array or payload gives it.
 const Field* length_of(const Type& type, const Field& f) {
   const Expr* expr = f.repeat == RepeatKind::kCount ? f.count.get()
                      : f.extent == ExtentKind::kSize ? f.size.get()

@@ -1,5 +1,5 @@
-// What the C++ emitter needs to know about a structure beyond the model, decided once: which fields
-// stand at the front in one piece, which lengths follow from an array, what chooses a payload.
+// The C++ emitter's facts about a structure beyond the model, decided once: which fields form the
+// front part, which lengths follow from an array, what chooses a payload.
 #pragma once
 
 #include <functional>
@@ -17,7 +17,7 @@ struct FrontLeaf {
   std::int64_t end = 0;
 };
 
-/// The bytes of a field as the structure's size depends on them.
+/// The influence of a field's bytes on the structure's size.
 enum class Shape {
   kNumber,         // One number or mask.
   kNested,         // One structure that is as large as itself.
@@ -51,7 +51,7 @@ struct FieldLayout {
 struct Layout {
   const Type* type = nullptr;
   std::vector<FieldLayout> fields;
-  std::vector<FrontLeaf> leaves;        // Of the front part.
+  std::vector<FrontLeaf> leaves;        // In the front part.
   std::uint32_t front_size = 0;     // Bytes.
   std::size_t front_count = 0;      // Fields in the front part.
   std::vector<Group> groups;
@@ -61,24 +61,25 @@ struct Layout {
 
 Layout lay_out(const Type& type);
 
-/// The offset of field `i`: a number, or a sum with the sizes of the variable fields before it.
+/// Prints the offset of field `i`: a number, or a sum with the sizes of the variable fields before
+/// it.
 using SizeText = std::function<std::string(const FieldLayout&)>;
 std::string offset_of(const Layout& layout, std::size_t i, const SizeText& size_of);
-/// The structure's size in the same way, for one without a tail.
+/// Prints the structure's size in the same way, for one without a tail.
 std::string total_of(const Layout& layout, const SizeText& size_of);
 
-/// "bytes 8-11" for comments; "after updates" where the offset varies.
+/// Returns "bytes 8-11" for comments; "after updates" if the offset varies.
 std::string range_text(const Layout& layout, std::size_t i);
 
-/// Whether checking the structure means only that its bytes are there.
+/// Returns whether checking the structure means only that its bytes are there.
 bool is_plain(const Type& type);
-/// Whether the structure takes all bytes that it is given.
+/// Returns whether the structure takes all bytes that it is given.
 bool has_tail(const Type& type);
 bool is_unbounded(std::uint32_t size);
-/// Whether the value has rules: not each value of its width is allowed.
+/// Returns whether the value has rules: not each value of its width is allowed.
 bool has_rule(const Field& field);
-/// The comparisons of `x` of which one holds (all, if values are listed) when the field's rule is
-/// broken. Bounds that the type itself keeps are left out.
+/// Returns the comparisons of `x` of which one holds (all, if values are listed) when the field's
+/// rule is broken. Leaves out bounds that the type itself keeps.
 std::vector<std::string> breaches(const Field& field, const std::string& x);
 
 }  // namespace rubricc::cpp

@@ -7,37 +7,37 @@
 
 namespace rubricc::cpp {
 
-/// `struct T`, its comparison, and the unchecked parts of write.
+/// Emits `struct T`, its comparison, and the unchecked parts of write.
 std::string emit_value(const Layout& layout, const Spec& spec);
-/// `class TView`.
+/// Emits `class TView`.
 std::string emit_view(const Layout& layout, const Spec& spec);
-/// The body of TView::check and, where it is needed, TView::check_short.
+/// Emits the body of TView::check and, if needed, TView::check_short.
 std::string emit_check(const Layout& layout, const Spec& spec);
-/// The kinds of a payload or of interpretations, and the views of each.
+/// Emits the kinds of a payload or of interpretations, and the views of each.
 std::string emit_group(const Layout& layout, const Group& group, const Spec& spec);
-/// `class TBuilder`.
+/// Emits `class TBuilder`.
 std::string emit_builder(const Layout& layout, const Spec& spec);
-/// `write(const T&, MutableBytes)`.
+/// Emits `write(const T&, MutableBytes)`.
 std::string emit_write(const Layout& layout, const Spec& spec);
 
-/// enums.h, and the header of a mask.
+/// Emits enums.h, and the header of a mask.
 std::string emit_enums(const Spec& spec);
 std::string emit_mask(const Type& type);
-/// all.h
+/// Emits all.h.
 std::string emit_all(const Spec& spec);
 
-/// The bytes of a field of a builder.
+/// Prints the sizes of a builder's fields.
 SizeText builder_sizes();
 
-/// `range` cut to what the type takes at most, where `most` bytes of it may be more.
+/// Returns `range` cut to the most that the type takes, if `most` bytes of it may be more.
 std::string limited(const std::string& range, const Type& type, const Spec& spec,
                     std::uint32_t most);
-/// The most bytes that the field can have.
+/// Returns the most bytes that the field can have.
 std::uint32_t most_of(const Layout& layout, const Field& field);
 
-/// A line of documentation with the byte range and the requirement.
+/// Returns a line of documentation with the byte range and the requirement.
 std::string field_doc(const Layout& layout, std::size_t i);
-/// Whether a value of the type can have lengths that do not fit.
+/// Returns whether a value of the type can have lengths that do not fit.
 bool has_lengths(const Type& type);
 
 }  // namespace rubricc::cpp

@@ -1,4 +1,4 @@
-// Expressions, loads, stores and comments as C++14 text.
+// Prints expressions, loads, stores and comments as C++14 text.
 #include "spec/compiler/emit_cpp_text.h"
 
 #include <algorithm>

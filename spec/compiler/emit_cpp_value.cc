@@ -1,4 +1,4 @@
-// Values: plain structures, and how they are written.
+// Emits values: plain structures, and how they are written.
 #include <algorithm>
 #include <stdexcept>
 
@@ -19,8 +19,10 @@ inline bool operator==(const <<class>>& a, const <<class>>& b) {
 inline bool operator!=(const <<class>>& a, const <<class>>& b) { return !(a == b); }
 )";
 
-const char kLayout[] = R"(/// The steps of writing <<name>>; use write().
+const char kLayout[] =
+    R"(/// Where <<name>> has its fields, and the steps of writing it; use write().
 struct <<class>>Layout {
+  <<places?>>
   <<present?>>
   static size_t size_bytes(const <<class>>&<<size_param?>>) { return <<size>>; }
   <<check?>>
@@ -67,7 +69,7 @@ std::string value_of(const Field& f) { return "value." + f.id; }
 
 std::string length_text(const Field& holder) { return value_of(holder) + ".size()"; }
 
-// Fields of expressions as members of `value`.
+// Prints fields of expressions as members of `value`.
 Leaf value_leaf(const Layout& layout) {
   return [&layout](const Expr& expr) {
     if (expr.field->is_instance) {
@@ -243,7 +245,24 @@ std::string store_field(const Layout& layout, std::size_t i, const Spec& spec) {
          ");\n}\n";
 }
 
-// What the bytes can still break once the lengths are right.
+// Names the type that says where a field is, and what number it holds; nothing if the place varies.
+std::string place(const FieldLayout& l, const Spec& spec) {
+  const Field& f = *l.field;
+  if (f.fixed_offset < 0) return "";
+  const std::string at = std::to_string(f.fixed_offset);
+  std::string type = "PlaceAt<" + at + ">";
+  if (l.shape == Shape::kNumbers) type = "ArrayAt<" + at + ", " + wire_number(f, spec) + ">";
+  if (l.shape == Shape::kNumber) {
+    type = "NumberAt<" + at + ", " + wire_number(f, spec) + ">";
+    if (has_rule(f) && f.valid->one_of.size() < 2) {
+      type = "RangedAt<" + at + ", " + wire_number(f, spec) + ", " + literal(f.range.min) + ", " +
+             literal(f.range.max) + ">";
+    }
+  }
+  return "using " + pascal(f.id) + "At = " + type + ";\n";
+}
+
+// Returns whether the bytes can still break a rule once the lengths are right.
 bool needs_verify(const Layout& layout) {
   const auto leaf_rule = [&](const FrontLeaf& leaf) {
     const auto derived = [&](const FieldLayout& l) {
@@ -277,12 +296,14 @@ std::string emit_value(const Layout& layout, const Spec& spec) {
   const std::string name = pascal(type.id);
   std::string members;
   std::string derived;
+  std::string places;
   std::string stores;
   std::string present;
   std::vector<std::string> same;
   for (std::size_t i = 0; i < layout.fields.size(); ++i) {
     const Field& f = *layout.fields[i].field;
     stores += optional(f, store_field(layout, i, spec));
+    places += place(layout.fields[i], spec);
     if (const Field* holder = layout.fields[i].derived_from) {
       derived += " " + f.id + " is the size of " + holder->id + ".";
       continue;
@@ -309,6 +330,7 @@ std::string emit_value(const Layout& layout, const Spec& spec) {
          "\n" +
          fill(kLayout, {{"name", type.name},
                         {"class", name},
+                        {"places", places},
                         {"present", present},
                         {"size_param", uses_value ? " value" : ""},
                         {"size", size},

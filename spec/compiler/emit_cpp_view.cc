@@ -1,4 +1,4 @@
-// Views: lenses on bytes that parse has checked.
+// Emits views: lenses on bytes that parse has checked.
 #include <algorithm>
 #include <stdexcept>
 
@@ -80,7 +80,7 @@ constexpr <<class>>View <<name>>_as_<<id>>() const {
 
 std::string angles(const std::string& text) { return "<" + text + ">"; }
 
-// A view's own getters: they read well, and cost what a load costs.
+// Prints a view's own getters: they read well, and cost as much as a load.
 Leaf from_getters() {
   return [](const Expr& expr) {
     const Field& f = *expr.field;
@@ -117,7 +117,7 @@ SizeText sizes_of(const std::string& bytes, const Leaf& leaf) {
   };
 }
 
-// An expression for the field's bytes within the view.
+// Prints an expression for the field's bytes within the view.
 std::string range_of(const Layout& layout, std::size_t i) {
   const FieldLayout& l = layout.fields[i];
   const SizeText sizes = sizes_of("bytes_", from_getters());
@@ -193,7 +193,7 @@ std::string copy(const FieldLayout& l) {
   return l.field->condition ? "if (has_" + id + "()) " + out : out;
 }
 
-// Both kinds of groups end in: these bytes, held against that type.
+// Both kinds of groups end in this comparison of bytes with a type.
 std::string pick(const Layout& layout, const Group& group, const Type* type,
                  const std::string& range, const Spec& spec) {
   const std::string kind = pascal(group.name) + "Kind::" + cpp_constant(type->id);
@@ -265,7 +265,7 @@ std::string kind_body(const Layout& layout, const Group& group, const Spec& spec
 
 }  // namespace
 
-// Views take all that they are given, so what is given must not be more than they may have.
+// Views take all bytes that they are given, so these must not be more than they may have.
 std::string limited(const std::string& range, const Type& type, const Spec& spec,
                     std::uint32_t most) {
   const Layout inner = lay_out(type);

@@ -1,4 +1,4 @@
-// Dictionaries for libFuzzer: constants and borders of ranges as bytes.
+// Emits dictionaries for libFuzzer: constants and borders of ranges as bytes.
 #include <set>
 
 #include <fmt/format.h>

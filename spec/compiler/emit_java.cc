@@ -1,4 +1,4 @@
-// The Java messages: the files, and what stands at the top of each.
+// Emits the Java messages: the files, and the head of each.
 #include "spec/compiler/emit_java.h"
 
 #include <algorithm>
@@ -65,7 +65,7 @@ public final class Messages {
   private Messages() {}
 })";
 
-// What is imported where it is used.
+// Classes that are imported where they are used.
 constexpr std::array<std::string_view, 13> kImports{
     "java.nio.ByteBuffer",      "java.util.ArrayList",       "java.util.List",
     "java.util.Map",            "java.util.function.BiConsumer", "rubric.wire.CheckedBytes",
@@ -122,7 +122,7 @@ std::string type_text(const FieldLayout& l, const Spec& spec) {
   return f.repeat != RepeatKind::kOnce ? out + "[]" : out;
 }
 
-// What the structure is, and where its fields lie.
+// Describes the structure, and where its fields are.
 std::string about(const Layout& layout, const Spec& spec) {
   const Type& type = *layout.type;
   std::string text = type.name + ".";

@@ -8,7 +8,7 @@
 
 namespace rubricc {
 
-/// conformance/adapters/java/generated/rubric/wire/<spec>/*.java of one checked spec.
+/// Emits conformance/adapters/java/generated/rubric/wire/<spec>/*.java of one checked spec.
 GeneratedFiles emit_java(const Spec& spec);
 
 }  // namespace rubricc

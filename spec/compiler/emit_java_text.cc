@@ -10,7 +10,8 @@
 namespace rubricc::java {
 namespace {
 
-// Words of Java that are none of C++, which the checks refuse; and what every view and writer has.
+// Words of Java that are none of C++, which the checks refuse; and members of every view and
+// writer.
 constexpr std::array<std::string_view, 44> kTaken{
     "abstract", "assert", "boolean", "byte", "bytes", "check", "clone", "equals", "extends",
     "fields", "final", "finalize", "finally", "getClass", "hashCode", "implements", "import",
@@ -59,7 +60,7 @@ std::string print_term(const Expr& expr, const Leaf& leaf, bool wide) {
   const Expr& left = *expr.operands[0];
   const Expr& right = *expr.operands[1];
   const bool is_wide = wide || is_arithmetic(expr.op);
-  // Where one side of an operation is long, the other becomes it.
+  // If one side of an operation is long, the other becomes it.
   const auto side = [&](const Expr& e) {
     const std::string text = print_term(e, leaf, is_wide);
     return e.operands.empty() || e.op == ExprOp::kNot ? text : "(" + text + ")";

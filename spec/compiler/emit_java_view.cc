@@ -1,4 +1,4 @@
-// The reading half of a class: the rules that bytes can break, and the getters.
+// Emits the reading half of a class: the rules that bytes can break, and the getters.
 #include "spec/compiler/emit_java_text.h"
 #include "spec/compiler/template.h"
 
@@ -71,14 +71,14 @@ bool ends_with_bytes(const Field& f) {
   return f.repeat != RepeatKind::kCount && f.extent != ExtentKind::kSize;
 }
 
-// How many bytes the field delimits itself.
+// Returns the number of bytes that the field delimits itself.
 std::string delimited(const FieldLayout& l, const Leaf& leaf) {
   const Field& f = *l.field;
   if (f.repeat == RepeatKind::kCount) return print_size(*f.count, leaf, l.unit);
   return print_size(*f.size, leaf);
 }
 
-// The field's bytes as a reader of their own; whole elements of `l.unit` bytes.
+// Returns the field's bytes as a reader of their own; whole elements of `l.unit` bytes.
 std::string part(const FieldLayout& l, const Leaf& leaf) {
   const Field& f = *l.field;
   const std::string rule_id = quote(f.requirement);
@@ -92,7 +92,7 @@ std::string case_label(const Switch& choice, std::size_t i) {
   return "case " + key_literal(choice.cases[i].key) + ":\n";
 }
 
-// A switch whose cases end in what `then` prints of a type; consecutive keys share it.
+// Prints a switch whose cases end in what `then` prints of a type; consecutive keys share it.
 template <class Then>
 std::string switch_on(const Switch& choice, const std::string& key, Then then) {
   std::string cases;
@@ -160,7 +160,7 @@ cpp::SizeText sizes() {
   };
 }
 
-// The field's bytes within the view.
+// Returns the field's bytes within the view.
 std::string range_of(const Layout& layout, std::size_t i) {
   const FieldLayout& l = layout.fields[i];
   const std::string at = cpp::offset_of(layout, i, sizes());
@@ -169,7 +169,7 @@ std::string range_of(const Layout& layout, std::size_t i) {
   return grows ? "rest(" + at + ")" : "range(" + at + ", " + sizes()(l) + ")";
 }
 
-// How many elements an array has.
+// Returns the number of elements of an array.
 std::string count_of(const FieldLayout& l, const std::string& at) {
   const Field& f = *l.field;
   if (l.fixed_count) return std::to_string(l.capacity);

@@ -1,4 +1,4 @@
-// The writing half of a class: values, and the steps that store them.
+// Emits the writing half of a class: values, and the steps that store them.
 #include "spec/compiler/emit_java_text.h"
 #include "spec/compiler/template.h"
 
@@ -42,7 +42,7 @@ const char kIf[] = R"(if (<<if>>) {
 }
 )";
 
-// The member in methods that have locals of their own.
+// Returns the member, in methods that have locals of their own.
 std::string own(const Field& f) {
   const std::string name = member(f.id);
   const bool hidden = name == "value" || name == "out" || name == "start";
@@ -53,7 +53,7 @@ bool is_bytes(const FieldLayout& l) {
   return l.shape == Shape::kBytes || l.shape == Shape::kChoice || l.shape == Shape::kNestedRange;
 }
 
-// Elements, or bytes, that must always be there; 0 where their number is free.
+// Returns the number of elements, or bytes, that must always be there; 0 if it is free.
 std::int64_t fixed_size(const FieldLayout& l) {
   const Field& f = *l.field;
   if (l.fixed_count) return l.capacity;
@@ -112,7 +112,7 @@ std::string setter(const Layout& layout, std::size_t i, const Member& one) {
                                      {"value", "Wire.copy(value)"}});
 }
 
-// The number of a length that is not kept itself.
+// Returns the number of a length that is not kept itself.
 std::string length_of(const Layout& layout, const Field& holder) {
   for (const FieldLayout& l : layout.fields) {
     if (l.field != &holder) continue;

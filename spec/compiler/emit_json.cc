@@ -1,5 +1,5 @@
-// doc/wire.json: the checked model for programs that print it, such as the book. Schema
-// rubricc.model/1; keys that do not apply to a thing are left out.
+// Emits doc/wire.json: the checked model for programs that print it, such as the book. Schema
+// rubricc.model/1; leaves out keys that do not apply to a thing.
 #include <nlohmann/json.hpp>
 
 #include "spec/compiler/emit.h"

@@ -198,7 +198,7 @@ std::string enum_table(const Enum& one) {
   return fmt::format("enums[{}] = {{{}}}\n", full_name(one), fmt::join(entries, ", "));
 }
 
-/// Bits from the least significant, in a list that begins at 1.
+/// Returns bits from the least significant, in a list that begins at 1.
 std::string mask_table(const Type& type) {
   std::vector<std::string> bits;
   for (auto bit = type.bits.rbegin(); bit != type.bits.rend(); ++bit) {
@@ -217,7 +217,7 @@ std::string spec_tables(const Spec& spec) {
   return out;
 }
 
-/// Those that a fault can name.
+/// Returns the rules that a fault can name.
 std::string rule_tables(const Model& model) {
   std::string out;
   for (const Requirement& rule : model.requirements) {
@@ -233,7 +233,7 @@ bool has_carrier(const Spec& spec, std::string_view carrier) {
                      [&](const auto& type) { return type->carrier == carrier; });
 }
 
-/// The richest protocol first: it is the one that a reader most likely has.
+/// Returns the richest protocol first: it is the one that a reader most likely has.
 std::vector<const Spec*> protocols_of(const Model& model) {
   std::vector<const Spec*> out;
   for (const auto& spec : model.specs) {

@@ -6,8 +6,8 @@
 
 namespace rubricc {
 
-/// tools/wireshark/generated/rubric.lua: one file for all named specs that have a serial carrier,
-/// and what they import; nothing if there is none. For Lua 5.2 and later.
+/// Emits tools/wireshark/generated/rubric.lua: one file for all named specs that have a serial
+/// carrier, and their imports; nothing if there is none. For Lua 5.2 and later.
 GeneratedFiles emit_lua(const Model& model);
 
 }  // namespace rubricc

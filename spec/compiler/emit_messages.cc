@@ -1,4 +1,4 @@
-// messages.h: how each message is reached from the start of a frame.
+// Emits messages.h: how each message is reached from the start of a frame.
 #include <map>
 
 #include <fmt/format.h>

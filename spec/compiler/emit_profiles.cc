@@ -1,4 +1,4 @@
-// conformance/generated/profiles.h: each profile as a constant, and what it accepts.
+// Emits conformance/generated/profiles.h: each profile as a constant, and what it accepts.
 #include <fmt/core.h>
 
 #include "spec/compiler/cpp_text.h"
@@ -51,7 +51,7 @@ constexpr const NamedProfile* find_profile(std::string_view name) {
 }  // namespace rubric::machine
 )";
 
-/// A string literal in lines that fit, each behind `indent` blanks but the first.
+/// Returns a string literal in lines that fit, each after `indent` blanks except the first.
 std::string literal(const std::string& text, std::size_t indent) {
   std::string out;
   for (const std::string& piece : cpp_string_pieces(text, 88 - indent)) {

@@ -1,5 +1,5 @@
-// protocols.h: the list of all protocols. route_tables.h: the ways to their messages. every_spec.h:
-// the views of all specs.
+// Emits protocols.h: the list of all protocols. route_tables.h: the routes to their messages.
+// every_spec.h: the views of all specs.
 #include <algorithm>
 #include <filesystem>
 

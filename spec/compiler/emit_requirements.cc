@@ -1,4 +1,4 @@
-// requirements_table.h: names and texts of the rules.
+// Emits requirements_table.h: names and texts of the rules.
 #include "spec/compiler/cpp_text.h"
 #include "spec/compiler/emit.h"
 #include "spec/compiler/template.h"
@@ -35,7 +35,7 @@ std::string roles_text(const Requirement& one) {
   return out.empty() ? "0" : out;
 }
 
-/// A string literal in lines that fit, each behind one blank.
+/// Returns a string literal in lines that fit, each after one blank.
 std::string literal(const std::string& text) {
   const auto pieces = cpp_string_pieces(text, 88);
   std::string out = pieces[0];

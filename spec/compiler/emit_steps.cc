@@ -1,4 +1,4 @@
-// Expressions as steps in postfix order, and names of the reflection enums.
+// Prints expressions as steps in postfix order, and names of the reflection enums.
 #include "spec/compiler/emit_steps.h"
 
 #include <stdexcept>

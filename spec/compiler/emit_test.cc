@@ -1,4 +1,4 @@
-// What the emitters print, and the routes that they print.
+// The output of the emitters, and the routes in it.
 #include <algorithm>
 #include <sstream>
 

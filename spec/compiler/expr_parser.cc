@@ -36,9 +36,9 @@ bool is_word(char c) { return is_word_start(c) || is_digit(c); }
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
-/// Where the character `offset` of a YAML scalar stands. One of several lines has lost its line
-/// ends and indents: its words are looked up in the `source`, which begins with the line of
-/// `begin`. Where it is not written as it reads (escapes) that leads to `begin`.
+/// Returns the place of the character `offset` of a YAML scalar. A scalar of several lines has lost
+/// its line ends and indents: its words are looked up in the `source`, which begins with the line
+/// of `begin`. If it is not written as it reads (escapes), that leads to `begin`.
 Place place_in_scalar(const Place& begin, std::string_view text, std::size_t offset,
                       std::string_view source) {
   Place at = begin;
@@ -62,7 +62,7 @@ Place place_in_scalar(const Place& begin, std::string_view text, std::size_t off
     go_on();
     last = at;
   }
-  return last;  // Behind the end.
+  return last;  // After the end.
 }
 
 struct Fault {};  // Thrown within the parser after the diagnostic, caught in parse_expr.

@@ -1,4 +1,4 @@
-// Expressions of the profile: text to tree.
+// Parses expressions of the profile: text to tree.
 #pragma once
 
 #include <string_view>
@@ -7,10 +7,10 @@
 
 namespace rubricc {
 
-/// Null after an error. `place` is where the text begins.
+/// Returns null after an error. `place` is where the text begins.
 ExprPtr parse_expr(std::string_view text, const Place& place, Diagnostics& diagnostics);
 
-/// The tree as text, fully bracketed only where needed: for diagnostics and the documentation.
+/// Returns the tree as text, bracketed only where needed: for diagnostics and the documentation.
 std::string to_text(const Expr& expr);
 
 }  // namespace rubricc

@@ -1,4 +1,4 @@
-// What an emitter hands back; main.cc writes it.
+// The result of an emitter; main.cc writes it.
 #pragma once
 
 #include <string>

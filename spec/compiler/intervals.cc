@@ -1,4 +1,4 @@
-// Arithmetic of ranges, in 128 bits so that overflow is seen.
+// Arithmetic of ranges, in 128 bits to detect overflow.
 #include "spec/compiler/intervals.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// What the checker resolves: sizes, offsets, ranges, inherited requirements.
+// The checker's results: sizes, offsets, ranges, inherited requirements.
 #include <gtest/gtest.h>
 
 #include "spec/compiler/load.h"

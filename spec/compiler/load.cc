@@ -1,4 +1,4 @@
-// Loads specs and what they import.
+// Loads specs and their imports.
 #include "spec/compiler/load.h"
 
 #include <algorithm>

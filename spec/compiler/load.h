@@ -1,4 +1,4 @@
-// From files to a checked model.
+// Loads files into a checked model.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace rubricc {
 
-/// Reads `files` and what they import (beside them, "name.ksy") into `model`, imports first.
+/// Reads `files` and their imports (beside them, "name.ksy") into `model`, imports first.
 void load_specs(const std::vector<std::string>& files, Model& model, Diagnostics& diagnostics);
 /// Reads the catalogue of requirements.
 void load_requirements(const std::string& file, Model& model, Diagnostics& diagnostics);
@@ -17,10 +17,10 @@ void load_profile(const std::string& file, Model& model, Diagnostics& diagnostic
 void load_profiles(const std::string& folder, Model& model, Diagnostics& diagnostics);
 /// Finds the rules that golden traces name; the requirements come first.
 void load_cases(const std::vector<std::string>& files, Model& model, Diagnostics& diagnostics);
-/// The traces (.rtr) in `folder` and below, by name; none where there is no such folder.
+/// Returns the traces (.rtr) in `folder` and below, by name; none if there is no such folder.
 std::vector<std::string> case_files(const std::string& folder);
 
-// The same from text in memory, for the fuzzer and the tests; `file` is what diagnostics show.
+// Reads from text in memory, for the fuzzer and the tests; `file` is shown in diagnostics.
 void load_spec_text(const std::string& file, const std::string& text, Model& model,
                     Diagnostics& diagnostics);
 void load_requirements_text(const std::string& file, const std::string& text, Model& model,

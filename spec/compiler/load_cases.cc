@@ -1,5 +1,5 @@
-// Finds which golden traces name which rules. Only names, tags and `!>` are looked at: what else
-// stands in a trace is its own parser's to judge.
+// Finds which golden traces name which rules. Reads only names, tags and `!>`: a trace's own parser
+// judges the rest.
 #include <algorithm>
 #include <filesystem>
 #include <map>
@@ -17,7 +17,7 @@ struct Word {
   std::size_t at = 0;
 };
 
-/// A line without its comment: the words outside of brackets, and what stands in `[...]`.
+/// A line without its comment: the words outside of brackets, and the text in `[...]`.
 struct Line {
   std::vector<Word> words;
   std::vector<Word> tags;

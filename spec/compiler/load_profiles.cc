@@ -1,4 +1,4 @@
-// Loads the profiles: constants, switches and what each accepts.
+// Loads the profiles: constants, switches and accepted differences.
 #include <algorithm>
 #include <array>
 #include <filesystem>

@@ -27,7 +27,7 @@ bool is_requirement_id(std::string_view id) {
   return true;
 }
 
-/// The bits of `roles`, in the order of kRoles.
+/// Returns the bits of `roles`, in the order of kRoles.
 std::uint8_t read_roles(const YamlInput& input, const YAML::Node& node) {
   std::uint8_t out = 0;
   const auto items = yaml_items(input, node, "roles");

@@ -65,7 +65,7 @@ rubricc::GeneratedFiles emit(const Options& options, const rubricc::Model& model
 
 bool write(const std::filesystem::path& folder, const rubricc::GeneratedFile& file) {
   const std::filesystem::path path = folder / file.path;
-  // What is as it was keeps its time, so that nothing is compiled again for it.
+  // An unchanged file keeps its time, so that nothing is compiled again for it.
   std::ifstream old(path, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(old), {}};
   if (old.is_open() && text == file.text) return true;

@@ -1,5 +1,5 @@
-// The model of a wire spec: what the reader builds, the checker completes, and the emitters print.
-// Everything is decided here or in check.cc; emitters decide nothing.
+// The model of a wire spec: the reader builds it, the checker completes it, and the emitters print
+// it. Everything is decided here or in check.cc; emitters decide nothing.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ struct Enum;
 struct Field;
 struct Spec;
 
-/// Where the value of each key stands, for diagnostics.
+/// Places of the values of keys, for diagnostics.
 using KeyPlaces = std::map<std::string, Place, std::less<>>;
 
 /// Least and greatest value that an expression or field can have, both included.
@@ -100,7 +100,7 @@ struct Field {
   std::string doc_ref;
   std::string requirement;             // `-requirement`, else the type's.
   ValueKind kind = ValueKind::kBytes;
-  int width_bytes = 0;                 // Of a number or mask.
+  int width_bytes = 0;                 // For a number or mask.
   bool little_endian = false;
   RepeatKind repeat = RepeatKind::kOnce;
   ExtentKind extent = ExtentKind::kOwn;
@@ -171,8 +171,8 @@ struct Enum {
   std::vector<EnumEntry> entries;      // Ascending by value after the check.
 };
 
-/// One .ksy file. The root structure, where the file has a top-level seq, is the first type; its id
-/// is the spec's id.
+/// One .ksy file. The root structure, if the file has a top-level seq, is the first type; its id is
+/// the spec's id.
 struct Spec {
   std::string id;
   std::string title;
@@ -198,23 +198,23 @@ struct Requirement {
   std::string source;
   std::uint8_t roles = 0;              // Bits: 1 mote, 2 sink, 4 base station; 0 where it has none.
   bool forbids = false;                // It says what must not happen.
-  std::string deployed;                // How release 1.0 differs; else empty.
+  std::string deployed;                // The difference of release 1.0; else empty.
   Place place;
 };
 
 struct AcceptedDifference {
   std::string requirement;
-  std::string sentence;                // What is accepted instead.
+  std::string sentence;                // The accepted behaviour.
 };
 struct Profile {
   std::string name;                    // The file's: "paper".
   std::string file;
   std::string doc;
-  std::vector<std::int64_t> values;    // Of profile_fields().
+  std::vector<std::int64_t> values;    // In the order of profile_fields().
   std::vector<AcceptedDifference> accepted;
 };
 
-/// A golden trace names a rule.
+/// A rule named in a golden trace.
 struct CaseUse {
   std::string case_name;
   std::string file;
@@ -222,7 +222,7 @@ struct CaseUse {
   bool negative = false;               // On a line of what must not happen.
 };
 
-/// Everything that one run of the compiler reads. Specs in dependency order, imports first.
+/// All input of one run of the compiler. Specs in dependency order, imports first.
 struct Model {
   std::vector<std::unique_ptr<Spec>> specs;
   std::vector<Requirement> requirements;

@@ -65,7 +65,7 @@ class Damage {
     }
   }
 
-  /// The key stays, the value comes from elsewhere.
+  /// Keeps the key, and takes the value from elsewhere.
   static void replace_value(std::string& line, const std::string& other) {
     const std::size_t mine = line.find(": "), theirs = other.find(": ");
     if (mine != line.npos && theirs != other.npos) {

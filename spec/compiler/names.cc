@@ -1,4 +1,4 @@
-// Names: what an id may be, and documentation as one line.
+// Checks ids, and turns documentation into one line.
 #include <algorithm>
 #include <array>
 #include <fmt/core.h>

@@ -1,5 +1,4 @@
-// The constants and switches that a profile consists of: the members of
-// conformance/machine/profile.h by their names.
+// The constants and switches of a profile: the members of conformance/machine/profile.h by name.
 #pragma once
 
 #include <cstdint>
@@ -10,12 +9,12 @@ namespace rubricc {
 
 struct ProfileField {
   std::string_view name;
-  std::int64_t min;  // Of a constant.
+  std::int64_t min;  // For a constant.
   std::int64_t max;
   bool is_switch;
 };
 
-/// In the order of the struct.
+/// Returns the fields in the order of the struct.
 std::span<const ProfileField> profile_fields();
 
 }  // namespace rubricc

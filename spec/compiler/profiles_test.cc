@@ -1,4 +1,4 @@
-// The profiles, the machine's struct and the catalogue agree; what rubricc finds in traces.
+// The profiles, the machine's struct and the catalogue agree; rubricc finds rules in traces.
 #include "conformance/generated/profiles.h"
 
 #include <algorithm>

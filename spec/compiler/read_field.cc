@@ -20,7 +20,7 @@ constexpr std::array<std::string_view, 5> kValidKeys{"eq", "min", "max", "any-of
 constexpr std::array<std::string_view, 3> kUnitKeys{"symbol", "scale", "offset"};
 constexpr std::array<std::string_view, 2> kSwitchKeys{"switch-on", "cases"};
 
-/// "u2le" and its like; false for every other word.
+/// Sets "u2le" and similar types; returns false for every other word.
 bool set_number(const YamlInput& input, const YAML::Node& node, std::string_view word,
                 const Spec& spec, Field& field) {
   std::string_view base = word.substr(0, 2);
@@ -137,7 +137,7 @@ void read_valid(const YamlInput& input, const YamlMap& map, Field& field) {
   field.valid = std::move(valid);
 }
 
-/// `contents` of a number's size become a number with one valid value.
+/// Turns `contents` of a number's size into a number with one valid value.
 void read_contents(const YamlInput& input, const YamlMap& map, Field& field) {
   const YamlEntry* entry = map.find("contents");
   if (entry == nullptr) return;
@@ -253,7 +253,7 @@ ExprPtr read_expr(const YamlInput& input, const YAML::Node& node, std::string_vi
   const auto text = yaml_text(input, node, what);
   if (!text) return nullptr;
   Place place = input.place(node);
-  if (node.Tag() == "!") ++place.column;  // Behind the quote.
+  if (node.Tag() == "!") ++place.column;  // After the quote.
   return parse_expr(*text, place, input.diagnostics);
 }
 
@@ -311,7 +311,7 @@ std::unique_ptr<Field> read_field(const YamlInput& input, const YAML::Node& node
   if (!in_seq) {
     const auto position = map.integer("pos");
     field->position = position.value_or(-1);
-    if (!position) field->places.erase("pos");  // What stands there was reported.
+    if (!position) field->places.erase("pos");  // Its value was reported.
     field->is_peek = field->kind != ValueKind::kStruct && field->extent == ExtentKind::kOwn;
     if (!map.has("pos")) input.error(instance->key_node, "an instance without pos", "");
   }

@@ -108,7 +108,7 @@ void read_fields(const YamlInput& input, const YamlMap& map, const Spec& spec, T
   }
 }
 
-/// Only where seq is absent or []: what could not be read in it was reported.
+/// Checks seq only if it is absent or []: errors in it were reported.
 void check_seq(const YamlInput& input, const YamlMap& map, const Type& type) {
   const YamlEntry* seq = map.find("seq");
   const bool empty = seq == nullptr ? !map.refused_keys()

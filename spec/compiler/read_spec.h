@@ -7,34 +7,34 @@
 
 namespace rubricc {
 
-/// Null only when the file holds nothing to read; otherwise what could be read, after errors.
+/// Returns null only if the file holds nothing to read; otherwise what could be read, after errors.
 std::unique_ptr<Spec> read_spec(const std::string& file, const std::string& text,
                                 Diagnostics& diagnostics, int& budget);
 
-/// What an attribute is read within.
+/// The surroundings of an attribute.
 enum class FieldPlace { kSeq, kInstance, kMask };
 
-/// An attribute of seq (id from its key `id`) or an instance (id from the mapping).
-/// Null after an error that leaves nothing to go on with.
+/// Reads an attribute of seq (id from its key `id`) or an instance (id from the mapping). Returns
+/// null after an error that leaves nothing to go on with.
 std::unique_ptr<Field> read_field(const YamlInput& input, const YAML::Node& node,
                                   FieldPlace where, const Spec& spec, const YamlEntry* instance);
 
-/// `-unnamed` of a mask's bit.
+/// Reads `-unnamed` of a mask's bit.
 MaskBit read_mask_bit(const YamlInput& input, const YAML::Node& node);
 
-/// An expression in a YAML scalar.
+/// Reads an expression in a YAML scalar.
 ExprPtr read_expr(const YamlInput& input, const YAML::Node& node, std::string_view what);
 
-/// Places of the values of `map`'s keys.
+/// Returns the places of the values of `map`'s keys.
 KeyPlaces places_of(const YamlInput& input, const YamlMap& map);
-/// The place of `key`, or `otherwise`.
+/// Returns the place of `key`, or `otherwise`.
 const Place& place_of(const KeyPlaces& places, std::string_view key, const Place& otherwise);
 
-/// Lower snake case, no word of C++, not too long; reports what it is not.
+/// Checks an id: lower snake case, no word of C++, not too long; reports what it is not.
 void check_id(Diagnostics& diagnostics, const Place& place, std::string_view id,
               std::string_view what);
 
-/// Documentation: line ends become spaces, paragraphs go together.
+/// Joins documentation: line ends become spaces, paragraphs go together.
 std::string one_line(std::string_view text);
 
 }  // namespace rubricc

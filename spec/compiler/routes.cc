@@ -1,4 +1,4 @@
-// Which numbers must stand where for a frame to hold a message.
+// Finds which numbers must be where for a frame to hold a message.
 #include "spec/compiler/routes.h"
 
 #include <algorithm>
@@ -24,7 +24,7 @@ bool can_be(const Field& field, std::int64_t value) {
   return std::binary_search(set.begin(), set.end(), value);
 }
 
-/// Both; nothing if they want different values of one number.
+/// Joins both; returns nothing if they need different values of one number.
 std::optional<Numbers> both(std::optional<Numbers> a, const std::optional<Numbers>& b) {
   if (!a || !b) return std::nullopt;
   for (const RouteNumber& one : *b) {
@@ -53,7 +53,7 @@ std::optional<Numbers> solve_sum(const Expr& expr, std::int64_t value, std::int6
               solve(right, floor_mod(value, factor), start));
 }
 
-/// A value other than `value` for the expression.
+/// Returns a value other than `value` for the expression.
 std::optional<Numbers> solve_other(const Expr& expr, std::int64_t value, std::int64_t start) {
   for (const std::int64_t other : {std::int64_t{0}, value + 1, value - 1}) {
     if (other == value) continue;
@@ -85,7 +85,7 @@ class Walk {
  public:
   explicit Walk(std::vector<Route>& out) : out_(out) {}
 
-  /// `here` ends at the start of `type`; what stands in it is added.
+  /// Enters `type` at the end of `here`, and adds its contents.
   void enter(const Type& type, const Route& here) {
     for (const auto& field : type.fields) {
       if (field->choice && field->fixed_offset >= 0) choose(*field, here);
@@ -134,7 +134,7 @@ class Walk {
     return true;
   }
 
-  /// Where the size is one number, plus or minus nothing, it is a length.
+  /// Adds a length if the size is one number, plus or minus nothing.
   static void add_length(const Expr& size, std::int64_t start, Route& at) {
     if (size.range.max < at.room) at.room = static_cast<std::uint32_t>(size.range.max);
     if (size.op != ExprOp::kField) return;
@@ -142,7 +142,7 @@ class Walk {
                           size.field->little_endian, at.offset});
   }
 
-  /// A key without a case, for `_`.
+  /// Returns a key without a case, for `_`.
   static std::optional<Numbers> solve_rest(const Switch& choice, std::int64_t start) {
     const Interval range = choice.key->range;
     for (std::int64_t value = range.min; value <= range.max; ++value) {

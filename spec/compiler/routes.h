@@ -1,4 +1,4 @@
-// How frames reach messages, worked out from switches and conditions. See codec/reflect/schema.h.
+// Routes of frames to messages, derived from switches and conditions. See codec/reflect/schema.h.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ struct RouteNumber {
   std::int64_t offset = 0;
   int width_bytes = 1;
   bool little_endian = false;
-  std::int64_t value = 0;  // What it must be; of a length, where the counted bytes begin.
+  std::int64_t value = 0;  // The required value; for a length, where the counted bytes begin.
 };
 struct Route {
   std::string carrier;
@@ -25,12 +25,12 @@ struct Route {
   std::vector<RouteNumber> lengths;
 };
 
-/// Each message of each carrier, once for every key and condition that leads to it. Leaves out what
-/// stands at no constant offset or hangs on an expression that cannot be turned around.
+/// Returns each message of each carrier, once for every key and condition that leads to it. Leaves
+/// out messages that are at no constant offset or depend on an expression that cannot be inverted.
 std::vector<Route> routes_of(const Spec& spec);
 
-/// Numbers at which `expr` equals `value`, or for a condition holds (`value` 1) or not; `start` is
-/// where the structure begins that the expression stands in. Nothing if that is not found.
+/// Returns numbers for which `expr` equals `value`, or for a condition holds (`value` 1) or not;
+/// `start` is where the expression's structure begins. Returns nothing if none is found.
 std::optional<std::vector<RouteNumber>> solve(const Expr& expr, std::int64_t value,
                                               std::int64_t start);
 

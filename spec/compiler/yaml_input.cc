@@ -11,7 +11,8 @@ namespace {
 constexpr std::size_t kFileBytesMax = 1 << 20;
 constexpr int kNestingMax = 60;
 
-/// yaml-cpp takes 0x04 for the end of the input and recurses as deep as brackets nest.
+/// Refuses text that breaks yaml-cpp, which takes 0x04 for the end of the input and recurses as
+/// deep as brackets nest.
 bool is_plain_text(const std::string& file, const std::string& text, Diagnostics& diagnostics) {
   if (text.size() > kFileBytesMax) {
     diagnostics.error({file, 0, 0}, "the file is too large", "at most 1 MiB is read");

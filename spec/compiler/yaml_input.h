@@ -16,7 +16,7 @@
 namespace rubricc {
 
 /// One file being read. Aliases make a small file large; `budget` bounds what is read in a run, and
-/// once it is used up (-1) what is missing is no longer reported.
+/// once it is used up (-1) missing parts are no longer reported.
 struct YamlInput {
   std::string file;
   Diagnostics& diagnostics;
@@ -24,12 +24,12 @@ struct YamlInput {
 
   Place place(const YAML::Node& node) const;
   void error(const YAML::Node& node, std::string what, std::string_view expected = {}) const;
-  /// False once the budget is used up, which is reported once.
+  /// Returns false once the budget is used up, which is reported once.
   bool spend(const YAML::Node& node) const;
 };
 constexpr int kNodeBudget = 200'000;
 
-/// Parses `text`. Reports and returns nothing when it is not YAML or not text at all.
+/// Parses `text`. Reports and returns nothing if it is not YAML or not text at all.
 std::optional<YAML::Node> parse_yaml(const std::string& file, const std::string& text,
                                      Diagnostics& diagnostics);
 
@@ -39,7 +39,7 @@ struct YamlEntry {
   YAML::Node value;
 };
 
-/// A mapping. Keys that are not scalars, come twice, or are not among `allowed` are reported.
+/// A mapping. Reports keys that are not scalars, come twice, or are not among `allowed`.
 class YamlMap {
  public:
   /// `what` names the mapping in diagnostics: "a field". Empty `allowed` takes any key.
@@ -52,7 +52,8 @@ class YamlMap {
   bool is_map() const { return is_map_; }
   bool refused_keys() const { return refused_keys_; }
 
-  /// The value of `key`; nothing, after an error, where it is of another kind; nothing if absent.
+  /// Returns the value of `key`; nothing, after an error, if it is of another kind; nothing if
+  /// absent.
   std::optional<std::string> text(std::string_view key) const;
   std::optional<std::int64_t> integer(std::string_view key) const;
   std::optional<bool> boolean(std::string_view key) const;
@@ -65,7 +66,7 @@ class YamlMap {
   bool refused_keys_ = false;
 };
 
-/// The items of a sequence; empty after an error where `node` is none.
+/// Returns the items of a sequence; empty after an error if `node` is none.
 std::vector<YAML::Node> yaml_items(const YamlInput& input, const YAML::Node& node,
                                    std::string_view what);
 std::optional<std::string> yaml_text(const YamlInput& input, const YAML::Node& node,
@@ -73,7 +74,7 @@ std::optional<std::string> yaml_text(const YamlInput& input, const YAML::Node& n
 std::optional<std::int64_t> yaml_integer(const YamlInput& input, const YAML::Node& node,
                                          std::string_view what);
 
-/// "12", "0x1f", "-3"; nothing for any other text or a number beyond 64 bits.
+/// Parses "12", "0x1f", "-3"; returns nothing for any other text or a number beyond 64 bits.
 std::optional<std::int64_t> parse_integer(std::string_view text);
 
 }  // namespace rubricc

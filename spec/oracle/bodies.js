@@ -1,4 +1,4 @@
-// What a message's bytes look like when they are right: its size, and where a count stands in it.
+// The form of a message's bytes when they are right: its size, and the place of its count.
 'use strict';
 
 /// A message: `fixed` bytes, then `each` bytes for every one that the byte `countAt` counts.

@@ -1,4 +1,4 @@
-// Makes frames to hold both decoders against: real ones and made-up messages of every kind, mutated
+// Makes frames to compare both decoders on: real ones and made-up messages of every kind, mutated
 // where parsers go wrong. Seeded, so a run can be repeated.
 'use strict';
 const fs = require('fs');
@@ -48,7 +48,7 @@ function netMessage(random) {
   let inner = random.chance(0.85) ? bodies.body(message, random)
       : bodies.noise(random.below(101), random);
   if (inner.length > 0 && first !== null) inner[0] = first;
-  // What stands behind the body is left over from earlier frames, within nbytes and behind it.
+  // Bytes after the body are left over from earlier frames, within nbytes and after it.
   if (random.chance(0.2)) inner = Buffer.concat([inner, bodies.noise(random.below(20), random)]);
   inner = inner.subarray(0, netPayloadMax - 2);
   const byPc = random.chance(0.05) ? !fromPc : (fromPc ?? random.chance(0.5));
@@ -93,7 +93,7 @@ function radioFrame({type, payload}, network, random) {
   return Buffer.concat([head, payload]);
 }
 
-/// What each carrier's frames are made from: a fresh frame, and the bytes where parsers go wrong.
+/// The parts of each carrier's frames: a fresh frame, and the bytes where parsers go wrong.
 const makers = {
   serial: {
     fresh: (random) => serialFrame(message(bodies.serialTypes, 0.8, random), random),

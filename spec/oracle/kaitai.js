@@ -13,8 +13,8 @@ function readSpec(name) {
   return yaml.load(fs.readFileSync(path.join(wireFolder, `${name}.ksy`), 'utf8'));
 }
 
-/// Kaitai Struct's runtime knows where it failed but does not tell: makes its errors do so, with
-/// `io` and, of a value that is not valid, `srcPath`, where the spec says what it is.
+/// Makes errors of Kaitai Struct's runtime report their place, which it knows: with `io` and, for a
+/// value that is not valid, `srcPath`, its place in the spec.
 function tellPositions(Stream) {
   const {ensureBytesLeft} = Stream.prototype;
   Stream.prototype.ensureBytesLeft = function(length) {

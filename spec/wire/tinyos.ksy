@@ -116,6 +116,17 @@ types:
         doc: Of the frame that it acknowledges.
 
 enums:
+  # IEEE 802.15.4-2006, section 7.2.1.1: the frame control fields of the CC2420 radio stack.
+  frame_control:
+    0x0002: ack
+    0x8841: data
+    0x8861: data_ack_request
+  # Parts of a frame control field: its frame type, the request of a link ack, and all that makes a
+  # data frame one with an AM message (type, no security, one PAN, modes of both addresses).
+  frame_control_part:
+    0x0007: type
+    0x0020: ack_request
+    0xcc4f: shape
   serial_kind:
     67: ack
     68: packet_ack

@@ -30,7 +30,7 @@ def make(out, *options):
 
 
 class Page(HTMLParser):
-    """What the finished page has; written apart from the generator's own check."""
+    """Collects the parts of the finished page, independently of the generator's own check."""
 
     def __init__(self, text):
         super().__init__()

@@ -1,7 +1,7 @@
 'use strict';
-// The book in a real Chromium, from file:// and without a network: what it shows, that keys reach
-// everything, that everybody can read it, on screens of all widths and on paper.
-// Usage: node browser_test.js BOOK.html [SHOTS]: into SHOTS go pictures.
+// Tests the book in a real Chromium, from file:// and without a network: what it shows, that keys
+// reach everything, that everybody can read it, on screens of all widths and on paper. Usage: node
+// browser_test.js BOOK.html [SHOTS]: pictures go into SHOTS.
 const assert = require('node:assert');
 const fs = require('node:fs');
 const os = require('node:os');
@@ -208,7 +208,7 @@ async function main() {
       for (const [where, shape] of [['desk', kDesk], ['phone', kPhone]]) {
         await attempt(`axe: ${where}, ${scheme}`, () => inPage(scheme, shape, async (page) => {
           await go(page);
-          // All that is folded away is opened once in each colour.
+          // Opens everything folded once in each colour.
           if (where === 'desk') await page.evaluate(() => dispatchEvent(new Event('beforeprint')));
           await settled(page);
           await accessible(page, `${where}, ${scheme}`);

@@ -64,7 +64,7 @@ def states_svg(rubric, name, rule_href=None):
 
 
 def cleaned(svg, name, title, rule_href=None):
-    """What Graphviz draws, as an element for a page: without prolog, colours and fonts of its own,
+    """Returns a drawing of Graphviz for a page: without prolog, colours and fonts of its own,
     ids that begin with the diagram's name, and a title."""
     prefix = f"states-{name}"
     svg = svg[svg.index("<svg"):]

@@ -12,7 +12,7 @@ import subprocess
 import sys
 
 EMITTERS = "cpp,tables,requirements,protocols,dictionary,messages,profiles,cases,java,lua"
-# What holds the tables of all protocols, the ways to their messages, and the texts of all rules.
+# Sources with the tables of all protocols, the routes to their messages, and all rule texts.
 HOLDERS = ("codec/reflect/registry.cc", "codec/generate/routes.cc", "codec/reflect/fault_text.cc")
 
 

@@ -37,7 +37,7 @@ SECONDS_MAX = 300
 
 
 class Wrong(Exception):
-    """What a text shows and what happens are two things."""
+    """A text shows something else than what happens."""
 
 
 class Block:
@@ -143,7 +143,7 @@ class Place:
                    "-o", source.removesuffix(".cc")])
 
     def options(self, text):
-        """Each `rubric COMMAND` must have the options that are written behind it."""
+        """Each `rubric COMMAND` must have the options that are written after it."""
         joined = text.replace("\\\n", " ")
         for call in re.findall(r"\brubric ([a-z][a-z-]+)([^|;#\n]*)", joined):
             status, described = self.run(["rubric", call[0], "--help"])
@@ -154,7 +154,7 @@ class Place:
                     raise Wrong(f"`rubric {call[0]}` has no option {option}")
 
     def work(self, block, before):
-        """What the block's text has to be; `before` is the block before it."""
+        """Returns the required text of the block; `before` is the block before it."""
         if block.language == "output":
             if before is None or before.language != "cpp" or "file" not in before.words:
                 raise Wrong("an output block stands behind a cpp block with file=")

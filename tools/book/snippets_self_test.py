@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What snippets.py and texts.py find, and what they must not miss.
+"""Faults that snippets.py and texts.py must find.
 
 Usage: snippets_self_test.py PATH_TO_RUBRIC
 """

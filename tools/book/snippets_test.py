@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What the chapters of the book show is what happens; see snippets.py for what is worked and how.
+"""The chapters of the book show what happens; snippets.py explains which texts are run and how.
 
 Usage: snippets_test.py BUILD_FOLDER [--write] [--codec-only] [CHAPTER.md...]
 --write puts what is printed into the chapters. --codec-only lays down the codec's headers alone in

@@ -7,10 +7,10 @@
 
 namespace rubric::cli {
 
-void add_color_option(CLI::App& app, std::string& when) {
+void add_color_option(Command& app, std::string& when) {
   app.add_option("--color", when, "Colour the text: auto (on a terminal), always, never")
-      ->check(CLI::IsMember({"auto", "always", "never"}))
-      ->capture_default_str();
+      .one_of({"auto", "always", "never"})
+      .show_default();
 }
 
 bool use_color(const std::string& when, int fd) {

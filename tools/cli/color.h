@@ -1,16 +1,16 @@
-// Colour: whether, and which.
+// Colour of output.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "tools/cli/command.h"
 #include <string>
 
 namespace rubric::cli {
 
 /// Adds --color auto|always|never.
-void add_color_option(CLI::App& app, std::string& when);
+void add_color_option(Command& app, std::string& when);
 
-/// Whether output to `fd` is coloured: with "auto" on a terminal, unless NO_COLOR is set and not
-/// empty or TERM is dumb.
+/// Returns whether output to `fd` is coloured: with "auto" on a terminal, unless NO_COLOR is set
+/// and not empty or TERM is dumb.
 bool use_color(const std::string& when, int fd);
 
 }  // namespace rubric::cli

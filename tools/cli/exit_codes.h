@@ -1,4 +1,4 @@
-// How every subcommand ends.
+// Exit codes of all subcommands.
 #pragma once
 
 namespace rubric::cli {
@@ -15,7 +15,7 @@ enum ExitCode : int {
 /// Exit codes of the subcommands that give verdicts: check, explore, coverage.
 enum VerdictCode : int {
   kVerdictExpected = 0,      ///< Everything is as expected.
-  kVerdictFailed = 1,        ///< A failure that nobody expected, or an expectation not true.
+  kVerdictFailed = 1,        ///< An unexpected failure, or an expectation that does not hold.
   kVerdictBroken = 2,        ///< The kit itself broke, or could not write what it found.
   kVerdictInconclusive = 3,  ///< Nothing could be decided.
   kVerdictUsage = 64,        ///< The command line or the expectation file makes no sense.

@@ -28,7 +28,7 @@ namespace {
 constexpr std::size_t kChunkBytes = 256 * 1024;
 constexpr std::size_t kDetectBytes = 4096;
 constexpr std::size_t kDetectMost = 64 * 1024;
-/// A bare message of a binary file: a bound, so that memory stays flat whatever is read.
+/// Bound of a bare message in a binary file, so that memory stays flat whatever is read.
 constexpr std::size_t kBareMost = kDetectMost;
 
 constexpr std::chrono::milliseconds kReconnectEvery{1000};
@@ -59,7 +59,7 @@ InputFormat find_format(std::string_view name) {
   return InputFormat::kUnknown;
 }
 
-/// No FILE: $MOTECOM where somebody sits at a terminal, who would else have to type frames.
+/// Returns the files. Without FILE at a terminal it is $MOTECOM, since nobody types frames.
 std::vector<std::string> names_of(const InputOptions& options) {
   if (!options.files.empty()) return options.files;
   return {live::asked_by_motecom() ? live::default_address() : "-"};
@@ -114,11 +114,11 @@ class Run {
     fmt::print(stderr, "rubric: {}: {}\n", name, what);
   }
 
-  // A line in use, until it ends or the user says so.
+  // Reads a line in use, until it ends or the user stops it.
   void line(const live::Address& address) {
     live::stop_on_signals();
     result_.live = true;
-    const bool failed_before = result_.failed;  // What another line could not do stays so.
+    const bool failed_before = result_.failed;  // Failures of other lines stay.
     lost_ = false;
     live::Line line(address, options_.listen_only);
     source_.format = format_name(line.format());
@@ -158,7 +158,7 @@ class Run {
         if (on_idle_) on_idle_();
       }
     } catch (const runner::TargetBroken&) {
-      reader.finish(deliver);  // What there is of a frame that was on its way.
+      reader.finish(deliver);  // With an unfinished frame.
       throw;
     }
   }
@@ -196,7 +196,7 @@ class Run {
     pump(file, *reader, size);
   }
 
-  // Reads until the content tells its format.
+  // Reads until the content shows its format.
   std::size_t look(InputFile& file, InputFormat& format) {
     std::size_t size = 0;
     bool ended = false;
@@ -224,7 +224,7 @@ class Run {
     reader.finish(deliver);
   }
 
-  // A binary file as one message.
+  // Reads a binary file as one message.
   void whole(InputFile& file, std::size_t size) {
     std::vector<std::uint8_t> bytes(chunk_.get(), chunk_.get() + size);
     Packet packet;
@@ -242,7 +242,7 @@ class Run {
   }
 
   void give(const Packet& packet, const std::vector<Interface>& interfaces) {
-    if (result_.stopped) return;  // What is left of the chunk.
+    if (result_.stopped) return;  // Drops the rest of the chunk.
     source_.interface_name = packet.interface_id < interfaces.size()
                                  ? std::string_view(interfaces[packet.interface_id].name)
                                  : std::string_view{};
@@ -271,27 +271,23 @@ std::vector<std::string> protocol_names() {
   return names;
 }
 
-bool is_digits(const std::string& text) {
-  return !text.empty() && text.find_first_not_of("0123456789") == text.npos;
-}
-
 }  // namespace
 
-void add_input_options(CLI::App& app, InputOptions& options) {
+void add_input_options(Command& app, InputOptions& options) {
   app.add_option("FILE", options.files, "Captures, in order; none or - is stdin");
   app.add_option("--input-format", options.format,
                  "What the input is: auto, hdlc (bytes of a serial line), sf (serial forwarder), "
                  "pcap, pcapng, hex (text, from the dispatch byte on), hex-radio (text, 802.15.4 "
                  "without FCS), bare (one message, with --as)")
-      ->check(CLI::IsMember({"auto", "hdlc", "sf", "pcap", "pcapng", "hex", kHexRadio, "bare"}))
-      ->capture_default_str();
-  app.add_option("--spec", options.spec, "Protocol above the AM layer")->capture_default_str();
+      .one_of({"auto", "hdlc", "sf", "pcap", "pcapng", "hex", kHexRadio, "bare"})
+      .show_default();
+  app.add_option("--spec", options.spec, "Protocol above the AM layer").show_default();
   app.add_option("--as", options.as_message,
                  "The input is this message alone: each line of hex text, or a binary file whole")
-      ->check(given());
+      .check(given);
 }
 
-void add_live_options(CLI::App& app, InputOptions& options) {
+void add_live_options(Command& app, InputOptions& options) {
   const auto check = [](const std::string& text) {
     try {
       live::parse_address(text);
@@ -300,7 +296,7 @@ void add_live_options(CLI::App& app, InputOptions& options) {
       return std::string(error.what());
     }
   };
-  app.get_option("FILE")->check(CLI::Validator(check, ""))->description(
+  app.get_option("FILE").check(check).description(
       "Captures, in order; none or - is stdin. Or lines in use: serial@DEVICE:BAUD (or a platform, "
       "as serial@/dev/ttyUSB0:telosb), network@HOST:PORT, sf@HOST:PORT");
   app.add_flag("--follow", options.follow, "At the end of a file wait for more of it");
@@ -309,33 +305,10 @@ void add_live_options(CLI::App& app, InputOptions& options) {
   app.add_flag("--reconnect", options.reconnect, "Open a line that is gone again, when it is back");
 }
 
-CLI::Validator given() {
-  const auto check = [](const std::string& text) {
-    return text.empty() ? std::string("is empty") : std::string();
-  };
-  return {check, ""};
-}
-
-CLI::Validator whole_number() {
-  const auto check = [](const std::string& text) {
-    if (is_digits(text)) return std::string();
-    return fmt::format("expected a number of 0 or more, given '{}'", text);
-  };
-  return {check, ""};
-}
-
-CLI::Validator at_least_one() {
-  const auto check = [](const std::string& text) {
-    if (is_digits(text) && text.find_first_not_of('0') != text.npos) return std::string();
-    return fmt::format("expected a number of 1 or more, given '{}'", text);
-  };
-  return {check, ""};
-}
-
 const reflect::Protocol& chosen_protocol(const InputOptions& options) {
   const reflect::Protocol* protocol = reflect::find_protocol(options.spec);
   if (protocol) return *protocol;
-  throw CLI::ValidationError("--spec",
+  throw UsageError("--spec",
                              fmt::format("unknown protocol '{}'{}", options.spec,
                                          reflect::did_you_mean(options.spec, protocol_names())));
 }
@@ -344,16 +317,16 @@ const reflect::Type* chosen_message(const InputOptions& options,
                                     const reflect::Protocol& protocol) {
   if (options.as_message.empty()) {
     if (options.format != "bare") return nullptr;
-    throw CLI::ValidationError("--input-format", "bare needs --as MESSAGE");
+    throw UsageError("--input-format", "bare needs --as MESSAGE");
   }
   if (options.format != "auto" && options.format != "hex" && options.format != "bare") {
-    throw CLI::ValidationError("--as", "takes hex text or a binary file, not " + options.format);
+    throw UsageError("--as", "takes hex text or a binary file, not " + options.format);
   }
   const reflect::Type* type = reflect::find_type(protocol, options.as_message);
   if (type) return type;
   std::vector<std::string> names;
   for (int i = 0; i < protocol.type_count; ++i) names.emplace_back(protocol.types[i]->name);
-  throw CLI::ValidationError("--as", fmt::format("unknown message '{}'{}", options.as_message,
+  throw UsageError("--as", fmt::format("unknown message '{}'{}", options.as_message,
                                                  reflect::did_you_mean(options.as_message, names)));
 }
 

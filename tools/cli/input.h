@@ -1,7 +1,7 @@
-// Input of every subcommand that reads packets: which files, what is in them, which protocol.
+// Input of all subcommands that read packets: files, formats, protocol.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "tools/cli/command.h"
 #include <functional>
 #include <string>
 #include <string_view>
@@ -12,10 +12,10 @@
 
 namespace rubric::cli {
 
-/// What add_input_options fills.
+/// Filled by add_input_options.
 struct InputOptions {
   std::vector<std::string> files;  ///< In order; none or "-" is stdin.
-  std::string format = "auto";     ///< As --input-format takes it.
+  std::string format = "auto";     ///< As for --input-format.
   std::string spec = "rubicon";    ///< A protocol's id.
   std::string as_message;          ///< Bytes are this message alone; empty: framed packets.
   bool progress = true;            ///< A bar on stderr for long files, where that is a terminal.
@@ -25,39 +25,32 @@ struct InputOptions {
 };
 
 /// Adds FILE..., --input-format, --spec and --as to a subcommand.
-void add_input_options(CLI::App& app, InputOptions& options);
+void add_input_options(Command& app, InputOptions& options);
 
 /// Adds --follow, --listen-only and --reconnect: for subcommands whose files may be lines in
 /// use (live/line.h). Without FILE, at a terminal, $MOTECOM is taken.
-void add_live_options(CLI::App& app, InputOptions& options);
+void add_live_options(Command& app, InputOptions& options);
 
-/// Checks that an option's text is not empty, as that of a shell's unset variable is.
-CLI::Validator given();
-/// Checks for a whole number of 1 or more.
-CLI::Validator at_least_one();
-/// Checks for a whole number of 0 or more: CLI11 alone takes -1 for the greatest that there is.
-CLI::Validator whole_number();
-
-/// The protocol that --spec names; CLI::ValidationError with the nearest name if there is none.
+/// Returns the protocol of --spec; throws UsageError with the nearest name if there is none.
 const reflect::Protocol& chosen_protocol(const InputOptions& options);
-/// The message that --as names, null if it is not given; CLI::ValidationError as above.
+/// Returns the message of --as, null if it is not given; throws UsageError as above.
 const reflect::Type* chosen_message(const InputOptions& options,
                                     const reflect::Protocol& protocol);
 
-/// Where a packet came from. Borrowed: valid during the callback.
+/// The source of a packet. Borrowed: valid during the callback.
 struct Source {
   std::string_view file;            ///< As given; "-" is stdin.
   std::size_t file_index = 0;       ///< Counts from 0.
-  std::uint64_t number = 0;         ///< Of the packet in its file, from 1.
+  std::uint64_t number = 0;         ///< Number of the packet in its file, from 1.
   std::string_view format;          ///< As for --input-format, after detection.
   std::string_view interface_name;  ///< Empty if the packet's interface has no name.
 };
 
-/// What reading came to.
+/// The result of reading.
 struct InputResult {
   bool failed = false;   ///< A file could not be opened or read, or is damaged; said on stderr.
   bool stopped = false;  ///< The callback asked to stop.
-  bool live = false;     ///< A line, or a file that was followed, was read until somebody said so.
+  bool live = false;     ///< A line, or a followed file, was read until the user stopped it.
 };
 
 /// Called for each packet, in order; false stops reading.
@@ -65,12 +58,12 @@ using OnPacket = std::function<bool(const Packet&, const Source&)>;
 /// Called before reading waits for more of a pipe or a device: a good time to flush output.
 using OnIdle = std::function<void()>;
 
-/// Reads all files in constant memory. A damaged place of a capture file is delivered as a packet
-/// with an error; what can be read behind it, and the files after it, are read.
+/// Reads all files in constant memory. Delivers a damaged place of a capture file as a packet with
+/// an error, and reads on after it and in later files.
 InputResult read_packets(const InputOptions& options, const OnPacket& on_packet,
                          const OnIdle& on_idle = {});
 
-/// Whether this packet stands for a damaged place of its file rather than for a malformed frame.
+/// Returns whether this packet is a damaged place of its file rather than a malformed frame.
 bool is_damage(const Packet& packet);
 
 }  // namespace rubric::cli

@@ -18,8 +18,8 @@ namespace {
 constexpr int kDetectPatienceMs = 200;
 constexpr std::chrono::milliseconds kFollowEvery{100};
 
-// A named pipe that nobody writes to yet is open at once and waited for by ready(), where the user
-// can ask to stop, rather than within open().
+// Opens without waiting: ready() waits for the writer of a named pipe, where the user can stop it,
+// and open() does not.
 int open_at_once(const std::string& name) {
   const int fd = ::open(name.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (fd >= 0) ::fcntl(fd, F_SETFL, O_RDONLY);
@@ -65,7 +65,8 @@ off_t InputFile::left() const {
   return ::fstat(fd_, &status) == 0 ? status.st_size - ::lseek(fd_, 0, SEEK_CUR) : 0;
 }
 
-// False when the user asks to stop. A thread among several has no signals to end its waiting.
+// Waits. Returns false when the user asks to stop. One of several threads has no signals to end its
+// waiting.
 bool InputFile::ready() const {
   pollfd one{fd_, POLLIN, 0};
   while (!is_regular_) {

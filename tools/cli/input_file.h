@@ -11,7 +11,7 @@
 
 namespace rubric::cli {
 
-/// A file that is followed is not what it was; `what` says how.
+/// A followed file has changed; `what` says how.
 class FileChanged : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -19,8 +19,8 @@ class FileChanged : public std::runtime_error {
 
 class InputFile {
  public:
-  /// `name`: "-" is stdin. `follow`: at the end of it there may be more later; `on_idle` is called
-  /// while that is waited for, and outlives this. Throws std::system_error.
+  /// Opens `name`; "-" is stdin. With `follow` there may be more later at its end; `on_idle` is
+  /// called while waiting for that, and outlives this. Throws std::system_error.
   InputFile(const std::string& name, bool follow, const std::function<void()>& on_idle);
   ~InputFile();
   InputFile(const InputFile&) = delete;
@@ -28,12 +28,12 @@ class InputFile {
 
   bool is_regular() const { return is_regular_; }
 
-  /// Up to `size` bytes, 0 at the end, which a file that is followed has only when the user asks
-  /// to stop. Throws std::system_error, and FileChanged where the file became shorter or its name
-  /// is another's or nobody's, once all of it was read.
+  /// Reads up to `size` bytes and returns their number, 0 at the end, which a followed file has
+  /// only when the user asks to stop. Throws std::system_error, and, once all was read, FileChanged
+  /// if the file became shorter or its name belongs to another file or none.
   std::size_t read(std::uint8_t* to, std::size_t size);
 
-  /// Whether more bytes are there, or will be in a moment.
+  /// Returns whether more bytes are there, or will be in a moment.
   bool has_more_soon() const;
 
  private:

@@ -9,13 +9,13 @@
 namespace rubric::cli {
 namespace {
 
-/// Packets that wait at most: a long file is read no faster than it is judged.
+/// The most waiting packets: a long file is read no faster than it is judged.
 constexpr std::size_t kWaitingMost = 64 * 1024;
 
 }  // namespace
 
 InputThreads::InputThreads(const InputOptions& options) : running_(options.files.size()) {
-  // Signals are for the caller's thread, whose waiting they end.
+  // The caller's thread handles signals, which end its waiting.
   sigset_t all;
   sigset_t before;
   ::sigfillset(&all);

@@ -1,4 +1,4 @@
-// Several sources at once, each as it comes.
+// Reads several sources at once.
 #pragma once
 
 #include <chrono>
@@ -16,23 +16,24 @@
 namespace rubric::cli {
 
 /// Reads every file and line of an InputOptions in a thread of its own, as read_packets() does, so
-/// that lines are confirmed however long somebody thinks about a packet. They end when they end, or
-/// when the user says so (live/stop.h).
+/// that lines are confirmed however long the handling of a packet takes. Threads end when their
+/// sources end, or when the user asks to stop (live/stop.h).
 class InputThreads {
  public:
   explicit InputThreads(const InputOptions& options);
-  /// Asks them to stop and waits for it.
+  /// Asks the threads to stop and waits for them.
   ~InputThreads();
   InputThreads(const InputThreads&) = delete;
   InputThreads& operator=(const InputThreads&) = delete;
 
-  /// `file` counts in options.files. The packet is borrowed, as is the interface's name.
+  /// Takes a packet; `file` is an index into options.files. The packet is borrowed, as is the
+  /// interface's name.
   using OnPacket = std::function<void(const Packet&, std::size_t file, std::string_view interface)>;
-  /// Hands over what has come, in its order, after waiting for it until then at most. False when
-  /// all sources have ended and nothing is left. What threads threw is thrown here.
+  /// Passes on the packets that have come, in order, after waiting for them until then at most.
+  /// Returns false when all sources have ended and nothing is left. Throws what threads threw.
   bool take(std::chrono::steady_clock::time_point until, const OnPacket& on_packet);
 
-  /// Whether a source could not be opened or read, or broke off. Said on stderr.
+  /// Returns whether a source could not be opened or read, or broke off. The reason is on stderr.
   bool failed() const { return failed_; }
 
  private:

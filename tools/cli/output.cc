@@ -27,7 +27,7 @@ bool Output::failed(std::string* what) const {
 
 bool write_file(const std::string& path, std::string_view text) {
   const bool to_stdout = path == "-";
-  if (to_stdout) std::fflush(stdout);  // What was printed before comes before.
+  if (to_stdout) std::fflush(stdout);  // Keeps the order with earlier output.
   const int error = to_stdout ? report::write_all(STDOUT_FILENO, text)
                               : report::write_file(path, text);
   if (error == 0 || error == EPIPE) return true;

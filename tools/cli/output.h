@@ -1,5 +1,5 @@
 // Standard output through one big buffer, and files written whole. A reader that closed the pipe is
-// no error: it has seen enough.
+// no error.
 #pragma once
 
 #include <string>
@@ -19,13 +19,14 @@ class Output {
 
   format::Buffer& buffer() { return buffer_; }
 
-  /// Writes the buffer out once enough has gathered; false if nobody takes more.
+  /// Writes the buffer out once enough has gathered; returns false if the reader is gone.
   bool drain() { return buffer_.size() < kEnough ? open() : flush(); }
-  /// Writes all of it; false if nobody takes more.
+  /// Writes all of it; returns false if the reader is gone.
   bool flush();
 
   bool open() const { return !closed_ && error_ == 0; }
-  /// Whether writing failed for another reason than a closed pipe; `what` becomes the reason.
+  /// Returns whether writing failed for another reason than a closed pipe; `what` becomes the
+  /// reason.
   bool failed(std::string* what = nullptr) const;
 
  private:
@@ -37,8 +38,8 @@ class Output {
   format::Buffer buffer_;
 };
 
-/// Writes all of `text` to the file, or to stdout for "-". False, having said why on stderr, if
-/// that fails.
+/// Writes all of `text` to the file, or to stdout for "-". Returns false, having printed why on
+/// stderr, if that fails.
 bool write_file(const std::string& path, std::string_view text);
 
 }  // namespace rubric::cli

@@ -13,14 +13,14 @@ class Progress {
  public:
   enum class Unit : std::uint8_t { kBytes, kCases };
 
-  /// `total` of all input; 0 where it is not known.
+  /// `total` of all input; 0 if unknown.
   Progress(std::uint64_t total, bool wanted, Unit unit = Unit::kBytes);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
   void advance(std::uint64_t units);
-  /// Takes the bar away, so that a message can stand in its place.
+  /// Removes the bar, so that a message can be printed in its place.
   void clear();
 
  private:

@@ -1,4 +1,4 @@
-// How wide text may be.
+// The width of text.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,8 @@ namespace rubric::cli {
 
 constexpr std::size_t kColumnsMin = 60;
 
-/// `asked` if it is not 0; else those of the terminal that `fd` is, between 60 and 120; else 100.
+/// Returns `asked` if it is not 0; else the width of the terminal that `fd` is, between 60 and 120;
+/// else 100.
 std::size_t columns(std::size_t asked, int fd);
 
 }  // namespace rubric::cli

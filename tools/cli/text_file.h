@@ -5,8 +5,7 @@
 
 namespace rubric::cli {
 
-/// The whole of a file, or of stdin for "-". False, with "path: why" in `error`, if that cannot be
-/// read.
+/// Reads a whole file, or stdin for "-". Returns false, with "path: why" in `error`, if that fails.
 bool read_file(const std::string& path, std::string& text, std::string& error);
 
 }  // namespace rubric::cli

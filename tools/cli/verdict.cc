@@ -8,17 +8,17 @@
 
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/text_file.h"
-#include "tools/cli/usage.h"
+#include "tools/cli/command.h"
 
 namespace rubric::cli {
 
-void set_verdict(CLI::App& command, std::function<int()> run) {
-  set_usage_exit_code(command, kVerdictUsage);
-  command.callback([name = command.get_name(), run = std::move(run)] {
+void set_verdict(Command& command, std::function<int()> run) {
+  command.set_usage_exit_code(kVerdictUsage);
+  command.callback([name = command.name(), run = std::move(run)] {
     int code = kVerdictBroken;
     try {
       code = run();
-    } catch (const CLI::Error&) {
+    } catch (const Ending&) {
       throw;
     } catch (const std::exception& error) {
       fmt::print(stderr, "rubric {}: {}\n", name, error.what());

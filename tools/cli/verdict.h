@@ -1,20 +1,20 @@
-// What the subcommands that give verdicts have in common.
+// The common part of subcommands that give verdicts.
 #pragma once
 
 #include <functional>
 #include <string>
 
-#include <CLI/CLI.hpp>
+#include "tools/cli/command.h"
 
 namespace rubric::cli {
 
-/// Has the subcommand end with what `run` returns, one of VerdictCode. What that throws, but for
-/// CLI::Error, is printed, and the kit broke.
-void set_verdict(CLI::App& command, std::function<int()> run);
+/// Makes the subcommand end with the result of `run`, one of VerdictCode. An exception other than
+/// Ending is printed, and means that the kit broke.
+void set_verdict(Command& command, std::function<int()> run);
 
-/// Ends the subcommand: its input cannot be read. `what` may be a list of lines.
+/// Ends the subcommand because its input cannot be read. `what` may be a list of lines.
 [[noreturn]] void unreadable(const char* command, std::string what);
-/// The whole of a file, or of stdin for "-"; ends the subcommand where that cannot be read.
+/// Returns a whole file, or stdin for "-"; ends the subcommand if that cannot be read.
 std::string text_of_file(const char* command, const std::string& path);
 
 }  // namespace rubric::cli

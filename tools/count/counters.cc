@@ -25,7 +25,7 @@ void note_time(Flow& flow, const Place& place) {
                           last.time_ns != kNoTime && place.time_ns != kNoTime;
   if (comparable && place.time_ns < last.time_ns) ++flow.backward;
   if (comparable && place.time_ns >= last.time_ns) {
-    // Damaged stamps can be anything, so that their difference may not fit.
+    // Damaged stamps can be anything, so their difference may not fit.
     const auto gap = static_cast<std::uint64_t>(place.time_ns) -
                      static_cast<std::uint64_t>(last.time_ns);
     const auto gap_ns = static_cast<std::int64_t>(

@@ -1,4 +1,5 @@
-// What `rubric stats` counts. Memory grows with the kinds of things met, never with their number.
+// The counters of `rubric stats`. Memory grows with the kinds of things met, never with their
+// number.
 #pragma once
 
 #include <cstdint>
@@ -35,7 +36,7 @@ struct Flow {
   Place gap_to;
   Place last;
 
-  /// Frames in a second; 0 where times do not tell.
+  /// Returns frames in a second; 0 if times are unknown.
   double rate() const { return seconds > 0 ? static_cast<double>(intervals) / seconds : 0; }
 };
 
@@ -44,7 +45,7 @@ struct FaultCount {
   Place first;
 };
 
-/// What a frame came from.
+/// The source of a frame.
 struct Origin {
   std::string_view file;
   std::string_view interface_name;
@@ -95,10 +96,10 @@ class Counters {
   std::string key_;
 };
 
-/// The name that a frame is counted under: its innermost message, or what there is instead.
+/// Returns the name under which a frame is counted: its innermost message, or its framing.
 std::string message_label(const reflect::Frame& frame);
 
-/// "src>dest": the addresses of the outermost message where it has fields of these names, else
+/// Returns "src>dest": the addresses of the outermost message if it has fields of these names, else
 /// those of the active-message header; empty if there are none.
 std::string pair_label(const reflect::Frame& frame);
 

@@ -104,7 +104,7 @@ TEST(Counters, RepeatedSequenceNumbers) {
   feed.packet(kEight, 2);
   feed.packet(kSeven, 3);
   EXPECT_EQ(feed.counters.all().repeated, 1u);
-  // The same message on its way through another interface, or in another capture, is none.
+  // The same message on its way through another interface, or in another capture, is no repetition.
   feed.packet(kSeven, 4, "a", "serial");
   EXPECT_EQ(feed.counters.all().repeated, 1u);
   feed.packet(kSeven, 0, "b", "serial");

@@ -6,19 +6,19 @@
 #include <vector>
 
 #include "codec/reflect/fault_text.h"
-#include "conformance/report/text.h"
+#include "conformance/report/json.h"
 #include "tools/format/put.h"
 #include "tools/layout/table.h"
 
 namespace rubric::count {
 namespace {
 
-using report::json_string;
-using report::json_string_or_null;
+using report::Json;
 
 using NamedFlow = std::pair<std::string, const Flow*>;
 
-// The most frequent first; equally frequent ones by name, so that the order is always the same.
+// Returns the most frequent first; equally frequent ones by name, so that the order is always the
+// same.
 std::vector<NamedFlow> sorted(const Counters::Flows& flows) {
   std::vector<NamedFlow> list;
   for (const auto& [name, flow] : flows) list.emplace_back(name, &flow);
@@ -75,30 +75,40 @@ std::string faults_text(const Counters& counters) {
   return table.empty() ? std::string{} : '\n' + table.text_within(layout::kColumns);
 }
 
-std::string json(const Place& place) {
-  return fmt::format(R"({{"file":{},"index":{},"offset":{},"time":{}}})", json_string(place.file),
-                     place.index, place.offset,
-                     place.time_ns == kNoTime ? "null" : seconds(place.time_ns));
+Json json(const Place& place) {
+  return Json::object(
+      {{"file", place.file},
+       {"index", place.index},
+       {"offset", place.offset},
+       {"time", Json::raw(place.time_ns == kNoTime ? "" : seconds(place.time_ns))}});
 }
 
-std::string json(const Flow& flow) {
-  std::string out = fmt::format(
-      R"("frames":{},"bytes":{},"malformed":{},"repeated":{},"backward":{},"frames_per_second":{})",
-      flow.frames, flow.bytes, flow.malformed, flow.repeated, flow.backward,
-      flow.rate() > 0 ? fmt::format("{:.6g}", flow.rate()) : "null");
-  if (flow.gap_ns < 0) return out + ",\"largest_gap\":null";
-  return out + fmt::format(R"(,"largest_gap":{{"seconds":{},"from":{},"to":{}}})",
-                           seconds(flow.gap_ns), json(flow.gap_from), json(flow.gap_to));
+void add(const Flow& flow, Json::Members& out) {
+  const auto gap = [&] {
+    return Json::object({{"seconds", Json::raw(seconds(flow.gap_ns))},
+                         {"from", json(flow.gap_from)},
+                         {"to", json(flow.gap_to)}});
+  };
+  const double rate = flow.rate();
+  out.insert(out.end(),
+             {{"frames", flow.frames},
+              {"bytes", flow.bytes},
+              {"malformed", flow.malformed},
+              {"repeated", flow.repeated},
+              {"backward", flow.backward},
+              {"frames_per_second", Json::raw(rate > 0 ? fmt::format("{:.6g}", rate) : "")},
+              {"largest_gap", flow.gap_ns < 0 ? Json::raw("") : gap()}});
 }
 
-std::string json(const char* name_key, const Counters::Flows& flows) {
-  std::string out = "[";
-  const char* separator = "\n";
-  for (const auto& [name, flow] : sorted(flows)) {
-    out += fmt::format("{}{{\"{}\":{},{}}}", separator, name_key, json_string(name), json(*flow));
-    separator = ",\n";
-  }
-  return out + ']';
+Json json(const char* name_key, const Counters::Flows& flows) {
+  return Json::array(
+      sorted(flows),
+      [&](const NamedFlow& one) {
+        Json::Members out = {{name_key, one.first}};
+        add(*one.second, out);
+        return Json::object(out);
+      },
+      "\n");
 }
 
 }  // namespace
@@ -135,33 +145,31 @@ std::string text_report(const Counters& counters) {
 }
 
 std::string json_report(const Counters& counters) {
-  std::string out = fmt::format("{{\"schema\":\"rubric.stats/1\",{}", json(counters.all()));
-  out += ",\"messages\":" + json("message", counters.messages());
-  out += ",\"pairs\":" + json("pair", counters.pairs());
-  out += ",\"interfaces\":[";
-  const char* separator = "";
-  for (const auto& [name, frames] : counters.interfaces()) {
-    out += fmt::format(R"({}{{"interface":{},"frames":{}}})", separator,
-                       json_string_or_null(name), frames);
-    separator = ",";
-  }
-  out += "],\"faults\":[";
-  separator = "\n";
-  for (const auto& [key, count] : counters.faults()) {
-    out += fmt::format(R"({}{{"fault":{},"requirement":{},"frames":{},"first":{}}})", separator,
-                       json_string(reflect::fault_name(key.first)),
-                       json_string_or_null(reflect::requirement(key.second).id), count.frames,
-                       json(count.first));
-    separator = ",\n";
-  }
-  out += "],\"notes\":[";
-  separator = "";
-  for (const auto& [kind, count] : counters.notes()) {
-    out += fmt::format(R"({}{{"note":{},"count":{}}})", separator,
-                       json_string(reflect::note_name(kind)), count);
-    separator = ",";
-  }
-  return out + "]}\n";
+  Json::Members out = {{"schema", "rubric.stats/1"}};
+  add(counters.all(), out);
+  out.emplace_back("messages", json("message", counters.messages()));
+  out.emplace_back("pairs", json("pair", counters.pairs()));
+  out.emplace_back(
+      "interfaces", Json::array(counters.interfaces(), [](const auto& one) {
+        return Json::object({{"interface", Json::or_null(one.first)}, {"frames", one.second}});
+      }));
+  out.emplace_back("faults",
+                   Json::array(
+                       counters.faults(),
+                       [](const auto& one) {
+                         const auto& [key, count] = one;
+                         return Json::object(
+                             {{"fault", reflect::fault_name(key.first)},
+                              {"requirement", Json::or_null(reflect::requirement(key.second).id)},
+                              {"frames", count.frames},
+                              {"first", json(count.first)}});
+                       },
+                       "\n"));
+  out.emplace_back(
+      "notes", Json::array(counters.notes(), [](const auto& one) {
+        return Json::object({{"note", reflect::note_name(one.first)}, {"count", one.second}});
+      }));
+  return Json::object(out).text() + '\n';
 }
 
 }  // namespace rubric::count

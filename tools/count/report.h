@@ -1,4 +1,4 @@
-// The counters for people and for programs.
+// Prints the counters for people and for programs.
 #pragma once
 
 #include <string>
@@ -7,10 +7,10 @@
 
 namespace rubric::count {
 
-/// Aligned tables.
+/// Returns aligned tables.
 std::string text_report(const Counters& counters);
 
-/// One JSON object, schema "rubric.stats/1".
+/// Returns one JSON object, schema "rubric.stats/1".
 std::string json_report(const Counters& counters);
 
 }  // namespace rubric::count

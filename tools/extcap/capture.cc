@@ -52,7 +52,7 @@ class Capture {
           file_.flush();
           if (file_.reader_gone()) live::request_stop();
         });
-    if (file_.reader_gone()) return cli::kExitClean;  // Who stops reading has seen enough.
+    if (file_.reader_gone()) return cli::kExitClean;  // A reader that stops ends the capture.
     if (!file_.finish() || result.failed) return cli::kExitInput;
     return cli::kExitClean;
   }
@@ -89,18 +89,18 @@ int capture(const CaptureOptions& options) {
   if (options.fifo.empty()) return usage("--capture needs --fifo FILE");
   live::stop_on_signals();
   try {
-    // Before anything can go wrong: until the pipe is opened, Wireshark waits and shows nothing.
+    // Comes first: until the pipe is opened, Wireshark waits and shows nothing.
     live::CaptureFile file(options.fifo);
     live::required_address(options.source);
     return Capture(options, file).run();
   } catch (const format::FilterError& error) {
     return usage("capture filter: " + error.explain(options.filter));
-  } catch (const CLI::Error& error) {
+  } catch (const cli::Ending& error) {
     return usage(error.what());
   } catch (const std::invalid_argument& error) {
     return usage(fmt::format("source {}", error.what()));
   } catch (const std::system_error& error) {
-    if (live::stop_requested()) return cli::kExitClean;  // Nobody came to read the pipe.
+    if (live::stop_requested()) return cli::kExitClean;  // Nobody opened the pipe.
     fmt::print(stderr, "rubric-extcap: {}: {}\n", options.fifo,
                std::strerror(error.code().value()));
     return cli::kExitInput;

@@ -6,8 +6,8 @@
 namespace rubric::extcap {
 namespace {
 
-// Whatever stands behind one of these is its value, even if it looks like an option:
-// Wireshark says `--extcap-reload-option --source`.
+// The word after one of these is its value, even if it looks like an option: Wireshark passes
+// `--extcap-reload-option --source`.
 constexpr std::string_view kWithValue[] = {
     "--extcap-interface", "--extcap-capture-filter", "--extcap-control-in", "--extcap-control-out",
     "--extcap-reload-option", "--extcap-version", "--fifo", "--source", "--other-source", "--spec",

@@ -1,4 +1,4 @@
-// What Wireshark asks of an extcap program.
+// The command line that Wireshark passes to an extcap program.
 #pragma once
 
 #include <map>
@@ -11,19 +11,19 @@ namespace rubric::extcap {
 /// The name of our only interface, as in `tshark -i rubric`.
 inline constexpr std::string_view kInterface = "rubric";
 
-/// The protocol of the capture filter, where none is named.
+/// The protocol of the capture filter, if none is named.
 inline constexpr std::string_view kDefaultSpec = "rubicon";
 
-/// A command line of which only what is known is kept: newer Wiresharks pass more than older ones.
+/// A command line of which only known options are kept: newer Wiresharks pass more than older ones.
 class CommandLine {
  public:
-  /// Takes `--name value` as well as `--name=value`; of an option given twice the last.
+  /// Takes `--name value` as well as `--name=value`; the last one if an option is given twice.
   explicit CommandLine(const std::vector<std::string>& words);
 
   bool has(std::string_view name) const { return values_.find(name) != values_.end(); }
-  /// Of an option that takes one; `otherwise` where it is not given.
+  /// Returns the value of an option that takes one; `otherwise` if it is not given.
   std::string value(std::string_view name, std::string_view otherwise = {}) const;
-  /// An option that lacks its value, being the last word; empty if there is none.
+  /// Returns an option that lacks its value, being the last word; empty if there is none.
   const std::string& unfinished() const { return unfinished_; }
 
  private:
@@ -31,7 +31,7 @@ class CommandLine {
   std::string unfinished_;
 };
 
-/// What is printed for --help.
+/// Returns the text of --help.
 std::string help_text();
 
 }  // namespace rubric::extcap

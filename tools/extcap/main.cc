@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
+#include "tools/cli/command.h"
 #include <fmt/format.h>
 
 #include "tools/cli/exit_codes.h"
@@ -26,7 +26,7 @@ int complain(const std::string& what) {
   return cli::kExitUsage;
 }
 
-/// `--listen-only` and `--listen-only=true`.
+/// Returns whether `--listen-only` or `--listen-only=true` is given.
 bool flag(const CommandLine& line, std::string_view name) {
   return line.has(name) && line.value(name) != "false";
 }
@@ -44,7 +44,7 @@ int start(const CommandLine& line) {
   return capture(options);
 }
 
-/// Wireshark asks without --capture whether a filter is one, and takes every output for a no.
+/// Checks a filter. Wireshark asks for that without --capture, and takes every output for a no.
 int judge_filter(const CommandLine& line) {
   const std::string error = filter_error(line.value("--extcap-capture-filter"),
                                          line.value("--spec", kDefaultSpec));
@@ -78,7 +78,7 @@ int main(int argc, char** argv) {
   try {
     return rubric::extcap::run(
         rubric::extcap::CommandLine(std::vector<std::string>(argv + 1, argv + argc)));
-  } catch (const CLI::Error& error) {
+  } catch (const rubric::cli::Ending& error) {
     return rubric::extcap::complain(error.what());
   }
 }

@@ -31,10 +31,10 @@ constexpr Speed kSpeeds[] = {{"telosb", "telosb, tmote: 115200"},
                              {"micaz", "micaz, iris: 57600"},
                              {"mica", "mica: 19200"}};
 
-/// A sentence ends with its line, and one of its values with a brace.
+/// Returns whether the text fits a sentence, which ends with its line, and its values with a brace.
 bool can_be_said(std::string_view text) { return text.find_first_of("{}\r\n") == text.npos; }
 
-/// Serial adapters that are plugged in, by name.
+/// Returns serial adapters that are plugged in, by name.
 std::vector<std::string> devices() {
   std::vector<std::string> found;
   std::error_code error;

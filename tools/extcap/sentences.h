@@ -1,4 +1,4 @@
-// What Wireshark is told, in the sentences that extcap(4) describes.
+// Answers to Wireshark, in the sentences that extcap(4) describes.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@ namespace rubric::extcap {
 std::string interfaces();
 /// Answers --extcap-dlts.
 std::string link_types();
-/// Answers --extcap-config. With `reload`, an option's name, only its choices, as they are now.
+/// Answers --extcap-config. With `reload`, an option's name, only its present choices.
 std::string config(std::string_view reload = {});
 
 }  // namespace rubric::extcap

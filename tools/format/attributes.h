@@ -1,4 +1,4 @@
-// What is known of every frame beside its message's fields, by the names that jsonl uses.
+// Facts about every frame besides its message's fields, by the names in jsonl.
 #pragma once
 
 #include <string>
@@ -11,16 +11,16 @@
 
 namespace rubric::format {
 
-/// One of them. `visit` gives its values, none where the frame lacks it.
+/// One fact. `visit` passes its values, none if the frame lacks it.
 struct Attribute {
   std::string_view name;
   bool (*visit)(const Record&, Visitor);
-  /// Adds the names that its values can have; null where they are numbers or free text.
+  /// Adds the possible names of its values; null if they are numbers or free text.
   void (*names)(const reflect::Protocol&, std::vector<std::string>&);
   bool free_text;
 };
 
-/// Null if there is none with this name.
+/// Returns the attribute of this name, or null.
 const Attribute* find_attribute(std::string_view name);
 std::vector<std::string_view> attribute_names();
 

@@ -9,20 +9,20 @@
 
 namespace rubric::format {
 
-/// Writers take a place with room for all that they might write, write without further checks, and
-/// commit the end of what they wrote.
+/// Writers take a place with room for their longest output, write without further checks, and
+/// commit the end of it.
 class Buffer {
  public:
   explicit Buffer(std::size_t capacity = 256 * 1024)
       : data_(std::make_unique_for_overwrite<char[]>(capacity)), capacity_(capacity) {}
 
-  /// Where the next `room` characters may be written.
+  /// Returns where the next `room` characters may be written.
   char* reserve(std::size_t room) {
     if (capacity_ - size_ < room) grow(room);
     reserved_ = size_ + room;
     return data_.get() + size_;
   }
-  /// `end` is one past the last character that was written into the reserved room.
+  /// Commits; `end` is one past the last character that was written into the reserved room.
   void commit(const char* end) {
     size_ = static_cast<std::size_t>(end - data_.get());
     assert(size_ <= reserved_);
@@ -45,7 +45,7 @@ class Buffer {
   std::string_view view() const { return {data_.get(), size_}; }
   std::size_t size() const { return size_; }
   void clear() { size_ = 0; }
-  /// Drops what was written behind the first `size` characters.
+  /// Drops everything after the first `size` characters.
   void shrink(std::size_t size) { size_ = size; }
 
  private:
@@ -61,7 +61,7 @@ class Buffer {
   std::unique_ptr<char[]> data_;
   std::size_t capacity_;
   std::size_t size_ = 0;
-  std::size_t reserved_ = 0;  // Where the room ends that was asked for last.
+  std::size_t reserved_ = 0;  // End of the room that was reserved last.
 };
 
 }  // namespace rubric::format

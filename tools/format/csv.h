@@ -13,7 +13,7 @@ namespace rubric::format {
 /// empty, structures are JSON.
 class CsvFormatter final : public Formatter {
  public:
-  /// No `columns`: those of csv_columns().
+  /// Without `columns` those of csv_columns().
   CsvFormatter(const reflect::Protocol& protocol, std::vector<Path> columns);
   void begin(Buffer& out) override;
   void print(const Record& record, Buffer& out) override;
@@ -23,7 +23,7 @@ class CsvFormatter final : public Formatter {
   std::vector<Path> columns_;
 };
 
-/// The columns where none are chosen.
+/// Returns the default columns.
 std::string_view csv_columns();
 
 /// Appends `text` as a cell: quoted where it has a comma, a quote or a line break.

@@ -8,7 +8,7 @@
 namespace rubric::format {
 namespace {
 
-using Kind = Value::Kind;
+using ValueKind = Value::Kind;
 
 template <class T>
 bool compare(Compare op, const T& a, const T& b) {
@@ -38,21 +38,21 @@ bool is_hex_of(std::string_view text, Bytes bytes) {
 
 double number_of(const Value& value) {
   constexpr double kNanoseconds = 1e9;
-  if (value.kind == Kind::kReal) return value.real;
+  if (value.kind == ValueKind::kReal) return value.real;
   const auto integer = static_cast<double>(value.integer);
-  return value.kind == Kind::kTime ? integer / kNanoseconds : integer;
+  return value.kind == ValueKind::kTime ? integer / kNanoseconds : integer;
 }
 
 bool is_number(const Value& value) {
-  return value.kind == Kind::kInteger || value.kind == Kind::kReal || value.kind == Kind::kTime ||
-         value.kind == Kind::kBits;
+  return value.kind == ValueKind::kInteger || value.kind == ValueKind::kReal || value.kind == ValueKind::kTime ||
+         value.kind == ValueKind::kBits;
 }
 
-bool is_float(const Value& value) { return value.kind == Kind::kReal && value.field; }
+bool is_float(const Value& value) { return value.kind == ValueKind::kReal && value.field; }
 
 bool compare_number(Compare op, const Value& value, const Operand& operand) {
   if (!is_number(value)) return false;
-  const bool exact = value.kind == Kind::kInteger || value.kind == Kind::kBits;
+  const bool exact = value.kind == ValueKind::kInteger || value.kind == ValueKind::kBits;
   if (exact && operand.kind == Operand::Kind::kInteger) {
     return compare(op, value.integer, operand.integer);
   }
@@ -65,7 +65,7 @@ bool compare_number(Compare op, const Value& value, const Operand& operand) {
 
 bool compare_text(Compare op, const Value& value, const std::string& text) {
   bool equal = false;
-  if (value.kind == Kind::kBytes) {
+  if (value.kind == ValueKind::kBytes) {
     equal = is_hex_of(text, value.bytes);
   } else {
     equal = value.text == text;
@@ -93,7 +93,7 @@ constexpr std::size_t kMaxShown = 1000;
 
 std::string FilterError::explain(std::string_view expression) const {
   if (expression.size() > kMaxShown) return fmt::format("{} (character {})", what(), position_ + 1);
-  // Characters that are no printable ASCII would shift the caret.
+  // Unprintable or non-ASCII characters would shift the caret.
   std::string shown(expression);
   for (char& c : shown) {
     if (c < ' ' || c > '~') c = '?';
@@ -119,7 +119,7 @@ bool Filter::holds(std::size_t index, const Record& record) const {
 bool Filter::present(const Term& term, const Record& record) const {
   bool found = false;
   auto each = [&](const Value& value) {
-    const bool empty = value.kind == Kind::kBytes && value.bytes.empty();
+    const bool empty = value.kind == ValueKind::kBytes && value.bytes.empty();
     found = term.masked ? is_number(value) && (value.integer & mask_of(term, value)) != 0 : !empty;
     return !found;
   };
@@ -158,9 +158,9 @@ bool Filter::compares_with_path(const Term& term, const Record& record) const {
         Value value = left;
         if (term.masked) value.integer &= mask_of(term, value);
         any_holds = compare(op, number_of(value), number_of(right));
-      } else if (left.kind == Kind::kBytes && right.kind == Kind::kBytes) {
+      } else if (left.kind == ValueKind::kBytes && right.kind == ValueKind::kBytes) {
         any_holds = op == Compare::kEq && equal(left.bytes, right.bytes);
-      } else if (left.kind == Kind::kText && right.kind == Kind::kText) {
+      } else if (left.kind == ValueKind::kText && right.kind == ValueKind::kText) {
         any_holds = op == Compare::kEq && left.text == right.text;
       }
       return !any_holds;

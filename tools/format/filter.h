@@ -13,14 +13,14 @@
 
 namespace rubric::format {
 
-/// What is wrong with an expression, and at which of its characters.
+/// An error in an expression, with the character at fault.
 class FilterError : public std::runtime_error {
  public:
   FilterError(const std::string& what, std::size_t position)
       : std::runtime_error(what), position_(position) {}
   std::size_t position() const { return position_; }
 
-  /// The message, the expression, and a caret below the place.
+  /// Returns the message, the expression, and a caret below the place.
   std::string explain(std::string_view expression) const;
 
  private:
@@ -29,7 +29,7 @@ class FilterError : public std::runtime_error {
 
 enum class Compare : std::uint8_t { kEq, kNe, kLt, kLe, kGt, kGe };
 
-/// What stands on the right of a comparison.
+/// The right side of a comparison.
 struct Operand {
   enum class Kind : std::uint8_t { kInteger, kReal, kText, kPath };
   Kind kind = Kind::kInteger;

@@ -17,7 +17,7 @@ constexpr std::size_t kMaxChars = 64 * 1024;
 enum class TokenKind : std::uint8_t { kEnd, kWord, kNumber, kString, kSymbol };
 struct Token {
   TokenKind kind = TokenKind::kEnd;
-  std::string_view text;  // Of a string: without its quotes.
+  std::string_view text;  // For a string: without its quotes.
   std::size_t position = 0;
 };
 
@@ -69,7 +69,7 @@ class Lexer {
     while (end < text_.size() && is(text_[end])) ++end;
     return end - at_;
   }
-  // Everything that could be meant as one number; what it is not is told when it is read.
+  // Returns the length of everything that could be meant as one number; reading it reports errors.
   std::size_t number_length() const {
     std::size_t end = at_ + 1;
     while (end < text_.size()) {
@@ -341,14 +341,14 @@ class FilterParser {
     }
   }
 
-  // What bytes are compared with; 0x may stand before it, as before numbers.
+  // Reads the bytes to compare with; 0x may precede them, as it may precede numbers.
   void hex(std::string& text) const {
     if (text.starts_with("0x") || text.starts_with("0X")) text.erase(0, 2);
     const bool digits = text.find_first_not_of("0123456789abcdefABCDEF") == std::string::npos;
     if (!digits || text.size() % 2 != 0) fail("bytes compare with hex digits, two a byte");
   }
 
-  // A name that the left side can have, else another path; true if it was a path.
+  // Reads a name that the left side can have, else another path; returns true if it was a path.
   bool word(Term& term, const Path& left) {
     const std::string name(token_.text);
     const std::vector<std::string> names = left.names();

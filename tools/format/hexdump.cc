@@ -23,7 +23,7 @@ constexpr std::string_view kLetters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNO
 constexpr int kNobody = -1;
 constexpr int kStale = -2;
 
-/// A byte's field, by the order of leaves; kNobody or kStale.
+/// Returns a byte's field, by the order of leaves; kNobody or kStale.
 std::vector<int> owners(const Record& record, std::vector<std::string>& names) {
   const Decoded& decoded = record.decoded();
   std::vector<int> owner(decoded.bytes.size(), kNobody);
@@ -35,7 +35,7 @@ std::vector<int> owners(const Record& record, std::vector<std::string>& names) {
       around.push_back(i);
       continue;
     }
-    // One name more than the field's own says enough: "dest.pid".
+    // One more name than the field's own is enough: "dest.pid".
     const reflect::Field* outer = around.empty() ? nullptr : decoded[around.back()].field;
     std::string name = outer ? fmt::format("{}.{}", outer->name, node.field->name)
                              : std::string(node.field->name);
@@ -108,7 +108,7 @@ class Dump {
     for (std::size_t i = row; i < end; ++i) {
       line += i == row + kRowBytes / 2 ? "  " : " ";
       line += letter(owner_[i]);
-      // A dash where the field goes on.
+      // A dash where the field continues.
       const bool goes_on = owner_[i] >= 0 && i + 1 < owner_.size() && owner_[i + 1] == owner_[i];
       line += is_fault(i) ? '!' : goes_on ? '-' : ' ';
     }

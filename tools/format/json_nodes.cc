@@ -105,7 +105,7 @@ char* JsonNodes::members(char* at, const Decoded& decoded, std::size_t from,
 
 char* JsonNodes::number(char* at, const FieldPlan& plan, std::int64_t value) const {
   if (plan.plain) return put_int(put(at, plan.key), value);
-  // An enum that is known whole: number and name are one ready-made piece.
+  // An enum with all names: number and name are one ready-made piece.
   const auto slot = static_cast<std::uint64_t>(value - plan.first_value);
   if (slot < plan.members.size() && plan.members[slot].size) return put(at, plan.members[slot]);
   if (plan.enumerated) return put(put_int(put(at, plan.key), value), plan.nameless);

@@ -11,14 +11,14 @@ class JsonNodes {
  public:
   JsonNodes(const reflect::Protocol& protocol, bool units) : plan_(protocol, units) {}
 
-  /// An upper bound for everything that can be printed of this frame: all nodes, and three times
-  /// its bytes in hex.
+  /// Returns an upper bound for everything that can be printed of this frame: all nodes, and three
+  /// times its bytes in hex.
   std::size_t room(const reflect::Decoded& decoded) const {
     return decoded.node_count() * plan_.max_member_chars() +
            decoded.bytes.size() * (kMaxElementChars + 6) + kPieceRoom;
   }
 
-  /// The value of a node alone: an object, an array, a number, or hex in quotes.
+  /// Writes the value of a node alone: an object, an array, a number, or hex in quotes.
   char* value(char* at, const reflect::Decoded& decoded, std::size_t node) const;
 
  private:
@@ -36,8 +36,7 @@ class JsonNodes {
   JsonPlan plan_;
 };
 
-/// The value that a raw number stands for, by its field's unit, rounded to what the raw number can
-/// tell.
+/// Returns the value of a raw number in its field's unit, rounded to the raw number's precision.
 double converted(const reflect::Field& field, std::int64_t raw);
 
 }  // namespace rubric::format

@@ -43,7 +43,7 @@ std::size_t plan_mask(const reflect::MaskTable& table, FieldPlan& plan) {
     const char* name = table.bit_names[bit];
     const std::string text =
         name ? fmt::format(",\"{}\"", name) : fmt::format(",\"bit{}\"", bit);
-    // A name that does not fit is cut in the spec compiler's place, not here.
+    // A name that does not fit is cut in place of the spec compiler, not here.
     if (!plan.bits[bit].set(text)) plan.bits[bit].set(fmt::format(",\"bit{}\"", bit));
     chars += text.size();
   }

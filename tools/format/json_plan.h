@@ -14,12 +14,12 @@
 
 namespace rubric::format {
 
-/// Text in one cache line, copied whole: writers need kPieceRoom characters behind what they write.
+/// Text in one cache line, copied whole: writers need kPieceRoom characters after it.
 struct alignas(64) Piece {
   char text[63] = {};
   std::uint8_t size = 0;
 
-  /// Whether `value` fits; it is kept if so.
+  /// Keeps `value` if it fits; returns whether it does.
   bool set(std::string_view value);
 };
 inline constexpr std::size_t kPieceRoom = 64;
@@ -39,8 +39,8 @@ struct FieldPlan {
   std::string name_key;         ///< `,"type_name":`
   std::string bits_key;         ///< `,"transducers_bits":`
   std::string unit_key;         ///< `,"temp_degC":`
-  /// For enums whose values lie close: the member and its name for each value from first_value on,
-  /// `,"type":35,"type_name":"updates"`; size 0 where a value has no name.
+  /// For enums with close values: the member and its name for each value from first_value on,
+  /// `,"type":35,"type_name":"updates"`; size 0 for a value without a name.
   std::vector<Piece> members;
   std::int64_t first_value = 0;
   std::vector<Piece> bits;      ///< For masks: `,"light"` for each bit.
@@ -51,17 +51,18 @@ struct FieldPlan {
 /// The plans of a protocol.
 class JsonPlan {
  public:
-  /// `units`: a converted value stands beside each field that has a unit.
+  /// With `units` each field that has a unit is followed by its converted value.
   JsonPlan(const reflect::Protocol& protocol, bool units);
 
-  /// Of a field of the protocol's types; no other has one.
+  /// Returns the plan of a field of the protocol's types; no other has one.
   const FieldPlan& field(const reflect::Field* field) const {
     const auto slot = (reinterpret_cast<std::uintptr_t>(field) - first_address_) / kStep;
     assert(slot < slots_.size() && plans_[slots_[slot]].field == field);
     return plans_[slots_[slot]];
   }
   bool units() const { return units_; }
-  /// Most characters that one number or an opening and closing bracket take, slack included.
+  /// Returns the most characters that one number or an opening and closing bracket take, slack
+  /// included.
   std::size_t max_member_chars() const { return max_member_chars_; }
 
  private:

@@ -21,7 +21,7 @@ char* put_or_null(char* at, std::int32_t value) {
   return value == kAbsent ? put(at, "null") : put_uint(at, static_cast<std::uint32_t>(value));
 }
 
-// `{"kind":69,"kind_name":"packet_noack","serial_seq":` of each kind; the last is of none.
+// `{"kind":69,"kind_name":"packet_noack","serial_seq":` for each kind; the last is for none.
 struct KindPieces {
   static constexpr std::size_t kNone = 256;
   Piece pieces[kNone + 1];
@@ -90,7 +90,7 @@ char* put_am(char* at, const reflect::ActiveMessage& am) {
   return at;
 }
 
-// Names are ASCII identifiers: the spec's compiler sees to that.
+// Names are ASCII identifiers, which the spec's compiler enforces.
 std::string make_path_text(const Decoded& decoded) {
   const std::size_t count = decoded.path_count();
   if (count == 0) return ",\"message\":null,\"path\":[]";

@@ -18,7 +18,7 @@ class JsonlFormatter final : public Formatter {
   void print(const Record& record, Buffer& out) override;
 
  private:
-  /// The members "message" and "path" of a path, which few paths of a protocol differ in.
+  /// The members "message" and "path" of a path; a protocol has few different ones.
   struct PathText {
     std::size_t count = 0;
     const reflect::Type* path[reflect::Decoded::kMaxPath] = {};
@@ -33,8 +33,8 @@ class JsonlFormatter final : public Formatter {
   std::vector<Path> fields_;
 };
 
-/// Appends the value of a path as JSON: null where the frame has none, an array where the path
-/// can lead to several.
+/// Appends the value of a path as JSON: null if the frame has none, an array if the path can lead
+/// to several.
 void append_json_value(const Path& path, const Record& record, const JsonNodes& nodes, Buffer& out);
 
 }  // namespace rubric::format

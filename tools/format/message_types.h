@@ -1,4 +1,4 @@
-// The types that messages are made of.
+// The types of messages.
 #pragma once
 
 #include <vector>
@@ -7,10 +7,10 @@
 
 namespace rubric::format {
 
-/// All types of a protocol and those that their fields have, without the carriers and their
-/// headers: these are attributes of a frame (am, frame) rather than fields. In the spec's order.
+/// Returns all types of a protocol and those of their fields, in the spec's order, without the
+/// carriers and their headers: these are attributes of a frame (am, frame) rather than fields.
 std::vector<const reflect::Type*> message_types(const reflect::Protocol& protocol);
-/// The same with the carriers and their headers.
+/// Returns the same with the carriers and their headers.
 std::vector<const reflect::Type*> all_types(const reflect::Protocol& protocol);
 
 }  // namespace rubric::format

@@ -40,13 +40,13 @@ bool is_name_of(const Node& node, const std::string& name) {
   return type && name == type->name;
 }
 
-constexpr std::size_t kMaxDepth = 2 * Decoded::kMaxPath;
+constexpr std::size_t kMaxPathDepth = 2 * Decoded::kMaxPath;
 struct Around {  // The structures around a node, from the outside in.
-  std::size_t nodes[kMaxDepth];
+  std::size_t nodes[kMaxPathDepth];
   std::size_t depth = 0;
 };
 
-// Whether the structures around a node are named as `components` (without the last) wants.
+// Returns whether the structures around a node have the names in `components` (without the last).
 bool encloses(const Decoded& decoded, const Around& around,
               const std::vector<std::string>& components) {
   std::size_t depth = around.depth;
@@ -139,7 +139,7 @@ Value of_number(const Field& field, std::int64_t raw) {
 
 }  // namespace
 
-// What a target makes of a field's raw number.
+// Passes on a target's form of the field's raw number.
 bool Path::give(const Target& target, std::int64_t raw, Visitor visit) {
   Value value = of_number(*target.field, raw);
   switch (target.beside) {
@@ -197,7 +197,7 @@ void Path::find(const Record& record, bool first_only, Visitor visit) const {
       if (!give_node(*here, decoded, i, visit)) return;
     }
     const bool structure = node.kind == NodeKind::kStruct || node.kind == NodeKind::kStructArray;
-    if (structure && around.depth < kMaxDepth) around.nodes[around.depth++] = i;
+    if (structure && around.depth < kMaxPathDepth) around.nodes[around.depth++] = i;
   }
 }
 

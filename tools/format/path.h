@@ -1,4 +1,4 @@
-// Paths to what is known of a frame: what filters compare and --fields selects.
+// Paths to facts about a frame: filters compare them and --fields selects them.
 #pragma once
 
 #include <stdexcept>
@@ -13,19 +13,19 @@
 
 namespace rubric::format {
 
-/// A path that names nothing; the message says so, and what was meant, perhaps.
+/// A path that names nothing; the message suggests a near name.
 class PathError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// An attribute of every frame ("framing", "am.type"), or the tail of a path to a field
-/// ("devid", "src.devid", "updates.value"). Names of messages stand for their structures:
-/// "rubicon_ack.seq_num". "fields." in front makes a field of what would be an attribute. "x_name",
-/// "x_bits" and "x_UNIT" lead to what jsonl shows beside x.
+/// An attribute of every frame ("framing", "am.type"), or the tail of a path to a field ("devid",
+/// "src.devid", "updates.value"). A message's name means its structure: "rubicon_ack.seq_num". The
+/// prefix "fields." selects a field where an attribute has the same name. "x_name", "x_bits" and
+/// "x_UNIT" lead to the values that jsonl shows beside x.
 class Path {
  public:
-  /// Throws PathError where no frame of the protocol can have it.
+  /// Throws PathError if no frame of the protocol can have it.
   Path(std::string_view text, const reflect::Protocol& protocol);
 
   const std::string& text() const { return text_; }
@@ -34,21 +34,21 @@ class Path {
   void visit(const Record& record, Visitor visit) const;
   /// The same, but stays with the first field that matches.
   void visit_first(const Record& record, Visitor visit) const;
-  /// Whether it can lead to several values at once.
+  /// Returns whether it can lead to several values at once.
   bool is_list() const;
 
-  /// Names that its values can have: enum entries, messages, faults, ...
+  /// Returns names that its values can have: enum entries, messages, faults, ...
   std::vector<std::string> names() const;
-  /// Names of the bits of the masks that it can lead to.
+  /// Returns names of the bits of the masks that it can lead to.
   std::vector<std::string> bit_names() const;
-  /// Whether its values are text or bytes of any kind, such as an interface's name.
+  /// Returns whether its values are text or bytes of any kind, such as an interface's name.
   bool is_free_text() const;
-  /// Whether all its values are bytes, which compare with hex.
+  /// Returns whether all its values are bytes, which compare with hex.
   bool is_bytes() const;
 
  private:
   enum class Beside : std::uint8_t { kNothing, kName, kBits, kUnit };
-  struct Target {  // What the last component can mean: a field, perhaps beside it, or a message.
+  struct Target {  // Meanings of the last component: a field, perhaps beside it, or a message.
     const reflect::Field* field;
     const reflect::Type* type;
     Beside beside;
@@ -72,7 +72,7 @@ class Path {
 /// Splits "a,b.c" and makes a path of each.
 std::vector<Path> parse_paths(std::string_view list, const reflect::Protocol& protocol);
 
-/// All attributes, fields and messages, for "did you mean".
+/// Returns all attributes, fields and messages, for "did you mean".
 std::vector<std::string> known_names(const reflect::Protocol& protocol);
 
 }  // namespace rubric::format

@@ -8,7 +8,7 @@
 namespace rubric::format {
 namespace {
 
-// Numbers that are none have quotes in JSON, and none here.
+// Appends a real. NaN and infinities have quotes in JSON, and none here.
 void append_real(double value, bool binary32, Buffer& out) {
   if (!std::isfinite(value)) {
     return out.append(std::isnan(value) ? "NaN" : value > 0 ? "Infinity" : "-Infinity");

@@ -1,4 +1,4 @@
-// Values as a person or a spreadsheet reads them.
+// Values in a form for people and spreadsheets.
 #pragma once
 
 #include "tools/format/json_nodes.h"
@@ -6,18 +6,20 @@
 
 namespace rubric::format {
 
-/// One value: numbers with their shortest text, masks as "light|temp", bytes as hex, structures as
-/// JSON, text with control characters made harmless.
+/// Appends one value: numbers with their shortest text, masks as "light|temp", bytes as hex,
+/// structures as JSON, text with control characters made harmless.
 void append_plain_value(const Value& value, const Record& record, const JsonNodes& nodes,
                         Buffer& out);
-/// All values of a path (of the first field that it leads to), separated by spaces.
+/// Appends all values of a path (of the first field that it leads to), separated by spaces.
 void append_plain_values(const Path& path, const Record& record, const JsonNodes& nodes,
                          Buffer& out);
 
-/// The names of the bits that are set: "light|temp", "bit13" where one has none, "0" for none.
+/// Appends the names of the bits that are set: "light|temp", "bit13" for one without a name, "0"
+/// for none.
 void append_bits(const reflect::MaskTable& mask, std::int64_t value, Buffer& out);
 
-/// `text` with what a terminal would obey, and bytes that are not UTF-8, replaced by U+FFFD.
+/// Appends `text`; everything that a terminal would obey, and bytes that are not UTF-8, become
+/// U+FFFD.
 void append_harmless(std::string_view text, Buffer& out);
 
 }  // namespace rubric::format

@@ -23,7 +23,7 @@ char* put_hex_portable(char* at, Bytes bytes) {
 }
 
 #if defined(__x86_64__)
-// 32 digits from 16 bytes a step: each nibble looks its digit up.
+// Writes 32 digits from 16 bytes a step: each nibble looks its digit up.
 __attribute__((target("ssse3"))) char* put_hex_ssse3(char* at, Bytes bytes) {
   const __m128i digits = _mm_loadu_si128(reinterpret_cast<const __m128i*>(kHexDigits));
   const __m128i low_nibbles = _mm_set1_epi8(15);

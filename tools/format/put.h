@@ -1,4 +1,4 @@
-// Writes numbers and text at a place that has room for them, and returns the place behind.
+// Writes numbers and text at a place that has room for them, and returns its end.
 #pragma once
 
 #include <cstdint>
@@ -31,7 +31,7 @@ RUBRIC_INLINE char* put(char* at, std::string_view text) {
   return at + text.size();
 }
 
-/// Out of line: numbers beyond five digits.
+/// Writes numbers beyond five digits; out of line.
 char* put_long_uint(char* at, std::uint64_t value);
 
 RUBRIC_INLINE char* put_pair(char* at, std::uint32_t pair) {
@@ -64,15 +64,16 @@ RUBRIC_INLINE char* put_int(char* at, std::int64_t value) {
   return put_uint(at, std::uint64_t{0} - static_cast<std::uint64_t>(value));
 }
 
-/// The shortest text that reads back as the same number; "NaN", "Infinity" and "-Infinity" with
-/// their quotes, for JSON has no such numbers.
+/// Writes the shortest text that reads back as the same number; "NaN", "Infinity" and "-Infinity"
+/// with quotes, since JSON has no such numbers.
 char* put_float(char* at, std::uint32_t bits);
 char* put_double(char* at, double value);
 
-/// Nanoseconds as seconds, with as many digits as it takes to be exact: "0.5", "12", "-1.000001".
+/// Writes nanoseconds as seconds, with as many digits as needed to be exact: "0.5", "12",
+/// "-1.000001".
 char* put_time(char* at, std::int64_t time_ns);
 
-/// Two lower-case hex digits a byte.
+/// Writes two lower-case hex digits a byte.
 char* put_hex(char* at, Bytes bytes);
 
 }  // namespace rubric::format

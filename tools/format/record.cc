@@ -1,5 +1,6 @@
 #include "tools/format/record.h"
 
+#include "codec/generated/tinyos/am_header.h"
 #include "codec/generated/tinyos/tables.h"
 #include "codec/reflect/decode.h"
 
@@ -43,12 +44,12 @@ std::string_view serial_kind_name(std::int32_t kind) {
 
 std::int32_t dispatch_of(const Packet& packet) {
   const bool serial = packet.framing == Framing::kHdlc || packet.framing == Framing::kSf;
-  return serial && !packet.bytes.empty() ? packet.bytes[0] : kAbsent;
+  using At = tinyos::AmHeaderLayout::DispatchAt;
+  return serial && packet.bytes.size() >= At::kEnd ? packet.bytes[At::kAt] : kAbsent;
 }
 
 std::int32_t network_of(const reflect::Frame& frame) {
-  constexpr std::size_t kNetworkAt = 9;  // Behind the 802.15.4 header.
-  return frame.mac.has_network ? frame.packet->bytes[kNetworkAt] : kAbsent;
+  return frame.mac.has_network ? frame.mac.network : kAbsent;
 }
 
 }  // namespace rubric::format

@@ -1,4 +1,4 @@
-// What a formatter gets and what it is.
+// Input and interface of formatters.
 #pragma once
 
 #include <cstdint>
@@ -9,12 +9,12 @@
 
 namespace rubric::format {
 
-/// A decoded frame with what only the run knows of it. Borrowed: valid during the call.
+/// A decoded frame with the facts that only the run has. Borrowed: valid during the call.
 struct Record {
   std::uint64_t index = 0;              ///< Counts the frames of all inputs from 0.
-  std::uint64_t number = 1;             ///< Of the frame in its file, from 1, as in `rubric check`.
+  std::uint64_t number = 1;             ///< The frame in its file, from 1, as in `rubric check`.
   std::string_view interface_name;      ///< Empty: the input names none.
-  std::int64_t time_ns = kNoTime;       ///< As --time wants it; kNoTime: not shown.
+  std::int64_t time_ns = kNoTime;       ///< In the form of --time; kNoTime: not shown.
   const reflect::Frame* frame = nullptr;
 
   const Packet& packet() const { return *frame->packet; }
@@ -25,20 +25,20 @@ struct Record {
 class Formatter {
  public:
   virtual ~Formatter() = default;
-  /// What stands before the first record.
+  /// Prints the text before the first record.
   virtual void begin(Buffer&) {}
   virtual void print(const Record& record, Buffer& out) = 0;
 };
 
-/// "hdlc", "sf", "radio", "bare".
+/// Returns "hdlc", "sf", "radio", "bare".
 std::string_view framing_name(Framing framing);
-/// "inbound", "outbound", or empty.
+/// Returns "inbound", "outbound", or an empty text.
 std::string_view direction_name(Direction direction);
-/// Name of a serial packet kind, or empty.
+/// Returns the name of a serial packet kind, or an empty text.
 std::string_view serial_kind_name(std::int32_t kind);
-/// The dispatch byte of serial packets, or kAbsent.
+/// Returns the dispatch byte of serial packets, or kAbsent.
 std::int32_t dispatch_of(const Packet& packet);
-/// The network byte of radio frames, or kAbsent.
+/// Returns the network byte of radio frames, or kAbsent.
 std::int32_t network_of(const reflect::Frame& frame);
 
 }  // namespace rubric::format

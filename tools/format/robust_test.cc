@@ -1,4 +1,4 @@
-// Whatever bytes come: every format prints them within the room that it asked for, JSON parses.
+// Whatever bytes come: every format prints them within its reserved room, and JSON parses.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>

@@ -7,12 +7,13 @@
 
 namespace rubric::format {
 
-/// What a piece of text is; each looks different where there is colour.
+/// The role of a piece of text; each has a look of its own in colour.
 enum class Style : unsigned char { kPlain, kDim, kMessage, kNote, kError, kField };
 
 inline constexpr std::size_t kFieldColors = 6;
 
-/// Escape sequences that begin a style; kField has kFieldColors of them, to be taken in turn.
+/// Returns escape sequences that begin a style; kField has kFieldColors of them, to be taken in
+/// turn.
 inline std::string_view style_start(Style style, std::size_t turn = 0) {
   constexpr std::string_view kTurns[kFieldColors] = {"\033[36m", "\033[33m", "\033[35m",
                                                      "\033[32m", "\033[34m", "\033[96m"};

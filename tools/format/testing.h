@@ -13,7 +13,7 @@ namespace rubric::format {
 
 inline const reflect::Protocol& rubicon() { return *reflect::find_protocol("rubicon"); }
 
-/// Bytes of hex digits; blanks are skipped.
+/// Returns the bytes of hex digits; skips blanks.
 inline std::vector<std::uint8_t> from_hex(std::string_view hex) {
   std::vector<std::uint8_t> bytes;
   int high = -1;
@@ -50,7 +50,7 @@ struct Sample {
   Sample(const Sample&) = delete;
   Sample& operator=(const Sample&) = delete;
 
-  /// Again, after a change of `packet`.
+  /// Decodes again, after a change of `packet`.
   void decode() { decoder.decode(packet, frame); }
 
   std::string print(Formatter& formatter) const {

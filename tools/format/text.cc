@@ -14,7 +14,6 @@ namespace {
 using reflect::Frame;
 
 constexpr std::uint16_t kAmBroadcast = 0xffff;
-constexpr std::size_t kMaxHexBytes = 24;
 
 // Fills up to `column` characters since `start`, and one more space.
 void pad(Buffer& out, std::size_t start, std::size_t column) {
@@ -22,7 +21,7 @@ void pad(Buffer& out, std::size_t start, std::size_t column) {
   out.append(used < column ? column - used + 1 : 1, ' ');
 }
 
-// Microseconds, unless there is more to show.
+// Appends microseconds, unless there is more to show.
 void append_time(std::int64_t time_ns, Buffer& out) {
   constexpr std::int64_t kSecond = 1'000'000'000;
   const std::int64_t seconds = time_ns / kSecond;
@@ -68,7 +67,7 @@ void append_addresses(const Frame& frame, Buffer& out) {
   pad(out, start, 9);
 }
 
-// What the frame is, where it holds no known message.
+// Returns the kind of a frame that holds no known message.
 std::string other_name(const Frame& frame) {
   const Packet& packet = *frame.packet;
   if (packet.framing == Framing::kHdlc && dispatch_of(packet) == kAbsent) {

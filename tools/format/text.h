@@ -1,4 +1,4 @@
-// A line a frame for people to read.
+// Prints a line a frame for people to read.
 #pragma once
 
 #include <vector>
@@ -17,8 +17,8 @@ struct TextOptions {
   std::vector<Path> fields;   ///< Only these, where there are any.
 };
 
-/// Index, time, interface and direction, framing, AM addresses, message, fields; what is malformed
-/// begins with '!' and has the rule that it breaks on a line of its own.
+/// Index, time, interface and direction, framing, AM addresses, message, fields; a malformed frame
+/// begins with '!' and has the broken rule on a line of its own.
 class TextFormatter final : public Formatter {
  public:
   TextFormatter(const reflect::Protocol& protocol, TextOptions options);

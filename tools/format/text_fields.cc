@@ -18,7 +18,6 @@ using reflect::Kind;
 using reflect::Node;
 using reflect::NodeKind;
 
-constexpr std::size_t kMaxHexBytes = 24;
 constexpr std::uint32_t kMaxElements = 24;
 
 /// Prints the nodes of one frame, counting leaves as the hex dump does.
@@ -68,7 +67,7 @@ class FieldPrinter {
     styled_.end();
   }
 
-  // Of a structure that is no pair: behind the opening brace.
+  // Prints a structure that is no pair after its opening brace.
   void value(std::size_t i) {
     const Node& node = decoded_[i];
     switch (node.kind) {

@@ -1,4 +1,4 @@
-// The fields of a frame on one line: name=value.
+// Prints the fields of a frame on one line: name=value.
 #pragma once
 
 #include "tools/format/record.h"
@@ -6,16 +6,19 @@
 
 namespace rubric::format {
 
+/// Bytes of an opaque field or frame that a line shows.
+inline constexpr std::size_t kMaxHexBytes = 24;
+
 struct FieldStyle {
   bool units = false;      ///< Values with a unit are shown converted.
   bool in_turns = false;   ///< Values in the colours of the hex dump.
 };
 
 /// Appends all fields of the outermost message. Structures of two numbers are pairs, "dest=11:2";
-/// messages within the message follow behind a bar.
+/// messages within the message follow after a bar.
 void append_fields(const Record& record, FieldStyle style, Styled& styled);
 
-/// Hex of the first `most` bytes, and how many there are if there are more.
+/// Appends hex of the first `most` bytes, and their number if there are more.
 void append_hex_short(Bytes bytes, std::size_t most, Buffer& out);
 
 }  // namespace rubric::format

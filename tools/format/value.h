@@ -1,4 +1,4 @@
-// A value somewhere in a frame, as filters compare it and columns show it.
+// A value in a frame, for filters and columns.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ struct Value {
   double real = 0;                        ///< kReal.
   std::string_view text;                  ///< kText; beside kInteger its name, where it has one.
   Bytes bytes;                            ///< kBytes.
-  const reflect::Field* field = nullptr;  ///< Of a field's value: for enum and bit names.
+  const reflect::Field* field = nullptr;  ///< For a field's value: its enum and bit names.
   std::size_t node = 0;                   ///< kNode: a structure or an array of structures.
 
   static Value of_integer(std::int64_t value, std::string_view name = {}) {

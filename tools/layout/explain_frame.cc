@@ -151,7 +151,7 @@ class Rows {
     return std::find(begin, end, node.type) != end;
   }
 
-  // The field that broke a rule, what is behind it, and stale bytes.
+  // Adds rows for the field that broke a rule, the bytes after it, and stale bytes.
   void rest() {
     const Error& error = decoded_.error;
     const std::size_t size = decoded_.bytes.size();
@@ -208,7 +208,7 @@ std::string rule_text(ReqId id) {
          fmt::format("    Source: {}\n", rule.source);
 }
 
-// What is wrong with opaque bytes, held against the message that their key names.
+// Returns why opaque bytes do not fit the message that their key names.
 std::string misfit_text(Bytes bytes, const reflect::Type& type) {
   Decoded decoded;
   reflect::decode(type, bytes, reflect::Tail::kStale, true, decoded);

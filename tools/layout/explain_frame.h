@@ -1,4 +1,4 @@
-// A frame, field by field.
+// Explains a frame, field by field.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace rubric::layout {
 
-/// Rows of offset, bytes, field, value and meaning; then notes, and for a malformed frame what is
-/// wrong, where, and the rule. Offsets count from the frame's first byte: the kind byte, the
+/// Returns rows of offset, bytes, field, value and meaning; then notes, and for a malformed frame
+/// its fault, place, and rule. Offsets count from the frame's first byte: the kind byte, the
 /// dispatch byte, the frame control field or the message.
 std::string explain_frame(const reflect::Frame& frame);
 

@@ -1,4 +1,4 @@
-// What `rubric explain` prints about rules.
+// Prints rules for `rubric explain`.
 #pragma once
 
 #include <cstdint>
@@ -13,19 +13,19 @@
 
 namespace rubric::layout {
 
-/// The rules that `name` stands for, in the catalogue's order, upper and lower case alike: the one
-/// of that id, else the group of those whose ids begin with it and a dash ("J4": J4-ACK, ...).
+/// Returns the rules of a name, in the catalogue's order, upper and lower case alike: the one of
+/// that id, else the group of those whose ids begin with it and a dash ("J4": J4-ACK, ...).
 std::vector<ReqId> rules_named(std::string_view name);
 
-/// "J4", "WIRE": what ids begin with up to their first dash, each once.
+/// Returns "J4", "WIRE", and so on: the beginnings of ids up to their first dash, each once.
 std::vector<std::string> rule_groups();
 
-/// How many of the cases that name a rule are printed.
+/// The number of printed cases of a rule.
 enum class CaseList : std::uint8_t { kShort, kWhole };
 
-/// A rule with its roles and source, what release 1.0 and the profiles have otherwise, the fields
-/// that refer to it in `protocols`, and the golden cases that name it: of many the first ones, and
-/// how to see the others.
+/// Returns a rule with its roles and source, the differences of release 1.0 and the profiles, the
+/// fields that refer to it in `protocols`, and its golden cases: if there are many, the first ones,
+/// and how to see the others.
 std::string explain_rule(const std::vector<const reflect::Protocol*>& protocols, ReqId id,
                          CaseList list = CaseList::kShort,
                          std::span<const cases::CaseUse> uses = cases::kCaseUses,

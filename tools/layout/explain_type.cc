@@ -126,7 +126,7 @@ std::string rule_text(ReqId id, std::size_t indent) {
   return wrapped(fmt::format("{} ({}): {}", rule.id, rule.level, rule.sentence), indent);
 }
 
-// Every field of a protocol with the name that leads to it.
+// Visits every field of a protocol with the name that leads to it.
 template <class Visit>
 void each_field(const Protocol& protocol, Visit visit) {
   for (int i = 0; i < protocol.type_count; ++i) {

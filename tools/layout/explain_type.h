@@ -1,4 +1,4 @@
-// What `rubric explain` prints about messages and names.
+// Prints messages and names for `rubric explain`.
 #pragma once
 
 #include <functional>
@@ -10,12 +10,12 @@
 
 namespace rubric::layout {
 
-/// A message's layout: its fields with offsets, sizes, types, bounds, units and rules, the values
-/// of its enums and masks, its own rule, and how it is reached.
+/// Returns a message's layout: its fields with offsets, sizes, types, bounds, units and rules, the
+/// values of its enums and masks, its own rule, and its routes.
 std::string explain_type(const reflect::Protocol& protocol, const reflect::Type& type);
 
-/// "Used by rubicon: net_msg.nbytes, ...": the fields that `has` finds, a line for each protocol
-/// that has one.
+/// Returns "Used by rubicon: net_msg.nbytes, ...": the fields that `has` finds, a line for each
+/// protocol that has one.
 std::string used_by(const std::vector<const reflect::Protocol*>& protocols,
                     const std::function<bool(const reflect::Field&)>& has);
 

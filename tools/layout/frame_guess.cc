@@ -5,6 +5,10 @@
 #include "codec/containers/crc16_fast.h"
 #include "codec/containers/link_record.h"
 #include "codec/containers/serial_frame.h"
+#include "codec/generated/tinyos/am_header.h"
+#include "codec/generated/tinyos/enums.h"
+#include "codec/generated/tinyos/mac_ack.h"
+#include "codec/generated/tinyos/mac_header.h"
 #include "codec/runtime/hdlc.h"
 
 namespace rubric::layout {
@@ -12,17 +16,11 @@ namespace {
 
 using ByteList = std::vector<std::uint8_t>;
 
-constexpr std::size_t kAmHeaderBytes = 8;
-constexpr std::size_t kAmLengthAt = 5;
-constexpr std::size_t kMacHeaderBytes = 9;
 constexpr std::size_t kFcsBytes = 2;
-constexpr std::uint16_t kShapeMask = 0xcc4f;  // IEEE 802.15.4-2006, section 7.2.1.1.
-constexpr std::uint16_t kShapeShortAddresses = 0x8841;
-constexpr std::uint16_t kFcfAck = 0x0002;
 
 Bytes view(const ByteList& bytes) { return {bytes.data(), bytes.size()}; }
 
-// Flags around and escapes within, as on the line itself.
+// Removes the flags around and the escapes within, as on the line itself.
 ByteList without_flags(const ByteList& given) {
   ByteList content;
   std::size_t begin = 0;
@@ -51,8 +49,11 @@ GivenFrame serial(const ByteList& given) {
 }
 
 bool is_am(const ByteList& bytes) {
-  return bytes.size() >= kAmHeaderBytes && bytes[0] == 0 &&
-         bytes[kAmLengthAt] == bytes.size() - kAmHeaderBytes;
+  using Header = tinyos::AmHeaderLayout;
+  constexpr std::size_t kHeaderBytes = tinyos::AmHeaderView::kMaxSizeBytes;
+  return bytes.size() >= kHeaderBytes &&
+         Header::DispatchAt::load(bytes.data()) == tinyos::Dispatch::kActiveMessage &&
+         Header::LengthAt::load(bytes.data()) == bytes.size() - kHeaderBytes;
 }
 
 GivenFrame packet(const ByteList& given) {
@@ -70,10 +71,9 @@ GivenFrame packet(const ByteList& given) {
 }
 
 bool has_fcs(const ByteList& given) {
-  if (given.size() <= kFcsBytes) return false;
-  const Bytes all = view(given);
-  const std::size_t size = given.size() - kFcsBytes;
-  return fcs_fast(all.first(size)) == load_le16(all.data() + size);
+  Packet packet;
+  decode_radio_record(view(given), kLinkRadioFcs, packet);
+  return given.size() > kFcsBytes && packet.fcs == fcs_fast(packet.bytes);
 }
 
 GivenFrame radio(const ByteList& given) {
@@ -86,10 +86,15 @@ GivenFrame radio(const ByteList& given) {
 }
 
 bool begins_as_radio(const ByteList& given) {
-  if (given.size() < 3) return false;
-  const std::uint16_t fcf = load_le16(given.data());
-  if (fcf == kFcfAck) return given.size() <= 5;
-  return (fcf & kShapeMask) == kShapeShortAddresses && given.size() > kMacHeaderBytes;
+  using tinyos::FrameControl;
+  const auto start = tinyos::MacAckView::parse(view(given));
+  if (!start) return false;
+  if (start->fcf() == static_cast<std::uint16_t>(FrameControl::kAck)) {
+    return given.size() <= tinyos::MacAckView::kMaxSizeBytes + kFcsBytes;
+  }
+  constexpr auto kShape = static_cast<unsigned>(tinyos::FrameControlPart::kShape);
+  return (start->fcf() & kShape) == static_cast<unsigned>(FrameControl::kData) &&
+         given.size() > tinyos::MacHeaderView::kMaxSizeBytes;
 }
 
 GivenFrame bare(const ByteList& given) {

@@ -1,4 +1,4 @@
-// One frame that somebody typed or pasted: which framing it has.
+// Guesses the framing of one frame that was typed or pasted.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace rubric::layout {
 
-/// A frame as it was given, and what it was taken for.
+/// A frame as it was given, and its guessed framing.
 struct GivenFrame {
   std::vector<std::uint8_t> bytes;  ///< Flags, escapes and length bytes taken off.
   Packet packet;                    ///< Borrows `bytes`.
@@ -18,8 +18,8 @@ struct GivenFrame {
 };
 
 /// Takes `given` as "sf", "hdlc", "radio" (FCS or not) or "bare", or guesses with "auto": a frame
-/// whose check sum fits, else one whose lengths fit, else one that begins as it should. Nothing
-/// where nothing speaks for any.
+/// whose check sum fits, else one whose lengths fit, else one with a plausible beginning. Returns
+/// nothing if no framing is plausible.
 std::optional<GivenFrame> take_frame(const std::vector<std::uint8_t>& given,
                                      std::string_view framing);
 

@@ -51,7 +51,7 @@ TEST(Table, BreaksItsLastColumn) {
   EXPECT_EQ(table.text_within(80), table.text());
   EXPECT_EQ(table.text_within(28),
             " n  what\n 1  one two three four five\n    six seven\n22  -\n");
-  // Without room the last column goes below.
+  // If there is no room the last column goes below.
   EXPECT_EQ(table.text_within(20, 1),
             "  n\n  1\n     one two three\n     four five six\n     seven\n 22\n     -\n");
 }

@@ -10,7 +10,7 @@ namespace {
 constexpr std::size_t kGap = 2;
 constexpr std::size_t kLeastRoom = 24;  // For a column that is broken into lines.
 
-// Characters, not bytes: UTF-8 continuation bytes take no room.
+// Returns characters, not bytes: UTF-8 continuation bytes take no room.
 std::size_t width_of(const std::string& text) {
   return static_cast<std::size_t>(std::count_if(
       text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) >> 6) != 2; }));
@@ -28,7 +28,7 @@ std::vector<std::string> lines_of(const std::string& text) {
 
 }  // namespace
 
-// 0 for a column without any text.
+// Returns widths; 0 for a column without any text.
 std::vector<std::size_t> Table::widths() const {
   std::vector<std::size_t> widths(headings_.size(), 0);
   for (const auto& row : rows_) {

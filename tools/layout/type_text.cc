@@ -54,12 +54,12 @@ constexpr int kAtom = 9;
 struct Operand {
   std::string text;
   int precedence = kAtom;
-  const Field* field = nullptr;  // Of a load.
+  const Field* field = nullptr;  // For a load.
   bool is_const = false;
   std::int64_t value = 0;
 };
 
-// A number that is held against an enum is shown as the enumerator.
+// Shows a number that is compared with an enum as the enumerator.
 void name_constant(Operand& constant, const Operand& other) {
   if (!constant.is_const || !other.field || !other.field->enumeration) return;
   const char* name = reflect::enum_name(*other.field->enumeration, constant.value);

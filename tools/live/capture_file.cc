@@ -22,7 +22,7 @@ CaptureFile::CaptureFile(const std::string& path)
     : path_(path), fd_(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
   if (fd_ < 0) throw std::system_error(errno, std::generic_category(), path);
   writer_.begin(waiting_);
-  flush();  // Whoever reads the file meanwhile sees what it is.
+  flush();  // Readers of the growing file see what it is.
 }
 
 CaptureFile::~CaptureFile() { ::close(fd_); }

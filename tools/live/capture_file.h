@@ -8,7 +8,7 @@
 
 namespace rubric::live {
 
-/// Throws std::system_error, with the path, where the file cannot be written.
+/// Throws std::system_error, with the path, if the file cannot be written.
 class CaptureFile {
  public:
   explicit CaptureFile(const std::string& path);
@@ -17,12 +17,12 @@ class CaptureFile {
   CaptureFile& operator=(const CaptureFile&) = delete;
 
   void write(const Packet& packet, std::string_view interface_name);
-  /// What was written so far is in the file then, in whole blocks.
+  /// Writes everything so far to the file, in whole blocks.
   void flush();
-  /// Whether the file is a pipe whose reader closed it.
+  /// Returns whether the file is a pipe whose reader closed it.
   bool reader_gone() const;
-  /// Ends the file. False if something of it could not be written. Why, stderr says once: as soon
-  /// as it happens, but that the reader of a pipe is gone only here.
+  /// Ends the file. Returns false if something could not be written. stderr has the reason once: as
+  /// soon as it happens, except that a closed pipe is reported only here.
   bool finish();
 
  private:

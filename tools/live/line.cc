@@ -15,7 +15,7 @@ namespace {
 
 using std::chrono::steady_clock;
 
-/// How long a read waits, so that somebody can be asked in between whether to stop.
+/// How long a read waits, so that the caller can check in between whether to stop.
 constexpr attach::Milliseconds kPatience{100};
 constexpr attach::Milliseconds kAnswerTime{1000};
 

@@ -29,11 +29,11 @@ constexpr Milliseconds kGreetTime{5000};
 constexpr Milliseconds kWriteTime{5000};
 constexpr Milliseconds kCloseTime{5000};
 constexpr Milliseconds kQuietTime{500};
-/// How long is waited for anything before it is asked whether to stop: a signal may come just
+/// How long any wait takes before checking whether to stop: a signal may come just
 /// before the wait begins.
-constexpr Milliseconds kPatience{100};
+constexpr Milliseconds kSendPatience{100};
 constexpr std::size_t kReadBytes = 4096;
-/// A forwarder that says more than so many times kReadBytes at once is heard on after the packet.
+/// A forwarder that sends more than so many times kReadBytes at once is read on after the packet.
 constexpr int kReadsMost = 256;
 
 ReaderOptions reader_options(const std::string& name) {
@@ -61,7 +61,7 @@ void Sender::open() {
   if (!confirms()) greet();
 }
 
-// The first bytes say whether there is a forwarder at all: it confirms nothing of what it gets.
+// Checks the first bytes, which show whether there is a forwarder at all: it confirms nothing.
 void Sender::greet() {
   const SteadyTime deadline = steady_clock::now() + kGreetTime;
   std::uint8_t hello[2] = {};
@@ -72,7 +72,7 @@ void Sender::greet() {
       throw TargetBroken("the other end does not begin a serial forwarder's connection");
     }
     size += line_.read(MutableBytes(hello + size, sizeof hello - size),
-                       steady_clock::now() + kPatience);
+                       steady_clock::now() + kSendPatience);
   }
   if (hello[0] != kSfMagic || hello[1] < kSfVersion) {
     throw TargetBroken(fmt::format("the other end is no serial forwarder's: it begins with "
@@ -114,7 +114,7 @@ Sender::Result Sender::send_to_forwarder(Bytes packet) {
   Result result;
   const SteadyTime begun = steady_clock::now();
   try {
-    // Some forwarders cut off who lags behind what they say, others wait for him.
+    // Some forwarders cut off a client that lags behind, others wait for it.
     for (int i = 0; i < kReadsMost && read() == kReadBytes; ++i) continue;
     //= WIRE-SF-LENGTH: A serial forwarder packet is a length byte of 1 to 255 and that many bytes
     //= from the dispatch byte on.
@@ -122,7 +122,7 @@ Sender::Result Sender::send_to_forwarder(Bytes packet) {
     out_.insert(out_.end(), packet.begin(), packet.end());
     result.tries = 1;
     flush();
-    while (!out_.empty() && !stop_requested()) step(steady_clock::now() + kPatience, -1);
+    while (!out_.empty() && !stop_requested()) step(steady_clock::now() + kSendPatience, -1);
     result.done = out_.empty();
   } catch (const TargetBroken& error) {
     result.broken = error.what();
@@ -139,13 +139,13 @@ bool Sender::hear(SteadyTime until, int fd) {
   return false;
 }
 
-// Waits once, at most until then, and does what there is to do. Whether `fd` is ready.
+// Waits once, at most until then, and does what is due. Returns whether `fd` is ready.
 bool Sender::step(SteadyTime until, int fd) {
   flush();
   const auto left = std::chrono::ceil<Milliseconds>(until - steady_clock::now());
   const auto wanted = static_cast<short>(POLLIN | (output().empty() ? 0 : POLLOUT));
   pollfd both[] = {{line_.fd(), wanted, 0}, {fd, POLLIN, 0}};
-  const auto wait = std::clamp(left, Milliseconds{0}, kPatience);
+  const auto wait = std::clamp(left, Milliseconds{0}, kSendPatience);
   const int ready = ::poll(both, 2, static_cast<int>(wait.count()));
   if (ready < 0 && errno != EINTR) throw TargetBroken(std::strerror(errno));
   if (ready > 0 && (both[0].revents & ~POLLOUT) != 0) read();
@@ -154,7 +154,7 @@ bool Sender::step(SteadyTime until, int fd) {
   return ready > 0 && both[1].revents != 0;
 }
 
-// How many bytes there were, at most kReadBytes.
+// Reads and returns how many bytes there were, at most kReadBytes.
 std::size_t Sender::read() {
   std::uint8_t room[kReadBytes];
   const SteadyTime now = steady_clock::now();
@@ -183,8 +183,8 @@ void Sender::written(std::size_t count) {
   out_.erase(out_.begin(), out_.begin() + static_cast<std::ptrdiff_t>(count));
 }
 
-// What the line takes now: to wait for the rest without reading would be for ever where the other
-// end does the same.
+// Writes as much as the line takes now: waiting for the rest without reading would last for ever if
+// the other end did the same.
 void Sender::flush() {
   while (!output().empty()) {
     const std::size_t count = line_.write_some(output());
@@ -199,7 +199,7 @@ void Sender::flush() {
   }
 }
 
-// To close a connection with bytes unread may cost the other end what it has not read yet.
+// Reads before closing: unread bytes may cost the other end its own unread ones.
 void Sender::close() {
   const SteadyTime deadline = steady_clock::now() + kCloseTime;
   bool quiet = line_.address().kind == Address::Kind::kSerial;
@@ -210,7 +210,7 @@ void Sender::close() {
       const SteadyTime until = std::min(deadline, steady_clock::now() + kQuietTime);
       quiet = line_.read(MutableBytes(room, sizeof room), until) == 0;
     }
-  } catch (const TargetBroken&) {  // As it should: the other end closed it, too.
+  } catch (const TargetBroken&) {  // Expected: the other end closed it, too.
   }
   line_.close();
 }

@@ -1,4 +1,4 @@
-// Sends packets over a line in use, one at a time, and hears what comes back meanwhile.
+// Sends packets over a line in use, one at a time, and reads its frames meanwhile.
 #pragma once
 
 #include <functional>
@@ -13,11 +13,13 @@
 
 namespace rubric::live {
 
-/// Throws runner::TargetBroken, with what is wrong, when the other end cannot be had or is gone;
-/// send() alone tells it in its result. Everything ends early when the user asks to stop (stop.h).
+/// Throws runner::TargetBroken, with what is wrong, if the other end cannot be reached or is gone;
+/// send() alone reports that in its result. Everything ends early when the user asks to stop
+/// (stop.h).
 class Sender {
  public:
-  /// What became of a packet. A serial forwarder confirms nothing: it is done once it was written.
+  /// The result of sending a packet. A serial forwarder confirms nothing: the packet is done once
+  /// it was written.
   struct Result {
     bool done = false;
     int tries = 0;         ///< How often it was sent.
@@ -30,18 +32,19 @@ class Sender {
 
   Sender(Address address, const attach::HostLinkOptions& options, OnFrame on_frame);
 
-  /// Opens the line; of a serial forwarder, waits for its first bytes.
+  /// Opens the line; for a serial forwarder, waits for its first bytes.
   void open();
-  /// The longest packet that this line takes, in bytes from the dispatch byte on.
+  /// Returns the longest packet that this line takes, in bytes from the dispatch byte on.
   std::size_t packet_bytes_max() const;
-  /// Whether packets are confirmed.
+  /// Returns whether packets are confirmed.
   bool confirms() const { return line_.address().kind != Address::Kind::kForwarder; }
 
   /// Sends a packet of 1 to packet_bytes_max() bytes.
   Result send(Bytes packet);
-  /// Hears until then, or until `fd` has something to read or has ended: true. -1: there is none.
+  /// Reads until then, or until `fd` has something to read or has ended; returns true in that case.
+  /// -1: no descriptor.
   bool hear(attach::SteadyTime until, int fd = -1);
-  /// Ends the connection so that nothing is lost of what was written.
+  /// Ends the connection without losing any output.
   void close();
 
  private:
@@ -57,8 +60,8 @@ class Sender {
   Line line_;
   OnFrame on_frame_;
   std::optional<attach::HostLink::Outcome> outcome_;
-  attach::HostLink link_;            // Of a serial line.
-  std::unique_ptr<Reader> reader_;   // Of a serial forwarder.
+  attach::HostLink link_;            // For a serial line.
+  std::unique_ptr<Reader> reader_;   // For a serial forwarder.
   std::vector<std::uint8_t> out_;    // For a serial forwarder: what is still to be written.
   std::optional<attach::SteadyTime> stuck_since_;  // The line takes nothing.
 };

@@ -11,11 +11,12 @@ namespace {
 
 // Lock-free, so good for handlers and threads.
 std::atomic<bool> stop = false;
-std::atomic<std::int64_t> first_ns = 0;  // When the first signal came; 0: none has.
+std::atomic<std::int64_t> first_ns = 0;  // Time of the first signal; 0: none yet.
 
 constexpr std::int64_t kSameWishNs = 500'000'000;
 
-// `timeout` signals a process and then its group, so that one wish comes as two signals.
+// Remembers a signal. `timeout` signals a process and then its group, so that one wish comes as two
+// signals.
 void remember(int signal) {
   timespec now{};
   ::clock_gettime(CLOCK_MONOTONIC, &now);

@@ -1,15 +1,15 @@
-// Ctrl-C ends what has no end of its own, cleanly.
+// Lets Ctrl-C end, cleanly, what has no end of its own.
 #pragma once
 
 namespace rubric::live {
 
-/// From now on the first SIGINT, SIGTERM or SIGHUP only asks to stop; another one, half a second
-/// later or more, ends the process as it would have. A signal that was ignored at start, as nohup
-/// does it, stays ignored.
+/// Makes the first SIGINT, SIGTERM or SIGHUP only ask to stop; another one, half a second later or
+/// more, ends the process as it would have. A signal that was ignored at start, as under nohup,
+/// stays ignored.
 void stop_on_signals();
-/// Whether one has come.
+/// Returns whether one has come.
 bool stop_requested();
-/// As if one had come.
+/// Does the same as a signal.
 void request_stop();
 
 }  // namespace rubric::live

@@ -27,15 +27,15 @@ std::optional<std::int64_t> am_type_on(const Type& carrier, const Type& message)
 
 namespace {
 
-// The names of the TinyOS frames' fields are those of the lines' members, but for where they stand.
+// The fields of TinyOS frames have the names of the lines' members, but other places.
 constexpr std::string_view kRadioMembers[] = {"fcf", "dsn", "destpan", "dest", "src"};
 
 void put_payload(const Value& payload, Value& values) {
-  // Without fields there is nothing, and nothing is an empty row of opaque bytes.
+  // Without fields the payload is empty: an empty row of opaque bytes.
   values.set("payload", payload.is(Value::Kind::kNull) ? Value::of_string("") : payload);
 }
 
-// What radio frames say twice, or in a part of a longer number.
+// Checks numbers that radio frames contain twice, or in a part of a longer number.
 void check_agreement(const Value& am, std::string_view key, const Value& frame,
                      std::string_view frame_key, std::int64_t mask) {
   const Value* in_am = given(am, key);

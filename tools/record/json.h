@@ -8,7 +8,7 @@
 
 namespace rubric::record {
 
-/// Text that is not JSON. what() says what was expected; the column counts from 1.
+/// Text that is not JSON. what() has the expected syntax; the column counts from 1.
 class JsonError : public std::runtime_error {
  public:
   JsonError(const std::string& problem, std::size_t column)
@@ -19,8 +19,8 @@ class JsonError : public std::runtime_error {
   std::size_t column_;
 };
 
-/// Parses one JSON text. Numbers keep their spelling where an int64 cannot hold them, and a key
-/// may stand in an object only once. Throws JsonError.
+/// Parses one JSON text. Numbers keep their spelling if an int64 cannot hold them, and an object
+/// may contain a key only once. Throws JsonError.
 reflect::Value parse_json(std::string_view text);
 
 }  // namespace rubric::record

@@ -6,6 +6,7 @@
 #include <system_error>
 #include <utility>
 
+#include "codec/generated/tinyos/enums.h"
 #include "codec/reflect/encode_number.h"
 #include "codec/reflect/registry.h"
 #include "tools/record/carriers.h"
@@ -17,11 +18,10 @@ using reflect::Value;
 
 namespace {
 
-// What the frames of a message that comes alone say, where the command line says nothing else.
+// Defaults of the frames around a single message, unless the command line gives others.
 constexpr int kBroadcast = 0xffff;
 constexpr int kSerialGroup = 0;
-constexpr int kRadioGroup = 0x22;   // TinyOS's default.
-constexpr int kRadioFcf = 0x8841;   // Data, short addresses, one PAN, no acknowledgement wanted.
+constexpr int kRadioGroup = 0x22;  // TinyOS's default.
 
 }  // namespace
 
@@ -69,7 +69,7 @@ std::int64_t LineEncoder::am_type(std::string_view carrier_name) const {
   if (carrier) {
     if (const auto type = am_type_on(*carrier, *message_)) return *type;
   }
-  throw CLI::ValidationError(
+  throw cli::UsageError(
       "--as", fmt::format("no AM type carries {} itself on {}; give --am-type, {} the message that "
                           "it travels in{} ('rubric explain {}' says more)",
                           message_->name, carrier_name == "radio" ? "the radio" : "serial lines",
@@ -77,7 +77,7 @@ std::int64_t LineEncoder::am_type(std::string_view carrier_name) const {
                           options_.to_line ? "" : ", or use --carrier none", message_->id));
 }
 
-// The line around the fields.
+// Returns the line around the fields.
 Value LineEncoder::around() {
   const std::string_view carrier = carrier_name();
   const bool radio = carrier == "radio";
@@ -97,7 +97,7 @@ Value LineEncoder::around() {
   line.set("am", std::move(am));
   Value frame = Value::of_object();
   if (radio) {
-    frame.set("fcf", number(kRadioFcf));
+    frame.set("fcf", number(static_cast<std::int64_t>(tinyos::FrameControl::kData)));
     frame.set("destpan", number(group));
   }
   frame_index_ = line.items.size();
@@ -157,37 +157,37 @@ void EncodedLines::one(Lines& lines) {
   }
 }
 
-void add_line_options(CLI::App& app, LineOptions& options) {
+void add_line_options(cli::Command& app, LineOptions& options) {
   app.add_option("FILE", options.input.files, "JSON lines; none or - is stdin");
   app.add_option("--spec", options.input.spec, "Protocol above the AM layer")
-      ->capture_default_str();
+      .show_default();
   app.add_option("--as", options.input.as_message,
                  "Each line is the fields of this message, which is put into a frame")
-      ->check(cli::given());
+      .check(cli::given);
   app.add_option("--am-type", options.am_type, "With --as, the AM type (default: its own)")
-      ->check(CLI::Range(0, 0xff));
+      .between(0, 0xff);
   app.add_option("--dest", options.dest, "With --as, the AM destination (default: broadcast)")
-      ->check(CLI::Range(0, 0xffff));
+      .between(0, 0xffff);
   app.add_option("--src", options.src, "With --as, the AM source (default: 0)")
-      ->check(CLI::Range(0, 0xffff));
+      .between(0, 0xffff);
   app.add_option("--group", options.group,
                  options.to_line
                      ? "With --as, the AM group (default: 0)"
                      : "With --as, the AM group (default: 0 on serial lines, 0x22 on the radio)")
-      ->check(CLI::Range(0, 0xff));
+      .between(0, 0xff);
 }
 
-void add_carrier_option(CLI::App& app, LineOptions& options) {
+void add_carrier_option(cli::Command& app, LineOptions& options) {
   app.add_option("--carrier", options.carrier,
                  "With --as, the frame: serial, radio, or none (default: what carries it)")
-      ->check(CLI::IsMember({"serial", "radio", "none"}));
+      .one_of({"serial", "radio", "none"});
 }
 
 void check_line_options(const LineOptions& options) {
   const bool wrapping = options.am_type || options.dest || options.src || options.group ||
                         !options.carrier.empty();
   if (wrapping && options.input.as_message.empty()) {
-    throw CLI::ValidationError(
+    throw cli::UsageError(
         options.to_line ? "--am-type, --dest, --src, --group"
                         : "--carrier, --am-type, --dest, --src, --group",
         "go with --as MESSAGE; a line of rubric decode has its own frame");

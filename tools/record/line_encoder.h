@@ -1,8 +1,8 @@
-// From lines to packets: those of `rubric decode --format jsonl`, or the fields of one message
+// Turns lines into packets: those of `rubric decode --format jsonl`, or the fields of one message
 // alone.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "tools/cli/command.h"
 
 #include <functional>
 #include <optional>
@@ -20,8 +20,8 @@ namespace rubric::record {
 
 struct LineOptions {
   cli::InputOptions input;     ///< Its files, spec and message.
-  std::string carrier;         ///< With a message: serial, radio or none; empty: what carries it.
-  std::optional<int> am_type;  ///< With a message, of the frame around it, as the next three.
+  std::string carrier;         ///< With a message: serial, radio or none; empty: its own carrier.
+  std::optional<int> am_type;  ///< With a message: of the frame around it, as the next three.
   std::optional<int> dest;
   std::optional<int> src;
   std::optional<int> group;
@@ -29,21 +29,21 @@ struct LineOptions {
 };
 
 /// Adds FILE, --spec, --as, --am-type, --dest, --src and --group to a subcommand.
-void add_line_options(CLI::App& app, LineOptions& options);
+void add_line_options(cli::Command& app, LineOptions& options);
 /// Adds --carrier.
-void add_carrier_option(CLI::App& app, LineOptions& options);
-/// Throws CLI::ValidationError where an option came that goes with --as alone.
+void add_carrier_option(cli::Command& app, LineOptions& options);
+/// Throws cli::UsageError if an option is given that needs --as.
 void check_line_options(const LineOptions& options);
 
 /// Turns a line into a packet.
 class LineEncoder {
  public:
-  /// `serial_framing`: "hdlc" or "sf", of a message that comes alone and goes by serial line.
-  /// Throws CLI::ValidationError where nothing carries the message.
+  /// `serial_framing`: "hdlc" or "sf", for a single message on a serial line.
+  /// Throws cli::UsageError if nothing carries the message.
   LineEncoder(const LineOptions& options, const reflect::Protocol& protocol,
               const reflect::Type* message, std::string_view serial_framing);
 
-  /// Throws RecordError.
+  /// Encodes a line. Throws RecordError.
   void encode(const reflect::Value& line, OwnedPacket& out);
 
  private:
@@ -62,11 +62,11 @@ class LineEncoder {
   int next_dsn_ = 0;
 };
 
-/// One run over all lines of all files. What is wrong with one is said on stderr, with its place;
-/// those behind it are taken all the same.
+/// One run over all lines of all files. Reports a faulty line on stderr, with its place, and
+/// continues with the next.
 class EncodedLines {
  public:
-  /// Called for each packet, with its line's place ("FILE:LINE"); false ends the run.
+  /// Called for each packet, with its line's place ("FILE:LINE"); returns false to end the run.
   using OnPacket = std::function<bool(EncodedLines& lines, const OwnedPacket& packet,
                                       const std::string& place)>;
 
@@ -74,11 +74,11 @@ class EncodedLines {
   EncodedLines(const LineOptions& options, LineEncoder& encoder, OnPacket on_packet,
                Lines::BeforeRead before_read = {});
 
-  /// False if some line or file could not be read or encoded.
+  /// Runs. Returns false if some line or file could not be read or encoded.
   bool all();
-  /// Whether there was a line that is not empty.
+  /// Returns whether there was a line that is not empty.
   bool any() const { return any_; }
-  /// Says on stderr what is wrong at a place, so that all() gives false.
+  /// Reports on stderr what is wrong at a place, so that all() returns false.
   void complain(const std::string& place, std::string_view what);
 
  private:

@@ -48,7 +48,7 @@ std::int64_t time_of(const Value* value) {
   };
   if (!value->is(Value::Kind::kInteger) && !value->is(Value::Kind::kReal)) throw wrong();
   if (text.find_first_of("eE") != std::string::npos) {
-    // As other programs write small numbers; good for a double's digits, which is all they had.
+    // Other programs write small numbers so; good for a double's digits, which is all they had.
     const double exact = std::strtod(text.c_str(), nullptr) * static_cast<double>(kSecond);
     if (!(std::abs(exact) < static_cast<double>(INT64_MAX) / 2)) throw wrong();
     return std::llround(exact);

@@ -1,4 +1,4 @@
-// The members of a line that stand around a message: checked and turned into a packet's.
+// Members of a line around a message: checks them and turns them into a packet's.
 #pragma once
 
 #include <cstdint>
@@ -11,26 +11,27 @@
 
 namespace rubric::record {
 
-/// The member, or null where it is missing or null.
+/// Returns the member; null if it is missing or null.
 const reflect::Value* given(const reflect::Value& object, std::string_view key);
 
-/// A string member; empty where it is missing or null. Throws RecordError.
+/// Returns a string member; empty if it is missing or null. Throws RecordError.
 std::string_view text_of(const reflect::Value& object, std::string_view key);
 
-/// An integer member from 0 to `max`; nothing where it is missing or null. `path` is the object's,
-/// for errors. Throws RecordError.
+/// Returns an integer member from 0 to `max`; nothing if it is missing or null. `path` is the
+/// object's, for errors. Throws RecordError.
 std::optional<std::int64_t> integer_of(const reflect::Value& object, std::string_view path,
                                        std::string_view key, std::int64_t max);
 
-/// Seconds as a decimal number to nanoseconds, exactly; kNoTime for null. Throws RecordError.
+/// Converts seconds as a decimal number to nanoseconds, exactly; kNoTime for null. Throws
+/// RecordError.
 std::int64_t time_of(const reflect::Value* value);
 
-/// The framing, direction and fault that a name stands for. Throw RecordError.
+/// Return the framing, direction and fault of a name. Throw RecordError.
 Framing framing_of(const reflect::Value& line);
 Direction direction_of(const reflect::Value& line);
 Fault fault_of(const reflect::Value& line);
 
-/// Whether a fault is one of the framing, not of the content.
+/// Returns whether a fault is one of the framing, not of the content.
 bool is_framing_fault(Fault fault);
 
 }  // namespace rubric::record

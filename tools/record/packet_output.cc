@@ -31,7 +31,7 @@ std::string_view link_type_name(std::uint16_t link_type) {
   }
 }
 
-// Why a writer refused a packet.
+// Returns why a writer refused a packet.
 std::string reason(std::string_view container, const Packet& packet, std::uint16_t link_type) {
   if (container == kPcap && link_type_of(packet) != link_type) {
     return fmt::format("pcap holds one link type, here {}, and no {}", link_type_name(link_type),
@@ -98,7 +98,7 @@ void PacketOutput::open_file(const std::string& path) {
   if (fd_ < 0) throw std::system_error(errno, std::generic_category());
 }
 
-// A pcap file takes the link type of its first packet.
+// Makes the writer. A pcap file takes the link type of its first packet.
 bool PacketOutput::make_writer(const Packet& first) {
   if (container_ == kHdlc) writer_ = std::make_unique<HdlcWriter>();
   if (container_ == kSf) writer_ = std::make_unique<SfWriter>();

@@ -1,4 +1,4 @@
-// Packets into a file or stdout, in any of the containers.
+// Writes packets into a file or stdout, in any of the containers.
 #pragma once
 
 #include <memory>
@@ -11,10 +11,10 @@
 
 namespace rubric::record {
 
-/// The containers' names, for options.
+/// Returns the containers' names, for options.
 const std::vector<std::string>& container_names();
 
-/// What a container can hold beside the packets' bytes.
+/// The facts that a container can hold besides the packets' bytes.
 struct Holds {
   bool times;
   bool directions;
@@ -23,12 +23,12 @@ struct Holds {
 };
 Holds holds(std::string_view container);
 
-/// Whether writing to `output` would overwrite a file that is read; none or "-" is stdin,
+/// Returns whether writing to `output` would overwrite a file that is read; none or "-" is stdin,
 /// an `output` of "-" stdout.
 bool overwrites(const std::string& output, const std::vector<std::string>& inputs);
 
-/// Writes packets. What a container begins with is written even if no packet follows, but nothing
-/// before the first packet or the end: until then a file that is there keeps what it holds.
+/// Writes packets. Writes the begin of a container even if no packet follows, but nothing before
+/// the first packet or the end: until then an existing file keeps its contents.
 class PacketOutput {
  public:
   /// `path`: a file, "-" is stdout. Throws std::system_error.
@@ -37,15 +37,15 @@ class PacketOutput {
   PacketOutput(const PacketOutput&) = delete;
   PacketOutput& operator=(const PacketOutput&) = delete;
 
-  /// Empty if the packet was taken, else why it was not. In a stream a packet that was cut can only
-  /// be the last; it is refused by `cut_refused` when another follows.
+  /// Writes a packet. Returns an empty text if it was taken, else why it was not. In a stream only
+  /// the last packet can be cut; a cut one is refused by `cut_refused` when another follows.
   std::string write(const Packet& packet, std::string_view interface_name);
-  /// Whether the packet cut before the one just written had to be left out.
+  /// Returns whether the cut packet before the last one had to be left out.
   bool cut_refused() const { return cut_refused_; }
 
-  /// Whether somebody still takes the output.
+  /// Returns whether the reader still takes the output.
   bool open() const { return output_->open(); }
-  /// Writes the end. Returns what failed, or empty; a closed pipe is no failure.
+  /// Writes the end. Returns what failed, or an empty text; a closed pipe is no failure.
   std::string finish();
 
  private:

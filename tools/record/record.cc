@@ -26,7 +26,7 @@ std::string sentence(const std::string& path, const std::string& problem, ReqId 
   return text;
 }
 
-// Members of an object that may be missing or null.
+// Returns the members of an object that may be missing or null.
 const Value& object_of(const Value& line, std::string_view key) {
   static const Value kNothing = Value::of_object();
   const Value* value = given(line, key);
@@ -70,7 +70,7 @@ void read_serial(const Value& frame, bool whole, Packet& packet) {
   }
 }
 
-// The link type under which a capture file keeps a malformed radio frame as it is.
+// Returns the link type under which a capture file keeps a malformed radio frame as it is.
 std::uint16_t link_type_for(Fault fault, ReqId rule, const Packet& packet) {
   if (packet.framing != Framing::kRadio) return 0;
   if (rule == "WIRE-RADIO-TAP"_rule) return kLinkRadioTap;
@@ -105,8 +105,8 @@ void read_around(const Value& line, OwnedPacket& out) {
   }
 }
 
-// A check sum that is not given is computed. One that does not fit, though nothing says that it
-// should not, was most likely forgotten when something else was changed.
+// Settles the check sum. A missing one is computed. One that does not fit, without an error that
+// says so, was most likely forgotten when something else was changed.
 void settle_check_sum(const Value& line, OwnedPacket& out) {
   if (out.packet.framing != Framing::kHdlc && out.packet.framing != Framing::kRadio) return;
   if (is_framing_fault(out.packet.error.fault)) return;
@@ -183,7 +183,7 @@ RecordReader::Plan RecordReader::plan_radio(const Value& line, const Value& am) 
   return {type, radio_values(with_am_type(line, am, type), frame, has_network, payload), nullptr};
 }
 
-// Without raw: what the frame is made of.
+// Returns the parts of the frame, without raw.
 RecordReader::Plan RecordReader::plan(const Value& line, Framing framing) const {
   const Value* fields = given(line, "fields");
   const Value am = without_nulls(object_of(line, "am"));
@@ -193,7 +193,7 @@ RecordReader::Plan RecordReader::plan(const Value& line, Framing framing) const 
     return {message, *fields, nullptr};
   }
   const bool nothing = !fields && am.keys.empty();
-  // A radio acknowledgement is a frame control field and a number alone.
+  // A radio acknowledgement is only a frame control field and a number.
   if (nothing && (framing != Framing::kRadio || !given(object_of(line, "frame"), "fcf") ||
                   given(object_of(line, "frame"), "dest"))) {
     throw no_raw("there are neither fields nor am");
@@ -211,7 +211,7 @@ RecordReader::Plan RecordReader::plan(const Value& line, Framing framing) const 
   return made;
 }
 
-// A named message knows its AM type.
+// Adds the AM type that a named message implies.
 Value RecordReader::with_am_type(const Value& line, Value am, const Type* carrier) const {
   const Type* message = bare_type(line);
   if (!message || !carrier || given(am, "type")) return am;

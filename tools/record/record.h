@@ -17,13 +17,13 @@ namespace rubric::record {
 inline constexpr std::string_view kSchema = "rubric.decode/1";
 
 /// A value that cannot be encoded: its place in the line, what was expected and given, and the
-/// rule's id where there is one, in one sentence.
+/// rule's id if there is one, in one sentence.
 class RecordError : public std::runtime_error {
  public:
   RecordError(const std::string& path, const std::string& problem, ReqId rule = ReqId::kNone);
 };
 
-/// A packet together with what it borrows.
+/// A packet together with its borrowed bytes.
 class OwnedPacket {
  public:
   Packet packet;  ///< Without its bytes.
@@ -31,7 +31,7 @@ class OwnedPacket {
   std::string interface_name;
   std::string comment;
 
-  /// The packet with its bytes; valid until this object changes.
+  /// Returns the packet with its bytes; valid until this object changes.
   Packet view() const {
     Packet whole = packet;
     whole.bytes = Bytes(bytes.data(), bytes.size());
@@ -41,16 +41,16 @@ class OwnedPacket {
 };
 
 /// Decides between `raw` and the other members of a line:
-/// - with `raw` the packet is made of it. Where the line is not marked malformed (`error`) and has
-///   `fields`, these must say the same, lest an edit be lost;
-/// - without `raw` it is made of `fields`, `stale`, `am` and `frame`. Missing sizes, counts, the AM
-///   type of a named message and check sums are computed.
+/// - with `raw` it makes the packet from that. If the line is not marked malformed (`error`) and
+///   has `fields`, these must agree with it, lest an edit be lost;
+/// - without `raw` it makes it from `fields`, `stale`, `am` and `frame`. It computes missing sizes,
+///   counts, the AM type of a named message and check sums.
 /// A given check sum must fit, unless `error` says that it does not.
 class RecordReader {
  public:
   explicit RecordReader(const reflect::Protocol& protocol);
 
-  /// Throws RecordError.
+  /// Reads a line. Throws RecordError.
   void read(const reflect::Value& line, OwnedPacket& out);
 
  private:
@@ -58,7 +58,7 @@ class RecordReader {
   struct Plan {
     const reflect::Type* type = nullptr;
     Value values;
-    const reflect::Switch* more = nullptr;  // As reflect::encode takes it.
+    const reflect::Switch* more = nullptr;  // As for reflect::encode.
   };
 
   Plan plan(const Value& line, Framing framing) const;

@@ -24,7 +24,7 @@ const std::string kRadio =
     R"("cur_time":258,"seq_num":50421},"notes":[],"stale":"","raw":)"
     R"("4188072200020001003f0f000b000200000102c4f5","error":null})";
 
-// A line with some members replaced; empty text takes one away.
+// Returns a line with some members replaced; an empty text removes one.
 using Changes = std::vector<std::pair<std::string, std::string>>;
 
 Value changed(Value line, const Changes& changes) {

@@ -15,6 +15,7 @@
 #include "codec/generated/rubicon/tables.h"
 #include "codec/reflect/frame.h"
 #include "tools/format/jsonl.h"
+#include "tools/readme/number.h"
 #include "tools/record/json.h"
 #include "tools/record/packet_output.h"
 #include "tools/record/record.h"
@@ -25,6 +26,7 @@ namespace {
 using reflect::Value;
 
 const reflect::Protocol& kProtocol = rubicon::tables::kProtocol;
+constexpr int kDamagedCopies = 50;  // For each capture.
 
 std::vector<std::string> captures() {
   std::vector<std::string> files;
@@ -105,7 +107,7 @@ void expect_same(const Kept& kept, const OwnedPacket& owned) {
   ASSERT_EQ(kept.interface_name, owned.interface_name);
 }
 
-// Whether a frame that was put together from fields alone must be the same: text does not keep
+// Returns whether a frame that is rebuilt from fields alone must be the same: text keeps neither
 // which NaN it was, nor opaque payloads.
 bool rebuildable(const Value& line) {
   const Value* fields = line.find("fields");
@@ -113,7 +115,7 @@ bool rebuildable(const Value& line) {
   return fields->is(Value::Kind::kObject) && error->is(Value::Kind::kNull);
 }
 
-// What no file can hold again: bytes that are no packet.
+// Returns whether no file can hold the packet: bytes that are none.
 bool is_lost(const Packet& packet) {
   return packet.error.requirement == "WIRE-SF-HANDSHAKE"_rule ||
          (packet.error.fault == Fault::kTooLong && packet.dropped_bytes > 0);
@@ -161,7 +163,7 @@ void round_trip(const std::string& input, InputFormat format, Tally& tally) {
     ASSERT_NO_FATAL_FAILURE(expect_same(kept, owned));
   }
   ASSERT_EQ(output.finish(), "");
-  // What was written reads as the same frames; only places differ.
+  // The output reads as the same frames; only places differ.
   const std::vector<Kept> second = read_all(read_file(file), format);
   ASSERT_EQ(second.size(), written_lines.size());
   const auto without_offset = [](const std::string& line) {
@@ -178,7 +180,7 @@ class RoundTrip : public testing::TestWithParam<std::string> {};
 TEST_P(RoundTrip, Capture) {
   const std::string input = read_file(GetParam());
   const InputFormat format = detect(bytes_of(input));
-  if (format == InputFormat::kUnknown) GTEST_SKIP() << "nothing in it";
+  ASSERT_NE(format, InputFormat::kUnknown);
   Tally tally;
   round_trip(input, format, tally);
   EXPECT_GT(tally.packets, 0u);
@@ -205,7 +207,8 @@ std::string damaged(std::string input, std::mt19937& random) {
   return input;
 }
 
-// A damaged capture file ends at the damage, so there it is the frames that are damaged.
+// Returns damaged frames of an input: a damaged capture file ends at the damage, so there it is the
+// frames that are damaged.
 std::string damaged_frames(const std::string& input, InputFormat format, std::mt19937& random) {
   PcapngWriter writer;
   std::string output;
@@ -224,10 +227,10 @@ std::string damaged_frames(const std::string& input, InputFormat format, std::mt
 TEST_P(RoundTrip, DamagedCapture) {
   const std::string input = read_file(GetParam());
   const InputFormat format = detect(bytes_of(input));
-  if (format == InputFormat::kUnknown) GTEST_SKIP() << "nothing in it";
+  ASSERT_NE(format, InputFormat::kUnknown);
   std::mt19937 random(20240607);
   Tally tally;
-  for (int i = 0; i < 50; ++i) {
+  for (int i = 0; i < kDamagedCopies; ++i) {
     const std::string bad = format == InputFormat::kPcapng ? damaged_frames(input, format, random)
                                                            : damaged(input, random);
     ASSERT_NO_FATAL_FAILURE(round_trip(bad, format, tally)) << "round " << i;
@@ -235,6 +238,10 @@ TEST_P(RoundTrip, DamagedCapture) {
   EXPECT_TRUE(tally.malformed > 0 || input.size() < 200);
   RecordProperty("packets", static_cast<int>(tally.packets));
   RecordProperty("malformed", static_cast<int>(tally.malformed));
+}
+
+TEST(RoundTripCaptures, Count) {
+  EXPECT_EQ(captures().size() * kDamagedCopies, readme_number("# damaged copies"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Captures, RoundTrip, testing::ValuesIn(captures()),

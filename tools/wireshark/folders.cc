@@ -24,7 +24,8 @@ std::string output_of(const char* command) {
   return out;
 }
 
-/// What stands behind `name`, a colon and blanks at the beginning of a line; empty: nothing.
+/// Returns the text after `name`, a colon and blanks at the beginning of a line; empty if there is
+/// none.
 std::string line_of(const std::string& text, std::string_view name) {
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
@@ -49,7 +50,7 @@ fs::path default_config() {
   return (set != nullptr && *set == '/' ? fs::path(set) : home() / ".config") / "wireshark";
 }
 
-/// Until 4.2 personal extcap programs lay beside the configuration.
+/// Returns whether personal extcap programs are beside the configuration, as until 4.2.
 bool is_before_4_2(const std::string& version_text) {
   const std::size_t at = version_text.find("Wireshark");
   if (at == version_text.npos) return false;

@@ -1,4 +1,4 @@
-// Where a user's own parts of Wireshark lie.
+// Finds a user's personal folders of Wireshark.
 #pragma once
 
 #include <filesystem>
@@ -7,18 +7,18 @@
 namespace rubric::wireshark {
 
 struct Folders {
-  std::filesystem::path plugins;  ///< Of dissectors in Lua.
-  std::filesystem::path extcap;   ///< Of programs that capture.
+  std::filesystem::path plugins;  ///< For dissectors in Lua.
+  std::filesystem::path extcap;   ///< For programs that capture.
 };
 
-/// What tshark says; where there is none, where the Wireshark that there is looks by default, or
-/// else the newest one. Throws std::runtime_error if $HOME is needed and not set.
+/// Returns tshark's answer; without tshark, the default of the installed Wireshark, or else of the
+/// newest one. Throws std::runtime_error if $HOME is needed and not set.
 Folders personal_folders();
 
-/// The two of a folder that is laid out as ~/.local/lib/wireshark is.
+/// Returns the two of a folder with the layout of ~/.local/lib/wireshark.
 Folders folders_in(const std::filesystem::path& base);
 
-/// The text of the dissector that ships: tools/wireshark/generated/rubric.lua.
+/// Returns the text of the dissector that ships: tools/wireshark/generated/rubric.lua.
 std::string_view dissector();
 
 }  // namespace rubric::wireshark

@@ -29,8 +29,10 @@ inline bool operator==(const Oscilloscope& a, const Oscilloscope& b) {
 }
 inline bool operator!=(const Oscilloscope& a, const Oscilloscope& b) { return !(a == b); }
 
-/// The steps of writing oscilloscope; use write().
+/// Where oscilloscope has its fields, and the steps of writing it; use write().
 struct OscilloscopeLayout {
+  using AmAt = PlaceAt<0>;
+  using PayloadAt = PlaceAt<8>;
   static size_t size_bytes(const Oscilloscope& value) { return 8 + value.payload.size(); }
   static Error check_lengths(const Oscilloscope& value) {
     const size_t payload_size = static_cast<size_t>(value.am.length);

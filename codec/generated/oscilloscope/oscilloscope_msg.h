@@ -37,8 +37,13 @@ inline bool operator==(const OscilloscopeMsg& a, const OscilloscopeMsg& b) {
 }
 inline bool operator!=(const OscilloscopeMsg& a, const OscilloscopeMsg& b) { return !(a == b); }
 
-/// The steps of writing oscilloscope_msg; use write().
+/// Where oscilloscope_msg has its fields, and the steps of writing it; use write().
 struct OscilloscopeMsgLayout {
+  using VersionAt = NumberAt<0, U16Be>;
+  using IntervalAt = NumberAt<2, U16Be>;
+  using IdAt = NumberAt<4, U16Be>;
+  using CountAt = NumberAt<6, U16Be>;
+  using ReadingsAt = ArrayAt<8, U16Be>;
   static size_t size_bytes(const OscilloscopeMsg&) { return 28; }
   static void store(const OscilloscopeMsg& value, uint8_t* p) {
     store_be16(p, value.version);

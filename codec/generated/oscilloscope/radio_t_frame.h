@@ -31,8 +31,11 @@ inline bool operator==(const RadioTFrame& a, const RadioTFrame& b) {
 }
 inline bool operator!=(const RadioTFrame& a, const RadioTFrame& b) { return !(a == b); }
 
-/// The steps of writing radio_t_frame; use write().
+/// Where radio_t_frame has its fields, and the steps of writing it; use write().
 struct RadioTFrameLayout {
+  using MacAt = PlaceAt<0>;
+  using TypeAt = NumberAt<9, U8>;
+  using PayloadAt = PlaceAt<10>;
   static size_t size_bytes(const RadioTFrame& value) { return 10 + value.payload.size(); }
   static void store(const RadioTFrame& value, uint8_t* p) {
     tinyos::MacHeaderLayout::store(value.mac, p);

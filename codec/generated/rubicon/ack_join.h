@@ -35,8 +35,12 @@ inline bool operator==(const AckJoin& a, const AckJoin& b) {
 }
 inline bool operator!=(const AckJoin& a, const AckJoin& b) { return !(a == b); }
 
-/// The steps of writing ack_join; use write().
+/// Where ack_join has its fields, and the steps of writing it; use write().
 struct AckJoinLayout {
+  using DestAt = PlaceAt<0>;
+  using SrcAt = PlaceAt<4>;
+  using SeqNumAt = NumberAt<8, U16Be>;
+  using MoteDescAt = PlaceAt<10>;
   static size_t size_bytes(const AckJoin&) { return 14; }
   static void store(const AckJoin& value, uint8_t* p) {
     RAddrLayout::store(value.dest, p);

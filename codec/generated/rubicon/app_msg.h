@@ -42,8 +42,11 @@ inline bool operator==(const AppMsg& a, const AppMsg& b) {
 }
 inline bool operator!=(const AppMsg& a, const AppMsg& b) { return !(a == b); }
 
-/// The steps of writing app_msg; use write().
+/// Where app_msg has its fields, and the steps of writing it; use write().
 struct AppMsgLayout {
+  using TransIdAt = NumberAt<0, As<Component, U8>>;
+  using AppIdAt = NumberAt<1, As<Component, U8>>;
+  using PayloadAt = PlaceAt<2>;
   static size_t size_bytes(const AppMsg& value) { return 2 + value.payload.size(); }
   static Error check_lengths(const AppMsg& value) {
     if (RUBRIC_UNLIKELY(size_bytes(value) > 102)) {

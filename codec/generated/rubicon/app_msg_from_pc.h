@@ -45,8 +45,11 @@ inline bool operator==(const AppMsgFromPc& a, const AppMsgFromPc& b) {
 }
 inline bool operator!=(const AppMsgFromPc& a, const AppMsgFromPc& b) { return !(a == b); }
 
-/// The steps of writing app_msg; use write().
+/// Where app_msg has its fields, and the steps of writing it; use write().
 struct AppMsgFromPcLayout {
+  using TransIdAt = NumberAt<0, As<Component, U8>>;
+  using AppIdAt = NumberAt<1, As<Component, U8>>;
+  using PayloadAt = PlaceAt<2>;
   static size_t size_bytes(const AppMsgFromPc& value) { return 2 + value.payload.size(); }
   static Error check_lengths(const AppMsgFromPc& value) {
     if (RUBRIC_UNLIKELY(size_bytes(value) > 102)) {

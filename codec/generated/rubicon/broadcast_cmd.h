@@ -30,8 +30,11 @@ inline bool operator==(const BroadcastCmd& a, const BroadcastCmd& b) {
 }
 inline bool operator!=(const BroadcastCmd& a, const BroadcastCmd& b) { return !(a == b); }
 
-/// The steps of writing broadcast_cmd; use write().
+/// Where broadcast_cmd has its fields, and the steps of writing it; use write().
 struct BroadcastCmdLayout {
+  using TypeAt = NumberAt<0, As<LearningCode, U8>>;
+  using ClockAt = NumberAt<1, U16Be>;
+  using SeqNumAt = NumberAt<3, U16Be>;
   static size_t size_bytes(const BroadcastCmd&) { return 5; }
   static void store(const BroadcastCmd& value, uint8_t* p) {
     store_u8(p, static_cast<uint8_t>(value.type));

@@ -31,8 +31,11 @@ inline bool operator==(const Command& a, const Command& b) {
 }
 inline bool operator!=(const Command& a, const Command& b) { return !(a == b); }
 
-/// The steps of writing command; use write().
+/// Where command has its fields, and the steps of writing it; use write().
 struct CommandLayout {
+  using TypeAt = NumberAt<0, As<CommandCode, U8>>;
+  using CounterAt = NumberAt<1, U16Be>;
+  using DelayAt = NumberAt<3, U16Be>;
   static size_t size_bytes(const Command&) { return 5; }
   static void store(const Command& value, uint8_t* p) {
     store_u8(p, static_cast<uint8_t>(value.type));

@@ -52,8 +52,16 @@ inline bool operator==(const Complete& a, const Complete& b) {
 }
 inline bool operator!=(const Complete& a, const Complete& b) { return !(a == b); }
 
-/// The steps of writing complete; use write().
+/// Where complete has its fields, and the steps of writing it; use write().
 struct CompleteLayout {
+  using DestAt = PlaceAt<0>;
+  using SrcAt = PlaceAt<4>;
+  using ReliableAt = RangedAt<8, U8, 0, 1>;
+  using SeqNumAt = NumberAt<9, U16Be>;
+  using NbytesAt = RangedAt<11, U8, 2, 102>;
+  using TransIdAt = NumberAt<12, As<Component, U8>>;
+  using AppIdAt = NumberAt<13, As<Component, U8>>;
+  using PayloadAt = PlaceAt<14>;
   static size_t size_bytes(const Complete&) { return 19; }
   static void store(const Complete& value, uint8_t* p) {
     RAddrLayout::store(value.dest, p);

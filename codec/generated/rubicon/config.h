@@ -26,8 +26,10 @@ inline bool operator==(const Config& a, const Config& b) {
 }
 inline bool operator!=(const Config& a, const Config& b) { return !(a == b); }
 
-/// The steps of writing config; use write().
+/// Where config has its fields, and the steps of writing it; use write().
 struct ConfigLayout {
+  using TypeAt = NumberAt<0, As<CommandCode, U8>>;
+  using ValueAt = NumberAt<1, U16Be>;
   static size_t size_bytes(const Config&) { return 3; }
   static void store(const Config& value, uint8_t* p) {
     store_u8(p, static_cast<uint8_t>(value.type));

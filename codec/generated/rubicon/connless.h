@@ -44,8 +44,15 @@ inline bool operator==(const Connless& a, const Connless& b) {
 }
 inline bool operator!=(const Connless& a, const Connless& b) { return !(a == b); }
 
-/// The steps of writing connless; use write().
+/// Where connless has its fields, and the steps of writing it; use write().
 struct ConnlessLayout {
+  using MsgTypeAt = NumberAt<0, As<AmType, U8>>;
+  using IslandAddrAt = NumberAt<1, U8>;
+  using MoteAddrAt = NumberAt<2, U16Be>;
+  using ReliableAt = RangedAt<4, U8, 0, 1>;
+  using SeqNumAt = NumberAt<5, U16Be>;
+  using NbytesAt = RangedAt<7, U8, 0, 100>;
+  using PayloadAt = PlaceAt<8>;
   static size_t size_bytes(const Connless& value) { return 8 + value.payload.size(); }
   static Error check_lengths(const Connless& value) {
     if (RUBRIC_UNLIKELY(value.payload.size() > 100)) {

@@ -36,8 +36,13 @@ inline bool operator==(const Data& a, const Data& b) {
 }
 inline bool operator!=(const Data& a, const Data& b) { return !(a == b); }
 
-/// The steps of writing data; use write().
+/// Where data has its fields, and the steps of writing it; use write().
 struct DataLayout {
+  using CounterAt = NumberAt<0, U16Be>;
+  using TempAt = NumberAt<2, U16Be>;
+  using HumidAt = NumberAt<4, U16Be>;
+  using LightAt = NumberAt<6, U16Be>;
+  using RssiAt = NumberAt<8, U16Be>;
   static size_t size_bytes(const Data&) { return 10; }
   static void store(const Data& value, uint8_t* p) {
     store_be16(p, value.counter);

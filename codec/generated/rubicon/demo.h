@@ -31,8 +31,11 @@ inline bool operator==(const Demo& a, const Demo& b) {
 }
 inline bool operator!=(const Demo& a, const Demo& b) { return !(a == b); }
 
-/// The steps of writing demo; use write().
+/// Where demo has its fields, and the steps of writing it; use write().
 struct DemoLayout {
+  using MsgTypeAt = NumberAt<0, U8>;
+  using SensorsBitmaskAt = NumberAt<1, As<TransducerMask, U16Be>>;
+  using PeriodAt = NumberAt<3, U16Be>;
   static size_t size_bytes(const Demo&) { return 5; }
   static void store(const Demo& value, uint8_t* p) {
     store_u8(p, value.msg_type);

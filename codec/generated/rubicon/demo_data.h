@@ -56,8 +56,18 @@ inline bool operator==(const DemoData& a, const DemoData& b) {
 }
 inline bool operator!=(const DemoData& a, const DemoData& b) { return !(a == b); }
 
-/// The steps of writing demo_data; use write().
+/// Where demo_data has its fields, and the steps of writing it; use write().
 struct DemoDataLayout {
+  using MsgTypeAt = NumberAt<0, As<AmType, U8>>;
+  using LightAt = NumberAt<1, U16Be>;
+  using TempAt = NumberAt<3, U16Be>;
+  using AccxAt = NumberAt<5, U16Be>;
+  using AccyAt = NumberAt<7, U16Be>;
+  using PirAt = NumberAt<9, U16Be>;
+  using MicAt = NumberAt<11, U16Be>;
+  using HumidAt = NumberAt<13, U16Be>;
+  using MagneticAt = NumberAt<15, U16Be>;
+  using MyRssiAt = NumberAt<17, U16Be>;
   static size_t size_bytes(const DemoData&) { return 19; }
   static void store(const DemoData& value, uint8_t* p) {
     store_u8(p, static_cast<uint8_t>(value.msg_type));

@@ -34,8 +34,12 @@ inline bool operator==(const JoinReply& a, const JoinReply& b) {
 }
 inline bool operator!=(const JoinReply& a, const JoinReply& b) { return !(a == b); }
 
-/// The steps of writing join_reply; use write().
+/// Where join_reply has its fields, and the steps of writing it; use write().
 struct JoinReplyLayout {
+  using IslandAddrAt = NumberAt<0, U16Be>;
+  using MoteAddrAt = NumberAt<2, U16Be>;
+  using CurTimeAt = NumberAt<4, U32Be>;
+  using SeqNumAt = NumberAt<8, U16Be>;
   static size_t size_bytes(const JoinReply&) { return 10; }
   static void store(const JoinReply& value, uint8_t* p) {
     store_be16(p, value.island_addr);

@@ -27,8 +27,10 @@ inline bool operator==(const JoinRequest& a, const JoinRequest& b) {
 }
 inline bool operator!=(const JoinRequest& a, const JoinRequest& b) { return !(a == b); }
 
-/// The steps of writing join_request; use write().
+/// Where join_request has its fields, and the steps of writing it; use write().
 struct JoinRequestLayout {
+  using SeqNumAt = NumberAt<0, U16Be>;
+  using MoteDescAt = PlaceAt<2>;
   static size_t size_bytes(const JoinRequest&) { return 6; }
   static void store(const JoinRequest& value, uint8_t* p) {
     store_be16(p, value.seq_num);

@@ -43,8 +43,15 @@ inline bool operator==(const LearningModuleCmd& a, const LearningModuleCmd& b) {
 }
 inline bool operator!=(const LearningModuleCmd& a, const LearningModuleCmd& b) { return !(a == b); }
 
-/// The steps of writing learning_module_cmd; use write().
+/// Where learning_module_cmd has its fields, and the steps of writing it; use write().
 struct LearningModuleCmdLayout {
+  using TypeAt = NumberAt<0, As<LearningCode, U8>>;
+  using NetIdAt = NumberAt<1, U16Be>;
+  using SeqNumAt = NumberAt<3, U16Be>;
+  using RowsAt = NumberAt<5, U8>;
+  using ColsAt = NumberAt<6, U8>;
+  using MatrixSizeAt = RangedAt<7, U8, 0, 92>;
+  using WeightsAt = ArrayAt<8, U8>;
   static size_t size_bytes(const LearningModuleCmd& value) { return 8 + value.weights.size(); }
   static Error check_lengths(const LearningModuleCmd& value) {
     if (RUBRIC_UNLIKELY(value.weights.size() > 92)) {

@@ -34,8 +34,12 @@ inline bool operator!=(const LearningModuleDown& a, const LearningModuleDown& b)
   return !(a == b);
 }
 
-/// The steps of writing learning_module_down; use write().
+/// Where learning_module_down has its fields, and the steps of writing it; use write().
 struct LearningModuleDownLayout {
+  using TypeAt = NumberAt<0, As<AmType, U8>>;
+  using NetIdAt = NumberAt<1, U16Be>;
+  using MatrixSizeAt = RangedAt<3, U8, 0, 23>;
+  using WeightsAt = ArrayAt<4, F32Le>;
   static size_t size_bytes(const LearningModuleDown& value) { return 4 + value.weights.size() * 4; }
   static Error check_lengths(const LearningModuleDown& value) {
     if (RUBRIC_UNLIKELY(value.weights.size() > 23)) {

@@ -46,8 +46,15 @@ inline bool operator!=(const LearningModuleFloatCmd& a, const LearningModuleFloa
   return !(a == b);
 }
 
-/// The steps of writing learning_module_float_cmd; use write().
+/// Where learning_module_float_cmd has its fields, and the steps of writing it; use write().
 struct LearningModuleFloatCmdLayout {
+  using TypeAt = NumberAt<0, As<LearningCode, U8>>;
+  using NetIdAt = NumberAt<1, U16Be>;
+  using SeqNumAt = NumberAt<3, U16Be>;
+  using RowsAt = NumberAt<5, U8>;
+  using ColsAt = NumberAt<6, U8>;
+  using MatrixSizeAt = RangedAt<7, U8, 0, 23>;
+  using WeightsAt = ArrayAt<8, F32Le>;
   static size_t size_bytes(const LearningModuleFloatCmd& value) {
     return 8 + value.weights.size() * 4;
   }

@@ -33,8 +33,11 @@ inline bool operator!=(const LearningNotification& a, const LearningNotification
   return !(a == b);
 }
 
-/// The steps of writing learning_notification; use write().
+/// Where learning_notification has its fields, and the steps of writing it; use write().
 struct LearningNotificationLayout {
+  using TypeAt = NumberAt<0, As<AmType, U8>>;
+  using SeqNumAt = NumberAt<1, U16Be>;
+  using AckAt = NumberAt<3, U8>;
   static size_t size_bytes(const LearningNotification&) { return 4; }
   static void store(const LearningNotification& value, uint8_t* p) {
     store_u8(p, static_cast<uint8_t>(value.type));

@@ -28,8 +28,11 @@ inline bool operator==(const LearningOutput& a, const LearningOutput& b) {
 }
 inline bool operator!=(const LearningOutput& a, const LearningOutput& b) { return !(a == b); }
 
-/// The steps of writing learning_output; use write().
+/// Where learning_output has its fields, and the steps of writing it; use write().
 struct LearningOutputLayout {
+  using TypeAt = NumberAt<0, As<AmType, U8>>;
+  using OutputSizeAt = RangedAt<1, U8, 0, 24>;
+  using OutputAt = ArrayAt<2, F32Le>;
   static size_t size_bytes(const LearningOutput& value) { return 2 + value.output.size() * 4; }
   static Error check_lengths(const LearningOutput& value) {
     if (RUBRIC_UNLIKELY(value.output.size() > 24)) {

@@ -33,8 +33,11 @@ inline bool operator==(const MoteDesc& a, const MoteDesc& b) {
 }
 inline bool operator!=(const MoteDesc& a, const MoteDesc& b) { return !(a == b); }
 
-/// The steps of writing mote_desc; use write().
+/// Where mote_desc has its fields, and the steps of writing it; use write().
 struct MoteDescLayout {
+  using MoteTypeAt = NumberAt<0, As<MoteType, U8>>;
+  using TransducersAt = NumberAt<1, As<TransducerMask, U16Be>>;
+  using ActuatorsAt = NumberAt<3, As<ActuatorMask, U8>>;
   static size_t size_bytes(const MoteDesc&) { return 4; }
   static void store(const MoteDesc& value, uint8_t* p) {
     store_u8(p, static_cast<uint8_t>(value.mote_type));

@@ -31,8 +31,11 @@ inline bool operator==(const NetCommand& a, const NetCommand& b) {
 }
 inline bool operator!=(const NetCommand& a, const NetCommand& b) { return !(a == b); }
 
-/// The steps of writing net_command; use write().
+/// Where net_command has its fields, and the steps of writing it; use write().
 struct NetCommandLayout {
+  using SrcIslandAddrAt = NumberAt<0, U8>;
+  using SrcMoteAddrAt = NumberAt<1, U16Be>;
+  using TypeAt = NumberAt<3, As<CommandCode, U8>>;
   static size_t size_bytes(const NetCommand&) { return 4; }
   static void store(const NetCommand& value, uint8_t* p) {
     store_u8(p, value.src_island_addr);

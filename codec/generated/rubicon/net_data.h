@@ -47,8 +47,16 @@ inline bool operator==(const NetData& a, const NetData& b) {
 }
 inline bool operator!=(const NetData& a, const NetData& b) { return !(a == b); }
 
-/// The steps of writing net_data; use write().
+/// Where net_data has its fields, and the steps of writing it; use write().
 struct NetDataLayout {
+  using SrcIslandAddrAt = NumberAt<0, U8>;
+  using SrcMoteAddrAt = NumberAt<1, U16Be>;
+  using IdAt = NumberAt<3, U16Be>;
+  using CounterAt = NumberAt<5, U16Be>;
+  using TempAt = NumberAt<7, U16Be>;
+  using HumidAt = NumberAt<9, U16Be>;
+  using LightAt = NumberAt<11, U16Be>;
+  using RssiAt = NumberAt<13, U16Be>;
   static size_t size_bytes(const NetData&) { return 15; }
   static void store(const NetData& value, uint8_t* p) {
     store_u8(p, value.src_island_addr);

@@ -44,8 +44,14 @@ inline bool operator==(const NetMsg& a, const NetMsg& b) {
 }
 inline bool operator!=(const NetMsg& a, const NetMsg& b) { return !(a == b); }
 
-/// The steps of writing net_msg; use write().
+/// Where net_msg has its fields, and the steps of writing it; use write().
 struct NetMsgLayout {
+  using DestAt = PlaceAt<0>;
+  using SrcAt = PlaceAt<4>;
+  using ReliableAt = RangedAt<8, U8, 0, 1>;
+  using SeqNumAt = NumberAt<9, U16Be>;
+  using NbytesAt = RangedAt<11, U8, 2, 102>;
+  using PayloadAt = PlaceAt<12>;
   static size_t size_bytes(const NetMsg& value) { return 12 + value.payload.size(); }
   static Error check_lengths(const NetMsg& value) {
     if (RUBRIC_UNLIKELY(value.payload.size() < 2 || value.payload.size() > 102)) {

@@ -31,8 +31,11 @@ inline bool operator==(const NetidCmd& a, const NetidCmd& b) {
 }
 inline bool operator!=(const NetidCmd& a, const NetidCmd& b) { return !(a == b); }
 
-/// The steps of writing netid_cmd; use write().
+/// Where netid_cmd has its fields, and the steps of writing it; use write().
 struct NetidCmdLayout {
+  using TypeAt = NumberAt<0, As<LearningCode, U8>>;
+  using NetIdAt = NumberAt<1, U16Be>;
+  using SeqNumAt = NumberAt<3, U16Be>;
   static size_t size_bytes(const NetidCmd&) { return 5; }
   static void store(const NetidCmd& value, uint8_t* p) {
     store_u8(p, static_cast<uint8_t>(value.type));

@@ -27,8 +27,10 @@ inline bool operator==(const RAddr& a, const RAddr& b) {
 }
 inline bool operator!=(const RAddr& a, const RAddr& b) { return !(a == b); }
 
-/// The steps of writing r_addr; use write().
+/// Where r_addr has its fields, and the steps of writing it; use write().
 struct RAddrLayout {
+  using PidAt = NumberAt<0, As<Pid, U16Be>>;
+  using DevidAt = NumberAt<2, As<Devid, U16Be>>;
   static size_t size_bytes(const RAddr&) { return 4; }
   static void store(const RAddr& value, uint8_t* p) {
     store_be16(p, static_cast<uint16_t>(value.pid));

@@ -41,8 +41,12 @@ inline bool operator==(const RadioIFrame& a, const RadioIFrame& b) {
 }
 inline bool operator!=(const RadioIFrame& a, const RadioIFrame& b) { return !(a == b); }
 
-/// The steps of writing radio_i_frame; use write().
+/// Where radio_i_frame has its fields, and the steps of writing it; use write().
 struct RadioIFrameLayout {
+  using MacAt = PlaceAt<0>;
+  using NetworkAt = RangedAt<9, U8, 63, 63>;
+  using TypeAt = NumberAt<10, As<AmType, U8>>;
+  using PayloadAt = PlaceAt<11>;
   static size_t size_bytes(const RadioIFrame& value) { return 11 + value.payload.size(); }
   static void store(const RadioIFrame& value, uint8_t* p) {
     tinyos::MacHeaderLayout::store(value.mac, p);

@@ -32,8 +32,11 @@ inline bool operator==(const ReadUpdates& a, const ReadUpdates& b) {
 }
 inline bool operator!=(const ReadUpdates& a, const ReadUpdates& b) { return !(a == b); }
 
-/// The steps of writing read_updates; use write().
+/// Where read_updates has its fields, and the steps of writing it; use write().
 struct ReadUpdatesLayout {
+  using TypeAt = NumberAt<0, As<AmType, U8>>;
+  using SamplingRateAt = NumberAt<1, U16Be>;
+  using TransducersAt = NumberAt<3, As<TransducerMask, U16Be>>;
   static size_t size_bytes(const ReadUpdates&) { return 5; }
   static void store(const ReadUpdates& value, uint8_t* p) {
     store_u8(p, static_cast<uint8_t>(value.type));

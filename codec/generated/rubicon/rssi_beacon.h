@@ -23,8 +23,9 @@ inline bool operator==(const RssiBeacon& a, const RssiBeacon& b) {
 }
 inline bool operator!=(const RssiBeacon& a, const RssiBeacon& b) { return !(a == b); }
 
-/// The steps of writing rssi_beacon; use write().
+/// Where rssi_beacon has its fields, and the steps of writing it; use write().
 struct RssiBeaconLayout {
+  using AnchorIdAt = NumberAt<0, U8>;
   static size_t size_bytes(const RssiBeacon&) { return 1; }
   static void store(const RssiBeacon& value, uint8_t* p) {
     store_u8(p, value.anchor_id);

@@ -35,8 +35,10 @@ inline bool operator==(const Rubicon& a, const Rubicon& b) {
 }
 inline bool operator!=(const Rubicon& a, const Rubicon& b) { return !(a == b); }
 
-/// The steps of writing rubicon; use write().
+/// Where rubicon has its fields, and the steps of writing it; use write().
 struct RubiconLayout {
+  using AmAt = PlaceAt<0>;
+  using PayloadAt = PlaceAt<8>;
   static size_t size_bytes(const Rubicon& value) { return 8 + value.payload.size(); }
   static Error check_lengths(const Rubicon& value) {
     const size_t payload_size = static_cast<size_t>(value.am.length);

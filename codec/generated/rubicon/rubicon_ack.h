@@ -31,8 +31,11 @@ inline bool operator==(const RubiconAck& a, const RubiconAck& b) {
 }
 inline bool operator!=(const RubiconAck& a, const RubiconAck& b) { return !(a == b); }
 
-/// The steps of writing rubicon_ack; use write().
+/// Where rubicon_ack has its fields, and the steps of writing it; use write().
 struct RubiconAckLayout {
+  using TypeAt = NumberAt<0, As<AmType, U8>>;
+  using SeqNumAt = NumberAt<1, U16Be>;
+  using AckAt = NumberAt<3, U8>;
   static size_t size_bytes(const RubiconAck&) { return 4; }
   static void store(const RubiconAck& value, uint8_t* p) {
     store_u8(p, static_cast<uint8_t>(value.type));

@@ -23,8 +23,9 @@ inline bool operator==(const RubiconAckSeqOnly& a, const RubiconAckSeqOnly& b) {
 }
 inline bool operator!=(const RubiconAckSeqOnly& a, const RubiconAckSeqOnly& b) { return !(a == b); }
 
-/// The steps of writing rubicon_ack_seq_only; use write().
+/// Where rubicon_ack_seq_only has its fields, and the steps of writing it; use write().
 struct RubiconAckSeqOnlyLayout {
+  using SeqNumAt = NumberAt<0, U16Be>;
   static size_t size_bytes(const RubiconAckSeqOnly&) { return 2; }
   static void store(const RubiconAckSeqOnly& value, uint8_t* p) {
     store_be16(p, value.seq_num);

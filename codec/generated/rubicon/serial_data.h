@@ -44,8 +44,15 @@ inline bool operator==(const SerialData& a, const SerialData& b) {
 }
 inline bool operator!=(const SerialData& a, const SerialData& b) { return !(a == b); }
 
-/// The steps of writing serial_data; use write().
+/// Where serial_data has its fields, and the steps of writing it; use write().
 struct SerialDataLayout {
+  using SrcIslandAddrAt = NumberAt<0, U8>;
+  using SrcMoteAddrAt = NumberAt<1, U16Be>;
+  using CounterAt = NumberAt<3, U16Be>;
+  using TempAt = NumberAt<5, U16Be>;
+  using HumidAt = NumberAt<7, U16Be>;
+  using LightAt = NumberAt<9, U16Be>;
+  using RssiAt = NumberAt<11, U16Be>;
   static size_t size_bytes(const SerialData&) { return 13; }
   static void store(const SerialData& value, uint8_t* p) {
     store_u8(p, value.src_island_addr);

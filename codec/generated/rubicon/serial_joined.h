@@ -46,8 +46,14 @@ inline bool operator==(const SerialJoined& a, const SerialJoined& b) {
 }
 inline bool operator!=(const SerialJoined& a, const SerialJoined& b) { return !(a == b); }
 
-/// The steps of writing serial_joined; use write().
+/// Where serial_joined has its fields, and the steps of writing it; use write().
 struct SerialJoinedLayout {
+  using MsgTypeAt = NumberAt<0, As<AmType, U8>>;
+  using IslandAddrAt = NumberAt<1, U16Be>;
+  using MoteAddrAt = NumberAt<3, U16Be>;
+  using MoteTypeAt = NumberAt<5, As<MoteType, U8>>;
+  using TransducersAt = NumberAt<6, As<TransducerMask, U16Be>>;
+  using ActuatorsAt = NumberAt<8, As<ActuatorMask, U8>>;
   static size_t size_bytes(const SerialJoined&) { return 9; }
   static void store(const SerialJoined& value, uint8_t* p) {
     store_u8(p, static_cast<uint8_t>(value.msg_type));

@@ -71,8 +71,21 @@ inline bool operator==(const SynCreateCmd& a, const SynCreateCmd& b) {
 }
 inline bool operator!=(const SynCreateCmd& a, const SynCreateCmd& b) { return !(a == b); }
 
-/// The steps of writing syn_create_cmd; use write().
+/// Where syn_create_cmd has its fields, and the steps of writing it; use write().
 struct SynCreateCmdLayout {
+  using TypeAt = NumberAt<0, As<LearningCode, U8>>;
+  using SrcIslandAddrAt = NumberAt<1, U16Be>;
+  using SrcMoteAddrAt = NumberAt<3, U16Be>;
+  using DestIslandAddrAt = NumberAt<5, U16Be>;
+  using DestMoteAddrAt = NumberAt<7, U16Be>;
+  using SrcNetIdAt = NumberAt<9, U16Be>;
+  using DestNetIdAt = NumberAt<11, U16Be>;
+  using SrcNeuronsSizeAt = RangedAt<13, U8, 0, 10>;
+  using SrcNeuronsAt = ArrayAt<14, U16Be>;
+  using DestNeuronsSizeAt = RangedAt<34, U8, 0, 10>;
+  using DestNeuronsAt = ArrayAt<35, U16Be>;
+  using ParamsAt = NumberAt<55, S8>;
+  using SeqNumAt = NumberAt<56, U16Be>;
   static size_t size_bytes(const SynCreateCmd&) { return 58; }
   static void store(const SynCreateCmd& value, uint8_t* p) {
     store_u8(p, static_cast<uint8_t>(value.type));

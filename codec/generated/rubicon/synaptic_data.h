@@ -23,8 +23,9 @@ inline bool operator==(const SynapticData& a, const SynapticData& b) {
 }
 inline bool operator!=(const SynapticData& a, const SynapticData& b) { return !(a == b); }
 
-/// The steps of writing synaptic_data; use write().
+/// Where synaptic_data has its fields, and the steps of writing it; use write().
 struct SynapticDataLayout {
+  using ValuesAt = ArrayAt<0, F32Le>;
   static size_t size_bytes(const SynapticData& value) { return value.values.size() * 4; }
   static Error check_lengths(const SynapticData& value) {
     if (RUBRIC_UNLIKELY(value.values.size() > 25)) {

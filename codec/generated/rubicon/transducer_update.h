@@ -27,8 +27,10 @@ inline bool operator==(const TransducerUpdate& a, const TransducerUpdate& b) {
 }
 inline bool operator!=(const TransducerUpdate& a, const TransducerUpdate& b) { return !(a == b); }
 
-/// The steps of writing transducer_update; use write().
+/// Where transducer_update has its fields, and the steps of writing it; use write().
 struct TransducerUpdateLayout {
+  using TransducerAt = NumberAt<0, As<TransducerMask, U16Be>>;
+  using ValueAt = NumberAt<2, U16Be>;
   static size_t size_bytes(const TransducerUpdate&) { return 4; }
   static void store(const TransducerUpdate& value, uint8_t* p) {
     store_be16(p, value.transducer.raw());

@@ -30,8 +30,11 @@ inline bool operator==(const Updates& a, const Updates& b) {
 }
 inline bool operator!=(const Updates& a, const Updates& b) { return !(a == b); }
 
-/// The steps of writing updates; use write().
+/// Where updates has its fields, and the steps of writing it; use write().
 struct UpdatesLayout {
+  using TypeAt = NumberAt<0, As<AmType, U8>>;
+  using OutputSizeAt = RangedAt<1, U8, 0, 24>;
+  using UpdatesAt = PlaceAt<2>;
   static size_t size_bytes(const Updates& value) { return 2 + value.updates.size() * 4; }
   static Error check_lengths(const Updates& value) {
     if (RUBRIC_UNLIKELY(value.updates.size() > 24)) {

@@ -42,8 +42,14 @@ inline bool operator==(const AmHeader& a, const AmHeader& b) {
 }
 inline bool operator!=(const AmHeader& a, const AmHeader& b) { return !(a == b); }
 
-/// The steps of writing am_header; use write().
+/// Where am_header has its fields, and the steps of writing it; use write().
 struct AmHeaderLayout {
+  using DispatchAt = RangedAt<0, As<Dispatch, U8>, 0, 0>;
+  using DestAt = NumberAt<1, U16Be>;
+  using SrcAt = NumberAt<3, U16Be>;
+  using LengthAt = RangedAt<5, U8, 0, 114>;
+  using GroupAt = NumberAt<6, U8>;
+  using TypeAt = NumberAt<7, U8>;
   static size_t size_bytes(const AmHeader&) { return 8; }
   static void store(const AmHeader& value, uint8_t* p) {
     store_u8(p, static_cast<uint8_t>(value.dispatch));

@@ -9,6 +9,18 @@
 namespace rubric {
 namespace tinyos {
 
+enum class FrameControl : uint16_t {
+  kAck = 2,
+  kData = 0x8841,
+  kDataAckRequest = 0x8861,
+};
+
+enum class FrameControlPart : uint16_t {
+  kType = 7,
+  kAckRequest = 32,
+  kShape = 0xcc4f,
+};
+
 enum class SerialKind : uint8_t {
   kAck = 67,
   kPacketAck = 68,

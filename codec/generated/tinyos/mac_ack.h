@@ -25,8 +25,10 @@ inline bool operator==(const MacAck& a, const MacAck& b) {
 }
 inline bool operator!=(const MacAck& a, const MacAck& b) { return !(a == b); }
 
-/// The steps of writing mac_ack; use write().
+/// Where mac_ack has its fields, and the steps of writing it; use write().
 struct MacAckLayout {
+  using FcfAt = NumberAt<0, U16Le>;
+  using DsnAt = NumberAt<2, U8>;
   static size_t size_bytes(const MacAck&) { return 3; }
   static void store(const MacAck& value, uint8_t* p) {
     store_le16(p, value.fcf);

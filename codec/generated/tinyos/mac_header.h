@@ -37,8 +37,13 @@ inline bool operator==(const MacHeader& a, const MacHeader& b) {
 }
 inline bool operator!=(const MacHeader& a, const MacHeader& b) { return !(a == b); }
 
-/// The steps of writing mac_header; use write().
+/// Where mac_header has its fields, and the steps of writing it; use write().
 struct MacHeaderLayout {
+  using FcfAt = NumberAt<0, U16Le>;
+  using DsnAt = NumberAt<2, U8>;
+  using DestpanAt = NumberAt<3, U16Le>;
+  using DestAt = NumberAt<5, U16Le>;
+  using SrcAt = NumberAt<7, U16Le>;
   static size_t size_bytes(const MacHeader&) { return 9; }
   static void store(const MacHeader& value, uint8_t* p) {
     store_le16(p, value.fcf);

@@ -32,8 +32,10 @@ inline bool operator==(const SerialFrame& a, const SerialFrame& b) {
 }
 inline bool operator!=(const SerialFrame& a, const SerialFrame& b) { return !(a == b); }
 
-/// The steps of writing serial_frame; use write().
+/// Where serial_frame has its fields, and the steps of writing it; use write().
 struct SerialFrameLayout {
+  using KindAt = NumberAt<0, As<SerialKind, U8>>;
+  using SeqNumAt = NumberAt<1, U8>;
   static bool has_seq_num(const SerialFrame& value) {
     return static_cast<uint8_t>(value.kind) == 67 || static_cast<uint8_t>(value.kind) == 68;
   }

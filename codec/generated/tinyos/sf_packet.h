@@ -24,8 +24,10 @@ inline bool operator==(const SfPacket& a, const SfPacket& b) {
 }
 inline bool operator!=(const SfPacket& a, const SfPacket& b) { return !(a == b); }
 
-/// The steps of writing sf_packet; use write().
+/// Where sf_packet has its fields, and the steps of writing it; use write().
 struct SfPacketLayout {
+  using LengthAt = RangedAt<0, U8, 1, 255>;
+  using PacketAt = PlaceAt<1>;
   static size_t size_bytes(const SfPacket& value) { return 1 + value.packet.size(); }
   static Error check_lengths(const SfPacket& value) {
     if (RUBRIC_UNLIKELY(value.packet.size() < 1 || value.packet.size() > 255)) {

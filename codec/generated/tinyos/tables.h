@@ -31,6 +31,26 @@ using reflect::ValidKind;
 constexpr Valid kAny{ValidKind::kAny, 0, 0, nullptr, 0};
 
 namespace of {
+namespace frame_control {
+constexpr EnumEntry kEntries[] = {
+    {2, "ack"}, {34881, "data"}, {34913, "data_ack_request"}};
+}  // namespace frame_control
+}  // namespace of
+namespace enums {
+constexpr EnumTable kFrameControl{"frame_control", of::frame_control::kEntries, 3};
+}  // namespace enums
+
+namespace of {
+namespace frame_control_part {
+constexpr EnumEntry kEntries[] = {
+    {7, "type"}, {32, "ack_request"}, {52303, "shape"}};
+}  // namespace frame_control_part
+}  // namespace of
+namespace enums {
+constexpr EnumTable kFrameControlPart{"frame_control_part", of::frame_control_part::kEntries, 3};
+}  // namespace enums
+
+namespace of {
 namespace serial_kind {
 constexpr EnumEntry kEntries[] = {
     {67, "ack"}, {68, "packet_ack"}, {69, "packet_noack"}, {255, "unknown"}};
@@ -189,11 +209,11 @@ constexpr const Type* kTypes[] = {
     &types::kSerialFrame, &types::kSfPacket, &types::kAmHeader, &types::kMacHeader,
     &types::kMacAck};
 constexpr const EnumTable* kEnums[] = {
-    &enums::kSerialKind, &enums::kDispatch};
+    &enums::kFrameControl, &enums::kFrameControlPart, &enums::kSerialKind, &enums::kDispatch};
 constexpr Carrier kCarriers[] = {
     {"radio_ack", &types::kMacAck}};
 constexpr Protocol kProtocol{
-    "tinyos", "TinyOS active messages on serial lines, TCP and 802.15.4", kTypes, 5, kEnums, 2,
+    "tinyos", "TinyOS active messages on serial lines, TCP and 802.15.4", kTypes, 5, kEnums, 4,
     nullptr, 0, kCarriers, 1};
 
 }  // namespace tables

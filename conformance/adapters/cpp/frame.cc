@@ -21,9 +21,9 @@ std::optional<Message> read_message(Bytes payload) {
   message.src = address_of(view->src());
   message.reliable = view->reliable() == 1;
   message.number = view->seq_num();
-  message.transport = static_cast<Component>(app[0]);
-  message.application = static_cast<Component>(app[1]);
-  message.body.assign(app.begin() + 2, app.end());
+  message.transport = rubicon::AppMsgLayout::TransIdAt::load(app.data());
+  message.application = rubicon::AppMsgLayout::AppIdAt::load(app.data());
+  message.body.assign(app.begin() + rubicon::AppMsgLayout::PayloadAt::kAt, app.end());
   return message;
 }
 

@@ -1,4 +1,4 @@
-// What travels: addresses, frames, and the message of the network level.
+// Addresses, frames, and the message of the network level.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace rubric::cpp_node {
 
-using Ticks = std::uint64_t;  ///< Of 1/1024 s, since the node's driver began to count.
+using Ticks = std::uint64_t;  ///< 1/1024 s, since the node's driver began to count.
 using Data = std::vector<std::uint8_t>;
 using rubicon::AmType;
 using rubicon::Component;
@@ -23,14 +23,14 @@ struct Address {
   friend bool operator==(const Address&, const Address&) = default;
 };
 
-// Islands and devices that name something else than one island or one mote.
+// Islands and devices that mean more or less than one island or one mote.
 constexpr std::uint16_t kAll = 0xFFFF;
 constexpr std::uint16_t kLocal = 0xFFFE;
 constexpr std::uint16_t kNull = 0xFFFD;  ///< As a device: the PC or robot of that island.
 constexpr bool is_reserved(std::uint16_t part) { return part >= kNull; }
 
 constexpr std::uint16_t kSinkDevice = 1;
-constexpr std::uint16_t kNoNumber = 0xFFFF;  ///< What send returns for "refused".
+constexpr std::uint16_t kNoNumber = 0xFFFF;  ///< Returned by a refused send.
 
 enum class Line : std::uint8_t { kRadio, kSerial, kPeis };
 
@@ -43,7 +43,7 @@ struct Frame {
   bool link_ack = false;  ///< Asks for the radio's own acknowledgement.
 };
 
-/// A net_msg: `body` is what stands behind TRANSID and APPID.
+/// A net_msg: `body` comes after TRANSID and APPID.
 struct Message {
   Address dest;
   Address src;
@@ -57,7 +57,7 @@ struct Message {
 Address address_of(rubicon::RAddrView view);
 rubicon::RAddr wire_of(Address address);
 
-/// The bytes of a generated message that cannot be refused.
+/// Returns the bytes of a generated message that cannot be refused.
 template <class Value>
 Data bytes_of(const Value& value) {
   Data bytes(sizeof(Value) + 64);
@@ -65,9 +65,9 @@ Data bytes_of(const Value& value) {
   return bytes;
 }
 
-/// Nothing where the bytes break a rule of the wire: such a message is dropped (N11).
+/// Returns nothing if the bytes break a rule of the wire: such a message is dropped (N11).
 std::optional<Message> read_message(Bytes payload);
-/// `whole` fills up to the 114 bytes that hosts expect on a serial line.
+/// Writes a message; `whole` fills up to the 114 bytes that hosts expect on a serial line.
 Data write_message(const Message& message, bool whole = false);
 
 }  // namespace rubric::cpp_node

@@ -1,9 +1,10 @@
 // The node behind rct/1, the protocol of conformance/PORTING.md: reads commands, drives the node,
-// writes what happens. All that is special to an implementation stands in call() and in the events.
+// writes its outputs. All that is special to an implementation is in call() and in the events.
 #include <cmath>
 #include <iostream>
 #include <memory>
 
+#include "codec/generated/tinyos/am_header.h"
 #include "conformance/adapters/cpp/base_station.h"
 #include "conformance/adapters/cpp/mote.h"
 #include "conformance/adapters/cpp/sink.h"
@@ -38,7 +39,7 @@ std::string text(float value) {
 
 class Adapter : public World {
  public:
-  /// Answers one command; false after the last.
+  /// Answers one command; returns false after the last.
   bool answer(const std::string& line);
 
   void transmit(Line line, const Frame& frame) override;
@@ -107,7 +108,7 @@ std::string Adapter::closing(const std::vector<std::string>& words) {
   return work(words, number_of(words[1]));
 }
 
-// A command with a time, which is its second word.
+// Runs a command with a time, which is its second word.
 std::string Adapter::work(const std::vector<std::string>& words, Ticks time) {
   const std::string& command = words[0];
   wrote_ = false;
@@ -176,22 +177,24 @@ void Adapter::power(const std::string& what) {
 
 void Adapter::rx(const std::string& line, const std::string& hex) {
   const Data packet = bytes_of_hex(hex);
-  constexpr std::size_t kHeader = 8;
-  if (packet.size() < kHeader) throw Unsupported("a frame without its header");
+  const auto header = tinyos::AmHeaderView::parse(Bytes(packet.data(), packet.size()));
+  if (!header) throw Unsupported("a frame without its header");
   Frame frame;
-  frame.dest = load_be16(&packet[1]);
-  frame.src = load_be16(&packet[3]);
-  frame.type = static_cast<AmType>(packet[7]);
-  frame.payload.assign(packet.begin() + kHeader, packet.end());
+  frame.dest = header->dest();
+  frame.src = header->src();
+  frame.type = static_cast<AmType>(header->type());
+  frame.payload.assign(header->stale().begin(), header->stale().end());
   node_->heard(line_of(line), frame);
 }
 
 void Adapter::transmit(Line line, const Frame& frame) {
-  Data packet(8);
-  store_be16(&packet[1], frame.dest);
-  store_be16(&packet[3], frame.src);
-  packet[5] = static_cast<std::uint8_t>(frame.payload.size());
-  packet[7] = static_cast<std::uint8_t>(frame.type);
+  tinyos::AmHeader header;
+  header.dest = frame.dest;
+  header.src = frame.src;
+  header.length = static_cast<std::uint8_t>(frame.payload.size());
+  header.type = static_cast<std::uint8_t>(frame.type);
+  Data packet(tinyos::AmHeaderView::kMaxSizeBytes);
+  tinyos::AmHeaderLayout::store(header, packet.data());
   packet.insert(packet.end(), frame.payload.begin(), frame.payload.end());
   write("tx", kLines[static_cast<std::size_t>(line)] + " " +
                   hex_of(Bytes(packet.data(), packet.size())) +

@@ -27,7 +27,7 @@ class Mote : public Node {
   void send_ack_join();
 
   std::uint16_t device_;
-  std::optional<Address> address_;  ///< Of a member.
+  std::optional<Address> address_;  ///< As a member.
 
   // The joinIsland call under way.
   int requests_left_ = 0;

@@ -161,9 +161,10 @@ void Node::deliver(const Message& message) {
   } else if (message.transport == Component::kRubiconAck) {
     settle(message);
   } else if (message.transport == Component::kSynChannel) {
+    using On = rubicon::SynapticDataLayout::ValuesAt;
     Values values;
-    for (std::size_t at = 0; at + 4 <= body.size(); at += 4) {
-      values.push_back(float_of_bits(load_le32(body.data() + at)));
+    for (std::size_t i = 0; (i + 1) * On::kUnitBytes <= body.size(); ++i) {
+      values.push_back(On::load(body.data(), i));
     }
     synaptic_.take(*address(), message.src, values);
   }

@@ -1,7 +1,7 @@
-// What every node has, whatever its role: lines, numbers, the transport level, synaptic channels.
+// The common part of all nodes: lines, numbers, the transport level, synaptic channels.
 //
-// A node has no clock and no thread: whoever drives it says what time it is (set_time), gives it
-// what happens, and comes back when something is due.
+// A node has no clock and no thread: its driver sets the time (set_time), passes events in, and
+// calls back when something is due.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace rubric::cpp_node {
 
 struct Settings {
   std::uint16_t device = 0;        ///< Its TinyOS id; of a base station nothing.
-  std::uint16_t island = 0;        ///< Where a sink or base station starts.
+  std::uint16_t island = 0;        ///< Start value of a sink or base station.
   std::size_t channels = 4;        ///< Synaptic ones, of each direction.
   std::uint16_t next_number = 1;   ///< The first sequence number.
   Ticks now = 0;
@@ -30,7 +30,7 @@ class Node {
 
   // Time.
   void set_time(Ticks now) { now_ = now; }
-  /// When something is due next, if nothing happens before; nothing: never.
+  /// Returns when something is due next, if nothing happens before; nothing: never.
   virtual std::optional<Ticks> due() const;
   /// Does what is due now.
   virtual void run_due();
@@ -40,12 +40,12 @@ class Node {
   void set_busy(Line line, bool busy);
   /// While the application is busy, messages that arrive wait for it.
   void set_application_busy(bool busy);
-  /// How the transmission that asked for a link ack ended.
+  /// Handles the end of the transmission that asked for a link ack.
   virtual void confirmed(bool acked);
 
   // Calls of the application.
   virtual void join(const MoteDesc& description);
-  /// The message's sequence number, or kNoNumber: refused.
+  /// Returns the message's sequence number, or kNoNumber if it is refused.
   std::uint16_t send(Address dest, Component application, bool reliable, Bytes data);
   bool set_interface(Line line, bool on);
   std::optional<bool> interface(Line line) const;
@@ -56,28 +56,29 @@ class Node {
   void start_all_channels() { synaptic_.start_all(now_); }
   Synaptic& synaptic() { return synaptic_; }
 
-  /// The one thing that outlives a loss of power.
+  /// Returns the one number that outlives a loss of power.
   std::uint16_t next_number() const { return next_number_; }
 
  protected:
   Node(const Settings& settings, Ticks phase, World& world);
 
-  /// Its address; nothing while it has none.
+  /// Returns its address; nothing while it has none.
   virtual std::optional<Address> address() const = 0;
-  /// Puts a message that the node sends on the right line; false when there is no room or no way.
+  /// Puts a message that the node sends on the right line; returns false if there is no room or no
+  /// route.
   virtual bool route(const Message& message) = 0;
-  /// A frame that is meant for this node, but for those with a net_msg.
+  /// Handles a frame for this node without a net_msg.
   virtual void control(Line line, const Frame& frame) = 0;
-  /// A net_msg in a frame that is meant for this node.
+  /// Handles a net_msg in a frame for this node.
   virtual void message(Line line, const Message& message) = 0;
-  /// Whether the frame's AM address means this node.
+  /// Returns whether the frame's AM address means this node.
   virtual bool is_for_me(Line line, const Frame& frame) const = 0;
-  /// A frame leaves now, maybe long after it was accepted.
+  /// Called when a frame leaves, maybe long after it was accepted.
   virtual void left(Line, const Frame&) {}
-  /// Something happened, so there may be room on a line.
+  /// Called when there may be room on a line.
   virtual void may_have_room() {}
 
-  /// Hands a message that is for this node up to whom TRANSID and APPID name.
+  /// Passes a message for this node up to the component of its TRANSID and APPID.
   void deliver(const Message& message);
   std::uint16_t take_number();
   OutLine& line(Line which) { return lines_[static_cast<std::size_t>(which)]; }

@@ -1,4 +1,4 @@
-// The outgoing buffer of one line: what finds the line busy waits, in order (N2).
+// The outgoing buffer of one line: frames that find the line busy wait, in order (N2).
 #pragma once
 
 #include <cstddef>
@@ -17,21 +17,21 @@ class OutLine {
   OutLine(Line line, std::size_t room, Transmit transmit)
       : line_(line), room_(room), transmit_(std::move(transmit)) {}
 
-  /// False, and nothing happens, when the buffer is full or the interface off.
+  /// Returns false, and does nothing, if the buffer is full or the interface off.
   bool push(Frame frame);
   bool has_room() const { return on_ && waiting_.size() < room_; }
-  /// What is pushed now leaves at once.
+  /// Returns whether a frame pushed now leaves at once.
   bool is_free() const { return on_ && !busy_ && !unconfirmed_ && waiting_.empty(); }
-  /// Whether a frame of this type waits.
+  /// Returns whether a frame of this type waits.
   bool holds(AmType type) const;
-  /// Frames of this type that wait are never sent.
+  /// Drops waiting frames of this type.
   void drop(AmType type);
 
-  /// Somebody else has the line, or leaves it.
+  /// Notes that another station has the line, or leaves it.
   void set_busy(bool busy);
   void set_on(bool on);
   bool is_on() const { return on_; }
-  /// The transmission that asked for a link ack is over; false if there is none.
+  /// Ends the transmission that asked for a link ack; returns false if there is none.
   bool confirmed();
 
  private:

@@ -22,7 +22,7 @@ Sink::Sink(const Settings& settings, World& world)
     : Node(settings, 0, world), address_{settings.island, settings.device} {}
 
 bool Sink::is_for_me(Line line, const Frame& frame) const {
-  if (line == Line::kSerial) return true;  // It has two ends only; mostly 0 and 0 stand there.
+  if (line == Line::kSerial) return true;  // It has two ends only; mostly it has 0 and 0.
   return line == Line::kRadio && (frame.dest == address_.device || frame.dest == kAll);
 }
 
@@ -101,7 +101,7 @@ bool Sink::radiate(const Message& message) {
   return line(Line::kRadio).push({next, address_.device, AmType::kNet, write_message(message)});
 }
 
-// As release 1.0 does: to everybody, from nobody, and as long as a message can be.
+// Like release 1.0: to everybody, from nobody, and as long as a message can be.
 bool Sink::hand_up(const Message& message) {
   return line(Line::kSerial).push({kAll, 0, AmType::kNet, write_message(message, true)});
 }

@@ -12,7 +12,7 @@ class Sink : public Node {
  private:
   struct Mote {
     std::uint16_t device = 0;
-    std::uint16_t number = 0;  ///< Of its last request.
+    std::uint16_t number = 0;  ///< In its last request.
     MoteDesc description;
     bool reported = false;     ///< To the base station.
   };

@@ -66,7 +66,7 @@ void Synaptic::begin(Channel& channel, Ticks now) {
   if (!next_tick_) next_tick_ = now + period_ + phase_;
 }
 
-// The clock stands still while no channel is started.
+// Stops the clock while no channel is started.
 void Synaptic::rest() {
   const auto started = [](const Channel& one) { return one.started; };
   if (std::none_of(channels_.begin(), channels_.end(), started)) next_tick_.reset();
@@ -111,7 +111,7 @@ bool Synaptic::set_period(Ticks period) {
 bool Synaptic::write(ChannelId id, std::size_t pos, float value) {
   Channel* channel = find(Direction::kOut, id);
   if (!channel || pos >= channel->values.size()) return false;
-  // By its bits, for a NaN is unlike itself.
+  // Compares bits, for a NaN is unlike itself.
   channel->fresh |= bits_of_float(channel->values[pos]) != bits_of_float(value);
   channel->values[pos] = value;
   return true;
@@ -137,7 +137,7 @@ void Synaptic::take(Address own, Address src, const Values& values) {
 //= anything.
 void Synaptic::hand_over(Channel& channel, Address own) {
   if (channel.peer != own) {
-    // Values that found no way out go with the next tick.
+    // Values that could not be sent go with the next tick.
     if (send_(channel.peer, channel.values)) channel.fresh = false;
     return;
   }

@@ -15,17 +15,17 @@ using Values = std::vector<float>;
 
 class Synaptic {
  public:
-  /// Sends values to an address; false when they found no way out.
+  /// Sends values to an address; returns false if they could not be sent.
   using Send = std::function<bool(Address dest, const Values& values)>;
 
-  /// `room` channels of each direction; the first tick comes `phase` later than a period.
+  /// Makes `room` channels of each direction; the first tick comes `phase` later than a period.
   Synaptic(std::size_t room, Ticks phase, World& world, Send send)
       : room_(room), phase_(phase), world_(world), send_(std::move(send)) {}
 
-  /// The channel's id; nothing when it is refused, and then nothing changed.
+  /// Returns the channel's id; nothing if it is refused, and then nothing changed.
   std::optional<ChannelId> create(Direction direction, Address own, Address peer,
                                   std::size_t size, Mode mode);
-  // False: there is no such channel, or no such position.
+  // These return false if there is no such channel, or no such position.
   bool dispose(ChannelId id);
   bool start(ChannelId id, Ticks now);
   bool stop(ChannelId id);
@@ -35,7 +35,7 @@ class Synaptic {
   void stop_all();
   bool set_period(Ticks period);
 
-  /// Values that came from `src`; those beyond the channel's size are left-over bytes.
+  /// Takes values from `src`; those beyond the channel's size are left-over bytes.
   void take(Address own, Address src, const Values& values);
 
   std::optional<Ticks> next_tick() const { return next_tick_; }

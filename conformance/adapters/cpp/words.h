@@ -14,7 +14,7 @@
 
 namespace rubric::cpp_node {
 
-/// What closes a command with `unsupported WHY`.
+/// Closes a command with `unsupported WHY`.
 class Unsupported : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -58,7 +58,7 @@ inline std::string hex_of(Bytes bytes) {
   return hex;
 }
 
-/// `name=value` words by their names.
+/// Returns `name=value` words by their names.
 class Arguments {
  public:
   explicit Arguments(const std::vector<std::string>& words) {
@@ -76,12 +76,12 @@ class Arguments {
   Number number(const std::string& name) const {
     return number_of<Number>(text(name));
   }
-  /// `11:5`
+  /// Reads `11:5`.
   Address address(const std::string& name) const {
     const auto [island, device] = two(name, ":");
     return {island, device};
   }
-  /// `2->1`
+  /// Reads `2->1`.
   std::uint32_t channel(const std::string& name) const {
     const auto [source, destination] = two(name, "->");
     return std::uint32_t{source} << 16 | destination;

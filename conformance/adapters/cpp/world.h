@@ -1,4 +1,4 @@
-// What a node has around it: lines that carry its frames, and the application that it serves.
+// The surroundings of a node: lines that carry its frames, and the application that it serves.
 #pragma once
 
 #include "conformance/adapters/cpp/frame.h"

@@ -16,7 +16,7 @@ RETRIES = "60"  # Of 1 s each: a machine may be busy.
 
 
 def send(to, message, fields, *arguments):
-    """What stdout and stderr say of it."""
+    """Sends a message, prints the output, and returns stdout."""
     done = subprocess.run([sys.argv[3], "send", "--to", to, "--as", message, "--dest", "1",
                            "--retries", RETRIES, *arguments], input=json.dumps(fields) + "\n",
                           capture_output=True, text=True, check=False)

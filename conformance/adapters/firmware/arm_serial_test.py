@@ -43,7 +43,7 @@ def frame(content):
 
 
 def contents(stream):
-    """Of the intact frames in `stream`."""
+    """Returns the intact frames in `stream`."""
     for part in stream.split(bytes([FLAG])):
         out, escaped = bytearray(), False
         for byte in part:
@@ -104,7 +104,7 @@ def talk(line):
 
 
 def work_suite(rubric, device):
-    """What the line alone can show is kept; the rest is not decided."""
+    """Rules that the line alone can show are kept; the rest is undecided."""
     done = subprocess.run([rubric, "test", "--target", f"serial:{device}", "--role", "sink",
                            "--format", "json"], capture_output=True, text=True)
     cases = [case for run in json.loads(done.stdout)["implementations"] for case in run["cases"]]

@@ -26,7 +26,7 @@ def net_msg(src, trans_id, app_id, data, reliable=0, number=7):
 
 
 class Forwarder:
-    """Listens, starts the base station of island 11, and shakes hands as told."""
+    """Listens, starts the base station of island 11, and shakes hands as given."""
 
     def __init__(self, hello=b"U "):
         with socket.create_server(("127.0.0.1", 0)) as server:
@@ -71,7 +71,7 @@ class Forwarder:
         return self.station.stdout.readline().strip()
 
     def end(self):
-        """How the station ends after the connection: exit code and complaints."""
+        """Returns exit code and complaints of the station at its end after the connection."""
         self.line.close()
         _, complaints = self.station.communicate(timeout=30)
         return self.station.returncode, complaints

@@ -1,4 +1,5 @@
-// The reference machine gives every golden trace the same behind rct/1 as in this process.
+// The reference machine gives the same results for every golden trace through rct/1 as in this
+// process.
 #include <gtest/gtest.h>
 
 #include "conformance/attach/attachment.h"

@@ -1,17 +1,16 @@
 // The reference machine behind rct/1, or a broken or unusual one: a first implementation to attach,
-// and what a suite is tried on.
+// and a subject to try a suite on.
 #include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <stdexcept>
 #include <string>
 
-#include <CLI/CLI.hpp>
-
 #include "conformance/attach/serve.h"
 #include "conformance/mutants/generated.h"
 #include "conformance/mutants/legal.h"
 #include "conformance/runner/subject_target.h"
+#include "tools/cli/command.h"
 
 namespace rubric {
 namespace {
@@ -56,18 +55,23 @@ int run(const Which& which) {
 }  // namespace rubric
 
 int main(int argc, char** argv) {
-  CLI::App app("The reference machine as an adapter: rct/1 on standard input and output.");
+  rubric::cli::Command program("rubric_machine_adapter",
+                               "The reference machine as an adapter: rct/1 on standard input and "
+                               "output.");
   rubric::Which which;
-  auto* const mutant = app.add_option("--mutant", which.mutant, "A broken machine, by its name");
-  app.add_option("--legal", which.legal, "An unusual machine that keeps the rules, by its name")
-      ->excludes(mutant);
-  app.add_option("--cases", which.cases,
-                 "Golden traces; mutants that are generated from them can be named, too");
-  CLI11_PARSE(app, argc, argv);
-  try {
-    return rubric::run(which);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "rubric_machine_adapter: %s\n", error.what());
-    return 64;
-  }
+  const auto mutant =
+      program.add_option("--mutant", which.mutant, "A broken machine, by its name");
+  program.add_option("--legal", which.legal, "An unusual machine that keeps the rules, by its name")
+      .excludes(mutant);
+  program.add_option("--cases", which.cases,
+                     "Golden traces; mutants that are generated from them can be named, too");
+  program.exit_code_of([&] {
+    try {
+      return rubric::run(which);
+    } catch (const std::exception& error) {
+      std::fprintf(stderr, "rubric_machine_adapter: %s\n", error.what());
+      return 64;
+    }
+  });
+  return program.parse_and_run(argc, argv);
 }

@@ -11,6 +11,9 @@ import subprocess
 import sys
 import tempfile
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "tools"))
+from readme.number import readme_number  # pylint: disable=wrong-import-position
+
 MODEL = pathlib.Path(__file__).resolve().parent / "join.pml"
 PROPERTIES = ["joined_after_reply", "ack_right_seq", "requests_bounded", "one_terminal",
               "one_island", "listed_acked", "listed_silent", "admitted", "one_report",
@@ -21,7 +24,7 @@ FLAWS = [None, "accepts_wrong_seq", "one_pending_seq", "joined_on_link_ack", "no
 NETWORKS = [(1, 2, 2, False, False), (2, 1, 1, False, True), (1, 1, 1, True, True)]
 REQUESTS = 2
 ACKS = 2
-# What spin must find reachable in a network without flaws; these are denied in the model.
+# Goals that spin must find reachable in a network without flaws; the model denies them.
 REACHABLE = ["never_first", "never_fail", "never_over"]
 REACHABLE_WITH_TWO_SINKS = REACHABLE + ["never_second"]
 SECONDS_MAX = 120
@@ -47,7 +50,7 @@ class Pan:
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT).stdout
 
     def breaks(self, claim):
-        """Whether some run breaks the claim. Fails unless the search was complete."""
+        """Returns whether some run breaks the claim. Fails unless the search was complete."""
         out = self.run(["./pan", "-a", "-m100000", "-w18", "-N", claim])
         if "errors: 0" in out:
             for sign in ("out of memory", "max search depth too small", "Search not completed"):
@@ -105,6 +108,9 @@ def compare(rubric, flaw, claims):
 def main():
     rubric = str(pathlib.Path(sys.argv[1]).resolve())
     claims = sys.argv[2:] or PROPERTIES
+    assert len(PROPERTIES) == readme_number("explorer on # properties")
+    assert len(FLAWS) - 1 == readme_number("properties, # flaws")
+    assert len(NETWORKS) == readme_number("flaws and # networks")
     wrong = 0
     print(f"{'broken in':<20}" + "".join(f"{flaw or 'no flaw':<20}" for flaw in FLAWS))
     columns = []

@@ -8,8 +8,8 @@
 
 namespace rubric::report {
 
-/// One column a node, one row an observation, the observation `marked` with "<<<" behind it and a
-/// doubled arrow. Fits `width` where it can; each line behind `indent` blanks.
+/// Returns a chart with one column a node and one row an observation; the row `marked` has "<<<"
+/// after it and a doubled arrow. Fits `width` where it can; each line begins with `indent` blanks.
 std::string chart(const Scene& scene, const std::vector<std::size_t>& rows, std::size_t marked,
                   std::size_t indent, std::size_t width);
 

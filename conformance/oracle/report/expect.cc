@@ -3,10 +3,8 @@
 #include <fnmatch.h>
 
 #include <algorithm>
-#include <stdexcept>
 
 #include "codec/reflect/fault_text.h"
-#include "conformance/report/entries.h"
 
 namespace rubric::report {
 namespace {
@@ -14,32 +12,28 @@ namespace {
 using oracle::Finding;
 using oracle::Severity;
 
-std::string mistake(std::string_view key, const std::string& value) {
-  if (key == "requirement" && reflect::find_requirement(value) == ReqId::kNone) {
-    return "no requirement is called '" + value + "'";
-  }
-  if (key == "profile" && value != "paper" && value != "deployed") {
-    return "profile is paper or deployed, not '" + value + "'";
-  }
-  return {};
-}
-
 bool glob_matches(const std::string& glob, const std::string& path) {
   const std::string name = path.substr(path.rfind('/') + 1);
   return ::fnmatch(glob.c_str(), path.c_str(), 0) == 0 ||
          ::fnmatch(glob.c_str(), name.c_str(), 0) == 0;
 }
 
-bool applies(const Expectation& one, const oracle::Run& run, bool deployed) {
+bool applies(const KnownFailure& one, const oracle::Run& run, bool deployed) {
   if (!one.profile.empty() && (one.profile == "deployed") != deployed) return false;
   return one.file.empty() ||
          std::any_of(run.files.begin(), run.files.end(),
                      [&](const std::string& file) { return glob_matches(one.file, file); });
 }
 
+ReqId rule_of(const KnownFailure& one) {
+  return reflect::find_requirement(one.requirement);
+}
+
 // All but the message agrees.
-bool is_about(const Expectation& one, const oracle::Run& run, const Finding& finding) {
-  if (finding.severity != Severity::kFail || finding.requirement != one.requirement) return false;
+bool is_about(const KnownFailure& one, const oracle::Run& run, const Finding& finding) {
+  if (finding.severity != Severity::kFail || finding.requirement != rule_of(one)) {
+    return false;
+  }
   if (!one.node.empty() && finding.node != one.node) return false;
   return one.file.empty() || (finding.place.file < run.files.size() &&
                               glob_matches(one.file, run.files[finding.place.file]));
@@ -57,32 +51,21 @@ std::string_view came_name(Came came) {
   return "not_applicable";
 }
 
-bool parse_expectations(std::string_view text, const std::string& name, ExpectationFile& out,
-                        std::string& error) {
-  const EntryForm form{"expectations",
-                       {"requirement", "message", "reason"},
-                       {"requirement", "node", "file", "profile", "message", "reason"},
-                       mistake};
-  out = {name, {}};
-  try {
-    for (const Entry& one : parse_entries(text, name, form)) {
-      out.expectations.push_back({reflect::find_requirement(one.text("requirement")),
-                                  one.text("node"), one.text("file"), one.text("profile"),
-                                  one.text("message"), one.text("reason"), one.line});
-    }
-  } catch (const std::runtime_error& refused) {
-    error = refused.what();
-    return false;
-  }
-  return true;
+KnownFailures parse_expectations(std::string_view text, const std::string& name) {
+  KnownFailures out = parse_known_failures(text, name, KnownTo::kCheck, [](const auto& rule) {
+    const bool known = reflect::find_requirement(rule) != ReqId::kNone;
+    return known ? std::string() : "no requirement is called '" + rule + "'";
+  });
+  for (KnownFailure& one : out.entries) one.requirement = reflect::requirement(rule_of(one)).id;
+  return out;
 }
 
 Outcome compare(const oracle::Run& run, const oracle::Options& options,
-                const oracle::Report& report, const ExpectationFile& file) {
+                const oracle::Report& report, const KnownFailures& known) {
   Outcome out;
   out.expected_by.assign(report.findings.size(), kUnexpected);
-  for (std::size_t e = 0; e < file.expectations.size(); ++e) {
-    const Expectation& one = file.expectations[e];
+  for (std::size_t e = 0; e < known.entries.size(); ++e) {
+    const KnownFailure& one = known.entries[e];
     ExpectationResult result;
     if (applies(one, run, options.deployed)) {
       std::vector<std::size_t> others;

@@ -1,4 +1,4 @@
-// Expectation files: known failures, each with the reason why it is known.
+// What became of the failures that a report was expected to show.
 #pragma once
 
 #include <cstdint>
@@ -7,24 +7,9 @@
 #include <vector>
 
 #include "conformance/oracle/observation.h"
+#include "conformance/report/known_failures.h"
 
 namespace rubric::report {
-
-/// A failure that is known. Empty texts ask for nothing, but message and reason are required.
-struct Expectation {
-  ReqId requirement = ReqId::kNone;
-  std::string node;     ///< The finding's node, exactly.
-  std::string file;     ///< A glob that the file's path or name matches.
-  std::string profile;  ///< "paper" or "deployed": holds under that one only.
-  std::string message;  ///< Part of the finding's text.
-  std::string reason;
-  std::uint32_t line = 0;  ///< Where it stands in its file.
-};
-
-struct ExpectationFile {
-  std::string name;
-  std::vector<Expectation> expectations;
-};
 
 /// What an expectation came to.
 enum class Came : std::uint8_t {
@@ -33,7 +18,7 @@ enum class Came : std::uint8_t {
   kOtherMessage,  ///< It fails, but says something else.
   kNotAsked,      ///< It is about another file or profile.
 };
-/// "matched", "stale", "other_message", "not_applicable".
+/// Returns "matched", "stale", "other_message", "not_applicable".
 std::string_view came_name(Came came);
 
 struct ExpectationResult {
@@ -43,26 +28,25 @@ struct ExpectationResult {
 
 constexpr std::size_t kUnexpected = static_cast<std::size_t>(-1);
 
-/// A report seen beside what was expected of it.
+/// A report compared with its expectations.
 struct Outcome {
   std::vector<ExpectationResult> results;  ///< One for each expectation.
   std::vector<std::size_t> expected_by;    ///< One for each finding; kUnexpected: by none.
   std::uint64_t unexpected_failures = 0;
   std::uint64_t broken_expectations = 0;   ///< Stale, or with another message.
   bool nothing_judged = false;             ///< No rule had its chance to be broken.
-  /// The report's; inconclusive where nothing could be judged.
+  /// The report's verdict; inconclusive if nothing could be judged.
   oracle::Verdict verdict = oracle::Verdict::kPass;
 
   bool as_expected() const { return unexpected_failures == 0 && broken_expectations == 0; }
-  /// 0 as expected, 1 not, 3 nothing but inconclusive.
+  /// Returns 0 as expected, 1 not, 3 nothing but inconclusive.
   int exit_code() const { return !as_expected() ? 1 : nothing_judged ? 3 : 0; }
 };
 
-/// Reads a file's text. False, with `error` as "file:line: what", where it says nothing sensible.
-bool parse_expectations(std::string_view text, const std::string& name, ExpectationFile& out,
-                        std::string& error);
+/// Reads a file's text as parse_known_failures() does.
+KnownFailures parse_expectations(std::string_view text, const std::string& name);
 
 Outcome compare(const oracle::Run& run, const oracle::Options& options,
-                const oracle::Report& report, const ExpectationFile& file);
+                const oracle::Report& report, const KnownFailures& known);
 
 }  // namespace rubric::report

@@ -1,8 +1,7 @@
 #include "conformance/oracle/report/json.h"
 
-#include <fmt/format.h>
-
 #include <array>
+#include <numeric>
 
 #include "codec/reflect/fault_text.h"
 #include "conformance/oracle/report/words.h"
@@ -13,116 +12,107 @@ namespace {
 using oracle::Finding;
 using oracle::Severity;
 
-std::string number_or_null(std::uint64_t number) {
-  return number == 0 ? "null" : std::to_string(number);
+Json or_null(std::uint64_t number) {
+  return number == 0 ? Json::raw("") : Json(number);
 }
 
-std::string time_json(std::int64_t time_us) {
-  const std::string text = seconds_text(time_us);
-  return text.empty() ? "null" : text;
+// Each item in a line of its own.
+template <class Items, class ToJson = std::identity>
+Json lines(const Items& items, ToJson to_json = {}) {
+  return Json::array(items, to_json, "\n  ", "\n");
 }
 
-// "[" items "]", each item in a line of its own.
-template <class Items, class ToText>
-std::string list(const Items& items, ToText to_text) {
-  std::string out = "[";
-  bool first = true;
-  for (const auto& item : items) {
-    out += first ? "\n  " : ",\n  ";
-    out += to_text(item);
-    first = false;
-  }
-  return out + (first ? "]" : "\n]");
+std::vector<std::size_t> indices(std::size_t count) {
+  std::vector<std::size_t> out(count);
+  std::iota(out.begin(), out.end(), std::size_t{0});
+  return out;
 }
 
-std::string hypotheses_json(const Finding& finding) {
-  std::string out = "[";
-  for (const oracle::Hypothesis& h : finding.hypotheses) {
-    out += fmt::format("{}{{\"text\":{},\"allowed\":{},\"miss\":{}}}", out.size() > 1 ? "," : "",
-                       json_string(h.text), json_string(h.allowed), json_string(h.miss));
-  }
-  return out + "]";
+Json hypothesis_json(const oracle::Hypothesis& one) {
+  return Json::object({{"text", one.text}, {"allowed", one.allowed}, {"miss", one.miss}});
 }
 
-std::string expectations_json(const Story& story) {
-  std::vector<std::size_t> all(story.outcome.results.size());
-  for (std::size_t e = 0; e < all.size(); ++e) all[e] = e;
-  return list(all, [&](std::size_t e) {
-    const ExpectationResult& result = story.outcome.results[e];
-    const Expectation& one = story.expected.expectations[e];
-    return fmt::format(
-        "{{\"requirement\":{},\"line\":{},\"message\":{},\"reason\":{},\"came\":\"{}\","
-        "\"findings\":[{}]}}",
-        json_string(reflect::requirement(one.requirement).id), one.line,
-        json_string(one.message), json_string(one.reason), came_name(result.came),
-        fmt::join(result.findings, ","));
-  });
+Json expectation_json(const Story& story, std::size_t e) {
+  const ExpectationResult& result = story.outcome.results[e];
+  const KnownFailure& one = story.expected.entries[e];
+  return Json::object({{"requirement", one.requirement},
+                       {"line", one.line},
+                       {"message", one.message},
+                       {"reason", one.reason},
+                       {"came", came_name(result.came)},
+                       {"findings", Json::array(result.findings)}});
 }
 
-std::string counts_json(const Story& story) {
+Json counts_json(const Story& story) {
   std::array<std::uint64_t, 5> counts{};
   std::uint64_t known = 0;
   for (std::size_t i = 0; i < story.report.findings.size(); ++i) {
     ++counts[static_cast<std::size_t>(story.report.findings[i].severity)];
     if (story.outcome.expected_by[i] != kUnexpected) ++known;
   }
-  const auto count = [&](Severity s) { return counts[static_cast<std::size_t>(s)]; };
-  return fmt::format(
-      "{{\"frames\":{},\"fail\":{},\"weak\":{},\"stray\":{},\"inconclusive\":{},\"note\":{},"
-      "\"known_failures\":{},\"unexpected_failures\":{},\"broken_expectations\":{},"
-      "\"rules_exercised\":{}}}",
-      story.report.frames, count(Severity::kFail), count(Severity::kWeak),
-      count(Severity::kStray), count(Severity::kInconclusive), count(Severity::kNote), known,
-      story.outcome.unexpected_failures, story.outcome.broken_expectations,
-      story.report.exercised.size());
+  Json::Members out = {{"frames", story.report.frames}};
+  for (const Severity severity : {Severity::kFail, Severity::kWeak, Severity::kStray,
+                                  Severity::kInconclusive, Severity::kNote}) {
+    out.emplace_back(severity_name(severity), counts[static_cast<std::size_t>(severity)]);
+  }
+  out.emplace_back("known_failures", known);
+  out.emplace_back("unexpected_failures", story.outcome.unexpected_failures);
+  out.emplace_back("broken_expectations", story.outcome.broken_expectations);
+  out.emplace_back("rules_exercised", story.report.exercised.size());
+  return Json::object(out);
 }
 
 }  // namespace
 
-std::string json_finding(const Story& story, std::size_t index) {
+Json json_finding(const Story& story, std::size_t index) {
   const Finding& finding = story.report.findings[index];
   const reflect::Requirement& rule = reflect::requirement(finding.requirement);
   const auto& files = story.run.files;
+  const oracle::Place& place = finding.place;
   const std::size_t by = story.outcome.expected_by[index];
-  const bool is_expected = by != kUnexpected;
-  const bool has_frame = finding.place.frame != 0;
-  return fmt::format(
-      "{{\"requirement\":{},\"level\":{},\"sentence\":{},\"severity\":\"{}\",\"time\":{},"
-      "\"file\":{},\"frame\":{},\"offset\":{},\"node\":{},\"text\":{},\"expected\":{},"
-      "\"count\":{},\"last_frame\":{},\"known\":{},\"hypotheses\":{}}}",
-      json_string_or_null(rule.id), json_string_or_null(rule.level),
-      json_string_or_null(rule.sentence), severity_name(finding.severity),
-      time_json(finding.place.time_us),
-      finding.place.file < files.size() ? json_string(files[finding.place.file]) : "null",
-      number_or_null(finding.place.frame),
-      has_frame ? std::to_string(finding.place.offset_bytes) : "null",
-      json_string_or_null(finding.node), json_string(finding.text), json_string(finding.expected),
-      finding.count, number_or_null(finding.last.frame),
-      is_expected ? json_string(story.expected.expectations[by].reason) : "null",
-      hypotheses_json(finding));
+  return Json::object(
+      {{"requirement", Json::or_null(rule.id)},
+       {"level", Json::or_null(rule.level)},
+       {"sentence", Json::or_null(rule.sentence)},
+       {"severity", severity_name(finding.severity)},
+       {"time", Json::raw(seconds_text(place.time_us))},
+       {"file", place.file < files.size() ? Json(files[place.file]) : Json::raw("")},
+       {"frame", or_null(place.frame)},
+       {"offset", place.frame != 0 ? Json(place.offset_bytes) : Json::raw("")},
+       {"node", Json::or_null(finding.node)},
+       {"text", finding.text},
+       {"expected", finding.expected},
+       {"count", finding.count},
+       {"last_frame", or_null(finding.last.frame)},
+       {"known", by != kUnexpected ? Json(story.expected.entries[by].reason) : Json::raw("")},
+       {"hypotheses", Json::array(finding.hypotheses, hypothesis_json)}});
 }
 
-std::string json_report(const Story& story) {
-  std::vector<std::size_t> indices(story.report.findings.size());
-  for (std::size_t i = 0; i < indices.size(); ++i) indices[i] = i;
+Json json_report(const Story& story) {
   const oracle::Options& o = story.options;
-  std::string out = fmt::format(
-      "{{\"schema\":\"rubric.check/1\",\n\"verdict\":\"{}\",\n\"expected\":{},\n\"exit_code\":{},\n"
-      "\"profile\":\"{}\",\n\"sniffer\":\"{}\",\n\"start\":\"{}\",\n",
-      verdict_name(story.outcome.verdict), story.outcome.as_expected(), story.outcome.exit_code(),
-      o.deployed ? "deployed" : "paper", o.sniffer_complete ? "complete" : "unknown",
-      o.start_cold ? "cold" : "unknown");
-  out += "\"files\":" + list(story.run.files, json_string) + ",\n";
-  out += "\"findings\":" +
-         list(indices, [&](std::size_t i) { return json_finding(story, i); }) + ",\n";
-  out += "\"counts\":" + counts_json(story) + ",\n";
-  out += "\"facts\":" + list(story.report.facts, json_string) + ",\n";
-  out += "\"exercised\":" + list(story.report.exercised, [](const auto& one) {
-           return fmt::format("{{\"requirement\":{},\"count\":{}}}",
-                              json_string(reflect::requirement(one.first).id), one.second);
-         });
-  if (!story.expected.name.empty()) out += ",\n\"expectations\":" + expectations_json(story);
-  return out + "}\n";
+  const oracle::Report& report = story.report;
+  const auto finding = [&](std::size_t i) { return json_finding(story, i); };
+  const auto expectation = [&](std::size_t e) { return expectation_json(story, e); };
+  const auto exercised = [](const auto& one) {
+    return Json::object(
+        {{"requirement", reflect::requirement(one.first).id}, {"count", one.second}});
+  };
+  Json::Members out = {{"schema", "rubric.check/1"},
+                       {"verdict", verdict_name(story.outcome.verdict)},
+                       {"expected", story.outcome.as_expected()},
+                       {"exit_code", story.outcome.exit_code()},
+                       {"profile", o.deployed ? "deployed" : "paper"},
+                       {"sniffer", o.sniffer_complete ? "complete" : "unknown"},
+                       {"start", o.start_cold ? "cold" : "unknown"},
+                       {"files", lines(story.run.files)},
+                       {"findings", lines(indices(report.findings.size()), finding)},
+                       {"counts", counts_json(story)},
+                       {"facts", lines(report.facts)},
+                       {"exercised", lines(report.exercised, exercised)}};
+  if (!story.expected.name.empty()) {
+    out.emplace_back("expectations", lines(indices(story.outcome.results.size()), expectation));
+  }
+  return Json::object(out, "\n");
 }
 
 }  // namespace rubric::report

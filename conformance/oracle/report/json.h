@@ -1,16 +1,14 @@
 // A report for programs: schema rubric.check/1, see tools/check_format.md.
 #pragma once
 
-#include <string>
-
 #include "conformance/oracle/report/text.h"
+#include "conformance/report/json.h"
 
 namespace rubric::report {
 
-/// One JSON object and a line end.
-std::string json_report(const Story& story);
+Json json_report(const Story& story);
 
-/// One object of its `findings`, without a line end.
-std::string json_finding(const Story& story, std::size_t index);
+/// One object of its `findings`.
+Json json_finding(const Story& story, std::size_t index);
 
 }  // namespace rubric::report

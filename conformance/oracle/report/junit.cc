@@ -6,6 +6,7 @@
 
 #include "codec/reflect/fault_text.h"
 #include "conformance/oracle/report/words.h"
+#include "conformance/report/junit.h"
 
 namespace rubric::report {
 namespace {
@@ -14,7 +15,7 @@ using oracle::Finding;
 using oracle::Severity;
 
 /// What is said of one rule.
-struct Case {
+struct RuleFindings {
   std::uint64_t kept = 0;
   std::vector<std::size_t> failures;
   std::vector<std::size_t> undecided;
@@ -23,12 +24,32 @@ struct Case {
 
 class Junit {
  public:
-  explicit Junit(const Story& story) : story_(story) {
-    for (const auto& [id, count] : story.report.exercised) cases_[id].kept = count;
-    for (std::size_t i = 0; i < story.report.findings.size(); ++i) {
-      const Finding& finding = story.report.findings[i];
-      Case& one = cases_[finding.requirement];
-      const bool known = story.outcome.expected_by[i] != kUnexpected;
+  explicit Junit(const Story& story) : story_(story) {}
+
+  std::string xml() {
+    JunitSuite suite{.name = "rubric check"};
+    for (const std::string& file : story_.run.files) suite.name += " " + file;
+    suite.properties = {{"profile", profile()},
+                        {"verdict", std::string(verdict_name(story_.outcome.verdict))},
+                        {"frames", std::to_string(story_.report.frames)}};
+    for (const auto& [id, one] : by_rule()) suite.cases.push_back(rule(id, one));
+    for (std::size_t e = 0; e < story_.outcome.results.size(); ++e) {
+      if (story_.outcome.results[e].came != Came::kNotAsked) suite.cases.push_back(expectation(e));
+    }
+    for (const std::string& fact : story_.report.facts) suite.output += fact + "\n";
+    return junit_document({suite});
+  }
+
+ private:
+  const char* profile() const { return story_.options.deployed ? "deployed" : "paper"; }
+
+  std::map<ReqId, RuleFindings> by_rule() const {
+    std::map<ReqId, RuleFindings> out;
+    for (const auto& [id, count] : story_.report.exercised) out[id].kept = count;
+    for (std::size_t i = 0; i < story_.report.findings.size(); ++i) {
+      const Finding& finding = story_.report.findings[i];
+      RuleFindings& one = out[finding.requirement];
+      const bool known = story_.outcome.expected_by[i] != kUnexpected;
       if (finding.severity == Severity::kFail && !known) {
         one.failures.push_back(i);
       } else if (finding.severity == Severity::kInconclusive) {
@@ -37,32 +58,9 @@ class Junit {
         one.others.push_back(i);
       }
     }
+    return out;
   }
 
-  std::string xml() {
-    for (const auto& [id, one] : cases_) rule(id, one);
-    for (std::size_t e = 0; e < story_.outcome.results.size(); ++e) expectation(e);
-    std::string name = "rubric check";
-    for (const std::string& file : story_.run.files) name += " " + file;
-    std::string facts;
-    for (const std::string& fact : story_.report.facts) facts += fact + "\n";
-    std::string out = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n";
-    out += fmt::format(
-        "<testsuite name=\"{}\" tests=\"{}\" failures=\"{}\" errors=\"0\" skipped=\"{}\" "
-        "time=\"0\">\n",
-        xml_text(name), tests_, failures_, skipped_);
-    out += fmt::format(
-        "<properties>\n<property name=\"profile\" value=\"{}\"/>\n"
-        "<property name=\"verdict\" value=\"{}\"/>\n"
-        "<property name=\"frames\" value=\"{}\"/>\n</properties>\n",
-        story_.options.deployed ? "deployed" : "paper", verdict_name(story_.outcome.verdict),
-        story_.report.frames);
-    out += body_;
-    if (!facts.empty()) out += "<system-out>" + xml_text(facts) + "</system-out>\n";
-    return out + "</testsuite>\n</testsuites>\n";
-  }
-
- private:
   std::string line(std::size_t i) const {
     const Finding& finding = story_.report.findings[i];
     std::string out = fmt::format("{}{}: {}", finding.node.empty() ? "" : finding.node + ", ",
@@ -86,70 +84,51 @@ class Junit {
   std::string message(const std::vector<std::size_t>& which) const {
     std::string out = line(which.front());
     if (which.size() > 1) out += fmt::format(" (and {} more)", which.size() - 1);
-    return xml_text(out);
+    return out;
   }
 
-  void rule(ReqId id, const Case& one) {
+  JunitCase rule(ReqId id, const RuleFindings& one) const {
     const reflect::Requirement& rule = reflect::requirement(id);
-    ++tests_;
-    body_ += fmt::format("<testcase classname=\"rubric.check.{}\" name=\"{}\" time=\"0\">\n",
-                         story_.options.deployed ? "deployed" : "paper",
-                         xml_text(id == ReqId::kNone ? "(no rule)" : rule.id));
+    JunitCase out;
+    out.class_name = std::string("rubric.check.") + profile();
+    out.name = id == ReqId::kNone ? "(no rule)" : rule.id;
     if (!one.failures.empty()) {
-      ++failures_;
-      std::string text;
-      for (const std::size_t i : one.failures) text += in_full(i);
-      body_ += fmt::format("<failure type=\"{}\" message=\"{}\">{}</failure>\n",
-                           xml_text(rule.level), message(one.failures), xml_text(text));
+      out.outcome = JunitCase::Outcome::kFailure;
+      out.type = rule.level;
+      out.message = message(one.failures);
+      for (const std::size_t i : one.failures) out.body += in_full(i);
     } else if (!one.undecided.empty()) {
-      ++skipped_;
-      body_ += fmt::format("<skipped message=\"{}\"/>\n", message(one.undecided));
+      out.outcome = JunitCase::Outcome::kSkipped;
+      out.message = message(one.undecided);
     }
-    system_out(one);
-    body_ += "</testcase>\n";
-  }
-
-  void system_out(const Case& one) {
-    std::string text = fmt::format("{}\n", one.kept == 0 ? "never seen kept"
-                                                         : "kept " + counted(one.kept, "time"));
-    for (const std::size_t i : one.undecided) text += "inconclusive: " + line(i) + "\n";
+    out.output = one.kept == 0 ? "never seen kept\n" : "kept " + counted(one.kept, "time") + "\n";
+    for (const std::size_t i : one.undecided) out.output += "inconclusive: " + line(i) + "\n";
     for (const std::size_t i : one.others) {
       const std::size_t by = story_.outcome.expected_by[i];
-      text += fmt::format("{}: {}{}\n", severity_name(story_.report.findings[i].severity), line(i),
-                          by == kUnexpected
-                              ? ""
-                              : " Known: " + story_.expected.expectations[by].reason);
+      out.output +=
+          fmt::format("{}: {}{}\n", severity_name(story_.report.findings[i].severity), line(i),
+                      by == kUnexpected ? "" : " Known: " + story_.expected.entries[by].reason);
     }
-    body_ += "<system-out>" + xml_text(text) + "</system-out>\n";
+    return out;
   }
 
-  void expectation(std::size_t e) {
+  JunitCase expectation(std::size_t e) const {
     const ExpectationResult& result = story_.outcome.results[e];
-    if (result.came == Came::kNotAsked) return;
-    const Expectation& one = story_.expected.expectations[e];
-    const char* const id = reflect::requirement(one.requirement).id;
-    ++tests_;
-    body_ += fmt::format(
-        "<testcase classname=\"rubric.check.expectations\" name=\"{}:{} {} {}\" time=\"0\">\n",
-        xml_text(story_.expected.name), one.line, id, e + 1);
-    if (result.came == Came::kStale) {
-      ++failures_;
-      body_ += fmt::format("<failure type=\"stale\" message=\"{} does not fail with &quot;{}&quot; "
-                           "any more\"/>\n", id, xml_text(one.message));
-    } else if (result.came == Came::kOtherMessage) {
-      ++failures_;
-      body_ += fmt::format("<failure type=\"other_message\" message=\"expected &quot;{}&quot;, but "
-                           "it says: {}\"/>\n", xml_text(one.message), message(result.findings));
-    }
-    body_ += "</testcase>\n";
+    const KnownFailure& one = story_.expected.entries[e];
+    JunitCase out{.class_name = "rubric.check.expectations"};
+    out.name = fmt::format("{}:{} {} {}", story_.expected.name, one.line, one.requirement, e + 1);
+    if (result.came == Came::kTrue) return out;
+    const bool stale = result.came == Came::kStale;
+    out.outcome = JunitCase::Outcome::kFailure;
+    out.type = came_name(result.came);
+    out.message =
+        stale ? fmt::format("{} does not fail with \"{}\" any more", one.requirement, one.message)
+              : fmt::format("expected \"{}\", but it says: {}", one.message,
+                            message(result.findings));
+    return out;
   }
 
   const Story& story_;
-  std::map<ReqId, Case, reflect::CatalogueOrder> cases_;
-  std::string body_;
-  std::uint64_t tests_ = 0;
-  std::uint64_t failures_ = 0;
-  std::uint64_t skipped_ = 0;
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// A report for those who collect JUnit's XML.
+// A report in JUnit's XML.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace rubric::report {
 
-/// One testsuite; a testcase for each rule that was exercised or found broken, and for each
-/// expectation that is not true any more.
+/// Returns one testsuite, with a testcase for each rule that was exercised or found broken, and for
+/// each expectation that no longer holds.
 std::string junit_report(const Story& story);
 
 }  // namespace rubric::report

@@ -26,14 +26,14 @@ trace::Concrete decoded(const oracle::Observation& seen) {
                                                                   : trace::LinkKind::kPeis);
 }
 
-// The last `parts` parts of a path.
+// Returns the last `parts` parts of a path.
 std::string tail(const std::string& path, std::size_t parts) {
   std::size_t at = path.size();
   for (; parts > 0 && at != path.npos && at != 0; --parts) at = path.rfind('.', at - 1);
   return at == path.npos || parts > 0 ? path : path.substr(at + 1);
 }
 
-// Paths no longer than it takes to tell them apart.
+// Shortens paths to what tells them apart.
 void shorten(trace::Message& message) {
   std::vector<std::string> paths;
   for (const trace::FieldValue& field : message.fields) paths.push_back(field.path);
@@ -48,7 +48,7 @@ void shorten(trace::Message& message) {
   }
 }
 
-// Words too long to be read, hex above all, end in dots.
+// Ends words that are too long to read, hex above all, in dots.
 std::string without_long_words(const std::string& text) {
   constexpr std::size_t kLongest = 64;
   constexpr std::size_t kKept = 48;
@@ -107,7 +107,8 @@ Scene::Scene(const oracle::Run& run, const oracle::Options& options)
     const bool motes = device.role == Role::kMote || device.island == 0;
     if (!motes && (first_island == 0 || device.island < first_island)) first_island = device.island;
   }
-  // Left: base station and sink of one island. Right: sinks before their base stations.
+  // Columns from left to right: base station and sink of one island; further sinks before their
+  // base stations.
   using Order = std::tuple<int, std::uint16_t, int, std::uint16_t, std::size_t>;
   std::vector<Order> order;
   for (std::size_t i = 0; i < who_.devices.size(); ++i) {
@@ -134,14 +135,14 @@ void Scene::add_radio_receivers(std::size_t i, std::vector<std::uint16_t>& out) 
   const machine::Frame& frame = run_.seen[i].frame;
   oracle::Net net;
   oracle::AckJoin ack;
-  std::uint16_t island = 0;  // Of the sink that is meant, where the message says so.
+  std::uint16_t island = 0;  // Island of the sink, if the message shows it.
   if (frame.type == oracle::am::kNet && oracle::parse_net(frame.payload, net)) {
     island = net.dest.pid;
   }
   if (frame.type == oracle::am::kAckJoin && oracle::parse_ack_join(frame.payload, ack)) {
     island = ack.dest.pid;
   }
-  // The sink of that island, else whoever has the address, else strangers that have it.
+  // Takes the sink of that island, else whoever has the address, else strangers that have it.
   const auto matches = [&](const oracle::Device& device, bool exactly, bool known) {
     if (device.known != known || device.role == Role::kBaseStation) return false;
     if (frame.dest != 0xFFFF && frame.dest != device.am) return false;

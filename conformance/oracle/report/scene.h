@@ -1,4 +1,4 @@
-// Who sent what to whom, in words: the frames of a run as a report shows them.
+// Describes in words who sent what to whom: the frames of a run as a report shows them.
 #pragma once
 
 #include <string>
@@ -9,35 +9,36 @@
 
 namespace rubric::report {
 
-/// A run beside what the first pass found out of it. Borrows the run.
+/// A run with the results of the first pass. Borrows the run.
 class Scene {
  public:
   Scene(const oracle::Run& run, const oracle::Options& options);
 
   const oracle::Run& run() const { return run_; }
   std::size_t nodes() const { return who_.devices.size(); }
-  /// "mote 2", "sink 11" (its island), "sink #1" (its address), "base 11", "unknown 7".
+  /// Returns "mote 2", "sink 11" (its island), "sink #1" (its address), "base 11", "unknown 7".
   const std::string& name(std::uint16_t node) const { return names_[node]; }
-  /// The node that a finding names; kNobody for others.
+  /// Returns the node that a finding names; kNobody for others.
   std::uint16_t node_named(const std::string& name) const;
-  /// Where its column stands among others: base station and sink, motes, further sinks.
+  /// Returns the rank of its column: base station and sink, motes, further sinks.
   std::size_t column_rank(std::uint16_t node) const { return ranks_[node]; }
 
-  /// Who sent observation `i`; kNobody where that is not known.
+  /// Returns the sender of observation `i`; kNobody if unknown.
   std::uint16_t sender(std::size_t i) const { return who_.marks[i].device; }
-  /// Whom it was for, all of them if that may be several.
+  /// Returns its receivers, all of them if that may be several.
   std::vector<std::uint16_t> receivers(std::size_t i) const;
   bool concerns(std::size_t i, std::uint16_t node) const;
-  /// The motes that it is about, by their numbers: ends of the frame or of the message within.
+  /// Returns the numbers of the motes that it concerns: ends of the frame or of the message within.
   std::vector<std::uint16_t> topic(std::size_t i) const;
-  /// The link's own repetition, a log's second line of the same, or an acknowledgement of the link.
+  /// Returns whether it is the link's own repetition, a log's second line of the same, or an
+  /// acknowledgement of the link.
   bool is_echo(std::size_t i) const;
 
-  /// What an arrow says: "join_request 7", "ack of 4660".
+  /// Returns the text of an arrow: "join_request 7", "ack of 4660".
   std::string label(std::size_t i) const;
-  /// Everything: "join_request(seq_num=7 ...)".
+  /// Returns the whole message: "join_request(seq_num=7 ...)".
   std::string message(std::size_t i) const;
-  /// "mote 2 > sink 11".
+  /// Returns "mote 2 > sink 11".
   std::string route(std::size_t i) const;
 
  private:

@@ -23,7 +23,6 @@ constexpr std::size_t kFramesBefore = 3;
 constexpr std::size_t kFramesAfter = 2;
 constexpr std::size_t kFactLines = 6;    // More are run together.
 constexpr std::size_t kLinesOfRule = 3;  // Of a rule and severity, without --verbose.
-constexpr std::string_view kIndent = "  ";
 
 class TextReport {
  public:
@@ -64,10 +63,6 @@ class TextReport {
     return story_.outcome.expected_by[i] != kUnexpected;
   }
 
-  std::string painted(std::string_view style, std::string_view text) const {
-    return options_.color ? fmt::format("\033[{}m{}\033[0m", style, text) : std::string(text);
-  }
-
   std::string_view style_of(Severity severity) const {
     switch (severity) {
       case Severity::kFail: return "1;31";
@@ -80,9 +75,7 @@ class TextReport {
   }
 
   void styled_line(std::string_view style, std::string_view head, std::string_view rest) {
-    const std::string line = fmt::format("{} {}", head, rest);
-    const std::string lines = wrapped("", line, options_.width, kIndent.size());
-    out_ += painted(style, head) + lines.substr(head.size());
+    out_ += styled(options_, style, head, rest);
   }
 
   void about_the_run() {
@@ -136,16 +129,9 @@ class TextReport {
   }
 
   std::string head(std::size_t i) const {
-    std::string name(severity_name(story_.report.findings[i].severity));
-    std::transform(name.begin(), name.end(), name.begin(),
-                   [](char c) { return static_cast<char>(c >= 'a' && c <= 'z' ? c - 32 : c); });
+    std::string name = in_capitals(severity_name(story_.report.findings[i].severity));
     if (is_expected(i)) name = "EXPECTED " + name;
     return options_.head.empty() ? name : options_.head + " " + name;
-  }
-
-  void field(std::string_view name, std::string_view text) {
-    if (text.empty()) return;
-    out_ += wrapped(fmt::format("{}{:<9} ", kIndent, name), text, options_.width);
   }
 
   void in_full(std::size_t i) {
@@ -155,13 +141,15 @@ class TextReport {
     out_ += wrapped(kIndent, finding.text, options_.width);
     const reflect::Requirement& rule = reflect::requirement(finding.requirement);
     if (finding.requirement != ReqId::kNone) {
-      field("Rule:", fmt::format("{} ({} {}; {})", rule.sentence, rule.level, rule.id,
-                                 *rule.source == '\0' ? rule.clause : rule.source));
+      out_ += field("Rule:",
+                    fmt::format("{} ({} {}; {})", rule.sentence, rule.level, rule.id,
+                                *rule.source == '\0' ? rule.clause : rule.source),
+                    options_);
     }
-    field("Allowed:", finding.expected);
+    out_ += field("Allowed:", finding.expected, options_);
     if (is_expected(i)) {
-      field("Expected:",
-            story_.expected.expectations[story_.outcome.expected_by[i]].reason);
+      out_ += field("Expected:", story_.expected.entries[story_.outcome.expected_by[i]].reason,
+                    options_);
     }
     hypotheses(finding);
     frames(finding);
@@ -187,8 +175,8 @@ class TextReport {
     }
   }
 
-  // The frame at the place, some before it and some after it that concern the same node, and of a
-  // sink's only those about the same motes.
+  // Returns the frame at the place with some before and after it that concern the same node; for a
+  // sink, only those about the same motes.
   std::vector<std::size_t> window(std::size_t at, std::uint16_t node) {
     std::vector<std::uint16_t> topic;
     if (at < story_.run.seen.size()) topic = scene_->topic(at);
@@ -230,7 +218,7 @@ class TextReport {
       out_ += fmt::format("{}{}, {}\n", kIndent, where, scene_->route(i));
       constexpr std::string_view kDeep = "             ";
       const std::string message = scene_->message(i);
-      // The frame in question in full, a line of the others.
+      // Shows the frame in question in full, the others on one line each.
       if (i == at || kDeep.size() + message.size() <= options_.width) {
         out_ += wrapped(kDeep, message, options_.width, kDeep.size() + 2);
       } else {
@@ -250,12 +238,12 @@ class TextReport {
         ranges += " --frames " + range_text(range, story_.run.files.size());
       }
     }
-    // A command is copied whole, so it is not broken.
+    // A command is meant to be copied, so it is not broken.
     out_ += fmt::format("\n{}Again:    {}{}{}\n", kIndent, options_.command, options_.files,
                         ranges);
   }
 
-  // The rest: by severity, then by rule, a few of each.
+  // Prints the rest: by severity, then by rule, a few of each.
   void in_lines(const std::vector<std::size_t>& which) {
     using Key =
         std::tuple<int, bool, std::size_t>;  // The last is the rule's place in the catalogue.
@@ -285,7 +273,7 @@ class TextReport {
                                    options_.text.empty() ? finding.text : options_.text);
     if (is_expected(i)) {
       rest += fmt::format(" Expected: {}",
-                          story_.expected.expectations[story_.outcome.expected_by[i]].reason);
+                          story_.expected.entries[story_.outcome.expected_by[i]].reason);
     }
     styled_line(style_of(finding.severity), head(i), rest);
   }
@@ -293,20 +281,21 @@ class TextReport {
   void expectations() {
     for (std::size_t e = 0; e < story_.outcome.results.size(); ++e) {
       const ExpectationResult& result = story_.outcome.results[e];
-      const Expectation& one = story_.expected.expectations[e];
+      const KnownFailure& one = story_.expected.entries[e];
       const std::string place = fmt::format("{}:{}", story_.expected.name, one.line);
       if (result.came == Came::kStale) {
         out_ += '\n';
-        styled_line("1;31", "STALE", fmt::format(
-            "{}: {} does not fail with \"{}\" any more. If that is meant, delete the expectation.",
-            place, trace_id(one.requirement), one.message));
+        styled_line("1;31", "STALE",
+                    fmt::format("{}: {} does not fail with \"{}\" any more. If that is meant, "
+                                "delete the expectation.",
+                                place, one.requirement, one.message));
       } else if (result.came == Came::kOtherMessage) {
         const Finding& finding = story_.report.findings[result.findings.front()];
         out_ += '\n';
-        styled_line("1;31", "OTHER MESSAGE", fmt::format(
-            "{}: {} was expected to say \"{}\", but {} says: {}", place,
-            trace_id(one.requirement), one.message, place_text(story_.run, finding.place),
-            finding.text));
+        styled_line("1;31", "OTHER MESSAGE",
+                    fmt::format("{}: {} was expected to say \"{}\", but {} says: {}", place,
+                                one.requirement, one.message, place_text(story_.run, finding.place),
+                                finding.text));
       }
     }
   }
@@ -320,7 +309,7 @@ class TextReport {
     }
     const Outcome& outcome = story_.outcome;
     std::string text = counted(counts[Severity::kFail], "failure");
-    if (!story_.expected.expectations.empty()) {
+    if (!story_.expected.entries.empty()) {
       text += fmt::format(", {} expected, {} not true", counted(expected, "known failure"),
                           counted(outcome.broken_expectations, "expectation"));
     }

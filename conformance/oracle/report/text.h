@@ -5,36 +5,35 @@
 
 #include "conformance/oracle/report/expect.h"
 #include "conformance/oracle/report/window.h"
+#include "conformance/report/text.h"
 
 namespace rubric::report {
 
-/// All that a report is made of. Borrowed.
+/// The parts of a report. Borrowed.
 struct Story {
   const oracle::Run& run;
   const oracle::Options& options;
   const oracle::Report& report;
-  const ExpectationFile& expected;
+  const KnownFailures& expected;
   const Outcome& outcome;
 };
 
-struct TextOptions {
-  std::size_t width = 100;
-  bool color = false;
+struct TextOptions : TextStyle {
   bool verbose = false;        ///< Every finding in full.
   /// The command that made this run, ready for a shell: program and options, and its files. Empty
-  /// where the run cannot be had again.
+  /// if the run cannot be repeated.
   std::string command = "rubric check";
   std::string files;
-  std::string head;            ///< text_finding(): stands before the severity, in capitals.
+  std::string head;            ///< text_finding(): printed before the severity, in capitals.
   std::string text;            ///< text_finding(): said in a line in place of the finding's.
   Judge judge;                 ///< Finds parts of the run that show a finding; empty: none.
 };
 
-/// What the run is, each failure in full (others of the same rule and node in a line), the rest in
-/// a line each, what became of expectations, and the sum.
+/// Returns the report: facts about the run, each failure in full (others of the same rule and node
+/// on one line), the rest on a line each, the results of expectations, and the sum.
 std::string text_report(const Story& story, const TextOptions& options);
 
-/// One finding of a story alone: a line, wrapped to the width, with `verbose` in full.
+/// Returns one finding of a story: a line, wrapped to the width; in full with `verbose`.
 std::string text_finding(const Story& story, std::size_t index, const TextOptions& options);
 
 }  // namespace rubric::report

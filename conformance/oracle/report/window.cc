@@ -71,7 +71,7 @@ oracle::Run part_of(const oracle::Run& run, const std::vector<FrameRange>& range
     }
   }
   if (begins_later) options.start_cold = false;
-  // What has no time says nothing of when the part begins and ends.
+  // A frame without a time does not show when the part begins and ends.
   const auto timed = [](const oracle::Observation& seen) { return seen.place.timed(); };
   const auto first = std::find_if(out.seen.begin(), out.seen.end(), timed);
   if (first == out.seen.end()) return out;
@@ -116,7 +116,7 @@ std::vector<FrameRange> Windows::around(const oracle::Finding& finding) {
   const std::size_t at = finding.place.frame == 0 ? all : index_of(run_, finding.place);
   if (at == all) return {};
   const auto affordable = [&] { return judged_ + 2 * all < kBudget; };
-  // What lies behind first, then what lies before; each time as little more as it takes.
+  // Extends the part after the finding first, then before it, each time as little as needed.
   std::size_t end = all;
   for (std::size_t more = 3; at + more < all && affordable(); more *= 2) {
     if (!shows(0, at + more, finding)) continue;

@@ -10,12 +10,12 @@
 
 namespace rubric::report {
 
-/// "fail", "weak", "stray", "inconclusive", "note"; stable, as programs read them.
+/// Returns "fail", "weak", "stray", "inconclusive", "note"; stable, as programs read them.
 std::string_view severity_name(oracle::Severity severity);
-/// "pass", "weak", "stray", "inconclusive", "fail".
+/// Returns "pass", "weak", "stray", "inconclusive", "fail".
 std::string_view verdict_name(oracle::Verdict verdict);
 
-/// "frame 12 at 3.842100 s", "frame 12 of b.pcapng at ..." in a run of several files, "the end of
-/// the run" where no frame is meant.
+/// Returns "frame 12 at 3.842100 s", "frame 12 of b.pcapng at ..." in a run of several files, "the
+/// end of the run" if no frame is meant.
 std::string place_text(const oracle::Run& run, const oracle::Place& place);
 }  // namespace rubric::report

@@ -5,6 +5,7 @@
 
 #include "codec/containers/link_record.h"
 #include "codec/containers/writer.h"
+#include "codec/reflect/am_frames.h"
 #include "codec/runtime/bytes.h"
 #include "codec/runtime/crc16.h"
 #include "codec/runtime/hdlc.h"
@@ -22,25 +23,15 @@ using trace::LinkKind;
 using trace::Op;
 
 constexpr std::int64_t kNsPerSecond = 1'000'000'000;
-constexpr std::uint16_t kFcfData = 0x8841;      // IEEE 802.15.4: data, short addresses in one PAN.
-constexpr std::uint8_t kNetwork6Lowpan = 0x3F;  // TinyOS: an I-frame.
 constexpr std::size_t kSafeNameMax = 80;
 
 std::vector<std::uint8_t> radio_frame(const trace::AmFrame& am, std::uint8_t dsn) {
-  constexpr std::size_t kHeadBytes = 11;
-  std::vector<std::uint8_t> bytes(kHeadBytes + am.payload.size());
-  store_le16(bytes.data(), kFcfData);
-  bytes[2] = dsn;
-  store_le16(bytes.data() + 3, am.group);
-  store_le16(bytes.data() + 5, am.dest);
-  store_le16(bytes.data() + 7, am.src);
-  bytes[9] = kNetwork6Lowpan;
-  bytes[10] = am.type;
-  std::copy(am.payload.begin(), am.payload.end(), bytes.begin() + kHeadBytes);
-  return bytes;
+  const std::uint16_t fcf = reflect::fcf_of(tinyos::FrameControl::kData);
+  return reflect::radio_frame({fcf, dsn, am.group, am.dest, am.src}, am.type,
+                              Bytes(am.payload.data(), am.payload.size()));
 }
 
-/// Writes the frames of one case, each once however many nodes hear it.
+/// Writes the frames of one case, each once, however many nodes hear it.
 class Capture {
  public:
   explicit Capture(const CaseRun& one) : one_(one) {

@@ -57,7 +57,7 @@ std::vector<SourceLine> CaseSources::of(const SuiteRun& run, const CaseRun& one)
   for (const auto& [name, line] : source.cases) {
     if (line > first) end = std::min(end, line);
   }
-  // What stands above the next case is about that.
+  // Lines above the next case are about that one.
   while (end > first + 1 && is_nothing(source.lines[end - 2])) --end;
   std::vector<SourceLine> out;
   for (const std::uint32_t line : source.head) out.push_back({line, source.lines[line - 1]});

@@ -1,4 +1,4 @@
-// Golden traces as their authors wrote them, for those who read a report.
+// Golden traces as their authors wrote them, for readers of a report.
 #pragma once
 
 #include <cstdint>
@@ -15,11 +15,11 @@ struct SourceLine {
   std::string text;
 };
 
-/// Finds the text of cases: the kit's own within the program, the user's in their files.
+/// Finds the text of cases: the kit's own in the program, the user's in their files.
 class CaseSources {
  public:
-  /// The headers of its file, then the case from its first line to its last. Empty where the file
-  /// is gone or has no such case any more.
+  /// Returns the headers of its file, then the case from its first line to its last. Empty if the
+  /// file is gone or no longer has the case.
   std::vector<SourceLine> of(const SuiteRun& run, const CaseRun& one);
 
  private:

@@ -24,14 +24,14 @@ using trace::Line;
 using trace::Op;
 using trace::Value;
 
-// The machine, with what it made of each stimulus.
+// The machine, recording its reaction to each stimulus.
 class Watched : public runner::SubjectTarget {
  public:
   explicit Watched(std::vector<Heed>& heeds)
       : SubjectTarget(std::make_unique<runner::Machine>()), heeds_(heeds) {}
 
   void give(runner::Ticks now, const machine::Event& event) override {
-    while (run_until(now) < now) {  // What comes of the time before is not of this.
+    while (run_until(now) < now) {  // Earlier output is no reaction to this.
     }
     const std::size_t before = labels().size();
     SubjectTarget::give(now, event);
@@ -87,7 +87,7 @@ std::string net_msg_text(const trace::Message& message) {
                      app.empty() ? "" : " " + app);
 }
 
-// "joined(11:5 success)": names and addresses stand for themselves.
+// Returns "joined(11:5 success)": names and addresses are shown without their fields.
 std::string fields_text(const trace::Message& message) {
   std::string out;
   for (const trace::FieldValue& field : message.fields) {
@@ -101,13 +101,16 @@ std::string fields_text(const trace::Message& message) {
   return message.name + (out.empty() ? "" : "(" + out + ")");
 }
 
-SequenceRow::Way way_of(const Line& line, const CaseRun& one) {
+// `is_frame`: what stands for a frame though it has no addresses.
+SequenceRow::Way way_of(const Line& line, const CaseRun& one, bool is_frame) {
   using Way = SequenceRow::Way;
   trace::Scope scope;
   scope.nodes = one.nodes;
   scope.links = one.links;
-  if (!line.am) return line.link == "app" && line.message.name != "busy" &&
-                               line.message.name != "idle" ? Way::kCall : Way::kState;
+  if (!is_frame)
+    return line.link == "app" && line.message.name != "busy" && line.message.name != "idle"
+               ? Way::kCall
+               : Way::kState;
   switch (scope.link(line.link).value_or(trace::LinkKind::kAny)) {
     case trace::LinkKind::kSerial: return Way::kSerial;
     case trace::LinkKind::kPeis: return Way::kPeis;
@@ -124,7 +127,7 @@ std::string full_text(const Line& line) {
   return begin == out.npos ? out : out.substr(begin);
 }
 
-// Each once.
+// Returns the rules, each once.
 std::string rules_text(const std::vector<ReqId>& rules) {
   std::string out;
   std::set<ReqId, reflect::CatalogueOrder> seen{ReqId::kNone};
@@ -132,6 +135,13 @@ std::string rules_text(const std::vector<ReqId>& rules) {
     if (!seen.insert(rule).second) continue;
     out += (out.empty() ? "" : ", ") + std::string(trace::requirement_text(rule));
   }
+  return out;
+}
+
+// The names of the nodes that a line is from and for.
+std::set<std::string> ends_of(const CaseRun& one, const Line& line) {
+  std::set<std::string> out = {line.node};
+  for (const std::size_t i : peers_of(one.nodes, line)) out.insert(one.nodes[i].name);
   return out;
 }
 
@@ -143,10 +153,10 @@ void add_note(std::string& note, const std::string& more) {
 /// Makes the rows of a log, in its order.
 class Chart {
  public:
-  Chart(const CaseRun& one, const Heeds& heeds)
-      : one_(one), heeds_(heeds), stage_(one), lines_(one.result.log.lines()) {}
+  Chart(const CaseRun& one, const Heeds& heeds, Stage::Apps apps = Stage::Apps::kAlone)
+      : one_(one), heeds_(heeds), stage_(one, apps), lines_(one.result.log.lines()) {}
 
-  report::Sequence take() {
+  report::Sequence take(bool with_failures = false) {
     const std::vector<std::size_t> before = first_seen(lines_);
     find_heeds();
     find_links();
@@ -159,6 +169,9 @@ class Chart {
       }
     }
     for (std::size_t i = 0; i < rows_.size(); ++i) complete(i);
+    if (with_failures) {
+      for (const runner::Failure& failure : one_.result.failures) mark(failure);
+    }
     report::Sequence out;
     out.columns = stage_.names();
     out.about = stage_.about();
@@ -181,7 +194,7 @@ class Chart {
     }
   }
 
-  // Which nodes under test speak on a link at all.
+  // Finds the links that each node under test uses.
   void find_links() {
     for (const Line* line : lines_) {
       if (line->am) on_link_[line->link].insert(stage_.column(line->node));
@@ -194,7 +207,7 @@ class Chart {
     row.number = std::to_string(line.time.from);
     row.detail = key_text(line.message, report::kSvgLabelMax);
     row.full = full_text(line);
-    row.way = way_of(line, one_);
+    row.way = way_of(line, one_, line.am.has_value());
     if (row.way == SequenceRow::Way::kRadio && row.from == kNoColumn) {
       row.detail += " (from " + trace::value_text(line.am->source) + ")";
     } else if (row.way == SequenceRow::Way::kRadio && row.to.empty()) {
@@ -213,7 +226,7 @@ class Chart {
     }
   }
 
-  // Nodes under test hear what they are given, and nothing else.
+  // Splits hearers: nodes under test hear what they are given, and nothing else.
   void split_hearers(SequenceRow& row) const {
     const Line& line = *lines_[row.lines.front()];
     std::vector<std::size_t> stay;
@@ -241,7 +254,7 @@ class Chart {
     takers_[at].push_back(i);
   }
 
-  // What those who got it made of it.
+  // Adds the reactions of those who received it.
   void complete(std::size_t at) {
     SequenceRow& row = rows_[at];
     for (const std::size_t i : takers_[at]) {
@@ -257,6 +270,38 @@ class Chart {
     for (const std::size_t column : row.missed) {
       add_note(row.note, "not heard by " + stage_.names()[column]);
     }
+  }
+
+  void mark(const runner::Failure& failure) {
+    const auto breaks = [&](std::size_t line) { return is_broken_by(failure, *lines_[line]); };
+    const auto broken = std::find_if(rows_.begin(), rows_.end(), [&](const SequenceRow& row) {
+      return std::any_of(row.lines.begin(), row.lines.end(), breaks);
+    });
+    if (broken != rows_.end()) {
+      point_at(*broken);
+      return;
+    }
+    SequenceRow row;
+    const std::optional<Line> asked = asked_line(failure);
+    if (asked) {
+      row = stage_.row(*asked);
+      row.missed = std::move(row.to);
+      row.to.clear();
+      row.way = way_of(*asked, one_, asked->link != "app");
+    }
+    row.absent = true;
+    row.number = std::to_string(failure.to);
+    row.detail = asked ? "no " + short_text(asked->message) : "it broke";
+    point_at(row);
+    const auto next = std::find_if(rows_.begin(), rows_.end(), [&](const SequenceRow& other) {
+      return std::stoull(other.number) > failure.time;
+    });
+    rows_.insert(next, std::move(row));
+  }
+
+  static void point_at(SequenceRow& row) {
+    if (!row.marked) row.detail = "\u25c0 " + row.detail;
+    row.marked = true;
   }
 
   static void drop_idle_columns(report::Sequence& sequence) {
@@ -293,7 +338,7 @@ class Chart {
   std::map<std::string, std::set<std::size_t>, std::less<>> on_link_;
   std::vector<std::size_t> rows_of_;
   std::vector<SequenceRow> rows_;
-  std::vector<std::vector<std::size_t>> takers_;  // Of each row: lines that were given.
+  std::vector<std::vector<std::size_t>> takers_;  // For each row: lines that were given.
 };
 
 }  // namespace
@@ -309,11 +354,23 @@ MachineRun run_on_machine(const SuiteCase& one) {
   return out;
 }
 
-Stage::Stage(const CaseRun& one) : nodes_(one.nodes) {
+Stage::Stage(const CaseRun& one, Apps apps) : nodes_(one.nodes) {
+  if (apps == Apps::kAll) {
+    for (const trace::NodeHeader& node : nodes_) {
+      const bool mote = node.role == trace::Role::kMote;
+      const std::size_t first = names_.size();
+      apps_[first + mote] = first + !mote;
+      names_.insert(names_.end(), 2, "application");
+      names_[first + mote] = node.name;
+    }
+    return;
+  }
   const auto tested = std::count_if(nodes_.begin(), nodes_.end(),
                                     [](const trace::NodeHeader& node) { return node.iut; });
-  app_ = tested == 1;
-  if (app_) names_.emplace_back("app");
+  if (tested == 1) {
+    names_.emplace_back("app");
+    apps_[1] = 0;
+  }
   for (const bool under_test : {true, false}) {  // The others beside whom they talk to.
     for (const trace::NodeHeader& node : nodes_) {
       if (node.iut == under_test) names_.push_back(node.name);
@@ -335,8 +392,8 @@ SequenceRow Stage::row(const Line& line) const {
   std::vector<std::size_t> peers;
   if (frame) {
     for (const std::size_t i : peers_of(nodes_, line)) peers.push_back(column(nodes_[i].name));
-  } else if (app_ && line.link == "app") {
-    peers = {0};
+  } else if (const auto app = apps_.find(node); line.link == "app" && app != apps_.end()) {
+    peers = {app->second};
   }
   if (!given) {
     row.from = node;
@@ -344,7 +401,7 @@ SequenceRow Stage::row(const Line& line) const {
     row.sent = frame;
   } else {
     if (peers.size() == 1) row.from = peers.front();
-    row.to = {node};
+    if (node != kNoColumn) row.to = {node};
   }
   return row;
 }
@@ -386,5 +443,42 @@ std::string key_text(const trace::Message& message, std::size_t length_max) {
 }
 
 report::Sequence chart(const CaseRun& one, const Heeds& heeds) { return Chart(one, heeds).take(); }
+
+report::Sequence failure_chart(const CaseRun& one) {
+  return Chart(one, {}).take(true);
+}
+
+std::optional<report::Sequence> join_chart(const CaseRun& one) {
+  constexpr std::int64_t kNoticeTicks = 600;  // A sink reports the mote so long after its ack.
+  static const std::set<std::string> kWords = {"join",     "join_request", "join_reply",
+                                               "ack_join", "joined",       "mote_joined"};
+  const std::vector<const Line*> lines = one.result.log.lines();
+  const auto ack = std::find_if(lines.begin(), lines.end(), [](const Line* line) {
+    return line->message.name == "ack_join" && line->op == Op::kEmits && line->am;
+  });
+  if (ack == lines.end()) return std::nullopt;
+  const std::string& mote = (*ack)->node;
+  std::set<std::string> party;  // The mote and the sinks that answer it.
+  bool asked = false;
+  for (const Line* line : lines) {
+    const std::set<std::string> ends = ends_of(one, *line);
+    if (!ends.contains(mote)) continue;
+    asked = asked || line->message.name == "join_request";
+    if (line->message.name == "join_reply") party.insert(ends.begin(), ends.end());
+  }
+  if (!asked || party.empty()) return std::nullopt;
+  CaseRun figure = one;
+  figure.result.log.items.clear();
+  for (auto line = lines.begin(); line != lines.end(); ++line) {
+    const std::string& word = (*line)->message.name;
+    if ((*line)->time.from > (*ack)->time.from + kNoticeTicks) break;
+    const bool shown =
+        (*line)->am ? ends_of(one, **line).contains(mote) : party.contains((*line)->node);
+    if (!kWords.contains(word) || !shown) continue;
+    figure.result.log.add(**line);
+    if (line > ack && word == "mote_joined") break;
+  }
+  return Chart(figure, {}, Stage::Apps::kAll).take();
+}
 
 }  // namespace rubric::suite

@@ -16,7 +16,7 @@ EarlierKey key_of(const SuiteRun& run, std::size_t implementation, const CaseRun
           which_of_name(run, implementation), one.repeat};
 }
 
-// As this run would call it, if it has it.
+// Returns the name that this run has for it, if it has it.
 std::string name_of(const SuiteRun& run, const EarlierKey& key) {
   for (std::size_t i = 0; i < run.implementations.size(); ++i) {
     if (run.implementations[i].identity.name == key.implementation &&

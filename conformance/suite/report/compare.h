@@ -1,4 +1,4 @@
-// What changed since an earlier run.
+// Compares a run with an earlier one.
 #pragma once
 
 #include <compare>
@@ -11,7 +11,7 @@
 
 namespace rubric::suite {
 
-/// One case on one implementation, whatever the versions of both.
+/// Identifies one case on one implementation, whatever the versions of both.
 struct EarlierKey {
   std::string implementation;   ///< Its name.
   std::string case_name;
@@ -20,21 +20,21 @@ struct EarlierKey {
   friend auto operator<=>(const EarlierKey&, const EarlierKey&) = default;
 };
 
-/// What an earlier run said, as far as a comparison needs it.
+/// The results of an earlier run, as far as a comparison needs them.
 struct EarlierRun {
   std::map<EarlierKey, std::string> verdicts;
 };
 
-/// Where an implementation of this run stands among those of its name, from 0.
+/// Returns the index of an implementation of this run among those of its name, from 0.
 std::size_t which_of_name(const SuiteRun& run, std::size_t implementation);
-/// What the earlier run said of it; empty: it has no such case.
+/// Returns its verdict in the earlier run; empty if that has no such case.
 std::string earlier_verdict(const EarlierRun& earlier, const SuiteRun& run,
                             std::size_t implementation, const CaseRun& one);
 
-/// A case whose verdict is another one.
+/// A case whose verdict has changed.
 struct Change {
-  std::string implementation;  ///< As implementation_name() has it, or the earlier run's name.
-  std::string case_name;       ///< As case_name() has it.
+  std::string implementation;  ///< As in implementation_name(), or the earlier run's name.
+  std::string case_name;       ///< As in case_name().
   std::string was;             ///< Empty: it is new.
   std::string is;              ///< Empty: it is gone, or was not chosen this time.
 };
@@ -44,7 +44,7 @@ struct Comparison {
   std::vector<Change> added;
   std::vector<Change> gone;
 };
-/// In the order of this run, what is gone in alphabetical order.
+/// Compares in the order of this run; cases that are gone come in alphabetical order.
 Comparison compare(const SuiteRun& run, const EarlierRun& earlier);
 
 }  // namespace rubric::suite

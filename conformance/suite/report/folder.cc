@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 constexpr const char* kAccount = "report.files";
 constexpr const char* kTitle = "rubric.files/1";
 
-// FNV-1a with 64 bits: it has to tell that a file was changed, not to withstand anybody.
+// FNV-1a with 64 bits: it detects that a file was changed and resists no attacker.
 std::string sum_of(std::string_view text) {
   std::uint64_t sum = 0xcbf29ce484222325U;
   for (const char c : text) sum = (sum ^ static_cast<std::uint8_t>(c)) * 0x100000001b3U;
@@ -37,7 +37,7 @@ std::optional<std::string> content_of(const fs::path& path) {
   return text;
 }
 
-// Whoever wrote the account, it leads to nothing outside of the folder.
+// Returns whether a path of the account stays inside the folder, whoever wrote it.
 bool is_inside(const fs::path& path) {
   return !path.empty() && path.is_relative() &&
          std::none_of(path.begin(), path.end(), [](const fs::path& part) {

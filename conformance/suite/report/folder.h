@@ -1,4 +1,4 @@
-// The folder of a report: what is written into it, and what an earlier report left there.
+// The folder of a report: writes into it, and removes what an earlier report left there.
 #pragma once
 
 #include <filesystem>
@@ -8,18 +8,19 @@
 
 namespace rubric::suite {
 
-/// Writes files into a folder and keeps account of them in its file `report.files`, so that the
-/// next report can remove those that it has no more. Nothing else is ever removed: no file that the
-/// account does not have, that somebody has changed since, or that a link leads to.
+/// Writes files into a folder and lists them in its file `report.files`, so that the next report
+/// can remove those that it no longer has. Removes nothing else: no file that the list does not
+/// have, that somebody has changed since, or that a link leads to.
 class ReportFolder {
  public:
   /// Makes the folder. Throws std::runtime_error with path and reason, as write() and finish() do.
   explicit ReportFolder(std::filesystem::path folder);
 
-  /// `path` has '/' between its parts, no "." or ".." among them, and no line end. Makes folders.
+  /// Writes a file and makes its folders. `path` has '/' between its parts, no "." or ".." among
+  /// them, and no line end.
   void write(const std::string& path, std::string_view text);
-  /// Removes what an earlier report wrote and this one did not, with folders that are empty then,
-  /// and writes the account.
+  /// Removes files of an earlier report that this one did not write, and folders that are empty
+  /// then, and writes the list.
   void finish();
 
  private:

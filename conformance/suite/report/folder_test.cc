@@ -1,4 +1,4 @@
-// What a report leaves in a folder that was used before, and what it takes away.
+// The files that a report leaves in a folder that was used before, and those that it removes.
 #include "conformance/suite/report/folder.h"
 
 #include <gtest/gtest.h>
@@ -81,7 +81,7 @@ TEST(ReportFolder, AUsedFolderLosesWhatAnEarlierReportLeftAndNothingElse) {
 TEST(ReportFolder, AnAccountThatLeadsElsewhereRemovesNothing) {
   Folder folder;
   const fs::path path = folder.path() / "report";
-  const std::string sum = "af63f54c86021707";  // Of "x".
+  const std::string sum = "af63f54c86021707";  // For "x".
   const std::vector<std::string> others = {"outside.txt", "report/linked/file.txt",
                                            "report/other/file.txt"};
   for (const std::string& other : others) put(folder.path() / other, "x");

@@ -1,9 +1,11 @@
 #include "conformance/suite/report/frame_view.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "codec/generated/tinyos/tables.h"
+#include "codec/reflect/am_frames.h"
 #include "codec/reflect/decode.h"
 #include "codec/reflect/fault_text.h"
 #include "conformance/trace/schema.h"
@@ -15,8 +17,6 @@ namespace {
 using reflect::Decoded;
 using reflect::Node;
 using reflect::NodeKind;
-
-constexpr std::uint32_t kHeadBytes = 8;  // Dispatch byte and AM header.
 
 std::string number(const reflect::Field& field, const reflect::Type& owner, std::int64_t value) {
   std::string out = field.enumeration
@@ -88,21 +88,19 @@ class Rows {
   std::vector<FrameField>& out_;
 };
 
-void add_head(std::string_view packet, std::vector<FrameField>& out) {
-  const auto byte = [&](std::size_t i) { return static_cast<std::uint8_t>(packet[i]); };
-  const auto word = [&](std::size_t i) {
-    const int value = byte(i) << 8 | byte(i + 1);
-    return value == trace::kAmAll ? std::string("65535 (all)") : std::to_string(value);
-  };
-  out.push_back({0, 1, "dispatch", std::to_string(byte(0))});
-  out.push_back({1, 2, "am.dest", word(1)});
-  out.push_back({3, 2, "am.src", word(3)});
-  out.push_back({5, 1, "am.length", std::to_string(byte(5))});
-  out.push_back({6, 1, "am.group", std::to_string(byte(6))});
-  out.push_back({7, 1, "am.type", std::to_string(byte(7))});
+void add_head(Bytes packet, std::vector<FrameField>& out) {
+  const reflect::Type& header = tinyos::tables::types::kAmHeader;
+  for (std::uint16_t i = 0; i < header.field_count; ++i) {
+    const reflect::Field& field = header.fields[i];
+    const auto at = static_cast<std::uint32_t>(field.fixed_offset);
+    const std::int64_t value = reflect::load_number(field, packet.data() + at);
+    const bool all = field.width_bytes == 2 && value == trace::kAmAll;
+    out.push_back({at, field.width_bytes, i == 0 ? field.name : std::string("am.") + field.name,
+                   std::to_string(value) + (all ? " (all)" : "")});
+  }
 }
 
-// Stale bytes behind a message, and whatever else has no name.
+// Adds stale bytes after a message, and other bytes without a name.
 void add_gaps(std::size_t size, std::vector<FrameField>& fields) {
   std::stable_sort(fields.begin(), fields.end(), [](const FrameField& a, const FrameField& b) {
     return a.offset_bytes < b.offset_bytes;
@@ -133,14 +131,16 @@ FrameView view_frame(std::string_view packet, trace::LinkKind link) {
     }
     return out;
   }
-  add_head(packet, out.fields);
+  const auto* const data = reinterpret_cast<const std::uint8_t*>(packet.data());
+  add_head(Bytes(data, packet.size()), out.fields);
   const reflect::Type* type = trace::Schema::get().payload_type(link, frame.type);
   if (type) {
     Decoded decoded;
     const Bytes bytes(frame.payload.data(), frame.payload.size());
     decoded.clear(bytes);
     reflect::decode(*type, bytes, reflect::Tail::kStale, true, decoded);
-    if (decoded.node_count() > 0) Rows(decoded, kHeadBytes, out.fields).children(0, "");
+    if (decoded.node_count() > 0)
+      Rows(decoded, reflect::kAmHeaderBytes, out.fields).children(0, "");
   }
   add_gaps(packet.size(), out.fields);
   return out;

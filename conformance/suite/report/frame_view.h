@@ -1,4 +1,4 @@
-// A frame of a log for people: its bytes, and what each of them is.
+// A frame of a log for people: its bytes, and the meaning of each.
 #pragma once
 
 #include <cstdint>
@@ -22,8 +22,8 @@ struct FrameView {
   std::vector<FrameField> fields;  ///< In the order of their bytes.
 };
 
-/// Of a serial forwarder packet as logs have them on every link. Bytes that no field describes are
-/// shown as such, so that each byte has its place.
+/// Describes a serial forwarder packet, as logs have them on every link. Bytes that no field
+/// describes are shown as such, so that each byte has its place.
 FrameView view_frame(std::string_view packet, trace::LinkKind link);
 
 }  // namespace rubric::suite

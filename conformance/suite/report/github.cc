@@ -10,7 +10,7 @@
 namespace rubric::suite {
 namespace {
 
-// What workflow commands ask for; properties also escape what separates them.
+// Escapes text for workflow commands; properties also escape their separators.
 std::string escaped(std::string_view text, bool property) {
   std::string out;
   for (const char c : text) {

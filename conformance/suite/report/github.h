@@ -7,7 +7,7 @@
 
 namespace rubric::suite {
 
-/// At most `max` `::error` lines: implementations that are refused, expectations that are not true,
+/// Returns at most `max` `::error` lines: refused implementations, expectations that do not hold,
 /// and the gravest unexpected results, each at its line of the golden trace.
 std::string github_annotations(const SuiteRun& run, std::size_t max = 10);
 

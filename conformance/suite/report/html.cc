@@ -1,5 +1,7 @@
 #include "conformance/suite/report/html.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <random>
@@ -7,8 +9,7 @@
 #include <string>
 #include <vector>
 
-#include <fmt/format.h>
-
+#include "conformance/report/sequence_style.h"
 #include "conformance/suite/report/case_files.h"
 #include "conformance/suite/report/folder.h"
 #include "conformance/suite/report/html_assets.h"
@@ -20,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Names of folders and files, each once, even where capitals do not count.
+// Makes names of folders and files unique, even where capitals do not count.
 class Names {
  public:
   std::string unique(const std::string& wanted) {
@@ -41,7 +42,7 @@ class Names {
   std::set<std::string> taken_;
 };
 
-// `place` ends with '/'.
+// Writes the files of cases; `place` ends with '/'.
 std::vector<CaseLinks> write_cases(const ImplementationRun& run, ReportFolder& folder,
                                    const std::string& place) {
   Names names;
@@ -60,7 +61,7 @@ std::vector<CaseLinks> write_cases(const ImplementationRun& run, ReportFolder& f
   return out;
 }
 
-// Only what knows it may run in the page.
+// Returns a nonce that page text cannot guess, without which no script runs.
 std::string random_nonce() {
   std::random_device device;
   std::string out;
@@ -68,7 +69,7 @@ std::string random_nonce() {
   return out;
 }
 
-// Each hole once: what fills one is never looked at again.
+// Fills each placeholder once; inserted text is not searched again.
 std::string filled(std::string_view page, const std::vector<std::string_view>& values) {
   static constexpr std::string_view kHoles[] = {"@NONCE@", "@STYLE@", "@DATA@", "@SCRIPT@"};
   std::string out;
@@ -99,7 +100,8 @@ void write_html_report(const SuiteRun& run, const EarlierRun* earlier, const fs:
   }
   const std::string nonce = random_nonce();
   const std::string data = html_data(run, earlier, links);
-  folder.write("index.html", filled(kPage, {nonce, kStyle, data, kScript}));
+  const std::string style = fmt::format("{}\n{}", report::kSequenceStyle, kStyle);
+  folder.write("index.html", filled(kPage, {nonce, style, data, kScript}));
   folder.finish();
 }
 

@@ -1,11 +1,11 @@
-// The page's parts, as they were when the program was built.
+// The page's parts, embedded when the program was built.
 #pragma once
 
 #include <string_view>
 
 namespace rubric::suite {
 
-/// html/page.html with @STYLE@, @SCRIPT@, @DATA@ and @NONCE@ in it.
+/// html/page.html with the placeholders @STYLE@, @SCRIPT@, @DATA@ and @NONCE@.
 extern const std::string_view kPage;
 extern const std::string_view kStyle;
 extern const std::string_view kScript;

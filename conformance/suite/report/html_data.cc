@@ -1,14 +1,20 @@
 #include "conformance/suite/report/html_data.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <tuple>
 #include <utility>
 
-#include <nlohmann/json.hpp>
-
 #include "codec/reflect/fault_text.h"
+#include "conformance/report/sequence_svg.h"
+#include "conformance/report/text.h"
 #include "conformance/suite/report/case_source.h"
+#include "conformance/suite/report/chart.h"
 #include "conformance/suite/report/frame_view.h"
 #include "conformance/suite/report/log_lines.h"
 #include "conformance/suite/report/words.h"
@@ -20,41 +26,22 @@ namespace {
 using Json = nlohmann::ordered_json;
 using trace::Line;
 
-Json roles_of(const std::vector<machine::Role>& all) {
-  Json out = Json::array();
-  for (const machine::Role role : all) out.push_back(role_text(role));
+Json implementation(const SuiteRun& run, std::size_t index) {
+  const ImplementationRun& one = run.implementations[index];
+  const RuleTotals totals = rule_totals(one);
+  Json out = implementation_json(one);
+  out["label"] = implementation_name(run, index);
+  out["outside"] = outside_headline(one);
+  out["stderr"] = one.stderr_text;
+  out["rules"] = {{"all", totals.all},
+                  {"kept", totals.kept},
+                  {"broken", totals.broken},
+                  {"undecided", totals.undecided},
+                  {"untried", totals.untried}};
   return out;
 }
 
-Json implementation(const SuiteRun& run, std::size_t index) {
-  const ImplementationRun& one = run.implementations[index];
-  const VerdictCounts counted = count(one);
-  Json counts = Json::object();
-  for (const runner::CaseVerdict verdict : kVerdicts) {
-    const auto found = counted.find(verdict);
-    counts[std::string(runner::verdict_text(verdict))] =
-        found == counted.end() ? 0 : found->second;
-  }
-  const RuleTotals totals = rule_totals(one);
-  return {{"label", implementation_name(run, index)},
-          {"name", one.identity.name},
-          {"version", one.identity.version},
-          {"target", one.target},
-          {"roles", roles_of(one.identity.roles)},
-          {"real_time", one.identity.real_time},
-          {"wall_ms", one.wall_ms},
-          {"dishonest", one.dishonest},
-          {"outside", outside_headline(one)},
-          {"stderr", one.stderr_text},
-          {"counts", std::move(counts)},
-          {"rules", {{"all", totals.all},
-                     {"kept", totals.kept},
-                     {"broken", totals.broken},
-                     {"undecided", totals.undecided},
-                     {"untried", totals.untried}}}};
-}
-
-/// Frames of all logs, each of them once.
+/// Collects the frames of all logs, each once.
 class Frames {
  public:
   std::size_t index_of(const Line& line, trace::LinkKind kind) {
@@ -78,6 +65,41 @@ class Frames {
   Json frames_ = Json::array();
 };
 
+/// Charts of all cases, each of them once.
+class Charts {
+ public:
+  /// Null where there is nothing to draw. Of many rows only those around the first that is marked.
+  Json index_of(report::Sequence sequence) {
+    std::vector<report::SequenceRow>& rows = sequence.rows;
+    if (rows.empty()) return nullptr;
+    std::string title = report::counted(rows.size(), "event");
+    if (rows.size() > kRowsMax) {
+      title = fmt::format("{} of {}", kRowsMax, title);
+      const auto marked =
+          std::find_if(rows.begin(), rows.end(), [](const auto& row) { return row.marked; });
+      const auto at = marked == rows.end() ? 0 : marked - rows.begin();
+      const auto half = static_cast<std::ptrdiff_t>(kRowsMax / 2);
+      const auto last = static_cast<std::ptrdiff_t>(rows.size() - kRowsMax);
+      const auto from = std::clamp<std::ptrdiff_t>(at - half, 0, last);
+      rows.erase(rows.begin(), rows.begin() + from);
+      rows.resize(kRowsMax);
+    }
+    const std::string svg =
+        report::sequence_svg(sequence, {"chart", "Sequence chart: " + title, true});
+    const auto [found, added] = known_.try_emplace(svg, charts_.size());
+    if (added) charts_.push_back(svg);
+    return found->second;
+  }
+
+  Json take() { return std::move(charts_); }
+
+ private:
+  static constexpr std::size_t kRowsMax = 400;
+
+  std::map<std::string, std::size_t> known_;
+  Json charts_ = Json::array();
+};
+
 class Data {
  public:
   Data(const SuiteRun& run, const EarlierRun* earlier,
@@ -88,11 +110,8 @@ class Data {
     Json implementations = Json::array();
     for (std::size_t i = 0; i < run_.implementations.size(); ++i) {
       implementations.push_back(implementation(run_, i));
+      implementations.back()["join"] = join(i);
       for (std::size_t k = 0; k < run_.implementations[i].cases.size(); ++k) add(i, k);
-    }
-    Json stale = Json::array();
-    for (const StaleExpectation& one : run_.stale) {
-      stale.push_back({{"place", one.place}, {"text", one.text}});
     }
     return {{"profile", run_.profile},
             {"seed", std::to_string(run_.seed)},  // Beyond what numbers of a script hold.
@@ -100,10 +119,11 @@ class Data {
             {"traces", run_.traces},
             {"earlier", earlier_ != nullptr},
             {"gone", gone()},
-            {"stale", std::move(stale)},
+            {"stale", stale_json(run_)},
             {"rules", rules()},
             {"implementations", std::move(implementations)},
             {"frames", frames_.take()},
+            {"charts", charts_.take()},
             {"cases", std::move(cases_)}};
   }
 
@@ -111,55 +131,63 @@ class Data {
   void add(std::size_t implementation, std::size_t index) {
     const CaseRun& one = run_.implementations[implementation].cases[index];
     const auto [found, added] = by_name_.try_emplace(one.name, cases_.size());
-    if (added) cases_.push_back(blank(one));
-    for (const ReqId id : one.requirements) rules_.insert(id);
-    cases_[found->second]["runs"].push_back(worked(implementation, index));
-  }
-
-  Json blank(const CaseRun& one) {
-    Json ids = Json::array();
-    for (const ReqId id : one.requirements) ids.push_back(trace::requirement_text(id));
-    Json source = Json::array();
-    for (const SourceLine& line : sources_.of(run_, one)) {
-      source.push_back({line.number, line.text});
+    rules_.insert(one.requirements.begin(), one.requirements.end());
+    Json run = case_json(one);
+    Json blank = Json::object();  // What all its runs have in common.
+    for (const char* key : {"name", "file", "comment", "roles", "requirements"}) {
+      blank[key] = std::move(run[key]);
+      run.erase(key);
     }
-    return {{"name", one.name},
-            {"file", one.file},
-            {"comment", one.comment},
-            {"roles", roles_of(one.roles)},
-            {"rules", std::move(ids)},
-            {"source", std::move(source)},
-            {"runs", Json::array()}};
+    if (added) {
+      blank["source"] = source(one);
+      blank["runs"] = Json::array();
+      cases_.push_back(std::move(blank));
+    }
+    add_to(run, implementation, index);
+    cases_[found->second]["runs"].push_back(std::move(run));
   }
 
-  Json worked(std::size_t i, std::size_t index) {
-    const ImplementationRun& implementation = run_.implementations[i];
-    const CaseRun& one = implementation.cases[index];
+  Json source(const CaseRun& one) {
+    Json out = Json::array();
+    for (const SourceLine& line : sources_.of(run_, one)) out.push_back({line.number, line.text});
+    return out;
+  }
+
+  void add_to(Json& out, std::size_t i, std::size_t index) {
+    const CaseRun& one = run_.implementations[i].cases[index];
     const std::vector<const Line*> lines = one.result.log.lines();
-    Json failures = Json::array();
-    for (const runner::Failure& each : one.result.failures) {
-      failures.push_back(failure(each, one.nodes, lines));
+    for (std::size_t k = 0; k < one.result.failures.size(); ++k) {
+      add_to(out["failures"][k], one.result.failures[k], lines);
     }
-    return {{"implementation", i},
-            {"repeat", one.repeat},
-            {"verdict", runner::verdict_text(one.result.verdict)},
-            {"unexpected", one.unexpected()},
-            {"expectation", expectation_text(one.expectation)},
-            {"expected_reason", one.expected_reason},
-            {"earlier", earlier_ ? earlier_verdict(*earlier_, run_, i, one) : std::string()},
-            {"headline", headline(one)},
-            {"reason", one.result.reason},
-            {"profile", one.profile},
-            {"seed", std::to_string(one.seed)},
-            {"wall_ms", one.wall_ms},
-            {"length_ticks", one.result.length},
-            {"stderr", one.stderr_text},
-            {"replay", replay_command(run_, implementation, one)},
-            {"rtr", links_[i][index].rtr},
-            {"pcapng", links_[i][index].pcapng},
-            {"nodes", nodes_of(one)},
-            {"failures", std::move(failures)},
-            {"log", log(one, lines)}};
+    out["implementation"] = i;
+    out["earlier"] = earlier_ ? earlier_verdict(*earlier_, run_, i, one) : std::string();
+    out["headline"] = headline(one);
+    out["profile"] = one.profile;
+    out["seed"] = std::to_string(one.seed);
+    out["replay"] = replay_command(run_, run_.implementations[i], one);
+    out["rtr"] = links_[i][index].rtr;
+    out["pcapng"] = links_[i][index].pcapng;
+    out["nodes"] = nodes_of(one);
+    out["chart"] = charts_.index_of(failure_chart(one));
+    out["log"] = log(one, lines);
+  }
+
+  // The paper's figure, of the best run for it: one that passed, of a case that was made for it.
+  Json join(std::size_t implementation) {
+    static constexpr std::array kCases = {"timeline", "j4.accept", "home.network"};
+    const CaseRun* best = nullptr;
+    std::pair<bool, std::ptrdiff_t> best_rank;
+    for (const CaseRun& one : run_.implementations[implementation].cases) {
+      const std::pair rank(one.result.verdict > runner::CaseVerdict::kWeak,
+                           std::find(kCases.begin(), kCases.end(), one.name) - kCases.begin());
+      if ((best && best_rank <= rank) || !join_chart(one)) continue;
+      best = &one;
+      best_rank = rank;
+    }
+    if (!best) return nullptr;
+    return {{"name", best->name},
+            {"repeat", best->repeat},
+            {"chart", charts_.index_of(*join_chart(*best))}};
   }
 
   Json gone() const {
@@ -173,31 +201,17 @@ class Data {
     return out;
   }
 
-  Json failure(const runner::Failure& one, const std::vector<trace::NodeHeader>& nodes,
-               const std::vector<const Line*>& lines) {
-    const std::optional<Line> asked = asked_line(one);
-    Json row = -1;
-    for (std::size_t i = 0; i < lines.size() && row == -1; ++i) {
-      if (is_broken_by(one, *lines[i])) row = i;
-    }
+  void add_to(Json& out, const runner::Failure& one, const std::vector<const Line*>& lines) {
+    const auto row = std::find_if(lines.begin(), lines.end(),
+                                  [&](const Line* line) { return is_broken_by(one, *line); });
     for (const std::string& name : one.requirements) {
       const ReqId id = trace::requirement_id(name);
       if (id != ReqId::kNone) rules_.insert(id);
     }
-    return {{"rules", one.requirements},
-            {"weak", one.weak},
-            {"forbidden", one.forbidden},
-            {"line", one.place.line},
-            {"time", one.time},
-            {"from", one.from},
-            {"to", one.to},
-            {"expected", one.expected},
-            {"text", one.text},
-            {"node", asked ? asked->node : ""},
-            {"link", asked ? asked->link : ""},
-            {"short", asked ? short_text(asked->message) : ""},
-            {"peers", asked ? peers_of(nodes, *asked) : std::vector<std::size_t>()},
-            {"row", row}};
+    out["forbidden"] = one.forbidden;
+    out["from"] = one.from;
+    out["to"] = one.to;
+    out["row"] = row == lines.end() ? -1 : row - lines.begin();
   }
 
   static Json nodes_of(const CaseRun& one) {
@@ -213,15 +227,14 @@ class Data {
     return out;
   }
 
-  // Keys that would say nothing are left out: logs are most of the page.
+  // Returns the log without empty keys: logs are most of the page.
   Json log(const CaseRun& one, const std::vector<const Line*>& lines) {
     trace::Scope scope;
     scope.nodes = one.nodes;
     scope.links = one.links;
-    const std::vector<std::size_t> before = first_seen(lines);
     Json out = Json::array();
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-      const Line& line = *lines[i];
+    for (const Line* each : lines) {
+      const Line& line = *each;
       const trace::LinkKind kind = scope.link(line.link).value_or(trace::LinkKind::kAny);
       Json row = {{"time", line.time.from},
                   {"node", line.node},
@@ -234,9 +247,6 @@ class Data {
       } else {
         row["text"] = trace::print(line.message);
       }
-      const std::vector<std::size_t> peers = peers_of(one.nodes, line);
-      if (!peers.empty()) row["peers"] = peers;
-      if (before[i] != kNoLine) row["of"] = before[i];
       out.push_back(std::move(row));
     }
     return out;
@@ -260,6 +270,7 @@ class Data {
   const std::vector<std::vector<CaseLinks>>& links_;
   CaseSources sources_;
   Frames frames_;
+  Charts charts_;
   std::set<ReqId, reflect::CatalogueOrder> rules_;
   std::map<std::string, std::size_t> by_name_;
   Json cases_ = Json::array();
@@ -269,12 +280,12 @@ class Data {
 
 std::string html_data(const SuiteRun& run, const EarlierRun* earlier,
                       const std::vector<std::vector<CaseLinks>>& links) {
-  // What implementations say of themselves need not be UTF-8.
+  // Text from implementations need not be UTF-8.
   const std::string text =
       Data(run, earlier, links).take().dump(-1, ' ', false, Json::error_handler_t::replace);
   std::string out;
   out.reserve(text.size());
-  for (const char c : text) {  // "<" stands within strings only.
+  for (const char c : text) {  // "<" occurs within strings only.
     if (c == '<') {
       out += "\\u003c";
     } else {

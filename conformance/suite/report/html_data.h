@@ -1,4 +1,4 @@
-// What the page of a report draws, as JSON.
+// The data that a report's page draws, as JSON.
 #pragma once
 
 #include <string>
@@ -15,8 +15,8 @@ struct CaseLinks {
   std::string pcapng;
 };
 
-/// One JSON object without "<", so that no text in it can end the script element that it stands in.
-/// `links` by implementation and case. The keys are read in html/*.js alone.
+/// Returns one JSON object without "<", so that no text in it can end the script element around it.
+/// `links` by implementation and case. Only html/*.js reads the keys.
 std::string html_data(const SuiteRun& run, const EarlierRun* earlier,
                       const std::vector<std::vector<CaseLinks>>& links);
 

@@ -48,30 +48,6 @@ Json failure(const runner::Failure& one) {
           {"text", one.text}};
 }
 
-Json case_run(const CaseRun& one) {
-  Json failures = Json::array();
-  for (const runner::Failure& each : one.result.failures) failures.push_back(failure(each));
-  Json log = Json::array();
-  for (const trace::Line* line : one.result.log.lines()) log.push_back(trace::print(*line));
-  return {{"name", one.name},
-          {"file", one.file},
-          {"comment", one.comment},
-          {"roles", roles(one.roles)},
-          {"requirements", ids(one.requirements)},
-          {"repeat", one.repeat},
-          {"seed", one.seed},
-          {"verdict", runner::verdict_text(one.result.verdict)},
-          {"unexpected", one.unexpected()},
-          {"expectation", expectation_text(one.expectation)},
-          {"expected_reason", one.expected_reason},
-          {"reason", one.result.reason},
-          {"length_ticks", one.result.length},
-          {"wall_ms", one.wall_ms},
-          {"failures", std::move(failures)},
-          {"stderr", one.stderr_text},
-          {"log", std::move(log)}};
-}
-
 Json requirement(const RequirementSummary& one) {
   return {{"id", trace::requirement_text(one.requirement)},
           {"cases", counts(one.cases)},
@@ -79,30 +55,17 @@ Json requirement(const RequirementSummary& one) {
 }
 
 Json implementation(const ImplementationRun& run) {
-  Json cases = Json::array();
-  for (const CaseRun& one : run.cases) cases.push_back(case_run(one));
-  Json outside = Json::array();
-  for (const OutsideFault& one : run.outside) {
-    outside.push_back({{"when", one.when},
-                       {"text", one.text},
-                       {"broke", one.broke},
-                       {"stderr", one.stderr_text}});
+  Json out = implementation_json(run);
+  for (const char* list : {"cases", "requirements"}) out[list] = Json::array();
+  for (const CaseRun& one : run.cases) {
+    Json& added = out["cases"].emplace_back(case_json(one));
+    added["log"] = Json::array();
+    for (const trace::Line* line : one.result.log.lines()) added["log"] += trace::print(*line);
   }
-  Json requirements = Json::array();
   for (const RequirementSummary& one : by_requirement(run)) {
-    requirements.push_back(requirement(one));
+    out["requirements"].push_back(requirement(one));
   }
-  return {{"target", run.target},
-          {"name", run.identity.name},
-          {"version", run.identity.version},
-          {"roles", roles(run.identity.roles)},
-          {"real_time", run.identity.real_time},
-          {"dishonest", run.dishonest},
-          {"outside", std::move(outside)},
-          {"wall_ms", run.wall_ms},
-          {"counts", counts(count(run))},
-          {"cases", std::move(cases)},
-          {"requirements", std::move(requirements)}};
+  return out;
 }
 
 const Json& member(const Json& object, const char* key, const std::string& place) {
@@ -126,14 +89,58 @@ const Json& list_of(const Json& object, const char* key, const std::string& plac
 
 }  // namespace
 
+Json case_json(const CaseRun& one) {
+  Json failures = Json::array();
+  for (const runner::Failure& each : one.result.failures) failures.push_back(failure(each));
+  return {{"name", one.name},
+          {"file", one.file},
+          {"comment", one.comment},
+          {"roles", roles(one.roles)},
+          {"requirements", ids(one.requirements)},
+          {"repeat", one.repeat},
+          {"seed", one.seed},
+          {"verdict", runner::verdict_text(one.result.verdict)},
+          {"unexpected", one.unexpected()},
+          {"expectation", expectation_text(one.expectation)},
+          {"expected_reason", one.expected_reason},
+          {"reason", one.result.reason},
+          {"length_ticks", one.result.length},
+          {"wall_ms", one.wall_ms},
+          {"failures", std::move(failures)},
+          {"stderr", one.stderr_text}};
+}
+
+Json implementation_json(const ImplementationRun& run) {
+  Json outside = Json::array();
+  for (const OutsideFault& one : run.outside) {
+    outside.push_back({{"when", one.when},
+                       {"text", one.text},
+                       {"broke", one.broke},
+                       {"stderr", one.stderr_text}});
+  }
+  return {{"target", run.target},
+          {"name", run.identity.name},
+          {"version", run.identity.version},
+          {"roles", roles(run.identity.roles)},
+          {"real_time", run.identity.real_time},
+          {"dishonest", run.dishonest},
+          {"outside", std::move(outside)},
+          {"wall_ms", run.wall_ms},
+          {"counts", counts(count(run))}};
+}
+
+Json stale_json(const SuiteRun& run) {
+  Json out = Json::array();
+  for (const StaleExpectation& one : run.stale) {
+    out.push_back({{"place", one.place}, {"text", one.text}});
+  }
+  return out;
+}
+
 std::string json_report(const SuiteRun& run) {
   Json implementations = Json::array();
   for (const ImplementationRun& one : run.implementations) {
     implementations.push_back(implementation(one));
-  }
-  Json stale = Json::array();
-  for (const StaleExpectation& one : run.stale) {
-    stale.push_back({{"place", one.place}, {"text", one.text}});
   }
   const Json out = {{"schema", kSchema},
                     {"profile", run.profile},
@@ -142,7 +149,7 @@ std::string json_report(const SuiteRun& run) {
                     {"traces", run.traces},
                     {"exit_code", exit_code(run)},
                     {"implementations", std::move(implementations)},
-                    {"stale", std::move(stale)}};
+                    {"stale", stale_json(run)}};
   // What an implementation wrote to its standard error need not be UTF-8.
   return out.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }

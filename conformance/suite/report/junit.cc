@@ -2,146 +2,101 @@
 
 #include <algorithm>
 
-#include <fmt/format.h>
-
-#include "conformance/report/text.h"
+#include "conformance/report/junit.h"
 #include "conformance/suite/report/words.h"
 
 namespace rubric::suite {
 namespace {
 
-using report::xml_text;
+using report::JunitCase;
+using report::JunitSuite;
 using runner::CaseVerdict;
+using Outcome = JunitCase::Outcome;
 
-struct Sums {
-  std::size_t tests = 0;
-  std::size_t failures = 0;
-  std::size_t errors = 0;
-  std::size_t skipped = 0;
-  double wall_ms = 0;
-
-  void add(const Sums& other) {
-    tests += other.tests;
-    failures += other.failures;
-    errors += other.errors;
-    skipped += other.skipped;
-    wall_ms += other.wall_ms;
-  }
-};
-
-std::string attributes(const Sums& sums) {
-  return fmt::format("tests=\"{}\" failures=\"{}\" errors=\"{}\" skipped=\"{}\" time=\"{:.3f}\"",
-                     sums.tests, sums.failures, sums.errors, sums.skipped, sums.wall_ms / 1000);
-}
-
-// Readers split at the last dot.
+// Replaces dots, since readers split at the last one.
 std::string class_name_of(std::string name) {
   std::replace(name.begin(), name.end(), '.', '_');
   return "rubric." + name;
 }
 
-std::string outcome(const CaseRun& one, Sums& sums) {
-  const std::string message = xml_text(headline(one));
-  const std::string body = xml_text(in_full(one));
-  if (one.unexpected() && one.result.verdict == CaseVerdict::kError) {
-    ++sums.errors;
-    return fmt::format("<error type=\"error\" message=\"{}\">{}</error>\n", message, body);
-  }
-  if (one.unexpected()) {
-    ++sums.failures;
-    const bool passes = one.expectation == Expectation::kUnexpectedPass;
-    return fmt::format("<failure type=\"{}\" message=\"{}\">{}</failure>\n",
-                       passes ? "unexpected_pass" : "fail", message, body);
-  }
-  if (one.expectation == Expectation::kAsExpected) {
-    ++sums.skipped;
-    return fmt::format("<skipped message=\"known: {}\"/>\n", xml_text(one.expected_reason));
-  }
-  if (is_undecided(one)) {
-    ++sums.skipped;
-    return fmt::format("<skipped message=\"{}: {}\"/>\n",
-                       runner::verdict_text(one.result.verdict), message);
-  }
-  if (one.result.verdict == CaseVerdict::kWeak) return "<system-out>" + body + "</system-out>\n";
-  return "";
+JunitCase error(const std::string& class_name, const char* name, const std::string& message) {
+  JunitCase out{.class_name = class_name, .name = name};
+  out.outcome = Outcome::kError;
+  out.type = "error";
+  out.message = message;
+  return out;
 }
 
-std::string testcase(const std::string& class_name, const CaseRun& one, Sums& sums) {
-  ++sums.tests;
-  const std::string inside = outcome(one, sums);
-  std::string out = fmt::format(
-      "<testcase classname=\"{}\" name=\"{}\" file=\"{}\" time=\"{:.3f}\"", xml_text(class_name),
-      xml_text(case_name(one)), xml_text(one.file), one.wall_ms / 1000);
-  return inside.empty() ? out + "/>\n" : out + ">\n" + inside + "</testcase>\n";
+JunitCase testcase(const std::string& class_name, const CaseRun& one) {
+  JunitCase out{.class_name = class_name, .name = case_name(one), .file = one.file};
+  out.seconds = report::junit_seconds(one.wall_ms);
+  if (one.unexpected()) {
+    const bool broke = one.result.verdict == CaseVerdict::kError;
+    const bool passes = one.expectation == Expectation::kUnexpectedPass;
+    out.outcome = broke ? Outcome::kError : Outcome::kFailure;
+    out.type = broke ? "error" : passes ? "unexpected_pass" : "fail";
+    out.message = headline(one);
+    out.body = in_full(one);
+  } else if (one.expectation == Expectation::kAsExpected) {
+    out.outcome = Outcome::kSkipped;
+    out.message = "known: " + one.expected_reason;
+  } else if (is_undecided(one)) {
+    out.outcome = Outcome::kSkipped;
+    out.message = std::string(runner::verdict_text(one.result.verdict)) + ": " + headline(one);
+  } else if (one.result.verdict == CaseVerdict::kWeak) {
+    out.output = in_full(one);
+  }
+  return out;
 }
 
 // What goes wrong between cases, and at the end, is nothing of any of them.
-std::string outside(const std::string& class_name, const ImplementationRun& run, Sums& sums) {
-  if (run.outside.empty()) return "";
-  ++sums.tests;
-  std::string body;
-  for (const OutsideFault& one : run.outside) {
-    body += xml_text(outside_text(one) + '\n' + one.stderr_text);
-  }
-  std::string inside = "<system-out>" + body + "</system-out>\n";
+JunitCase outside(const std::string& class_name, const ImplementationRun& run) {
+  std::string text;
+  for (const OutsideFault& one : run.outside) text += outside_text(one) + '\n' + one.stderr_text;
+  JunitCase out{.class_name = class_name, .name = "outside_of_cases"};
   if (broke_outside(run)) {
-    ++sums.errors;
-    inside = fmt::format("<error type=\"error\" message=\"{}\">{}</error>\n",
-                         xml_text(outside_headline(run)), body);
+    out = error(class_name, "outside_of_cases", outside_headline(run));
+    out.body = text;
+  } else {
+    out.output = text;
   }
-  return fmt::format("<testcase classname=\"{}\" name=\"outside_of_cases\" time=\"0\">\n"
-                     "{}</testcase>\n", xml_text(class_name), inside);
+  return out;
 }
 
-// Its numbers are those of the whole, too.
-std::string suite_element(const std::string& name, const Sums& sums, const std::string& body,
-                          Sums& whole) {
-  whole.add(sums);
-  return fmt::format("<testsuite name=\"{}\" {}>\n{}</testsuite>\n", xml_text(name),
-                     attributes(sums), body);
-}
-
-std::string stale_suite(const SuiteRun& run, Sums& whole) {
-  if (run.stale.empty()) return "";
-  Sums sums;
-  std::string body;
+JunitSuite stale_suite(const SuiteRun& run) {
+  JunitSuite out{.name = "rubric test: expectations", .seconds = report::junit_seconds(0)};
   for (const StaleExpectation& one : run.stale) {
-    ++sums.tests;
-    ++sums.failures;
-    body += fmt::format("<testcase classname=\"rubric.expectations\" name=\"{}\" time=\"0\">\n"
-                        "<failure type=\"stale\" message=\"{}\"/>\n</testcase>\n",
-                        xml_text(one.place), xml_text(one.text));
+    JunitCase& added = out.cases.emplace_back();
+    added.class_name = "rubric.expectations";
+    added.name = one.place;
+    added.outcome = Outcome::kFailure;
+    added.type = "stale";
+    added.message = one.text;
   }
-  return suite_element("rubric test: expectations", sums, body, whole);
+  return out;
 }
 
 }  // namespace
 
 std::string junit_report(const SuiteRun& run) {
-  std::string suites;
-  Sums whole;
+  std::vector<JunitSuite> suites;
+  double wall_ms = 0;
   for (std::size_t i = 0; i < run.implementations.size(); ++i) {
     const ImplementationRun& one = run.implementations[i];
     const std::string name = implementation_name(run, i);
     const std::string class_name = class_name_of(name);
-    Sums sums;
-    sums.wall_ms = one.wall_ms;
-    std::string body;
+    JunitSuite& suite = suites.emplace_back();
+    suite.name = "rubric test: " + name;
+    suite.seconds = report::junit_seconds(one.wall_ms);
+    wall_ms += one.wall_ms;
     if (!one.dishonest.empty()) {
-      ++sums.tests;
-      ++sums.errors;
-      body += fmt::format("<testcase classname=\"{0}\" name=\"honesty\" time=\"0\">\n"
-                          "<error type=\"error\" message=\"{1}\"/>\n</testcase>\n",
-                          xml_text(class_name), xml_text(one.dishonest));
+      suite.cases.push_back(error(class_name, "honesty", one.dishonest));
     }
-    for (const CaseRun& each : one.cases) body += testcase(class_name, each, sums);
-    body += outside(class_name, one, sums);
-    suites += suite_element("rubric test: " + name, sums, body, whole);
+    for (const CaseRun& each : one.cases) suite.cases.push_back(testcase(class_name, each));
+    if (!one.outside.empty()) suite.cases.push_back(outside(class_name, one));
   }
-  suites += stale_suite(run, whole);
-  return fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-                     "<testsuites name=\"rubric test\" {}>\n{}</testsuites>\n",
-                     attributes(whole), suites);
+  if (!run.stale.empty()) suites.push_back(stale_suite(run));
+  return report::junit_document(suites, "rubric test", report::junit_seconds(wall_ms));
 }
 
 }  // namespace rubric::suite

@@ -1,4 +1,4 @@
-// A run of the suite for those who collect JUnit's XML.
+// A run of the suite in JUnit's XML.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace rubric::suite {
 
-/// One testsuite for each implementation, one testcase for each case, names unique.
+/// Returns one testsuite for each implementation, one testcase for each case, with unique names.
 std::string junit_report(const SuiteRun& run);
 
 }  // namespace rubric::suite

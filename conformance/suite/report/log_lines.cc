@@ -35,7 +35,7 @@ void keep_of_island(const std::vector<NodeHeader>& nodes, const Line& line,
   });
 }
 
-// AM addresses of a serial line say nothing, and what stands behind a message neither.
+// Compares frames without the AM addresses of a serial line and the bytes after a message.
 bool is_same(const Line& before, const Line& line) {
   return before.link == line.link && before.node != line.node && before.am &&
          (line.link.starts_with("ser") || *before.am == *line.am) &&
@@ -101,7 +101,7 @@ std::optional<Line> asked_line(const runner::Failure& failure) {
 
 std::vector<std::size_t> first_seen(const std::vector<const Line*>& lines) {
   std::vector<std::size_t> out(lines.size(), kNoLine);
-  // A node that is given the same frame of the same sender again is given another one.
+  // If a node is given the same frame of the same sender again, that is another frame.
   std::vector<std::pair<std::size_t, const std::string*>> given;
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const Line& line = *lines[i];

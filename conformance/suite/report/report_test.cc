@@ -265,7 +265,7 @@ TEST(Compare, ChangedNewAndGone) {
   tiny.cases = {one("a.gone", CaseVerdict::kPass), one("a.fail", CaseVerdict::kPass),
                 one("a.twice", CaseVerdict::kPass), one("a.twice", CaseVerdict::kFail)};
   tiny.cases[3].repeat = 1;
-  before.implementations.push_back(tiny);  // Of the same name, with cases of its own.
+  before.implementations.push_back(tiny);  // Same name, with cases of its own.
   before.implementations[1].cases = {one("a.fail", CaseVerdict::kFail)};
   before.implementations.push_back(before.implementations[1]);
   before.implementations[2].identity.name = "other";

@@ -12,7 +12,7 @@ namespace {
 
 using runner::CaseVerdict;
 
-// Readable as UTF-8, whatever an implementation wrote: other bytes and controls as \x1f.
+// Makes text readable as UTF-8, whatever an implementation wrote: other bytes and controls as \x1f.
 std::string clean(std::string_view text) {
   std::string out;
   while (!text.empty()) {
@@ -28,7 +28,7 @@ std::string clean(std::string_view text) {
   return out;
 }
 
-// In a line of its own, where a hash would begin a directive.
+// Escapes hashes, which would begin a directive on a line of its own.
 std::string plain(std::string_view text) {
   std::string out;
   for (const char c : clean(text)) {

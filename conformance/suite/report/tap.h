@@ -7,8 +7,8 @@
 
 namespace rubric::suite {
 
-/// A test point for each case of each implementation, failures with a YAML block; expected
-/// failures are "# TODO", what was skipped or not decided is "# SKIP".
+/// Returns a test point for each case of each implementation, failures with a YAML block; expected
+/// failures are "# TODO", skipped and undecided cases "# SKIP".
 std::string tap_report(const SuiteRun& run);
 
 }  // namespace rubric::suite

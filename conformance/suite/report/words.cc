@@ -20,12 +20,12 @@ std::string base_name(const ImplementationRun& run) {
   return identity.version.empty() ? identity.name : identity.name + " " + identity.version;
 }
 
-// What broke has no rule, and a line of a case need not name one.
+// A broken target has no rule, and a line of a case need not name one.
 std::string rules_of(const runner::Failure& failure) {
   return fmt::format("{}", fmt::join(failure.requirements, " "));
 }
 
-// What should have happened: "expected m5 > app joined(result=fail ...), but ".
+// Returns what should have happened: "expected m5 > app joined(result=fail ...), but ".
 std::string asked_text(const runner::Failure& failure) {
   if (failure.forbidden) return "forbidden, but ";
   const std::optional<trace::Line> asked = asked_line(failure);

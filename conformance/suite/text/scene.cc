@@ -23,7 +23,7 @@ using trace::Op;
 constexpr std::size_t kBefore = 6;
 constexpr std::size_t kAfter = 3;
 
-// A line of the log, or nothing for the place where one is missing.
+// A line of the log, or nothing at the place of a missing one.
 struct Row {
   const Line* line = nullptr;
   bool marked = false;
@@ -33,7 +33,7 @@ runner::Ticks time_of(const Line& line) { return static_cast<runner::Ticks>(line
 
 std::vector<Row> rows_around(const CaseRun& one, const runner::Failure& failure) {
   const std::vector<const Line*> lines = one.result.log.lines();
-  std::size_t at = 0;  // Behind what led to it.
+  std::size_t at = 0;  // After its cause.
   bool breaks = false;
   for (std::size_t i = 0; i < lines.size() && !breaks; ++i) {
     if (time_of(*lines[i]) > failure.time) break;
@@ -51,7 +51,8 @@ std::vector<Row> rows_around(const CaseRun& one, const runner::Failure& failure)
   return rows;
 }
 
-// With the last names of paths, where these are enough: "led" for "mote_desc.led".
+// Returns the message with the last names of paths, where these are enough: "led" for
+// "mote_desc.led".
 trace::Message with_short_paths(trace::Message message) {
   const auto tail = [](const trace::FieldValue& field) {
     return field.path.substr(field.path.rfind('.') + 1);

@@ -1,4 +1,4 @@
-// What happened around a line that was not kept: the log, and a chart of it.
+// Shows the events around a line that was not kept: the log, and a chart of it.
 #pragma once
 
 #include <string>
@@ -7,11 +7,11 @@
 
 namespace rubric::suite {
 
-/// Lines of the log before and after the failure, those that break a rule or the place where one is
-/// missing marked with ">". Each line behind `indent` blanks.
+/// Returns lines of the log before and after the failure; those that break a rule, or the place of
+/// a missing one, are marked with ">". Each line begins with `indent` blanks.
 std::string log_around(const CaseRun& one, const runner::Failure& failure, std::size_t indent,
                        std::size_t width);
-/// The same as a sequence chart with "<<<" at what is wrong.
+/// Returns the same as a sequence chart with "<<<" at the fault.
 std::string chart_around(const CaseRun& one, const runner::Failure& failure, std::size_t indent,
                          std::size_t width);
 

@@ -9,7 +9,6 @@
 
 namespace rubric::suite {
 
-using report::wrapped;
 using runner::CaseVerdict;
 
 namespace {
@@ -17,10 +16,6 @@ namespace {
 constexpr std::size_t kErrorLines = 12;
 
 }  // namespace
-
-std::string painted(const TextOptions& options, std::string_view style, std::string_view text) {
-  return options.color ? fmt::format("\033[{}m{}\033[0m", style, text) : std::string(text);
-}
 
 std::string_view style_of(CaseVerdict verdict, bool unexpected) {
   switch (verdict) {
@@ -32,24 +27,6 @@ std::string_view style_of(CaseVerdict verdict, bool unexpected) {
     case CaseVerdict::kSkip: return "2";
   }
   return "0";
-}
-
-std::string in_capitals(std::string_view text) {
-  std::string out(text);
-  std::transform(out.begin(), out.end(), out.begin(),
-                 [](char c) { return static_cast<char>(c >= 'a' && c <= 'z' ? c - 32 : c); });
-  return out;
-}
-
-std::string styled(const TextOptions& options, std::string_view style, const std::string& head,
-                   const std::string& rest) {
-  const std::string lines = wrapped("", head + " " + rest, options.width, kIndent.size());
-  return painted(options, style, head) + lines.substr(head.size());
-}
-
-std::string field(std::string_view name, std::string_view text, const TextOptions& options) {
-  if (text.empty()) return {};
-  return wrapped(fmt::format("{}{:<9} ", kIndent, name), text, options.width);
 }
 
 std::string error_text(const std::string& text, const TextOptions& options) {
@@ -67,7 +44,7 @@ std::string error_text(const std::string& text, const TextOptions& options) {
                                 first > 0 ? fmt::format(", last {} of {} lines", kErrorLines, all)
                                           : std::string());
   for (std::size_t i = first; i < all; ++i) {
-    std::string shown;  // A terminal must not be told what to do.
+    std::string shown;  // Controls could change the terminal.
     for (const char c : lines[i]) shown += c == '\t' || (c >= ' ' && c != 127) || c < 0 ? c : '?';
     out += fmt::format("{}  | {}\n", kIndent, shown);
   }

@@ -1,24 +1,21 @@
-// How pieces of the text look.
+// Styles of pieces of text.
 #pragma once
 
 #include <string>
 #include <string_view>
 
+#include "conformance/report/text.h"
 #include "conformance/suite/text/text.h"
 
 namespace rubric::suite {
 
-inline constexpr std::string_view kIndent = "  ";
+using report::field;
+using report::in_capitals;
+using report::kIndent;
+using report::painted;
+using report::styled;
 
-/// In a style of the terminal ("1;31"), if colours are wanted.
-std::string painted(const TextOptions& options, std::string_view style, std::string_view text);
 std::string_view style_of(runner::CaseVerdict verdict, bool unexpected);
-std::string in_capitals(std::string_view text);
-/// A coloured first word, and the rest broken into lines.
-std::string styled(const TextOptions& options, std::string_view style, const std::string& head,
-                   const std::string& rest);
-/// "  Rule:     text", broken into lines; empty for an empty text.
-std::string field(std::string_view name, std::string_view text, const TextOptions& options);
 /// The last lines of what an implementation wrote to its standard error, each behind a bar.
 std::string error_text(const std::string& text, const TextOptions& options);
 

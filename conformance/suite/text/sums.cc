@@ -1,4 +1,4 @@
-// What stands before and behind the cases.
+// The text before and after the cases.
 #include <vector>
 
 #include <fmt/format.h>
@@ -35,7 +35,7 @@ std::string broken_text(const ImplementationRun& implementation) {
   return out;
 }
 
-// What happened when no case was at work.
+// Describes faults that happened between cases.
 std::string outside(const ImplementationRun& implementation, const TextOptions& options) {
   constexpr std::size_t kShown = 4;
   const std::vector<OutsideFault>& all = implementation.outside;

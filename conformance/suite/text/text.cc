@@ -32,7 +32,7 @@ std::string joined(const std::vector<std::string>& words) {
   return out;
 }
 
-// "FAIL", "EXPECTED FAIL", "UNEXPECTED PASS".
+// Returns "FAIL", "EXPECTED FAIL", "UNEXPECTED PASS".
 std::string head_of(const CaseRun& one) {
   const std::string verdict = in_capitals(runner::verdict_text(one.result.verdict));
   if (one.expectation == Expectation::kAsExpected) return "EXPECTED " + verdict;
@@ -76,7 +76,7 @@ std::string failure_text(const CaseRun& one, const Failure& failure, const TextO
   return out;
 }
 
-// What story_text tells.
+// Builds the text of story_text().
 class Story {
  public:
   Story(const SuiteRun& run, const ImplementationRun& implementation, const TextOptions& options)
@@ -99,7 +99,7 @@ class Story {
   }
 
  private:
-  // What makes a second case like a first one: the rules that it breaks, or what broke.
+  // Returns a key that is equal for similar cases: the rules that they break, or what broke.
   static std::string kind_of(const CaseRun& one) {
     if (one.result.verdict == CaseVerdict::kError) return what_broke(one);
     if (one.result.failures.empty()) return one.name;

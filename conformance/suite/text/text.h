@@ -1,37 +1,36 @@
-// A run of the suite for people, piece by piece as it goes.
+// Prints a run of the suite for people, piece by piece as it goes.
 #pragma once
 
 #include <string>
 
+#include "conformance/report/text.h"
 #include "conformance/suite/report/json.h"
 #include "conformance/suite/result.h"
 
 namespace rubric::suite {
 
-struct TextOptions {
-  std::size_t width = 100;
-  bool color = false;
+struct TextOptions : report::TextStyle {
   bool quiet = false;    ///< Only what makes the run fail has a line.
   bool verbose = false;  ///< Each failure in full, not the first of each rule alone.
-  bool times = false;    ///< Says how long it took. Without, the same run gives the same text.
+  bool times = false;    ///< Prints durations. Without, the same run gives the same text.
 };
 
-/// Who is tested, and with how many cases; or why nothing is.
+/// Returns the implementation and the number of cases; or why nothing is tested.
 std::string opening_text(const SuiteRun& run, const ImplementationRun& implementation,
                          std::size_t cases, const TextOptions& options);
-/// A line: verdict, name, and what is wrong. Empty where `quiet` leaves it out.
+/// Returns a line: verdict, name, and fault. Empty if `quiet` leaves it out.
 std::string case_text(const CaseRun& one, const TextOptions& options);
-/// Failures and errors in full, others of the same rule in a line each; what was skipped and not
-/// decided, by reason.
+/// Returns failures and errors in full, others of the same rule on a line each; skipped and
+/// undecided cases by reason.
 std::string story_text(const SuiteRun& run, const ImplementationRun& implementation,
                        const TextOptions& options);
-/// Counts, rules and times of an implementation.
+/// Returns counts, rules and times of an implementation.
 std::string totals_text(const ImplementationRun& implementation, const TextOptions& options);
-/// Cases whose verdict is another than in an earlier run, that it does not have, and that are gone
-/// since; `name` is what the user calls that run.
+/// Returns the cases whose verdict changed since an earlier run, that it lacks, and that are gone
+/// since; `name` is the user's name for that run.
 std::string changes_text(const SuiteRun& run, const EarlierRun& earlier, const std::string& name,
                          const TextOptions& options);
-/// Expectations that are not true, and how the run ends.
+/// Returns expectations that do not hold, and the result of the run.
 std::string closing_text(const SuiteRun& run, const TextOptions& options);
 
 }  // namespace rubric::suite

@@ -16,7 +16,7 @@ class Cases:
             self._read(file)
 
     def _read(self, file):
-        """Splits a file at its cases; what stands before the first is of all of them."""
+        """Splits a file at its cases; lines before the first belong to all of them."""
         head, name, out = [], None, []
         for line in self.project.read(file).splitlines():
             found = _CASE.match(line)

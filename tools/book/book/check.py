@@ -11,7 +11,7 @@ _ALONE = {"meta", "link", "br", "hr", "input", "img", "wbr", "col"}
 
 
 class Outline(HTMLParser):
-    """What a piece of HTML has: anchors, links, and what is wrong with its tags."""
+    """Collects the anchors and links of a piece of HTML, and faults of its tags."""
 
     def __init__(self, text):
         super().__init__()
@@ -51,7 +51,7 @@ def is_external(target):
 
 
 def external_fault(target):
-    """What is wrong with a link that leads out of the book; none if nothing is."""
+    """Returns what is wrong with a link that leads out of the book; none if nothing is."""
     parts = urlsplit(target)
     if parts.scheme not in {"https", "http"}:
         return f"'{target}' leads to a file that the reader may not have; expected https://..."

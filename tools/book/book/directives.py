@@ -1,4 +1,4 @@
-"""What each directive stands for. See tools/book/README.md."""
+"""Expands directives. See tools/book/README.md."""
 
 import diagrams
 from book import appendix, chapters, markup
@@ -106,7 +106,7 @@ class Directives:
 
     @staticmethod
     def _rest(level, anchor, title, entries):
-        """What a reference shows in full."""
+        """Returns the full text of a reference."""
         return "\n".join([heading(level, anchor, title), *entries]) if entries else ""
 
     def _all_layouts(self, _place, _name, level):

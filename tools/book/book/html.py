@@ -46,7 +46,7 @@ def heading(level, anchor, inner, css=""):
 
 
 def mark(anchor):
-    """What one copies to link to a place; shown under the pointer and in focus."""
+    """Returns the link to a place, to be copied; shown under the pointer and in focus."""
     return (f'<a class="mark" href="#{escape(anchor)}" aria-label="Link to this place">'
             '<span aria-hidden="true">#</span></a>')
 

@@ -8,7 +8,7 @@ class Mistakes:
         self._found = []
 
     def add(self, file, line, text):
-        """`line` counts from 1; 0 stands for the file as a whole."""
+        """`line` counts from 1; 0 means the file as a whole."""
         self._found.append((str(file), line, text))
 
     def lines(self):

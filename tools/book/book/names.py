@@ -1,4 +1,4 @@
-"""What in the book has a name, the anchor of each, and the links that text gets by itself."""
+"""Names in the book, the anchor of each, and the links that text gets by itself."""
 
 import re
 
@@ -31,14 +31,14 @@ class Names:
         self._by_text = self._texts()
 
     def find(self, kind, name):
-        """The full name behind a short or full one; none if there is no such thing."""
+        """Returns the full name of a short or full one; none if there is no such thing."""
         known = self.anchors[kind]
         if name in known:
             return name
         return next((one for one in known if one.split("::")[-1] == name), None)
 
     def _texts(self):
-        """What inline code must be to become a link. A word alone may mean anything else."""
+        """Maps inline code to the anchor that it links to. A word alone may mean anything else."""
         out = {}
         for kind in self.KINDS:
             for name, anchor in self.anchors[kind].items():

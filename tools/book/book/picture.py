@@ -9,7 +9,7 @@ MARGIN = 40  # For the offsets.
 
 
 def _leaves(project, full, prefix=""):
-    """(path, field) of what stands in the bytes; structures of a fixed size are opened."""
+    """Yields (path, field) of the bytes; opens structures of a fixed size."""
     for field in project.types[full]["fields"]:
         inner = project.types.get(field.get("type"), {})
         fixed = inner.get("fields") and "repeat" not in field \

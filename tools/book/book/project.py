@@ -1,4 +1,4 @@
-"""What the book is made from: the project's own data, as its programs print it."""
+"""The book's source: the project's own data, as its programs print it."""
 
 import json
 import pathlib
@@ -24,7 +24,7 @@ class Project:
         self.rubric = str(pathlib.Path(rubric).absolute())
         self.rubricc = str(pathlib.Path(rubricc).absolute())
         model = self._model()
-        # The protocol comes first, then what it stands on, then the other one over the same frames.
+        # The protocol comes first, then the one below it, then the other one over the same frames.
         order = ["rubicon", "tinyos"]
         self.specs = sorted(model["specs"], key=lambda spec: (
             order.index(spec["id"]) if spec["id"] in order else len(order), spec["id"]))
@@ -42,7 +42,7 @@ class Project:
         self.vectors = self._vectors()
 
     def run(self, *words):
-        """What `rubric` prints; its own text is no different on a terminal of another width."""
+        """Returns the output of `rubric`, which does not depend on the terminal's width."""
         done = subprocess.run([self.rubric, *words], cwd=self.root, capture_output=True,
                               text=True, check=False)
         if done.returncode != 0:
@@ -70,7 +70,7 @@ class Project:
         return json.loads(text)
 
     def _reached(self):
-        """What leads to each type, as `rubric messages` says it."""
+        """Returns the routes to each type, as in `rubric messages`."""
         out = {}
         for spec in self.specs:
             if not any(one["am_types"] for one in spec["types"]):

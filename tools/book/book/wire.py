@@ -102,7 +102,7 @@ class Wire:
                 yield from self._rows(inner, offset, 1, prefix + field["id"] + ".")
 
     def _carried(self, full):
-        """What leads to the type, in words."""
+        """Returns the routes to the type in words."""
         out = []
         for one in self.project.reached.get(full, []):
             if "carrier" in one:
@@ -192,7 +192,7 @@ class Wire:
                 + table(columns, rows, f"Values of {one['id']}", "values") + "</section>")
 
     def dispatch(self, carrier):
-        """What leads on from the frames of a carrier, as nested lists."""
+        """Returns the routes from the frames of a carrier, as nested lists."""
         full = next(name for name, one in self.project.types.items()
                     if one.get("carrier") == carrier)
         return (f'<div class="tree" id="dispatch-{carrier}">{self._tree(full, set())}</div>')

@@ -36,7 +36,7 @@
     if (event.target.closest('a') && !wide.matches) menu.open = false;
   });
 
-  // What is wider than its place can be scrolled with the keyboard.
+  // Content that is too wide can be scrolled with the keyboard.
   function reach() {
     for (const one of all('.scroll, pre')) {
       if (one.scrollWidth > one.clientWidth + 1) one.tabIndex = 0;
@@ -51,7 +51,7 @@
   document.addEventListener('toggle', reach, true);
   reach();
 
-  // Light or dark: what the system says until the reader says otherwise.
+  // Light or dark: the system's choice until the reader chooses.
   const theme = byId('theme');
   const system = matchMedia('(prefers-color-scheme: dark)');
   const isDark = () => (document.documentElement.dataset.theme
@@ -65,7 +65,7 @@
   theme.hidden = false;
   label();
 
-  // Where the reader is, in the contents.
+  // Marks the reader's place in the contents.
   const entries = new Map(all('#contents a').map((one) => [one.hash.slice(1), one]));
   const places = [...entries.keys()].map(byId).filter(Boolean);
   let current = null;
@@ -100,7 +100,7 @@
   }, { passive: true });
   follow();
 
-  // Finding by name. What is found is a list of links, walked with the arrow keys.
+  // Finds by name. The results are a list of links, walked with the arrow keys.
   const find = byId('find');
   const found = byId('found');
   const kMost = 40;

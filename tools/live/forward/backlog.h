@@ -1,4 +1,4 @@
-// The bytes that clients get, all of them the same ones, as long as any may still need them.
+// The bytes for clients, shared by all of them, as long as any may still need them.
 #pragma once
 
 #include <algorithm>
@@ -18,10 +18,10 @@ class Backlog {
 
   std::size_t size_bytes() const { return ring_.size(); }
   std::uint64_t end() const { return end_; }
-  /// Whether everything from this offset on is still there.
+  /// Returns whether everything from this offset on is still there.
   bool holds(std::uint64_t offset) const { return end_ - offset <= ring_.size(); }
 
-  /// At most size_bytes() at once.
+  /// Appends at most size_bytes() at once.
   void append(Bytes bytes) {
     const std::size_t at = place(end_);
     const std::size_t first = std::min(bytes.size(), ring_.size() - at);
@@ -30,8 +30,8 @@ class Backlog {
     end_ += bytes.size();
   }
 
-  /// The bytes from `offset` on that stand side by side; there may be more behind them. The offset
-  /// is held, and not beyond the end.
+  /// Returns contiguous bytes from `offset` on; there may be more after them. The offset is held,
+  /// and not beyond the end.
   Bytes from(std::uint64_t offset) const {
     const std::size_t at = place(offset);
     const auto left = static_cast<std::size_t>(end_ - offset);

@@ -17,7 +17,7 @@
 namespace rubric::forward {
 namespace {
 
-// What the kernel keeps for a client besides the backlog. It would take megabytes by itself.
+// The kernel's buffer for a client besides the backlog. By default it would take megabytes.
 constexpr int kSocketBytes = 128 * 1024;
 
 double seconds(attach::SteadyTime::duration time) {
@@ -53,11 +53,11 @@ void Client::turn(short found, const Backlog& backlog, attach::SteadyTime now) {
     write(backlog, now);
   }
   if (ended_ && broken) return socket_.close();
-  // Also where it is lost: what it had sent before is for the source all the same.
+  // Even if the client is lost: its earlier packets are for the source all the same.
   if (broken || (found & POLLIN)) read(now);
 }
 
-// All that is there, so that who has left is known for that before the next one comes.
+// Reads everything, so that a client that has left is noticed before the next one comes.
 void Client::read(attach::SteadyTime now) {
   while (!ended_ && in_used_ < kRoom) {
     const ssize_t count = ::recv(fd(), in_.data() + in_used_, kRoom - in_used_, 0);
@@ -73,7 +73,7 @@ void Client::read(attach::SteadyTime now) {
   }
 }
 
-// At the beginning of what it sent.
+// Checks the beginning of its input.
 void Client::look() {
   if (in_used_ == 0 || !fault_.empty()) return;
   if (!greeted_) {

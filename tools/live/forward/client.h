@@ -11,8 +11,8 @@
 
 namespace rubric::forward {
 
-/// A client owns its socket, which never blocks, and a small room for what it sends; what it gets
-/// stands in the Backlog. Where it breaks the protocol, fault() says so from then on.
+/// A client owns its socket, which never blocks, and a small buffer for its input; its output is in
+/// the Backlog. If it breaks the protocol, fault() says so from then on.
 class Client {
  public:
   /// `packet_max`: the longest packet that the source takes, in bytes. `patience`: how long a
@@ -22,39 +22,39 @@ class Client {
     attach::Milliseconds patience{10'000};
   };
 
-  /// It gets what comes from now on. Its peer's address is its name.
+  /// It gets packets from now on. Its peer's address is its name.
   Client(attach::Descriptor socket, std::string name, std::uint64_t offset, const Limits& limits,
          attach::SteadyTime now);
 
   const std::string& name() const { return name_; }
-  /// -1 when there is nobody any more; packets of it may be left.
+  /// Returns the socket; -1 if the client is gone, though its packets may be left.
   int fd() const { return socket_.get(); }
-  /// What it has to be cut off for; empty: nothing.
+  /// Returns why it has to be cut off; empty if it does not.
   const std::string& fault() const { return fault_; }
-  /// It sends nothing more; packets of it may be left.
+  /// Returns whether it sends nothing more; its packets may be left.
   bool has_left() const { return ended_ || fd() < 0; }
-  /// Nobody is there, and nothing of it is left.
+  /// Returns whether it is gone, with nothing of it left.
   bool is_over() const { return has_left() && !packet(); }
 
-  /// What poll is to wait for. -1: for nothing.
+  /// Returns the descriptor for poll. -1: none.
   int poll_fd() const { return lost_ && in_used_ == kRoom ? -1 : fd(); }
   short events() const;
-  /// What poll found.
+  /// Handles the result of poll.
   void turn(short found, const Backlog& backlog, attach::SteadyTime now);
-  /// Writes what it lacks, as far as the socket takes it. Cuts it off where the backlog has lost
-  /// what it lacks.
+  /// Writes the bytes that it lacks, as far as the socket takes them. Cuts it off if the backlog
+  /// has lost some of them.
   void write(const Backlog& backlog, attach::SteadyTime now);
-  /// Nobody waits for it any longer than that.
+  /// Returns the end of any wait for it.
   std::optional<attach::SteadyTime> deadline() const;
-  /// The time may be over.
+  /// Cuts it off if the time is over.
   void tick(attach::SteadyTime now);
 
-  /// The first packet that it sent; valid until the next call that is not const.
+  /// Returns the first packet that it sent; valid until the next call that is not const.
   std::optional<Bytes> packet() const;
   void drop_packet();
-  /// How many whole packets wait.
+  /// Returns how many whole packets wait.
   std::size_t packets_waiting() const;
-  /// Whether everything was written to it.
+  /// Returns whether everything was written to it.
   bool is_served(const Backlog& backlog) const {
     return fd() < 0 || lost_ || offset_ == backlog.end();
   }
@@ -74,9 +74,9 @@ class Client {
   std::string fault_;
   std::array<std::uint8_t, kRoom> in_{};
   std::size_t in_used_ = 0;
-  attach::SteadyTime heard_;   // When it last sent something.
-  attach::SteadyTime served_;  // When it last took something.
-  std::uint64_t offset_;       // Of the first byte that it lacks.
+  attach::SteadyTime heard_;   // Time of its last input.
+  attach::SteadyTime served_;  // Time of its last output.
+  std::uint64_t offset_;       // Offset of the first byte that it lacks.
   bool greeted_ = false;
   bool blocked_ = false;       // The socket takes no more for now.
   bool ended_ = false;         // It will send no more.

@@ -16,11 +16,11 @@
 
 namespace {
 
-int send_error = 0;  // What the next one fails with; 0: it does not.
+int send_error = 0;  // The error of the next call; 0: none.
 
 }  // namespace
 
-// In place of the system's, which cannot be made to lack memory.
+// Replaces the system's function, which cannot be made to lack memory.
 extern "C" ssize_t send(int fd, const void* bytes, size_t size, int flags) {
   if (send_error == 0) return ::sendto(fd, bytes, size, flags, nullptr, 0);
   errno = send_error;

@@ -1,14 +1,14 @@
 // Loads `rubric forward` as a busy serial line and many clients would, checks that every client
-// gets every packet in order, and measures what that took. Prints one JSON object; exit 0 if
+// gets every packet in order, and measures the time. Prints one JSON object; exits with 0 if
 // nothing was lost and the forwarder's memory did not grow.
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <poll.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cerrno>
@@ -20,12 +20,12 @@
 #include <string>
 #include <vector>
 
-#include <fmt/format.h>
-
 #include "codec/containers/sf_reader.h"
+#include "codec/generated/tinyos/am_header.h"
 #include "codec/runtime/hdlc.h"
 #include "conformance/attach/stream.h"
 #include "conformance/runner/target.h"
+#include "tools/cli/command.h"
 #include "tools/live/forward/sockets.h"
 
 namespace rubric::forward {
@@ -35,9 +35,9 @@ using attach::Descriptor;
 using std::chrono::duration;
 using std::chrono::steady_clock;
 
-constexpr std::size_t kHeaderBytes = 8;   // Dispatch byte and AM header.
+constexpr std::size_t kHeaderBytes = tinyos::AmHeaderView::kMaxSizeBytes;
 constexpr std::size_t kStampBytes = 16;   // The packet's number, and when it was sent.
-constexpr std::size_t kLatencies = 4096;  // Of a millisecond each; the last one holds the rest.
+constexpr std::size_t kLatencies = 4096;  // A millisecond each; the last one holds the rest.
 constexpr std::chrono::seconds kPatience{30};
 
 struct LoadOptions {
@@ -46,8 +46,8 @@ struct LoadOptions {
   std::size_t stalled = 0;           // More clients, which read nothing and are to be cut off.
   std::uint64_t rate = 10'000;       // Packets a second.
   double seconds = 60;
-  std::size_t packet_bytes = 122;    // As RUBICON's net_msg has it.
-  double warm_up = 0.2;              // Of the time, before memory is looked at.
+  std::size_t packet_bytes = 122;    // RUBICON's net_msg.
+  double warm_up = 0.2;              // Part of the time before memory is measured.
   std::uint64_t growth_kib_max = 512;
 };
 
@@ -88,7 +88,7 @@ class Child {
     if (pid_ > 0) end();
   }
 
-  /// From "listening on 127.0.0.1:43211".
+  /// Returns the port of "listening on 127.0.0.1:43211".
   std::uint16_t port() {
     std::string line;
     char c = 0;
@@ -105,7 +105,7 @@ class Child {
     return pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE)) / 1024;
   }
 
-  /// Ends it as Ctrl-C does. CPU seconds; -1 where it did not end well.
+  /// Ends it as Ctrl-C does. Returns CPU seconds; -1 if it did not end well.
   double end() {
     ::kill(pid_, SIGINT);
     int status = 0;
@@ -124,7 +124,7 @@ class Child {
   Descriptor out_;
 };
 
-/// One client, which checks what it gets.
+/// One client, which checks its input.
 class Reader {
  public:
   explicit Reader(Descriptor socket) : socket_(std::move(socket)), room_(64 * 1024) {}
@@ -182,12 +182,13 @@ class Reader {
   bool greeted_ = false;
 };
 
-/// The serial line, which sends as many packets a second as it is told to.
+/// The serial line, which sends a given number of packets a second.
 class Line {
  public:
   Line(Descriptor socket, const LoadOptions& options)
       : socket_(std::move(socket)), packet_(options.packet_bytes) {
-    packet_[5] = static_cast<std::uint8_t>(options.packet_bytes - kHeaderBytes);
+    tinyos::AmHeaderLayout::LengthAt::store(
+        packet_.data(), static_cast<std::uint8_t>(options.packet_bytes - kHeaderBytes));
     for (std::size_t i = kHeaderBytes + kStampBytes; i < packet_.size(); ++i) {
       packet_[i] = static_cast<std::uint8_t>(0x70 + i % 16);  // Flags and escapes among them.
     }
@@ -196,7 +197,7 @@ class Line {
   int fd() const { return socket_.get(); }
   bool blocked() const { return !waiting_.empty(); }
 
-  /// Up to the packet of this number. What the socket does not take has to wait.
+  /// Sends up to the packet of this number. Bytes that the socket does not take have to wait.
   void send_to(std::uint64_t number, Measured& measured) {
     while (waiting_.size() < kEnough && measured.sent < number) {
       const double now = Reader::now_seconds();
@@ -214,7 +215,7 @@ class Line {
   }
 
  private:
-  // A turn's writing is less than its reading, so that the clients keep up with any line.
+  // A turn writes less than it reads, so that the clients keep up with any line.
   static constexpr std::size_t kEnough = 32 * 1024;
 
   Descriptor socket_;
@@ -233,7 +234,7 @@ Descriptor connected(std::uint16_t port) {
   const SocketAddress to = resolve("127.0.0.1", port, false).front();
   Descriptor out(::socket(to.family(), SOCK_STREAM | SOCK_CLOEXEC, 0));
   if (::connect(out.get(), to.get(), to.size_bytes) != 0) give_up("a client cannot connect");
-  // Whoever has read the forwarder's greeting is one of its clients.
+  // A client that has read the forwarder's greeting is accepted.
   std::uint8_t hello[] = {kSfMagic, kSfVersion};
   if (::send(out.get(), hello, sizeof hello, MSG_NOSIGNAL) != 2 ||
       ::recv(out.get(), hello, sizeof hello, MSG_PEEK | MSG_WAITALL) != 2) {
@@ -281,7 +282,7 @@ void run(const LoadOptions& options, const Child& child, Line& line, std::vector
   }
 }
 
-// Reads to the end of what there is; only the forwarder's own end ends it.
+// Reads everything there is; only the forwarder itself can end it.
 bool is_open(const Descriptor& socket) {
   std::uint8_t room[16 * 1024];
   ssize_t count = 1;
@@ -343,23 +344,28 @@ int run(const LoadOptions& options) {
 }  // namespace rubric::forward
 
 int main(int argc, char** argv) {
-  CLI::App app{"Loads 'rubric forward' with a busy line and many clients, checks and measures."};
+  rubric::cli::Command program("forward_load",
+                               "Loads 'rubric forward' with a busy line and many clients, checks "
+                               "and measures.");
   rubric::forward::LoadOptions options;
-  app.add_option("RUBRIC", options.program, "The program")->required();
-  app.add_option("--clients", options.clients)->capture_default_str();
-  app.add_option("--stalled", options.stalled, "More clients, which read nothing")
-      ->capture_default_str();
-  app.add_option("--rate", options.rate, "Packets a second")->capture_default_str();
-  app.add_option("--seconds", options.seconds)->capture_default_str();
-  app.add_option("--bytes", options.packet_bytes, "Of a packet")
-      ->check(CLI::Range(24, 252))
-      ->capture_default_str();
-  app.add_option("--growth", options.growth_kib_max, "KiB by which its memory may grow when warm")
-      ->capture_default_str();
-  CLI11_PARSE(app, argc, argv);
-  try {
-    return rubric::forward::run(options);
-  } catch (const rubric::runner::TargetBroken& broken) {
-    rubric::forward::give_up(broken.what());
-  }
+  program.add_option("RUBRIC", options.program, "The program").required();
+  program.add_option("--clients", options.clients).show_default();
+  program.add_option("--stalled", options.stalled, "More clients, which read nothing")
+      .show_default();
+  program.add_option("--rate", options.rate, "Packets a second").show_default();
+  program.add_option("--seconds", options.seconds).show_default();
+  program.add_option("--bytes", options.packet_bytes, "Bytes of a packet")
+      .between(24, 252)
+      .show_default();
+  program.add_option("--growth", options.growth_kib_max,
+                     "KiB by which its memory may grow when warm")
+      .show_default();
+  program.exit_code_of([&] {
+    try {
+      return rubric::forward::run(options);
+    } catch (const rubric::runner::TargetBroken& broken) {
+      rubric::forward::give_up(broken.what());
+    }
+  });
+  return program.parse_and_run(argc, argv);
 }

@@ -24,8 +24,8 @@ using runner::TargetBroken;
 using std::chrono::steady_clock;
 
 constexpr Milliseconds kReconnectEvery{1000};
-// What comes within this time goes to a client in one piece. The first packet after a pause does
-// not wait.
+// Packets within this time go to a client in one piece. The first packet after a pause does not
+// wait.
 constexpr Milliseconds kGather{2};
 constexpr Milliseconds kKeepEvery{200};
 constexpr Milliseconds kDrainTime{1000};
@@ -38,7 +38,8 @@ Source::Options limited(Source::Options options, Milliseconds patience) {
   return options;
 }
 
-// As many of these clients as there can be descriptors for, so that the source always has its own.
+// Returns as many of these clients as there can be descriptors for, so that the source always has
+// its own.
 std::size_t clients_possible(std::size_t wanted) {
   const rlim_t needed = wanted + kOtherDescriptors;
   rlimit limit{};
@@ -129,7 +130,7 @@ void Server::turn_source(short found, Time now) {
   }
 }
 
-// It was not up before.
+// Handles that the source is up.
 void Server::connected() {
   if (source_.socket() >= 0) {
     const SocketAddress peer = address_of_peer(source_.socket());
@@ -152,7 +153,7 @@ void Server::lose_source(const std::string& why, Time now) {
   open_at_ = now + kReconnectEvery;
 }
 
-// One packet of each client in turn, as long as the source takes them.
+// Passes on one packet of each client in turn, as long as the source takes them.
 void Server::give_packets(Time now) {
   const bool mute = options_.source.link.listen_only;
   for (std::size_t idle = 0; idle < clients_.size() && (mute || source_.takes());) {
@@ -179,7 +180,7 @@ void Server::give_packets(Time now) {
 void Server::accept_clients(Time now) {
   accept_at_.reset();
   for (int count = 0; count < kAcceptedAtOnce; ++count) {
-    // Who gives way is known when all were looked at, as they were before the first one here.
+    // Clients are only dropped after all were checked, as before the first new one here.
     if (count > 0 && clients_.size() >= options_.clients_max) return;
     attach::Descriptor socket(
         ::accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
@@ -213,7 +214,7 @@ void Server::admit(attach::Descriptor socket, Time now) {
       std::make_unique<Client>(std::move(socket), name, backlog_.end(), options_.limits, now));
 }
 
-// Those who left packets behind that the source did not take yet have to give way.
+// Makes room: clients that have left give way, even if the source has not taken their packets.
 bool Server::make_room() {
   const auto gone = std::find_if(clients_.begin(), clients_.end(),
                                  [](const auto& client) { return client->has_left(); });
@@ -246,9 +247,9 @@ void Server::remove_clients() {
   if (std::erase_if(clients_, done) > 0) full_ = false;
 }
 
-// What the source said before it went is for all who take it.
+// Delivers the source's last output to all who take it.
 void Server::drain() {
-  listener_.close();  // Nobody is let in any more: who waits there must not keep this awake.
+  listener_.close();  // No new clients: their waiting must not keep this awake.
   const Time end = steady_clock::now() + kDrainTime;
   while (true) {
     write_clients(steady_clock::now());
@@ -302,7 +303,7 @@ void Server::wait(std::optional<Time> until) {
     const auto whole = std::chrono::duration_cast<std::chrono::seconds>(time);
     left = {static_cast<time_t>(whole.count()), static_cast<long>((time - whole).count())};
   }
-  // A signal that comes just before poll must end it, too: signals come within it alone.
+  // A signal that comes just before poll must end it, too: signals are allowed within it alone.
   sigset_t signals;
   sigset_t before;
   sigemptyset(&signals);

@@ -1,4 +1,5 @@
-// A serial forwarder: packets of a source go to all clients, packets of clients to the source.
+// A serial forwarder: passes packets of a source to all clients, and packets of clients to the
+// source.
 #pragma once
 
 #include <poll.h>
@@ -16,7 +17,7 @@
 
 namespace rubric::forward {
 
-/// What to forward, to whom, and how far one client may hold up itself.
+/// The source, the clients, and the delay that one client may cause.
 struct Options {
   Source::Options source;
   std::string bind = "127.0.0.1";
@@ -29,7 +30,7 @@ struct Options {
   std::string write;                       ///< A capture of what goes by; empty: none.
 };
 
-/// What went by.
+/// Totals of the forwarded packets.
 struct Counts {
   std::uint64_t from_source = 0;
   std::uint64_t malformed = 0;
@@ -41,17 +42,17 @@ struct Counts {
   std::uint64_t refused = 0;
 };
 
-/// One thread, and nothing in it waits but for everything at once.
+/// Runs in one thread, which waits only for everything at once.
 class Server {
  public:
-  /// Listens from now on. Throws runner::TargetBroken where that cannot be, std::system_error where
-  /// the capture cannot be written.
+  /// Listens from now on. Throws runner::TargetBroken if that fails, std::system_error if the
+  /// capture cannot be written.
   explicit Server(const Options& options);
 
-  /// Until somebody asks to stop, or the source is gone and is not to be opened again. Says on
-  /// stdout where it listens, once the source is open, and on stderr what happens. False: the
-  /// source is gone, or the capture could not be written. Throws std::system_error where it can
-  /// wait for nothing any more.
+  /// Runs until asked to stop, or until the source is gone and is not to be opened again. Prints on
+  /// stdout where it listens, once the source is open, and events on stderr. Returns false if the
+  /// source is gone, or the capture could not be written. Throws std::system_error if it cannot
+  /// wait any more.
   bool run();
   const Counts& counts() const { return counts_; }
 
@@ -93,8 +94,8 @@ class Server {
   Backlog backlog_;
   std::vector<std::unique_ptr<Client>> clients_;
   std::vector<pollfd> polled_;
-  std::size_t turn_ = 0;                 // Whose packet is next for the source.
-  std::uint64_t written_end_ = 0;        // Where the backlog ended when clients were written to.
+  std::size_t turn_ = 0;                 // The client whose packet is next for the source.
+  std::uint64_t written_end_ = 0;        // The backlog's end when clients were last written to.
   Time written_at_{};
   std::optional<Time> open_at_;          // The source is closed, and is to be opened then.
   std::optional<Time> accept_at_;        // There was no room for a connection; try again then.

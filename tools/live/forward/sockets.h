@@ -1,59 +1,33 @@
-// Sockets of a program that waits for many at once: no call here blocks but for names.
+// Sockets of a program that waits for many at once: no call here blocks except for names.
 #pragma once
 
-#include <sys/socket.h>
-
-#include <cstdint>
-#include <string>
 #include <vector>
 
+#include "conformance/attach/address.h"
 #include "conformance/attach/stream.h"
 
 namespace rubric::forward {
 
-/// Of one end of a socket.
-struct SocketAddress {
-  sockaddr_storage storage{};
-  socklen_t size_bytes = 0;
-
-  sockaddr* get() { return reinterpret_cast<sockaddr*>(&storage); }
-  const sockaddr* get() const { return reinterpret_cast<const sockaddr*>(&storage); }
-  int family() const { return storage.ss_family; }
-  std::uint16_t port() const;
-  /// "127.0.0.1:9002", "[::1]:9002".
-  std::string text() const;
-  /// Whether only this host reaches it.
-  bool is_loopback() const;
-  /// Whether it stands for all addresses of this host.
-  bool is_any() const;
-  /// Whether the hosts are the same; ports do not matter.
-  bool same_host(const SocketAddress& other) const;
-};
-
-SocketAddress address_here(int fd);
-SocketAddress address_of_peer(int fd);
-
-/// All addresses of a host, in the order in which they are to be tried. `passive`: to listen at,
-/// and `port` may be 0. Throws runner::TargetBroken. May take as long as names take.
-std::vector<SocketAddress> resolve(const std::string& host, std::uint16_t port, bool passive);
-
-/// Listens at the first of the host's addresses where that works. Throws runner::TargetBroken.
-attach::Descriptor listen_at(const std::string& host, std::uint16_t port);
+using attach::address_here;
+using attach::address_of_peer;
+using attach::listen_at;
+using attach::resolve;
+using attach::SocketAddress;
 
 /// Connects to the first of some addresses that takes the connection.
 class Connector {
  public:
   explicit Connector(std::vector<SocketAddress> addresses) : addresses_(std::move(addresses)) {}
 
-  /// From the first address on. Throws runner::TargetBroken, here and below, when none is left.
+  /// Starts with the first address. Throws runner::TargetBroken, here and below, when none is left.
   void begin(attach::SteadyTime now);
-  /// The socket is writable, or the time may be over.
+  /// Continues when the socket is writable, or the time may be over.
   void go_on(bool writable, attach::SteadyTime now);
   bool connected() const { return connected_; }
   int fd() const { return socket_.get(); }
-  /// When to go on though nothing happened.
+  /// Returns when to continue though nothing happened.
   attach::SteadyTime deadline() const { return deadline_; }
-  /// The connection, once.
+  /// Returns the connection, once.
   attach::ByteStream take();
   void close() { socket_.close(); }
 
@@ -68,7 +42,7 @@ class Connector {
   int error_ = 0;  // Why the last one failed.
 };
 
-/// Whether an error only says that there is nothing to do now.
+/// Returns whether an error only means that there is nothing to do now.
 bool would_block(int error);
 
 }  // namespace rubric::forward

@@ -116,7 +116,7 @@ void Source::turn(short found, attach::SteadyTime now) {
     if (connector_->connected()) connected(now);
     return;
   }
-  // A hangup shows in what is read, behind what had come before it.
+  // A hangup shows when reading, after the bytes that had come before it.
   if (found & ~POLLOUT) read(now);
   if (state_ == State::kGreeting && now >= greet_by_) {
     throw TargetBroken("the other end does not begin a serial forwarder's connection");

@@ -1,4 +1,4 @@
-// Where a serial forwarder has its packets from: a serial line, or another forwarder.
+// The source of a serial forwarder's packets: a serial line, or another forwarder.
 #pragma once
 
 #include <poll.h>
@@ -18,49 +18,50 @@
 
 namespace rubric::forward {
 
-/// Nothing here blocks, but that a name is looked up at the first opening.
+/// Nothing here blocks, except that a name is looked up at the first opening.
 class Source {
  public:
   struct Options {
     live::Address address;
-    attach::HostLinkOptions link;              ///< Of a serial line.
+    attach::HostLinkOptions link;              ///< For a serial line.
     attach::Milliseconds patience{10'000};     ///< For a forwarder's handshake.
   };
   struct Handlers {
-    /// Everything that goes by, in both directions, malformed frames and confirmations included.
+    /// Gets everything that passes, in both directions, malformed frames and confirmations
+    /// included.
     std::function<void(const Packet&)> on_frame;
-    /// A packet for the clients, from its dispatch byte on.
+    /// Gets a packet for the clients, from its dispatch byte on.
     std::function<void(Bytes)> on_packet;
     std::function<void()> on_malformed;
-    /// A packet of a client was written, and by a mote confirmed; or it was not confirmed.
+    /// Called when a packet of a client was written, and by a mote confirmed; or was not confirmed.
     std::function<void(bool confirmed)> on_given;
   };
 
   Source(Options options, Handlers handlers);
 
   const std::string& name() const { return options_.address.name; }
-  /// The longest packet that it takes, in bytes.
+  /// Returns the longest packet that it takes, in bytes.
   std::size_t packet_max() const;
 
-  /// Begins to open it. All that are not const throw runner::TargetBroken where it is gone, or is
-  /// not what it should be; close() is due then.
+  /// Begins to open it. All functions that are not const throw runner::TargetBroken if it is gone,
+  /// or is not what it should be; close() is due then.
   void open(attach::SteadyTime now);
-  /// Throws nothing. A packet that was not given yet is kept for the next time.
+  /// Closes it. Throws nothing. A packet that was not given yet is kept for the next time.
   void close(attach::SteadyTime now);
   bool is_closed() const { return state_ == State::kClosed; }
   bool is_up() const { return state_ == State::kUp; }
-  /// Its socket, if it is one and connected.
+  /// Returns its socket, if it is one and connected.
   int socket() const;
 
   pollfd wanted() const;
   std::optional<attach::SteadyTime> next() const;
-  /// Poll found something, or next() may be over.
+  /// Continues when poll found something, or next() may be over.
   void turn(short found, attach::SteadyTime now);
 
-  /// Whether give() may be called.
+  /// Returns whether give() may be called.
   bool takes() const { return is_up() && given_.empty(); }
   void give(Bytes packet, attach::SteadyTime now);
-  /// Whether it has a packet of a client that was not given yet.
+  /// Returns whether it has a packet of a client that was not given yet.
   bool is_giving() const { return !given_.empty(); }
 
  private:
@@ -84,13 +85,13 @@ class Source {
   std::optional<Connector> connector_;
   attach::SteadyTime greet_by_;
   std::uint64_t heard_bytes_ = 0;      // Since it was opened.
-  attach::HostLink link_;              // Of a serial line.
-  std::unique_ptr<Reader> forwarded_;  // Of a forwarder.
-  std::unique_ptr<Reader> sent_;       // What was written, for on_frame.
+  attach::HostLink link_;              // For a serial line.
+  std::unique_ptr<Reader> forwarded_;  // For a forwarder.
+  std::unique_ptr<Reader> sent_;       // Reads the output, for on_frame.
   std::vector<std::uint8_t> output_;   // For a forwarder.
   std::vector<std::uint8_t> given_;    // The packet that is being given.
   bool closing_ = false;
-  std::string broken_;                 // What a callback found.
+  std::string broken_;                 // An error found in a callback.
 };
 
 }  // namespace rubric::forward

@@ -12,7 +12,7 @@
 
 namespace {
 
-// What this implementation cannot do: the case is skipped, and that is shown.
+// A feature that this implementation lacks: the case is skipped, and the report shows it.
 struct Unsupported : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -50,7 +50,7 @@ class Adapter : public World {
     wrote_ = true;
   }
 
-  /// The closing line.
+  /// Returns the closing line.
   std::string answer(const std::string& line) {
     std::istringstream in(line);
     std::string command;

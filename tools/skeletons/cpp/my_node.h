@@ -1,7 +1,7 @@
-// Your node goes here, or the bridge to it. Whatever is marked TODO is yours to write.
+// Your node goes here, or the bridge to it. Write whatever is marked TODO.
 //
-// It has no clock of its own: adapter.cc says what time it is (ticks of 1/1024 s), gives it what
-// happens, and calls run_due() when due() says so.
+// It has no clock of its own: adapter.cc gives it the time (ticks of 1/1024 s) and its inputs, and
+// calls run_due() when due() says so.
 #pragma once
 
 #include <cstdint>
@@ -14,21 +14,21 @@ using Ticks = std::uint64_t;
 using Packet = std::vector<std::uint8_t>;  // 00, destination, source, length, group, type, payload.
 using Arguments = std::map<std::string, std::string>;
 
-/// What the node does to its world.
+/// Outputs of the node to its world.
 class World {
  public:
   virtual ~World() = default;
-  /// A frame leaves by "radio", "serial" or "peis". `link_ack` asks for the radio's own
+  /// Sends a frame by "radio", "serial" or "peis". `link_ack` asks for the radio's own
   /// acknowledgement: MyNode::confirmed follows.
   virtual void tx(const std::string& line, const Packet& packet, bool link_ack = false) = 0;
-  /// News for the application, as "joined(11:5 success)".
+  /// Sends news to the application, as "joined(11:5 success)".
   virtual void up(const std::string& news) = 0;
 };
 
 class MyNode {
  public:
-  /// A node that has just started. `settings` has id, island, channels and profile; role is "mote",
-  /// "sink" or "base_station".
+  /// Makes a node that has just started. `settings` has id, island, channels and profile; role is
+  /// "mote", "sink" or "base_station".
   MyNode(World& world, const std::string& role, const Arguments& settings,
          std::uint16_t next_number, Ticks now)
       : world_(world), next_number_(next_number), now_(now), started_at_(now) {
@@ -37,25 +37,26 @@ class MyNode {
   }
 
   void set_time(Ticks now) { now_ = now; }
-  /// When something happens by itself; nothing: never.
+  /// Returns when something happens by itself; nothing: never.
   std::optional<Ticks> due() const { return std::nullopt; }  // TODO: the soonest of your timers.
   /// Does what is due now.
   void run_due() {}  // TODO: what your timers do.
 
-  /// A frame came, whoever it is for.
+  /// Handles a frame, whoever it is for.
   void heard(const std::string& line, const Packet& packet) {
     (void)line;  // TODO: hand it to your receiver.
     (void)packet;
   }
-  /// Somebody else has the line, or left it. "app": the application takes no messages.
+  /// Notes that another station has the line, or left it. "app": the application takes no messages.
   void set_busy(const std::string& line, bool busy) {
     (void)line;  // TODO: what is to be sent, or handed up, waits meanwhile.
     (void)busy;
   }
-  /// How the transmission that asked for a link ack ended.
+  /// Handles the end of the transmission that asked for a link ack.
   void confirmed(bool acked) { (void)acked; }  // TODO: if you ask for any.
 
-  /// A call of the application. False: not there, and the cases that need it are skipped.
+  /// Handles a call of the application. Returns false if it is missing; the cases that need it are
+  /// skipped.
   bool call(const std::string& name, const Arguments& arguments) {
     (void)arguments;  // TODO: "join" has arguments["type"], ["transducers"], ["actuators"], ...
     if (name == "get_clock") {
@@ -65,7 +66,7 @@ class MyNode {
     return false;
   }
 
-  /// The one thing that outlives a loss of power.
+  /// Returns the one number that outlives a loss of power.
   std::uint16_t next_number() const { return next_number_; }
 
  private:

@@ -20,7 +20,7 @@ final class Adapter implements World {
     private static final Set<String> COMMANDS =
             Set.of("rx", "call", "linkack", "line", "power", "until");
 
-    /** What this implementation cannot do: the case is skipped, and that is shown. */
+    /** A feature that this implementation lacks: the case is skipped, and the report shows it. */
     private static final class Unsupported extends RuntimeException {
         private static final long serialVersionUID = 1;
 

@@ -46,7 +46,7 @@ final class MyNode {
         // TODO: what is to be sent, or handed up, waits meanwhile.
     }
 
-    /** How the transmission that asked for a link ack ended. */
+    /** Handles the end of the transmission that asked for a link ack. */
     void confirmed(boolean acked) {
         // TODO: if you ask for any.
     }

@@ -1,4 +1,4 @@
-/** What the node does to its world. */
+/** Outputs of the node to its world. */
 interface World {
     /**
      * A frame leaves by "radio", "serial" or "peis": 00, destination, source, length, group, type,

@@ -28,7 +28,7 @@ class Mote:
         """Does what is due now."""
         # TODO: what your timers do.
 
-    # The commands of rct/1, with their words behind the time.
+    # The commands of rct/1, with their words after the time.
 
     def rx(self, line, packet_hex):
         """A frame came by "radio" or "serial", whoever it is for."""
@@ -41,7 +41,7 @@ class Mote:
         # TODO: what is to be sent, or handed up, waits meanwhile.
 
     def linkack(self, acked):
-        """How the transmission ended for which you asked: "1" is acked. See PORTING.md."""
+        """Handles the end of the transmission that you asked for: "1" is acked. See PORTING.md."""
 
     def power(self, what):
         self.is_on = False

@@ -27,7 +27,7 @@ uint8_t record_filled;
 
 class Arm : public Board {
  public:
-  /// To be called more often than SysTick comes round, every 1.3 s.
+  /// Returns the time; to be called more often than SysTick wraps, every 1.3 s.
   Ticks now() const override {
     const uint32_t value = at(kSysTickValue);
     parts_ += ((value_ - value) & kSysTickMax) * kParts;  // It counts down.
@@ -72,7 +72,7 @@ class Arm : public Board {
 
  private:
   mutable uint32_t value_ = 0;
-  mutable uint32_t parts_ = 0;  // Of the present tick, gone when the clock was looked at.
+  mutable uint32_t parts_ = 0;  // Of the present tick, passed at the last read of the clock.
   mutable Ticks ticks_ = 0;
 
   void start_uart(uint32_t uart, uint32_t baud) {
@@ -150,7 +150,7 @@ int main() {
       record_size = 0;
     }
     bench.run();
-    asm volatile("cpsid i" ::: "memory");  // What comes from here on wakes the processor.
+    asm volatile("cpsid i" ::: "memory");  // Later interrupts wake the processor.
     if (record_size == 0 && !serial.has_news() && !ticked) asm volatile("wfi");
     asm volatile("cpsie i" ::: "memory");
   }

@@ -1,4 +1,4 @@
-// What runs before main on a Cortex-M3.
+// Runs before main on a Cortex-M3.
 #include <stdint.h>
 #include <string.h>
 
@@ -23,7 +23,7 @@ void reset_handler() {
   main();
 }
 
-// A fault: the bench finds that nobody answers.
+// Halts on a fault: the bench notices the silence.
 void halt() {
   for (;;) {
   }

@@ -128,7 +128,7 @@ int main() {
       record_size = 0;
     }
     bench.run();
-    cli();  // What comes from here on wakes the processor.
+    cli();  // Later interrupts wake the processor.
     if (record_size == 0 && !serial.has_news() && !ticked) {
       sleep_enable();
       sei();

@@ -65,7 +65,7 @@ void Bench::setup(const uint8_t* body) {
   setup.id = load_be16(body);
   setup.island = load_be16(body + 2);
   setup.channels = body[4];
-  // Numbers go on after a reset: a late reply must not fit the next request. (decision 117)
+  // Numbers continue after a reset: a late reply must not fit the next request. (decision 117)
   setup.last_seq_num = body[7] != 0 ? board_.kept_seq_num() : load_be16(body + 5);
   board_.start_clock();
   begin(FromBoard::kReady, 0);

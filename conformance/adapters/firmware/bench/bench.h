@@ -8,13 +8,13 @@
 namespace rubric {
 namespace firmware {
 
-/// What differs from board to board.
+/// The parts that differ from board to board.
 class Board : public Clock {
  public:
-  /// A byte to the bench; waits until there is room for it.
+  /// Sends a byte to the bench; waits until there is room for it.
   virtual void put(uint8_t byte) = 0;
   virtual void start_clock() = 0;
-  /// Memory that survives a reset, but not a loss of power.
+  /// Returns memory that survives a reset, but not a loss of power.
   virtual uint16_t& kept_seq_num() = 0;
   virtual void restart() = 0;
 
@@ -27,11 +27,11 @@ class Bench : public Radio, public Application {
   Bench(Board& board, SerialPort& serial)
       : board_(board), serial_(serial), node_(*this, serial, board, *this) {}
 
-  /// After a reset.
+  /// Greets the bench after a reset.
   void hello();
-  /// A record, from its tag on.
+  /// Handles a record, from its tag on.
   void handle(Bytes record);
-  /// What the node has to do by itself; to be called after each interrupt.
+  /// Runs the node's own work; to be called after each interrupt.
   void run();
 
   void send(uint16_t dest, uint8_t am_type, Bytes payload, bool link_ack) override;

@@ -1,4 +1,4 @@
-// The calls of the application, as the bench makes them.
+// Makes the bench's calls of the application.
 #include "conformance/adapters/firmware/bench/bench.h"
 
 namespace rubric {

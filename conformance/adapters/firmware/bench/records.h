@@ -33,7 +33,7 @@ enum : uint8_t { kIdleTimerRuns = 1, kIdleSerialSends = 2 };
 
 constexpr size_t kRecordMax = 125;  ///< Tag and body: the longest holds a whole packet.
 
-/// Arguments as PORTING.md has them: addresses and channels are two u16, reals u32, data the rest.
+/// Arguments as in PORTING.md: addresses and channels are two u16, reals u32, data the rest.
 enum class CallCode : uint8_t {
   kJoin = 1,
   kSend,

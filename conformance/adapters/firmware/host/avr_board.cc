@@ -17,7 +17,7 @@ extern "C" {
 }
 
 #if defined(__SANITIZE_ADDRESS__)
-// What simavr never frees.
+// Suppresses leaks of simavr.
 extern "C" const char* __lsan_default_suppressions();
 extern "C" const char* __lsan_default_suppressions() {
   return "leak:avr_init_irq\nleak:avr_alloc_irq\nleak:avr_irq_register_notify\n"
@@ -33,12 +33,12 @@ constexpr Instant kLinkBaud = 921'600;
 constexpr Instant kLinkSlowness = 2;
 constexpr Instant kSerialBaud = 115'200;
 constexpr Instant kBitsPerByte = 10;
-// What a line carries for the time of a byte where there is none.
+// The line's value for the time of a byte if there is none.
 constexpr std::uint16_t kSilence = 0x100;
-// In that many bytes' time simavr's UART catches up with the line: it hands over a byte not before
+// So many bytes' time lets simavr's UART catch up with the line: it passes a byte on no sooner than
 // a byte's time after the last was taken.
 constexpr std::size_t kSilenceBehindFrame = 48;
-constexpr std::uint8_t kUntouched = 0xA5;  // What memory holds when the power comes.
+constexpr std::uint8_t kUntouched = 0xA5;  // Memory content at power-on.
 
 void log_to_stderr(avr_t*, const int level, const char* format, std::va_list arguments) {
   if (level > LOG_ERROR) return;
@@ -47,7 +47,7 @@ void log_to_stderr(avr_t*, const int level, const char* format, std::va_list arg
 
 }  // namespace
 
-// What simavr calls.
+// Callbacks of simavr.
 struct AvrBoard::Callbacks {
   static void output(avr_irq_t*, std::uint32_t value, void* parameter) {
     auto& uart = *static_cast<Uart*>(parameter);
@@ -60,7 +60,7 @@ struct AvrBoard::Callbacks {
       listener->serial_byte(byte);
     }
   }
-  // A byte at a time, as the line carries them.
+  // Feeds a byte at a time, as the line carries them.
   static avr_cycle_count_t feed(avr_t*, avr_cycle_count_t when, void* parameter) {
     auto& uart = *static_cast<Uart*>(parameter);
     uart.feeding = !uart.waiting.empty();
@@ -74,7 +74,7 @@ struct AvrBoard::Callbacks {
     static_cast<AvrBoard*>(parameter)->stopped_ = true;
     return 0;
   }
-  // It would sleep in real time.
+  // Overrides simavr's sleep in real time.
   static void sleep(avr_t*, avr_cycle_count_t) {}
 };
 
@@ -124,7 +124,7 @@ void AvrBoard::load() {
   std::free(firmware.flash);
 }
 
-// One processor for all: simavr leaks memory with each.
+// Uses one processor for all: simavr leaks memory with each.
 void AvrBoard::power_on() {
   if (avr_ == nullptr) {
     load();

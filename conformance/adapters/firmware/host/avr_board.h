@@ -1,4 +1,4 @@
-// An ATmega128 in libsimavr. Its time is virtual: it passes while run() says so.
+// An ATmega128 in libsimavr. Its time is virtual and passes only within run().
 #pragma once
 
 #include <deque>
@@ -14,7 +14,7 @@ namespace rubric::firmware {
 
 class AvrBoard : public SimulatedBoard {
  public:
-  /// Throws BoardBroken when the file is no ELF file that could be loaded.
+  /// Throws BoardBroken if the file is no ELF file that could be loaded.
   explicit AvrBoard(std::string elf_file);
   ~AvrBoard() override;
   AvrBoard(const AvrBoard&) = delete;
@@ -28,11 +28,11 @@ class AvrBoard : public SimulatedBoard {
   void put_link(Bytes bytes) override;
   void put_serial(Bytes bytes) override;
   bool serial_is_idle() const override { return serial_.waiting.empty(); }
-  /// Bytes between the data and the deepest that the stack has been since power_on.
+  /// Returns the bytes between the data and the deepest point of the stack since power_on.
   std::size_t untouched_ram_bytes() const;
 
  private:
-  // What is on its way to one of the processor's UARTs.
+  // Bytes on their way to one of the processor's UARTs.
   struct Uart {
     AvrBoard* board = nullptr;
     bool is_link = false;

@@ -1,4 +1,4 @@
-// The firmware on its processor: what the golden traces do not see.
+// The firmware on its processor: facts that the golden traces do not see.
 #include "conformance/adapters/firmware/host/avr_board.h"
 
 #include <gmock/gmock.h>
@@ -11,7 +11,7 @@ namespace {
 
 constexpr Tick kSecond = 1024;
 
-// A radio or serial packet with a net_msg of `data_bytes` bytes for Connectionless.
+// Returns a radio or serial packet with a net_msg of `data_bytes` bytes for Connectionless.
 ByteVector net_packet(std::uint16_t am_dest, const std::string& dest, const std::string& src,
                       bool reliable, std::size_t data_bytes) {
   const auto size = static_cast<std::uint8_t>(14 + data_bytes);
@@ -69,7 +69,8 @@ TEST_F(AvrBoardTest, SaysWhatItIs) {
   std::printf("a mote's node takes %u bytes of RAM\n", firmware_.node_bytes);
 }
 
-// All buffers full, everything that can be on its way at once; then the stack's deepest mark.
+// Fills all buffers, with everything that can be on its way at once; then reads the stack's deepest
+// mark.
 TEST_F(AvrBoardTest, ItsStackHasRoom) {
   start(RUBRIC_FIRMWARE_SINK_ELF);
   const ByteVector up = net_packet(1, "000b0001", "000b0005", true, 100);

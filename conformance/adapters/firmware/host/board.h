@@ -1,4 +1,5 @@
-// A board on the bench as its processor's simulator or emulator shows it: two UARTs and a clock.
+// A board on the bench, as its processor's simulator or emulator presents it: two UARTs and a
+// clock.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +21,7 @@ class BoardBroken : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// What the board sends, byte by byte, while it runs.
+/// Gets the board's bytes, one by one, while it runs.
 class Listener {
  public:
   virtual void link_byte(std::uint8_t byte) = 0;
@@ -33,18 +34,18 @@ class Listener {
 class SimulatedBoard {
  public:
   virtual ~SimulatedBoard() = default;
-  /// New firmware, its memory cleared; it has not run yet.
+  /// Loads new firmware and clears its memory; does not run it yet.
   virtual void power_on() = 0;
-  /// Runs it from its start again at `now`; memory is kept. What it was sending may be cut off.
+  /// Restarts it at `now`; memory is kept. A byte that it was sending may be cut off.
   virtual void restart(Instant now) = 0;
   virtual Instant now() const = 0;
-  /// Until `end`, or until a listener calls stop().
+  /// Runs until `end`, or until a listener calls stop().
   virtual void run(Instant end, Listener& listener) = 0;
   virtual void stop() = 0;
-  /// Bytes for the board; they take their time on the line.
+  /// Sends bytes to the board; they take their time on the line.
   virtual void put_link(Bytes bytes) = 0;
   virtual void put_serial(Bytes bytes) = 0;
-  /// Whether all bytes for the serial line have gone.
+  /// Returns whether all bytes for the serial line have gone.
   virtual bool serial_is_idle() const = 0;
 };
 

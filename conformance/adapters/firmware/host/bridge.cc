@@ -1,9 +1,11 @@
 #include "conformance/adapters/firmware/host/bridge.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
-#include <fmt/format.h>
+#include "codec/generated/tinyos/am_header.h"
 
 namespace rubric::firmware {
 namespace {
@@ -12,13 +14,13 @@ constexpr Instant kBootMax = 2 * kInstantsPerSecond;
 // How long a board may leave a serial packet without a sign before the bench gives it up: it was
 // switched off, or had no room.
 constexpr Instant kSerialPatience = 40 * kInstantsPerTick;
-// A tick of the node begins that much later than one of the bench, so that what the node does when
-// its tick begins falls into the same tick of the bench.
+// The node's ticks begin that much later than the bench's, so that the node's work at the begin of
+// its tick falls into the same tick of the bench.
 constexpr Instant kNodeIsLate = kInstantsPerTick / 8;
 constexpr std::size_t kPacketMax = kRecordMax - 1;
-constexpr std::size_t kPacketHeaderBytes = 8;
+constexpr std::size_t kPacketHeaderBytes = tinyos::AmHeaderView::kMaxSizeBytes;
 
-// Preamble, header and FCS besides the payload, at 250 kbit/s.
+// Returns the air time with preamble, header and FCS besides the payload, at 250 kbit/s.
 Instant air_time(std::size_t packet_bytes) {
   const std::size_t us = (packet_bytes - kPacketHeaderBytes + 19) * 32;
   return us * kInstantsPerSecond / 1'000'000;
@@ -133,7 +135,7 @@ void Bridge::power_off() {
   queue_.clear();
 }
 
-// Who else uses the lines goes on.
+// Reboots the node; other users of the lines continue.
 void Bridge::reboot() {
   power_off();
   off_ = false;
@@ -146,7 +148,7 @@ void Bridge::reboot() {
   if (serial_busy_) busy(1, true);
 }
 
-// Stops also when a line comes.
+// Runs, and also stops when a line comes.
 void Bridge::run_until(Instant end) {
   const bool transmission_ends = chip_.has_frame && chip_.on_air && !chip_.wants_ack;
   board_.run(transmission_ends ? std::min(end, chip_.end) : end, *this);

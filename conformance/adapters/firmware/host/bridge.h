@@ -1,5 +1,5 @@
 // The test bench around a board: plays its radio chip, the other end of its serial line and its
-// application, and says what comes of it in the words of rct/1.
+// application, and reports outputs in the words of rct/1.
 #pragma once
 
 #include <deque>
@@ -18,10 +18,10 @@ namespace rubric::firmware {
 
 using Tick = std::uint64_t;
 
-/// What firmware says of itself.
+/// The firmware's description of itself.
 struct Firmware {
   bool is_sink = false;
-  unsigned channels = 0;  ///< Of each direction.
+  unsigned channels = 0;  ///< For each direction.
   unsigned node_bytes = 0;
 };
 
@@ -38,13 +38,13 @@ class Bridge final : private Listener {
 
   /// Switches the board on and waits for its greeting. Throws BoardBroken if there is none.
   Firmware greet();
-  /// The node starts; this is tick 0.
+  /// Starts the node; this is tick 0.
   void start(const NodeSetup& setup);
 
   /// Runs up to the beginning of tick `now`; lines that this brings have that time.
   void advance(Tick now);
 
-  // What happens, at the present tick.
+  // Inputs at the present tick.
   void hear_radio(Bytes packet);
   void hear_serial(Bytes packet);
   void call(Bytes call_record);
@@ -55,12 +55,12 @@ class Bridge final : private Listener {
 
   /// Runs up to and including tick `end`, or to the first that brings a line. Returns the tick.
   Tick run(Tick end);
-  /// Before when no line comes unless something happens; nothing: never.
+  /// Returns the time before which no line comes unless something happens; nothing: never.
   std::optional<Tick> next() const;
-  /// Lines `tx ...` and `up ...` since the last call.
+  /// Returns the lines `tx ...` and `up ...` since the last call.
   std::vector<std::string> take_lines();
   Tick tick() const;
-  /// Gets the bytes of the serial line as well.
+  /// Also passes on the bytes of the serial line.
   void set_serial_tap(std::function<void(std::uint8_t)> tap) { serial_tap_ = std::move(tap); }
 
  private:
@@ -70,9 +70,9 @@ class Bridge final : private Listener {
     bool on_air = false;        ///< Else it waits for the channel.
     bool wants_ack = false;
     ByteVector packet;
-    Instant end = 0;            ///< Of the transmission, unless it is for linkack to say.
+    Instant end = 0;            ///< End of the transmission, unless linkack ends it.
   };
-  struct Reported {  // By the last kIdle.
+  struct Reported {  // From the last kIdle.
     std::uint8_t records = 0;
     std::uint8_t packets = 0;
     std::uint8_t flags = 0;
@@ -99,8 +99,8 @@ class Bridge final : private Listener {
   bool greeted_ = false;
   bool ready_ = false;
   bool off_ = false;
-  Instant zero_ = 0;          ///< Of tick 0.
-  Instant clock_zero_ = 0;    ///< When the node's own clock started.
+  Instant zero_ = 0;          ///< Time of tick 0.
+  Instant clock_zero_ = 0;    ///< Start of the node's own clock.
   Instant off_now_ = 0;       ///< The time while it is off.
   Tick last_tick_ = 0;        ///< Lines are not earlier.
   ByteVector incoming_;       ///< A record that is not complete.
@@ -108,8 +108,8 @@ class Bridge final : private Listener {
   bool in_flight_ = false;    ///< A record that is not answered yet.
   std::uint8_t sent_records_ = 0;
   std::uint8_t sent_packets_ = 0;
-  std::uint8_t serial_seq_ = 14;  ///< As TinyOS's host begins.
-  Instant fed_serial_ = 0;    ///< When a packet was last given to the line.
+  std::uint8_t serial_seq_ = 14;  ///< TinyOS's host begins so.
+  Instant fed_serial_ = 0;    ///< Time of the last packet for the line.
   Reported reported_;
   Chip chip_;
   bool serial_busy_ = false;

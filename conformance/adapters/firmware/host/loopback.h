@@ -10,16 +10,16 @@ namespace rubric::firmware {
 /// A port of 127.0.0.1 at which connections are awaited.
 class LoopbackPort {
  public:
-  /// Throws BoardBroken when there is none.
+  /// Throws BoardBroken if there is none.
   LoopbackPort();
   ~LoopbackPort();
   LoopbackPort(const LoopbackPort&) = delete;
   LoopbackPort& operator=(const LoopbackPort&) = delete;
 
   std::uint16_t port() const { return port_; }
-  /// The next connection, which the caller closes; -1 when none came within `wait`.
+  /// Returns the next connection, which the caller closes; -1 if none came within `wait`.
   int accept(std::chrono::milliseconds wait) const;
-  /// The same, asking `is_hopeless` often and ending at once when it says so.
+  /// Does the same, but calls `is_hopeless` often and ends at once when it returns true.
   int accept(std::chrono::milliseconds wait, const std::function<bool()>& is_hopeless) const;
 
  private:

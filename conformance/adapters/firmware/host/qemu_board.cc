@@ -38,7 +38,7 @@ std::string chardev(const char* id, const LoopbackPort& port) {
                      port.port());
 }
 
-// In the child: standard input and output are rct/1's.
+// Detaches the child from standard input and output, which are rct/1's.
 void leave_standard_input() {
   const int null = open("/dev/null", O_RDWR);
   dup2(null, STDIN_FILENO);
@@ -96,7 +96,7 @@ int QemuBoard::connected(const LoopbackPort& port) {
   throw BoardBroken(fmt::format("{} {}", qemu_, ended ? "has ended" : "does not connect"));
 }
 
-// Memory is kept, so the emulator goes on and the firmware resets its processor.
+// Memory is kept, so the emulator runs on and the firmware resets its processor.
 void QemuBoard::restart(Instant) {
   std::this_thread::sleep_for(kRecordTime);
   const std::uint8_t record[] = {1, static_cast<std::uint8_t>(ToBoard::kRestart)};
@@ -118,7 +118,8 @@ void QemuBoard::put(int descriptor, Bytes bytes) {
   }
 }
 
-// The emulator takes bytes as fast as they come; firmware for a line of 115200 baud does not.
+// Slows bytes down: the emulator takes them as fast as they come, firmware for 115200 baud does
+// not.
 void QemuBoard::put_serial(Bytes bytes) {
   constexpr nanoseconds kByteTime{10'000'000'000 / 115'200};
   std::this_thread::sleep_until(serial_free_);

@@ -43,7 +43,7 @@ class QemuBoard : public SimulatedBoard {
   pid_t emulator_ = -1;
   int link_ = -1;
   int serial_ = -1;
-  Steady::time_point serial_free_ = begin_;  ///< When a line would have carried what it was given.
+  Steady::time_point serial_free_ = begin_;  ///< When a line would have carried its bytes.
   bool stopped_ = false;
 };
 

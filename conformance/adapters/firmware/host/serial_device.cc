@@ -28,7 +28,7 @@ class Device {
   virtual ~Device() = default;
   virtual std::string name() const = 0;
   virtual void put(std::uint8_t byte) = 0;
-  // What has come; nothing is waited for.
+  // Returns the bytes at hand without waiting.
   virtual std::size_t take(std::uint8_t* bytes, std::size_t max) = 0;
 };
 
@@ -37,7 +37,7 @@ bool has_bytes(int descriptor) {
   return poll(&waited, 1, 0) > 0;
 }
 
-// A pseudo terminal that changes no byte. The slave stays open for those who come.
+// A pseudo terminal that changes no byte. The slave stays open for later users.
 class Terminal : public Device {
  public:
   Terminal() {
@@ -74,7 +74,7 @@ class Terminal : public Device {
   int slave_ = -1;
 };
 
-// One connection at a time. What is sent to nobody is lost, as on a line.
+// One connection at a time. Bytes without a receiver are lost, as on a line.
 class TcpLine : public Device {
  public:
   TcpLine() = default;

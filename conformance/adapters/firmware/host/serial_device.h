@@ -5,9 +5,9 @@
 
 namespace rubric::firmware {
 
-/// Starts the node as a sink of `island`, writes to standard output what stands behind `serial:`
-/// for `rubric test` (a device, or `tcp:HOST:PORT`) and carries bytes until standard input ends.
-/// The sink's radio sends, but hears nobody. Returns the exit status.
+/// Starts the node as a sink of `island`, writes to standard output the part after `serial:` of a
+/// target of `rubric test` (a device, or `tcp:HOST:PORT`) and carries bytes until standard input
+/// ends. The sink's radio sends, but hears nobody. Returns the exit status.
 int serve_serial_device(QemuBoard& board, std::uint16_t island, bool over_tcp);
 
 }  // namespace rubric::firmware

@@ -23,7 +23,7 @@ class Session {
   Session(std::vector<Station>& stations, std::string name, std::string time)
       : stations_(stations), name_(std::move(name)), time_(std::move(time)) {}
 
-  // The answer to one command, with all its lines.
+  // Returns the answer to one command, with all its lines.
   std::string answer(const std::vector<std::string_view>& words) {
     const std::string_view command = words[0];
     if (command == "hello") return hello();
@@ -38,7 +38,7 @@ class Session {
     last_ = std::max(last_, now);
     bridge_->advance(now);
     if (!happen(command, words)) throw Unsupported(fmt::format("there is no {}", command));
-    return done(now, now);  // What it does about it may come at this tick yet.
+    return done(now, now);  // Its reaction may come at this tick yet.
   }
 
  private:
@@ -83,7 +83,7 @@ class Session {
     return "ready\n";
   }
 
-  // The firmware of that role with the fewest channels that are enough.
+  // Returns the firmware of that role with the fewest channels that are enough.
   Bridge& station(std::string_view role, std::uint32_t channels) {
     Station* best = nullptr;
     for (Station& one : stations_) {
@@ -105,7 +105,7 @@ class Session {
       const Bytes bytes(packet.data(), packet.size());
       if (word(2) == "radio") bridge_->hear_radio(bytes);
       if (word(2) == "serial") bridge_->hear_serial(bytes);
-      return true;  // What comes over PEIS is not for a mote or a sink.
+      return true;  // PEIS is not for a mote or a sink.
     }
     if (command == "call") {
       std::string text(word(2));
@@ -131,7 +131,7 @@ class Session {
     return true;
   }
 
-  // Lines of the board carry times that may have passed since; rct/1 wants them in order.
+  // Ends an answer. Times of the board's lines may have passed since; rct/1 wants them in order.
   std::string done(Tick time, Tick next_min) {
     last_ = std::max(last_, time);
     std::string text;

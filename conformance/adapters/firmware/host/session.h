@@ -9,7 +9,7 @@
 
 namespace rubric::firmware {
 
-/// A board with its firmware, and what that can be.
+/// A board with its firmware, and its possible roles.
 struct Station {
   std::unique_ptr<SimulatedBoard> board;
   std::unique_ptr<Bridge> bridge;

@@ -57,7 +57,7 @@ constexpr std::array kEvents{
     word(EventCode::kClock, "clock", "l"),
 };
 
-// A record has no room for more data than this, and a node refuses as much already.
+// A record has no room for more data, and a node refuses as much already.
 constexpr std::size_t kDataMax = 101;
 
 void put16(ByteVector& out, std::uint32_t value) {

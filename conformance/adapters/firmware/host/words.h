@@ -1,4 +1,4 @@
-// Calls and events between rct/1's text and the records of the bench (bench/records.h).
+// Converts calls and events between rct/1's text and the records of the bench (bench/records.h).
 #pragma once
 
 #include <cstdint>
@@ -19,17 +19,17 @@ class BadWord : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// `NAME(ARGUMENTS)` as code and arguments of a kCall record. Throws BadWord.
+/// Converts `NAME(ARGUMENTS)` to code and arguments of a kCall record. Throws BadWord.
 ByteVector call_record(std::string_view text);
-/// The body of a kEvent record as `NAME(ARGUMENTS)`. Throws BadWord when it is none.
+/// Converts the body of a kEvent record to `NAME(ARGUMENTS)`. Throws BadWord if it is none.
 std::string event_text(Bytes body);
 
-/// Whole hex bytes. Throws BadWord.
+/// Parses whole hex bytes. Throws BadWord.
 ByteVector bytes_of_hex(std::string_view hex);
 std::string hex_of_bytes(Bytes bytes);
-/// Decimal, from 0 to `max`. Throws BadWord.
+/// Parses a decimal number from 0 to `max`. Throws BadWord.
 std::uint32_t number_of(std::string_view word, std::uint32_t max);
-/// At blanks.
+/// Splits at blanks.
 std::vector<std::string_view> split(std::string_view text, char at = ' ');
 
 }  // namespace rubric::firmware

@@ -15,7 +15,7 @@ struct Admission {
     kMember,
   };
   uint16_t devid;
-  uint16_t seq_num;  ///< Of the request answered last.
+  uint16_t seq_num;  ///< In the request answered last.
   Descriptor descriptor;
   State state;
 };
@@ -23,17 +23,17 @@ struct Admission {
 class Admissions {
  public:
   void clear() { count_ = members_ = 0; }
-  /// A join_request; true: answer it.
+  /// Handles a join_request; returns true if it is to be answered.
   bool request(uint16_t devid, uint16_t seq_num, const Descriptor& descriptor);
-  /// An ack_join for this island; the new member, whose report is owed, or null.
+  /// Handles an ack_join for this island; returns the new member, whose report is owed, or null.
   Admission* acknowledge(uint16_t devid, uint16_t seq_num);
-  /// The member whose report has waited longest, or null.
+  /// Returns the member whose report has waited longest, or null.
   Admission* owed();
 
  private:
   Admission* find(uint16_t devid);
   void erase(uint8_t i);
-  /// A place for one more, if need be that of the oldest join which was not acknowledged.
+  /// Returns a place for one more, if needed that of the oldest join which was not acknowledged.
   Admission& add();
 
   Admission entries_[kAdmissionsRoom];

@@ -42,7 +42,7 @@ void Awaiting::hear(Address from, uint8_t app_id, uint16_t seq_num, Application&
   if (entry == nullptr) return;
   //= T3-SENDER: An ack counts only if it comes from the message's destination and carries its
   //= APPID.
-  // A broadcast is nobody's to ack.
+  // No node may ack a broadcast.
   if (is_broadcast(entry->dest) || entry->dest != from || entry->app_id != app_id) return;
   //= T3-ONCE: Each reliable message ends in exactly one receive_ack; late and duplicate acks change
   //= nothing.

@@ -14,17 +14,17 @@ class Awaiting {
     count_ = 0;
   }
   bool full() const { return count_ == kAwaitedRoom; }
-  /// The next number; never kNoSeq, never one that is awaited.
+  /// Returns the next number; never kNoSeq, never one that is awaited.
   uint16_t next_seq_num();
   uint16_t last_seq_num() const { return last_; }
 
-  /// A reliable message is accepted; not when full().
+  /// Adds a reliable message that is accepted; not when full().
   void add(uint16_t seq_num, uint8_t app_id, Address dest);
-  /// The line has it: its time begins. (decision 110)
+  /// Starts its time, since the line has it. (decision 110)
   void left(uint16_t seq_num, Ticks now);
   void hear(Address from, uint8_t app_id, uint16_t seq_num, Application& application);
   void run(Ticks now, Application& application);
-  /// When the first timeout ends; false: none runs.
+  /// Sets `due` to the first timeout; returns false if none runs.
   bool next_due(Ticks& due) const;
 
  private:

@@ -2,11 +2,14 @@
 
 #include <string.h>
 
+#include "codec/generated/rubicon/synaptic_data.h"
+
 namespace rubric {
 namespace firmware {
 namespace {
 
-constexpr uint8_t kFloatBytes = 4;
+using Values = rubicon::SynapticDataLayout::ValuesAt;
+constexpr uint8_t kFloatBytes = Values::kUnitBytes;
 
 ChannelId channel_id(uint16_t source, uint16_t destination) {
   return static_cast<ChannelId>(source) << 16 | destination;
@@ -160,7 +163,7 @@ bool Channels::write(ChannelId id, uint8_t pos, float value) {
   //= the channel is refused.
   if (channel == nullptr || pos >= channel->size) return false;
   uint8_t bytes[kFloatBytes];
-  store_le32(bytes, bits_of_float(value));
+  Values::store(bytes, 0, value);
   uint8_t* const at = channel->values + kFloatBytes * pos;
   // A value that changes there and back between two ticks has changed.
   if (memcmp(at, bytes, kFloatBytes) != 0) channel->fresh = true;
@@ -173,7 +176,7 @@ InputValue Channels::read(ChannelId id, uint8_t pos) {
   //= S1-READ: read_input_value tells the value at pos that was received last; a pos outside the
   //= channel is refused.
   if (channel == nullptr || pos >= channel->size) return {0, false};
-  return {float_of_bits(load_le32(channel->values + kFloatBytes * pos)), true};
+  return {Values::load(channel->values, pos), true};
 }
 
 bool Channels::set_period(uint16_t ticks, Ticks now) {
@@ -191,7 +194,8 @@ void Channels::hear(Address own, Address src, Bytes floats, Application& applica
     return application.syn_data_received(id, DataStatus::kUnknownChannel);
   }
   if (!channel->started) return;
-  // The data do not say how many connections their sender meant; both sides know. (decision 8)
+  // The data do not show how many connections their sender meant; takes what both sides have.
+  // (decision 8)
   size_t count = floats.size() / kFloatBytes;
   if (count > channel->size) count = channel->size;
   if (count == 0) return;
@@ -202,7 +206,7 @@ void Channels::hear(Address own, Address src, Bytes floats, Application& applica
 bool Channels::tick(Ticks now) {
   if (!running_ || !is_reached(due_, now)) return false;
   //= S2-TICK: A channel sends at most once a tick, and ticks are no closer than the clock's period.
-  // One that is handled late, in a tick that has partly gone, must not bring the next one closer.
+  // A tick that is handled late, when it has partly gone, must not bring the next one closer.
   due_ = now == due_ ? now + period_ : now + period_ + 1;
   phase_ = 0;
   return true;

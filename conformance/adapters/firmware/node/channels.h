@@ -8,7 +8,7 @@
 namespace rubric {
 namespace firmware {
 
-/// One end of a channel. Values stand as they travel, as little-endian binary32.
+/// One end of a channel. Values are kept as they travel, as little-endian binary32.
 struct Channel {
   ChannelId id;
   uint16_t peer_pid;
@@ -28,7 +28,7 @@ class ChannelList {
   Channel& operator[](uint8_t i) { return channels_[i]; }
   Channel* find(ChannelId id);
   bool dispose(ChannelId id);
-  /// `limit` channels at most.
+  /// Creates a channel, `limit` at most.
   bool create(ChannelId id, uint16_t own_pid, uint16_t peer_pid, uint8_t size, Mode mode,
               uint8_t limit);
   void start(Channel& channel, bool fresh);
@@ -43,7 +43,8 @@ class ChannelList {
 
 class Channels {
  public:
-  /// `limit` of each direction, at most kChannelsRoom. `phase` delays the clock's first tick.
+  /// Allows `limit` of each direction, at most kChannelsRoom. `phase` delays the clock's first
+  /// tick.
   void reset(uint8_t limit);
 
   ChannelResult create(bool out, Address own, Address peer, uint8_t size, Mode mode);
@@ -56,20 +57,20 @@ class Channels {
   InputValue read(ChannelId id, uint8_t pos);
   bool set_period(uint16_t ticks, Ticks now);
 
-  /// Data from `src` arrive.
+  /// Handles data from `src`.
   void hear(Address own, Address src, Bytes floats, Application& application);
 
-  /// True once for each tick of the clock.
+  /// Returns true once for each tick of the clock.
   bool tick(Ticks now);
   bool next_due(Ticks& due) const;
   uint8_t out_count() const { return out_.size(); }
   Channel& out(uint8_t i) { return out_[i]; }
-  /// What this tick has to do for an output; it may be asked for each once a tick.
+  /// Returns whether an output takes part in this tick; to be called once a tick for each.
   bool takes_part(Channel& channel);
   bool is_local(const Channel& channel, Address own) const;
-  /// Gives a local channel's values to its other end.
+  /// Passes a local channel's values to its other end.
   void hand_over(const Channel& channel, Address own);
-  /// The other half of a tick.
+  /// Handles the other half of a tick.
   void signal_inputs(Application& application);
 
  private:
@@ -79,7 +80,7 @@ class Channels {
   ChannelList out_;
   ChannelList in_;
   Ticks due_ = 0;
-  Ticks phase_ = 0;  ///< Of the clock's first tick; then 0.
+  Ticks phase_ = 0;  ///< For the clock's first tick; then 0.
   uint16_t period_ = kSynapticPeriodTicks;
   uint8_t limit_ = kChannelsRoom;
   bool running_ = false;

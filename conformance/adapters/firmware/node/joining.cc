@@ -30,7 +30,7 @@ void Node::join(const Descriptor& descriptor) {
 }
 
 void Node::send_join_request() {
-  // While the one before waits for the radio it stands for this one, too.
+  // While the one before waits for the radio it covers this one, too.
   if (is_waiting(kAmJoin)) return;
   Message* const message = take_place(Line::kRadio);
   if (message == nullptr) return;
@@ -123,7 +123,7 @@ void Node::hear_join_request(uint16_t src, Bytes payload) {
   //= J10-MOTE: A mote ignores join_request and ack_join.
   if (!kIsSink) return;
   const auto request = rubicon::JoinRequestView::parse(payload);
-  // No mote has such a TinyOS id, so none could be told in a reply. (decision 132)
+  // No mote has such a TinyOS id, so no reply could name it. (decision 132)
   if (!request || is_reserved(src) || src == id_) return;
   const Descriptor descriptor = request->mote_desc().to_value();
   if (!admissions_.request(src, request->seq_num(), descriptor)) return;
@@ -160,7 +160,7 @@ void Node::hear_ack_join(uint16_t src, Bytes payload) {
 void Node::report_members() {
   if (!kIsSink) return;
   //= J6-REPORT: A sink reports each new member to its base station with one serial_joined.
-  // Nobody would ask for it again, so it waits until the line has room.
+  // Nothing would repeat it, so it waits until the line has room.
   while (Admission* const member = admissions_.owed()) {
     Message* const message = take_place(Line::kSerial);
     if (message == nullptr) return;
@@ -168,8 +168,8 @@ void Node::report_members() {
     uint8_t* const body = message->room() + kNetHeaderBytes;
     //= J6-CONTENT: serial_joined carries the member's address and descriptor in an unreliable
     //= net_msg from <island, mote> to <island, NULL>, TRANSID CONNLESS, APPID CONTROL_LAYER.
-    body[0] = number(rubicon::Component::kConnless);
-    body[1] = number(rubicon::Component::kControlLayer);
+    rubicon::AppMsgLayout::TransIdAt::store(body, rubicon::Component::kConnless);
+    rubicon::AppMsgLayout::AppIdAt::store(body, rubicon::Component::kControlLayer);
     rubicon::SerialJoined joined;
     joined.msg_type = rubicon::AmType::kSerialJoined;
     joined.island_addr = island_;

@@ -6,7 +6,7 @@
 namespace rubric {
 namespace firmware {
 
-// A place in the line's buffer, or null. It is to be filled and sent at once.
+// Returns a place in the line's buffer, or null. It is to be filled and sent at once.
 Message* Node::take_place(Line line) {
   LineState& state = line_of(line);
   //= N10-OFF: An interface that is switched off sends nothing and receives nothing.
@@ -19,7 +19,7 @@ void Node::send_message(Line line, Message& message, uint16_t dest, uint8_t type
   flush(line);
 }
 
-// On the serial line a net_msg always has its full length.
+// Sends a net_msg; on the serial line it always has its full length.
 void Node::send_net_msg(Line line, Message& message, uint16_t dest, size_t bytes) {
   if (line == Line::kSerial) {
     memset(message.room() + bytes, 0, kAmPayloadMax - bytes);
@@ -58,7 +58,7 @@ void Node::flush_serial() {
   serial_port_.send(message.packet());
 }
 
-// The line has a message: what is counted from here.
+// Starts the times that count from when the line has the message.
 void Node::leave(Message& message) {
   const Ticks now = clock_.now();
   if (message.type() == kAmJoinReply) {

@@ -10,8 +10,8 @@
 namespace rubric {
 namespace firmware {
 
-/// The packet as it travels on the serial line: dispatch byte, AM header, payload. What waits for
-/// the radio has the same form.
+/// The packet as it travels on the serial line: dispatch byte, AM header, payload. Messages for the
+/// radio wait in the same form.
 class Message {
  public:
   void set_header(uint16_t dest, uint16_t src, uint8_t type, size_t payload_bytes) {
@@ -21,28 +21,30 @@ class Message {
     header.src = src;
     header.length = static_cast<uint8_t>(payload_bytes);
     header.type = type;
-    tinyos::AmHeaderLayout::store(header, bytes_);
+    Header::store(header, bytes_);
   }
-  uint16_t dest() const { return load_be16(bytes_ + kDestAt); }
-  uint16_t src() const { return load_be16(bytes_ + kSrcAt); }
-  uint8_t type() const { return bytes_[kTypeAt]; }
-  Bytes packet() const { return Bytes(bytes_, kAmHeaderBytes + bytes_[kLengthAt]); }
-  Bytes payload() const { return Bytes(bytes_ + kAmHeaderBytes, bytes_[kLengthAt]); }
+  uint16_t dest() const { return Header::DestAt::load(bytes_); }
+  uint16_t src() const { return Header::SrcAt::load(bytes_); }
+  uint8_t type() const { return Header::TypeAt::load(bytes_); }
+  Bytes packet() const { return Bytes(bytes_, kAmHeaderBytes + payload_bytes()); }
+  Bytes payload() const { return Bytes(bytes_ + kAmHeaderBytes, payload_bytes()); }
   uint8_t* room() { return bytes_ + kAmHeaderBytes; }
 
-  /// Of a message that waits for the application: how many arrived before it, modulo 256. The group
-  /// means nothing within the node.
-  void set_arrival(uint8_t arrival) { bytes_[kGroupAt] = arrival; }
-  uint8_t arrival() const { return bytes_[kGroupAt]; }
+  /// Sets, for a message that waits for the application, how many arrived before it, modulo 256.
+  /// The group means nothing within the node.
+  void set_arrival(uint8_t arrival) { Header::GroupAt::store(bytes_, arrival); }
+  uint8_t arrival() const { return Header::GroupAt::load(bytes_); }
 
  private:
-  enum : uint8_t { kDestAt = 1, kSrcAt = 3, kLengthAt = 5, kGroupAt = 6, kTypeAt = 7 };
+  using Header = tinyos::AmHeaderLayout;
+  size_t payload_bytes() const { return Header::LengthAt::load(bytes_); }
+
   uint8_t bytes_[kAmHeaderBytes + kAmPayloadMax];
 };
 static_assert(sizeof(Message) <= kPaperMessageBytes, "a message is larger than the paper's");
 
-/// A circular buffer of messages, oldest first; its slots are somebody else's, so that buffers of
-/// all sizes share this code.
+/// A circular buffer of messages, oldest first; it borrows its slots, so that buffers of all sizes
+/// share this code.
 class Queue {
  public:
   template <uint8_t kRoom>
@@ -53,13 +55,13 @@ class Queue {
   uint8_t size() const { return count_; }
   Message& operator[](uint8_t i) { return slots_[(head_ + i) % room_]; }
   Message& front() { return slots_[head_]; }
-  /// A place behind the last; not when full.
+  /// Returns a place after the last; not when full.
   Message& push() { return (*this)[count_++]; }
   void pop() {
     head_ = static_cast<uint8_t>((head_ + 1) % room_);
     --count_;
   }
-  /// Takes out the i-th oldest; the others keep their order.
+  /// Removes the i-th oldest; the others keep their order.
   void erase(uint8_t i) {
     for (uint8_t k = i; k + 1 < count_; ++k) (*this)[k] = (*this)[static_cast<uint8_t>(k + 1)];
     --count_;

@@ -61,7 +61,7 @@ void Node::set_application_busy(bool busy) {
   handle_waiting();
 }
 
-// Where a message of this node's own goes; false: it is refused.
+// Routes a message of this node's own; returns false if it is refused.
 bool Node::route_own(Address& dest, Route& route) const {
   //= J11-SEND: A mote that is not a member sends no net_msg.
   if (!is_member()) return false;
@@ -94,15 +94,15 @@ uint16_t Node::send_own(const OwnMessage& own) {
   Address dest = own.dest;
   Route route = Route();
   if (!route_own(dest, route)) return kNoSeq;
-  // The caller can be told of an ack only if there is a place to remember that it waits for it.
+  // An ack can be reported only if there is a place to remember that it is awaited.
   if (own.reliable && awaiting_.full()) return kNoSeq;
   Message* const message = take_place(route.line);
   //= N1-FULL: When the outgoing buffer is full send returns 0xFFFF and that message is never sent.
   if (message == nullptr) return kNoSeq;
 
   uint8_t* const body = message->room() + kNetHeaderBytes;
-  body[0] = own.trans_id;
-  body[1] = own.app_id;
+  rubicon::AppMsgLayout::TransIdAt::store(body, rubicon::Component(own.trans_id));
+  rubicon::AppMsgLayout::AppIdAt::store(body, rubicon::Component(own.app_id));
   if (!own.data.empty()) memcpy(body + kAppHeaderBytes, own.data.data(), own.data.size());
   rubicon::NetMsg wire;
   wire.dest = wire_of(dest);

@@ -1,5 +1,5 @@
-// A mote or a sink of the RUBICON Communication Layer, without hardware: a board hands in what
-// happens, and the node uses the board through the interfaces of ports.h. No heap, no exceptions.
+// A mote or a sink of the RUBICON Communication Layer, without hardware: a board passes events in,
+// and the node uses the board through the interfaces of ports.h. No heap, no exceptions.
 #pragma once
 
 #include "codec/generated/rubicon/net_msg.h"
@@ -12,11 +12,11 @@
 namespace rubric {
 namespace firmware {
 
-/// What a board tells its node when it starts.
+/// A board's settings for its node when it starts.
 struct Setup {
   uint16_t id;            ///< TinyOS id.
-  uint16_t island;        ///< Of a sink.
-  uint8_t channels;       ///< Of each direction, at most kChannelsRoom.
+  uint16_t island;        ///< For a sink.
+  uint8_t channels;       ///< For each direction, at most kChannelsRoom.
   uint16_t last_seq_num;  ///< The number used last, before the node lost its memory.
 };
 
@@ -29,9 +29,9 @@ class Node {
 
   // Calls of the application, by the paper's names.
 
-  /// Ends in Application::joined, perhaps before this returns.
+  /// Joins; ends in Application::joined, perhaps before this returns.
   void join(const Descriptor& descriptor);
-  /// The sequence number, or kNoSeq: the message is refused.
+  /// Returns the sequence number, or kNoSeq if the message is refused.
   uint16_t send(Address dest, uint8_t app_id, bool reliable, Bytes data);
   void set_interface(Line line, bool on);
   bool interface_is_on(Line line) const { return line_of(line).on; }
@@ -46,27 +46,29 @@ class Node {
   bool set_time_step(uint16_t ticks) { return channels_.set_period(ticks, clock_.now()); }
   /// Dispose, stop, stop_all, write and read are those of the channels.
   Channels& channels() { return channels_; }
-  /// Milliseconds; of a member the clock of its island.
+  /// Returns milliseconds; for a member the clock of its island.
   uint32_t clock_ms() const;
-  /// While busy, what arrives waits in the incoming buffers.
+  /// While busy, arrivals wait in the incoming buffers.
   void set_application_busy(bool busy);
   Address address() const;
   uint16_t last_seq_num() const { return awaiting_.last_seq_num(); }
 
-  // What the board reports.
+  // Events from the board.
 
-  /// A frame that is addressed to this node or to all; longer ones than kAmPayloadMax are ignored.
+  /// Handles a frame that is addressed to this node or to all; ignores longer ones than
+  /// kAmPayloadMax.
   void radio_received(uint16_t dest, uint16_t src, uint8_t am_type, Bytes payload);
-  /// The frame given to Radio::send has left; `acked` if the receiver's radio confirmed it.
+  /// Handles the end of the frame given to Radio::send; `acked` if the receiver's radio confirmed
+  /// it.
   void radio_sent(bool acked);
-  /// A packet, from its dispatch byte on.
+  /// Handles a packet, from its dispatch byte on.
   void serial_received(Bytes packet);
   void serial_sent();
-  /// Somebody else takes the line, or leaves it.
+  /// Notes that another station takes the line, or leaves it.
   void set_line_busy(Line line, bool busy);
-  /// Does what is due; to be called at least when next_due says.
+  /// Does what is due; to be called at least at the time of next_due.
   void run_timers();
-  /// False: no timer runs.
+  /// Returns false if no timer runs.
   bool next_due(Ticks& due) const;
 
  private:
@@ -169,7 +171,7 @@ class Node {
   Join join_{};
   uint32_t clock_offset_ms_ = 0;
   uint16_t id_ = 0;
-  uint16_t island_ = 0;  ///< Of a sink.
+  uint16_t island_ = 0;  ///< For a sink.
   uint8_t arrivals_ = 0;
   bool application_busy_ = false;
   bool sending_ack_join_ = false;

@@ -1,5 +1,5 @@
-// What a node needs of its hardware, and what it tells its application. A port to a board
-// implements these four and calls the node when something happens (node.h).
+// A node's interfaces to its hardware and its application. A port to a board implements these four
+// and calls the node on events (node.h).
 #pragma once
 
 #include "codec/runtime/bytes.h"
@@ -8,14 +8,14 @@
 namespace rubric {
 namespace firmware {
 
-/// A radio chip, which takes one frame at a time and minds the channel itself.
+/// A radio chip, which takes one frame at a time and handles access to the channel itself.
 class Radio {
  public:
   /// Takes a copy of `payload` and sends it as soon as the channel is free. With `link_ack` the
-  /// receiver's radio is asked to confirm it. Node::radio_sent says when it is over; until then
-  /// the node sends no other.
+  /// receiver's radio is asked to confirm it. Node::radio_sent ends it; until then the node sends
+  /// no other.
   virtual void send(uint16_t dest, uint8_t am_type, Bytes payload, bool link_ack) = 0;
-  /// Saves power while off; what it is sending may end.
+  /// Saves power while off; a frame being sent may end.
   virtual void set_on(bool on) = 0;
 
  protected:
@@ -27,7 +27,7 @@ class SerialLine {
  public:
   /// Borrows `packet` until Node::serial_sent is called.
   virtual void send(Bytes packet) = 0;
-  /// While off nothing is received or confirmed; what it is sending may end.
+  /// While off nothing is received or confirmed; a packet being sent may end.
   virtual void set_on(bool on) = 0;
 
  protected:
@@ -36,7 +36,7 @@ class SerialLine {
 
 class Clock {
  public:
-  /// 1024 to the second, from when the node started.
+  /// Returns the time, 1024 to the second, since the node started.
   virtual Ticks now() const = 0;
 
  protected:

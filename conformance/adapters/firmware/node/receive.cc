@@ -1,5 +1,7 @@
-// What a node does with what it hears: whether it is for it, who handles it, and when.
+// Handles received frames: decides whether they are for the node, who handles them, and when.
 #include "codec/generated/rubicon/learning_notification.h"
+#include "codec/generated/rubicon/rubicon_ack.h"
+#include "codec/generated/rubicon/rubicon_ack_seq_only.h"
 #include "conformance/adapters/firmware/node/node.h"
 #include "conformance/adapters/firmware/node/wire.h"
 
@@ -9,26 +11,28 @@ namespace {
 
 using rubicon::Component;
 
-// Components above the transport level; the others nobody reaches through Connectionless.
+// Returns whether a component is above the transport level; Connectionless reaches no others.
 bool is_application(uint8_t app_id) {
   return app_id == number(Component::kMockup) || app_id == number(Component::kLearning) ||
          app_id == number(Component::kApplicationMd) ||
          app_id == number(Component::kControlLayer) || app_id == number(Component::kEsnData);
 }
 
-// The number in the body of an ack, in the paper's form or in release 1.0's (decision 108); false:
-// it is neither. A sink of release 1.0 sets nbytes to 102, so that bytes stand behind it.
+// Reads the number in the body of an ack, in the paper's form or in release 1.0's (decision 108);
+// returns false if it is neither. A sink of release 1.0 sets nbytes to 102, so that bytes follow
+// it.
 bool acked_number(Bytes body, uint16_t& seq_num) {
-  constexpr size_t kPaperBytes = 2;
-  constexpr size_t kNotificationBytes = rubicon::LearningNotificationView::kMinSizeBytes;
-  const bool notification = body.size() >= kNotificationBytes &&
-                            body[0] == number(rubicon::AmType::kLearningNotification);
+  using Paper = rubicon::RubiconAckSeqOnlyLayout::SeqNumAt;
+  using Ack = rubicon::RubiconAckLayout;
+  const bool notification =
+      body.size() >= rubicon::RubiconAckView::kMinSizeBytes &&
+      number(Ack::TypeAt::load(body.data())) == number(rubicon::AmType::kLearningNotification);
   if (notification) {
-    seq_num = load_be16(body.data() + 1);
+    seq_num = Ack::SeqNumAt::load(body.data());
     return true;
   }
-  if (body.size() != kPaperBytes && body.size() != kAppDataMax) return false;
-  seq_num = load_be16(body.data());
+  if (body.size() != Paper::kEnd && body.size() != kAppDataMax) return false;
+  seq_num = Paper::load(body.data());
   return true;
 }
 
@@ -160,8 +164,8 @@ void Node::forward(const Route& route, rubicon::NetMsgView message) {
 // The message dispatcher.
 void Node::deliver(rubicon::NetMsgView message) {
   const Bytes payload = message.payload();
-  const uint8_t trans_id = payload[0];
-  const uint8_t app_id = payload[1];
+  const uint8_t trans_id = number(rubicon::AppMsgLayout::TransIdAt::load(payload.data()));
+  const uint8_t app_id = number(rubicon::AppMsgLayout::AppIdAt::load(payload.data()));
   const Bytes body = payload.from(kAppHeaderBytes);
   const Address src = address_of(message.src());
   //= T1-UNKNOWN: A message with an unknown TRANSID or APPID is dropped without harm.

@@ -111,7 +111,7 @@ bool SerialPort::next_byte(uint8_t& byte) {
       step_ = Step::kClose;
       return true;
     case Step::kClose:
-      byte = kHdlcFlag;  // The next frame opens with its own: two flags stand between frames.
+      byte = kHdlcFlag;  // The next frame opens with its own: two flags separate frames.
       end_frame();
       return true;
   }

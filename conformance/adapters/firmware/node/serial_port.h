@@ -8,7 +8,7 @@
 namespace rubric {
 namespace firmware {
 
-/// A byte at a time, in the UART's interrupts or in place of them.
+/// Handles a byte at a time, in the UART's interrupts or in place of them.
 class SerialPort : public SerialLine {
  public:
   SerialPort() : receivers_{HdlcDeframer(contents_[0]), HdlcDeframer(contents_[1])} {}
@@ -16,18 +16,19 @@ class SerialPort : public SerialLine {
   // From the UART's interrupts.
 
   void byte_received(uint8_t byte);
-  /// The next byte to send; false: none now. start_sending() is called when there is one again.
+  /// Sets the next byte to send; returns false if there is none. start_sending() is called when
+  /// there is one again.
   bool next_byte(uint8_t& byte);
 
   // From the main loop.
 
   void send(Bytes packet) override;
   void set_on(bool on) override { on_ = on; }
-  /// The other side takes no bytes now, or takes them again: clear to send.
+  /// Notes that the other side takes no bytes now, or takes them again: clear to send.
   void set_held(bool held);
-  /// Whether poll has something to do.
+  /// Returns whether poll has something to do.
   bool has_news() const { return ready_ != kNone || sent_; }
-  /// Hands the node what came and what has left; returns the number of packets handed over.
+  /// Passes arrived packets and ends of transmissions to the node; returns the number of packets.
   uint8_t poll(Node& node);
   bool is_sending() const { return packet_size_ != 0 || ack_pending_; }
 

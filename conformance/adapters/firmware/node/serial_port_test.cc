@@ -17,7 +17,7 @@ class Port : public SerialPort {
  public:
   int starts = 0;
 
-  // Everything that it wants to send now.
+  // Returns everything that it wants to send now.
   ByteVector drain() {
     ByteVector bytes;
     std::uint8_t byte = 0;
@@ -54,7 +54,7 @@ class SerialPortTest : public testing::Test {
  protected:
   void SetUp() override { node_.start({1, 11, 4, 0}); }
 
-  // A packet of the base station with application data for the sink.
+  // Returns a packet of the base station with application data for the sink.
   static ByteVector packet(const ByteVector& data) {
     Message message;
     rubicon::NetMsg net;

@@ -1,4 +1,4 @@
-// Addresses and what else the parts of a node hand each other.
+// Addresses and other types shared by the parts of a node.
 #pragma once
 
 #include <stdint.h>
@@ -14,9 +14,9 @@ constexpr uint16_t kBroadcast = 0xFFFF;   ///< As pid, devid and AM address.
 constexpr uint16_t kLocalIsland = 0xFFFE; ///< Replaced by the own island before sending.
 constexpr uint16_t kLocalMote = 0xFFFE;   ///< The node itself.
 constexpr uint16_t kNullDevid = 0xFFFD;   ///< The PC or robot of an island.
-constexpr uint16_t kNoSeq = 0xFFFF;       ///< What send returns when it refuses.
+constexpr uint16_t kNoSeq = 0xFFFF;       ///< Returned by a refused send.
 
-/// Names no one island or mote. (decision 132)
+/// Returns whether an id means no single island or mote. (decision 132)
 constexpr bool is_reserved(uint16_t id) { return id >= kNullDevid; }
 
 struct Address {
@@ -40,7 +40,7 @@ inline Address address_of(rubicon::RAddrView view) {
   return {static_cast<uint16_t>(view.pid()), static_cast<uint16_t>(view.devid())};
 }
 
-/// What a mote tells of itself when it joins.
+/// A mote's description of itself when it joins.
 using Descriptor = rubicon::MoteDesc;
 
 enum class Line : uint8_t { kRadio, kSerial };
@@ -50,7 +50,7 @@ enum class DataStatus : uint8_t { kNew, kOld, kUnknownChannel };
 /// Source devid in the upper, destination devid in the lower 16 bits.
 using ChannelId = uint32_t;
 
-/// What an operation on a channel came to.
+/// The result of an operation on a channel.
 struct ChannelResult {
   ChannelId id;
   bool success;

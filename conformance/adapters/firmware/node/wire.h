@@ -1,7 +1,8 @@
-// Between the codec's enumerators and the numbers of frames.
+// Converts between the codec's enumerators and the numbers of frames.
 #pragma once
 
 #include "codec/generated/rubicon/enums.h"
+#include "codec/generated/rubicon/net_msg.h"
 
 namespace rubric {
 namespace firmware {
@@ -15,8 +16,8 @@ constexpr uint8_t kAmAckJoin = number(rubicon::AmType::kAckJoin);
 constexpr uint8_t kAmNet = number(rubicon::AmType::kNet);
 constexpr uint8_t kAmConfig = number(rubicon::AmType::kConfig);
 
-constexpr size_t kNetHeaderBytes = 12;
-constexpr size_t kAppHeaderBytes = 2;
+constexpr size_t kNetHeaderBytes = rubicon::NetMsgLayout::PayloadAt::kAt;
+constexpr size_t kAppHeaderBytes = rubicon::AppMsgLayout::PayloadAt::kAt;
 
 }  // namespace firmware
 }  // namespace rubric

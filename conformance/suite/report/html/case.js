@@ -23,13 +23,15 @@ function showCase(name, label, number) {
         run.stderr && [h('h3', {}, 'Standard error'),
           h('pre', { tabindex: '0', class: 'stderr' }, run.stderr)],
         h('h3', {}, 'What happened'),
-        caseChart(run, log.pick),
+        run.chart === null
+          ? h('p', { class: 'soft' }, 'Nothing was given, and nothing came.')
+          : chartView(run.chart, (i) => log.pick(i), run.log),
         h('h3', {}, 'Log'), log.element),
       h('aside', { 'aria-label': 'About this case' }, aboutCase(one, run))),
     h('h3', {}, 'The case'), source(one, run));
 }
 
-// To the cases before and after, of those that the matrix shows.
+// Links to the cases before and after, among those that the matrix shows.
 function neighbours(one, run) {
   const chosen = data.cases.filter((each) => each === one || fits(each));
   const at = chosen.indexOf(one);
@@ -47,7 +49,7 @@ function neighbours(one, run) {
 function aboutCase(one, run) {
   const others = one.runs.filter((each) => each !== run);
   return facts([
-    ['Rules', h('span', { class: 'rules' }, one.rules.map(ruleLink))],
+    ['Rules', h('span', { class: 'rules' }, one.requirements.map(ruleLink))],
     ['Known failure', run.expected_reason],
     ['Nodes', h('ul', { class: 'plain' }, run.nodes.map((node) => h('li', {},
       h('span', { class: 'mono' }, node.name), ' ', node.role.replace('_', ' '),
@@ -68,7 +70,7 @@ function aboutCase(one, run) {
   ]);
 }
 
-// The first in full; more of them often say the same.
+// Shows the first in full; more of them often say the same.
 function failuresView(run) {
   const [first, ...rest] = run.failures;
   return [first && failureView(first, run),
@@ -88,11 +90,11 @@ function failureView(failure, run) {
   const asked = failure.expected !== '';
   return h('section', { class: 'failure' + (failure.weak ? ' is-weak' : '') +
       (run.verdict === 'error' ? ' is-error' : '') },
-  h('h3', {}, failure.rules.length
-    ? failure.rules.map((id, i) => [i ? ' ' : '', ruleLink(id)])
+  h('h3', {}, failure.requirements.length
+    ? failure.requirements.map((id, i) => [i ? ' ' : '', ruleLink(id)])
     : asked ? 'A line without a rule' : 'It broke',
   failure.weak && h('span', { class: 'flag' }, 'SHOULD')),
-  failure.rules.map((id) => ruleOf(id) && h('p', {}, ruleOf(id).sentence)),
+  failure.requirements.map((id) => ruleOf(id) && h('p', {}, ruleOf(id).sentence)),
   h('dl', { class: 'facts' },
     asked && h('div', {},
       h('dt', {}, failure.forbidden ? 'Forbidden' : 'Expected'),
@@ -100,6 +102,28 @@ function failureView(failure, run) {
         h('div', { class: 'soft' }, `${when} (${real} ms), line ${failure.line} of `,
           h('code', {}, data.cases.find((one) => one.runs.includes(run)).file)))),
     h('div', {}, h('dt', {}, asked ? 'But' : 'How'), h('dd', { class: 'but' }, failure.text))));
+}
+
+// ---- Charts, which the program has drawn.
+
+const textOf = (line) => line.text ?? data.frames[line.frame].text;
+
+// A row of the chart leads to its line of the log; the heads of its columns stay in sight.
+function chartView(index, pick, log) {
+  const drawn = document.importNode(new DOMParser()
+    .parseFromString(data.charts[index], 'image/svg+xml').documentElement, true);
+  for (const row of log ? drawn.querySelectorAll('.rc-row') : []) {
+    const first = Number(row.dataset.lines.split(' ')[0] || NaN);
+    if (!(first in log)) continue;
+    row.prepend(s('title', {}, `${log[first].link} ${textOf(log[first])}`));
+    row.addEventListener('click', () => pick(first));
+    row.classList.add('picks');
+  }
+  const title = drawn.querySelector('title').textContent;
+  const frame = h('div', { class: 'scroll chart-frame', tabindex: '0', role: 'region',
+    'aria-label': 'Sequence chart', onscroll: () => drawn.querySelector('.rc-heads')
+      .setAttribute('transform', `translate(0 ${frame.scrollTop})`) }, drawn);
+  return [/ of /.test(title) && h('p', { class: 'soft' }, title), frame];
 }
 
 // ---- Every line of the log, frames with their bytes.

@@ -6,7 +6,7 @@ const kChoices = { verdict: ['unexpected', 'changed', 'new', ...kVerdicts],
   role: ['mote', 'sink', 'base_station'], family: families };
 const kRulesShown = 4;
 
-const wordsOf = (one) => [one.name, one.comment, one.rules.join(' '),
+const wordsOf = (one) => [one.name, one.comment, one.requirements.join(' '),
   ...one.runs.map((run) => run.headline)].join(' ').toLowerCase();
 const searchable = new Map(data.cases.map((one) => [one, wordsOf(one)]));
 
@@ -14,7 +14,7 @@ function fits(one) {
   const words = filter.text.toLowerCase().split(/\s+/).filter(Boolean);
   if (!words.every((word) => searchable.get(one).includes(word))) return false;
   if (filter.role !== 'all' && !one.roles.includes(filter.role)) return false;
-  if (filter.family !== 'all' && !one.rules.some((id) => familyOf(id) === filter.family)) {
+  if (filter.family !== 'all' && !one.requirements.some((id) => familyOf(id) === filter.family)) {
     return false;
   }
   if (filter.verdict === 'all') return true;
@@ -24,7 +24,7 @@ function fits(one) {
   return one.runs.some((run) => run.verdict === filter.verdict);
 }
 
-// The filter stands in the address, so that it can be kept and passed on.
+// The address holds the filter, so that it can be kept and shared.
 function casesHash(state) {
   const query = new URLSearchParams();
   for (const [key, value] of Object.entries(state)) {
@@ -83,10 +83,10 @@ function tile(implementation) {
 }
 
 function rulesCell(one) {
-  const shown = one.rules.slice(0, kRulesShown);
-  const more = one.rules.length - shown.length;
+  const shown = one.requirements.slice(0, kRulesShown);
+  const more = one.requirements.length - shown.length;
   return h('span', { class: 'rules' }, shown.map(ruleLink),
-    more > 0 && h('span', { class: 'soft', title: one.rules.join(' ') }, `+${more}`));
+    more > 0 && h('span', { class: 'soft', title: one.requirements.join(' ') }, `+${more}`));
 }
 
 function resultCell(one, implementation) {
@@ -116,7 +116,7 @@ function stale() {
       h('li', {}, h('code', {}, one.place), ': ', one.text))));
 }
 
-// What an earlier run had and this one has not: its row would be empty.
+// Lists the cases of an earlier run that this one lacks; their rows would be empty.
 function gone() {
   if (!data.gone.length) return null;
   return h('details', { id: 'gone' },

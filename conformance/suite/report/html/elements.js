@@ -1,9 +1,9 @@
 // Draws the report from the data inside the page. Text from elsewhere becomes text nodes and
-// attributes only, never markup.
+// attributes only, never markup; charts are markup that the program has written and escaped.
 const data = JSON.parse(document.getElementById('data').textContent);
 const main = document.getElementById('main');
 
-// In the order in which somebody wants to hear of them.
+// In the order in which readers want to see them.
 const kVerdicts = ['fail', 'error', 'weak', 'inconclusive', 'skip', 'pass'];
 
 function add(element, children) {
@@ -39,7 +39,6 @@ const facts = (rows) => h('dl', { class: 'facts' },
     .map(([name, value]) => h('div', {}, h('dt', {}, name), h('dd', {}, value))));
 
 const count = (number, one, many) => `${number} ${number === 1 ? one : many || one + 's'}`;
-const cut = (text, size) => text.length > size ? text.slice(0, size - 1) + '\u2026' : text;
 
 // ---- Where things are.
 

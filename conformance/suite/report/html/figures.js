@@ -1,25 +1,5 @@
 // ---- The paper's two figures, drawn from a run.
 
-const kJoinWords = ['join', 'join_request', 'join_reply', 'ack_join', 'joined', 'mote_joined'];
-const wordOf = (line) => textOf(line).split('(')[0];
-
-// The best run for a figure: one that passed, of a case that was made for it.
-function figureRun(implementation, names, fitsFigure) {
-  const places = new Map(names.map((name, i) => [name, i]));
-  let best = null;
-  for (const one of data.cases) {
-    for (const run of one.runs) {
-      if (run.implementation !== implementation || !fitsFigure(run)) continue;
-      const good = run.verdict === 'pass' || run.verdict === 'weak';
-      const rank = (good ? 0 : 1000) + (places.get(one.name) ?? 500);
-      if (!best || rank < best.rank) best = { rank, one, run };
-    }
-  }
-  return best;
-}
-
-const hasJoin = (run) => ['join_request', 'join_reply', 'ack_join'].every((word) =>
-  run.log.some((line) => line.frame !== undefined && wordOf(line) === word));
 const isMote = (run, name) => run.nodes.some((node) => node.name === name && node.role === 'mote');
 const readingsOf = (run, name) => run.log.filter((line) => line.node === name && line.op === '>' &&
   line.kind === 'radio' && line.short.startsWith('net_msg'));
@@ -28,12 +8,22 @@ const joinOf = (run, name) => run.log.find((line) => line.node === name && line.
 const hasReadings = (run) => run.nodes.some((node) => isMote(run, node.name) &&
   joinOf(run, node.name) && readingsOf(run, node.name).length > 1);
 
+// The best run for the timeline: one that passed, of a case that was made for it.
+function timelineRun(implementation) {
+  const names = ['timeline', 'hospital', 'home.network'];
+  const rank = ({ one, run }) => (['pass', 'weak'].includes(run.verdict) ? 0 : 1000) +
+    (names.includes(one.name) ? names.indexOf(one.name) : 500);
+  return data.cases.flatMap((one) => one.runs.map((run) => ({ one, run })))
+    .filter(({ run }) => run.implementation === implementation && hasReadings(run))
+    .sort((a, b) => rank(a) - rank(b))[0];
+}
+
 function showFigures(label) {
   const chosen = Math.max(0, data.implementations.findIndex((one) => one.label === label));
-  const join = figureRun(chosen, ['timeline', 'j4.accept', 'home.network'], hasJoin);
-  const time = figureRun(chosen, ['timeline', 'hospital', 'home.network'], hasReadings);
-  const place = (found) => h('figcaption', { class: 'soft' }, 'Drawn from ',
-    h('a', { class: 'mono', href: caseHash(found.one.name, found.run) }, found.one.name),
+  const join = data.implementations[chosen]?.join;
+  const time = timelineRun(chosen);
+  const place = (name, repeat) => h('figcaption', { class: 'soft' }, 'Drawn from ',
+    h('a', { class: 'mono', href: caseHash(name, { implementation: chosen, repeat }) }, name),
     ` on ${data.implementations[chosen].label}. A tick is 1/1024 s.`);
   const select = h('select', { id: 'whose', onchange: () => {
     location.hash = hashOf('figures', data.implementations[select.value].label);
@@ -45,49 +35,12 @@ function showFigures(label) {
     ...(data.implementations.length > 1
       ? [h('form', { class: 'filters' }, h('label', {}, 'Implementation', select))] : []),
     h('h3', {}, 'Sequence diagram of the join protocol'),
-    join ? h('figure', {}, place(join), scroll('Sequence diagram', joinFigure(join.run)))
+    join ? h('figure', {}, place(join.name, join.repeat), chartView(join.chart))
       : h('p', {}, 'No case of this run shows a whole join.'),
     h('h3', {}, 'Timeline of join and data acquisition from motes'),
-    time ? h('figure', {}, place(time), timelineKey(), scroll('Timeline', timeline(time.run)))
+    time ? h('figure', {}, place(time.one.name, time.run.repeat), timelineKey(),
+      scroll('Timeline', timeline(time.run)))
       : h('p', {}, 'No case of this run shows a mote that joins and sends readings.'));
-}
-
-// The first mote's join, from the application's call to the sink's notice.
-function joinFigure(run) {
-  const rows = rowsOf(run, true).filter((row) => kJoinWords.includes(wordOf(row)));
-  const asked = rows.find((row) => wordOf(row) === 'ack_join');
-  const mote = asked.op === '>' ? asked.node : asked.arrows[0].from;
-  const isOf = (row) => row.arrows.some((one) => one.from === mote || one.to === mote);
-  const sinks = new Set(rows.filter((row) => isOf(row) && wordOf(row) === 'join_reply')
-    .flatMap((row) => row.arrows.flatMap((one) => [one.from, one.to])));
-  const from = Math.max(0, rows.findIndex((row) => isOf(row)));
-  const acked = rows.indexOf(asked);
-  let end = acked;
-  for (let i = acked; i < rows.length && rows[i].time - asked.time <= 600; ++i) {
-    const notice = wordOf(rows[i]) === 'mote_joined' && sinks.has(rows[i].node);
-    if (notice || (wordOf(rows[i]) === 'joined' && rows[i].node === mote)) end = i;
-    if (notice) break;
-  }
-  const shown = rows.slice(from, end + 1).filter((row) => isOf(row) || sinks.has(row.node))
-    .map((row) => ({ ...row, label: figureLabel(row) }));
-  const lanes = lanesOf(shown, run.nodes, (node) => node.role === 'mote' ? 'left' : 'right');
-  return sequence(shown, lanes, { figure: true, words: `The join of ${mote}, ` +
-    count(shown.length, 'message') + ': ' + shown.map((row) => row.label).join(', ') });
-}
-
-// "joined(11:2, success)"; of frames what the join is about.
-function figureLabel(row) {
-  const word = wordOf(row);
-  const fields = [...row.text.matchAll(/([\w.]+)=([^\s()]+)/g)];
-  const wanted = { join_request: ['mote_type', 'seq_num'], ack_join: ['src', 'seq_num'],
-    join_reply: ['island_addr', 'mote_addr', 'seq_num'] }[word];
-  const shown = wanted
-    ? wanted.map((name) => fields.find((field) =>
-      field[1].split('.').pop() === name)).filter(Boolean)
-      .map(([, name, value]) => ({ seq_num: 'seq ', island_addr: 'island ',
-        mote_addr: 'mote ' }[name] || '') + value)
-    : fields.map((field) => field[2]);
-  return cut(`${word}(${shown.join(', ')})`, 43);
 }
 
 const kLane = 44;
@@ -102,7 +55,7 @@ function timelineKey() {
     sign(s('circle', { class: 'dot', r: 3.5 }), 'reading sent to the sink'));
 }
 
-// Milliseconds, counted from the first join, as the paper has it.
+// Draws milliseconds, counted from the first join, as the paper does.
 function timeline(run) {
   const motes = run.nodes.filter((node) => isMote(run, node.name))
     .map((node) => ({ ...node, joined: joinOf(run, node.name),

@@ -3,11 +3,11 @@
 const ruleFilter = { text: '', state: 'all' };
 
 const casesOf = new Map(Object.keys(data.rules).map((id) => [id, []]));
-for (const one of data.cases) for (const id of one.rules) casesOf.get(id)?.push(one);
+for (const one of data.cases) for (const id of one.requirements) casesOf.get(id)?.push(one);
 
-const breaks = (run, id) => run.failures.some((failure) => failure.rules.includes(id));
+const breaks = (run, id) => run.failures.some((failure) => failure.requirements.includes(id));
 
-// What a rule's row says of an implementation: a verdict's name for its colour, and words.
+// Returns a rule's state for an implementation: a verdict's name for its colour, and words.
 function stateOf(id, implementation) {
   const runs = casesOf.get(id).flatMap((one) =>
     one.runs.filter((run) => run.implementation === implementation));

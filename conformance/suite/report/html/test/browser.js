@@ -1,5 +1,5 @@
 'use strict';
-// A headless Chromium whose pages keep account of everything that must not happen. The book's test
+// A headless Chromium whose pages record everything that must not happen. The book's test
 // (tools/book) uses it, too.
 const assert = require('node:assert');
 const axe = require('axe-core').source;
@@ -11,7 +11,7 @@ const kFlags = ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-r
 const launch = () => chromium.launch({ executablePath: '/usr/bin/chromium', headless: true,
   args: kFlags });
 
-// A page that keeps account of everything that must not happen.
+// Opens a page that records everything that must not happen.
 async function open(browser, scheme, shape = { width: 1400, height: 950 }) {
   const context = await browser.newContext({ colorScheme: scheme, viewport: shape });
   await context.addInitScript(() => {
@@ -34,7 +34,7 @@ async function open(browser, scheme, shape = { width: 1400, height: 950 }) {
   return page;
 }
 
-// No violation of accessibility in the page as it stands.
+// Expects no accessibility violation in the page as it is.
 async function accessible(page, name) {
   await page.evaluate(axe);
   const found = await page.evaluate(() => window.axe.run(document, { resultTypes:

@@ -1,8 +1,7 @@
 'use strict';
-// The page in a real Chromium, from file://: what it shows, what it does, that everybody can use
-// it, and that nothing it is told gets out of its place.
-// Usage: node browser_test.js SAMPLE [SHOTS]: SAMPLE writes a report into a folder; into SHOTS go
-// pictures of the views.
+// Tests the page in a real Chromium, from file://: what it shows, what it does, that everybody can
+// use it, and that no text of a report can break out of its place. Usage: node browser_test.js
+// SAMPLE [SHOTS]: SAMPLE writes a report into a folder; pictures of the views go into SHOTS.
 const assert = require('node:assert');
 const { execFileSync } = require('node:child_process');
 const fs = require('node:fs');
@@ -32,7 +31,7 @@ async function loadTime(page) {
   assert.ok(ms < kLoadMsMax, `it took ${ms.toFixed(0)} ms to load`);
 }
 
-// Every view in both colours: no violation of accessibility, nothing wider than the window.
+// Expects every view, in both colours, to be accessible and no wider than the window.
 async function everyView(browser, home, shots) {
   for (const scheme of ['light', 'dark']) {
     const page = await open(browser, scheme);

@@ -1,5 +1,5 @@
 'use strict';
-// What the page has to do. Each check gets a page of its own, and `go` to a place in it.
+// Checks of the page. Each gets a page of its own, and `go` to open a place in it.
 const assert = require('node:assert');
 const fs = require('node:fs');
 const path = require('node:path');
@@ -21,7 +21,7 @@ async function filters(page, go) {
   assert.ok(failing > 0 && failing < all, `${failing} of ${all}`);
   assert.strictEqual(await page.locator('#matrix tbody tr:has(.v-fail)').count(), failing);
   assert.strictEqual(await page.locator('.count').textContent(), `${failing} of ${all} cases`);
-  // It stands in the address, so it is still there when the page is loaded again.
+  // It is in the address, so it is still there when the page is loaded again.
   assert.match(page.url(), /#\/cases\?verdict=fail$/);
   await page.reload();
   assert.strictEqual(await rows(page), failing);
@@ -58,7 +58,7 @@ async function compared(page, go) {
   await go('#/cases?verdict=new');
   const fresh = await texts(page, '#matrix tbody th');
   assert.ok(fresh.length > 0 && fresh.every((name) => name.endsWith('.again')), fresh.join(' '));
-  // What is gone has no row of its own there.
+  // A case that is gone has no row of its own there.
   const gone = page.locator('#gone');
   assert.strictEqual(await gone.locator('summary').textContent(),
     '2 cases of the earlier run are gone, or not chosen this time');
@@ -79,21 +79,22 @@ async function failing(page, go) {
     assert.ok(first.includes(words), `${words}: ${first}`);
   }
   // The arrows that break a rule, and the one that is missing.
-  assert.deepStrictEqual(await texts(page, '.chart .row.marked .label'),
-    ['\u25c0 joined success', '\u25c0 ack_join 1001', '\u25c0 no ack_join']);
+  assert.deepStrictEqual(await texts(page, '.rc-marked .rc-label'),
+    ['\u25c0 joined(12:5 success)', '\u25c0 ack_join 12:5->12:1 seq 1001',
+      '\u25c0 no ack_join']);
   const look = await page.evaluate(() => {
-    const lanes = [...document.querySelectorAll('.heads text')];
+    const lanes = [...document.querySelectorAll('.rc-heads .rc-name')];
     const mote = lanes.find((one) => one.textContent === 'm5').getAttribute('x');
-    const [, ack, missing] = document.querySelectorAll('.chart .row.marked');
+    const [, ack, missing] = document.querySelectorAll('.rc-marked');
     const red = getComputedStyle(document.documentElement).getPropertyValue('--fail').trim();
     const swatch = document.createElement('i');
     swatch.style.color = red;
     document.body.append(swatch);
-    return { mote, from: ack.querySelector('.arrow').getAttribute('x1'),
-      color: getComputedStyle(ack.querySelector('.arrow')).stroke,
+    return { mote, from: ack.querySelector('.rc-line').getAttribute('x1'),
+      color: getComputedStyle(ack.querySelector('.rc-line')).stroke,
       red: getComputedStyle(swatch).color, plain: getComputedStyle(
-        document.querySelector('.chart .row:not(.marked) .arrow')).stroke,
-      heads: ack.querySelectorAll('.head').length, cross: !!missing.querySelector('.cross') };
+        document.querySelector('.rc-row:not(.rc-marked) .rc-line')).stroke,
+      heads: ack.querySelectorAll('.rc-tip').length, cross: !!missing.querySelector('.rc-lost') };
   });
   assert.strictEqual(look.from, look.mote);
   assert.strictEqual(look.color, look.red);
@@ -107,7 +108,7 @@ async function failing(page, go) {
 
 async function bytes(page, go) {
   await go(kFailing);
-  await page.locator('.chart .row.marked').nth(1).click();  // Leads to its line in the log.
+  await page.locator('.rc-marked').nth(1).click();  // Leads to its line in the log.
   const entry = page.locator('details.entry[open]');
   assert.strictEqual(await entry.count(), 1);
   assert.ok(await entry.evaluate((one) => one.classList.contains('marked')));
@@ -153,11 +154,11 @@ async function rules(page, go) {
 async function figures(page, go) {
   await go('#/figures');
   assert.deepStrictEqual(
-    (await texts(page, '.sequence .row > text:last-child')).map((text) => text.split('(')[0]),
+    (await texts(page, 'figure .rc-label')).map((text) => text.split(/[( ]/)[0]),
     ['join', 'join_request', 'join_reply', 'joined', 'ack_join', 'mote_joined']);
-  assert.deepStrictEqual(await texts(page, '.heads text:not(.small)'),
+  assert.deepStrictEqual(await texts(page, '.rc-heads text:not(.rc-about)'),
     ['tick', 'application', 'm2', 'sA', 'application']);
-  // As the paper has it: motes 2, 4 and 3, then a reading every 500 ms.
+  // As in the paper: motes 2, 4 and 3, then a reading every 500 ms.
   assert.deepStrictEqual(await texts(page, '.timeline text.iut'), ['m2', 'm4', 'm3']);
   assert.deepStrictEqual(await texts(page, '.timeline text.small'),
     ['0 ms', '3842 ms', '6940 ms']);
@@ -216,7 +217,7 @@ async function themes(page, go) {
   assert.strictEqual(await background(page), dark);
 }
 
-// Whatever implementations say is text.
+// Expects whatever implementations say to be shown as text.
 async function harmless(page, go) {
   const places = ['#/cases', '#/rules', '#/figures', '#/run'];
   await go('#/cases');

@@ -1,5 +1,5 @@
-// A report for the test in a browser: the kit's own cases, each twice, on a good machine, on a
-// broken one, and on one whose every word is markup. Usage: rubric_report_sample DIR
+// Makes a report for the test in a browser: the kit's own cases, each twice, on a good machine, on
+// a broken one, and on one whose every word is markup. Usage: rubric_report_sample DIR
 #include <cstdio>
 #include <exception>
 #include <memory>
@@ -36,7 +36,7 @@ ImplementationRun worked(const std::string& name, const testing::Wrap& make, con
   }, plan);
 }
 
-// Every case a second time under another name.
+// Repeats every case under another name.
 void repeat_all(ImplementationRun& run) {
   const std::size_t before = run.cases.size();
   for (std::size_t i = 0; i < before; ++i) {
@@ -46,7 +46,7 @@ void repeat_all(ImplementationRun& run) {
   }
 }
 
-// A case of each verdict and expectation, said by somebody who wants to get into the page.
+// Returns a case of each verdict and expectation, with texts that try to break out of the page.
 ImplementationRun hostile(const ImplementationRun& good) {
   ImplementationRun out;
   out.target = std::string("javascript:alert(1)//") + kMarkup;

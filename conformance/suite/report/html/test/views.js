@@ -1,5 +1,5 @@
 'use strict';
-// The views of the page, each with what is opened in it before it is looked at.
+// The views of the page, each with the parts to open in it first.
 
 const kFailing = '#/case/j4.wrong_seq/broken%201/1';
 

@@ -2,7 +2,7 @@ package rubric.basestation;
 
 import java.util.Locale;
 
-/** What a base station does: a frame that it puts on a line, or news for the application. */
+/** An output of a base station: a frame for a line, or news for the application. */
 public sealed interface Action {
   /** The rule that it follows, such as "T2-ACK". */
   String rule();
@@ -33,7 +33,7 @@ public sealed interface Action {
     }
   }
 
-  /** How a reliable message ended. */
+  /** The end of a reliable message. */
   record AckReceived(int appId, int seqNum, boolean success, String rule) implements Notice {
     @Override
     public String toString() {
@@ -49,7 +49,7 @@ public sealed interface Action {
     }
   }
 
-  /** Whether an interface is switched on. */
+  /** An interface is switched on or off. */
   record InterfaceState(Link link, boolean on, String rule) implements Notice {
     @Override
     public String toString() {

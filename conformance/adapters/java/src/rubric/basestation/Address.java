@@ -18,7 +18,7 @@ public record Address(int pid, int devid) {
     return pid == Pid.BROADCAST || devid == Devid.BROADCAST;
   }
 
-  /** Whether an island or devid names no one island or mote. (decision 132) */
+  /** Returns whether an id means no single island or mote. (decision 132) */
   static boolean isReserved(int id) {
     return id >= Pid.PROXY;
   }

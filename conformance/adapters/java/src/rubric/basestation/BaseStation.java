@@ -21,11 +21,11 @@ import rubric.wire.rubicon.Pid;
  * The base station of an island: its application talks with the motes of its island through the
  * sink on the serial line, and with other islands through PEIS.
  *
- * <p>No socket and no clock: whoever drives it tells what happens and when, in ticks of 1/1024 s
+ * <p>No socket and no clock: its driver passes in events and times, in ticks of 1/1024 s
  * that never go back, and does what it returns, in that order. When due() comes, call timeout().
  */
 public final class BaseStation {
-  /** How long the ack of a reliable message may take; a parameter of ours. (decision 110) */
+  /** Time for the ack of a reliable message; our own parameter. (decision 110) */
   public static final long ACK_TIMEOUT_TICKS = 1000;
 
   private static final int TICKS_PER_SECOND = 1024;
@@ -99,7 +99,7 @@ public final class BaseStation {
     return done(now);
   }
 
-  /** Gives the island another id: the sink is told. */
+  /** Changes the island's id, and sends it to the sink. */
   public List<Action> setIslandId(int id, long now) {
     if (off) return done(now);
     final boolean sound = !Address.isReserved(id) && serial.takes();
@@ -177,7 +177,7 @@ public final class BaseStation {
     undelivered = new ArrayDeque<>();
   }
 
-  /** What can be handed over is; then what was done leaves, and timeouts begin. */
+  /** Passes on what can be passed on; then outputs leave, and timeouts begin. */
   private List<Action> done(long now) {
     while (!appBusy && !undelivered.isEmpty()) deliver(undelivered.remove());
     actions.addAll(serial.leaving());

@@ -15,7 +15,7 @@ import rubric.wire.WireException;
 /**
  * The base station of a real island: its sink is behind a serial forwarder, time is real.
  *
- * <p>It tells its sink the island first. News for the application are lines on standard output,
+ * <p>It sends its sink the island first. News for the application are lines on standard output,
  * such as {@code received(11:5 5 x0102)}; calls are lines on standard input, such as
  * {@code send(dest=11:5 app_id=5 reliable=1 data=x0102)}. Messages for other islands are said to go
  * nowhere: this program has no PEIS network.
@@ -25,7 +25,7 @@ public final class ForwarderClient {
   private static final long TICKS_PER_SECOND = 1024;
   private static final long NANOS_PER_SECOND = 1_000_000_000;
 
-  /** What happens, in the order in which it happened; handled by one thread. */
+  /** Events in their order; one thread handles them. */
   private interface Event {
     /** Returns what follows, or null where the connection has ended; throws where it broke. */
     List<Action> happen(long now) throws IOException;
@@ -76,7 +76,7 @@ public final class ForwarderClient {
     while (true) {
       final Event event = next();
       final long now = now();
-      // What was due before the event comes first, in its place.
+      // Timeouts due before the event come first, in order.
       perform(station.timeout(now));
       if (event == null) continue;
       final List<Action> actions = event.happen(now);

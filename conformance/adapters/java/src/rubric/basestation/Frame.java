@@ -25,7 +25,7 @@ public record Frame(Link link, int dest, int src, int type, byte[] payload) {
     return out.put(payload).array();
   }
 
-  /** A packet as it came from `link`; bytes behind its length are left out. */
+  /** Returns a packet from `link` without the bytes after its length. */
   public static Frame parse(Link link, byte[] packet) throws WireException {
     final AmHeader header = AmHeader.parse(ByteBuffer.wrap(packet));
     final byte[] behind = Wire.copy(header.stale());

@@ -17,7 +17,7 @@ import rubric.wire.rubicon.RubiconAckSeqOnly;
 
 /** Messages as bytes, and what bytes say. */
 final class Messages {
-  /** Bytes behind TRANSID and APPID. */
+  /** Bytes after TRANSID and APPID. */
   static final int DATA_MAX = 100;
 
   private Messages() {}
@@ -32,7 +32,7 @@ final class Messages {
           new AppMsg.Writer().transId(transId).appId(appId).payload(data).toBytes();
       return Wire.copy(new NetMsg.Writer().dest(dest.toWire()).src(src.toWire())
           .reliable(reliable ? 1 : 0).seqNum(seqNum).payload(payload).toBytes());
-    } catch (WireException e) { // The caller has looked at the sizes.
+    } catch (WireException e) { // The caller has checked the sizes.
       throw new IllegalStateException(e);
     }
   }
@@ -79,7 +79,7 @@ final class Messages {
         : OptionalInt.empty();
   }
 
-  /** Whether an application has the number: what is above the transport level. */
+  /** Returns whether the number is that of an application, above the transport level. */
   static boolean isApplication(int appId) {
     return appId == Component.MOCKUP || appId == Component.LEARNING
         || appId == Component.APPLICATION_MD || appId == Component.CONTROL_LAYER

@@ -91,7 +91,7 @@ public final class RctAdapter {
     final long time = Long.parseLong(words.length > 1 ? words[1] : "");
     if (time < now) throw new IllegalArgumentException("time goes back to " + time);
     if (words[0].equals("until")) return until(time);
-    // What was due before comes first.
+    // Earlier timeouts come first.
     for (long due = due(); due < time; due = due()) {
       now = due;
       write(station.timeout(now));

@@ -4,7 +4,7 @@ import java.util.Optional;
 import rubric.wire.rubicon.Devid;
 import rubric.wire.rubicon.Pid;
 
-/** Where messages go: to the application, to the sink, to another island. */
+/** Routes messages: to the application, to the sink, to another island. */
 final class Router {
   /** AM address and devid of every sink. */
   static final int SINK = 1;
@@ -33,16 +33,16 @@ final class Router {
   Optional<Hop> ofReceived(Link link, Address dest) {
     if (isElsewhere(dest)) {
       //= N8-LOOP: A base station does not hand a message for another island to its own sink.
-      // Nor back to PEIS, where it would go round.
+      // Nor back to PEIS, where it would circulate.
       return link == Link.SERIAL ? peis(dest) : Optional.empty();
     }
     final boolean forMote = dest.pid() == own.pid() && dest.devid() != Devid.NULL;
-    // What the sink handed up does not go down again.
+    // Messages from the sink do not go down again.
     if (link == Link.SERIAL || !forMote) return Optional.empty();
     return Optional.of(new Hop(Link.SERIAL, SINK, "N8-INCOMING"));
   }
 
-  /** Whether the message is for the station's application. */
+  /** Returns whether the message is for the station's application. */
   boolean isForUs(Address dest) {
     //= N8-DELIVER: A base station delivers a message with dest <its island, NULL> to its
     //= application.

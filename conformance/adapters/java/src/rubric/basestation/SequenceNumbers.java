@@ -4,7 +4,7 @@ import java.util.function.IntPredicate;
 
 /** The sequence numbers of a node: they count. (decision 117) */
 final class SequenceNumbers {
-  /** What send returns when it refuses. */
+  /** Returned by a refused send. */
   static final int NONE = 0xffff;
 
   private int next;

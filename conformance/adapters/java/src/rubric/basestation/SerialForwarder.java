@@ -5,6 +5,7 @@ import java.io.DataInputStream;
 import java.io.EOFException;
 import java.io.IOException;
 import java.io.OutputStream;
+import java.net.InetAddress;
 import java.net.InetSocketAddress;
 import java.net.Socket;
 import java.nio.ByteBuffer;
@@ -26,7 +27,10 @@ final class SerialForwarder implements Closeable {
   SerialForwarder(String host, int port) throws IOException {
     socket = new Socket();
     try {
-      socket.connect(new InetSocketAddress(host, port), CONNECT_MS);
+      // `localhost` always means loopback (RFC 6761), whatever a resolver says.
+      final InetAddress to = host.equalsIgnoreCase("localhost")
+          ? InetAddress.getLoopbackAddress() : InetAddress.getByName(host);
+      socket.connect(new InetSocketAddress(to, port), CONNECT_MS);
       socket.setTcpNoDelay(true);
       in = new DataInputStream(socket.getInputStream());
       out = socket.getOutputStream();

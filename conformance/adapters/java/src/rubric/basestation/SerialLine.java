@@ -17,7 +17,7 @@ final class SerialLine {
     return on;
   }
 
-  /** Whether a frame can be put now or queued. */
+  /** Returns whether a frame can be put now or queued. */
   boolean takes() {
     return on && waiting.size() < ROOM;
   }
@@ -34,7 +34,7 @@ final class SerialLine {
     this.taken = taken;
   }
 
-  /** What leaves now, in the order in which it was accepted. */
+  /** Returns the frames that leave now, in the order of their acceptance. */
   List<Action.Transmit> leaving() {
     final List<Action.Transmit> out = new ArrayList<>();
     while (on && !taken && !waiting.isEmpty()) out.add(waiting.remove());

@@ -133,7 +133,7 @@ public final class VectorsTest {
     return Long.toString(Float.floatToRawIntBits(value) & 0xffffffffL);
   }
 
-  /** What no vector can show: values that have no bytes. */
+  /** Tests values that have no bytes, which no vector can show. */
   private void writersRefuse() {
     refused("payload too long", "out_of_range at byte 11: WIRE-NET-NBYTES",
         new NetMsg.Writer().payload(new byte[103]));

@@ -4,7 +4,7 @@ package rubric.wire;
 public final class WireException extends Exception {
   private static final long serialVersionUID = 1;
 
-  /** What is wrong with the bytes. */
+  /** The fault of the bytes. */
   public enum Fault {
     /** They end before the field does; the offset is where they end. */
     TRUNCATED,
@@ -30,7 +30,7 @@ public final class WireException extends Exception {
     return fault;
   }
 
-  /** Of the first byte that breaks the rule, from the start of what was parsed or written. */
+  /** Offset of the first byte that breaks the rule, from the start of the bytes. */
   public int offsetBytes() {
     return offsetBytes;
   }

@@ -4,16 +4,16 @@ import java.io.ByteArrayOutputStream;
 import java.nio.ByteBuffer;
 import rubric.wire.WireException.Fault;
 
-/** Where writers put their bytes, one after the other. */
+/** Collects the bytes of writers, one after the other. */
 public final class WireOutput {
   private final ByteArrayOutputStream out = new ByteArrayOutputStream();
 
-  /** How many bytes there are. */
+  /** Returns the number of bytes. */
   public int size() {
     return out.size();
   }
 
-  /** What was written so far. */
+  /** Returns the bytes so far. */
   public ByteBuffer bytes() {
     return ByteBuffer.wrap(out.toByteArray());
   }

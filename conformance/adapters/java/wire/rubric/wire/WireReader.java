@@ -9,7 +9,7 @@ import rubric.wire.WireException.Fault;
  */
 public final class WireReader {
   private final ByteBuffer bytes;
-  private final int offset; // Of the structure, in what was parsed.
+  private final int offset; // The structure's, in the parsed bytes.
   private int end;
   private int at = 0;
   // The number that was taken last.
@@ -36,12 +36,12 @@ public final class WireReader {
     return new CheckedBytes(bytes.duplicate().position(0).limit(end));
   }
 
-  /** How many bytes were taken so far. */
+  /** Returns how many bytes were taken so far. */
   public int taken() {
     return at;
   }
 
-  /** Leaves out what is behind the structure's greatest size. */
+  /** Leaves out bytes after the structure's greatest size. */
   public void atMost(int sizeBytes) {
     end = Math.min(end, sizeBytes);
   }

@@ -5,11 +5,11 @@ import java.util.Arrays;
 import java.util.function.BiConsumer;
 
 /**
- * A lens on the bytes of a structure. It exists only where parse found nothing wrong, so that what
- * it tells cannot fail. The bytes are not copied: who changes them afterwards changes the view.
+ * A lens on the bytes of a structure. It exists only where parse found nothing wrong, so that its
+ * getters cannot fail. The bytes are not copied: later changes to them change the view.
  */
 public abstract class WireView {
-  /** Index 0 is the structure's first byte; there may be stale bytes behind its last. */
+  /** Index 0 is the structure's first byte; there may be stale bytes after its last. */
   protected final ByteBuffer bytes;
 
   protected WireView(CheckedBytes checked, int mostBytes) {
@@ -17,7 +17,7 @@ public abstract class WireView {
     bytes = all.slice(0, Math.min(all.limit(), mostBytes)).asReadOnlyBuffer();
   }
 
-  /** How many of the bytes are the structure's. */
+  /** Returns how many of the bytes are the structure's. */
   public abstract int sizeBytes();
 
   /** The same values, to be changed and written. */

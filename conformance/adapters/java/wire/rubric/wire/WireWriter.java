@@ -29,7 +29,7 @@ public abstract class WireWriter {
   }
 
   /**
-   * Puts the structure's bytes at the position of `out` and moves that behind them.
+   * Puts the structure's bytes at the position of `out` and moves that past them.
    *
    * @throws java.nio.BufferOverflowException if there is no room; nothing is written then
    */

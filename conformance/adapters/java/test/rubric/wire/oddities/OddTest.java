@@ -8,7 +8,7 @@ import rubric.wire.odd.String_;
 import rubric.wire.odd.Tail;
 import rubric.wire.odd.Writer_;
 
-/** What is generated from odd.ksy: names, computed sizes, optional fields, signs and orders. */
+/** Tests the code from odd.ksy: names, computed sizes, optional fields, signs and orders. */
 public final class OddTest {
   private static int failures = 0;
 

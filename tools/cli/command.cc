@@ -1,0 +1,270 @@
+#include "tools/cli/command.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <optional>
+
+#include "codec/reflect/suggest.h"
+#include "tools/cli/exit_codes.h"
+
+namespace rubric::cli {
+namespace {
+
+/// Thrown by exit_with().
+struct Exit : Ending {
+  explicit Exit(int with) : Ending("exit"), code(with) {}
+  int code;
+};
+
+bool is_digits(const std::string& text) {
+  return !text.empty() && text.find_first_not_of("0123456789") == text.npos;
+}
+
+/// Returns the members of a set, which CLI11 lists in the name of the type:
+/// "TEXT:{text,jsonl,csv}".
+std::vector<std::string> choices_of(const CLI::Option& option) {
+  const std::string type = option.get_type_name();
+  const std::size_t open = type.find('{');
+  const std::size_t close = type.find('}');
+  std::vector<std::string> out;
+  if (open == type.npos || close == type.npos) return out;
+  for (std::size_t at = open + 1; at < close;) {
+    const std::size_t end = std::min(type.find(',', at), close);
+    out.push_back(type.substr(at, end - at));
+    at = end + 1;
+  }
+  return out;
+}
+
+std::vector<std::string> option_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    for (const std::string& name : option->get_snames()) names.push_back("-" + name);
+  }
+  return names;
+}
+
+}  // namespace
+
+void exit_with(int code) { throw Exit(code); }
+
+std::string given(const std::string& text) { return text.empty() ? "is empty" : ""; }
+
+std::string whole_number(const std::string& text) {
+  if (is_digits(text)) return {};
+  return fmt::format("expected a number of 0 or more, given '{}'", text);
+}
+
+std::string at_least_one(const std::string& text) {
+  if (is_digits(text) && text.find_first_not_of('0') != text.npos) return {};
+  return fmt::format("expected a number of 1 or more, given '{}'", text);
+}
+
+Option& Option::one_of(std::vector<std::string> values) {
+  option_->check(CLI::IsMember(std::move(values)));
+  return *this;
+}
+
+Option& Option::between(int min, int max) {
+  option_->check(CLI::Range(min, max));
+  return *this;
+}
+
+Option& Option::between(std::uint64_t min, std::uint64_t max) {
+  option_->check(CLI::Range(min, max));
+  return *this;
+}
+
+Option& Option::between(double min, double max) {
+  option_->check(CLI::Range(min, max));
+  return *this;
+}
+
+Option& Option::check(Check check, const std::string& type_name) {
+  option_->check(CLI::Validator(
+      [check = std::move(check)](const std::string& text) { return check(text); }, type_name));
+  return *this;
+}
+
+Option& Option::required() {
+  option_->required();
+  return *this;
+}
+
+Option& Option::show_default() {
+  option_->capture_default_str();
+  return *this;
+}
+
+Option& Option::one_at_a_time() {
+  option_->allow_extra_args(false);
+  return *this;
+}
+
+Option& Option::repeatable() {
+  option_->expected(1)->take_all()->allow_extra_args(false);
+  return *this;
+}
+
+Option& Option::type_name(const std::string& name) {
+  option_->type_name(name);
+  return *this;
+}
+
+Option& Option::description(const std::string& text) {
+  option_->description(text);
+  return *this;
+}
+
+Option& Option::delimiter(char separator) {
+  option_->delimiter(separator);
+  return *this;
+}
+
+Option& Option::needs(Option other) {
+  option_->needs(other.option_);
+  return *this;
+}
+
+Option& Option::excludes(Option other) {
+  option_->excludes(other.option_);
+  return *this;
+}
+
+bool Option::is_given() const { return option_->count() != 0; }
+
+Command::Command(const std::string& name, const std::string& description)
+    : own_(std::make_unique<CLI::App>(description)), app_(own_.get()) {
+  app_->name(name);
+}
+
+Command::Command(CLI::App& app, const Command& parent) : app_(&app), parent_(&parent) {}
+
+Command::~Command() = default;
+
+Command& Command::add_subcommand(const std::string& name, const std::string& description) {
+  app_->require_subcommand(1);
+  return subcommands_.emplace_back(*app_->add_subcommand(name, description), *this);
+}
+
+template <class Target>
+Option Command::add_option(const std::string& names, Target& target,
+                           const std::string& description) {
+  return Option(*app_->add_option(names, target, description));
+}
+
+#define RUBRIC_OPTION_TARGET(...) \
+  template Option Command::add_option(const std::string&, __VA_ARGS__&, const std::string&)
+RUBRIC_OPTION_TARGET(std::string);
+RUBRIC_OPTION_TARGET(std::vector<std::string>);
+RUBRIC_OPTION_TARGET(int);
+RUBRIC_OPTION_TARGET(unsigned char);
+RUBRIC_OPTION_TARGET(unsigned short);
+RUBRIC_OPTION_TARGET(unsigned int);
+RUBRIC_OPTION_TARGET(unsigned long);
+RUBRIC_OPTION_TARGET(double);
+RUBRIC_OPTION_TARGET(std::optional<int>);
+RUBRIC_OPTION_TARGET(std::optional<unsigned long>);
+RUBRIC_OPTION_TARGET(std::optional<double>);
+#undef RUBRIC_OPTION_TARGET
+
+Option Command::add_flag(const std::string& names, bool& target, const std::string& description) {
+  return Option(*app_->add_flag(names, target, description));
+}
+
+Option Command::get_option(const std::string& name) { return Option(*app_->get_option(name)); }
+
+void Command::exclude_all_but(Option option, std::initializer_list<std::string_view> allowed) {
+  for (CLI::Option* other : app_->get_options()) {
+    const bool fits = other == option.option_ || other == app_->get_help_ptr() ||
+                      std::find(allowed.begin(), allowed.end(), other->get_name()) != allowed.end();
+    if (!fits) option.option_->excludes(other);
+  }
+}
+
+void Command::footer(const std::string& text) { app_->footer(text); }
+
+void Command::version(const std::string& text) { app_->set_version_flag("--version", text); }
+
+void Command::callback(std::function<void()> run) { app_->callback(std::move(run)); }
+
+void Command::exit_code_of(std::function<int()> run) {
+  callback([run = std::move(run)] { exit_with(run()); });
+}
+
+std::string Command::name() const { return app_->get_name(); }
+
+std::string Command::description() const { return app_->get_description(); }
+
+std::vector<OptionInfo> Command::options() const {
+  std::vector<OptionInfo> out;
+  for (const CLI::Option* option : app_->get_options()) {
+    if (!option->nonpositional() || option->get_group().empty()) continue;
+    out.push_back({option->get_lnames(), option->get_snames(), choices_of(*option),
+                   option->get_description(), option->get_items_expected_max() > 0});
+  }
+  return out;
+}
+
+std::vector<std::string> Command::subcommand_names() const {
+  std::vector<std::string> names;
+  for (const Command& command : subcommands_) names.push_back(command.name());
+  return names;
+}
+
+/// Returns the given subcommand, or the program itself.
+const Command& Command::innermost() const {
+  for (const Command& command : subcommands_) {
+    if (command.app_->parsed()) return command.innermost();
+  }
+  return *this;
+}
+
+int Command::complain(const std::string& what) const {
+  const std::string full = parent_ ? parent_->name() + " " + name() : name();
+  fmt::print(stderr, "{}: {}\nTry '{} --help'.\n", full, what, full);
+  return usage_exit_code_;
+}
+
+int Command::complain_about_extras() const {
+  const std::vector<std::string> extras = app_->remaining();
+  const std::string word = extras.empty() ? std::string{} : extras.front();
+  const std::string bare = word.substr(0, word.find('='));
+  if (word.starts_with('-')) {
+    return complain(fmt::format("unknown option {}{}", bare,
+                                reflect::did_you_mean(bare, option_names(*app_))));
+  }
+  return complain(fmt::format("unexpected argument '{}'", word));
+}
+
+int Command::parse_and_run(int argc, char** argv) {
+  const std::vector<std::string> commands = subcommand_names();
+  if (!commands.empty() && argc > 1 && argv[1][0] != '-' &&
+      std::find(commands.begin(), commands.end(), argv[1]) == commands.end()) {
+    return complain(fmt::format("unknown command '{}'{}", argv[1],
+                                reflect::did_you_mean(argv[1], commands)));
+  }
+  try {
+    app_->parse(argc, argv);
+  } catch (const Exit& exit) {
+    return exit.code;
+  } catch (const UsageError& error) {
+    return innermost().complain(error.what());
+  } catch (const CLI::ExtrasError&) {
+    return innermost().complain_about_extras();
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app_->exit(error);  // --help, --version
+    return innermost().complain(error.what());
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "{}: {}\n", name(), error.what());
+    return kExitInput;
+  }
+  return kExitClean;
+}
+
+}  // namespace rubric::cli

@@ -1,0 +1,178 @@
+#include "tools/commands/commands.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "codec/reflect/suggest.h"
+#include "conformance/report/sequence_svg.h"
+#include "conformance/report/text.h"
+#include "conformance/suite/report/chart.h"
+#include "conformance/suite/run.h"
+#include "tools/cli/exit_codes.h"
+#include "tools/cli/input.h"
+#include "tools/cli/output.h"
+#include "tools/cli/terminal.h"
+#include "tools/cli/command.h"
+
+namespace rubric::tools {
+namespace {
+
+constexpr const char* kChartFooter =
+    "A case is one of the kit's own golden traces (rubric test --list) or one of a file of yours:\n"
+    "FILE.rtr, or FILE.rtr:CASE. Its stimuli are given to the reference machine and what comes of\n"
+    "them is drawn: who sends what to whom, when (a tick is 1/1024 s), and by which rule; behind\n"
+    "what had no effect stands the rule that says so. rubric explain RULE prints a rule.\n"
+    "An SVG needs nothing else and follows the page's text colour.\n"
+    "Examples:\n"
+    "  rubric chart j4.wrong_seq\n"
+    "  rubric chart open_door.lost --format svg --out open_door.svg\n"
+    "  rubric chart my_traces.rtr:mine --target ./my_adapter\n"
+    "Exit codes: 0 drawn, 1 drawn, but the trace was not kept, 2 the trace cannot be worked or\n"
+    "the output not be written, 64 usage, 66 the file cannot be read.";
+
+struct ChartOptions {
+  std::string what;
+  std::string format = "text";
+  std::string target;
+  std::string out = "-";
+  std::size_t width = 0;
+};
+
+[[noreturn]] void input_error(const std::string& what) {
+  fmt::print(stderr, "{}\n", what);
+  cli::exit_with(cli::kVerdictInput);
+}
+
+// Returns the cases that the user means; they point into `cases`.
+std::vector<const suite::SuiteCase*> chosen(const std::string& what, suite::Cases& cases) {
+  constexpr std::string_view kEnding = ".rtr";
+  const std::size_t colon = what.rfind(".rtr:");
+  const bool named = colon != what.npos;
+  const std::string path = named ? what.substr(0, colon + kEnding.size()) : what;
+  const std::string name = named ? what.substr(colon + kEnding.size() + 1) : "";
+  const bool is_file = named || what.ends_with(kEnding) || what.find('/') != what.npos ||
+                       std::filesystem::exists(what);
+  try {
+    cases = is_file ? suite::Cases::of({path}) : suite::Cases::own();
+  } catch (const std::runtime_error& error) {
+    input_error(error.what());
+  }
+  std::vector<const suite::SuiteCase*> out;
+  std::vector<std::string> names;
+  for (const suite::SuiteCase& one : cases.all()) {
+    names.push_back(one.blank.name);
+    const bool meant = is_file ? name.empty() || name == names.back() : what == names.back();
+    if (meant) out.push_back(&one);
+  }
+  const std::string& asked = is_file ? name : what;
+  if (out.empty()) {
+    throw cli::UsageError(
+        fmt::format("{}no case is called '{}'{}{}", is_file ? path + ": " : "", asked,
+                    reflect::did_you_mean(asked, names),
+                    is_file ? "" : "; rubric test --list shows them"));
+  }
+  return out;
+}
+
+suite::MachineRun work(const suite::SuiteCase& one, const std::string& target) {
+  if (target.empty() || target == "machine") return suite::run_on_machine(one);
+  try {
+    const auto attachment = attach::attach(target, {});
+    suite::MachineRun out;
+    out.run = suite::run_one(one, *attachment, "", {});
+    attachment->finish();
+    return out;
+  } catch (const std::invalid_argument& error) {
+    throw cli::UsageError("--target " + target + ": " + error.what());
+  }
+}
+
+// Prints what is wrong with the run; returns the program's exit code.
+int judged(const suite::CaseRun& run) {
+  using runner::CaseVerdict;
+  switch (run.result.verdict) {
+    case CaseVerdict::kPass:
+    case CaseVerdict::kWeak:
+      return cli::kVerdictExpected;
+    case CaseVerdict::kFail:
+      for (const runner::Failure& failure : run.result.failures) {
+        fmt::print(stderr, "{}:{}: not kept at tick {}: {}\n", run.file, failure.place.line,
+                   failure.time, failure.text);
+      }
+      return cli::kVerdictFailed;
+    case CaseVerdict::kInconclusive:
+    case CaseVerdict::kError:
+    case CaseVerdict::kSkip:
+      break;
+  }
+  fmt::print(stderr, "{}: {}\n", run.name, run.result.reason);
+  return run.result.verdict == CaseVerdict::kError ? cli::kVerdictBroken : cli::kVerdictExpected;
+}
+
+std::string text_of(const suite::MachineRun& one, std::size_t width) {
+  const report::Sequence sequence = suite::chart(one.run, one.heeds);
+  std::string out = report::wrapped(one.run.name + ": ", one.run.comment, width, 2) + "\n";
+  if (sequence.rows.empty()) return out + "Nothing was given, and nothing came.\n";
+  return out + report::sequence_text(sequence, 2, width);
+}
+
+void run_chart(const ChartOptions& options) {
+  suite::Cases cases;
+  const std::vector<const suite::SuiteCase*> all = chosen(options.what, cases);
+  const bool picture = options.format == "svg";
+  if (picture && all.size() > 1) {
+    throw cli::UsageError(fmt::format("{} has {} cases; name the one to draw: {}:{}",
+                                           options.what, all.size(), options.what,
+                                           all.front()->blank.name));
+  }
+  const std::size_t width = cli::columns(options.width, 1);
+  std::string out;
+  int code = cli::kVerdictExpected;
+  for (const suite::SuiteCase* one : all) {
+    const suite::MachineRun worked = work(*one, options.target);
+    code = std::max(code, judged(worked.run));
+    if (picture) {
+      const std::string comment = worked.run.comment;
+      out += report::sequence_svg(
+          suite::chart(worked.run, worked.heeds),
+          {"chart-" + worked.run.name,
+           "Sequence chart of " + worked.run.name + (comment.empty() ? "" : ": " + comment)});
+    } else {
+      out += (out.empty() ? "" : "\n") + text_of(worked, width);
+    }
+  }
+  if (!cli::write_file(options.out, out)) cli::exit_with(cli::kVerdictBroken);
+  if (code != cli::kVerdictExpected) cli::exit_with(code);
+}
+
+}  // namespace
+
+void add_chart(cli::Command& app) {
+  auto options = std::make_shared<ChartOptions>();
+  cli::Command& sub = app.add_subcommand("chart", "Draw a golden trace as a sequence chart");
+  sub.footer(kChartFooter);
+  sub.set_usage_exit_code(cli::kVerdictUsage);
+  sub.add_option("case", options->what, "A case's name, FILE.rtr or FILE.rtr:CASE")
+      .required()
+      .check(cli::given);
+  sub.add_option("--format", options->format, "text or svg")
+      .one_of({"text", "svg"})
+      .show_default();
+  sub.add_option("--target", options->target,
+                  "Draw what this implementation does instead, as rubric test has it")
+      .check(cli::given);
+  sub.add_option("-o,--out", options->out, "Write to this file; - is stdout")
+      .show_default();
+  sub.add_option("--width", options->width, "Text: columns (those of the terminal, else 100)")
+      .between(60, 1000);
+  sub.callback([options] { run_chart(*options); });
+}
+
+}  // namespace rubric::tools

@@ -1,0 +1,171 @@
+#include "tools/commands/commands.h"
+
+#include <unistd.h>
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "conformance/oracle/duplicates.h"
+#include "conformance/oracle/judge.h"
+#include "tools/commands/check_live.h"
+#include "tools/commands/check_news.h"
+#include "tools/commands/check_options.h"
+#include "tools/cli/color.h"
+#include "tools/cli/exit_codes.h"
+#include "tools/cli/output.h"
+#include "tools/cli/terminal.h"
+#include "tools/cli/verdict.h"
+#include "tools/live/line.h"
+#include "tools/record/packet_output.h"
+
+namespace rubric::tools {
+namespace {
+
+constexpr const char* kCheckFooter =
+    "All files are one run: taps of the same network, and .rtr logs with what applications did.\n"
+    "Examples:\n"
+    "  rubric check capture.pcapng\n"
+    "  rubric check capture.pcapng --sink 1=11 --sniffer complete --start cold\n"
+    "  rubric check sniffer.pcap sink.serial.bin app.rtr --format junit --out result.xml\n"
+    "  rubric check capture.pcapng --expect known.yaml\n"
+    "  rubric check serial@/dev/ttyUSB0:telosb sniffer.pcapng --follow --write line.pcapng\n"
+    "  rubric check sf@localhost:9002 --format jsonl | jq -r .finding.text\n"
+    "What two files both have of one air or line is judged once; files of one air or line that\n"
+    "disagree are refused (66). Beside a capture a log has application lines.\n"
+    "A node that --node or --sink names is never an unknown sender, and what they say wins over\n"
+    "guesses. What the run plainly shows wins over them, and that is said as inconclusive.\n"
+    "Frames count from 1, times from the first one. PEIS messages of a log are not read.\n"
+    "Lines in use, and with --follow files that grow, are judged as frames come, several at a\n"
+    "time. A finding is told when it has stood for 1 s beyond what nodes may take, and withdrawn\n"
+    "when later frames explain it. Ctrl-C, or the end of all sources, ends with the report;\n"
+    "'rubric check' of the capture that --write keeps says the same. Sniffers should write packet\n"
+    "by packet, as dumpcap and tcpdump -U do. Memory: about 0.4 kB a frame, all of them. With\n"
+    "--format json or junit findings go to stderr as they come; jsonl has a line of each.\n"
+    "Exit codes: 0 as expected (weak findings, strays, notes and what stays inconclusive beside\n"
+    "decided things included), 1 a failure that nobody expected, or an expectation that is not\n"
+    "true, 2 the kit broke or could not write, 3 nothing but inconclusive: no rule was found\n"
+    "kept or broken, 64 usage,\n"
+    "66 input cannot be read, or a source broke off and nothing failed.";
+
+oracle::Run read_run(const CheckOptions& options) {
+  oracle::RunReader reader(read_as(options));
+  std::string error;
+  for (const std::string& file : options.input.files) {
+    const bool good =
+        file == "-" ? reader.add_bytes("stdin", cli::text_of_file(kCheckCommand, file), error)
+                    : reader.add_file(file, error);
+    if (!good) cli::unreadable(kCheckCommand, error);
+  }
+  return reader.finish();
+}
+
+int check_files(const CheckOptions& options) {
+  const auto& files = options.input.files;
+  oracle::Options judged = oracle_options(options);
+  const std::vector<report::FrameRange> ranges = frame_ranges(options);
+  if (!options.write.empty()) {
+    throw cli::UsageError("--write", "none of the sources is a line in use");
+  }
+  if (record::overwrites(options.out, files)) {
+    throw cli::UsageError("--out", options.out + " is one of the files to read");
+  }
+  const report::KnownFailures expected = expectations(options);
+  oracle::Run whole = read_run(options);
+  oracle::Run part = ranges.empty() ? std::move(whole) : report::part_of(whole, ranges, judged);
+  if (std::string error; !oracle::drop_duplicates(part, judged, error)) {
+    cli::unreadable(kCheckCommand, error);
+  }
+  const oracle::Report found = oracle::judge(part, judged);
+  const report::Outcome outcome = report::compare(part, judged, found, expected);
+  const report::Story story{part, judged, found, expected, outcome};
+  const int terminal = options.out == "-" ? STDOUT_FILENO : -1;
+  const bool written =
+      cli::write_file(options.out, report_text(options, story, terminal, files));
+  return written ? outcome.exit_code() : cli::kVerdictBroken;
+}
+
+int run_check(CheckOptions options) {
+  if (options.input.files.empty()) {
+    if (!live::asked_by_motecom()) throw cli::UsageError("FILE is required");
+    options.input.files.push_back(live::default_address());
+  }
+  return is_live(options) ? check_live(options) : check_files(options);
+}
+
+void add_options(cli::Command& command, CheckOptions& options) {
+  command.add_option("FILE", options.input.files, "");
+  cli::add_live_options(command, options.input);
+  command.get_option("FILE").description(
+      "Captures and .rtr logs of one run; - is stdin. Or lines in use: serial@DEVICE:BAUD (or a "
+      "platform, as serial@/dev/ttyUSB0:telosb), network@HOST:PORT, sf@HOST:PORT; at a terminal "
+      "$MOTECOM");
+  command.add_option("--write", options.write, "Keep what lines in use send in this pcapng file")
+      .check(cli::given);
+  command.add_option("--profile", options.profile, "Rules of the paper, or as release 1.0 has them")
+      .one_of({"paper", "deployed"})
+      .show_default();
+  command.add_option("--format", options.format,
+                     "text, json (rubric.check/1), jsonl (an event a line) or junit")
+      .one_of({"text", "json", "jsonl", "junit"})
+      .show_default();
+  command.add_option("--expect", options.expect, "Known failures with their reasons, as YAML")
+      .check(cli::given);
+  command.add_option("--out", options.out, "Write to this file; - is stdout")
+      .check(cli::given)
+      .show_default();
+  command.add_option("--node", options.nodes, "ID=ROLE: 2=mote; mote, sink or base-station");
+  command.add_option("--sink", options.sinks, "ID=ISLAND of a sink: 1=11");
+  command.add_option("--tester", options.testers,
+                     "AM address of a sender that is not to be judged");
+  command.add_option("--sniffer", options.sniffer,
+                     "complete: every frame on the air is in the capture; else unknown")
+      .one_of({"complete", "unknown"})
+      .show_default();
+  command.add_option("--start", options.start,
+                     "cold: nothing had happened before the first frame; else unknown")
+      .one_of({"cold", "unknown"})
+      .show_default();
+  command.add_option("--response", options.response_ms,
+                     "ms until a node must have reacted (the profile's 300 ticks, 293 ms)")
+      .between(0.0, 3.6e6);
+  command.add_option("--ack-timeout", options.ack_timeout_ms,
+                     "ms until a reliable message has timed out (the profile's 1000 ticks, "
+                     "976.6 ms)")
+      .between(0.0, 3.6e6);
+  command.add_option("--skew", options.skew_ms, "ms between the clocks of two taps, at most (50)")
+      .between(0.0, 3.6e6);
+  command.add_option("--align", options.align,
+                     "auto: captures whose clocks differ are put on one by the frames that they "
+                     "share; off: stamps are taken as they are")
+      .one_of({"auto", "off"})
+      .show_default();
+  command.add_option("--frames", options.frames,
+                     "A..B: only these frames; N:A..B of the Nth file, N:none none of it");
+  command.add_option("--input-format", options.input.format,
+                     "What captures are: auto, hdlc (bytes of a serial line), sf (serial "
+                     "forwarder), pcap, pcapng, hex (text, from the dispatch byte on), hex-radio "
+                     "(text, 802.15.4 without FCS)")
+      .one_of({"auto", "hdlc", "sf", "pcap", "pcapng", "hex", "hex-radio"})
+      .show_default();
+  command.add_flag("--verbose", options.verbose, "Text: every finding in full; live also notes");
+  command.add_option("--width", options.width, "Text: columns (those of the terminal, else 100)")
+      .between(cli::kColumnsMin, std::size_t{1000});
+  cli::add_color_option(command, options.color);
+  for (const char* name : {"--node", "--sink", "--tester", "--frames"}) {
+    command.get_option(name).one_at_a_time();  // One at a time: files may follow.
+  }
+}
+
+}  // namespace
+
+void add_check(cli::Command& app) {
+  cli::Command& command = app.add_subcommand(kCheckCommand, "Hold captures and logs against the rules");
+  auto options = std::make_shared<CheckOptions>();
+  add_options(command, *options);
+  command.footer(kCheckFooter);
+  cli::set_verdict(command, [options] { return run_check(*options); });
+}
+
+}  // namespace rubric::tools

@@ -1,0 +1,235 @@
+#include "tools/commands/check_live.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "codec/containers/reader.h"
+#include "codec/containers/writer.h"
+#include "conformance/oracle/duplicates.h"
+#include "conformance/oracle/judge.h"
+#include "conformance/oracle/read.h"
+#include "conformance/oracle/watch.h"
+#include "tools/commands/check_news.h"
+#include "tools/cli/exit_codes.h"
+#include "tools/cli/input_threads.h"
+#include "tools/cli/output.h"
+#include "tools/cli/verdict.h"
+#include "tools/live/capture_file.h"
+#include "tools/live/line.h"
+#include "tools/live/stop.h"
+#include "tools/record/packet_output.h"
+
+namespace rubric::tools {
+namespace {
+
+using std::chrono::steady_clock;
+
+constexpr std::chrono::milliseconds kTick{100};
+/// The least time between two judgements of a run, which also take a tenth of the time at most.
+constexpr std::chrono::milliseconds kJudgeEvery{500};
+constexpr int kJudgeShare = 10;
+/// Time for data in buffers, beyond the time that a node may take and the skew of the taps.
+constexpr std::int64_t kSettleUs = 1'000'000;
+/// How long one file may be behind another that has the same.
+constexpr std::int64_t kRefusedUs = 5'000'000;
+constexpr std::int64_t kResponseUs = 292'969;  // 300 ticks, unless stated otherwise.
+
+std::int64_t now_us() {
+  return steady_clock::now().time_since_epoch() / std::chrono::microseconds(1);
+}
+
+// Writes the frames of lines in use as one capture, so that they have the numbers, offsets and
+// interfaces of the file kept by --write.
+class LineCapture {
+ public:
+  LineCapture() : reader_(make_reader(InputFormat::kPcapng)) { writer_.begin(bytes_); }
+
+  template <class Take>
+  void add(const Packet& packet, std::string_view interface_name, const Take& take) {
+    writer_.write(packet, interface_name, bytes_);
+    auto read = [&](const Packet& again) {
+      take(again, reader_->interfaces()[again.interface_id].name);
+    };
+    reader_->feed(Bytes(reinterpret_cast<const std::uint8_t*>(bytes_.data()), bytes_.size()),
+                  PacketSink(read));
+    bytes_.clear();
+  }
+
+ private:
+  PcapngWriter writer_;
+  std::unique_ptr<Reader> reader_;
+  std::string bytes_;
+};
+
+class Session {
+ public:
+  explicit Session(const CheckOptions& options)
+      : options_(options),
+        judged_(oracle_options(options)),
+        expected_(expectations(options)),
+        reader_(read_as(options)),
+        watch_(kSettleUs + judged_.skew_us + judged_.response_us.value_or(kResponseUs)),
+        news_(options) {
+    name_files();
+    if (!options.write.empty()) kept_.emplace(options.write);
+  }
+
+  int run() {
+    live::stop_on_signals();
+    news_.begin();
+    bool failed = false;
+    {
+      cli::InputThreads input(options_.input);
+      while (input.take(steady_clock::now() + kTick, [this](auto&&... it) { take(it...); })) {
+        if (kept_) kept_->flush();
+        if (fresh_ && steady_clock::now() >= judge_next_) judge();
+        tell();
+        if (!news_.open()) live::request_stop();
+      }
+      failed = input.failed();
+    }
+    return finish(failed);
+  }
+
+ private:
+  // Names files: lines are the first one, if there are any; the others follow in their order.
+  void name_files() {
+    std::string lines;
+    for (const std::string& name : options_.input.files) {
+      const bool line = live::parse_address(name).has_value();
+      file_of_.push_back(line ? 0 : UINT32_MAX);
+      if (line) lines += (lines.empty() ? "" : " and ") + name;
+    }
+    if (!lines.empty()) names_.push_back(options_.write.empty() ? lines : options_.write);
+    for (std::size_t i = 0; i < file_of_.size(); ++i) {
+      if (file_of_[i] == 0) continue;
+      file_of_[i] = static_cast<std::uint32_t>(names_.size());
+      names_.push_back(options_.input.files[i]);
+    }
+    has_lines_ = !lines.empty();
+    for (const std::string& name : names_) reader_.open(name == "-" ? "stdin" : name);
+  }
+
+  void take(const Packet& packet, std::size_t source, std::string_view interface_name) {
+    fresh_ = true;
+    const std::uint32_t file = file_of_[source];
+    if (!has_lines_ || file != 0) return reader_.take(file, packet, interface_name);
+    if (kept_) kept_->write(packet, interface_name);
+    lines_.add(packet, interface_name, [this](const Packet& again, std::string_view name) {
+      reader_.take(0, again, name);
+    });
+  }
+
+  void judge() {
+    const steady_clock::time_point before = steady_clock::now();
+    run_.reset();  // Two copies of a long run are enough.
+    run_.emplace(reader_.snapshot());
+    fresh_ = false;
+    if (oracle::drop_duplicates(*run_, judged_, refused_)) {
+      refused_.clear();
+      found_ = oracle::judge(*run_, judged_);
+    }
+    const steady_clock::time_point after = steady_clock::now();
+    judge_next_ = after + std::max<steady_clock::duration>(kJudgeEvery,
+                                                           kJudgeShare * (after - before));
+  }
+
+  void tell() {
+    if (!run_) return;
+    if (refused_.empty()) {
+      refused_us_ = 0;
+    } else if (refused_us_ == 0) {
+      refused_us_ = now_us();
+    } else if (!refused_told_ && now_us() - refused_us_ > kRefusedUs) {
+      fmt::print(stderr, "rubric check: {}\n", refused_);
+      refused_told_ = true;
+    }
+    for (const oracle::Change& change : watch_.update(found_, now_us())) {
+      news_.tell(*run_, judged_, change, expected_);
+    }
+    news_.flush();
+  }
+
+  int finish(bool failed) {
+    bool written = !kept_ || kept_->finish();
+    judge();
+    if (!refused_.empty()) cli::unreadable(kCheckCommand, refused_);
+    const report::Outcome outcome = report::compare(*run_, judged_, found_, expected_);
+    const bool again = !has_lines_ || !options_.write.empty();
+    written = news_.report({*run_, judged_, found_, expected_, outcome},
+                           again ? names_ : std::vector<std::string>()) && written;
+    if (!written) return cli::kVerdictBroken;
+    const int code = outcome.exit_code();
+    return failed && code != cli::kVerdictFailed ? cli::kVerdictInput : code;
+  }
+
+  const CheckOptions& options_;
+  const oracle::Options judged_;
+  const report::KnownFailures expected_;
+  oracle::RunReader reader_;
+  oracle::Watch watch_;
+  CheckNews news_;
+  std::vector<std::uint32_t> file_of_;  // By source: its file of the run.
+  std::vector<std::string> names_;      // The run's files.
+  bool has_lines_ = false;              // They are file 0.
+  LineCapture lines_;
+  std::optional<live::CaptureFile> kept_;
+  bool fresh_ = false;                  // Something came since the run was judged.
+  steady_clock::time_point judge_next_{};
+  std::optional<oracle::Run> run_;
+  oracle::Report found_;
+  std::string refused_;                 // Why the files are no run; empty: they are.
+  std::int64_t refused_us_ = 0;         // Since when.
+  bool refused_told_ = false;
+};
+
+}  // namespace
+
+bool is_live(const CheckOptions& options) {
+  if (options.input.follow) return true;
+  const auto& files = options.input.files;
+  return std::any_of(files.begin(), files.end(), [](const std::string& name) {
+    return live::parse_address(name).has_value();
+  });
+}
+
+int check_live(const CheckOptions& options) {
+  const auto& files = options.input.files;
+  bool lines = false;
+  std::set<std::string> once;
+  for (const std::string& name : files) {
+    if (!once.insert(name).second) throw cli::UsageError("FILE", name + " is there twice");
+    if (live::parse_address(name)) {
+      lines = true;
+    } else if (is_log(name)) {
+      throw cli::UsageError("FILE", name + " is a log; it goes with a run that is over, as "
+                                                "with the capture that --write keeps");
+    }
+  }
+  if (!options.frames.empty()) {
+    throw cli::UsageError("--frames", "which frames can be told when the run is over");
+  }
+  if (!options.write.empty() && !lines) {
+    throw cli::UsageError("--write", "none of the sources is a line in use");
+  }
+  if (!options.write.empty() && options.write == options.out) {
+    throw cli::UsageError("--write", "the report goes to " + options.out);
+  }
+  for (const std::string& path : {options.write, options.out}) {
+    if (record::overwrites(path, files)) {
+      throw cli::UsageError(path == options.out ? "--out" : "--write",
+                                 path + " is one of the files to read");
+    }
+  }
+  return Session(options).run();
+}
+
+}  // namespace rubric::tools

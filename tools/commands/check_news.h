@@ -1,0 +1,49 @@
+// Output of `rubric check`: findings as they come, and the report.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "conformance/oracle/watch.h"
+#include "tools/commands/check_options.h"
+#include "tools/cli/output.h"
+
+namespace rubric::tools {
+
+/// Returns the report in the chosen format. `fd` is a terminal's or -1; `files` are those from
+/// which the same run can be read again, none if it cannot.
+std::string report_text(const CheckOptions& options, const report::Story& story, int fd,
+                        const std::vector<std::string>& files);
+
+/// Prints news of a growing run: text on stdout, jsonl where the report goes. If stdout is for a
+/// report of another format, text goes to stderr.
+class CheckNews {
+ public:
+  /// Throws std::system_error if a file cannot be written.
+  explicit CheckNews(const CheckOptions& options);
+  ~CheckNews();
+  CheckNews(const CheckNews&) = delete;
+  CheckNews& operator=(const CheckNews&) = delete;
+
+  /// Prints, at a terminal, that a wait begins.
+  void begin() const;
+  void tell(const oracle::Run& run, const oracle::Options& judged, const oracle::Change& change,
+            const report::KnownFailures& expected);
+  /// What was told can be read then.
+  void flush() { output_.flush(); }
+  /// Returns whether anybody still reads it.
+  bool open() const;
+  /// Prints the end. Returns false, having printed why, if something could not be written.
+  bool report(const report::Story& story, const std::vector<std::string>& files);
+
+ private:
+  std::string text(const report::Story& story, const oracle::Change& change) const;
+
+  const CheckOptions& options_;
+  int fd_;
+  int file_ = -1;  // For jsonl that goes to a file.
+  cli::Output output_;
+  bool told_ = false;
+};
+
+}  // namespace rubric::tools

@@ -1,0 +1,58 @@
+// Options of `rubric check`, and their use by the judge.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "conformance/oracle/observation.h"
+#include "conformance/oracle/read.h"
+#include "conformance/oracle/report/expect.h"
+#include "conformance/oracle/report/text.h"
+#include "conformance/oracle/report/window.h"
+#include "tools/cli/input.h"
+
+namespace rubric::tools {
+
+constexpr const char* kCheckCommand = "check";
+
+struct CheckOptions {
+  cli::InputOptions input;
+  std::string profile = "paper";
+  std::string format = "text";
+  std::string expect;
+  std::string out = "-";
+  std::string color = "auto";
+  std::string sniffer = "unknown";
+  std::string start = "unknown";
+  std::string align = "auto";
+  std::vector<std::string> nodes;
+  std::vector<std::string> sinks;
+  std::vector<std::string> frames;
+  std::vector<std::string> testers;
+  std::optional<double> response_ms;
+  std::optional<double> ack_timeout_ms;
+  std::optional<double> skew_ms;
+  std::size_t width = 0;
+  bool verbose = false;
+  std::string write;  ///< A capture of what lines in use send; empty: none.
+};
+
+/// Returns the judge's options. Throws cli::UsageError, as the next two do.
+oracle::Options oracle_options(const CheckOptions& options);
+std::vector<report::FrameRange> frame_ranges(const CheckOptions& options);
+/// What the file --expect names says; nothing without it.
+report::KnownFailures expectations(const CheckOptions& options);
+
+/// Returns the format of captures by --input-format.
+oracle::ReadAs read_as(const CheckOptions& options);
+/// Returns whether there is a file of that name with an .rtr log in it.
+bool is_log(const std::string& name);
+
+/// Returns the options that a verdict depends on, so that the command can be repeated.
+std::string command_of(const CheckOptions& options);
+/// Returns how text goes to `fd`, -1 for a file; without the command and the judge.
+report::TextOptions text_options(const CheckOptions& options, int fd);
+
+}  // namespace rubric::tools

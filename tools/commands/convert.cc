@@ -1,0 +1,171 @@
+#include "tools/commands/commands.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <system_error>
+
+#include "tools/cli/exit_codes.h"
+#include "tools/cli/input.h"
+#include "tools/format/record.h"
+#include "tools/record/packet_output.h"
+
+namespace rubric::tools {
+namespace {
+
+struct ConvertOptions {
+  cli::InputOptions input;
+  std::string format;
+  std::string output;
+  std::string only;
+};
+
+constexpr const char* kConvertFooter =
+    "What the target cannot hold is said on stderr. pcap holds one link type, that of the first\n"
+    "packet; --only chooses among serial and radio.\n"
+    "Exit codes: 0 converted, 2 usage, 3 input cannot be read or output cannot be written.";
+
+struct Suffix {
+  std::string_view suffix;
+  const char* container;
+};
+constexpr Suffix kSuffixes[] = {
+    {".pcapng", "pcapng"}, {".ntar", "pcapng"}, {".pcap", "pcap"}, {".cap", "pcap"},
+    {".sfstream", "sf"},   {".sf", "sf"},       {".hex", "hex"},   {".txt", "hex"},
+    {".hdlc", "hdlc"},     {".bin", "hdlc"},
+};
+
+std::string container_of(std::string_view file) {
+  for (const Suffix& known : kSuffixes) {
+    if (file.ends_with(known.suffix)) return known.container;
+  }
+  return {};
+}
+
+/// Data that the target could not hold.
+struct Losses {
+  std::uint64_t packets = 0;
+  std::uint64_t written = 0;
+  std::uint64_t times = 0;
+  std::uint64_t directions = 0;
+  std::uint64_t interfaces = 0;
+  std::uint64_t comments = 0;
+  std::uint64_t sequence_numbers = 0;  // From the serial line.
+  std::uint64_t radio = 0;             // Among those written.
+  std::map<std::string, std::uint64_t> refused;  // By reason: a handful.
+};
+
+void count_details(const Packet& packet, std::string_view interface_name,
+                   const record::Holds& holds, const std::string& container, Losses& losses) {
+  const bool bare_packets = container == "sf" || container == "hex";
+  losses.sequence_numbers += bare_packets && packet.serial_seq != kAbsent;
+  losses.radio += packet.framing == Framing::kRadio;
+  losses.times += !holds.times && packet.time_ns != kNoTime;
+  losses.directions += !holds.directions && packet.direction != Direction::kUnknown;
+  losses.interfaces += !holds.interfaces && !interface_name.empty();
+  losses.comments += !holds.comments && !packet.comment.empty();
+}
+
+void report(const Losses& losses, const std::string& container) {
+  for (const auto& [why, count] : losses.refused) {
+    fmt::print(stderr, "rubric: left out {} of {} packets: {}\n", count, losses.packets, why);
+  }
+  const auto lost = [&](std::uint64_t count, const char* what) {
+    if (count == 0) return;
+    fmt::print(stderr, "rubric: {} holds no {}: {} of {} packets lost theirs\n", container, what,
+               count, losses.written);
+  };
+  lost(losses.times, "times");
+  lost(losses.directions, "directions");
+  lost(losses.interfaces, "interface names");
+  lost(losses.comments, "comments");
+  lost(losses.sequence_numbers, "serial sequence numbers");
+  if (container == "hex" && losses.radio && losses.radio != losses.written) {
+    fmt::print(stderr, "rubric: hex does not say which lines are radio frames; --only keeps one "
+                       "framing\n");
+  }
+}
+
+// Settles the target: with several files and no -o it is the last one, as with cp.
+void settle_target(ConvertOptions& options) {
+  if (options.output.empty() && options.input.files.size() > 1) {
+    options.output = options.input.files.back();
+    options.input.files.pop_back();
+  }
+  if (options.output.empty()) options.output = "-";
+  if (options.format.empty()) options.format = container_of(options.output);
+  if (options.format.empty()) {
+    throw cli::UsageError("--format", "is needed, as '" + options.output +
+                                               "' has no suffix that says what to write (.pcapng, "
+                                               ".pcap, .sf, .hex, .hdlc)");
+  }
+  if (record::overwrites(options.output, options.input.files)) {
+    throw cli::UsageError("OUT", "'" + options.output + "' is also the input");
+  }
+}
+
+int run_convert(const ConvertOptions& options) {
+  Losses losses;
+  const record::Holds holds = record::holds(options.format);
+  cli::InputResult result;
+  std::string failure;
+  try {
+    record::PacketOutput output(options.format, options.output);
+    const auto on_packet = [&](const Packet& packet, const cli::Source& source) {
+      if (!options.only.empty() && format::framing_name(packet.framing) != options.only) {
+        return true;
+      }
+      if (cli::is_damage(packet)) return true;  // Said already, and no packet.
+      ++losses.packets;
+      const std::string refused = output.write(packet, source.interface_name);
+      if (output.cut_refused()) {
+        ++losses.refused["a frame that was cut can only be the last of a stream"];
+        --losses.written;
+      }
+      if (!refused.empty()) {
+        ++losses.refused[refused];
+        return true;
+      }
+      ++losses.written;
+      count_details(packet, source.interface_name, holds, options.format, losses);
+      return output.open();
+    };
+    result = cli::read_packets(options.input, on_packet);
+    // A mistyped name must not cost the file that would have been replaced.
+    if (!result.failed || losses.packets > 0) failure = output.finish();
+  } catch (const std::system_error& error) {
+    failure = error.code().message();
+  }
+  report(losses, options.format);
+  if (!failure.empty()) fmt::print(stderr, "rubric: {}: {}\n", options.output, failure);
+  return failure.empty() && !result.failed ? cli::kExitClean : cli::kExitInput;
+}
+
+}  // namespace
+
+void add_convert(cli::Command& app) {
+  auto options = std::make_shared<ConvertOptions>();
+  cli::Command& sub = app.add_subcommand("convert", "Packets from one container into another");
+  sub.footer(kConvertFooter);
+  sub.add_option("FILE", options->input.files,
+                  "Captures, and last the target unless -o names it; - is stdin or stdout");
+  sub.add_option("-o,--output", options->output, "Where to; - is stdout").check(cli::given);
+  sub.add_option("--format", options->format,
+                  "What to write: hex, hdlc, sf, pcap, pcapng (default: by the target's suffix)")
+      .one_of(record::container_names());
+  sub.add_option("--input-format", options->input.format,
+                  "What the input is: auto, hdlc, sf, pcap, pcapng, hex")
+      .one_of({"auto", "hdlc", "sf", "pcap", "pcapng", "hex"})
+      .show_default();
+  sub.add_option("--only", options->only, "Leave out packets of other framings: hdlc, sf, radio")
+      .one_of({"hdlc", "sf", "radio"});
+  sub.callback([options] {
+    settle_target(*options);
+    const int code = run_convert(*options);
+    if (code != cli::kExitClean) cli::exit_with(code);
+  });
+}
+
+}  // namespace rubric::tools

@@ -1,0 +1,277 @@
+#include "tools/commands/commands.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdio>
+#include <cstring>
+#include <map>
+#include <memory>
+#include <set>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "codec/reflect/requirements.h"
+#include "conformance/explorer/search.h"
+#include "conformance/mutants/generated.h"
+#include "conformance/report/json.h"
+#include "tools/cli/exit_codes.h"
+#include "tools/cli/output.h"
+#include "tools/cli/command.h"
+
+namespace rubric::tools {
+namespace {
+
+using report::Json;
+
+const std::size_t kRules = reflect::requirements().size();
+
+struct CoverageOptions {
+  std::string cases = "conformance/cases";
+  std::string format = "text";
+};
+
+// A test or tool that touches a rule.
+struct Touch {
+  std::set<std::string> positive;  // Golden traces.
+  std::set<std::string> negative;
+  std::uint64_t transitions = 0;  // Steps of the machine, in these traces.
+  std::uint64_t ignores = 0;
+  bool explored = false;
+  std::size_t mutants = 0;  // Named ones that break it.
+};
+
+struct Coverage {
+  std::vector<Touch> rules{kRules};
+  std::size_t cases = 0;
+  std::vector<std::string> problems;
+};
+
+bool is_wire(std::size_t i) {
+  return std::strncmp(reflect::requirements()[i].id, "WIRE-", 5) == 0;
+}
+bool is_must(std::size_t i) {
+  return std::strcmp(reflect::requirements()[i].level, "MUST") == 0;
+}
+
+void read_cases(const mutants::Golden& golden, Coverage& coverage) {
+  for (const trace::Parsed& file : golden.files()) {
+    for (const trace::Case& one : file.file.cases) {
+      ++coverage.cases;
+      for (const trace::Line* line : one.lines()) {
+        for (const std::string& name : line->requirements) {
+          const ReqId id = trace::requirement_id(name);
+          if (id == ReqId::kNone) {
+            coverage.problems.push_back(fmt::format("{}:{}: the catalogue has no rule {}",
+                                                    file.file_name, line->place.line, name));
+            continue;
+          }
+          Touch& touch = coverage.rules[reflect::requirement_index(id)];
+          (line->op == trace::Op::kMustNot ? touch.negative : touch.positive).insert(one.name);
+        }
+      }
+    }
+  }
+  for (const mutants::CaseRef& ref : golden.broken()) {
+    coverage.problems.push_back(ref.one->name + ": the machine does not pass it");
+  }
+}
+
+void run_cases(const mutants::Golden& golden, Coverage& coverage) {
+  mutants::watch(golden, [&](const machine::State&, machine::Ticks, const machine::Event&,
+                             const machine::State&, const machine::Actions& actions) {
+    for (const machine::Action& action : actions.all()) {
+      Touch& touch = coverage.rules[reflect::requirement_index(action.requirement)];
+      const bool ignored = action.what == machine::Action::What::kIgnored;
+      ++(ignored ? touch.ignores : touch.transitions);
+    }
+  });
+}
+
+// The explorer takes a plain function, so its results are kept here.
+std::vector<std::atomic<bool>> g_explored(kRules);
+
+void seen_step(machine::State& state, machine::Ticks now, const machine::Event& event,
+               machine::Actions& actions) {
+  machine::step(state, now, event, actions);
+  for (const machine::Action& action : actions.all()) {
+    g_explored[reflect::requirement_index(action.requirement)] = true;
+  }
+}
+
+// Explores small networks: two sinks and a lossy air in join scope, messages between a mote and its
+// sink.
+void explore(Coverage& coverage) {
+  explorer::Options join;
+  join.step = seen_step;
+  join.sinks = 2;
+  join.loss = join.dup = true;
+  join.calls = 2;  // So that replies to the first meet the second.
+  explorer::Options full;
+  full.step = seen_step;
+  full.scope = explorer::Scope::kFull;
+  full.loss = true;
+  for (const explorer::Options& options : {join, full}) {
+    explorer::Nodes nodes(options);
+    explorer::explore(nodes);
+  }
+  for (std::size_t i = 0; i < kRules; ++i) coverage.rules[i].explored = g_explored[i];
+}
+
+void judge(Coverage& coverage) {
+  for (std::size_t i = 1; i < kRules; ++i) {
+    if (is_wire(i)) continue;
+    const reflect::Requirement& rule = reflect::requirements()[i];
+    const Touch& touch = coverage.rules[i];
+    if (is_must(i) && touch.positive.empty() && touch.negative.empty()) {
+      coverage.problems.push_back(fmt::format("{} is a MUST without a case", rule.id));
+    } else if (rule.forbids && touch.negative.empty()) {
+      coverage.problems.push_back(fmt::format("{} forbids, but no case attempts it", rule.id));
+    }
+  }
+}
+
+Coverage measure(const CoverageOptions& options) {
+  Coverage coverage;
+  const mutants::Golden golden(options.cases);
+  read_cases(golden, coverage);
+  run_cases(golden, coverage);
+  explore(coverage);
+  for (const mutants::Mutant& mutant : mutants::named_mutants()) {
+    for (const ReqId id : mutant.requirements) {
+      ++coverage.rules[reflect::requirement_index(id)].mutants;
+    }
+  }
+  judge(coverage);
+  return coverage;
+}
+
+// Counts wire rules by level: those that are MUST, and the others.
+std::map<std::string, std::size_t> wire_levels() {
+  std::map<std::string, std::size_t> levels;
+  for (std::size_t i = 1; i < kRules; ++i) {
+    if (is_wire(i)) ++levels[reflect::requirements()[i].level];
+  }
+  return levels;
+}
+
+struct Totals {
+  std::size_t rules = 0;
+  std::size_t with_case = 0;
+  std::size_t positive = 0;
+  std::size_t negative = 0;
+  std::size_t exercised = 0;
+  std::size_t explored = 0;
+  std::size_t mutated = 0;
+};
+
+Totals total(const Coverage& coverage) {
+  Totals totals;
+  for (std::size_t i = 1; i < kRules; ++i) {
+    if (is_wire(i)) continue;
+    const Touch& touch = coverage.rules[i];
+    ++totals.rules;
+    totals.with_case += !touch.positive.empty() || !touch.negative.empty();
+    totals.positive += !touch.positive.empty();
+    totals.negative += !touch.negative.empty();
+    totals.exercised += touch.transitions + touch.ignores > 0;
+    totals.explored += touch.explored;
+    totals.mutated += touch.mutants > 0;
+  }
+  return totals;
+}
+
+std::string text_of(const Coverage& coverage) {
+  std::string out = fmt::format("{:<14}{:<8}{:>6}{:>6}{:>12}{:>9}  {:<10}{:>7}\n", "rule", "level",
+                                "cases", "!>", "transitions", "ignores", "explored", "mutants");
+  for (std::size_t i = 1; i < kRules; ++i) {
+    if (is_wire(i)) continue;
+    const Touch& touch = coverage.rules[i];
+    out += fmt::format("{:<14}{:<8}{:>6}{:>6}{:>12}{:>9}  {:<10}{:>7}\n",
+                       reflect::requirements()[i].id, reflect::requirements()[i].level,
+                       touch.positive.size(), touch.negative.size(), touch.transitions,
+                       touch.ignores, touch.explored ? "yes" : "-", touch.mutants);
+  }
+  const Totals totals = total(coverage);
+  out += fmt::format(
+      "{} rules of behaviour, {} golden traces: {} rules with a case ({} positive, {} negative), "
+      "{} exercised on the machine, {} explored, {} with a named mutant\n",
+      totals.rules, coverage.cases, totals.with_case, totals.positive, totals.negative,
+      totals.exercised, totals.explored, totals.mutated);
+  out += "rules of the wire, which spec/vectors cover:";
+  for (const auto& [level, count] : wire_levels()) out += fmt::format(" {} {}", count, level);
+  out += '\n';
+  for (const std::string& problem : coverage.problems) out += "problem: " + problem + '\n';
+  return out;
+}
+
+std::string json_of(const Coverage& coverage) {
+  std::vector<Json> rules;
+  for (std::size_t i = 1; i < kRules; ++i) {
+    if (is_wire(i)) continue;
+    const Touch& touch = coverage.rules[i];
+    rules.push_back(Json::object({{"id", reflect::requirements()[i].id},
+                                  {"level", reflect::requirements()[i].level},
+                                  {"positive", touch.positive.size()},
+                                  {"negative", touch.negative.size()},
+                                  {"transitions", touch.transitions},
+                                  {"ignores", touch.ignores},
+                                  {"explored", touch.explored},
+                                  {"mutants", touch.mutants}}));
+  }
+  const Totals totals = total(coverage);
+  const std::map<std::string, std::size_t> levels = wire_levels();
+  const Json out = Json::object({{"schema", "rubric.coverage/1"},
+                                 {"rules", Json::array(rules)},
+                                 {"cases", coverage.cases},
+                                 {"totals", Json::object({{"rules", totals.rules},
+                                                          {"with_case", totals.with_case},
+                                                          {"positive", totals.positive},
+                                                          {"negative", totals.negative},
+                                                          {"exercised", totals.exercised},
+                                                          {"explored", totals.explored},
+                                                          {"with_mutant", totals.mutated}})},
+                                 {"wire", Json::object({levels.begin(), levels.end()})},
+                                 {"problems", Json::array(coverage.problems)}});
+  return out.text() + '\n';
+}
+
+int run_coverage(const CoverageOptions& options) {
+  Coverage coverage;
+  try {
+    coverage = measure(options);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "rubric: {}\n", error.what());
+    return cli::kVerdictInput;
+  }
+  const std::string text = options.format == "json" ? json_of(coverage) : text_of(coverage);
+  if (!cli::write_file("-", text)) return cli::kVerdictBroken;
+  return coverage.problems.empty() ? cli::kVerdictExpected : cli::kVerdictFailed;
+}
+
+}  // namespace
+
+void add_coverage(cli::Command& app) {
+  auto options = std::make_shared<CoverageOptions>();
+  cli::Command& sub = app.add_subcommand("coverage", "Which rules are tested, and by what");
+  sub.footer(
+      "Counts, for each rule of behaviour, golden traces that ask for it and that forbid "
+      "something\n"
+      "by it, steps of the machine that name it while it works them, whether the explorer meets "
+      "it\n"
+      "in small networks, and named mutants that break it.\n"
+      "Exit codes: 0 covered, 1 a MUST without a case, a forbidding rule that no case attempts, or "
+      "a\n"
+      "case that is wrong, 2 output cannot be written, 64 usage, 66 the cases cannot be read.");
+  sub.add_option("--cases", options->cases, "Folder of golden traces").show_default();
+  sub.add_option("--format", options->format, "text or json")
+      .one_of({"text", "json"})
+      .show_default();
+  sub.set_usage_exit_code(cli::kVerdictUsage);
+  sub.exit_code_of([options] { return run_coverage(*options); });
+}
+
+}  // namespace rubric::tools

@@ -1,0 +1,211 @@
+#include "tools/commands/commands.h"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "codec/reflect/frame.h"
+#include "tools/cli/color.h"
+#include "tools/cli/exit_codes.h"
+#include "tools/cli/input.h"
+#include "tools/cli/output.h"
+#include "tools/format/csv.h"
+#include "tools/format/filter.h"
+#include "tools/format/jsonl.h"
+#include "tools/format/text.h"
+#include "tools/live/capture_file.h"
+
+namespace rubric::tools {
+namespace {
+
+constexpr std::int64_t kNoPrevious = kNoTime;
+
+struct DecodeOptions {
+  cli::InputOptions input;
+  std::string format = "text";
+  std::string filter;
+  std::string fields;
+  std::string time = "abs";
+  std::string color = "auto";
+  std::uint64_t count = 0;  ///< 0: all.
+  bool hex = false;
+  bool strict = false;
+  bool units = false;
+  std::string write;  ///< A capture of what is read; empty: none.
+};
+
+std::vector<format::Path> chosen_fields(const DecodeOptions& options,
+                                        const reflect::Protocol& protocol) {
+  if (options.fields.empty()) return {};
+  try {
+    return format::parse_paths(options.fields, protocol);
+  } catch (const format::PathError& error) {
+    throw cli::UsageError("--fields", error.what());
+  }
+}
+
+std::unique_ptr<format::Formatter> make_formatter(const DecodeOptions& options,
+                                                  const reflect::Protocol& protocol) {
+  std::vector<format::Path> fields = chosen_fields(options, protocol);
+  if (options.format == "jsonl") {
+    return std::make_unique<format::JsonlFormatter>(protocol, options.units, std::move(fields));
+  }
+  if (options.format == "csv") {
+    return std::make_unique<format::CsvFormatter>(protocol, std::move(fields));
+  }
+  format::TextOptions text;
+  text.color = cli::use_color(options.color, 1);
+  text.hex = options.hex;
+  text.units = options.units;
+  text.fields = std::move(fields);
+  return std::make_unique<format::TextFormatter>(protocol, std::move(text));
+}
+
+std::optional<format::Filter> make_filter(const DecodeOptions& options,
+                                          const reflect::Protocol& protocol) {
+  if (options.filter.empty()) return std::nullopt;
+  try {
+    return format::Filter(options.filter, protocol);
+  } catch (const format::FilterError& error) {
+    throw cli::UsageError("--filter", error.explain(options.filter));
+  }
+}
+
+/// Times in the form of --time.
+class Clock {
+ public:
+  explicit Clock(const std::string& mode)
+      : none_(mode == "none"), zero_(mode == "zero"), delta_(mode == "delta") {}
+
+  /// Returns the time to show for a frame.
+  std::int64_t shown(std::int64_t time_ns) {
+    if (none_ || time_ns == kNoTime) return kNoTime;
+    if (!zero_ && !delta_) return time_ns;
+    if (reference_ns_ == kNoPrevious) reference_ns_ = time_ns;
+    // Wraps instead of overflowing: damaged stamps can be anything.
+    const auto difference = static_cast<std::int64_t>(static_cast<std::uint64_t>(time_ns) -
+                                                      static_cast<std::uint64_t>(reference_ns_));
+    if (delta_) reference_ns_ = time_ns;
+    return difference;
+  }
+
+ private:
+  bool none_;
+  bool zero_;
+  bool delta_;
+  std::int64_t reference_ns_ = kNoPrevious;
+};
+
+/// One run of the subcommand.
+class Decode {
+ public:
+  explicit Decode(const DecodeOptions& options)
+      : options_(options),
+        protocol_(cli::chosen_protocol(options.input)),
+        decoder_(protocol_, cli::chosen_message(options.input, protocol_)),
+        formatter_(make_formatter(options, protocol_)),
+        filter_(make_filter(options, protocol_)),
+        clock_(options.time) {}
+
+  int run() {
+    if (!options_.write.empty()) capture_.emplace(options_.write);
+    formatter_->begin(output_.buffer());
+    const cli::InputResult result = cli::read_packets(
+        options_.input,
+        [this](const Packet& packet, const cli::Source& source) { return take(packet, source); },
+        [this] {
+          output_.flush();
+          if (capture_) capture_->flush();
+        });
+    output_.flush();
+    if (result.live) {
+      fmt::print(stderr, "rubric: {} frames, {} malformed, {} shown\n", index_, malformed_count_,
+                 printed_);
+    }
+    if (capture_ && !capture_->finish()) return cli::kExitInput;
+    std::string reason;
+    if (output_.failed(&reason)) {
+      fmt::print(stderr, "rubric: cannot write: {}\n", reason);
+      return cli::kExitInput;
+    }
+    if (!output_.open()) return cli::kExitClean;  // A closed pipe ends the output.
+    if (result.failed) return cli::kExitInput;
+    return malformed_ ? cli::kExitMalformed : cli::kExitClean;
+  }
+
+ private:
+  bool take(const Packet& packet, const cli::Source& source) {
+    decoder_.decode(packet, frame_);
+    const bool noted = options_.strict && frame_.decoded.note_count() != 0;
+    malformed_ = malformed_ || frame_.malformed() || noted;
+    malformed_count_ += frame_.malformed();
+    if (capture_) capture_->write(packet, source.interface_name);
+    record_.index = index_++;
+    record_.number = source.number;
+    record_.frame = &frame_;
+    record_.interface_name = source.interface_name;
+    record_.time_ns = packet.time_ns;
+    if (filter_ && !filter_->matches(record_)) return true;
+    record_.time_ns = clock_.shown(packet.time_ns);
+    formatter_->print(record_, output_.buffer());
+    ++printed_;
+    return output_.drain() && printed_ != options_.count;
+  }
+
+  const DecodeOptions& options_;
+  const reflect::Protocol& protocol_;
+  reflect::FrameDecoder decoder_;
+  std::unique_ptr<format::Formatter> formatter_;
+  std::optional<format::Filter> filter_;
+  Clock clock_;
+  cli::Output output_;
+  reflect::Frame frame_;
+  format::Record record_;
+  std::uint64_t index_ = 0;
+  std::uint64_t printed_ = 0;
+  std::uint64_t malformed_count_ = 0;
+  bool malformed_ = false;
+  std::optional<live::CaptureFile> capture_;
+};
+
+}  // namespace
+
+void add_decode(cli::Command& app) {
+  cli::Command& command = app.add_subcommand("decode", "Print what captures hold, a line a frame");
+  auto options = std::make_shared<DecodeOptions>();
+  cli::add_input_options(command, options->input);
+  cli::add_live_options(command, options->input);
+  command.add_option("--format", options->format, "text, jsonl (rubric.decode/1) or csv")
+      .one_of({"text", "jsonl", "csv"})
+      .show_default();
+  command.add_option("--filter", options->filter,
+                      "Only frames for which this holds: message==updates && src.devid==4");
+  command.add_option("--fields", options->fields, "Only these, as in a.b,c");
+  command.add_option("--time", options->time,
+                      "abs (as captured), delta (since the line before), zero (since the first "
+                      "line), none")
+      .one_of({"abs", "delta", "zero", "none"})
+      .show_default();
+  command.add_option("--count", options->count, "Stop after this many lines")
+      .check(cli::at_least_one);
+  command.add_flag("--hex", options->hex, "Text: a hex dump below each line");
+  command.add_flag("--strict", options->strict, "Exit code 1 for noted frames, too");
+  command.add_flag("--units", options->units, "Show values in their units, such as degrees C");
+  command.add_option("--write", options->write, "Keep all frames in this pcapng file as well")
+      .check(cli::given);
+  cli::add_color_option(command, options->color);
+  command.footer(
+      "Examples:\n"
+      "  rubric decode capture.pcapng --filter 'message==updates && src.devid==4'\n"
+      "  rubric decode mote.serial.bin --format jsonl | jq .message\n"
+      "  rubric decode capture.pcapng --format csv --fields time,src.devid,updates.value\n"
+      "  echo 0a000c | rubric decode --as config\n"
+      "  rubric decode serial@/dev/ttyUSB0:telosb --write run.pcapng    # until Ctrl-C\n"
+      "Exit codes: 0 clean, 1 something malformed was read, 2 usage, 3 input cannot be read.");
+  command.exit_code_of([options] { return Decode(*options).run(); });
+}
+
+}  // namespace rubric::tools

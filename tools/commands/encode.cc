@@ -1,0 +1,106 @@
+#include "tools/commands/commands.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include "tools/cli/exit_codes.h"
+#include "tools/record/line_encoder.h"
+#include "tools/record/packet_output.h"
+
+namespace rubric::tools {
+namespace {
+
+struct EncodeOptions {
+  record::LineOptions lines;
+  std::string format = "hex";
+  std::string output = "-";
+};
+
+constexpr const char* kEncodeFooter =
+    "A line with \"raw\" is encoded from it. Where it also has \"fields\" and is not marked\n"
+    "malformed, both must say the same: delete \"raw\", and \"crc\" or \"fcs\" in\n"
+    "\"frame\", to encode changed fields. Sizes, counts and check sums that are missing are\n"
+    "computed. A message alone:\n"
+    "  echo '{\"type\":10,\"value\":12}' | rubric encode --as config\n"
+    "Exit codes: 0 all lines encoded, 2 usage, 3 some line or file could not be read or encoded.";
+
+/// Returns the framing of a single message on its way to such an output.
+std::string_view serial_framing(const std::string& format) {
+  const bool in_capture = format == "pcap" || format == "pcapng";
+  return format == "hdlc" || in_capture ? "hdlc" : "sf";
+}
+
+/// Writes all lines. Returns whether all were written.
+bool write_all(const EncodeOptions& options, record::LineEncoder& encoder, record::PacketOutput& output,
+               bool& any) {
+  std::string last_place;
+  const auto put = [&](record::EncodedLines& lines, const record::OwnedPacket& packet,
+                       const std::string& place) {
+    const std::string refused = output.write(packet.view(), packet.interface_name);
+    if (!refused.empty()) lines.complain(place, refused);
+    if (output.cut_refused()) {
+      lines.complain(last_place, "a frame that was cut can only be the last of a stream");
+    }
+    last_place = place;
+    return output.open();
+  };
+  record::EncodedLines lines(options.lines, encoder, put);
+  const bool good = lines.all();
+  any = lines.any();
+  return good;
+}
+
+int run_encode(const EncodeOptions& options) {
+  const reflect::Protocol& protocol = cli::chosen_protocol(options.lines.input);
+  const reflect::Type* message = cli::chosen_message(options.lines.input, protocol);
+  record::LineEncoder encoder(options.lines, protocol, message, serial_framing(options.format));
+  try {
+    record::PacketOutput output(options.format, options.output);
+    bool any = false;
+    const bool good = write_all(options, encoder, output, any);
+    // A mistyped name must not cost the file that would have been replaced.
+    if (!good && !any) return cli::kExitInput;
+    const std::string failure = output.finish();
+    if (failure.empty()) return good ? cli::kExitClean : cli::kExitInput;
+    fmt::print(stderr, "rubric: {}: {}\n", options.output, failure);
+  } catch (const std::system_error& error) {
+    fmt::print(stderr, "rubric: {}: {}\n", options.output, error.code().message());
+  }
+  return cli::kExitInput;
+}
+
+void check_target(const EncodeOptions& options) {
+  if (record::overwrites(options.output, options.lines.input.files)) {
+    throw cli::UsageError("--output", "'" + options.output + "' is also the input");
+  }
+}
+
+}  // namespace
+
+void add_encode(cli::Command& app) {
+  auto options = std::make_shared<EncodeOptions>();
+  cli::Command& sub = app.add_subcommand(
+      "encode", "Frames from the JSON lines of 'rubric decode', or from fields alone");
+  sub.footer(kEncodeFooter);
+  record::add_line_options(sub, options->lines);
+  record::add_carrier_option(sub, options->lines);
+  sub.add_option("--format", options->format, "What to write: hex, hdlc, sf, pcap, pcapng")
+      .one_of(record::container_names())
+      .show_default();
+  sub.add_option("-o,--output", options->output, "Where to; - is stdout")
+      .check(cli::given)
+      .show_default();
+  sub.callback([options] {
+    record::check_line_options(options->lines);
+    check_target(*options);
+    const int code = run_encode(*options);
+    if (code != cli::kExitClean) cli::exit_with(code);
+  });
+}
+
+}  // namespace rubric::tools

@@ -1,0 +1,193 @@
+#include "tools/commands/commands.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+#include <memory>
+
+#include "codec/containers/hex_reader.h"
+#include "codec/generated/tinyos/tables.h"
+#include "codec/reflect/fault_text.h"
+#include "codec/reflect/registry.h"
+#include "codec/reflect/suggest.h"
+#include "tools/cli/exit_codes.h"
+#include "tools/cli/input.h"
+#include "tools/cli/output.h"
+#include "tools/layout/explain_frame.h"
+#include "tools/layout/explain_rule.h"
+#include "tools/layout/explain_type.h"
+#include "tools/layout/frame_guess.h"
+
+namespace rubric::tools {
+namespace {
+
+using reflect::Protocol;
+
+struct ExplainOptions {
+  cli::InputOptions input;  // The protocol, and the message that bytes are.
+  std::vector<std::string> words;
+  std::string framing = "auto";
+  bool all_cases = false;
+};
+
+constexpr const char* kExplainFooter =
+    "X is a message, a rule (WIRE-NET-NBYTES) or a group of them (J4), an enum or a mask, or the\n"
+    "hex bytes of a frame: a serial packet as Listen prints it, a serial frame with its kind\n"
+    "byte, an 802.15.4 frame.\n"
+    "Exit codes: 0 explained, 1 the frame is malformed, 2 usage or nothing of that name.";
+
+// Returns the protocol above and the frames below, in which names are looked up.
+std::vector<const Protocol*> layers(const Protocol& protocol) {
+  return {&protocol, &tinyos::tables::kProtocol};
+}
+
+// Returns an empty text if nothing has this name.
+std::string explain_name(const Protocol& protocol, const std::string& name, bool all_cases) {
+  std::string out;
+  const auto add = [&](std::string text) { out += (out.empty() ? "" : "\n") + std::move(text); };
+  std::vector<const Protocol*> all = reflect::protocols();
+  all.push_back(&tinyos::tables::kProtocol);
+  const auto list = all_cases ? layout::CaseList::kWhole : layout::CaseList::kShort;
+  for (const ReqId rule : layout::rules_named(name)) add(layout::explain_rule(all, rule, list));
+  for (const Protocol* layer : layers(protocol)) {
+    if (const reflect::Type* type = reflect::find_type(*layer, name)) {
+      add(layout::explain_type(*layer, *type));
+    }
+    for (int i = 0; i < layer->enum_count; ++i) {
+      if (name == layer->enums[i]->name) add(layout::explain_enum(*layer, *layer->enums[i]));
+    }
+    for (int i = 0; i < layer->mask_count; ++i) {
+      if (name == layer->masks[i]->name) add(layout::explain_mask(*layer, *layer->masks[i]));
+    }
+    if (!out.empty()) break;
+  }
+  return out;
+}
+
+std::vector<std::string> all_names(const Protocol& protocol) {
+  std::vector<std::string> names;
+  for (const Protocol* layer : layers(protocol)) {
+    for (int i = 0; i < layer->type_count; ++i) names.emplace_back(layer->types[i]->id);
+    for (int i = 0; i < layer->enum_count; ++i) names.emplace_back(layer->enums[i]->name);
+    for (int i = 0; i < layer->mask_count; ++i) names.emplace_back(layer->masks[i]->name);
+  }
+  for (const std::string& group : layout::rule_groups()) {
+    names.push_back(group);
+    for (const ReqId rule : layout::rules_named(group)) {
+      names.emplace_back(reflect::requirement(rule).id);
+    }
+  }
+  return names;
+}
+
+std::string in_case(std::string text, int (*to_case)(int)) {
+  std::transform(text.begin(), text.end(), text.begin(), [to_case](unsigned char c) {
+    return static_cast<char>(to_case(c));
+  });
+  return text;
+}
+
+// Returns the rules with a similar name: those of its group, else the groups.
+std::string rules_like(const std::string& name) {
+  const std::string group = in_case(name.substr(0, name.find('-')), std::toupper);
+  const bool letter_and_number = group.size() > 1 && std::isalpha(group[0]) != 0 &&
+                                 std::all_of(group.begin() + 1, group.end(), [](unsigned char c) {
+                                   return std::isdigit(c) != 0;
+                                 });
+  const std::vector<std::string> groups = layout::rule_groups();
+  std::vector<std::string> rules;
+  for (const ReqId rule : layout::rules_named(group)) {
+    rules.emplace_back(reflect::requirement(rule).id);
+  }
+  if (group != "WIRE" && !rules.empty()) {
+    return fmt::format("; rules of {} are {}", group, fmt::join(rules, ", "));
+  }
+  if (!letter_and_number) return "";
+  return fmt::format("; groups of rules are {}", fmt::join(groups, ", "));
+}
+
+[[noreturn]] void nothing_of(const std::string& name, const Protocol& protocol) {
+  const std::vector<std::string> names = all_names(protocol);
+  std::string hint = reflect::did_you_mean(name, names);
+  if (hint.empty()) hint = reflect::did_you_mean(in_case(name, std::tolower), names);
+  if (hint.empty()) hint = reflect::did_you_mean(in_case(name, std::toupper), names);
+  throw cli::UsageError(
+      "X", fmt::format("nothing is called '{}'{}{}; 'rubric messages' lists the messages, "
+                       "'rubric coverage' the rules of behaviour",
+                       name, hint, rules_like(name)));
+}
+
+bool parse_frame(const std::vector<std::string>& words, std::vector<std::uint8_t>& bytes) {
+  std::string line;
+  for (const std::string& word : words) line += word + ' ';
+  const Bytes text(reinterpret_cast<const std::uint8_t*>(line.data()), line.size());
+  return decode_hex_line(text, bytes).fault == Fault::kNone && !bytes.empty();
+}
+
+int explain_bytes(const ExplainOptions& options, const Protocol& protocol,
+                  const std::vector<std::uint8_t>& bytes, std::string& out) {
+  const reflect::Type* message = cli::chosen_message(options.input, protocol);
+  auto given = layout::take_frame(bytes, message ? "bare" : options.framing);
+  if (!given) {
+    throw cli::UsageError(
+        "X", "these bytes begin like no frame; --framing or --as says what they are");
+  }
+  if (message) given->what = fmt::format("the message {} alone", message->id);
+  // Moving the bytes left them in their place, so the packet still points at them.
+  reflect::Frame frame;
+  reflect::FrameDecoder(protocol, message).decode(given->packet, frame);
+  out = fmt::format("Taken as {}, {} bytes.\n\n", given->what, given->bytes.size());
+  out += layout::explain_frame(frame);
+  return frame.malformed() ? cli::kExitMalformed : cli::kExitClean;
+}
+
+int run_explain(const ExplainOptions& options) {
+  const Protocol& protocol = cli::chosen_protocol(options.input);
+  const bool as_bytes = !options.input.as_message.empty() || options.framing != "auto";
+  std::string text;
+  int code = cli::kExitClean;
+  std::vector<std::uint8_t> bytes;
+  if (!as_bytes) text = explain_name(protocol, options.words.front(), options.all_cases);
+  if (!text.empty()) {
+    for (std::size_t i = 1; i < options.words.size(); ++i) {
+      const std::string more = explain_name(protocol, options.words[i], options.all_cases);
+      if (more.empty()) nothing_of(options.words[i], protocol);
+      text += '\n' + more;
+    }
+  } else if (parse_frame(options.words, bytes)) {
+    code = explain_bytes(options, protocol, bytes, text);
+  } else if (as_bytes) {
+    throw cli::UsageError("X", "expected hex digits, two a byte");
+  } else {
+    nothing_of(options.words.front(), protocol);
+  }
+  cli::Output output;
+  output.buffer().append(text);
+  output.flush();
+  return output.failed() ? cli::kExitInput : code;
+}
+
+}  // namespace
+
+void add_explain(cli::Command& app) {
+  auto options = std::make_shared<ExplainOptions>();
+  cli::Command& sub = app.add_subcommand("explain", "What a message, a rule, a name or a frame means");
+  sub.footer(kExplainFooter);
+  sub.add_option("X", options->words, "A name, or hex bytes in one word or several").required();
+  sub.add_option("--spec", options->input.spec, "Protocol above the AM layer")
+      .show_default();
+  sub.add_option("--as", options->input.as_message, "The bytes are this message alone")
+      .check(cli::given);
+  sub.add_option("--framing", options->framing,
+                  "What the bytes are: auto, sf (from the dispatch byte), hdlc (from the kind "
+                  "byte), radio (802.15.4)")
+      .one_of({"auto", "sf", "hdlc", "radio"})
+      .show_default();
+  sub.add_flag("--cases", options->all_cases, "All golden traces that name a rule, however many");
+  sub.exit_code_of([options] { return run_explain(*options); });
+}
+
+}  // namespace rubric::tools

@@ -1,0 +1,400 @@
+#include "tools/commands/commands.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "codec/reflect/suggest.h"
+#include "conformance/explorer/counterexample.h"
+#include "conformance/explorer/search.h"
+#include "conformance/flaws/flaws.h"
+#include "conformance/generated/profiles.h"
+#include "conformance/report/json.h"
+#include "conformance/trace/print.h"
+#include "tools/cli/exit_codes.h"
+#include "tools/cli/input.h"
+#include "tools/cli/output.h"
+#include "tools/cli/command.h"
+#include "tools/commands/explore_transitions.h"
+
+namespace rubric::tools {
+namespace {
+
+using explorer::Mask;
+using explorer::Progress;
+using explorer::Result;
+using explorer::Scope;
+using report::Json;
+
+struct ExploreOptions {
+  explorer::Options network;
+  std::string profile = "paper";
+  std::string flaw;
+  std::string scope = "join";
+  std::string format = "text";
+  std::string out;
+  std::string weakness_out;
+  std::vector<std::string> properties;
+  TransitionOptions transitions;
+  bool reboot = false;
+  unsigned requests = 0;  // 0: as the profile says.
+  unsigned acks = 0;
+};
+
+std::string explore_footer() {
+  std::string text = "Properties:\n";
+  for (const auto& p : explorer::properties()) {
+    text += fmt::format("  {:<19} {}\n", p.name, p.sentence);
+  }
+  text += "Flaws of release 1.0:\n";
+  for (const auto& flaw : flaws::all()) {
+    text += fmt::format("  {:<19} {}\n", flaw.name, flaw.description);
+  }
+  return text +
+         "Time is abstract: a timer that is set may fire at any moment. Where nothing is broken,\n"
+         "the run also fails if something that must be possible was never reached.\n"
+         "Examples:\n"
+         "  rubric explore --sinks 2 --loss --dup\n"
+         "  rubric explore --calls 2 --loss --flaw accepts_wrong_seq --out broken.rtr\n"
+         "  rubric explore --transitions --part join --format dot | dot -Tsvg -o join.svg\n"
+         "Exit codes: 0 all properties hold, 1 one is broken or something was never reached,\n"
+         "2 the trace cannot be written, 3 a limit was met first or the flaw never acted,\n"
+         "64 usage.";
+}
+
+[[noreturn]] void usage(const std::string& what) { throw cli::UsageError(what); }
+
+template <class Table>
+[[noreturn]] void unknown(const char* what, const std::string& word, const Table& table) {
+  std::vector<std::string> names;
+  for (const auto& entry : table) names.emplace_back(entry.name);
+  usage(fmt::format("unknown {} '{}'{}", what, word, reflect::did_you_mean(word, names)));
+}
+
+machine::Profile chosen_profile(const ExploreOptions& options) {
+  const machine::NamedProfile* const profile = machine::find_profile(options.profile);
+  if (profile == nullptr) unknown("profile", options.profile, machine::kProfiles);
+  return profile->profile;
+}
+
+// Returns the chosen flaw, or null.
+const flaws::Flaw* chosen_flaw(const ExploreOptions& options) {
+  const flaws::Flaw* const flaw = flaws::find(options.flaw);
+  if (flaw == nullptr && !options.flaw.empty()) unknown("flaw", options.flaw, flaws::all());
+  return flaw;
+}
+
+// Returns the meaning of the options' words.
+explorer::Options resolve(const ExploreOptions& options) {
+  explorer::Options network = options.network;
+  network.profile = chosen_profile(options);
+  if (options.requests != 0) {
+    network.profile.join_requests_max = static_cast<std::uint8_t>(options.requests);
+  }
+  if (options.acks != 0) network.profile.ack_join_max = static_cast<std::uint8_t>(options.acks);
+  network.scope = options.scope == "full" ? Scope::kFull : Scope::kJoin;
+  if (network.motes + network.sinks > static_cast<int>(explorer::kNodesMax)) {
+    usage(fmt::format("at most {} motes and sinks together", explorer::kNodesMax));
+  }
+  if (options.reboot) network.reboots = std::max<std::uint8_t>(network.reboots, 1);
+  // Messages that are heard again are answered with new numbers: without a limit there is no end.
+  const bool endless = network.scope == Scope::kFull && network.dup && network.dups == 0;
+  if (endless) network.dups = 1;
+  if (const flaws::Flaw* const flaw = chosen_flaw(options)) {
+    if (flaw->seen == flaws::Seen::kTime) {
+      usage(fmt::format("flaw {} shows only where time runs; time is abstract here", flaw->name));
+    }
+    if (flaw->seen == flaws::Seen::kMessages && network.scope != Scope::kFull) {
+      usage(fmt::format("flaw {} shows only in messages: give --scope full", flaw->name));
+    }
+    network.step = flaw->step;
+  }
+  if (!options.properties.empty()) network.properties = 0;
+  for (const std::string& name : options.properties) {
+    const auto property = explorer::property_named(name);
+    if (!property) unknown("property", name, explorer::properties());
+    network.properties |= explorer::bit(*property);
+  }
+  return network;
+}
+
+// Returns the names in a mask, in order.
+template <class Table, class Key>
+std::vector<std::string> names_in(Mask mask, const Table& table, Key key) {
+  std::vector<std::string> names;
+  for (const auto& entry : table) {
+    if ((mask & explorer::bit(key(entry))) != 0) names.emplace_back(entry.name);
+  }
+  return names;
+}
+std::vector<std::string> property_names(Mask mask) {
+  return names_in(mask, explorer::properties(), [](const auto& p) { return p.property; });
+}
+std::vector<std::string> goal_names(Mask mask) {
+  return names_in(mask, explorer::goals(), [](const auto& g) { return g.goal; });
+}
+
+struct Verdict {
+  const char* text = "";
+  int exit_code = cli::kVerdictExpected;
+  Mask never = 0;     ///< Goals that should have been reached.
+  std::string limit;  ///< Why nothing was decided.
+};
+
+// Returns options that would make more happen in the network.
+std::string ways_to_widen(const explorer::Options& network) {
+  std::vector<std::string> ways;
+  const auto way = [&](bool open, const char* words) {
+    if (open) ways.emplace_back(words);
+  };
+  way(!network.loss, "--loss");
+  way(!network.dup, "--dup");
+  way(!network.reorder, "--reorder");
+  way(network.calls < 2, "--calls 2");
+  way(network.motes < 2, "--motes 2");
+  way(network.sinks < 2, "--sinks 2");
+  way(network.scope != Scope::kFull, "--scope full");
+  if (ways.empty()) return "a larger network";
+  return fmt::format("{}", fmt::join(ways, ", "));
+}
+
+Verdict judge(const ExploreOptions& options, const explorer::Options& network, const Result& result) {
+  if (result.violation) return {"broken", cli::kVerdictFailed, 0, {}};
+  if (!result.complete) return {"inconclusive", cli::kVerdictInconclusive, 0, result.limit};
+  if (!options.flaw.empty() && !result.step_acted) {
+    return {"inconclusive", cli::kVerdictInconclusive, 0,
+            fmt::format("flaw {} never acted in this network; widen it by some of: {}",
+                        options.flaw, ways_to_widen(network))};
+  }
+  const Mask never = explorer::expected_goals(network) & ~result.goals;
+  if (never != 0) return {"vacuous", cli::kVerdictFailed, never, {}};
+  return {"holds", cli::kVerdictExpected, 0, {}};
+}
+
+// Returns a bound for the probability that two states share a fingerprint, so that one is left out.
+double omission_probability(std::uint64_t states) {
+  const auto n = static_cast<double>(states);
+  return n * n / 2 / 18446744073709551616.0;
+}
+
+std::string first_broken(const Result& result) {
+  return property_names(result.violation->violated).front();
+}
+
+std::string text_of(const Result& result, const Verdict& verdict) {
+  const Progress& p = result.progress;
+  const double seconds = std::max(p.seconds, 1e-9);
+  std::string out = fmt::format("states       {}\ntransitions  {}\ndepth        {}\n", p.states,
+                                p.transitions, p.depth);
+  const auto to = std::back_inserter(out);
+  fmt::format_to(to,
+                 "time         {:.2f} s: {:.2f} million states/s, {:.2f} million transitions/s\n",
+                 p.seconds, static_cast<double>(p.states) / seconds / 1e6,
+                 static_cast<double>(p.transitions) / seconds / 1e6);
+  fmt::format_to(to,
+                 "memory       {:.1f} MB, {} bytes a state; {} states of single nodes, "
+                 "{} frames\n",
+                 static_cast<double>(result.memory_bytes) / 1e6, result.memory_per_state_bytes,
+                 result.node_states, result.frames);
+  fmt::format_to(to, "left out     a state at most with probability {:.1e}\n",
+                 omission_probability(p.states));
+  fmt::format_to(to, "reached      {}\n", fmt::join(goal_names(result.goals), ", "));
+  if (result.known_weak_states != 0) {
+    fmt::format_to(to,
+                   "known        in {} states at rest a rebooted mote cannot join, since its sink\n"
+                   "             still lists it (spec/membership.md)\n",
+                   result.known_weak_states);
+  }
+  for (const auto& goal : explorer::goals()) {
+    if ((verdict.never & explorer::bit(goal.goal)) == 0) continue;
+    fmt::format_to(to, "never        {}: {}\n", goal.name, goal.sentence);
+  }
+  for (const auto& property : explorer::properties()) {
+    const Mask broken = result.violation ? result.violation->violated : 0;
+    if ((broken & explorer::bit(property.property)) == 0) continue;
+    fmt::format_to(to, "broken       {}: {}\n", property.name, property.sentence);
+  }
+  fmt::format_to(to, "verdict      {}{}{}\n", verdict.text, verdict.limit.empty() ? "" : ": ",
+                 verdict.limit);
+  return out;
+}
+
+std::string json_of(const ExploreOptions& options, const Result& result, const Verdict& verdict,
+                    const std::string& trace) {
+  const Progress& p = result.progress;
+  const Json out = Json::object(
+      {{"schema", "rubric.explore/1"},
+       {"verdict", verdict.text},
+       {"profile", options.profile},
+       {"flaw", Json::or_null(options.flaw)},
+       {"limit", Json::or_null(verdict.limit)},
+       {"broken", Json::array(property_names(result.violation ? result.violation->violated : 0))},
+       {"reached", Json::array(goal_names(result.goals))},
+       {"never", Json::array(goal_names(verdict.never))},
+       {"states", p.states},
+       {"transitions", p.transitions},
+       {"depth", p.depth},
+       {"seconds", Json::raw(fmt::format("{:.3f}", p.seconds))},
+       {"memory_bytes", result.memory_bytes},
+       {"memory_per_state_bytes", result.memory_per_state_bytes},
+       {"node_states", result.node_states},
+       {"frames", result.frames},
+       {"known_weak_states", result.known_weak_states},
+       {"omission_probability", Json::raw(fmt::format("{:e}", omission_probability(p.states)))},
+       {"trace", Json::or_null(trace)}},
+      "\n ");
+  return out.text() + '\n';
+}
+
+// A line on stderr that is redrawn twice a second; nothing if that is no terminal.
+class ProgressLine {
+ public:
+  explicit ProgressLine(bool wanted) : active_(wanted && isatty(2) != 0) {}
+  void show(const Progress& p) {
+    if (!active_ || p.seconds < next_) return;
+    next_ = p.seconds + 0.5;
+    drawn_ = true;
+    fmt::print(stderr, "\rdepth {}, {:.1f} million states, {:.1f} million waiting, {:.0f} s \033[K",
+               p.depth, static_cast<double>(p.states) / 1e6, static_cast<double>(p.waiting) / 1e6,
+               p.seconds);
+  }
+  void clear() {
+    if (drawn_) fmt::print(stderr, "\r\033[K");
+  }
+
+ private:
+  bool active_;
+  bool drawn_ = false;
+  double next_ = 1;
+};
+
+std::string trace_text(explorer::Nodes& nodes, const ExploreOptions& options, const explorer::Path& path,
+                       const std::string& name) {
+  std::string note = fmt::format("Found by rubric explore: {} motes, {} sinks, profile {}",
+                                 nodes.options().motes, nodes.options().sinks, options.profile);
+  if (!options.flaw.empty()) note += ", flaw " + options.flaw;
+  return trace::print(explorer::counterexample(nodes, path, {options.profile, name, note}));
+}
+
+void run_explore(const ExploreOptions& options) {
+  if (options.transitions.wanted) {
+    const flaws::Flaw* const flaw = chosen_flaw(options);
+    return print_transitions(options.transitions,
+                             {options.profile, chosen_profile(options), options.flaw,
+                              flaw == nullptr ? machine::step : flaw->step},
+                             options.format, options.out);
+  }
+  if (options.format == "dot") usage("--format dot draws --transitions");
+  const auto nodes = std::make_unique<explorer::Nodes>(resolve(options));
+  ProgressLine line(options.format == "text");
+  const Result result =
+      explorer::explore(*nodes, [&](const Progress& progress) { line.show(progress); });
+  line.clear();
+  const Verdict verdict = judge(options, nodes->options(), result);
+  std::string text;
+  if (result.violation) {
+    text = trace_text(*nodes, options, *result.violation, "explore." + first_broken(result));
+  }
+  bool good = true;
+  const bool in_file = !options.out.empty() && options.out != "-";
+  if (!text.empty() && in_file) good = cli::write_file(options.out, text);
+  if (result.known_weakness && !options.weakness_out.empty()) {
+    const std::string weakness =
+        trace_text(*nodes, options, *result.known_weakness, "explore.known_weakness");
+    good = cli::write_file(options.weakness_out, weakness) && good;
+  }
+  // A trace on stdout is printed alone, so that it can be piped on.
+  const bool trace_alone = options.format == "text" && !text.empty() && !in_file;
+  if (options.format == "json") {
+    good = cli::write_file("-", json_of(options, result, verdict, text)) && good;
+  } else if (trace_alone) {
+    fmt::print(stderr, "{}", text_of(result, verdict));
+    good = cli::write_file("-", text) && good;
+  } else {
+    good = cli::write_file("-", text_of(result, verdict)) && good;
+  }
+  if (!good) cli::exit_with(cli::kVerdictBroken);
+  if (verdict.exit_code != cli::kVerdictExpected) cli::exit_with(verdict.exit_code);
+}
+
+void add_faults(cli::Command& sub, ExploreOptions& options) {
+  explorer::Options& n = options.network;
+  sub.add_flag("--loss", n.loss, "Frames and link acks may be lost");
+  sub.add_flag("--dup", n.dup, "Frames may be heard again");
+  sub.add_flag("--reorder", n.reorder, "Frames of one sender may overtake each other");
+  sub.add_flag("--collide", n.collide, "Frames may destroy each other");
+  sub.add_flag("--reboot", options.reboot, "Each mote may lose its memory once");
+  sub.add_flag("--prompt", n.prompt, "No frame outlives a timer");
+  sub.add_flag("--busy", n.busy, "The end of each transmission is a step of its own");
+  sub.add_option("--dups", n.dups, "Frames heard again in all; 0: any number (scope full: 1)")
+      .between(0, 200);
+  sub.add_option("--in-flight", n.in_flight, "Copies of one frame in flight")
+      .between(1, 4)
+      .show_default();
+}
+
+void add_bounds(cli::Command& sub, ExploreOptions& options) {
+  explorer::Options& n = options.network;
+  sub.add_option("--calls", n.calls, "Calls of joinIsland, each mote")
+      .between(1, 8)
+      .show_default();
+  sub.add_option("--sends", n.sends, "Messages of each node, in full scope")
+      .between(0, 4)
+      .show_default();
+  sub.add_option("--requests", options.requests, "join_requests of a call; default: the profile's")
+      .between(1, 20);
+  sub.add_option("--acks", options.acks, "ack_joins of a join; default: the profile's")
+      .between(1, 20);
+  sub.add_option("--max-states", n.states_max, "Stop, inconclusive, at so many; 0: never")
+      .check(cli::whole_number)
+      .show_default();
+  sub.add_flag("--exact", n.exact, "Keep apart states that differ in nothing that matters");
+  n.threads = std::max(1U, std::thread::hardware_concurrency());
+  sub.add_option("--threads", n.threads, "How many")
+      .between(1, 64)
+      .show_default();
+}
+
+}  // namespace
+
+void add_explore(cli::Command& app) {
+  auto options = std::make_shared<ExploreOptions>();
+  cli::Command& sub =
+      app.add_subcommand("explore", "Try everything that can happen in a small network");
+  sub.footer(explore_footer());
+  sub.set_usage_exit_code(cli::kVerdictUsage);
+  sub.add_option("--motes", options->network.motes, "How many")
+      .between(1, int{explorer::kMotesMax})
+      .show_default();
+  sub.add_option("--sinks", options->network.sinks, "How many, all in range of all motes")
+      .between(1, int{explorer::kSinksMax})
+      .show_default();
+  add_faults(sub, *options);
+  sub.add_option("--scope", options->scope, "join: joins alone; full: and messages of members")
+      .one_of({"join", "full"})
+      .show_default();
+  sub.add_option("--property", options->properties, "Only these; default: all");
+  sub.add_option("--flaw", options->flaw,
+                  "Put this flaw of release 1.0 around the machine; what needs an old reply shows "
+                  "with --calls 2, what needs messages with --scope full");
+  sub.add_option("--profile", options->profile, "paper or deployed").show_default();
+  add_bounds(sub, *options);
+  sub.add_option("--format", options->format, "text or json; transitions also as dot (Graphviz)")
+      .one_of({"text", "json", "dot"})
+      .show_default();
+  sub.add_option("--out", options->out, "File for the shortest trace; default stdout");
+  add_transition_options(sub, options->transitions);
+  sub.add_option("--out-known", options->weakness_out,
+                  "File for the shortest way to a known weakness");
+  sub.callback([options] { run_explore(*options); });
+}
+
+}  // namespace rubric::tools

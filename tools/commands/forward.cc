@@ -1,0 +1,143 @@
+#include "tools/commands/commands.h"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <system_error>
+
+#include "conformance/runner/target.h"
+#include "tools/cli/exit_codes.h"
+#include "tools/cli/input.h"
+#include "tools/live/forward/server.h"
+#include "tools/live/line.h"
+
+namespace rubric::tools {
+namespace {
+
+struct ForwardOptions {
+  std::string source;
+  std::uint64_t buffer_kib = 1024;
+  std::uint32_t patience_s = 10;
+  std::uint32_t ack_wait_ms = 1000;
+  int retries = 24;  ///< TinyOS's Java host has the same.
+  forward::Options server;
+};
+
+live::Address source_of(const std::string& given) {
+  std::string name = given;
+  if (name.empty() && std::getenv("MOTECOM") != nullptr) name = live::default_address();
+  if (name.empty()) throw cli::UsageError("SOURCE (or $MOTECOM) is required");
+  try {
+    return live::required_address(name);
+  } catch (const std::invalid_argument& error) {
+    throw cli::UsageError("SOURCE", error.what());
+  }
+}
+
+// Checks that the capture is no pipe: all clients wait while it is written, and a pipe may take
+// nothing.
+void check_capture(const std::string& path) {
+  std::error_code none;
+  const auto status = std::filesystem::status(path, none);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    throw cli::UsageError("--write", path + " is no regular file");
+  }
+}
+
+void print_summary(const std::string& source, const forward::Counts& counts) {
+  fmt::print(stderr, "rubric: {}: {} packets from it ({} malformed frames), {} to it", source,
+             counts.from_source, counts.malformed, counts.to_source);
+  if (counts.unconfirmed) fmt::print(stderr, ", {} not confirmed", counts.unconfirmed);
+  if (counts.not_sent) fmt::print(stderr, ", {} not sent", counts.not_sent);
+  fmt::print(stderr, "; {} clients, {} cut off", counts.served, counts.cut_off);
+  if (counts.refused) fmt::print(stderr, ", {} refused", counts.refused);
+  fmt::print(stderr, "\n");
+}
+
+int run_forward(ForwardOptions& options) {
+  options.server.source.address = source_of(options.source);
+  check_capture(options.server.write);
+  options.server.source.link.ack_wait = attach::Milliseconds(options.ack_wait_ms);
+  options.server.source.link.tries = 1 + options.retries;
+  options.server.backlog_bytes = options.buffer_kib * 1024;
+  options.server.limits.patience = std::chrono::seconds(options.patience_s);
+  try {
+    forward::Server server(options.server);
+    const bool whole = server.run();
+    print_summary(options.server.source.address.name, server.counts());
+    return whole ? cli::kExitClean : cli::kExitInput;
+  } catch (const runner::TargetBroken& broken) {
+    fmt::print(stderr, "rubric: {}\n", broken.what());
+  } catch (const std::system_error& error) {
+    fmt::print(stderr, "rubric: {}\n", error.what());
+  }
+  return cli::kExitInput;
+}
+
+void add_client_options(cli::Command& command, ForwardOptions& options) {
+  command.add_option("--clients", options.server.clients_max, "So many at once, others are refused")
+      .between(1, 10'000)
+      .show_default();
+  command.add_option("--buffer", options.buffer_kib,
+                     "KiB that a client may be behind; then it is cut off")
+      .between(64, 1 << 20)
+      .show_default();
+  command.add_option("--patience", options.patience_s,
+                     "Seconds that a client may take for its handshake, and to end a packet")
+      .between(1, 86'400)
+      .show_default();
+}
+
+void add_source_options(cli::Command& command, ForwardOptions& options) {
+  command.add_flag("--reconnect", options.server.reconnect,
+                   "Open a source that is gone again, when it is back; clients stay");
+  command.add_flag("--listen-only", options.server.source.link.listen_only,
+                   "Write nothing to a serial line; packets of clients are dropped");
+  command.add_option("--timeout", options.ack_wait_ms,
+                     "Serial lines: ms until a packet that is not confirmed is sent again")
+      .between(1, 3'600'000)
+      .show_default();
+  command.add_option("--retries", options.retries, "Serial lines: how often it is sent again")
+      .between(0, 10'000)
+      .show_default();
+}
+
+}  // namespace
+
+void add_forward(cli::Command& app) {
+  cli::Command& command = app.add_subcommand(
+      "forward", "Serve a mote's serial line to many clients, as TinyOS's Serial Forwarder does");
+  auto options = std::make_shared<ForwardOptions>();
+  command.add_option("SOURCE", options->source,
+                      "serial@DEVICE:BAUD (or a platform, as serial@/dev/ttyUSB0:telosb), "
+                      "network@HOST:PORT or sf@HOST:PORT; without it, $MOTECOM");
+  command.add_option("--port", options->server.port, "Where clients connect; 0: a free port")
+      .between(0, 65'535)
+      .show_default();
+  command.add_option("--bind", options->server.bind,
+                      "The address to listen at; 0.0.0.0 or :: lets other hosts in")
+      .check(cli::given)
+      .show_default();
+  add_client_options(command, *options);
+  add_source_options(command, *options);
+  command.add_option("--write", options->server.write,
+                      "Keep what goes by, both ways, in this pcapng file; no pipe")
+      .check(cli::given);
+  command.add_flag("--verbose", options->server.verbose, "Say which clients come and leave");
+  command.footer(
+      "The first line on stdout says where it listens: 'listening on 127.0.0.1:9002'. Everybody\n"
+      "who can connect there reads all packets and can send to the motes.\n"
+      "Examples:\n"
+      "  rubric forward serial@/dev/ttyUSB0:telosb             # until Ctrl-C\n"
+      "  rubric decode sf@localhost:9002                       # one of many clients\n"
+      "  rubric forward sf@lab:9002 --port 9003 --reconnect --write run.pcapng\n"
+      "Exit codes: 0 ended by Ctrl-C, 2 usage, 3 the source is gone, the port is taken or the\n"
+      "capture cannot be written.");
+  command.exit_code_of([options] { return run_forward(*options); });
+}
+
+}  // namespace rubric::tools

@@ -1,0 +1,337 @@
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "codec/containers/pcapng_format.h"
+#include "codec/containers/writer.h"
+#include "codec/generate/framer.h"
+#include "codec/generate/link_ack.h"
+#include "codec/generate/routes.h"
+#include "codec/reflect/suggest.h"
+#include "tools/cli/exit_codes.h"
+#include "tools/cli/input.h"
+#include "tools/cli/output.h"
+#include "tools/commands/commands.h"
+#include "tools/commands/generate_lines.h"
+
+namespace rubric::tools {
+namespace {
+
+using generate::Framed;
+using generate::FrameGenerator;
+using generate::Framer;
+using reflect::Route;
+
+constexpr double kFramingShare = 0.15;  // Share of the broken frames, if a format has framing.
+constexpr std::int64_t kBetweenFramesNs = 1'000'000;
+constexpr std::uint64_t kAckSeed = 0x61636B;  // The acknowledgement has a generator of its own.
+
+struct GenerateOptions {
+  cli::InputOptions input;  // Only the choice of the protocol.
+  std::uint64_t count = 1000;
+  std::uint64_t seed = 1;
+  double valid = 0.7;
+  std::string format = "jsonl";
+  std::vector<std::string> messages;
+  std::string output = "-";
+  std::string expect;
+  bool fields = false;
+};
+
+constexpr const char* kGenerateFooter =
+    "Each message in turn comes up, on each way that leads to it. The expectation of a frame\n"
+    "(schema rubric.generate/1, see tools/generate_format.md) says which fault of which rule\n"
+    "stands where, by construction: no decoder is asked. jsonl carries it in line, with the frame\n"
+    "in hex; pcapng also has it as the packets' comment. hdlc, sf and hex hold no radio frames.\n"
+    "The same options give the same bytes. Examples:\n"
+    "  rubric generate --count 10000 --format hdlc -o frames.hdlc --expect frames.jsonl\n"
+    "  rubric generate --valid 0 --message net_msg --format pcapng -o bad.pcapng\n"
+    "  rubric generate --count 5 | jq -r '.verdict + \" \" + .what'\n"
+    "Exit codes: 0 written, 2 usage, 3 output cannot be written.";
+
+struct Container {
+  const char* name;
+  InputFormat format;
+};
+constexpr Container kContainers[] = {
+    {"hdlc", InputFormat::kHdlc}, {"sf", InputFormat::kSf},       {"pcapng", InputFormat::kPcapng},
+    {"hex", InputFormat::kHex},   {"jsonl", InputFormat::kJsonl},
+};
+
+std::vector<std::string> container_names() {
+  std::vector<std::string> names;
+  for (const Container& container : kContainers) names.emplace_back(container.name);
+  return names;
+}
+
+InputFormat format_of(std::string_view name) {
+  for (const Container& container : kContainers) {
+    if (name == container.name) return container.format;
+  }
+  return InputFormat::kUnknown;
+}
+
+/// A message, and its routes that the format can hold.
+struct Message {
+  std::string name;
+  std::vector<const Route*> routes;
+  bool of_link = false;
+};
+
+void add_routes(const reflect::RouteTable& table, bool of_link, const Framer& framer,
+                std::vector<Message>& messages) {
+  for (int i = 0; i < table.count; ++i) {
+    const Route& route = table.routes[i];
+    const std::string_view name = route.type->name;
+    auto known = std::find_if(messages.begin(), messages.end(),
+                              [&](const Message& message) { return message.name == name; });
+    if (known == messages.end()) {
+      messages.push_back({std::string(name), {}, of_link});
+      known = messages.end() - 1;
+    }
+    if (framer.holds(route)) known->routes.push_back(&route);
+  }
+}
+
+/// A file or stdout that counts its input.
+class CountedOutput {
+ public:
+  explicit CountedOutput(const std::string& path) : path_(path) {
+    constexpr int kFlags = O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC;
+    if (path != "-") fd_ = ::open(path.c_str(), kFlags, 0666);
+    if (fd_ < 0) reason_ = std::strerror(errno);
+    output_ = std::make_unique<cli::Output>(fd_);
+  }
+  ~CountedOutput() {
+    if (fd_ < 0) output_->buffer().clear();
+    output_.reset();
+    if (fd_ > 1) ::close(fd_);
+  }
+  CountedOutput(const CountedOutput&) = delete;
+  CountedOutput& operator=(const CountedOutput&) = delete;
+
+  std::uint64_t size() const { return size_; }
+  void append(std::string_view text) {
+    size_ += text.size();
+    if (fd_ < 0) return;
+    output_->buffer().append(text);
+    output_->drain();
+  }
+  /// Returns whether the reader is still there.
+  bool open() const { return fd_ >= 0 && output_->open(); }
+  /// Ends the output. Returns false, having printed why, if writing failed.
+  bool finish() {
+    if (fd_ >= 0) output_->flush();
+    if (fd_ >= 0 && !output_->failed(&reason_)) return true;
+    fmt::print(stderr, "rubric: {}: {}\n", path_, reason_);
+    return false;
+  }
+
+ private:
+  std::string path_;
+  int fd_ = 1;
+  std::uint64_t size_ = 0;
+  std::string reason_;
+  std::unique_ptr<cli::Output> output_;
+};
+
+/// One run.
+class Run {
+ public:
+  Run(const GenerateOptions& options, const reflect::Protocol& protocol)
+      : options_(options),
+        format_(format_of(options.format)),
+        frames_(protocol, *generate::routes_of(protocol), options.seed),
+        acks_(tinyos::tables::kProtocol, generate::kLinkAckRoutes, options.seed ^ kAckSeed),
+        framer_(format_, frames_.random()) {
+    add_routes(frames_.routes(), false, framer_, messages_);
+    add_routes(acks_.routes(), true, framer_, messages_);
+    choose_messages();
+  }
+
+  int run() {
+    writer_ = make_writer(format_);
+    CountedOutput out(options_.output);
+    std::unique_ptr<CountedOutput> expect;
+    if (!options_.expect.empty()) expect = std::make_unique<CountedOutput>(options_.expect);
+    begin(out);
+    for (std::uint64_t i = 0; i < options_.count && out.open(); ++i) {
+      const std::string line = one(i, out);
+      if (expect) expect->append(line + "\n");
+    }
+    text_.clear();
+    if (writer_) writer_->finish(text_);
+    out.append(text_);
+    const bool written = out.finish();
+    const bool told = !expect || expect->finish();
+    return written && told ? cli::kExitClean : cli::kExitInput;
+  }
+
+ private:
+  // Chooses the requested messages, or all that the format holds; in an order of the seed's.
+  void choose_messages() {
+    std::vector<std::string> names;
+    for (const Message& message : messages_) names.push_back(message.name);
+    for (const std::string& wanted : options_.messages) {
+      if (std::find(names.begin(), names.end(), wanted) != names.end()) continue;
+      throw cli::UsageError("--message", fmt::format("no frame leads to '{}'{}", wanted,
+                                                          reflect::did_you_mean(wanted, names)));
+    }
+    std::vector<std::string> left_out;
+    std::erase_if(messages_, [&](const Message& message) {
+      const auto& asked = options_.messages;
+      const bool named = std::find(asked.begin(), asked.end(), message.name) != asked.end();
+      if (!asked.empty() && !named) return true;
+      if (!message.routes.empty()) return false;
+      if (named) refuse(message.name);
+      left_out.push_back(message.name);
+      return true;
+    });
+    if (!left_out.empty()) {
+      fmt::print(stderr, "rubric: {} holds no radio frames: left out {}\n", options_.format,
+                 joined(left_out, ", "));
+    }
+    if (options_.count < messages_.size()) {
+      fmt::print(stderr, "rubric: {} of {} messages do not come up; --count {} has them all\n",
+                 messages_.size() - options_.count, messages_.size(), messages_.size());
+    }
+    for (std::size_t i = messages_.size(); i > 1; --i) {
+      std::swap(messages_[i - 1], messages_[frames_.random().below(i)]);
+    }
+  }
+
+  [[noreturn]] void refuse(const std::string& name) const {
+    throw cli::UsageError(
+        "--message", fmt::format("{} travels on the radio alone, and {} holds no radio frames; "
+                                 "pcapng and jsonl do",
+                                 name, options_.format));
+  }
+
+  void begin(CountedOutput& out) {
+    text_.clear();
+    if (writer_) writer_->begin(text_);
+    out.append(text_);
+  }
+
+  Framed make(std::uint64_t index) {
+    generate::Random& random = frames_.random();
+    const Message& message = messages_[index % messages_.size()];
+    const Route& route = *message.routes[random.below(message.routes.size())];
+    FrameGenerator& generator = message.of_link ? acks_ : frames_;
+    if (random.chance(options_.valid)) return framer_.sound(generator.valid(route));
+    Framed framed;
+    const bool last = index + 1 == options_.count;
+    if (random.chance(kFramingShare) && framer_.broken(generator.valid(route), last, framed)) {
+      return framed;
+    }
+    return framer_.sound(generator.near_valid(route));
+  }
+
+  /// Writes a frame; returns its expectation.
+  std::string one(std::uint64_t index, CountedOutput& out) {
+    Framed framed = make(index);
+    const std::uint64_t number = index + 1;
+    if (!writer_) {
+      std::string line = expectation(number, "null", framed, options_.fields);
+      out.append(line + "\n");
+      return line;
+    }
+    const std::string note = comment(framed);
+    framed.packet.time_ns = static_cast<std::int64_t>(index) * kBetweenFramesNs;
+    framed.packet.comment = note;
+    const std::uint64_t begin = out.size();
+    text_.clear();
+    const bool radio = framed.packet.framing == Framing::kRadio;
+    writer_->write(framed.view(), radio ? "radio" : "serial", text_);
+    out.append(text_);
+    return expectation(number, std::to_string(begin + frame_begin()), framed, options_.fields);
+  }
+
+  // Returns where the frame begins in the last output, as a reader counts.
+  std::size_t frame_begin() const {
+    if (format_ == InputFormat::kHdlc) return 1;  // After the flag.
+    if (format_ != InputFormat::kPcapng) return 0;
+    // A description of an interface may precede it.
+    const auto* const bytes = reinterpret_cast<const std::uint8_t*>(text_.data());
+    return pcapng::last_data_at(Bytes(bytes, text_.size()));
+  }
+
+  const GenerateOptions& options_;
+  InputFormat format_;
+  FrameGenerator frames_;
+  FrameGenerator acks_;
+  Framer framer_;
+  std::vector<Message> messages_;
+  std::unique_ptr<Writer> writer_;
+  std::string text_;
+};
+
+std::string share(const std::string& text) {
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  if (!text.empty() && *end == '\0' && value >= 0 && value <= 1) return {};
+  return "expected a share from 0 to 1, given " + text;
+}
+
+void check_outputs(const GenerateOptions& options) {
+  if (options.expect.empty()) return;
+  if (options.format == "jsonl") {
+    throw cli::UsageError("--expect", "jsonl carries the expectations in line");
+  }
+  struct stat one {};
+  struct stat other {};
+  const bool same_file = ::stat(options.output.c_str(), &one) == 0 && S_ISREG(one.st_mode) &&
+                         ::stat(options.expect.c_str(), &other) == 0 &&
+                         one.st_dev == other.st_dev && one.st_ino == other.st_ino;
+  if (options.expect == options.output || same_file) {
+    throw cli::UsageError("--expect", "'" + options.expect + "' is also the output");
+  }
+}
+
+}  // namespace
+
+void add_generate(cli::Command& app) {
+  auto options = std::make_shared<GenerateOptions>();
+  cli::Command& sub = app.add_subcommand(
+      "generate", "Valid and near-valid frames, and what a decoder must say of each");
+  sub.footer(kGenerateFooter);
+  sub.add_option("--count", options->count, "How many frames")
+      .check(cli::at_least_one)
+      .show_default();
+  sub.add_option("--seed", options->seed, "What chance begins with")
+      .check(cli::whole_number)
+      .show_default();
+  sub.add_option("--valid", options->valid, "Share of the frames in which nothing is wrong")
+      .check(share, "SHARE")
+      .show_default();
+  sub.add_option("--format", options->format, "What to write: hdlc, sf, pcapng, hex, jsonl")
+      .one_of(container_names())
+      .show_default();
+  sub.add_option("--spec,--protocol", options->input.spec, "Protocol above the AM layer")
+      .show_default();
+  sub.add_option("--message", options->messages, "Only these messages").check(cli::given);
+  sub.add_option("-o,--output", options->output, "Where to; - is stdout")
+      .check(cli::given)
+      .show_default();
+  sub.add_option("--expect", options->expect, "Where the expectations go, a JSON line a frame")
+      .check(cli::given);
+  sub.add_flag("--fields", options->fields, "Expectations have each number of a valid frame, too");
+  sub.callback([options] {
+    check_outputs(*options);
+    const reflect::Protocol& protocol = cli::chosen_protocol(options->input);
+    const int code = Run(*options, protocol).run();
+    if (code != cli::kExitClean) cli::exit_with(code);
+  });
+}
+
+}  // namespace rubric::tools

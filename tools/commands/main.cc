@@ -1,0 +1,44 @@
+// rubric: the command line. A subcommand is one file, which adds itself.
+#include <csignal>
+
+#include "tools/commands/commands.h"
+
+namespace {
+
+constexpr const char* kFooter =
+    "Exit codes: 0 clean, 1 something malformed was found, 2 usage, 3 input cannot be read or\n"
+    "output cannot be written, 4 not sent; check, test, chart, explore and coverage have others.\n"
+    "'rubric COMMAND --help' says more.";
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  // A closed pipe shows as a failed write, which ends the output quietly.
+  std::signal(SIGPIPE, SIG_IGN);
+  rubric::cli::Command program{"rubric",
+                               "Codec and conformance test kit for the RUBICON Communication Layer."};
+  program.version(RUBRIC_VERSION);
+  program.footer(kFooter);
+  rubric::tools::add_decode(program);
+  rubric::tools::add_encode(program);
+  rubric::tools::add_convert(program);
+  rubric::tools::add_stats(program);
+  rubric::tools::add_explain(program);
+  rubric::tools::add_messages(program);
+  rubric::tools::add_send(program);
+  rubric::tools::add_forward(program);
+  rubric::tools::add_install_wireshark(program);
+  rubric::tools::add_check(program);
+  rubric::tools::add_test(program);
+  rubric::tools::add_new_adapter(program);
+  rubric::tools::add_shrink(program);
+  rubric::tools::add_diff(program);
+  rubric::tools::add_chart(program);
+  rubric::tools::add_simulate(program);
+  rubric::tools::add_explore(program);
+  rubric::tools::add_coverage(program);
+  rubric::tools::add_generate(program);
+  rubric::tools::add_repro(program);
+  rubric::tools::add_completion(program);
+  return program.parse_and_run(argc, argv);
+}

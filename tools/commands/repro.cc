@@ -1,0 +1,140 @@
+#include "tools/commands/commands.h"
+
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "conformance/explorer/counterexample.h"
+#include "conformance/runner/subject_target.h"
+#include "conformance/script/bytes.h"
+#include "conformance/script/difference.h"
+#include "conformance/script/rtr.h"
+#include "conformance/script/walk.h"
+#include "conformance/script/watch.h"
+#include "conformance/trace/print.h"
+#include "tools/cli/exit_codes.h"
+#include "tools/cli/output.h"
+#include "tools/cli/text_file.h"
+#include "tools/cli/command.h"
+
+namespace rubric::tools {
+namespace {
+
+struct ReproOptions {
+  std::string fuzzer;
+  std::string input;
+  std::string target = "machine";
+  std::string out = "-";
+  bool exact = false;
+};
+
+constexpr const char* kReproFooter =
+    "The trace gives a node what the input gives it and asks for what the reference machine does\n"
+    "then; of machine:FLAW it says which promise it breaks. An input of nodes_fuzz is written so\n"
+    "that every implementation may use its freedom, and tells on what the two nodes differ.\n"
+    "Examples:\n"
+    "  rubric repro machine crash-1f0c --out crash.rtr\n"
+    "  rubric repro machine crash-22ab --target machine:no_fail --out no_fail.rtr\n"
+    "  rubric test --target machine:no_fail no_fail.rtr\n"
+    "  rubric repro network crash-07d1 --out network.rtr\n"
+    "Exit codes: 0 nothing is broken, 1 something is, 2 the trace cannot be written, 64 usage,\n"
+    "66 the input cannot be read.";
+
+// The output, with the broken promise or nothing.
+struct Repro {
+  trace::File file;
+  std::string found;
+};
+
+flaws::StepFunction step_of(const std::string& target) {
+  if (target == "machine") return machine::step;
+  constexpr std::string_view kFlaw = "machine:";
+  if (target.starts_with(kFlaw)) {
+    if (const flaws::Flaw* flaw = flaws::find(target.substr(kFlaw.size()))) return flaw->step;
+  }
+  throw cli::UsageError("--target " + target +
+                             ": expected machine or machine:FLAW, as rubric explore lists them");
+}
+
+Repro repro_machine(Bytes bytes, const ReproOptions& options) {
+  const flaws::StepFunction step = step_of(options.target);
+  const script::Script input = script::decode(bytes);
+  const auto broken = script::watch(input, step);
+  const script::Script script = options.exact ? input : script::without_guesses(input);
+  runner::SubjectTarget reference(std::make_unique<runner::Machine>());
+  const script::Played played = script::play(script, reference);
+  script::Title title{"repro.run", {}, {}};
+  if (broken) {
+    title.case_name = "repro." + broken->name;
+    title.comments = {"Broken by " + options.target + ": " + broken->text()};
+    title.rules = broken->requirements;
+  }
+  return {options.exact ? script::to_file(script, played, title)
+                        : script::lenient_file(script, played, title),
+          broken ? broken->text() : ""};
+}
+
+Repro repro_nodes(Bytes bytes) {
+  const script::Script script = script::decode(bytes);
+  const script::Difference difference = script::difference(script);
+  return {difference.file, difference.text};
+}
+
+Repro repro_network(Bytes bytes, const ReproOptions& options) {
+  const explorer::Options network =
+      script::walk_options(script::walk_scope(bytes), step_of(options.target));
+  const auto nodes = std::make_unique<explorer::Nodes>(network);
+  const explorer::Path path = script::walk(*nodes, bytes);
+  std::string found;
+  std::string name = "repro.walk";
+  for (const explorer::PropertyInfo& property : explorer::properties()) {
+    if ((path.violated & explorer::bit(property.property)) == 0) continue;
+    if (found.empty()) name = std::string("repro.") + property.name;
+    found += (found.empty() ? "" : "; ") + std::string(property.name) + ": " + property.sentence;
+  }
+  return {explorer::counterexample(*nodes, path, {"paper", name, ""}), found};
+}
+
+void run_repro(const ReproOptions& options) {
+  std::string text;
+  std::string error;
+  if (!cli::read_file(options.input, text, error)) {
+    fmt::print(stderr, "{}\n", error);
+    cli::exit_with(cli::kVerdictInput);
+  }
+  const Bytes bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
+  const Repro repro = options.fuzzer == "network" ? repro_network(bytes, options)
+                      : options.fuzzer == "nodes" ? repro_nodes(bytes)
+                                                  : repro_machine(bytes, options);
+  if (!cli::write_file(options.out, trace::print(repro.file))) {
+    cli::exit_with(cli::kVerdictBroken);
+  }
+  fmt::print(stderr, "{}\n", repro.found.empty() ? "nothing is broken" : "broken: " + repro.found);
+  if (!repro.found.empty()) cli::exit_with(cli::kVerdictFailed);
+}
+
+}  // namespace
+
+void add_repro(cli::Command& app) {
+  auto options = std::make_shared<ReproOptions>();
+  cli::Command& sub =
+      app.add_subcommand("repro", "Write an input of a stateful fuzz target as a trace");
+  sub.footer(kReproFooter);
+  sub.add_option("fuzzer", options->fuzzer, "Whose input it is")
+      .required()
+      .one_of({"machine", "nodes", "network"});
+  sub.add_option("input", options->input, "The input; - is stdin").required().type_name("FILE");
+  sub.add_option("--target", options->target, "machine, or machine:FLAW").show_default();
+  sub.add_flag("--exact", options->exact,
+                "Ask for the machine's own numbers and bytes, not for what the rules ask for");
+  sub.add_option("-o,--out", options->out, "Where the trace goes; - is stdout")
+      .show_default();
+  sub.set_usage_exit_code(cli::kVerdictUsage);
+  sub.callback([options] { run_repro(*options); });
+}
+
+}  // namespace rubric::tools

@@ -1,0 +1,112 @@
+#include "tools/commands/commands.h"
+
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "conformance/suite/cases.h"
+#include "tools/cli/exit_codes.h"
+#include "tools/cli/output.h"
+#include "tools/commands/player.h"
+
+namespace rubric::tools {
+namespace {
+
+using runner::CaseResult;
+using runner::CaseVerdict;
+
+struct ShrinkOptions {
+  std::string trace;
+  std::string target;
+  std::string case_name;
+  std::string profile;
+  PlayerOptions shared;
+};
+
+constexpr const char* kShrinkFooter =
+    "The result fails by the same rule, and the reference machine passes it if it passes the\n"
+    "original; without any one of its lines it would not. It is a golden trace of its own.\n"
+    "Examples:\n"
+    "  rubric shrink j4.rtr --target './my_adapter' --case j4.wrong_seq --out small.rtr\n"
+    "  rubric test --target './my_adapter' small.rtr\n"
+    "Exit codes: 0 done, 2 the kit or the implementation broke, 3 nothing fails, 64 usage,\n"
+    "66 the trace cannot be read.";
+
+bool fails(const CaseResult& result) {
+  return result.verdict == CaseVerdict::kFail || result.verdict == CaseVerdict::kError;
+}
+bool passes(const CaseResult& result) {
+  return result.verdict == CaseVerdict::kPass || result.verdict == CaseVerdict::kWeak;
+}
+
+struct Failing {
+  trace::File file;  // With this case alone.
+  CaseResult result;
+};
+
+std::optional<Failing> find_failing(const suite::Cases& cases, const ShrinkOptions& options,
+                                    const shrink::Player& player) {
+  for (const suite::SuiteCase& each : cases.all()) {
+    if (!options.case_name.empty() && each.one->name != options.case_name) continue;
+    trace::File file = seeded(each.file->file, *each.one, options.shared);
+    CaseResult result = shrink::play(file, player);
+    if (fails(result)) return Failing{std::move(file), std::move(result)};
+  }
+  return std::nullopt;
+}
+
+void shrink_it(const ShrinkOptions& options) {
+  const suite::Cases cases = suite::Cases::of({options.trace});
+  if (!options.case_name.empty() && !cases.find(options.case_name)) {
+    throw cli::UsageError(options.trace + " has no case " + options.case_name);
+  }
+  AttachedPlayer attached(options.target, options.shared, options.profile);
+  AttachedPlayer machine("machine", options.shared, "");
+  const shrink::Player player = attached.player();
+  const auto found = find_failing(cases, options, player);
+  if (!found) {
+    std::fputs("nothing fails: there is nothing to shrink\n", stderr);
+    cli::exit_with(cli::kVerdictInconclusive);
+  }
+  const trace::Case& one = found->file.cases.at(0);
+  std::optional<shrink::Player> reference = machine.player();
+  if (!passes(shrink::play(found->file, *reference))) reference.reset();
+  const auto shows = shrink::fails_alike(found->result, player, reference);
+  const shrink::Shrunk shrunk = shrink::shrink(found->file, one, shows);
+  const std::string& name = one.name;
+  if (shrunk.lines_before == 0) {
+    throw runner::TargetBroken(name + " does not fail in the same way twice; is a seed ignored?");
+  }
+  const CaseResult last = shrink::play(shrunk.file, player);
+  const std::string text =
+      shrunk_text(shrunk, name + ".shrunk",
+                  {fmt::format("{} of the {} lines of {}.", shrunk.lines, shrunk.lines_before,
+                               name),
+                   fmt::format("On {}: {}", attached.name(), outcome_text(last))});
+  if (!cli::write_file(options.shared.out, text)) cli::exit_with(cli::kVerdictBroken);
+  fmt::print(stderr, "{}: {} lines shrank to {} in {} runs\n{}\n", name, shrunk.lines_before,
+             shrunk.lines, shrunk.tried, outcome_text(last));
+}
+
+}  // namespace
+
+void add_shrink(cli::Command& app) {
+  auto options = std::make_shared<ShrinkOptions>();
+  cli::Command& sub = app.add_subcommand("shrink", "Make a failing trace as small as it can be");
+  sub.footer(kShrinkFooter);
+  sub.add_option("trace", options->trace, "A .rtr file").required().type_name("TRACE");
+  sub.add_option("--target", options->target, "The implementation, as in rubric test").required();
+  sub.add_option("--case", options->case_name, "Which case; default: the first that fails");
+  sub.add_option("--profile", options->profile, "Dialect; default: as the trace says")
+      .one_of({"paper", "deployed"});
+  add_player_options(sub, options->shared);
+  sub.callback([options, &sub] {
+    run_player_command(sub, [&] { shrink_it(*options); });
+  });
+}
+
+}  // namespace rubric::tools

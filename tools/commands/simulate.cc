@@ -1,0 +1,141 @@
+#include "tools/commands/commands.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "conformance/simulator/capture_recorder.h"
+#include "conformance/simulator/scenarios.h"
+#include "conformance/simulator/simulation.h"
+#include "conformance/simulator/trace_recorder.h"
+#include "conformance/trace/print.h"
+#include "tools/cli/exit_codes.h"
+#include "tools/cli/input.h"
+#include "tools/cli/output.h"
+
+namespace rubric::tools {
+namespace {
+
+using simulator::Scenario;
+using simulator::Statistics;
+
+constexpr const char* kFree = "free";
+
+struct SimulateOptions {
+  simulator::ScenarioOptions network;
+  std::string scenario = kFree;
+  double seconds = 0;  ///< 0: as long as the scenario's story.
+  std::string rtr;
+  std::string pcapng;
+};
+
+std::string simulate_footer() {
+  std::string text = "Scenarios:\n";
+  for (const Scenario& scenario : simulator::scenarios()) {
+    text += fmt::format("  {:<13} {} ({} s)\n", scenario.name, scenario.doc,
+                        scenario.length_us / simulator::kUsPerSecond);
+  }
+  return text +
+         "The same options give the same run, byte for byte.\n"
+         "Examples:\n"
+         "  rubric simulate --scenario timeline --out-pcapng run.pcapng --out-rtr run.rtr\n"
+         "  rubric simulate --motes 12 --sinks 2 --loss 0.1 --seed 7 --seconds 60 --out-rtr -\n"
+         "Exit codes: 0 done, 2 usage, 3 output cannot be written.";
+}
+
+std::string summary(const Statistics& s) {
+  return fmt::format(
+      "joins              {:>8}   failed {}\n"
+      "delivered          {:>8}\n"
+      "acks               {:>8}   missed {}\n"
+      "synaptic data new  {:>8}   old {}, of unknown channels {}\n"
+      "radio frames       {:>8}   link acks {}\n"
+      "  receptions lost  {:>8}   collided {}, doubled {}, receiver off {}\n"
+      "serial frames      {:>8}\n"
+      "PEIS messages      {:>8}\n",
+      s.joins, s.join_failures, s.received, s.acks, s.ack_failures, s.synaptic_new,
+      s.synaptic_old, s.synaptic_unknown, s.radio_frames, s.link_acks, s.lost, s.collided,
+      s.doubled, s.unheard, s.serial_frames, s.peis_messages);
+}
+
+void run_simulate(const SimulateOptions& options) {
+  const Scenario& scenario = *simulator::find_scenario(options.scenario);
+  const auto length_us =
+      options.seconds == 0
+          ? scenario.length_us
+          : static_cast<simulator::Micros>(options.seconds * simulator::kUsPerSecond);
+  simulator::Network network = simulator::make_network(scenario, options.network);
+  std::optional<simulator::CaptureRecorder> capture;
+  std::optional<simulator::TraceRecorder> log;
+  std::vector<simulator::Recorder*> recorders;
+  if (!options.pcapng.empty()) recorders.push_back(&capture.emplace(network));
+  if (!options.rtr.empty()) recorders.push_back(&log.emplace(network, scenario.name));
+  simulator::Simulation simulation(std::move(network), recorders);
+  simulation.run_until(length_us);
+  bool good = true;
+  if (log) good = cli::write_file(options.rtr, trace::print(log->file()));
+  if (capture) good = cli::write_file(options.pcapng, capture->finish()) && good;
+  const bool taken = options.rtr == "-" || options.pcapng == "-";
+  fmt::print(taken ? stderr : stdout, "{}", summary(simulation.statistics()));
+  if (!good) cli::exit_with(cli::kExitInput);
+}
+
+std::vector<std::string> scenario_names() {
+  std::vector<std::string> names;
+  for (const Scenario& scenario : simulator::scenarios()) names.emplace_back(scenario.name);
+  return names;
+}
+
+}  // namespace
+
+void add_simulate(cli::Command& app) {
+  constexpr std::size_t kMotesMax = 200;  // Anchors have the addresses above.
+  constexpr std::size_t kSinksMax = 26;   // A letter distinguishes each island.
+  constexpr double kSecondsMax = 86'400;
+  auto options = std::make_shared<SimulateOptions>();
+  cli::Command& sub = app.add_subcommand("simulate", "Run a network of reference machines");
+  sub.footer(simulate_footer());
+  const cli::Option motes = sub.add_option("--motes", options->network.motes, "How many, in scenario free")
+                    .between(std::size_t{0}, kMotesMax)
+                    .show_default();
+  const cli::Option sinks = sub.add_option("--sinks", options->network.sinks, "How many, in scenario free")
+                    .between(std::size_t{0}, kSinksMax)
+                    .show_default();
+  sub.add_option("--seed", options->network.seed, "Decides all that is left to chance")
+      .check(cli::whole_number)
+      .show_default();
+  sub.add_option("--loss", options->network.loss,
+                  "Probability that a receiver misses a radio frame")
+      .between(0.0, 1.0)
+      .show_default();
+  sub.add_option("--dup", options->network.duplication,
+                  "Probability that a receiver gets a radio frame twice: the sender's link repeats "
+                  "it on the air")
+      .between(0.0, 1.0)
+      .show_default();
+  sub.add_option("--seconds", options->seconds, "How long; default: as the scenario says")
+      .between(0.001, kSecondsMax);
+  sub.add_option("--scenario", options->scenario, "Which network")
+      .one_of(scenario_names())
+      .show_default();
+  sub.add_option("--out-rtr", options->rtr, "Log of every node; - is stdout");
+  sub.add_option("--out-pcapng", options->pcapng,
+                  "Capture of the radio and of the serial lines; - is stdout");
+  sub.callback([options, motes, sinks] {
+    if (options->scenario != kFree && (motes.is_given() || sinks.is_given())) {
+      throw cli::UsageError("--motes and --sinks are for scenario free; " +
+                                 options->scenario + " has its own");
+    }
+    if (options->rtr == "-" && options->pcapng == "-") {
+      throw cli::UsageError("--out-rtr and --out-pcapng cannot both be stdout");
+    }
+    run_simulate(*options);
+  });
+}
+
+}  // namespace rubric::tools

@@ -1,0 +1,69 @@
+#include "tools/commands/commands.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+
+#include "codec/reflect/frame.h"
+#include "tools/cli/exit_codes.h"
+#include "tools/cli/input.h"
+#include "tools/cli/output.h"
+#include "tools/count/counters.h"
+#include "tools/count/report.h"
+
+namespace rubric::tools {
+namespace {
+
+struct StatsOptions {
+  cli::InputOptions input;
+  std::string format = "text";
+};
+
+constexpr const char* kStatsFooter =
+    "A gap is the time between neighbouring frames of one file. A frame counts as repeated if the\n"
+    "one before it with the same addresses, message and interface had the same seq_num.\n"
+    "A line in use, and with --follow a file that grows, is counted until Ctrl-C.\n"
+    "Exit codes: 0 clean, 1 malformed frames were seen, 2 usage, 3 input cannot be read.";
+
+int run_stats(const StatsOptions& options) {
+  const reflect::Protocol& protocol = cli::chosen_protocol(options.input);
+  const reflect::FrameDecoder decoder(protocol, cli::chosen_message(options.input, protocol));
+  reflect::Frame frame;
+  count::Counters counters;
+  std::uint64_t index = 0;
+  const cli::InputResult result =
+      cli::read_packets(options.input, [&](const Packet& packet, const cli::Source& source) {
+        decoder.decode(packet, frame);
+        counters.take(frame, {source.file, source.interface_name, index++, source.number});
+        return true;
+      });
+  cli::Output output;
+  output.buffer().append(options.format == "json" ? count::json_report(counters)
+                                                  : count::text_report(counters));
+  output.flush();
+  std::string reason;
+  if (output.failed(&reason)) {
+    fmt::print(stderr, "rubric: cannot write: {}\n", reason);
+    return cli::kExitInput;
+  }
+  if (result.failed) return cli::kExitInput;
+  return counters.all().malformed ? cli::kExitMalformed : cli::kExitClean;
+}
+
+}  // namespace
+
+void add_stats(cli::Command& app) {
+  auto options = std::make_shared<StatsOptions>();
+  cli::Command& sub = app.add_subcommand(
+      "stats", "Counts by message, addresses and fault; rates, gaps, repetitions");
+  sub.footer(kStatsFooter);
+  cli::add_input_options(sub, options->input);
+  cli::add_live_options(sub, options->input);
+  sub.add_option("--format", options->format, "text or json")
+      .one_of({"text", "json"})
+      .show_default();
+  sub.exit_code_of([options] { return run_stats(*options); });
+}
+
+}  // namespace rubric::tools

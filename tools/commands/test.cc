@@ -1,0 +1,369 @@
+#include "tools/commands/commands.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "conformance/attach/groups.h"
+#include "conformance/suite/report/github.h"
+#include "conformance/suite/report/html.h"
+#include "conformance/suite/report/json.h"
+#include "conformance/suite/report/junit.h"
+#include "conformance/suite/report/tap.h"
+#include "conformance/suite/run.h"
+#include "conformance/suite/select.h"
+#include "conformance/suite/text/text.h"
+#include "tools/cli/color.h"
+#include "tools/cli/exit_codes.h"
+#include "tools/cli/input.h"
+#include "tools/cli/output.h"
+#include "tools/cli/progress.h"
+#include "tools/cli/terminal.h"
+#include "tools/cli/verdict.h"
+
+namespace rubric::tools {
+namespace {
+
+using Milliseconds = std::chrono::milliseconds;
+
+constexpr const char* kCommand = "test";
+
+constexpr const char* kTestFooter =
+    "A target is a command that speaks rct/1, a real node at its own line, or the reference\n"
+    "machine in this program (conformance/PORTING.md):\n"
+    "  './my_adapter --fast'     started as a child process\n"
+    "  machine, machine:no_fail  the machine, or with a flaw (see rubric explore --help)\n"
+    "  sf-server:PORT            a base station that connects to a Serial Forwarder: to us\n"
+    "  sf:HOST:PORT              a sink behind a Serial Forwarder\n"
+    "  serial:DEVICE[:BAUD]      a sink at a serial line; serial:tcp:HOST:PORT at an emulator's\n"
+    "  sf:HOST:PORT:mote         a mote there; serial:...:mote too. Its line decides nothing.\n"
+    "Without TRACES it is tried with the kit's own golden traces, which the program carries with\n"
+    "it.\n"
+    "Examples:\n"
+    "  rubric test --target ./my_adapter\n"
+    "  rubric test --target 'python3 mote.py' --role mote --requirement J --quiet\n"
+    "  rubric test --target ./a --target ./b --jobs 4 --expect known.yaml --report out\n"
+    "  rubric test --list --requirement J4-SEQ\n"
+    "Before a case is worked each implementation has to refuse an unknown command, and to fail\n"
+    "cases that nobody can pass.\n"
+    "Exit codes: 0 as expected (weak results and skipped cases included), 1 a failure that nobody\n"
+    "expected, or an expectation that is not true, 2 an implementation or the kit broke (between\n"
+    "cases, too), or was not honest, 3 nothing was decided, 64 usage, 66 traces cannot be read.";
+
+struct TestOptions {
+  std::vector<std::string> traces;
+  std::vector<std::string> targets;
+  suite::Selection selection;
+  std::string profile;
+  std::string role;
+  std::string shard;
+  std::optional<std::uint64_t> seed;
+  std::uint32_t repeats = 1;
+  unsigned jobs = 1;
+  double timeout_s = 5;
+  std::string expect;
+  std::string format = "text";
+  std::string out = "-";
+  std::string report;
+  std::string compare;
+  std::string color = "auto";
+  std::size_t width = 0;
+  bool list = false;
+  bool quiet = false;
+  bool verbose = false;
+};
+
+suite::Cases read_cases(const TestOptions& options) {
+  if (options.traces.empty()) return suite::Cases::own();
+  try {
+    return suite::Cases::of(options.traces);
+  } catch (const std::runtime_error& error) {
+    cli::unreadable(kCommand, error.what());
+  }
+}
+
+report::KnownFailures read_expected(const TestOptions& options) {
+  if (options.expect.empty()) return {};
+  const std::string text = cli::text_of_file(kCommand, options.expect);
+  try {
+    return suite::parse_expected(text, options.expect);
+  } catch (const std::runtime_error& mistake) {
+    throw cli::UsageError("--expect", mistake.what());
+  }
+}
+
+std::optional<suite::EarlierRun> read_earlier(const TestOptions& options) {
+  if (options.compare.empty()) return std::nullopt;
+  const std::string text = cli::text_of_file(kCommand, options.compare);
+  try {
+    return suite::read_json_report(text);
+  } catch (const std::runtime_error& mistake) {
+    cli::unreadable(kCommand, fmt::format("{}: {}", options.compare, mistake.what()));
+  }
+}
+
+std::vector<suite::SuiteCase> selected(const TestOptions& options, const suite::Cases& cases) {
+  suite::Selection selection = options.selection;
+  if (options.role == "mote") selection.role = machine::Role::kMote;
+  if (options.role == "sink") selection.role = machine::Role::kSink;
+  if (options.role == "base_station") selection.role = machine::Role::kBaseStation;
+  if (!options.shard.empty()) {
+    const auto shard = suite::parse_shard(options.shard);
+    if (!shard) {
+      throw cli::UsageError(
+          "--shard", fmt::format("expected I/N as in 2/8, given '{}'", options.shard));
+    }
+    selection.shard = *shard;
+  }
+  try {
+    return suite::select(cases, selection);
+  } catch (const std::invalid_argument& error) {
+    throw cli::UsageError("selection", error.what());
+  }
+}
+
+std::string list_text(const std::vector<suite::SuiteCase>& cases) {
+  std::string out;
+  for (const suite::SuiteCase& one : cases) {
+    std::string roles;
+    for (const machine::Role role : one.blank.roles) {
+      if (!roles.empty()) roles += '+';
+      roles += trace::role_text(static_cast<trace::Role>(role));
+    }
+    std::string line = fmt::format("{:<40} {:<12}", one.blank.name, roles);
+    for (const std::string& rule : one.rules) line += ' ' + rule;
+    line.erase(line.find_last_not_of(' ') + 1);
+    out += line + '\n';
+  }
+  return out;
+}
+
+int list(const TestOptions& options, const std::vector<suite::SuiteCase>& cases) {
+  if (options.format != "text" && options.format != "json") {
+    throw cli::UsageError("--list", "prints text or json, no " + options.format);
+  }
+  const std::string text = options.format == "json" ? suite::json_list(cases) : list_text(cases);
+  return cli::write_file(options.out, text) ? cli::kVerdictExpected : cli::kVerdictBroken;
+}
+
+void check_seeds(const TestOptions& options) {
+  using suite::kSeedMax;
+  const std::uint64_t first = options.seed.value_or(0);
+  if (first > kSeedMax) {
+    throw cli::UsageError("--seed",
+                               fmt::format("expected 0 to {}, given {}", kSeedMax, first));
+  }
+  if (first + options.repeats - 1 > kSeedMax) {
+    throw cli::UsageError(
+        "--repeat", fmt::format("{} seeds from {} on go beyond {}", options.repeats, first,
+                                kSeedMax));
+  }
+}
+
+// Prints text as it is made, on a terminal each line at once; to a file when it is whole.
+class Text {
+ public:
+  Text(const TestOptions& options, bool wanted)
+      : wanted_(wanted), to_stdout_(options.out == "-"), at_once_(isatty(STDOUT_FILENO) == 1) {}
+
+  void add(const std::string& text) {
+    if (!wanted_) return;
+    if (!to_stdout_) {
+      whole_ += text;
+      return;
+    }
+    output_.buffer().append(text);
+    if (at_once_) output_.flush(); else output_.drain();
+  }
+  bool finish(const TestOptions& options) {
+    if (!wanted_) return true;
+    if (!to_stdout_) return cli::write_file(options.out, whole_);
+    output_.flush();
+    std::string why;
+    if (!output_.failed(&why)) return true;
+    fmt::print(stderr, "rubric test: cannot write stdout: {}\n", why);
+    return false;
+  }
+
+ private:
+  bool wanted_;
+  bool to_stdout_;
+  bool at_once_;
+  cli::Output output_;
+  std::string whole_;
+};
+
+suite::SuiteRun work(const TestOptions& options, const suite::Cases& cases, suite::Plan plan,
+                     const std::optional<suite::EarlierRun>& earlier,
+                     const suite::TextOptions& how, Text& text) {
+  suite::SuiteRun all;
+  all.traces = options.traces;
+  all.shard = options.shard;
+  all.seed = options.seed.value_or(0);
+  if (!options.profile.empty()) all.profile = options.profile;
+  attach::Options attached;
+  attached.step_timeout = Milliseconds(static_cast<std::int64_t>(options.timeout_s * 1000));
+  attached.start_timeout = std::max(attached.start_timeout, attached.step_timeout);
+  const std::size_t worked = plan.cases.size() * plan.repeats;
+  cli::Progress progress(worked * options.targets.size(), true, cli::Progress::Unit::kCases);
+  for (const std::string& target : options.targets) {
+    const auto make = [&] { return attach::attach(target, attached); };
+    suite::Watcher watcher;
+    watcher.started = [&](const suite::ImplementationRun& run) {
+      text.add((all.implementations.empty() ? "" : "\n") +
+               suite::opening_text(all, run, worked, how));
+    };
+    watcher.worked = [&](const suite::CaseRun& one) {
+      text.add(suite::case_text(one, how));
+      progress.advance(1);
+    };
+    all.implementations.push_back(suite::run(target, make, plan, watcher));
+    const suite::ImplementationRun& run = all.implementations.back();
+    text.add(suite::story_text(all, run, how) + suite::totals_text(run, how));
+  }
+  all.stale = suite::untrue(plan.expected, all, cases);
+  if (earlier) text.add(suite::changes_text(all, *earlier, options.compare, how));
+  text.add(suite::closing_text(all, how));
+  return all;
+}
+
+// Writes everything into one folder: the page with its files, and reports for programs.
+bool write_folder(const TestOptions& options, const suite::SuiteRun& run,
+                  const std::optional<suite::EarlierRun>& earlier) {
+  suite::write_html_report(run, earlier ? &*earlier : nullptr, options.report);
+  const std::string folder = options.report + "/";
+  bool good = cli::write_file(folder + "report.json", suite::json_report(run));
+  good = cli::write_file(folder + "junit.xml", suite::junit_report(run)) && good;
+  return cli::write_file(folder + "report.tap", suite::tap_report(run)) && good;
+}
+
+bool write_formats(const TestOptions& options, const suite::SuiteRun& run,
+                   const std::optional<suite::EarlierRun>& earlier) {
+  bool good = true;
+  if (options.format == "json") good = cli::write_file(options.out, suite::json_report(run));
+  if (options.format == "junit") good = cli::write_file(options.out, suite::junit_report(run));
+  if (options.format == "tap") good = cli::write_file(options.out, suite::tap_report(run));
+  const char* actions = std::getenv("GITHUB_ACTIONS");
+  if (actions && std::string_view(actions) == "true") {
+    fmt::print(stderr, "{}", suite::github_annotations(run));
+  }
+  return (options.report.empty() || write_folder(options, run, earlier)) && good;
+}
+
+int run_test(const TestOptions& options) {
+  const suite::Cases cases = read_cases(options);
+  suite::Plan plan;
+  plan.expected = read_expected(options);
+  const std::optional<suite::EarlierRun> earlier = read_earlier(options);
+  check_seeds(options);
+  plan.cases = selected(options, cases);
+  if (options.list) return list(options, plan.cases);
+  if (options.targets.empty()) throw cli::UsageError("--target is required");
+  for (const std::string& target : options.targets) {
+    try {
+      attach::attach(target, {});
+    } catch (const std::invalid_argument& error) {
+      throw cli::UsageError("--target", fmt::format("'{}': {}", target, error.what()));
+    }
+  }
+  attach::end_groups_on_signals();
+  plan.profile = options.profile;
+  plan.seed = options.seed;
+  plan.repeats = options.repeats;
+  plan.jobs = options.jobs != 0 ? options.jobs : std::max(1U, std::thread::hardware_concurrency());
+  const int fd = options.out == "-" ? STDOUT_FILENO : -1;
+  suite::TextOptions how;
+  how.width = cli::columns(options.width, fd);
+  how.color = cli::use_color(options.color, fd);
+  how.quiet = options.quiet;
+  how.verbose = options.verbose;
+  how.times = options.verbose || (fd >= 0 && isatty(fd) == 1);
+  Text text(options, options.format == "text");
+  const suite::SuiteRun all = work(options, cases, std::move(plan), earlier, how, text);
+  const bool told = text.finish(options);
+  const bool written = write_formats(options, all, earlier);
+  return written && told ? suite::exit_code(all) : cli::kVerdictBroken;
+}
+
+void add_selection(cli::Command& command, TestOptions& options) {
+  command.add_option("TRACES", options.traces,
+                     "Golden traces, .rtr files or folders of them (the kit's own)");
+  command.add_option("--cases", options.selection.globs, "Cases whose names are like this: 'j4.*'")
+      .check(cli::given);
+  command.add_option("--requirement", options.selection.requirements,
+                     "Cases that try this rule or family: J4-SEQ, J4, J")
+      .check(cli::given);
+  command.add_option("--role", options.role, "Cases with a node of this role under test")
+      .one_of({"mote", "sink", "base_station"});
+  command.add_option("--shard", options.shard, "I/N: the Ith of N parts of the cases")
+      .check(cli::given);
+  command.add_flag("--list", options.list,
+                   "Print names, roles and rules of the cases, as text or JSON");
+}
+
+void add_options(cli::Command& command, TestOptions& options) {
+  command.add_option("--target", options.targets,
+                     "An implementation: a command, or machine; again for another one")
+      .check(cli::given);
+  add_selection(command, options);
+  command.add_option("--profile", options.profile,
+                     "paper or deployed, whatever the traces say: what nodes are told to keep to")
+      .one_of({"paper", "deployed"});
+  command.add_option("--seed", options.seed,
+                     "Of what is random in nodes, where a trace has none; 0 to 65535")
+      .check(cli::whole_number);
+  command.add_option("--repeat", options.repeats,
+                     "Each case so often, each time with the next seed")
+      .between(1, 10000)
+      .show_default();
+  command.add_option("--jobs", options.jobs, "Cases at once, on a process each; 0: cores")
+      .between(0, 256)
+      .show_default();
+  command.add_option("--timeout", options.timeout_s, "Seconds that a step may take")
+      .between(0.01, 3600.0)
+      .show_default();
+  command.add_option("--expect", options.expect, "Known failures with their reasons, as YAML")
+      .check(cli::given);
+  command.add_option("--format", options.format, "text, json (rubric.test/1), junit or tap")
+      .one_of({"text", "json", "junit", "tap"})
+      .show_default();
+  command.add_option("--out", options.out, "Write to this file; - is stdout")
+      .check(cli::given)
+      .show_default();
+  command.add_option("--report", options.report,
+                     "Write index.html and all other reports into this folder")
+      .check(cli::given);
+  command.add_option("--compare", options.compare,
+                     "report.json of an earlier run: say which verdicts have changed")
+      .check(cli::given);
+  command.add_flag("--quiet", options.quiet, "Text: no lines for cases that are as expected");
+  command.add_flag("--verbose", options.verbose, "Text: every failure in full");
+  command.add_option("--width", options.width, "Text: columns (those of the terminal, else 100)")
+      .between(cli::kColumnsMin, std::size_t{1000});
+  cli::add_color_option(command, options.color);
+  for (const char* name : {"--target", "--cases", "--requirement"}) {
+    command.get_option(name).one_at_a_time();  // One at a time.
+  }
+}
+
+}  // namespace
+
+void add_test(cli::Command& app) {
+  cli::Command& command = app.add_subcommand(kCommand, "Try implementations with golden traces");
+  auto options = std::make_shared<TestOptions>();
+  add_options(command, *options);
+  command.footer(kTestFooter);
+  cli::set_verdict(command, [options] { return run_test(*options); });
+}
+
+}  // namespace rubric::tools
