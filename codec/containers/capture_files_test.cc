@@ -128,7 +128,7 @@ TEST(WirePcapng, BothOrdersManyInterfacesAndSections) {
     EXPECT_EQ(got[5].packet.framing, Framing::kBare);
     EXPECT_EQ(got[5].bytes, "ethernet");
     EXPECT_EQ(got[5].packet.link_type, 1);
-    EXPECT_EQ(got[5].packet.error, (Error{Fault::kUnsupported, 0, req::kWirePcapng}));
+    EXPECT_EQ(got[5].packet.error, (Error{Fault::kUnsupported, 0, "WIRE-PCAPNG"_rule}));
   }
 }
 
@@ -141,11 +141,11 @@ TEST(WirePcapng, RecordsCapturedInPart) {
   file.packet(1, 0, kRadioAck, {}, 1);
   const std::vector<Kept> got = read(InputFormat::kPcapng, file.out);
   ASSERT_EQ(got.size(), 2u);
-  EXPECT_EQ(got[0].packet.error, (Error{Fault::kCut, 4, req::kWirePcapng}));
+  EXPECT_EQ(got[0].packet.error, (Error{Fault::kCut, 4, "WIRE-PCAPNG"_rule}));
   EXPECT_EQ(got[0].packet.crc, kAbsent);
   EXPECT_EQ(got[0].packet.dropped_bytes, 3u);
   EXPECT_EQ(to_hex(view(got[0].bytes)), "be48");
-  EXPECT_EQ(got[1].packet.error, (Error{Fault::kCut, 5, req::kWirePcapng}));
+  EXPECT_EQ(got[1].packet.error, (Error{Fault::kCut, 5, "WIRE-PCAPNG"_rule}));
   EXPECT_EQ(got[1].packet.fcs, kAbsent);
 }
 
@@ -162,35 +162,35 @@ const Damage kDamages[] = {
        f.packet(0, 2, kRadioAck);
        f.out.back() ^= 1;
      },
-     {Fault::kContainer, 36, req::kWirePcapng}, 28},
+     {Fault::kContainer, 36, "WIRE-PCAPNG"_rule}, 28},
     {"LengthNotOfFour",
      [](File& f) { f.out += f.n(6, 4) + f.n(41, 4) + std::string(32, 'x'); },
-     {Fault::kContainer, 4, req::kWirePcapng}, 28},
+     {Fault::kContainer, 4, "WIRE-PCAPNG"_rule}, 28},
     {"LengthTooSmall", [](File& f) { f.out += f.n(6, 4) + f.n(8, 4) + std::string(8, 'x'); },
-     {Fault::kContainer, 4, req::kWirePcapng}, 4},
+     {Fault::kContainer, 4, "WIRE-PCAPNG"_rule}, 4},
     {"LengthAbsurd",
      [](File& f) { f.out += f.n(6, 4) + f.n(0xFFFFFFF0, 4) + std::string(101, 'x'); },
-     {Fault::kContainer, 4, req::kWirePcapng}, 97},
+     {Fault::kContainer, 4, "WIRE-PCAPNG"_rule}, 97},
     {"LengthBeyondTheFile",
      [](File& f) { f.out += f.n(6, 4) + f.n(0x100000, 4) + std::string(24, 'x'); },
-     {Fault::kContainer, 4, req::kWirePcapng}, 20},
+     {Fault::kContainer, 4, "WIRE-PCAPNG"_rule}, 20},
     {"WrongByteOrderMagic",
      [](File& f) { f.out += f.n(0x0A0D0D0A, 4) + f.n(28, 4) + std::string(20, 'x'); },
-     {Fault::kContainer, 8, req::kWirePcapng}, 16},
+     {Fault::kContainer, 8, "WIRE-PCAPNG"_rule}, 16},
     {"CapturedMoreThanTheBlock",
      [](File& f) {
        f.packet(0, 2, kRadioAck);
        f.out[f.out.size() - 20] = 9;  // The captured length.
      },
-     {Fault::kContainer, 20, req::kWirePcapng}, 0},
+     {Fault::kContainer, 20, "WIRE-PCAPNG"_rule}, 0},
     {"UnknownInterface", [](File& f) { f.packet(7, 2, kRadioAck); },
-     {Fault::kContainer, 8, req::kWirePcapng}, 0},
+     {Fault::kContainer, 8, "WIRE-PCAPNG"_rule}, 0},
     {"PacketBlockTooShort", [](File& f) { f.block(6, std::string(12, 'x')); },
-     {Fault::kContainer, 4, req::kWirePcapng}, 0},
+     {Fault::kContainer, 4, "WIRE-PCAPNG"_rule}, 0},
     {"InterfaceTooShort", [](File& f) { f.block(1, "abcd"); },
-     {Fault::kContainer, 4, req::kWirePcapng}, 0},
+     {Fault::kContainer, 4, "WIRE-PCAPNG"_rule}, 0},
     {"InterfaceOptionOverruns", [](File& f) { f.interface(147, f.n(2, 2) + f.n(5, 2) + "abcd"); },
-     {Fault::kContainer, 16, req::kWirePcapng}, 0},
+     {Fault::kContainer, 16, "WIRE-PCAPNG"_rule}, 0},
 };
 
 TEST(WirePcapng, DamageIsToldAndTheNextBlockFound) {
@@ -227,16 +227,16 @@ TEST(WirePcapng, FilesThatEndOrBeginWrong) {
     ASSERT_EQ(got.size(), 2u) << size;
     EXPECT_EQ(got[0].packet.error, kSound);
     EXPECT_EQ(got[1].packet.error,
-              (Error{Fault::kCut, static_cast<std::uint32_t>(size - last), req::kWirePcapng}));
+              (Error{Fault::kCut, static_cast<std::uint32_t>(size - last), "WIRE-PCAPNG"_rule}));
     EXPECT_EQ(got[1].packet.offset_bytes, last);
     EXPECT_EQ(got[1].bytes, file.out.substr(last, size - last));
   }
   EXPECT_EQ(read(InputFormat::kPcapng, "").at(0).packet.error,
-            (Error{Fault::kCut, 0, req::kWirePcapng}));
+            (Error{Fault::kCut, 0, "WIRE-PCAPNG"_rule}));
   // Bytes before a section that are no pcapng at all.
   const std::vector<Kept> got = read(InputFormat::kPcapng, std::string(50, 'x') + file.out);
   ASSERT_EQ(got.size(), 3u);
-  EXPECT_EQ(got[0].packet.error, (Error{Fault::kContainer, 0, req::kWirePcapng}));
+  EXPECT_EQ(got[0].packet.error, (Error{Fault::kContainer, 0, "WIRE-PCAPNG"_rule}));
   EXPECT_EQ(got[0].packet.dropped_bytes, 38u);
   File other;
   other.section(2);
@@ -246,7 +246,7 @@ TEST(WirePcapng, FilesThatEndOrBeginWrong) {
   other.packet(0, 1, kRadioAck);
   const std::vector<Kept> versions = read(InputFormat::kPcapng, other.out);
   ASSERT_EQ(versions.size(), 2u);
-  EXPECT_EQ(versions[0].packet.error, (Error{Fault::kUnsupported, 12, req::kWirePcapng}));
+  EXPECT_EQ(versions[0].packet.error, (Error{Fault::kUnsupported, 12, "WIRE-PCAPNG"_rule}));
   EXPECT_EQ(versions[1].packet.error, kSound);
 }
 
@@ -260,7 +260,7 @@ TEST(WirePcapng, TheSearchIsNotLedAstray) {
   file.packet(0, 3, kRadioAck);
   const std::vector<Kept> got = read(InputFormat::kPcapng, file.out);
   ASSERT_EQ(got.size(), 2u);
-  EXPECT_EQ(got[0].packet.error, (Error{Fault::kContainer, 4, req::kWirePcapng}));
+  EXPECT_EQ(got[0].packet.error, (Error{Fault::kContainer, 4, "WIRE-PCAPNG"_rule}));
   EXPECT_EQ(got[0].packet.dropped_bytes, 8u + 800'000u - 12u);
   EXPECT_EQ(got[1].packet.error, kSound);
 }
@@ -286,7 +286,7 @@ TEST(WirePcap, BothOrdersAndResolutions) {
       EXPECT_EQ(got[0].packet.time_ns, 3'000'000'000 + (magic == 0xA1B23C4D ? 5 : 5000));
       EXPECT_EQ(got[0].packet.error, kSound);
       EXPECT_EQ(got[0].packet.offset_bytes, 40u);
-      EXPECT_EQ(got[1].packet.error, (Error{Fault::kCut, 5, req::kWirePcap}));
+      EXPECT_EQ(got[1].packet.error, (Error{Fault::kCut, 5, "WIRE-PCAP"_rule}));
       EXPECT_EQ(got[1].packet.dropped_bytes, 2u);
       EXPECT_EQ(interfaces.at(0).link_type, 195);
     }
@@ -299,18 +299,18 @@ TEST(WirePcap, Damage) {
   std::vector<Kept> got = read(InputFormat::kPcap, good + f.n(0, 8) + f.n(0x40001, 4) + "12345678");
   ASSERT_EQ(got.size(), 2u);
   EXPECT_EQ(got[0].bytes, "abc");
-  EXPECT_EQ(got[1].packet.error, (Error{Fault::kContainer, 8, req::kWirePcap}));
+  EXPECT_EQ(got[1].packet.error, (Error{Fault::kContainer, 8, "WIRE-PCAP"_rule}));
   EXPECT_EQ(got[1].packet.offset_bytes, good.size());
   EXPECT_EQ(got[1].packet.dropped_bytes, 4u);
   got = read(InputFormat::kPcap, good + record(f, 2, 0, "abcdef").substr(0, 20));
   ASSERT_EQ(got.size(), 2u);
-  EXPECT_EQ(got[1].packet.error, (Error{Fault::kCut, 20, req::kWirePcap}));
+  EXPECT_EQ(got[1].packet.error, (Error{Fault::kCut, 20, "WIRE-PCAP"_rule}));
   got = read(InputFormat::kPcap, std::string(30, 'x'));
   ASSERT_EQ(got.size(), 1u);
-  EXPECT_EQ(got[0].packet.error, (Error{Fault::kContainer, 0, req::kWirePcap}));
+  EXPECT_EQ(got[0].packet.error, (Error{Fault::kContainer, 0, "WIRE-PCAP"_rule}));
   EXPECT_EQ(got[0].packet.dropped_bytes, 6u);
   EXPECT_EQ(read(InputFormat::kPcap, good.substr(0, 10)).at(0).packet.error,
-            (Error{Fault::kCut, 10, req::kWirePcap}));
+            (Error{Fault::kCut, 10, "WIRE-PCAP"_rule}));
 }
 
 // Every capture file of the project, written again, reads the same.

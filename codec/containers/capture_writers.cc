@@ -58,7 +58,7 @@ std::uint16_t radio_link_type(const Packet& packet) {
   const Fault fault = packet.error.fault;
   // A TAP header that was understood is gone, one that was not is all there is.
   const bool header_gone =
-      packet.link_type == kLinkRadioTap && packet.error.requirement != req::kWireRadioTap;
+      packet.link_type == kLinkRadioTap && packet.error.requirement != "WIRE-RADIO-TAP"_rule;
   // A malformed frame keeps the type under which it was found malformed.
   if (fault != Fault::kNone && packet.link_type != 0 && !header_gone) return packet.link_type;
   const bool has_fcs = packet.fcs != kAbsent || fault == Fault::kTooShort;

@@ -55,15 +55,15 @@ const StreamCase kSfCases[] = {
     {"TwoPackets", "55 20 02 00 11 01 33", {{2, "00 11", kSound}, {5, "33", kSound}}},
     {"HigherVersion", "55 21 01 33", {{2, "33", kSound}}},
     {"LowerVersion", "55 1f 00",
-     {{0, "55 1f", {Fault::kHandshake, 1, req::kWireSfHandshake}},
-      {0, "1f 00", {Fault::kCut, 3, req::kWireSfLength}, 0x53}}},
+     {{0, "55 1f", {Fault::kHandshake, 1, "WIRE-SF-HANDSHAKE"_rule}},
+      {0, "1f 00", {Fault::kCut, 3, "WIRE-SF-LENGTH"_rule}, 0x53}}},
     {"NoHandshake", "02 00 11",
-     {{0, "02", {Fault::kHandshake, 0, req::kWireSfHandshake}}, {0, "00 11", kSound}}},
+     {{0, "02", {Fault::kHandshake, 0, "WIRE-SF-HANDSHAKE"_rule}}, {0, "00 11", kSound}}},
     {"EmptyPacket", "55 20 00 01 33",
-     {{2, "", {Fault::kEmpty, 0, req::kWireSfLength}}, {3, "33", kSound}}},
-    {"CutInHandshake", "55", {{0, "", {Fault::kCut, 1, req::kWireSfHandshake}, 1}}},
-    {"CutInPacket", "55 20 04 00 11", {{2, "00 11", {Fault::kCut, 3, req::kWireSfLength}, 2}}},
-    {"CutBehindLength", "55 20 04", {{2, "", {Fault::kCut, 1, req::kWireSfLength}, 4}}},
+     {{2, "", {Fault::kEmpty, 0, "WIRE-SF-LENGTH"_rule}}, {3, "33", kSound}}},
+    {"CutInHandshake", "55", {{0, "", {Fault::kCut, 1, "WIRE-SF-HANDSHAKE"_rule}, 1}}},
+    {"CutInPacket", "55 20 04 00 11", {{2, "00 11", {Fault::kCut, 3, "WIRE-SF-LENGTH"_rule}, 2}}},
+    {"CutBehindLength", "55 20 04", {{2, "", {Fault::kCut, 1, "WIRE-SF-LENGTH"_rule}, 4}}},
 };
 
 TEST(WireSfLength, WhatCanBeInAStream) {
@@ -76,14 +76,14 @@ const StreamCase kHexCases[] = {
     {"Prefixed", "0x00 0XfF 0x0001", {{0, "00ff0001", kSound}}},
     {"CommentsAndBlanks", "# a\n\n  \n\t00 11 # b\n#", {{8, "0011", kSound}}},
     {"NoEndOfLine", "0011", {{0, "0011", kSound}}},
-    {"NoHex", "00 1g\n22\n", {{0, "3030203167", {Fault::kUnexpected, 4, req::kWireHex}},
+    {"NoHex", "00 1g\n22\n", {{0, "3030203167", {Fault::kUnexpected, 4, "WIRE-HEX"_rule}},
                               {6, "22", kSound}}},
-    {"OddDigits", "001\n22", {{0, "303031", {Fault::kUnexpected, 3, req::kWireHex}},
+    {"OddDigits", "001\n22", {{0, "303031", {Fault::kUnexpected, 3, "WIRE-HEX"_rule}},
                               {4, "22", kSound}}},
-    {"SingleDigit", "0 1", {{0, "302031", {Fault::kUnexpected, 1, req::kWireHex}}}},
-    {"PrefixAlone", "00 0x", {{0, "3030203078", {Fault::kUnexpected, 5, req::kWireHex}}}},
+    {"SingleDigit", "0 1", {{0, "302031", {Fault::kUnexpected, 1, "WIRE-HEX"_rule}}}},
+    {"PrefixAlone", "00 0x", {{0, "3030203078", {Fault::kUnexpected, 5, "WIRE-HEX"_rule}}}},
     {"PrefixInsideAByte", "000x11", {{0, "303030783131", {Fault::kUnexpected, 3,
-                                                          req::kWireHex}}}},
+                                                          "WIRE-HEX"_rule}}}},
 };
 
 TEST(WireHex, WhatCanBeInAText) {
@@ -98,8 +98,8 @@ TEST(WireHex, LongLinesAndPackets) {
   const auto reader = make_reader(InputFormat::kHex);
   const std::vector<Kept> got = read_all(*reader, view(text));
   ASSERT_EQ(got.size(), 3u);
-  EXPECT_EQ(got[0].packet.error, (Error{Fault::kTooLong, 255, req::kWireSfLength}));
-  EXPECT_EQ(got[1].packet.error, (Error{Fault::kTooLong, kHexLineMax, req::kWireHex}));
+  EXPECT_EQ(got[0].packet.error, (Error{Fault::kTooLong, 255, "WIRE-SF-LENGTH"_rule}));
+  EXPECT_EQ(got[1].packet.error, (Error{Fault::kTooLong, kHexLineMax, "WIRE-HEX"_rule}));
   EXPECT_EQ(got[1].packet.dropped_bytes, 2 * kHexLineMax);
   EXPECT_EQ(got[2].packet.offset_bytes, 513 + 3 * kHexLineMax + 1);
   std::mt19937 random(2);
@@ -125,7 +125,7 @@ TEST(WireHex, OtherFramings) {
   ASSERT_EQ(radio.size(), 2u);
   EXPECT_EQ(radio[0].packet.fcs, 0xa431);
   EXPECT_EQ(radio[0].packet.error, kSound);
-  EXPECT_EQ(radio[1].packet.error, (Error{Fault::kFcs, 3, req::kWireRadioFcs}));
+  EXPECT_EQ(radio[1].packet.error, (Error{Fault::kFcs, 3, "WIRE-RADIO-FCS"_rule}));
 }
 
 struct RadioCase {
@@ -140,15 +140,15 @@ struct RadioCase {
 const RadioCase kRadioCases[] = {
     {"WithFcs", 195, "02 00 01 31 a4", 0, "02 00 01", 0xa431, kSound},
     {"WrongFcs", 195, "02 00 01 31 a5", 0, "02 00 01", 0xa531,
-     {Fault::kFcs, 3, req::kWireRadioFcs}},
-    {"NoRoomForFcs", 195, "02", 0, "02", kAbsent, {Fault::kTooShort, 1, req::kWireRadioFcs}},
-    {"Empty", 195, "", 0, "", kAbsent, {Fault::kEmpty, 0, req::kWireRadioHeader}},
+     {Fault::kFcs, 3, "WIRE-RADIO-FCS"_rule}},
+    {"NoRoomForFcs", 195, "02", 0, "02", kAbsent, {Fault::kTooShort, 1, "WIRE-RADIO-FCS"_rule}},
+    {"Empty", 195, "", 0, "", kAbsent, {Fault::kEmpty, 0, "WIRE-RADIO-HEADER"_rule}},
     {"NoFcs", 230, "02 00 01", 0, "02 00 01", kAbsent, kSound},
-    {"NoFcsEmpty", 230, "", 0, "", kAbsent, {Fault::kEmpty, 0, req::kWireRadioHeader}},
+    {"NoFcsEmpty", 230, "", 0, "", kAbsent, {Fault::kEmpty, 0, "WIRE-RADIO-HEADER"_rule}},
     {"TapFcs16", 283, "00 00 0c 00  00 00 01 00 01 00 00 00  02 00 01 31 a4", 12, "02 00 01",
      0xa431, kSound},
     {"TapWrongFcs16", 283, "00 00 0c 00  00 00 01 00 01 00 00 00  02 00 01 31 a5", 12, "02 00 01",
-     0xa531, {Fault::kFcs, 3, req::kWireRadioFcs}},
+     0xa531, {Fault::kFcs, 3, "WIRE-RADIO-FCS"_rule}},
     {"TapNoFcs", 283, "00 00 0c 00  00 00 01 00 00 00 00 00  02 00 01", 12, "02 00 01", kAbsent,
      kSound},
     {"TapOtherField", 283,
@@ -159,23 +159,24 @@ const RadioCase kRadioCases[] = {
     {"TapNoFields", 283, "00 00 04 00  02 00 01", 4, "02 00 01", kAbsent, kSound},
     {"TapFcs32", 283, "00 00 0c 00  00 00 01 00 02 00 00 00  02", 0,
      "00 00 0c 00  00 00 01 00 02 00 00 00  02", kAbsent,
-     {Fault::kUnsupported, 8, req::kWireRadioTap}},
+     {Fault::kUnsupported, 8, "WIRE-RADIO-TAP"_rule}},
     {"TapFcsUnknown", 283, "00 00 0c 00  00 00 01 00 03 00 00 00", 0,
-     "00 00 0c 00  00 00 01 00 03 00 00 00", kAbsent, {Fault::kUnexpected, 8, req::kWireRadioTap}},
+     "00 00 0c 00  00 00 01 00 03 00 00 00", kAbsent,
+     {Fault::kUnexpected, 8, "WIRE-RADIO-TAP"_rule}},
     {"TapFcsWithoutValue", 283, "00 00 08 00  00 00 00 00", 0, "00 00 08 00  00 00 00 00", kAbsent,
-     {Fault::kTruncated, 4, req::kWireRadioTap}},
+     {Fault::kTruncated, 4, "WIRE-RADIO-TAP"_rule}},
     {"TapTooShort", 283, "00 00 04", 0, "00 00 04", kAbsent,
-     {Fault::kTruncated, 3, req::kWireRadioTap}},
+     {Fault::kTruncated, 3, "WIRE-RADIO-TAP"_rule}},
     {"TapVersion", 283, "01 00 04 00", 0, "01 00 04 00", kAbsent,
-     {Fault::kUnexpected, 0, req::kWireRadioTap}},
+     {Fault::kUnexpected, 0, "WIRE-RADIO-TAP"_rule}},
     {"TapLengthBelowHeader", 283, "00 00 03 00", 0, "00 00 03 00", kAbsent,
-     {Fault::kOutOfRange, 2, req::kWireRadioTap}},
+     {Fault::kOutOfRange, 2, "WIRE-RADIO-TAP"_rule}},
     {"TapLengthBeyondRecord", 283, "00 00 05 00", 0, "00 00 05 00", kAbsent,
-     {Fault::kOutOfRange, 2, req::kWireRadioTap}},
+     {Fault::kOutOfRange, 2, "WIRE-RADIO-TAP"_rule}},
     {"TapHalfField", 283, "00 00 06 00 00 00", 0, "00 00 06 00 00 00", kAbsent,
-     {Fault::kTruncated, 4, req::kWireRadioTap}},
+     {Fault::kTruncated, 4, "WIRE-RADIO-TAP"_rule}},
     {"TapFieldBeyondHeader", 283, "00 00 08 00 01 00 04 00", 0, "00 00 08 00 01 00 04 00", kAbsent,
-     {Fault::kTruncated, 4, req::kWireRadioTap}},
+     {Fault::kTruncated, 4, "WIRE-RADIO-TAP"_rule}},
 };
 
 TEST(WireRadioFcs, WhatARecordCanBe) {
@@ -202,10 +203,10 @@ TEST(WireRadioLength, AtMost127BytesWithFcs) {
   decode_radio_record(view(frame), 195, packet);
   EXPECT_EQ(packet.error, kSound);
   decode_radio_record(view(frame), 230, packet);
-  EXPECT_EQ(packet.error, (Error{Fault::kTooLong, 125, req::kWireRadioLength}));
+  EXPECT_EQ(packet.error, (Error{Fault::kTooLong, 125, "WIRE-RADIO-LENGTH"_rule}));
   frame += '\0';
   decode_radio_record(view(frame), 195, packet);
-  EXPECT_EQ(packet.error, (Error{Fault::kTooLong, 127, req::kWireRadioLength}));
+  EXPECT_EQ(packet.error, (Error{Fault::kTooLong, 127, "WIRE-RADIO-LENGTH"_rule}));
 }
 
 TEST(WirePcapng, Times) {
@@ -245,7 +246,7 @@ TEST(Writers, TakeWhatTheyCanHold) {
   radio.framing = Framing::kRadio;
   radio.bytes = view(ack_packet);
   Packet bad = sf;
-  bad.error = Error{Fault::kUnexpected, 0, req::kWireHex};
+  bad.error = Error{Fault::kUnexpected, 0, "WIRE-HEX"_rule};
   const struct {
     InputFormat format;
     bool takes[4];  // In the order of `packets`.

@@ -45,33 +45,34 @@ const Case kCases[] = {
     {"ManyFlags", "7e 7e 7e 43 01 be 48 7e 7e 7e 43 00 9f 58 7e 7e",
      {{3, 0x43, 1, "", 0x48be, kSound}, {10, 0x43, 0, "", 0x589f, kSound}}},
     {"GarbageInFront", "00 11 22 33 7e 43 01 be 48 7e",
-     {{0, 0, kAbsent, "11", 0x3322, {Fault::kCrc, 2, req::kWireSerialCrc}},
+     {{0, 0, kAbsent, "11", 0x3322, {Fault::kCrc, 2, "WIRE-SERIAL-CRC"_rule}},
       {5, 0x43, 1, "", 0x48be, kSound}}},
     {"WrongCrc", "7e 43 01 be 49 7e 43 00 9f 58 7e",
-     {{1, 0x43, 1, "", 0x49be, {Fault::kCrc, 2, req::kWireSerialCrc}},
+     {{1, 0x43, 1, "", 0x49be, {Fault::kCrc, 2, "WIRE-SERIAL-CRC"_rule}},
       {6, 0x43, 0, "", 0x589f, kSound}}},
     {"OneByte", "7e 45 7e", {{1, 0x45, kAbsent, "", kAbsent, {Fault::kTooShort, 1,
-                                                              req::kWireHdlcShort}}}},
+                                                              "WIRE-HDLC-SHORT"_rule}}}},
     {"TwoBytes", "7e 45 99 7e", {{1, 0x45, kAbsent, "99", kAbsent, {Fault::kTooShort, 2,
-                                                                    req::kWireHdlcShort}}}},
+                                                                    "WIRE-HDLC-SHORT"_rule}}}},
     {"TwoBytesWithSeq", "7e 44 99 7e", {{1, 0x44, 0x99, "", kAbsent, {Fault::kTooShort, 2,
-                                                                      req::kWireHdlcShort}}}},
+                                                                      "WIRE-HDLC-SHORT"_rule}}}},
     {"ThreeBytes", "7e 44 12 34 7e", {{1, 0x44, kAbsent, "", 0x3412, {Fault::kTooShort, 3,
-                                                                      req::kWireHdlcShort}}}},
+                                                                      "WIRE-HDLC-SHORT"_rule}}}},
     {"Aborted", "7e 43 01 be 48 7d 7e 43 00 9f 58 7e",
-     {{1, 0x43, 1, "", 0x48be, {Fault::kAborted, 4, req::kWireHdlcEscape}},
+     {{1, 0x43, 1, "", 0x48be, {Fault::kAborted, 4, "WIRE-HDLC-ESCAPE"_rule}},
       {7, 0x43, 0, "", 0x589f, kSound}}},
     {"AbortedAtOnce", "7e 7d 7e", {{1, kAbsent, kAbsent, "", kAbsent, {Fault::kAborted, 0,
-                                                                       req::kWireHdlcEscape}}}},
+                                                                       "WIRE-HDLC-ESCAPE"_rule}}}},
     {"EscapedEscapeIsNoAbort", "7e 45 7d 7d 7e",
-     {{1, 0x45, kAbsent, "5d", kAbsent, {Fault::kTooShort, 2, req::kWireHdlcShort}}}},
+     {{1, 0x45, kAbsent, "5d", kAbsent, {Fault::kTooShort, 2, "WIRE-HDLC-SHORT"_rule}}}},
     {"UnknownKind", "7e 99 01 02 f5 6f 7e",
-     {{1, 0x99, kAbsent, "0102", 0x6ff5, {Fault::kCrc, 3, req::kWireSerialCrc}}}},
-    {"Cut", "7e 43 01 be", {{1, 0x43, kAbsent, "", 0xbe01, {Fault::kCut, 3, req::kWireHdlcFlag}}}},
+     {{1, 0x99, kAbsent, "0102", 0x6ff5, {Fault::kCrc, 3, "WIRE-SERIAL-CRC"_rule}}}},
+    {"Cut", "7e 43 01 be",
+     {{1, 0x43, kAbsent, "", 0xbe01, {Fault::kCut, 3, "WIRE-HDLC-FLAG"_rule}}}},
     {"CutBeforeItsFlag", "7e 43 01 be 48", {{1, 0x43, 1, "", 0x48be, {Fault::kCut, 4,
-                                                                      req::kWireHdlcFlag}}}},
+                                                                      "WIRE-HDLC-FLAG"_rule}}}},
     {"CutInAnEscape", "7e 43 01 7d", {{1, 0x43, 1, "", kAbsent, {Fault::kCut, 2,
-                                                                 req::kWireHdlcFlag}}}},
+                                                                 "WIRE-HDLC-FLAG"_rule}}}},
 };
 
 TEST(WireHdlcFlag, WhatCanBeOnTheLine) {
@@ -149,10 +150,10 @@ TEST(WireHdlcLong, LimitsOfLength) {
   };
   EXPECT_EQ(one(framed(std::string(253, '\x45'))).packet.error, kSound);
   EXPECT_EQ(one(framed(std::string(254, '\x45'))).packet.error,
-            (Error{Fault::kTooLong, 255, req::kWireHdlcLong}));
+            (Error{Fault::kTooLong, 255, "WIRE-HDLC-LONG"_rule}));
   EXPECT_EQ(one(framed(std::string(254, '\x44'))).packet.error, kSound);
   EXPECT_EQ(one(framed(std::string(255, '\x44'))).packet.error,
-            (Error{Fault::kTooLong, 256, req::kWireHdlcLong}));
+            (Error{Fault::kTooLong, 256, "WIRE-HDLC-LONG"_rule}));
   // Longer than the kept part, with and without escapes; the next frame is found.
   for (const char* filler : {"\x11", "\x7d\x31"}) {
     std::string stream = "\x7e";
@@ -161,7 +162,7 @@ TEST(WireHdlcLong, LimitsOfLength) {
     HdlcReader reader;
     const std::vector<Kept> got = read_all(reader, view(stream));
     ASSERT_EQ(got.size(), 2u);
-    EXPECT_EQ(got[0].packet.error, (Error{Fault::kTooLong, 255, req::kWireHdlcLong}));
+    EXPECT_EQ(got[0].packet.error, (Error{Fault::kTooLong, 255, "WIRE-HDLC-LONG"_rule}));
     EXPECT_EQ(got[0].packet.crc, kAbsent);
     EXPECT_EQ(serial_content_size(got[0].get()), kHdlcKeptMax);
     EXPECT_EQ(got[0].packet.dropped_bytes, 100'000 - kHdlcKeptMax);

@@ -21,7 +21,7 @@ const std::string kTap = from_hex("0000 0c00 0000 0100 01000000");  // 16-bit FC
 
 Packet of_record(const std::string& record, std::uint16_t link_type, std::size_t missing = 0) {
   Packet packet;
-  decode_record(view(record), record.size() + missing, link_type, req::kWirePcap, packet);
+  decode_record(view(record), record.size() + missing, link_type, "WIRE-PCAP"_rule, packet);
   return packet;
 }
 
@@ -34,10 +34,10 @@ struct TapCase {
 };
 const TapCase kTapCases[] = {
     {"Sound", "02 00 01 31 a4", 0, kSound, kLinkRadioFcs},
-    {"WrongFcs", "02 00 01 ff ff", 0, {Fault::kFcs, 3, req::kWireRadioFcs}, kLinkRadioFcs},
-    {"NoRoomForTheFcs", "02", 0, {Fault::kTooShort, 1, req::kWireRadioFcs}, kLinkRadioFcs},
-    {"Empty", "", 0, {Fault::kEmpty, 0, req::kWireRadioHeader}, kLinkRadioNoFcs},
-    {"Cut", "02 00 01", 2, {Fault::kCut, 3, req::kWirePcap}, kLinkRadioNoFcs},
+    {"WrongFcs", "02 00 01 ff ff", 0, {Fault::kFcs, 3, "WIRE-RADIO-FCS"_rule}, kLinkRadioFcs},
+    {"NoRoomForTheFcs", "02", 0, {Fault::kTooShort, 1, "WIRE-RADIO-FCS"_rule}, kLinkRadioFcs},
+    {"Empty", "", 0, {Fault::kEmpty, 0, "WIRE-RADIO-HEADER"_rule}, kLinkRadioNoFcs},
+    {"Cut", "02 00 01", 2, {Fault::kCut, 3, "WIRE-PCAP"_rule}, kLinkRadioNoFcs},
 };
 
 // The header is gone once it was understood, so that a record without it must not claim one.
@@ -60,7 +60,7 @@ TEST(WireRadioTap, FramesAreWrittenWithoutTheHeader) {
 TEST(WireRadioTap, AHeaderThatIsWrongIsWrittenAsItIs) {
   const std::string record = from_hex("01 00 0400 02 00 01");
   const Packet packet = of_record(record, kLinkRadioTap);
-  EXPECT_EQ(packet.error, (Error{Fault::kUnexpected, 0, req::kWireRadioTap}));
+  EXPECT_EQ(packet.error, (Error{Fault::kUnexpected, 0, "WIRE-RADIO-TAP"_rule}));
   EXPECT_EQ(link_type_of(packet), kLinkRadioTap);
   std::string written;
   append_record(packet, written);
@@ -92,7 +92,7 @@ TEST(WirePcap, TimesBeyondTheFormatAreItsLast) {
 TEST(WirePcap, DamageIsNoRecord) {
   Packet damage;
   damage.bytes = view(kTap);
-  damage.error = Error{Fault::kContainer, 8, req::kWirePcap};
+  damage.error = Error{Fault::kContainer, 8, "WIRE-PCAP"_rule};
   PcapWriter writer(0);
   std::string written;
   EXPECT_FALSE(writer.write(damage, written));
@@ -104,7 +104,7 @@ TEST(WireHdlcEscape, AFrameCutBehindItsFirstEscapeComesBack) {
   const std::string stream = from_hex("7e 7d");
   const std::vector<Kept> got = read_all(reader, view(stream));
   ASSERT_EQ(got.size(), 1U);
-  EXPECT_EQ(got[0].packet.error, (Error{Fault::kCut, 0, req::kWireHdlcFlag}));
+  EXPECT_EQ(got[0].packet.error, (Error{Fault::kCut, 0, "WIRE-HDLC-FLAG"_rule}));
   HdlcWriter writer;
   std::string written;
   ASSERT_TRUE(writer.write(got[0].get(), written));

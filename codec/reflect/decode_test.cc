@@ -80,20 +80,21 @@ struct RejectCase {
 };
 
 const RejectCase kRejects[] = {
-    {"Empty_Join", "join_request", "", {Fault::kTruncated, 0, req::kWireJoinRequest}},
+    {"Empty_Join", "join_request", "", {Fault::kTruncated, 0, "WIRE-JOIN-REQUEST"_rule}},
     {"OneShort_JoinReply", "join_reply", "000b 0002 0000 0000 c4",
-     {Fault::kTruncated, 9, req::kWireJoinReply}},
+     {Fault::kTruncated, 9, "WIRE-JOIN-REPLY"_rule}},
     {"Reliable2", "net_msg", "000b fffd 000b 0002 02 b0d3 02 030a",
-     {Fault::kOutOfRange, 8, req::kWireNetReliable}},
-    {"Nbytes1", "net_msg", kNetToSink + "01 03", {Fault::kOutOfRange, 11, req::kWireNetNbytes}},
-    {"Nbytes103", "net_msg", kNetToSink + "67 03", {Fault::kOutOfRange, 11, req::kWireNetNbytes}},
+     {Fault::kOutOfRange, 8, "WIRE-NET-RELIABLE"_rule}},
+    {"Nbytes1", "net_msg", kNetToSink + "01 03", {Fault::kOutOfRange, 11, "WIRE-NET-NBYTES"_rule}},
+    {"Nbytes103", "net_msg", kNetToSink + "67 03",
+     {Fault::kOutOfRange, 11, "WIRE-NET-NBYTES"_rule}},
     {"NbytesMoreThanArrived", "net_msg", kNetToSink + "05 030a 2300",
-     {Fault::kTruncated, 16, req::kWireNetPayload}},
-    {"Updates25", "updates", "23 19", {Fault::kOutOfRange, 1, req::kWireUpdates}},
+     {Fault::kTruncated, 16, "WIRE-NET-PAYLOAD"_rule}},
+    {"Updates25", "updates", "23 19", {Fault::kOutOfRange, 1, "WIRE-UPDATES"_rule}},
     {"UpdatesPairCut", "updates", "23 02 0001 012e 0040",
-     {Fault::kTruncated, 8, req::kWireUpdates}},
+     {Fault::kTruncated, 8, "WIRE-UPDATES"_rule}},
     {"SynapticPartialFloat", "synaptic_data", "0000803f 0000",
-     {Fault::kTruncated, 6, req::kWireSynapticData}},
+     {Fault::kTruncated, 6, "WIRE-SYNAPTIC-DATA"_rule}},
 };
 
 class DecodeReject : public ::testing::TestWithParam<RejectCase> {};
@@ -158,7 +159,7 @@ TEST(Decode, BytesBehindACarrier_AreAFault) {
   const Message m("rubicon", "00 ffff 0000 03 00 25 0a000c 77", Tail::kFault);
   EXPECT_EQ(m->error.fault, Fault::kTrailing);
   EXPECT_EQ(m->error.offset_bytes, 11u);
-  EXPECT_EQ(m->error.requirement, req::kWireAmLength);
+  EXPECT_EQ(m->error.requirement, "WIRE-AM-LENGTH"_rule);
 }
 
 TEST(Decode, OneObjectForManyFrames_ForgetsTheOneBefore) {

@@ -6,10 +6,9 @@
 #include <optional>
 #include <string>
 
-#include "codec/generated/oscilloscope/tables.h"
-#include "codec/generated/rubicon/tables.h"
 #include "codec/reflect/encode.h"
 #include "codec/reflect/encode_number.h"
+#include "codec/reflect/registry.h"
 
 namespace rubric::reflect {
 namespace {
@@ -306,7 +305,7 @@ TEST_P(EncodeProperty, DecodeGivesTheSameTree) {
 
 std::vector<const Type*> messages() {
   std::vector<const Type*> all;
-  for (const Protocol* protocol : {&rubicon::tables::kProtocol, &oscilloscope::tables::kProtocol}) {
+  for (const Protocol* protocol : protocols()) {
     for (int i = 0; i < protocol->type_count; ++i) {
       bool is_carrier = false;
       for (int c = 0; c < protocol->carrier_count; ++c) {

@@ -112,28 +112,28 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(Frame, FramingFault_ComesFirst_AndCountsFromTheDispatchByte) {
   Case c(Framing::kHdlc, kSerialConfig, 68);
   c.packet.serial_seq = 0;
-  c.packet.error = Error{Fault::kCrc, 13, req::kWireSerialCrc};
+  c.packet.error = Error{Fault::kCrc, 13, "WIRE-SERIAL-CRC"_rule};
   const Frame& frame = c.decode();
-  EXPECT_EQ(frame.error, (Error{Fault::kCrc, 11, req::kWireSerialCrc}));
+  EXPECT_EQ(frame.error, (Error{Fault::kCrc, 11, "WIRE-SERIAL-CRC"_rule}));
   EXPECT_STREQ(frame.decoded.message()->name, "config");
 }
 
 TEST(Frame, CutForwarderPacket_CountsFromTheDispatchByte) {
   Case stream(Framing::kSf, "0001");
-  stream.packet.error = Error{Fault::kCut, 3, req::kWireSfLength};  // From the length byte on.
-  EXPECT_EQ(stream.decode().error, (Error{Fault::kCut, 2, req::kWireSfLength}));
+  stream.packet.error = Error{Fault::kCut, 3, "WIRE-SF-LENGTH"_rule};  // From the length byte on.
+  EXPECT_EQ(stream.decode().error, (Error{Fault::kCut, 2, "WIRE-SF-LENGTH"_rule}));
   Case record(Framing::kSf, "0001");
   record.packet.link_type = 148;  // No length byte.
-  record.packet.error = Error{Fault::kTooLong, 255, req::kWireSfLength};
-  EXPECT_EQ(record.decode().error, (Error{Fault::kTooLong, 255, req::kWireSfLength}));
+  record.packet.error = Error{Fault::kTooLong, 255, "WIRE-SF-LENGTH"_rule};
+  EXPECT_EQ(record.decode().error, (Error{Fault::kTooLong, 255, "WIRE-SF-LENGTH"_rule}));
 }
 
 TEST(Frame, CutInTheHeader_NamesTheHeadersRule) {
   Case serial(Framing::kSf, "00ffff");
-  EXPECT_EQ(serial.decode().error, (Error{Fault::kTruncated, 3, req::kWireAmHeader}));
+  EXPECT_EQ(serial.decode().error, (Error{Fault::kTruncated, 3, "WIRE-AM-HEADER"_rule}));
   EXPECT_FALSE(serial.frame.has_payload);
   Case radio(Framing::kRadio, "418807220001000200");
-  EXPECT_EQ(radio.decode().error, (Error{Fault::kTruncated, 9, req::kWireRadioNetwork}));
+  EXPECT_EQ(radio.decode().error, (Error{Fault::kTruncated, 9, "WIRE-RADIO-NETWORK"_rule}));
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 
 #include <stdint.h>
 
-#include "codec/generated/requirements.h"
+#include "codec/runtime/rule.h"
 
 namespace rubric {
 namespace reflect {
@@ -196,7 +196,7 @@ struct RouteTable {
 /// The roles that must follow a requirement.
 enum Roles : uint8_t { kRoleMote = 1, kRoleSink = 2, kRoleBaseStation = 4 };
 
-/// A requirement's text; the table in generated/requirements_table.h is indexed by ReqId.
+/// A requirement's texts; codec/reflect/requirements.h has them all.
 struct Requirement {
   const char* id;
   const char* level;
@@ -206,6 +206,8 @@ struct Requirement {
   uint8_t roles;         ///< Bits of Roles; 0 where the rule names none (those of the wire).
   bool forbids;          ///< It says what must not happen: a case has to attempt it.
   const char* deployed;  ///< The difference of release 1.0; empty if there is none.
+
+  constexpr ReqId number() const { return *id == '\0' ? ReqId::kNone : rule_number(id); }
 };
 
 }  // namespace reflect

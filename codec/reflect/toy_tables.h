@@ -32,7 +32,7 @@ constexpr Field field(const char* name, Kind kind, std::uint8_t width, std::int3
   f.valid = kAny;
   f.expect = -1;
   f.size = f.count = f.condition = kNoExpr;
-  f.requirement = ReqId::kWireCommand;
+  f.requirement = "WIRE-COMMAND"_rule;
   f.doc = "";
   return f;
 }
@@ -97,7 +97,7 @@ constexpr Expr expr(const ExprStep (&steps)[N]) {
 template <std::size_t N>
 constexpr Type type(const char* name, const Field (&fields)[N]) {
   return {name, name, fields, static_cast<std::uint16_t>(N), nullptr, 0, 0, UINT32_MAX, -1,
-          ReqId::kWireConfig, "", ""};
+          "WIRE-CONFIG"_rule, "", ""};
 }
 
 // scalars: every number, its enum and mask, and a field that is there only if colour is red.

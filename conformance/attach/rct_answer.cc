@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "codec/generated/requirements_table.h"
+#include "codec/reflect/requirements.h"
 #include "conformance/events/app_events.h"
 #include "conformance/trace/value_text.h"
 
@@ -38,7 +38,7 @@ std::string read_time(std::string_view word, bool& real) {
 }
 
 bool is_family(std::string_view text) {
-  return std::any_of(std::begin(kRequirements), std::end(kRequirements), [&](const auto& one) {
+  return std::ranges::any_of(reflect::requirements(), [&](const auto& one) {
     const std::string_view id = one.id;
     return id.size() > text.size() && id.starts_with(text) && id[text.size()] == '-';
   });

@@ -56,12 +56,12 @@ TEST(RctAnswer, IsRead) {
   EXPECT_EQ(frame.src, 5);
   EXPECT_EQ(frame.type, 0x0E);
   EXPECT_EQ(frame.size_bytes, 6);
-  EXPECT_EQ(answer.outputs[0].requirement, req::kJ1Request);
+  EXPECT_EQ(answer.outputs[0].requirement, "J1-REQUEST"_rule);
   EXPECT_FALSE(answer.outputs[1].frame.link_ack);
   EXPECT_EQ(answer.outputs[1].frame.link, machine::Link::kSerial);
   EXPECT_TRUE(equal(answer.outputs[1].frame.bytes(), frame.bytes()));
   EXPECT_EQ(answer.outputs[2].data, (std::vector<std::uint8_t>{0x0A, 0x0B}));
-  EXPECT_EQ(answer.outputs[2].requirement, req::kT1Deliver);
+  EXPECT_EQ(answer.outputs[2].requirement, "T1-DELIVER"_rule);
   const auto& joined = std::get<machine::Joined>(answer.outputs[3].notice);
   EXPECT_EQ(joined.address, (machine::Address{11, 5}));
   EXPECT_TRUE(joined.success);

@@ -3,24 +3,21 @@
 #include <algorithm>
 #include <utility>
 
-#include "conformance/events/app_events.h"
+#include "conformance/events/lines.h"
 #include "conformance/trace/concrete.h"
 
 namespace rubric::explorer {
 namespace {
 
-using machine::Action;
 using machine::Actions;
 using machine::Event;
 using machine::Link;
 using machine::Ticks;
 using machine::Transmit;
 using trace::LinkKind;
-using trace::Message;
 using trace::Op;
 
 constexpr std::string_view kRadio = "r";
-constexpr std::string_view kApp = "app";
 constexpr Ticks kStepTicks = 2;       // From one thing to the next.
 constexpr Ticks kSilencePeriods = 6;  // Join periods between the last event and the end.
 constexpr std::uint8_t kRadioGroup = 0x22;
@@ -33,8 +30,7 @@ struct Flying {
 };
 
 struct Actor {
-  std::string name;
-  std::string serial;
+  events::NodeNames names;
   machine::State state;
   Monitor monitor;
   NodeId id = 0;  // The explorer's number of what should be the same state, but for the clock.
@@ -48,8 +44,10 @@ class Walk {
       const std::size_t number = mote ? kFirstMoteId + i : i - nodes.options().motes;
       const std::string letter(1, static_cast<char>('A' + number % 26));
       Actor actor;
-      actor.name = mote ? "m" + std::to_string(number) : "s" + letter;
-      actor.serial = mote ? "" : "ser" + letter;
+      actor.names.node = mote ? "m" + std::to_string(number) : "s" + letter;
+      actor.names.radio = kRadio;
+      actor.names.serial = mote ? "" : "ser" + letter;
+      actor.names.radio_group = kRadioGroup;
       actor.state = machine::start(nodes.config_of(i));
       actor.id = nodes.initial(i);
       actors_.push_back(std::move(actor));
@@ -61,7 +59,7 @@ class Walk {
     for (std::size_t i = 0; i < actors_.size(); ++i) {
       const machine::Config config = nodes_.config_of(i);
       trace::NodeHeader node;
-      node.name = actors_[i].name;
+      node.name = actors_[i].names.node;
       node.role = nodes_.is_mote(i) ? trace::Role::kMote : trace::Role::kSink;
       node.id = config.id;
       if (!nodes_.is_mote(i)) node.island = config.island;
@@ -71,8 +69,9 @@ class Walk {
     }
     file.header({air, {}, {}});
     for (const Actor& actor : actors_) {
-      if (actor.serial.empty()) continue;
-      file.header({trace::LinkHeader{actor.serial, LinkKind::kSerial, {actor.name}}, {}, {}});
+      const auto& [node, radio, serial, peis, group] = actor.names;
+      if (!serial.empty())
+        file.header({trace::LinkHeader{serial, LinkKind::kSerial, {node}}, {}, {}});
     }
   }
 
@@ -95,7 +94,7 @@ class Walk {
     now_ += kSilencePeriods * nodes_.options().profile.join_period_ticks;
     const Event clock = machine::Called{machine::GetClock{}};
     Actor& actor = actors_.front();
-    given_call(actor, clock);
+    given(actor, clock);
     Actions actions;
     nodes_.options().step(actor.state, now_, clock, actions);
     did(actor, actions);
@@ -106,47 +105,11 @@ class Walk {
   }
 
  private:
-  static trace::AmFrame frame_of(const Transmit& t) {
-    trace::AmFrame frame;
-    frame.dest = t.dest;
-    frame.src = t.src;
-    if (t.link == Link::kRadio) frame.group = kRadioGroup;
-    frame.type = t.type;
-    frame.payload.assign(t.payload.begin(), t.payload.begin() + t.size_bytes);
-    return frame;
+  void given(const Actor& actor, const Event& event) {
+    if (auto line = events::given_line(now_, actor.names, event)) out_.add(std::move(*line));
   }
-
-  void given_call(const Actor& actor, const Event& event) {
-    const auto* called = std::get_if<machine::Called>(&event);
-    if (called != nullptr) {
-      Message call = events::from_call(called->call);
-      out_.add(trace::app_line(now_, actor.name, Op::kGiven, kApp, std::move(call)));
-    } else if (std::holds_alternative<machine::Reboot>(event)) {
-      out_.add(trace::app_line(now_, actor.name, Op::kGiven, "power", Message::named("reboot")));
-    }
-  }
-
-  void link_ack(const Actor& actor, bool acked) {
-    Message message = Message::named("linkack").with("acked", trace::Value::of(acked ? 1 : 0));
-    out_.add(trace::app_line(now_, actor.name, Op::kGiven, kRadio, std::move(message)));
-  }
-
   void did(const Actor& actor, const Actions& actions) {
-    for (const Action& action : actions.all()) {
-      trace::Line line;
-      if (action.what == Action::What::kTransmit) {
-        const Transmit& t = actions.transmit_of(action);
-        const bool radio = t.link == Link::kRadio;
-        line = trace::frame_line(now_, actor.name, Op::kEmits, radio ? kRadio : actor.serial,
-                                 radio ? LinkKind::kRadio : LinkKind::kSerial, frame_of(t));
-      } else if (action.what == Action::What::kNotify) {
-        line = trace::app_line(now_, actor.name, Op::kEmits, kApp,
-                               events::from_notice(actions.notice_of(action)));
-      } else {
-        continue;
-      }
-      const std::string_view rule = trace::requirement_text(action.requirement);
-      if (!rule.empty()) line.requirements.emplace_back(rule);
+    for (trace::Line& line : events::emitted_lines(now_, actor.names, actions)) {
       out_.add(std::move(line));
     }
   }
@@ -157,9 +120,11 @@ class Walk {
     Actor& actor = actors_[node];
     wait_for_timer(actor, what);
     const Event event = nodes_.event_of(actor.state, actor.monitor, what, frame);
-    given_call(actor, event);
-    const bool done = what == event::kDoneAcked || what == event::kDoneUnacked;
-    if (done && actor.state.radio.sending_ack_join) link_ack(actor, what == event::kDoneAcked);
+    // Of other frames nobody is told how they ended.
+    const bool done = std::holds_alternative<machine::SendDone>(event);
+    if (!done || (what != event::kDoneSerial && actor.state.radio.sending_ack_join)) {
+      given(actor, event);
+    }
     std::vector<Transmit> sent;
     step(actor, event, sent);
     while (!nodes_.options().busy) {
@@ -218,8 +183,9 @@ class Walk {
 
   void fault(const Transmit& transmit, Op op, std::size_t node, const std::string& why) {
     trace::Line line =
-        trace::fault_line(now_, op, kRadio, LinkKind::kRadio, frame_of(transmit));
-    line.comment = actors_[node].name + ": " + why;
+        trace::fault_line(now_, op, kRadio, LinkKind::kRadio,
+                          events::frame_of(actors_[node].names, transmit.frame()));
+    line.comment = actors_[node].names.node + ": " + why;
     out_.add(std::move(line));
   }
 
@@ -228,8 +194,6 @@ class Walk {
       if ((hearers >> i & 1) == 0) continue;
       if ((flying.heard >> i & 1) != 0) fault(flying.transmit, Op::kDup, i, "twice");
       flying.heard = static_cast<NodeSet>(flying.heard | 1U << i);
-      out_.add(trace::frame_line(now_, actors_[i].name, Op::kGiven, kRadio, LinkKind::kRadio,
-                                 frame_of(flying.transmit)));
       const Transmit transmit = flying.transmit;
       happens(i, event::kFrame + flying.copy.frame(), &transmit);
     }

@@ -20,15 +20,31 @@ std::uint64_t mix(std::uint64_t hash, std::uint64_t value) {
   return hash ^ (hash >> 29);
 }
 
+// The bit of an island; 0 for one that no sink can have.
+std::uint8_t island_bit(std::uint16_t pid) {
+  const unsigned number = static_cast<unsigned>(pid) - kFirstIsland;
+  return number < kSinksMax ? static_cast<std::uint8_t>(1U << number) : std::uint8_t{0};
+}
+std::uint8_t bits_of(const std::set<std::uint16_t>& islands) {
+  std::uint8_t bits = 0;
+  for (const std::uint16_t pid : islands) bits |= island_bit(pid);
+  return bits;
+}
+std::uint8_t view_of(const History& history) {
+  return history.view ? island_bit(history.view->pid) : std::uint8_t{0};
+}
+
 std::uint64_t hash_of(const NodeState& node) {
   const Monitor& m = node.monitor;
   std::uint64_t hash = machine::hash_value(node.state);
   const auto pack = [](std::uint64_t a, std::uint64_t b, std::uint64_t c, std::uint64_t d) {
     return a << 32 | b << 16 | c << 8 | d;
   };
-  hash = mix(hash, pack(m.calls, m.reboots, m.sends, m.requests));
-  hash = mix(hash, pack(m.present_seq, m.heard, m.chosen, m.view));
-  return mix(hash, std::uint64_t{m.on_air} << 8 | m.acked_ever);
+  const History& h = m.history;
+  const auto requests = static_cast<std::uint64_t>(h.requests);
+  hash = mix(hash, pack(m.calls, m.reboots, m.sends, requests));
+  hash = mix(hash, pack(h.present_seq, bits_of(h.offers), bits_of(h.chosen), view_of(h)));
+  return mix(hash, std::uint64_t{m.on_air} << 8 | bits_of(h.acked));
 }
 
 std::string key_of(const machine::Transmit& t) {
@@ -89,7 +105,8 @@ std::vector<SendChoice> Nodes::choices(const machine::State& state, const Monito
     }
     return out;
   }
-  if (monitor.view == 0) return out;
+  const std::uint8_t view = view_of(monitor.history);
+  if (view == 0) return out;
   out.push_back({{local, options_.profile.sink_id}, true});
   for (std::uint16_t m = 0; m < options_.motes; ++m) {
     const auto devid = static_cast<std::uint16_t>(kFirstMoteId + m);
@@ -97,7 +114,7 @@ std::vector<SendChoice> Nodes::choices(const machine::State& state, const Monito
   }
   for (std::uint16_t s = 0; s < options_.sinks; ++s) {
     const auto pid = static_cast<std::uint16_t>(kFirstIsland + s);
-    if (island_bit(options_, pid) == monitor.view) continue;
+    if (island_bit(pid) == view) continue;
     out.push_back({{pid, options_.profile.sink_id}, true});
   }
   out.push_back({{local, machine::kBroadcastDevid}, false});
@@ -130,6 +147,20 @@ machine::Event Nodes::event_of(const machine::State& state, const Monitor& monit
   }
 }
 
+// Lists are never full here, so they are bounded by the motes that there are.
+Noted Nodes::observe(History& history, const machine::State& before, const machine::Event& event,
+                     const machine::Actions& actions, const machine::State& after) const {
+  Noted noted;
+  machine::Config config = before.config;
+  config.profile = options_.profile;
+  explorer::observe(history, {config, before, event, actions, after},
+                    handled_frames(before, event), noted);
+  if (after.sink.members.size() > options_.motes || after.sink.pending.size() > options_.motes) {
+    noted.violated |= bit(Property::kQueuesBounded);
+  }
+  return noted;
+}
+
 // Compares states, frames, and the history of application events.
 bool Nodes::same_as_machine(const NodeState& before, const machine::Event& event,
                             const NodeState& after, const machine::Actions& actions) const {
@@ -144,13 +175,10 @@ bool Nodes::same_as_machine(const NodeState& before, const machine::Event& event
                   actions.transmits().end(), same_frame)) {
     return false;
   }
-  Noted noted;
-  NodeState given = before;
-  observe(honest.monitor, {options_, before.state, event, right, honest.state}, noted);
-  Noted given_noted;
-  observe(given.monitor, {options_, before.state, event, actions, after.state}, given_noted);
-  return honest.monitor == given.monitor && noted.violated == given_noted.violated &&
-         noted.goals == given_noted.goals;
+  History given = before.monitor.history;
+  return observe(honest.monitor.history, before.state, event, right, honest.state) ==
+             observe(given, before.state, event, actions, after.state) &&
+         honest.monitor.history == given;
 }
 
 void Nodes::step(NodeState& node, const machine::Event& event, Outcome& outcome) {
@@ -162,15 +190,22 @@ void Nodes::step(NodeState& node, const machine::Event& event, Outcome& outcome)
     step_acted_ = !same_as_machine(old, event, node, actions);
   }
   const auto* done = std::get_if<machine::SendDone>(&event);
-  if (done != nullptr && done->link == Link::kRadio) node.monitor.on_air = 0;
-  Noted noted;
-  observe(node.monitor, {options_, before, event, actions, node.state}, noted);
+  Monitor& m = node.monitor;
+  if (done != nullptr && done->link == Link::kRadio) m.on_air = 0;
+  if (const auto* called = std::get_if<machine::Called>(&event)) {
+    m.calls += std::holds_alternative<machine::JoinIsland>(called->call);
+    m.sends += std::holds_alternative<machine::Send>(called->call);
+  } else if (std::holds_alternative<machine::Reboot>(event)) {
+    ++m.reboots;
+    m.on_air = 0;
+  }
+  const Noted noted = observe(m.history, before, event, actions, node.state);
   outcome.violated |= noted.violated;
   outcome.goals |= noted.goals;
   for (const machine::Transmit& transmit : actions.transmits()) {
     if (transmit.link != Link::kRadio) continue;
     const FrameId id = intern(transmit);
-    if (transmit.link_ack) node.monitor.on_air = id;
+    if (transmit.link_ack) m.on_air = id;
     if (outcome.frames == Outcome::kFramesMax) {
       outcome.overflow = true;
     } else {
@@ -254,21 +289,23 @@ NodeFacts Nodes::facts_of(const NodeState& node) const {
     if (timer.timer.kind == machine::TimerKind::kJoin) facts.join_timer = true;
     if (timer.timer.kind == machine::TimerKind::kAck) ++facts.ack_timers;
   }
-  facts.may_call = mote && !m.open && m.calls < options_.calls;
+  const bool open = m.history.open_calls > 0;
+  facts.may_call = mote && !open && m.calls < options_.calls;
   facts.may_reboot = mote && m.reboots < options_.reboots;
-  facts.open = m.open;
-  facts.open_sends = m.open_sends != 0;
+  facts.open = open;
+  facts.open_sends = !m.history.sends.empty();
   facts.radio_sending = s.radio.sending;
   facts.serial_sending = s.serial.sending;
   facts.waiting = !s.radio.out.empty() || !s.radio.in.empty() || !s.serial.out.empty() ||
                   !s.serial.in.empty();
   const bool sends = options_.scope == Scope::kFull && m.sends < options_.sends;
   facts.sends = sends ? static_cast<std::uint8_t>(choices(s, m).size()) : std::uint8_t{0};
-  facts.view = m.view;
-  facts.acked_ever = m.acked_ever;
+  facts.view = view_of(m.history);
+  facts.acked_ever = bits_of(m.history.acked);
   for (const machine::Admission& member : s.sink.members) {
-    const int number = mote_number(options_, member.devid);
-    if (number >= 0) facts.listed = static_cast<std::uint8_t>(facts.listed | 1U << number);
+    const int number = static_cast<int>(member.devid) - kFirstMoteId;
+    const bool known = number >= 0 && number < options_.motes;
+    if (known) facts.listed = static_cast<std::uint8_t>(facts.listed | 1U << number);
   }
   facts.reboots = m.reboots;
   facts.on_air = m.on_air;

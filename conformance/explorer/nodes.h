@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "conformance/explorer/chunked.h"
-#include "conformance/explorer/monitor.h"
+#include "conformance/explorer/history.h"
 #include "conformance/explorer/options.h"
 
 namespace rubric::explorer {
@@ -29,6 +29,16 @@ constexpr std::uint32_t kAckTimer = 8;     ///< + index of the awaited message.
 constexpr std::uint32_t kSend = 16;        ///< + which of the messages that the node may send.
 constexpr std::uint32_t kFrame = 32;
 }  // namespace event
+
+/// A node's history, and what it has spent of what may happen to it.
+struct Monitor {
+  std::uint8_t calls = 0;
+  std::uint8_t reboots = 0;
+  std::uint8_t sends = 0;
+  FrameId on_air = 0;  ///< The frame whose link ack the radio awaits; 0: none.
+  History history;
+  friend bool operator==(const Monitor&, const Monitor&) = default;
+};
 
 /// A node's state with its history.
 struct NodeState {
@@ -112,6 +122,8 @@ class Nodes {
   };
   Outcome compute(NodeId node, std::uint32_t what);
   void step(NodeState& node, const machine::Event& event, Outcome& outcome);
+  Noted observe(History& history, const machine::State& before, const machine::Event& event,
+                const machine::Actions& actions, const machine::State& after) const;
   bool same_as_machine(const NodeState& before, const machine::Event& event, const NodeState& after,
                        const machine::Actions& actions) const;
   NodeId intern(const NodeState& node);

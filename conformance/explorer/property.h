@@ -7,7 +7,7 @@
 #include <span>
 #include <string_view>
 
-#include "codec/generated/requirements.h"
+#include "codec/runtime/rule.h"
 
 namespace rubric::explorer {
 

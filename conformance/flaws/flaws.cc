@@ -89,7 +89,7 @@ void ack_wrong_reply(State& state, const Frame& frame, Actions& actions) {
       machine::wire_of(machine::Address{state.join.address.pid, frame.src}),
       machine::wire_of(state.join.address), reply->seq_num(),
       machine::wire_of(state.join.descriptor)};
-  Transmit& transmit = actions.transmit(req::kJ4Ack);
+  Transmit& transmit = actions.transmit("J4-ACK"_rule);
   transmit.link = Link::kRadio;
   transmit.link_ack = true;
   transmit.type = am::kAckJoin;
@@ -115,7 +115,7 @@ void joined_on_link_ack(State& state, Ticks now, const Event& event, Actions& ac
   state.join.phase = Phase::kMember;
   state.join.acked = true;
   state.join.due = 0;
-  actions.notify(machine::Joined{state.join.address, true}, req::kJ5Success);
+  actions.notify(machine::Joined{state.join.address, true}, "J5-SUCCESS"_rule);
 }
 
 void no_fail(State& state, Ticks now, const Event& event, Actions& actions) {
@@ -184,26 +184,26 @@ void misread_acks(State& state, Ticks now, const Event& event, Actions& actions)
 constexpr ReqId kNone = ReqId::kNone;
 constexpr std::array<Flaw, 10> kFlaws{{
     {"accepts_wrong_seq", "A mote that is joining accepts a reply with any sequence number.",
-     {req::kJ4Seq, req::kJ5Accept, kNone}, Seen::kJoin, accepts_wrong_seq},
+     {"J4-SEQ"_rule, "J5-ACCEPT"_rule, kNone}, Seen::kJoin, accepts_wrong_seq},
     {"one_pending_seq", "A sink remembers one request, the newest of all motes.",
-     {req::kJ9Interleave, req::kJ6Add, kNone}, Seen::kJoin, one_pending_seq},
+     {"J9-INTERLEAVE"_rule, "J6-ADD"_rule, kNone}, Seen::kJoin, one_pending_seq},
     {"joined_on_link_ack",
      "A mote acks a reply with a wrong number, and is joined when the radio confirms that.",
-     {req::kJ5Accept, req::kJ4Seq, req::kJ4Content}, Seen::kJoin, joined_on_link_ack},
+     {"J5-ACCEPT"_rule, "J4-SEQ"_rule, "J4-CONTENT"_rule}, Seen::kJoin, joined_on_link_ack},
     {"no_fail", "A mote that has sent its last request says nothing when the timer expires.",
-     {req::kJ8Fail, req::kJ5Once, kNone}, Seen::kJoin, no_fail},
+     {"J8-FAIL"_rule, "J5-ONCE"_rule, kNone}, Seen::kJoin, no_fail},
     {"seven_requests", "A mote sends two join_requests more than it may.",
-     {req::kJ8Limit, req::kJ8Fail, kNone}, Seen::kJoin, seven_requests},
+     {"J8-LIMIT"_rule, "J8-FAIL"_rule, kNone}, Seen::kJoin, seven_requests},
     {"acks_wrong_seq", "A mote sends ack_join for a reply with a wrong number, and goes on.",
-     {req::kJ4Seq, req::kJ4Content, kNone}, Seen::kJoin, acks_wrong_seq},
+     {"J4-SEQ"_rule, "J4-CONTENT"_rule, kNone}, Seen::kJoin, acks_wrong_seq},
     {"answers_members", "A sink answers requests of motes that it lists.",
-     {req::kJ2Listed, kNone, kNone}, Seen::kJoin, answers_members},
+     {"J2-LISTED"_rule, kNone, kNone}, Seen::kJoin, answers_members},
     {"no_ack_timeout", "A reliable message whose ack does not come stays open for ever.",
-     {req::kT3Timeout, req::kT3Once, kNone}, Seen::kMessages, no_ack_timeout},
+     {"T3-TIMEOUT"_rule, "T3-ONCE"_rule, kNone}, Seen::kMessages, no_ack_timeout},
     {"misread_acks", "The receiver of an ack reads its sequence number in the wrong byte order.",
-     {req::kT3Success, kNone, kNone}, Seen::kMessages, misread_acks},
+     {"T3-SUCCESS"_rule, kNone, kNone}, Seen::kMessages, misread_acks},
     {"time_of_boot", "A sink's cur_time is the time at which it booted.",
-     {req::kJ3Time, kNone, kNone}, Seen::kTime, time_of_boot},
+     {"J3-TIME"_rule, kNone, kNone}, Seen::kTime, time_of_boot},
 }};
 
 }  // namespace

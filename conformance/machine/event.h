@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <variant>
 
-#include "codec/generated/requirements.h"
+#include "codec/runtime/rule.h"
 #include "codec/runtime/bytes.h"
 #include "conformance/machine/address.h"
 #include "conformance/machine/profile.h"

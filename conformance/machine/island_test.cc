@@ -11,18 +11,18 @@ TEST(IslandId, SinkTakesItAndForgetsMembers) {
   list_member(sink, 5);
   sink.hear(join_request(6, 7, kDescriptor)).done();
   sink.hear(set_island_id(kOther));
-  EXPECT_EQ(sink.labels(), (std::vector{followed(req::kN9Set), followed(req::kN9Members)}));
+  EXPECT_EQ(sink.labels(), (std::vector{followed("N9-SET"_rule), followed("N9-MEMBERS"_rule)}));
   EXPECT_TRUE(sink.state.sink.members.empty());
   EXPECT_TRUE(sink.state.sink.pending.empty());
   EXPECT_EQ(own_address(sink.state), (Address{kOther, 1}));
   sink.hear(ack_join({kOther, 1}, {kOther, 6}, 7, kDescriptor));
-  EXPECT_EQ(sink.labels(), (std::vector{ignored(req::kJ6Seq)}));
+  EXPECT_EQ(sink.labels(), (std::vector{ignored("J6-SEQ"_rule)}));
 }
 
 TEST(IslandId, SameIslandKeepsMembers) {
   Device sink(sink_config());
   list_member(sink, 5);
-  EXPECT_EQ(sink.hear(set_island_id(kIsland)).labels(), (std::vector{followed(req::kN9Set)}));
+  EXPECT_EQ(sink.hear(set_island_id(kIsland)).labels(), (std::vector{followed("N9-SET"_rule)}));
   EXPECT_NE(find_member(sink.state.sink, 5), nullptr);
 }
 
@@ -42,11 +42,11 @@ TEST(IslandId, N9Other_OtherConfigChangesNothing) {
   for (int code = 0; code < 256; ++code) {
     if (code == 10) continue;
     sink.hear(config(static_cast<std::uint8_t>(code), kOther));
-    EXPECT_EQ(sink.labels(), (std::vector{ignored(req::kN9Other)}));
+    EXPECT_EQ(sink.labels(), (std::vector{ignored("N9-OTHER"_rule)}));
   }
   OwnFrame cut = set_island_id(kOther);
   cut.payload.pop_back();
-  EXPECT_EQ(sink.hear(cut).labels(), (std::vector{ignored(req::kWireConfig)}));
+  EXPECT_EQ(sink.hear(cut).labels(), (std::vector{ignored("WIRE-CONFIG"_rule)}));
   EXPECT_EQ(sink.state, before);
 }
 
@@ -56,16 +56,16 @@ TEST(IslandId, N9Other_ReservedIslandsAreNotTaken) {
     Device sink(sink_config());
     list_member(sink, 5);
     const State before = sink.state;
-    EXPECT_EQ(sink.hear(set_island_id(island)).labels(), (std::vector{ignored(req::kN9Other)}));
+    EXPECT_EQ(sink.hear(set_island_id(island)).labels(), (std::vector{ignored("N9-OTHER"_rule)}));
     EXPECT_EQ(sink.state, before);
     Device base(base_config());
     base.call(SetIslandId{island});
-    EXPECT_EQ(base.labels(), (std::vector{told(req::kN9Other)}));
+    EXPECT_EQ(base.labels(), (std::vector{told("N9-OTHER"_rule)}));
     EXPECT_FALSE(base.notice<OperationResult>().success);
     EXPECT_EQ(base.state.island, kIsland);
   }
   Device sink(sink_config());
-  EXPECT_EQ(sink.hear(set_island_id(0xFFFC)).labels()[0], followed(req::kN9Set));
+  EXPECT_EQ(sink.hear(set_island_id(0xFFFC)).labels()[0], followed("N9-SET"_rule));
 }
 
 TEST(IslandId, BaseStationTellsItsSink) {

@@ -55,7 +55,7 @@ TEST_F(MoteJoin, J4_AcceptsMatchingReply) {
   call();
   now_ += 20;
   EXPECT_EQ(reply(), JoinSend::kAck);
-  EXPECT_EQ(told_by(), req::kJ5Success);
+  EXPECT_EQ(told_by(), "J5-SUCCESS"_rule);
   EXPECT_EQ(told().address, kOffer);
   EXPECT_TRUE(told().success);
   EXPECT_EQ(join_.phase, Phase::kMember);
@@ -70,14 +70,14 @@ TEST_F(MoteJoin, J4Seq_IgnoresEveryOtherNumber) {
   for (std::uint32_t seq_num = 0; seq_num <= 0xFFFF; ++seq_num) {
     if (seq_num == 100) continue;
     ASSERT_EQ(reply(static_cast<std::uint16_t>(seq_num)), JoinSend::kNone);
-    ASSERT_EQ(ignored_by(), req::kJ4Seq);
+    ASSERT_EQ(ignored_by(), "J4-SEQ"_rule);
     ASSERT_EQ(join_, before);
   }
 }
 
 TEST_F(MoteJoin, J4Joined_IgnoresReplyWithoutRequest) {
   EXPECT_EQ(reply(), JoinSend::kNone);
-  EXPECT_EQ(ignored_by(), req::kJ4Joined);
+  EXPECT_EQ(ignored_by(), "J4-JOINED"_rule);
   EXPECT_EQ(join_, JoinMote{});
 }
 
@@ -86,7 +86,7 @@ TEST_F(MoteJoin, J4Joined_IgnoresRepeatedReply) {
   reply();
   const JoinMote before = join_;
   EXPECT_EQ(reply(), JoinSend::kNone);
-  EXPECT_EQ(ignored_by(), req::kJ4Joined);
+  EXPECT_EQ(ignored_by(), "J4-JOINED"_rule);
   EXPECT_EQ(join_, before);
 }
 
@@ -95,7 +95,7 @@ TEST_F(MoteJoin, J7Choice_IgnoresSecondSink) {
   reply();
   const JoinMote before = join_;
   EXPECT_EQ(reply(100, {kOther, 5}), JoinSend::kNone);
-  EXPECT_EQ(ignored_by(), req::kJ7Choice);
+  EXPECT_EQ(ignored_by(), "J7-CHOICE"_rule);
   EXPECT_EQ(join_, before);
 }
 
@@ -109,11 +109,11 @@ TEST_F(MoteJoin, J8_FiveRequestsThenFail) {
   }
   EXPECT_EQ(timer(), JoinSend::kNone);
   EXPECT_EQ(now_, 1000U + 5 * 500);
-  EXPECT_EQ(told_by(), req::kJ8Fail);
+  EXPECT_EQ(told_by(), "J8-FAIL"_rule);
   EXPECT_FALSE(told().success);
   EXPECT_EQ(join_.phase, Phase::kOutside);
   EXPECT_EQ(reply(), JoinSend::kNone);
-  EXPECT_EQ(ignored_by(), req::kJ4Joined);
+  EXPECT_EQ(ignored_by(), "J4-JOINED"_rule);
 }
 
 TEST_F(MoteJoin, J8_DeployedSendsSevenAndSaysNothing) {
@@ -122,7 +122,7 @@ TEST_F(MoteJoin, J8_DeployedSendsSevenAndSaysNothing) {
   call();
   for (int i = 0; i < 6; ++i) EXPECT_EQ(timer(), JoinSend::kRequest);
   EXPECT_EQ(timer(), JoinSend::kNone);
-  EXPECT_EQ(rule(Action::What::kFollowed), req::kJ8Limit);
+  EXPECT_EQ(rule(Action::What::kFollowed), "J8-LIMIT"_rule);
   EXPECT_EQ(join_.phase, Phase::kOutside);
 }
 
@@ -133,7 +133,7 @@ TEST_F(MoteJoin, J5Stop_TimerAfterAcceptanceDoesNothing) {
   now_ += 500;
   clear();
   EXPECT_EQ(join_timer(join_, context(), actions_), JoinSend::kNone);
-  EXPECT_EQ(ignored_by(), req::kJ5Stop);
+  EXPECT_EQ(ignored_by(), "J5-STOP"_rule);
   EXPECT_EQ(join_, before);
 }
 
@@ -142,7 +142,7 @@ TEST_F(MoteJoin, J8Joined_CallOfMemberFailsAtOnce) {
   reply();
   const JoinMote before = join_;
   EXPECT_EQ(call(101), JoinSend::kNone);
-  EXPECT_EQ(told_by(), req::kJ8Joined);
+  EXPECT_EQ(told_by(), "J8-JOINED"_rule);
   EXPECT_FALSE(told().success);
   EXPECT_EQ(join_, before);
 }
@@ -151,7 +151,7 @@ TEST_F(MoteJoin, J5Once_CallWhileJoiningEndsAtOnceAndDisturbsNothing) {
   call();
   const JoinMote before = join_;
   EXPECT_EQ(call(101), JoinSend::kNone);
-  EXPECT_EQ(told_by(), req::kJ5Once);
+  EXPECT_EQ(told_by(), "J5-ONCE"_rule);
   EXPECT_FALSE(told().success);
   EXPECT_EQ(join_, before);
 }
@@ -171,7 +171,7 @@ TEST_F(MoteJoin, J4Few_FiveInAll) {
   reply();
   for (int i = 0; i < 4; ++i) EXPECT_EQ(sent(false), JoinSend::kAck);
   EXPECT_EQ(sent(false), JoinSend::kNone);
-  EXPECT_EQ(rule(Action::What::kFollowed), req::kJ4Few);
+  EXPECT_EQ(rule(Action::What::kFollowed), "J4-FEW"_rule);
   EXPECT_EQ(join_.acks, 5);
   EXPECT_EQ(join_.phase, Phase::kMember);
 }
@@ -183,7 +183,7 @@ TEST_F(MoteJoin, J4Repeat_NotAfterThePeriod) {
   EXPECT_EQ(sent(false), JoinSend::kAck);
   now_ += 1;
   EXPECT_EQ(sent(false), JoinSend::kNone);
-  EXPECT_EQ(rule(Action::What::kFollowed), req::kJ4Repeat);
+  EXPECT_EQ(rule(Action::What::kFollowed), "J4-REPEAT"_rule);
 }
 
 class SinkJoin : public testing::Test {
@@ -224,7 +224,7 @@ TEST_F(SinkJoin, J3J6_RequestThenAck) {
   EXPECT_EQ(find_pending(sink_, 5), nullptr);
   EXPECT_EQ(*find_member(sink_, 5), (Admission{5, 100, what}));
   ASSERT_EQ(actions_.all().size(), 1U);
-  EXPECT_EQ(actions_.all()[0].requirement, req::kJ6Add);
+  EXPECT_EQ(actions_.all()[0].requirement, "J6-ADD"_rule);
   const auto told = std::get<MoteJoined>(actions_.notices()[0]);
   EXPECT_EQ(told.address, (Address{kIsland, 5}));
   EXPECT_EQ(told.descriptor, what);
@@ -232,7 +232,7 @@ TEST_F(SinkJoin, J3J6_RequestThenAck) {
 
 TEST_F(SinkJoin, J6Seq_AckWithoutRequest) {
   EXPECT_FALSE(ack(5, 100));
-  EXPECT_EQ(ignored_by(), req::kJ6Seq);
+  EXPECT_EQ(ignored_by(), "J6-SEQ"_rule);
   EXPECT_TRUE(sink_.members.empty());
 }
 
@@ -241,7 +241,7 @@ TEST_F(SinkJoin, J6Seq_OnlyTheNumberStoredLast) {
   request(5, 101);
   EXPECT_EQ(sink_.pending.size(), 1U);
   EXPECT_FALSE(ack(5, 100));
-  EXPECT_EQ(ignored_by(), req::kJ6Seq);
+  EXPECT_EQ(ignored_by(), "J6-SEQ"_rule);
   EXPECT_TRUE(ack(5, 101));
 }
 
@@ -249,7 +249,7 @@ TEST_F(SinkJoin, J6Island_AckForAnotherIsland) {
   request(5, 100);
   const JoinSink before = sink_;
   EXPECT_FALSE(ack(5, 100, kOther));
-  EXPECT_EQ(ignored_by(), req::kJ6Island);
+  EXPECT_EQ(ignored_by(), "J6-ISLAND"_rule);
   EXPECT_EQ(sink_, before);
 }
 
@@ -257,9 +257,9 @@ TEST_F(SinkJoin, J6Repeat_RepeatedAckChangesNothing) {
   join(5, 100);
   const JoinSink before = sink_;
   EXPECT_FALSE(ack(5, 100));
-  EXPECT_EQ(ignored_by(), req::kJ6Repeat);
+  EXPECT_EQ(ignored_by(), "J6-REPEAT"_rule);
   EXPECT_FALSE(ack(5, 101));
-  EXPECT_EQ(ignored_by(), req::kJ6Seq);
+  EXPECT_EQ(ignored_by(), "J6-SEQ"_rule);
   EXPECT_EQ(sink_, before);
 }
 
@@ -267,7 +267,7 @@ TEST_F(SinkJoin, J2_ListedMoteIsIgnored) {
   join(5, 100);
   const JoinSink before = sink_;
   EXPECT_FALSE(request(5, 101));
-  EXPECT_EQ(ignored_by(), req::kJ2Listed);
+  EXPECT_EQ(ignored_by(), "J2-LISTED"_rule);
   EXPECT_EQ(sink_, before);
 }
 
@@ -281,7 +281,7 @@ TEST_F(SinkJoin, J2_DeployedAnswersAndCountsANewJoin) {
   EXPECT_EQ(sink_.members.size(), 1U);
   EXPECT_EQ(*find_member(sink_, 5), (Admission{5, 101, other}));
   EXPECT_FALSE(ack(5, 101));
-  EXPECT_EQ(ignored_by(), req::kJ6Repeat);
+  EXPECT_EQ(ignored_by(), "J6-REPEAT"_rule);
 }
 
 TEST_F(SinkJoin, J9_AnyInterleavingOfTwoJoins) {
@@ -306,7 +306,7 @@ TEST_F(SinkJoin, J3Full_NoAnswerWhenTwentyAreListed) {
   EXPECT_EQ(sink_.members.size(), 20U);
   const JoinSink before = sink_;
   EXPECT_FALSE(request(40, 1));
-  EXPECT_EQ(ignored_by(), req::kJ3Full);
+  EXPECT_EQ(ignored_by(), "J3-FULL"_rule);
   EXPECT_EQ(sink_, before);
 }
 
@@ -317,7 +317,7 @@ TEST_F(SinkJoin, J3Overwrite_LateAckFindsNoPlace) {
   EXPECT_TRUE(request(4, 4));
   EXPECT_TRUE(ack(4, 4));
   EXPECT_FALSE(ack(3, 3));
-  EXPECT_EQ(ignored_by(), req::kJ3Overwrite);
+  EXPECT_EQ(ignored_by(), "J3-OVERWRITE"_rule);
   EXPECT_NE(find_member(sink_, 2), nullptr);
   EXPECT_NE(find_member(sink_, 4), nullptr);
   EXPECT_EQ(find_member(sink_, 3), nullptr);

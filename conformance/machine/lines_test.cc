@@ -36,11 +36,11 @@ TEST(Outgoing, N2_WaitsWhileSendingAndLeavesInOrder) {
   mote.call(message(1));
   for (std::uint8_t mark = 2; mark <= 5; ++mark) {
     mote.call(message(mark));
-    EXPECT_EQ(mote.labels(), (std::vector{followed(req::kN2Queue), told(req::kN1Seq)}));
+    EXPECT_EQ(mote.labels(), (std::vector{followed("N2-QUEUE"_rule), told("N1-SEQ"_rule)}));
   }
   for (std::uint8_t mark = 2; mark <= 5; ++mark) {
     mote.done();
-    EXPECT_EQ(mote.labels(), (std::vector{sent(req::kN4Mote), followed(req::kN2Order)}));
+    EXPECT_EQ(mote.labels(), (std::vector{sent("N4-MOTE"_rule), followed("N2-ORDER"_rule)}));
     EXPECT_EQ(mark_of(mote.only_frame()), mark);
   }
   EXPECT_TRUE(mote.done().silent());
@@ -51,7 +51,7 @@ TEST(Outgoing, N1Full_FifthThatWaitsIsRefused) {
   for (std::uint8_t mark = 1; mark <= 5; ++mark) mote.call(message(mark));
   const State before = mote.state;
   mote.call(message(6));
-  EXPECT_EQ(mote.labels(), (std::vector{told(req::kN1Full)}));
+  EXPECT_EQ(mote.labels(), (std::vector{told("N1-FULL"_rule)}));
   EXPECT_EQ(mote.notice<SendResult>().seq_num, kNoSeq);
   EXPECT_EQ(mote.state, before);
   mote.done();
@@ -67,7 +67,7 @@ TEST(Outgoing, SerialHoldsTwo) {
     EXPECT_NE(base.call(message(1)).notice<SendResult>().seq_num, kNoSeq);
   }
   EXPECT_EQ(base.call(message(1)).notice<SendResult>().seq_num, kNoSeq);
-  EXPECT_EQ(base.labels(), (std::vector{told(req::kN1Full)}));
+  EXPECT_EQ(base.labels(), (std::vector{told("N1-FULL"_rule)}));
   EXPECT_FALSE(base.call(SetIslandId{12}).notice<OperationResult>().success);
   EXPECT_EQ(base.state.island, kIsland);
 }
@@ -88,7 +88,7 @@ TEST(Outgoing, ForwardThatFindsNoPlaceIsLostAndSaidSo) {
   up.payload = net_msg({{kIsland, kNullDevid}, {kIsland, 5}});
   for (int i = 0; i < 3; ++i) sink.hear(up);
   const State before = sink.state;
-  EXPECT_EQ(sink.hear(up).labels(), (std::vector{ignored(req::kN1Full)}));
+  EXPECT_EQ(sink.hear(up).labels(), (std::vector{ignored("N1-FULL"_rule)}));
   EXPECT_EQ(sink.state, before);
 }
 
@@ -97,7 +97,7 @@ TEST(Outgoing, J6Report_WaitsUntilTheLineIsOn) {
   sink.call(SetInterface{Link::kSerial, false});
   sink.hear(join_request(5, 100, kDescriptor)).done();
   sink.hear(ack_join({kIsland, 1}, {kIsland, 5}, 100, kDescriptor));
-  EXPECT_EQ(sink.labels(), (std::vector{told(req::kJ6Add), followed(req::kJ6Report)}));
+  EXPECT_EQ(sink.labels(), (std::vector{told("J6-ADD"_rule), followed("J6-REPORT"_rule)}));
   EXPECT_NE(find_member(sink.state.sink, 5), nullptr);
   sink.call(SetInterface{Link::kSerial, true});
   EXPECT_EQ(sink.only_frame().type, am::kNet);
@@ -113,9 +113,9 @@ TEST(Outgoing, J6Report_WaitsForRoomAndIsMadeOnce) {
   for (const std::uint16_t devid : kMotes) {
     sink.hear(join_request(devid, 100, kDescriptor)).done();
     sink.hear(ack_join({kIsland, 1}, {kIsland, devid}, 100, kDescriptor));
-    EXPECT_EQ(sink.labels(), (std::vector{told(req::kJ6Add), followed(req::kJ6Report)}));
+    EXPECT_EQ(sink.labels(), (std::vector{told("J6-ADD"_rule), followed("J6-REPORT"_rule)}));
     sink.hear(ack_join({kIsland, 1}, {kIsland, devid}, 100, kDescriptor));
-    EXPECT_EQ(sink.labels(), (std::vector{ignored(req::kJ6Repeat)}));
+    EXPECT_EQ(sink.labels(), (std::vector{ignored("J6-REPEAT"_rule)}));
   }
   std::vector<std::uint16_t> reported;
   for (int i = 0; i < 4; ++i) {
@@ -152,7 +152,7 @@ TEST(Outgoing, T3Timeout_WaitingForTheRadioDoesNotCount) {
   EXPECT_TRUE(timers(mote.state).empty());
   mote.now = 1100;
   mote.step(TimerDue{{TimerKind::kAck, 0}});
-  EXPECT_EQ(mote.labels(), (std::vector{ignored(req::kT3Once)}));
+  EXPECT_EQ(mote.labels(), (std::vector{ignored("T3-ONCE"_rule)}));
   mote.now = 5000;
   EXPECT_EQ(mote.step(LinkBusy{Link::kRadio, false}).only_frame().type, am::kNet);
   ASSERT_EQ(timers(mote.state).size(), 1U);
@@ -193,12 +193,12 @@ TEST(Incoming, N2InOrder_WaitsWhileTheApplicationIsBusy) {
   Device mote = member(5);
   mote.step(AppBusy{true});
   for (std::uint8_t mark = 1; mark <= 4; ++mark) {
-    EXPECT_EQ(mote.hear(heard(mark)).labels(), (std::vector{followed(req::kN2InOrder)}));
+    EXPECT_EQ(mote.hear(heard(mark)).labels(), (std::vector{followed("N2-IN-ORDER"_rule)}));
   }
-  EXPECT_EQ(mote.hear(heard(5)).labels(), (std::vector{ignored(req::kN2InFull)}));
+  EXPECT_EQ(mote.hear(heard(5)).labels(), (std::vector{ignored("N2-IN-FULL"_rule)}));
   mote.step(AppBusy{false});
   EXPECT_EQ(received(mote), (std::vector<std::uint8_t>{1, 2, 3, 4}));
-  EXPECT_EQ(mote.labels()[0], followed(req::kN2InOrder));
+  EXPECT_EQ(mote.labels()[0], followed("N2-IN-ORDER"_rule));
   EXPECT_EQ(received(mote.hear(heard(6))), (std::vector<std::uint8_t>{6}));
 }
 
@@ -206,9 +206,9 @@ TEST(Incoming, OrderHoldsAcrossTheLinesOfASink) {
   Device sink(sink_config());
   sink.step(AppBusy{true});
   sink.hear(heard_on_serial(1)).hear(heard(2, 1)).hear(heard(3, 1)).hear(heard_on_serial(4));
-  EXPECT_EQ(sink.hear(heard_on_serial(9)).labels(), (std::vector{ignored(req::kN2InFull)}));
+  EXPECT_EQ(sink.hear(heard_on_serial(9)).labels(), (std::vector{ignored("N2-IN-FULL"_rule)}));
   sink.hear(heard(5, 1)).hear(heard(6, 1));
-  EXPECT_EQ(sink.hear(heard(9, 1)).labels(), (std::vector{ignored(req::kN2InFull)}));
+  EXPECT_EQ(sink.hear(heard(9, 1)).labels(), (std::vector{ignored("N2-IN-FULL"_rule)}));
   sink.step(AppBusy{false});
   EXPECT_EQ(received(sink), (std::vector<std::uint8_t>{1, 2, 3, 4, 5, 6}));
 }
@@ -237,11 +237,11 @@ TEST(Control, N10_OffSendsAndHearsNothing) {
   EXPECT_TRUE(mote.call(SetInterface{Link::kRadio, false}).notice<OperationResult>().success);
   EXPECT_FALSE(mote.call(GetInterface{Link::kRadio}).notice<InterfaceState>().on);
   EXPECT_TRUE(mote.call(GetInterface{Link::kSerial}).notice<InterfaceState>().on);
-  EXPECT_EQ(mote.call(message(1)).labels(), (std::vector{told(req::kN10Off)}));
+  EXPECT_EQ(mote.call(message(1)).labels(), (std::vector{told("N10-OFF"_rule)}));
   EXPECT_EQ(mote.notice<SendResult>().seq_num, kNoSeq);
-  EXPECT_EQ(mote.hear(heard(1)).labels(), (std::vector{ignored(req::kN10Off)}));
+  EXPECT_EQ(mote.hear(heard(1)).labels(), (std::vector{ignored("N10-OFF"_rule)}));
   mote.call(SetInterface{Link::kRadio, true});
-  EXPECT_EQ(mote.labels(), (std::vector{told(req::kN10On)}));
+  EXPECT_EQ(mote.labels(), (std::vector{told("N10-ON"_rule)}));
   EXPECT_EQ(received(mote.hear(heard(2))), (std::vector<std::uint8_t>{2}));
   EXPECT_EQ(mark_of(mote.call(message(3)).only_frame()), 3);
 }
@@ -258,7 +258,7 @@ TEST(Control, WhatWaitedLeavesWhenSwitchedOn) {
 TEST(Control, JoinWithTheRadioOffFailsInTheEnd) {
   Device mote(mote_config(5));
   mote.call(SetInterface{Link::kRadio, false});
-  EXPECT_EQ(mote.call(JoinIsland{kDescriptor}).labels(), (std::vector{ignored(req::kN10Off)}));
+  EXPECT_EQ(mote.call(JoinIsland{kDescriptor}).labels(), (std::vector{ignored("N10-OFF"_rule)}));
   for (int i = 0; i < 5; ++i) mote.join_timer();
   EXPECT_FALSE(mote.notice<Joined>().success);
 }
@@ -298,7 +298,7 @@ TEST(Outgoing, J4_NoRequestOutstandingBeforeItLeaves) {
   mote.call(JoinIsland{kDescriptor});
   const std::uint16_t seq_num = mote.state.join.seq_num;
   mote.hear(join_reply(5, {kIsland, 5}, 0, seq_num));
-  EXPECT_EQ(mote.labels(), std::vector{ignored(req::kJ4Joined)});
+  EXPECT_EQ(mote.labels(), std::vector{ignored("J4-JOINED"_rule)});
   mote.step(LinkBusy{Link::kRadio, false}).done();
   mote.hear(join_reply(5, {kIsland, 5}, 0, seq_num));
   EXPECT_TRUE(mote.notice<Joined>().success);

@@ -20,8 +20,8 @@ OwnFrame on_peis(std::uint16_t island, const NetFields& fields) {
 TEST(Send, N1_MoteToMote) {
   Device mote = member(5);
   mote.call(Send{{kLocalPid, 6}, 10, false, kOpenDoor});
-  EXPECT_EQ(mote.labels(), (std::vector{followed(req::kN3Local), sent(req::kN4Mote),
-                                        told(req::kN1Seq)}));
+  EXPECT_EQ(mote.labels(), (std::vector{followed("N3-LOCAL"_rule), sent("N4-MOTE"_rule),
+                                        told("N1-SEQ"_rule)}));
   EXPECT_EQ(mote.only_frame().dest, 6);
   EXPECT_EQ(mote.only_frame().src, 5);
   EXPECT_EQ(mote.only_payload(),
@@ -52,7 +52,7 @@ TEST(Send, LargestGoesAndLargerIsRefused) {
   mote.call(Send{{kIsland, 6}, 10, false, {data.data(), 101}});
   EXPECT_TRUE(mote.actions.transmits().empty());
   EXPECT_EQ(mote.notice<SendResult>().seq_num, kNoSeq);
-  EXPECT_EQ(mote.labels(), (std::vector{told(req::kN1Size)}));
+  EXPECT_EQ(mote.labels(), (std::vector{told("N1-SIZE"_rule)}));
   mote.call(Send{{kIsland, 6}, 10, false, {data.data(), 100}});
   EXPECT_EQ(mote.only_payload().size(), 114U);
 }
@@ -64,7 +64,7 @@ TEST(Send, N4Self_IsRefusedByEveryRole) {
     for (const std::uint16_t pid : {kIsland, kLocalPid}) {
       for (const std::uint16_t devid : {own, kLocalDevid}) {
         node.call(Send{{pid, devid}, 10, true, kOpenDoor});
-        EXPECT_EQ(node.labels(), (std::vector{told(req::kN4Self)}));
+        EXPECT_EQ(node.labels(), (std::vector{told("N4-SELF"_rule)}));
         EXPECT_EQ(node.notice<SendResult>().seq_num, kNoSeq);
         EXPECT_EQ(node.state, before);
       }
@@ -77,11 +77,11 @@ TEST(Send, N4Self_IsRefusedByEveryRole) {
 TEST(Send, J11_NoMemberNoMessage) {
   Device mote(mote_config(5));
   mote.call(Send{{kIsland, 6}, 10, false, {}});
-  EXPECT_EQ(mote.labels(), (std::vector{told(req::kJ11Send)}));
+  EXPECT_EQ(mote.labels(), (std::vector{told("J11-SEND"_rule)}));
   EXPECT_EQ(mote.notice<SendResult>().seq_num, kNoSeq);
   mote.call(JoinIsland{kDescriptor}).done();
   EXPECT_EQ(mote.call(Send{{kIsland, 6}, 10, false, {}}).labels(),
-            (std::vector{told(req::kJ11Send)}));
+            (std::vector{told("J11-SEND"_rule)}));
 }
 
 TEST(Send, T4_EightAwaitedAndTheNinthRefused) {
@@ -118,8 +118,8 @@ TEST(Send, WithoutAckTimeoutTheOldestIsGivenUp) {
 TEST(Receive, DeliversWithoutTheHeaders) {
   Device mote = member(5);
   mote.hear(on_radio(5, {{kIsland, 5}, {kIsland, 6}}));
-  EXPECT_EQ(mote.labels(), (std::vector{followed(req::kN5Deliver), told(req::kT1Deliver),
-                                        followed(req::kT2Unreliable)}));
+  EXPECT_EQ(mote.labels(), (std::vector{followed("N5-DELIVER"_rule), told("T1-DELIVER"_rule),
+                                        followed("T2-UNRELIABLE"_rule)}));
   const auto got = mote.notice<Received>();
   EXPECT_EQ(got.src, (Address{kIsland, 6}));
   EXPECT_EQ(got.app_id, 10);
@@ -131,8 +131,8 @@ TEST(Receive, T2_ReliableIsDeliveredAndAckedEachTime) {
   Device mote = member(5);
   for (int i = 0; i < 2; ++i) {
     mote.hear(on_radio(5, {{kIsland, 5}, {kIsland, kNullDevid}, true, 0x4321}));
-    EXPECT_EQ(mote.labels(), (std::vector{followed(req::kN5Deliver), told(req::kT2Deliver),
-                                          sent(req::kT2Ack)}));
+    EXPECT_EQ(mote.labels(), (std::vector{followed("N5-DELIVER"_rule), told("T2-DELIVER"_rule),
+                                          sent("T2-ACK"_rule)}));
     const auto ack = rubicon::NetMsgView::parse(mote.only_frame().bytes());
     ASSERT_TRUE(ack);
     EXPECT_EQ(mote.only_frame().dest, 1);  // The sink leads to the PC.
@@ -147,8 +147,8 @@ TEST(Receive, T2_ReliableIsDeliveredAndAckedEachTime) {
 TEST(Receive, T2_BroadcastIsDeliveredAndNotAcked) {
   Device mote = member(5);
   mote.hear(on_radio(kAmBroadcast, {{kIsland, kBroadcastDevid}, {kIsland, 6}, true}));
-  EXPECT_EQ(mote.labels(), (std::vector{followed(req::kN5Deliver), told(req::kT2Deliver),
-                                        followed(req::kT2Broadcast)}));
+  EXPECT_EQ(mote.labels(), (std::vector{followed("N5-DELIVER"_rule), told("T2-DELIVER"_rule),
+                                        followed("T2-BROADCAST"_rule)}));
 }
 
 // A sink delivers by its devid what came by serial for another island's sink; it does not ack it.
@@ -166,7 +166,7 @@ TEST(Receive, N4Self_NoAckToItself) {
   Device mote = member(5);
   mote.hear(on_radio(5, {{kIsland, 5}, {kIsland, 5}, true}));
   EXPECT_TRUE(mote.actions.transmits().empty());
-  EXPECT_EQ(mote.labels().back(), ignored(req::kN4Self));
+  EXPECT_EQ(mote.labels().back(), ignored("N4-SELF"_rule));
 }
 
 TEST(Receive, T1_UnknownIsDropped) {
@@ -175,7 +175,7 @@ TEST(Receive, T1_UnknownIsDropped) {
   for (const Payload& payload : kUnknown) {
     mote.hear(on_radio(5, {{kIsland, 5}, {kIsland, 6}, true, 1, payload}));
     EXPECT_EQ(mote.labels(),
-              (std::vector{followed(req::kN5Deliver), ignored(req::kT1Unknown)}));
+              (std::vector{followed("N5-DELIVER"_rule), ignored("T1-UNKNOWN"_rule)}));
   }
 }
 
@@ -191,24 +191,24 @@ TEST(Receive, T3_AckEndsTheMessageItNames) {
   EXPECT_EQ(mote.notice<AckReceived>().seq_num, first);
   EXPECT_EQ(mote.state.awaited.size(), 1U);
   EXPECT_EQ(mote.hear(ack).labels(),
-            (std::vector{followed(req::kN5Deliver), ignored(req::kT3Match)}));
+            (std::vector{followed("N5-DELIVER"_rule), ignored("T3-MATCH"_rule)}));
 }
 
 TEST(Receive, T2Loop_ReliableAckIsNotAcked) {
   Device mote = member(5);
   mote.hear(on_radio(5, {{kIsland, 5}, {kIsland, 6}, true, 9, {9, 10, 23, 0, 77, 0}}));
   EXPECT_TRUE(mote.silent());
-  EXPECT_EQ(mote.labels(), (std::vector{followed(req::kN5Deliver), ignored(req::kT3Match),
-                                        followed(req::kT2Loop)}));
+  EXPECT_EQ(mote.labels(), (std::vector{followed("N5-DELIVER"_rule), ignored("T3-MATCH"_rule),
+                                        followed("T2-LOOP"_rule)}));
   mote.hear(on_radio(5, {{kIsland, 5}, {kIsland, 6}, false, 9, {9, 10, 23}}));
   EXPECT_EQ(mote.labels(),
-            (std::vector{followed(req::kN5Deliver), ignored(req::kWireRubiconAck)}));
+            (std::vector{followed("N5-DELIVER"_rule), ignored("WIRE-RUBICON-ACK"_rule)}));
 }
 
 TEST(Receive, J11Hear_NotBeforeJoining) {
   Device mote(mote_config(5));
   mote.hear(on_radio(5, {{kIsland, 5}, {kIsland, 6}, true}));
-  EXPECT_EQ(mote.labels(), (std::vector{ignored(req::kJ11Hear)}));
+  EXPECT_EQ(mote.labels(), (std::vector{ignored("J11-HEAR"_rule)}));
 }
 
 TEST(Receive, N11_MalformedIsDroppedAndTheNextIsHandled) {
@@ -219,15 +219,15 @@ TEST(Receive, N11_MalformedIsDroppedAndTheNextIsHandled) {
     std::size_t size;
     ReqId rule;
   };
-  const Case kCases[] = {{"Nbytes1", 11, 1, 15, req::kN11Nbytes},
-                         {"Nbytes0", 11, 0, 15, req::kN11Nbytes},
-                         {"Nbytes103", 11, 103, 114, req::kN11Nbytes},
-                         {"Nbytes255", 11, 255, 114, req::kN11Nbytes},
-                         {"OneMoreThanArrived", 11, 4, 15, req::kN11Nbytes},
-                         {"HeaderOnly", 11, 3, 12, req::kN11Nbytes},
-                         {"HeaderCut", 0, 0, 11, req::kN11Nbytes},
-                         {"Empty", 0, 0, 0, req::kN11Nbytes},
-                         {"Reliable2", 8, 2, 15, req::kWireNetReliable}};
+  const Case kCases[] = {{"Nbytes1", 11, 1, 15, "N11-NBYTES"_rule},
+                         {"Nbytes0", 11, 0, 15, "N11-NBYTES"_rule},
+                         {"Nbytes103", 11, 103, 114, "N11-NBYTES"_rule},
+                         {"Nbytes255", 11, 255, 114, "N11-NBYTES"_rule},
+                         {"OneMoreThanArrived", 11, 4, 15, "N11-NBYTES"_rule},
+                         {"HeaderOnly", 11, 3, 12, "N11-NBYTES"_rule},
+                         {"HeaderCut", 0, 0, 11, "N11-NBYTES"_rule},
+                         {"Empty", 0, 0, 0, "N11-NBYTES"_rule},
+                         {"Reliable2", 8, 2, 15, "WIRE-NET-RELIABLE"_rule}};
   for (Device node : {member(5), Device(sink_config())}) {
     const std::uint16_t id = node.state.config.id;
     for (const Case& each : kCases) {
@@ -274,7 +274,7 @@ TEST(Forward, N6_UpTheSerialLineWithZerosBehind) {
   Device sink(sink_config());
   const NetFields fields{{kOther, 9}, {kIsland, 5}, true, 0x1234};
   sink.hear(on_radio(1, fields));
-  EXPECT_EQ(sink.labels(), (std::vector{sent(req::kN6Route)}));
+  EXPECT_EQ(sink.labels(), (std::vector{sent("N6-ROUTE"_rule)}));
   EXPECT_EQ(sink.only_frame().link, Link::kSerial);
   EXPECT_EQ(sink.only_frame().dest, kAmBroadcast);
   EXPECT_EQ(sink.only_payload(), padded(net_msg(fields)));
@@ -286,7 +286,7 @@ TEST(Forward, N7_DownByRadioWithoutWhatStandsBehind) {
   OwnFrame frame = on_serial(fields);
   std::fill(frame.payload.begin() + 15, frame.payload.end(), std::uint8_t{0xEE});
   sink.hear(frame);
-  EXPECT_EQ(sink.labels(), (std::vector{sent(req::kN7Radio)}));
+  EXPECT_EQ(sink.labels(), (std::vector{sent("N7-RADIO"_rule)}));
   EXPECT_EQ(sink.only_frame().dest, 5);
   EXPECT_EQ(sink.only_frame().src, 1);
   EXPECT_EQ(sink.only_payload(), net_msg(fields));
@@ -295,8 +295,8 @@ TEST(Forward, N7_DownByRadioWithoutWhatStandsBehind) {
 TEST(Forward, N7_BroadcastIsDeliveredAndRadiated) {
   Device sink(sink_config());
   sink.hear(on_serial({{kIsland, kBroadcastDevid}, {kIsland, kNullDevid}}));
-  EXPECT_EQ(sink.labels(), (std::vector{sent(req::kN7Radio), followed(req::kN7Deliver),
-                                        told(req::kT1Deliver), followed(req::kT2Unreliable)}));
+  EXPECT_EQ(sink.labels(), (std::vector{sent("N7-RADIO"_rule), followed("N7-DELIVER"_rule),
+                                        told("T1-DELIVER"_rule), followed("T2-UNRELIABLE"_rule)}));
   EXPECT_EQ(sink.only_frame().dest, kAmBroadcast);
 }
 
@@ -328,7 +328,7 @@ TEST(Forward, PeisOfAnotherIslandIsNotHeard) {
   EXPECT_EQ(base.hear(on_peis(kOther, {{kOther, 5}, {13, 1}})).labels(),
             (std::vector{ignored(ReqId::kNone)}));
   EXPECT_EQ(base.hear(on_peis(kIsland, {{kOther, 5}, {13, 1}})).labels(),
-            (std::vector{ignored(req::kN8Loop)}));
+            (std::vector{ignored("N8-LOOP"_rule)}));
 }
 
 TEST(Synaptic, DataOfATickAndItsReception) {
@@ -342,7 +342,7 @@ TEST(Synaptic, DataOfATickAndItsReception) {
   mote.now = timers(mote.state)[0].due;
   EXPECT_EQ(mote.now, 530U);
   mote.step(TimerDue{{TimerKind::kSynaptic, 0}});
-  EXPECT_EQ(mote.labels(), (std::vector{followed(req::kN3Local), sent(req::kS2Send)}));
+  EXPECT_EQ(mote.labels(), (std::vector{followed("N3-LOCAL"_rule), sent("S2-SEND"_rule)}));
   EXPECT_EQ(mote.only_payload(),
             (Payload{0, 11, 0, 1, 0, 11, 0, 2, 0, 0, 2, 6, 1, 11, 0, 0, 0x80, 0x3F}));
   sink.call(CreateChannel{Direction::kIn, {kIsland, 2}, 1, Mode::kReliable});
@@ -356,7 +356,7 @@ TEST(Synaptic, J11Send_NoDataWithoutMembership) {
   mote.call(CreateChannel{Direction::kOut, {kLocalPid, 1}, 1, Mode::kReliable});
   mote.call(StartAllChannels{});
   mote.step(TimerDue{{TimerKind::kSynaptic, 0}});
-  EXPECT_EQ(mote.labels(), (std::vector{ignored(req::kJ11Send)}));
+  EXPECT_EQ(mote.labels(), (std::vector{ignored("J11-SEND"_rule)}));
 }
 
 TEST(Synaptic, S3Changed_ChangeSurvivesARadioThatIsOff) {
@@ -373,13 +373,13 @@ TEST(Synaptic, S3Changed_ChangeSurvivesARadioThatIsOff) {
   mote.call(WriteOutput{0x0002'0001, 0, 1.5F});
   mote.call(SetInterface{Link::kRadio, false});
   EXPECT_EQ(tick(), 0U);
-  EXPECT_EQ(mote.labels(), (std::vector{ignored(req::kN10Off)}));
+  EXPECT_EQ(mote.labels(), (std::vector{ignored("N10-OFF"_rule)}));
   mote.call(SetInterface{Link::kRadio, true});
   EXPECT_EQ(tick(), 1U);
-  EXPECT_EQ(mote.labels(), (std::vector{sent(req::kS3Changed)}));
+  EXPECT_EQ(mote.labels(), (std::vector{sent("S3-CHANGED"_rule)}));
   mote.done();
   EXPECT_EQ(tick(), 0U);  // Notified once.
-  EXPECT_EQ(mote.labels(), (std::vector{followed(req::kS3Unchanged)}));
+  EXPECT_EQ(mote.labels(), (std::vector{followed("S3-UNCHANGED"_rule)}));
 }
 
 TEST(Synaptic, BaseStationHasNone) {
@@ -390,7 +390,7 @@ TEST(Synaptic, BaseStationHasNone) {
   EXPECT_FALSE(base.call(ReadInput{}).notice<InputValue>().success);
   EXPECT_FALSE(base.call(StartAllChannels{}).notice<OperationResult>().success);
   base.hear(on_serial({{kIsland, kNullDevid}, {kIsland, 2}, false, 1, {1, 11, 0, 0, 0, 0}}));
-  EXPECT_EQ(base.labels(), (std::vector{followed(req::kN8Deliver), ignored(req::kT1Unknown)}));
+  EXPECT_EQ(base.labels(), (std::vector{followed("N8-DELIVER"_rule), ignored("T1-UNKNOWN"_rule)}));
 }
 
 }  // namespace

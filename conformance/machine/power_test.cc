@@ -35,7 +35,7 @@ TEST(Reboot, J4Seq_ReplyToARequestOfBeforeIsIgnored) {
     const OwnFrame late = join_reply(5, {kIsland, 5}, 0, mote.state.join.seq_num);
     if (powered_off) mote.step(PowerOff{});
     mote.step(Reboot{}).call(JoinIsland{kDescriptor}).done();
-    EXPECT_EQ(mote.hear(late).labels(), (std::vector{ignored(req::kJ4Seq)}));
+    EXPECT_EQ(mote.hear(late).labels(), (std::vector{ignored("J4-SEQ"_rule)}));
     EXPECT_EQ(mote.state.join.phase, JoinMote::Phase::kJoining);
   }
 }
@@ -68,7 +68,7 @@ TEST(PowerOff, NothingHasAnEffectUntilReboot) {
   const auto nothing = [&] {
     EXPECT_TRUE(mote.silent());
     ASSERT_EQ(mote.actions.all().size(), 1U);
-    EXPECT_EQ(mote.actions.all()[0].requirement, req::kN10Off);
+    EXPECT_EQ(mote.actions.all()[0].requirement, "N10-OFF"_rule);
     EXPECT_EQ(mote.actions.all()[0].what, Action::What::kIgnored);
     EXPECT_EQ(mote.state, off);
   };

@@ -2,7 +2,7 @@
 // Island Collision Resolution and Safe Join, The Inter-Island Connectivity)
 #pragma once
 
-#include "codec/generated/requirements.h"
+#include "codec/runtime/rule.h"
 #include "conformance/machine/address.h"
 
 namespace rubric::machine {

@@ -99,9 +99,9 @@ const Address kSources[] = {{kIsland, 7}, {kIsland, kNullDevid}, {kForeignIsland
                             {kBroadcastPid, 7}};
 
 TEST(RouteReceived, MoteOnRadio) {
-  const Route mine = up(req::kN5Deliver);
-  const Route other = no(req::kN5Other);
-  const Route foreign = no(req::kN5Foreign);
+  const Route mine = up("N5-DELIVER"_rule);
+  const Route other = no("N5-OTHER"_rule);
+  const Route foreign = no("N5-FOREIGN"_rule);
   const Table expected = table({mine, other, mine, other,               //
                                 foreign, foreign, foreign, foreign,     //
                                 mine, other, mine, other});
@@ -112,18 +112,18 @@ TEST(RouteReceived, MoteOnRadio) {
 
 TEST(RouteReceived, MoteThatIsNoMemberIgnoresAll) {
   std::array<Route, 12> all;
-  all.fill(no(req::kJ11Hear));
+  all.fill(no("J11-HEAR"_rule));
   for (const Address src : kSources) {
     expect_received(router(Role::kMote, false), Link::kRadio, src, table(all));
   }
 }
 
 TEST(RouteReceived, SinkOnRadio) {
-  const Route mine = up(req::kN6Deliver);
-  const Route other = no(req::kN6Other);
-  const Route up_the_line = serial(kAmBroadcast, req::kN6Forward);
-  const Route abroad = serial(kAmBroadcast, req::kN6Route);
-  const Route collision = no(req::kN6Collision);
+  const Route mine = up("N6-DELIVER"_rule);
+  const Route other = no("N6-OTHER"_rule);
+  const Route up_the_line = serial(kAmBroadcast, "N6-FORWARD"_rule);
+  const Route abroad = serial(kAmBroadcast, "N6-ROUTE"_rule);
+  const Route collision = no("N6-COLLISION"_rule);
   for (const Address src : kSources) {
     const Route foreign = src.pid == kIsland ? abroad : collision;
     expect_received(router(Role::kSink), Link::kRadio, src,
@@ -134,12 +134,12 @@ TEST(RouteReceived, SinkOnRadio) {
 }
 
 TEST(RouteReceived, SinkOnSerial) {
-  const Route mine = up(req::kN7Deliver);
-  const Route both = radio(kAmBroadcast, req::kN7Radio, req::kN7Deliver);
-  const Route onto_air = radio(kOtherDevid, req::kN7Radio);
-  const Route back = no(req::kN6Once);
-  const Route foreign = no(req::kN7Foreign);
-  const Route foreign_devid = up(req::kN7Deliver, req::kN7Foreign);
+  const Route mine = up("N7-DELIVER"_rule);
+  const Route both = radio(kAmBroadcast, "N7-RADIO"_rule, "N7-DELIVER"_rule);
+  const Route onto_air = radio(kOtherDevid, "N7-RADIO"_rule);
+  const Route back = no("N6-ONCE"_rule);
+  const Route foreign = no("N7-FOREIGN"_rule);
+  const Route foreign_devid = up("N7-DELIVER"_rule, "N7-FOREIGN"_rule);
   for (const Address src : kSources) {
     expect_received(router(Role::kSink), Link::kSerial, src,
                     table({mine, onto_air, both, back,                        //
@@ -149,9 +149,9 @@ TEST(RouteReceived, SinkOnSerial) {
 }
 
 TEST(RouteReceived, BaseStationOnSerial) {
-  const Route mine = up(req::kN8Deliver);
+  const Route mine = up("N8-DELIVER"_rule);
   const Route loop = no(ReqId::kNone);
-  const Route abroad = peis(kForeignIsland, req::kN8Peis);
+  const Route abroad = peis(kForeignIsland, "N8-PEIS"_rule);
   for (const Address src : kSources) {
     expect_received(router(Role::kBaseStation), Link::kSerial, src,
                     table({mine, loop, mine, mine,             //
@@ -161,10 +161,10 @@ TEST(RouteReceived, BaseStationOnSerial) {
 }
 
 TEST(RouteReceived, BaseStationOnPeis) {
-  const Route mine = up(req::kN8Deliver);
-  const Route down = serial(kSinkAm, req::kN8Incoming);
-  const Route both = serial(kSinkAm, req::kN8Incoming, req::kN8Deliver);
-  const Route loop = no(req::kN8Loop);
+  const Route mine = up("N8-DELIVER"_rule);
+  const Route down = serial(kSinkAm, "N8-INCOMING"_rule);
+  const Route both = serial(kSinkAm, "N8-INCOMING"_rule, "N8-DELIVER"_rule);
+  const Route loop = no("N8-LOOP"_rule);
   for (const Address src : kSources) {
     expect_received(router(Role::kBaseStation), Link::kPeis, src,
                     table({mine, down, both, mine,       //
@@ -186,36 +186,36 @@ TEST(RouteReceived, LinesThatANodeDoesNotHave) {
 }
 
 TEST(RouteOwn, Mote) {
-  const Route self = no(req::kN4Self);
-  const Route direct = radio(kOtherDevid, req::kN4Mote);
-  const Route everyone = radio(kAmBroadcast, req::kN4Mote);
-  const Route sink = radio(kSinkAm, req::kN4Sink);
+  const Route self = no("N4-SELF"_rule);
+  const Route direct = radio(kOtherDevid, "N4-MOTE"_rule);
+  const Route everyone = radio(kAmBroadcast, "N4-MOTE"_rule);
+  const Route sink = radio(kSinkAm, "N4-SINK"_rule);
   expect_own(router(Role::kMote), table({self, direct, everyone, sink,     //
                                          sink, sink, sink, sink,           //
                                          everyone, everyone, everyone, sink}));
-  EXPECT_EQ(route_own(router(Role::kMote), {kIsland, kLocalDevid}).requirement, req::kN4Self);
+  EXPECT_EQ(route_own(router(Role::kMote), {kIsland, kLocalDevid}).requirement, "N4-SELF"_rule);
 }
 
 TEST(RouteOwn, MoteThatIsNoMemberSendsNothing) {
   std::array<Route, 12> all;
-  all.fill(no(req::kJ11Send));
+  all.fill(no("J11-SEND"_rule));
   expect_own(router(Role::kMote, false), table(all));
 }
 
 TEST(RouteOwn, Sink) {
-  const Route self = no(req::kN4Self);
-  const Route direct = radio(kOtherDevid, req::kN4Mote);
-  const Route everyone = radio(kAmBroadcast, req::kN4Mote);
-  const Route pc = serial(kAmBroadcast, req::kN6Own);
+  const Route self = no("N4-SELF"_rule);
+  const Route direct = radio(kOtherDevid, "N4-MOTE"_rule);
+  const Route everyone = radio(kAmBroadcast, "N4-MOTE"_rule);
+  const Route pc = serial(kAmBroadcast, "N6-OWN"_rule);
   expect_own(router(Role::kSink), table({self, direct, everyone, pc,     //
                                          pc, pc, pc, pc,                 //
                                          everyone, everyone, everyone, pc}));
 }
 
 TEST(RouteOwn, BaseStation) {
-  const Route self = no(req::kN4Self);
-  const Route down = serial(kSinkAm, req::kN8Serial);
-  const Route abroad = peis(kForeignIsland, req::kN8Peis);
+  const Route self = no("N4-SELF"_rule);
+  const Route down = serial(kSinkAm, "N8-SERIAL"_rule);
+  const Route abroad = peis(kForeignIsland, "N8-PEIS"_rule);
   expect_own(router(Role::kBaseStation), table({self, down, down, self,             //
                                                 abroad, abroad, abroad, abroad,     //
                                                 self, down, down, self}));

@@ -12,7 +12,7 @@ using Phase = JoinMote::Phase;
 TEST(JoinStep, MoteAsksTheSink) {
   Device mote(mote_config(5));
   mote.call(JoinIsland{kDescriptor});
-  EXPECT_EQ(mote.labels(), (std::vector{sent(req::kJ1Request)}));
+  EXPECT_EQ(mote.labels(), (std::vector{sent("J1-REQUEST"_rule)}));
   const Transmit& frame = mote.only_frame();
   EXPECT_EQ(frame.link, Link::kRadio);
   EXPECT_FALSE(frame.link_ack);
@@ -25,7 +25,7 @@ TEST(JoinStep, SinkAnswersWithItsClock) {
   Device sink(sink_config());
   sink.now = 2048;
   sink.hear(join_request(5, 0x1234, kDescriptor));
-  EXPECT_EQ(sink.labels(), (std::vector{sent(req::kJ3Reply)}));
+  EXPECT_EQ(sink.labels(), (std::vector{sent("J3-REPLY"_rule)}));
   EXPECT_EQ(sink.only_frame().dest, 5);
   EXPECT_EQ(sink.only_frame().src, 1);
   // Island 11, mote 5, 2000 ms, the request's number.
@@ -36,7 +36,7 @@ TEST(JoinStep, J3Time_ReplyThatWaitedTellsTheTimeAtWhichItLeaves) {
   Device sink(sink_config());
   sink.step(LinkBusy{Link::kRadio, true});
   sink.hear(join_request(5, 1, kDescriptor));
-  EXPECT_EQ(sink.labels(), (std::vector{followed(req::kN2Queue)}));
+  EXPECT_EQ(sink.labels(), (std::vector{followed("N2-QUEUE"_rule)}));
   sink.now = 3072;
   sink.step(LinkBusy{Link::kRadio, false});
   const auto reply = rubicon::JoinReplyView::parse(sink.only_frame().bytes());
@@ -49,8 +49,8 @@ TEST(JoinStep, MoteAcceptsSetsItsClockAndAcks) {
   mote.call(JoinIsland{kDescriptor}).done();
   mote.now = 512;
   mote.hear(join_reply(5, {kIsland, 5}, 700000, mote.state.join.seq_num));
-  EXPECT_EQ(mote.labels(), (std::vector{told(req::kJ5Success), followed(req::kJ4Clock),
-                                        sent(req::kJ4Ack)}));
+  EXPECT_EQ(mote.labels(), (std::vector{told("J5-SUCCESS"_rule), followed("J4-CLOCK"_rule),
+                                        sent("J4-ACK"_rule)}));
   const Transmit& ack = mote.only_frame();
   EXPECT_TRUE(ack.link_ack);
   EXPECT_EQ(ack.dest, 1);
@@ -67,11 +67,11 @@ TEST(JoinStep, AckJoinIsRepeatedAtOnceWhileTheLinkSaysNo) {
   const Payload ack = mote.only_payload();
   for (int i = 0; i < 4; ++i) {
     mote.done(Link::kRadio, false);
-    EXPECT_EQ(mote.labels(), (std::vector{sent(req::kJ4Repeat)}));
+    EXPECT_EQ(mote.labels(), (std::vector{sent("J4-REPEAT"_rule)}));
     EXPECT_EQ(mote.only_payload(), ack);
   }
   mote.done(Link::kRadio, false);
-  EXPECT_EQ(mote.labels(), (std::vector{followed(req::kJ4Few)}));
+  EXPECT_EQ(mote.labels(), (std::vector{followed("J4-FEW"_rule)}));
 }
 
 TEST(JoinStep, RepeatedAckJoinGoesBeforeWhatCameLater) {
@@ -92,10 +92,10 @@ TEST(JoinStep, J4Repeat_RepeatThatWaitedTooLongIsForgotten) {
   mote.hear(join_reply(5, {kIsland, 5}, 0, 1));
   mote.step(LinkBusy{Link::kRadio, true});
   mote.done(Link::kRadio, false);
-  EXPECT_EQ(mote.labels(), (std::vector{followed(req::kN2Queue)}));
+  EXPECT_EQ(mote.labels(), (std::vector{followed("N2-QUEUE"_rule)}));
   mote.now = 501;
   mote.step(LinkBusy{Link::kRadio, false});
-  EXPECT_EQ(mote.labels(), (std::vector{ignored(req::kJ4Repeat)}));
+  EXPECT_EQ(mote.labels(), (std::vector{ignored("J4-REPEAT"_rule)}));
 }
 
 TEST(JoinStep, J8_WholeCallWithoutAnswer) {
@@ -104,15 +104,15 @@ TEST(JoinStep, J8_WholeCallWithoutAnswer) {
   for (Ticks expected = 500; expected <= 2000; expected += 500) {
     mote.join_timer();
     EXPECT_EQ(mote.now, expected);
-    EXPECT_EQ(mote.labels(), (std::vector{sent(req::kJ8Retry)}));
+    EXPECT_EQ(mote.labels(), (std::vector{sent("J8-RETRY"_rule)}));
     mote.done();
   }
   mote.join_timer();
-  EXPECT_EQ(mote.labels(), (std::vector{told(req::kJ8Fail)}));
+  EXPECT_EQ(mote.labels(), (std::vector{told("J8-FAIL"_rule)}));
   EXPECT_EQ(mote.now, 2500U);
   EXPECT_TRUE(timers(mote.state).empty());
   mote.call(JoinIsland{kDescriptor});
-  EXPECT_EQ(mote.labels(), (std::vector{sent(req::kJ1Request)}));
+  EXPECT_EQ(mote.labels(), (std::vector{sent("J1-REQUEST"_rule)}));
   EXPECT_EQ(mote.state.join.seq_num, 2);  // J1-SEQ.
 }
 
@@ -130,7 +130,7 @@ TEST(JoinStep, J8Period_RequestThatWaitsStandsForTheNext) {
   mote.step(LinkBusy{Link::kRadio, true});
   mote.call(JoinIsland{kDescriptor});
   mote.join_timer();
-  EXPECT_EQ(mote.labels(), (std::vector{followed(req::kJ8Period)}));
+  EXPECT_EQ(mote.labels(), (std::vector{followed("J8-PERIOD"_rule)}));
   EXPECT_EQ(mote.state.radio.out.size(), 1U);
   mote.now = 900;
   mote.step(LinkBusy{Link::kRadio, false});
@@ -165,7 +165,7 @@ TEST(JoinStep, SinkListsAnnouncesAndReports) {
   Device sink(sink_config());
   sink.hear(join_request(5, 100, kDescriptor)).done();
   sink.hear(ack_join({kIsland, 1}, {kIsland, 5}, 100, kDescriptor));
-  EXPECT_EQ(sink.labels(), (std::vector{told(req::kJ6Add), sent(req::kJ6Report)}));
+  EXPECT_EQ(sink.labels(), (std::vector{told("J6-ADD"_rule), sent("J6-REPORT"_rule)}));
   const Transmit& report = sink.only_frame();
   EXPECT_EQ(report.link, Link::kSerial);
   EXPECT_EQ(report.dest, kAmBroadcast);
@@ -174,7 +174,7 @@ TEST(JoinStep, SinkListsAnnouncesAndReports) {
             padded({0, 11, 0xFF, 0xFD, 0, 11, 0, 5, 0, 0, 0, 11, 3, 10,  //
                     16, 0, 11, 0, 5, 1, 0, 0x43, 1}));
   sink.hear(ack_join({kIsland, 1}, {kIsland, 5}, 100, kDescriptor));
-  EXPECT_EQ(sink.labels(), (std::vector{ignored(req::kJ6Repeat)}));
+  EXPECT_EQ(sink.labels(), (std::vector{ignored("J6-REPEAT"_rule)}));
 }
 
 TEST(JoinStep, DeployedSinkReportsEachJoinOfAListedMote) {
@@ -184,19 +184,19 @@ TEST(JoinStep, DeployedSinkReportsEachJoinOfAListedMote) {
   list_member(sink, 5, 100);
   sink.hear(join_request(5, 101, kDescriptor)).done();
   sink.hear(ack_join({kIsland, 1}, {kIsland, 5}, 101, kDescriptor));
-  EXPECT_EQ(sink.labels(), (std::vector{told(req::kJ6Add), sent(req::kJ6Report)}));
+  EXPECT_EQ(sink.labels(), (std::vector{told("J6-ADD"_rule), sent("J6-REPORT"_rule)}));
 }
 
 TEST(JoinStep, J10_RolesIgnoreWhatIsNotTheirs) {
   Device mote = member(5);
   OwnFrame request = join_request(6, 1, kDescriptor);
   request.dest = kAmBroadcast;
-  EXPECT_EQ(mote.hear(request).labels(), (std::vector{ignored(req::kJ10Mote)}));
+  EXPECT_EQ(mote.hear(request).labels(), (std::vector{ignored("J10-MOTE"_rule)}));
   OwnFrame ack = ack_join({kIsland, 5}, {kIsland, 6}, 1, kDescriptor);
-  EXPECT_EQ(mote.hear(ack).labels(), (std::vector{ignored(req::kJ10Mote)}));
+  EXPECT_EQ(mote.hear(ack).labels(), (std::vector{ignored("J10-MOTE"_rule)}));
   Device sink(sink_config());
   EXPECT_EQ(sink.hear(join_reply(1, {kIsland, 1}, 0, 1)).labels(),
-            (std::vector{ignored(req::kJ10Sink)}));
+            (std::vector{ignored("J10-SINK"_rule)}));
 }
 
 TEST(JoinStep, J3Address_NobodyHasAReservedIdOrTheSinks) {
@@ -205,7 +205,7 @@ TEST(JoinStep, J3Address_NobodyHasAReservedIdOrTheSinks) {
     Device sink(sink_config());
     const State before = sink.state;
     sink.hear(join_request(from, 100, kDescriptor));
-    EXPECT_EQ(sink.labels(), (std::vector{ignored(req::kJ3Address)})) << from;
+    EXPECT_EQ(sink.labels(), (std::vector{ignored("J3-ADDRESS"_rule)})) << from;
     EXPECT_EQ(sink.state, before);
   }
 }
@@ -218,7 +218,7 @@ TEST(JoinStep, J4Address_OffersOfWhatTheMoteIsNot) {
                             {kBroadcastPid, 5}, {kLocalPid, 5},    {0xFFFD, 5}};
   for (const Address& offer : offers) {
     mote.hear(join_reply(5, offer, 0, mote.state.join.seq_num));
-    EXPECT_EQ(mote.labels(), (std::vector{ignored(req::kJ4Address)})) << offer.pid;
+    EXPECT_EQ(mote.labels(), (std::vector{ignored("J4-ADDRESS"_rule)})) << offer.pid;
     EXPECT_EQ(mote.state, before);
   }
   mote.hear(join_reply(5, {kIsland, 5}, 0, mote.state.join.seq_num));
@@ -235,7 +235,7 @@ TEST(JoinStep, J6Sender_AckJoinThatContradictsItsFrame) {
   other_source.src = 6;
   const OwnFrame other_island = ack_join({kIsland, 1}, {kOther, 5}, 100, kDescriptor);
   for (const OwnFrame& frame : {other_dest, other_source, other_island}) {
-    EXPECT_EQ(sink.hear(frame).labels(), (std::vector{ignored(req::kJ6Sender)}));
+    EXPECT_EQ(sink.hear(frame).labels(), (std::vector{ignored("J6-SENDER"_rule)}));
     EXPECT_EQ(sink.state, before);
   }
   sink.hear(ack_join({kIsland, 1}, {kIsland, 5}, 100, kDescriptor));
@@ -248,13 +248,13 @@ TEST(JoinStep, ShortJoinMessagesAreIgnored) {
   mote.call(JoinIsland{kDescriptor}).done();
   OwnFrame request = join_request(5, 1, kDescriptor);
   request.payload.pop_back();
-  EXPECT_EQ(sink.hear(request).labels(), (std::vector{ignored(req::kWireMoteDesc)}));
+  EXPECT_EQ(sink.hear(request).labels(), (std::vector{ignored("WIRE-MOTE-DESC"_rule)}));
   OwnFrame ack = ack_join({kIsland, 1}, {kIsland, 5}, 1, kDescriptor);
   ack.payload.resize(9);
-  EXPECT_EQ(sink.hear(ack).labels(), (std::vector{ignored(req::kWireAckJoin)}));
+  EXPECT_EQ(sink.hear(ack).labels(), (std::vector{ignored("WIRE-ACK-JOIN"_rule)}));
   OwnFrame reply = join_reply(5, {kIsland, 5}, 0, 1);
   reply.payload.pop_back();
-  EXPECT_EQ(mote.hear(reply).labels(), (std::vector{ignored(req::kWireJoinReply)}));
+  EXPECT_EQ(mote.hear(reply).labels(), (std::vector{ignored("WIRE-JOIN-REPLY"_rule)}));
   EXPECT_EQ(mote.state.join.phase, Phase::kJoining);
 }
 
@@ -262,7 +262,7 @@ TEST(JoinStep, SinkAndBaseStationCannotJoin) {
   for (const Config& config : {sink_config(), base_config()}) {
     Device node(config);
     node.call(JoinIsland{kDescriptor});
-    EXPECT_EQ(node.labels(), (std::vector{told(req::kJ8Joined)}));
+    EXPECT_EQ(node.labels(), (std::vector{told("J8-JOINED"_rule)}));
     EXPECT_FALSE(node.notice<Joined>().success);
   }
 }
@@ -285,7 +285,7 @@ TEST(SynapticTick, EightOutputsAndEightInputsAtOnce) {
   EXPECT_TRUE(sink.state.radio.out.full());
   std::size_t refused = 0;
   for (const Action& action : sink.actions.all()) {
-    refused += action.requirement == req::kN1Full ? 1 : 0;
+    refused += action.requirement == "N1-FULL"_rule ? 1 : 0;
   }
   EXPECT_EQ(refused, kChannelsRoom - 5);
 }
@@ -306,7 +306,7 @@ TEST(Timers, AreThoseThatAreSet) {
   EXPECT_EQ(timers(mote.state)[1].due, 1020U);
   EXPECT_EQ(timers(mote.state)[1].timer, (Timer{TimerKind::kAck, 1}));
   mote.step(TimerDue{{TimerKind::kAck, 1}});
-  EXPECT_EQ(mote.labels(), (std::vector{told(req::kT3Timeout)}));
+  EXPECT_EQ(mote.labels(), (std::vector{told("T3-TIMEOUT"_rule)}));
   EXPECT_EQ(timers(mote.state).size(), 1U);
 }
 

@@ -48,13 +48,13 @@ TEST_F(SynapticClock, S2_Send_EveryTickUnchangedOrNot) {
   write(kToSink, 0, 1.0F);
   write(kToSink, 2, -2.5F);
   EXPECT_TRUE(call(StartChannel{kToSink}));
-  EXPECT_EQ(rule(), req::kS1Start);
+  EXPECT_EQ(rule(), "S1-START"_rule);
   for (int i = 0; i < 3; ++i) {
     EXPECT_TRUE(tick().empty());
     ASSERT_EQ(sends_.size(), 1U);
     EXPECT_EQ(sends_[0].dest, kSink);
     EXPECT_EQ(sends_[0].size, 3);
-    EXPECT_EQ(sends_[0].requirement, req::kS2Send);
+    EXPECT_EQ(sends_[0].requirement, "S2-SEND"_rule);
     EXPECT_EQ(sends_[0].value_bits[0], bits_of_float(1.0F));
     EXPECT_EQ(sends_[0].value_bits[1], 0U);
     EXPECT_EQ(sends_[0].value_bits[2], bits_of_float(-2.5F));
@@ -95,14 +95,14 @@ TEST_F(SynapticClock, S2_Tick_WithoutClockNothingHappens) {
 TEST_F(SynapticClock, S2_Signal_NewThenOld) {
   create_in(1);
   EXPECT_TRUE(call(StartChannel{kFromPeer}));
-  EXPECT_EQ(rule(), req::kS1Start);
+  EXPECT_EQ(rule(), "S1-START"_rule);
   EXPECT_EQ(tick(), (std::vector<Signal>{{kFromPeer, DataStatus::kOld}}));
-  EXPECT_EQ(rule(), req::kS3Old);
+  EXPECT_EQ(rule(), "S3-OLD"_rule);
   hear(kPeer, {42});
   EXPECT_TRUE(actions_.notices().empty());  // Notified at the tick, not before.
   hear(kPeer, {43});
   EXPECT_EQ(tick(), (std::vector<Signal>{{kFromPeer, DataStatus::kNew}}));
-  EXPECT_EQ(rule(), req::kS2Signal);
+  EXPECT_EQ(rule(), "S2-SIGNAL"_rule);
   EXPECT_EQ(tick(), (std::vector<Signal>{{kFromPeer, DataStatus::kOld}}));
   EXPECT_EQ(read_bits(kFromPeer, 0), 43U);  // S3-OLD: the values stay.
 }
@@ -112,10 +112,10 @@ TEST_F(SynapticClock, S3_PowerSave_SendsChangesOnly) {
   call(StartChannel{kToSink});
   tick();
   ASSERT_EQ(sends_.size(), 1U);  // The first tick always.
-  EXPECT_EQ(sends_[0].requirement, req::kS3Changed);
+  EXPECT_EQ(sends_[0].requirement, "S3-CHANGED"_rule);
   tick();
   EXPECT_TRUE(sends_.empty());
-  EXPECT_EQ(actions_.all()[0].requirement, req::kS3Unchanged);
+  EXPECT_EQ(actions_.all()[0].requirement, "S3-UNCHANGED"_rule);
   write(kToSink, 1, 3.0F);
   tick();
   ASSERT_EQ(sends_.size(), 1U);
@@ -183,7 +183,7 @@ TEST_F(SynapticClock, S4_Local_WithoutInputNothingIsSent) {
   call(StartAllChannels{});
   EXPECT_TRUE(tick().empty());
   EXPECT_TRUE(sends_.empty());
-  EXPECT_EQ(rule(), req::kS4Local);
+  EXPECT_EQ(rule(), "S4-LOCAL"_rule);
 }
 
 TEST_F(SynapticClock, S3_Changed_RefusedChangeGoesWithTheNextTick) {

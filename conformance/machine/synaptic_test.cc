@@ -7,7 +7,7 @@ namespace {
 TEST_F(SynapticTest, S1_Id_SourceAboveDestination) {
   EXPECT_TRUE(create_out(3));
   EXPECT_EQ(id_, kToSink);
-  EXPECT_EQ(rule(), req::kS1Id);
+  EXPECT_EQ(rule(), "S1-ID"_rule);
   EXPECT_TRUE(create_in(3));
   EXPECT_EQ(id_, kFromPeer);
 }
@@ -17,11 +17,11 @@ TEST_F(SynapticTest, S1_Id_HoldsNoIsland) {
   EXPECT_TRUE(create_in(3));
   const Synaptic before = synaptic_;
   EXPECT_FALSE(create_out(1, Mode::kReliable, {12, kSink.devid}));
-  EXPECT_EQ(rule(), req::kS1Id);
+  EXPECT_EQ(rule(), "S1-ID"_rule);
   EXPECT_FALSE(create_in(1, {12, kPeer.devid}));
   EXPECT_TRUE(synaptic_ == before);
   EXPECT_TRUE(create_in(1, {kLocalPid, kPeer.devid}));  // The same island by its other name.
-  EXPECT_EQ(rule(), req::kS1Enlarge);
+  EXPECT_EQ(rule(), "S1-ENLARGE"_rule);
 }
 
 // Between two sinks both directions have one id: one call meets both. (decision 130)
@@ -33,7 +33,7 @@ TEST_F(SynapticTest, S1_Start_BothEndsOfOneId) {
   EXPECT_TRUE(create_in(1, {12, 1}));
   EXPECT_EQ(id_, out);
   EXPECT_TRUE(call(StartChannel{out}));
-  EXPECT_EQ(rule(), req::kS1Start);
+  EXPECT_EQ(rule(), "S1-START"_rule);
   EXPECT_TRUE(synaptic_.out[0].started && synaptic_.in[0].started);
   EXPECT_TRUE(call(StopChannel{out}));
   EXPECT_FALSE(synaptic_.out[0].started || synaptic_.in[0].started);
@@ -48,10 +48,10 @@ TEST_F(SynapticTest, S5_Unknown_SameMoteOfAnotherIsland) {
   const Synaptic before = synaptic_;
   for (const std::uint16_t devid : {kPeer.devid, std::uint16_t{6}}) {
     hear({12, devid}, {1});
-    EXPECT_EQ(rule(), req::kS5Unknown);
+    EXPECT_EQ(rule(), "S5-UNKNOWN"_rule);
     EXPECT_TRUE(synaptic_ == before);
     hear({11, devid}, {1});
-    EXPECT_EQ(rule(), req::kS1Read);
+    EXPECT_EQ(rule(), "S1-READ"_rule);
     synaptic_ = before;
   }
 }
@@ -60,7 +60,7 @@ TEST_F(SynapticTest, S1_Enlarge_CreatingAgainAddsConnections) {
   EXPECT_TRUE(create_out(3));
   write(kToSink, 2, 1.5F);
   EXPECT_TRUE(create_out(4, Mode::kPowerSave));
-  EXPECT_EQ(rule(), req::kS1Enlarge);
+  EXPECT_EQ(rule(), "S1-ENLARGE"_rule);
   EXPECT_EQ(id_, kToSink);
   ASSERT_EQ(synaptic_.out.size(), 1U);
   EXPECT_EQ(synaptic_.out[0].size, 7);
@@ -72,7 +72,7 @@ TEST_F(SynapticTest, S1_Enlarge_CreatingAgainAddsConnections) {
 
 TEST_F(SynapticTest, S1_Limit_TenConnections) {
   EXPECT_FALSE(create_out(11));
-  EXPECT_EQ(rule(), req::kS1Limit);
+  EXPECT_EQ(rule(), "S1-LIMIT"_rule);
   EXPECT_FALSE(create_out(0));
   EXPECT_TRUE(synaptic_.out.empty());
   EXPECT_TRUE(create_out(6));
@@ -90,7 +90,7 @@ TEST_F(SynapticTest, S1_Limit_FourChannelsOfEachDirection) {
   }
   const Synaptic before = synaptic_;
   EXPECT_FALSE(create_out(1, Mode::kReliable, {11, 14}));
-  EXPECT_EQ(rule(), req::kS1Limit);
+  EXPECT_EQ(rule(), "S1-LIMIT"_rule);
   EXPECT_FALSE(create_in(1, {11, 14}));
   EXPECT_TRUE(synaptic_ == before);
   EXPECT_TRUE(create_in(1, {11, 13}));  // Enlarging needs no place.
@@ -107,7 +107,7 @@ TEST_F(SynapticTest, S1_Limit_AsManyChannelsAsTheNodeSays) {
     }
     EXPECT_EQ(created, std::min(static_cast<std::size_t>(stated), kChannelsRoom)) << stated;
     EXPECT_EQ(synaptic_.in.size(), created);
-    EXPECT_EQ(rule(), req::kS1Limit);
+    EXPECT_EQ(rule(), "S1-LIMIT"_rule);
   }
 }
 
@@ -116,7 +116,7 @@ TEST_F(SynapticTest, S1_Write_RefusesWhatIsNotThere) {
   create_in(2);
   EXPECT_TRUE(write(kToSink, 1, 1));
   EXPECT_FALSE(write(kToSink, 2, 1));
-  EXPECT_EQ(rule(), req::kS1Write);
+  EXPECT_EQ(rule(), "S1-WRITE"_rule);
   EXPECT_FALSE(write(kFromPeer, 0, 1));  // An input.
   EXPECT_FALSE(write(0x0002'0063, 0, 1));
 }
@@ -127,7 +127,7 @@ TEST_F(SynapticTest, S1_Read_RefusesWhatIsNotThere) {
   EXPECT_TRUE(call(ReadInput{kFromPeer, 1}));
   EXPECT_EQ(bits_, 0U);
   EXPECT_FALSE(call(ReadInput{kFromPeer, 2}));
-  EXPECT_EQ(rule(), req::kS1Read);
+  EXPECT_EQ(rule(), "S1-READ"_rule);
   EXPECT_FALSE(call(ReadInput{kToSink, 0}));  // An output.
 }
 
@@ -137,7 +137,7 @@ TEST_F(SynapticTest, S1_Read_LatestDataBitForBit) {
   call(StartAllChannels{});
   hear(kPeer, {1, 2, 3});
   hear(kPeer, {kNan, 0x8000'0000, 7});
-  EXPECT_EQ(rule(), req::kS1Read);
+  EXPECT_EQ(rule(), "S1-READ"_rule);
   EXPECT_EQ(read_bits(kFromPeer, 0), kNan);
   EXPECT_EQ(read_bits(kFromPeer, 1), 0x8000'0000U);
   EXPECT_EQ(read_bits(kFromPeer, 2), 7U);
@@ -172,7 +172,7 @@ TEST_F(SynapticTest, S1_Clock_DefaultAndSet) {
   EXPECT_EQ(synaptic_.due, now_ + 200);
   now_ += 50;
   EXPECT_TRUE(call(SetTimeStep{300}));
-  EXPECT_EQ(rule(), req::kS1Clock);
+  EXPECT_EQ(rule(), "S1-CLOCK"_rule);
   EXPECT_EQ(synaptic_.due, now_ + 300);
   tick();
   EXPECT_EQ(synaptic_.due, now_ + 300);
@@ -188,7 +188,7 @@ TEST_F(SynapticTest, S5_Unknown_ReportedNotStored) {
   const auto& told = std::get<SynDataReceived>(actions_.notices()[0]);
   EXPECT_EQ(told.id, 0x0009'0002U);
   EXPECT_EQ(told.status, DataStatus::kUnknownChannel);
-  EXPECT_EQ(rule(), req::kS5Unknown);
+  EXPECT_EQ(rule(), "S5-UNKNOWN"_rule);
   EXPECT_TRUE(synaptic_ == before);
 }
 
@@ -199,7 +199,7 @@ TEST_F(SynapticTest, S6_Stopped_NotStartedSendsSignalsStoresNothing) {
   call(StartChannel{kToSink});
   hear(kPeer, {5});
   EXPECT_TRUE(actions_.notices().empty());
-  EXPECT_EQ(rule(), req::kS6Stopped);
+  EXPECT_EQ(rule(), "S6-STOPPED"_rule);
   EXPECT_TRUE(tick().empty());
   EXPECT_EQ(sends_.size(), 1U);
   EXPECT_EQ(read_bits(kFromPeer, 0), 0U);
@@ -223,7 +223,7 @@ TEST_F(SynapticTest, S6_Disposed_FreesItsPlaceAndOthersRunOn) {
   call(StartAllChannels{});
   const Ticks due = synaptic_.due;
   EXPECT_TRUE(call(DisposeChannel{kToSink}));
-  EXPECT_EQ(rule(), req::kS6Disposed);
+  EXPECT_EQ(rule(), "S6-DISPOSED"_rule);
   EXPECT_EQ(synaptic_.due, due);
   tick();
   ASSERT_EQ(sends_.size(), 1U);
@@ -256,7 +256,7 @@ TEST_F(SynapticTest, S6_Others_StopOneStopAll) {
   ASSERT_EQ(sends_.size(), 1U);
   EXPECT_EQ(sends_[0].dest.devid, 8);
   EXPECT_TRUE(call(StopAllChannels{}));
-  EXPECT_EQ(rule(), req::kS1All);
+  EXPECT_EQ(rule(), "S1-ALL"_rule);
   EXPECT_EQ(synaptic_.due, 0U);
   EXPECT_TRUE(call(StopAllChannels{}));
 }
@@ -272,7 +272,7 @@ TEST_F(SynapticTest, S6_Clock_RestartDoesNotShift) {
   now_ += 100;
   call(StartChannel{kToSink});
   EXPECT_EQ(synaptic_.due, due);
-  EXPECT_EQ(actions_.all()[0].requirement, req::kS6Clock);
+  EXPECT_EQ(actions_.all()[0].requirement, "S6-CLOCK"_rule);
 }
 
 TEST_F(SynapticTest, StartAllOfNothingStartsNoClock) {

@@ -34,18 +34,18 @@ struct AckCase {
 };
 
 const AckCase kAcks[] = {
-    {"T3_Success", kMote4, kMote4, kControl, 100, true, req::kT3Success},
-    {"T3_Success_BaseStation", kPc, kPc, kControl, 100, true, req::kT3Success},
-    {"T3_Match_OtherNumber", kMote4, kMote4, kControl, 101, false, req::kT3Match},
-    {"T3_Match_Swapped", kMote4, kMote4, kControl, 0x6400, false, req::kT3Match},
-    {"T3_Sender_OtherMote", kMote4, {11, 5}, kControl, 100, false, req::kT3Sender},
-    {"T3_Sender_OtherIsland", kMote4, {12, 4}, kControl, 100, false, req::kT3Sender},
-    {"T3_Sender_OtherApp", kMote4, kMote4, kMockup, 100, false, req::kT3Sender},
-    {"T3_Sender_OfBroadcast", {11, 0xFFFF}, kMote4, kControl, 100, false, req::kT3Sender},
+    {"T3_Success", kMote4, kMote4, kControl, 100, true, "T3-SUCCESS"_rule},
+    {"T3_Success_BaseStation", kPc, kPc, kControl, 100, true, "T3-SUCCESS"_rule},
+    {"T3_Match_OtherNumber", kMote4, kMote4, kControl, 101, false, "T3-MATCH"_rule},
+    {"T3_Match_Swapped", kMote4, kMote4, kControl, 0x6400, false, "T3-MATCH"_rule},
+    {"T3_Sender_OtherMote", kMote4, {11, 5}, kControl, 100, false, "T3-SENDER"_rule},
+    {"T3_Sender_OtherIsland", kMote4, {12, 4}, kControl, 100, false, "T3-SENDER"_rule},
+    {"T3_Sender_OtherApp", kMote4, kMote4, kMockup, 100, false, "T3-SENDER"_rule},
+    {"T3_Sender_OfBroadcast", {11, 0xFFFF}, kMote4, kControl, 100, false, "T3-SENDER"_rule},
     {"T3_Sender_OfBroadcastForged", {11, 0xFFFF}, {11, 0xFFFF}, kControl, 100, false,
-     req::kT3Sender},
+     "T3-SENDER"_rule},
     {"T3_Sender_OfAllIslandsForged", {0xFFFF, 4}, {0xFFFF, 4}, kControl, 100, false,
-     req::kT3Sender},
+     "T3-SENDER"_rule},
 };
 
 class HearAck : public testing::TestWithParam<AckCase> {};
@@ -112,7 +112,7 @@ TEST(Awaited, T3_Timeout_IsFailureAfterTheProfilesTime) {
   EXPECT_EQ(told.app_id, kControl);
   EXPECT_EQ(told.seq_num, 7);
   EXPECT_FALSE(told.success);
-  EXPECT_EQ(actions.all()[0].requirement, req::kT3Timeout);
+  EXPECT_EQ(actions.all()[0].requirement, "T3-TIMEOUT"_rule);
   EXPECT_TRUE(list.empty());
 }
 

@@ -88,7 +88,7 @@ void joined_on_confirmation(Moment& moment, bool& told) {
   });
   if (!moment.is(Role::kMote) || was_acked || !moment.state.join.acked || told) return;
   told = true;
-  moment.actions.notify(Joined{own(moment), true}, req::kJ5Success);
+  moment.actions.notify(Joined{own(moment), true}, "J5-SUCCESS"_rule);
 }
 
 void add_joins(Variants& out) {
@@ -160,11 +160,13 @@ void relays(Moment& moment) {
   if (!radio || !moment.state.radio.on || frame->dest == machine::kAmBroadcast) return;
   bool other = false;
   for (const Action& action : moment.actions.all()) {
-    other = other || (action.what == Action::What::kIgnored && action.requirement == req::kN6Other);
+    other =
+        other || (action.what == Action::What::kIgnored && action.requirement == "N6-OTHER"_rule);
   }
   if (!other || moment.state.radio.sending || moment.state.radio.taken) return;
   moment.state.radio.sending = true;
-  Transmit& sent = moment.send(Link::kRadio, am::kNet, get(*frame, net::kDestDevid), req::kN6Other);
+  Transmit& sent =
+      moment.send(Link::kRadio, am::kNet, get(*frame, net::kDestDevid), "N6-OTHER"_rule);
   const std::size_t size = 12U + frame->payload[net::kNbytes];
   std::copy_n(frame->payload.begin(), size, sent.payload.begin());
   sent.size_bytes = static_cast<std::uint8_t>(size);
@@ -182,7 +184,7 @@ void acks_unknown_apps(Moment& moment) {
                      get(*frame, net::kDestDevid) == own(moment).devid;
   if (!asked || !moment.actions.transmits().empty() || moment.state.radio.sending) return;
   moment.state.radio.sending = true;
-  Transmit& ack = moment.send(Link::kRadio, am::kNet, get(*frame, net::kSrcDevid), req::kT2Ack);
+  Transmit& ack = moment.send(Link::kRadio, am::kNet, get(*frame, net::kSrcDevid), "T2-ACK"_rule);
   copy_address(*frame, net::kSrcPid, ack, net::kDestPid);
   copy_address(*frame, net::kDestPid, ack, net::kSrcPid);
   put(ack, net::kSeqNum, 4711);

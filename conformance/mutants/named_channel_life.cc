@@ -30,7 +30,7 @@ void sends_local(Moment& moment) {
   if (!moment.timer(TimerKind::kSynaptic) || moment.state.radio.sending) return;
   for (const Channel& channel : moment.state.synaptic.out) {
     if (!channel.started || channel.peer != own(moment)) continue;
-    Transmit& frame = moment.send(Link::kRadio, am::kNet, channel.peer.devid, req::kS4Local);
+    Transmit& frame = moment.send(Link::kRadio, am::kNet, channel.peer.devid, "S4-LOCAL"_rule);
     const std::size_t nbytes =
         rubicon::AppMsgLayout::PayloadAt::kAt + rubicon::SynapticDataLayout::ValuesAt::kUnitBytes;
     frame.size_bytes = static_cast<std::uint8_t>(net::kTransId + nbytes);
@@ -75,26 +75,26 @@ void stores_unknown(Moment& moment) {
 void add_local_and_unknown(Mutants& out) {
   out.push_back({"local_data_on_the_air",
                  "A channel from a node to itself sends a frame.",
-                 {req::kS4Local},
+                 {"S4-LOCAL"_rule},
                  always(sends_local)});
   out.push_back({"local_data_lost",
                  "A channel from a node to itself hands nothing over.",
-                 {req::kS4Local},
+                 {"S4-LOCAL"_rule},
                  always(drops_local)});
   out.push_back({"unknown_channel_stored",
                  "Data of an unknown channel go to the first one.",
-                 {req::kS5Unknown},
+                 {"S5-UNKNOWN"_rule},
                  always(stores_unknown)});
   out.push_back({"unknown_channel_silent",
                  "Data of an unknown channel are not reported.",
-                 {req::kS5Unknown},
+                 {"S5-UNKNOWN"_rule},
                  on_told_of<SynDataReceived>([](Moment&, SynDataReceived& data) {
                    const bool unknown = data.status == machine::DataStatus::kUnknownChannel;
                    return unknown ? Fate::kDrop : Fate::kKeep;
                  })});
   out.push_back({"unknown_channel_new",
                  "Data of an unknown channel are reported as new.",
-                 {req::kS5Unknown},
+                 {"S5-UNKNOWN"_rule},
                  on_told_of<SynDataReceived>([](Moment&, SynDataReceived& data) {
                    if (data.status == machine::DataStatus::kUnknownChannel) {
                      data.status = machine::DataStatus::kNew;
@@ -130,30 +130,30 @@ void starts_at_creation(Moment& moment) {
 void add_ends(Mutants& out) {
   out.push_back({"stopped_channel_goes_on",
                  "stop_syn_channel changes nothing.",
-                 {req::kS6Stopped},
-                 refuses_silently<StopChannel>(req::kS6Stopped)});
+                 {"S6-STOPPED"_rule},
+                 refuses_silently<StopChannel>("S6-STOPPED"_rule)});
   out.push_back({"stop_all_goes_on",
                  "stop_all_syn_channels changes nothing.",
-                 {req::kS6Stopped},
-                 refuses_silently<StopAllChannels>(req::kS6Stopped)});
+                 {"S6-STOPPED"_rule},
+                 refuses_silently<StopAllChannels>("S6-STOPPED"_rule)});
   out.push_back({"starts_at_creation",
                  "A channel runs from its creation on.",
-                 {req::kS6Stopped},
+                 {"S6-STOPPED"_rule},
                  always(starts_at_creation)});
   out.push_back({"stop_stops_all",
                  "stop_syn_channel stops every channel.",
-                 {req::kS6Others},
+                 {"S6-OTHERS"_rule},
                  always([](Moment& moment) {
                    if (moment.called<StopChannel>() == nullptr) return moment.honest();
                    moment.honest(machine::Called{StopAllChannels{}});
                  })});
   out.push_back({"disposed_channel_goes_on",
                  "Disposing a channel changes nothing (release 1.0).",
-                 {req::kS6Disposed},
-                 refuses_silently<DisposeChannel>(req::kS6Disposed)});
+                 {"S6-DISPOSED"_rule},
+                 refuses_silently<DisposeChannel>("S6-DISPOSED"_rule)});
   out.push_back({"disposed_channel_keeps_its_place",
                  "Disposing a channel stops it, and keeps its place.",
-                 {req::kS6Disposed},
+                 {"S6-DISPOSED"_rule},
                  always([](Moment& moment) {
                    const DisposeChannel* const dispose = moment.called<DisposeChannel>();
                    if (dispose == nullptr) return moment.honest();
@@ -161,7 +161,7 @@ void add_ends(Mutants& out) {
                  })});
   out.push_back({"dispose_takes_all",
                  "Disposing a channel disposes of every one.",
-                 {req::kS6Disposed, req::kS6Others, req::kS2Send},
+                 {"S6-DISPOSED"_rule, "S6-OTHERS"_rule, "S2-SEND"_rule},
                  always([](Moment& moment) {
                    const bool disposes = moment.called<DisposeChannel>() != nullptr;
                    moment.honest();
@@ -171,15 +171,15 @@ void add_ends(Mutants& out) {
                  })});
   out.push_back({"start_does_nothing",
                  "start_syn_channel says yes and starts nothing.",
-                 {req::kS1Start, req::kS2Send, req::kS2Signal},
-                 refuses_silently<StartChannel>(req::kS1Start)});
+                 {"S1-START"_rule, "S2-SEND"_rule, "S2-SIGNAL"_rule},
+                 refuses_silently<StartChannel>("S1-START"_rule)});
   out.push_back({"start_all_does_nothing",
                  "start_all_syn_channels says yes and starts nothing.",
-                 {req::kS1All, req::kS2Send, req::kS2Signal},
-                 refuses_silently<machine::StartAllChannels>(req::kS1All)});
+                 {"S1-ALL"_rule, "S2-SEND"_rule, "S2-SIGNAL"_rule},
+                 refuses_silently<machine::StartAllChannels>("S1-ALL"_rule)});
   out.push_back({"start_shifts_the_clock",
                  "Starting a channel begins the clock anew for all.",
-                 {req::kS6Clock, req::kS2Send, req::kS2Phase},
+                 {"S6-CLOCK"_rule, "S2-SEND"_rule, "S2-PHASE"_rule},
                  always([](Moment& moment) {
                    moment.honest();
                    auto& synaptic = moment.state.synaptic;
@@ -190,7 +190,7 @@ void add_ends(Mutants& out) {
                  })});
   out.push_back({"start_all_starts_outputs",
                  "start_all_syn_channels starts no input.",
-                 {req::kS2Signal},
+                 {"S2-SIGNAL"_rule},
                  always([](Moment& moment) {
                    const machine::Synaptic before = moment.state.synaptic;
                    moment.honest();

@@ -25,21 +25,21 @@ void as_if_on(Moment& moment) {
 void add_switches(Mutants& out) {
   out.push_back({"interface_off_still_sends",
                  "An interface that is off sends.",
-                 {req::kN10Off},
+                 {"N10-OFF"_rule},
                  always([](Moment& moment) {
                    if (moment.called<Send>() != nullptr) return as_if_on(moment);
                    moment.honest();
                  })});
   out.push_back({"interface_off_still_hears",
                  "An interface that is off receives.",
-                 {req::kN10Off},
+                 {"N10-OFF"_rule},
                  always([](Moment& moment) {
                    if (moment.heard() != nullptr) return as_if_on(moment);
                    moment.honest();
                  })});
   out.push_back({"interface_off_sends_synaptic",
                  "Timers send on a radio that is off.",
-                 {req::kN10Off, req::kN2Queue},
+                 {"N10-OFF"_rule, "N2-QUEUE"_rule},
                  always([](Moment& moment) {
                    if (std::holds_alternative<machine::TimerDue>(moment.event)) {
                      return as_if_on(moment);
@@ -48,16 +48,16 @@ void add_switches(Mutants& out) {
                  })});
   out.push_back({"off_for_good",
                  "An interface that was off never comes on again.",
-                 {req::kN10On},
+                 {"N10-ON"_rule},
                  always([](Moment& moment) {
                    const SetInterface* const set = moment.called<SetInterface>();
                    if (set == nullptr || !set->on) return moment.honest();
                    moment.nothing();
-                   moment.actions.notify(machine::OperationResult{true}, req::kN10On);
+                   moment.actions.notify(machine::OperationResult{true}, "N10-ON"_rule);
                  })});
   out.push_back({"switches_crossed",
                  "Switching the radio off switches the serial line.",
-                 {req::kN10Off},
+                 {"N10-OFF"_rule},
                  always([](Moment& moment) {
                    const SetInterface* const set = moment.called<SetInterface>();
                    if (set == nullptr) return moment.honest();
@@ -67,14 +67,14 @@ void add_switches(Mutants& out) {
                  })});
   out.push_back({"interface_state_constant",
                  "The state of an interface is told as on.",
-                 {req::kN10State},
+                 {"N10-STATE"_rule},
                  on_told_of<machine::InterfaceState>([](Moment&, machine::InterfaceState& told) {
                    told.on = true;
                    return Fate::kKeep;
                  })});
   out.push_back({"interface_state_inverted",
                  "The state of an interface is told as its opposite.",
-                 {req::kN10State},
+                 {"N10-STATE"_rule},
                  on_told_of<machine::InterfaceState>([](Moment&, machine::InterfaceState& told) {
                    told.on = !told.on;
                    return Fate::kKeep;
@@ -102,11 +102,11 @@ void trusts_nbytes(Moment& moment, Memory& memory) {
 void add_malformed(Mutants& out) {
   out.push_back({"nbytes_trusted",
                  "A node reads as many bytes as nbytes promises.",
-                 {req::kN11Nbytes},
+                 {"N11-NBYTES"_rule},
                  remembering<Memory>(trusts_nbytes)});
   out.push_back({"nbytes_cut_to_what_came",
                  "A node mends an nbytes that promises too much.",
-                 {req::kN11Nbytes},
+                 {"N11-NBYTES"_rule},
                  on_heard([](Moment&, Forged& forged) {
                    if (forged.frame.type != am::kNet || forged.size() < 14) return true;
                    const std::size_t came = std::min<std::size_t>(forged.size() - 12, 102);
@@ -116,7 +116,7 @@ void add_malformed(Mutants& out) {
                  })});
   out.push_back({"nbytes_below_2_is_empty",
                  "A message without APPID is taken as an empty one.",
-                 {req::kN11Nbytes},
+                 {"N11-NBYTES"_rule},
                  on_heard([](Moment&, Forged& forged) {
                    const bool net = forged.frame.type == am::kNet && forged.size() >= 12;
                    if (!net || forged.bytes[net::kNbytes] >= 2) return true;
@@ -128,18 +128,18 @@ void add_malformed(Mutants& out) {
                  })});
   out.push_back({"malformed_kills",
                  "After a malformed message a node hears no more.",
-                 {req::kN11Next},
+                 {"N11-NEXT"_rule},
                  remembering<bool>([](Moment& moment, bool& dead) {
                    if (dead && moment.heard() != nullptr) return moment.nothing();
                    moment.honest();
                    for (const Action& action : moment.actions.all()) {
                      dead = dead || (action.what == Action::What::kIgnored &&
-                                     action.requirement == req::kN11Nbytes);
+                                     action.requirement == "N11-NBYTES"_rule);
                    }
                  })});
   out.push_back({"malformed_eats_the_next",
                  "The message after a malformed one is lost.",
-                 {req::kN11Next},
+                 {"N11-NEXT"_rule},
                  remembering<bool>([](Moment& moment, bool& skip) {
                    const Frame* const frame = moment.heard(am::kNet);
                    const bool good = frame != nullptr && is_net(*frame) &&
@@ -151,12 +151,12 @@ void add_malformed(Mutants& out) {
                    moment.honest();
                    for (const Action& action : moment.actions.all()) {
                      skip = skip || (action.what == Action::What::kIgnored &&
-                                     action.requirement == req::kN11Nbytes);
+                                     action.requirement == "N11-NBYTES"_rule);
                    }
                  })});
   out.push_back({"longest_message_dropped",
                  "A node takes 101 bytes for the most.",
-                 {req::kN11Next, req::kT1Deliver},
+                 {"N11-NEXT"_rule, "T1-DELIVER"_rule},
                  on_heard([](Moment&, Forged& forged) {
                    return !is_net(forged.frame) || forged.bytes[net::kNbytes] < 102;
                  })});
@@ -186,11 +186,11 @@ void renumber(Moment& moment, std::uint16_t number) {
 void add_numbers(Mutants& out) {
   out.push_back({"awaited_number_reused",
                  "Every message has number 7.",
-                 {req::kN12Reuse},
+                 {"N12-REUSE"_rule},
                  always([](Moment& moment) { renumber(moment, 7); })});
   out.push_back({"number_for_each_destination",
                  "Numbers count for each destination, from 1, and collide.",
-                 {req::kN12Reuse},
+                 {"N12-REUSE"_rule},
                  remembering<std::vector<std::uint16_t>>(
                      [](Moment& moment, std::vector<std::uint16_t>& counts) {
                        const Send* const send = moment.called<Send>();
@@ -200,7 +200,7 @@ void add_numbers(Mutants& out) {
                      })});
   out.push_back({"error_value_used",
                  "Messages have number 0xFFFF.",
-                 {req::kN12Error, req::kN12Reuse},
+                 {"N12-ERROR"_rule, "N12-REUSE"_rule},
                  always([](Moment& moment) { renumber(moment, machine::kNoSeq); })});
 }
 

@@ -31,14 +31,14 @@ bool handed_down(const Moment& moment, const Transmit& frame) {
 void add_sink_up(Mutants& out) {
   out.push_back({"sink_hears_no_broadcast",
                  "A sink does not deliver a broadcast of its island.",
-                 {req::kN6Deliver},
+                 {"N6-DELIVER"_rule},
                  on_heard([](Moment& moment, Forged& forged) {
                    return !from_radio(moment, forged.frame) ||
                           get(forged, net::kDestDevid) != machine::kBroadcastDevid;
                  })});
   out.push_back({"sink_keeps_base_stations",
                  "A sink takes what is for its base station.",
-                 {req::kN6Forward},
+                 {"N6-FORWARD"_rule},
                  on_heard([](Moment& moment, Forged& forged) {
                    if (from_radio(moment, forged.frame) &&
                        get(forged, net::kDestDevid) == machine::kNullDevid) {
@@ -48,31 +48,31 @@ void add_sink_up(Mutants& out) {
                  })});
   out.push_back({"sink_forwards_nothing_foreign",
                  "A sink drops what leaves its island.",
-                 {req::kN6Route},
+                 {"N6-ROUTE"_rule},
                  on_heard([](Moment& moment, Forged& forged) {
                    return !from_radio(moment, forged.frame) ||
                           get(forged, net::kDestPid) == own(moment).pid;
                  })});
   out.push_back({"sink_forwards_foreign_source",
                  "A sink forwards its neighbours' messages.",
-                 {req::kN6Collision},
+                 {"N6-COLLISION"_rule},
                  always([](Moment& moment) {
                    moment.honest();
                    moment.rewrite([&](const Action& action) {
                      moment.keep(action);
                      const bool collision = action.what == Action::What::kIgnored &&
-                                            action.requirement == req::kN6Collision;
+                                            action.requirement == "N6-COLLISION"_rule;
                      const Frame* const frame = moment.heard();
                      if (!collision || frame == nullptr) return;
                      Transmit& sent = moment.send(Link::kSerial, am::kNet, machine::kAmBroadcast,
-                                                  req::kN6Collision);
+                                                  "N6-COLLISION"_rule);
                      sent.size_bytes = machine::kAmPayloadMax;
                      std::copy(frame->payload.begin(), frame->payload.end(), sent.payload.begin());
                    });
                  })});
   out.push_back({"sink_delivers_foreign",
                  "A sink takes what is for devid 1 of another island.",
-                 {req::kN6Collision, req::kN6Route},
+                 {"N6-COLLISION"_rule, "N6-ROUTE"_rule},
                  on_heard([](Moment& moment, Forged& forged) {
                    if (from_radio(moment, forged.frame) && get(forged, net::kDestDevid) == 1) {
                      put(forged, net::kDestPid, own(moment).pid);
@@ -81,30 +81,32 @@ void add_sink_up(Mutants& out) {
                  })});
   out.push_back({"forward_signed_by_the_sink",
                  "What a sink hands up has the sink as its source.",
-                 {req::kN6Content, req::kN6Forward, req::kN6Route},
+                 {"N6-CONTENT"_rule, "N6-FORWARD"_rule, "N6-ROUTE"_rule},
                  on_sent([](Moment& moment, const Action&, Transmit& frame) {
                    if (up(moment, frame)) put(frame, net::kSrcDevid, 1);
                    return Fate::kKeep;
                  })});
   out.push_back({"forward_unreliable",
                  "A sink hands up with reliable 0.",
-                 {req::kN6Content, req::kN6Forward, req::kN6Route},
+                 {"N6-CONTENT"_rule, "N6-FORWARD"_rule, "N6-ROUTE"_rule},
                  on_sent([](Moment& moment, const Action&, Transmit& frame) {
                    if (up(moment, frame)) frame.payload[net::kReliable] = 0;
                    return Fate::kKeep;
                  })});
   out.push_back({"forward_numbered_by_the_sink",
                  "A sink hands up with a number of its own.",
-                 {req::kN6Content, req::kN6Forward, req::kN6Route},
+                 {"N6-CONTENT"_rule, "N6-FORWARD"_rule, "N6-ROUTE"_rule},
                  on_sent([](Moment& moment, const Action&, Transmit& frame) {
                    if (up(moment, frame)) put(frame, net::kSeqNum, 4711);
                    return Fate::kKeep;
                  })});
-  out.push_back(
-      {"forwarded_twice", "A sink hands each message up twice.", {req::kN6Once}, double_sent(up)});
+  out.push_back({"forwarded_twice",
+                 "A sink hands each message up twice.",
+                 {"N6-ONCE"_rule},
+                 double_sent(up)});
   out.push_back({"forwarded_and_acked",
                  "A sink acks what it hands up, in its base station's place.",
-                 {req::kN6Forward, req::kN6Route},
+                 {"N6-FORWARD"_rule, "N6-ROUTE"_rule},
                  always([](Moment& moment) {
                    moment.honest();
                    const Frame* const heard = moment.heard();
@@ -112,13 +114,13 @@ void add_sink_up(Mutants& out) {
                                          heard->payload[net::kReliable] == 1;
                    const auto sent = moment.actions.transmits();
                    if (!reliable || sent.empty() || sent[0].link != Link::kSerial) return;
-                   Transmit& ack = moment.send(Link::kRadio, am::kNet, heard->src, req::kT2Ack);
+                   Transmit& ack = moment.send(Link::kRadio, am::kNet, heard->src, "T2-ACK"_rule);
                    ack.size_bytes = net::kBody + rubicon::RubiconAckView::kMaxSizeBytes;
                    ack.payload[net::kTransId] = component::kRubiconAck;
                  })});
   out.push_back({"sink_delivers_others",
                  "A sink delivers what is for one of its motes.",
-                 {req::kN6Other},
+                 {"N6-OTHER"_rule},
                  on_heard([](Moment& moment, Forged& forged) {
                    const std::uint16_t devid = get(forged, net::kDestDevid);
                    if (from_radio(moment, forged.frame) && devid < machine::kNullDevid &&
@@ -129,7 +131,7 @@ void add_sink_up(Mutants& out) {
                  })});
   out.push_back({"sink_radiates_its_own",
                  "What a sink sends to others' islands goes by radio.",
-                 {req::kN6Own, req::kN1Seq, req::kN1Src, req::kN2Queue},
+                 {"N6-OWN"_rule, "N1-SEQ"_rule, "N1-SRC"_rule, "N2-QUEUE"_rule},
                  on_sent([](Moment& moment, const Action&, Transmit& frame) {
                    const bool mine = is_send(moment, frame) && moment.is(Role::kSink);
                    if (!mine || frame.link != Link::kSerial) return Fate::kKeep;
@@ -143,31 +145,31 @@ void add_sink_up(Mutants& out) {
 void add_sink_down(Mutants& out) {
   out.push_back({"serial_not_delivered",
                  "A sink radiates all that comes by serial, and reads none.",
-                 {req::kN7Deliver, req::kN2InOrder},
+                 {"N7-DELIVER"_rule, "N2-IN-ORDER"_rule},
                  on_told_of<Received>([](Moment& moment, Received&) {
                    const Frame* const frame = moment.heard();
                    const bool serial = frame != nullptr && from_serial(moment, *frame);
                    return serial ? Fate::kDrop : Fate::kKeep;
                  })});
   out.push_back(
-      {"serial_not_radiated", "A sink sends nothing on.", {req::kN7Radio}, drop_sent(down)});
+      {"serial_not_radiated", "A sink sends nothing on.", {"N7-RADIO"_rule}, drop_sent(down)});
   out.push_back({"radiated_to_all",
                  "A sink sends a mote's message on to everybody.",
-                 {req::kN7Radio, req::kN7Content},
+                 {"N7-RADIO"_rule, "N7-CONTENT"_rule},
                  on_sent([](Moment& moment, const Action&, Transmit& frame) {
                    if (down(moment, frame)) frame.dest = machine::kAmBroadcast;
                    return Fate::kKeep;
                  })});
   out.push_back({"radiated_signed_by_the_sink",
                  "What a sink sends on has the sink as its source.",
-                 {req::kN7Content, req::kN7Radio},
+                 {"N7-CONTENT"_rule, "N7-RADIO"_rule},
                  on_sent([](Moment& moment, const Action&, Transmit& frame) {
                    if (down(moment, frame)) put(frame, net::kSrcDevid, 1);
                    return Fate::kKeep;
                  })});
   out.push_back({"radiated_with_stale_bytes",
                  "A sink radiates the bytes behind the payload.",
-                 {req::kN7Content},
+                 {"N7-CONTENT"_rule},
                  on_sent([](Moment& moment, const Action&, Transmit& frame) {
                    const Frame* const heard = moment.heard();
                    if (heard == nullptr || !down(moment, frame)) return Fate::kKeep;
@@ -177,7 +179,7 @@ void add_sink_down(Mutants& out) {
                  })});
   out.push_back({"radiated_with_full_length",
                  "A sink radiates with nbytes 102.",
-                 {req::kN7Content, req::kN7Radio},
+                 {"N7-CONTENT"_rule, "N7-RADIO"_rule},
                  on_sent([](Moment& moment, const Action&, Transmit& frame) {
                    if (!down(moment, frame)) return Fate::kKeep;
                    const auto end = frame.payload.begin() + frame.size_bytes;
@@ -188,7 +190,7 @@ void add_sink_down(Mutants& out) {
                  })});
   out.push_back({"foreign_radiated",
                  "A sink radiates by the devid alone.",
-                 {req::kN7Foreign},
+                 {"N7-FOREIGN"_rule},
                  always([](Moment& moment) {
                    const Frame* const frame = moment.heard();
                    const bool serial = frame != nullptr && from_serial(moment, *frame);
@@ -200,14 +202,14 @@ void add_sink_down(Mutants& out) {
                  })});
   out.push_back({"foreign_sent_back_up",
                  "A sink hands a foreign message back to its base station.",
-                 {req::kN6Once},
+                 {"N6-ONCE"_rule},
                  always([](Moment& moment) {
                    moment.honest();
                    const Frame* const frame = moment.heard();
                    const bool serial = frame != nullptr && from_serial(moment, *frame);
                    if (!serial || get(*frame, net::kDestPid) == own(moment).pid) return;
                    Transmit& sent =
-                       moment.send(Link::kSerial, am::kNet, machine::kAmBroadcast, req::kN6Once);
+                       moment.send(Link::kSerial, am::kNet, machine::kAmBroadcast, "N6-ONCE"_rule);
                    sent.size_bytes = machine::kAmPayloadMax;
                    std::copy(frame->payload.begin(), frame->payload.end(), sent.payload.begin());
                  })});
@@ -216,7 +218,7 @@ void add_sink_down(Mutants& out) {
 void add_base_station(Mutants& out) {
   out.push_back({"own_island_not_sent",
                  "A base station sends nothing to its sink.",
-                 {req::kN8Serial, req::kN1Seq},
+                 {"N8-SERIAL"_rule, "N1-SEQ"_rule},
                  drop_sent([](const Moment& moment, const Transmit& frame) {
                    return moment.is(Role::kBaseStation) && frame.link == Link::kSerial &&
                           moment.called<Send>() != nullptr;
@@ -224,11 +226,11 @@ void add_base_station(Mutants& out) {
   out.push_back(
       {"inter_island_dropped",
        "A base station drops what leaves its island (release 1.0).",
-       {req::kN8Peis},
+       {"N8-PEIS"_rule},
        drop_sent([](const Moment&, const Transmit& frame) { return frame.link == Link::kPeis; })});
   out.push_back({"peis_to_the_wrong_island",
                  "A base station hands everything to an island that nobody meant.",
-                 {req::kN8Peis},
+                 {"N8-PEIS"_rule},
                  on_sent([](Moment& moment, const Action&, Transmit& frame) {
                    if (frame.link == Link::kPeis) {
                      frame.dest = static_cast<std::uint16_t>(own(moment).pid + 2);
@@ -237,7 +239,7 @@ void add_base_station(Mutants& out) {
                  })});
   out.push_back({"incoming_reliable_0_and_seq_5",
                  "A base station hands down with reliable 0 and number 5 (release 1.0).",
-                 {req::kN8Incoming},
+                 {"N8-INCOMING"_rule},
                  on_sent([](Moment& moment, const Action&, Transmit& frame) {
                    if (!handed_down(moment, frame)) return Fate::kKeep;
                    frame.payload[net::kReliable] = 0;
@@ -246,11 +248,11 @@ void add_base_station(Mutants& out) {
                  })});
   out.push_back({"incoming_not_handed_down",
                  "A base station hands down nothing from PEIS.",
-                 {req::kN8Incoming},
+                 {"N8-INCOMING"_rule},
                  drop_sent(handed_down)});
   out.push_back({"incoming_signed",
                  "A base station signs what it hands down.",
-                 {req::kN8Incoming},
+                 {"N8-INCOMING"_rule},
                  on_sent([](Moment& moment, const Action&, Transmit& frame) {
                    if (!handed_down(moment, frame)) return Fate::kKeep;
                    put(frame, net::kSrcPid, own(moment).pid);
@@ -259,13 +261,13 @@ void add_base_station(Mutants& out) {
                  })});
   out.push_back({"null_not_delivered",
                  "A base station delivers nothing.",
-                 {req::kN8Deliver},
+                 {"N8-DELIVER"_rule},
                  on_told_of<Received>([](Moment& moment, Received&) {
                    return moment.is(Role::kBaseStation) ? Fate::kDrop : Fate::kKeep;
                  })});
   out.push_back({"foreign_to_own_sink",
                  "A base station hands a third island's message to its sink.",
-                 {req::kN8Loop, req::kN8Peis},
+                 {"N8-LOOP"_rule, "N8-PEIS"_rule},
                  on_sent([](Moment& moment, const Action&, Transmit& frame) {
                    const bool mine = is_send(moment, frame) && frame.link == Link::kPeis;
                    if (!mine) return Fate::kKeep;
@@ -280,11 +282,11 @@ void add_island_id(Mutants& out) {
   out.push_back(
       {"local_island_not_replaced",
        "SET_ISLAND_ID changes nothing.",
-       {req::kN9Set},
+       {"N9-SET"_rule},
        on_heard([](Moment&, Forged& forged) { return forged.frame.type != am::kConfig; })});
   out.push_back({"island_id_swapped",
                  "SET_ISLAND_ID is read in the wrong byte order.",
-                 {req::kN9Set},
+                 {"N9-SET"_rule},
                  on_heard([](Moment&, Forged& forged) {
                    if (forged.frame.type == am::kConfig)
                      std::swap(forged.bytes[config::kValue], forged.bytes[config::kValue.kEnd - 1]);
@@ -292,7 +294,7 @@ void add_island_id(Mutants& out) {
                  })});
   out.push_back({"island_id_in_replies_only",
                  "After SET_ISLAND_ID only join_replies have the new id.",
-                 {req::kN9Set, req::kN1Src},
+                 {"N9-SET"_rule, "N1-SRC"_rule},
                  always([](Moment& moment) {
                    const bool joining =
                        moment.heard(am::kJoin) != nullptr || moment.heard(am::kConfig) != nullptr;
@@ -305,7 +307,7 @@ void add_island_id(Mutants& out) {
                  })});
   out.push_back({"config_of_another_type_obeyed",
                  "Any config message sets the island id.",
-                 {req::kN9Other},
+                 {"N9-OTHER"_rule},
                  on_heard([](Moment&, Forged& forged) {
                    if (forged.frame.type == am::kConfig) {
                      forged.bytes[config::kType] = config::kSetIslandId;
@@ -314,7 +316,7 @@ void add_island_id(Mutants& out) {
                  })});
   out.push_back({"members_of_the_old_island_kept",
                  "A sink with a new id keeps its members.",
-                 {req::kN9Members},
+                 {"N9-MEMBERS"_rule},
                  always([](Moment& moment) {
                    const machine::JoinSink before = moment.state.sink;
                    moment.honest();

@@ -20,16 +20,16 @@ void add_acceptance(Mutants& out) {
   out.push_back(
       {"no_ack_join",
        "A mote that accepts a reply does not ack it.",
-       {req::kJ4Ack},
+       {"J4-ACK"_rule},
        drop_sent([](const Moment&, const Transmit& frame) { return frame.type == am::kAckJoin; })});
   out.push_back({"ack_join_other_number",
                  "ack_join carries the number plus one.",
-                 {req::kJ4Content, req::kJ4Ack},
+                 {"J4-CONTENT"_rule, "J4-ACK"_rule},
                  sent_field(am::kAckJoin, ack_join::kSeqNum,
                             [](const Moment&, unsigned v) { return v + 1; })});
   out.push_back({"ack_join_swaps_addresses",
                  "Source and destination of ack_join are swapped.",
-                 {req::kJ4Content},
+                 {"J4-CONTENT"_rule},
                  on_sent([](Moment&, const Action&, Transmit& frame) {
                    if (frame.type != am::kAckJoin) return Fate::kKeep;
                    std::swap_ranges(frame.payload.begin() + ack_join::kDestPid,
@@ -40,23 +40,23 @@ void add_acceptance(Mutants& out) {
   out.push_back(
       {"ack_join_without_island",
        "The source of ack_join has no island yet.",
-       {req::kJ4Content},
+       {"J4-CONTENT"_rule},
        sent_field(am::kAckJoin, ack_join::kSrcPid, [](const Moment&, unsigned) { return 0U; })});
   out.push_back({"ack_join_old_descriptor",
                  "ack_join has a descriptor without transducers.",
-                 {req::kJ4Content},
+                 {"J4-CONTENT"_rule},
                  sent_field(am::kAckJoin, ack_join::kTransducers,
                             [](const Moment&, unsigned) { return 0U; })});
   out.push_back({"ack_join_broadcast",
                  "ack_join goes to everybody.",
-                 {req::kJ4Content, req::kJ4Ack},
+                 {"J4-CONTENT"_rule, "J4-ACK"_rule},
                  on_sent([](Moment&, const Action&, Transmit& frame) {
                    if (frame.type == am::kAckJoin) frame.dest = machine::kAmBroadcast;
                    return Fate::kKeep;
                  })});
   out.push_back({"wrong_seq_accepted_and_acked_as_it_is",
                  "A mote that is joining takes any number, and adopts it.",
-                 {req::kJ4Seq, req::kJ5Accept},
+                 {"J4-SEQ"_rule, "J5-ACCEPT"_rule},
                  always([](Moment& moment) {
                    const Frame* const frame = moment.heard();
                    if (frame != nullptr && is_reply_for(moment, *frame) && is_joining(moment)) {
@@ -66,7 +66,7 @@ void add_acceptance(Mutants& out) {
                  })});
   out.push_back({"reply_accepted_by_a_member",
                  "A member that hears a reply changes its island.",
-                 {req::kJ4Joined, req::kJ7One, req::kJ7Choice},
+                 {"J4-JOINED"_rule, "J7-ONE"_rule, "J7-CHOICE"_rule},
                  always([](Moment& moment) {
                    const Frame* const frame = moment.heard();
                    if (frame != nullptr && is_reply_for(moment, *frame) && is_member(moment)) {
@@ -77,7 +77,7 @@ void add_acceptance(Mutants& out) {
                  })});
   out.push_back({"reply_accepted_outside",
                  "A mote without a request accepts a reply.",
-                 {req::kJ4Joined, req::kJ5Accept, req::kJ1Called},
+                 {"J4-JOINED"_rule, "J5-ACCEPT"_rule, "J1-CALLED"_rule},
                  always([](Moment& moment) {
                    const Frame* const frame = moment.heard();
                    if (frame != nullptr && is_reply_for(moment, *frame) && !is_member(moment)) {
@@ -88,7 +88,7 @@ void add_acceptance(Mutants& out) {
                  })});
   out.push_back({"reply_for_another_accepted",
                  "mote_addr of a reply is not looked at.",
-                 {req::kJ4Address},
+                 {"J4-ADDRESS"_rule},
                  on_heard([](Moment& moment, Forged& forged) {
                    if (is_reply_for(moment, forged.frame)) {
                      put(forged, join_reply::kMote, moment.state.config.id);
@@ -97,7 +97,7 @@ void add_acceptance(Mutants& out) {
                  })});
   out.push_back({"clock_not_set",
                  "A mote that joins keeps its own clock.",
-                 {req::kJ4Clock},
+                 {"J4-CLOCK"_rule},
                  always([](Moment& moment) {
                    const std::uint32_t offset = moment.state.clock_offset_ms;
                    moment.honest();
@@ -107,7 +107,7 @@ void add_acceptance(Mutants& out) {
                  })});
   out.push_back({"clock_stands",
                  "A mote's clock stays at cur_time.",
-                 {req::kJ4Clock},
+                 {"J4-CLOCK"_rule},
                  on_told([](Moment& moment, const Action&, Notice& notice) {
                    auto* const clock = std::get_if<machine::Clock>(&notice);
                    const bool set = moment.is(Role::kMote) && is_member(moment);
@@ -119,7 +119,7 @@ void add_acceptance(Mutants& out) {
                  })});
   out.push_back({"two_islands",
                  "A member acks the reply of a second island, too.",
-                 {req::kJ7Choice, req::kJ4Joined},
+                 {"J7-CHOICE"_rule, "J4-JOINED"_rule},
                  always([](Moment& moment) {
                    const Frame* const frame = moment.heard();
                    const bool second =
@@ -152,17 +152,17 @@ void repeats_late(Moment& moment, Confirmed& memory) {
   const bool asked =
       moment.called<machine::GetClock>() != nullptr || moment.heard(am::kNet) != nullptr;
   if (memory.ack.type != am::kAckJoin || !asked) return;
-  moment.actions.transmit(req::kJ4Repeat) = memory.ack;
+  moment.actions.transmit("J4-REPEAT"_rule) = memory.ack;
 }
 
 void add_repeats(Mutants& out) {
   out.push_back({"ack_join_repeated_too_often",
                  "An unconfirmed ack_join is sent thirty times.",
-                 {req::kJ4Repeat, req::kJ4Few},
+                 {"J4-REPEAT"_rule, "J4-FEW"_rule},
                  with_profile([](machine::Profile& profile) { profile.ack_join_max = 30; })});
   out.push_back({"ack_join_repeated_changed",
                  "The repeats of ack_join have other numbers.",
-                 {req::kJ4Repeat},
+                 {"J4-REPEAT"_rule},
                  on_sent([](Moment& moment, const Action&, Transmit& frame) {
                    if (frame.type == am::kAckJoin && moment.state.join.acks > 1) {
                      put(frame, ack_join::kSeqNum,
@@ -172,7 +172,7 @@ void add_repeats(Mutants& out) {
                  })});
   out.push_back({"ack_join_repeated_late",
                  "A member sends its ack_join again much later.",
-                 {req::kJ4Repeat, req::kJ4Joined, req::kJ7Choice, req::kJ8Joined},
+                 {"J4-REPEAT"_rule, "J4-JOINED"_rule, "J7-CHOICE"_rule, "J8-JOINED"_rule},
                  remembering<Confirmed>(repeats_late)});
 }
 

@@ -13,7 +13,7 @@ using machine::TimerKind;
 using Phase = machine::JoinMote::Phase;
 
 Transmit& send_request(Moment& moment) {
-  Transmit& request = moment.send(Link::kRadio, am::kJoin, 1, req::kJ1Request);
+  Transmit& request = moment.send(Link::kRadio, am::kJoin, 1, "J1-REQUEST"_rule);
   request.size_bytes = rubicon::JoinRequestView::kMaxSizeBytes;
   put(request, join_request::kSeqNum, moment.state.join.seq_num);
   const machine::Descriptor& d = moment.state.join.descriptor;
@@ -28,7 +28,7 @@ Transmit& send_request(Moment& moment) {
 void add_requests(Mutants& out) {
   out.push_back({"request_without_descriptor",
                  "A mote's join_request has an empty descriptor.",
-                 {req::kJ1Request},
+                 {"J1-REQUEST"_rule},
                  on_sent([](Moment&, const Action&, Transmit& frame) {
                    if (frame.type == am::kJoin) {
                      std::fill_n(frame.payload.begin() + join_request::kMoteType,
@@ -38,24 +38,24 @@ void add_requests(Mutants& out) {
                  })});
   out.push_back({"request_transducers_cut",
                  "The transducers of a join_request are cut to a byte.",
-                 {req::kJ1Request},
+                 {"J1-REQUEST"_rule},
                  sent_field(am::kJoin, join_request::kTransducers,
                             [](const Moment&, unsigned v) { return v & 0xFF; })});
   out.push_back({"request_transducers_swapped",
                  "The transducers have the wrong byte order.",
-                 {req::kJ1Request},
+                 {"J1-REQUEST"_rule},
                  sent_field(am::kJoin, join_request::kTransducers,
                             [](const Moment&, unsigned v) { return v >> 8 | (v & 0xFF) << 8; })});
   out.push_back({"request_broadcast",
                  "A join_request goes to everybody.",
-                 {req::kJ1Dest, req::kJ1Request},
+                 {"J1-DEST"_rule, "J1-REQUEST"_rule},
                  on_sent([](Moment&, const Action&, Transmit& frame) {
                    if (frame.type == am::kJoin) frame.dest = machine::kAmBroadcast;
                    return Fate::kKeep;
                  })});
   out.push_back({"request_also_to_another_sink",
                  "A join_request goes to a second address, too.",
-                 {req::kJ1Dest},
+                 {"J1-DEST"_rule},
                  always([](Moment& moment) {
                    moment.honest();
                    if (moment.called<JoinIsland>() == nullptr || !is_joining(moment)) return;
@@ -63,7 +63,7 @@ void add_requests(Mutants& out) {
                  })});
   out.push_back({"same_number_for_each_call",
                  "Every joinIsland call uses the same number.",
-                 {req::kJ1Seq},
+                 {"J1-SEQ"_rule},
                  always([](Moment& moment) {
                    const bool again =
                        moment.called<JoinIsland>() != nullptr && moment.state.join.requests != 0;
@@ -80,7 +80,7 @@ void add_requests(Mutants& out) {
                  })});
   out.push_back({"joins_uncalled",
                  "A mote that hears a sink's join_reply asks to join by itself.",
-                 {req::kJ1Called},
+                 {"J1-CALLED"_rule},
                  always([](Moment& moment) {
                    moment.honest();
                    const Frame* const reply = moment.heard(am::kJoinReply);
@@ -90,7 +90,7 @@ void add_requests(Mutants& out) {
   out.push_back(
       {"request_twice",
        "Each join_request is sent twice.",
-       {req::kJ8Period, req::kJ1Request},
+       {"J8-PERIOD"_rule, "J1-REQUEST"_rule},
        double_sent([](const Moment&, const Transmit& frame) { return frame.type == am::kJoin; })});
 }
 
@@ -101,39 +101,39 @@ void succeeds_twice(Moment& moment) {
   const bool confirmed =
       done != nullptr && done->acked && is_member(moment) && moment.state.radio.sending_ack_join;
   moment.honest();
-  if (confirmed) moment.actions.notify(Joined{own(moment), true}, req::kJ5Once);
+  if (confirmed) moment.actions.notify(Joined{own(moment), true}, "J5-ONCE"_rule);
 }
 
 void add_join_ends(Mutants& out) {
   out.push_back({"joined_with_own_id_only",
                  "joined(SUCCESS) tells an address without the island.",
-                 {req::kJ5Success},
+                 {"J5-SUCCESS"_rule},
                  on_told_of<Joined>([](Moment&, Joined& joined) {
                    if (joined.success) joined.address.pid = 0;
                    return Fate::kKeep;
                  })});
   out.push_back({"joined_silently",
                  "joined(SUCCESS) is never signalled.",
-                 {req::kJ5Success, req::kJ5Once},
+                 {"J5-SUCCESS"_rule, "J5-ONCE"_rule},
                  on_told_of<Joined>([](Moment&, Joined& joined) {
                    return joined.success ? Fate::kDrop : Fate::kKeep;
                  })});
   out.push_back({"joined_twice",
                  "joined(SUCCESS) comes at acceptance and at the link ack.",
-                 {req::kJ5Once},
+                 {"J5-ONCE"_rule},
                  always(succeeds_twice)});
   out.push_back(
       {"joined_at_once",
        "A mote calls itself joined when it has asked.",
-       {req::kJ5Accept},
+       {"J5-ACCEPT"_rule},
        always([](Moment& moment) {
          moment.honest();
          if (moment.called<JoinIsland>() == nullptr || !is_joining(moment)) return;
-         moment.actions.notify(Joined{{11, moment.state.config.id}, true}, req::kJ5Accept);
+         moment.actions.notify(Joined{{11, moment.state.config.id}, true}, "J5-ACCEPT"_rule);
        })});
   out.push_back({"member_keeps_asking",
                  "The join timer of a member runs on and asks again.",
-                 {req::kJ5Stop},
+                 {"J5-STOP"_rule},
                  always([](Moment& moment) {
                    moment.honest();
                    if (moment.heard(am::kNet) != nullptr && is_member(moment)) send_request(moment);
@@ -143,20 +143,20 @@ void add_join_ends(Mutants& out) {
                  })});
   out.push_back({"fail_twice",
                  "joined(FAIL) is signalled twice.",
-                 {req::kJ5Once},
+                 {"J5-ONCE"_rule},
                  on_told_of<Joined>([](Moment&, Joined& joined) {
                    return joined.success ? Fate::kKeep : Fate::kTwice;
                  })});
   out.push_back({"fail_as_success",
                  "A call that had no success ends in joined(SUCCESS).",
-                 {req::kJ8Fail, req::kJ5Accept},
+                 {"J8-FAIL"_rule, "J5-ACCEPT"_rule},
                  on_told_of<Joined>([](Moment&, Joined& joined) {
                    joined.success = true;
                    return Fate::kKeep;
                  })});
   out.push_back({"member_joins_again",
                  "joinIsland of a member leaves the island and asks anew.",
-                 {req::kJ8Joined},
+                 {"J8-JOINED"_rule},
                  always([](Moment& moment) {
                    if (moment.called<JoinIsland>() != nullptr && is_member(moment)) {
                      moment.state.join.phase = Phase::kOutside;
@@ -165,7 +165,7 @@ void add_join_ends(Mutants& out) {
                  })});
   out.push_back({"member_join_is_success",
                  "joinIsland of a member ends in joined(SUCCESS).",
-                 {req::kJ8Joined},
+                 {"J8-JOINED"_rule},
                  on_told_of<Joined>([](Moment& moment, Joined& joined) {
                    if (moment.called<JoinIsland>() != nullptr && is_member(moment)) {
                      joined.success = true;
@@ -179,41 +179,41 @@ void add_join_ends(Mutants& out) {
 void add_timer(Mutants& out) {
   out.push_back({"no_retry",
                  "A mote asks once, and then waits for the end.",
-                 {req::kJ8Retry},
+                 {"J8-RETRY"_rule},
                  drop_sent([](const Moment& moment, const Transmit& frame) {
                    return frame.type == am::kJoin && moment.timer(TimerKind::kJoin);
                  })});
   out.push_back({"one_retry_too_many",
                  "A mote sends six join_requests.",
-                 {req::kJ8Limit},
+                 {"J8-LIMIT"_rule},
                  with_profile([](machine::Profile& profile) { ++profile.join_requests_max; })});
   out.push_back({"two_retries_too_few",
                  "A mote gives up after three join_requests.",
-                 {req::kJ8Fail, req::kJ8Retry},
+                 {"J8-FAIL"_rule, "J8-RETRY"_rule},
                  with_profile([](machine::Profile& profile) { profile.join_requests_max = 3; })});
   out.push_back({"timer_too_short",
                  "The join timer takes 400 ticks.",
-                 {req::kJ8Period},
+                 {"J8-PERIOD"_rule},
                  with_profile([](machine::Profile& profile) { profile.join_period_ticks = 400; })});
   out.push_back(
       {"timer_too_long",
        "The join timer takes a second and a half.",
-       {req::kJ8Retry, req::kJ8Fail},
+       {"J8-RETRY"_rule, "J8-FAIL"_rule},
        with_profile([](machine::Profile& profile) { profile.join_period_ticks = 1500; })});
   out.push_back({"retries_for_ever",
                  "A mote asks until somebody answers.",
-                 {req::kJ8Limit, req::kJ8Fail},
+                 {"J8-LIMIT"_rule, "J8-FAIL"_rule},
                  with_profile([](machine::Profile& profile) { profile.join_requests_max = 200; })});
   out.push_back(
       {"fail_early",
        "joined(FAIL) comes with the first expiry, and the retries go on.",
-       {req::kJ8Fail, req::kJ5Once},
+       {"J8-FAIL"_rule, "J5-ONCE"_rule},
        always([](Moment& moment) {
          moment.honest();
          const bool first = moment.timer(TimerKind::kJoin) && is_joining(moment) &&
                             moment.state.join.requests == 2;
          if (first) {
-           moment.actions.notify(Joined{{0, moment.state.config.id}, false}, req::kJ8Fail);
+           moment.actions.notify(Joined{{0, moment.state.config.id}, false}, "J8-FAIL"_rule);
          }
        })});
 }
@@ -238,28 +238,28 @@ void stale_address(Moment& moment, machine::Address& first) {
 void add_outside(Mutants& out) {
   out.push_back({"mote_answers_requests",
                  "A mote answers the join_request of another mote.",
-                 {req::kJ10Mote},
+                 {"J10-MOTE"_rule},
                  always([](Moment& moment) {
                    moment.honest();
                    const Frame* const request = moment.heard(am::kJoin);
                    if (request == nullptr || !moment.is(Role::kMote)) return;
                    Transmit& reply =
-                       moment.send(Link::kRadio, am::kJoinReply, request->src, req::kJ10Mote);
+                       moment.send(Link::kRadio, am::kJoinReply, request->src, "J10-MOTE"_rule);
                    reply.size_bytes = rubicon::JoinReplyView::kMaxSizeBytes;
                    put(reply, join_reply::kMote, request->src);
                  })});
   out.push_back({"mote_lists_members",
                  "A mote signals moteJoined for an ack_join.",
-                 {req::kJ10Mote},
+                 {"J10-MOTE"_rule},
                  always([](Moment& moment) {
                    moment.honest();
                    const Frame* const ack = moment.heard(am::kAckJoin);
                    if (ack == nullptr || !moment.is(Role::kMote)) return;
-                   moment.actions.notify(machine::MoteJoined{{11, ack->src}, {}}, req::kJ10Mote);
+                   moment.actions.notify(machine::MoteJoined{{11, ack->src}, {}}, "J10-MOTE"_rule);
                  })});
   out.push_back({"sends_outside",
                  "A mote that has not joined sends from island 0.",
-                 {req::kJ11Send},
+                 {"J11-SEND"_rule},
                  always([](Moment& moment) {
                    const bool outside = moment.is(Role::kMote) && !is_member(moment) &&
                                         moment.called<machine::Send>() != nullptr;
@@ -271,7 +271,7 @@ void add_outside(Mutants& out) {
   out.push_back(
       {"hears_outside",
        "A mote that has not joined takes what names its devid.",
-       {req::kJ11Hear},
+       {"J11-HEAR"_rule},
        always([](Moment& moment) {
          const Frame* const frame = moment.heard();
          const bool outside =
@@ -286,7 +286,7 @@ void add_outside(Mutants& out) {
        })});
   out.push_back({"stale_address_kept",
                  "A mote that joins another island after a reboot sends from its old address.",
-                 {req::kN1Src, req::kJ7One},
+                 {"N1-SRC"_rule, "J7-ONE"_rule},
                  remembering<machine::Address>(stale_address)});
 }
 

@@ -36,7 +36,7 @@ void sends_refused(Moment& moment, Transmit& refused) {
   const bool last_left = std::holds_alternative<machine::SendDone>(moment.event) && queue.empty();
   moment.honest();
   if (!last_left || refused.size_bytes == 0) return;
-  moment.actions.transmit(req::kN1Full) = refused;
+  moment.actions.transmit("N1-FULL"_rule) = refused;
   refused.size_bytes = 0;
 }
 
@@ -50,21 +50,21 @@ void reverse(Queue& queue) {
 void add_sending(Mutants& out) {
   out.push_back({"signed_by_the_sink",
                  "What a mote sends has its sink as the source.",
-                 {req::kN1Src},
+                 {"N1-SRC"_rule},
                  on_sent([](Moment& moment, const Action&, Transmit& frame) {
                    if (is_send(moment, frame)) put(frame, net::kSrcDevid, 1);
                    return Fate::kKeep;
                  })});
   out.push_back({"signed_without_island",
                  "What a node sends has source island 0.",
-                 {req::kN1Src},
+                 {"N1-SRC"_rule},
                  on_sent([](Moment& moment, const Action&, Transmit& frame) {
                    if (is_send(moment, frame)) put(frame, net::kSrcPid, 0);
                    return Fate::kKeep;
                  })});
   out.push_back({"base_station_is_device_0",
                  "A base station signs with devid 0.",
-                 {req::kN1Src},
+                 {"N1-SRC"_rule},
                  on_sent([](Moment& moment, const Action&, Transmit& frame) {
                    if (is_send(moment, frame) && moment.is(Role::kBaseStation)) {
                      put(frame, net::kSrcDevid, 0);
@@ -73,32 +73,32 @@ void add_sending(Mutants& out) {
                  })});
   out.push_back({"send_returns_another_number",
                  "send returns the number of the next message.",
-                 {req::kN1Seq},
+                 {"N1-SEQ"_rule},
                  on_told_of<SendResult>([](Moment&, SendResult& result) {
                    if (result.seq_num != machine::kNoSeq) ++result.seq_num;
                    return Fate::kKeep;
                  })});
   out.push_back({"no_outgoing_buffer",
                  "send refuses while the radio is busy.",
-                 {req::kN1Room, req::kN1Seq, req::kN2Queue},
+                 {"N1-ROOM"_rule, "N1-SEQ"_rule, "N2-QUEUE"_rule},
                  always([](Moment& moment) {
                    if (send_on_busy_radio(moment) == nullptr) return moment.honest();
                    moment.nothing();
-                   moment.actions.notify(SendResult{machine::kNoSeq}, req::kN1Room);
+                   moment.actions.notify(SendResult{machine::kNoSeq}, "N1-ROOM"_rule);
                  })});
   out.push_back({"buffer_of_two",
                  "The outgoing radio buffer has two places.",
-                 {req::kN1Room, req::kN1Seq, req::kN2Queue},
+                 {"N1-ROOM"_rule, "N1-SEQ"_rule, "N2-QUEUE"_rule},
                  always([](Moment& moment) {
                    const bool refuse =
                        send_on_busy_radio(moment) != nullptr && moment.state.radio.out.size() >= 2;
                    if (!refuse) return moment.honest();
                    moment.nothing();
-                   moment.actions.notify(SendResult{machine::kNoSeq}, req::kN1Room);
+                   moment.actions.notify(SendResult{machine::kNoSeq}, "N1-ROOM"_rule);
                  })});
   out.push_back({"full_buffer_loses_the_oldest",
                  "A full outgoing buffer loses its oldest message.",
-                 {req::kN1Full, req::kN1Seq, req::kN2Queue, req::kN2Once},
+                 {"N1-FULL"_rule, "N1-SEQ"_rule, "N2-QUEUE"_rule, "N2-ONCE"_rule},
                  always([](Moment& moment) {
                    auto& queue = moment.state.radio.out;
                    if (moment.called<Send>() != nullptr && queue.full()) queue.pop();
@@ -106,7 +106,7 @@ void add_sending(Mutants& out) {
                  })});
   out.push_back({"refused_and_sent",
                  "A message that send refuses is sent all the same.",
-                 {req::kN1Full},
+                 {"N1-FULL"_rule},
                  remembering<Transmit>(sends_refused)});
 }
 
@@ -123,21 +123,21 @@ bool application_frees(const Moment& moment) {
 void add_buffers(Mutants& out) {
   out.push_back({"queued_lost",
                  "What was queued for the radio is lost.",
-                 {req::kN2Queue},
+                 {"N2-QUEUE"_rule},
                  always([](Moment& moment) {
                    if (line_frees(moment)) moment.state.radio.out.clear();
                    moment.honest();
                  })});
   out.push_back({"serial_queue_lost",
                  "What was queued for the serial line is lost.",
-                 {req::kN2Queue},
+                 {"N2-QUEUE"_rule},
                  always([](Moment& moment) {
                    if (line_frees(moment)) moment.state.serial.out.clear();
                    moment.honest();
                  })});
   out.push_back({"buffer_order_broken",
                  "The outgoing buffer is a stack.",
-                 {req::kN2Order, req::kN2Queue},
+                 {"N2-ORDER"_rule, "N2-QUEUE"_rule},
                  always([](Moment& moment) {
                    auto& queue = moment.state.radio.out;
                    if (line_frees(moment) && !queue.empty()) reverse(queue);
@@ -145,7 +145,7 @@ void add_buffers(Mutants& out) {
                  })});
   out.push_back({"queued_twice",
                  "What was queued is sent twice.",
-                 {req::kN2Once, req::kN2Order},
+                 {"N2-ONCE"_rule, "N2-ORDER"_rule},
                  always([](Moment& moment) {
                    auto& queue = moment.state.radio.out;
                    const bool room = !queue.empty() && !queue.full();
@@ -154,7 +154,7 @@ void add_buffers(Mutants& out) {
                  })});
   out.push_back({"queued_cut",
                  "A message loses its last byte in the outgoing buffer.",
-                 {req::kN2Once, req::kN2Queue},
+                 {"N2-ONCE"_rule, "N2-QUEUE"_rule},
                  always([](Moment& moment) {
                    auto& queue = moment.state.radio.out;
                    if (line_frees(moment) && !queue.empty()) --queue.front().size_bytes;
@@ -162,7 +162,7 @@ void add_buffers(Mutants& out) {
                  })});
   out.push_back({"busy_radio_sends",
                  "A node sends although the radio is busy.",
-                 {req::kN2Busy, req::kN2Queue, req::kN2Order},
+                 {"N2-BUSY"_rule, "N2-QUEUE"_rule, "N2-ORDER"_rule},
                  always([](Moment& moment) {
                    const bool taken = moment.state.radio.taken;
                    if (moment.called<Send>() != nullptr) moment.state.radio.taken = false;
@@ -171,7 +171,7 @@ void add_buffers(Mutants& out) {
                  })});
   out.push_back({"incoming_order_broken",
                  "What came while the application was busy is a stack.",
-                 {req::kN2InOrder},
+                 {"N2-IN-ORDER"_rule},
                  always([](Moment& moment) {
                    auto& queue = moment.state.radio.in;
                    if (application_frees(moment) && !queue.empty()) reverse(queue);
@@ -179,7 +179,7 @@ void add_buffers(Mutants& out) {
                  })});
   out.push_back({"incoming_lost",
                  "What came while the application was busy is lost.",
-                 {req::kN2InOrder, req::kN2InFull},
+                 {"N2-IN-ORDER"_rule, "N2-IN-FULL"_rule},
                  always([](Moment& moment) {
                    if (application_frees(moment)) {
                      moment.state.radio.in.clear();
@@ -190,7 +190,7 @@ void add_buffers(Mutants& out) {
                  })});
   out.push_back({"incoming_twice",
                  "What waited longest is handled twice.",
-                 {req::kN2InOrder},
+                 {"N2-IN-ORDER"_rule},
                  always([](Moment& moment) {
                    auto& queue = moment.state.radio.in;
                    const bool room = !queue.empty() && !queue.full();
@@ -202,7 +202,7 @@ void add_buffers(Mutants& out) {
                  })});
   out.push_back({"incoming_overwritten",
                  "A full incoming buffer loses its oldest message.",
-                 {req::kN2InFull},
+                 {"N2-IN-FULL"_rule},
                  always([](Moment& moment) {
                    const Frame* const frame = moment.heard();
                    auto& queue = moment.state.radio.in;
@@ -214,7 +214,7 @@ void add_buffers(Mutants& out) {
                  })});
   out.push_back({"incoming_full_for_good",
                  "A node whose incoming buffer was full hears no more.",
-                 {req::kN2InFull},
+                 {"N2-IN-FULL"_rule},
                  remembering<bool>([](Moment& moment, bool& full) {
                    if (full && moment.heard() != nullptr) return moment.nothing();
                    moment.honest();
@@ -243,11 +243,11 @@ void radiates_to_itself(Moment& moment) {
 void add_addressing(Mutants& out) {
   out.push_back({"sends_to_itself",
                  "A node radiates what it sends to itself.",
-                 {req::kN4Self},
+                 {"N4-SELF"_rule},
                  always(radiates_to_itself)});
   out.push_back({"long_data_cut",
                  "send cuts more than 100 bytes and sends the rest.",
-                 {req::kN1Size},
+                 {"N1-SIZE"_rule},
                  always([](Moment& moment) {
                    const Send* const send = moment.called<Send>();
                    if (send == nullptr || send->data.size() <= 100) return moment.honest();
@@ -257,7 +257,7 @@ void add_addressing(Mutants& out) {
                  })});
   out.push_back({"local_island_left",
                  "dest.pid 0xFFFE goes on the air as it is.",
-                 {req::kN3Local},
+                 {"N3-LOCAL"_rule},
                  on_sent([](Moment& moment, const Action&, Transmit& frame) {
                    const Send* const send = moment.called<Send>();
                    const bool local = send != nullptr && send->dest.pid == machine::kLocalPid;
@@ -266,7 +266,7 @@ void add_addressing(Mutants& out) {
                  })});
   out.push_back({"local_island_is_0",
                  "dest.pid 0xFFFE becomes island 0.",
-                 {req::kN3Local},
+                 {"N3-LOCAL"_rule},
                  on_sent([](Moment& moment, const Action&, Transmit& frame) {
                    const Send* const send = moment.called<Send>();
                    const bool local = send != nullptr && send->dest.pid == machine::kLocalPid;
@@ -275,14 +275,14 @@ void add_addressing(Mutants& out) {
                  })});
   out.push_back({"all_by_the_sink",
                  "A mote sends everything to its sink.",
-                 {req::kN4Mote},
+                 {"N4-MOTE"_rule},
                  on_sent([](Moment& moment, const Action&, Transmit& frame) {
                    if (moment.is(Role::kMote) && is_net(frame)) frame.dest = 1;
                    return Fate::kKeep;
                  })});
   out.push_back({"all_broadcast",
                  "Every net_msg goes on the air as a broadcast.",
-                 {req::kN4Mote, req::kN4Sink},
+                 {"N4-MOTE"_rule, "N4-SINK"_rule},
                  on_sent([](Moment&, const Action&, Transmit& frame) {
                    const bool radio = frame.link == Link::kRadio && is_net(frame);
                    if (radio) frame.dest = machine::kAmBroadcast;
@@ -290,7 +290,7 @@ void add_addressing(Mutants& out) {
                  })});
   out.push_back({"broadcast_by_the_sink",
                  "A mote's broadcast goes to its sink.",
-                 {req::kN4Mote, req::kN2Queue},
+                 {"N4-MOTE"_rule, "N2-QUEUE"_rule},
                  on_sent([](Moment& moment, const Action&, Transmit& frame) {
                    const bool all = is_net(frame) && frame.dest == machine::kAmBroadcast;
                    if (all && moment.is(Role::kMote)) frame.dest = 1;
@@ -298,7 +298,7 @@ void add_addressing(Mutants& out) {
                  })});
   out.push_back({"devid_is_am_address",
                  "A mote sends to the devid, whatever the island.",
-                 {req::kN4Sink},
+                 {"N4-SINK"_rule},
                  on_sent([](Moment& moment, const Action&, Transmit& frame) {
                    if (moment.is(Role::kMote) && is_net(frame)) {
                      frame.dest = get(frame, net::kDestDevid);
@@ -314,34 +314,34 @@ bool delivers(const Moment& moment, const Frame& frame) {
 void add_motes(Mutants& out) {
   out.push_back({"no_broadcast_heard",
                  "A mote takes no broadcast.",
-                 {req::kN5Deliver},
+                 {"N5-DELIVER"_rule},
                  on_heard([](Moment& moment, Forged& forged) {
                    return !delivers(moment, forged.frame) ||
                           get(forged, net::kDestDevid) != machine::kBroadcastDevid;
                  })});
   out.push_back({"source_island_filtered",
                  "A mote ignores what comes from another island.",
-                 {req::kN5Deliver},
+                 {"N5-DELIVER"_rule},
                  on_heard([](Moment& moment, Forged& forged) {
                    return !delivers(moment, forged.frame) ||
                           get(forged, net::kSrcPid) == own(moment).pid;
                  })});
   out.push_back({"sink_only_heard",
                  "A mote takes only what its sink sends.",
-                 {req::kN5Deliver},
+                 {"N5-DELIVER"_rule},
                  on_heard([](Moment& moment, Forged& forged) {
                    return !delivers(moment, forged.frame) || forged.frame.src == 1;
                  })});
   out.push_back({"foreign_island_delivered",
                  "A mote looks at the devid alone.",
-                 {req::kN5Foreign},
+                 {"N5-FOREIGN"_rule},
                  on_heard([](Moment& moment, Forged& forged) {
                    if (delivers(moment, forged.frame)) put(forged, net::kDestPid, own(moment).pid);
                    return true;
                  })});
   out.push_back({"others_messages_delivered",
                  "A mote takes what is for another mote.",
-                 {req::kN5Other},
+                 {"N5-OTHER"_rule},
                  on_heard([](Moment& moment, Forged& forged) {
                    const bool other = delivers(moment, forged.frame) &&
                                       get(forged, net::kDestDevid) < machine::kNullDevid;
@@ -350,7 +350,7 @@ void add_motes(Mutants& out) {
                  })});
   out.push_back({"null_devid_delivered",
                  "A mote takes what is for the base station.",
-                 {req::kN5Other},
+                 {"N5-OTHER"_rule},
                  on_heard([](Moment& moment, Forged& forged) {
                    const bool null = delivers(moment, forged.frame) &&
                                      get(forged, net::kDestDevid) == machine::kNullDevid;

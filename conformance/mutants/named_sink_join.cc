@@ -20,15 +20,15 @@ bool is_report(const Moment& moment, const Transmit& frame) {
 void add_replies(Mutants& out) {
   out.push_back({"join_not_answered",
                  "A sink answers no join_request.",
-                 {req::kJ3Reply},
+                 {"J3-REPLY"_rule},
                  drop_sent(is_reply)});
   out.push_back({"reply_twice",
                  "A sink sends each join_reply twice.",
-                 {req::kJ3Once},
+                 {"J3-ONCE"_rule},
                  double_sent(is_reply)});
   out.push_back({"reply_unasked",
                  "A sink offers its island to whoever sends a net_msg.",
-                 {req::kJ3Once},
+                 {"J3-ONCE"_rule},
                  always([](Moment& moment) {
                    moment.honest();
                    const Frame* const frame = moment.heard(am::kNet);
@@ -36,54 +36,54 @@ void add_replies(Mutants& out) {
                        moment.actions.transmits().size() + 2 <= Actions::kTransmitsMax;
                    if (frame == nullptr || !moment.is(Role::kSink) || !room) return;
                    Transmit& reply =
-                       moment.send(Link::kRadio, am::kJoinReply, frame->src, req::kJ3Once);
+                       moment.send(Link::kRadio, am::kJoinReply, frame->src, "J3-ONCE"_rule);
                    reply.size_bytes = rubicon::JoinReplyView::kMaxSizeBytes;
                    put(reply, join_reply::kIsland, moment.state.island);
                    put(reply, join_reply::kMote, frame->src);
                  })});
   out.push_back({"reply_to_an_ack_join",
                  "A sink answers ack_join with another join_reply.",
-                 {req::kJ3Once},
+                 {"J3-ONCE"_rule},
                  always([](Moment& moment) {
                    moment.honest();
                    const Frame* const frame = moment.heard(am::kAckJoin);
                    if (frame == nullptr || !moment.is(Role::kSink)) return;
                    Transmit& reply =
-                       moment.send(Link::kRadio, am::kJoinReply, frame->src, req::kJ3Once);
+                       moment.send(Link::kRadio, am::kJoinReply, frame->src, "J3-ONCE"_rule);
                    reply.size_bytes = rubicon::JoinReplyView::kMaxSizeBytes;
                    put(reply, join_reply::kIsland, moment.state.island);
                    put(reply, join_reply::kMote, frame->src);
                  })});
   out.push_back({"reply_other_number",
                  "A join_reply carries the number plus one.",
-                 {req::kJ3Seq, req::kJ3Reply},
+                 {"J3-SEQ"_rule, "J3-REPLY"_rule},
                  sent_field(am::kJoinReply, join_reply::kSeqNum,
                             [](const Moment&, unsigned v) { return v + 1; })});
   out.push_back({"reply_number_swapped",
                  "The number of a join_reply has the wrong byte order.",
-                 {req::kJ3Seq},
+                 {"J3-SEQ"_rule},
                  sent_field(am::kJoinReply, join_reply::kSeqNum,
                             [](const Moment&, unsigned v) { return v >> 8 | (v & 0xFF) << 8; })});
   out.push_back(
       {"reply_offers_the_sinks_devid",
        "mote_addr of a join_reply is the sink's own.",
-       {req::kJ3Address},
+       {"J3-ADDRESS"_rule},
        sent_field(am::kJoinReply, join_reply::kMote, [](const Moment&, unsigned) { return 1U; })});
   out.push_back({"reply_offers_island_0",
                  "island_addr of a join_reply is 0.",
-                 {req::kJ3Address},
+                 {"J3-ADDRESS"_rule},
                  sent_field(am::kJoinReply, join_reply::kIsland,
                             [](const Moment&, unsigned) { return 0U; })});
   out.push_back({"reply_broadcast",
                  "A join_reply goes to everybody.",
-                 {req::kJ3Dest},
+                 {"J3-DEST"_rule},
                  on_sent([](Moment&, const Action&, Transmit& frame) {
                    if (frame.type == am::kJoinReply) frame.dest = machine::kAmBroadcast;
                    return Fate::kKeep;
                  })});
   out.push_back({"cur_time_in_seconds",
                  "cur_time of a join_reply is in seconds.",
-                 {req::kJ3Drift, req::kJ3Time},
+                 {"J3-DRIFT"_rule, "J3-TIME"_rule},
                  on_sent([](Moment&, const Action&, Transmit& frame) {
                    if (frame.type != am::kJoinReply) return Fate::kKeep;
                    put(frame, join_reply::kTime, get(frame, join_reply::kTime) / 1000);
@@ -91,7 +91,7 @@ void add_replies(Mutants& out) {
                  })});
   out.push_back({"cur_time_constant",
                  "cur_time of a join_reply is always 12345.",
-                 {req::kJ3Time},
+                 {"J3-TIME"_rule},
                  on_sent([](Moment&, const Action&, Transmit& frame) {
                    if (frame.type != am::kJoinReply) return Fate::kKeep;
                    put(frame, join_reply::kTime, 12345);
@@ -143,23 +143,23 @@ void lists_at_request(Moment& moment) {
 void add_list(Mutants& out) {
   out.push_back({"full_list_answers",
                  "A sink with a full list answers a mote that is not in it.",
-                 {req::kJ3Full},
+                 {"J3-FULL"_rule},
                  always(answers_when_full)});
   out.push_back({"newcomer_takes_a_members_place",
                  "A sink with a full list forgets its oldest member for a newcomer's request.",
-                 {req::kJ3Overwrite, req::kJ3Full},
+                 {"J3-OVERWRITE"_rule, "J3-FULL"_rule},
                  always(take_a_members_place)});
   out.push_back({"late_ack_takes_a_members_place",
                  "An ack_join that finds the list full pushes the oldest member out.",
-                 {req::kJ3Overwrite, req::kJ6Add},
+                 {"J3-OVERWRITE"_rule, "J6-ADD"_rule},
                  always(late_ack_pushes_out)});
   out.push_back({"listed_at_request",
                  "A sink lists a mote that has asked, before its ack_join.",
-                 {req::kJ3Reply, req::kJ6Add, req::kJ6Only},
+                 {"J3-REPLY"_rule, "J6-ADD"_rule, "J6-ONLY"_rule},
                  always(lists_at_request)});
   out.push_back({"pending_join_overwritten",
                  "A sink remembers one join, the newest.",
-                 {req::kJ9Interleave, req::kJ6Add},
+                 {"J9-INTERLEAVE"_rule, "J6-ADD"_rule},
                  always([](Moment& moment) {
                    moment.honest();
                    auto& pending = moment.state.sink.pending;
@@ -167,7 +167,7 @@ void add_list(Mutants& out) {
                  })});
   out.push_back({"one_join_at_a_time",
                  "A sink does not answer while another join is open.",
-                 {req::kJ9Interleave, req::kJ3Reply},
+                 {"J9-INTERLEAVE"_rule, "J3-REPLY"_rule},
                  on_heard([](Moment& moment, Forged& forged) {
                    const auto& pending = moment.state.sink.pending;
                    return forged.frame.type != am::kJoin || pending.empty() ||
@@ -175,7 +175,7 @@ void add_list(Mutants& out) {
                  })});
   out.push_back({"descriptors_mixed",
                  "A sink keeps one descriptor, that of the newest request.",
-                 {req::kJ9Interleave},
+                 {"J9-INTERLEAVE"_rule},
                  always([](Moment& moment) {
                    moment.honest();
                    auto& pending = moment.state.sink.pending;
@@ -184,7 +184,7 @@ void add_list(Mutants& out) {
                  })});
   out.push_back({"answers_once",
                  "A sink answers a mote's second request no more.",
-                 {req::kJ3Reply},
+                 {"J3-REPLY"_rule},
                  on_heard([](Moment& moment, Forged& forged) {
                    return forged.frame.type != am::kJoin ||
                           machine::find_pending(moment.state.sink, forged.frame.src) == nullptr;
@@ -197,11 +197,11 @@ void add_acks(Mutants& out) {
   out.push_back(
       {"ack_join_ignored",
        "A sink lists nobody.",
-       {req::kJ6Add},
+       {"J6-ADD"_rule},
        on_heard([](Moment&, Forged& forged) { return forged.frame.type != am::kAckJoin; })});
   out.push_back({"ack_join_any_number",
                  "A sink takes ack_join with any number.",
-                 {req::kJ6Seq},
+                 {"J6-SEQ"_rule},
                  on_heard([](Moment& moment, Forged& forged) {
                    if (forged.frame.type != am::kAckJoin) return true;
                    const auto* asked =
@@ -211,7 +211,7 @@ void add_acks(Mutants& out) {
                  })});
   out.push_back({"ack_join_of_any_island",
                  "A sink takes ack_join for another island.",
-                 {req::kJ6Island},
+                 {"J6-ISLAND"_rule},
                  on_heard([](Moment& moment, Forged& forged) {
                    if (forged.frame.type == am::kAckJoin) {
                      put(forged, ack_join::kDestPid, moment.state.island);
@@ -221,7 +221,7 @@ void add_acks(Mutants& out) {
                  })});
   out.push_back({"ack_join_of_any_sender",
                  "A sink does not compare an ack_join with its AM source.",
-                 {req::kJ6Sender},
+                 {"J6-SENDER"_rule},
                  on_heard([](Moment& moment, Forged& forged) {
                    if (forged.frame.type != am::kAckJoin || forged.size() < 14) return true;
                    put(forged, ack_join::kDestDevid, own(moment).devid);
@@ -231,7 +231,7 @@ void add_acks(Mutants& out) {
                  })});
   out.push_back({"mote_joined_twice",
                  "A repeated ack_join is one more join.",
-                 {req::kJ6Repeat},
+                 {"J6-REPEAT"_rule},
                  always([](Moment& moment) {
                    const Frame* const ack = moment.heard(am::kAckJoin);
                    auto& sink = moment.state.sink;
@@ -243,53 +243,53 @@ void add_acks(Mutants& out) {
                  })});
   out.push_back({"mote_joined_silently",
                  "A sink tells its application of no member.",
-                 {req::kJ6Add},
+                 {"J6-ADD"_rule},
                  on_told_of<MoteJoined>([](Moment&, MoteJoined&) { return Fate::kDrop; })});
   out.push_back({"mote_joined_without_descriptor",
                  "moteJoined has an empty descriptor.",
-                 {req::kJ6Add},
+                 {"J6-ADD"_rule},
                  on_told_of<MoteJoined>([](Moment&, MoteJoined& joined) {
                    joined.descriptor = {};
                    return Fate::kKeep;
                  })});
   out.push_back({"not_reported",
                  "A sink tells its base station of no member.",
-                 {req::kJ6Report, req::kJ6Content},
+                 {"J6-REPORT"_rule, "J6-CONTENT"_rule},
                  drop_sent(is_report)});
   out.push_back({"reported_twice",
                  "A sink reports a member twice.",
-                 {req::kJ6Report, req::kJ6Repeat},
+                 {"J6-REPORT"_rule, "J6-REPEAT"_rule},
                  double_sent(is_report)});
   out.push_back({"serial_joined_with_wrong_descriptor",
                  "serial_joined has no transducers.",
-                 {req::kJ6Content},
+                 {"J6-CONTENT"_rule},
                  on_sent([](Moment& moment, const Action&, Transmit& frame) {
                    if (is_report(moment, frame)) put(frame, net::kReportedTransducers, 0);
                    return Fate::kKeep;
                  })});
   out.push_back({"serial_joined_of_the_sink",
                  "serial_joined names the sink as the new member.",
-                 {req::kJ6Content},
+                 {"J6-CONTENT"_rule},
                  on_sent([](Moment& moment, const Action&, Transmit& frame) {
                    if (is_report(moment, frame)) put(frame, net::kReportedMote, 1);
                    return Fate::kKeep;
                  })});
   out.push_back({"serial_joined_signed_by_the_sink",
                  "serial_joined has the sink as its source.",
-                 {req::kJ6Content},
+                 {"J6-CONTENT"_rule},
                  on_sent([](Moment& moment, const Action&, Transmit& frame) {
                    if (is_report(moment, frame)) put(frame, net::kSrcDevid, 1);
                    return Fate::kKeep;
                  })});
   out.push_back({"reported_at_request",
                  "A sink reports a mote when it asks.",
-                 {req::kJ6Only, req::kJ6Report, req::kJ6Add},
+                 {"J6-ONLY"_rule, "J6-REPORT"_rule, "J6-ADD"_rule},
                  always([](Moment& moment) {
                    moment.honest();
                    const Frame* const request = moment.heard(am::kJoin);
                    if (request == nullptr || !moment.is(Role::kSink)) return;
-                   Transmit& report =
-                       moment.send(Link::kSerial, am::kNet, machine::kAmBroadcast, req::kJ6Report);
+                   Transmit& report = moment.send(Link::kSerial, am::kNet, machine::kAmBroadcast,
+                                                  "J6-REPORT"_rule);
                    report.size_bytes = machine::kAmPayloadMax;
                    put(report, net::kDestPid, moment.state.island);
                    put(report, net::kDestDevid, machine::kNullDevid);
@@ -302,18 +302,18 @@ void add_acks(Mutants& out) {
                  })});
   out.push_back({"sink_becomes_a_member",
                  "A sink that hears a join_reply acks it.",
-                 {req::kJ10Sink},
+                 {"J10-SINK"_rule},
                  always([](Moment& moment) {
                    moment.honest();
                    const Frame* const reply = moment.heard(am::kJoinReply);
                    if (reply == nullptr || !moment.is(Role::kSink)) return;
                    Transmit& ack =
-                       moment.send(Link::kRadio, am::kAckJoin, reply->src, req::kJ10Sink);
+                       moment.send(Link::kRadio, am::kAckJoin, reply->src, "J10-SINK"_rule);
                    ack.size_bytes = rubicon::AckJoinView::kMaxSizeBytes;
                  })});
   out.push_back({"sink_takes_the_island_of_a_reply",
                  "A sink adopts the island of a join_reply.",
-                 {req::kJ10Sink, req::kJ3Address},
+                 {"J10-SINK"_rule, "J3-ADDRESS"_rule},
                  always([](Moment& moment) {
                    moment.honest();
                    const Frame* const reply = moment.heard(am::kJoinReply);

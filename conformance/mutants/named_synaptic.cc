@@ -30,21 +30,21 @@ bool is_tick(const Moment& moment) {
 void add_operations(Mutants& out) {
   out.push_back({"channel_id_swapped",
                  "A channel's id has its ends swapped.",
-                 {req::kS1Id},
+                 {"S1-ID"_rule},
                  on_told_of<ChannelResult>([](Moment&, ChannelResult& result) {
                    result.id = result.id >> 16 | result.id << 16;
                    return Fate::kKeep;
                  })});
   out.push_back({"channel_id_of_bytes",
                  "A channel's id holds devids cut to a byte.",
-                 {req::kS1Id},
+                 {"S1-ID"_rule},
                  on_told_of<ChannelResult>([](Moment&, ChannelResult& result) {
                    result.id &= 0x00FF'00FF;
                    return Fate::kKeep;
                  })});
   out.push_back({"enlarging_refused",
                  "Creating a channel that exists is refused.",
-                 {req::kS1Enlarge},
+                 {"S1-ENLARGE"_rule},
                  always([](Moment& moment) {
                    const CreateChannel* const create = moment.called<CreateChannel>();
                    if (create == nullptr) return moment.honest();
@@ -55,11 +55,11 @@ void add_operations(Mutants& out) {
                    if (more) return;
                    moment.state.synaptic = before;
                    moment.nothing();
-                   moment.actions.notify(ChannelResult{0, false}, req::kS1Enlarge);
+                   moment.actions.notify(ChannelResult{0, false}, "S1-ENLARGE"_rule);
                  })});
   out.push_back({"enlarging_replaces_the_size",
                  "Creating a channel again sets its size.",
-                 {req::kS1Enlarge, req::kS1Limit},
+                 {"S1-ENLARGE"_rule, "S1-LIMIT"_rule},
                  always([](Moment& moment) {
                    const CreateChannel* const create = moment.called<CreateChannel>();
                    moment.honest();
@@ -73,7 +73,7 @@ void add_operations(Mutants& out) {
                  })});
   out.push_back({"channel_limit_ignored",
                  "A fifth channel replaces the first.",
-                 {req::kS1Limit},
+                 {"S1-LIMIT"_rule},
                  always([](Moment& moment) {
                    const CreateChannel* const create = moment.called<CreateChannel>();
                    if (create != nullptr) {
@@ -85,7 +85,7 @@ void add_operations(Mutants& out) {
                  })});
   out.push_back({"connection_limit_cut",
                  "More than ten connections are created as ten.",
-                 {req::kS1Limit},
+                 {"S1-LIMIT"_rule},
                  always([](Moment& moment) {
                    const CreateChannel* const create = moment.called<CreateChannel>();
                    if (create == nullptr) return moment.honest();
@@ -95,7 +95,7 @@ void add_operations(Mutants& out) {
                  })});
   out.push_back({"refusal_costs_the_size",
                  "A refused enlargement makes the channel ten wide.",
-                 {req::kS1Limit},
+                 {"S1-LIMIT"_rule},
                  always([](Moment& moment) {
                    moment.honest();
                    const CreateChannel* const create = moment.called<CreateChannel>();
@@ -111,7 +111,7 @@ void add_operations(Mutants& out) {
                  })});
   out.push_back({"write_at_the_next_place",
                  "write_output_value writes at pos + 1.",
-                 {req::kS1Write, req::kS2Content, req::kS2Send},
+                 {"S1-WRITE"_rule, "S2-CONTENT"_rule, "S2-SEND"_rule},
                  always([](Moment& moment) {
                    const auto* write = moment.called<machine::WriteOutput>();
                    if (write == nullptr) return moment.honest();
@@ -121,15 +121,15 @@ void add_operations(Mutants& out) {
                  })});
   out.push_back({"write_lost",
                  "write_output_value does nothing.",
-                 {req::kS1Write, req::kS3Changed, req::kS2Content},
+                 {"S1-WRITE"_rule, "S3-CHANGED"_rule, "S2-CONTENT"_rule},
                  always([](Moment& moment) {
                    if (!is_call<machine::WriteOutput>(moment)) return moment.honest();
                    moment.nothing();
-                   moment.actions.notify(machine::OperationResult{true}, req::kS1Write);
+                   moment.actions.notify(machine::OperationResult{true}, "S1-WRITE"_rule);
                  })});
   out.push_back({"read_at_place_0",
                  "read_input_value reads the first place.",
-                 {req::kS1Read, req::kS1Enlarge},
+                 {"S1-READ"_rule, "S1-ENLARGE"_rule},
                  always([](Moment& moment) {
                    const auto* read = moment.called<machine::ReadInput>();
                    if (read == nullptr) return moment.honest();
@@ -137,14 +137,14 @@ void add_operations(Mutants& out) {
                  })});
   out.push_back({"read_past_the_end",
                  "read_input_value tells 0 behind the end.",
-                 {req::kS1Read, req::kS1Limit},
+                 {"S1-READ"_rule, "S1-LIMIT"_rule},
                  on_told_of<InputValue>([](Moment&, InputValue& value) {
                    value.success = true;
                    return Fate::kKeep;
                  })});
   out.push_back({"read_swapped",
                  "Values are read in network order.",
-                 {req::kS1Read, req::kS1Enlarge},
+                 {"S1-READ"_rule, "S1-ENLARGE"_rule},
                  on_heard([](Moment&, Forged& forged) {
                    const bool data = is_net(forged.frame) &&
                                      forged.bytes[net::kTransId] == component::kSynChannel;
@@ -157,15 +157,15 @@ void add_operations(Mutants& out) {
                  })});
   out.push_back({"time_step_ignored",
                  "set_time_step changes nothing.",
-                 {req::kS1Clock},
+                 {"S1-CLOCK"_rule},
                  always([](Moment& moment) {
                    if (!is_call<machine::SetTimeStep>(moment)) return moment.honest();
                    moment.nothing();
-                   moment.actions.notify(machine::OperationResult{true}, req::kS1Clock);
+                   moment.actions.notify(machine::OperationResult{true}, "S1-CLOCK"_rule);
                  })});
   out.push_back({"default_step_of_a_second",
                  "The clock's default period is 1000 ticks.",
-                 {req::kS1Clock, req::kS2Send, req::kS2Signal},
+                 {"S1-CLOCK"_rule, "S2-SEND"_rule, "S2-SIGNAL"_rule},
                  always([](Moment& moment) {
                    auto& period = moment.state.synaptic.period_ticks;
                    if (period == 500) period = 1000;
@@ -192,13 +192,13 @@ void new_on_arrival(Moment& moment) {
     came = true;
     id = channel.id;
   }
-  if (came) moment.actions.notify(SynDataReceived{id, DataStatus::kNew}, req::kS2Signal);
+  if (came) moment.actions.notify(SynDataReceived{id, DataStatus::kNew}, "S2-SIGNAL"_rule);
 }
 
 void add_ticks(Mutants& out) {
   out.push_back({"first_channel_only",
                  "A tick sends the first channel only.",
-                 {req::kS2Send, req::kS1Limit},
+                 {"S2-SEND"_rule, "S1-LIMIT"_rule},
                  always([](Moment& moment) {
                    auto& channels = moment.state.synaptic.out;
                    if (!is_tick(moment) || channels.empty()) return moment.honest();
@@ -214,7 +214,7 @@ void add_ticks(Mutants& out) {
                  })});
   out.push_back({"reliable_sends_changes_only",
                  "A reliable channel sends only what changed.",
-                 {req::kS1Mode, req::kS2Send, req::kS2Content, req::kS1Limit},
+                 {"S1-MODE"_rule, "S2-SEND"_rule, "S2-CONTENT"_rule, "S1-LIMIT"_rule},
                  always([](Moment& moment) {
                    for (Channel& channel : moment.state.synaptic.out) {
                      channel.mode = machine::Mode::kPowerSave;
@@ -223,7 +223,7 @@ void add_ticks(Mutants& out) {
                  })});
   out.push_back({"floats_in_network_order",
                  "Synaptic data are big-endian.",
-                 {req::kS2Content, req::kS1Write, req::kS1Enlarge},
+                 {"S2-CONTENT"_rule, "S1-WRITE"_rule, "S1-ENLARGE"_rule},
                  on_sent([](Moment&, const Action&, Transmit& frame) {
                    if (!is_synaptic(frame)) return Fate::kKeep;
                    for (std::size_t i = net::kBody; i + kUnit <= frame.size_bytes; i += kUnit) {
@@ -233,7 +233,7 @@ void add_ticks(Mutants& out) {
                  })});
   out.push_back({"values_in_reverse",
                  "The values of a channel are in reverse order.",
-                 {req::kS2Content, req::kS1Write, req::kS1Enlarge, req::kS3Changed},
+                 {"S2-CONTENT"_rule, "S1-WRITE"_rule, "S1-ENLARGE"_rule, "S3-CHANGED"_rule},
                  on_sent([](Moment&, const Action&, Transmit& frame) {
                    if (!is_synaptic(frame)) return Fate::kKeep;
                    std::reverse(frame.payload.begin() + net::kBody,
@@ -245,25 +245,25 @@ void add_ticks(Mutants& out) {
                  })});
   out.push_back({"synaptic_reliable",
                  "Synaptic data ask to be acked.",
-                 {req::kS2Content},
+                 {"S2-CONTENT"_rule},
                  on_sent([](Moment&, const Action&, Transmit& frame) {
                    if (is_synaptic(frame)) frame.payload[net::kReliable] = 1;
                    return Fate::kKeep;
                  })});
   out.push_back({"synaptic_of_another_app",
                  "Synaptic data have APPID MOCKUP.",
-                 {req::kS2Content},
+                 {"S2-CONTENT"_rule},
                  on_sent([](Moment&, const Action&, Transmit& frame) {
                    if (is_synaptic(frame)) frame.payload[net::kAppId] = 5;
                    return Fate::kKeep;
                  })});
   out.push_back({"sends_twice_a_tick",
                  "Each channel sends again 100 ticks after the tick.",
-                 {req::kS2Tick},
+                 {"S2-TICK"_rule},
                  always(two_sends)});
   out.push_back({"clock_too_fast",
                  "The clock's period is 100 ticks short.",
-                 {req::kS2Tick, req::kS1Clock},
+                 {"S2-TICK"_rule, "S1-CLOCK"_rule},
                  always([](Moment& moment) {
                    moment.honest();
                    if (is_tick(moment)) moment.state.synaptic.due -= 100;
@@ -271,28 +271,28 @@ void add_ticks(Mutants& out) {
   out.push_back(
       {"phase_missing",
        "All motes tick in the same moment.",
-       {req::kS2Phase},
+       {"S2-PHASE"_rule},
        with_profile([](machine::Profile& profile) { profile.synaptic_phase_ticks = 0; })});
   out.push_back({"signals_on_arrival",
                  "Data are signalled when they come, and not at the tick.",
-                 {req::kS2Signal, req::kS2Tick},
+                 {"S2-SIGNAL"_rule, "S2-TICK"_rule},
                  always(new_on_arrival)});
   out.push_back({"silent_without_data",
                  "A tick without new data is not signalled.",
-                 {req::kS2Signal, req::kS3Old},
+                 {"S2-SIGNAL"_rule, "S3-OLD"_rule},
                  on_told_of<SynDataReceived>([](Moment&, SynDataReceived& data) {
                    return data.status == DataStatus::kOld ? Fate::kDrop : Fate::kKeep;
                  })});
   out.push_back({"always_new",
                  "Every tick says that data are new.",
-                 {req::kS3Old, req::kS2Signal},
+                 {"S3-OLD"_rule, "S2-SIGNAL"_rule},
                  on_told_of<SynDataReceived>([](Moment&, SynDataReceived& data) {
                    if (data.status == DataStatus::kOld) data.status = DataStatus::kNew;
                    return Fate::kKeep;
                  })});
   out.push_back({"old_values_forgotten",
                  "A tick without new data clears the values.",
-                 {req::kS3Old},
+                 {"S3-OLD"_rule},
                  always([](Moment& moment) {
                    if (is_tick(moment)) {
                      for (Channel& channel : moment.state.synaptic.in) {
@@ -303,14 +303,14 @@ void add_ticks(Mutants& out) {
                  })});
   out.push_back({"power_save_sends_unchanged",
                  "In power-save mode every tick sends.",
-                 {req::kS3Unchanged},
+                 {"S3-UNCHANGED"_rule},
                  always([](Moment& moment) {
                    for (Channel& channel : moment.state.synaptic.out) channel.fresh = true;
                    moment.honest();
                  })});
   out.push_back({"rewritten_counts_as_changed",
                  "A value that is written again counts as changed.",
-                 {req::kS3Unchanged},
+                 {"S3-UNCHANGED"_rule},
                  always([](Moment& moment) {
                    const auto* write = moment.called<machine::WriteOutput>();
                    moment.honest();
@@ -321,7 +321,7 @@ void add_ticks(Mutants& out) {
                  })});
   out.push_back({"first_tick_silent",
                  "In power-save mode the first tick sends nothing.",
-                 {req::kS3First, req::kS3Changed},
+                 {"S3-FIRST"_rule, "S3-CHANGED"_rule},
                  always([](Moment& moment) {
                    moment.honest();
                    const bool starts = is_call<machine::StartChannel>(moment) ||
@@ -331,7 +331,7 @@ void add_ticks(Mutants& out) {
                  })});
   out.push_back({"change_of_place_0_only",
                  "In power-save mode only the first value is watched.",
-                 {req::kS3Changed},
+                 {"S3-CHANGED"_rule},
                  always([](Moment& moment) {
                    const auto* write = moment.called<machine::WriteOutput>();
                    const machine::Synaptic before = moment.state.synaptic;

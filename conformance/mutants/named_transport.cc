@@ -23,12 +23,12 @@ bool is_for_us(const Moment& moment, const Frame& frame) {
 }
 
 void add_message_acks(Mutants& out) {
-  out.push_back({"no_ack", "A node never acks.", {req::kT2Ack}, drop_sent(is_ack_sent)});
+  out.push_back({"no_ack", "A node never acks.", {"T2-ACK"_rule}, drop_sent(is_ack_sent)});
   out.push_back(
-      {"ack_twice", "A node sends each ack twice.", {req::kT2Once}, double_sent(is_ack_sent)});
+      {"ack_twice", "A node sends each ack twice.", {"T2-ONCE"_rule}, double_sent(is_ack_sent)});
   out.push_back({"ack_late",
                  "An ack comes after the sender's timeout.",
-                 {req::kT2Prompt, req::kT2Ack},
+                 {"T2-PROMPT"_rule, "T2-ACK"_rule},
                  always([](Moment& moment) {
                    moment.honest();
                    moment.rewrite([&](const Action& action) {
@@ -41,14 +41,14 @@ void add_message_acks(Mutants& out) {
                  })});
   out.push_back({"ack_other_number",
                  "An ack names the number plus one.",
-                 {req::kT2Content, req::kT2Ack},
+                 {"T2-CONTENT"_rule, "T2-ACK"_rule},
                  on_sent([](Moment&, const Action&, Transmit& frame) {
                    if (is_ack(frame)) put(frame, net::kAckedSeq, get(frame, net::kAckedSeq) + 1U);
                    return Fate::kKeep;
                  })});
   out.push_back({"ack_number_swapped",
                  "The number in an ack has the wrong byte order.",
-                 {req::kT2Content, req::kT2Ack},
+                 {"T2-CONTENT"_rule, "T2-ACK"_rule},
                  on_sent([](Moment&, const Action&, Transmit& frame) {
                    if (is_ack(frame)) {
                      std::reverse(frame.payload.begin() + net::kAckedSeq,
@@ -58,41 +58,41 @@ void add_message_acks(Mutants& out) {
                  })});
   out.push_back({"ack_reliable",
                  "An ack asks to be acked.",
-                 {req::kT2Content},
+                 {"T2-CONTENT"_rule},
                  on_sent([](Moment&, const Action&, Transmit& frame) {
                    if (is_ack(frame)) frame.payload[net::kReliable] = 1;
                    return Fate::kKeep;
                  })});
   out.push_back({"ack_as_plain_message",
                  "An ack has TRANSID CONNLESS.",
-                 {req::kT2Content, req::kT2Ack},
+                 {"T2-CONTENT"_rule, "T2-ACK"_rule},
                  on_sent([](Moment&, const Action&, Transmit& frame) {
                    if (is_ack(frame)) frame.payload[net::kTransId] = component::kConnless;
                    return Fate::kKeep;
                  })});
   out.push_back({"ack_without_app",
                  "An ack has APPID RUBICON_ACK.",
-                 {req::kT2Content},
+                 {"T2-CONTENT"_rule},
                  on_sent([](Moment&, const Action&, Transmit& frame) {
                    if (is_ack(frame)) frame.payload[net::kAppId] = component::kRubiconAck;
                    return Fate::kKeep;
                  })});
   out.push_back({"ack_to_the_sink",
                  "An ack goes to the sink, whoever sent the message.",
-                 {req::kT2Content, req::kT2Ack},
+                 {"T2-CONTENT"_rule, "T2-ACK"_rule},
                  on_sent([](Moment&, const Action&, Transmit& frame) {
                    if (is_ack(frame)) put(frame, net::kDestDevid, 1);
                    return Fate::kKeep;
                  })});
   out.push_back({"acked_not_delivered",
                  "A reliable message is acked and lost.",
-                 {req::kT2Deliver},
+                 {"T2-DELIVER"_rule},
                  on_told([](Moment&, const Action& action, Notice&) {
-                   return action.requirement == req::kT2Deliver ? Fate::kDrop : Fate::kKeep;
+                   return action.requirement == "T2-DELIVER"_rule ? Fate::kDrop : Fate::kKeep;
                  })});
   out.push_back({"acks_the_first_only",
                  "A number that was acked before is not acked again.",
-                 {req::kT2Ack},
+                 {"T2-ACK"_rule},
                  remembering<std::vector<std::uint16_t>>(
                      [](Moment& moment, std::vector<std::uint16_t>& acked) {
                        moment.honest();
@@ -113,18 +113,18 @@ void add_message_acks(Mutants& out) {
 void add_needless_acks(Mutants& out) {
   out.push_back({"unreliable_acked",
                  "An unreliable message is acked.",
-                 {req::kT2Unreliable},
+                 {"T2-UNRELIABLE"_rule},
                  on_heard([](Moment& moment, Forged& forged) {
                    if (is_for_us(moment, forged.frame) && !is_ack(forged.frame)) {
                      forged.bytes[net::kReliable] = 1;
                    }
                    return true;
                  })});
-  out.push_back({"ack_acked", "A node acks acks.", {req::kT2Loop}, always([](Moment& moment) {
+  out.push_back({"ack_acked", "A node acks acks.", {"T2-LOOP"_rule}, always([](Moment& moment) {
                    moment.honest();
                    const Frame* const frame = moment.heard(am::kNet);
                    if (frame == nullptr || !is_ack(*frame) || !is_for_us(moment, *frame)) return;
-                   Transmit& ack = moment.send(Link::kRadio, am::kNet, frame->src, req::kT2Loop);
+                   Transmit& ack = moment.send(Link::kRadio, am::kNet, frame->src, "T2-LOOP"_rule);
                    ack.size_bytes = net::kBody + rubicon::RubiconAckView::kMaxSizeBytes;
                    copy_address(*frame, net::kDestPid, ack, net::kSrcPid);
                    copy_address(*frame, net::kSrcPid, ack, net::kDestPid);
@@ -136,7 +136,7 @@ void add_needless_acks(Mutants& out) {
                  })});
   out.push_back({"broadcast_acked",
                  "A reliable broadcast is acked by each who hears it.",
-                 {req::kT2Broadcast},
+                 {"T2-BROADCAST"_rule},
                  on_heard([](Moment& moment, Forged& forged) {
                    const bool broadcast = is_net(forged.frame) &&
                                           get(forged, net::kDestDevid) == machine::kBroadcastDevid;
@@ -147,7 +147,7 @@ void add_needless_acks(Mutants& out) {
                  })});
   out.push_back({"every_flag_but_0_acked",
                  "Any value of reliable but 0 is taken for true.",
-                 {req::kT2Two},
+                 {"T2-TWO"_rule},
                  on_heard([](Moment& moment, Forged& forged) {
                    const bool ours = is_for_us(moment, forged.frame);
                    if (ours && forged.bytes[net::kReliable] > 1) forged.bytes[net::kReliable] = 1;
@@ -155,7 +155,7 @@ void add_needless_acks(Mutants& out) {
                  })});
   out.push_back({"synaptic_data_acked",
                  "Synaptic data that say reliable are acked.",
-                 {req::kT2Loop, req::kT2Ack},
+                 {"T2-LOOP"_rule, "T2-ACK"_rule},
                  always([](Moment& moment) {
                    moment.honest();
                    const Frame* const frame = moment.heard(am::kNet);
@@ -163,7 +163,7 @@ void add_needless_acks(Mutants& out) {
                                       frame->payload[net::kTransId] == component::kSynChannel &&
                                       frame->payload[net::kReliable] == 1;
                    if (!asked || !is_for_us(moment, *frame)) return;
-                   Transmit& ack = moment.send(Link::kRadio, am::kNet, frame->src, req::kT2Loop);
+                   Transmit& ack = moment.send(Link::kRadio, am::kNet, frame->src, "T2-LOOP"_rule);
                    ack.size_bytes = net::kBody + rubicon::RubiconAckView::kMaxSizeBytes;
                    ack.payload[net::kTransId] = component::kRubiconAck;
                  })});
@@ -177,7 +177,7 @@ void sends_again(Moment& moment, Transmit& last) {
   for (const Transmit& frame : moment.actions.transmits()) {
     if (is_send(moment, frame) && frame.payload[net::kReliable] == 1) last = frame;
   }
-  if (timeout && last.size_bytes != 0) moment.actions.transmit(req::kT3Resend) = last;
+  if (timeout && last.size_bytes != 0) moment.actions.transmit("T3-RESEND"_rule) = last;
 }
 
 void one_awaited(Moment& moment) {
@@ -199,7 +199,7 @@ void keeps_awaiting(Moment& moment) {
 void add_sender(Mutants& out) {
   out.push_back({"ack_of_any_number_counts",
                  "Any ack ends the oldest message.",
-                 {req::kT3Match},
+                 {"T3-MATCH"_rule},
                  on_heard([](Moment& moment, Forged& forged) {
                    const auto& awaited = moment.state.awaited;
                    if (is_ack(forged.frame) && is_for_us(moment, forged.frame) &&
@@ -210,23 +210,23 @@ void add_sender(Mutants& out) {
                  })});
   out.push_back({"late_ack_counts",
                  "An ack that nobody awaits is signalled all the same.",
-                 {req::kT3Once, req::kT3Match},
+                 {"T3-ONCE"_rule, "T3-MATCH"_rule},
                  always([](Moment& moment) {
                    moment.honest();
                    moment.rewrite([&](const Action& action) {
                      moment.keep(action);
                      const bool unmatched = action.what == Action::What::kIgnored &&
-                                            action.requirement == req::kT3Match;
+                                            action.requirement == "T3-MATCH"_rule;
                      const Frame* const frame = moment.heard(am::kNet);
                      if (!unmatched || frame == nullptr) return;
                      moment.actions.notify(AckReceived{frame->payload[net::kAppId],
                                                        get(*frame, net::kAckedSeq), true},
-                                           req::kT3Match);
+                                           "T3-MATCH"_rule);
                    });
                  })});
   out.push_back({"ack_of_another_sender_counts",
                  "The sender of an ack is not looked at.",
-                 {req::kT3Sender},
+                 {"T3-SENDER"_rule},
                  on_heard([](Moment& moment, Forged& forged) {
                    if (!is_ack(forged.frame)) return true;
                    for (const auto& awaited : moment.state.awaited) {
@@ -238,7 +238,7 @@ void add_sender(Mutants& out) {
                  })});
   out.push_back({"ack_of_another_app_counts",
                  "The APPID of an ack is not looked at.",
-                 {req::kT3Sender},
+                 {"T3-SENDER"_rule},
                  on_heard([](Moment& moment, Forged& forged) {
                    if (!is_ack(forged.frame)) return true;
                    for (const auto& awaited : moment.state.awaited) {
@@ -250,20 +250,20 @@ void add_sender(Mutants& out) {
                  })});
   out.push_back({"success_silent",
                  "A good ack is not signalled.",
-                 {req::kT3Success},
+                 {"T3-SUCCESS"_rule},
                  on_told_of<AckReceived>([](Moment&, AckReceived& ack) {
                    return ack.success ? Fate::kDrop : Fate::kKeep;
                  })});
   out.push_back({"success_as_failure",
                  "A good ack is signalled as failure.",
-                 {req::kT3Success},
+                 {"T3-SUCCESS"_rule},
                  on_told_of<AckReceived>([](Moment&, AckReceived& ack) {
                    ack.success = false;
                    return Fate::kKeep;
                  })});
   out.push_back({"knows_one_body_of_acks",
                  "An ack in the paper's form is not understood.",
-                 {req::kT3Success},
+                 {"T3-SUCCESS"_rule},
                  on_heard([](Moment&, Forged& forged) {
                    return !is_net(forged.frame) ||
                           forged.bytes[net::kNbytes] != net::kPaperAckNbytes ||
@@ -271,54 +271,54 @@ void add_sender(Mutants& out) {
                  })});
   out.push_back({"knows_the_papers_acks_only",
                  "An ack in the deployed form is not understood.",
-                 {req::kT3Success},
+                 {"T3-SUCCESS"_rule},
                  on_heard([](Moment&, Forged& forged) {
                    return !is_net(forged.frame) || forged.bytes[net::kNbytes] != net::kAckNbytes ||
                           forged.bytes[net::kTransId] != component::kRubiconAck;
                  })});
   out.push_back({"ack_timeout_short",
                  "A message is given up after 200 ticks.",
-                 {req::kT3Timeout},
+                 {"T3-TIMEOUT"_rule},
                  with_profile([](machine::Profile& profile) { profile.ack_timeout_ticks = 200; })});
   out.push_back(
       {"ack_timeout_long",
        "A message is given up after 2000 ticks.",
-       {req::kT3Timeout},
+       {"T3-TIMEOUT"_rule},
        with_profile([](machine::Profile& profile) { profile.ack_timeout_ticks = 2000; })});
   out.push_back({"timeout_silent",
                  "A message without its ack ends in silence.",
-                 {req::kT3Timeout, req::kT3Once},
+                 {"T3-TIMEOUT"_rule, "T3-ONCE"_rule},
                  on_told_of<AckReceived>([](Moment&, AckReceived& ack) {
                    return ack.success ? Fate::kKeep : Fate::kDrop;
                  })});
   out.push_back({"timeout_twice",
                  "A failure is signalled twice.",
-                 {req::kT3Once, req::kT3Timeout},
+                 {"T3-ONCE"_rule, "T3-TIMEOUT"_rule},
                  on_told_of<AckReceived>([](Moment&, AckReceived& ack) {
                    return ack.success ? Fate::kKeep : Fate::kTwice;
                  })});
   out.push_back({"timeout_after_success",
                  "The timeout runs on after the ack.",
-                 {req::kT3Once},
+                 {"T3-ONCE"_rule},
                  always(keeps_awaiting)});
   out.push_back({"sends_again",
                  "A message without its ack is sent again.",
-                 {req::kT3Resend},
+                 {"T3-RESEND"_rule},
                  remembering<Transmit>(sends_again)});
   out.push_back({"second_outstanding_message_lost",
                  "The second reliable message replaces the first.",
-                 {req::kT4Several, req::kT3Timeout},
+                 {"T4-SEVERAL"_rule, "T3-TIMEOUT"_rule},
                  always(one_awaited)});
   out.push_back({"one_outstanding_at_a_time",
                  "A second reliable message is refused.",
-                 {req::kT4Several, req::kN1Room},
+                 {"T4-SEVERAL"_rule, "N1-ROOM"_rule},
                  always([](Moment& moment) {
                    const Send* const send = moment.called<Send>();
                    const bool second =
                        send != nullptr && send->reliable && !moment.state.awaited.empty();
                    if (!second) return moment.honest();
                    moment.nothing();
-                   moment.actions.notify(machine::SendResult{machine::kNoSeq}, req::kT4Several);
+                   moment.actions.notify(machine::SendResult{machine::kNoSeq}, "T4-SEVERAL"_rule);
                  })});
 }
 

@@ -28,7 +28,7 @@ void Acks::arrived(std::uint16_t node, const Observation& seen, std::uint16_t se
   arrived.net = net;
   arrived.place = seen.place;
   arrived.sender = sender;
-  arrived.forbidden = net.sound ? arrival.forbidden : req::kN11Nbytes;
+  arrived.forbidden = net.sound ? arrival.forbidden : "N11-NBYTES"_rule;
   arrived.weak = net.sound && arrival.weak;
   arrived.ackable = arrived.forbidden == ReqId::kNone &&
                     machine::must_ack(net.reliable == 1, net.dest, net.trans_id, net.app_id);
@@ -84,7 +84,7 @@ void Acks::sent(std::uint16_t node, const Observation& seen, const Net& ack) {
   if (best->must_ack && best->sure && best->acks == 0) --owed_[node];
   ++best->acks;
   if (best->net.app_id != ack.app_id || ack.reliable != 0) {
-    context_.report(req::kT2Content, Severity::kFail, seen.place, node,
+    context_.report("T2-CONTENT"_rule, Severity::kFail, seen.place, node,
                     {"The ack of " + name_of(best->net) + " has APPID " + number(ack.app_id) +
                          ", reliable " + number(ack.reliable) + ".",
                      "APPID " + number(best->net.app_id) + ", reliable 0.", {}});
@@ -92,22 +92,22 @@ void Acks::sent(std::uint16_t node, const Observation& seen, const Net& ack) {
   }
   const std::int64_t took = now - best->place.time_us;
   if (took > context_.ack_timeout_us()) {
-    context_.report(req::kT2Prompt, Severity::kWeak, seen.place, node,
+    context_.report("T2-PROMPT"_rule, Severity::kWeak, seen.place, node,
                     {"The ack of " + name_of(best->net) + " comes after " + ms_text(took) + ".",
                      "Before the sender's timeout, " + ms_text(context_.ack_timeout_us()) +
                          ".",
                      {}});
   }
-  context_.findings.kept(req::kT2Ack);
-  context_.findings.kept(req::kT2Once);
-  context_.findings.kept(req::kT2Content);
+  context_.findings.kept("T2-ACK"_rule);
+  context_.findings.kept("T2-ONCE"_rule);
+  context_.findings.kept("T2-CONTENT"_rule);
 }
 
 void Acks::refuse(std::uint16_t node, const Observation& seen, const Net& ack, std::int32_t acked,
                   Arrived* best) {
   const std::int64_t now = seen.place.time_us;
   Said said;
-  ReqId rule = req::kT2Content;
+  ReqId rule = "T2-CONTENT"_rule;
   Severity severity = Severity::kFail;
   if (acked < 0) {
     said.text = "An ack has a body of " + number(ack.body().size()) +
@@ -124,32 +124,32 @@ void Acks::refuse(std::uint16_t node, const Observation& seen, const Net& ack, s
     rule = best->forbidden;
     if (best->weak) severity = Severity::kWeak;
     said.text = "It acks " + name_of(best->net) + ", which it should have " +
-                (rule == req::kN11Nbytes ? "dropped." : "ignored.");
+                (rule == "N11-NBYTES"_rule ? "dropped." : "ignored.");
     said.expected = "No effect at this node.";
   } else if (best->net.is_ack()) {
-    rule = req::kT2Loop;
+    rule = "T2-LOOP"_rule;
     said.text = "It acks an ack, " + name_of(best->net) + ".";
     said.expected = "An ack is never acked.";
   } else if (best->net.reliable != 1) {
     const bool flag = best->net.reliable == 0;  // Other values: decision 112.
-    rule = flag ? req::kT2Unreliable : req::kT2Two;
+    rule = flag ? "T2-UNRELIABLE"_rule : "T2-TWO"_rule;
     if (!flag) severity = Severity::kWeak;
     said.text = "It acks " + name_of(best->net) + ", whose reliable is " +
                 number(best->net.reliable) + ".";
     said.expected = "An unreliable message is never acked.";
   } else if (best->net.broadcast()) {
-    rule = req::kT2Broadcast;
+    rule = "T2-BROADCAST"_rule;
     severity = Severity::kWeak;
     said.text = "It acks the broadcast " + number(best->net.seq_num) + ".";
     said.expected = "A broadcast is not acked.";
   } else if (best->net.trans_id != component::kConnless) {
-    rule = req::kT2Content;
+    rule = "T2-CONTENT"_rule;
     said.text = "It acks " + name_of(best->net) + ", whose TRANSID is " +
                 number(best->net.trans_id) + ".";
     said.expected = "Acks of Connectionless messages.";
     severity = Severity::kInconclusive;
   } else {
-    rule = req::kT2Once;
+    rule = "T2-ONCE"_rule;
     severity = context_.without(best->sender, best->place.time_us, now);
     said.text = "A second ack of " + name_of(best->net) + ".";
     said.expected = "One ack for each time that it was received.";
@@ -187,7 +187,7 @@ void Acks::delivered(std::uint16_t node, const Observation& seen,
     const Device& device = context_.device(node);
     const bool by_peis = device.role == machine::Role::kBaseStation &&
                          received.src.pid != device.island && !logs_peis(context_.run, node);
-    context_.report(req::kT1Deliver,
+    context_.report("T1-DELIVER"_rule,
                     by_peis ? Severity::kInconclusive
                             : context_.without(kNobody, context_.run.start_us, seen.place.time_us),
                     seen.place, node,
@@ -203,8 +203,8 @@ void Acks::delivered(std::uint16_t node, const Observation& seen,
     best->must_ack = best->must_ack || best->ackable;
     best->sure = true;  // So it did arrive, and was taken.
     if (best->must_ack && !owed && best->acks == 0) ++owed_[node];
-    context_.findings.kept(req::kT1Deliver);
-    if (best->must_ack) context_.findings.kept(req::kT2Deliver);
+    context_.findings.kept("T1-DELIVER"_rule);
+    if (best->must_ack) context_.findings.kept("T2-DELIVER"_rule);
     return;
   }
   const bool forbidden = best->forbidden != ReqId::kNone;
@@ -212,7 +212,7 @@ void Acks::delivered(std::uint16_t node, const Observation& seen,
                                                           seen.place.time_us)
                             : best->weak ? Severity::kWeak
                                          : Severity::kFail;
-  context_.report(forbidden ? best->forbidden : req::kN2InOrder, severity, seen.place, node,
+  context_.report(forbidden ? best->forbidden : "N2-IN-ORDER"_rule, severity, seen.place, node,
                   {"The application gets " + name_of(best->net) +
                        (forbidden ? ", which the node should have dropped or ignored."
                                   : " more often than it came."),
@@ -242,7 +242,7 @@ void Acks::showed_life(std::uint16_t node, std::int64_t now_us) {
         around > kCrowd || context_.who.damaged(arrived.place.time_us, now_us)
             ? Severity::kInconclusive
         : by_radio ? context_.without(node, arrived.place.time_us, now_us) : Severity::kFail;
-    context_.report(req::kT2Ack, severity, arrived.place, node,
+    context_.report("T2-ACK"_rule, severity, arrived.place, node,
                     {"It surely received " + name_of(arrived.net) +
                          ", reliable, and sent no ack within " +
                          ms_text(context_.response_us()) +
@@ -256,7 +256,7 @@ void Acks::close(std::uint16_t node, Arrived& arrived) {
   if (arrived.sure && owed_[node] > 0) --owed_[node];
   arrived.must_ack = false;
   if (context_.device(node).hearing && !arrived.sure) return;  // A log says what arrived.
-  context_.report(req::kT2Ack, Severity::kInconclusive, arrived.place, node,
+  context_.report("T2-ACK"_rule, Severity::kInconclusive, arrived.place, node,
                   {"No ack of " + name_of(arrived.net) + "; nothing proves that it arrived.",
                    "An ack, if it arrived.", {}});
 }

@@ -9,7 +9,7 @@
 #include <tuple>
 #include <utility>
 
-#include "codec/generated/requirements_table.h"
+#include "codec/reflect/requirements.h"
 #include "conformance/oracle/findings.h"
 #include "conformance/oracle/read.h"
 
@@ -21,9 +21,10 @@ bool blames(const Finding& finding) {
 }
 
 // Identifies a finding; its text may have other times.
-using Name = std::tuple<ReqId, std::string, std::uint32_t, std::uint64_t>;
+using Name = std::tuple<std::size_t, std::string, std::uint32_t, std::uint64_t>;
 Name name_of(const Finding& finding) {
-  return {finding.requirement, finding.node, finding.place.file, finding.place.frame};
+  return {reflect::requirement_index(finding.requirement), finding.node, finding.place.file,
+          finding.place.frame};
 }
 
 std::set<Name> blamed_in(const Report& report) {
@@ -106,7 +107,7 @@ Report judge_each_order(const Run& run, const Options& options) {
     if (!blames(finding)) continue;
     const Name name = name_of(finding);
     // A frame that breaks a rule of the format breaks it at any time.
-    const std::string_view id = kRequirements[static_cast<std::size_t>(finding.requirement)].id;
+    const std::string_view id = reflect::requirement(finding.requirement).id;
     const LoosePlace* const place = place_of(run, finding.place);
     const std::int64_t at_us = finding.place.time_us;
     const bool between = place != nullptr ? place->between : at_us >= first_us && at_us <= last_us;

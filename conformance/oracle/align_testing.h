@@ -18,7 +18,7 @@
 
 #include "codec/containers/reader.h"
 #include "codec/containers/writer.h"
-#include "codec/generated/requirements_table.h"
+#include "codec/reflect/requirements.h"
 #include "conformance/oracle/judge.h"
 #include "conformance/oracle/read.h"
 
@@ -148,7 +148,7 @@ inline std::multiset<std::string> findings_of(const Report& report, const Apart*
     if (fails_only && finding.severity != Severity::kFail) continue;
     std::uint64_t frame = finding.place.frame;
     if (apart != nullptr) frame = apart->parts[finding.place.file].frames.at(frame);
-    out.insert(std::string(kRequirements[static_cast<std::size_t>(finding.requirement)].id) + " " +
+    out.insert(std::string(reflect::requirement(finding.requirement).id) + " " +
                kSeverities[static_cast<std::size_t>(finding.severity)] + " " +
                std::to_string(frame) + " " + finding.node);
   }

@@ -4,14 +4,13 @@
 #include <cstdio>
 #include <optional>
 
-#include "codec/generated/requirements_table.h"
+#include "codec/reflect/requirements.h"
 
 namespace rubric::oracle {
 namespace {
 
 bool is_of(ReqId requirement, std::string_view group) {
-  return std::string_view(kRequirements[static_cast<std::size_t>(requirement)].id)
-      .starts_with(group);
+  return std::string_view(reflect::requirement(requirement).id).starts_with(group);
 }
 
 }  // namespace
@@ -71,7 +70,7 @@ bool Context::rests_on_order(ReqId requirement, const Place& at, std::uint16_t n
   if (node == kNobody) return false;
   // Replies to requests are on the air alone; reports of joins on a line are not.
   const bool air = is_of(requirement, "J3-") || is_of(requirement, "J10-");
-  if (air && (run.unordered_taps.empty() || requirement == req::kJ3Time)) return false;
+  if (air && (run.unordered_taps.empty() || requirement == "J3-TIME"_rule)) return false;
   const Device& d = device(node);
   const Device& lines = d.role == machine::Role::kBaseStation && d.partner != kNobody
                             ? device(d.partner)

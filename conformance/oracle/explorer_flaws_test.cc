@@ -6,7 +6,7 @@
 #include <memory>
 #include <string>
 
-#include "codec/generated/requirements_table.h"
+#include "codec/reflect/requirements.h"
 #include "conformance/explorer/counterexample.h"
 #include "conformance/explorer/search.h"
 #include "conformance/flaws/flaws.h"
@@ -46,7 +46,7 @@ explorer::Options network_of(const Flawed& flawed, const flaws::Flaw& flaw) {
 std::string text_of(const Report& report) {
   std::string text;
   for (const Finding& finding : report.findings) {
-    text += std::string(kRequirements[static_cast<std::size_t>(finding.requirement)].id) + " " +
+    text += std::string(reflect::requirement(finding.requirement).id) + " " +
             std::to_string(static_cast<int>(finding.severity)) + " line " +
             std::to_string(finding.place.offset_bytes) + " " + finding.node + ": " + finding.text +
             "\n";

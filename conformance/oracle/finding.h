@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "codec/generated/requirements.h"
+#include "codec/runtime/rule.h"
 
 namespace rubric::oracle {
 

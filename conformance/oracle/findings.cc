@@ -18,7 +18,10 @@ const machine::NamedProfile& named(bool deployed) {
 
 }  // namespace
 
-Findings::Findings(bool deployed) : profile_(named(deployed).profile), deployed_(deployed) {}
+Findings::Findings(bool deployed)
+    : profile_(named(deployed).profile),
+      deployed_(deployed),
+      kept_(reflect::requirements().size()) {}
 
 bool Findings::accepted(ReqId requirement) const {
   for (const machine::AcceptedDifference& difference : named(deployed_).accepted) {
@@ -67,7 +70,7 @@ std::vector<Finding> Findings::take() {
 std::vector<std::pair<ReqId, std::uint64_t>> Findings::exercised() const {
   std::vector<std::pair<ReqId, std::uint64_t>> out;
   for (std::size_t i = 0; i < kept_.size(); ++i) {
-    if (kept_[i] > 0) out.emplace_back(static_cast<ReqId>(i), kept_[i]);
+    if (kept_[i] > 0) out.emplace_back(reflect::requirements()[i].number(), kept_[i]);
   }
   return out;
 }

@@ -1,17 +1,15 @@
 // Collects findings: accepts differences of the profile, groups repeats, keeps within bounds.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include "codec/reflect/requirements.h"
 #include "conformance/machine/profile.h"
 #include "conformance/oracle/finding.h"
 
 namespace rubric::oracle {
-
-constexpr std::size_t kRequirementsMax = 256;
 
 class Findings {
  public:
@@ -21,7 +19,7 @@ class Findings {
   /// difference that the profile accepts becomes a note.
   void add(Finding finding);
   /// Counts that a rule could have been broken and was kept.
-  void kept(ReqId requirement) { ++kept_[static_cast<std::size_t>(requirement)]; }
+  void kept(ReqId requirement) { ++kept_[reflect::requirement_index(requirement)]; }
 
   const machine::Profile& profile() const { return profile_; }
   /// Returns the findings in order of place; dropped() counts those that did not fit.
@@ -42,7 +40,7 @@ class Findings {
   std::vector<Finding> all_;
   std::vector<std::size_t> open_;  // Episodes that may go on, in all_.
   std::uint64_t dropped_ = 0;
-  std::array<std::uint64_t, kRequirementsMax> kept_{};
+  std::vector<std::uint64_t> kept_;  // By place in the catalogue.
 };
 
 /// Returns the gravest verdict of all findings; notes leave a pass.

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "codec/generated/requirements_table.h"
+#include "codec/reflect/requirements.h"
 #include "conformance/oracle/judge.h"
 #include "conformance/oracle/read.h"
 
@@ -43,7 +43,7 @@ const char* text_of(Severity severity) {
 // "capture profile inputs file:frame rule severity count node", tabs between.
 std::string line_of(const std::string& run, const Finding& finding) {
   std::ostringstream out;
-  const char* const id = kRequirements[static_cast<std::size_t>(finding.requirement)].id;
+  const char* const id = reflect::requirement(finding.requirement).id;
   out << run << '\t' << finding.place.file << ':' << finding.place.frame << '\t'
       << (*id == '\0' ? "-" : id) << '\t' << text_of(finding.severity) << '\t' << finding.count
       << '\t' << (finding.node.empty() ? "-" : finding.node);
@@ -103,7 +103,7 @@ TEST(Firmware, HypothesesExplainAFailure) {
     return f.severity == Severity::kFail;
   });
   ASSERT_NE(fail, report.findings.end());
-  EXPECT_EQ(fail->requirement, req::kJ4Seq);
+  EXPECT_EQ(fail->requirement, "J4-SEQ"_rule);
   ASSERT_FALSE(fail->hypotheses.empty());
   EXPECT_NE(fail->hypotheses[0].text.find("50421"), std::string::npos);
   EXPECT_FALSE(fail->hypotheses[0].allowed.empty());

@@ -100,10 +100,10 @@ void Forwarding::heard_on_radio(const Observation& seen, std::uint16_t sender, c
     passing.sender = sender;
     const bool onward = route.onward == Route::Onward::kSerial;
     if (!net.sound) {
-      passing.forbidden = req::kN11Nbytes;
+      passing.forbidden = "N11-NBYTES"_rule;
     } else if (!onward && !route.deliver && net.dest.pid != machine::kBroadcastPid) {
       passing.forbidden = route.requirement;
-      passing.weak = route.requirement == req::kN6Other;
+      passing.weak = route.requirement == "N6-OTHER"_rule;
     }
     passing.owed = onward && !line.off && net.sound && net.reliable <= 1 &&
                    net.src.pid == line.island && sure;
@@ -154,9 +154,9 @@ void Forwarding::heard_on_serial(std::uint16_t sink, std::uint16_t base, const O
   passing.sender = base;
   passing.am_dest = onward ? route.am_dest : net.dest.devid;
   if (!net.sound) {
-    passing.forbidden = req::kN11Nbytes;
-  } else if (route.requirement == req::kN7Foreign) {
-    passing.forbidden = req::kN7Foreign;
+    passing.forbidden = "N11-NBYTES"_rule;
+  } else if (route.requirement == "N7-FOREIGN"_rule) {
+    passing.forbidden = "N7-FOREIGN"_rule;
     passing.weak = true;
   }
   passing.owed = onward && net.sound && net.reliable <= 1 && surely_received &&
@@ -164,7 +164,7 @@ void Forwarding::heard_on_serial(std::uint16_t sink, std::uint16_t base, const O
   store(line->down, passing, line->owed_down);
   const bool foreign = net.dest.pid != line->island && net.dest.pid != machine::kBroadcastPid;
   if (!foreign) return;
-  context_.report(req::kN8Loop, Severity::kWeak, seen.place, base,
+  context_.report("N8-LOOP"_rule, Severity::kWeak, seen.place, base,
                   {"A message to " + text_of(net.dest) + " is handed to the sink of island " +
                        number(line->island) + ".",
                    "Another island's messages go through PEIS.", {}});
@@ -184,8 +184,8 @@ void Forwarding::pass_up(Line& line, Passing& passing, const Observation& seen) 
     const Net& net = passing.net;
     const bool stale = line.last_island != 0 && (net.dest.pid == line.last_island ||
                                                  net.src.pid == line.last_island);
-    if (passing.forbidden == req::kN6Collision && stale) passing.forbidden = req::kN9Set;
-    if (passing.forbidden == req::kN11Nbytes) {
+    if (passing.forbidden == "N6-COLLISION"_rule && stale) passing.forbidden = "N9-SET"_rule;
+    if (passing.forbidden == "N11-NBYTES"_rule) {
       said.text = "The sink forwards " + name_of(passing.net) + ", whose nbytes is " +
                   number(passing.net.nbytes) + " while " + number(passing.net.payload.size()) +
                   " bytes came.";
@@ -198,13 +198,13 @@ void Forwarding::pass_up(Line& line, Passing& passing, const Observation& seen) 
     context_.report(passing.forbidden, passing.weak ? Severity::kWeak : Severity::kFail,
                     seen.place, line.sink, std::move(said));
   } else {
-    context_.findings.kept(req::kN6Content);
-    context_.findings.kept(req::kN6Once);
+    context_.findings.kept("N6-CONTENT"_rule);
+    context_.findings.kept("N6-ONCE"_rule);
     const bool own_island = passing.net.dest.pid == line.island;
-    context_.findings.kept(own_island ? req::kN6Forward : req::kN6Route);
+    context_.findings.kept(own_island ? "N6-FORWARD"_rule : "N6-ROUTE"_rule);
   }
   if (out_of_order(passing, line.last_up)) {
-    context_.report(req::kN2Order, Severity::kFail, seen.place, line.sink,
+    context_.report("N2-ORDER"_rule, Severity::kFail, seen.place, line.sink,
                     {"The sink forwards " + name_of(passing.net) +
                          " behind one that it heard later.",
                      "Received messages are handled in the order of arrival.", {}});
@@ -239,7 +239,7 @@ void Forwarding::sent_on_serial(std::uint16_t sink, const Observation& seen, con
 void Forwarding::refuse_up(Line& line, const Observation& seen, const Net& net) {
   for (std::size_t i = 0; i < std::min(line.down.size(), kTwinsLook); ++i) {
     if (!same_message(line.down.newest(i).net, net)) continue;
-    context_.report(req::kN6Once, Severity::kFail, seen.place, line.sink,
+    context_.report("N6-ONCE"_rule, Severity::kFail, seen.place, line.sink,
                     {"The sink hands " + name_of(net) + " back to its base station.",
                      "What comes over serial does not go back over serial.", {}});
     return;
@@ -253,7 +253,7 @@ void Forwarding::refuse_up(Line& line, const Observation& seen, const Net& net) 
     if (same) {
       said.text = "The sink forwards " + name_of(net) + " again.";
       said.expected = "Once for each time that it was received.";
-      context_.report(req::kN6Once,
+      context_.report("N6-ONCE"_rule,
                       context_.without(passing.sender, passing.place.time_us, seen.place.time_us),
                       seen.place, line.sink, std::move(said));
       return;
@@ -264,7 +264,7 @@ void Forwarding::refuse_up(Line& line, const Observation& seen, const Net& net) 
                 number(passing.net.nbytes) + " bytes.";
     said.expected = "Addresses, reliable, number and payload as they were heard.";
     const bool other = passing.passed > 0;  // Then this may be another message, not captured.
-    context_.report(req::kN6Content,
+    context_.report("N6-CONTENT"_rule,
                     other || passing.net.dest != net.dest
                         ? context_.without(passing.sender, passing.place.time_us,
                                            seen.place.time_us)
@@ -296,7 +296,7 @@ void Forwarding::unheard(Line& line, const Passing& early) {
   const bool began = context_.options.start_cold ||
                      early.place.time_us - context_.run.start_us > kStartUs;
   const bool complete = context_.options.sniffer_complete && began;
-  context_.report(req::kN6Once, complete ? Severity::kFail : Severity::kInconclusive, early.place,
+  context_.report("N6-ONCE"_rule, complete ? Severity::kFail : Severity::kInconclusive, early.place,
                   line.sink,
                   {"The sink puts " + name_of(early.net) +
                        " on its serial line; nobody was heard sending it.",
@@ -306,7 +306,8 @@ void Forwarding::unheard(Line& line, const Passing& early) {
 void Forwarding::finish(std::int64_t end_us) {
   for (Line& line : lines_) {
     expire_early(line, end_us + context_.options.skew_us + 1);
-    note_stale(context_, line.sink, req::kN6Content, line.stale, "On the serial line nbytes says ");
+    note_stale(context_, line.sink, "N6-CONTENT"_rule, line.stale,
+               "On the serial line nbytes says ");
   }
 }
 

@@ -22,22 +22,22 @@ void Forwarding::pass_down(Line& line, Passing& passing, const Observation& seen
                           : "A malformed message is dropped.",
                      {}});
   } else if (seen.frame.dest != passing.am_dest) {
-    context_.report(req::kN7Radio, Severity::kFail, seen.place, line.sink,
+    context_.report("N7-RADIO"_rule, Severity::kFail, seen.place, line.sink,
                     {"The sink radiates " + name_of(net) + " to AM address " +
                          number(seen.frame.dest) + ".",
                      "AM address " + number(passing.am_dest) + ".", {}});
   } else if (seen.frame.payload.size() > kNetHeaderBytes + net.payload.size()) {
-    context_.report(req::kN7Content, Severity::kFail, seen.place, line.sink,
+    context_.report("N7-CONTENT"_rule, Severity::kFail, seen.place, line.sink,
                     {"The sink radiates " + name_of(net) + " with " +
                          number(seen.frame.payload.size() - kNetHeaderBytes - net.payload.size()) +
                          " bytes behind its payload.",
                      "No byte behind the payload.", {}});
   } else {
-    context_.findings.kept(req::kN7Radio);
-    context_.findings.kept(req::kN7Content);
+    context_.findings.kept("N7-RADIO"_rule);
+    context_.findings.kept("N7-CONTENT"_rule);
   }
   if (out_of_order(passing, line.last_down)) {
-    context_.report(req::kN2Order, Severity::kFail, seen.place, line.sink,
+    context_.report("N2-ORDER"_rule, Severity::kFail, seen.place, line.sink,
                     {"The sink radiates " + name_of(net) + " behind one that it got later.",
                      "Messages leave in the order in which they came.", {}});
   }
@@ -136,7 +136,7 @@ void Forwarding::refuse_down(Line& line, const Observation& seen, const Net& net
   if (same_message(best->net, net) && same_payload(best->net, net)) {
     said.text = "The sink radiates " + name_of(net) + " again.";
     said.expected = "Once for each time that it came over serial.";
-    context_.report(req::kN2Once, Severity::kFail, seen.place, line.sink, std::move(said));
+    context_.report("N2-ONCE"_rule, Severity::kFail, seen.place, line.sink, std::move(said));
     return;
   }
   said.text = "The sink radiates " + name_of(net) + ", reliable " + number(net.reliable) +
@@ -145,7 +145,7 @@ void Forwarding::refuse_down(Line& line, const Observation& seen, const Net& net
               ", reliable " + number(best->net.reliable) + ", nbytes " +
               number(best->net.nbytes) + ".";
   said.expected = "Addresses, reliable, number, nbytes and payload as they came.";
-  context_.report(req::kN7Content, Severity::kFail, seen.place, line.sink, std::move(said));
+  context_.report("N7-CONTENT"_rule, Severity::kFail, seen.place, line.sink, std::move(said));
   if (best->owed) --line.owed_down;
   best->owed = false;
   if (best->passed < 255) ++best->passed;
@@ -161,7 +161,7 @@ void Forwarding::overdue_up(Line& line, std::int64_t now_us) {
     --line.owed_up;
     if (busy(line, passing.place.time_us)) continue;
     const bool own_island = passing.net.dest.pid == line.island;
-    context_.report(own_island ? req::kN6Forward : req::kN6Route,
+    context_.report(own_island ? "N6-FORWARD"_rule : "N6-ROUTE"_rule,
                     crowded(line, passing.place.time_us) ||
                             context_.who.damaged(passing.place.time_us, now_us)
                         ? Severity::kInconclusive
@@ -185,7 +185,7 @@ void Forwarding::overdue_down(Line& line, std::int64_t now_us) {
     const Severity severity = crowded(line, passing.place.time_us)
                                   ? Severity::kInconclusive
                                   : context_.without(line.sink, passing.place.time_us, now_us);
-    context_.report(req::kN7Radio, severity, passing.place, line.sink,
+    context_.report("N7-RADIO"_rule, severity, passing.place, line.sink,
                     {"The sink confirmed " + name_of(passing.net) +
                          " on its serial line and did not radiate it, though it sent other frames "
                          "later.",

@@ -147,8 +147,8 @@ TEST(Given, AWrongRoleIsSaidOnceAndTheRunBelieved) {
     const char* name;
     ReqId rule;
   } kRows[] = {
-      {{1, Role::kMote, 0}, "sink of island 11", req::kJ10Mote},
-      {{2, Role::kSink, 0}, "mote 2", req::kJ10Sink},
+      {{1, Role::kMote, 0}, "sink of island 11", "J10-MOTE"_rule},
+      {{2, Role::kSink, 0}, "mote 2", "J10-SINK"_rule},
       {{2, Role::kBaseStation, 0}, "mote 2", ReqId::kNone},
   };
   for (const auto& row : kRows) {
@@ -174,7 +174,7 @@ TEST(Given, AMoteThatAlsoActsAsASinkFails) {
   EXPECT_TRUE(doubts(report).empty());
   bool failed = false;
   for (const Finding& finding : report.findings) {
-    failed = failed || (finding.requirement == req::kJ10Mote && finding.severity ==
+    failed = failed || (finding.requirement == "J10-MOTE"_rule && finding.severity ==
                                                                     Severity::kFail);
   }
   EXPECT_TRUE(failed);

@@ -50,7 +50,7 @@ void InterfaceWatch::told(std::uint16_t device, const Observation& seen) {
   if (const auto* result = std::get_if<machine::SendResult>(seen.notice)) {
     if (node.sends && node.left == result->seq_num) {  // It left before the call returned.
       node.interfaces[0].again = false;
-      context_.findings.kept(req::kN10On);
+      context_.findings.kept("N10-ON"_rule);
     } else if (node.sends && result->seq_num != machine::kNoSeq && !node.awaited) {
       node.awaited = result->seq_num;
       node.accepted = seen.place;
@@ -61,9 +61,9 @@ void InterfaceWatch::told(std::uint16_t device, const Observation& seen) {
   const auto* const state = std::get_if<machine::InterfaceState>(seen.notice);
   const Interface* const interface = state == nullptr ? nullptr : find(node, state->link);
   if (interface == nullptr || !interface->on) return;
-  if (state->on == *interface->on) return context_.findings.kept(req::kN10State);
+  if (state->on == *interface->on) return context_.findings.kept("N10-STATE"_rule);
   const std::string what = state->link == Link::kRadio ? "radio" : "serial interface";
-  context_.report(req::kN10State, Severity::kFail, seen.place, device,
+  context_.report("N10-STATE"_rule, Severity::kFail, seen.place, device,
                   {"The " + what + " is said to be " + (state->on ? "on" : "off") + ", " +
                        ms_text(seen.place.time_us - interface->changed_us) +
                        " after it was switched " + (*interface->on ? "on." : "off."),
@@ -86,7 +86,7 @@ bool InterfaceWatch::switched_off(std::uint16_t device, Link link) const {
 void InterfaceWatch::sent(std::uint16_t device, const Observation& seen) {
   // Frames on their way when the interface was switched off may still arrive.
   if (!context_.run.has_time || !off(device, seen.frame.link, seen.place.time_us)) return;
-  context_.report(req::kN10Off, Severity::kFail, seen.place, device,
+  context_.report("N10-OFF"_rule, Severity::kFail, seen.place, device,
                   {std::string("A frame leaves through the ") +
                        (seen.frame.link == Link::kRadio ? "radio" : "serial interface") +
                        ", which is switched off.",
@@ -99,7 +99,7 @@ void InterfaceWatch::own_message(std::uint16_t device, std::uint16_t seq_num) {
   if (node.awaited != seq_num) return;
   node.awaited.reset();
   node.interfaces[0].again = false;
-  context_.findings.kept(req::kN10On);
+  context_.findings.kept("N10-ON"_rule);
 }
 
 void InterfaceWatch::finish(std::int64_t end_us) {
@@ -112,7 +112,7 @@ void InterfaceWatch::finish(std::int64_t end_us) {
     const Severity severity = context_.device(device).hearing
                                   ? Severity::kFail
                                   : context_.without(device, node.accepted.time_us, end_us);
-    context_.report(req::kN10On, severity, node.accepted, device,
+    context_.report("N10-ON"_rule, severity, node.accepted, device,
                     {"The radio was switched on again, send accepted the message " +
                          number(*node.awaited) + ", and it never left.",
                      "It sends again.", {}});

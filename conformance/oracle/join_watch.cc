@@ -160,7 +160,7 @@ void JoinWatch::missing(std::uint16_t node, const Debt& debt, Severity severity)
   const std::string within = "within " + ms_text(context_.response_us()) + ".";
   switch (debt.owes) {
     case Owes::kRetry:
-      context_.report(req::kJ8Retry, severity, cause.place, node,
+      context_.report("J8-RETRY"_rule, severity, cause.place, node,
                       {"No join_request follows this one, no reply came that the mote could "
                        "accept, and requests remain.",
                        "The join_request again, " + ms_text(context_.join_period_us()) +
@@ -168,19 +168,19 @@ void JoinWatch::missing(std::uint16_t node, const Debt& debt, Severity severity)
                        {}});
       return;
     case Owes::kAck:
-      context_.report(req::kJ4Ack, severity, cause.place, node,
+      context_.report("J4-ACK"_rule, severity, cause.place, node,
                       {"The mote " + proof + " the join_reply to its request " +
                            number(debt.seq_num) + " and sends no ack_join.",
                        "ack_join " + within, {}});
       return;
     case Owes::kReply:
-      context_.report(debt.overtaken ? req::kJ9Interleave : req::kJ3Reply, severity, cause.place,
-                      node,
-                      {"The sink " + proof + " the join_request " + number(debt.seq_num) +
-                           " of mote " + number(debt.mote_am) +
-                           ", which it does not list, and does not answer it" +
-                           (debt.overtaken ? "; a later one of another mote it did." : "."),
-                       "A join_reply " + within, {}});
+      context_.report(
+          debt.overtaken ? "J9-INTERLEAVE"_rule : "J3-REPLY"_rule, severity, cause.place, node,
+          {"The sink " + proof + " the join_request " + number(debt.seq_num) + " of mote " +
+               number(debt.mote_am) + ", which it does not list, and does not answer it" +
+               (debt.overtaken ? "; a later one of another mote it did." : "."),
+           "A join_reply " + within,
+           {}});
       return;
   }
 }
@@ -203,7 +203,7 @@ void JoinWatch::clock_told(std::uint16_t mote, const Observation& seen, std::uin
     // A clock in binary ms runs 2.4 % faster than one in ms.
     if (grown_ms >= passed_ms - kClockOffMs &&
         grown_ms <= passed_ms + passed_ms * 24 / 1000 + kClockOffMs) {
-      context_.findings.kept(req::kJ4Clock);
+      context_.findings.kept("J4-CLOCK"_rule);
       return;
     }
     said.text = "The mote's clock says " + number(ms) + ", " +
@@ -212,7 +212,7 @@ void JoinWatch::clock_told(std::uint16_t mote, const Observation& seen, std::uin
     said.expected = "cur_time and what has passed since, within 1 s.";
   }
   if (!set.empty()) {
-    context_.report(req::kJ4Clock, Severity::kFail, seen.place, mote, std::move(said));
+    context_.report("J4-CLOCK"_rule, Severity::kFail, seen.place, mote, std::move(said));
   }
 }
 

@@ -109,7 +109,7 @@ std::string seen(const Script& script, bool complete) {
   options.sniffer_complete = complete;
   std::string out;
   for (const Finding& finding : judge(script.run, options).findings) {
-    const char* const id = kRequirements[static_cast<std::size_t>(finding.requirement)].id;
+    const char* const id = reflect::requirement(finding.requirement).id;
     if (finding.severity == Severity::kFail) out += std::string(id) + " ";
     if (finding.severity == Severity::kInconclusive) out += std::string("(") + id + ") ";
   }

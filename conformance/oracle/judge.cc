@@ -136,7 +136,7 @@ void Judge::radio(std::uint32_t index, const Observation& seen, const Mark& mark
         joins_.answered(mark.device, seen.frame.dest, seen.place.time_us);
       }
       if (is(mark.device, Role::kMote)) {
-        role_broken(req::kJ10Mote, "A mote sends a join_reply.", seen, mark.device);
+        role_broken("J10-MOTE"_rule, "A mote sends a join_reply.", seen, mark.device);
       }
       replied(index, seen, mark, reply);
       return;
@@ -148,7 +148,7 @@ void Judge::radio(std::uint32_t index, const Observation& seen, const Mark& mark
         motes_.ack_join(mark.device, seen, ack, link_acked(run_, index));
       }
       if (is(mark.device, Role::kSink)) {
-        role_broken(req::kJ10Sink, "A sink sends an ack_join.", seen, mark.device);
+        role_broken("J10-SINK"_rule, "A sink sends an ack_join.", seen, mark.device);
       }
       sinks_.ack_join(mark.device, seen, ack, sure_sink(index));
       return;

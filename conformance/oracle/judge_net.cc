@@ -107,13 +107,13 @@ void Judge::hears(std::uint16_t node, const machine::Router& router, machine::Li
   // A message to every island may be taken or ignored (decision 114).
   const bool free = route.deliver || net.dest.pid == machine::kBroadcastPid;
   const bool off = interfaces_.off(node, from, seen.place.time_us);
-  const ReqId forbidden = off ? req::kN10Off : free ? ReqId::kNone : route.requirement;
+  const ReqId forbidden = off ? "N10-OFF"_rule : free ? ReqId::kNone : route.requirement;
   // So may one straight from a foreign mote (decision 116), and one for another island that a base
   // station sends down to its sink (decision 126).
   const bool radio = from == machine::Link::kRadio;
   const bool straight = net.dest.pid != router.own.pid ||
                         (radio && net.src.pid != net.dest.pid && !is(sender, Role::kSink));
-  acks_.arrived(node, seen, sender, net, {forbidden, forbidden == req::kN6Other,
+  acks_.arrived(node, seen, sender, net, {forbidden, forbidden == "N6-OTHER"_rule,
                                         sure && !interfaces_.switched_off(node, from), straight});
   if (sure && !off && route.deliver) synaptic_.given(node, seen, net);
 }

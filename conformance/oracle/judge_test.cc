@@ -5,7 +5,7 @@
 
 #include <functional>
 
-#include "codec/generated/requirements_table.h"
+#include "codec/reflect/requirements.h"
 #include "conformance/oracle/judge.h"
 #include "conformance/oracle/testing.h"
 
@@ -61,7 +61,7 @@ std::string text_of(const Report& report, Severity least) {
   for (const Finding& finding : report.findings) {
     if (finding.severity < least) continue;
     if (!out.empty()) out += " ";
-    out += kRequirements[static_cast<std::size_t>(finding.requirement)].id;
+    out += reflect::requirement(finding.requirement).id;
   }
   return out;
 }
@@ -329,7 +329,7 @@ TEST_P(Faults, AreAtMostInconclusiveOrTheSameWithoutKnowledge) {
   const Report report = judge(script.run, Options{});
   for (const Finding& finding : report.findings) {
     if (finding.severity < Severity::kFail) continue;
-    const char* const id = kRequirements[static_cast<std::size_t>(finding.requirement)].id;
+    const char* const id = reflect::requirement(finding.requirement).id;
     EXPECT_THAT(GetParam().found, testing::HasSubstr(id)) << finding.text;
   }
 }

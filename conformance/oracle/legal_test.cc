@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <string>
 
-#include "codec/generated/requirements_table.h"
+#include "codec/reflect/requirements.h"
 #include "conformance/legal/generate.h"
 #include "conformance/legal/variants.h"
 #include "conformance/oracle/frames_testing.h"
@@ -37,7 +37,7 @@ void judge_one(const legal::Traffic& traffic, const Options& options, Count& cou
     count.fails += fails ? 1 : 0;
     EXPECT_FALSE(fails) << traffic.variant << " seed " << traffic.seed << " frame "
                         << finding.place.frame << ": "
-                        << kRequirements[static_cast<std::size_t>(finding.requirement)].id << " "
+                        << reflect::requirement(finding.requirement).id << " "
                         << finding.text;
   }
 }

@@ -32,23 +32,23 @@ std::string ack_text(const AckJoin& ack) {
 ReqId MoteJoins::why_not_ack(const MoteHypothesis& h, const Observation& seen,
                              const AckJoin& ack) const {
   if (h.unknown) return ReqId::kNone;
-  if (h.join.phase != Phase::kMember) return req::kJ4Joined;
+  if (h.join.phase != Phase::kMember) return "J4-JOINED"_rule;
   AckJoin want = expected_ack(h);
   // If the call began before the capture only a part of it is known.
   if (h.join.seq_num == 0) want.seq_num = ack.seq_num, want.descriptor = ack.descriptor;
   if (h.join.seq_num == 0 || h.join.sink_devid == 0) want.dest = ack.dest;
   if (ack != want) {
-    return ack.dest.pid != want.dest.pid && ack.seq_num == want.seq_num ? req::kJ7Choice
-                                                                         : req::kJ4Content;
+    return ack.dest.pid != want.dest.pid && ack.seq_num == want.seq_num ? "J7-CHOICE"_rule
+                                                                         : "J4-CONTENT"_rule;
   }
-  if (seen.frame.dest != context_.sink_am) return req::kJ4Content;
+  if (seen.frame.dest != context_.sink_am) return "J4-CONTENT"_rule;
   if (h.acks_seen == 0 || !seen.place.timed()) return ReqId::kNone;
   const std::int64_t last =
       std::max(h.last_request_us, h.accepted_us + context_.response_us());
   if (seen.place.time_us > last + context_.join_period_us() + context_.early_us()) {
-    return req::kJ4Repeat;
+    return "J4-REPEAT"_rule;
   }
-  return h.acks_seen > kAckJoinsMax ? req::kJ4Repeat : ReqId::kNone;
+  return h.acks_seen > kAckJoinsMax ? "J4-REPEAT"_rule : ReqId::kNone;
 }
 
 void MoteJoins::ack_join(std::uint16_t mote, const Observation& seen, const AckJoin& ack,
@@ -76,11 +76,11 @@ void MoteJoins::ack_join(std::uint16_t mote, const Observation& seen, const AckJ
     return;
   }
   const std::uint8_t count = next_[0].acks_seen;
-  context_.findings.kept(count > 1 ? req::kJ4Repeat : req::kJ4Content);
-  context_.findings.kept(req::kJ4Seq);
-  context_.findings.kept(req::kJ7Choice);
+  context_.findings.kept(count > 1 ? "J4-REPEAT"_rule : "J4-CONTENT"_rule);
+  context_.findings.kept("J4-SEQ"_rule);
+  context_.findings.kept("J7-CHOICE"_rule);
   if (count == kFewAcks + 2) {  // The first and five repeats are fine.
-    context_.report(req::kJ4Few, Severity::kWeak, seen.place, mote,
+    context_.report("J4-FEW"_rule, Severity::kWeak, seen.place, mote,
                     {"The " + number(count) + "th ack_join of one join.",
                      "At most five repeats.", {}});
   }
@@ -98,7 +98,7 @@ void MoteJoins::refuse_ack(std::uint16_t mote, const Observation& seen, const Ac
     said.hypotheses.push_back({sentence(*it), allows(*it), "ack_join with " + ack_text(ack) + "."});
   }
   Severity severity = Severity::kFail;
-  if (rule == req::kJ4Repeat) {
+  if (rule == "J4-REPEAT"_rule) {
     said.text = "The same ack_join again, " + ms_text(now - h.accepted_us) + " after the reply.";
     said.expected = "Repeats within one join period (" + ms_text(context_.join_period_us()) +
                     "), at most 20.";
@@ -113,7 +113,7 @@ void MoteJoins::refuse_ack(std::uint16_t mote, const Observation& seen, const Ac
     const bool own = asked && ack.seq_num == h.join.seq_num &&
                      ack.descriptor == h.join.descriptor &&
                      ack.src.pid == ack.dest.pid && ack.dest.devid == context_.sink_am;
-    rule = recent && asked ? req::kJ4Seq : own || !asked ? req::kJ4Joined : req::kJ4Content;
+    rule = recent && asked ? "J4-SEQ"_rule : own || !asked ? "J4-JOINED"_rule : "J4-CONTENT"_rule;
     said.text = "ack_join with " + ack_text(ack);
     if (recent) {
       said.text += ", " + ms_text(now - watch.wrong_place.time_us) +
@@ -133,7 +133,7 @@ void MoteJoins::refuse_ack(std::uint16_t mote, const Observation& seen, const Ac
   context_.report(rule, severity, seen.place, mote, std::move(said));
   // From now on it takes itself for a member; and it may still be asking.
   MoteHypothesis next = h;
-  if (rule == req::kJ4Repeat) {
+  if (rule == "J4-REPEAT"_rule) {
     next.accepted_us = now;  // One finding for each late repeat.
     watch.set.assign(1, next);
     return;
@@ -156,7 +156,7 @@ void MoteJoins::told(std::uint16_t mote, const Observation& seen, const machine:
   MoteWatch& watch = motes_[mote];
   const std::int64_t now = seen.place.time_us;
   if (watch.calls_logged && watch.joined_calls == 0) {
-    context_.report(req::kJ5Once, Severity::kFail, seen.place, mote,
+    context_.report("J5-ONCE"_rule, Severity::kFail, seen.place, mote,
                     {std::string("joined(") + (joined.success ? "SUCCESS" : "FAIL") +
                          ") although no joinIsland call is open.",
                      "One joined event for each call.", {}});
@@ -174,7 +174,7 @@ void MoteJoins::told(std::uint16_t mote, const Observation& seen, const machine:
     });
     for (MoteHypothesis& h : watch.set) h.told = true;
     if (!watch.set.empty()) {
-      context_.findings.kept(req::kJ5Success);
+      context_.findings.kept("J5-SUCCESS"_rule);
       return;
     }
     const MoteHypothesis& h = before.back();
@@ -186,7 +186,7 @@ void MoteJoins::told(std::uint16_t mote, const Observation& seen, const machine:
         member ? "The address of the reply." : "Nothing, or FAIL after the last request.";
     const bool foreign = joined.address.devid != context_.device(mote).am;
     const bool wrong = h.unaccepted || (watch.wrong_reply.has_value() && foreign);
-    context_.report(member ? req::kJ5Success : req::kJ5Accept,
+    context_.report(member ? "J5-SUCCESS"_rule : "J5-ACCEPT"_rule,
                     member || wrong ? Severity::kFail
                                     : context_.without(kNobody, h.first_request_us, now),
                     seen.place, mote, std::move(said));
@@ -199,7 +199,7 @@ void MoteJoins::told(std::uint16_t mote, const Observation& seen, const machine:
     return h.unknown || h.join.phase == Phase::kOutside || may_have_failed(h, now);
   };
   if (refused || std::any_of(before.begin(), before.end(), fits)) {
-    context_.findings.kept(req::kJ8Fail);
+    context_.findings.kept("J8-FAIL"_rule);
     if (!refused) {
       for (MoteHypothesis& h : watch.set) h.join = JoinMote{};
       watch.set.resize(1);
@@ -210,7 +210,7 @@ void MoteJoins::told(std::uint16_t mote, const Observation& seen, const machine:
               " after the first join_request.";
   said.expected = "Not before the fourth expiry of the timer, " +
                   ms_text(kExpiriesMin * context_.join_period_us()) + ".";
-  context_.report(req::kJ8Fail, Severity::kFail, seen.place, mote, std::move(said));
+  context_.report("J8-FAIL"_rule, Severity::kFail, seen.place, mote, std::move(said));
 }
 
 void MoteJoins::finish(std::int64_t end_us) {
@@ -228,7 +228,7 @@ void MoteJoins::finish(std::int64_t end_us) {
     if (watch.calls_logged && watch.joined_calls == 0) continue;  // It had its event.
     Place at;
     at.time_us = h.first_request_us;
-    context_.report(req::kJ8Fail, Severity::kFail, at, static_cast<std::uint16_t>(i),
+    context_.report("J8-FAIL"_rule, Severity::kFail, at, static_cast<std::uint16_t>(i),
                     {"The join that began at " + ms_text(h.first_request_us) + " with number " +
                          number(h.join.seq_num) + " ended without any joined event.",
                      "joined(FAIL), not later than the fifth expiry.", {}});

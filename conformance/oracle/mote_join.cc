@@ -78,15 +78,15 @@ void MoteJoins::request(std::uint16_t mote, const Observation& seen, const Reque
   const Device& device = context_.device(mote);
   const std::int64_t now = seen.place.time_us;
   if (seen.frame.dest != context_.sink_am) {
-    context_.report(req::kJ1Dest, Severity::kFail, seen.place, mote,
+    context_.report("J1-DEST"_rule, Severity::kFail, seen.place, mote,
                     {"A join_request goes to AM address " + number(seen.frame.dest) + ".",
                      "AM address " + number(context_.sink_am) + ", the sink's.", {}});
   } else {
-    context_.findings.kept(req::kJ1Dest);
+    context_.findings.kept("J1-DEST"_rule);
   }
   if (watch.calls_logged && watch.joined_calls == 0 && watch.set.size() == 1 &&
       !watch.set[0].unknown && watch.set[0].join.phase == Phase::kOutside) {
-    context_.report(req::kJ1Called, Severity::kFail, seen.place, mote,
+    context_.report("J1-CALLED"_rule, Severity::kFail, seen.place, mote,
                     {"A join_request without a joinIsland call.", "Silence.", {}});
   }
   next_.clear();
@@ -105,9 +105,9 @@ void MoteJoins::request(std::uint16_t mote, const Observation& seen, const Reque
     refuse_request(mote, seen, request);
     return;
   }
-  context_.findings.kept(req::kJ8Period);
-  context_.findings.kept(req::kJ8Limit);
-  context_.findings.kept(req::kJ5Stop);
+  context_.findings.kept("J8-PERIOD"_rule);
+  context_.findings.kept("J8-LIMIT"_rule);
+  context_.findings.kept("J5-STOP"_rule);
   keep(watch, next_, mote, seen);
 }
 
@@ -119,12 +119,12 @@ void MoteJoins::refuse_request(std::uint16_t mote, const Observation& seen,
   const MoteHypothesis& h = watch.set.back();
   const bool same = request.seq_num == h.join.seq_num;
   Said said;
-  ReqId rule = req::kJ8Period;
+  ReqId rule = "J8-PERIOD"_rule;
   // Another number could be the call after a reboot that nobody saw.
   Severity severity = same ? Severity::kFail : Severity::kInconclusive;
   const std::int64_t period = context_.join_period_us();
   if (h.join.phase == Phase::kMember) {
-    rule = req::kJ5Stop;
+    rule = "J5-STOP"_rule;
     if (!h.sent && !h.told) severity = Severity::kInconclusive;  // A link ack alone (decision 102).
     said.text = "A join_request with number " + number(request.seq_num) +
                 " although the mote has joined " + text_of(h.join.address) + ".";
@@ -134,7 +134,7 @@ void MoteJoins::refuse_request(std::uint16_t mote, const Observation& seen,
     said.expected = "At least " + ms_text(period) + " between them (" +
                     ms_text(context_.early_us()) + " less is tolerated).";
   } else {
-    rule = req::kJ8Limit;
+    rule = "J8-LIMIT"_rule;
     if (h.renumbered) severity = Severity::kInconclusive;
     said.text = "The " + number(h.join.requests + 1U) + "th join_request of one call (number " +
                 number(request.seq_num) + ").";
@@ -218,7 +218,7 @@ void MoteJoins::keep(MoteWatch& watch, std::vector<MoteHypothesis>& next, std::u
     }
   }
   if (watch.set.size() <= kSetMax) return;
-  context_.report(req::kJ4Ack, Severity::kInconclusive, seen.place, mote,
+  context_.report("J4-ACK"_rule, Severity::kInconclusive, seen.place, mote,
                   {"More than " + number(kSetMax) + " explanations of this mote's join.",
                    "Fewer; it is not judged until it joins again.", {}});
   MoteHypothesis unknown;
@@ -231,8 +231,8 @@ void MoteJoins::net_msg(std::uint16_t mote, const Observation& seen, const Net& 
   std::vector<MoteHypothesis>& set = watch.set;
   if (set.size() == 1 && set[0].join.phase == Phase::kMember && set[0].sent &&
       set[0].join.address == net.src) {
-    context_.findings.kept(req::kJ11Send);
-    context_.findings.kept(req::kN1Src);
+    context_.findings.kept("J11-SEND"_rule);
+    context_.findings.kept("N1-SRC"_rule);
     return;
   }
   const std::int64_t now = seen.place.time_us;
@@ -244,7 +244,7 @@ void MoteJoins::net_msg(std::uint16_t mote, const Observation& seen, const Net& 
     const bool was_unknown = h.unknown;
     if (!was_unknown && h.acks_seen == 0 &&
         context_.without(mote, h.accepted_us, now) == Severity::kFail) {
-      context_.report(req::kJ4Ack, Severity::kFail, seen.place, mote,
+      context_.report("J4-ACK"_rule, Severity::kFail, seen.place, mote,
                       {"A net_msg from " + text_of(net.src) + " before any ack_join.",
                        "ack_join first: messages leave in their order.", {}});
     }
@@ -279,7 +279,7 @@ void MoteJoins::net_msg(std::uint16_t mote, const Observation& seen, const Net& 
   const Severity severity = h.join.phase == Phase::kOutside && h.first_request_us == 0
                                 ? context_.without_ever(mote, now)
                                 : context_.without(mote, since, now);
-  context_.report(member ? req::kN1Src : req::kJ11Send, severity, seen.place, mote,
+  context_.report(member ? "N1-SRC"_rule : "J11-SEND"_rule, severity, seen.place, mote,
                   std::move(said));
   MoteHypothesis next;
   next.join.phase = Phase::kMember;

@@ -43,9 +43,9 @@ using reflect::Decoded;
 // Rules of what is around a message. Whoever breaks one is heard by nobody; a fault within the
 // message is its sender's.
 bool is_around(ReqId rule) {
-  static const std::set<ReqId> kAround = {req::kWireAmDispatch,   req::kWireAmHeader,
-                                          req::kWireAmLength,     req::kWireRadioHeader,
-                                          req::kWireRadioNetwork, req::kWireRadioLength};
+  static const std::set<ReqId> kAround = {"WIRE-AM-DISPATCH"_rule,   "WIRE-AM-HEADER"_rule,
+                                          "WIRE-AM-LENGTH"_rule,     "WIRE-RADIO-HEADER"_rule,
+                                          "WIRE-RADIO-NETWORK"_rule, "WIRE-RADIO-LENGTH"_rule};
   return kAround.contains(rule);
 }
 
@@ -232,13 +232,13 @@ class Comparer {
     const bool whole = parse_net(seen_.frame.payload, net);
     const Error& error = frame_.error;
     const ReqId rule = error.requirement;
-    if (rule == req::kWireNetNbytes && error.fault == Fault::kOutOfRange) {
+    if (rule == "WIRE-NET-NBYTES"_rule && error.fault == Fault::kOutOfRange) {
       met("nbytes out of range");
       ASSERT_TRUE(whole && !net.sound && !NetAt::NbytesAt::allows(net.nbytes)) << shown();
-    } else if (rule == req::kWireNetPayload) {
+    } else if (rule == "WIRE-NET-PAYLOAD"_rule) {
       met("nbytes beyond the message");
       ASSERT_TRUE(whole && !net.sound && NetAt::NbytesAt::allows(net.nbytes)) << shown();
-    } else if (rule == req::kWireNetReliable && error.fault == Fault::kOutOfRange) {
+    } else if (rule == "WIRE-NET-RELIABLE"_rule && error.fault == Fault::kOutOfRange) {
       met("reliable out of range");
       ASSERT_TRUE(!whole || !NetAt::ReliableAt::allows(net.reliable)) << shown();
     } else if (error.fault != Fault::kNone) {
@@ -440,7 +440,7 @@ TEST(OneReader, ASecuredFrameIsOpaque) {
   const Report report = judge(run, options);
   EXPECT_EQ(report.verdict, Verdict::kInconclusive);
   ASSERT_EQ(report.findings.size(), 1U);
-  EXPECT_EQ(report.findings[0].requirement, req::kJ3Reply);
+  EXPECT_EQ(report.findings[0].requirement, "J3-REPLY"_rule);
 }
 
 }  // namespace

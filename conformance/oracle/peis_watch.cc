@@ -65,14 +65,14 @@ void PeisWatch::sent(std::uint16_t base, const Observation& seen, const Net& net
   Base& watch = bases_[base];
   const bool all = net.dest.pid == machine::kBroadcastPid;
   if (seen.frame.dest != net.dest.pid || (net.dest.pid == own.pid && !all)) {
-    context_.report(req::kN8Peis, Severity::kFail, seen.place, base,
+    context_.report("N8-PEIS"_rule, Severity::kFail, seen.place, base,
                     {"Through PEIS " + name_of(net) + " goes to island " +
                          number(seen.frame.dest) + ".",
                      net.dest.pid == own.pid ? "A message for the own island stays there."
                                              : "Island " + number(net.dest.pid) + ".",
                      {}});
   } else {
-    context_.findings.kept(req::kN8Peis);
+    context_.findings.kept("N8-PEIS"_rule);
   }
   if (net.src == own) return;
   Message* const came = match(watch.up, net);
@@ -105,7 +105,7 @@ void PeisWatch::went_down(std::uint16_t base, const Observation& seen, const Net
   } else {
     came->passed = true;
     came->owed = false;
-    context_.findings.kept(req::kN8Incoming);
+    context_.findings.kept("N8-INCOMING"_rule);
   }
   overdue(base, watch.down, false, seen.place.time_us, false);
 }
@@ -139,7 +139,7 @@ void PeisWatch::refuse(std::uint16_t base, const Observation& seen, const Net& n
     other->owed = false;
   }
   const bool escaped = other == nullptr && !context_.options.start_cold;
-  context_.report(up ? req::kN8Peis : req::kN8Incoming,
+  context_.report(up ? "N8-PEIS"_rule : "N8-INCOMING"_rule,
                   escaped ? Severity::kInconclusive : Severity::kFail, seen.place, base,
                   std::move(said));
 }
@@ -154,7 +154,7 @@ void PeisWatch::overdue(std::uint16_t base, Messages& messages, bool up, std::in
     Message& message = messages.oldest(i);
     if (!message.owed || now_us - message.place.time_us <= wait) continue;
     message.owed = false;
-    context_.report(up ? req::kN8Peis : req::kN8Incoming,
+    context_.report(up ? "N8-PEIS"_rule : "N8-INCOMING"_rule,
                     waiting > kPeisCrowd ? Severity::kInconclusive : Severity::kFail, message.place,
                     base,
                     {"The base station got " + name_of(message.net) + " from " +

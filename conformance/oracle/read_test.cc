@@ -102,7 +102,7 @@ TEST(Read, ADamagedSerialFrameIsHeardByNobody) {
   for (const Observation& seen : run.seen) {
     if (seen.kind != Observation::Kind::kDamaged) continue;
     ++damaged;
-    EXPECT_EQ(seen.broken, req::kWireSerialCrc);
+    EXPECT_EQ(seen.broken, "WIRE-SERIAL-CRC"_rule);
   }
   EXPECT_EQ(damaged, 1);
 }
@@ -165,7 +165,7 @@ case log
   bool early = false;
   for (const Finding& finding : report.findings) {
     if (finding.severity != Severity::kFail) continue;
-    EXPECT_EQ(finding.requirement, req::kJ8Period) << finding.text;
+    EXPECT_EQ(finding.requirement, "J8-PERIOD"_rule) << finding.text;
     EXPECT_EQ(finding.place.offset_bytes, 8U);  // The line.
     early = true;
   }

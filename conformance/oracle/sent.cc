@@ -49,7 +49,7 @@ void Originals::sent(std::uint16_t node, const Observation& seen, const Net& net
 void Originals::judge_content(std::uint16_t node, const Observation& seen, const Net& net) {
   if (!net.sound) {
     const bool range = !NetAt::NbytesAt::allows(net.nbytes);
-    context_.report(range ? req::kWireNetNbytes : req::kWireNetPayload, Severity::kFail,
+    context_.report(range ? "WIRE-NET-NBYTES"_rule : "WIRE-NET-PAYLOAD"_rule, Severity::kFail,
                     seen.place, node,
                     {"nbytes is " + number(net.nbytes) + " in a message of " +
                          number(net.payload.size()) + " bytes.",
@@ -61,25 +61,25 @@ void Originals::judge_content(std::uint16_t node, const Observation& seen, const
     stale_[node].add(seen.place, net.nbytes, came);
   }
   if (!NetAt::ReliableAt::allows(net.reliable)) {
-    context_.report(req::kWireNetReliable, Severity::kFail, seen.place, node,
+    context_.report("WIRE-NET-RELIABLE"_rule, Severity::kFail, seen.place, node,
                     {"reliable is " + number(net.reliable) + ".", "0 or 1.", {}});
   }
   if (net.dest.pid == machine::kLocalPid) {
-    context_.report(req::kN3Local, Severity::kFail, seen.place, node,
+    context_.report("N3-LOCAL"_rule, Severity::kFail, seen.place, node,
                     {"A message to " + text_of(net.dest) + " leaves the node.",
                      "The own island's id in place of the local island.", {}});
   }
   if (net.seq_num == machine::kNoSeq) {
-    context_.report(req::kN12Error, Severity::kWeak, seen.place, node,
+    context_.report("N12-ERROR"_rule, Severity::kWeak, seen.place, node,
                     {"A message has the number 0xFFFF, the error value of send.",
                      "Another number.", {}});
   }
   if (!known_trans(net.trans_id)) {
-    context_.report(req::kT1Wrap, Severity::kNote, seen.place, node,
+    context_.report("T1-WRAP"_rule, Severity::kNote, seen.place, node,
                     {"A message has the unknown TRANSID " + number(net.trans_id) + ".",
                      "CONNLESS, SYN_CHANNEL or RUBICON_ACK.", {}});
   } else {
-    context_.findings.kept(req::kT1Wrap);
+    context_.findings.kept("T1-WRAP"_rule);
   }
 }
 
@@ -91,7 +91,7 @@ void Originals::judge_address(std::uint16_t node, const Observation& seen, const
   const Route route = machine::route_own({device.role, own, true, context_.sink_am}, net.dest);
   const bool up = route.onward == Route::Onward::kSerial;
   if (device.role == Role::kSink && link == Link::kRadio && up) {
-    context_.report(req::kN6Own, Severity::kFail, seen.place, node,
+    context_.report("N6-OWN"_rule, Severity::kFail, seen.place, node,
                     {"The sink sends " + name_of(net) + " by radio.", "Over serial.", {}});
     return;
   }
@@ -123,7 +123,7 @@ void Originals::judge_number(std::uint16_t node, const Observation& seen, const 
       const machine::Address dest = before.net.dest;
       const bool by_sink = dest.devid == context_.sink_am || dest.devid == machine::kNullDevid;
       const std::uint16_t acker = by_sink ? context_.only_sink : context_.mote_of_am[dest.devid];
-      context_.report(same ? req::kT3Resend : req::kN12Reuse,
+      context_.report(same ? "T3-RESEND"_rule : "N12-REUSE"_rule,
                       context_.without(acker, before.place.time_us, now), seen.place, node,
                       {(same ? "The reliable message with number " : "Number ") +
                            number(net.seq_num) + (same ? " is sent" : " is used") + " again, " +
@@ -139,14 +139,14 @@ void Originals::judge_number(std::uint16_t node, const Observation& seen, const 
                          seen.place.timed() && before.place.timed() &&
                          now - before.place.time_us < kAtOnceUs;
     if (at_once) {
-      context_.report(req::kN2Once, Severity::kFail, seen.place, node,
+      context_.report("N2-ONCE"_rule, Severity::kFail, seen.place, node,
                       {"The same message, number " + number(net.seq_num) + ", is sent twice, " +
                            ms_text(now - before.place.time_us) + " apart.",
                        "Once.", {}});
     }
     return;
   }
-  context_.findings.kept(req::kN12Reuse);
+  context_.findings.kept("N12-REUSE"_rule);
 }
 
 void Originals::judge_synaptic(std::uint16_t node, const Observation& seen, const Net& net) {
@@ -165,12 +165,12 @@ void Originals::judge_synaptic(std::uint16_t node, const Observation& seen, cons
     said.text = "Synaptic data has " + number(bytes) + " bytes of values.";
   }
   if (!said.text.empty()) {
-    context_.report(req::kS2Content, Severity::kFail, seen.place, node, std::move(said));
+    context_.report("S2-CONTENT"_rule, Severity::kFail, seen.place, node, std::move(said));
   } else {
-    context_.findings.kept(req::kS2Content);
+    context_.findings.kept("S2-CONTENT"_rule);
   }
   if (net.src == net.dest) {
-    context_.report(req::kS4Local, Severity::kFail, seen.place, node,
+    context_.report("S4-LOCAL"_rule, Severity::kFail, seen.place, node,
                     {"Data of a channel from the node to itself is sent.",
                      "A local channel hands its values over without sending.", {}});
   }
@@ -209,7 +209,7 @@ void Originals::close(std::uint16_t node, std::size_t newest, std::int64_t now_u
   }
   const std::int64_t response_us = context_.response_us();
   if (sent.given_us >= 0 && now_us - sent.given_us > response_us) {
-    context_.report(req::kT3Success, Severity::kFail, sent.place, node,
+    context_.report("T3-SUCCESS"_rule, Severity::kFail, sent.place, node,
                     {"The node was given the ack of " + name_of(sent.net) + " " +
                          ms_text(sent.given_us - sent.place.time_us) +
                          " after it, and its application is told nothing.",
@@ -219,7 +219,7 @@ void Originals::close(std::uint16_t node, std::size_t newest, std::int64_t now_u
   // An unstated timeout may be longer than what is assumed (decision 110); for ever it is not.
   const std::int64_t waited = now_us - sent.place.time_us;
   if (waited <= kTimeouts * context_.ack_timeout_us() + response_us) return;
-  context_.report(req::kT3Once, Severity::kFail, sent.place, node,
+  context_.report("T3-ONCE"_rule, Severity::kFail, sent.place, node,
                   {"No receive_ack for " + name_of(sent.net) + " in " + ms_text(waited) + ".",
                    "receive_ack(failure) at the timeout, or receive_ack(success) before.", {}});
 }
@@ -229,7 +229,7 @@ void Originals::finish(std::int64_t end_us) {
     for (std::size_t i = sent_[node].size(); i-- > 0;) {
       close(static_cast<std::uint16_t>(node), i, end_us);
     }
-    note_stale(context_, static_cast<std::uint16_t>(node), req::kWireNetPayload, stale_[node],
+    note_stale(context_, static_cast<std::uint16_t>(node), "WIRE-NET-PAYLOAD"_rule, stale_[node],
                "On the air a message has ");
   }
 }
@@ -261,7 +261,7 @@ void Originals::told(std::uint16_t node, const Observation& seen,
   if (match == nullptr) {
     // Messages from a base station to other islands pass where no log and no tap is read.
     const Device& device = context_.device(node);
-    context_.report(ack.success ? req::kT3Success : req::kT3Match,
+    context_.report(ack.success ? "T3-SUCCESS"_rule : "T3-MATCH"_rule,
                     device.role == Role::kBaseStation && !logs_peis(context_.run, node)
                         ? Severity::kInconclusive
                         : context_.without(node, device.first_us, now),
@@ -271,14 +271,14 @@ void Originals::told(std::uint16_t node, const Observation& seen,
     return;
   }
   if (match->told++ > 0) {
-    context_.report(req::kT3Once, Severity::kFail, seen.place, node,
+    context_.report("T3-ONCE"_rule, Severity::kFail, seen.place, node,
                     {what + " again.", "One receive_ack for each message.", {}});
     return;
   }
   const std::int64_t waited = now - match->place.time_us;
   const std::int64_t since_ack = match->given_us < 0 ? 0 : now - match->given_us;
   if (!ack.success && since_ack > context_.response_us()) {
-    context_.report(req::kT3Success, Severity::kFail, seen.place, node,
+    context_.report("T3-SUCCESS"_rule, Severity::kFail, seen.place, node,
                     {what + ", " + ms_text(now - match->given_us) + " after its ack had come.",
                      "receive_ack(success) when the ack came.", {}});
   } else if (ack.success && match->acked && !rightly_acked(node, match->net)) {
@@ -286,27 +286,27 @@ void Originals::told(std::uint16_t node, const Observation& seen,
     const bool mote = context_.without(acker, match->place.time_us, now) == Severity::kFail &&
                       acker != kNobody;
     const bool sure = context_.device(node).hearing || mote || context_.options.sniffer_complete;
-    context_.report(req::kT3Sender, sure ? Severity::kWeak : Severity::kInconclusive, seen.place,
+    context_.report("T3-SENDER"_rule, sure ? Severity::kWeak : Severity::kInconclusive, seen.place,
                     node,
                     {what + ", but every ack with that number came from another node than " +
                          text_of(match->net.dest) + " or for another APPID than " +
                          number(match->net.app_id) + ".",
                      "An ack counts from the message's destination, with its APPID.", {}});
   } else if (ack.success && !match->acked) {
-    context_.report(req::kT3Success, context_.without(kNobody, match->place.time_us, now),
+    context_.report("T3-SUCCESS"_rule, context_.without(kNobody, match->place.time_us, now),
                     seen.place, node,
                     {what + ", but no ack of it was heard.", "No receive_ack before the ack.", {}});
   } else if (!ack.success && seen.place.timed() && match->place.timed() &&
              waited < context_.ack_timeout_us() - context_.early_us()) {
     // Only a stated timeout can be broken (decision 110).
     const bool stated = context_.options.ack_timeout_us.has_value();
-    context_.report(req::kT3Timeout, stated ? Severity::kFail : Severity::kInconclusive, seen.place,
-                    node,
+    context_.report("T3-TIMEOUT"_rule, stated ? Severity::kFail : Severity::kInconclusive,
+                    seen.place, node,
                     {what + " " + ms_text(waited) + " after the message.",
                      "Not before the timeout, " + ms_text(context_.ack_timeout_us()) + ".",
                      {}});
   } else {
-    context_.findings.kept(ack.success ? req::kT3Success : req::kT3Timeout);
+    context_.findings.kept(ack.success ? "T3-SUCCESS"_rule : "T3-TIMEOUT"_rule);
   }
 }
 

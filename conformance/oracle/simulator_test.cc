@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "codec/generated/requirements_table.h"
+#include "codec/reflect/requirements.h"
 #include "conformance/oracle/frames_testing.h"
 #include "conformance/oracle/judge.h"
 #include "conformance/oracle/read.h"
@@ -51,7 +51,7 @@ void expect_no_fail(const std::string& name, const Run& run, Count& count) {
     ++count.fails;
     ADD_FAILURE() << name << " line " << finding.place.offset_bytes << ", frame "
                   << finding.place.frame << ", " << finding.node << ": "
-                  << kRequirements[static_cast<std::size_t>(finding.requirement)].id << " "
+                  << reflect::requirement(finding.requirement).id << " "
                   << finding.text;
   }
 }

@@ -66,7 +66,7 @@ void SinkJoins::set_island(std::uint16_t sink, std::uint16_t island, const Place
   watch->island = island;
   if (same) return;
   if (listed(*watch) > 0) {
-    context_.report(req::kN9Members, Severity::kNote, at, sink,
+    context_.report("N9-MEMBERS"_rule, Severity::kNote, at, sink,
                     {"The island becomes " + number(island) + " while " +
                          number(listed(*watch)) + " motes are members; they are cut off.",
                      "The sink forgets its members.", {}});
@@ -155,7 +155,7 @@ void SinkJoins::close_unanswered(std::uint16_t mote_am, Unanswered& unanswered) 
     const auto may_list = [](const SinkHypothesis& h) { return h.member.has_value(); };
     if (std::any_of(watch.set.begin(), watch.set.end(), may_list)) return;
   }
-  const ReqId rule = unanswered.overtaken ? req::kJ9Interleave : req::kJ3Reply;
+  const ReqId rule = unanswered.overtaken ? "J9-INTERLEAVE"_rule : "J3-REPLY"_rule;
   const std::uint16_t sink = unanswered.sink != kNobody ? unanswered.sink : context_.only_sink;
   context_.report(rule, Severity::kInconclusive, unanswered.request, sink,
                   {"No reply to the join_request " + number(unanswered.seq_num) + " of mote " +
@@ -182,17 +182,17 @@ void SinkJoins::reply(std::uint16_t sink_device, const Observation& seen, const 
   }
   if (sink->island == 0) sink->island = reply.island;
   if (reply.island != sink->island) {
-    const ReqId rule = sink->island_set ? req::kN9Set : req::kJ3Address;
+    const ReqId rule = sink->island_set ? "N9-SET"_rule : "J3-ADDRESS"_rule;
     context_.report(rule, Severity::kFail, seen.place, sink_device,
                     {"join_reply offers island " + number(reply.island) + ".",
                      "Island " + number(sink->island) + ", the sink's.", {}});
   } else if (reply.mote != am) {
-    context_.report(req::kJ3Address, Severity::kFail, seen.place, sink_device,
+    context_.report("J3-ADDRESS"_rule, Severity::kFail, seen.place, sink_device,
                     {"join_reply to mote " + number(am) + " gives it the devid " +
                          number(reply.mote) + ".",
                      "mote_addr " + number(am) + ", the TinyOS id of the mote that asked.", {}});
   } else {
-    context_.findings.kept(req::kJ3Address);
+    context_.findings.kept("J3-ADDRESS"_rule);
   }
   judge_clock(*sink, seen, reply);
   next_.clear();
@@ -214,14 +214,14 @@ void SinkJoins::reply(std::uint16_t sink_device, const Observation& seen, const 
   if (next_.empty()) {
     refuse_reply(*sink, watch, seen, reply);
   } else {
-    context_.findings.kept(req::kJ3Seq);
-    context_.findings.kept(req::kJ3Once);
-    context_.findings.kept(req::kJ3Dest);
+    context_.findings.kept("J3-SEQ"_rule);
+    context_.findings.kept("J3-ONCE"_rule);
+    context_.findings.kept("J3-DEST"_rule);
     const std::size_t members = listed(*sink);
     const bool new_mote = std::none_of(next_.begin(), next_.end(),
                                        [](const SinkHypothesis& h) { return h.member; });
     if (new_mote && members >= context_.profile().members_max) {
-      context_.report(req::kJ3Full, Severity::kWeak, seen.place, sink_device,
+      context_.report("J3-FULL"_rule, Severity::kWeak, seen.place, sink_device,
                       {"join_reply to a new mote while " + number(members) + " are members.",
                        "No reply when the list is full.", {}});
     }
@@ -244,11 +244,11 @@ void SinkJoins::judge_clock(SinkWatch& sink, const Observation& seen, const Repl
                 " while " + number(static_cast<std::uint64_t>(passed_ms)) + " ms passed.";
     said.expected = "Growth as time passes, within 1 s.";
     if (grown_ms == 0 && passed_ms >= kOffMs) {
-      context_.report(req::kJ3Time, Severity::kFail, seen.place, sink.device, std::move(said));
+      context_.report("J3-TIME"_rule, Severity::kFail, seen.place, sink.device, std::move(said));
     } else if (grown_ms < passed_ms - kOffMs || grown_ms > most_ms) {
-      context_.report(req::kJ3Drift, Severity::kWeak, seen.place, sink.device, std::move(said));
+      context_.report("J3-DRIFT"_rule, Severity::kWeak, seen.place, sink.device, std::move(said));
     } else {
-      context_.findings.kept(req::kJ3Time);
+      context_.findings.kept("J3-TIME"_rule);
     }
   }
   sink.has_clock = true;
@@ -271,7 +271,7 @@ void SinkJoins::refuse_reply(SinkWatch& sink, PairWatch& watch, const Observatio
                                                            : "No join_reply.",
                                "join_reply with number " + number(reply.seq_num) + "."});
   }
-  ReqId rule = req::kJ3Once;
+  ReqId rule = "J3-ONCE"_rule;
   Severity severity = watch.asked ? context_.without(mote, since, now)
                                   : context_.without_ever(mote, now);
   const auto asks_this = [&](const auto& entry) {
@@ -279,19 +279,19 @@ void SinkJoins::refuse_reply(SinkWatch& sink, PairWatch& watch, const Observatio
   };
   if (std::any_of(sink.motes.begin(), sink.motes.end(), asks_this) &&
       reply.seq_num != watch.request_seq) {
-    rule = req::kJ3Dest;
+    rule = "J3-DEST"_rule;
     severity = Severity::kFail;
     said.text = "join_reply to AM address " + number(am) + " with the number of another mote's "
                 "request (" + number(reply.seq_num) + ").";
     said.expected = "A reply to the AM address that asked.";
   } else if (h.member && watch.asked && reply.seq_num == watch.request_seq &&
              (watch.request_listed || watch.answered_seq != reply.seq_num)) {
-    rule = req::kJ2Listed;
+    rule = "J2-LISTED"_rule;
     severity = Severity::kFail;
     said.text = "join_reply to mote " + number(am) + ", which the sink has reported as a member.";
     said.expected = "No answer to a mote that is listed.";
   } else if (watch.asked && reply.seq_num != watch.request_seq) {
-    rule = req::kJ3Seq;
+    rule = "J3-SEQ"_rule;
     said.text = "join_reply with number " + number(reply.seq_num) + " to mote " + number(am) +
                 ", whose request has " + number(watch.request_seq) + ".";
     said.expected = "Number " + number(watch.request_seq) + ".";
@@ -317,7 +317,7 @@ void SinkJoins::keep(SinkWatch& sink, PairWatch& watch, std::vector<SinkHypothes
     }
   }
   if (watch.set.size() <= kSetMax) return;
-  context_.report(req::kJ3Reply, Severity::kInconclusive, at, sink.device,
+  context_.report("J3-REPLY"_rule, Severity::kInconclusive, at, sink.device,
                   {"More than " + number(kSetMax) + " explanations of what the sink knows.",
                    "Fewer; this mote's joins are not judged at this sink.", {}});
   SinkHypothesis unknown;

@@ -35,7 +35,7 @@ void SinkJoins::ack_join(std::uint16_t, const Observation& seen, const AckJoin& 
           list, context_.join_context(device.am, sink.island, seen.place.time_us), ack.dest,
           ack.src, ack.seq_num, ack.descriptor, context_.actions);
       take_list(list, heard);
-      if (stranger) ignored = req::kJ6Sender;
+      if (stranger) ignored = "J6-SENDER"_rule;
       if (!admits && !context_.actions.all().empty()) {
         ignored = context_.actions.all()[0].requirement;
       }
@@ -65,7 +65,7 @@ void SinkJoins::report(std::uint16_t sink_device, const Observation& seen, const
   if (sink->island == 0) sink->island = joined.address.pid;
   const machine::Address to{joined.address.pid, machine::kNullDevid};
   if (net.src != joined.address || net.dest != to || net.reliable != 0) {
-    context_.report(req::kJ6Content, Severity::kFail, seen.place, sink_device,
+    context_.report("J6-CONTENT"_rule, Severity::kFail, seen.place, sink_device,
                     {"serial_joined of " + text_of(joined.address) + " in a net_msg from " +
                          text_of(net.src) + " to " + text_of(net.dest) + ", reliable " +
                          number(net.reliable) + ".",
@@ -85,9 +85,9 @@ void SinkJoins::told(std::uint16_t sink_device, const Observation& seen,
 void SinkJoins::announce(SinkWatch& sink, const Place& at, machine::Address address,
                          const machine::Descriptor& descriptor, bool notice) {
   PairWatch& watch = pair(sink, address.devid);
-  const ReqId content = notice ? req::kJ6Add : req::kJ6Content;
+  const ReqId content = notice ? "J6-ADD"_rule : "J6-CONTENT"_rule;
   if (address.pid != sink.island) {
-    const ReqId rule = sink.island_set ? req::kN9Set : content;
+    const ReqId rule = sink.island_set ? "N9-SET"_rule : content;
     context_.report(rule, Severity::kFail, at, sink.device,
                     {"A new member " + text_of(address) + " is announced by the sink of island " +
                          number(sink.island) + ".",
@@ -134,7 +134,7 @@ void SinkJoins::announce(SinkWatch& sink, const Place& at, machine::Address addr
                      {}});
   } else {
     context_.findings.kept(content);
-    context_.findings.kept(notice ? req::kJ6Add : req::kJ6Report);
+    context_.findings.kept(notice ? "J6-ADD"_rule : "J6-REPORT"_rule);
   }
   keep(sink, watch, next_, at);
 }
@@ -149,7 +149,7 @@ void SinkJoins::refuse_report(SinkWatch& sink, PairWatch& watch, const Place& at
   }
   const std::string what = notice ? "moteJoined" : "serial_joined";
   const std::uint16_t mote = device_of(mote_am);
-  ReqId rule = req::kJ6Add;
+  ReqId rule = "J6-ADD"_rule;
   const bool has_ack = watch.ack.frame != 0;
   // The request to which the ack belongs may have escaped as well.
   std::int64_t since = context_.run.start_us;
@@ -157,20 +157,20 @@ void SinkJoins::refuse_report(SinkWatch& sink, PairWatch& watch, const Place& at
   Severity severity = context_.without(mote, since, at.time_us);
   if (!has_ack && !context_.options.start_cold) severity = Severity::kInconclusive;
   if (h.member) {
-    rule = req::kJ6Repeat;
+    rule = "J6-REPEAT"_rule;
     said.text = what + " of mote " + number(mote_am) + " again, without a new join.";
     said.expected = "One " + what + " for each join; a repeated ack_join changes nothing.";
-  } else if (watch.ignored_ack == req::kJ6Sender) {
-    rule = req::kJ6Sender;
+  } else if (watch.ignored_ack == "J6-SENDER"_rule) {
+    rule = "J6-SENDER"_rule;
     if (severity == Severity::kFail) severity = Severity::kWeak;
     said.text = what + " of mote " + number(mote_am) +
                 ", whose only ack_join is not for this sink's devid, or not from <its island, its "
                 "AM source>.";
     said.expected = "That ack_join is ignored.";
-  } else if (watch.ignored_ack == req::kJ6Seq || watch.ignored_ack == req::kJ6Island) {
+  } else if (watch.ignored_ack == "J6-SEQ"_rule || watch.ignored_ack == "J6-ISLAND"_rule) {
     rule = watch.ignored_ack;
     said.text = what + " of mote " + number(mote_am) + ", whose only ack_join had " +
-                (rule == req::kJ6Seq ? "a number that was not its request's."
+                (rule == "J6-SEQ"_rule ? "a number that was not its request's."
                                      : "another island as its destination.");
     said.expected = "That ack_join is ignored.";
   } else {
@@ -195,7 +195,7 @@ void SinkJoins::showed_life(std::uint16_t sink_device, std::int64_t now_us, bool
     if (!std::all_of(watch.set.begin(), watch.set.end(), owes)) continue;
     // With a full list, even of members from before the capture, nothing is owed.
     if (listed(*sink) >= context_.profile().members_max) continue;
-    context_.report(req::kJ6Report,
+    context_.report("J6-REPORT"_rule,
                     context_.options.start_cold &&
                             !context_.who.damaged(watch.ack.time_us, now_us)
                         ? Severity::kFail
@@ -219,7 +219,7 @@ void SinkJoins::unannounced(const SinkWatch& sink, std::uint16_t mote_am, const 
   const auto owes = [](const SinkHypothesis& h) { return !h.unknown && h.owes_notice; };
   if (!std::all_of(watch.set.begin(), watch.set.end(), owes)) return;
   if (listed(sink) > context_.profile().members_max) return;
-  context_.report(req::kJ6Add, Severity::kFail, watch.ack, sink.device,
+  context_.report("J6-ADD"_rule, Severity::kFail, watch.ack, sink.device,
                   {"The sink was given the ack_join of mote " + number(mote_am) +
                        " with the number that it had answered, and does not list the mote: no "
                        "moteJoined followed within " + ms_text(context_.response_us()) + ".",

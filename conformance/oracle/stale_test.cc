@@ -40,7 +40,7 @@ TEST(Stale, SerialLinesAreNotedOnce) {
   const Report report = report_of(script);
   ASSERT_EQ(report.findings.size(), 1U);
   const Finding& note = report.findings[0];
-  EXPECT_EQ(note.requirement, req::kN6Content);
+  EXPECT_EQ(note.requirement, "N6-CONTENT"_rule);
   EXPECT_EQ(note.severity, Severity::kNote);
   EXPECT_EQ(note.place.frame, first);
   EXPECT_NE(note.text.find("102 bytes where 4 are content"), std::string::npos) << note.text;
@@ -56,7 +56,7 @@ TEST(Stale, SoAreFramesOnTheAir) {
   script.net(200, 2, 1, net).up(215, update(1));
   const Report report = report_of(script);
   ASSERT_EQ(report.findings.size(), 1U);
-  EXPECT_EQ(report.findings[0].requirement, req::kWireNetPayload);
+  EXPECT_EQ(report.findings[0].requirement, "WIRE-NET-PAYLOAD"_rule);
   EXPECT_EQ(report.findings[0].severity, Severity::kNote);
   EXPECT_EQ(report.verdict, Verdict::kPass);
 }

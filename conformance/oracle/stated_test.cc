@@ -33,11 +33,11 @@ Report unreported(double later_ms, const Options& options) {
 TEST(Stated, TheResponseTimeIsTheProfilesUnlessStated) {
   Options options;
   options.sniffer_complete = options.start_cold = true;
-  EXPECT_EQ(failures_of(unreported(299 * kTickMs, options), req::kJ6Report), 0U);
-  EXPECT_EQ(failures_of(unreported(302 * kTickMs, options), req::kJ6Report), 1U);
+  EXPECT_EQ(failures_of(unreported(299 * kTickMs, options), "J6-REPORT"_rule), 0U);
+  EXPECT_EQ(failures_of(unreported(302 * kTickMs, options), "J6-REPORT"_rule), 1U);
   options.response_us = 300'000;
-  EXPECT_EQ(failures_of(unreported(302 * kTickMs, options), req::kJ6Report), 0U);
-  EXPECT_EQ(failures_of(unreported(301, options), req::kJ6Report), 1U);
+  EXPECT_EQ(failures_of(unreported(302 * kTickMs, options), "J6-REPORT"_rule), 0U);
+  EXPECT_EQ(failures_of(unreported(301, options), "J6-REPORT"_rule), 1U);
 }
 
 // Judges a log in which a node is notified of a timeout `after_ms` after its message.
@@ -71,7 +71,7 @@ Report told_early(double after_ms, const Options& options) {
 TEST(Stated, ATimeoutThatIsTheAssumedOneIsStatedAllTheSame) {
   const auto severity = [](const Report& report) {
     for (const Finding& finding : report.findings) {
-      if (finding.requirement == req::kT3Timeout) return finding.severity;
+      if (finding.requirement == "T3-TIMEOUT"_rule) return finding.severity;
     }
     return Severity::kNote;
   };

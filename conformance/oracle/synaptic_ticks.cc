@@ -100,7 +100,7 @@ void SynapticWatch::told(std::uint16_t device, const Observation& seen,
   if (!context_.run.has_time) return;
   if (in->ended_us >= 0) {
     if (now - in->ended_us <= context_.early_us()) return;  // It was on its way.
-    context_.report(req::kS6Stopped, Severity::kFail, seen.place, device,
+    context_.report("S6-STOPPED"_rule, Severity::kFail, seen.place, device,
                     {"synData_received of a channel " + ms_text(now - in->ended_us) +
                          " after it was stopped or disposed, or created and not started.",
                      "Silence.", {}});
@@ -119,16 +119,16 @@ void SynapticWatch::told(std::uint16_t device, const Observation& seen,
   // The first signal may be about data that came before the start.
   const bool early = in->before && in->told_us < in->begun_us;
   if (knows && fresh && !early && !came(since - response, now)) {
-    context_.report(req::kS3Old, Severity::kFail, seen.place, device,
+    context_.report("S3-OLD"_rule, Severity::kFail, seen.place, device,
                     {"synData_received has status new, though no data came for " +
                          ms_text(now - since + response) + ".",
                      "Status old without new data.", {}});
   } else if (knows && !fresh && came(since + context_.early_us(), now - response)) {
-    context_.report(req::kS2Signal, Severity::kFail, seen.place, device,
+    context_.report("S2-SIGNAL"_rule, Severity::kFail, seen.place, device,
                     {"synData_received has status old, though data came since the last.",
                      "Status new.", {}});
   } else {
-    context_.findings.kept(fresh ? req::kS2Signal : req::kS3Old);
+    context_.findings.kept(fresh ? "S2-SIGNAL"_rule : "S3-OLD"_rule);
   }
   in->told_us = in->waits_us = now;
   in->before = false;
@@ -152,8 +152,8 @@ void SynapticWatch::judge_grid(std::uint16_t device, const Observation& seen, co
   const std::int64_t rest = (at[2] - at[1]) % period;
   const std::int64_t shift = std::min(rest, period - rest);
   node.shifted = true;
-  if (shift <= off) return context_.findings.kept(req::kS6Clock);
-  context_.report(req::kS6Clock, Severity::kWeak, seen.place, device,
+  if (shift <= off) return context_.findings.kept("S6-CLOCK"_rule);
+  context_.report("S6-CLOCK"_rule, Severity::kWeak, seen.place, device,
                   {"Behind the start of another channel the ticks of this one lie " +
                        ms_text(shift) + " off those before.",
                    "The same clock as before.", {}});
@@ -194,7 +194,7 @@ void SynapticWatch::settle_outputs(std::uint16_t device, std::int64_t now_us,
     if (now_us - since <= patience_us(device, first)) continue;
     // A started channel that was never written is only expected to send (decision 120).
     const bool expected = saves && first && out.wrote_us < 0;
-    const ReqId rule = expected ? req::kS3First : saves ? req::kS3Changed : req::kS2Send;
+    const ReqId rule = expected ? "S3-FIRST"_rule : saves ? "S3-CHANGED"_rule : "S2-SEND"_rule;
     Severity severity = context_.device(device).hearing
                             ? Severity::kFail
                             : context_.without(device, since, now_us);
@@ -227,7 +227,7 @@ void SynapticWatch::settle(std::uint16_t device, std::int64_t now_us) {
     if (now_us - since <= patience_us(device, in.told_us < 0)) continue;
     Place at;
     at.time_us = since;
-    context_.report(req::kS2Signal, Severity::kFail, at, device,
+    context_.report("S2-SIGNAL"_rule, Severity::kFail, at, device,
                     {"No synData_received of the channel from " + number(in.id >> 16) + " to " +
                          number(in.id & 0xFFFF) + " for " + ms_text(now_us - since) + ".",
                      "One at each tick, " +

@@ -114,17 +114,18 @@ void SynapticWatch::sent(std::uint16_t device, const Observation& seen, const Ne
   if (current || out->wrote_us < now - context_.response_us()) out->wrote_us = -1;
   // Data in the outgoing buffer may still leave.
   if (out->silent_us >= 0 && now - out->silent_us > context_.response_us()) {
-    context_.report(out->disposed ? req::kS6Disposed : req::kS6Stopped, Severity::kFail, seen.place,
-                    device,
+    context_.report(out->disposed ? "S6-DISPOSED"_rule : "S6-STOPPED"_rule, Severity::kFail,
+                    seen.place, device,
                     {"Data of the channel to " + text_of(net.dest) + ", " +
                          ms_text(now - out->silent_us) + " after it was " +
                          (out->disposed ? "disposed." : "stopped, or created and not started."),
-                     "Silence.", {}});
+                     "Silence.",
+                     {}});
     return;
   }
   if (channel == nullptr) return;
   if (net.body().size() != channel->size * std::size_t{4}) {
-    context_.report(req::kS2Content, Severity::kFail, seen.place, device,
+    context_.report("S2-CONTENT"_rule, Severity::kFail, seen.place, device,
                     {"Data of " + number(net.body().size() / 4) + " values for a channel of " +
                          number(channel->size) + ".",
                      "One value for each connection.", {}});
@@ -133,24 +134,24 @@ void SynapticWatch::sent(std::uint16_t device, const Observation& seen, const Ne
       machine::us_of(node.channels.period_ticks) - context_.early_us();
   const bool steady = out->sent_us >= 0 && node.step_us < out->sent_us;
   if (steady && now - out->sent_us < least) {
-    context_.report(req::kS2Tick, Severity::kFail, seen.place, device,
+    context_.report("S2-TICK"_rule, Severity::kFail, seen.place, device,
                     {"Data of one channel " + ms_text(now - out->sent_us) + " apart.",
                      "At least a period, " + ms_text(machine::us_of(node.channels.period_ticks)) +
                          ".",
                      {}});
   } else if (out->sent_us >= 0) {
-    context_.findings.kept(req::kS2Tick);
+    context_.findings.kept("S2-TICK"_rule);
   }
   const bool saves = channel->mode == machine::Mode::kPowerSave;
   // A write just before the last data may have missed its tick.
   const bool changed = out->written_us >= out->sent_us - context_.response_us();
   if (saves && out->sent_us >= 0 && !changed) {
-    context_.report(req::kS3Unchanged, Severity::kFail, seen.place, device,
+    context_.report("S3-UNCHANGED"_rule, Severity::kFail, seen.place, device,
                     {"A power-save channel sends although nothing was written for " +
                          ms_text(now - out->written_us) + ".",
                      "Silence until a value changes.", {}});
   } else if (saves) {
-    context_.findings.kept(req::kS3Unchanged);
+    context_.findings.kept("S3-UNCHANGED"_rule);
   }
   out->sent_us = now;
 }

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "codec/generated/requirements_table.h"
+#include "codec/reflect/requirements.h"
 #include "conformance/oracle/judge.h"
 #include "conformance/oracle/read.h"
 
@@ -41,7 +41,7 @@ std::string fails(const std::string& log) {
   for (const Finding& finding : judge(run, options).findings) {
     if (finding.severity != Severity::kFail) continue;
     out += std::string(out.empty() ? "" : " ") +
-           kRequirements[static_cast<std::size_t>(finding.requirement)].id;
+           reflect::requirement(finding.requirement).id;
   }
   return out;
 }

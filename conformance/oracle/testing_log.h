@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "codec/generated/requirements_table.h"
+#include "codec/reflect/requirements.h"
 #include "conformance/oracle/judge.h"
 #include "conformance/oracle/read.h"
 
@@ -27,7 +27,7 @@ inline std::string found(const std::string& log, Severity least) {
   for (const Finding& finding : judge_log(log).findings) {
     if (finding.severity < least) continue;
     out += std::string(out.empty() ? "" : " ") +
-           kRequirements[static_cast<std::size_t>(finding.requirement)].id;
+           reflect::requirement(finding.requirement).id;
   }
   return out;
 }

@@ -3,7 +3,7 @@
 
 #include <set>
 
-#include "codec/generated/requirements_table.h"
+#include "codec/reflect/requirements.h"
 #include "conformance/oracle/judge.h"
 #include "conformance/oracle/read.h"
 #include "conformance/oracle/testing.h"
@@ -30,7 +30,7 @@ std::multiset<std::string> failures_of(const Report& report) {
   std::multiset<std::string> out;
   for (const Finding& finding : report.findings) {
     if (finding.severity != Severity::kFail) continue;
-    out.insert(kRequirements[static_cast<std::size_t>(finding.requirement)].id + std::string(" ") +
+    out.insert(reflect::requirement(finding.requirement).id + std::string(" ") +
                finding.node + " " + std::to_string(finding.place.frame));
   }
   return out;
@@ -52,7 +52,7 @@ TEST(Times, OfOneFileAreJudgedBesideAFileWithoutAny) {
   EXPECT_GE(run->end_us, end_us - 1'000'000);
   bool clock = false;
   for (const Finding& finding : judge(*run, Options{}).findings) {
-    clock = clock || (finding.requirement == req::kJ3Time && finding.severity == Severity::kFail);
+    clock = clock || (finding.requirement == "J3-TIME"_rule && finding.severity == Severity::kFail);
   }
   EXPECT_TRUE(clock);
 }

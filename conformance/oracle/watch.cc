@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "codec/generated/requirements_table.h"
+#include "codec/reflect/requirements.h"
 
 namespace rubric::oracle {
 namespace {
@@ -13,7 +13,7 @@ std::string subject(const std::string& fact) { return fact.substr(0, fact.find('
 
 std::string name_of(ReqId id) {
   if (id == ReqId::kNone) return "something";
-  return kRequirements[static_cast<std::size_t>(id)].id;
+  return reflect::requirement(id).id;
 }
 
 // Returns whether an episode has grown over the finding, or begins earlier than it seemed.
@@ -42,7 +42,8 @@ std::vector<Change> Watch::update(const Report& report, std::int64_t now_us) {
   for (auto& [key, known] : known_) known.stands = false;
   std::vector<Change> found;
   for (const Finding& finding : report.findings) {
-    Key key{finding.place.file, finding.place.frame, finding.requirement, finding.node, 0};
+    Key key{finding.place.file, finding.place.frame,
+            reflect::requirement_index(finding.requirement), finding.node, 0};
     auto at = known_.find(key);
     while (at != known_.end() && at->second.stands) {
       ++std::get<4>(key);

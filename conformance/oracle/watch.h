@@ -37,7 +37,7 @@ class Watch {
 
  private:
   /// File, frame, rule, node, and a number among equal ones.
-  using Key = std::tuple<std::uint32_t, std::uint64_t, ReqId, std::string, std::uint32_t>;
+  using Key = std::tuple<std::uint32_t, std::uint64_t, std::size_t, std::string, std::uint32_t>;
   struct Known {
     std::int64_t since_us = 0;
     bool told = false;

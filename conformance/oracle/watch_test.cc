@@ -13,7 +13,7 @@ using What = Change::What;
 constexpr std::int64_t kSettleUs = 1000;
 
 Finding finding(std::uint64_t frame, std::string node, Severity severity = Severity::kFail,
-                ReqId rule = req::kJ4Seq) {
+                ReqId rule = "J4-SEQ"_rule) {
   Finding out;
   out.requirement = rule;
   out.severity = severity;
@@ -72,7 +72,7 @@ TEST(WatchTest, WhatIsGoneIsWithdrawnWithItsReason) {
        "frames that came later explain it"},
       {"Known", report({}, {"mote 2: 9 frames on the air", "base station of island 12"}),
        "what is known by now: base station of island 12"},
-      {"Other", report({finding(3, "mote 4", Severity::kWeak, req::kJ4Ack)}),
+      {"Other", report({finding(3, "mote 4", Severity::kWeak, "J4-ACK"_rule)}),
        "the frame now shows J4-ACK of mote 4"},
   };
   for (const auto& one : kCases) {

@@ -80,19 +80,14 @@ class Numbers {
 };
 
 bool is_forwarded(const Output& output, const std::set<std::uint16_t>& sent) {
-  const auto message = rubicon::NetMsgView::parse(output.frame.bytes());
-  switch (output.requirement) {
-    case req::kN6Forward:
-    case req::kN6Route:
-    case req::kN7Radio:
-    case req::kN8Incoming:
-      return true;
-    case req::kN8Peis:
-      return !message || !sent.contains(message->seq_num()) ||
-             machine::address_of(message->src()).devid != machine::kNullDevid;
-    default:
-      return false;
+  for (const ReqId rule :
+       {"N6-FORWARD"_rule, "N6-ROUTE"_rule, "N7-RADIO"_rule, "N8-INCOMING"_rule}) {
+    if (output.requirement == rule) return true;
   }
+  if (output.requirement != "N8-PEIS"_rule) return false;
+  const auto message = rubicon::NetMsgView::parse(output.frame.bytes());
+  return !message || !sent.contains(message->seq_num()) ||
+         machine::address_of(message->src()).devid != machine::kNullDevid;
 }
 
 bool same(const Output& a, const Output& b) {
@@ -168,8 +163,8 @@ class Lenient {
       FieldValue* acked = field(line, "payload.body.seq_num");
       const bool changed = acked && answered_.contains(acked->value.number);
       if (changed) variable(line, "payload.body.seq_num");
-    } else if (output.requirement == req::kT2Ack || output.requirement == req::kS2Send ||
-        output.requirement == req::kS3Changed || output.requirement == req::kJ6Report) {
+    } else if (output.requirement == "T2-ACK"_rule || output.requirement == "S2-SEND"_rule ||
+        output.requirement == "S3-CHANGED"_rule || output.requirement == "J6-REPORT"_rule) {
       free_field(line, "seq_num");
     } else {
       variable(line, "seq_num");

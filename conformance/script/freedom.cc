@@ -10,13 +10,13 @@
 #include "codec/generated/rubicon/join_reply.h"
 #include "codec/generated/rubicon/join_request.h"
 #include "codec/generated/rubicon/net_msg.h"
+#include "conformance/explorer/history.h"
 #include "conformance/generated/profiles.h"
 #include "conformance/machine/lines.h"
 #include "conformance/machine/messages.h"
 #include "conformance/machine/transport.h"
 #include "conformance/runner/subject_target.h"
 #include "conformance/script/difference.h"
-#include "conformance/script/watch.h"
 
 namespace rubric::script {
 namespace {
@@ -147,11 +147,11 @@ class Probe : public runner::Machine {
       const bool heard = std::holds_alternative<machine::Heard>(event) ||
                          std::holds_alternative<machine::AppBusy>(event);
       // Values for a channel that is stopped may be kept; too few values are malformed.
-      if (heard && action.requirement == req::kS6Stopped) return true;
-      if (heard && action.requirement == req::kS2Content) return true;
-      if (action.requirement == req::kS4Local) return true;
+      if (heard && action.requirement == "S6-STOPPED"_rule) return true;
+      if (heard && action.requirement == "S2-CONTENT"_rule) return true;
+      if (action.requirement == "S4-LOCAL"_rule) return true;
       // A sink may trust its base station with the island (decision 126).
-      if (heard && action.requirement == req::kN7Foreign) return true;
+      if (heard && action.requirement == "N7-FOREIGN"_rule) return true;
     }
     if (const auto* called = std::get_if<machine::Called>(&event)) {
       return !before.off && is_free(before, called->call);
@@ -220,7 +220,7 @@ class Probe : public runner::Machine {
       for (const machine::Awaited& awaited : state_.awaited) {
         if (awaited.seq_num != one.seq_num || now < soonest) continue;
         const bool left_late = awaited.due != 0 && awaited.due != soonest;
-        if (left_late || waits_for_line(state_, one.seq_num)) free_at(soonest);
+        if (left_late || explorer::waits_for_line(state_, one.seq_num)) free_at(soonest);
       }
     }
   }

@@ -4,16 +4,14 @@
 #include <memory>
 #include <stdexcept>
 
-#include "conformance/events/app_events.h"
+#include "conformance/events/lines.h"
 #include "conformance/runner/subject_target.h"
 #include "conformance/script/bytes.h"
 
 namespace rubric::script {
 namespace {
 
-using machine::Link;
 using runner::Output;
-using trace::LinkKind;
 using trace::Message;
 using trace::Op;
 
@@ -23,25 +21,7 @@ std::uint64_t seed_of(std::uint16_t first_seq) {
   return static_cast<std::uint16_t>((first_seq - 1000U) * kInverseOf257);
 }
 
-struct LineName {
-  std::string name;
-  LinkKind kind;
-};
-LineName name_of(Link link) {
-  switch (link) {
-    case Link::kRadio: return {"rA", LinkKind::kRadio};
-    case Link::kSerial: return {"serA", LinkKind::kSerial};
-    case Link::kPeis: break;
-  }
-  return {"peis", LinkKind::kPeis};
-}
-
-trace::Line frame_line(Ticks now, const std::string& node, Op op, const machine::Frame& frame) {
-  const LineName line = name_of(frame.link);
-  return trace::frame_line(now, node, op, line.name, line.kind,
-                           {frame.dest, frame.src, 0, frame.type,
-                            {frame.payload.begin(), frame.payload.end()}});
-}
+events::NodeNames names_of(const std::string& node) { return {node, "rA", "serA"}; }
 
 // The machine as the runner's target, which records its inputs.
 class Recorder : public runner::SubjectTarget {
@@ -98,30 +78,6 @@ bool fits(const Script& script) {
          std::all_of(script.steps.begin(), script.steps.end(), whole);
 }
 
-Message message_of(const machine::Event& event) {
-  if (const auto* called = std::get_if<machine::Called>(&event)) {
-    return events::from_call(called->call);
-  }
-  if (const auto* done = std::get_if<machine::SendDone>(&event)) {
-    return Message::named("linkack").with("acked", trace::Value::of(done->acked ? 1 : 0));
-  }
-  if (const auto* line = std::get_if<machine::LinkBusy>(&event)) {
-    return Message::named(line->busy ? "busy" : "idle");
-  }
-  if (const auto* app = std::get_if<machine::AppBusy>(&event)) {
-    return Message::named(app->busy ? "busy" : "idle");
-  }
-  return Message::named(std::holds_alternative<machine::Reboot>(event) ? "reboot" : "off");
-}
-
-std::string link_of(const machine::Event& event) {
-  if (std::holds_alternative<machine::SendDone>(event)) return name_of(Link::kRadio).name;
-  if (const auto* line = std::get_if<machine::LinkBusy>(&event)) return name_of(line->link).name;
-  const bool power = std::holds_alternative<machine::Reboot>(event) ||
-                     std::holds_alternative<machine::PowerOff>(event);
-  return power ? "power" : "app";
-}
-
 }  // namespace
 
 std::vector<CaseScript> scripts_of(const trace::File& file, const trace::Case& one) {
@@ -170,27 +126,19 @@ trace::File begin_file(const Script& script) {
 }
 
 trace::Line line_of(const Output& output, const std::string& node) {
-  trace::Line line;
+  const events::NodeNames names = names_of(node);
   if (output.is_frame) {
-    line = frame_line(output.time, node, Op::kEmits, output.frame.frame());
-  } else {
-    machine::Notice notice = output.notice;
-    if (auto* received = std::get_if<machine::Received>(&notice)) {
-      received->data = Bytes(output.data.data(), output.data.size());
-    }
-    line = trace::app_line(output.time, node, Op::kEmits, "app", events::from_notice(notice));
+    return events::emitted_line(output.time, names, output.frame.frame(), output.requirement);
   }
-  const std::string_view rule = trace::requirement_text(output.requirement);
-  if (!rule.empty()) line.requirements.emplace_back(rule);
-  return line;
+  machine::Notice notice = output.notice;
+  if (auto* received = std::get_if<machine::Received>(&notice)) {
+    received->data = Bytes(output.data.data(), output.data.size());
+  }
+  return events::emitted_line(output.time, names, notice, output.requirement);
 }
 
 trace::Line line_of(const Step& step, Ticks now, const std::string& node) {
-  const machine::Event event = step.whole();
-  if (const auto* heard = std::get_if<machine::Heard>(&event)) {
-    return frame_line(now, node, Op::kGiven, heard->frame);
-  }
-  return trace::app_line(now, node, Op::kGiven, link_of(event), message_of(event));
+  return events::given_line(now, names_of(node), step.whole()).value();
 }
 
 trace::Line nothing_else(Ticks end, const std::string& node, const std::vector<ReqId>& rules) {

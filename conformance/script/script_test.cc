@@ -36,7 +36,7 @@ std::vector<std::string> lines_of(const std::vector<runner::Output>& outputs) {
 // Expects the trace of a run to be valid, and the machine to keep it.
 void expect_holds(const Script& script, const std::string& name) {
   const Played run = run_on_machine(script);
-  const trace::File file = to_file(script, run, {"x." + name, {"A comment."}, {req::kN2Once}});
+  const trace::File file = to_file(script, run, {"x." + name, {"A comment."}, {"N2-ONCE"_rule}});
   const auto wrong = trace::check(file);
   ASSERT_TRUE(wrong.empty()) << name << ": " << wrong[0].text << "\n" << trace::print(file);
   const trace::Parsed again = trace::parse(trace::print(file), name);

@@ -4,41 +4,14 @@
 #include <utility>
 #include <variant>
 
-#include "conformance/events/app_events.h"
 #include "conformance/simulator/radio.h"
 #include "conformance/trace/concrete.h"
 
 namespace rubric::simulator {
 namespace {
 
-using machine::Action;
-using machine::Link;
 using trace::LinkKind;
-using trace::Message;
 using trace::Op;
-
-constexpr std::string_view kPeis = "peis";
-constexpr std::string_view kApp = "app";
-constexpr std::string_view kPower = "power";
-
-trace::AmFrame frame_of(const machine::Frame& frame) {
-  trace::AmFrame out;
-  out.dest = frame.dest;
-  out.src = frame.src;
-  if (frame.link == Link::kRadio) out.group = static_cast<std::uint8_t>(kPanId);
-  out.type = frame.type;
-  out.payload.assign(frame.payload.begin(), frame.payload.end());
-  return out;
-}
-
-LinkKind kind_of(Link link) {
-  switch (link) {
-    case Link::kRadio: return LinkKind::kRadio;
-    case Link::kSerial: return LinkKind::kSerial;
-    case Link::kPeis: break;
-  }
-  return LinkKind::kPeis;
-}
 
 trace::Role role_of(machine::Role role) {
   switch (role) {
@@ -89,6 +62,7 @@ TraceRecorder::TraceRecorder(const Network& network, std::string_view case_name)
   file_.header(std::move(seed));
   for (NodeId i = 0; i < names_.size(); ++i) {
     names_[i].node = network.nodes[i].name;
+    names_[i].radio_group = static_cast<std::uint8_t>(kPanId);
     file_.header(header_of(network.nodes[i]));
   }
   const auto is_mote_or_sink = [&](NodeId i) {
@@ -113,64 +87,40 @@ TraceRecorder::TraceRecorder(const Network& network, std::string_view case_name)
     if (!is_mote_or_sink(i)) base_stations.push_back(names_[i].node);
   }
   if (base_stations.size() > 1) {
-    file_.header(header_of(kPeis, LinkKind::kPeis, std::move(base_stations)));
+    file_.header(header_of("peis", LinkKind::kPeis, std::move(base_stations)));
   }
   file_.cases.emplace_back(case_name);
 }
 
-std::string_view TraceRecorder::link_name(NodeId node, Link link) const {
-  if (link == Link::kRadio) return names_[node].radio;
-  return link == Link::kSerial ? std::string_view(names_[node].serial) : kPeis;
-}
-
 void TraceRecorder::given(Micros time_us, NodeId node, const machine::Event& event) {
-  const std::int64_t ticks = ticks_of(time_us);
-  if (const auto* heard = std::get_if<machine::Heard>(&event)) {
-    const Link link = heard->frame.link;
-    add(trace::frame_line(ticks, names_[node].node, Op::kGiven, link_name(node, link),
-                          kind_of(link), frame_of(heard->frame)));
-  } else if (const auto* called = std::get_if<machine::Called>(&event)) {
-    trace::Message call = events::from_call(called->call);
-    add(trace::app_line(ticks, names_[node].node, Op::kGiven, kApp, std::move(call)));
-  } else if (std::holds_alternative<machine::Reboot>(event)) {
-    add(trace::app_line(ticks, names_[node].node, Op::kGiven, kPower, Message::named("reboot")));
-  } else if (std::holds_alternative<machine::PowerOff>(event)) {
-    add(trace::app_line(ticks, names_[node].node, Op::kGiven, kPower, Message::named("off")));
+  // The ends of frames and the busy lines are the simulator's own; see link_ack.
+  if (std::holds_alternative<machine::SendDone>(event) ||
+      std::holds_alternative<machine::LinkBusy>(event) ||
+      std::holds_alternative<machine::AppBusy>(event)) {
+    return;
   }
+  auto line = events::given_line(ticks_of(time_us), names_[node], event);
+  if (line) add(std::move(*line));
 }
 
 void TraceRecorder::did(Micros time_us, NodeId node, const machine::Actions& actions) {
-  const std::int64_t ticks = ticks_of(time_us);
-  for (const Action& action : actions.all()) {
-    trace::Line line;
-    if (action.what == Action::What::kTransmit) {
-      const machine::Frame frame = actions.transmit_of(action).frame();
-      line = trace::frame_line(ticks, names_[node].node, Op::kEmits, link_name(node, frame.link),
-                               kind_of(frame.link), frame_of(frame));
-    } else if (action.what == Action::What::kNotify) {
-      line = trace::app_line(ticks, names_[node].node, Op::kEmits, kApp,
-                             events::from_notice(actions.notice_of(action)));
-    } else {
-      continue;
-    }
-    const std::string_view rule = trace::requirement_text(action.requirement);
-    if (!rule.empty()) line.requirements.emplace_back(rule);
+  for (trace::Line& line : events::emitted_lines(ticks_of(time_us), names_[node], actions)) {
     add(std::move(line));
   }
 }
 
 void TraceRecorder::mishap(Micros time_us, NodeId node, Mishap what, const machine::Frame& frame) {
-  trace::Line line =
-      trace::fault_line(ticks_of(time_us), what == Mishap::kDoubled ? Op::kDup : Op::kLost,
-                        link_name(node, frame.link), kind_of(frame.link), frame_of(frame));
-  line.comment = names_[node].node + ": " + std::string(text_of(what));
+  const events::NodeNames& names = names_[node];
+  trace::Line line = trace::fault_line(
+      ticks_of(time_us), what == Mishap::kDoubled ? Op::kDup : Op::kLost, names.link(frame.link),
+      events::kind_of(frame.link), events::frame_of(names, frame));
+  line.comment = names.node + ": " + std::string(text_of(what));
   add(std::move(line));
 }
 
 void TraceRecorder::link_ack(Micros time_us, NodeId node, bool acked) {
-  add(trace::app_line(
-      ticks_of(time_us), names_[node].node, Op::kGiven, names_[node].radio,
-      Message::named("linkack").with("acked", trace::Value::of(acked ? 1 : 0))));
+  const machine::SendDone done{machine::Link::kRadio, acked};
+  add(*events::given_line(ticks_of(time_us), names_[node], done));
 }
 
 }  // namespace rubric::simulator

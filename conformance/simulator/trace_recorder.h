@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "conformance/events/lines.h"
 #include "conformance/simulator/recorder.h"
 #include "conformance/trace/trace.h"
 
@@ -24,15 +25,9 @@ class TraceRecorder final : public Recorder {
   const trace::File& file() const { return file_; }
 
  private:
-  struct Names {
-    std::string node;
-    std::string radio;
-    std::string serial;
-  };
-  std::string_view link_name(NodeId node, machine::Link link) const;
   void add(trace::Line line) { file_.cases.front().add(std::move(line)); }
 
-  std::vector<Names> names_;
+  std::vector<events::NodeNames> names_;
   trace::File file_;
 };
 

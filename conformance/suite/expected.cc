@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "codec/generated/requirements_table.h"
+#include "codec/reflect/requirements.h"
 #include "conformance/generated/profiles.h"
 #include "conformance/suite/select.h"
 
@@ -22,8 +22,9 @@ constexpr const char* kOfProfile =
     "The numbers and switches of the profile say so: the reference machine does it as well.";
 
 std::string mistake(const std::string& rule) {
-  if (rule == kNoRule || std::any_of(std::begin(kRequirements), std::end(kRequirements),
-                                     [&](const auto& each) { return is_of(each.id, rule); })) {
+  if (rule == kNoRule || std::ranges::any_of(reflect::requirements(), [&](const auto& each) {
+        return is_of(each.id, rule);
+      })) {
     return {};
   }
   return fmt::format("no requirement is called '{}'; '{}' is for lines that name none", rule,

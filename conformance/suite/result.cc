@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "codec/reflect/fault_text.h"
-#include "codec/generated/requirements_table.h"
+#include "codec/reflect/requirements.h"
 #include "conformance/trace/trace.h"
 
 namespace rubric::suite {
@@ -18,8 +18,8 @@ bool is_decided(CaseVerdict verdict) {
          verdict == CaseVerdict::kFail;
 }
 
-std::set<ReqId> broken_rules(const CaseRun& one) {
-  std::set<ReqId> out;
+std::set<ReqId, reflect::CatalogueOrder> broken_rules(const CaseRun& one) {
+  std::set<ReqId, reflect::CatalogueOrder> out;
   for (const runner::Failure& failure : one.result.failures) {
     for (const std::string& name : failure.requirements) out.insert(trace::requirement_id(name));
   }
@@ -57,9 +57,9 @@ VerdictCounts count(const ImplementationRun& run) {
 }
 
 std::vector<RequirementSummary> by_requirement(const ImplementationRun& run) {
-  std::map<ReqId, RequirementSummary> rules;
+  std::map<ReqId, RequirementSummary, reflect::CatalogueOrder> rules;
   for (const CaseRun& one : run.cases) {
-    const std::set<ReqId> broken = broken_rules(one);
+    const auto broken = broken_rules(one);
     for (const ReqId id : one.requirements) {
       RequirementSummary& rule = rules[id];
       rule.requirement = id;
@@ -74,7 +74,7 @@ std::vector<RequirementSummary> by_requirement(const ImplementationRun& run) {
 
 RuleTotals rule_totals(const ImplementationRun& run) {
   RuleTotals totals;
-  for (const reflect::Requirement& rule : kRequirements) {
+  for (const reflect::Requirement& rule : reflect::requirements()) {
     const std::string_view id = rule.id;
     totals.all += !id.empty() && !id.starts_with("WIRE-");
   }

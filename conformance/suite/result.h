@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "codec/generated/requirements.h"
+#include "codec/runtime/rule.h"
 #include "conformance/attach/attachment.h"
 #include "conformance/runner/run_case.h"
 

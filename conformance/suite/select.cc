@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include "codec/generated/requirements_table.h"
+#include "codec/reflect/requirements.h"
 #include "codec/reflect/suggest.h"
 
 namespace rubric::suite {
@@ -39,7 +39,7 @@ void check_requirement(const Cases& cases, const std::string& requirement) {
     if (fits(one, requirement)) return;
   }
   std::vector<std::string> names;
-  for (const reflect::Requirement& rule : kRequirements) {
+  for (const reflect::Requirement& rule : reflect::requirements()) {
     if (is_of(rule.id, requirement)) {
       throw std::invalid_argument(fmt::format("no case tries {}", requirement));
     }

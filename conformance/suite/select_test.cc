@@ -117,7 +117,7 @@ TEST(Cases, KnowWhatTheyAreAbout) {
   const CaseRun& mote = cases.find("a.mote")->blank;
   EXPECT_EQ(mote.comment, "Catches one thing and another.");
   EXPECT_EQ(mote.file, "x.rtr");
-  EXPECT_THAT(mote.requirements, ElementsAre(req::kJ4Clock, req::kJ1Seq));
+  EXPECT_THAT(mote.requirements, ElementsAre("J4-CLOCK"_rule, "J1-SEQ"_rule));
   EXPECT_THAT(mote.roles, ElementsAre(machine::Role::kMote));
   EXPECT_EQ(mote.nodes.size(), 2U);
   const CaseRun& both = cases.find("b.both")->blank;

@@ -5,7 +5,7 @@
 #include <unordered_map>
 #include <unordered_set>
 
-#include "codec/generated/requirements_table.h"
+#include "codec/reflect/requirements.h"
 #include "conformance/trace/check_message.h"
 #include "conformance/trace/print.h"
 #include "conformance/trace/value_text.h"
@@ -17,8 +17,8 @@ namespace {
 const std::unordered_set<std::string>& known_requirements() {
   static const std::unordered_set<std::string> known = [] {
     std::unordered_set<std::string> all;
-    for (auto at = std::next(std::begin(kRequirements)); at != std::end(kRequirements); ++at) {
-      const std::string id = at->id;
+    for (const reflect::Requirement& one : reflect::requirements().subspan(1)) {
+      const std::string id = one.id;
       all.insert(id);
       all.insert(id.substr(0, id.find('-')));
     }

@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-#include "codec/generated/requirements.h"
+#include "codec/runtime/rule.h"
 
 namespace rubric::trace {
 

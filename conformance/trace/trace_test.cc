@@ -255,7 +255,7 @@ TEST(Log, BuiltInCodeParsesToItself) {
                        .with("actuators", Value::names("led"))));
   Line sent = frame_line(3, "m5", Op::kEmits, "rA", LinkKind::kRadio,
                          frame(14, "0007 01 0043 01"));
-  sent.requirements.emplace_back(requirement_text(req::kJ1Request));
+  sent.requirements.emplace_back(requirement_text("J1-REQUEST"_rule));
   one.add(sent);
   one.add(fault_line(4, Op::kLost, "rA", LinkKind::kRadio, frame(14, "0007 01 0043 01")));
   one.add(frame_line(5, "sA", Op::kGiven, "rA", LinkKind::kRadio, frame(14, "ff")));
@@ -304,8 +304,8 @@ TEST(Log, EveryFramePrintsAndComesBack) {
 }
 
 TEST(Requirements, TextAndId) {
-  EXPECT_EQ(requirement_text(req::kJ4Seq), "J4-SEQ");
-  EXPECT_EQ(requirement_id("J4-SEQ"), req::kJ4Seq);
+  EXPECT_EQ(requirement_text("J4-SEQ"_rule), "J4-SEQ");
+  EXPECT_EQ(requirement_id("J4-SEQ"), "J4-SEQ"_rule);
   EXPECT_EQ(requirement_id("J4"), ReqId::kNone);
   EXPECT_EQ(requirement_id(""), ReqId::kNone);
 }

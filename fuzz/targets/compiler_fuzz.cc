@@ -58,7 +58,7 @@ std::string emitted(const rubricc::Model& model) {
     add(rubricc::emit_cpp(*spec));
     add(rubricc::emit_java(*spec));
   }
-  add(rubricc::emit_doc(model));
+  add(rubricc::emit_json(model));
   for (const auto& file : rubricc::emit_protocols(model)) out += file.text;
   for (const auto& file : rubricc::emit_lua(model)) out += file.text;
   return out;

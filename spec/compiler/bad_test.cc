@@ -12,18 +12,16 @@
 #include <gtest/gtest.h>
 
 #include "spec/compiler/load.h"
+#include "spec/compiler/wire_specs.h"
 
 namespace rubricc {
 namespace {
 
 const std::string kFolder = "spec/compiler/bad/";
 
-std::vector<std::string> files_in(const std::string& folder, std::string_view extension) {
+std::vector<std::string> names_in(const std::string& folder, const std::string& extension) {
   std::vector<std::string> out;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    if (entry.path().extension() == extension) out.push_back(entry.path().stem().string());
-  }
-  std::sort(out.begin(), out.end());
+  for (const auto& path : files_in(folder, extension)) out.push_back(path.stem().string());
   return out;
 }
 
@@ -65,7 +63,7 @@ TEST_P(BadSpec, IsRefusedWithTheDiagnosticsThatItExpects) {
   EXPECT_FALSE(diagnostics.empty());
 }
 
-INSTANTIATE_TEST_SUITE_P(Files, BadSpec, testing::ValuesIn(files_in(kFolder, ".ksy")),
+INSTANTIATE_TEST_SUITE_P(Files, BadSpec, testing::ValuesIn(names_in(kFolder, ".ksy")),
                          [](const auto& one) { return one.param; });
 
 class BadRequirements : public testing::TestWithParam<std::string> {};
@@ -80,7 +78,7 @@ TEST_P(BadRequirements, AreRefusedWithTheDiagnosticsThatTheyExpect) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Files, BadRequirements,
-                         testing::ValuesIn(files_in(kFolder + "requirements/", ".yaml")),
+                         testing::ValuesIn(names_in(kFolder + "requirements/", ".yaml")),
                          [](const auto& one) { return one.param; });
 
 Model catalogue() {
@@ -103,7 +101,7 @@ TEST_P(BadProfile, IsRefusedWithTheDiagnosticsThatItExpects) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Files, BadProfile,
-                         testing::ValuesIn(files_in(kFolder + "profiles/", ".yaml")),
+                         testing::ValuesIn(names_in(kFolder + "profiles/", ".yaml")),
                          [](const auto& one) { return one.param; });
 
 class BadCases : public testing::TestWithParam<std::string> {};
@@ -118,7 +116,7 @@ TEST_P(BadCases, AreRefusedWithTheDiagnosticsThatTheyExpect) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Files, BadCases,
-                         testing::ValuesIn(files_in(kFolder + "cases/", ".rtr")),
+                         testing::ValuesIn(names_in(kFolder + "cases/", ".rtr")),
                          [](const auto& one) { return one.param; });
 
 // A file that lost its first lines would expect nothing and a renamed folder would test nothing.
@@ -184,11 +182,10 @@ TEST(WireSpecs, HaveNoMistakes) {
   Model model;
   Diagnostics diagnostics;
   load_requirements("spec/requirements.yaml", model, diagnostics);
-  load_specs({"spec/wire/rubicon.ksy", "spec/wire/tinyos.ksy", "spec/wire/oscilloscope.ksy"},
-             model, diagnostics);
+  load_specs(wire_specs(), model, diagnostics);
   check_model(model, diagnostics);
   EXPECT_EQ(diagnostics.print(), "");
-  EXPECT_EQ(model.specs.size(), 3U);
+  EXPECT_EQ(model.specs.size(), wire_specs().size());
   EXPECT_EQ(model.specs.front()->id, "tinyos");  // Imports come first.
 }
 

@@ -15,11 +15,11 @@ constexpr std::uint64_t kElementsMax = 65535;  // The count of the runtime's Arr
 constexpr std::uint64_t kNumbersMax = 4096;    // Nested structures are laid out number by number.
 
 // Members of views and builders, and names in their bodies: a field of that name would hide it.
-constexpr std::array<std::string_view, 37> kMembers{
+constexpr std::array<std::string_view, 36> kMembers{
     "at_most", "bits_of_float", "bytes", "check", "check_short", "create", "detail", "equal",
     "error_at", "fail", "finish", "float_of_bits", "int16_t", "int32_t", "int64_t", "int8_t",
     "is_error", "load_be16", "load_be32", "load_le16", "load_le32", "load_u8", "moved", "no_error",
-    "parse", "req", "same", "size_bytes", "size_t", "stale", "store_be16", "store_be32",
+    "parse", "same", "size_bytes", "size_t", "stale", "store_be16", "store_be32",
     "store_le16", "store_le32", "store_u8", "to_value", "truncated"};
 static_assert(std::is_sorted(kMembers.begin(), kMembers.end()));
 

@@ -38,6 +38,10 @@ std::string pascal(std::string_view id) {
 
 std::string cpp_constant(std::string_view id) { return fmt::format("k{}", pascal(id)); }
 
+std::string cpp_rule(const std::string& id) {
+  return id.empty() ? "ReqId::kNone" : fmt::format("\"{}\"_rule", id);
+}
+
 std::string cpp_string(std::string_view text) {
   std::string out;
   for (const char c : text) out += escaped(c);

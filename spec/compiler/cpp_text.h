@@ -12,6 +12,8 @@ namespace rubricc {
 std::string pascal(std::string_view id);
 /// Returns "kNetMsg".
 std::string cpp_constant(std::string_view id);
+/// How C++ names a rule: `"J4-SEQ"_rule`; `ReqId::kNone` for an empty id.
+std::string cpp_rule(const std::string& id);
 
 /// Returns a string literal with everything escaped; never ends a comment or starts a trigraph.
 std::string cpp_string(std::string_view text);

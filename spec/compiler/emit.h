@@ -8,10 +8,11 @@ namespace rubricc {
 
 /// Emits codec/generated/<spec>/tables.h: reflection tables, see codec/reflect/schema.h.
 GeneratedFiles emit_tables(const Spec& spec);
-/// Emits codec/generated/requirements.h and requirements_table.h.
+/// Emits codec/generated/requirements_table.h.
 GeneratedFiles emit_requirements(const Model& model, const std::string& file);
-/// Emits codec/generated/protocols.h, the list of all protocols, and route_tables.h, the routes to
-/// their messages (of the emitter `messages`); nothing if there is none.
+/// Emits codec/generated/protocols.h, the list of all protocols, route_tables.h, the routes to
+/// their messages (of the emitter `messages`), and every_spec.h, the views of all specs for tests;
+/// nothing if there is no protocol.
 GeneratedFiles emit_protocols(const Model& model);
 /// Emits fuzz/dictionaries/<spec>.dict for libFuzzer.
 GeneratedFiles emit_dictionary(const Spec& spec);
@@ -21,8 +22,6 @@ GeneratedFiles emit_messages(const Spec& spec);
 GeneratedFiles emit_profiles(const Model& model);
 /// Emits conformance/generated/cases.h; `folder` is where the cases are from.
 GeneratedFiles emit_cases(const Model& model, const std::string& folder);
-/// Emits doc/wire.html: all specs on one page.
-GeneratedFiles emit_doc(const Model& model);
 /// Emits doc/wire.json: the model for programs that print it.
 GeneratedFiles emit_json(const Model& model);
 

@@ -37,14 +37,14 @@ GeneratedFiles emit_cases(const Model& model, const std::string& folder) {
   std::string uses;
   for (const CaseUse& one : model.case_uses) {
     const std::string name = cpp_string(one.case_name);
-    const std::string rest = fmt::format("{}, req::{}, {}}},\n", cpp_string(one.file),
-                                         cpp_constant(one.requirement), one.negative);
+    const std::string rest = fmt::format("{}, {}, {}}},\n", cpp_string(one.file),
+                                         cpp_rule(one.requirement), one.negative);
     const bool fits = name.size() + rest.size() <= 93;  // In 100 columns.
     uses += fmt::format("    {{{},{}{}", name, fits ? " " : "\n     ", rest);
   }
   return {{"conformance/generated/cases.h",
            fill(kFile, {{"banner", banner("// ", folder)},
-                        {"include", cpp_include("codec/generated/requirements.h")},
+                        {"include", cpp_include("codec/runtime/rule.h")},
                         {"count", std::to_string(model.case_uses.size())},
                         {"uses", uses.empty() ? "{}" : "{{\n" + uses + "}}"}})}};
 }

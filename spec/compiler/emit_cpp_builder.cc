@@ -267,7 +267,7 @@ std::string emit_builder(const Layout& layout, const Spec& spec) {
   }
   const std::string room =
       guard("out.size() < " + name + "View::kMinSizeBytes",
-            "return fail(Fault::kNoRoom, out.size(), " + req(type.requirement) + ");");
+            "return fail(Fault::kNoRoom, out.size(), " + cpp_rule(type.requirement) + ");");
   std::string written = "out_";
   std::string size;
   std::string present;
@@ -283,7 +283,7 @@ std::string emit_builder(const Layout& layout, const Spec& spec) {
     const std::string before = context.at(layout.fields.size() - 1);
     size = "const size_t size = " + (before == "0" ? "" : before + " + ") + "tail_;\n" +
            guard("out_.size() < size",
-                 "return fail(Fault::kNoRoom, out_.size(), " + req(type.requirement) + ");");
+                 "return fail(Fault::kNoRoom, out_.size(), " + cpp_rule(type.requirement) + ");");
   }
   return fill(kBuilder, {{"name", type.name},
                          {"class", name},

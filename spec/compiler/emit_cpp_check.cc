@@ -43,7 +43,7 @@ std::string rule(const Field& f, const std::string& pointer, const std::string& 
   const bool listed = !f.valid->one_of.empty();
   const std::string fault = listed ? "Fault::kUnexpected" : "Fault::kOutOfRange";
   return guard(join(breaches(f, x), listed ? "&&" : "||"),
-               "return error_at(" + fault + ", " + at + ", " + req(f.requirement) + ");");
+               "return error_at(" + fault + ", " + at + ", " + cpp_rule(f.requirement) + ");");
 }
 
 // The front part. If it can only be too short, one comparison is enough.
@@ -66,7 +66,7 @@ Front front(const Layout& layout) {
     const bool joins = !last && checked.empty() &&
                        layout.leaves[i + 1].field->requirement == f.requirement;
     if (joins) continue;
-    const std::string short_of = "return truncated(bytes, " + req(f.requirement) + ");";
+    const std::string short_of = "return truncated(bytes, " + cpp_rule(f.requirement) + ");";
     ++steps;
     if (last) {
       slow += short_of + "\n";
@@ -155,7 +155,7 @@ Rest delimited(const FieldLayout& l, const Leaf& loads, const std::string& at, b
   const Field& f = *l.field;
   const std::string left = at == "0" ? "bytes.size()" : "bytes.size() - " + at;
   Rest out;
-  const std::string short_of = "return truncated(bytes, " + req(f.requirement) + ");";
+  const std::string short_of = "return truncated(bytes, " + cpp_rule(f.requirement) + ");";
   if (f.repeat == RepeatKind::kCount) {
     out.size = print_size(*f.count, loads, l.unit);
   } else if (f.extent == ExtentKind::kSize) {
@@ -177,7 +177,7 @@ Rest delimited(const FieldLayout& l, const Leaf& loads, const std::string& at, b
     const std::string where =
         to_end ? short_of
                : "return error_at(Fault::kTruncated, " + at + " + " + out.size + ", " +
-                     req(f.requirement) + ");";
+                     cpp_rule(f.requirement) + ");";
     out.text += guard(total + " % " + std::to_string(l.unit) + " != 0", where);
   }
   return out;
@@ -192,7 +192,7 @@ Rest rest_of(const Layout& layout, const FieldLayout& l, const Spec& spec, const
   if (l.shape == Shape::kNumber) {
     out.size = std::to_string(f.width_bytes);
     out.text = guard(left + " < " + out.size,
-                     "return truncated(bytes, " + req(f.requirement) + ");") +
+                     "return truncated(bytes, " + cpp_rule(f.requirement) + ");") +
                rule(f, "p", at);
     return out;
   }

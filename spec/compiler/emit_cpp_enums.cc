@@ -80,7 +80,7 @@ std::string emit_enums(const Spec& spec) {
     std::string entries;
     for (const EnumEntry& entry : e->entries) {
       const auto value = static_cast<std::uint32_t>(entry.value);
-      entries += constant(entry.name) + " = " +
+      entries += cpp_constant(entry.name) + " = " +
                  (value > 0xff ? hex(value, width) : std::to_string(value)) + "," +
                  (entry.doc.empty() ? "" : "  ///< " + entry.doc) + "\n";
     }
@@ -99,7 +99,7 @@ std::string emit_mask(const Type& type) {
   for (std::size_t i = count; i-- > 0;) {
     const MaskBit& bit = type.bits[i];
     if (bit.unnamed) continue;
-    bits += constant(bit.name) + " = " +
+    bits += cpp_constant(bit.name) + " = " +
             hex(std::uint32_t{1} << (count - 1 - i), width) + ",\n";
   }
   const std::string raw = "uint" + std::to_string(8 * width) + "_t";

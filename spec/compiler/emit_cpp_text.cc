@@ -2,7 +2,6 @@
 #include "spec/compiler/emit_cpp_text.h"
 
 #include <algorithm>
-#include <cctype>
 #include <stdexcept>
 
 namespace rubricc::cpp {
@@ -80,29 +79,6 @@ std::string print_term(const Expr& expr, const Leaf& leaf, const char* wide) {
 }
 
 }  // namespace
-
-std::string pascal(std::string_view id) {
-  std::string out;
-  bool upper = true;
-  for (const char c : id) {
-    if (c == '_' || c == '-') {
-      upper = true;
-      continue;
-    }
-    out += static_cast<char>(upper ? std::toupper(static_cast<unsigned char>(c)) : c);
-    upper = false;
-  }
-  return out;
-}
-
-std::string constant(std::string_view id) { return "k" + pascal(id); }
-
-std::string req(const std::string& id) {
-  if (id.empty()) return "ReqId::kNone";
-  std::string lower;
-  for (const char c : id) lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return "req::" + constant(lower);
-}
 
 std::string class_of(const Type& type, const Spec& spec) {
   return (type.spec != &spec ? type.spec->id + "::" : "") + pascal(type.id);

@@ -6,16 +6,11 @@
 #include <string_view>
 #include <vector>
 
+#include "spec/compiler/cpp_text.h"
 #include "spec/compiler/model.h"
 
 namespace rubricc::cpp {
 
-/// "net_msg" becomes "NetMsg".
-std::string pascal(std::string_view id);
-/// "null" becomes "kNull".
-std::string constant(std::string_view id);
-/// "WIRE-NET-NBYTES" becomes "req::kWireNetNbytes", none "ReqId::kNone".
-std::string req(const std::string& id);
 
 /// Returns a type's class as seen from `spec`: "RAddr" or "tinyos::AmHeader".
 std::string class_of(const Type& type, const Spec& spec);

@@ -155,7 +155,7 @@ std::string derived_check(const FieldLayout& l) {
   outside.push_back(size + " > " + literal(f.range.max));
   return guard(join(outside, "||"),
                "return error_at(Fault::kOutOfRange, " + std::to_string(f.fixed_offset) + ", " +
-                   req(f.requirement) + ");");
+                   cpp_rule(f.requirement) + ");");
 }
 
 std::string length_check(const Layout& layout, std::size_t i, const Spec& spec) {
@@ -176,7 +176,7 @@ std::string length_check(const Layout& layout, std::size_t i, const Spec& spec) 
   if (is_array(l) && !l.fixed_count && l.capacity > 0 && !l.length) {
     out += guard(have + " > " + std::to_string(l.capacity),
                  "return error_at(Fault::kTooLong, " + offset + " + " +
-                     std::to_string(l.capacity * l.unit) + ", " + req(f.requirement) + ");");
+                     std::to_string(l.capacity * l.unit) + ", " + cpp_rule(f.requirement) + ");");
   }
   if (want && !l.length && !l.fixed_count) {
     std::string count = print_size(*want, value_leaf(layout));
@@ -184,7 +184,7 @@ std::string length_check(const Layout& layout, std::size_t i, const Spec& spec) 
     out += "const size_t " + f.id + "_size = " + count + ";\n" +
            guard(have + " != " + f.id + "_size",
                  "return wrong_length(" + have + ", " + f.id + "_size, " + offset + ", " +
-                     req(f.requirement) + ");");
+                     cpp_rule(f.requirement) + ");");
   }
   if (l.shape == Shape::kStructs && has_lengths(*f.type)) {
     const std::string count = l.fixed_count ? std::to_string(l.capacity) : have;
@@ -212,7 +212,7 @@ std::string length_checks(const Layout& layout, const Spec& spec) {
   if (layout.clamps && (!is_array(*last) || last->capacity == 0)) {
     const std::string most = std::to_string(layout.type->max_size);
     out += guard("size_bytes(value) > " + most, "return error_at(Fault::kTooLong, " + most + ", " +
-                                                    req(last->field->requirement) + ");");
+                                                    cpp_rule(last->field->requirement) + ");");
   }
   return out;
 }
@@ -347,7 +347,7 @@ std::string emit_write(const Layout& layout, const Spec&) {
   const std::string verify = needs_verify(layout) ? fill(kWriteVerify, {{"class", name}}) : "";
   return fill(kWrite, {{"class", name},
                        {"lengths", lengths},
-                       {"requirement", req(type.requirement)},
+                       {"requirement", cpp_rule(type.requirement)},
                        {"verify", verify}});
 }
 

@@ -196,7 +196,7 @@ std::string copy(const FieldLayout& l) {
 // Both kinds of groups end in this comparison of bytes with a type.
 std::string pick(const Layout& layout, const Group& group, const Type* type,
                  const std::string& range, const Spec& spec) {
-  const std::string kind = pascal(group.name) + "Kind::" + constant(type->id);
+  const std::string kind = pascal(group.name) + "Kind::" + cpp_constant(type->id);
   if (!group.interpretation) return "return " + kind + ";\n";
   const std::string fits = "!is_error(" + class_of(*type, spec) + "View::check(" +
                            limited(range, *type, spec, most_of(layout, *group.overlaid)) + "))";
@@ -301,7 +301,7 @@ std::string emit_group(const Layout& layout, const Group& group, const Spec& spe
                     "\n";
   for (const Type* type : group.types) {
     out += fill(kAs, {{"name", group.name},
-                      {"kind", constant(type->id)},
+                      {"kind", cpp_constant(type->id)},
                       {"class", class_of(*type, spec)},
                       {"id", type->id},
                       {"group", name},
@@ -325,7 +325,7 @@ std::string emit_view(const Layout& layout, const Spec& spec) {
   for (const Group& group : layout.groups) {
     getters += "\n" + emit_group(layout, group, spec);
     std::vector<std::string> names{"kOpaque"};
-    for (const Type* t : group.types) names.push_back(constant(t->id));
+    for (const Type* t : group.types) names.push_back(cpp_constant(t->id));
     kinds += fill(kKind, {{"what", "What the bytes of " + group.overlaid->id + " may hold."},
                           {"group", pascal(group.name)},
                           {"kinds", join(names, ",")}}) +

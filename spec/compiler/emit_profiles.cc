@@ -77,7 +77,7 @@ std::string accepted_by(const Profile& profile) {
   if (profile.accepted.empty()) return out + "{};\n";
   out += "{{\n";
   for (const AcceptedDifference& one : profile.accepted) {
-    out += fmt::format("    {{req::{},\n     {}}},\n", cpp_constant(one.requirement),
+    out += fmt::format("    {{{},\n     {}}},\n", cpp_rule(one.requirement),
                        literal(one.sentence, 5));
   }
   return out + "}};\n";
@@ -99,7 +99,7 @@ GeneratedFiles emit_profiles(const Model& model) {
   if (model.profiles.empty()) return {};
   return {{"conformance/generated/profiles.h",
            fill(kFile, {{"banner", banner("// ", inputs)},
-                        {"includes", cpp_include("codec/generated/requirements.h") + "\n" +
+                        {"includes", cpp_include("codec/runtime/rule.h") + "\n" +
                                          cpp_include("conformance/machine/profile.h")},
                         {"profiles", profiles},
                         {"count", std::to_string(model.profiles.size())},

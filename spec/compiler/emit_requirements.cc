@@ -1,30 +1,10 @@
-// Emits requirements.h and its table: ids and texts of the rules.
+// Emits requirements_table.h: names and texts of the rules.
 #include "spec/compiler/cpp_text.h"
 #include "spec/compiler/emit.h"
 #include "spec/compiler/template.h"
 
 namespace rubricc {
 namespace {
-
-constexpr std::string_view kHeader = R"(<<banner>>
-#pragma once
-
-#include <stdint.h>
-
-namespace rubric {
-
-/// A rule of <<file>>.
-enum class ReqId : uint16_t {
-  kNone = 0,
-  <<ids?>>
-};
-
-namespace req {
-<<constants?>>
-}  // namespace req
-
-}  // namespace rubric
-)";
 
 constexpr std::string_view kTable = R"(<<banner>>
 #pragma once
@@ -33,7 +13,7 @@ constexpr std::string_view kTable = R"(<<banner>>
 
 namespace rubric {
 
-/// Indexed by ReqId; the first entry stands for none.
+/// In the order of <<file>>; the first entry stands for none.
 constexpr reflect::Requirement kRequirements[] = {
     {"", "", "", "", "", 0, false, ""},
     <<entries?>>
@@ -73,21 +53,13 @@ std::string table_entry(const Requirement& one) {
 }  // namespace
 
 GeneratedFiles emit_requirements(const Model& model, const std::string& file) {
-  std::string ids, constants, entries;
-  int number = 0;
-  for (const Requirement& one : model.requirements) {
-    const std::string name = cpp_constant(one.id);
-    ids += name + " = " + std::to_string(++number) + ",\n";
-    constants += "constexpr ReqId " + name + " = ReqId::" + name + ";\n";
-    entries += table_entry(one);
-  }
-  const std::string head = banner("// ", file);
-  return {{"codec/generated/requirements.h",
-           fill(kHeader, {{"banner", head}, {"file", file}, {"ids", ids},
-                          {"constants", constants}})},
-          {"codec/generated/requirements_table.h",
-           fill(kTable, {{"banner", head}, {"include", cpp_include("codec/reflect/schema.h")},
-                        {"entries", entries}})}};
+  std::string entries;
+  for (const Requirement& one : model.requirements) entries += table_entry(one);
+  return {{"codec/generated/requirements_table.h",
+           fill(kTable, {{"banner", banner("// ", file)},
+                         {"file", file},
+                         {"include", cpp_include("codec/reflect/schema.h")},
+                         {"entries", entries}})}};
 }
 
 }  // namespace rubricc

@@ -84,8 +84,4 @@ std::string extent_name(ExtentKind extent) {
   throw std::logic_error("extent_name");
 }
 
-std::string req_name(const std::string& id) {
-  return id.empty() ? "ReqId::kNone" : "ReqId::" + cpp_constant(id);
-}
-
 }  // namespace rubricc

@@ -18,7 +18,5 @@ std::vector<Step> postfix(const Expr& expr);
 std::string kind_name(ValueKind kind);
 std::string repeat_name(RepeatKind repeat);
 std::string extent_name(ExtentKind extent);
-/// Returns "ReqId::kWireData"; "ReqId::kNone" for an empty id.
-std::string req_name(const std::string& id);
 
 }  // namespace rubricc

@@ -227,7 +227,7 @@ class TypeTables {
             expr(field, field.size, "Size"),
             expr(field, field.count, "Count"),
             expr(field, field.condition, "If"),
-            req_name(field.requirement),
+            cpp_rule(field.requirement),
             unit(field)};
   }
 
@@ -255,7 +255,7 @@ class TypeTables {
                             type_.max_size == UINT32_MAX ? "UINT32_MAX"
                                                          : std::to_string(type_.max_size),
                             std::to_string(am_type),
-                            req_name(type_.requirement)},
+                            cpp_rule(type_.requirement)},
                            4);
     for (const std::string* text : {&type_.doc, &type_.doc_ref}) {
       out += ",";

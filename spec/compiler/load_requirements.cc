@@ -5,7 +5,7 @@
 #include <span>
 #include <fmt/core.h>
 
-#include "spec/compiler/cpp_text.h"
+#include "codec/runtime/rule.h"
 #include "spec/compiler/load.h"
 #include "spec/compiler/read_spec.h"
 
@@ -99,17 +99,25 @@ void load_requirements_text(const std::string& file, const std::string& text, Mo
   if (!root) return;
   int budget = kNodeBudget;
   const YamlInput input{file, diagnostics, budget};
-  std::map<std::string, int> lines;  // By name in C++, which must be unique too.
+  // Id and line of each number; 0 is what means none.
+  std::map<std::uint16_t, std::pair<std::string, int>> numbers{{0, {"no rule", 0}}};
   for (const YAML::Node& item : yaml_items(input, *root, "requirements")) {
     Requirement found = read_requirement(input, item);
     if (found.id.empty()) continue;
-    const auto [first, fresh] = lines.try_emplace(cpp_constant(found.id), found.place.line);
-    if (!fresh) {
-      diagnostics.error(found.place, fmt::format("requirement {} twice", quote(found.id)),
-                        fmt::format("it stands already in line {}", first->second));
-      continue;
+    const auto number = static_cast<std::uint16_t>(rubric::rule_number(found.id.c_str()));
+    const auto [entry, fresh] = numbers.try_emplace(number, found.id, found.place.line);
+    const auto& [id, line] = entry->second;
+    if (fresh) {
+      model.requirements.push_back(std::move(found));
+    } else if (id == found.id) {
+      diagnostics.error(found.place, fmt::format("requirement {} twice", quote(id)),
+                        fmt::format("it stands already in line {}", line));
+    } else {
+      diagnostics.error(found.place,
+                        fmt::format("requirement {} has the number of {}, {}", quote(found.id),
+                                    quote(id), number),
+                        "a number is a hash of the id: choose another id");
     }
-    model.requirements.push_back(std::move(found));
   }
 }
 

@@ -22,7 +22,7 @@ enum Exit { kOk = 0, kDiagnostics = 1, kUsage = 2, kCannotReadOrWrite = 3 };
 
 const std::vector<std::string> kEmitters{"cpp",        "tables",   "requirements", "protocols",
                                          "dictionary", "messages", "profiles",     "cases",
-                                         "java",       "lua",    "doc",          "json"};
+                                         "java",       "lua",      "json"};
 
 struct Options {
   std::string requirements = "spec/requirements.yaml";
@@ -59,7 +59,6 @@ rubricc::GeneratedFiles emit(const Options& options, const rubricc::Model& model
   if (wants(options, "profiles")) append(out, rubricc::emit_profiles(model));
   if (wants(options, "cases")) append(out, rubricc::emit_cases(model, options.cases));
   if (wants(options, "lua")) append(out, rubricc::emit_lua(model));
-  if (wants(options, "doc")) append(out, rubricc::emit_doc(model));
   if (wants(options, "json")) append(out, rubricc::emit_json(model));
   return out;
 }
@@ -121,8 +120,7 @@ int main(int argc, char** argv) {
   Options options;
   CLI::App app{"rubricc: checks wire specs (a strict profile of Kaitai Struct) and generates from "
                "them. Exit code: 0 fine, 1 mistakes in the input, 2 wrong usage, 3 a file cannot "
-               "be read or written. `rubricc doc --out DIR FILE...` is short for `--emit doc`: "
-               "one HTML page, DIR/doc/wire.html."};
+               "be read or written."};
   app.add_option("--requirements", options.requirements, "The catalogue of requirements")
       ->capture_default_str();
   app.add_option("--profiles", options.profiles, "The folder of the profiles (.yaml)")
@@ -137,11 +135,8 @@ int main(int argc, char** argv) {
   app.add_option("FILE", options.files, "Wire specs (.ksy)")->required();
   check->excludes(emit)->excludes(out);
   emit->needs(out);
-  std::vector<std::string> words(argv + 1, argv + argc);
-  if (!words.empty() && words[0] == "doc") words[0] = "--emit=doc";
-  std::reverse(words.begin(), words.end());  // CLI11 takes them so.
   try {
-    app.parse(words);
+    app.parse(argc, argv);
     if (!options.check && options.emit.empty()) throw CLI::RequiredError("--check or --emit");
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? kOk : kUsage;

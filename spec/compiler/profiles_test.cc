@@ -110,7 +110,7 @@ TEST_F(Cases, AreFoundByTheirTags) {
                                       "a.one WIRE-HDLC-FLAG"}));
   const std::string text = emit_cases(model, "folder").at(0).text;
   EXPECT_NE(text.find("std::array<CaseUse, 6> kCaseUses{{\n    {\"b.one\","), text.npos);
-  EXPECT_NE(text.find("req::kJ4Seq, true},\n"), text.npos);
+  EXPECT_NE(text.find("\"J4-SEQ\"_rule, true},\n"), text.npos);
 }
 
 TEST_F(Cases, MayBeNone) {

@@ -337,7 +337,7 @@ InputResult read_packets(const InputOptions& options, const OnPacket& on_packet,
 
 bool is_damage(const Packet& packet) {
   const ReqId rule = packet.error.requirement;
-  const bool of_file = rule == ReqId::kWirePcap || rule == ReqId::kWirePcapng;
+  const bool of_file = rule == "WIRE-PCAP"_rule || rule == "WIRE-PCAPNG"_rule;
   return of_file && packet.framing == Framing::kBare &&
          (packet.error.fault == Fault::kContainer || packet.error.fault == Fault::kCut);
 }

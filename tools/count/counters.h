@@ -9,6 +9,7 @@
 #include <unordered_map>
 
 #include "codec/reflect/frame.h"
+#include "codec/reflect/requirements.h"
 
 namespace rubric::count {
 
@@ -52,6 +53,15 @@ struct Origin {
   std::uint64_t number = 0;  ///< In the file, from 1.
 };
 
+/// Orders faults by kind, then by rule as the catalogue lists them.
+struct FaultOrder {
+  bool operator()(const std::pair<Fault, ReqId>& a, const std::pair<Fault, ReqId>& b) const {
+    if (a.first != b.first) return a.first < b.first;
+    return reflect::CatalogueOrder()(a.second, b.second);
+  }
+};
+using FaultCounts = std::map<std::pair<Fault, ReqId>, FaultCount, FaultOrder>;
+
 class Counters {
  public:
   using Flows = std::unordered_map<std::string, Flow>;
@@ -65,7 +75,7 @@ class Counters {
   const Flows& messages() const { return messages_; }
   const Flows& pairs() const { return pairs_; }
   /// By fault and rule.
-  const std::map<std::pair<Fault, ReqId>, FaultCount>& faults() const { return faults_; }
+  const FaultCounts& faults() const { return faults_; }
   const std::map<reflect::NoteKind, std::uint64_t>& notes() const { return notes_; }
   const std::map<std::string, std::uint64_t, std::less<>>& interfaces() const {
     return interfaces_;
@@ -77,7 +87,7 @@ class Counters {
   Flow all_;
   Flows messages_;
   Flows pairs_;
-  std::map<std::pair<Fault, ReqId>, FaultCount> faults_;
+  FaultCounts faults_;
   std::map<reflect::NoteKind, std::uint64_t> notes_;
   std::map<std::string, std::uint64_t, std::less<>> interfaces_;
   std::unordered_map<std::string, std::int64_t> last_sequence_;  // By pair, message, interface.

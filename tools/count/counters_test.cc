@@ -119,7 +119,7 @@ TEST(Counters, FaultsByRule) {
   const auto& faults = feed.counters.faults();
   ASSERT_EQ(faults.size(), 1u);
   const auto& [key, count] = *faults.begin();
-  EXPECT_EQ(key.second, ReqId::kWireNetNbytes);
+  EXPECT_EQ(key.second, "WIRE-NET-NBYTES"_rule);
   EXPECT_EQ(count.frames, 2u);
   EXPECT_EQ(count.first.index, 1u);
   EXPECT_THAT(text_report(feed.counters), HasSubstr("WIRE-NET-NBYTES"));

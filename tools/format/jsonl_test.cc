@@ -127,7 +127,7 @@ TEST(Jsonl, says_what_is_remarkable) {
 
 TEST(Jsonl, shows_what_the_framing_breaks) {
   Sample aborted("00 ffff", Framing::kHdlc);
-  aborted.packet.error = Error{Fault::kAborted, 4, ReqId::kWireHdlcEscape};
+  aborted.packet.error = Error{Fault::kAborted, 4, "WIRE-HDLC-ESCAPE"_rule};
   aborted.packet.crc = kAbsent;
   aborted.packet.dropped_bytes = 12;
   aborted.decode();
@@ -137,7 +137,7 @@ TEST(Jsonl, shows_what_the_framing_breaks) {
   EXPECT_EQ(line["error"]["fault"], "aborted");
   EXPECT_EQ(line["error"]["offset"], 3);  // In raw, which lacks the kind byte.
   Sample damage("0a0d0d0a", Framing::kBare);
-  damage.packet.error = Error{Fault::kContainer, 4, ReqId::kWirePcapng};
+  damage.packet.error = Error{Fault::kContainer, 4, "WIRE-PCAPNG"_rule};
   damage.packet.dropped_bytes = 3;
   damage.decode();
   EXPECT_EQ(print(damage)["frame"], Json::parse(R"({"dropped": 3})"));

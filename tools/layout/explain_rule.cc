@@ -17,11 +17,8 @@ using reflect::Requirement;
 
 template <class Visit>
 void each_rule(Visit visit) {
-  for (int i = 1;; ++i) {
-    const auto id = static_cast<ReqId>(i);
-    const Requirement& rule = reflect::requirement(id);
-    if (*rule.id == '\0') break;
-    visit(id, std::string_view(rule.id));
+  for (const Requirement& rule : reflect::requirements().subspan(1)) {
+    visit(rule.number(), std::string_view(rule.id));
   }
 }
 

@@ -5,9 +5,9 @@
 
 #include "codec/generated/oscilloscope/tables.h"
 #include "codec/generated/rubicon/tables.h"
-#include "codec/generated/tinyos/tables.h"
 #include "codec/reflect/encode.h"
 #include "codec/reflect/frame.h"
+#include "codec/reflect/registry.h"
 #include "tools/layout/explain_frame.h"
 #include "tools/layout/explain_rule.h"
 #include "tools/layout/explain_type.h"
@@ -117,8 +117,7 @@ TEST(Reach, Ways) {
 }
 
 TEST(Explain, EveryTypeEnumAndMask) {
-  for (const reflect::Protocol* protocol :
-       {&kRubicon, &tinyos::tables::kProtocol, &oscilloscope::tables::kProtocol}) {
+  for (const reflect::Protocol* protocol : reflect::specs()) {
     for (int i = 0; i < protocol->type_count; ++i) {
       const Type& each = *protocol->types[i];
       const std::string text = explain_type(*protocol, each);
@@ -135,7 +134,7 @@ TEST(Explain, EveryTypeEnumAndMask) {
 }
 
 TEST(Explain, Requirement) {
-  EXPECT_EQ(explain_rule({&kRubicon}, ReqId::kWireNetNbytes, CaseList::kShort, {}),
+  EXPECT_EQ(explain_rule({&kRubicon}, "WIRE-NET-NBYTES"_rule, CaseList::kShort, {}),
             "WIRE-NET-NBYTES: MUST, wire, messages\n"
             "  nbytes counts TRANSID, APPID and the application payload, so it is 2 to 102.\n"
             "  Source: paper: Memory Occupation; release 1.0\n"
@@ -143,11 +142,11 @@ TEST(Explain, Requirement) {
 }
 
 TEST(Explain, RuleOfBehaviour) {
-  const cases::CaseUse uses[] = {{"j4.accept", "a.rtr", req::kJ4Ack, false},
-                                 {"j4.wrong_seq", "a.rtr", req::kJ4Seq, true},
-                                 {"j4.right_seq", "b.rtr", req::kJ4Seq, false},
-                                 {"j4.old_seq", "b.rtr", req::kJ4Seq, true}};
-  EXPECT_EQ(explain_rule({&kRubicon}, req::kJ4Seq, CaseList::kShort, uses),
+  const cases::CaseUse uses[] = {{"j4.accept", "a.rtr", "J4-ACK"_rule, false},
+                                 {"j4.wrong_seq", "a.rtr", "J4-SEQ"_rule, true},
+                                 {"j4.right_seq", "b.rtr", "J4-SEQ"_rule, false},
+                                 {"j4.old_seq", "b.rtr", "J4-SEQ"_rule, true}};
+  EXPECT_EQ(explain_rule({&kRubicon}, "J4-SEQ"_rule, CaseList::kShort, uses),
             "J4-SEQ: MUST, join, mote\n"
             "  A mote ignores a join_reply whose sequence number is not that of its outstanding "
             "request.\n"
@@ -159,17 +158,17 @@ TEST(Explain, RuleOfBehaviour) {
             "  Cases:\n"
             "    positive: j4.right_seq (b.rtr)\n"
             "    negative: j4.wrong_seq (a.rtr), j4.old_seq (b.rtr)\n");
-  const std::string text = explain_rule({&kRubicon}, req::kJ8Fail, CaseList::kShort, {});
+  const std::string text = explain_rule({&kRubicon}, "J8-FAIL"_rule, CaseList::kShort, {});
   EXPECT_THAT(text, HasSubstr("  For: mote\n"));
   EXPECT_THAT(text, HasSubstr("  Accepted by --profile deployed: A joinIsland call without"));
   EXPECT_THAT(text, testing::EndsWith("  Cases: none\n"));
-  EXPECT_THAT(explain_rule({}, req::kT2Loop, {}), HasSubstr("For: mote, sink, base station;"));
+  EXPECT_THAT(explain_rule({}, "T2-LOOP"_rule, {}), HasSubstr("For: mote, sink, base station;"));
 }
 
 TEST(Explain, ManyCasesAreShortenedUnlessAskedFor) {
   const auto cases_of = [](std::size_t count, CaseList list) {
-    const std::vector<cases::CaseUse> uses(count, {"j4.old", "a.rtr", req::kJ4Seq, true});
-    const std::string text = explain_rule({}, req::kJ4Seq, list, uses);
+    const std::vector<cases::CaseUse> uses(count, {"j4.old", "a.rtr", "J4-SEQ"_rule, true});
+    const std::string text = explain_rule({}, "J4-SEQ"_rule, list, uses);
     return text.substr(text.find("  Cases:"));
   };
   const std::string one = "j4.old (a.rtr)";
@@ -182,9 +181,9 @@ TEST(Explain, ManyCasesAreShortenedUnlessAskedFor) {
 }
 
 TEST(Explain, RulesByIdAndGroup) {
-  EXPECT_THAT(rules_named("j4-seq"), ElementsAre(req::kJ4Seq));
-  EXPECT_THAT(rules_named("n9"), ElementsAre(req::kN9Set, req::kN9Other, req::kN9Members));
-  EXPECT_THAT(rules_named("WIRE-HDLC"), testing::Contains(req::kWireHdlcTwoFlags));
+  EXPECT_THAT(rules_named("j4-seq"), ElementsAre("J4-SEQ"_rule));
+  EXPECT_THAT(rules_named("n9"), ElementsAre("N9-SET"_rule, "N9-OTHER"_rule, "N9-MEMBERS"_rule));
+  EXPECT_THAT(rules_named("WIRE-HDLC"), testing::Contains("WIRE-HDLC-TWO-FLAGS"_rule));
   EXPECT_EQ(rules_named("J1").size(), 4U);  // Not those of J10 and J11.
   EXPECT_THAT(rules_named("J"), testing::IsEmpty());
   EXPECT_THAT(rules_named(""), testing::IsEmpty());

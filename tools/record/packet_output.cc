@@ -126,7 +126,7 @@ std::string PacketOutput::write(const Packet& packet, std::string_view interface
     return fmt::format("{} bytes of this frame were dropped when it was read",
                        packet.dropped_bytes);
   }
-  if (packet.error.requirement == req::kWireSfHandshake) {
+  if (packet.error.requirement == "WIRE-SF-HANDSHAKE"_rule) {
     return "the handshake of a stream is written whole, or not at all";
   }
   if (!writer_ && !make_writer(packet)) return reason(container_, packet, link_type_);

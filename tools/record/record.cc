@@ -60,20 +60,20 @@ void read_serial(const Value& frame, bool whole, Packet& packet) {
     throw RecordError("frame.serial_seq",
                       "expected none, as frames of kind " + std::to_string(packet.kind) +
                           " have none, given " + std::to_string(packet.serial_seq),
-                      req::kWireSerialSeq);
+                      "WIRE-SERIAL-SEQ"_rule);
   }
   if (whole && has_seq && packet.serial_seq == kAbsent) {
     throw RecordError("frame.serial_seq",
                       "is missing: expected a number from 0 to 255, as frames of kind " +
                           std::to_string(packet.kind) + " have one",
-                      req::kWireSerialSeq);
+                      "WIRE-SERIAL-SEQ"_rule);
   }
 }
 
 // Returns the link type under which a capture file keeps a malformed radio frame as it is.
 std::uint16_t link_type_for(Fault fault, ReqId rule, const Packet& packet) {
   if (packet.framing != Framing::kRadio) return 0;
-  if (rule == req::kWireRadioTap) return kLinkRadioTap;
+  if (rule == "WIRE-RADIO-TAP"_rule) return kLinkRadioTap;
   if (fault == Fault::kCut) return kLinkRadioNoFcs;
   return fault == Fault::kTooLong && packet.fcs == kAbsent ? kLinkRadioNoFcs : kLinkRadioFcs;
 }
@@ -120,7 +120,7 @@ void settle_check_sum(const Value& line, OwnedPacket& out) {
                     "expected " + std::to_string(computed) + ", given " +
                         (sum == kAbsent ? "none" : std::to_string(sum)) + "; delete \"" + key +
                         "\" to have it computed, or let \"error\" name the fault \"" + key + '"',
-                    serial ? req::kWireSerialCrc : req::kWireRadioFcs);
+                    serial ? "WIRE-SERIAL-CRC"_rule : "WIRE-RADIO-FCS"_rule);
 }
 
 void read_hex(const Value& line, std::string_view key, std::vector<std::uint8_t>& out) {

@@ -117,7 +117,7 @@ bool rebuildable(const Value& line) {
 
 // Returns whether no file can hold the packet: bytes that are none.
 bool is_lost(const Packet& packet) {
-  return packet.error.requirement == ReqId::kWireSfHandshake ||
+  return packet.error.requirement == "WIRE-SF-HANDSHAKE"_rule ||
          (packet.error.fault == Fault::kTooLong && packet.dropped_bytes > 0);
 }
 

@@ -39,7 +39,7 @@ oracle::Report report_of(std::vector<Finding> findings) {
     if (one.severity == Severity::kFail) out.verdict = oracle::Verdict::kFail;
   }
   out.frames = 9;
-  out.exercised = {{req::kJ4Seq, 3}};
+  out.exercised = {{"J4-SEQ"_rule, 3}};
   return out;
 }
 
@@ -131,7 +131,7 @@ const Row kRows[] = {
 TEST(Expectations, OfAFailure) {
   const oracle::Run run = run_of(9);
   const oracle::Report report =
-      report_of({finding(req::kJ4Seq, Severity::kFail, 4, "a wrong number")});
+      report_of({finding("J4-SEQ"_rule, Severity::kFail, 4, "a wrong number")});
   for (const Row& row : kRows) {
     std::string text = "- requirement: J4-SEQ\n  reason: r\n  message: ";
     text += std::string(row.message) + "\n";
@@ -145,7 +145,7 @@ TEST(Expectations, OfAFailure) {
 
 TEST(Expectations, AreOfFailuresAlone) {
   const oracle::Report report =
-      report_of({finding(req::kJ4Seq, Severity::kInconclusive, 4, "a wrong number")});
+      report_of({finding("J4-SEQ"_rule, Severity::kInconclusive, 4, "a wrong number")});
   const Outcome outcome = compare(
       run_of(9), {}, report,
       expecting("- {requirement: J4-SEQ, message: a wrong number, reason: r}"));
@@ -154,8 +154,8 @@ TEST(Expectations, AreOfFailuresAlone) {
 }
 
 TEST(Expectations, OneKnownFailureLeavesOthersUnexpected) {
-  const oracle::Report report = report_of({finding(req::kJ4Seq, Severity::kFail, 4, "this"),
-                                           finding(req::kJ4Seq, Severity::kFail, 5, "that")});
+  const oracle::Report report = report_of({finding("J4-SEQ"_rule, Severity::kFail, 4, "this"),
+                                           finding("J4-SEQ"_rule, Severity::kFail, 5, "that")});
   const Outcome outcome = compare(
       run_of(9), {}, report, expecting("- {requirement: J4-SEQ, message: this, reason: r}"));
   EXPECT_EQ(outcome.results[0].came, Came::kTrue);
@@ -168,10 +168,10 @@ TEST(ExitCodes, WithoutExpectations) {
     return compare(run_of(9), {}, report, {}).exit_code();
   };
   EXPECT_EQ(code(report_of({})), 0);
-  EXPECT_EQ(code(report_of({finding(req::kJ4Seq, Severity::kWeak, 1, "x")})), 0);
-  EXPECT_EQ(code(report_of({finding(req::kJ4Seq, Severity::kInconclusive, 1, "x")})), 0);
-  EXPECT_EQ(code(report_of({finding(req::kJ4Seq, Severity::kFail, 1, "x")})), 1);
-  oracle::Report nothing = report_of({finding(req::kJ4Seq, Severity::kInconclusive, 1, "x")});
+  EXPECT_EQ(code(report_of({finding("J4-SEQ"_rule, Severity::kWeak, 1, "x")})), 0);
+  EXPECT_EQ(code(report_of({finding("J4-SEQ"_rule, Severity::kInconclusive, 1, "x")})), 0);
+  EXPECT_EQ(code(report_of({finding("J4-SEQ"_rule, Severity::kFail, 1, "x")})), 1);
+  oracle::Report nothing = report_of({finding("J4-SEQ"_rule, Severity::kInconclusive, 1, "x")});
   nothing.exercised.clear();
   EXPECT_EQ(code(nothing), 3);
   EXPECT_EQ(compare(run_of(9), {}, nothing, {}).verdict, oracle::Verdict::kInconclusive);
@@ -219,14 +219,14 @@ oracle::Report picky_judge(const oracle::Run& run, const oracle::Options&) {
     if (frame == 470 || frame == 500 || frame == 510) ++needed;
   }
   if (needed < 3) return {};
-  return report_of({finding(req::kJ4Seq, Severity::kFail, 500, "x")});
+  return report_of({finding("J4-SEQ"_rule, Severity::kFail, 500, "x")});
 }
 
 TEST(Windows, AreSmallAndStillShowTheFinding) {
   const oracle::Run run = run_of(1000);
   oracle::Options options;
   Windows windows(run, options, picky_judge);
-  const Finding found = finding(req::kJ4Seq, Severity::kFail, 500, "x");
+  const Finding found = finding("J4-SEQ"_rule, Severity::kFail, 500, "x");
   const std::vector<FrameRange> ranges = windows.around(found);
   ASSERT_EQ(ranges.size(), 1u);
   EXPECT_LE(ranges[0].first, 470u);
@@ -237,7 +237,7 @@ TEST(Windows, AreSmallAndStillShowTheFinding) {
 
 TEST(Windows, AreTheWholeRunWhereNothingLessWillDo) {
   const oracle::Run run = run_of(20);
-  const Finding found = finding(req::kJ4Seq, Severity::kFail, 10, "x");
+  const Finding found = finding("J4-SEQ"_rule, Severity::kFail, 10, "x");
   const auto needs_all = [&](const oracle::Run& part, const oracle::Options&) {
     return part.seen.size() == 20 ? report_of({found}) : oracle::Report{};
   };
@@ -284,7 +284,7 @@ struct Told {
 TEST(Text, FirstFailureOfARuleInFullOthersInALine) {
   std::vector<Finding> findings;
   for (std::uint64_t i = 1; i <= 6; ++i) {
-    findings.push_back(finding(req::kJ4Seq, Severity::kFail, i, "It said " + std::to_string(i)));
+    findings.push_back(finding("J4-SEQ"_rule, Severity::kFail, i, "It said " + std::to_string(i)));
   }
   findings[0].hypotheses = {{"It was so.", "This.", "Expected 1, seen 2."},
                             {"It was not.", "That.", "Expected 3, seen 2."}};
@@ -316,8 +316,8 @@ TEST(Text, FirstFailureOfARuleInFullOthersInALine) {
 }
 
 TEST(Text, KnownStaleAndChangedFailures) {
-  const Told told({finding(req::kJ4Seq, Severity::kFail, 2, "A wrong number."),
-                   finding(req::kJ3Time, Severity::kFail, 3, "No growth.")},
+  const Told told({finding("J4-SEQ"_rule, Severity::kFail, 2, "A wrong number."),
+                   finding("J3-TIME"_rule, Severity::kFail, 3, "No growth.")},
                   "- {requirement: J4-SEQ, message: wrong number, reason: Never repaired.}\n"
                   "- {requirement: J3-TIME, message: backwards, reason: r}\n"
                   "- {requirement: J8-LIMIT, message: sixth, reason: r}\n");
@@ -333,7 +333,7 @@ TEST(Text, KnownStaleAndChangedFailures) {
 }
 
 TEST(Json, EscapesWhatItSays) {
-  const Told told({finding(req::kJ4Seq, Severity::kFail, 2, "\"<\xFF>\"")});
+  const Told told({finding("J4-SEQ"_rule, Severity::kFail, 2, "\"<\xFF>\"")});
   const std::string json = json_report(told.story()).text();
   EXPECT_THAT(json, HasSubstr("{\"schema\":\"rubric.check/1\",\n\"verdict\":\"fail\",\n"
                               "\"expected\":false,\n\"exit_code\":1,\n"));
@@ -343,9 +343,9 @@ TEST(Json, EscapesWhatItSays) {
 }
 
 TEST(Junit, FailuresSkippedAndKnown) {
-  const Told told({finding(req::kJ4Seq, Severity::kFail, 2, "\"<wrong>\" & so on"),
-                   finding(req::kJ3Time, Severity::kInconclusive, 3, "Who knows."),
-                   finding(req::kJ8Limit, Severity::kFail, 4, "The 6th.")},
+  const Told told({finding("J4-SEQ"_rule, Severity::kFail, 2, "\"<wrong>\" & so on"),
+                   finding("J3-TIME"_rule, Severity::kInconclusive, 3, "Who knows."),
+                   finding("J8-LIMIT"_rule, Severity::kFail, 4, "The 6th.")},
                   "- {requirement: J8-LIMIT, message: 6th, reason: Release 1.0.}\n"
                   "- {requirement: J8-LIMIT, message: 7th, reason: r}\n");
   const std::string xml = junit_report(told.story());

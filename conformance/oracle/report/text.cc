@@ -34,11 +34,13 @@ class TextReport {
   std::string text() {
     about_the_run();
     std::vector<std::size_t> lines;  // Findings that get a line each.
-    std::set<std::pair<ReqId, std::string>> told;
+    std::set<std::pair<std::size_t, std::string>> told;
     const auto& findings = story_.report.findings;
     for (std::size_t i = 0; i < findings.size(); ++i) {
       const bool failed = findings[i].severity == Severity::kFail && !is_expected(i);
-      const bool first = failed && told.emplace(findings[i].requirement, findings[i].node).second;
+      const bool first = failed && told.emplace(reflect::requirement_index(findings[i].requirement),
+                                                findings[i].node)
+                                       .second;
       if (first || options_.verbose) {
         in_full(i);
       } else {
@@ -243,12 +245,13 @@ class TextReport {
 
   // Prints the rest: by severity, then by rule, a few of each.
   void in_lines(const std::vector<std::size_t>& which) {
-    using Key = std::tuple<int, bool, ReqId>;
+    using Key =
+        std::tuple<int, bool, std::size_t>;  // The last is the rule's place in the catalogue.
     std::map<Key, std::vector<std::size_t>> groups;
     for (const std::size_t i : which) {
       const Finding& finding = story_.report.findings[i];
-      groups[{-static_cast<int>(finding.severity), is_expected(i), finding.requirement}].push_back(
-          i);
+      groups[{-static_cast<int>(finding.severity), is_expected(i),
+              reflect::requirement_index(finding.requirement)}].push_back(i);
     }
     if (!groups.empty()) out_ += '\n';
     for (const auto& [key, group] : groups) {

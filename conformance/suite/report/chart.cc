@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "codec/reflect/requirements.h"
 #include "conformance/report/sequence_svg.h"
 #include "conformance/runner/subject_target.h"
 #include "conformance/suite/report/log_lines.h"
@@ -129,7 +130,7 @@ std::string full_text(const Line& line) {
 // Returns the rules, each once.
 std::string rules_text(const std::vector<ReqId>& rules) {
   std::string out;
-  std::set<ReqId> seen{ReqId::kNone};
+  std::set<ReqId, reflect::CatalogueOrder> seen{ReqId::kNone};
   for (const ReqId rule : rules) {
     if (!seen.insert(rule).second) continue;
     out += (out.empty() ? "" : ", ") + std::string(trace::requirement_text(rule));

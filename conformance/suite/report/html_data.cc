@@ -271,7 +271,7 @@ class Data {
   CaseSources sources_;
   Frames frames_;
   Charts charts_;
-  std::set<ReqId> rules_;
+  std::set<ReqId, reflect::CatalogueOrder> rules_;
   std::map<std::string, std::size_t> by_name_;
   Json cases_ = Json::array();
 };

@@ -24,7 +24,7 @@ CaseRun one(const std::string& name, CaseVerdict verdict) {
   run.name = name;
   run.file = "conformance/cases/j4.rtr";
   run.roles = {machine::Role::kMote};
-  run.requirements = {req::kJ4Seq};
+  run.requirements = {"J4-SEQ"_rule};
   run.wall_ms = 1.5;
   run.result.name = name;
   run.result.verdict = verdict;
@@ -66,13 +66,13 @@ TEST(Report, TapHasAPointForEachCaseAndExpectation) {
             "ok 2 - tiny 0.3: a.weak\n"
             "  ---\n  verdict: weak\n  file: conformance/cases/j4.rtr\n  details: |\n"
             "    conformance/cases/j4.rtr:12: J4-SEQ (SHOULD)\n"
-            "      J4-SEQ (MUST): " + std::string(reflect::requirement(req::kJ4Seq).sentence) +
+            "      J4-SEQ (MUST): " + std::string(reflect::requirement("J4-SEQ"_rule).sentence) +
             "\n      expected  m5 !> rA  ack_join(*)\n      but       at 7 it emitted ack_join\n"
             "  ...\n"
             "not ok 3 - tiny 0.3: a.fail\n"
             "  ---\n  verdict: fail\n  file: conformance/cases/j4.rtr\n  details: |\n"
             "    conformance/cases/j4.rtr:12: J4-SEQ\n"
-            "      J4-SEQ (MUST): " + std::string(reflect::requirement(req::kJ4Seq).sentence) +
+            "      J4-SEQ (MUST): " + std::string(reflect::requirement("J4-SEQ"_rule).sentence) +
             "\n      expected  m5 !> rA  ack_join(*)\n      but       at 7 it emitted ack_join\n"
             "  ...\n"
             "not ok 4 - tiny 0.3: a.error\n"
@@ -84,7 +84,7 @@ TEST(Report, TapHasAPointForEachCaseAndExpectation) {
             "not ok 6 - tiny 0.3: a.known # TODO issue \\#7\n"
             "  ---\n  verdict: fail\n  file: conformance/cases/j4.rtr\n  details: |\n"
             "    conformance/cases/j4.rtr:12: J4-SEQ\n"
-            "      J4-SEQ (MUST): " + std::string(reflect::requirement(req::kJ4Seq).sentence) +
+            "      J4-SEQ (MUST): " + std::string(reflect::requirement("J4-SEQ"_rule).sentence) +
             "\n      expected  m5 !> rA  ack_join(*)\n      but       at 7 it emitted ack_join\n"
             "  ...\n"
             "not ok 7 - tiny 0.3: a.better\n"
