@@ -81,9 +81,7 @@ void FrameDecoder::decode(const Packet& packet, Frame& out) const {
   out.mac = envelope.mac;
   switch (envelope.kind) {
     case Envelope::Kind::kNothing: break;
-    case Envelope::Kind::kOpaque:
-      not_decoded(out, envelope.key);
-      break;
+    case Envelope::Kind::kOpaque: not_decoded(out, envelope.key); break;
     case Envelope::Kind::kLinkAck:
       if (envelope.carrier) decode_carrier(*envelope.carrier, packet.bytes, out.decoded);
       break;
