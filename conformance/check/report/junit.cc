@@ -43,8 +43,8 @@ class Junit {
  private:
   const char* profile() const { return story_.options.deployed ? "deployed" : "paper"; }
 
-  std::map<ReqId, RuleFindings> by_rule() const {
-    std::map<ReqId, RuleFindings> out;
+  std::map<ReqId, RuleFindings, reflect::CatalogueOrder> by_rule() const {
+    std::map<ReqId, RuleFindings, reflect::CatalogueOrder> out;
     for (const auto& [id, count] : story_.report.exercised) out[id].kept = count;
     for (std::size_t i = 0; i < story_.report.findings.size(); ++i) {
       const Finding& finding = story_.report.findings[i];

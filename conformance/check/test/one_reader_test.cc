@@ -3,11 +3,11 @@
 // capture, every corpus file of the fuzzers in every format, and 100,000 generated frames.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <map>
 #include <memory>
-#include <set>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -43,10 +43,10 @@ using reflect::Decoded;
 // Rules of what is around a message. Whoever breaks one is heard by nobody; a fault within the
 // message is its sender's.
 bool is_around(ReqId rule) {
-  static const std::set<ReqId> kAround = {"WIRE-AM-DISPATCH"_rule,   "WIRE-AM-HEADER"_rule,
-                                          "WIRE-AM-LENGTH"_rule,     "WIRE-RADIO-HEADER"_rule,
-                                          "WIRE-RADIO-NETWORK"_rule, "WIRE-RADIO-LENGTH"_rule};
-  return kAround.contains(rule);
+  constexpr ReqId kAround[] = {"WIRE-AM-DISPATCH"_rule,   "WIRE-AM-HEADER"_rule,
+                               "WIRE-AM-LENGTH"_rule,     "WIRE-RADIO-HEADER"_rule,
+                               "WIRE-RADIO-NETWORK"_rule, "WIRE-RADIO-LENGTH"_rule};
+  return std::ranges::find(kAround, rule) != std::end(kAround);
 }
 
 /// Compares packets, and counts what they were.
