@@ -13,12 +13,12 @@
 #include <utility>
 
 #include "codec/containers/reader.h"
+#include "codec/lines/broken.h"
 #include "codec/lines/line.h"
 #include "codec/lines/stop.h"
 #include "codec/reflect/fault_text.h"
 #include "codec/reflect/registry.h"
 #include "codec/reflect/suggest.h"
-#include "codec/lines/broken.h"
 #include "tools/cli/input_file.h"
 #include "tools/cli/progress.h"
 
