@@ -1,7 +1,7 @@
 // Builders make frames in place, and refuse what does not fit.
-#include <cstring>
-
 #include <gtest/gtest.h>
+
+#include <cstring>
 
 #include "codec/generated/rubicon/all.h"
 #include "codec/generated/tinyos/all.h"

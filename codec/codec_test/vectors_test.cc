@@ -1,15 +1,15 @@
 // The generated views against spec/vectors: bytes and their meaning, decided without them.
 #include "codec/codec_test/vectors.h"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <functional>
 #include <iostream>
 #include <set>
 
-#include <gtest/gtest.h>
-
 #include "codec/codec_test/every_view.h"
-#include "tools/readme/number.h"
+#include "tools/tests/readme/number.h"
 
 namespace rubric {
 namespace {
@@ -105,9 +105,8 @@ void check(const Vector& vector) {
 
 std::map<std::string, Check> checks() {
   std::map<std::string, Check> out;
-  for_each_view_of_all([&out]<class View>(const std::string& name, ViewTag<View>) {
-    out[name] = &check<View>;
-  });
+  for_each_view_of_all(
+      [&out]<class View>(const std::string& name, ViewTag<View>) { out[name] = &check<View>; });
   return out;
 }
 

@@ -1,8 +1,8 @@
 // Views, values and enums as firmware and tools use them, message by message.
+#include <gtest/gtest.h>
+
 #include <cstring>
 #include <vector>
-
-#include <gtest/gtest.h>
 
 #include "codec/generated/rubicon/all.h"
 #include "codec/generated/tinyos/all.h"

@@ -45,15 +45,9 @@ HdlcReader::HdlcReader(const ReaderOptions& options, CpuPath path) : path_(path)
 void HdlcReader::feed(Bytes chunk, PacketSink sink) {
   if (chunk.empty()) return;
   switch (path_) {
-    case CpuPath::kWide:
-      feed_with<CpuPath::kWide>(chunk, sink);
-      break;
-    case CpuPath::kVector:
-      feed_with<CpuPath::kVector>(chunk, sink);
-      break;
-    case CpuPath::kPortable:
-      feed_with<CpuPath::kPortable>(chunk, sink);
-      break;
+    case CpuPath::kWide: feed_with<CpuPath::kWide>(chunk, sink); break;
+    case CpuPath::kVector: feed_with<CpuPath::kVector>(chunk, sink); break;
+    case CpuPath::kPortable: feed_with<CpuPath::kPortable>(chunk, sink); break;
   }
   chunk_offset_ += chunk.size();
 }

@@ -20,14 +20,10 @@ bool is_space(std::uint8_t c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
 std::uint16_t link_type_of(const ReaderOptions& options) {
   switch (options.hex_framing) {
-    case Framing::kHdlc:
-      return kLinkSerial;
-    case Framing::kSf:
-      return kLinkSf;
-    case Framing::kRadio:
-      return options.hex_has_fcs ? kLinkRadioFcs : kLinkRadioNoFcs;
-    case Framing::kBare:
-      break;
+    case Framing::kHdlc: return kLinkSerial;
+    case Framing::kSf: return kLinkSf;
+    case Framing::kRadio: return options.hex_has_fcs ? kLinkRadioFcs : kLinkRadioNoFcs;
+    case Framing::kBare: break;
   }
   return 0;
 }

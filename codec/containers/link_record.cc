@@ -97,9 +97,7 @@ void decode_record(Bytes record, std::uint64_t original_bytes, std::uint16_t lin
   packet.bytes = record;
   packet.error = kSound;
   switch (link_type) {
-    case kLinkSerial:
-      decode_serial_content(record, packet);
-      break;
+    case kLinkSerial: decode_serial_content(record, packet); break;
     case kLinkSf:
       packet.framing = Framing::kSf;
       if (record.empty()) packet.error = fail(Fault::kEmpty, 0, "WIRE-SF-LENGTH"_rule).error;
@@ -109,9 +107,7 @@ void decode_record(Bytes record, std::uint64_t original_bytes, std::uint16_t lin
       break;
     case kLinkRadioFcs:
     case kLinkRadioNoFcs:
-    case kLinkRadioTap:
-      decode_radio(record, link_type, cut, packet);
-      break;
+    case kLinkRadioTap: decode_radio(record, link_type, cut, packet); break;
     default:
       packet.framing = Framing::kBare;
       packet.error = fail(Fault::kUnsupported, 0, container).error;

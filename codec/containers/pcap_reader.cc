@@ -29,8 +29,8 @@ UnitReader::Step PcapReader::step(Bytes input, PacketSink sink) {
   const Interface& interface = interfaces_[0];
   Packet packet;
   packet.offset_bytes = offset() + kRecordHeaderBytes;
-  packet.time_ns = time_ns_of_ticks(
-      load32(header) * interface.ticks_per_second + load32(header + 4), interface);
+  packet.time_ns =
+      time_ns_of_ticks(load32(header) * interface.ticks_per_second + load32(header + 4), interface);
   decode_record(input.sub(kRecordHeaderBytes, captured), load32(header + 12), interface.link_type,
                 "WIRE-PCAP"_rule, packet);
   sink(packet);

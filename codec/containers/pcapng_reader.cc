@@ -53,14 +53,11 @@ void PcapngReader::block(Bytes bytes, PacketSink sink) {
   if (type == kSectionHeader) return section(bytes, sink);
   if (!supported_) return;
   switch (type) {
-    case kInterfaceDescription:
-      return interface_description(bytes, sink);
+    case kInterfaceDescription: return interface_description(bytes, sink);
     case kEnhancedPacket:
     case kSimplePacket:
-    case kObsoletePacket:
-      return packet_block(bytes, type, sink);
-    default:
-      return;
+    case kObsoletePacket: return packet_block(bytes, type, sink);
+    default: return;
   }
 }
 

@@ -15,9 +15,7 @@ namespace {
 
 constexpr std::size_t kExcessMost = 40;
 
-Bytes view(const std::vector<std::uint8_t>& bytes) {
-  return Bytes(bytes.data(), bytes.size());
-}
+Bytes view(const std::vector<std::uint8_t>& bytes) { return Bytes(bytes.data(), bytes.size()); }
 
 std::vector<std::uint8_t> content_of(const Framed& framed) {
   std::string text;

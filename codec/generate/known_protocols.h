@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "codec/containers/testing.h"
+#include "codec/containers/test/testing.h"
 #include "codec/generate/link_ack.h"
 #include "codec/generate/routes.h"
 #include "codec/reflect/fault_text.h"

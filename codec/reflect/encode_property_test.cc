@@ -14,9 +14,9 @@ namespace rubric::reflect {
 namespace {
 
 std::int64_t pick(std::int64_t min, std::int64_t max) {
-  return min + static_cast<std::int64_t>(*rc::gen::resize(
-                   100, rc::gen::inRange<std::uint64_t>(
-                            0, static_cast<std::uint64_t>(max - min) + 1)));
+  return min +
+         static_cast<std::int64_t>(*rc::gen::resize(
+             100, rc::gen::inRange<std::uint64_t>(0, static_cast<std::uint64_t>(max - min) + 1)));
 }
 bool chance(int percent) { return pick(0, 99) < percent; }
 
@@ -217,8 +217,8 @@ class Grower {
     return false;
   }
 
-  std::map<std::size_t, std::int64_t> forced_;     // Keys that were chosen before they grow.
-  std::map<std::size_t, std::string> measures_;    // Names of sizes, by their place.
+  std::map<std::size_t, std::int64_t> forced_;   // Keys that were chosen before they grow.
+  std::map<std::size_t, std::string> measures_;  // Names of sizes, by their place.
 };
 
 // Returns decoded nodes as a tree.

@@ -66,8 +66,7 @@ TEST(FaultText, says_what_was_expected) {
   decode(*find_type(*find_protocol("rubicon"), "updates"), updates, Tail::kFault, true, decoded);
   ASSERT_EQ(decoded.note_count(), 1U);
   EXPECT_EQ(note_name(decoded.notes()[0].kind), "unexpected_value");
-  EXPECT_EQ(note_text(decoded.notes()[0]),
-            "type is 34 (demo_data), expected is 35 (updates)");
+  EXPECT_EQ(note_text(decoded.notes()[0]), "type is 34 (demo_data), expected is 35 (updates)");
 }
 
 TEST(Registry, has_protocols_by_name) {

@@ -17,7 +17,6 @@ using Mac = tinyos::MacHeaderLayout;
 using tinyos::FrameControl;
 using tinyos::FrameControlPart;
 
-constexpr std::size_t kAmHeaderBytes = tinyos::AmHeaderView::kMaxSizeBytes;
 constexpr std::size_t kMacHeaderBytes = tinyos::MacHeaderView::kMaxSizeBytes;
 
 const Field& last_field(const Type& type) { return type.fields[type.field_count - 1]; }
@@ -82,9 +81,7 @@ void FrameDecoder::decode(const Packet& packet, Frame& out) const {
   out.mac = envelope.mac;
   switch (envelope.kind) {
     case Envelope::Kind::kNothing: break;
-    case Envelope::Kind::kOpaque:
-      not_decoded(out, envelope.key);
-      break;
+    case Envelope::Kind::kOpaque: not_decoded(out, envelope.key); break;
     case Envelope::Kind::kLinkAck:
       if (envelope.carrier) decode_carrier(*envelope.carrier, packet.bytes, out.decoded);
       break;

@@ -43,7 +43,7 @@ struct Envelope {
     kBare,     ///< The message alone.
   };
   Kind kind = Kind::kNothing;
-  std::int64_t key = 0;           ///< kOpaque: the kind of the packet, or the frame control field.
+  std::int64_t key = 0;  ///< kOpaque: the kind of the packet, or the frame control field.
   ActiveMessage am;
   MacHeader mac;
   const Type* carrier = nullptr;  ///< kMessage and acknowledgements of 802.15.4.
@@ -59,9 +59,9 @@ const Switch* payload_choice(const Protocol& protocol, std::string_view carrier)
 /// A decoded packet. `packet` and the bytes are borrowed.
 struct Frame {
   const Packet* packet = nullptr;
-  Decoded decoded;                  ///< Empty (no nodes) where the bytes are not a message.
-  std::uint32_t payload_node = 0;   ///< Node of the outermost message's fields; 0 if bare.
-  bool has_payload = false;         ///< payload_node names a structure or opaque bytes.
+  Decoded decoded;                 ///< Empty (no nodes) where the bytes are not a message.
+  std::uint32_t payload_node = 0;  ///< Node of the outermost message's fields; 0 if bare.
+  bool has_payload = false;        ///< payload_node names a structure or opaque bytes.
   ActiveMessage am;
   MacHeader mac;
   /// The fault of the framing, else of the content. The offset counts from the first byte of

@@ -103,8 +103,10 @@ const BadCase kBad[] = {
     {"WrongCrc", "7e 43 00 9f 59 7e", {Fault::kCrc, 2, "WIRE-SERIAL-CRC"_rule}, 4},
     {"Aborted", "7e 43 00 9f 58 7d 7e", {Fault::kAborted, 4, "WIRE-HDLC-ESCAPE"_rule}, 4},
     {"AbortedAtOnce", "7e 7d 7e", {Fault::kAborted, 0, "WIRE-HDLC-ESCAPE"_rule}, 0},
-    {"BeyondTheBuffer", "7e 43 00 00 00 00 00 00 00 00 7e",
-     {Fault::kTooLong, 8, "WIRE-HDLC-LONG"_rule}, 8},
+    {"BeyondTheBuffer",
+     "7e 43 00 00 00 00 00 00 00 00 7e",
+     {Fault::kTooLong, 8, "WIRE-HDLC-LONG"_rule},
+     8},
 };
 
 TEST(WireHdlcShort, BadFramesAreToldAndTheNextIsFound) {

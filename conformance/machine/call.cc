@@ -32,8 +32,8 @@ struct NodeCall {
     }
     const bool starts = state.join.phase == JoinMote::Phase::kOutside;
     const std::uint16_t seq_num = starts ? join_seq_num(state) : state.join.seq_num;
-    const JoinSend send = call_join(state.join, join_context(node), call.descriptor, seq_num,
-                                    node.actions);
+    const JoinSend send =
+        call_join(state.join, join_context(node), call.descriptor, seq_num, node.actions);
     if (send == JoinSend::kRequest) send_join_request(node, "J1-REQUEST"_rule);
   }
 
@@ -84,9 +84,7 @@ struct NodeCall {
     result(true, "N9-SET"_rule);
   }
 
-  void operator()(const GetClock&) {
-    node.actions.notify(Clock{clock_ms(node)}, "J4-CLOCK"_rule);
-  }
+  void operator()(const GetClock&) { node.actions.notify(Clock{clock_ms(node)}, "J4-CLOCK"_rule); }
 
   // The other calls are about synaptic channels, which a base station does not have.
   void operator()(const CreateChannel&) { synaptic(ChannelResult{0, false}); }

@@ -17,13 +17,10 @@ constexpr std::size_t kAppHeaderBytes = rubicon::AppMsgLayout::PayloadAt::kAt;
 
 Link link_of(Route::Onward onward) {
   switch (onward) {
-    case Route::Onward::kSerial:
-      return Link::kSerial;
-    case Route::Onward::kPeis:
-      return Link::kPeis;
+    case Route::Onward::kSerial: return Link::kSerial;
+    case Route::Onward::kPeis: return Link::kPeis;
     case Route::Onward::kRadio:
-    case Route::Onward::kNowhere:
-      break;
+    case Route::Onward::kNowhere: break;
   }
   return Link::kRadio;
 }
@@ -120,8 +117,7 @@ void deliver(Node& node, rubicon::NetMsgView message) {
   const auto app_id = static_cast<std::uint8_t>(App::AppIdAt::load(payload.data()));
   const Bytes body = payload.from(kAppHeaderBytes);
   switch (trans_id) {
-    case component::kConnless:
-      return hear_connless(node, message, app_id, body);
+    case component::kConnless: return hear_connless(node, message, app_id, body);
     case component::kRubiconAck: {
       const std::int32_t acked = acked_seq_num(body);
       if (acked < 0) return node.actions.ignored("WIRE-RUBICON-ACK"_rule);
@@ -132,10 +128,9 @@ void deliver(Node& node, rubicon::NetMsgView message) {
     }
     case component::kSynChannel:
       if (node.config().role == Role::kBaseStation) break;  // It has no channels.
-      return hear_synaptic(node.state.synaptic, own_address(node.state),
-                           address_of(message.src()), body, node.actions);
-    default:
-      break;
+      return hear_synaptic(node.state.synaptic, own_address(node.state), address_of(message.src()),
+                           body, node.actions);
+    default: break;
   }
   node.actions.ignored("T1-UNKNOWN"_rule);
 }
@@ -259,10 +254,10 @@ void tick(Node& node) {
     }
     const Bytes data(floats, Values::kUnitBytes * send.size);
     ReqId refused = ReqId::kNone;
-    send_own(node,
-             {send.dest, component::kSynChannel, component::kEsnData, false, data,
-              send.requirement},
-             refused);
+    send_own(
+        node,
+        {send.dest, component::kSynChannel, component::kEsnData, false, data, send.requirement},
+        refused);
     if (refused == ReqId::kNone) continue;
     node.actions.ignored(refused);
     keep_change(state.synaptic, send.id);

@@ -66,9 +66,8 @@ void hear_ack_join(Node& node, const Frame& frame) {
   //= <dest.pid, the AM source>.
   const bool sound = dest.devid == node.config().id && src == Address{dest.pid, frame.src};
   if (dest.pid == node.state.island && !sound) return node.actions.ignored("J6-SENDER"_rule);
-  const bool joined =
-      hear_ack_join(node.state.sink, join_context(node), dest, src, ack->seq_num(),
-                    descriptor_of(ack->mote_desc()), node.actions);
+  const bool joined = hear_ack_join(node.state.sink, join_context(node), dest, src, ack->seq_num(),
+                                    descriptor_of(ack->mote_desc()), node.actions);
   if (joined) report_joined(node, *find_member(node.state.sink, src.devid));
 }
 
@@ -92,18 +91,12 @@ bool is_known_type(Role role, Link link, std::uint8_t type) {
 
 void handle(Node& node, const Frame& frame) {
   switch (frame.type) {
-    case am::kNet:
-      return hear_net_msg(node, frame.link, frame.payload);
-    case am::kJoin:
-      return hear_join_request(node, frame);
-    case am::kJoinReply:
-      return hear_join_reply(node, frame);
-    case am::kAckJoin:
-      return hear_ack_join(node, frame);
-    case am::kConfig:
-      return hear_config(node, frame);
-    default:
-      return node.actions.ignored(ReqId::kNone);
+    case am::kNet: return hear_net_msg(node, frame.link, frame.payload);
+    case am::kJoin: return hear_join_request(node, frame);
+    case am::kJoinReply: return hear_join_reply(node, frame);
+    case am::kAckJoin: return hear_ack_join(node, frame);
+    case am::kConfig: return hear_config(node, frame);
+    default: return node.actions.ignored(ReqId::kNone);
   }
 }
 

@@ -123,9 +123,7 @@ Route route_own(const Router& router, Address dest) {
   //= N4-SELF: A node refuses a message whose dest is the node itself.
   if (is_self(router, dest)) return nowhere("N4-SELF"_rule);
   switch (router.role) {
-    case Role::kMote:
-      route = mote_own(router, dest);
-      break;
+    case Role::kMote: route = mote_own(router, dest); break;
     case Role::kSink:
       //= N6-OWN: What a sink itself sends to <its island, NULL> or to another island goes over
       //= serial.

@@ -18,14 +18,12 @@ void join_timer_due(Node& node) {
 
 void timer_due(Node& node, Timer timer) {
   switch (timer.kind) {
-    case TimerKind::kJoin:
-      return join_timer_due(node);
+    case TimerKind::kJoin: return join_timer_due(node);
     case TimerKind::kAck:
       // Without a timeout no such timer is ever set.
       if (node.profile().ack_timeout_ticks == 0) return node.actions.ignored("T3-ONCE"_rule);
       return ack_timeout(node.state.awaited, timer.index, node.actions);
-    case TimerKind::kSynaptic:
-      return tick(node);
+    case TimerKind::kSynaptic: return tick(node);
   }
 }
 
@@ -86,8 +84,8 @@ State start(const Config& config) {
   state.config = config;
   state.island = config.role == Role::kMote ? std::uint16_t{0} : config.island;
   state.sequence.random = config.random_seq;
-  state.sequence.last = config.random_seq ? config.first_seq
-                                          : static_cast<std::uint16_t>(config.first_seq - 1);
+  state.sequence.last =
+      config.random_seq ? config.first_seq : static_cast<std::uint16_t>(config.first_seq - 1);
   state.synaptic.period_ticks = config.profile.synaptic_period_ticks;
   return state;
 }
@@ -121,10 +119,8 @@ Address own_address(const State& state) {
     case Role::kMote:
       if (state.join.phase == JoinMote::Phase::kMember) return state.join.address;
       return {0, state.config.id};
-    case Role::kSink:
-      return {state.island, state.config.id};
-    case Role::kBaseStation:
-      break;
+    case Role::kSink: return {state.island, state.config.id};
+    case Role::kBaseStation: break;
   }
   return {state.island, kNullDevid};
 }

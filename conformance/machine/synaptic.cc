@@ -82,8 +82,8 @@ struct SynapticCall {
 
   void operator()(const CreateChannel& call) {
     const bool out = call.direction == Direction::kOut;
-    const ChannelId id = out ? channel_id(own.devid, call.peer.devid)
-                             : channel_id(call.peer.devid, own.devid);
+    const ChannelId id =
+        out ? channel_id(own.devid, call.peer.devid) : channel_id(call.peer.devid, own.devid);
     ChannelList& list = out ? synaptic.out : synaptic.in;
     Channel* const existing = find(list, id);
     const std::size_t before = existing == nullptr ? 0 : existing->size;

@@ -73,8 +73,8 @@ bool is_awaited(const AwaitedList& list, std::uint16_t seq_num) {
 std::uint16_t next_seq_num(Sequence& sequence, const AwaitedList& list) {
   // Ends: at most kAwaitedMax numbers and kNoSeq are skipped, of 65535 or more.
   do {
-    sequence.last = sequence.random ? xorshift(sequence.last)
-                                    : static_cast<std::uint16_t>(sequence.last + 1);
+    sequence.last =
+        sequence.random ? xorshift(sequence.last) : static_cast<std::uint16_t>(sequence.last + 1);
     //= N12-REUSE: A sequence number is not used again while its ack is awaited.
     //= N12-ERROR: 0xFFFF, the error value of send, is not used as a sequence number.
   } while (sequence.last == kNoSeq || is_awaited(list, sequence.last));
@@ -91,15 +91,13 @@ bool is_known_app(std::uint8_t app_id) {
     case Component::kLearning:
     case Component::kApplicationMd:
     case Component::kControlLayer:
-    case Component::kEsnData:
-      return true;
+    case Component::kEsnData: return true;
     case Component::kSynChannel:
     case Component::kStream:
     case Component::kConnless:
     case Component::kCompMngmnt:
     case Component::kTransportMd:
-    case Component::kRubiconAck:
-      break;
+    case Component::kRubiconAck: break;
   }
   return false;
 }

@@ -111,8 +111,8 @@ class FileCheck {
       if (!link) continue;
       for (const std::string& node : link->nodes) {
         if (!scope.node(node)) {
-          report_(header->place, "no %node " + quoted(node) + ", which %link " + link->name +
-                                     " names");
+          report_(header->place,
+                  "no %node " + quoted(node) + ", which %link " + link->name + " names");
         }
       }
     }
@@ -155,8 +155,8 @@ class FileCheck {
     }
     if (time.base == Time::Base::kStart && time.exact()) {
       if (time.from < latest) {
-        report_(line.place, "time goes back, from @" + std::to_string(latest) + " to " +
-                                print(time));
+        report_(line.place,
+                "time goes back, from @" + std::to_string(latest) + " to " + print(time));
       }
       latest = std::max(latest, time.from);
     }

@@ -284,9 +284,7 @@ std::optional<LinkKind> Scope::link(std::string_view name) const {
   return std::nullopt;
 }
 
-std::string_view requirement_text(ReqId id) {
-  return reflect::requirement(id).id;
-}
+std::string_view requirement_text(ReqId id) { return reflect::requirement(id).id; }
 
 ReqId requirement_id(std::string_view text) {
   static const std::unordered_map<std::string_view, ReqId> known = [] {

@@ -17,8 +17,8 @@
 #include "codec/reflect/am_frames.h"
 #include "codec/reflect/registry.h"
 #include "conformance/machine/messages.h"
-#include "conformance/runner/subject_target.h"
-#include "conformance/script/bytes.h"
+#include "conformance/selftest/scripts/bytes.h"
+#include "conformance/test/runner/subject_target.h"
 
 namespace rubric::fuzz {
 namespace {
@@ -106,23 +106,14 @@ void ScriptMutator::change(Script& script) {
       steps.insert(place(), copy);
       return;
     }
-    case 1:
-      steps.erase(place());
-      return;
-    case 2:
-      std::swap(*place(), *place());
-      return;
+    case 1: steps.erase(place()); return;
+    case 2: std::swap(*place(), *place()); return;
     case 3:
-    case 4:
-      return change_delay(script);
+    case 4: return change_delay(script);
     case 5:
-    case 6:
-      return change_field(script);
-    case 7:
-      steps.insert(place(), happening(script));
-      return;
-    default:
-      return insert(script);
+    case 6: return change_field(script);
+    case 7: steps.insert(place(), happening(script)); return;
+    default: return insert(script);
   }
 }
 

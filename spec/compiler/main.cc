@@ -8,13 +8,12 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
-#include "spec/compiler/emit.h"
-#include "spec/compiler/emit_cpp.h"
-#include "spec/compiler/emit_java.h"
-#include "spec/compiler/emit_lua.h"
-#include "spec/compiler/load.h"
+#include "spec/compiler/emit/cpp/emit_cpp.h"
+#include "spec/compiler/emit/emit.h"
+#include "spec/compiler/emit/java/emit_java.h"
+#include "spec/compiler/emit/lua/emit_lua.h"
+#include "spec/compiler/load/load.h"
+#include "tools/cli/command.h"
 
 namespace {
 
@@ -118,28 +117,28 @@ int run(const Options& options) {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app{"rubricc: checks wire specs (a strict profile of Kaitai Struct) and generates from "
-               "them. Exit code: 0 fine, 1 mistakes in the input, 2 wrong usage, 3 a file cannot "
-               "be read or written."};
-  app.add_option("--requirements", options.requirements, "The catalogue of requirements")
-      ->capture_default_str();
-  app.add_option("--profiles", options.profiles, "The folder of the profiles (.yaml)")
-      ->capture_default_str();
-  app.add_option("--cases", options.cases, "The folder of the golden traces (.rtr)")
-      ->capture_default_str();
-  auto* check = app.add_flag("--check", options.check, "Only check");
-  auto* emit = app.add_option("--emit", options.emit, "What to generate, separated by commas")
-                   ->delimiter(',')
-                   ->check(CLI::IsMember(kEmitters));
-  auto* out = app.add_option("--out", options.out, "The folder to write into");
-  app.add_option("FILE", options.files, "Wire specs (.ksy)")->required();
-  check->excludes(emit)->excludes(out);
-  emit->needs(out);
-  try {
-    app.parse(argc, argv);
-    if (!options.check && options.emit.empty()) throw CLI::RequiredError("--check or --emit");
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? kOk : kUsage;
-  }
-  return run(options);
+  rubric::cli::Command program(
+      "rubricc",
+      "rubricc: checks wire specs (a strict profile of Kaitai Struct) and generates from "
+      "them. Exit code: 0 fine, 1 mistakes in the input, 2 wrong usage, 3 a file cannot "
+      "be read or written.");
+  program.add_option("--requirements", options.requirements, "The catalogue of requirements")
+      .show_default();
+  program.add_option("--profiles", options.profiles, "The folder of the profiles (.yaml)")
+      .show_default();
+  program.add_option("--cases", options.cases, "The folder of the golden traces (.rtr)")
+      .show_default();
+  auto check = program.add_flag("--check", options.check, "Only check");
+  auto emit = program.add_option("--emit", options.emit, "What to generate, separated by commas")
+                  .delimiter(',')
+                  .one_of(kEmitters);
+  const auto out = program.add_option("--out", options.out, "The folder to write into");
+  program.add_option("FILE", options.files, "Wire specs (.ksy)").required();
+  check.excludes(emit).excludes(out);
+  emit.needs(out);
+  program.exit_code_of([&] {
+    if (options.check || !options.emit.empty()) return run(options);
+    throw rubric::cli::UsageError("--check or --emit is required");
+  });
+  return program.parse_and_run(argc, argv);
 }

@@ -1,5 +1,3 @@
-#include "tools/commands/commands.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,12 +13,13 @@
 #include <vector>
 
 #include "codec/reflect/requirements.h"
-#include "conformance/explorer/search.h"
-#include "conformance/mutants/generated.h"
-#include "conformance/report/json.h"
+#include "codec/text/json.h"
+#include "conformance/explore/search.h"
+#include "conformance/selftest/mutants/generated.h"
+#include "tools/cli/command.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/output.h"
-#include "tools/cli/command.h"
+#include "tools/commands/commands.h"
 
 namespace rubric::tools {
 namespace {
@@ -50,12 +49,8 @@ struct Coverage {
   std::vector<std::string> problems;
 };
 
-bool is_wire(std::size_t i) {
-  return std::strncmp(reflect::requirements()[i].id, "WIRE-", 5) == 0;
-}
-bool is_must(std::size_t i) {
-  return std::strcmp(reflect::requirements()[i].level, "MUST") == 0;
-}
+bool is_wire(std::size_t i) { return std::strncmp(reflect::requirements()[i].id, "WIRE-", 5) == 0; }
+bool is_must(std::size_t i) { return std::strcmp(reflect::requirements()[i].level, "MUST") == 0; }
 
 void read_cases(const mutants::Golden& golden, Coverage& coverage) {
   for (const trace::Parsed& file : golden.files()) {
@@ -105,18 +100,18 @@ void seen_step(machine::State& state, machine::Ticks now, const machine::Event& 
 // Explores small networks: two sinks and a lossy air in join scope, messages between a mote and its
 // sink.
 void explore(Coverage& coverage) {
-  explorer::Options join;
+  explore::Options join;
   join.step = seen_step;
   join.sinks = 2;
   join.loss = join.dup = true;
   join.calls = 2;  // So that replies to the first meet the second.
-  explorer::Options full;
+  explore::Options full;
   full.step = seen_step;
-  full.scope = explorer::Scope::kFull;
+  full.scope = explore::Scope::kFull;
   full.loss = true;
-  for (const explorer::Options& options : {join, full}) {
-    explorer::Nodes nodes(options);
-    explorer::explore(nodes);
+  for (const explore::Options& options : {join, full}) {
+    explore::Nodes nodes(options);
+    explore::explore(nodes);
   }
   for (std::size_t i = 0; i < kRules; ++i) coverage.rules[i].explored = g_explored[i];
 }
