@@ -7,6 +7,7 @@ for both, the network's sizes where both find it broken; a disagreement names wh
 """
 
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -71,11 +72,12 @@ def explorer_breaks(rubric, network, flaw, claim):
     words += ["--dup"] if dup else []
     done = subprocess.run([str(w) for w in words], timeout=SECONDS_MAX, text=True,
                           stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-    if '"verdict": "broken"' in done.stdout and done.returncode == 1:
+    verdict = re.search(r'"verdict": ?"(\w+)"|$', done.stdout)[1]
+    if verdict == "broken" and done.returncode == 1:
         return True
-    if '"verdict": "holds"' in done.stdout and done.returncode == 0:
+    if verdict == "holds" and done.returncode == 0:
         return False
-    if '"verdict": "vacuous"' in done.stdout and flaw:
+    if verdict == "vacuous" and flaw:
         return False  # A flaw may keep things from happening; no property is broken by that.
     if "never acted in this network" in done.stdout and done.returncode == 3:
         return False  # Spin's model has the flaw where it cannot act, too.
