@@ -13,21 +13,20 @@
 namespace rubric::fuzz {
 
 // The names of all fields; those come first that place or count others.
-#define RUBRIC_EACH_FIELD(F)                                                                      \
-  F(kind)                                                                                         \
-  F(mac)                                                                                          \
-  F(network) F(am) F(dest) F(src) F(type) F(fcf) F(dsn) F(destpan) F(dispatch) F(length) F(group) \
-      F(pid) F(devid) F(reliable) F(ack) F(seq_num) F(nbytes) F(trans_id) F(app_id) F(msg_type)   \
-          F(version) F(interval) F(id) F(count) F(counter) F(delay) F(period) F(net_id)           \
-              F(island_addr) F(mote_addr) F(src_island_addr) F(src_mote_addr) F(dest_island_addr) \
-                  F(dest_mote_addr) F(src_net_id) F(dest_net_id) F(rows) F(cols) F(matrix_size)   \
-                      F(output_size) F(src_neurons_size) F(dest_neurons_size) F(src_neurons)      \
-                          F(dest_neurons) F(params) F(value) F(transducer) F(transducers)         \
-                              F(actuators) F(mote_type) F(mote_desc) F(sensors_bitmask)           \
-                                  F(sampling_rate) F(clock) F(cur_time) F(anchor_id) F(rssi)      \
-                                      F(my_rssi) F(temp) F(light) F(humid) F(pir) F(mic)          \
-                                          F(magnetic) F(accx) F(accy) F(output) F(weights)        \
-                                              F(values) F(readings) F(payload) F(packet)
+// It takes the list for an expression.
+// clang-format off
+#define RUBRIC_EACH_FIELD(F)                                                                    \
+  F(kind) F(mac) F(network) F(am) F(dest) F(src) F(type) F(fcf) F(dsn) F(destpan) F(dispatch)   \
+  F(length) F(group) F(pid) F(devid) F(reliable) F(ack) F(seq_num) F(nbytes) F(trans_id)        \
+  F(app_id) F(msg_type) F(version) F(interval) F(id) F(count) F(counter) F(delay) F(period)     \
+  F(net_id) F(island_addr) F(mote_addr) F(src_island_addr) F(src_mote_addr) F(dest_island_addr) \
+  F(dest_mote_addr) F(src_net_id) F(dest_net_id) F(rows) F(cols) F(matrix_size) F(output_size)  \
+  F(src_neurons_size) F(dest_neurons_size) F(src_neurons) F(dest_neurons) F(params) F(value)    \
+  F(transducer) F(transducers) F(actuators) F(mote_type) F(mote_desc) F(sensors_bitmask)        \
+  F(sampling_rate) F(clock) F(cur_time) F(anchor_id) F(rssi) F(my_rssi) F(temp) F(light)        \
+  F(humid) F(pir) F(mic) F(magnetic) F(accx) F(accy) F(output) F(weights) F(values) F(readings) \
+  F(payload) F(packet)
+// clang-format on
 
 namespace detail {
 

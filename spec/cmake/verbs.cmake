@@ -11,7 +11,8 @@ target_compile_features(rubric_options INTERFACE cxx_std_20)
 target_compile_options(rubric_options INTERFACE -Wall -Wextra -Wshadow -Wconversion)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   # It warns of overlap and bounds in its own std::string when it optimises (GCC bug 105651).
-  target_compile_options(rubric_options INTERFACE -Wno-restrict -Wno-array-bounds)
+  target_compile_options(rubric_options INTERFACE -Wno-array-bounds -Wno-restrict
+    -Wno-stringop-overflow -Wno-stringop-overread)
 endif()
 if(CMAKE_UNITY_BUILD)
   # It takes a type of an anonymous namespace for shared where the file is included.
