@@ -305,7 +305,7 @@ class Expectations(Folder):
         for profile in ("paper", "deployed"):
             for file in sorted(FIRMWARE.glob("*.pcapng")):
                 code, out, _ = check("--profile", profile, "--expect",
-                                     EXPECT / "release_1_0.yaml", file)
+                                     "conformance/cases/release_1_0.yaml", file)
                 self.assertEqual(code, 0, out)
 
 
