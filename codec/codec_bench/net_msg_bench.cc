@@ -1,9 +1,9 @@
 // Compares the generated codec with code written by hand for these messages: a packed structure,
 // the same checks, byte swaps. Compare pairs of the same run; the ratio is what counts.
+#include <benchmark/benchmark.h>
+
 #include <cstdlib>
 #include <cstring>
-
-#include <benchmark/benchmark.h>
 
 #include "codec/codec_bench/frames.h"
 #include "codec/generated/rubicon/all.h"

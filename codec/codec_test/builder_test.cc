@@ -1,7 +1,7 @@
 // Builders make frames in place, and refuse what does not fit.
-#include <cstring>
-
 #include <gtest/gtest.h>
+
+#include <cstring>
 
 #include "codec/generated/rubicon/all.h"
 #include "codec/generated/tinyos/all.h"
@@ -49,7 +49,7 @@ TEST(Builder, RefusesWhatIsOutOfRangeAndKeepsWhatWasThere) {
   EXPECT_FALSE(net.set_reliable(2));
   EXPECT_FALSE(net.set_nbytes(1));
   EXPECT_FALSE(net.set_nbytes(9));  // Only eight bytes of room.
-  EXPECT_EQ(net.finish().error(), (Error{Fault::kOutOfRange, 11, req::kWireNetNbytes}));
+  EXPECT_EQ(net.finish().error(), (Error{Fault::kOutOfRange, 11, "WIRE-NET-NBYTES"_rule}));
   ASSERT_TRUE(net.set_nbytes(8));
   EXPECT_FALSE(net.set_nbytes(103));
   EXPECT_EQ(net.finish()->reliable(), 1);
@@ -58,7 +58,8 @@ TEST(Builder, RefusesWhatIsOutOfRangeAndKeepsWhatWasThere) {
 
 TEST(Builder, NeedsRoomForTheSmallest) {
   std::uint8_t out[13];
-  EXPECT_EQ(NetMsgBuilder::create(out).error(), (Error{Fault::kNoRoom, 13, req::kWireNetHeader}));
+  EXPECT_EQ(NetMsgBuilder::create(out).error(),
+            (Error{Fault::kNoRoom, 13, "WIRE-NET-HEADER"_rule}));
 }
 
 TEST(Builder, CopiesPayloadsAndArrays) {

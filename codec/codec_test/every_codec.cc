@@ -1,7 +1,5 @@
 // All generated code in one unit, for every compiler used for firmware; never run.
-#include "codec/generated/oscilloscope/all.h"
-#include "codec/generated/rubicon/all.h"
-#include "codec/generated/tinyos/all.h"
+#include "codec/generated/every_spec.h"
 
 namespace rubric {
 namespace {
@@ -50,16 +48,14 @@ struct TouchAll {
 
 }  // namespace
 
-size_t touch_everything(Bytes bytes, MutableBytes out) {
+/// The tables name every parse and write.
+size_t touch_everything(Bytes bytes, MutableBytes out, const MessageCodec** tables) {
   TouchAll all{bytes, out, Touch()};
-  tinyos::for_each_view(all);
-  rubicon::for_each_view(all);
-  oscilloscope::for_each_view(all);
+  for_each_spec([&](const char*, const auto& messages, auto for_each_view) {
+    *tables++ = messages;
+    for_each_view(all);
+  });
   return all.touch.count;
 }
-// The tables name every parse and write.
-const MessageCodec* all_of_tinyos() { return tinyos::kMessages; }
-const MessageCodec* all_of_rubicon() { return rubicon::kMessages; }
-const MessageCodec* all_of_oscilloscope() { return oscilloscope::kMessages; }
 
 }  // namespace rubric

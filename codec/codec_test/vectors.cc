@@ -1,11 +1,11 @@
 #include "codec/codec_test/vectors.h"
 
+#include <yaml-cpp/yaml.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <set>
 #include <stdexcept>
-
-#include <yaml-cpp/yaml.h>
 
 namespace rubric {
 namespace {

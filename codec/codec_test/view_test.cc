@@ -1,8 +1,8 @@
 // Views, values and enums as firmware and tools use them, message by message.
+#include <gtest/gtest.h>
+
 #include <cstring>
 #include <vector>
-
-#include <gtest/gtest.h>
 
 #include "codec/generated/rubicon/all.h"
 #include "codec/generated/tinyos/all.h"
@@ -147,7 +147,7 @@ TEST(View, ParsesAtCompileTime) {
   static_assert(view->cur_time() == 256);
   static_assert(view->seq_num() == 0xbeef);
   constexpr Result<JoinReplyView> cut = JoinReplyView::parse(Bytes(kReply, 9));
-  static_assert(cut.error() == Error{Fault::kTruncated, 9, req::kWireJoinReply});
+  static_assert(cut.error() == Error{Fault::kTruncated, 9, "WIRE-JOIN-REPLY"_rule});
 }
 
 TEST(View, SerialFrameHasItsNumberOnlyWhereTheKindSaysSo) {
@@ -181,11 +181,11 @@ TEST(Write, NamesTheRuleThatAValueBreaks) {
     return value;
   };
   const WriteCase kCases[] = {
-      {"Reliable", with(2, 2), 114, {Fault::kOutOfRange, 8, req::kWireNetReliable}},
-      {"TooLittle", with(0, 1), 114, {Fault::kOutOfRange, 11, req::kWireNetNbytes}},
-      {"TooMuch", with(0, 103), 114, {Fault::kOutOfRange, 11, req::kWireNetNbytes}},
-      {"BeyondAByte", with(0, 114), 200, {Fault::kOutOfRange, 11, req::kWireNetNbytes}},
-      {"NoRoom", with(0, 2), 13, {Fault::kNoRoom, 13, req::kWireNetHeader}},
+      {"Reliable", with(2, 2), 114, {Fault::kOutOfRange, 8, "WIRE-NET-RELIABLE"_rule}},
+      {"TooLittle", with(0, 1), 114, {Fault::kOutOfRange, 11, "WIRE-NET-NBYTES"_rule}},
+      {"TooMuch", with(0, 103), 114, {Fault::kOutOfRange, 11, "WIRE-NET-NBYTES"_rule}},
+      {"BeyondAByte", with(0, 114), 200, {Fault::kOutOfRange, 11, "WIRE-NET-NBYTES"_rule}},
+      {"NoRoom", with(0, 2), 13, {Fault::kNoRoom, 13, "WIRE-NET-HEADER"_rule}},
   };
   for (const WriteCase& c : kCases) {
     SCOPED_TRACE(c.name);
@@ -203,7 +203,7 @@ TEST(Write, LengthsOfOtherFieldsMustAgree) {
   frame.payload = kPayload;
   std::uint8_t out[20];
   frame.am.length = 4;
-  EXPECT_EQ(write(frame, out).error(), (Error{Fault::kTruncated, 8, req::kWireAmLength}))
+  EXPECT_EQ(write(frame, out).error(), (Error{Fault::kTruncated, 8, "WIRE-AM-LENGTH"_rule}))
       << write(frame, out).error();
   frame.am.length = 2;
   EXPECT_EQ(write(frame, out).error().fault, Fault::kTrailing);
@@ -212,7 +212,7 @@ TEST(Write, LengthsOfOtherFieldsMustAgree) {
   frame.am.type = 37;  // A config, and its three bytes are fine.
   EXPECT_TRUE(write(frame, out).has_value());
   frame.am.type = 11;  // A command has five.
-  EXPECT_EQ(write(frame, out).error(), (Error{Fault::kTruncated, 11, req::kWireCommand}));
+  EXPECT_EQ(write(frame, out).error(), (Error{Fault::kTruncated, 11, "WIRE-COMMAND"_rule}));
 }
 
 TEST(Write, ArraysAreWrittenAsFarAsTheyCount) {
@@ -226,7 +226,8 @@ TEST(Write, ArraysAreWrittenAsFarAsTheyCount) {
   const std::uint8_t kExpected[] = {25, 2, 0, 0, 0x80, 0x3f, 0, 0, 0, 0xc0};
   EXPECT_TRUE(equal(*bytes, kExpected));
   output.output.count = 25;
-  EXPECT_EQ(write(output, out).error(), (Error{Fault::kOutOfRange, 1, req::kWireLearningOutput}));
+  EXPECT_EQ(write(output, out).error(),
+            (Error{Fault::kOutOfRange, 1, "WIRE-LEARNING-OUTPUT"_rule}));
 }
 
 }  // namespace

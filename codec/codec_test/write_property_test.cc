@@ -1,12 +1,12 @@
 // Parse and write are inverse over all structures: parse takes what write makes, and the other way
 // round.
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+
 #include <cstdlib>
 #include <cstring>
 #include <iostream>
 #include <vector>
-
-#include <gtest/gtest.h>
-#include <rapidcheck.h>
 
 #include "codec/codec_test/every_view.h"
 
@@ -51,8 +51,8 @@ class Fill {
   void fill(Bytes& field) {
     const auto size = *rc::gen::weightedOneOf<std::size_t>(
         {{6, rc::gen::inRange<std::size_t>(0, 20)}, {1, rc::gen::inRange<std::size_t>(90, 130)}});
-    arena_.emplace_back(*rc::gen::container<std::vector<std::uint8_t>>(
-        size, rc::gen::arbitrary<std::uint8_t>()));
+    arena_.emplace_back(
+        *rc::gen::container<std::vector<std::uint8_t>>(size, rc::gen::arbitrary<std::uint8_t>()));
     field = Bytes(arena_.back().data(), size);
   }
   template <class T, std::size_t kCount>

@@ -131,8 +131,7 @@ RUBRIC_AVX2 std::uint8_t* unescape_vector(const std::uint8_t* begin, const std::
     // Write all 32 bytes, then keep those up to the escape: saves the branch on its position.
     const __m256i v = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(p));
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(out), v);
-    const auto mask =
-        static_cast<unsigned>(_mm256_movemask_epi8(_mm256_cmpeq_epi8(v, escape)));
+    const auto mask = static_cast<unsigned>(_mm256_movemask_epi8(_mm256_cmpeq_epi8(v, escape)));
     if (mask == 0) {
       p += 32;
       out += 32;
@@ -154,8 +153,8 @@ const std::uint8_t* find_special_vector(const std::uint8_t* begin, const std::ui
 const std::uint8_t* find_special_wide(const std::uint8_t* begin, const std::uint8_t* end) {
   return find_special_portable(begin, end);
 }
-std::uint8_t* unescape_vector(const std::uint8_t* begin, const std::uint8_t* end,
-                              std::uint8_t* out, bool* dangling) {
+std::uint8_t* unescape_vector(const std::uint8_t* begin, const std::uint8_t* end, std::uint8_t* out,
+                              bool* dangling) {
   return unescape_portable(begin, end, out, dangling);
 }
 

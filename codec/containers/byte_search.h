@@ -24,7 +24,7 @@ inline constexpr std::size_t kUnescapeSlack = 32;
 /// (never written). `out` has room for end - begin + kUnescapeSlack bytes.
 std::uint8_t* unescape_portable(const std::uint8_t* begin, const std::uint8_t* end,
                                 std::uint8_t* out, bool* dangling);
-std::uint8_t* unescape_vector(const std::uint8_t* begin, const std::uint8_t* end,
-                              std::uint8_t* out, bool* dangling);
+std::uint8_t* unescape_vector(const std::uint8_t* begin, const std::uint8_t* end, std::uint8_t* out,
+                              bool* dangling);
 
 }  // namespace rubric

@@ -13,7 +13,7 @@ using namespace pcapng;
 
 constexpr std::uint64_t kNsPerSecond = 1'000'000'000;
 constexpr std::int64_t kPcapTimeNsMax = 4'294'967'295'999'999'999;  // Seconds have 32 bits.
-constexpr std::uint8_t kResolutionNs = 9;  // if_tsresol: 10^-9 seconds.
+constexpr std::uint8_t kResolutionNs = 9;                           // if_tsresol: 10^-9 seconds.
 
 void put16(std::uint64_t value, std::string& out) {
   out += static_cast<char>(value & 0xFF);
@@ -58,7 +58,7 @@ std::uint16_t radio_link_type(const Packet& packet) {
   const Fault fault = packet.error.fault;
   // A TAP header that was understood is gone, one that was not is all there is.
   const bool header_gone =
-      packet.link_type == kLinkRadioTap && packet.error.requirement != req::kWireRadioTap;
+      packet.link_type == kLinkRadioTap && packet.error.requirement != "WIRE-RADIO-TAP"_rule;
   // A malformed frame keeps the type under which it was found malformed.
   if (fault != Fault::kNone && packet.link_type != 0 && !header_gone) return packet.link_type;
   const bool has_fcs = packet.fcs != kAbsent || fault == Fault::kTooShort;
@@ -73,14 +73,10 @@ std::string_view option_text(std::string_view text) {
 
 std::uint16_t link_type_of(const Packet& packet) {
   switch (packet.framing) {
-    case Framing::kHdlc:
-      return kLinkSerial;
-    case Framing::kSf:
-      return kLinkSf;
-    case Framing::kRadio:
-      return radio_link_type(packet);
-    case Framing::kBare:
-      break;
+    case Framing::kHdlc: return kLinkSerial;
+    case Framing::kSf: return kLinkSf;
+    case Framing::kRadio: return radio_link_type(packet);
+    case Framing::kBare: break;
   }
   return packet.link_type;
 }
@@ -106,8 +102,8 @@ void PcapWriter::begin(std::string& out) {
 bool PcapWriter::write(const Packet& packet, std::string_view, std::string& out) {
   const std::uint16_t link_type = link_type_of(packet);
   if (link_type == 0 || link_type != link_type_) return false;
-  const auto ns = static_cast<std::uint64_t>(
-      std::clamp<std::int64_t>(packet.time_ns, 0, kPcapTimeNsMax));
+  const auto ns =
+      static_cast<std::uint64_t>(std::clamp<std::int64_t>(packet.time_ns, 0, kPcapTimeNsMax));
   put32(ns / kNsPerSecond, out);
   put32(ns % kNsPerSecond, out);
   const std::size_t lengths = out.size();
@@ -153,8 +149,7 @@ std::uint32_t PcapngWriter::interface_of(std::uint16_t link_type, std::string_vi
   return static_cast<std::uint32_t>(interfaces_.size() - 1);
 }
 
-bool PcapngWriter::write(const Packet& packet, std::string_view interface_name,
-                         std::string& out) {
+bool PcapngWriter::write(const Packet& packet, std::string_view interface_name, std::string& out) {
   const std::uint16_t link_type = link_type_of(packet);
   if (link_type == 0) return false;
   const std::uint32_t interface = interface_of(link_type, interface_name, out);

@@ -18,9 +18,10 @@
 #endif
 
 #define RUBRIC_CLMUL __attribute__((target("pclmul,ssse3,sse4.1")))
-#define RUBRIC_WIDE \
-  __attribute__((target("avx2,avx512f,avx512bw,avx512vl,avx512vbmi2,vpclmulqdq,pclmul,bmi,bmi2," \
-                        "popcnt")))
+#define RUBRIC_WIDE                                                                   \
+  __attribute__((                                                                     \
+      target("avx2,avx512f,avx512bw,avx512vl,avx512vbmi2,vpclmulqdq,pclmul,bmi,bmi2," \
+             "popcnt")))
 
 namespace rubric::clmul {
 
@@ -72,9 +73,8 @@ inline constexpr Factors kFactors = make_factors();
 // From kReverse + 16 - n: a shuffle that reverses the first n bytes, the last one lowest, and puts
 // zeros above them. Zeros in front do not change a sum that starts at 0.
 alignas(16) inline constexpr std::uint8_t kReverse[32] = {
-    15,   14,   13,   12,   11,   10,   9,    8,    7,    6,    5,
-    4,    3,    2,    1,    0,    0x80, 0x80, 0x80, 0x80, 0x80, 0x80,
-    0x80, 0x80, 0x80, 0x80, 0x80, 0x80, 0x80, 0x80, 0x80, 0x80};
+    15,   14,   13,   12,   11,   10,   9,    8,    7,    6,    5,    4,    3,    2,    1,    0,
+    0x80, 0x80, 0x80, 0x80, 0x80, 0x80, 0x80, 0x80, 0x80, 0x80, 0x80, 0x80, 0x80, 0x80, 0x80, 0x80};
 
 RUBRIC_CLMUL inline __m128i load128(const void* p) {
   return _mm_loadu_si128(static_cast<const __m128i*>(p));
@@ -83,17 +83,12 @@ RUBRIC_CLMUL inline __m128i load128(const void* p) {
 // Reverses every byte's bits: a reflected sum is the plain one of mirrored bytes, mirrored.
 RUBRIC_CLMUL inline __m128i mirror(__m128i v) {
   const __m128i nibble = _mm_set1_epi8(0x0F);
-  const __m128i mirrored_low = _mm_setr_epi8(0, static_cast<char>(0x80), 0x40,
-                                             static_cast<char>(0xC0), 0x20,
-                                             static_cast<char>(0xA0), 0x60,
-                                             static_cast<char>(0xE0), 0x10,
-                                             static_cast<char>(0x90), 0x50,
-                                             static_cast<char>(0xD0), 0x30,
-                                             static_cast<char>(0xB0), 0x70,
-                                             static_cast<char>(0xF0));
+  const __m128i mirrored_low = _mm_setr_epi8(
+      0, static_cast<char>(0x80), 0x40, static_cast<char>(0xC0), 0x20, static_cast<char>(0xA0),
+      0x60, static_cast<char>(0xE0), 0x10, static_cast<char>(0x90), 0x50, static_cast<char>(0xD0),
+      0x30, static_cast<char>(0xB0), 0x70, static_cast<char>(0xF0));
   const __m128i low = _mm_shuffle_epi8(mirrored_low, _mm_and_si128(v, nibble));
-  const __m128i high =
-      _mm_shuffle_epi8(mirrored_low, _mm_and_si128(_mm_srli_epi16(v, 4), nibble));
+  const __m128i high = _mm_shuffle_epi8(mirrored_low, _mm_and_si128(_mm_srli_epi16(v, 4), nibble));
   return _mm_or_si128(low, _mm_and_si128(_mm_srli_epi16(high, 4), nibble));
 }
 

@@ -130,8 +130,8 @@ void crc_alone(benchmark::State& state) {
   state.SetBytesProcessed(state.iterations() * state.range(0));
 }
 
-constexpr std::int64_t kCached = 256 * 1024;        // Lies in the L2 cache.
-constexpr std::int64_t kLarge = 64 * 1024 * 1024;   // Lies in no cache.
+constexpr std::int64_t kCached = 256 * 1024;       // Lies in the L2 cache.
+constexpr std::int64_t kLarge = 64 * 1024 * 1024;  // Lies in no cache.
 
 void sizes(benchmark::internal::Benchmark* bench) {
   for (std::int64_t size : {kCached, kLarge}) {

@@ -174,7 +174,7 @@ RUBRIC_WIDE inline __m128i multiply_frame_wide(Pointer p, std::size_t size) {
 
 // Flattened, so that the loop above is compiled for the vectors in it.
 RUBRIC_VECTOR __attribute__((flatten)) Pointer scan_vector(Pointer begin, Pointer end,
-                                                            ScanBatch& batch) {
+                                                           ScanBatch& batch) {
   const Pointer stop = find_frames(begin, end, batch, find_near_vector, unescape_near);
   __m128i sums[kScanBatch];
   for (std::size_t i = 0; i < batch.count; ++i) {
@@ -193,15 +193,14 @@ RUBRIC_WIDE inline __m512i constant(std::uint64_t value) {
 RUBRIC_WIDE inline __m512i reduce_four(__m512i sum) {
   const __m512i value =
       _mm512_xor_si512(sum, _mm512_clmulepi64_epi128(sum, constant(power_of_x(64)), 0x01));
-  const __m512i product = _mm512_clmulepi64_epi128(_mm512_srli_epi64(value, 16),
-                                                   constant(barrett_quotient()), 0x00);
+  const __m512i product =
+      _mm512_clmulepi64_epi128(_mm512_srli_epi64(value, 16), constant(barrett_quotient()), 0x00);
   const __m512i quotient = _mm512_bsrli_epi128(product, 6);
-  return _mm512_xor_si512(value,
-                          _mm512_clmulepi64_epi128(quotient, constant(kPolynomial), 0x00));
+  return _mm512_xor_si512(value, _mm512_clmulepi64_epi128(quotient, constant(kPolynomial), 0x00));
 }
 
 RUBRIC_WIDE __attribute__((flatten)) Pointer scan_wide(Pointer begin, Pointer end,
-                                                        ScanBatch& batch) {
+                                                       ScanBatch& batch) {
   const Pointer stop = find_frames(begin, end, batch, find_near_wide, unescape_wide);
   alignas(64) std::uint64_t sums[kScanBatch][2];
   const std::size_t count = batch.count;

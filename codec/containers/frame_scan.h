@@ -14,7 +14,7 @@ struct ScannedFrame {
   const std::uint8_t* content;  ///< The kind byte; in place or, if there were escapes, in a batch.
   const std::uint8_t* wire;     ///< Its place in the input.
   std::uint32_t size_bytes;     ///< Kind to CRC: kSerialContentMin to kScanContentMax.
-  std::uint16_t crc;  ///< Over all but the last two bytes; not compared.
+  std::uint16_t crc;            ///< Over all but the last two bytes; not compared.
 };
 
 inline constexpr std::size_t kScanBatch = 32;

@@ -45,15 +45,9 @@ HdlcReader::HdlcReader(const ReaderOptions& options, CpuPath path) : path_(path)
 void HdlcReader::feed(Bytes chunk, PacketSink sink) {
   if (chunk.empty()) return;
   switch (path_) {
-    case CpuPath::kWide:
-      feed_with<CpuPath::kWide>(chunk, sink);
-      break;
-    case CpuPath::kVector:
-      feed_with<CpuPath::kVector>(chunk, sink);
-      break;
-    case CpuPath::kPortable:
-      feed_with<CpuPath::kPortable>(chunk, sink);
-      break;
+    case CpuPath::kWide: feed_with<CpuPath::kWide>(chunk, sink); break;
+    case CpuPath::kVector: feed_with<CpuPath::kVector>(chunk, sink); break;
+    case CpuPath::kPortable: feed_with<CpuPath::kPortable>(chunk, sink); break;
   }
   chunk_offset_ += chunk.size();
 }
@@ -160,7 +154,7 @@ inline void HdlcReader::deliver_usual(Bytes content, std::uint16_t crc_wanted, P
   if (crc_wanted == packet_.crc) [[likely]] {
     packet_.error = Error{Fault::kNone, 0, ReqId::kNone};
   } else {
-    packet_.error = fail(Fault::kCrc, crc_at, req::kWireSerialCrc).error;
+    packet_.error = fail(Fault::kCrc, crc_at, "WIRE-SERIAL-CRC"_rule).error;
   }
   sink(packet_);
 }
@@ -178,7 +172,7 @@ void HdlcReader::deliver_held(PacketSink sink) {
   packet_.offset_bytes = open_offset_;
   packet_.dropped_bytes = dropped_;
   if (escaping_) {
-    deliver_damaged(content, fail(Fault::kAborted, held_, req::kWireHdlcEscape).error, sink);
+    deliver_damaged(content, fail(Fault::kAborted, held_, "WIRE-HDLC-ESCAPE"_rule).error, sink);
   } else if (dropped_ != 0) {
     deliver_damaged(content, check_serial_content(content, kPath), sink);
   } else {
@@ -191,7 +185,7 @@ void HdlcReader::finish(PacketSink sink) {
   if (open_) {
     packet_.offset_bytes = open_offset_;
     packet_.dropped_bytes = dropped_;
-    const Error error = fail(Fault::kCut, held_, req::kWireHdlcFlag).error;
+    const Error error = fail(Fault::kCut, held_, "WIRE-HDLC-FLAG"_rule).error;
     deliver_damaged(Bytes(buffer_.data(), held_), error, sink);
   }
   restart();

@@ -44,7 +44,7 @@ class HdlcReader final : public Reader {
   void restart();
 
   CpuPath path_;
-  Packet packet_;                  // The fields that are the same for all stay filled in.
+  Packet packet_;                   // The fields that are the same for all stay filled in.
   std::uint64_t chunk_offset_ = 0;  // Offset of the present chunk in the input.
   // The frame that an earlier chunk began or that has escapes, unescaped.
   bool open_ = false;

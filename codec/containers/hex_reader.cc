@@ -20,14 +20,10 @@ bool is_space(std::uint8_t c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
 std::uint16_t link_type_of(const ReaderOptions& options) {
   switch (options.hex_framing) {
-    case Framing::kHdlc:
-      return kLinkSerial;
-    case Framing::kSf:
-      return kLinkSf;
-    case Framing::kRadio:
-      return options.hex_has_fcs ? kLinkRadioFcs : kLinkRadioNoFcs;
-    case Framing::kBare:
-      break;
+    case Framing::kHdlc: return kLinkSerial;
+    case Framing::kSf: return kLinkSf;
+    case Framing::kRadio: return options.hex_has_fcs ? kLinkRadioFcs : kLinkRadioNoFcs;
+    case Framing::kBare: break;
   }
   return 0;
 }
@@ -50,13 +46,13 @@ Error decode_hex_line(Bytes text, std::vector<std::uint8_t>& bytes) {
       at_token = false;
       // A 0x with nothing after it is no byte.
       if (i < text.size() && hex_digit(text[i]) != kNoDigit) continue;
-      return fail(Fault::kUnexpected, i, req::kWireHex).error;
+      return fail(Fault::kUnexpected, i, "WIRE-HEX"_rule).error;
     }
     at_token = false;
     const int high = hex_digit(text[i]);
-    if (high == kNoDigit) return fail(Fault::kUnexpected, i, req::kWireHex).error;
+    if (high == kNoDigit) return fail(Fault::kUnexpected, i, "WIRE-HEX"_rule).error;
     const int low = pair ? hex_digit(text[i + 1]) : kNoDigit;
-    if (low == kNoDigit) return fail(Fault::kUnexpected, i + 1, req::kWireHex).error;
+    if (low == kNoDigit) return fail(Fault::kUnexpected, i + 1, "WIRE-HEX"_rule).error;
     bytes.push_back(static_cast<std::uint8_t>(high << 4 | low));
     i += 2;
   }
@@ -106,7 +102,7 @@ void HexReader::line(Bytes text, PacketSink sink) {
   packet.direction = options_.direction;
   packet.offset_bytes = line_offset_;
   packet.error = decode_hex_line(text, bytes_);
-  if (dropped_ != 0) packet.error = fail(Fault::kTooLong, text.size(), req::kWireHex).error;
+  if (dropped_ != 0) packet.error = fail(Fault::kTooLong, text.size(), "WIRE-HEX"_rule).error;
   if (packet.error.fault != Fault::kNone) {
     packet.framing = Framing::kBare;
     packet.bytes = text;
@@ -118,7 +114,7 @@ void HexReader::line(Bytes text, PacketSink sink) {
   if (options_.hex_framing == Framing::kBare) {
     packet.bytes = bytes;
   } else {
-    decode_record(bytes, bytes.size(), link_type_of(options_), req::kWireHex, packet);
+    decode_record(bytes, bytes.size(), link_type_of(options_), "WIRE-HEX"_rule, packet);
     packet.link_type = 0;
   }
   sink(packet);

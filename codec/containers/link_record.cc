@@ -17,7 +17,9 @@ enum class FcsType : std::uint8_t { kNone, kCrc16, kCrc32 };
 constexpr std::size_t kTapHeaderBytes = 4;
 constexpr std::uint16_t kTapFcsType = 0;
 
-Error tap_error(Fault fault, std::size_t at) { return fail(fault, at, req::kWireRadioTap).error; }
+Error tap_error(Fault fault, std::size_t at) {
+  return fail(fault, at, "WIRE-RADIO-TAP"_rule).error;
+}
 
 // Reads a TAP header: its size and its FCS type. An absent FCS type means no FCS.
 Error read_tap(Bytes record, std::size_t* size, FcsType* fcs_type) {
@@ -46,18 +48,18 @@ Error read_tap(Bytes record, std::size_t* size, FcsType* fcs_type) {
 
 Error split_radio_frame(Bytes frame, bool has_fcs, Packet& packet) {
   packet.bytes = frame;
-  if (frame.empty()) return fail(Fault::kEmpty, 0, req::kWireRadioHeader).error;
+  if (frame.empty()) return fail(Fault::kEmpty, 0, "WIRE-RADIO-HEADER"_rule).error;
   if (has_fcs) {
     if (frame.size() < kFcsBytes) {
-      return fail(Fault::kTooShort, frame.size(), req::kWireRadioFcs).error;
+      return fail(Fault::kTooShort, frame.size(), "WIRE-RADIO-FCS"_rule).error;
     }
     packet.bytes = frame.first(frame.size() - kFcsBytes);
     packet.fcs = load_le16(packet.bytes.end());
   }
   const std::size_t max = has_fcs ? kRadioFrameMax : kRadioFrameMax - kFcsBytes;
-  if (frame.size() > max) return fail(Fault::kTooLong, max, req::kWireRadioLength).error;
+  if (frame.size() > max) return fail(Fault::kTooLong, max, "WIRE-RADIO-LENGTH"_rule).error;
   if (has_fcs && fcs_fast(packet.bytes) != packet.fcs) {
-    return fail(Fault::kFcs, packet.bytes.size(), req::kWireRadioFcs).error;
+    return fail(Fault::kFcs, packet.bytes.size(), "WIRE-RADIO-FCS"_rule).error;
   }
   return kSound;
 }
@@ -95,21 +97,17 @@ void decode_record(Bytes record, std::uint64_t original_bytes, std::uint16_t lin
   packet.bytes = record;
   packet.error = kSound;
   switch (link_type) {
-    case kLinkSerial:
-      decode_serial_content(record, packet);
-      break;
+    case kLinkSerial: decode_serial_content(record, packet); break;
     case kLinkSf:
       packet.framing = Framing::kSf;
-      if (record.empty()) packet.error = fail(Fault::kEmpty, 0, req::kWireSfLength).error;
+      if (record.empty()) packet.error = fail(Fault::kEmpty, 0, "WIRE-SF-LENGTH"_rule).error;
       if (record.size() > kSfPacketMax) {
-        packet.error = fail(Fault::kTooLong, kSfPacketMax, req::kWireSfLength).error;
+        packet.error = fail(Fault::kTooLong, kSfPacketMax, "WIRE-SF-LENGTH"_rule).error;
       }
       break;
     case kLinkRadioFcs:
     case kLinkRadioNoFcs:
-    case kLinkRadioTap:
-      decode_radio(record, link_type, cut, packet);
-      break;
+    case kLinkRadioTap: decode_radio(record, link_type, cut, packet); break;
     default:
       packet.framing = Framing::kBare;
       packet.error = fail(Fault::kUnsupported, 0, container).error;

@@ -8,9 +8,9 @@
 namespace rubric {
 
 // LINKTYPE_ values, with this kit's use of USER0 and USER1.
-inline constexpr std::uint16_t kLinkSerial = 147;   ///< Serial frame, kind byte to CRC, unescaped.
-inline constexpr std::uint16_t kLinkSf = 148;       ///< Serial forwarder packet, no length byte.
-inline constexpr std::uint16_t kLinkRadioFcs = 195;    ///< IEEE802_15_4_WITHFCS.
+inline constexpr std::uint16_t kLinkSerial = 147;    ///< Serial frame, kind byte to CRC, unescaped.
+inline constexpr std::uint16_t kLinkSf = 148;        ///< Serial forwarder packet, no length byte.
+inline constexpr std::uint16_t kLinkRadioFcs = 195;  ///< IEEE802_15_4_WITHFCS.
 inline constexpr std::uint16_t kLinkRadioNoFcs = 230;  ///< IEEE802_15_4_NOFCS.
 inline constexpr std::uint16_t kLinkRadioTap = 283;    ///< IEEE802_15_4_TAP.
 

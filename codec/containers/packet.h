@@ -31,16 +31,16 @@ struct Packet {
   /// Where its frame begins in the input: the first byte after the flag, the length byte, the
   /// frame control field, the record's data or the line. Errors count from there.
   std::uint64_t offset_bytes = 0;
-  std::int64_t time_ns = kNoTime;      ///< Since the epoch of the input, or kNoTime.
-  std::uint32_t interface_id = 0;      ///< Index into the reader's interfaces().
-  std::uint16_t link_type = 0;         ///< LINKTYPE_ of a capture file, 0 elsewhere.
+  std::int64_t time_ns = kNoTime;  ///< Since the epoch of the input, or kNoTime.
+  std::uint32_t interface_id = 0;  ///< Index into the reader's interfaces().
+  std::uint16_t link_type = 0;     ///< LINKTYPE_ of a capture file, 0 elsewhere.
   // Serial line (kHdlc): the parts around `bytes`; kAbsent if the frame was too short for one.
-  std::int32_t kind = kAbsent;         ///< Packet kind.
-  std::int32_t serial_seq = kAbsent;   ///< Sequence number; only kinds ACK and PACKET_ACK have one.
-  std::int32_t crc = kAbsent;          ///< As received.
+  std::int32_t kind = kAbsent;        ///< Packet kind.
+  std::int32_t serial_seq = kAbsent;  ///< Sequence number; only kinds ACK and PACKET_ACK have one.
+  std::int32_t crc = kAbsent;         ///< As received.
   // Radio (kRadio).
-  std::int32_t fcs = kAbsent;          ///< As received; kAbsent where the capture has none.
-  std::string_view comment;            ///< The capture file's; lives as long as `bytes`.
+  std::int32_t fcs = kAbsent;  ///< As received; kAbsent where the capture has none.
+  std::string_view comment;    ///< The capture file's; lives as long as `bytes`.
   /// The fault of the framing itself; kNone if it is sound. Its offset counts from the first byte
   /// of the frame (kind byte, length byte or frame control field).
   Error error{Fault::kNone, 0, ReqId::kNone};
@@ -54,11 +54,10 @@ struct Packet {
 class PacketSink {
  public:
   template <class F>
-    requires(!std::is_same_v<F, PacketSink>)  // Copies must not call through one another.
-  PacketSink(F& call)  // NOLINT: a borrowed view of a callable, as std::function_ref will be.
-      : object_(&call), call_([](void* object, const Packet& packet) {
-          (*static_cast<F*>(object))(packet);
-        }) {}
+  requires(!std::is_same_v<F, PacketSink>)  // Copies must not call through one another.
+      PacketSink(F& call)  // NOLINT: a borrowed view of a callable, as std::function_ref will be.
+      : object_(&call),
+        call_([](void* object, const Packet& packet) { (*static_cast<F*>(object))(packet); }) {}
   void operator()(const Packet& packet) const { call_(object_, packet); }
 
  private:

@@ -29,10 +29,10 @@ UnitReader::Step PcapReader::step(Bytes input, PacketSink sink) {
   const Interface& interface = interfaces_[0];
   Packet packet;
   packet.offset_bytes = offset() + kRecordHeaderBytes;
-  packet.time_ns = time_ns_of_ticks(
-      load32(header) * interface.ticks_per_second + load32(header + 4), interface);
+  packet.time_ns =
+      time_ns_of_ticks(load32(header) * interface.ticks_per_second + load32(header + 4), interface);
   decode_record(input.sub(kRecordHeaderBytes, captured), load32(header + 12), interface.link_type,
-                req::kWirePcap, packet);
+                "WIRE-PCAP"_rule, packet);
   sink(packet);
   return used(kRecordHeaderBytes + captured);
 }
@@ -59,7 +59,7 @@ UnitReader::Step PcapReader::damage(Bytes header, std::uint32_t offset_bytes) {
   damaged_ = true;
   damage_ = Packet();
   damage_.offset_bytes = offset();
-  damage_.error = Error{Fault::kContainer, offset_bytes, req::kWirePcap};
+  damage_.error = Error{Fault::kContainer, offset_bytes, "WIRE-PCAP"_rule};
   std::copy(header.begin(), header.end(), damaged_header_);
   damage_.bytes = Bytes(damaged_header_, header.size());
   return used(header.size());
@@ -72,7 +72,7 @@ void PcapReader::end(Bytes rest, PacketSink sink) {
     Packet packet;
     packet.offset_bytes = offset();
     packet.bytes = rest;
-    packet.error = fail(Fault::kCut, rest.size(), req::kWirePcap).error;
+    packet.error = fail(Fault::kCut, rest.size(), "WIRE-PCAP"_rule).error;
     sink(packet);
   }
   has_header_ = false;

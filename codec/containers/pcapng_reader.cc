@@ -53,14 +53,11 @@ void PcapngReader::block(Bytes bytes, PacketSink sink) {
   if (type == kSectionHeader) return section(bytes, sink);
   if (!supported_) return;
   switch (type) {
-    case kInterfaceDescription:
-      return interface_description(bytes, sink);
+    case kInterfaceDescription: return interface_description(bytes, sink);
     case kEnhancedPacket:
     case kSimplePacket:
-    case kObsoletePacket:
-      return packet_block(bytes, type, sink);
-    default:
-      return;
+    case kObsoletePacket: return packet_block(bytes, type, sink);
+    default: return;
   }
 }
 
@@ -181,7 +178,7 @@ void PcapngReader::deliver(Bytes bytes, const Captured& captured, PacketSink sin
     }
   }
   decode_record(bytes.sub(captured.data_at, captured.captured_bytes), captured.original_bytes,
-                interface.link_type, req::kWirePcapng, packet);
+                interface.link_type, "WIRE-PCAPNG"_rule, packet);
   sink(packet);
 }
 
@@ -189,7 +186,7 @@ void PcapngReader::deliver_bad_block(Bytes bytes, Fault fault, std::size_t at, P
   Packet packet;
   packet.offset_bytes = offset();
   packet.bytes = bytes;
-  packet.error = fail(fault, at, req::kWirePcapng).error;
+  packet.error = fail(fault, at, "WIRE-PCAPNG"_rule).error;
   sink(packet);
 }
 
@@ -197,7 +194,7 @@ UnitReader::Step PcapngReader::damage(Bytes header, std::uint32_t offset_bytes) 
   damaged_ = true;
   damage_ = Packet();
   damage_.offset_bytes = offset();
-  damage_.error = Error{Fault::kContainer, offset_bytes, req::kWirePcapng};
+  damage_.error = Error{Fault::kContainer, offset_bytes, "WIRE-PCAPNG"_rule};
   std::copy(header.begin(), header.end(), damaged_header_.begin());
   damage_.bytes = Bytes(damaged_header_.data(), damaged_header_.size());
   // The next sound block may begin anywhere after the first byte, even within these twelve.

@@ -62,9 +62,9 @@ class PcapngReader final : public UnitReader {
 
   bool big_endian_ = false;
   bool in_section_ = false;
-  bool supported_ = true;        // The section's major version is known.
-  bool final_ = false;           // No more input will come.
-  std::size_t first_interface_ = 0;  // Begin of the present section in interfaces_.
+  bool supported_ = true;                    // The section's major version is known.
+  bool final_ = false;                       // No more input will come.
+  std::size_t first_interface_ = 0;          // Begin of the present section in interfaces_.
   std::vector<std::uint32_t> snap_lengths_;  // For the present section's interfaces.
   bool damaged_ = false;
   Packet damage_;  // Delivered when the next sound block is found.

@@ -71,19 +71,13 @@ bool is_hdlc(Bytes sample) {
 
 std::unique_ptr<Reader> make_reader(InputFormat format, const ReaderOptions& options) {
   switch (format) {
-    case InputFormat::kHdlc:
-      return std::make_unique<HdlcReader>(options);
-    case InputFormat::kSf:
-      return std::make_unique<SfReader>(options);
-    case InputFormat::kPcap:
-      return std::make_unique<PcapReader>();
-    case InputFormat::kPcapng:
-      return std::make_unique<PcapngReader>();
-    case InputFormat::kHex:
-      return std::make_unique<HexReader>(options);
+    case InputFormat::kHdlc: return std::make_unique<HdlcReader>(options);
+    case InputFormat::kSf: return std::make_unique<SfReader>(options);
+    case InputFormat::kPcap: return std::make_unique<PcapReader>();
+    case InputFormat::kPcapng: return std::make_unique<PcapngReader>();
+    case InputFormat::kHex: return std::make_unique<HexReader>(options);
     case InputFormat::kUnknown:
-    case InputFormat::kJsonl:
-      break;
+    case InputFormat::kJsonl: break;
   }
   return nullptr;
 }

@@ -12,11 +12,11 @@ namespace rubric {
 
 /// A place where packets of a capture were heard. A stream has one interface, a capture file many.
 struct Interface {
-  std::string name;                               ///< if_name; empty where there is none.
-  std::string comment;                            ///< opt_comment of its description.
-  std::uint16_t link_type = 0;                    ///< LINKTYPE_; 0 for a stream.
-  std::uint64_t ticks_per_second = 1'000'000;     ///< Resolution of its time stamps.
-  std::int64_t offset_seconds = 0;                ///< Added to each time stamp.
+  std::string name;                            ///< if_name; empty where there is none.
+  std::string comment;                         ///< opt_comment of its description.
+  std::uint16_t link_type = 0;                 ///< LINKTYPE_; 0 for a stream.
+  std::uint64_t ticks_per_second = 1'000'000;  ///< Resolution of its time stamps.
+  std::int64_t offset_seconds = 0;             ///< Added to each time stamp.
 };
 
 /// Reads packets from bytes that come in chunks of any size; the chunks' borders do not matter.
@@ -42,12 +42,12 @@ class Reader {
 
 enum class InputFormat : std::uint8_t {
   kUnknown,
-  kHdlc,    ///< Bytes of a serial line.
-  kSf,      ///< Bytes of one direction of a serial forwarder connection.
+  kHdlc,  ///< Bytes of a serial line.
+  kSf,    ///< Bytes of one direction of a serial forwarder connection.
   kPcap,
   kPcapng,
-  kHex,     ///< Text, a packet a line.
-  kJsonl,   ///< JSON lines; no reader here.
+  kHex,    ///< Text, a packet a line.
+  kJsonl,  ///< JSON lines; no reader here.
 };
 
 /// Facts that the input itself lacks.

@@ -39,11 +39,11 @@ void append_serial_content(const Packet& packet, std::string& out) {
 Error check_serial_content(Bytes content, CpuPath path) {
   const std::size_t size = content.size();
   const std::size_t max = serial_content_max(content.empty() ? 0 : content[0]);
-  if (size > max) return fail(Fault::kTooLong, max, req::kWireHdlcLong).error;
-  if (size < kSerialContentMin) return fail(Fault::kTooShort, size, req::kWireHdlcShort).error;
+  if (size > max) return fail(Fault::kTooLong, max, "WIRE-HDLC-LONG"_rule).error;
+  if (size < kSerialContentMin) return fail(Fault::kTooShort, size, "WIRE-HDLC-SHORT"_rule).error;
   const std::size_t crc_at = size - kSerialCrcBytes;
   if (crc16_fast(content.first(crc_at), 0, path) != load_le16(content.data() + crc_at)) {
-    return fail(Fault::kCrc, crc_at, req::kWireSerialCrc).error;
+    return fail(Fault::kCrc, crc_at, "WIRE-SERIAL-CRC"_rule).error;
   }
   return Error{Fault::kNone, 0, ReqId::kNone};
 }

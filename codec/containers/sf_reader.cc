@@ -24,11 +24,11 @@ UnitReader::Step SfReader::step(Bytes input, PacketSink sink) {
     if (magic && input[1] >= kSfVersion) return used(2);
     const std::size_t at = magic ? 1 : 0;
     deliver(input.first(at + 1), at + 1,
-            fail(Fault::kHandshake, at, req::kWireSfHandshake).error, sink);
+            fail(Fault::kHandshake, at, "WIRE-SF-HANDSHAKE"_rule).error, sink);
   }
   const std::size_t size = input[0];
   if (size == 0) {
-    deliver(Bytes(), 0, fail(Fault::kEmpty, 0, req::kWireSfLength).error, sink);
+    deliver(Bytes(), 0, fail(Fault::kEmpty, 0, "WIRE-SF-LENGTH"_rule).error, sink);
     return used(1);
   }
   if (input.size() <= size) return want(1 + size);
@@ -38,7 +38,7 @@ UnitReader::Step SfReader::step(Bytes input, PacketSink sink) {
 
 void SfReader::end(Bytes rest, PacketSink sink) {
   if (!rest.empty()) {
-    const ReqId requirement = greeted_ ? req::kWireSfLength : req::kWireSfHandshake;
+    const ReqId requirement = greeted_ ? "WIRE-SF-LENGTH"_rule : "WIRE-SF-HANDSHAKE"_rule;
     const std::size_t size = greeted_ ? rest[0] : 1;
     deliver(rest.from(1), size, fail(Fault::kCut, rest.size(), requirement).error, sink);
   }

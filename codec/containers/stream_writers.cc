@@ -96,19 +96,13 @@ bool HexWriter::write(const Packet& packet, std::string_view, std::string& out) 
 
 std::unique_ptr<Writer> make_writer(InputFormat format, std::uint16_t link_type) {
   switch (format) {
-    case InputFormat::kHdlc:
-      return std::make_unique<HdlcWriter>();
-    case InputFormat::kSf:
-      return std::make_unique<SfWriter>();
-    case InputFormat::kPcap:
-      return std::make_unique<PcapWriter>(link_type);
-    case InputFormat::kPcapng:
-      return std::make_unique<PcapngWriter>();
-    case InputFormat::kHex:
-      return std::make_unique<HexWriter>();
+    case InputFormat::kHdlc: return std::make_unique<HdlcWriter>();
+    case InputFormat::kSf: return std::make_unique<SfWriter>();
+    case InputFormat::kPcap: return std::make_unique<PcapWriter>(link_type);
+    case InputFormat::kPcapng: return std::make_unique<PcapngWriter>();
+    case InputFormat::kHex: return std::make_unique<HexWriter>();
     case InputFormat::kUnknown:
-    case InputFormat::kJsonl:
-      break;
+    case InputFormat::kJsonl: break;
   }
   return nullptr;
 }

@@ -18,9 +18,7 @@ constexpr double kValueShare = 0.3;
 // TinyOS's serial line has room for this many bytes with kind, sequence number and CRC around.
 constexpr std::size_t kSerialBytesMax = 252;
 
-std::size_t most_bytes(bool radio) {
-  return radio ? kRadioFrameMax - kFcsBytes : kSerialBytesMax;
-}
+std::size_t most_bytes(bool radio) { return radio ? kRadioFrameMax - kFcsBytes : kSerialBytesMax; }
 
 // Returns the numbers in `bytes`, which differ from the draft's at most in and after its body.
 std::vector<NumberAt> numbers_of(const Draft& draft, const std::vector<std::uint8_t>& bytes,

@@ -11,6 +11,7 @@
 
 #include "codec/generate/known_protocols.h"
 #include "codec/generated/rubicon/all.h"
+#include "codec/generated/rubicon/messages.h"
 #include "codec/reflect/frame.h"
 
 namespace rubric::generate {
@@ -69,9 +70,9 @@ void check_numbers(const Generated& made, const reflect::Decoded& decoded) {
   ASSERT_EQ(met, made.numbers.size()) << described(made);
 }
 
-class Generator : public ::testing::TestWithParam<int> {
+class Generator : public ::testing::TestWithParam<Known> {
  protected:
-  const Known& known() const { return kKnown[GetParam()]; }
+  const Known& known() const { return GetParam(); }
 };
 
 TEST_P(Generator, ValidFramesLeadToTheirMessage) {
@@ -180,10 +181,10 @@ TEST(NearValid, NumbersBeyondABoundOfASizeComeWithTheBytes) {
     for (int seed = 0; seed < kSeeds; ++seed) {
       const Generated made = generator.near_valid(rubicon::messages::kRoutes.routes[i]);
       const std::size_t size = made.bytes.size();
-      if (made.error == Error{Fault::kOutOfRange, 5, req::kWireAmLength}) {
+      if (made.error == Error{Fault::kOutOfRange, 5, "WIRE-AM-LENGTH"_rule}) {
         met["length"] += size == 8u + 115u && made.bytes[5] == 115;
       }
-      if (made.error.requirement != req::kWireNetNbytes) continue;
+      if (made.error.requirement != "WIRE-NET-NBYTES"_rule) continue;
       const std::size_t at = made.error.offset_bytes;
       met["nbytes"] += made.bytes[at] == 103 && size > at + 103;
     }
@@ -233,12 +234,13 @@ std::map<int, int> off_by_one(const char* message, std::size_t at, std::size_t f
 }
 
 TEST(NearValid, LengthsAreOffByOneInBothDirections) {
-  std::map<int, int> length = off_by_one("command", 5, 8, req::kWireAmLength);
+  std::map<int, int> length = off_by_one("command", 5, 8, "WIRE-AM-LENGTH"_rule);
   EXPECT_GT(length[1], 20);
   EXPECT_GT(length[-1], 20);
-  std::map<int, int> nbytes = off_by_one("app_msg", 19, 20, req::kWireNetPayload);
+  std::map<int, int> nbytes = off_by_one("app_msg", 19, 20, "WIRE-NET-PAYLOAD"_rule);
   EXPECT_GT(nbytes[1], 20);
-  std::map<int, int> count = off_by_one("learning_module_cmd", 15, 16, req::kWireLearningModuleCmd);
+  std::map<int, int> count =
+      off_by_one("learning_module_cmd", 15, 16, "WIRE-LEARNING-MODULE-CMD"_rule);
   EXPECT_GT(count[1], 20);
 }
 
@@ -275,7 +277,8 @@ TEST(NearValid, ViewsReportTheFaults) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Protocols, Generator, ::testing::Range(0, kKnownCount));
+INSTANTIATE_TEST_SUITE_P(Protocols, Generator, ::testing::ValuesIn(all_known()),
+                         [](const auto& one) { return std::string(one.param.protocol.id); });
 
 }  // namespace
 }  // namespace rubric::generate

@@ -21,9 +21,7 @@ using reflect::Op;
 using reflect::Repeat;
 using reflect::Type;
 
-std::uint32_t index32(std::size_t n) {
-  return static_cast<std::uint32_t>(n);
-}
+std::uint32_t index32(std::size_t n) { return static_cast<std::uint32_t>(n); }
 
 // Returns the offset of the one number that the expression is; -1 if it is more.
 std::int32_t lone_load_offset(const Expr& expr) {

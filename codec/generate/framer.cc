@@ -15,9 +15,7 @@ namespace {
 
 constexpr std::size_t kExcessMost = 40;
 
-Bytes view(const std::vector<std::uint8_t>& bytes) {
-  return Bytes(bytes.data(), bytes.size());
-}
+Bytes view(const std::vector<std::uint8_t>& bytes) { return Bytes(bytes.data(), bytes.size()); }
 
 std::vector<std::uint8_t> content_of(const Framed& framed) {
   std::string text;
@@ -132,31 +130,31 @@ bool Framer::break_hdlc(bool last, Framed& out) {
       const std::size_t at = content.size() - 1 - random_.below(kSerialCrcBytes);
       content[at] ^= static_cast<std::uint8_t>(1u << random_.below(8));
       const std::size_t crc_at = content.size() - kSerialCrcBytes;
-      serial_content(content, fail(Fault::kCrc, crc_at, req::kWireSerialCrc).error,
+      serial_content(content, fail(Fault::kCrc, crc_at, "WIRE-SERIAL-CRC"_rule).error,
                      "the CRC is wrong", out);
       return true;
     }
     case 1:
       content.resize(1 + random_.below(kSerialContentMin - 1));
-      serial_content(content, fail(Fault::kTooShort, content.size(), req::kWireHdlcShort).error,
+      serial_content(content, fail(Fault::kTooShort, content.size(), "WIRE-HDLC-SHORT"_rule).error,
                      "the frame is too short for a packet and its CRC", out);
       return true;
     case 2: {
       lengthen(kSerialAfterHeaderMax - kSerialCrcBytes, out);
       set_crc(out.bytes, out.packet);
       const std::size_t most = serial_content_max(out.packet.kind);
-      serial_content(content_of(out), fail(Fault::kTooLong, most, req::kWireHdlcLong).error,
+      serial_content(content_of(out), fail(Fault::kTooLong, most, "WIRE-HDLC-LONG"_rule).error,
                      "the frame is too long", out);
       return true;
     }
     case 3:
       content.resize(1 + random_.below(content.size()));
-      serial_content(content, fail(Fault::kAborted, content.size(), req::kWireHdlcEscape).error,
+      serial_content(content, fail(Fault::kAborted, content.size(), "WIRE-HDLC-ESCAPE"_rule).error,
                      "the sender gave the frame up: an escape directly before the flag", out);
       return true;
     default:
       content.resize(1 + random_.below(content.size()));
-      serial_content(content, fail(Fault::kCut, content.size(), req::kWireHdlcFlag).error,
+      serial_content(content, fail(Fault::kCut, content.size(), "WIRE-HDLC-FLAG"_rule).error,
                      "the input ends without a flag", out);
       return true;
   }
@@ -169,20 +167,20 @@ bool Framer::break_sf(bool last, Framed& out) {
     const std::size_t size = out.bytes.size();
     const std::size_t most = std::min<std::size_t>(size, kSfPacketMax - size);
     const std::size_t lacks = random_.chance(0.5) ? 1 : 1 + random_.below(most);
-    set_fault(Fault::kCut, size + 1, req::kWireSfLength, "the length byte says more than there is",
-              out);
+    set_fault(Fault::kCut, size + 1, "WIRE-SF-LENGTH"_rule,
+              "the length byte says more than there is", out);
     out.error.offset_bytes = static_cast<std::uint32_t>(size);
     out.packet.dropped_bytes = lacks;
     return true;
   }
   if (!stream && random_.chance(0.5)) {
     lengthen(kSfPacketMax, out);
-    set_fault(Fault::kTooLong, kSfPacketMax, req::kWireSfLength,
+    set_fault(Fault::kTooLong, kSfPacketMax, "WIRE-SF-LENGTH"_rule,
               "the packet is longer than a length byte can say", out);
     return true;
   }
   out.bytes.clear();
-  set_fault(Fault::kEmpty, 0, req::kWireSfLength, "the packet is empty: its length is 0", out);
+  set_fault(Fault::kEmpty, 0, "WIRE-SF-LENGTH"_rule, "the packet is empty: its length is 0", out);
   return true;
 }
 
@@ -192,24 +190,25 @@ bool Framer::break_radio(Framed& out) {
   switch (random_.below(4)) {
     case 0:
       out.packet.fcs ^= 1 << random_.below(16);
-      set_fault(Fault::kFcs, out.bytes.size(), req::kWireRadioFcs, "the FCS is wrong", out);
+      set_fault(Fault::kFcs, out.bytes.size(), "WIRE-RADIO-FCS"_rule, "the FCS is wrong", out);
       return true;
     case 1: {
       lengthen(kRadioFrameMax - kFcsBytes, out);
       around_radio(out, true);
-      set_fault(Fault::kTooLong, kRadioFrameMax, req::kWireRadioLength, "the frame is too long",
+      set_fault(Fault::kTooLong, kRadioFrameMax, "WIRE-RADIO-LENGTH"_rule, "the frame is too long",
                 out);
       return true;
     }
     case 2:
       out.packet.fcs = kAbsent;
       out.bytes.resize(1);
-      set_fault(Fault::kTooShort, 1, req::kWireRadioFcs, "the frame is too short for its FCS", out);
+      set_fault(Fault::kTooShort, 1, "WIRE-RADIO-FCS"_rule, "the frame is too short for its FCS",
+                out);
       return true;
     default:
       out.packet.fcs = kAbsent;
       out.bytes.clear();
-      set_fault(Fault::kEmpty, 0, req::kWireRadioHeader, "the frame is empty", out);
+      set_fault(Fault::kEmpty, 0, "WIRE-RADIO-HEADER"_rule, "the frame is empty", out);
       return true;
   }
 }

@@ -15,8 +15,7 @@ namespace rubric::generate {
 
 /// A frame with its surroundings, for a Writer of the container.
 struct Framed {
-  Packet
-      packet;  ///< Without its bytes; with the framing's own fault, as a reader reports it.
+  Packet packet;  ///< Without its bytes; with the framing's own fault, as a reader reports it.
   std::vector<std::uint8_t> bytes;
   const reflect::Route* route = nullptr;
   std::vector<const reflect::Type*> path;      ///< Like Generated::path.

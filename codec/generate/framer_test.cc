@@ -14,9 +14,9 @@
 #include "codec/containers/writer.h"
 #include "codec/generate/known_protocols.h"
 #include "codec/generate/routes.h"
-#include "codec/generated/requirements_table.h"
 #include "codec/reflect/frame.h"
 #include "codec/reflect/registry.h"
+#include "codec/reflect/requirements.h"
 
 namespace rubric::generate {
 namespace {
@@ -50,9 +50,11 @@ std::vector<Framed> frames_of(const Known& known, InputFormat container, std::ui
   return all;
 }
 
+using RuleSet = std::set<ReqId, reflect::CatalogueOrder>;
+
 /// Writes and reads the frames; a frame that does not come back as it should is a failure.
 void round_trip(const Known& known, InputFormat container, const std::vector<Framed>& frames,
-                std::set<ReqId>& broken) {
+                RuleSet& broken) {
   const auto writer = make_writer(container);
   std::string file;
   writer->begin(file);
@@ -90,10 +92,10 @@ void round_trip(const Known& known, InputFormat container, const std::vector<Fra
 }
 
 TEST(Framer, ReadersReportWhatTheFramerBroke) {
-  for (const Known& known : kKnown) {
+  for (const Known& known : all_known()) {
     for (const InputFormat container : kContainers) {
       for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-        std::set<ReqId> broken;
+        RuleSet broken;
         const std::vector<Framed> frames = frames_of(known, container, seed);
         if (frames.empty()) continue;  // The radio's acknowledgement, in a stream.
         round_trip(known, container, frames, broken);
@@ -107,21 +109,21 @@ TEST(Framer, ReadersReportWhatTheFramerBroke) {
 // The rules of the wire that no generated frame breaks, and why.
 constexpr const char* kOfTheStream = "is about the stream or file around the frames";
 constexpr const char* kNotCarried = "no carrier holds this message, so no frame leads to it";
-const std::map<ReqId, const char*> kNotBroken = {
-    {req::kWireSfHandshake, kOfTheStream},
-    {req::kWireRadioTap, "no writer writes TAP headers"},
-    {req::kWirePcap, kOfTheStream},
-    {req::kWirePcapng, kOfTheStream},
-    {req::kWireHex, kOfTheStream},
-    {req::kWireHdlcTwoFlags, "is for writers; readers take one flag"},
-    {req::kWireSerialKind, "every byte is a kind, unknown ones are shown"},
-    {req::kWireSerialSeq, "a frame that is long enough has the sequence number"},
-    {req::kWireAppHeader, "the least nbytes that is allowed covers TRANSID and APPID"},
-    {req::kWireData, kNotCarried},
-    {req::kWireComplete, kNotCarried},
-    {req::kWireNetCommand, kNotCarried},
-    {req::kWireNetData, kNotCarried},
-    {req::kWireConnless, kNotCarried},
+const std::map<ReqId, const char*, reflect::CatalogueOrder> kNotBroken = {
+    {"WIRE-SF-HANDSHAKE"_rule, kOfTheStream},
+    {"WIRE-RADIO-TAP"_rule, "no writer writes TAP headers"},
+    {"WIRE-PCAP"_rule, kOfTheStream},
+    {"WIRE-PCAPNG"_rule, kOfTheStream},
+    {"WIRE-HEX"_rule, kOfTheStream},
+    {"WIRE-HDLC-TWO-FLAGS"_rule, "is for writers; readers take one flag"},
+    {"WIRE-SERIAL-KIND"_rule, "every byte is a kind, unknown ones are shown"},
+    {"WIRE-SERIAL-SEQ"_rule, "a frame that is long enough has the sequence number"},
+    {"WIRE-APP-HEADER"_rule, "the least nbytes that is allowed covers TRANSID and APPID"},
+    {"WIRE-DATA"_rule, kNotCarried},
+    {"WIRE-COMPLETE"_rule, kNotCarried},
+    {"WIRE-NET-COMMAND"_rule, kNotCarried},
+    {"WIRE-NET-DATA"_rule, kNotCarried},
+    {"WIRE-CONNLESS"_rule, kNotCarried},
 };
 
 TEST(Routes, EveryProtocolHasThem) {
@@ -133,8 +135,8 @@ TEST(Routes, EveryProtocolHasThem) {
 }
 
 TEST(Framer, BreaksEveryRuleOfTheWireThatAFrameCanBreak) {
-  std::set<ReqId> broken;
-  for (const Known& known : kKnown) {
+  RuleSet broken;
+  for (const Known& known : all_known()) {
     for (const InputFormat container : kContainers) {
       for (std::uint64_t seed = 11; seed <= 16; ++seed) {
         for (const Framed& framed : frames_of(known, container, seed)) {
@@ -145,16 +147,16 @@ TEST(Framer, BreaksEveryRuleOfTheWireThatAFrameCanBreak) {
     }
   }
   long count = 0;
-  for (std::size_t i = 1; i < std::size(kRequirements); ++i) {
-    if (!std::string_view(kRequirements[i].id).starts_with("WIRE-")) continue;
-    const auto id = static_cast<ReqId>(i);
+  for (const reflect::Requirement& rule : reflect::requirements()) {
+    if (!std::string_view(rule.id).starts_with("WIRE-")) continue;
+    const ReqId id = rule.number();
     const auto reason = kNotBroken.find(id);
     ++count;
     if (reason != kNotBroken.end()) {
-      std::printf("not broken: %s: %s\n", kRequirements[i].id, reason->second);
-      EXPECT_FALSE(broken.contains(id)) << kRequirements[i].id << " is broken after all";
+      std::printf("not broken: %s: %s\n", rule.id, reason->second);
+      EXPECT_FALSE(broken.contains(id)) << rule.id << " is broken after all";
     } else {
-      EXPECT_TRUE(broken.contains(id)) << kRequirements[i].id << " is never broken";
+      EXPECT_TRUE(broken.contains(id)) << rule.id << " is never broken";
     }
   }
   std::printf("%zu of %ld rules of the wire broken\n", broken.size(), count);

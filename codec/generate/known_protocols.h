@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "codec/containers/testing.h"
+#include "codec/containers/test/testing.h"
 #include "codec/generate/link_ack.h"
-#include "codec/generated/oscilloscope/messages.h"
-#include "codec/generated/rubicon/messages.h"
+#include "codec/generate/routes.h"
 #include "codec/reflect/fault_text.h"
+#include "codec/reflect/registry.h"
 
 namespace rubric::generate {
 
@@ -17,13 +17,14 @@ struct Known {
   const reflect::RouteTable& routes;
   const reflect::Protocol& reader;  ///< Its decoder reads them.
 };
-const Known kKnown[] = {
-    {rubicon::tables::kProtocol, rubicon::messages::kRoutes, rubicon::tables::kProtocol},
-    {oscilloscope::tables::kProtocol, oscilloscope::messages::kRoutes,
-     oscilloscope::tables::kProtocol},
-    {tinyos::tables::kProtocol, kLinkAckRoutes, rubicon::tables::kProtocol},
-};
-constexpr int kKnownCount = 3;
+inline std::vector<Known> all_known() {
+  std::vector<Known> out;
+  for (const reflect::Protocol* one : reflect::protocols()) {
+    out.push_back({*one, *routes_of(*one), *one});
+  }
+  out.push_back({tinyos::tables::kProtocol, kLinkAckRoutes, *reflect::protocols().back()});
+  return out;
+}
 
 inline std::string text(const Error& error) {
   return std::string(reflect::fault_name(error.fault)) + " at " +

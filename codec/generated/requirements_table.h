@@ -6,7 +6,7 @@
 
 namespace rubric {
 
-/// Indexed by ReqId; the first entry stands for none.
+/// In the order of spec/requirements.yaml; the first entry stands for none.
 constexpr reflect::Requirement kRequirements[] = {
     {"", "", "", "", "", 0, false, ""},
     {"WIRE-HDLC-FLAG", "MUST", "wire, serial line",

@@ -9,10 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "codec/generated/oscilloscope/tables.h"
-#include "codec/generated/rubicon/tables.h"
-#include "codec/generated/tinyos/tables.h"
 #include "codec/reflect/compare_view.h"
+#include "codec/reflect/registry.h"
 
 namespace rubric::reflect {
 namespace {
@@ -21,11 +19,8 @@ constexpr int kInputsPerStructure = 4000;
 
 const Type* type_of(const std::string& name) {
   const std::size_t dot = name.find('.');
-  for (const Protocol* protocol : {&tinyos::tables::kProtocol, &rubicon::tables::kProtocol,
-                                   &oscilloscope::tables::kProtocol}) {
-    if (name.substr(0, dot) == protocol->id) return find_type(*protocol, name.substr(dot + 1));
-  }
-  return nullptr;
+  const Protocol* const spec = find_spec(name.substr(0, dot));
+  return spec ? find_type(*spec, name.substr(dot + 1)) : nullptr;
 }
 
 /// Returns bytes that often hold the structure: small counts, real sizes, short and long ones.

@@ -23,13 +23,13 @@ enum class NodeKind : std::uint8_t {
 
 /// A field of a decoded frame. Nodes are in preorder; children of node i are i + 1 up to `end`.
 struct Node {
-  const Field* field;         ///< Null for the outermost structure.
-  const Type* type;           ///< For structures; null elsewhere.
-  std::int64_t value;         ///< Numbers; a float as its 32 bits.
-  std::uint32_t offset;       ///< In bytes, from the start of the frame.
-  std::uint32_t size;         ///< In bytes, without stale bytes.
-  std::uint32_t end;          ///< Index of the first node after this one's children.
-  std::uint32_t count;        ///< Elements of an array.
+  const Field* field;    ///< Null for the outermost structure.
+  const Type* type;      ///< For structures; null elsewhere.
+  std::int64_t value;    ///< Numbers; a float as its 32 bits.
+  std::uint32_t offset;  ///< In bytes, from the start of the frame.
+  std::uint32_t size;    ///< In bytes, without stale bytes.
+  std::uint32_t end;     ///< Index of the first node after this one's children.
+  std::uint32_t count;   ///< Elements of an array.
   NodeKind kind;
 };
 
@@ -43,10 +43,10 @@ enum class NoteKind : std::uint8_t {
 };
 struct Note {
   NoteKind kind;
-  std::uint32_t offset;   ///< In bytes, from the start of the frame.
-  const Field* field;     ///< The note's field.
-  const Type* type;       ///< kDoesNotFit, kRadioOnly: the message that was tried.
-  std::int64_t value;     ///< The key, or the value.
+  std::uint32_t offset;  ///< In bytes, from the start of the frame.
+  const Field* field;    ///< The note's field.
+  const Type* type;      ///< kDoesNotFit, kRadioOnly: the message that was tried.
+  std::int64_t value;    ///< The key, or the value.
 };
 
 struct Range {
@@ -61,7 +61,7 @@ class Decoded {
   static constexpr std::size_t kMaxPath = 8;
   static constexpr std::size_t kMaxStale = 8;
 
-  Bytes bytes;                              ///< The frame; borrowed.
+  Bytes bytes;                                 ///< The frame; borrowed.
   Error error{Fault::kNone, 0, ReqId::kNone};  ///< For the first rule that the bytes break.
   /// With an error: its field, or null, and a number: the field's value, for kTruncated the bytes
   /// that it needs, for kTrailing the bytes too many.

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "codec/containers/testing.h"
+#include "codec/containers/test/testing.h"
 #include "codec/generated/oscilloscope/tables.h"
 #include "codec/generated/rubicon/tables.h"
 
@@ -80,20 +80,33 @@ struct RejectCase {
 };
 
 const RejectCase kRejects[] = {
-    {"Empty_Join", "join_request", "", {Fault::kTruncated, 0, req::kWireJoinRequest}},
-    {"OneShort_JoinReply", "join_reply", "000b 0002 0000 0000 c4",
-     {Fault::kTruncated, 9, req::kWireJoinReply}},
-    {"Reliable2", "net_msg", "000b fffd 000b 0002 02 b0d3 02 030a",
-     {Fault::kOutOfRange, 8, req::kWireNetReliable}},
-    {"Nbytes1", "net_msg", kNetToSink + "01 03", {Fault::kOutOfRange, 11, req::kWireNetNbytes}},
-    {"Nbytes103", "net_msg", kNetToSink + "67 03", {Fault::kOutOfRange, 11, req::kWireNetNbytes}},
-    {"NbytesMoreThanArrived", "net_msg", kNetToSink + "05 030a 2300",
-     {Fault::kTruncated, 16, req::kWireNetPayload}},
-    {"Updates25", "updates", "23 19", {Fault::kOutOfRange, 1, req::kWireUpdates}},
-    {"UpdatesPairCut", "updates", "23 02 0001 012e 0040",
-     {Fault::kTruncated, 8, req::kWireUpdates}},
-    {"SynapticPartialFloat", "synaptic_data", "0000803f 0000",
-     {Fault::kTruncated, 6, req::kWireSynapticData}},
+    {"Empty_Join", "join_request", "", {Fault::kTruncated, 0, "WIRE-JOIN-REQUEST"_rule}},
+    {"OneShort_JoinReply",
+     "join_reply",
+     "000b 0002 0000 0000 c4",
+     {Fault::kTruncated, 9, "WIRE-JOIN-REPLY"_rule}},
+    {"Reliable2",
+     "net_msg",
+     "000b fffd 000b 0002 02 b0d3 02 030a",
+     {Fault::kOutOfRange, 8, "WIRE-NET-RELIABLE"_rule}},
+    {"Nbytes1", "net_msg", kNetToSink + "01 03", {Fault::kOutOfRange, 11, "WIRE-NET-NBYTES"_rule}},
+    {"Nbytes103",
+     "net_msg",
+     kNetToSink + "67 03",
+     {Fault::kOutOfRange, 11, "WIRE-NET-NBYTES"_rule}},
+    {"NbytesMoreThanArrived",
+     "net_msg",
+     kNetToSink + "05 030a 2300",
+     {Fault::kTruncated, 16, "WIRE-NET-PAYLOAD"_rule}},
+    {"Updates25", "updates", "23 19", {Fault::kOutOfRange, 1, "WIRE-UPDATES"_rule}},
+    {"UpdatesPairCut",
+     "updates",
+     "23 02 0001 012e 0040",
+     {Fault::kTruncated, 8, "WIRE-UPDATES"_rule}},
+    {"SynapticPartialFloat",
+     "synaptic_data",
+     "0000803f 0000",
+     {Fault::kTruncated, 6, "WIRE-SYNAPTIC-DATA"_rule}},
 };
 
 class DecodeReject : public ::testing::TestWithParam<RejectCase> {};
@@ -158,7 +171,7 @@ TEST(Decode, BytesBehindACarrier_AreAFault) {
   const Message m("rubicon", "00 ffff 0000 03 00 25 0a000c 77", Tail::kFault);
   EXPECT_EQ(m->error.fault, Fault::kTrailing);
   EXPECT_EQ(m->error.offset_bytes, 11u);
-  EXPECT_EQ(m->error.requirement, req::kWireAmLength);
+  EXPECT_EQ(m->error.requirement, "WIRE-AM-LENGTH"_rule);
 }
 
 TEST(Decode, OneObjectForManyFrames_ForgetsTheOneBefore) {
@@ -176,8 +189,8 @@ TEST(Decode, OneObjectForManyFrames_ForgetsTheOneBefore) {
 TEST(Decode, AnotherProtocolIsOnlyOtherTables) {
   const Type* type = find_type(oscilloscope::tables::kProtocol, "oscilloscope_msg");
   ASSERT_NE(type, nullptr);
-  const auto bytes = from_hex(
-      "0001 0100 0007 000a 0001 0002 0003 0004 0005 0006 0007 0008 0009 000a");
+  const auto bytes =
+      from_hex("0001 0100 0007 000a 0001 0002 0003 0004 0005 0006 0007 0008 0009 000a");
   Decoded decoded;
   decode(*type, view(bytes), Tail::kStale, true, decoded);
   EXPECT_EQ(decoded.error.fault, Fault::kNone);

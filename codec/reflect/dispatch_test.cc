@@ -12,7 +12,7 @@
 #include "codec/generated/rubicon/tables.h"
 #include "codec/reflect/compare_view.h"
 #include "codec/reflect/test_frames.h"
-#include "tools/readme/number.h"
+#include "tools/tests/readme/number.h"
 
 namespace rubric::reflect {
 namespace {
@@ -69,8 +69,7 @@ class Follower {
       case Kind::kOpaque: return opaque(chosen);
       case Kind::kCommand: return message(view.payload_as_command(), chosen);
       case Kind::kSerialData: return message(view.payload_as_serial_data(), chosen);
-      case Kind::kLearningModuleCmd:
-        return message(view.payload_as_learning_module_cmd(), chosen);
+      case Kind::kLearningModuleCmd: return message(view.payload_as_learning_module_cmd(), chosen);
       case Kind::kLearningModuleFloatCmd:
         return message(view.payload_as_learning_module_float_cmd(), chosen);
       case Kind::kNetMsg: return message(view.payload_as_net_msg(), chosen);
@@ -195,10 +194,9 @@ std::string difference(const char* carrier, Bytes frame, Tally& tally) {
 /// Runs both readers on a frame; radio frames as I-frame and as T-frame, whatever they are.
 void hold(const TestFrame& frame, Tally& tally) {
   const Bytes bytes(frame.bytes.data(), frame.bytes.size());
-  const std::string found =
-      frame.radio ? difference<RadioIFrameView>("radio_i", bytes, tally) +
-                        difference<RadioTFrameView>("radio_t", bytes, tally)
-                  : difference<RubiconView>("serial", bytes, tally);
+  const std::string found = frame.radio ? difference<RadioIFrameView>("radio_i", bytes, tally) +
+                                              difference<RadioTFrameView>("radio_t", bytes, tally)
+                                        : difference<RubiconView>("serial", bytes, tally);
   if (found.empty()) return;
   ADD_FAILURE() << found << "\n" << hex(frame.bytes);
 }

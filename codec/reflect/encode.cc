@@ -34,9 +34,10 @@ class Encoder {
                         measure->field->requirement);
     }
     if (stale_used_ == stale_.size()) return;
-    throw EncodeError("stale", "expected " + bytes_text(stale_used_) + ", given " +
-                                   to_string(stale_.size()) +
-                                   ": the sizes in the fields leave no room for more",
+    throw EncodeError("stale",
+                      "expected " + bytes_text(stale_used_) + ", given " +
+                          to_string(stale_.size()) +
+                          ": the sizes in the fields leave no room for more",
                       type.requirement);
   }
 
@@ -90,8 +91,8 @@ class Encoder {
       comes_to(middle) < wanted ? value = middle + 1 : above = middle;
     }
     if (comes_to(value) != wanted) {
-      throw EncodeError(measure.path, "expected " + expectation(field) + ", but " + path_ +
-                                          " has " + what,
+      throw EncodeError(measure.path,
+                        "expected " + expectation(field) + ", but " + path_ + " has " + what,
                         field.requirement);
     }
     const std::string problem = number_problem(field, value);
@@ -292,8 +293,7 @@ class Encoder {
     }
     if (f.extent == Extent::kSize) return settle(f.size, base, size, what, f);
     if (end && out_.size() != *end) {
-      fail("expected " + bytes_text(*end - std::min(at, *end)) + ", given " + what,
-           f.requirement);
+      fail("expected " + bytes_text(*end - std::min(at, *end)) + ", given " + what, f.requirement);
     }
   }
 
@@ -329,9 +329,9 @@ class Encoder {
       if (f.condition.count && !evaluate(f.condition, from(base))) continue;
       const int count = f.choice ? f.choice->count + 1 : 1;
       for (int c = 0; c < count; ++c) {
-        const Type* tried = !f.choice             ? f.type
-                            : c < count - 1       ? f.choice->cases[c].type
-                                                  : f.choice->otherwise;
+        const Type* tried = !f.choice       ? f.type
+                            : c < count - 1 ? f.choice->cases[c].type
+                                            : f.choice->otherwise;
         if (!tried) continue;
         bool chosen = false;
         const Mark before = mark();
@@ -363,8 +363,8 @@ class Encoder {
     });
   }
 
-  void attempt(const Field& f, const Type& type, const Value& value, std::size_t base,
-               Limit limit, bool& chosen) {
+  void attempt(const Field& f, const Type& type, const Value& value, std::size_t base, Limit limit,
+               bool& chosen) {
     const auto picks = [&] {
       return !f.choice || choose(*f.choice, evaluate(f.choice->key, from(base))) == &type;
     };

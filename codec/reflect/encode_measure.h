@@ -15,7 +15,7 @@ struct Measure {
   std::size_t offset = 0;        ///< In the output.
   const Field* field = nullptr;  ///< Null until its bytes are written.
   std::string path;
-  bool missing = false;          ///< Not given, and not filled in yet.
+  bool missing = false;  ///< Not given, and not filled in yet.
 };
 
 /// The measures met so far. Copyable, so that an attempt can be taken back.

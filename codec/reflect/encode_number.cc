@@ -58,8 +58,8 @@ NumberResult float_of(const Value& value) {
   } else if (value.is(Value::Kind::kString) && value.text == "-Infinity") {
     number = -std::numeric_limits<float>::infinity();
   } else {
-    return problem(
-        "expected a number, \"NaN\", \"Infinity\" or \"-Infinity\", given " + value_text(value));
+    return problem("expected a number, \"NaN\", \"Infinity\" or \"-Infinity\", given " +
+                   value_text(value));
   }
   return good(bits_of_float(number));
 }
@@ -74,8 +74,8 @@ NumberResult bits_of(const Field& f, const Value& value) {
         const char* name = f.mask->bit_names[i];
         names += (i ? ", " : "") + (name ? std::string(name) : "bit" + to_string(i));
       }
-      return problem("expected bits of " + std::string(f.mask->name) + " (" + names +
-                     "), given " + value_text(item));
+      return problem("expected bits of " + std::string(f.mask->name) + " (" + names + "), given " +
+                     value_text(item));
     }
     mask |= std::int64_t{1} << bit;
   }
@@ -184,8 +184,7 @@ std::string expectation(const Field& f) {
     return values;
   }
   const Bounds allowed = bounds(f);
-  std::string text =
-      "a number from " + to_string(allowed.min) + " to " + to_string(allowed.max);
+  std::string text = "a number from " + to_string(allowed.min) + " to " + to_string(allowed.max);
   if (f.enumeration) text += " or a name of " + std::string(f.enumeration->name);
   if (f.mask) text += " or an array of bits of " + std::string(f.mask->name);
   return text;

@@ -6,18 +6,17 @@
 #include <optional>
 #include <string>
 
-#include "codec/generated/oscilloscope/tables.h"
-#include "codec/generated/rubicon/tables.h"
 #include "codec/reflect/encode.h"
 #include "codec/reflect/encode_number.h"
+#include "codec/reflect/registry.h"
 
 namespace rubric::reflect {
 namespace {
 
 std::int64_t pick(std::int64_t min, std::int64_t max) {
-  return min + static_cast<std::int64_t>(*rc::gen::resize(
-                   100, rc::gen::inRange<std::uint64_t>(
-                            0, static_cast<std::uint64_t>(max - min) + 1)));
+  return min +
+         static_cast<std::int64_t>(*rc::gen::resize(
+             100, rc::gen::inRange<std::uint64_t>(0, static_cast<std::uint64_t>(max - min) + 1)));
 }
 bool chance(int percent) { return pick(0, 99) < percent; }
 
@@ -218,8 +217,8 @@ class Grower {
     return false;
   }
 
-  std::map<std::size_t, std::int64_t> forced_;     // Keys that were chosen before they grow.
-  std::map<std::size_t, std::string> measures_;    // Names of sizes, by their place.
+  std::map<std::size_t, std::int64_t> forced_;   // Keys that were chosen before they grow.
+  std::map<std::size_t, std::string> measures_;  // Names of sizes, by their place.
 };
 
 // Returns decoded nodes as a tree.
@@ -306,7 +305,7 @@ TEST_P(EncodeProperty, DecodeGivesTheSameTree) {
 
 std::vector<const Type*> messages() {
   std::vector<const Type*> all;
-  for (const Protocol* protocol : {&rubicon::tables::kProtocol, &oscilloscope::tables::kProtocol}) {
+  for (const Protocol* protocol : protocols()) {
     for (int i = 0; i < protocol->type_count; ++i) {
       bool is_carrier = false;
       for (int c = 0; c < protocol->carrier_count; ++c) {

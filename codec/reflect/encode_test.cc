@@ -83,12 +83,15 @@ Value scalars() {
 }
 
 Value header(int key) { return object({{"key", integer(key)}}); }
-Value sized(int size, int key) {
-  return object({{"size", integer(size)}, {"key", integer(key)}});
-}
+Value sized(int size, int key) { return object({{"size", integer(size)}, {"key", integer(key)}}); }
 
 TEST(Encode, Scalars) {
-  EXPECT_EQ(encoded(toy::kScalars, scalars()), "0283" "3412" "fffe" "0000c03f" "060709");
+  EXPECT_EQ(encoded(toy::kScalars, scalars()),
+            "0283"
+            "3412"
+            "fffe"
+            "0000c03f"
+            "060709");
 }
 
 struct Row {
@@ -100,16 +103,21 @@ void PrintTo(const Row& row, std::ostream* out) { *out << row.name; }
 
 const Row kGood[] = {
     {"EnumByName", {{"colour", string("green")}}, "02833412fffe0000c03f060709"},
-    {"EnumByNameBeside", {{"colour", {}}, {"colour_name", string("blue")}},
+    {"EnumByNameBeside",
+     {{"colour", {}}, {"colour_name", string("blue")}},
      "07833412fffe0000c03f060709"},
     {"EnumBoth", {{"colour_name", string("green")}}, "02833412fffe0000c03f060709"},
-    {"EnumUnknownNull", {{"colour", integer(9)}, {"colour_name", {}}},
+    {"EnumUnknownNull",
+     {{"colour", integer(9)}, {"colour_name", {}}},
      "09833412fffe0000c03f060709"},
-    {"ConditionalField", {{"colour", integer(1)}, {"if_red", integer(0x01020304)}},
+    {"ConditionalField",
+     {{"colour", integer(1)}, {"if_red", integer(0x01020304)}},
      "01833412fffe0000c03f06070901020304"},
-    {"MaskByBits", {{"flags", array({string("odd"), string("bit5"), string("bit0")})}},
+    {"MaskByBits",
+     {{"flags", array({string("odd"), string("bit5"), string("bit0")})}},
      "02a13412fffe0000c03f060709"},
-    {"MaskByBitsBeside", {{"flags", {}}, {"flags_bits", array({string("down")})}},
+    {"MaskByBitsBeside",
+     {{"flags", {}}, {"flags_bits", array({string("down")})}},
      "02023412fffe0000c03f060709"},
     {"MaskEmpty", {{"flags", array({})}}, "02003412fffe0000c03f060709"},
     {"MaskBoth",
@@ -136,43 +144,57 @@ INSTANTIATE_TEST_SUITE_P(Rows, EncodeGood, testing::ValuesIn(kGood),
 
 const Row kBad[] = {
     {"Missing", {{"little", {}}}, "little: is missing: expected a number from 0 to 65535"},
-    {"TooLarge", {{"little", integer(65536)}},
+    {"TooLarge",
+     {{"little", integer(65536)}},
      "little: expected a number from 0 to 65535, given 65536"},
-    {"Negative", {{"little", integer(-1)}},
-     "little: expected a number from 0 to 65535, given -1"},
-    {"BelowSigned", {{"signed", integer(-32769)}},
+    {"Negative", {{"little", integer(-1)}}, "little: expected a number from 0 to 65535, given -1"},
+    {"BelowSigned",
+     {{"signed", integer(-32769)}},
      "signed: expected a number from -32768 to 32767, given -32769"},
-    {"NoNumber", {{"little", string("x")}},
+    {"NoNumber",
+     {{"little", string("x")}},
      "little: expected a number from 0 to 65535, given \"x\""},
-    {"RealForInteger", {{"little", real("1.5")}},
+    {"RealForInteger",
+     {{"little", real("1.5")}},
      "little: expected a number from 0 to 65535, given 1.5"},
-    {"ObjectForNumber", {{"little", pair(1, 2)}},
+    {"ObjectForNumber",
+     {{"little", pair(1, 2)}},
      "little: expected a number from 0 to 65535, given an object"},
-    {"UnknownName", {{"colour", string("pink")}},
+    {"UnknownName",
+     {{"colour", string("pink")}},
      "colour: expected a name of colour (red, green, blue), given \"pink\""},
-    {"UnknownNameBeside", {{"colour_name", string("pink")}},
+    {"UnknownNameBeside",
+     {{"colour_name", string("pink")}},
      "colour: colour_name: expected a name of colour (red, green, blue), given \"pink\""},
-    {"NamesDisagree", {{"colour_name", string("red")}},
+    {"NamesDisagree",
+     {{"colour_name", string("red")}},
      "colour: is given as 2, but colour_name says 1; expected one of them alone, or both the "
      "same"},
-    {"BitsDisagree", {{"flags_bits", array({string("up")})}},
+    {"BitsDisagree",
+     {{"flags_bits", array({string("up")})}},
      "flags: is given as 131, but flags_bits says 1; expected one of them alone, or both the "
      "same"},
-    {"UnknownBit", {{"flags", array({string("bit8")})}},
+    {"UnknownBit",
+     {{"flags", array({string("bit8")})}},
      "flags: expected bits of flags (up, down, bit2, bit3, bit4, bit5, bit6, odd), given "
      "\"bit8\""},
-    {"BitsNoArray", {{"flags_bits", integer(3)}},
+    {"BitsNoArray",
+     {{"flags_bits", integer(3)}},
      "flags: flags_bits: expected an array of bit names, given 3"},
-    {"FloatTooLarge", {{"real", real("1e39")}},
+    {"FloatTooLarge",
+     {{"real", real("1e39")}},
      "real: expected a number that binary32 can hold, given 1e39"},
-    {"FloatNoNumber", {{"real", string("nan")}},
+    {"FloatNoNumber",
+     {{"real", string("nan")}},
      "real: expected a number, \"NaN\", \"Infinity\" or \"-Infinity\", given \"nan\""},
     {"NotOneOf", {{"four_or_six", integer(5)}}, "four_or_six: expected 4 or 6, given 5"},
     {"OutOfRange", {{"seven", integer(8)}}, "seven: expected a number from 7 to 7, given 8"},
-    {"UnknownField", {{"litle", integer(1)}},
+    {"UnknownField",
+     {{"litle", integer(1)}},
      "litle: is no field of scalars here, which has colour, flags, little, signed, real, "
      "four_or_six, seven, eight, if_red"},
-    {"ConditionFalse", {{"if_red", integer(1)}},
+    {"ConditionFalse",
+     {{"if_red", integer(1)}},
      "if_red: is no field of scalars here, which has colour, flags, little, signed, real, "
      "four_or_six, seven, eight, if_red"},
 };
@@ -200,21 +222,27 @@ TEST(Encode, NoObject) {
 TEST(Encode, CountFilledIn) {
   const Value fields =
       object({{"pairs", array({pair(1, 2), pair(3, 4)})}, {"rest", array({integer(5)})}});
-  EXPECT_EQ(outcome(toy::kArrays, fields), "05" "0102" "0304" "0005");
+  EXPECT_EQ(outcome(toy::kArrays, fields),
+            "05"
+            "0102"
+            "0304"
+            "0005");
 }
 
 TEST(Encode, CountChecked) {
-  Value fields = object({{"twice_and_one", integer(5)}, {"pairs", array({pair(1, 2)})},
-                         {"rest", array({})}});
+  Value fields =
+      object({{"twice_and_one", integer(5)}, {"pairs", array({pair(1, 2)})}, {"rest", array({})}});
   EXPECT_EQ(outcome(toy::kArrays, fields),
             "twice_and_one: expected 1, given 2: pairs has 1 element");
   fields = changed(fields, {{"twice_and_one", integer(4)}});
-  EXPECT_EQ(outcome(toy::kArrays, fields), "04" "0102");  // Decoding divides, so this is accepted.
+  EXPECT_EQ(outcome(toy::kArrays, fields),
+            "04"
+            "0102");  // Decoding divides, so this is accepted.
 }
 
 TEST(Encode, CountBeyondItsBound) {
-  const Value fields = object({{"pairs", array(std::vector<Value>(5, pair(1, 2)))},
-                               {"rest", array({})}});
+  const Value fields =
+      object({{"pairs", array(std::vector<Value>(5, pair(1, 2)))}, {"rest", array({})}});
   EXPECT_EQ(outcome(toy::kArrays, fields),
             "twice_and_one: expected a number from 1 to 9, given 11, as pairs has 5 elements");
 }
@@ -238,9 +266,11 @@ TEST(Encode, ArrayProblems) {
 
 TEST(Encode, SizeInAnotherStructure) {
   EXPECT_EQ(outcome(toy::kFrame, object({{"header", header(1)}, {"payload", pair(8, 9)}})),
-            "0201" "0809");
+            "0201"
+            "0809");
   EXPECT_EQ(outcome(toy::kFrame, object({{"header", sized(2, 1)}, {"payload", pair(8, 9)}})),
-            "0201" "0809");
+            "0201"
+            "0809");
 }
 
 TEST(Encode, SizeTooSmall) {
@@ -257,13 +287,25 @@ TEST(Encode, SizeTooLarge) {
 
 TEST(Encode, StaleBytesFillUp) {
   const Value given = object({{"header", sized(5, 1)}, {"payload", pair(8, 9)}});
-  EXPECT_EQ(outcome(toy::kFrame, given, "aabbcc"), "0501" "0809" "aabbcc");
+  EXPECT_EQ(outcome(toy::kFrame, given, "aabbcc"),
+            "0501"
+            "0809"
+            "aabbcc");
   EXPECT_EQ(outcome(toy::kFrame, given, "aabbccdd"),
             "stale: expected 3 bytes, given 4: the sizes in the fields leave no room for more");
-  EXPECT_EQ(outcome(toy::kFrame, given, "aabbccdd", Tail::kStale), "0501" "0809" "aabbccdd");
+  EXPECT_EQ(outcome(toy::kFrame, given, "aabbccdd", Tail::kStale),
+            "0501"
+            "0809"
+            "aabbccdd");
   const Value open = object({{"header", header(1)}, {"payload", pair(8, 9)}});
-  EXPECT_EQ(outcome(toy::kFrame, open, "aabb"), "0401" "0809" "aabb");
-  EXPECT_EQ(outcome(toy::kFrame, open, "aabb", Tail::kStale), "0201" "0809" "aabb");
+  EXPECT_EQ(outcome(toy::kFrame, open, "aabb"),
+            "0401"
+            "0809"
+            "aabb");
+  EXPECT_EQ(outcome(toy::kFrame, open, "aabb", Tail::kStale),
+            "0201"
+            "0809"
+            "aabb");
 }
 
 TEST(Encode, MissingKey) {
@@ -276,7 +318,8 @@ TEST(Encode, MissingKey) {
 TEST(Encode, UnknownKeyIsOpaque) {
   const Value header9 = header(9);
   EXPECT_EQ(outcome(toy::kFrame, object({{"header", header9}, {"payload", string("0A 0b")}})),
-            "0209" "0a0b");
+            "0209"
+            "0a0b");
   EXPECT_EQ(outcome(toy::kFrame, object({{"header", header9}, {"payload", string("0a0")}})),
             "payload: expected hex digits, given \"0a0\"");
   EXPECT_EQ(outcome(toy::kFrame, object({{"header", header9}, {"payload", pair(1, 2)}})),
@@ -285,11 +328,14 @@ TEST(Encode, UnknownKeyIsOpaque) {
 
 TEST(Encode, ArrayToTheEndFillsItsPart) {
   const auto frame = [](int size) {
-    return object({{"header", sized(size, 2)},
-                   {"payload", object({{"pairs", array({})},
-                                       {"rest", array({integer(1), integer(2)})}})}});
+    return object(
+        {{"header", sized(size, 2)},
+         {"payload", object({{"pairs", array({})}, {"rest", array({integer(1), integer(2)})}})}});
   };
-  EXPECT_EQ(outcome(toy::kFrame, frame(5)), "0502" "01" "00010002");
+  EXPECT_EQ(outcome(toy::kFrame, frame(5)),
+            "0502"
+            "01"
+            "00010002");
   EXPECT_EQ(outcome(toy::kFrame, frame(7), "0000"),
             "payload.rest: its 2 elements end at byte 7, expected byte 9");
 }
@@ -304,8 +350,14 @@ TEST(Encode, InterpretationByItsOwnFirstByte) {
   const auto tagged = [](int tag, int x) {
     return object({{"tag", integer(tag)}, {"x", integer(x)}});
   };
-  EXPECT_EQ(outcome(toy::kBody, body(3, "body", tagged(1, 5))), "03" "01" "05");
-  EXPECT_EQ(outcome(toy::kBody, body(3, "body", tagged(2, 5))), "03" "02" "0005");
+  EXPECT_EQ(outcome(toy::kBody, body(3, "body", tagged(1, 5))),
+            "03"
+            "01"
+            "05");
+  EXPECT_EQ(outcome(toy::kBody, body(3, "body", tagged(2, 5))),
+            "03"
+            "02"
+            "0005");
   EXPECT_EQ(outcome(toy::kBody, body(3, "body", tagged(1, 5)), "ff", Tail::kStale), "030105ff");
   EXPECT_EQ(outcome(toy::kBody, body(3, "body", tagged(2, 70000))),
             "body.x: expected a number from 0 to 65535, given 70000");

@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <iterator>
 
-#include "codec/generated/requirements_table.h"
 #include "codec/runtime/crc16.h"
 #include "codec/runtime/ieee802154_fcs.h"
 
@@ -101,23 +100,6 @@ std::optional<Fault> find_fault(std::string_view name) {
 std::string_view fault_sentence(Fault fault) {
   const auto i = static_cast<std::size_t>(fault);
   return i < std::size(kFaults) ? kFaults[i].sentence : "unknown fault";
-}
-
-const Requirement& requirement(ReqId id) {
-  const auto i = static_cast<std::size_t>(id);
-  return kRequirements[i < std::size(kRequirements) ? i : 0];
-}
-
-ReqId find_requirement(std::string_view id) {
-  const auto upper = [](char c) { return std::toupper(static_cast<unsigned char>(c)); };
-  const auto same = [&](char a, char b) { return upper(a) == upper(b); };
-  for (std::size_t i = 1; i < std::size(kRequirements); ++i) {
-    const std::string_view known = kRequirements[i].id;
-    if (std::equal(id.begin(), id.end(), known.begin(), known.end(), same)) {
-      return static_cast<ReqId>(i);
-    }
-  }
-  return ReqId::kNone;
 }
 
 std::string number_text(const Field& field, std::int64_t value) {

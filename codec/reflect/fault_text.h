@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "codec/reflect/frame.h"
+#include "codec/reflect/requirements.h"
 #include "codec/runtime/result.h"
 
 namespace rubric::reflect {
@@ -16,11 +17,6 @@ std::string_view fault_name(Fault fault);
 std::optional<Fault> find_fault(std::string_view name);
 /// Returns a fault's meaning, without its full stop.
 std::string_view fault_sentence(Fault fault);
-
-/// Returns a requirement's entry: id, level, clause, sentence, source. All are empty for kNone.
-const Requirement& requirement(ReqId id);
-/// Finds a requirement by id ("WIRE-NET-NBYTES"), in any case; returns kNone if there is none.
-ReqId find_requirement(std::string_view id);
 
 /// Returns one sentence for a malformed frame's error, with the numbers that break the rule,
 /// without its full stop: "nbytes is 119, allowed are 2 to 102".

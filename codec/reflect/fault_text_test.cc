@@ -27,10 +27,10 @@ TEST(FaultText, has_a_name_and_a_sentence_for_every_fault) {
 }
 
 TEST(FaultText, finds_requirements) {
-  EXPECT_STREQ(requirement(ReqId::kWireNetNbytes).id, "WIRE-NET-NBYTES");
+  EXPECT_STREQ(requirement("WIRE-NET-NBYTES"_rule).id, "WIRE-NET-NBYTES");
   EXPECT_STREQ(requirement(ReqId::kNone).id, "");
   EXPECT_STREQ(requirement(static_cast<ReqId>(60000)).id, "");
-  EXPECT_EQ(find_requirement("wire-net-nbytes"), ReqId::kWireNetNbytes);
+  EXPECT_EQ(find_requirement("wire-net-nbytes"), "WIRE-NET-NBYTES"_rule);
   EXPECT_EQ(find_requirement("WIRE-NET"), ReqId::kNone);
   EXPECT_EQ(find_requirement(""), ReqId::kNone);
 }
@@ -51,7 +51,7 @@ TEST(FaultText, compares_check_sums) {
   packet.bytes = bytes;
   packet.kind = 69;
   packet.crc = 0;
-  packet.error = Error{Fault::kCrc, 3, ReqId::kWireSerialCrc};
+  packet.error = Error{Fault::kCrc, 3, "WIRE-SERIAL-CRC"_rule};
   Frame frame;
   FrameDecoder(*find_protocol("rubicon")).decode(packet, frame);
   EXPECT_EQ(error_text(frame).find("the check sum of the serial frame does not match: it is 0x0000,"
@@ -66,8 +66,7 @@ TEST(FaultText, says_what_was_expected) {
   decode(*find_type(*find_protocol("rubicon"), "updates"), updates, Tail::kFault, true, decoded);
   ASSERT_EQ(decoded.note_count(), 1U);
   EXPECT_EQ(note_name(decoded.notes()[0].kind), "unexpected_value");
-  EXPECT_EQ(note_text(decoded.notes()[0]),
-            "type is 34 (demo_data), expected is 35 (updates)");
+  EXPECT_EQ(note_text(decoded.notes()[0]), "type is 34 (demo_data), expected is 35 (updates)");
 }
 
 TEST(Registry, has_protocols_by_name) {

@@ -17,7 +17,6 @@ using Mac = tinyos::MacHeaderLayout;
 using tinyos::FrameControl;
 using tinyos::FrameControlPart;
 
-constexpr std::size_t kAmHeaderBytes = tinyos::AmHeaderView::kMaxSizeBytes;
 constexpr std::size_t kMacHeaderBytes = tinyos::MacHeaderView::kMaxSizeBytes;
 
 const Field& last_field(const Type& type) {
@@ -108,7 +107,7 @@ void FrameDecoder::decode(const Packet& packet, Frame& out) const {
   std::uint32_t head = 0;
   if (packet.framing == Framing::kHdlc) {
     head = (packet.kind != kAbsent) + (packet.serial_seq != kAbsent);
-  } else if (packet.error.requirement == req::kWireSfLength && packet.link_type == 0) {
+  } else if (packet.error.requirement == "WIRE-SF-LENGTH"_rule && packet.link_type == 0) {
     head = 1;  // A capture file's records have no length byte.
   }
   out.error.offset_bytes -= std::min(out.error.offset_bytes, head);

@@ -5,7 +5,7 @@
 #include <string>
 #include <tuple>
 
-#include "codec/containers/testing.h"
+#include "codec/containers/test/testing.h"
 #include "codec/generated/rubicon/tables.h"
 
 namespace rubric::reflect {
@@ -38,7 +38,10 @@ const std::string kJoinRequest = "c4f501004301";
 
 TEST(Frame, RadioIFrame_AndTFrame_SameMessage) {
   for (const std::string network : {"3f", ""}) {
-    Case c(Framing::kRadio, "4188072200" "01000200" + network + "0e" + kJoinRequest);
+    Case c(Framing::kRadio,
+           "4188072200"
+           "01000200" +
+               network + "0e" + kJoinRequest);
     const Frame& frame = c.decode();
     EXPECT_FALSE(frame.malformed());
     ASSERT_NE(frame.decoded.message(), nullptr);
@@ -62,10 +65,18 @@ TEST(Frame, LinkAck_IsAMessageWithoutActiveMessage) {
 }
 
 TEST(Frame, SerialPacketWithARadioMessage_IsReadAndNoted) {
-  for (const auto& [hex, message, kind] : {
-           std::tuple{"0000010000060" "00e" "c4f501004301", "join_request", NoteKind::kRadioOnly},
-           {"0000010000050" "00e" "c4f5010043", "", NoteKind::kDoesNotFit},
-           {"0000010000050" "0c8" "c4f5010043", "", NoteKind::kUnknownMessage}}) {
+  for (const auto& [hex, message, kind] : {std::tuple{"0000010000060"
+                                                      "00e"
+                                                      "c4f501004301",
+                                                      "join_request", NoteKind::kRadioOnly},
+                                           {"0000010000050"
+                                            "00e"
+                                            "c4f5010043",
+                                            "", NoteKind::kDoesNotFit},
+                                           {"0000010000050"
+                                            "0c8"
+                                            "c4f5010043",
+                                            "", NoteKind::kUnknownMessage}}) {
     Case c(Framing::kSf, hex);
     const Frame& frame = c.decode();
     EXPECT_FALSE(frame.malformed());
@@ -103,37 +114,37 @@ TEST_P(FrameNote, FramesThatNobodyReadsAreNoted) {
 INSTANTIATE_TEST_SUITE_P(
     All, FrameNote,
     ::testing::Values(NoteCase{"Beacon", Framing::kRadio, "008007220001000200", kAbsent, 1},
-                    NoteCase{"LongAddresses", Framing::kRadio, "41cc07220001000200", kAbsent, 1},
-                    NoteCase{"UnknownSerialKind", Framing::kHdlc, "43", 0xff, 1},
-                    NoteCase{"SerialAck", Framing::kHdlc, "", 67, 0},
-                    NoteCase{"SerialPacket", Framing::kHdlc, "00000100000300250a000c", 69, 0}),
+                      NoteCase{"LongAddresses", Framing::kRadio, "41cc07220001000200", kAbsent, 1},
+                      NoteCase{"UnknownSerialKind", Framing::kHdlc, "43", 0xff, 1},
+                      NoteCase{"SerialAck", Framing::kHdlc, "", 67, 0},
+                      NoteCase{"SerialPacket", Framing::kHdlc, "00000100000300250a000c", 69, 0}),
     [](const auto& row) { return row.param.name; });
 
 TEST(Frame, FramingFault_ComesFirst_AndCountsFromTheDispatchByte) {
   Case c(Framing::kHdlc, kSerialConfig, 68);
   c.packet.serial_seq = 0;
-  c.packet.error = Error{Fault::kCrc, 13, req::kWireSerialCrc};
+  c.packet.error = Error{Fault::kCrc, 13, "WIRE-SERIAL-CRC"_rule};
   const Frame& frame = c.decode();
-  EXPECT_EQ(frame.error, (Error{Fault::kCrc, 11, req::kWireSerialCrc}));
+  EXPECT_EQ(frame.error, (Error{Fault::kCrc, 11, "WIRE-SERIAL-CRC"_rule}));
   EXPECT_STREQ(frame.decoded.message()->name, "config");
 }
 
 TEST(Frame, CutForwarderPacket_CountsFromTheDispatchByte) {
   Case stream(Framing::kSf, "0001");
-  stream.packet.error = Error{Fault::kCut, 3, req::kWireSfLength};  // From the length byte on.
-  EXPECT_EQ(stream.decode().error, (Error{Fault::kCut, 2, req::kWireSfLength}));
+  stream.packet.error = Error{Fault::kCut, 3, "WIRE-SF-LENGTH"_rule};  // From the length byte on.
+  EXPECT_EQ(stream.decode().error, (Error{Fault::kCut, 2, "WIRE-SF-LENGTH"_rule}));
   Case record(Framing::kSf, "0001");
   record.packet.link_type = 148;  // No length byte.
-  record.packet.error = Error{Fault::kTooLong, 255, req::kWireSfLength};
-  EXPECT_EQ(record.decode().error, (Error{Fault::kTooLong, 255, req::kWireSfLength}));
+  record.packet.error = Error{Fault::kTooLong, 255, "WIRE-SF-LENGTH"_rule};
+  EXPECT_EQ(record.decode().error, (Error{Fault::kTooLong, 255, "WIRE-SF-LENGTH"_rule}));
 }
 
 TEST(Frame, CutInTheHeader_NamesTheHeadersRule) {
   Case serial(Framing::kSf, "00ffff");
-  EXPECT_EQ(serial.decode().error, (Error{Fault::kTruncated, 3, req::kWireAmHeader}));
+  EXPECT_EQ(serial.decode().error, (Error{Fault::kTruncated, 3, "WIRE-AM-HEADER"_rule}));
   EXPECT_FALSE(serial.frame.has_payload);
   Case radio(Framing::kRadio, "418807220001000200");
-  EXPECT_EQ(radio.decode().error, (Error{Fault::kTruncated, 9, req::kWireRadioNetwork}));
+  EXPECT_EQ(radio.decode().error, (Error{Fault::kTruncated, 9, "WIRE-RADIO-NETWORK"_rule}));
 }
 
 }  // namespace

@@ -29,10 +29,9 @@ const char* enum_name(const EnumTable& table, std::int64_t value) {
   if (guess >= 0 && guess < table.count && table.entries[guess].value == value) {
     return table.entries[guess].name;
   }
-  const EnumEntry* found =
-      std::lower_bound(table.entries, end, value, [](const EnumEntry& e, std::int64_t v) {
-        return static_cast<std::int64_t>(e.value) < v;
-      });
+  const EnumEntry* found = std::lower_bound(
+      table.entries, end, value,
+      [](const EnumEntry& e, std::int64_t v) { return static_cast<std::int64_t>(e.value) < v; });
   return found != end && static_cast<std::int64_t>(found->value) == value ? found->name : nullptr;
 }
 

@@ -1,6 +1,7 @@
 // The protocols of this build, by name.
 #pragma once
 
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -13,5 +14,10 @@ const std::vector<const Protocol*>& protocols();
 
 /// Returns the protocol of this id; null if there is none.
 const Protocol* find_protocol(std::string_view id);
+
+/// The tables of all specs: of the protocols, and of what they stand on.
+std::span<const Protocol* const> specs();
+/// By id; null if there is none.
+const Protocol* find_spec(std::string_view id);
 
 }  // namespace rubric::reflect

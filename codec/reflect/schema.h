@@ -5,7 +5,7 @@
 
 #include <stdint.h>
 
-#include "codec/generated/requirements.h"
+#include "codec/runtime/rule.h"
 
 namespace rubric {
 namespace reflect {
@@ -33,9 +33,26 @@ struct MaskTable {
 /// A step of an expression, in postfix order on a stack of int64. Loads read a number at a constant
 /// offset from the start of the enclosing structure.
 enum class Op : uint8_t {
-  kConst, kLoadU8, kLoadBe16, kLoadLe16, kLoadBe32, kLoadLe32,
-  kAdd, kSub, kMul, kDiv, kMod,
-  kEq, kNe, kLt, kLe, kGt, kGe, kAnd, kOr, kNot,
+  kConst,
+  kLoadU8,
+  kLoadBe16,
+  kLoadLe16,
+  kLoadBe32,
+  kLoadLe32,
+  kAdd,
+  kSub,
+  kMul,
+  kDiv,
+  kMod,
+  kEq,
+  kNe,
+  kLt,
+  kLe,
+  kGt,
+  kGe,
+  kAnd,
+  kOr,
+  kNot,
 };
 struct ExprStep {
   Op op;
@@ -94,11 +111,11 @@ enum class Extent : uint8_t {
 };
 
 struct Field {
-  const char* name;       ///< As shown: the spec's `-name` if there is one.
-  const char* json_key;   ///< The same with quotes and colon: "\"seq_num\":".
+  const char* name;      ///< As shown: the spec's `-name` if there is one.
+  const char* json_key;  ///< The same with quotes and colon: "\"seq_num\":".
   uint8_t json_key_size;
   Kind kind;
-  uint8_t width_bytes;    ///< For a number or mask; 0 for bytes and structures.
+  uint8_t width_bytes;  ///< For a number or mask; 0 for bytes and structures.
   bool little_endian;
   Repeat repeat;
   Extent extent;
@@ -110,11 +127,11 @@ struct Field {
   int64_t expect;
   const EnumTable* enumeration;
   const MaskTable* mask;
-  const Type* type;       ///< kStruct without a choice.
-  const Switch* choice;   ///< kStruct with a choice.
-  Expr size;              ///< Extent::kSize: bytes.
-  Expr count;             ///< Repeat::kCount: elements.
-  Expr condition;         ///< Present only if not zero.
+  const Type* type;      ///< kStruct without a choice.
+  const Switch* choice;  ///< kStruct with a choice.
+  Expr size;             ///< Extent::kSize: bytes.
+  Expr count;            ///< Repeat::kCount: elements.
+  Expr condition;        ///< Present only if not zero.
   ReqId requirement;
   const Unit* unit;
   const char* doc;
@@ -124,20 +141,20 @@ struct Field {
 /// condition holds and whose type fits is shown in place of the field `overlays` (its index in
 /// `fields`). Bytes that fit none stay opaque, with a note.
 struct Interpretation {
-  Field field;            ///< kStruct with Extent::kToEnd, fixed_offset >= 0.
+  Field field;  ///< kStruct with Extent::kToEnd, fixed_offset >= 0.
   uint16_t overlays;
 };
 
 struct Type {
-  const char* id;         ///< Name in the spec.
-  const char* name;       ///< As shown: the spec's `-name` if there is one.
+  const char* id;    ///< Name in the spec.
+  const char* name;  ///< As shown: the spec's `-name` if there is one.
   const Field* fields;
   uint16_t field_count;
   const Interpretation* interpretations;
   uint16_t interpretation_count;
-  uint32_t min_size;      ///< Bytes; the least that parses.
-  uint32_t max_size;      ///< Bytes; UINT32_MAX where it is as large as its surroundings.
-  int32_t am_type;        ///< -1 if none.
+  uint32_t min_size;  ///< Bytes; the least that parses.
+  uint32_t max_size;  ///< Bytes; UINT32_MAX where it is as large as its surroundings.
+  int32_t am_type;    ///< -1 if none.
   ReqId requirement;
   const char* doc;
   const char* doc_ref;
@@ -164,7 +181,7 @@ struct Protocol {
 
 /// A number of a frame that must have this value, so that the frame leads to a message.
 struct RouteChoice {
-  uint16_t offset;        ///< From the start of the frame.
+  uint16_t offset;  ///< From the start of the frame.
   uint8_t width_bytes;
   bool little_endian;
   uint32_t value;
@@ -179,10 +196,10 @@ struct RouteLength {
 /// How a frame reaches a message (codec/generated/*/messages.h), for the structure-aware fuzzer and
 /// other builders of frames; the message's own contents are in its Type.
 struct Route {
-  const char* carrier;    ///< Carrier of the frames: "serial", "radio_i", ...
-  const Type* type;       ///< The message.
-  uint16_t offset;        ///< Offset of its begin.
-  uint32_t room;          ///< The most bytes that it can have there; UINT32_MAX if unbounded.
+  const char* carrier;  ///< Carrier of the frames: "serial", "radio_i", ...
+  const Type* type;     ///< The message.
+  uint16_t offset;      ///< Offset of its begin.
+  uint32_t room;        ///< The most bytes that it can have there; UINT32_MAX if unbounded.
   const RouteChoice* choices;
   uint8_t choice_count;
   const RouteLength* lengths;
@@ -196,7 +213,7 @@ struct RouteTable {
 /// The roles that must follow a requirement.
 enum Roles : uint8_t { kRoleMote = 1, kRoleSink = 2, kRoleBaseStation = 4 };
 
-/// A requirement's text; the table in generated/requirements_table.h is indexed by ReqId.
+/// A requirement's texts; codec/reflect/requirements.h has them all.
 struct Requirement {
   const char* id;
   const char* level;
@@ -206,6 +223,8 @@ struct Requirement {
   uint8_t roles;         ///< Bits of Roles; 0 where the rule names none (those of the wire).
   bool forbids;          ///< It says what must not happen: a case has to attempt it.
   const char* deployed;  ///< The difference of release 1.0; empty if there is none.
+
+  constexpr ReqId number() const { return *id == '\0' ? ReqId::kNone : rule_number(id); }
 };
 
 }  // namespace reflect

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "codec/containers/testing.h"
+#include "codec/containers/test/testing.h"
 #include "codec/reflect/decode.h"
 #include "codec/runtime/hdlc.h"
 
@@ -15,7 +15,7 @@ constexpr std::size_t kRadioIHead = 11;
 constexpr std::size_t kRadioTHead = 10;
 constexpr std::size_t kNetHead = 12;
 constexpr int kNetMsgType = 28;
-constexpr int kInteresting[] = {0,  1,  2,  3,   9,   10,  16,  22,  23,  24,  25,  34,  35, 36,
+constexpr int kInteresting[] = {0,  1,  2,   3,   9,   10,  16,  22,  23,  24,  25,  34,  35, 36,
                                 92, 93, 100, 102, 103, 113, 114, 115, 127, 128, 253, 254, 255};
 
 InputFormat format_of(const std::string& path) {
@@ -144,7 +144,7 @@ void FrameMaker::change(TestFrame& frame, std::size_t head_bytes) {
     case 0: return set(length_at, one_of(kInteresting));
     case 1: return set(head_bytes + 11, one_of(kInteresting));  // nbytes
     case 2: return set(head_bytes + 8, static_cast<int>(below(chance(50) ? 3 : 256)));
-    case 3: return set(chance(30) ? 0 : head_bytes + 7, byte());  // Dispatch, sender.
+    case 3: return set(chance(30) ? 0 : head_bytes + 7, byte());      // Dispatch, sender.
     case 4: return set(head_bytes - 1, static_cast<int>(below(40)));  // AM type
     default: return set(head_bytes + kNetHead + below(6), static_cast<int>(below(40)));
   }

@@ -1,5 +1,5 @@
 // Frames to compare both decoders on: captured ones, and made-up ones near real ones (as
-// spec/oracle/frames.js makes them), mutated where parsers go wrong. Seeded.
+// spec/kaitai_check/frames.js makes them), mutated where parsers go wrong. Seeded.
 #pragma once
 
 #include <cstdint>

@@ -10,7 +10,7 @@ namespace rubric::reflect::toy {
 
 inline constexpr EnumEntry kColourEntries[] = {{1, "red"}, {2, "green"}, {7, "blue"}};
 inline constexpr EnumTable kColour = {"colour", kColourEntries, 3};
-inline constexpr const char* kFlagNames[8] = {"up", "down", nullptr, nullptr,
+inline constexpr const char* kFlagNames[8] = {"up",    "down",  nullptr, nullptr,
                                               nullptr, nullptr, nullptr, "odd"};
 inline constexpr MaskTable kFlags = {"flags", kFlagNames, 8};
 
@@ -32,7 +32,7 @@ constexpr Field field(const char* name, Kind kind, std::uint8_t width, std::int3
   f.valid = kAny;
   f.expect = -1;
   f.size = f.count = f.condition = kNoExpr;
-  f.requirement = ReqId::kWireCommand;
+  f.requirement = "WIRE-COMMAND"_rule;
   f.doc = "";
   return f;
 }
@@ -96,8 +96,12 @@ constexpr Expr expr(const ExprStep (&steps)[N]) {
 }
 template <std::size_t N>
 constexpr Type type(const char* name, const Field (&fields)[N]) {
-  return {name, name, fields, static_cast<std::uint16_t>(N), nullptr, 0, 0, UINT32_MAX, -1,
-          ReqId::kWireConfig, "", ""};
+  return {name,    name,
+          fields,  static_cast<std::uint16_t>(N),
+          nullptr, 0,
+          0,       UINT32_MAX,
+          -1,      "WIRE-CONFIG"_rule,
+          "",      ""};
 }
 
 // scalars: every number, its enum and mask, and a field that is there only if colour is red.
@@ -109,8 +113,7 @@ inline constexpr Field kScalarFields[] = {
     with_unit(little(field("little", Kind::kUint, 2, 2)), kMillivolt),
     field("signed", Kind::kSint, 2, 4),
     little(field("real", Kind::kFloat, 4, 6)),
-    with_valid(field("four_or_six", Kind::kUint, 1, 10),
-               {ValidKind::kOneOf, 0, 0, kFourOrSix, 2}),
+    with_valid(field("four_or_six", Kind::kUint, 1, 10), {ValidKind::kOneOf, 0, 0, kFourOrSix, 2}),
     with_valid(field("seven", Kind::kUint, 1, 11), {ValidKind::kRange, 7, 7, nullptr, 0}),
     with_expect(field("eight", Kind::kUint, 1, 12), 8),
     with_condition(field("if_red", Kind::kUint, 4, 13), expr(kIsRedSteps)),

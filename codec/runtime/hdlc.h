@@ -61,7 +61,7 @@ class HdlcFramer {
     escaped(static_cast<uint8_t>(crc));
     escaped(static_cast<uint8_t>(crc >> 8));
     raw(kHdlcFlag);
-    if (full_) return fail(Fault::kNoRoom, out_.size(), req::kWireHdlcFlag);
+    if (full_) return fail(Fault::kNoRoom, out_.size(), "WIRE-HDLC-FLAG"_rule);
     return used_;
   }
 
@@ -92,7 +92,7 @@ class HdlcFramer {
 /// serial_content_max), kNoRoom. Source: TEP 113, section 3.1.
 inline Result<size_t> write_hdlc_frame(Bytes content, MutableBytes out) {
   const size_t max = serial_content_max(content.empty() ? 0 : content[0]) - kSerialCrcBytes;
-  if (content.size() > max) return fail(Fault::kTooLong, max, req::kWireHdlcLong);
+  if (content.size() > max) return fail(Fault::kTooLong, max, "WIRE-HDLC-LONG"_rule);
   HdlcFramer framer(out);
   framer.open();
   framer.put(content);
@@ -103,7 +103,7 @@ inline Result<size_t> write_hdlc_frame(Bytes content, MutableBytes out) {
 /// send.
 inline Result<size_t> write_serial_packet(Bytes packet, MutableBytes out) {
   const size_t max = kSerialAfterHeaderMax - kSerialCrcBytes;
-  if (packet.size() > max) return fail(Fault::kTooLong, 1 + max, req::kWireHdlcLong);
+  if (packet.size() > max) return fail(Fault::kTooLong, 1 + max, "WIRE-HDLC-LONG"_rule);
   HdlcFramer framer(out);
   framer.open();
   framer.put(kSerialPacketNoAck);
@@ -114,7 +114,7 @@ inline Result<size_t> write_serial_packet(Bytes packet, MutableBytes out) {
 /// Writes the frame of a packet whose sender wants it confirmed under `seq`, as hosts send.
 inline Result<size_t> write_serial_packet_ack(uint8_t seq, Bytes packet, MutableBytes out) {
   const size_t max = kSerialAfterHeaderMax - kSerialCrcBytes;
-  if (packet.size() > max) return fail(Fault::kTooLong, 2 + max, req::kWireHdlcLong);
+  if (packet.size() > max) return fail(Fault::kTooLong, 2 + max, "WIRE-HDLC-LONG"_rule);
   HdlcFramer framer(out);
   framer.open();
   framer.put(kSerialPacketAck);
@@ -184,14 +184,14 @@ class HdlcDeframer {
     if (size_ == 0 && !escaping_ && !too_long_) return HdlcEvent::kNone;  // Idle line.
     done_ = true;
     content_size_ = size_;
-    if (escaping_) return bad(Fault::kAborted, size_, req::kWireHdlcEscape);
+    if (escaping_) return bad(Fault::kAborted, size_, "WIRE-HDLC-ESCAPE"_rule);
     const size_t max = size_ == 0 ? 0 : serial_content_max(buffer_[0]);
-    if (size_ > max) return bad(Fault::kTooLong, max, req::kWireHdlcLong);
-    if (too_long_) return bad(Fault::kTooLong, size_, req::kWireHdlcLong);
-    if (size_ < kSerialContentMin) return bad(Fault::kTooShort, size_, req::kWireHdlcShort);
+    if (size_ > max) return bad(Fault::kTooLong, max, "WIRE-HDLC-LONG"_rule);
+    if (too_long_) return bad(Fault::kTooLong, size_, "WIRE-HDLC-LONG"_rule);
+    if (size_ < kSerialContentMin) return bad(Fault::kTooShort, size_, "WIRE-HDLC-SHORT"_rule);
     const size_t crc_at = size_ - kSerialCrcBytes;
     if (load_le16(buffer_.data() + crc_at) != crc_) {
-      return bad(Fault::kCrc, crc_at, req::kWireSerialCrc);
+      return bad(Fault::kCrc, crc_at, "WIRE-SERIAL-CRC"_rule);
     }
     content_size_ = crc_at;
     error_ = Error{Fault::kNone, 0, ReqId::kNone};

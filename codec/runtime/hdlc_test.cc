@@ -79,15 +79,15 @@ TEST(WireHdlcLong, WritersRefuseWhatIsTooLongOrDoesNotFit) {
   };
   EXPECT_TRUE(write_serial_packet(view(packet).first(252), out).has_value());
   EXPECT_EQ(write_serial_packet(view(packet).first(253), out).error(),
-            fault(Fault::kTooLong, 253, req::kWireHdlcLong));
+            fault(Fault::kTooLong, 253, "WIRE-HDLC-LONG"_rule));
   EXPECT_TRUE(write_serial_packet_ack(9, view(packet).first(252), out).has_value());
   EXPECT_EQ(write_serial_packet_ack(9, view(packet).first(253), out).error(),
-            fault(Fault::kTooLong, 254, req::kWireHdlcLong));
+            fault(Fault::kTooLong, 254, "WIRE-HDLC-LONG"_rule));
   EXPECT_EQ(write_hdlc_frame(view(packet), out).error(),
-            fault(Fault::kTooLong, 253, req::kWireHdlcLong));
+            fault(Fault::kTooLong, 253, "WIRE-HDLC-LONG"_rule));
   for (size_t size = 0; size < 6; ++size) {
     EXPECT_EQ(write_serial_ack(1, out.first(size)).error(),
-              fault(Fault::kNoRoom, size, req::kWireHdlcFlag));
+              fault(Fault::kNoRoom, size, "WIRE-HDLC-FLAG"_rule));
   }
 }
 
@@ -98,13 +98,15 @@ struct BadCase {
   size_t kept;
 };
 const BadCase kBad[] = {
-    {"OneByte", "7e 45 7e", {Fault::kTooShort, 1, req::kWireHdlcShort}, 1},
-    {"ThreeBytes", "7e 45 00 00 7e", {Fault::kTooShort, 3, req::kWireHdlcShort}, 3},
-    {"WrongCrc", "7e 43 00 9f 59 7e", {Fault::kCrc, 2, req::kWireSerialCrc}, 4},
-    {"Aborted", "7e 43 00 9f 58 7d 7e", {Fault::kAborted, 4, req::kWireHdlcEscape}, 4},
-    {"AbortedAtOnce", "7e 7d 7e", {Fault::kAborted, 0, req::kWireHdlcEscape}, 0},
-    {"BeyondTheBuffer", "7e 43 00 00 00 00 00 00 00 00 7e",
-     {Fault::kTooLong, 8, req::kWireHdlcLong}, 8},
+    {"OneByte", "7e 45 7e", {Fault::kTooShort, 1, "WIRE-HDLC-SHORT"_rule}, 1},
+    {"ThreeBytes", "7e 45 00 00 7e", {Fault::kTooShort, 3, "WIRE-HDLC-SHORT"_rule}, 3},
+    {"WrongCrc", "7e 43 00 9f 59 7e", {Fault::kCrc, 2, "WIRE-SERIAL-CRC"_rule}, 4},
+    {"Aborted", "7e 43 00 9f 58 7d 7e", {Fault::kAborted, 4, "WIRE-HDLC-ESCAPE"_rule}, 4},
+    {"AbortedAtOnce", "7e 7d 7e", {Fault::kAborted, 0, "WIRE-HDLC-ESCAPE"_rule}, 0},
+    {"BeyondTheBuffer",
+     "7e 43 00 00 00 00 00 00 00 00 7e",
+     {Fault::kTooLong, 8, "WIRE-HDLC-LONG"_rule},
+     8},
 };
 
 TEST(WireHdlcShort, BadFramesAreToldAndTheNextIsFound) {

@@ -5,8 +5,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "codec/generated/requirements.h"
 #include "codec/runtime/fault.h"
+#include "codec/runtime/rule.h"
 
 namespace rubric {
 

@@ -51,21 +51,21 @@ struct U8 {
   static void store(uint8_t* p, Value v) { store_u8(p, v); }
 };
 
-#define RUBRIC_WIRE_NUMBER(NAME, VALUE, BITS, ORDER, SWAPPED)              \
-  struct NAME {                                                            \
-    using Value = VALUE;                                                   \
-    static constexpr size_t kSizeBytes = BITS / 8;                         \
-    static constexpr Value load(const uint8_t* p) {                        \
-      return static_cast<Value>(load_##ORDER##BITS(p));                    \
-    }                                                                      \
-    static Value fast_load(const uint8_t* p) {                             \
-      uint##BITS##_t raw;                                                  \
-      memcpy(&raw, p, sizeof(raw));                                        \
+#define RUBRIC_WIRE_NUMBER(NAME, VALUE, BITS, ORDER, SWAPPED)                  \
+  struct NAME {                                                                \
+    using Value = VALUE;                                                       \
+    static constexpr size_t kSizeBytes = BITS / 8;                             \
+    static constexpr Value load(const uint8_t* p) {                            \
+      return static_cast<Value>(load_##ORDER##BITS(p));                        \
+    }                                                                          \
+    static Value fast_load(const uint8_t* p) {                                 \
+      uint##BITS##_t raw;                                                      \
+      memcpy(&raw, p, sizeof(raw));                                            \
       return static_cast<Value>((SWAPPED) ? __builtin_bswap##BITS(raw) : raw); \
-    }                                                                      \
-    static void store(uint8_t* p, Value v) {                               \
-      store_##ORDER##BITS(p, static_cast<uint##BITS##_t>(v));              \
-    }                                                                      \
+    }                                                                          \
+    static void store(uint8_t* p, Value v) {                                   \
+      store_##ORDER##BITS(p, static_cast<uint##BITS##_t>(v));                  \
+    }                                                                          \
   };
 RUBRIC_WIRE_NUMBER(U16Be, uint16_t, 16, be, __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__)
 RUBRIC_WIRE_NUMBER(U16Le, uint16_t, 16, le, __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__)

@@ -6,7 +6,7 @@
 #include <span>
 #include <string_view>
 
-#include "codec/generated/requirements.h"
+#include "codec/runtime/rule.h"
 #include "conformance/machine/profile.h"
 
 namespace rubric::machine {
@@ -42,23 +42,23 @@ inline constexpr Profile kDeployed{
     .early_ticks = 30,
 };
 inline constexpr std::array<AcceptedDifference, 9> kDeployedAccepted{{
-    {req::kJ3Time,
+    {"J3-TIME"_rule,
      "cur_time is the time of the sink's boot and is the same in every join_reply."},
-    {req::kJ3Drift,
+    {"J3-DRIFT"_rule,
      "cur_time is the time of the sink's boot, however much time has passed."},
-    {req::kJ8Fail,
+    {"J8-FAIL"_rule,
      "A joinIsland call without success ends without joined(FAIL)."},
-    {req::kT3Timeout,
+    {"T3-TIMEOUT"_rule,
      "A reliable message without its ack is never signalled as failed."},
-    {req::kS2Signal,
+    {"S2-SIGNAL"_rule,
      "synData_received is signalled when data arrive, not at each tick."},
-    {req::kS3Old,
+    {"S3-OLD"_rule,
      "Status old is never signalled."},
-    {req::kS3Unchanged,
+    {"S3-UNCHANGED"_rule,
      "There is no power-save mode: every tick sends, whether or not a value changed."},
-    {req::kS1Mode,
+    {"S1-MODE"_rule,
      "A channel created in power-save mode sends in reliable mode."},
-    {req::kS6Disposed,
+    {"S6-DISPOSED"_rule,
      "Disposing a channel changes nothing: it goes on, and keeps its place."},
 }};
 

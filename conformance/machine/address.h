@@ -10,7 +10,7 @@ constexpr std::uint16_t kBroadcastPid = 0xFFFF;
 constexpr std::uint16_t kLocalPid = 0xFFFE;  ///< Replaced by the own island before sending.
 constexpr std::uint16_t kBroadcastDevid = 0xFFFF;
 constexpr std::uint16_t kLocalDevid = 0xFFFE;  ///< The node itself.
-constexpr std::uint16_t kNullDevid = 0xFFFD;  ///< Not for a mote: for the island's PC or robot.
+constexpr std::uint16_t kNullDevid = 0xFFFD;   ///< Not for a mote: for the island's PC or robot.
 constexpr std::uint16_t kAmBroadcast = 0xFFFF;
 constexpr std::uint16_t kNoSeq = 0xFFFF;  ///< Returned when send refuses.
 

@@ -34,7 +34,7 @@ bool admit(JoinSink& sink, const JoinContext& context, std::size_t pending, Acti
   } else if (list_is_full(sink, context.profile)) {
     //= J3-OVERWRITE: A new mote never takes the place of a listed member.
     // Possible when more joins are pending than places are left.
-    actions.ignored(req::kJ3Overwrite);
+    actions.ignored("J3-OVERWRITE"_rule);
     return false;
   } else {
     sink.members.push(admission);
@@ -42,7 +42,7 @@ bool admit(JoinSink& sink, const JoinContext& context, std::size_t pending, Acti
   sink.pending.erase(pending);
   //= J6-ONLY: A sink adds a mote to its list, announces and reports it only on an ack_join.
   const Address address{context.island, admission.devid};
-  actions.notify(MoteJoined{address, admission.descriptor}, req::kJ6Add);
+  actions.notify(MoteJoined{address, admission.descriptor}, "J6-ADD"_rule);
   return true;
 }
 
@@ -52,13 +52,13 @@ JoinSend call_join(JoinMote& join, const JoinContext& context, const Descriptor&
                    std::uint16_t seq_num, Actions& actions) {
   //= J8-JOINED: joinIsland of a mote that is joined fails at once and sends nothing.
   if (join.phase == JoinMote::Phase::kMember) {
-    actions.notify(Joined{join.address, false}, req::kJ8Joined);
+    actions.notify(Joined{join.address, false}, "J8-JOINED"_rule);
     return JoinSend::kNone;
   }
   //= J5-ONCE: Each joinIsland call ends in exactly one joined event, SUCCESS or FAIL.
   // So this call ends here; the one that runs is not disturbed and ends in its own.
   if (join.phase == JoinMote::Phase::kJoining) {
-    actions.notify(Joined{{0, context.id}, false}, req::kJ5Once);
+    actions.notify(Joined{{0, context.id}, false}, "J5-ONCE"_rule);
     return JoinSend::kNone;
   }
   join = JoinMote{};
@@ -77,17 +77,17 @@ JoinSend hear_reply(JoinMote& join, const JoinContext& context, Address offered,
     //= J7-CHOICE: With several sinks in range a mote sends ack_join only for the island that it
     //= chose for its present request.
     //= J4-JOINED: A mote that is joined, or has no request outstanding, ignores a join_reply.
-    actions.ignored(second_offer ? req::kJ7Choice : req::kJ4Joined);
+    actions.ignored(second_offer ? "J7-CHOICE"_rule : "J4-JOINED"_rule);
     return JoinSend::kNone;
   }
   if (join.phase == JoinMote::Phase::kOutside) {
-    actions.ignored(req::kJ4Joined);
+    actions.ignored("J4-JOINED"_rule);
     return JoinSend::kNone;
   }
   //= J4-SEQ: A mote ignores a join_reply whose sequence number is not that of its outstanding
   //= request.
   if (seq_num != join.seq_num) {
-    actions.ignored(req::kJ4Seq);
+    actions.ignored("J4-SEQ"_rule);
     return JoinSend::kNone;
   }
   join.phase = JoinMote::Phase::kMember;
@@ -98,13 +98,13 @@ JoinSend hear_reply(JoinMote& join, const JoinContext& context, Address offered,
   join.accepted = context.now;
   //= J5-STOP: A mote that is joined sends no further join_request.
   join.due = 0;
-  actions.notify(Joined{offered, true}, req::kJ5Success);
+  actions.notify(Joined{offered, true}, "J5-SUCCESS"_rule);
   return JoinSend::kAck;
 }
 
 JoinSend join_timer(JoinMote& join, const JoinContext& context, Actions& actions) {
   if (join.phase != JoinMote::Phase::kJoining) {
-    actions.ignored(req::kJ5Stop);
+    actions.ignored("J5-STOP"_rule);
     return JoinSend::kNone;
   }
   //= J8-LIMIT: A joinIsland call sends at most five join_requests.
@@ -116,9 +116,9 @@ JoinSend join_timer(JoinMote& join, const JoinContext& context, Actions& actions
   join.phase = JoinMote::Phase::kOutside;
   join.due = 0;
   if (context.profile.join_fail_signalled) {
-    actions.notify(Joined{{0, context.id}, false}, req::kJ8Fail);
+    actions.notify(Joined{{0, context.id}, false}, "J8-FAIL"_rule);
   } else {
-    actions.followed(req::kJ8Limit);
+    actions.followed("J8-LIMIT"_rule);
   }
   return JoinSend::kNone;
 }
@@ -127,18 +127,18 @@ JoinSend ack_join_sent(JoinMote& join, const JoinContext& context, bool acked, A
   if (join.phase != JoinMote::Phase::kMember || join.acked) return JoinSend::kNone;
   if (acked) {
     join.acked = true;
-    actions.followed(req::kJ4Ack);
+    actions.followed("J4-ACK"_rule);
     return JoinSend::kNone;
   }
   //= J4-FEW: An ack_join is repeated at most five times.
   if (join.acks >= context.profile.ack_join_max) {
-    actions.followed(req::kJ4Few);
+    actions.followed("J4-FEW"_rule);
     return JoinSend::kNone;
   }
   //= J4-REPEAT: The ack_join of an accepted reply is repeated only unchanged, within one join
   //= period of the last request or of the acceptance, and at most 20 times.
   if (context.now - join.accepted > context.profile.join_period_ticks) {
-    actions.followed(req::kJ4Repeat);
+    actions.followed("J4-REPEAT"_rule);
     return JoinSend::kNone;
   }
   ++join.acks;
@@ -150,12 +150,12 @@ bool hear_request(JoinSink& sink, const JoinContext& context, std::uint16_t from
   const bool listed = find_member(sink, from) != nullptr;
   //= J2-LISTED: A sink ignores a join_request of a mote that is already in its list.
   if (listed && context.profile.listed_ignored) {
-    actions.ignored(req::kJ2Listed);
+    actions.ignored("J2-LISTED"_rule);
     return false;
   }
   //= J3-FULL: A sink whose list is full does not answer a mote that it does not list.
   if (!listed && list_is_full(sink, context.profile)) {
-    actions.ignored(req::kJ3Full);
+    actions.ignored("J3-FULL"_rule);
     return false;
   }
   //= J9-INTERLEAVE: Joins of several motes may interleave at a sink; each keeps its own sequence
@@ -174,7 +174,7 @@ bool hear_ack_join(JoinSink& sink, const JoinContext& context, Address dest, Add
                    std::uint16_t seq_num, const Descriptor&, Actions& actions) {
   //= J6-ISLAND: A sink ignores an ack_join whose dest.pid is not its island.
   if (dest.pid != context.island) {
-    actions.ignored(req::kJ6Island);
+    actions.ignored("J6-ISLAND"_rule);
     return false;
   }
   const std::size_t pending = index_of(sink.pending, src.devid);
@@ -187,7 +187,7 @@ bool hear_ack_join(JoinSink& sink, const JoinContext& context, Address dest, Add
   //= J6-SEQ: A sink ignores an ack_join whose sequence number is not the one it stored for that
   //= mote.
   const bool repeated = member != nullptr && member->seq_num == seq_num;
-  actions.ignored(repeated ? req::kJ6Repeat : req::kJ6Seq);
+  actions.ignored(repeated ? "J6-REPEAT"_rule : "J6-SEQ"_rule);
   return false;
 }
 

@@ -57,7 +57,7 @@ void flush_line(Node& node, Interface<kRoom>& line, Link link) {
   while (line.on && !line.sending && !line.taken && !line.out.empty()) {
     const Buffered& frame = line.out.front();
     if (is_stale(node, frame)) {
-      node.actions.ignored(req::kJ4Repeat);
+      node.actions.ignored("J4-REPEAT"_rule);
       line.out.pop();
       continue;
     }
@@ -75,7 +75,7 @@ void flush_line(Node& node, Interface<kRoom>& line, Link link) {
     line.sending_ack_join = frame.type == am::kAckJoin;
     left(node, link, frame.type, frame.awaited);
     line.out.pop();
-    node.actions.followed(req::kN2Order);
+    node.actions.followed("N2-ORDER"_rule);
   }
 }
 
@@ -99,7 +99,7 @@ Place put_on_line(Node& node, Interface<kRoom>& line, const Header& header) {
     left(node, header.link, header.type, header.awaited);
     return transmit_now(node, header);
   }
-  node.actions.followed(req::kN2Queue);
+  node.actions.followed("N2-QUEUE"_rule);
   Buffered& frame = line.out.push();
   frame.dest = header.dest;
   frame.src = am_source(node.state, header.link);
@@ -121,10 +121,10 @@ ReqId line_refusal(const State& state, Link link) {
   if (link == Link::kPeis) return ReqId::kNone;
   return with_line(state, link, [](const auto& line) {
     //= N10-OFF: An interface that is switched off sends nothing and receives nothing.
-    if (!line.on) return req::kN10Off;
+    if (!line.on) return "N10-OFF"_rule;
     //= N1-FULL: When the outgoing buffer is full send returns 0xFFFF and that message is never
     //= sent.
-    return line.out.full() ? req::kN1Full : ReqId::kNone;
+    return line.out.full() ? "N1-FULL"_rule : ReqId::kNone;
   });
 }
 
@@ -174,7 +174,7 @@ void send_done(Node& node, const SendDone& event) {
     const JoinContext context = join_context(node);
     const JoinSend send = ack_join_sent(node.state.join, context, event.acked, node.actions);
     // The repeat keeps its frame's place before those that came later.
-    if (send == JoinSend::kAck) send_ack_join(node, req::kJ4Repeat);
+    if (send == JoinSend::kAck) send_ack_join(node, "J4-REPEAT"_rule);
   }
   flush(node, event.link);
 }
@@ -187,7 +187,7 @@ void line_busy(Node& node, const LinkBusy& event) {
 
 void send_join_request(Node& node, ReqId requirement) {
   // While the one before still waits for the radio it covers this one, too.
-  if (is_waiting(node.state, am::kJoin)) return node.actions.followed(req::kJ8Period);
+  if (is_waiting(node.state, am::kJoin)) return node.actions.followed("J8-PERIOD"_rule);
   const JoinMote& join = node.state.join;
   //= J1-DEST: A join_request is sent to the AM address of the sink, 1.
   const Place place =
@@ -226,7 +226,7 @@ void send_ack_join(Node& node, ReqId requirement) {
 
 void send_join_reply(Node& node, std::uint16_t dest, std::uint16_t seq_num) {
   //= J3-DEST: A join_reply is sent to the AM address that asked.
-  const Place place = put(node, {Link::kRadio, am::kJoinReply, dest, req::kJ3Reply, false});
+  const Place place = put(node, {Link::kRadio, am::kJoinReply, dest, "J3-REPLY"_rule, false});
   if (!place) return;
   //= J3-SEQ: A join_reply carries the sequence number of the request that it answers.
   //= J3-ADDRESS: A join_reply carries the sink's island id as island_addr and the requesting mote's

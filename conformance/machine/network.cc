@@ -17,13 +17,10 @@ constexpr std::size_t kAppHeaderBytes = rubicon::AppMsgLayout::PayloadAt::kAt;
 
 Link link_of(Route::Onward onward) {
   switch (onward) {
-    case Route::Onward::kSerial:
-      return Link::kSerial;
-    case Route::Onward::kPeis:
-      return Link::kPeis;
+    case Route::Onward::kSerial: return Link::kSerial;
+    case Route::Onward::kPeis: return Link::kPeis;
     case Route::Onward::kRadio:
-    case Route::Onward::kNowhere:
-      break;
+    case Route::Onward::kNowhere: break;
   }
   return Link::kRadio;
 }
@@ -90,27 +87,27 @@ void send_ack(Node& node, Address to, std::uint8_t app_id, std::uint16_t seq_num
   //= T2-CONTENT: An ack has TRANSID RUBICON_ACK, the APPID and the sequence number of the message,
   //= is unreliable, and goes to the message's source.
   ReqId refused = ReqId::kNone;
-  send_own(node, {to, component::kRubiconAck, app_id, false, body, req::kT2Ack}, refused);
+  send_own(node, {to, component::kRubiconAck, app_id, false, body, "T2-ACK"_rule}, refused);
   if (refused != ReqId::kNone) node.actions.ignored(refused);
 }
 
 void hear_connless(Node& node, rubicon::NetMsgView message, std::uint8_t app_id, Bytes data) {
   Actions& actions = node.actions;
   //= T1-UNKNOWN: A message with an unknown TRANSID or APPID is dropped without harm.
-  if (!is_known_app(app_id)) return actions.ignored(req::kT1Unknown);
+  if (!is_known_app(app_id)) return actions.ignored("T1-UNKNOWN"_rule);
   const Address src = address_of(message.src());
   const Address dest = address_of(message.dest());
   const bool reliable = message.reliable() != 0;
-  actions.notify(Received{src, app_id, data}, reliable ? req::kT2Deliver : req::kT1Deliver);
-  if (!reliable) return actions.followed(req::kT2Unreliable);
+  actions.notify(Received{src, app_id, data}, reliable ? "T2-DELIVER"_rule : "T1-DELIVER"_rule);
+  if (!reliable) return actions.followed("T2-UNRELIABLE"_rule);
   if (!must_ack(reliable, dest, component::kConnless, app_id)) {
-    return actions.followed(req::kT2Broadcast);
+    return actions.followed("T2-BROADCAST"_rule);
   }
   //= T2-ACK: A reliable Connectionless message to the node itself, with an APPID that it knows, is
   //= answered by an ack.
   // A message for another island's sink, which is delivered by its devid, gets no ack (decision
   // 126).
-  if (dest != own_address(node.state)) return actions.followed(req::kT2Ack);
+  if (dest != own_address(node.state)) return actions.followed("T2-ACK"_rule);
   send_ack(node, src, app_id, message.seq_num());
 }
 
@@ -122,24 +119,22 @@ void deliver(Node& node, rubicon::NetMsgView message) {
   const auto app_id = static_cast<std::uint8_t>(App::AppIdAt::load(payload.data()));
   const Bytes body = payload.from(kAppHeaderBytes);
   switch (trans_id) {
-    case component::kConnless:
-      return hear_connless(node, message, app_id, body);
+    case component::kConnless: return hear_connless(node, message, app_id, body);
     case component::kRubiconAck: {
       const std::int32_t acked = acked_seq_num(body);
-      if (acked < 0) return node.actions.ignored(req::kWireRubiconAck);
+      if (acked < 0) return node.actions.ignored("WIRE-RUBICON-ACK"_rule);
       hear_ack(node.state.awaited, address_of(message.src()), app_id,
                static_cast<std::uint16_t>(acked), node.actions);
-      if (message.reliable() != 0) node.actions.followed(req::kT2Loop);
+      if (message.reliable() != 0) node.actions.followed("T2-LOOP"_rule);
       return;
     }
     case component::kSynChannel:
       if (node.config().role == Role::kBaseStation) break;  // It has no channels.
-      return hear_synaptic(node.state.synaptic, own_address(node.state),
-                           address_of(message.src()), body, node.actions);
-    default:
-      break;
+      return hear_synaptic(node.state.synaptic, own_address(node.state), address_of(message.src()),
+                           body, node.actions);
+    default: break;
   }
-  node.actions.ignored(req::kT1Unknown);
+  node.actions.ignored("T1-UNKNOWN"_rule);
 }
 
 // Makes room for a message that asks for an ack; without a timeout the oldest is given up.
@@ -165,10 +160,10 @@ std::uint16_t send_own(Node& node, const OwnMessage& message, ReqId& refused) {
   refused = route.onward == Route::Onward::kNowhere ? route.requirement : line_refusal(state, link);
   // A message can ask for an ack only if there is a place to remember that it is awaited.
   if (refused == ReqId::kNone && message.reliable && !can_await(state.awaited, node.profile())) {
-    refused = req::kN1Full;
+    refused = "N1-FULL"_rule;
   }
   if (refused != ReqId::kNone) return kNoSeq;
-  if (local) node.actions.followed(req::kN3Local);
+  if (local) node.actions.followed("N3-LOCAL"_rule);
   const std::uint16_t seq_num = next_seq_num(state.sequence, state.awaited);
   const bool plain = message.requirement == ReqId::kNone;
   const ReqId requirement = plain ? route.requirement : message.requirement;
@@ -185,14 +180,14 @@ std::uint16_t send_own(Node& node, const OwnMessage& message, ReqId& refused) {
 void hear_net_msg(Node& node, Link from, Bytes bytes) {
   const Router router = router_of(node.state);
   // J11-HEAR: a node without an address ignores them.
-  if (!router.member) return node.actions.ignored(req::kJ11Hear);
+  if (!router.member) return node.actions.ignored("J11-HEAR"_rule);
   const auto message = rubicon::NetMsgView::parse(bytes);
   if (!message) {
     //= N11-NBYTES: A net_msg whose nbytes is over 102, under 2, or more than arrived is dropped: no
     //= delivery, no ack, no forward.
     //= T2-TWO: A message whose reliable is neither 0 nor 1 is not acked.
     const ReqId rule = message.error().requirement;
-    return node.actions.ignored(rule == req::kWireNetReliable ? rule : req::kN11Nbytes);
+    return node.actions.ignored(rule == "WIRE-NET-RELIABLE"_rule ? rule : "N11-NBYTES"_rule);
   }
   const Route route =
       route_received(router, from, address_of(message->dest()), address_of(message->src()));
@@ -215,9 +210,9 @@ void report_joined(Node& node, const Admission& member) {
     auto& owed = state.sink.unreported;
     if (owed.full()) owed.erase(0);  // Some mote joined again and again; its last report stays.
     owed.push(member);
-    return node.actions.followed(req::kJ6Report);
+    return node.actions.followed("J6-REPORT"_rule);
   }
-  const Place place = put(node, {Link::kSerial, am::kNet, kAmBroadcast, req::kJ6Report, false});
+  const Place place = put(node, {Link::kSerial, am::kNet, kAmBroadcast, "J6-REPORT"_rule, false});
   const Address address{state.island, member.devid};
   const rubicon::MoteDesc wire = wire_of(member.descriptor);
   rubicon::SerialJoined joined;
@@ -261,10 +256,10 @@ void tick(Node& node) {
     }
     const Bytes data(floats, Values::kUnitBytes * send.size);
     ReqId refused = ReqId::kNone;
-    send_own(node,
-             {send.dest, component::kSynChannel, component::kEsnData, false, data,
-              send.requirement},
-             refused);
+    send_own(
+        node,
+        {send.dest, component::kSynChannel, component::kEsnData, false, data, send.requirement},
+        refused);
     if (refused == ReqId::kNone) continue;
     node.actions.ignored(refused);
     keep_change(state.synaptic, send.id);
@@ -277,14 +272,14 @@ void set_island(Node& node, std::uint16_t island) {
   //= N9-SET: A config message SET_ISLAND_ID over serial sets the sink's island id; what the sink
   //= does after it uses the new one.
   state.island = island;
-  node.actions.followed(req::kN9Set);
+  node.actions.followed("N9-SET"_rule);
   if (!changes || node.config().role != Role::kSink) return;
   //= N9-MEMBERS: A sink whose island id changes forgets its members.
   state.sink.members.clear();
   state.sink.pending.clear();
   state.sink.unreported.clear();
   forget_waiting(state, am::kJoinReply);  // They offer the island that is no more.
-  node.actions.followed(req::kN9Members);
+  node.actions.followed("N9-MEMBERS"_rule);
 }
 
 }  // namespace rubric::machine

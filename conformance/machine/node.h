@@ -23,9 +23,7 @@ inline std::uint32_t ms_of(const Node& node) {
   const std::uint64_t per_second = node.profile().ticks_per_second;
   return static_cast<std::uint32_t>(std::uint64_t{node.now} * 1000 / per_second);
 }
-inline std::uint32_t clock_ms(const Node& node) {
-  return ms_of(node) + node.state.clock_offset_ms;
-}
+inline std::uint32_t clock_ms(const Node& node) { return ms_of(node) + node.state.clock_offset_ms; }
 
 inline Router router_of(const State& state) {
   const bool mote = state.config.role == Role::kMote;

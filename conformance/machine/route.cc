@@ -20,29 +20,29 @@ bool for_own_device(const Router& router, Address dest) {
 
 Route mote_from_radio(const Router& router, Address dest) {
   //= J11-HEAR: A mote that is not a member ignores the net_msg that it hears.
-  if (!router.member) return nowhere(req::kJ11Hear);
+  if (!router.member) return nowhere("J11-HEAR"_rule);
   //= N5-FOREIGN: A mote ignores a net_msg whose dest.pid is another island; 0xFFFF, every island,
   //= may be delivered or ignored.
-  if (!for_own_island(router, dest)) return nowhere(req::kN5Foreign);
+  if (!for_own_island(router, dest)) return nowhere("N5-FOREIGN"_rule);
   //= N5-OTHER: A mote ignores a net_msg of its own island whose devid is another mote or NULL.
-  if (!for_own_device(router, dest)) return nowhere(req::kN5Other);
-  return deliver(req::kN5Deliver);
+  if (!for_own_device(router, dest)) return nowhere("N5-OTHER"_rule);
+  return deliver("N5-DELIVER"_rule);
 }
 
 Route sink_from_radio(const Router& router, Address dest, Address src) {
   if (for_own_island(router, dest)) {
-    if (for_own_device(router, dest)) return deliver(req::kN6Deliver);
+    if (for_own_device(router, dest)) return deliver("N6-DELIVER"_rule);
     if (dest.devid == kNullDevid && dest.pid == router.own.pid) {
-      return onward(Onward::kSerial, kAmBroadcast, req::kN6Forward);
+      return onward(Onward::kSerial, kAmBroadcast, "N6-FORWARD"_rule);
     }
     //= N6-OTHER: A sink does not deliver a net_msg of its island for another mote to its own
     //= application; sending it on once by radio is allowed.
-    return nowhere(req::kN6Other);
+    return nowhere("N6-OTHER"_rule);
   }
   //= N6-COLLISION: A sink ignores a net_msg from the radio whose dest.pid and src.pid are both
   //= foreign.
-  if (src.pid != router.own.pid) return nowhere(req::kN6Collision);
-  return onward(Onward::kSerial, kAmBroadcast, req::kN6Route);
+  if (src.pid != router.own.pid) return nowhere("N6-COLLISION"_rule);
+  return onward(Onward::kSerial, kAmBroadcast, "N6-ROUTE"_rule);
 }
 
 Route sink_from_serial(const Router& router, Address dest) {
@@ -50,19 +50,19 @@ Route sink_from_serial(const Router& router, Address dest) {
   //= N6-ONCE: A sink forwards each received message once, and sends none that came by serial back
   //= over serial.
   // A message of its base station for its base station has come the wrong way.
-  if (here && dest.devid == kNullDevid) return nowhere(req::kN6Once);
+  if (here && dest.devid == kNullDevid) return nowhere("N6-ONCE"_rule);
   Route route;
   //= N7-FOREIGN: A sink does not send a net_msg from serial for another island on the radio.
-  if (!here) route.requirement = req::kN7Foreign;
+  if (!here) route.requirement = "N7-FOREIGN"_rule;
   if (for_own_device(router, dest)) {
     // The rule uses the devid alone: a base station is trusted with the island.
     route.deliver = true;
-    route.delivered = req::kN7Deliver;
+    route.delivered = "N7-DELIVER"_rule;
   }
   if (here && dest.devid != router.own.devid) {
     route.onward = Onward::kRadio;
     route.am_dest = dest.devid;  // The broadcast devid is the broadcast AM address.
-    route.requirement = req::kN7Radio;
+    route.requirement = "N7-RADIO"_rule;
   }
   return route;
 }
@@ -71,20 +71,20 @@ Route base_station_received(const Router& router, Link from, Address dest) {
   const bool from_sink = from == Link::kSerial;
   if (!for_own_island(router, dest)) {
     //= N8-LOOP: A base station does not hand a message for another island to its own sink.
-    if (!from_sink) return nowhere(req::kN8Loop);  // Nor back to PEIS.
-    return onward(Onward::kPeis, dest.pid, req::kN8Peis);
+    if (!from_sink) return nowhere("N8-LOOP"_rule);  // Nor back to PEIS.
+    return onward(Onward::kPeis, dest.pid, "N8-PEIS"_rule);
   }
   Route route;
   if (for_own_device(router, dest)) {
     route.deliver = true;
-    route.delivered = req::kN8Deliver;
+    route.delivered = "N8-DELIVER"_rule;
   }
   if (dest.devid == kNullDevid) return route;
   // Sent back it would circulate for ever.
   if (from_sink || dest.pid == kBroadcastPid) return route;
   route.onward = Onward::kSerial;
   route.am_dest = router.sink_am;
-  route.requirement = req::kN8Incoming;
+  route.requirement = "N8-INCOMING"_rule;
   return route;
 }
 
@@ -97,8 +97,8 @@ Route mote_own(const Router& router, Address dest) {
   const bool in_island = for_own_island(router, dest) && dest.devid != kNullDevid;
   //= N4-SINK: A mote sends a net_msg for another island, or with devid NULL, to the AM address of
   //= its sink.
-  if (!in_island) return onward(Onward::kRadio, router.sink_am, req::kN4Sink);
-  return onward(Onward::kRadio, dest.devid, req::kN4Mote);
+  if (!in_island) return onward(Onward::kRadio, router.sink_am, "N4-SINK"_rule);
+  return onward(Onward::kRadio, dest.devid, "N4-MOTE"_rule);
 }
 
 }  // namespace
@@ -119,26 +119,24 @@ Route route_own(const Router& router, Address dest) {
   Route route;
   const bool here = for_own_island(router, dest);
   //= J11-SEND: A mote that is not a member sends no net_msg.
-  if (!router.member) return nowhere(req::kJ11Send);
+  if (!router.member) return nowhere("J11-SEND"_rule);
   //= N4-SELF: A node refuses a message whose dest is the node itself.
-  if (is_self(router, dest)) return nowhere(req::kN4Self);
+  if (is_self(router, dest)) return nowhere("N4-SELF"_rule);
   switch (router.role) {
-    case Role::kMote:
-      route = mote_own(router, dest);
-      break;
+    case Role::kMote: route = mote_own(router, dest); break;
     case Role::kSink:
       //= N6-OWN: What a sink itself sends to <its island, NULL> or to another island goes over
       //= serial.
       route = !here || dest.devid == kNullDevid
-                  ? onward(Onward::kSerial, kAmBroadcast, req::kN6Own)
-                  : onward(Onward::kRadio, dest.devid, req::kN4Mote);
+                  ? onward(Onward::kSerial, kAmBroadcast, "N6-OWN"_rule)
+                  : onward(Onward::kRadio, dest.devid, "N4-MOTE"_rule);
       break;
     case Role::kBaseStation:
       //= N8-PEIS: A base station sends a message for another island, its own or its sink's, through
       //= PEIS to that island's base station.
-      if (!here) return onward(Onward::kPeis, dest.pid, req::kN8Peis);
-      if (dest.devid == kNullDevid) return nowhere(req::kN4Self);  // Its own, in any island.
-      route = onward(Onward::kSerial, router.sink_am, req::kN8Serial);
+      if (!here) return onward(Onward::kPeis, dest.pid, "N8-PEIS"_rule);
+      if (dest.devid == kNullDevid) return nowhere("N4-SELF"_rule);  // Its own, in any island.
+      route = onward(Onward::kSerial, router.sink_am, "N8-SERIAL"_rule);
       break;
   }
   //= N4-MOTE: On the radio a net_msg for a mote of the sender's own island is sent to that mote's

@@ -2,7 +2,7 @@
 // Island Collision Resolution and Safe Join, The Inter-Island Connectivity)
 #pragma once
 
-#include "codec/generated/requirements.h"
+#include "codec/runtime/rule.h"
 #include "conformance/machine/address.h"
 
 namespace rubric::machine {
@@ -10,8 +10,8 @@ namespace rubric::machine {
 /// The node that routes.
 struct Router {
   Role role = Role::kMote;
-  Address own;          ///< A base station's devid is kNullDevid; pid is the island.
-  bool member = true;   ///< A mote that has joined.
+  Address own;                ///< A base station's devid is kNullDevid; pid is the island.
+  bool member = true;         ///< A mote that has joined.
   std::uint16_t sink_am = 1;  ///< The AM address of sinks.
 };
 
@@ -20,7 +20,7 @@ struct Route {
   enum class Onward : std::uint8_t { kNowhere, kRadio, kSerial, kPeis };
   bool deliver = false;
   Onward onward = Onward::kNowhere;
-  std::uint16_t am_dest = 0;       ///< On the radio; over PEIS the island.
+  std::uint16_t am_dest = 0;         ///< On the radio; over PEIS the island.
   ReqId requirement = ReqId::kNone;  ///< Why it goes onward, or, going nowhere, why not.
   ReqId delivered = ReqId::kNone;    ///< Why it is delivered.
 };

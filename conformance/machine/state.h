@@ -1,5 +1,5 @@
 // The state of a node: a plain value made of small parts, each with the functions that change it.
-// The parts are independent, so that the offline oracle can follow one mote's join, or one sink's
+// The parts are independent, so that the checker can follow one mote's join, or one sink's
 // view of one mote, without a whole node.
 #pragma once
 
@@ -13,9 +13,9 @@
 
 namespace rubric::machine {
 
-constexpr std::size_t kMembersMax = 20;   ///< In a sink's list (release 1.0).
-constexpr std::size_t kPendingMax = 20;   ///< Joins that a sink has answered and not seen acked.
-constexpr std::size_t kAwaitedMax = 8;    ///< Reliable messages whose ack is awaited at once.
+constexpr std::size_t kMembersMax = 20;  ///< In a sink's list (release 1.0).
+constexpr std::size_t kPendingMax = 20;  ///< Joins that a sink has answered and not seen acked.
+constexpr std::size_t kAwaitedMax = 8;   ///< Reliable messages whose ack is awaited at once.
 /// In each direction, at most; Profile::channels_max is the number of a node (decision 129).
 constexpr std::size_t kChannelsRoom = 8;
 constexpr std::size_t kConnectionsMax = 10;
@@ -35,16 +35,16 @@ struct Config {
 struct JoinMote {
   enum class Phase : std::uint8_t { kOutside, kJoining, kMember };
   Phase phase = Phase::kOutside;
-  std::uint8_t requests = 0;   ///< In the present or last call; the first and one an expiry.
-  std::uint8_t acks = 0;       ///< ack_join sent for the accepted reply.
-  bool acked = false;          ///< The link layer confirmed ack_join.
-  std::uint16_t seq_num = 0;   ///< In the present or last call's requests.
+  std::uint8_t requests = 0;  ///< In the present or last call; the first and one an expiry.
+  std::uint8_t acks = 0;      ///< ack_join sent for the accepted reply.
+  bool acked = false;         ///< The link layer confirmed ack_join.
+  std::uint16_t seq_num = 0;  ///< In the present or last call's requests.
   std::uint16_t sink_devid = 0;
-  Address address;             ///< While a member.
+  Address address;  ///< While a member.
   Descriptor descriptor;
-  Ticks due = 0;               ///< The timer's expiry, while joining; else 0.
-  Ticks accepted = 0;          ///< Time of the accepted reply.
-  bool asked = false;          ///< A request of the present or last call has left.
+  Ticks due = 0;       ///< The timer's expiry, while joining; else 0.
+  Ticks accepted = 0;  ///< Time of the accepted reply.
+  bool asked = false;  ///< A request of the present or last call has left.
   friend bool operator==(const JoinMote&, const JoinMote&) = default;
 };
 
@@ -59,7 +59,7 @@ struct Admission {
 /// A sink's part in joining.
 struct JoinSink {
   BoundedList<Admission, kMembersMax> members;
-  BoundedList<Admission, kPendingMax> pending;  ///< Oldest first.
+  BoundedList<Admission, kPendingMax> pending;     ///< Oldest first.
   BoundedList<Admission, kMembersMax> unreported;  ///< Members whose report waits for the line.
   friend bool operator==(const JoinSink&, const JoinSink&) = default;
 };
@@ -101,9 +101,9 @@ struct Buffered {
 template <std::size_t kRoom>
 struct Interface {
   bool on = true;
-  bool sending = false;       ///< Until SendDone.
+  bool sending = false;           ///< Until SendDone.
   bool sending_ack_join = false;  ///< The frame being sent is an ack_join.
-  bool taken = false;         ///< Somebody else has the line.
+  bool taken = false;             ///< Somebody else has the line.
   BoundedQueue<Buffered, kRoom> out;
   BoundedQueue<Buffered, kRoom> in;
   friend bool operator==(const Interface&, const Interface&) = default;
@@ -126,7 +126,7 @@ struct Synaptic {
   BoundedList<Channel, kChannelsRoom> out;
   BoundedList<Channel, kChannelsRoom> in;
   std::uint16_t period_ticks = 0;
-  Ticks due = 0;  ///< Next tick; 0 while no channel is started.
+  Ticks due = 0;          ///< Next tick; 0 while no channel is started.
   Ticks phase_ticks = 0;  ///< Delay of the clock's first tick; 0 from that tick on.
   friend bool operator==(const Synaptic&, const Synaptic&) = default;
 };
@@ -134,9 +134,9 @@ struct Synaptic {
 /// A node. Plain, comparable, hashable (hash_value), no heap.
 struct State {
   Config config;
-  std::uint16_t island = 0;      ///< A sink's or base station's, now.
+  std::uint16_t island = 0;           ///< A sink's or base station's, now.
   std::uint32_t clock_offset_ms = 0;  ///< Own clock = time since start + this.
-  bool off = false;              ///< Without power, until Reboot; all else is as at start.
+  bool off = false;                   ///< Without power, until Reboot; all else is as at start.
   bool app_busy = false;
   Sequence sequence;
   JoinMote join;

@@ -12,20 +12,18 @@ namespace {
 
 void join_timer_due(Node& node) {
   const JoinSend send = join_timer(node.state.join, join_context(node), node.actions);
-  if (send == JoinSend::kRequest) return send_join_request(node, req::kJ8Retry);
+  if (send == JoinSend::kRequest) return send_join_request(node, "J8-RETRY"_rule);
   forget_waiting(node.state, am::kJoin);  // The call is over; what waits for the radio is, too.
 }
 
 void timer_due(Node& node, Timer timer) {
   switch (timer.kind) {
-    case TimerKind::kJoin:
-      return join_timer_due(node);
+    case TimerKind::kJoin: return join_timer_due(node);
     case TimerKind::kAck:
       // Without a timeout no such timer is ever set.
-      if (node.profile().ack_timeout_ticks == 0) return node.actions.ignored(req::kT3Once);
+      if (node.profile().ack_timeout_ticks == 0) return node.actions.ignored("T3-ONCE"_rule);
       return ack_timeout(node.state.awaited, timer.index, node.actions);
-    case TimerKind::kSynaptic:
-      return tick(node);
+    case TimerKind::kSynaptic: return tick(node);
   }
 }
 
@@ -57,7 +55,7 @@ void power_off(Node& node) {
   lose_memory(node.state);
   node.state.off = true;
   //= N10-OFF: An interface that is switched off sends nothing and receives nothing.
-  node.actions.followed(req::kN10Off);
+  node.actions.followed("N10-OFF"_rule);
 }
 
 // Handles events of a line that need no power.
@@ -66,7 +64,7 @@ void without_power(Node& node, const Event& event) {
     if (busy->link == Link::kRadio) node.state.radio.taken = busy->busy;
     if (busy->link == Link::kSerial) node.state.serial.taken = busy->busy;
   }
-  node.actions.ignored(req::kN10Off);
+  node.actions.ignored("N10-OFF"_rule);
 }
 
 void take(Node& node, const Event& event) {
@@ -86,8 +84,8 @@ State start(const Config& config) {
   state.config = config;
   state.island = config.role == Role::kMote ? std::uint16_t{0} : config.island;
   state.sequence.random = config.random_seq;
-  state.sequence.last = config.random_seq ? config.first_seq
-                                          : static_cast<std::uint16_t>(config.first_seq - 1);
+  state.sequence.last =
+      config.random_seq ? config.first_seq : static_cast<std::uint16_t>(config.first_seq - 1);
   state.synaptic.period_ticks = config.profile.synaptic_period_ticks;
   return state;
 }
@@ -121,10 +119,8 @@ Address own_address(const State& state) {
     case Role::kMote:
       if (state.join.phase == JoinMote::Phase::kMember) return state.join.address;
       return {0, state.config.id};
-    case Role::kSink:
-      return {state.island, state.config.id};
-    case Role::kBaseStation:
-      break;
+    case Role::kSink: return {state.island, state.config.id};
+    case Role::kBaseStation: break;
   }
   return {state.island, kNullDevid};
 }

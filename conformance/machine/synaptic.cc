@@ -57,13 +57,13 @@ struct SynapticCall {
 
   void begin_clock() {
     //= S6-CLOCK: Starting a channel again does not shift the clock of the others.
-    if (synaptic.due != 0) return actions.followed(req::kS6Clock);
+    if (synaptic.due != 0) return actions.followed("S6-CLOCK"_rule);
     synaptic.phase_ticks = 0;
     //= S2-PHASE: A mote's clock starts shifted by (devid - 1) * 30 ms.
     if (config.role == Role::kMote && own.devid > 1) {
       synaptic.phase_ticks =
           static_cast<Ticks>(own.devid - 1) * config.profile.synaptic_phase_ticks;
-      actions.followed(req::kS2Phase);
+      actions.followed("S2-PHASE"_rule);
     }
     synaptic.due = now + synaptic.phase_ticks + synaptic.period_ticks;
   }
@@ -82,8 +82,8 @@ struct SynapticCall {
 
   void operator()(const CreateChannel& call) {
     const bool out = call.direction == Direction::kOut;
-    const ChannelId id = out ? channel_id(own.devid, call.peer.devid)
-                             : channel_id(call.peer.devid, own.devid);
+    const ChannelId id =
+        out ? channel_id(own.devid, call.peer.devid) : channel_id(call.peer.devid, own.devid);
     ChannelList& list = out ? synaptic.out : synaptic.in;
     Channel* const existing = find(list, id);
     const std::size_t before = existing == nullptr ? 0 : existing->size;
@@ -92,17 +92,17 @@ struct SynapticCall {
     //= S1-LIMIT: Creation beyond the stated number of channels of a direction (four unless the node
     //= says otherwise), or ten connections of a channel, is refused and changes nothing.
     if (!room || call.size == 0 || before + call.size > kConnectionsMax) {
-      return actions.notify(ChannelResult{id, false}, req::kS1Limit);
+      return actions.notify(ChannelResult{id, false}, "S1-LIMIT"_rule);
     }
     //= S1-ID: Creating a channel returns its id: source devid in the upper, destination devid in
     //= the lower 16 bits.
     // A channel to the same devid in another island would be taken for this one.
     if (existing != nullptr && !is_in_island(*existing, own, call.peer.pid)) {
-      return actions.notify(ChannelResult{id, false}, req::kS1Id);
+      return actions.notify(ChannelResult{id, false}, "S1-ID"_rule);
     }
     if (existing != nullptr) {  // Peer and mode stay those of its creation.
       existing->size = static_cast<std::uint8_t>(before + call.size);
-      return actions.notify(ChannelResult{id, true}, req::kS1Enlarge);
+      return actions.notify(ChannelResult{id, true}, "S1-ENLARGE"_rule);
     }
     Channel channel;
     channel.id = id;
@@ -112,37 +112,37 @@ struct SynapticCall {
     channel.mode = call.mode;
     channel.size = call.size;
     list.push(channel);
-    actions.notify(ChannelResult{id, true}, req::kS1Id);
+    actions.notify(ChannelResult{id, true}, "S1-ID"_rule);
   }
 
   void operator()(const DisposeChannel& call) {
     const bool out = erase(synaptic.out, call.id);  // A local channel has both ends here.
     const bool in = erase(synaptic.in, call.id);
     end_clock();
-    result(out || in, req::kS6Disposed);
+    result(out || in, "S6-DISPOSED"_rule);
   }
 
   void operator()(const StartChannel& call) {
     Channel* const out = find(synaptic.out, call.id);
     Channel* const in = find(synaptic.in, call.id);
-    if (out == nullptr && in == nullptr) return result(false, req::kS6Disposed);
+    if (out == nullptr && in == nullptr) return result(false, "S6-DISPOSED"_rule);
     //= S1-START: start_syn_channel starts that channel: its values are sent, or its data signalled,
     //= from the next tick on.
     if (out != nullptr) start(*out, true);
     if (in != nullptr) start(*in, false);
     begin_clock();
-    result(true, req::kS1Start);
+    result(true, "S1-START"_rule);
   }
 
   void operator()(const StopChannel& call) {
     Channel* const out = find(synaptic.out, call.id);
     Channel* const in = find(synaptic.in, call.id);
-    if (out == nullptr && in == nullptr) return result(false, req::kS6Disposed);
+    if (out == nullptr && in == nullptr) return result(false, "S6-DISPOSED"_rule);
     //= S6-OTHERS: stop_syn_channel stops that channel only.
     if (out != nullptr) stop(*out);
     if (in != nullptr) stop(*in);
     end_clock();
-    result(true, req::kS6Others);
+    result(true, "S6-OTHERS"_rule);
   }
 
   void operator()(const StartAllChannels&) {
@@ -151,27 +151,27 @@ struct SynapticCall {
     for (Channel& channel : synaptic.out) start(channel, true);
     for (Channel& channel : synaptic.in) start(channel, false);
     if (any_started(synaptic)) begin_clock();
-    result(true, req::kS1All);
+    result(true, "S1-ALL"_rule);
   }
 
   void operator()(const StopAllChannels&) {
     for (Channel& channel : synaptic.out) stop(channel);
     for (Channel& channel : synaptic.in) stop(channel);
     end_clock();
-    result(true, req::kS1All);
+    result(true, "S1-ALL"_rule);
   }
 
   void operator()(const WriteOutput& call) {
     Channel* const out = find(synaptic.out, call.id);
     //= S1-WRITE: write_output_value sets the value at pos, which the next tick sends; a pos outside
     //= the channel is refused.
-    if (out == nullptr || call.pos >= out->size) return result(false, req::kS1Write);
+    if (out == nullptr || call.pos >= out->size) return result(false, "S1-WRITE"_rule);
     std::uint32_t& bits = out->value_bits[call.pos];
     // Bits, not numbers: a NaN written twice is unchanged, and 0 is not -0. A value that changes
     // there and back between two ticks has changed.
     if (bits != bits_of_float(call.value)) out->fresh = true;
     bits = bits_of_float(call.value);
-    result(true, req::kS1Write);
+    result(true, "S1-WRITE"_rule);
   }
 
   void operator()(const ReadInput& call) {
@@ -180,15 +180,15 @@ struct SynapticCall {
     //= channel is refused.
     const bool good = in != nullptr && call.pos < in->size;
     const float value = good ? float_of_bits(in->value_bits[call.pos]) : 0;
-    actions.notify(InputValue{value, good}, req::kS1Read);
+    actions.notify(InputValue{value, good}, "S1-READ"_rule);
   }
 
   void operator()(const SetTimeStep& call) {
-    if (call.ticks == 0) return result(false, req::kS1Clock);
+    if (call.ticks == 0) return result(false, "S1-CLOCK"_rule);
     //= S1-CLOCK: set_time_step sets the period of the clock, 500 ms by default.
     synaptic.period_ticks = call.ticks;
     if (synaptic.due != 0) synaptic.due = now + synaptic.phase_ticks + call.ticks;
-    result(true, req::kS1Clock);
+    result(true, "S1-CLOCK"_rule);
   }
 
   template <class Other>
@@ -203,10 +203,10 @@ void hand_over(const Channel& out, ChannelList& inputs, Address own, Actions& ac
   //= anything.
   Channel* const in = find(inputs, out.id);
   const bool takes = in != nullptr && in->started && is_local(*in, own);
-  if (!takes) return actions.ignored(req::kS4Local);
+  if (!takes) return actions.ignored("S4-LOCAL"_rule);
   std::copy_n(out.value_bits.begin(), std::min(in->size, out.size), in->value_bits.begin());
   in->fresh = true;
-  actions.followed(req::kS4Local);
+  actions.followed("S4-LOCAL"_rule);
 }
 
 }  // namespace
@@ -226,23 +226,23 @@ void hear_synaptic(Synaptic& synaptic, Address own, Address src, Bytes floats, A
   Channel* const in = find(synaptic.in, id);
   if (in == nullptr || !is_in_island(*in, own, src.pid)) {
     //= S5-UNKNOWN: Data for an unknown channel is reported by its status and not stored.
-    return actions.notify(SynDataReceived{id, DataStatus::kUnknownChannel}, req::kS5Unknown);
+    return actions.notify(SynDataReceived{id, DataStatus::kUnknownChannel}, "S5-UNKNOWN"_rule);
   }
-  if (!in->started) return actions.ignored(req::kS6Stopped);
+  if (!in->started) return actions.ignored("S6-STOPPED"_rule);
   // The data do not show how many connections the sender meant (decision 8); takes what both sides
   // have.
   const std::size_t count = std::min<std::size_t>(in->size, floats.size() / Values::kUnitBytes);
-  if (count == 0) return actions.ignored(req::kS2Content);
+  if (count == 0) return actions.ignored("S2-CONTENT"_rule);
   for (std::size_t i = 0; i < count; ++i) {
     in->value_bits[i] = bits_of_float(Values::load(floats.data(), i));
   }
   in->fresh = true;
-  actions.followed(req::kS1Read);
+  actions.followed("S1-READ"_rule);
 }
 
 void tick_synaptic(Synaptic& synaptic, Address own, Ticks now, SynapticSends& sends,
                    Actions& actions) {
-  if (synaptic.due == 0) return actions.ignored(req::kS6Stopped);
+  if (synaptic.due == 0) return actions.ignored("S6-STOPPED"_rule);
   for (Channel& out : synaptic.out) {
     if (!out.started) continue;
     const bool power_save = out.mode == Mode::kPowerSave;
@@ -251,13 +251,13 @@ void tick_synaptic(Synaptic& synaptic, Address own, Ticks now, SynapticSends& se
     if (power_save && !changed) {
       //= S3-UNCHANGED: In power-save mode a tick, but for the first after start, sends nothing when
       //= no value changed since the last tick.
-      actions.followed(req::kS3Unchanged);
+      actions.followed("S3-UNCHANGED"_rule);
     } else if (is_local(out, own)) {
       hand_over(out, synaptic.in, own, actions);
     } else {
       //= S2-SEND: At each tick every started output channel in reliable mode, but for a channel to
       //= itself, sends its values to its destination.
-      const ReqId requirement = power_save ? req::kS3Changed : req::kS2Send;
+      const ReqId requirement = power_save ? "S3-CHANGED"_rule : "S2-SEND"_rule;
       sends.push({out.id, out.peer, out.size, out.value_bits, requirement});
     }
   }
@@ -266,7 +266,7 @@ void tick_synaptic(Synaptic& synaptic, Address own, Ticks now, SynapticSends& se
     //= S2-SIGNAL: At each tick every started input channel signals synData_received with status new
     //= or old.
     const DataStatus status = in.fresh ? DataStatus::kNew : DataStatus::kOld;
-    actions.notify(SynDataReceived{in.id, status}, in.fresh ? req::kS2Signal : req::kS3Old);
+    actions.notify(SynDataReceived{in.id, status}, in.fresh ? "S2-SIGNAL"_rule : "S3-OLD"_rule);
     in.fresh = false;
   }
   //= S2-TICK: A channel sends at most once a tick, and ticks are no closer than the clock's period.

@@ -1,5 +1,5 @@
 // Virtual time and its relation to microseconds: nodes count binary milliseconds, captures, the
-// simulator and the oracle count microseconds.
+// simulator and the checker count microseconds.
 #pragma once
 
 #include <cstdint>

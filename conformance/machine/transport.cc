@@ -45,22 +45,22 @@ void hear_ack(AwaitedList& list, Address from, std::uint8_t app_id, std::uint16_
     //= APPID.
     // Nobody acks a broadcast (T2-BROADCAST), so no claimed source is its destination either.
     if (is_broadcast(awaited.dest) || awaited.dest != from || awaited.app_id != app_id) {
-      return actions.ignored(req::kT3Sender);
+      return actions.ignored("T3-SENDER"_rule);
     }
-    actions.notify(AckReceived{app_id, seq_num, true}, req::kT3Success);
+    actions.notify(AckReceived{app_id, seq_num, true}, "T3-SUCCESS"_rule);
     return list.erase(i);  // A later ack with this number finds nothing: T3-ONCE.
   }
   //= T3-MATCH: An ack whose sequence number is that of no message awaiting its ack changes nothing.
-  actions.ignored(req::kT3Match);
+  actions.ignored("T3-MATCH"_rule);
 }
 
 void ack_timeout(AwaitedList& list, std::size_t index, Actions& actions) {
   //= T3-TIMEOUT: A reliable message without its ack is signalled as receive_ack(failure) when its
   //= timeout expires, not before.
-  if (index >= list.size() || list[index].due == 0) return actions.ignored(req::kT3Once);
+  if (index >= list.size() || list[index].due == 0) return actions.ignored("T3-ONCE"_rule);
   const Awaited awaited = list[index];
   list.erase(index);
-  actions.notify(AckReceived{awaited.app_id, awaited.seq_num, false}, req::kT3Timeout);
+  actions.notify(AckReceived{awaited.app_id, awaited.seq_num, false}, "T3-TIMEOUT"_rule);
 }
 
 bool is_awaited(const AwaitedList& list, std::uint16_t seq_num) {
@@ -73,8 +73,8 @@ bool is_awaited(const AwaitedList& list, std::uint16_t seq_num) {
 std::uint16_t next_seq_num(Sequence& sequence, const AwaitedList& list) {
   // Ends: at most kAwaitedMax numbers and kNoSeq are skipped, of 65535 or more.
   do {
-    sequence.last = sequence.random ? xorshift(sequence.last)
-                                    : static_cast<std::uint16_t>(sequence.last + 1);
+    sequence.last =
+        sequence.random ? xorshift(sequence.last) : static_cast<std::uint16_t>(sequence.last + 1);
     //= N12-REUSE: A sequence number is not used again while its ack is awaited.
     //= N12-ERROR: 0xFFFF, the error value of send, is not used as a sequence number.
   } while (sequence.last == kNoSeq || is_awaited(list, sequence.last));
@@ -91,15 +91,13 @@ bool is_known_app(std::uint8_t app_id) {
     case Component::kLearning:
     case Component::kApplicationMd:
     case Component::kControlLayer:
-    case Component::kEsnData:
-      return true;
+    case Component::kEsnData: return true;
     case Component::kSynChannel:
     case Component::kStream:
     case Component::kConnless:
     case Component::kCompMngmnt:
     case Component::kTransportMd:
-    case Component::kRubiconAck:
-      break;
+    case Component::kRubiconAck: break;
   }
   return false;
 }

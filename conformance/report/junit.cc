@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "conformance/report/text.h"
+#include "codec/text/text.h"
 
 namespace rubric::report {
 namespace {
@@ -54,9 +54,7 @@ std::string properties(const JunitSuite& suite) {
 
 }  // namespace
 
-std::string junit_seconds(double ms) {
-  return fmt::format("{:.3f}", ms / 1000);
-}
+std::string junit_seconds(double ms) { return fmt::format("{:.3f}", ms / 1000); }
 
 std::string junit_document(const std::vector<JunitSuite>& suites, const std::string& name,
                            const std::string& seconds) {

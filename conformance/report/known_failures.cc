@@ -15,9 +15,7 @@ struct Mistake {
   std::string text;
 };
 
-std::uint32_t line_of(const YAML::Mark& mark) {
-  return static_cast<std::uint32_t>(mark.line + 1);
-}
+std::uint32_t line_of(const YAML::Mark& mark) { return static_cast<std::uint32_t>(mark.line + 1); }
 
 std::string scalar(const YAML::Node& node, const std::string& key) {
   if (!node.IsScalar() || node.Scalar().empty()) {

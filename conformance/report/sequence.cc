@@ -1,13 +1,13 @@
 #include "conformance/report/sequence.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
+
+#include <algorithm>
 
 namespace rubric::report {
 namespace {
 
-constexpr std::size_t kGapMin = 12;     // Between two columns.
+constexpr std::size_t kGapMin = 12;  // Between two columns.
 constexpr std::size_t kGapMax = 30;
 constexpr std::size_t kArrowExtra = 6;  // An arrow has so much besides its label.
 

@@ -1,27 +1,27 @@
 #include "conformance/report/sequence_svg.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <charconv>
 #include <iterator>
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
+#include "codec/text/text.h"
 #include "conformance/report/sequence_style.h"
-#include "conformance/report/text.h"
 
 namespace rubric::report {
 namespace {
 
 // In pixels. Fonts are monospaced, so that widths are known before drawing.
-constexpr double kCharacter = 7.3;      // In a label, 12 px high.
-constexpr double kSmall = 6.7;          // In a note, 11 px high.
-constexpr double kStub = 34;            // An arrow that one end of has no column.
-constexpr double kGapPixelsMin = 96;          // Between columns.
-constexpr double kLabelRoom = 26;       // An arrow is longer than its label by this.
+constexpr double kCharacter = 7.3;    // In a label, 12 px high.
+constexpr double kSmall = 6.7;        // In a note, 11 px high.
+constexpr double kStub = 34;          // An arrow that one end of has no column.
+constexpr double kGapPixelsMin = 96;  // Between columns.
+constexpr double kLabelRoom = 26;     // An arrow is longer than its label by this.
 constexpr double kRowArrow = 31;
 constexpr double kRowStub = 25;
-constexpr double kPause = 16;           // For a long time.
+constexpr double kPause = 16;  // For a long time.
 constexpr double kHeadHeight = 38;
 constexpr double kMargin = 10;
 constexpr long long kPauseTicks = 100;  // A longer time is drawn as a pause.
@@ -170,14 +170,14 @@ class Picture {
 
   double head_width(std::size_t c) const {
     const std::string about = c < sequence_.about.size() ? sequence_.about[c] : "";
-    return std::max({44.0, length_of(sequence_.columns[c], kCharacter) + 18,
-                     length_of(about, 6.4) + 14});
+    return std::max(
+        {44.0, length_of(sequence_.columns[c], kCharacter) + 18, length_of(about, 6.4) + 14});
   }
 
   // Returns where the label of a row with only one column begins.
   double label_begin(const SequenceRow& row) const {
-    const bool leaves = row.from != kNoColumn && row.to.empty() && row.way != Way::kCall &&
-                        row.way != Way::kState;
+    const bool leaves =
+        row.from != kNoColumn && row.to.empty() && row.way != Way::kCall && row.way != Way::kState;
     return x_[span_of(row).first] + (leaves ? kStub + 10 : 10);
   }
 
@@ -312,8 +312,7 @@ class Picture {
   }
 
   static bool ignores(const SequenceRow& row, std::size_t column) {
-    return std::find(row.ignored_by.begin(), row.ignored_by.end(), column) !=
-           row.ignored_by.end();
+    return std::find(row.ignored_by.begin(), row.ignored_by.end(), column) != row.ignored_by.end();
   }
 
   static std::string line_class(const SequenceRow& row) {
@@ -361,8 +360,8 @@ class Picture {
   // Draws the legend of a picture with several kinds of lines; returns its height.
   double legend(double y, std::string& out) {
     std::vector<std::pair<Way, const char*>> kinds;
-    for (const auto& [way, name] : {std::pair{Way::kRadio, "radio"}, {Way::kSerial, "serial line"},
-                                    {Way::kPeis, "PEIS"}}) {
+    for (const auto& [way, name] :
+         {std::pair{Way::kRadio, "radio"}, {Way::kSerial, "serial line"}, {Way::kPeis, "PEIS"}}) {
       if (std::any_of(sequence_.rows.begin(), sequence_.rows.end(),
                       [w = way](const SequenceRow& row) { return row.way == w; })) {
         kinds.emplace_back(way, name);

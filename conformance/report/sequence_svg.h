@@ -10,7 +10,7 @@ namespace rubric::report {
 
 /// Titles of a chart.
 struct SvgWords {
-  std::string id;     ///< Begins all ids in the picture; charts of one page have different ones.
+  std::string id;  ///< Begins all ids in the picture; charts of one page have different ones.
   std::string title;
   /// A part of a page that has the style sheet and tells more of a row that the reader points at:
   /// rows have no titles, but a <rect class="rc-band"> behind them; heads are on top of all.

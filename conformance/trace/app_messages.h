@@ -12,8 +12,8 @@
 namespace rubric::trace {
 
 enum class AppKind : std::uint8_t {
-  kNumber,   ///< From 0 to `max`, perhaps with names.
-  kReal,     ///< binary32.
+  kNumber,  ///< From 0 to `max`, perhaps with names.
+  kReal,    ///< binary32.
   kBytes,
   kAddress,  ///< pid and devid.
   kChannel,  ///< Source and destination devid.
@@ -28,12 +28,12 @@ struct AppField {
 };
 
 enum class AppWhat : std::uint8_t {
-  kCall,    ///< From the application to the node: `<` on app.
-  kEvent,   ///< From the node to its application: `>` on app.
-  kState,   ///< A link's or the application's: `<` on any of them.
-  kRadio,   ///< The end of the node's own last transmission: `<` on a radio.
-  kPower,   ///< `<` on power.
-  kFrame,   ///< On the links of frames, either way.
+  kCall,   ///< From the application to the node: `<` on app.
+  kEvent,  ///< From the node to its application: `>` on app.
+  kState,  ///< A link's or the application's: `<` on any of them.
+  kRadio,  ///< The end of the node's own last transmission: `<` on a radio.
+  kPower,  ///< `<` on power.
+  kFrame,  ///< On the links of frames, either way.
 };
 
 struct AppMessage {

@@ -5,7 +5,7 @@
 #include <unordered_map>
 #include <unordered_set>
 
-#include "codec/generated/requirements_table.h"
+#include "codec/reflect/requirements.h"
 #include "conformance/trace/check_message.h"
 #include "conformance/trace/print.h"
 #include "conformance/trace/value_text.h"
@@ -17,8 +17,8 @@ namespace {
 const std::unordered_set<std::string>& known_requirements() {
   static const std::unordered_set<std::string> known = [] {
     std::unordered_set<std::string> all;
-    for (auto at = std::next(std::begin(kRequirements)); at != std::end(kRequirements); ++at) {
-      const std::string id = at->id;
+    for (const reflect::Requirement& one : reflect::requirements().subspan(1)) {
+      const std::string id = one.id;
       all.insert(id);
       all.insert(id.substr(0, id.find('-')));
     }
@@ -111,8 +111,8 @@ class FileCheck {
       if (!link) continue;
       for (const std::string& node : link->nodes) {
         if (!scope.node(node)) {
-          report_(header->place, "no %node " + quoted(node) + ", which %link " + link->name +
-                                     " names");
+          report_(header->place,
+                  "no %node " + quoted(node) + ", which %link " + link->name + " names");
         }
       }
     }
@@ -155,8 +155,8 @@ class FileCheck {
     }
     if (time.base == Time::Base::kStart && time.exact()) {
       if (time.from < latest) {
-        report_(line.place, "time goes back, from @" + std::to_string(latest) + " to " +
-                                print(time));
+        report_(line.place,
+                "time goes back, from @" + std::to_string(latest) + " to " + print(time));
       }
       latest = std::max(latest, time.from);
     }

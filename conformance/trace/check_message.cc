@@ -25,8 +25,8 @@ std::string leaf_misfit(const Value& value, const Domain& domain) {
              (number && value.number >= domain.min && value.number <= domain.max);
       break;
     case Value::Kind::kRange:
-      fits = number && (!value.text.empty() ||
-                        (value.number >= domain.min && value.max <= domain.max));
+      fits = number &&
+             (!value.text.empty() || (value.number >= domain.min && value.max <= domain.max));
       break;
     case Value::Kind::kReal: fits = domain.kind == Domain::Kind::kReal; break;
     case Value::Kind::kNames: fits = number && domain.number_of(value.text).has_value(); break;
@@ -92,8 +92,8 @@ class MessageCheck {
     } else {
       std::vector<std::string> known;
       for (const auto& [name, one] : Schema::get().shapes()) known.push_back(name);
-      fail(message.place, "unknown message " + quoted(message.name) +
-                              reflect::did_you_mean(message.name, known));
+      fail(message.place,
+           "unknown message " + quoted(message.name) + reflect::did_you_mean(message.name, known));
     }
     if (!failed_) bytes();
     for (std::string& name : binds_) bound_.insert(std::move(name));
@@ -134,8 +134,8 @@ class MessageCheck {
   void named(const Shape& shape) {
     const Message& message = line_.message;
     if (!shape.travels(link_)) {
-      return fail(message.place, quoted(message.name) + " does not travel on " +
-                                     quoted(line_.link));
+      return fail(message.place,
+                  quoted(message.name) + " does not travel on " + quoted(line_.link));
     }
     direction(shape);
     if (message.form != Message::Form::kFields) {
@@ -244,8 +244,9 @@ class MessageCheck {
       return fail(line_.place, "there are no frames on " + quoted(line_.link));
     }
     if (!parse_packet(*line_.bytes, frame)) {
-      return fail(line_.place, "the bytes are no packet: 00, AM destination, source, length, "
-                               "group, type, and as many bytes as length says");
+      return fail(line_.place,
+                  "the bytes are no packet: 00, AM destination, source, length, "
+                  "group, type, and as many bytes as length says");
     }
     Bindings bindings;
     // A variable's value is known only when the case runs.

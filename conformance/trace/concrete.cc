@@ -19,9 +19,8 @@ std::string_view text_of(Bytes bytes) {
 
 // Bytes that read as text are shown as text.
 Value show_bytes(const std::string& bytes) {
-  const bool text = bytes.size() > 1 && std::all_of(bytes.begin(), bytes.end(), [](char c) {
-                      return c >= ' ' && c < 0x7F;
-                    });
+  const bool text = bytes.size() > 1 && std::all_of(bytes.begin(), bytes.end(),
+                                                    [](char c) { return c >= ' ' && c < 0x7F; });
   return text ? Value::quoted(bytes) : Value::bytes(bytes);
 }
 
@@ -208,8 +207,7 @@ std::optional<std::int64_t> Concrete::number(std::string_view path) const {
   return found->number;
 }
 
-std::optional<std::pair<std::uint16_t, std::uint16_t>> Concrete::pair(
-    std::string_view path) const {
+std::optional<std::pair<std::uint16_t, std::uint16_t>> Concrete::pair(std::string_view path) const {
   const Part* found = part(path);
   if (!found || found->end - found->first != 2 ||
       (found->kind != Slot::Kind::kAddress && found->kind != Slot::Kind::kChannel)) {
@@ -240,9 +238,8 @@ Concrete decode_raw(const AmFrame& frame) {
   bytes.path = "payload";
   bytes.domain = Domain::of(app::kFrame[1]);
   bytes.bytes = payload;
-  out.message = Message::named(kFrameName)
-                    .with("type", type.show())
-                    .with("payload", Value::bytes(payload));
+  out.message =
+      Message::named(kFrameName).with("type", type.show()).with("payload", Value::bytes(payload));
   out.leaves.push_back(std::move(type));
   out.leaves.push_back(std::move(bytes));
   return out;
@@ -268,8 +265,8 @@ void put_pair(const AppField& field, const Value& value, Place place, Concrete& 
   const Value::Kind wanted = address ? Value::Kind::kAddress : Value::Kind::kChannel;
   const std::string path = field.name;
   if (!value.is(wanted)) {
-    throw TraceError(place, path + ": expected " +
-                                (address ? "an address, as 11:5" : "a channel, as 2->1"));
+    throw TraceError(
+        place, path + ": expected " + (address ? "an address, as 11:5" : "a channel, as 2->1"));
   }
   Part part;
   part.path = path;
@@ -307,16 +304,15 @@ Concrete concrete(const Message& message, const Bindings& bindings) {
   out.message.name = message.name;
   const std::vector<FieldValue> fields = with_paths(message, *shape);
   for (const AppField& field : shape->app->all()) {
-    const auto given = std::find_if(fields.begin(), fields.end(), [&](const FieldValue& one) {
-      return one.path == field.name;
-    });
+    const auto given = std::find_if(fields.begin(), fields.end(),
+                                    [&](const FieldValue& one) { return one.path == field.name; });
     if (given == fields.end() && !message.open) {
       throw TraceError(message.place,
                        "field " + std::string(field.name) + " of " + message.name + " is missing");
     }
     const bool pair = field.kind == AppKind::kAddress || field.kind == AppKind::kChannel;
     const Place place = given == fields.end() ? message.place : given->place;
-    Value value = given != fields.end() ? substituted(given->value, bindings, place)
+    Value value = given != fields.end()             ? substituted(given->value, bindings, place)
                   : field.kind == AppKind::kAddress ? Value::address(0, 0)
                   : pair                            ? Value::channel(0)
                   : field.kind == AppKind::kBytes   ? Value::bytes("")

@@ -39,7 +39,7 @@ class Bindings {
 /// A field with its value.
 struct Leaf {
   std::string path;
-  std::string alias;        ///< Another path to it, of opaque bytes; mostly empty.
+  std::string alias;  ///< Another path to it, of opaque bytes; mostly empty.
   Domain domain;
   std::int64_t number = 0;  ///< Numbers; a real as its 32 bits.
   std::string bytes;
@@ -54,9 +54,9 @@ struct Part {
   std::string path;
   std::string alias;
   Slot::Kind kind = Slot::Kind::kStruct;
-  std::size_t first = 0;    ///< Index of its first leaf.
+  std::size_t first = 0;  ///< Index of its first leaf.
   std::size_t end = 0;
-  std::string bytes;        ///< For structures of the wire.
+  std::string bytes;  ///< For structures of the wire.
 };
 
 struct Concrete {

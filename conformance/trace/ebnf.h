@@ -133,8 +133,8 @@ class Ebnf {
     if (c == '"' || c == '\'') {
       const std::size_t end = text_.find(c, at_ + 1);
       if (end == std::string_view::npos) fail("a literal without its end");
-      Node node{Kind::kLiteral, std::string(text_.substr(at_ + 1, end - at_ - 1)), {}, false, false,
-                {}};
+      Node node{
+          Kind::kLiteral, std::string(text_.substr(at_ + 1, end - at_ - 1)), {}, false, false, {}};
       at_ = end + 1;
       return node;
     }

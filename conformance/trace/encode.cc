@@ -243,8 +243,8 @@ AmFrame encode_message(const Message& message, const Bindings& bindings, bool an
     frame.payload.assign(given.leaves[1].bytes.begin(), given.leaves[1].bytes.end());
   } else {
     frame.type = shape->am_type;
-    frame.payload = encode_tree(message, *shape->type,
-                                Builder(message, *shape, bindings, any).build());
+    frame.payload =
+        encode_tree(message, *shape->type, Builder(message, *shape, bindings, any).build());
   }
   constexpr std::size_t kPayloadMax = 114;
   if (frame.payload.size() > kPayloadMax) {
@@ -337,8 +337,8 @@ AmFrame frame_of(const Line& line, const Scope& scope, const Bindings& bindings)
     return frame;
   }
   frame = encode(line.message, bindings);
-  frame.src = line.am ? am_number(line.am->source, bindings, line.place)
-                      : source(line, scope, frame);
+  frame.src =
+      line.am ? am_number(line.am->source, bindings, line.place) : source(line, scope, frame);
   frame.dest = line.am ? am_number(line.am->dest, bindings, line.place) : destination(line, scope);
   return frame;
 }

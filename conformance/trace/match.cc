@@ -233,8 +233,8 @@ std::size_t Match::distance() const {
 std::string Match::text() const {
   std::string text;
   for (const Difference& one : differences) {
-    text += (text.empty() ? "" : "; ") + one.path + ": expected " + one.expected + ", seen " +
-            one.seen;
+    text +=
+        (text.empty() ? "" : "; ") + one.path + ": expected " + one.expected + ", seen " + one.seen;
   }
   return text;
 }

@@ -8,7 +8,6 @@
 namespace rubric::trace {
 namespace {
 
-
 /// Returns the offset of the first byte that is no UTF-8 or a control character other than a tab.
 std::size_t find_foreign(std::string_view text) {
   const auto byte = [&](std::size_t i) {
@@ -53,9 +52,7 @@ class Parser {
   }
 
  private:
-  void fail(Place place, std::string text) {
-    add_diagnostic(out_, place, std::move(text));
-  }
+  void fail(Place place, std::string text) { add_diagnostic(out_, place, std::move(text)); }
 
   void one(std::string_view line, std::uint32_t number) {
     if (line.size() > Parsed::kLineBytesMax) {
@@ -85,8 +82,8 @@ class Parser {
   }
 
   void content(Scanner& in, std::string_view line) {
-    std::vector<Item>& items = out_.file.cases.empty() ? out_.file.head
-                                                       : out_.file.cases.back().items;
+    std::vector<Item>& items =
+        out_.file.cases.empty() ? out_.file.head : out_.file.cases.back().items;
     if (in.at_end()) {
       items.emplace_back(Blank{});
     } else if (in.peek() == '#' || in.peek() == ';') {

@@ -46,8 +46,9 @@ Time parse_time(Scanner& in) {
     if (!is_name(time.label)) in.fail_at(text, "expected a label before '+'");
     text.remove_prefix(plus + 1);
   } else if (is_name(text)) {
-    in.fail_at(text, "expected a time; " + quoted(text) + " wants '+' and ticks as a time, or "
-                     "':' as a label");
+    in.fail_at(text, "expected a time; " + quoted(text) +
+                         " wants '+' and ticks as a time, or "
+                         "':' as a label");
   }
   window(in, text, time);
   return time;
@@ -86,12 +87,11 @@ Value am_side(Scanner& in, std::string_view text) {
   Value value;
   const std::string problem = read_value(text, value);
   const bool number = value.is(Value::Kind::kNumber) && text.find('-') == std::string_view::npos;
-  const bool fits = number || value.is(Value::Kind::kAny) ||
-                    value.is(Value::Kind::kVariable) ||
+  const bool fits = number || value.is(Value::Kind::kAny) || value.is(Value::Kind::kVariable) ||
                     (value.is(Value::Kind::kNames) && value.text == "all");
   if (!problem.empty() || !fits) {
-    in.fail_at(text, "expected an AM address: a number, all, a variable or *, given " +
-                         quoted(text));
+    in.fail_at(text,
+               "expected an AM address: a number, all, a variable or *, given " + quoted(text));
   }
   return value;
 }
@@ -116,8 +116,8 @@ FieldValue parse_field(Scanner& in) {
   const std::string_view rest = in.rest();
   std::size_t size = 0;
   const auto in_path = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-           c == '_' || c == '.' || c == '[' || c == ']';
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '.' || c == '[' || c == ']';
   };
   while (size < rest.size() && in_path(rest[size])) ++size;
   if (size < rest.size() && rest[size] == '=') {
@@ -250,8 +250,7 @@ Case parse_case(Scanner& in) {
   Case one;
   in.skip_blanks();
   one.place = in.place();
-  const std::string_view name =
-      in.until([](char c) { return c == ' ' || c == '\t' || c == ';'; });
+  const std::string_view name = in.until([](char c) { return c == ' ' || c == '\t' || c == ';'; });
   if (!is_dotted_name(name)) in.fail_at(name, "expected the name of a case");
   one.name = name;
   one.comment = parse_comment(in);

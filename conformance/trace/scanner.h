@@ -33,7 +33,9 @@ class Scanner {
     return true;
   }
   /// Returns the text up to the next blank or the end; perhaps empty.
-  std::string_view word() { return until([](char c) { return c == ' ' || c == '\t'; }); }
+  std::string_view word() {
+    return until([](char c) { return c == ' ' || c == '\t'; });
+  }
   /// Returns the text up to a character for which `stop` holds, or the end.
   template <typename Stop>
   std::string_view until(Stop stop) {

@@ -58,7 +58,7 @@ struct Shape {
   bool radio = false;                   ///< The links on which it travels.
   bool serial = false;
   bool peis = false;
-  std::uint8_t am_type = 0;             ///< For messages of the wire spec.
+  std::uint8_t am_type = 0;  ///< For messages of the wire spec.
   /// Whole paths. A body's type depends on other fields, so a path may lead to several things.
   std::unordered_map<std::string, Alternatives> slots;
   /// Tails of paths, and the whole paths that they may mean.

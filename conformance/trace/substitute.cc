@@ -64,8 +64,8 @@ std::int64_t number_in(const Domain& domain, const Value& value, Place place) {
 
 std::string bytes_in(const Value& value, Place place) {
   if (!value.is(Value::Kind::kBytes) && !value.is(Value::Kind::kText)) {
-    throw TraceError(place, "expected bytes (x0a0b) or text in quotes, given '" +
-                                value_text(value) + "'");
+    throw TraceError(place,
+                     "expected bytes (x0a0b) or text in quotes, given '" + value_text(value) + "'");
   }
   std::string bytes = value.text;
   if (!value.negated) return bytes;
@@ -82,8 +82,8 @@ FieldValue with_path(const FieldValue& field, const Shape& shape, std::size_t& p
                                         value_text(field.value) + "'");
     }
     if (position >= shape.app->field_count) {
-      throw TraceError(field.place, shape.name + " has " +
-                                        std::to_string(shape.app->field_count) + " fields");
+      throw TraceError(field.place,
+                       shape.name + " has " + std::to_string(shape.app->field_count) + " fields");
     }
     whole.path = shape.app->fields[position++].name;
     return whole;

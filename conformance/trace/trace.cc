@@ -6,9 +6,8 @@
 #include <iterator>
 #include <unordered_map>
 
-#include "codec/generated/requirements_table.h"
 #include "codec/reflect/am_frames.h"
-#include "codec/reflect/fault_text.h"
+#include "codec/reflect/requirements.h"
 #include "codec/runtime/bytes.h"
 
 namespace rubric::trace {
@@ -285,15 +284,13 @@ std::optional<LinkKind> Scope::link(std::string_view name) const {
   return std::nullopt;
 }
 
-std::string_view requirement_text(ReqId id) {
-  return reflect::requirement(id).id;
-}
+std::string_view requirement_text(ReqId id) { return reflect::requirement(id).id; }
 
 ReqId requirement_id(std::string_view text) {
   static const std::unordered_map<std::string_view, ReqId> known = [] {
     std::unordered_map<std::string_view, ReqId> all;
-    for (std::size_t i = 1; i < std::size(kRequirements); ++i) {
-      all.emplace(kRequirements[i].id, static_cast<ReqId>(i));
+    for (const reflect::Requirement& one : reflect::requirements().subspan(1)) {
+      all.emplace(one.id, one.number());
     }
     return all;
   }();

@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-#include "codec/generated/requirements.h"
+#include "codec/runtime/rule.h"
 
 namespace rubric::trace {
 
@@ -91,7 +91,7 @@ struct Message {
 
   std::string name = "*";  ///< From the wire spec or the application table; `*`: any message.
   Form form = Form::kBare;
-  bool open = false;       ///< `...`: fields that are not given are free.
+  bool open = false;  ///< `...`: fields that are not given are free.
   std::vector<FieldValue> fields;
   Place place;
 
@@ -168,9 +168,9 @@ struct Time {
 struct Line {
   std::string label;  ///< Empty: none.
   Time time;
-  std::string node;   ///< `*`: any node; empty for the faults of a link.
+  std::string node;  ///< `*`: any node; empty for the faults of a link.
   Op op = Op::kGiven;
-  std::string link;   ///< rA, serA, peis, app, power; `*`: any.
+  std::string link;  ///< rA, serA, peis, app, power; `*`: any.
   std::optional<AmAddresses> am;
   Message message;
   std::vector<std::string> requirements;  ///< "J4-SEQ", or "J4" for the family.
@@ -247,15 +247,15 @@ struct Blank {
 };
 /// A line that is only a comment.
 struct Comment {
-  char marker = '#';      ///< '#' or ';'.
+  char marker = '#';  ///< '#' or ';'.
   bool indented = false;
-  std::string text;       ///< After the marker.
+  std::string text;  ///< After the marker.
   friend bool operator==(const Comment&, const Comment&) = default;
 };
 using Item = std::variant<Blank, Comment, Header, Line>;
 
 struct Case {
-  std::string name;     ///< Stable: words of letters, digits, `_` and `-`, joined by dots.
+  std::string name;  ///< Stable: words of letters, digits, `_` and `-`, joined by dots.
   std::string comment;
   std::vector<Item> items;
   Place place;

@@ -357,7 +357,10 @@ void put_value(const Value& value, std::string& out) {
     case Value::Kind::kNames: out += value.text; return;
     case Value::Kind::kBytes: out += 'x'; return put_hex(value.text, out);
     case Value::Kind::kText: return put_quoted(value.text, out);
-    case Value::Kind::kVariable: out += '$'; out += value.text; return;
+    case Value::Kind::kVariable:
+      out += '$';
+      out += value.text;
+      return;
     case Value::Kind::kAddress: return put_pair(value, ":", out);
     case Value::Kind::kChannel: return put_pair(value, "->", out);
     case Value::Kind::kList:

@@ -14,7 +14,7 @@ import unittest
 
 HERE = pathlib.Path(__file__).resolve().parent
 RUBRIC = None
-ORACLE = "spec/oracle"  # Where npm put Kaitai Struct.
+KAITAI_CHECK = "spec/kaitai_check"  # Where npm put Kaitai Struct.
 DISSECTOR = "tools/wireshark/generated/rubric.lua"
 
 
@@ -47,7 +47,7 @@ class Scratch(unittest.TestCase):
 class Kaitai(Scratch):
     def kaitai(self, specs, code, *arguments):
         return compare("compare.py", "--count", "10000", *arguments, "--", "node",
-                       str(HERE / "kaitai_decoder.js"), str(specs), ORACLE, code=code)
+                       str(HERE / "kaitai_decoder.js"), str(specs), KAITAI_CHECK, code=code)
 
     def test_agrees(self):
         said = self.kaitai("spec/wire", 0)

@@ -27,9 +27,9 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
 }
 
 extern "C" std::size_t LLVMFuzzerCustomCrossOver(const std::uint8_t* one, std::size_t one_size,
-                                                 const std::uint8_t* other,
-                                                 std::size_t other_size, std::uint8_t* out,
-                                                 std::size_t max_size, unsigned seed) {
+                                                 const std::uint8_t* other, std::size_t other_size,
+                                                 std::uint8_t* out, std::size_t max_size,
+                                                 unsigned seed) {
   if (seed % fuzz::kCrossOversAsked != 0) return 0;
   const Bytes first(one, one_size);
   const Bytes second(other, other_size);

@@ -68,8 +68,7 @@ Buffer PacketMutator::mutate(InputFormat format, Bytes input, std::size_t max_si
   return same ? mutated_bytes(input, max_size, random()) : out;
 }
 
-Buffer PacketMutator::cross_over(InputFormat format, Bytes one, Bytes other,
-                                 std::size_t max_size) {
+Buffer PacketMutator::cross_over(InputFormat format, Bytes one, Bytes other, std::size_t max_size) {
   PacketStream stream = read_stream(format, one);
   PacketStream second = read_stream(format, other);
   if (random().below(2) == 0) std::swap(stream, second);
@@ -85,8 +84,8 @@ Buffer PacketMutator::cross_over(InputFormat format, Bytes one, Bytes other,
     std::size_t a = 0;
     std::size_t b = 0;
     while (a < stream.packets.size() || b < second.packets.size()) {
-      const bool first = b == second.packets.size() ||
-                         (a < stream.packets.size() && random().below(2) == 0);
+      const bool first =
+          b == second.packets.size() || (a < stream.packets.size() && random().below(2) == 0);
       const StreamPacket& next = first ? stream.packets[a++] : second.packets[b++];
       if (random().below(4) != 0) mixed.push_back(next);
     }
@@ -101,19 +100,22 @@ void PacketMutator::change(PacketStream& stream) {
   if (packets.empty()) return insert_message(stream);
   const std::size_t at = pick_packet(stream);
   switch (random().below(20)) {
-    case 0: case 1: case 2: case 3: case 4: case 5:
-      return insert_message(stream);
-    case 6: case 7: case 8: case 9: case 10: case 11:
-      return copy_number(stream);
-    case 12:
-      packets.erase(packets.begin() + static_cast<std::ptrdiff_t>(at));
-      return;
-    case 13:
-      return insert(stream, random().below(packets.size() + 1), StreamPacket(packets[at]));
-    case 14:
-      return std::swap(packets[at], packets[random().below(packets.size())]);
-    default:
-      return change_packet(stream, at);
+    case 0:
+    case 1:
+    case 2:
+    case 3:
+    case 4:
+    case 5: return insert_message(stream);
+    case 6:
+    case 7:
+    case 8:
+    case 9:
+    case 10:
+    case 11: return copy_number(stream);
+    case 12: packets.erase(packets.begin() + static_cast<std::ptrdiff_t>(at)); return;
+    case 13: return insert(stream, random().below(packets.size() + 1), StreamPacket(packets[at]));
+    case 14: return std::swap(packets[at], packets[random().below(packets.size())]);
+    default: return change_packet(stream, at);
   }
 }
 
@@ -121,8 +123,7 @@ void PacketMutator::insert_message(PacketStream& stream) {
   const reflect::Route* const route = pick_route(stream);
   if (route == nullptr) return;
   const bool near = random().below(8) == 0;
-  const generate::Generated made =
-      near ? generator_.near_valid(*route) : generator_.valid(*route);
+  const generate::Generated made = near ? generator_.near_valid(*route) : generator_.valid(*route);
   std::vector<StreamPacket>& packets = stream.packets;
   // At the end a message continues what the others began.
   const bool last = random().below(4) != 0;
@@ -264,19 +265,12 @@ void PacketMutator::change_outside(StreamPacket& packet) {
       }
       return;
     case 2:
-      outside.time_ns = random().below(8) == 0
-                            ? static_cast<std::int64_t>(random().next() >> 1)
-                            : random().between(0, 1000) * kSecondNs / 1024;
+      outside.time_ns = random().below(8) == 0 ? static_cast<std::int64_t>(random().next() >> 1)
+                                               : random().between(0, 1000) * kSecondNs / 1024;
       return;
-    case 3:
-      outside.direction = static_cast<Direction>(random().below(3));
-      return;
-    case 4:
-      packet.comment = kTexts[random().below(std::size(kTexts))];
-      return;
-    default:
-      packet.interface_name = kTexts[random().below(std::size(kTexts))];
-      return;
+    case 3: outside.direction = static_cast<Direction>(random().below(3)); return;
+    case 4: packet.comment = kTexts[random().below(std::size(kTexts))]; return;
+    default: packet.interface_name = kTexts[random().below(std::size(kTexts))]; return;
   }
 }
 

@@ -20,7 +20,7 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
     Packet packet;
     fuzz::StreamPacket kept;
     const Bytes record(data + kHead, size - kHead);
-    decode_record(record, record.size(), stream.link_type, req::kWirePcap, packet);
+    decode_record(record, record.size(), stream.link_type, "WIRE-PCAP"_rule, packet);
     kept.bytes.assign(packet.bytes.begin(), packet.bytes.end());
     kept.packet = packet;
     kept.packet.bytes = Bytes();

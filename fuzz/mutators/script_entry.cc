@@ -3,7 +3,7 @@
 #include <cstring>
 #include <vector>
 
-#include "conformance/script/bytes.h"
+#include "conformance/selftest/scripts/bytes.h"
 #include "fuzz/mutators/script_mutator.h"
 #include "fuzz/support/mutate_bytes.h"
 

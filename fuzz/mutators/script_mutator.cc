@@ -17,8 +17,8 @@
 #include "codec/reflect/am_frames.h"
 #include "codec/reflect/registry.h"
 #include "conformance/machine/messages.h"
-#include "conformance/runner/subject_target.h"
-#include "conformance/script/bytes.h"
+#include "conformance/selftest/scripts/bytes.h"
+#include "conformance/test/runner/subject_target.h"
 
 namespace rubric::fuzz {
 namespace {
@@ -105,23 +105,14 @@ void ScriptMutator::change(Script& script) {
       steps.insert(place(), copy);
       return;
     }
-    case 1:
-      steps.erase(place());
-      return;
-    case 2:
-      std::swap(*place(), *place());
-      return;
+    case 1: steps.erase(place()); return;
+    case 2: std::swap(*place(), *place()); return;
     case 3:
-    case 4:
-      return change_delay(script);
+    case 4: return change_delay(script);
     case 5:
-    case 6:
-      return change_field(script);
-    case 7:
-      steps.insert(place(), happening(script));
-      return;
-    default:
-      return insert(script);
+    case 6: return change_field(script);
+    case 7: steps.insert(place(), happening(script)); return;
+    default: return insert(script);
   }
 }
 
@@ -186,7 +177,8 @@ std::optional<Step> ScriptMutator::answer_to(const Script& script, const Transmi
   rubicon::RubiconAck body;
   body.type = rubicon::AmType::kLearningNotification;
   body.seq_num = message->seq_num();
-  std::vector<std::uint8_t> payload{machine::component::kRubiconAck, message->payload()[1]};
+  std::vector<std::uint8_t> payload{machine::component::kRubiconAck,
+                                    message->payload()[rubicon::AppMsgLayout::AppIdAt::kAt]};
   const std::vector<std::uint8_t> written = bytes_of(body);
   payload.insert(payload.end(), written.begin(), written.end());
   rubicon::NetMsg ack;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "codec/generate/frame_generator.h"
-#include "conformance/script/script.h"
+#include "conformance/selftest/scripts/script.h"
 
 namespace rubric::fuzz {
 

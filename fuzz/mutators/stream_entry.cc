@@ -15,9 +15,9 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
 }
 
 extern "C" std::size_t LLVMFuzzerCustomCrossOver(const std::uint8_t* one, std::size_t one_size,
-                                                 const std::uint8_t* other,
-                                                 std::size_t other_size, std::uint8_t* out,
-                                                 std::size_t max_size, unsigned seed) {
+                                                 const std::uint8_t* other, std::size_t other_size,
+                                                 std::uint8_t* out, std::size_t max_size,
+                                                 unsigned seed) {
   using namespace rubric::fuzz;
   if (seed % kCrossOversAsked != 0) return 0;
   const auto made = seeded_mutator(seed).cross_over(kFormat, rubric::Bytes(one, one_size),

@@ -23,9 +23,8 @@ struct DecodeInput {
 
 /// Reads the head; `size` is at least kHeadBytes. A format byte of 6 means detecting the format.
 inline DecodeInput read_decode_input(const std::uint8_t* data, std::size_t size) {
-  constexpr InputFormat kFormats[] = {InputFormat::kHdlc,   InputFormat::kSf,
-                                      InputFormat::kPcap,   InputFormat::kPcapng,
-                                      InputFormat::kHex,    InputFormat::kHex,
+  constexpr InputFormat kFormats[] = {InputFormat::kHdlc,    InputFormat::kSf,  InputFormat::kPcap,
+                                      InputFormat::kPcapng,  InputFormat::kHex, InputFormat::kHex,
                                       InputFormat::kUnknown, InputFormat::kHdlc};
   DecodeInput out;
   const Bytes input(data + DecodeInput::kHeadBytes, size - DecodeInput::kHeadBytes);

@@ -13,6 +13,8 @@
 namespace rubric::fuzz {
 
 // The names of all fields; those come first that place or count others.
+// It takes the list for an expression.
+// clang-format off
 #define RUBRIC_EACH_FIELD(F)                                                                    \
   F(kind) F(mac) F(network) F(am) F(dest) F(src) F(type) F(fcf) F(dsn) F(destpan) F(dispatch)   \
   F(length) F(group) F(pid) F(devid) F(reliable) F(ack) F(seq_num) F(nbytes) F(trans_id)        \
@@ -24,6 +26,7 @@ namespace rubric::fuzz {
   F(sampling_rate) F(clock) F(cur_time) F(anchor_id) F(rssi) F(my_rssi) F(temp) F(light)        \
   F(humid) F(pir) F(mic) F(magnetic) F(accx) F(accy) F(output) F(weights) F(values) F(readings) \
   F(payload) F(packet)
+// clang-format on
 
 namespace detail {
 
@@ -91,13 +94,11 @@ void set_every_field(Builder& builder, const Value& value) {
     }                                                                                           \
   }
 
-#define RUBRIC_SET_255(field)                                          \
-  if constexpr (requires {                                             \
-                  {                                                    \
-                    builder.set_##field(std::uint8_t{255})             \
-                  } -> std::same_as<bool>;                             \
-                }) {                                                   \
-    require(!builder.set_##field(std::uint8_t{255}), "255 is refused"); \
+#define RUBRIC_SET_255(field)                                                       \
+  if constexpr (requires {                                                          \
+                  { builder.set_##field(std::uint8_t{255}) } -> std::same_as<bool>; \
+                }) {                                                                \
+    require(!builder.set_##field(std::uint8_t{255}), "255 is refused");             \
   }
 
 /// Passes each setter that can refuse more than any structure of `value`'s kind holds: it refuses,

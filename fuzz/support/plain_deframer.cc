@@ -24,17 +24,17 @@ Error error_at(Fault fault, std::size_t at, ReqId rule) {
 }
 
 Error judge(const std::string& content, const std::string& kept, End end) {
-  if (end == End::kInput) return error_at(Fault::kCut, kept.size(), req::kWireHdlcFlag);
-  if (end == End::kAborted) return error_at(Fault::kAborted, kept.size(), req::kWireHdlcEscape);
+  if (end == End::kInput) return error_at(Fault::kCut, kept.size(), "WIRE-HDLC-FLAG"_rule);
+  if (end == End::kAborted) return error_at(Fault::kAborted, kept.size(), "WIRE-HDLC-ESCAPE"_rule);
   const std::uint8_t kind = static_cast<std::uint8_t>(content[0]);
   const std::size_t most = kind == 0x43 || kind == 0x44 ? 256 : 255;
-  if (content.size() > most) return error_at(Fault::kTooLong, most, req::kWireHdlcLong);
-  if (content.size() < 4) return error_at(Fault::kTooShort, content.size(), req::kWireHdlcShort);
+  if (content.size() > most) return error_at(Fault::kTooLong, most, "WIRE-HDLC-LONG"_rule);
+  if (content.size() < 4) return error_at(Fault::kTooShort, content.size(), "WIRE-HDLC-SHORT"_rule);
   const std::size_t crc_at = content.size() - 2;
   const std::uint16_t crc = plain_crc(content.substr(0, crc_at));
   const bool matches = content[crc_at] == static_cast<char>(crc & 0xFF) &&
                        content[crc_at + 1] == static_cast<char>(crc >> 8);
-  if (!matches) return error_at(Fault::kCrc, crc_at, req::kWireSerialCrc);
+  if (!matches) return error_at(Fault::kCrc, crc_at, "WIRE-SERIAL-CRC"_rule);
   return error_at(Fault::kNone, 0, ReqId::kNone);
 }
 

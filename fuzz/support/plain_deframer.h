@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "codec/containers/testing.h"
+#include "codec/containers/test/testing.h"
 
 namespace rubric::fuzz {
 

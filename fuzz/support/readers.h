@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "codec/containers/testing.h"
+#include "codec/containers/test/testing.h"
 
 namespace rubric::fuzz {
 

@@ -4,10 +4,8 @@
 #include <string>
 
 #include "codec/codec_test/every_view.h"
-#include "codec/generated/oscilloscope/tables.h"
-#include "codec/generated/rubicon/tables.h"
-#include "codec/generated/tinyos/tables.h"
 #include "codec/reflect/decode.h"
+#include "codec/reflect/registry.h"
 
 namespace rubric::fuzz {
 
@@ -16,13 +14,7 @@ template <class F>
 void for_each_structure(F f) {
   for_each_view_of_all([&f](const std::string& name, auto tag) {
     const std::size_t dot = name.find('.');
-    for (const reflect::Protocol* protocol :
-         {&tinyos::tables::kProtocol, &rubicon::tables::kProtocol,
-          &oscilloscope::tables::kProtocol}) {
-      if (name.substr(0, dot) == protocol->id) {
-        f(*reflect::find_type(*protocol, name.substr(dot + 1)), tag);
-      }
-    }
+    f(*reflect::find_type(*reflect::find_spec(name.substr(0, dot)), name.substr(dot + 1)), tag);
   });
 }
 

@@ -119,8 +119,8 @@ void step(tinyos::SerialFrameBuilder& out, tinyos::SerialFrame& value, MutableBy
   std::fill(room.data(), room.data() + room.size(), std::uint8_t{0});
   value = {};
   out.set_kind(value.kind = tinyos::SerialKind(static_cast<std::uint8_t>(66 + in.below(5))));
-  const bool has_number = tinyos::SerialFrameView::parse(Bytes(room).first(1)).error().fault ==
-                          Fault::kTruncated;
+  const bool has_number =
+      tinyos::SerialFrameView::parse(Bytes(room).first(1)).error().fault == Fault::kTruncated;
   const std::uint8_t number = in.u8();
   if (has_number && out.set_seq_num(number)) value.seq_num = number;
   const Bytes packet = in.bytes(in.u8());

@@ -40,8 +40,9 @@ class Fill {
     } else if constexpr (requires { field.raw(); }) {
       field = T(static_cast<decltype(field.raw())>(input_.u16()));
     } else if constexpr (std::is_enum_v<T> || std::is_integral_v<T>) {
-      field = static_cast<T>(sizeof(T) == 1 ? input_.u8() : sizeof(T) == 2 ? input_.u16()
-                                                                           : input_.u32());
+      field = static_cast<T>(sizeof(T) == 1   ? input_.u8()
+                             : sizeof(T) == 2 ? input_.u16()
+                                              : input_.u32());
     } else {
       visit_fields(field, *this);
     }

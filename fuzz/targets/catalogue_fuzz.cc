@@ -8,8 +8,8 @@
 #include "fuzz/support/embedded_files.h"
 #include "fuzz/support/places.h"
 #include "fuzz/support/require.h"
-#include "spec/compiler/emit.h"
-#include "spec/compiler/load.h"
+#include "spec/compiler/emit/emit.h"
+#include "spec/compiler/load/load.h"
 
 namespace {
 

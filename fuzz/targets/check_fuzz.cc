@@ -7,15 +7,15 @@
 #include <string_view>
 #include <utility>
 
-#include "conformance/oracle/duplicates.h"
-#include "conformance/oracle/findings.h"
-#include "conformance/oracle/judge.h"
-#include "conformance/oracle/read.h"
-#include "conformance/oracle/report/json.h"
-#include "conformance/oracle/report/junit.h"
-#include "conformance/oracle/report/text.h"
+#include "conformance/check/input/duplicates.h"
+#include "conformance/check/input/read.h"
+#include "conformance/check/judge/findings.h"
+#include "conformance/check/judge/judge.h"
+#include "conformance/check/report/json.h"
+#include "conformance/check/report/junit.h"
+#include "conformance/check/report/text.h"
 #include "fuzz/support/require.h"
-#include "tools/record/json.h"
+#include "tools/encode/json.h"
 
 namespace {
 
@@ -26,8 +26,8 @@ using fuzz::require;
 constexpr std::size_t kSearchedMax = 12;
 
 // Chooses options by the input's size, so that a capture is a valid input.
-oracle::Options options_for(std::size_t size) {
-  oracle::Options out;
+check::Options options_for(std::size_t size) {
+  check::Options out;
   out.deployed = (size & 1) != 0;
   out.sniffer_complete = (size & 2) != 0;
   out.start_cold = (size & 4) != 0;
@@ -36,45 +36,45 @@ oracle::Options options_for(std::size_t size) {
   return out;
 }
 
-void refers_to_what_is_there(const oracle::Run& run, const oracle::Report& report) {
+void refers_to_what_is_there(const check::Run& run, const check::Report& report) {
   std::set<std::pair<std::uint32_t, std::uint64_t>> frames;
-  for (const oracle::Observation& one : run.seen) {
+  for (const check::Observation& one : run.seen) {
     frames.insert({one.place.file, one.place.frame});
   }
-  const auto is_there = [&](const oracle::Place& place) {
+  const auto is_there = [&](const check::Place& place) {
     return place.file < run.files.size() &&
            (place.frame == 0 || frames.contains({place.file, place.frame}));
   };
-  for (const oracle::Finding& one : report.findings) {
+  for (const check::Finding& one : report.findings) {
     require(is_there(one.place) && is_there(one.last), "a finding is about a frame that is there");
     require(one.count >= 1 && !one.text.empty(), "a finding says what happened");
   }
   require(report.frames <= run.seen.size(), "no more frames are judged than were seen");
-  require(report.verdict == oracle::verdict_of(report.findings), "the verdict is the gravest");
+  require(report.verdict == check::verdict_of(report.findings), "the verdict is the gravest");
 }
 
 std::string reports(const report::Story& story) {
   const std::string json = report::json_report(story).text();
-  record::parse_json(json);
+  encode::parse_json(json);
   report::TextOptions options;
-  if (story.run.seen.size() <= kSearchedMax) options.judge = oracle::judge;
+  if (story.run.seen.size() <= kSearchedMax) options.judge = check::judge;
   const std::string text = report::text_report(story, options);
   const std::string junit = report::junit_report(story);
   require(!text.empty() && junit.find("</testsuite") != std::string::npos, "reports are whole");
   return json + text + junit;
 }
 
-std::string checked(std::string_view bytes, const oracle::Options& given) {
-  oracle::Options options = given;
-  oracle::RunReader reader;
+std::string checked(std::string_view bytes, const check::Options& given) {
+  check::Options options = given;
+  check::RunReader reader;
   std::string error;
   if (!reader.add_bytes("input", bytes, error)) {
     require(!error.empty(), "a refusal has a reason");
     return error;
   }
-  oracle::Run run = reader.finish();
-  if (!oracle::drop_duplicates(run, options, error)) return error;
-  const oracle::Report found = oracle::judge(run, options);
+  check::Run run = reader.finish();
+  if (!check::drop_duplicates(run, options, error)) return error;
+  const check::Report found = check::judge(run, options);
   refers_to_what_is_there(run, found);
   const report::KnownFailures expected;
   const report::Outcome outcome = report::compare(run, options, found, expected);
@@ -85,7 +85,7 @@ std::string checked(std::string_view bytes, const oracle::Options& given) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
-  const oracle::Options options = options_for(size);
+  const check::Options options = options_for(size);
   const std::string first = checked(bytes, options);
   require(first == checked(bytes, options), "the same input gives the same reports");
   return 0;

@@ -8,11 +8,11 @@
 #include "fuzz/support/embedded_files.h"
 #include "fuzz/support/places.h"
 #include "fuzz/support/require.h"
-#include "spec/compiler/emit.h"
-#include "spec/compiler/emit_cpp.h"
-#include "spec/compiler/emit_java.h"
-#include "spec/compiler/emit_lua.h"
-#include "spec/compiler/load.h"
+#include "spec/compiler/emit/cpp/emit_cpp.h"
+#include "spec/compiler/emit/emit.h"
+#include "spec/compiler/emit/java/emit_java.h"
+#include "spec/compiler/emit/lua/emit_lua.h"
+#include "spec/compiler/load/load.h"
 
 namespace {
 
@@ -58,7 +58,7 @@ std::string emitted(const rubricc::Model& model) {
     add(rubricc::emit_cpp(*spec));
     add(rubricc::emit_java(*spec));
   }
-  add(rubricc::emit_doc(model));
+  add(rubricc::emit_json(model));
   for (const auto& file : rubricc::emit_protocols(model)) out += file.text;
   for (const auto& file : rubricc::emit_lua(model)) out += file.text;
   return out;

@@ -10,10 +10,10 @@
 #include "codec/reflect/registry.h"
 #include "fuzz/support/decode_input.h"
 #include "fuzz/support/require.h"
+#include "tools/encode/json.h"
 #include "tools/format/csv.h"
 #include "tools/format/jsonl.h"
 #include "tools/format/text.h"
-#include "tools/record/json.h"
 
 namespace {
 
@@ -34,7 +34,7 @@ void check_nodes(const reflect::Decoded& decoded) {
 
 void check_json(std::string_view text, const format::Record& record) {
   require(!text.empty() && text.find('\n') == text.size() - 1, "a frame is one line of JSON");
-  const reflect::Value line = record::parse_json(text);  // Throws where it is not JSON in UTF-8.
+  const reflect::Value line = encode::parse_json(text);  // Throws where it is not JSON in UTF-8.
   const auto member = [&](std::string_view key) {
     const reflect::Value* const found = line.find(key);
     return found ? *found : reflect::Value::of_array({});

@@ -8,26 +8,26 @@
 
 #include "codec/reflect/registry.h"
 #include "fuzz/support/require.h"
+#include "tools/encode/json.h"
+#include "tools/encode/record.h"
 #include "tools/format/jsonl.h"
-#include "tools/record/json.h"
-#include "tools/record/record.h"
 
 namespace {
 
 using namespace rubric;
+using encode::OwnedPacket;
 using fuzz::require;
-using record::OwnedPacket;
 using reflect::Value;
 
 const reflect::Protocol& protocol() { return *reflect::find_protocol("rubicon"); }
 
 // Returns false if the line is refused.
 bool read(const Value& line, OwnedPacket& out) {
-  record::RecordReader reader(protocol());
+  encode::RecordReader reader(protocol());
   try {
     reader.read(line, out);
     return true;
-  } catch (const record::RecordError& error) {
+  } catch (const encode::RecordError& error) {
     require(*error.what() != '\0', "a refusal has a reason");
     return false;
   }
@@ -70,7 +70,7 @@ void same(const OwnedPacket& a, const OwnedPacket& b) {
 }
 
 // Returns whether a line's fields hold all of a frame, apart from which NaN it was
-// (tools/decode_format.md).
+// (tools/commands/decode_format.md).
 bool is_whole(const Value& line, const std::string& text) {
   return line.find("fields")->is(Value::Kind::kObject) &&
          line.find("error")->is(Value::Kind::kNull) && text.find("\"NaN\"") == std::string::npos;
@@ -78,7 +78,7 @@ bool is_whole(const Value& line, const std::string& text) {
 
 void come_back(const OwnedPacket& owned, const reflect::Type* bare) {
   const std::string text = decoded(owned, bare);
-  Value line = record::parse_json(text);
+  Value line = encode::parse_json(text);
   OwnedPacket again;
   require(read(line, again), "a line of decode is read");
   same(owned, again);
@@ -91,10 +91,10 @@ void come_back(const OwnedPacket& owned, const reflect::Type* bare) {
 
 void one_line(std::string_view text) {
   try {
-    const Value line = record::parse_json(text);
+    const Value line = encode::parse_json(text);
     OwnedPacket owned;
     if (read(line, owned)) come_back(owned, bare_type(line));
-  } catch (const record::JsonError& error) {
+  } catch (const encode::JsonError& error) {
     require(error.column() >= 1 && error.column() <= text.size() + 1, "the column is in the line");
     require(*error.what() != '\0', "it says what was expected");
   }

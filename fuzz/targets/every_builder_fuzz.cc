@@ -47,17 +47,17 @@ using fuzz::require;
   F(syn_create_cmd, SynCreateCmd) F(synaptic_data, SynapticData) F(updates, Updates)
 // clang-format on
 
-#define RUBRIC_CHECK_PAYLOAD(name, Name)                                       \
-  if constexpr (requires { view.payload_as_##name(); }) {                      \
-    if (view.payload_kind() == View::PayloadKind::k##Name) {                   \
-      check_part(view.payload_as_##name(), view.payload());                    \
-    }                                                                          \
+#define RUBRIC_CHECK_PAYLOAD(name, Name)                     \
+  if constexpr (requires { view.payload_as_##name(); }) {    \
+    if (view.payload_kind() == View::PayloadKind::k##Name) { \
+      check_part(view.payload_as_##name(), view.payload());  \
+    }                                                        \
   }
-#define RUBRIC_CHECK_BODY(name, Name)                                          \
-  if constexpr (requires { view.body_as_##name(); }) {                         \
-    if (view.body_kind() == View::BodyKind::k##Name) {                         \
-      check_part(view.body_as_##name(), view.payload());                       \
-    }                                                                          \
+#define RUBRIC_CHECK_BODY(name, Name)                    \
+  if constexpr (requires { view.body_as_##name(); }) {   \
+    if (view.body_kind() == View::BodyKind::k##Name) {   \
+      check_part(view.body_as_##name(), view.payload()); \
+    }                                                    \
   }
 
 template <class Part>

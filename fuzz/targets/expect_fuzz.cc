@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "codec/reflect/fault_text.h"
-#include "conformance/oracle/report/expect.h"
-#include "conformance/suite/expected.h"
+#include "conformance/check/report/expect.h"
+#include "conformance/test/suite/expected.h"
 #include "fuzz/support/lines.h"
 #include "fuzz/support/require.h"
 

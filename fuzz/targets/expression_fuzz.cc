@@ -88,7 +88,8 @@ Meaning tree(fuzz::Input& input, Bytes structure, int depth, std::vector<ExprSte
   const std::int64_t most = op == Op::kMul   ? a.most * b.most
                             : op == Op::kMod ? b.most
                             : op == Op::kDiv ? a.most + 1
-                            : op < Op::kEq   ? a.most + b.most : 1;
+                            : op < Op::kEq   ? a.most + b.most
+                                             : 1;
   return {meaning(op, a.value, b.value), most};
 }
 

@@ -24,8 +24,10 @@ const std::deque<Sample>& frames() {
     made.emplace_back(format::kUpdates);
     made.emplace_back(format::kUpdates, Framing::kHdlc);
     made.emplace_back("00 ffff 0000 02 00 0b 0001");
-    made.emplace_back("4188 07 2200 0100 0200 3f 1c 000b 0001 000b 0002 01 0007 09 03 0a"
-                      "23 01 0001 0002", Framing::kRadio);
+    made.emplace_back(
+        "4188 07 2200 0100 0200 3f 1c 000b 0001 000b 0002 01 0007 09 03 0a"
+        "23 01 0001 0002",
+        Framing::kRadio);
     made.emplace_back("0200 07", Framing::kRadio);
     made.emplace_back("");
     made.emplace_back(format::kJoinRequest, Framing::kBare, "join_request");

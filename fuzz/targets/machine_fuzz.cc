@@ -1,12 +1,13 @@
 // Property: whatever happens to a node of the reference machine, it keeps the explorer's promises
 // and its own bounds, names its rules, and does the same again.
 //
-// RUBRIC_FLAW names a flaw of conformance/flaws that replaces the machine: this must be found.
+// RUBRIC_FLAW names a flaw of conformance/machine/flaws that replaces the machine: this must be
+// found.
 #include <cstdio>
 #include <cstdlib>
 
-#include "conformance/script/bytes.h"
-#include "conformance/script/watch.h"
+#include "conformance/selftest/scripts/bytes.h"
+#include "conformance/selftest/scripts/watch.h"
 #include "fuzz/support/require.h"
 
 namespace {

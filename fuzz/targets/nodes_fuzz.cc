@@ -1,10 +1,10 @@
 // Property: on the same inputs the reference machine and the independent C++ node do the same,
-// except where the rules leave a choice (conformance/script/README.md).
+// except where the rules leave a choice (conformance/selftest/scripts/README.md).
 #include <cstddef>
 #include <cstdint>
 
-#include "conformance/script/bytes.h"
-#include "conformance/script/difference.h"
+#include "conformance/selftest/scripts/bytes.h"
+#include "conformance/selftest/scripts/difference.h"
 #include "conformance/trace/check.h"
 #include "fuzz/support/require.h"
 

@@ -74,8 +74,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   bool rest = false;
   const std::size_t records = count_records(file, &rest);
   require(packets.size() == records + rest, "a packet a record, and one for damage at the end");
-  const std::uint16_t link_type =
-      data[0] == 0xA1 ? load_be16(data + 22) : load_le16(data + 20);
+  const std::uint16_t link_type = data[0] == 0xA1 ? load_be16(data + 22) : load_le16(data + 20);
   check_writer(packets, link_type);
   return 0;
 }

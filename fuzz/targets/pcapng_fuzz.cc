@@ -90,9 +90,9 @@ Kept as_written(const Kept& kept, std::int64_t* last_ns) {
   if (kept.packet.time_ns != kNoTime) *last_ns = std::max<std::int64_t>(kept.packet.time_ns, 0);
   wanted.packet.time_ns = *last_ns;
   wanted.packet.link_type = link_type_of(kept.get());
-  require(wanted.packet.link_type == kept.packet.link_type ||
-              kept.packet.link_type == kLinkRadioTap,
-          "a packet stays under its link type");
+  require(
+      wanted.packet.link_type == kept.packet.link_type || kept.packet.link_type == kLinkRadioTap,
+      "a packet stays under its link type");
   return wanted;
 }
 

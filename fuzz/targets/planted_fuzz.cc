@@ -29,16 +29,11 @@ class Join {
     const Bytes payload = packet.from(kAmHeaderBytes);
     if (packet[0] != 0 || packet[5] != payload.size()) return;
     switch (packet[7]) {
-      case 14:
-        return request(payload);
-      case 15:
-        return reply(payload);
-      case 29:
-        return ack(payload);
-      case 28:
-        return message(payload);
-      default:
-        return;
+      case 14: return request(payload);
+      case 15: return reply(payload);
+      case 29: return ack(payload);
+      case 28: return message(payload);
+      default: return;
     }
   }
 

@@ -77,7 +77,7 @@ void check_append(const Kept& kept) {
   append_record(packet, record);
   Packet again;
   decode_record(testing::view(record), record.size() + packet.dropped_bytes, link_type_of(packet),
-                req::kWirePcap, again);
+                "WIRE-PCAP"_rule, again);
   Kept wanted = fuzz::placeless(kept);
   wanted.packet.link_type = link_type_of(packet);
   fuzz::require_same({fuzz::placeless(Kept(again))}, {wanted}, "a record reads back as the same");
@@ -93,7 +93,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::size_t missing = input.u8() % 8 == 7 ? 1 + input.u8() : 0;
   const Bytes record = input.rest();
   Packet packet;
-  decode_record(record, record.size() + missing, link_type, req::kWirePcap, packet);
+  decode_record(record, record.size() + missing, link_type, "WIRE-PCAP"_rule, packet);
   require(packet.offset_bytes + packet.bytes.size() <= record.size(), "a frame lies in its record");
   const Kept kept(packet);
   check_sum(kept, record.size());

@@ -9,18 +9,18 @@
 #include <string>
 #include <string_view>
 
-#include "conformance/attach/rct_answer.h"
-#include "conformance/attach/serve.h"
-#include "conformance/runner/subject_target.h"
+#include "conformance/test/runner/subject_target.h"
+#include "conformance/test/targets/rct_answer.h"
+#include "conformance/test/targets/serve.h"
 #include "fuzz/support/require.h"
 
 namespace {
 
 using namespace rubric;
-using attach::AnswerReader;
-using attach::Asked;
-using attach::Ticks;
 using fuzz::require;
+using targets::AnswerReader;
+using targets::Asked;
+using targets::Ticks;
 
 constexpr Ticks kStepMax = 20'000;  // The machine's clock may tick at each of them.
 
@@ -52,7 +52,7 @@ class Adapter {
  private:
   // Returns a runner's expectation of it.
   Asked asked_by(std::string_view command) const {
-    attach::Words words(command);
+    targets::Words words(command);
     const std::string_view word = words.next();
     Asked asked;
     asked.command = command;
@@ -61,7 +61,7 @@ class Adapter {
     if (word == "hello") asked.closing = "hello";
     if (word == "reset") asked.closing = "ready";
     if (word == "hello" || word == "reset" || word == "bye") return asked;
-    asked.to = attach::number_of(words.next(), attach::kTicksMax).value_or(now_);
+    asked.to = targets::number_of(words.next(), targets::kTicksMax).value_or(now_);
     asked.passes_time = word == "until";
     return asked;
   }
@@ -81,7 +81,7 @@ class Adapter {
       return;
     }
     require(closed, "an answer is closed");
-    if (asked.closing == "hello") attach::read_hello(reader.closing());
+    if (asked.closing == "hello") targets::read_hello(reader.closing());
     if (asked.closing == "ready") {
       now_ = 0;
       lost_ = false;
@@ -90,7 +90,7 @@ class Adapter {
   }
 
   runner::SubjectTarget target_{std::make_unique<runner::Machine>()};
-  attach::Server server_{target_, attach::machine_identity()};
+  targets::Server server_{target_, targets::machine_identity()};
   Ticks now_ = 0;
   bool lost_ = false;
 };
@@ -120,11 +120,11 @@ class Runner {
  private:
   void start() { reader_.emplace(asked_); }
 
-  void written_again(const attach::Output& output) const {
-    const std::string line = attach::output_line(output);
+  void written_again(const targets::Output& output) const {
+    const std::string line = targets::output_line(output);
     AnswerReader reader(asked_);
     require(!take(reader, line), "an output that was read is written as a line that is read");
-    require(attach::output_line(reader.answer().outputs.at(0)) == line, "and says the same");
+    require(targets::output_line(reader.answer().outputs.at(0)) == line, "and says the same");
   }
 
   Asked asked_;
@@ -151,7 +151,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     text.remove_prefix(std::min(end + 1, text.size()));
   }
   try {
-    attach::read_hello(std::string(reinterpret_cast<const char*>(data), size));
+    targets::read_hello(std::string(reinterpret_cast<const char*>(data), size));
   } catch (const runner::TargetBroken&) {
   }
   return 0;

@@ -34,7 +34,7 @@ Error error_at(Fault fault, std::size_t at, ReqId rule) {
 std::vector<Kept> plain_packets(Bytes stream) {
   std::vector<Kept> packets;
   if (stream.size() == 1 && stream[0] == 'U') {
-    add(packets, 0, Bytes(), 1, error_at(Fault::kCut, 1, req::kWireSfHandshake));
+    add(packets, 0, Bytes(), 1, error_at(Fault::kCut, 1, "WIRE-SF-HANDSHAKE"_rule));
     return packets;
   }
   std::size_t at = 0;
@@ -44,17 +44,17 @@ std::vector<Kept> plain_packets(Bytes stream) {
       at = 2;
     } else {
       add(packets, 0, stream.first(wrong + 1), 0,
-          error_at(Fault::kHandshake, wrong, req::kWireSfHandshake));
+          error_at(Fault::kHandshake, wrong, "WIRE-SF-HANDSHAKE"_rule));
     }
   }
   while (at < stream.size()) {
     const std::size_t size = stream[at];
     const Bytes rest = stream.from(at + 1);
     if (size == 0) {
-      add(packets, at, Bytes(), 0, error_at(Fault::kEmpty, 0, req::kWireSfLength));
+      add(packets, at, Bytes(), 0, error_at(Fault::kEmpty, 0, "WIRE-SF-LENGTH"_rule));
     } else if (rest.size() < size) {
       add(packets, at, rest, size - rest.size(),
-          error_at(Fault::kCut, 1 + rest.size(), req::kWireSfLength));
+          error_at(Fault::kCut, 1 + rest.size(), "WIRE-SF-LENGTH"_rule));
       break;
     } else {
       add(packets, at, rest.first(size), 0, error_at(Fault::kNone, 0, ReqId::kNone));
@@ -71,7 +71,7 @@ void check_writer(const std::vector<Kept>& packets) {
   std::vector<Kept> wanted;
   for (const Kept& kept : packets) {
     // A broken handshake is not part of what follows it.
-    if (kept.packet.error.requirement == req::kWireSfHandshake) continue;
+    if (kept.packet.error.requirement == "WIRE-SF-HANDSHAKE"_rule) continue;
     require(writer.write(kept.get(), written), "every packet of a forwarder can be written");
     wanted.push_back(fuzz::placeless(kept));
   }

@@ -10,9 +10,8 @@ set(include_dir ${CMAKE_INSTALL_INCLUDEDIR}/rubric)
 # The conformance library is what `rubric test`, `check` and `explore` are made of. The libraries
 # of codec and conformance belong to it, without those of tests, fuzzing, commands and compiler.
 get_property(libraries GLOBAL PROPERTY RUBRIC_LIBRARIES)
-list(FILTER libraries EXCLUDE REGEX
-  "^firmware_|^rubric_(compiler|commands|cli|command_line|format|fuzz.*|legal.*|.*mutator|record.*)$")
-list(FILTER libraries EXCLUDE REGEX "^rubric_(cpp_node.*|forward|lines|live|script)$")
+list(FILTER libraries EXCLUDE REGEX "^firmware_|_mutator$|^rubric_(cpp_node|fuzz)|^rubric_(cli|\
+command_line|commands|compiler|encode|format|forward|lawful_traffic|script)$")
 add_library(rubric_conformance INTERFACE)
 target_link_libraries(rubric_conformance INTERFACE ${libraries})
 set_target_properties(rubric_conformance PROPERTIES EXPORT_NAME conformance)
@@ -22,10 +21,10 @@ install(TARGETS rubric_runtime EXPORT rubric_codec COMPONENT dev)
 install(TARGETS ${libraries} rubric_conformance EXPORT rubric_conformance
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}/rubric COMPONENT dev)
 install(DIRECTORY codec conformance DESTINATION ${include_dir} COMPONENT dev
-  FILES_MATCHING PATTERN "*.h" PATTERN "adapters" EXCLUDE PATTERN "legal" EXCLUDE
+  FILES_MATCHING PATTERN "*.h" PATTERN "adapters" EXCLUDE PATTERN "lawful_traffic" EXCLUDE
   PATTERN "codec_test" EXCLUDE PATTERN "codec_bench" EXCLUDE PATTERN "*fixture.h" EXCLUDE
-  PATTERN "testing.h" EXCLUDE PATTERN "cases" EXCLUDE PATTERN "promela" EXCLUDE
-  PATTERN "script" EXCLUDE)
+  PATTERN "*testing*.h" EXCLUDE PATTERN "cases" EXCLUDE PATTERN "promela" EXCLUDE
+  PATTERN "scripts" EXCLUDE)
 foreach(part codec conformance)
   install(EXPORT rubric_${part} NAMESPACE rubric:: DESTINATION ${config_dir} COMPONENT dev)
 endforeach()

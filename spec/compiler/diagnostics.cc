@@ -1,17 +1,18 @@
 // Keeps and prints diagnostics, and suggests names.
 #include "spec/compiler/diagnostics.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <fstream>
 #include <iterator>
-#include <fmt/core.h>
 
 namespace rubricc {
 namespace {
 
-constexpr std::size_t kShownMax = 500;        // Diagnostics printed in a run.
-constexpr std::size_t kSourceLineMax = 200;   // Bytes of a source line that are shown.
-constexpr std::size_t kListedMax = 12;        // Names in a list of known ones.
+constexpr std::size_t kShownMax = 500;       // Diagnostics printed in a run.
+constexpr std::size_t kSourceLineMax = 200;  // Bytes of a source line that are shown.
+constexpr std::size_t kListedMax = 12;       // Names in a list of known ones.
 
 std::string_view first_line(std::string_view text) {
   text = text.substr(0, text.find('\n'));

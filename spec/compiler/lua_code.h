@@ -1,4 +1,4 @@
-// The part of the dissector that no spec changes, from spec/compiler/lua.
+// The part of the dissector that no spec changes, from spec/compiler/emit/lua/lua.
 #pragma once
 
 #include <string_view>

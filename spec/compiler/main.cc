@@ -8,13 +8,12 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
-#include "spec/compiler/emit.h"
-#include "spec/compiler/emit_cpp.h"
-#include "spec/compiler/emit_java.h"
-#include "spec/compiler/emit_lua.h"
-#include "spec/compiler/load.h"
+#include "spec/compiler/emit/cpp/emit_cpp.h"
+#include "spec/compiler/emit/emit.h"
+#include "spec/compiler/emit/java/emit_java.h"
+#include "spec/compiler/emit/lua/emit_lua.h"
+#include "spec/compiler/load/load.h"
+#include "tools/cli/command.h"
 
 namespace {
 
@@ -22,7 +21,7 @@ enum Exit { kOk = 0, kDiagnostics = 1, kUsage = 2, kCannotReadOrWrite = 3 };
 
 const std::vector<std::string> kEmitters{"cpp",        "tables",   "requirements", "protocols",
                                          "dictionary", "messages", "profiles",     "cases",
-                                         "java",       "lua",    "doc",          "json"};
+                                         "java",       "lua",      "json"};
 
 struct Options {
   std::string requirements = "spec/requirements.yaml";
@@ -59,7 +58,6 @@ rubricc::GeneratedFiles emit(const Options& options, const rubricc::Model& model
   if (wants(options, "profiles")) append(out, rubricc::emit_profiles(model));
   if (wants(options, "cases")) append(out, rubricc::emit_cases(model, options.cases));
   if (wants(options, "lua")) append(out, rubricc::emit_lua(model));
-  if (wants(options, "doc")) append(out, rubricc::emit_doc(model));
   if (wants(options, "json")) append(out, rubricc::emit_json(model));
   return out;
 }
@@ -119,32 +117,28 @@ int run(const Options& options) {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app{"rubricc: checks wire specs (a strict profile of Kaitai Struct) and generates from "
-               "them. Exit code: 0 fine, 1 mistakes in the input, 2 wrong usage, 3 a file cannot "
-               "be read or written. `rubricc doc --out DIR FILE...` is short for `--emit doc`: "
-               "one HTML page, DIR/doc/wire.html."};
-  app.add_option("--requirements", options.requirements, "The catalogue of requirements")
-      ->capture_default_str();
-  app.add_option("--profiles", options.profiles, "The folder of the profiles (.yaml)")
-      ->capture_default_str();
-  app.add_option("--cases", options.cases, "The folder of the golden traces (.rtr)")
-      ->capture_default_str();
-  auto* check = app.add_flag("--check", options.check, "Only check");
-  auto* emit = app.add_option("--emit", options.emit, "What to generate, separated by commas")
-                   ->delimiter(',')
-                   ->check(CLI::IsMember(kEmitters));
-  auto* out = app.add_option("--out", options.out, "The folder to write into");
-  app.add_option("FILE", options.files, "Wire specs (.ksy)")->required();
-  check->excludes(emit)->excludes(out);
-  emit->needs(out);
-  std::vector<std::string> words(argv + 1, argv + argc);
-  if (!words.empty() && words[0] == "doc") words[0] = "--emit=doc";
-  std::reverse(words.begin(), words.end());  // CLI11 takes them so.
-  try {
-    app.parse(words);
-    if (!options.check && options.emit.empty()) throw CLI::RequiredError("--check or --emit");
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? kOk : kUsage;
-  }
-  return run(options);
+  rubric::cli::Command program(
+      "rubricc",
+      "rubricc: checks wire specs (a strict profile of Kaitai Struct) and generates from "
+      "them. Exit code: 0 fine, 1 mistakes in the input, 2 wrong usage, 3 a file cannot "
+      "be read or written.");
+  program.add_option("--requirements", options.requirements, "The catalogue of requirements")
+      .show_default();
+  program.add_option("--profiles", options.profiles, "The folder of the profiles (.yaml)")
+      .show_default();
+  program.add_option("--cases", options.cases, "The folder of the golden traces (.rtr)")
+      .show_default();
+  auto check = program.add_flag("--check", options.check, "Only check");
+  auto emit = program.add_option("--emit", options.emit, "What to generate, separated by commas")
+                  .delimiter(',')
+                  .one_of(kEmitters);
+  const auto out = program.add_option("--out", options.out, "The folder to write into");
+  program.add_option("FILE", options.files, "Wire specs (.ksy)").required();
+  check.excludes(emit).excludes(out);
+  emit.needs(out);
+  program.exit_code_of([&] {
+    if (options.check || !options.emit.empty()) return run(options);
+    throw rubric::cli::UsageError("--check or --emit is required");
+  });
+  return program.parse_and_run(argc, argv);
 }

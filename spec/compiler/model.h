@@ -33,21 +33,35 @@ struct Interval {
 };
 
 enum class ExprOp {
-  kInt, kField, kEnumValue,
-  kAdd, kSub, kMul, kDiv, kMod,
-  kEq, kNe, kLt, kLe, kGt, kGe, kAnd, kOr, kNot,
+  kInt,
+  kField,
+  kEnumValue,
+  kAdd,
+  kSub,
+  kMul,
+  kDiv,
+  kMod,
+  kEq,
+  kNe,
+  kLt,
+  kLe,
+  kGt,
+  kGe,
+  kAnd,
+  kOr,
+  kNot,
 };
 struct Expr {
   ExprOp op = ExprOp::kInt;
   Place place;
-  std::int64_t value = 0;              // kInt; kEnumValue once resolved.
-  std::vector<std::string> path;       // kField: {"src", "devid"}; kEnumValue: {"pid", "local"}.
-  bool to_i = false;                   // `.to_i`: an enum's number.
+  std::int64_t value = 0;         // kInt; kEnumValue once resolved.
+  std::vector<std::string> path;  // kField: {"src", "devid"}; kEnumValue: {"pid", "local"}.
+  bool to_i = false;              // `.to_i`: an enum's number.
   std::vector<std::unique_ptr<Expr>> operands;
   // Resolved by the checker:
-  const Field* field = nullptr;        // kField: the last field of the path.
-  std::vector<const Field*> steps;     // kField: every field of the path.
-  std::int64_t offset_bytes = -1;      // kField: from the start of the enclosing structure.
+  const Field* field = nullptr;     // kField: the last field of the path.
+  std::vector<const Field*> steps;  // kField: every field of the path.
+  std::int64_t offset_bytes = -1;   // kField: from the start of the enclosing structure.
   Interval range;
 };
 using ExprPtr = std::unique_ptr<Expr>;
@@ -62,7 +76,7 @@ struct Valid {
   std::optional<std::int64_t> min;
   std::optional<std::int64_t> max;
   std::vector<std::int64_t> one_of;
-  bool in_enum = false;                // The checker fills one_of from the enum.
+  bool in_enum = false;  // The checker fills one_of from the enum.
   // As written; the checker resolves them to the numbers above.
   ExprPtr min_expr;
   ExprPtr max_expr;
@@ -75,13 +89,13 @@ struct SwitchCase {
   std::optional<std::int64_t> number;  // The key, unless that had a mistake.
   std::int64_t key = 0;                // The same, for emitters.
   std::string type_name;
-  const Type* type = nullptr;          // Resolved.
+  const Type* type = nullptr;  // Resolved.
 };
 struct Switch {
   Place place;
   ExprPtr key;
-  std::vector<SwitchCase> cases;       // Without `_`; ascending by key after the check.
-  std::optional<SwitchCase> otherwise; // `_`.
+  std::vector<SwitchCase> cases;        // Without `_`; ascending by key after the check.
+  std::optional<SwitchCase> otherwise;  // `_`.
 };
 
 struct Unit {
@@ -92,69 +106,69 @@ struct Unit {
 
 struct Field {
   std::string id;
-  std::string name;                    // `-name`, else id.
+  std::string name;  // `-name`, else id.
   Place place;
   KeyPlaces places;
-  bool refused_keys = false;           // Then what is missing may be among them.
+  bool refused_keys = false;  // Then what is missing may be among them.
   std::string doc;
   std::string doc_ref;
-  std::string requirement;             // `-requirement`, else the type's.
+  std::string requirement;  // `-requirement`, else the type's.
   ValueKind kind = ValueKind::kBytes;
-  int width_bytes = 0;                 // For a number or mask.
+  int width_bytes = 0;  // For a number or mask.
   bool little_endian = false;
   RepeatKind repeat = RepeatKind::kOnce;
   ExtentKind extent = ExtentKind::kOwn;
-  std::string type_name;               // As written: a user type, possibly "spec::type".
-  const Type* type = nullptr;          // Resolved: a structure or a mask.
+  std::string type_name;       // As written: a user type, possibly "spec::type".
+  const Type* type = nullptr;  // Resolved: a structure or a mask.
   std::unique_ptr<Switch> choice;
   std::string enum_name;
   const Enum* enumeration = nullptr;
-  ExprPtr size;                        // Extent kSize.
-  ExprPtr count;                       // Repeat kCount.
-  ExprPtr condition;                   // `if`.
+  ExprPtr size;       // Extent kSize.
+  ExprPtr count;      // Repeat kCount.
+  ExprPtr condition;  // `if`.
   std::optional<Valid> valid;
-  ExprPtr expect_expr;                 // `-expect`
+  ExprPtr expect_expr;  // `-expect`
   std::optional<std::int64_t> expect;
   std::optional<Unit> unit;
   // Instances only.
   bool is_instance = false;
   std::int64_t position = -1;
-  bool is_peek = false;                // A number that expressions read; never shown by itself.
-  int overlays = -1;                   // Interpretation: index of the seq field that it overlays.
+  bool is_peek = false;  // A number that expressions read; never shown by itself.
+  int overlays = -1;     // Interpretation: index of the seq field that it overlays.
   // Resolved by the checker.
-  std::int64_t fixed_offset = -1;      // -1 where what comes before varies in size.
-  std::uint32_t min_size = 0;          // Bytes, all repetitions; 0 if conditional.
-  std::uint32_t max_size = 0;          // Bytes; UINT32_MAX if unbounded.
-  Interval range;                      // Numbers: what valid leaves, else what the width allows.
+  std::int64_t fixed_offset = -1;  // -1 where what comes before varies in size.
+  std::uint32_t min_size = 0;      // Bytes, all repetitions; 0 if conditional.
+  std::uint32_t max_size = 0;      // Bytes; UINT32_MAX if unbounded.
+  Interval range;                  // Numbers: what valid leaves, else what the width allows.
 };
 
 struct MaskBit {
   std::string name;
-  bool unnamed = false;                // `-unnamed`
+  bool unnamed = false;  // `-unnamed`
 };
 
 struct Type {
   std::string id;
-  std::string name;                    // `-name`, else id.
+  std::string name;  // `-name`, else id.
   const Spec* spec = nullptr;
   Place place;
   KeyPlaces places;
-  bool refused_keys = false;           // Then what is missing may be among them.
+  bool refused_keys = false;  // Then what is missing may be among them.
   std::string doc;
   std::string doc_ref;
   std::string requirement;
   std::vector<std::unique_ptr<Field>> fields;     // seq
   std::vector<std::unique_ptr<Field>> instances;  // peeks and interpretations, in order
-  bool is_mask = false;                // `-mask`: then only bits, from the highest bit down.
-  std::vector<MaskBit> bits;           // From the highest down; as many as `-mask` says.
-  std::optional<std::int64_t> declared_size;      // `-size`: the greatest size.
-  std::vector<std::int64_t> am_types;  // `-am-type`
-  std::string carrier;                 // `-carrier`
-  std::string framing;                 // `-framing`
-  bool has_crc = false;                // `-crc`
+  bool is_mask = false;                       // `-mask`: then only bits, from the highest bit down.
+  std::vector<MaskBit> bits;                  // From the highest down; as many as `-mask` says.
+  std::optional<std::int64_t> declared_size;  // `-size`: the greatest size.
+  std::vector<std::int64_t> am_types;         // `-am-type`
+  std::string carrier;                        // `-carrier`
+  std::string framing;                        // `-framing`
+  bool has_crc = false;                       // `-crc`
   // Resolved by the checker.
   std::uint32_t min_size = 0;
-  std::uint32_t max_size = 0;          // UINT32_MAX if unbounded.
+  std::uint32_t max_size = 0;  // UINT32_MAX if unbounded.
   bool constant_size() const { return min_size == max_size; }
 };
 
@@ -168,7 +182,7 @@ struct Enum {
   std::string id;
   const Spec* spec = nullptr;
   Place place;
-  std::vector<EnumEntry> entries;      // Ascending by value after the check.
+  std::vector<EnumEntry> entries;  // Ascending by value after the check.
 };
 
 /// One .ksy file. The root structure, if the file has a top-level seq, is the first type; its id is
@@ -178,15 +192,15 @@ struct Spec {
   std::string title;
   std::string doc;
   std::string doc_ref;
-  std::string file;                    // As given on the command line: "spec/wire/rubicon.ksy".
+  std::string file;  // As given on the command line: "spec/wire/rubicon.ksy".
   bool little_endian = false;
   KeyPlaces places;
-  bool named = false;                  // On the command line; else only imported, not emitted.
+  bool named = false;  // On the command line; else only imported, not emitted.
   std::vector<std::string> import_names;
   std::vector<Place> import_places;
   std::vector<const Spec*> imports;
-  std::vector<std::unique_ptr<Type>> types;       // In file order, the root first.
-  std::vector<const Type*> dependency_order;      // The same, what a type contains before it.
+  std::vector<std::unique_ptr<Type>> types;   // In file order, the root first.
+  std::vector<const Type*> dependency_order;  // The same, what a type contains before it.
   std::vector<std::unique_ptr<Enum>> enums;
 };
 
@@ -196,21 +210,21 @@ struct Requirement {
   std::string clause;
   std::string sentence;
   std::string source;
-  std::uint8_t roles = 0;              // Bits: 1 mote, 2 sink, 4 base station; 0 where it has none.
-  bool forbids = false;                // It says what must not happen.
-  std::string deployed;                // The difference of release 1.0; else empty.
+  std::uint8_t roles = 0;  // Bits: 1 mote, 2 sink, 4 base station; 0 where it has none.
+  bool forbids = false;    // It says what must not happen.
+  std::string deployed;    // The difference of release 1.0; else empty.
   Place place;
 };
 
 struct AcceptedDifference {
   std::string requirement;
-  std::string sentence;                // The accepted behaviour.
+  std::string sentence;  // The accepted behaviour.
 };
 struct Profile {
-  std::string name;                    // The file's: "paper".
+  std::string name;  // The file's: "paper".
   std::string file;
   std::string doc;
-  std::vector<std::int64_t> values;    // In the order of profile_fields().
+  std::vector<std::int64_t> values;  // In the order of profile_fields().
   std::vector<AcceptedDifference> accepted;
 };
 
@@ -219,7 +233,7 @@ struct CaseUse {
   std::string case_name;
   std::string file;
   std::string requirement;
-  bool negative = false;               // On a line of what must not happen.
+  bool negative = false;  // On a line of what must not happen.
 };
 
 /// All input of one run of the compiler. Specs in dependency order, imports first.

@@ -1,9 +1,10 @@
 // Checks ids, and turns documentation into one line.
-#include <algorithm>
-#include <array>
 #include <fmt/core.h>
 
-#include "spec/compiler/read_spec.h"
+#include <algorithm>
+#include <array>
+
+#include "spec/compiler/load/read_spec.h"
 
 namespace rubricc {
 namespace {
@@ -11,23 +12,111 @@ namespace {
 constexpr std::size_t kIdMax = 64;
 
 // Words that a generated file could not use as a name: keywords of C++ and macros of C headers.
-constexpr std::array<std::string_view, 101> kReserved{
-    "alignas", "alignof", "and", "and_eq", "asm", "assert", "auto", "bitand", "bitor", "bool",
-    "break", "case", "catch", "char", "char16_t", "char32_t", "char8_t", "class", "co_await",
-    "co_return", "co_yield", "compl", "concept", "const", "const_cast", "consteval", "constexpr",
-    "constinit", "continue", "decltype", "default", "delete", "do", "double", "dynamic_cast",
-    "else", "enum", "errno", "explicit", "export", "extern", "false", "float", "for", "friend",
-    "goto", "if", "inline", "int", "linux", "long", "mutable", "namespace", "new", "noexcept",
-    "not", "not_eq", "nullptr", "offsetof", "operator", "or", "or_eq", "private", "protected",
-    "public", "register", "reinterpret_cast", "requires", "return", "short", "signed", "sizeof",
-    "static", "static_assert", "static_cast", "stderr", "stdin", "stdout", "struct", "switch",
-    "template", "this", "thread_local", "throw", "to_i", "true", "try", "typedef", "typeid",
-    "typename", "union", "unix", "unsigned", "using", "virtual", "void", "volatile", "wchar_t",
-    "while", "xor", "xor_eq"};
+constexpr std::array<std::string_view, 101> kReserved{"alignas",
+                                                      "alignof",
+                                                      "and",
+                                                      "and_eq",
+                                                      "asm",
+                                                      "assert",
+                                                      "auto",
+                                                      "bitand",
+                                                      "bitor",
+                                                      "bool",
+                                                      "break",
+                                                      "case",
+                                                      "catch",
+                                                      "char",
+                                                      "char16_t",
+                                                      "char32_t",
+                                                      "char8_t",
+                                                      "class",
+                                                      "co_await",
+                                                      "co_return",
+                                                      "co_yield",
+                                                      "compl",
+                                                      "concept",
+                                                      "const",
+                                                      "const_cast",
+                                                      "consteval",
+                                                      "constexpr",
+                                                      "constinit",
+                                                      "continue",
+                                                      "decltype",
+                                                      "default",
+                                                      "delete",
+                                                      "do",
+                                                      "double",
+                                                      "dynamic_cast",
+                                                      "else",
+                                                      "enum",
+                                                      "errno",
+                                                      "explicit",
+                                                      "export",
+                                                      "extern",
+                                                      "false",
+                                                      "float",
+                                                      "for",
+                                                      "friend",
+                                                      "goto",
+                                                      "if",
+                                                      "inline",
+                                                      "int",
+                                                      "linux",
+                                                      "long",
+                                                      "mutable",
+                                                      "namespace",
+                                                      "new",
+                                                      "noexcept",
+                                                      "not",
+                                                      "not_eq",
+                                                      "nullptr",
+                                                      "offsetof",
+                                                      "operator",
+                                                      "or",
+                                                      "or_eq",
+                                                      "private",
+                                                      "protected",
+                                                      "public",
+                                                      "register",
+                                                      "reinterpret_cast",
+                                                      "requires",
+                                                      "return",
+                                                      "short",
+                                                      "signed",
+                                                      "sizeof",
+                                                      "static",
+                                                      "static_assert",
+                                                      "static_cast",
+                                                      "stderr",
+                                                      "stdin",
+                                                      "stdout",
+                                                      "struct",
+                                                      "switch",
+                                                      "template",
+                                                      "this",
+                                                      "thread_local",
+                                                      "throw",
+                                                      "to_i",
+                                                      "true",
+                                                      "try",
+                                                      "typedef",
+                                                      "typeid",
+                                                      "typename",
+                                                      "union",
+                                                      "unix",
+                                                      "unsigned",
+                                                      "using",
+                                                      "virtual",
+                                                      "void",
+                                                      "volatile",
+                                                      "wchar_t",
+                                                      "while",
+                                                      "xor",
+                                                      "xor_eq"};
 static_assert(std::is_sorted(kReserved.begin(), kReserved.end()));
 
 // Namespaces of the generated code that a spec's own namespace would hide.
-constexpr std::array<std::string_view, 6> kReservedSpecs{"detail",  "reflect", "req",
+constexpr std::array<std::string_view, 6> kReservedSpecs{"detail", "reflect", "req",
                                                          "rubric", "std",     "tables"};
 
 bool is_snake_case(std::string_view id) {
@@ -52,8 +141,8 @@ void check_id(Diagnostics& diagnostics, const Place& place, std::string_view id,
   } else if (!what.empty() && std::binary_search(kReserved.begin(), kReserved.end(), id)) {
     diagnostics.error(place, fmt::format("{} cannot be the name of {}", quote(id), what),
                       "it is a word of C++ or of the profile");
-  } else if (what == "a spec" && std::binary_search(kReservedSpecs.begin(), kReservedSpecs.end(),
-                                                    id)) {
+  } else if (what == "a spec" &&
+             std::binary_search(kReservedSpecs.begin(), kReservedSpecs.end(), id)) {
     diagnostics.error(place, fmt::format("{} cannot be the name of {}", quote(id), what),
                       "the generated code has a namespace of that name");
   }

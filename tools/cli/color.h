@@ -1,8 +1,9 @@
 // Colour of output.
 #pragma once
 
-#include "tools/cli/command.h"
 #include <string>
+
+#include "tools/cli/command.h"
 
 namespace rubric::cli {
 

@@ -1,8 +1,8 @@
 #include "tools/cli/command.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <exception>
@@ -236,8 +236,8 @@ int Command::complain_about_extras() const {
   const std::string word = extras.empty() ? std::string{} : extras.front();
   const std::string bare = word.substr(0, word.find('='));
   if (word.starts_with('-')) {
-    return complain(fmt::format("unknown option {}{}", bare,
-                                reflect::did_you_mean(bare, option_names(*app_))));
+    return complain(
+        fmt::format("unknown option {}{}", bare, reflect::did_you_mean(bare, option_names(*app_))));
   }
   return complain(fmt::format("unexpected argument '{}'", word));
 }
@@ -246,8 +246,8 @@ int Command::parse_and_run(int argc, char** argv) {
   const std::vector<std::string> commands = subcommand_names();
   if (!commands.empty() && argc > 1 && argv[1][0] != '-' &&
       std::find(commands.begin(), commands.end(), argv[1]) == commands.end()) {
-    return complain(fmt::format("unknown command '{}'{}", argv[1],
-                                reflect::did_you_mean(argv[1], commands)));
+    return complain(
+        fmt::format("unknown command '{}'{}", argv[1], reflect::did_you_mean(argv[1], commands)));
   }
   try {
     app_->parse(argc, argv);

@@ -13,14 +13,14 @@
 #include <utility>
 
 #include "codec/containers/reader.h"
+#include "codec/lines/broken.h"
+#include "codec/lines/line.h"
+#include "codec/lines/stop.h"
 #include "codec/reflect/fault_text.h"
 #include "codec/reflect/registry.h"
 #include "codec/reflect/suggest.h"
-#include "conformance/runner/target.h"
 #include "tools/cli/input_file.h"
 #include "tools/cli/progress.h"
-#include "tools/live/line.h"
-#include "tools/live/stop.h"
 
 namespace rubric::cli {
 namespace {
@@ -41,7 +41,7 @@ struct FormatName {
   InputFormat format;
 };
 constexpr FormatName kFormats[] = {
-    {"hdlc", InputFormat::kHdlc}, {"sf", InputFormat::kSf},   {"pcap", InputFormat::kPcap},
+    {"hdlc", InputFormat::kHdlc},     {"sf", InputFormat::kSf},   {"pcap", InputFormat::kPcap},
     {"pcapng", InputFormat::kPcapng}, {"hex", InputFormat::kHex}, {kHexRadio, InputFormat::kHex},
 };
 
@@ -62,7 +62,7 @@ InputFormat find_format(std::string_view name) {
 /// Returns the files. Without FILE at a terminal it is $MOTECOM, since nobody types frames.
 std::vector<std::string> names_of(const InputOptions& options) {
   if (!options.files.empty()) return options.files;
-  return {live::asked_by_motecom() ? live::default_address() : "-"};
+  return {lines::asked_by_motecom() ? lines::default_address() : "-"};
 }
 
 std::uint64_t total_size(const std::vector<std::string>& files) {
@@ -93,7 +93,7 @@ class Run {
       source_.file_index = i;
       source_.number = 0;
       try {
-        const std::optional<live::Address> address = live::parse_address(files_[i]);
+        const std::optional<lines::Address> address = lines::parse_address(files_[i]);
         address ? line(*address) : one();
       } catch (const std::system_error& error) {
         complain(std::strerror(error.code().value()));
@@ -115,23 +115,23 @@ class Run {
   }
 
   // Reads a line in use, until it ends or the user stops it.
-  void line(const live::Address& address) {
-    live::stop_on_signals();
+  void line(const lines::Address& address) {
+    lines::stop_on_signals();
     result_.live = true;
     const bool failed_before = result_.failed;  // Failures of other lines stay.
     lost_ = false;
-    live::Line line(address, options_.listen_only);
+    lines::Line line(address, options_.listen_only);
     source_.format = format_name(line.format());
     ReaderOptions reader_options;
     reader_options.direction = Direction::kOutbound;
     reader_options.interface_name = address.name;
-    while (!live::stop_requested() && !result_.stopped) {
+    while (!lines::stop_requested() && !result_.stopped) {
       const std::unique_ptr<Reader> reader = make_reader(line.format(), reader_options);
       try {
         line.open(std::chrono::steady_clock::now() + kReconnectEvery);
         if (std::exchange(lost_, false)) fmt::print(stderr, "rubric: {}: again\n", address.name);
         pump_line(line, *reader);
-      } catch (const runner::TargetBroken& broken) {
+      } catch (const lines::Broken& broken) {
         if (!lost_) complain(broken.what());
         lost_ = true;
         if (!options_.reconnect) return;
@@ -142,7 +142,7 @@ class Run {
     result_.failed = failed_before || lost_;
   }
 
-  void pump_line(live::Line& line, Reader& reader) {
+  void pump_line(lines::Line& line, Reader& reader) {
     std::int64_t now_ns = 0;
     auto deliver = [&](const Packet& packet) {
       Packet stamped = packet;
@@ -151,13 +151,13 @@ class Run {
       give(stamped, reader.interfaces());
     };
     try {
-      while (!live::stop_requested() && !result_.stopped) {
+      while (!lines::stop_requested() && !result_.stopped) {
         const std::size_t size = line.read(MutableBytes(chunk_.get(), kChunkBytes));
         now_ns = std::chrono::system_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
         if (size) reader.feed(Bytes(chunk_.get(), size), deliver);
         if (on_idle_) on_idle_();
       }
-    } catch (const runner::TargetBroken&) {
+    } catch (const lines::Broken&) {
       reader.finish(deliver);  // With an unfinished frame.
       throw;
     }
@@ -165,7 +165,7 @@ class Run {
 
   void one() {
     if (options_.follow) {
-      live::stop_on_signals();
+      lines::stop_on_signals();
       result_.live = true;
     }
     InputFile file(files_[source_.file_index], options_.follow, on_idle_);
@@ -176,12 +176,15 @@ class Run {
       size = look(file, format);
       if (size == 0) return;  // Nothing in it, nothing wrong with it.
       if (format == InputFormat::kUnknown && !bare) {
-        return complain("this begins like no serial line, forwarder stream, pcap, pcapng or hex "
-                        "text; name it with --input-format");
+        return complain(
+            "this begins like no serial line, forwarder stream, pcap, pcapng or hex "
+            "text; name it with --input-format");
       }
       if (bare && (format == InputFormat::kPcap || format == InputFormat::kPcapng)) {
-        return complain(fmt::format("this is {}; --as takes a message alone (--input-format bare "
-                                    "reads the file as one)", format_name(format)));
+        return complain(
+            fmt::format("this is {}; --as takes a message alone (--input-format bare "
+                        "reads the file as one)",
+                        format_name(format)));
       }
       if (format == InputFormat::kJsonl && !bare) {
         return complain("this is JSON; 'rubric encode' reads it");
@@ -290,7 +293,7 @@ void add_input_options(Command& app, InputOptions& options) {
 void add_live_options(Command& app, InputOptions& options) {
   const auto check = [](const std::string& text) {
     try {
-      live::parse_address(text);
+      lines::parse_address(text);
       return std::string();
     } catch (const std::invalid_argument& error) {
       return std::string(error.what());
@@ -308,8 +311,7 @@ void add_live_options(Command& app, InputOptions& options) {
 const reflect::Protocol& chosen_protocol(const InputOptions& options) {
   const reflect::Protocol* protocol = reflect::find_protocol(options.spec);
   if (protocol) return *protocol;
-  throw UsageError("--spec",
-                             fmt::format("unknown protocol '{}'{}", options.spec,
+  throw UsageError("--spec", fmt::format("unknown protocol '{}'{}", options.spec,
                                          reflect::did_you_mean(options.spec, protocol_names())));
 }
 
@@ -327,7 +329,7 @@ const reflect::Type* chosen_message(const InputOptions& options,
   std::vector<std::string> names;
   for (int i = 0; i < protocol.type_count; ++i) names.emplace_back(protocol.types[i]->name);
   throw UsageError("--as", fmt::format("unknown message '{}'{}", options.as_message,
-                                                 reflect::did_you_mean(options.as_message, names)));
+                                       reflect::did_you_mean(options.as_message, names)));
 }
 
 InputResult read_packets(const InputOptions& options, const OnPacket& on_packet,
@@ -337,7 +339,7 @@ InputResult read_packets(const InputOptions& options, const OnPacket& on_packet,
 
 bool is_damage(const Packet& packet) {
   const ReqId rule = packet.error.requirement;
-  const bool of_file = rule == ReqId::kWirePcap || rule == ReqId::kWirePcapng;
+  const bool of_file = rule == "WIRE-PCAP"_rule || rule == "WIRE-PCAPNG"_rule;
   return of_file && packet.framing == Framing::kBare &&
          (packet.error.fault == Fault::kContainer || packet.error.fault == Fault::kCut);
 }

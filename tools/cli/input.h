@@ -1,7 +1,6 @@
 // Input of all subcommands that read packets: files, formats, protocol.
 #pragma once
 
-#include "tools/cli/command.h"
 #include <functional>
 #include <string>
 #include <string_view>
@@ -9,6 +8,7 @@
 
 #include "codec/containers/packet.h"
 #include "codec/reflect/schema.h"
+#include "tools/cli/command.h"
 
 namespace rubric::cli {
 
@@ -34,8 +34,7 @@ void add_live_options(Command& app, InputOptions& options);
 /// Returns the protocol of --spec; throws UsageError with the nearest name if there is none.
 const reflect::Protocol& chosen_protocol(const InputOptions& options);
 /// Returns the message of --as, null if it is not given; throws UsageError as above.
-const reflect::Type* chosen_message(const InputOptions& options,
-                                    const reflect::Protocol& protocol);
+const reflect::Type* chosen_message(const InputOptions& options, const reflect::Protocol& protocol);
 
 /// The source of a packet. Borrowed: valid during the callback.
 struct Source {

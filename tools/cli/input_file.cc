@@ -10,7 +10,7 @@
 #include <system_error>
 #include <thread>
 
-#include "tools/live/stop.h"
+#include "codec/lines/stop.h"
 
 namespace rubric::cli {
 namespace {
@@ -49,7 +49,7 @@ std::size_t InputFile::read(std::uint8_t* to, std::size_t size) {
     const ssize_t got = ::read(fd_, to, size);
     if (got > 0) return static_cast<std::size_t>(got);
     if (got < 0 && errno != EINTR) throw std::system_error(errno, std::generic_category());
-    if (live::stop_requested() || (got == 0 && !follow_)) return 0;
+    if (lines::stop_requested() || (got == 0 && !follow_)) return 0;
     if (got == 0) wait();
   }
 }
@@ -70,7 +70,7 @@ off_t InputFile::left() const {
 bool InputFile::ready() const {
   pollfd one{fd_, POLLIN, 0};
   while (!is_regular_) {
-    if (live::stop_requested()) return false;
+    if (lines::stop_requested()) return false;
     if (::poll(&one, 1, static_cast<int>(kFollowEvery.count())) != 0) break;
   }
   return true;
@@ -82,8 +82,8 @@ void InputFile::wait() {
     struct stat ours {};
     struct stat named {};
     if (::stat(name_.c_str(), &named) != 0) throw FileChanged("it was renamed or deleted");
-    const bool same = ::fstat(fd_, &ours) == 0 && ours.st_dev == named.st_dev &&
-                      ours.st_ino == named.st_ino;
+    const bool same =
+        ::fstat(fd_, &ours) == 0 && ours.st_dev == named.st_dev && ours.st_ino == named.st_ino;
     if (!same) throw FileChanged("another file has taken its name");
   }
   if (on_idle_) on_idle_();

@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "tools/live/stop.h"
+#include "codec/lines/stop.h"
 
 namespace rubric::cli {
 namespace {
@@ -30,7 +30,7 @@ InputThreads::InputThreads(const InputOptions& options) : running_(options.files
 }
 
 InputThreads::~InputThreads() {
-  live::request_stop();
+  lines::request_stop();
   {
     const std::lock_guard lock(mutex_);
     waiting_.clear();
@@ -65,7 +65,7 @@ void InputThreads::keep(const Packet& packet, const Source& source, std::size_t 
   kept.interface_name = source.interface_name;
   kept.file = file;
   std::unique_lock lock(mutex_);
-  taken_.wait(lock, [&] { return waiting_.size() < kWaitingMost || live::stop_requested(); });
+  taken_.wait(lock, [&] { return waiting_.size() < kWaitingMost || lines::stop_requested(); });
   waiting_.push_back(std::move(kept));
   came_.notify_one();
 }

@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <cstring>
 
-#include "conformance/report/files.h"
+#include "codec/text/files.h"
 
 namespace rubric::cli {
 bool Output::flush() {
@@ -28,8 +28,8 @@ bool Output::failed(std::string* what) const {
 bool write_file(const std::string& path, std::string_view text) {
   const bool to_stdout = path == "-";
   if (to_stdout) std::fflush(stdout);  // Keeps the order with earlier output.
-  const int error = to_stdout ? report::write_all(STDOUT_FILENO, text)
-                              : report::write_file(path, text);
+  const int error =
+      to_stdout ? report::write_all(STDOUT_FILENO, text) : report::write_file(path, text);
   if (error == 0 || error == EPIPE) return true;
   fmt::print(stderr, "rubric: cannot write {}: {}\n", to_stdout ? "stdout" : path,
              std::strerror(error));

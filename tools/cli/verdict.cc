@@ -1,14 +1,14 @@
 #include "tools/cli/verdict.h"
 
+#include <fmt/format.h>
+
 #include <cstdio>
 #include <exception>
 #include <utility>
 
-#include <fmt/format.h>
-
+#include "tools/cli/command.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/text_file.h"
-#include "tools/cli/command.h"
 
 namespace rubric::cli {
 

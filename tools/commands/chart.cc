@@ -1,4 +1,4 @@
-#include "tools/commands/commands.h"
+#include "conformance/test/report/chart.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -11,15 +11,15 @@
 #include <vector>
 
 #include "codec/reflect/suggest.h"
+#include "codec/text/text.h"
 #include "conformance/report/sequence_svg.h"
-#include "conformance/report/text.h"
-#include "conformance/suite/report/chart.h"
-#include "conformance/suite/run.h"
+#include "conformance/test/suite/run.h"
+#include "tools/cli/command.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/input.h"
 #include "tools/cli/output.h"
 #include "tools/cli/terminal.h"
-#include "tools/cli/command.h"
+#include "tools/commands/commands.h"
 
 namespace rubric::tools {
 namespace {
@@ -73,10 +73,9 @@ std::vector<const suite::SuiteCase*> chosen(const std::string& what, suite::Case
   }
   const std::string& asked = is_file ? name : what;
   if (out.empty()) {
-    throw cli::UsageError(
-        fmt::format("{}no case is called '{}'{}{}", is_file ? path + ": " : "", asked,
-                    reflect::did_you_mean(asked, names),
-                    is_file ? "" : "; rubric test --list shows them"));
+    throw cli::UsageError(fmt::format("{}no case is called '{}'{}{}", is_file ? path + ": " : "",
+                                      asked, reflect::did_you_mean(asked, names),
+                                      is_file ? "" : "; rubric test --list shows them"));
   }
   return out;
 }
@@ -84,7 +83,7 @@ std::vector<const suite::SuiteCase*> chosen(const std::string& what, suite::Case
 suite::MachineRun work(const suite::SuiteCase& one, const std::string& target) {
   if (target.empty() || target == "machine") return suite::run_on_machine(one);
   try {
-    const auto attachment = attach::attach(target, {});
+    const auto attachment = targets::attach(target, {});
     suite::MachineRun out;
     out.run = suite::run_one(one, *attachment, "", {});
     attachment->finish();
@@ -99,8 +98,7 @@ int judged(const suite::CaseRun& run) {
   using runner::CaseVerdict;
   switch (run.result.verdict) {
     case CaseVerdict::kPass:
-    case CaseVerdict::kWeak:
-      return cli::kVerdictExpected;
+    case CaseVerdict::kWeak: return cli::kVerdictExpected;
     case CaseVerdict::kFail:
       for (const runner::Failure& failure : run.result.failures) {
         fmt::print(stderr, "{}:{}: not kept at tick {}: {}\n", run.file, failure.place.line,
@@ -109,8 +107,7 @@ int judged(const suite::CaseRun& run) {
       return cli::kVerdictFailed;
     case CaseVerdict::kInconclusive:
     case CaseVerdict::kError:
-    case CaseVerdict::kSkip:
-      break;
+    case CaseVerdict::kSkip: break;
   }
   fmt::print(stderr, "{}: {}\n", run.name, run.result.reason);
   return run.result.verdict == CaseVerdict::kError ? cli::kVerdictBroken : cli::kVerdictExpected;
@@ -128,9 +125,8 @@ void run_chart(const ChartOptions& options) {
   const std::vector<const suite::SuiteCase*> all = chosen(options.what, cases);
   const bool picture = options.format == "svg";
   if (picture && all.size() > 1) {
-    throw cli::UsageError(fmt::format("{} has {} cases; name the one to draw: {}:{}",
-                                           options.what, all.size(), options.what,
-                                           all.front()->blank.name));
+    throw cli::UsageError(fmt::format("{} has {} cases; name the one to draw: {}:{}", options.what,
+                                      all.size(), options.what, all.front()->blank.name));
   }
   const std::size_t width = cli::columns(options.width, 1);
   std::string out;
@@ -162,14 +158,11 @@ void add_chart(cli::Command& app) {
   sub.add_option("case", options->what, "A case's name, FILE.rtr or FILE.rtr:CASE")
       .required()
       .check(cli::given);
-  sub.add_option("--format", options->format, "text or svg")
-      .one_of({"text", "svg"})
-      .show_default();
+  sub.add_option("--format", options->format, "text or svg").one_of({"text", "svg"}).show_default();
   sub.add_option("--target", options->target,
-                  "Draw what this implementation does instead, as rubric test has it")
+                 "Draw what this implementation does instead, as rubric test has it")
       .check(cli::given);
-  sub.add_option("-o,--out", options->out, "Write to this file; - is stdout")
-      .show_default();
+  sub.add_option("-o,--out", options->out, "Write to this file; - is stdout").show_default();
   sub.add_option("--width", options->width, "Text: columns (those of the terminal, else 100)")
       .between(60, 1000);
   sub.callback([options] { run_chart(*options); });

@@ -1,5 +1,3 @@
-#include "tools/commands/commands.h"
-
 #include <unistd.h>
 
 #include <memory>
@@ -7,18 +5,19 @@
 #include <utility>
 #include <vector>
 
-#include "conformance/oracle/duplicates.h"
-#include "conformance/oracle/judge.h"
-#include "tools/commands/check_live.h"
-#include "tools/commands/check_news.h"
-#include "tools/commands/check_options.h"
+#include "codec/lines/line.h"
+#include "conformance/check/input/duplicates.h"
+#include "conformance/check/judge/judge.h"
 #include "tools/cli/color.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/output.h"
 #include "tools/cli/terminal.h"
 #include "tools/cli/verdict.h"
-#include "tools/live/line.h"
-#include "tools/record/packet_output.h"
+#include "tools/commands/check_live.h"
+#include "tools/commands/check_news.h"
+#include "tools/commands/check_options.h"
+#include "tools/commands/commands.h"
+#include "tools/encode/packet_output.h"
 
 namespace rubric::tools {
 namespace {
@@ -49,13 +48,13 @@ constexpr const char* kCheckFooter =
     "kept or broken, 64 usage,\n"
     "66 input cannot be read, or a source broke off and nothing failed.";
 
-oracle::Run read_run(const CheckOptions& options) {
-  oracle::RunReader reader(read_as(options));
+check::Run read_run(const CheckOptions& options) {
+  check::RunReader reader(read_as(options));
   std::string error;
   for (const std::string& file : options.input.files) {
-    const bool good =
-        file == "-" ? reader.add_bytes("stdin", cli::text_of_file(kCheckCommand, file), error)
-                    : reader.add_file(file, error);
+    const bool good = file == "-"
+                          ? reader.add_bytes("stdin", cli::text_of_file(kCheckCommand, file), error)
+                          : reader.add_file(file, error);
     if (!good) cli::unreadable(kCheckCommand, error);
   }
   return reader.finish();
@@ -63,33 +62,32 @@ oracle::Run read_run(const CheckOptions& options) {
 
 int check_files(const CheckOptions& options) {
   const auto& files = options.input.files;
-  oracle::Options judged = oracle_options(options);
+  check::Options judged = oracle_options(options);
   const std::vector<report::FrameRange> ranges = frame_ranges(options);
   if (!options.write.empty()) {
     throw cli::UsageError("--write", "none of the sources is a line in use");
   }
-  if (record::overwrites(options.out, files)) {
+  if (encode::overwrites(options.out, files)) {
     throw cli::UsageError("--out", options.out + " is one of the files to read");
   }
   const report::KnownFailures expected = expectations(options);
-  oracle::Run whole = read_run(options);
-  oracle::Run part = ranges.empty() ? std::move(whole) : report::part_of(whole, ranges, judged);
-  if (std::string error; !oracle::drop_duplicates(part, judged, error)) {
+  check::Run whole = read_run(options);
+  check::Run part = ranges.empty() ? std::move(whole) : report::part_of(whole, ranges, judged);
+  if (std::string error; !check::drop_duplicates(part, judged, error)) {
     cli::unreadable(kCheckCommand, error);
   }
-  const oracle::Report found = oracle::judge(part, judged);
+  const check::Report found = check::judge(part, judged);
   const report::Outcome outcome = report::compare(part, judged, found, expected);
   const report::Story story{part, judged, found, expected, outcome};
   const int terminal = options.out == "-" ? STDOUT_FILENO : -1;
-  const bool written =
-      cli::write_file(options.out, report_text(options, story, terminal, files));
+  const bool written = cli::write_file(options.out, report_text(options, story, terminal, files));
   return written ? outcome.exit_code() : cli::kVerdictBroken;
 }
 
 int run_check(CheckOptions options) {
   if (options.input.files.empty()) {
-    if (!live::asked_by_motecom()) throw cli::UsageError("FILE is required");
-    options.input.files.push_back(live::default_address());
+    if (!lines::asked_by_motecom()) throw cli::UsageError("FILE is required");
+    options.input.files.push_back(lines::default_address());
   }
   return is_live(options) ? check_live(options) : check_files(options);
 }
@@ -106,8 +104,9 @@ void add_options(cli::Command& command, CheckOptions& options) {
   command.add_option("--profile", options.profile, "Rules of the paper, or as release 1.0 has them")
       .one_of({"paper", "deployed"})
       .show_default();
-  command.add_option("--format", options.format,
-                     "text, json (rubric.check/1), jsonl (an event a line) or junit")
+  command
+      .add_option("--format", options.format,
+                  "text, json (rubric.check/1), jsonl (an event a line) or junit")
       .one_of({"text", "json", "jsonl", "junit"})
       .show_default();
   command.add_option("--expect", options.expect, "Known failures with their reasons, as YAML")
@@ -119,34 +118,40 @@ void add_options(cli::Command& command, CheckOptions& options) {
   command.add_option("--sink", options.sinks, "ID=ISLAND of a sink: 1=11");
   command.add_option("--tester", options.testers,
                      "AM address of a sender that is not to be judged");
-  command.add_option("--sniffer", options.sniffer,
-                     "complete: every frame on the air is in the capture; else unknown")
+  command
+      .add_option("--sniffer", options.sniffer,
+                  "complete: every frame on the air is in the capture; else unknown")
       .one_of({"complete", "unknown"})
       .show_default();
-  command.add_option("--start", options.start,
-                     "cold: nothing had happened before the first frame; else unknown")
+  command
+      .add_option("--start", options.start,
+                  "cold: nothing had happened before the first frame; else unknown")
       .one_of({"cold", "unknown"})
       .show_default();
-  command.add_option("--response", options.response_ms,
-                     "ms until a node must have reacted (the profile's 300 ticks, 293 ms)")
+  command
+      .add_option("--response", options.response_ms,
+                  "ms until a node must have reacted (the profile's 300 ticks, 293 ms)")
       .between(0.0, 3.6e6);
-  command.add_option("--ack-timeout", options.ack_timeout_ms,
-                     "ms until a reliable message has timed out (the profile's 1000 ticks, "
-                     "976.6 ms)")
+  command
+      .add_option("--ack-timeout", options.ack_timeout_ms,
+                  "ms until a reliable message has timed out (the profile's 1000 ticks, "
+                  "976.6 ms)")
       .between(0.0, 3.6e6);
   command.add_option("--skew", options.skew_ms, "ms between the clocks of two taps, at most (50)")
       .between(0.0, 3.6e6);
-  command.add_option("--align", options.align,
-                     "auto: captures whose clocks differ are put on one by the frames that they "
-                     "share; off: stamps are taken as they are")
+  command
+      .add_option("--align", options.align,
+                  "auto: captures whose clocks differ are put on one by the frames that they "
+                  "share; off: stamps are taken as they are")
       .one_of({"auto", "off"})
       .show_default();
   command.add_option("--frames", options.frames,
                      "A..B: only these frames; N:A..B of the Nth file, N:none none of it");
-  command.add_option("--input-format", options.input.format,
-                     "What captures are: auto, hdlc (bytes of a serial line), sf (serial "
-                     "forwarder), pcap, pcapng, hex (text, from the dispatch byte on), hex-radio "
-                     "(text, 802.15.4 without FCS)")
+  command
+      .add_option("--input-format", options.input.format,
+                  "What captures are: auto, hdlc (bytes of a serial line), sf (serial "
+                  "forwarder), pcap, pcapng, hex (text, from the dispatch byte on), hex-radio "
+                  "(text, 802.15.4 without FCS)")
       .one_of({"auto", "hdlc", "sf", "pcap", "pcapng", "hex", "hex-radio"})
       .show_default();
   command.add_flag("--verbose", options.verbose, "Text: every finding in full; live also notes");
@@ -161,7 +166,8 @@ void add_options(cli::Command& command, CheckOptions& options) {
 }  // namespace
 
 void add_check(cli::Command& app) {
-  cli::Command& command = app.add_subcommand(kCheckCommand, "Hold captures and logs against the rules");
+  cli::Command& command =
+      app.add_subcommand(kCheckCommand, "Hold captures and logs against the rules");
   auto options = std::make_shared<CheckOptions>();
   add_options(command, *options);
   command.footer(kCheckFooter);

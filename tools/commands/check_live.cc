@@ -13,19 +13,19 @@
 
 #include "codec/containers/reader.h"
 #include "codec/containers/writer.h"
-#include "conformance/oracle/duplicates.h"
-#include "conformance/oracle/judge.h"
-#include "conformance/oracle/read.h"
-#include "conformance/oracle/watch.h"
-#include "tools/commands/check_news.h"
+#include "codec/lines/capture_file.h"
+#include "codec/lines/line.h"
+#include "codec/lines/stop.h"
+#include "conformance/check/input/duplicates.h"
+#include "conformance/check/input/read.h"
+#include "conformance/check/judge/judge.h"
+#include "conformance/check/judge/watch.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/input_threads.h"
 #include "tools/cli/output.h"
 #include "tools/cli/verdict.h"
-#include "tools/live/capture_file.h"
-#include "tools/live/line.h"
-#include "tools/live/stop.h"
-#include "tools/record/packet_output.h"
+#include "tools/commands/check_news.h"
+#include "tools/encode/packet_output.h"
 
 namespace rubric::tools {
 namespace {
@@ -83,7 +83,7 @@ class Session {
   }
 
   int run() {
-    live::stop_on_signals();
+    lines::stop_on_signals();
     news_.begin();
     bool failed = false;
     {
@@ -92,7 +92,7 @@ class Session {
         if (kept_) kept_->flush();
         if (fresh_ && steady_clock::now() >= judge_next_) judge();
         tell();
-        if (!news_.open()) live::request_stop();
+        if (!news_.open()) lines::request_stop();
       }
       failed = input.failed();
     }
@@ -104,7 +104,7 @@ class Session {
   void name_files() {
     std::string lines;
     for (const std::string& name : options_.input.files) {
-      const bool line = live::parse_address(name).has_value();
+      const bool line = lines::parse_address(name).has_value();
       file_of_.push_back(line ? 0 : UINT32_MAX);
       if (line) lines += (lines.empty() ? "" : " and ") + name;
     }
@@ -133,13 +133,13 @@ class Session {
     run_.reset();  // Two copies of a long run are enough.
     run_.emplace(reader_.snapshot());
     fresh_ = false;
-    if (oracle::drop_duplicates(*run_, judged_, refused_)) {
+    if (check::drop_duplicates(*run_, judged_, refused_)) {
       refused_.clear();
-      found_ = oracle::judge(*run_, judged_);
+      found_ = check::judge(*run_, judged_);
     }
     const steady_clock::time_point after = steady_clock::now();
-    judge_next_ = after + std::max<steady_clock::duration>(kJudgeEvery,
-                                                           kJudgeShare * (after - before));
+    judge_next_ =
+        after + std::max<steady_clock::duration>(kJudgeEvery, kJudgeShare * (after - before));
   }
 
   void tell() {
@@ -152,7 +152,7 @@ class Session {
       fmt::print(stderr, "rubric check: {}\n", refused_);
       refused_told_ = true;
     }
-    for (const oracle::Change& change : watch_.update(found_, now_us())) {
+    for (const check::Change& change : watch_.update(found_, now_us())) {
       news_.tell(*run_, judged_, change, expected_);
     }
     news_.flush();
@@ -165,29 +165,30 @@ class Session {
     const report::Outcome outcome = report::compare(*run_, judged_, found_, expected_);
     const bool again = !has_lines_ || !options_.write.empty();
     written = news_.report({*run_, judged_, found_, expected_, outcome},
-                           again ? names_ : std::vector<std::string>()) && written;
+                           again ? names_ : std::vector<std::string>()) &&
+              written;
     if (!written) return cli::kVerdictBroken;
     const int code = outcome.exit_code();
     return failed && code != cli::kVerdictFailed ? cli::kVerdictInput : code;
   }
 
   const CheckOptions& options_;
-  const oracle::Options judged_;
+  const check::Options judged_;
   const report::KnownFailures expected_;
-  oracle::RunReader reader_;
-  oracle::Watch watch_;
+  check::RunReader reader_;
+  check::Watch watch_;
   CheckNews news_;
   std::vector<std::uint32_t> file_of_;  // By source: its file of the run.
   std::vector<std::string> names_;      // The run's files.
   bool has_lines_ = false;              // They are file 0.
   LineCapture lines_;
-  std::optional<live::CaptureFile> kept_;
-  bool fresh_ = false;                  // Something came since the run was judged.
+  std::optional<lines::CaptureFile> kept_;
+  bool fresh_ = false;  // Something came since the run was judged.
   steady_clock::time_point judge_next_{};
-  std::optional<oracle::Run> run_;
-  oracle::Report found_;
-  std::string refused_;                 // Why the files are no run; empty: they are.
-  std::int64_t refused_us_ = 0;         // Since when.
+  std::optional<check::Run> run_;
+  check::Report found_;
+  std::string refused_;          // Why the files are no run; empty: they are.
+  std::int64_t refused_us_ = 0;  // Since when.
   bool refused_told_ = false;
 };
 
@@ -197,7 +198,7 @@ bool is_live(const CheckOptions& options) {
   if (options.input.follow) return true;
   const auto& files = options.input.files;
   return std::any_of(files.begin(), files.end(), [](const std::string& name) {
-    return live::parse_address(name).has_value();
+    return lines::parse_address(name).has_value();
   });
 }
 
@@ -207,11 +208,12 @@ int check_live(const CheckOptions& options) {
   std::set<std::string> once;
   for (const std::string& name : files) {
     if (!once.insert(name).second) throw cli::UsageError("FILE", name + " is there twice");
-    if (live::parse_address(name)) {
+    if (lines::parse_address(name)) {
       lines = true;
     } else if (is_log(name)) {
-      throw cli::UsageError("FILE", name + " is a log; it goes with a run that is over, as "
-                                                "with the capture that --write keeps");
+      throw cli::UsageError("FILE", name +
+                                        " is a log; it goes with a run that is over, as "
+                                        "with the capture that --write keeps");
     }
   }
   if (!options.frames.empty()) {
@@ -224,9 +226,9 @@ int check_live(const CheckOptions& options) {
     throw cli::UsageError("--write", "the report goes to " + options.out);
   }
   for (const std::string& path : {options.write, options.out}) {
-    if (record::overwrites(path, files)) {
+    if (encode::overwrites(path, files)) {
       throw cli::UsageError(path == options.out ? "--out" : "--write",
-                                 path + " is one of the files to read");
+                            path + " is one of the files to read");
     }
   }
   return Session(options).run();

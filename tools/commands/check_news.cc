@@ -11,16 +11,16 @@
 #include <cstring>
 #include <system_error>
 
-#include "conformance/oracle/judge.h"
-#include "conformance/oracle/report/json.h"
-#include "conformance/oracle/report/junit.h"
-#include "conformance/oracle/report/words.h"
-#include "conformance/report/shell.h"
+#include "codec/text/shell.h"
+#include "conformance/check/judge/judge.h"
+#include "conformance/check/report/json.h"
+#include "conformance/check/report/junit.h"
+#include "conformance/check/report/words.h"
 
 namespace rubric::tools {
 namespace {
 
-using oracle::Change;
+using check::Change;
 using report::Json;
 
 // "at" is when it was said, in seconds since 1970; null of a run that is over.
@@ -47,8 +47,7 @@ std::string change_event(const report::Story& story, const Change& change) {
     case Change::What::kChanged:
       return event("changed", true,
                    {{"was", report::severity_name(change.before)}, {"finding", finding}});
-    case Change::What::kWithdrawn:
-      break;
+    case Change::What::kWithdrawn: break;
   }
   return event("withdrawn", true, {{"why", change.why}, {"finding", finding}});
 }
@@ -85,7 +84,7 @@ std::string report_text(const CheckOptions& options, const report::Story& story,
     text.command.clear();
   } else {
     text.command = command_of(options);
-    text.judge = oracle::judge;
+    text.judge = check::judge;
   }
   for (const std::string& file : files) text.files += " " + report::shell_word(file);
   return report::text_report(story, text);
@@ -107,13 +106,13 @@ void CheckNews::begin() const {
   fmt::print(stderr, "rubric check: findings as they come; Ctrl-C ends with the report\n");
 }
 
-void CheckNews::tell(const oracle::Run& run, const oracle::Options& judged, const Change& change,
+void CheckNews::tell(const check::Run& run, const check::Options& judged, const Change& change,
                      const report::KnownFailures& expected) {
-  if (change.finding.severity == oracle::Severity::kNote && !options_.verbose &&
+  if (change.finding.severity == check::Severity::kNote && !options_.verbose &&
       options_.format != "jsonl") {
     return;
   }
-  oracle::Report one;
+  check::Report one;
   one.findings.push_back(change.finding);
   const report::Outcome outcome = report::compare(run, judged, one, expected);
   const report::Story story{run, judged, one, expected, outcome};
@@ -136,8 +135,8 @@ std::string CheckNews::text(const report::Story& story, const Change& change) co
   shown.command.clear();
   if (change.what == Change::What::kChanged) {
     shown.head = "NOW";
-    shown.text = fmt::format("{} (was {})", change.finding.text,
-                             report::severity_name(change.before));
+    shown.text =
+        fmt::format("{} (was {})", change.finding.text, report::severity_name(change.before));
   }
   return report::text_finding(story, 0, shown);
 }

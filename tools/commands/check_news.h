@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "conformance/oracle/watch.h"
-#include "tools/commands/check_options.h"
+#include "conformance/check/judge/watch.h"
 #include "tools/cli/output.h"
+#include "tools/commands/check_options.h"
 
 namespace rubric::tools {
 
@@ -27,7 +27,7 @@ class CheckNews {
 
   /// Prints, at a terminal, that a wait begins.
   void begin() const;
-  void tell(const oracle::Run& run, const oracle::Options& judged, const oracle::Change& change,
+  void tell(const check::Run& run, const check::Options& judged, const check::Change& change,
             const report::KnownFailures& expected);
   /// What was told can be read then.
   void flush() { output_.flush(); }
@@ -37,7 +37,7 @@ class CheckNews {
   bool report(const report::Story& story, const std::vector<std::string>& files);
 
  private:
-  std::string text(const report::Story& story, const oracle::Change& change) const;
+  std::string text(const report::Story& story, const check::Change& change) const;
 
   const CheckOptions& options_;
   int fd_;

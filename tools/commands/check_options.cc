@@ -9,8 +9,8 @@
 #include <string_view>
 #include <utility>
 
-#include "conformance/oracle/read_trace.h"
-#include "conformance/report/shell.h"
+#include "codec/text/shell.h"
+#include "conformance/check/input/read_trace.h"
 #include "tools/cli/color.h"
 #include "tools/cli/terminal.h"
 #include "tools/cli/verdict.h"
@@ -27,8 +27,7 @@ std::uint16_t address(const std::string& option, std::string_view text) {
   const auto [end, fault] =
       std::from_chars(digits.data(), digits.data() + digits.size(), value, hex ? 16 : 10);
   if (fault != std::errc() || end != digits.data() + digits.size() || value > 0xFFFF) {
-    throw cli::UsageError(option,
-                               fmt::format("expected 0 to 65535, given '{}'", text));
+    throw cli::UsageError(option, fmt::format("expected 0 to 65535, given '{}'", text));
   }
   return static_cast<std::uint16_t>(value);
 }
@@ -43,38 +42,37 @@ std::pair<std::string, std::string> pair_of(const std::string& option, const std
   return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
-void add_node(const std::string& option, const std::string& text, oracle::KnownNode node,
-              std::vector<oracle::KnownNode>& nodes) {
-  for (const oracle::KnownNode& other : nodes) {
+void add_node(const std::string& option, const std::string& text, check::KnownNode node,
+              std::vector<check::KnownNode>& nodes) {
+  for (const check::KnownNode& other : nodes) {
     const bool sinks = node.role == machine::Role::kSink && other.role == machine::Role::kSink;
     if (other.id == node.id && !(sinks && other.island != node.island)) {
-      throw cli::UsageError(option, fmt::format("'{}' says another time what node {} is",
-                                                     text, node.id));
+      throw cli::UsageError(option,
+                            fmt::format("'{}' says another time what node {} is", text, node.id));
     }
   }
   nodes.push_back(node);
 }
 
-std::vector<oracle::KnownNode> known_nodes(const CheckOptions& options) {
-  std::vector<oracle::KnownNode> out;
+std::vector<check::KnownNode> known_nodes(const CheckOptions& options) {
+  std::vector<check::KnownNode> out;
   for (const std::string& text : options.nodes) {
     const auto [id, role] = pair_of("--node", text, "ID=ROLE as in 2=mote");
-    oracle::KnownNode node;
+    check::KnownNode node;
     node.id = address("--node", id);
     if (role == "sink") {
       node.role = machine::Role::kSink;
     } else if (role == "base-station" || role == "base_station") {
       node.role = machine::Role::kBaseStation;
     } else if (role != "mote") {
-      throw cli::UsageError(
-          "--node", fmt::format("a role is mote, sink or base-station, not '{}'", role));
+      throw cli::UsageError("--node",
+                            fmt::format("a role is mote, sink or base-station, not '{}'", role));
     }
     add_node("--node", text, node, out);
   }
   for (const std::string& text : options.sinks) {
     const auto [id, island] = pair_of("--sink", text, "ID=ISLAND as in 1=11");
-    oracle::KnownNode node{address("--sink", id), machine::Role::kSink,
-                           address("--sink", island)};
+    check::KnownNode node{address("--sink", id), machine::Role::kSink, address("--sink", island)};
     if (node.island == 0) throw cli::UsageError("--sink", "no island has the number 0");
     add_node("--sink", text, node, out);
   }
@@ -88,8 +86,8 @@ std::optional<std::int64_t> microseconds(const std::optional<double>& ms) {
 
 }  // namespace
 
-oracle::Options oracle_options(const CheckOptions& options) {
-  oracle::Options out;
+check::Options oracle_options(const CheckOptions& options) {
+  check::Options out;
   out.deployed = options.profile == "deployed";
   out.sniffer_complete = options.sniffer == "complete";
   out.start_cold = options.start == "cold";
@@ -109,19 +107,18 @@ std::vector<report::FrameRange> frame_ranges(const CheckOptions& options) {
     if (!report::parse_range(text, range, error)) throw cli::UsageError("--frames", error);
     if (range.file == UINT32_MAX) {
       if (options.input.files.size() > 1) {
-        throw cli::UsageError("--frames", fmt::format(
-            "of which file? 1:{} is of {}", text, options.input.files.front()));
+        throw cli::UsageError("--frames", fmt::format("of which file? 1:{} is of {}", text,
+                                                      options.input.files.front()));
       }
       range.file = 0;
     }
     if (range.file >= options.input.files.size()) {
-      throw cli::UsageError("--frames", fmt::format(
-          "'{}': there are {} files", text, options.input.files.size()));
+      throw cli::UsageError(
+          "--frames", fmt::format("'{}': there are {} files", text, options.input.files.size()));
     }
     for (const report::FrameRange& other : out) {
       if (other.file == range.file) {
-        throw cli::UsageError("--frames", fmt::format(
-            "'{}': one range for each file", text));
+        throw cli::UsageError("--frames", fmt::format("'{}': one range for each file", text));
       }
     }
     out.push_back(range);
@@ -140,8 +137,8 @@ report::KnownFailures expectations(const CheckOptions& options) {
   }
 }
 
-oracle::ReadAs read_as(const CheckOptions& options) {
-  oracle::ReadAs out;
+check::ReadAs read_as(const CheckOptions& options) {
+  check::ReadAs out;
   const std::string& format = options.input.format;
   if (format == "hdlc") out.format = InputFormat::kHdlc;
   if (format == "sf") out.format = InputFormat::kSf;
@@ -163,7 +160,7 @@ bool is_log(const std::string& name) {
   std::string start(kLogLook, '\0');
   file.read(start.data(), static_cast<std::streamsize>(start.size()));
   start.resize(static_cast<std::size_t>(file.gcount()));
-  return oracle::looks_like_trace(start);
+  return check::looks_like_trace(start);
 }
 
 std::string command_of(const CheckOptions& options) {

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "conformance/oracle/observation.h"
-#include "conformance/oracle/read.h"
-#include "conformance/oracle/report/expect.h"
-#include "conformance/oracle/report/text.h"
-#include "conformance/oracle/report/window.h"
+#include "conformance/check/input/read.h"
+#include "conformance/check/observation.h"
+#include "conformance/check/report/expect.h"
+#include "conformance/check/report/text.h"
+#include "conformance/check/report/window.h"
 #include "tools/cli/input.h"
 
 namespace rubric::tools {
@@ -40,13 +40,13 @@ struct CheckOptions {
 };
 
 /// Returns the judge's options. Throws cli::UsageError, as the next two do.
-oracle::Options oracle_options(const CheckOptions& options);
+check::Options oracle_options(const CheckOptions& options);
 std::vector<report::FrameRange> frame_ranges(const CheckOptions& options);
 /// What the file --expect names says; nothing without it.
 report::KnownFailures expectations(const CheckOptions& options);
 
 /// Returns the format of captures by --input-format.
-oracle::ReadAs read_as(const CheckOptions& options);
+check::ReadAs read_as(const CheckOptions& options);
 /// Returns whether there is a file of that name with an .rtr log in it.
 bool is_log(const std::string& name);
 

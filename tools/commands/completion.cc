@@ -1,5 +1,3 @@
-#include "tools/commands/commands.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 #include <vector>
 
 #include "tools/cli/exit_codes.h"
+#include "tools/commands/commands.h"
 
 namespace rubric::tools {
 namespace {
@@ -21,9 +20,7 @@ struct NamedCommand {
 };
 
 /// Returns the first sentence of a description, on one line.
-std::string brief(const std::string& text) {
-  return text.substr(0, text.find_first_of(";\n"));
-}
+std::string brief(const std::string& text) { return text.substr(0, text.find_first_of(";\n")); }
 
 std::vector<NamedCommand> commands_of(const cli::Command& program) {
   std::vector<NamedCommand> out;
@@ -74,7 +71,8 @@ _rubric() {{
     return
   fi
   case "${{COMP_WORDS[1]}} $before" in
-)", names_of(commands));
+)",
+             names_of(commands));
   for (const NamedCommand& command : commands) {
     for (const cli::OptionInfo& flag : command.flags) {
       if (flag.choices.empty()) continue;
@@ -115,8 +113,8 @@ std::string zsh_argument(const cli::OptionInfo& flag) {
   const std::string help = shell_quoted("[" + flag.description + "]");
   std::string tail;
   if (flag.takes_value) {
-    tail = ":value:" + (flag.choices.empty() ? std::string("_files")
-                                             : "(" + spaced(flag.choices) + ")");
+    tail = ":value:" +
+           (flag.choices.empty() ? std::string("_files") : "(" + spaced(flag.choices) + ")");
   }
   // The brackets around the description are special; those within it were replaced.
   std::string body = "'[" + help.substr(2, help.size() - 4) + "]" + tail + "'";
@@ -145,7 +143,8 @@ _rubric() {{
 )");
   for (const NamedCommand& command : commands) {
     fmt::print("    {})\n      _arguments", command.name);
-    for (const cli::OptionInfo& flag : command.flags) fmt::print(" \\\n        {}", zsh_argument(flag));
+    for (const cli::OptionInfo& flag : command.flags)
+      fmt::print(" \\\n        {}", zsh_argument(flag));
     fmt::print(" \\\n        '*:file:_files' ;;\n");
   }
   fmt::print("  esac\n}}\n_rubric \"$@\"\n");
@@ -174,10 +173,9 @@ void print_fish(const std::vector<NamedCommand>& commands) {
 
 void add_completion(cli::Command& app) {
   auto shell = std::make_shared<std::string>();
-  cli::Command& sub = app.add_subcommand("completion", "Print what a shell needs to complete commands");
-  sub.add_option("SHELL", *shell, "bash, zsh or fish")
-      .required()
-      .one_of({"bash", "zsh", "fish"});
+  cli::Command& sub =
+      app.add_subcommand("completion", "Print what a shell needs to complete commands");
+  sub.add_option("SHELL", *shell, "bash, zsh or fish").required().one_of({"bash", "zsh", "fish"});
   sub.footer(
       "Examples:\n"
       "  rubric completion bash > ~/.local/share/bash-completion/completions/rubric\n"

@@ -1,5 +1,3 @@
-#include "tools/commands/commands.h"
-
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -9,8 +7,9 @@
 
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/input.h"
+#include "tools/commands/commands.h"
+#include "tools/encode/packet_output.h"
 #include "tools/format/record.h"
-#include "tools/record/packet_output.h"
 
 namespace rubric::tools {
 namespace {
@@ -52,13 +51,13 @@ struct Losses {
   std::uint64_t directions = 0;
   std::uint64_t interfaces = 0;
   std::uint64_t comments = 0;
-  std::uint64_t sequence_numbers = 0;  // From the serial line.
-  std::uint64_t radio = 0;             // Among those written.
+  std::uint64_t sequence_numbers = 0;            // From the serial line.
+  std::uint64_t radio = 0;                       // Among those written.
   std::map<std::string, std::uint64_t> refused;  // By reason: a handful.
 };
 
 void count_details(const Packet& packet, std::string_view interface_name,
-                   const record::Holds& holds, const std::string& container, Losses& losses) {
+                   const encode::Holds& holds, const std::string& container, Losses& losses) {
   const bool bare_packets = container == "sf" || container == "hex";
   losses.sequence_numbers += bare_packets && packet.serial_seq != kAbsent;
   losses.radio += packet.framing == Framing::kRadio;
@@ -83,8 +82,9 @@ void report(const Losses& losses, const std::string& container) {
   lost(losses.comments, "comments");
   lost(losses.sequence_numbers, "serial sequence numbers");
   if (container == "hex" && losses.radio && losses.radio != losses.written) {
-    fmt::print(stderr, "rubric: hex does not say which lines are radio frames; --only keeps one "
-                       "framing\n");
+    fmt::print(stderr,
+               "rubric: hex does not say which lines are radio frames; --only keeps one "
+               "framing\n");
   }
 }
 
@@ -98,21 +98,21 @@ void settle_target(ConvertOptions& options) {
   if (options.format.empty()) options.format = container_of(options.output);
   if (options.format.empty()) {
     throw cli::UsageError("--format", "is needed, as '" + options.output +
-                                               "' has no suffix that says what to write (.pcapng, "
-                                               ".pcap, .sf, .hex, .hdlc)");
+                                          "' has no suffix that says what to write (.pcapng, "
+                                          ".pcap, .sf, .hex, .hdlc)");
   }
-  if (record::overwrites(options.output, options.input.files)) {
+  if (encode::overwrites(options.output, options.input.files)) {
     throw cli::UsageError("OUT", "'" + options.output + "' is also the input");
   }
 }
 
 int run_convert(const ConvertOptions& options) {
   Losses losses;
-  const record::Holds holds = record::holds(options.format);
+  const encode::Holds holds = encode::holds(options.format);
   cli::InputResult result;
   std::string failure;
   try {
-    record::PacketOutput output(options.format, options.output);
+    encode::PacketOutput output(options.format, options.output);
     const auto on_packet = [&](const Packet& packet, const cli::Source& source) {
       if (!options.only.empty() && format::framing_name(packet.framing) != options.only) {
         return true;
@@ -150,13 +150,13 @@ void add_convert(cli::Command& app) {
   cli::Command& sub = app.add_subcommand("convert", "Packets from one container into another");
   sub.footer(kConvertFooter);
   sub.add_option("FILE", options->input.files,
-                  "Captures, and last the target unless -o names it; - is stdin or stdout");
+                 "Captures, and last the target unless -o names it; - is stdin or stdout");
   sub.add_option("-o,--output", options->output, "Where to; - is stdout").check(cli::given);
   sub.add_option("--format", options->format,
-                  "What to write: hex, hdlc, sf, pcap, pcapng (default: by the target's suffix)")
-      .one_of(record::container_names());
+                 "What to write: hex, hdlc, sf, pcap, pcapng (default: by the target's suffix)")
+      .one_of(encode::container_names());
   sub.add_option("--input-format", options->input.format,
-                  "What the input is: auto, hdlc, sf, pcap, pcapng, hex")
+                 "What the input is: auto, hdlc, sf, pcap, pcapng, hex")
       .one_of({"auto", "hdlc", "sf", "pcap", "pcapng", "hex"})
       .show_default();
   sub.add_option("--only", options->only, "Leave out packets of other framings: hdlc, sf, radio")

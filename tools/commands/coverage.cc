@@ -1,9 +1,6 @@
-#include "tools/commands/commands.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cstdio>
 #include <cstring>
@@ -15,20 +12,21 @@
 #include <string>
 #include <vector>
 
-#include "codec/generated/requirements_table.h"
-#include "conformance/explorer/search.h"
-#include "conformance/mutants/generated.h"
-#include "conformance/report/json.h"
+#include "codec/reflect/requirements.h"
+#include "codec/text/json.h"
+#include "conformance/explore/search.h"
+#include "conformance/selftest/mutants/generated.h"
+#include "tools/cli/command.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/output.h"
-#include "tools/cli/command.h"
+#include "tools/commands/commands.h"
 
 namespace rubric::tools {
 namespace {
 
 using report::Json;
 
-constexpr std::size_t kRules = std::size(kRequirements);
+const std::size_t kRules = reflect::requirements().size();
 
 struct CoverageOptions {
   std::string cases = "conformance/cases";
@@ -46,17 +44,13 @@ struct Touch {
 };
 
 struct Coverage {
-  std::array<Touch, kRules> rules;
+  std::vector<Touch> rules{kRules};
   std::size_t cases = 0;
   std::vector<std::string> problems;
 };
 
-bool is_wire(std::size_t i) {
-  return std::strncmp(kRequirements[i].id, "WIRE-", 5) == 0;
-}
-bool is_must(std::size_t i) {
-  return std::strcmp(kRequirements[i].level, "MUST") == 0;
-}
+bool is_wire(std::size_t i) { return std::strncmp(reflect::requirements()[i].id, "WIRE-", 5) == 0; }
+bool is_must(std::size_t i) { return std::strcmp(reflect::requirements()[i].level, "MUST") == 0; }
 
 void read_cases(const mutants::Golden& golden, Coverage& coverage) {
   for (const trace::Parsed& file : golden.files()) {
@@ -70,7 +64,7 @@ void read_cases(const mutants::Golden& golden, Coverage& coverage) {
                                                     file.file_name, line->place.line, name));
             continue;
           }
-          Touch& touch = coverage.rules[static_cast<std::size_t>(id)];
+          Touch& touch = coverage.rules[reflect::requirement_index(id)];
           (line->op == trace::Op::kMustNot ? touch.negative : touch.positive).insert(one.name);
         }
       }
@@ -85,7 +79,7 @@ void run_cases(const mutants::Golden& golden, Coverage& coverage) {
   mutants::watch(golden, [&](const machine::State&, machine::Ticks, const machine::Event&,
                              const machine::State&, const machine::Actions& actions) {
     for (const machine::Action& action : actions.all()) {
-      Touch& touch = coverage.rules[static_cast<std::size_t>(action.requirement)];
+      Touch& touch = coverage.rules[reflect::requirement_index(action.requirement)];
       const bool ignored = action.what == machine::Action::What::kIgnored;
       ++(ignored ? touch.ignores : touch.transitions);
     }
@@ -93,31 +87,31 @@ void run_cases(const mutants::Golden& golden, Coverage& coverage) {
 }
 
 // The explorer takes a plain function, so its results are kept here.
-std::array<std::atomic<bool>, kRules> g_explored;
+std::vector<std::atomic<bool>> g_explored(kRules);
 
 void seen_step(machine::State& state, machine::Ticks now, const machine::Event& event,
                machine::Actions& actions) {
   machine::step(state, now, event, actions);
   for (const machine::Action& action : actions.all()) {
-    g_explored[static_cast<std::size_t>(action.requirement)] = true;
+    g_explored[reflect::requirement_index(action.requirement)] = true;
   }
 }
 
 // Explores small networks: two sinks and a lossy air in join scope, messages between a mote and its
 // sink.
 void explore(Coverage& coverage) {
-  explorer::Options join;
+  explore::Options join;
   join.step = seen_step;
   join.sinks = 2;
   join.loss = join.dup = true;
   join.calls = 2;  // So that replies to the first meet the second.
-  explorer::Options full;
+  explore::Options full;
   full.step = seen_step;
-  full.scope = explorer::Scope::kFull;
+  full.scope = explore::Scope::kFull;
   full.loss = true;
-  for (const explorer::Options& options : {join, full}) {
-    explorer::Nodes nodes(options);
-    explorer::explore(nodes);
+  for (const explore::Options& options : {join, full}) {
+    explore::Nodes nodes(options);
+    explore::explore(nodes);
   }
   for (std::size_t i = 0; i < kRules; ++i) coverage.rules[i].explored = g_explored[i];
 }
@@ -125,7 +119,7 @@ void explore(Coverage& coverage) {
 void judge(Coverage& coverage) {
   for (std::size_t i = 1; i < kRules; ++i) {
     if (is_wire(i)) continue;
-    const reflect::Requirement& rule = kRequirements[i];
+    const reflect::Requirement& rule = reflect::requirements()[i];
     const Touch& touch = coverage.rules[i];
     if (is_must(i) && touch.positive.empty() && touch.negative.empty()) {
       coverage.problems.push_back(fmt::format("{} is a MUST without a case", rule.id));
@@ -143,7 +137,7 @@ Coverage measure(const CoverageOptions& options) {
   explore(coverage);
   for (const mutants::Mutant& mutant : mutants::named_mutants()) {
     for (const ReqId id : mutant.requirements) {
-      ++coverage.rules[static_cast<std::size_t>(id)].mutants;
+      ++coverage.rules[reflect::requirement_index(id)].mutants;
     }
   }
   judge(coverage);
@@ -154,7 +148,7 @@ Coverage measure(const CoverageOptions& options) {
 std::map<std::string, std::size_t> wire_levels() {
   std::map<std::string, std::size_t> levels;
   for (std::size_t i = 1; i < kRules; ++i) {
-    if (is_wire(i)) ++levels[kRequirements[i].level];
+    if (is_wire(i)) ++levels[reflect::requirements()[i].level];
   }
   return levels;
 }
@@ -191,10 +185,10 @@ std::string text_of(const Coverage& coverage) {
   for (std::size_t i = 1; i < kRules; ++i) {
     if (is_wire(i)) continue;
     const Touch& touch = coverage.rules[i];
-    out +=
-        fmt::format("{:<14}{:<8}{:>6}{:>6}{:>12}{:>9}  {:<10}{:>7}\n", kRequirements[i].id,
-                    kRequirements[i].level, touch.positive.size(), touch.negative.size(),
-                    touch.transitions, touch.ignores, touch.explored ? "yes" : "-", touch.mutants);
+    out += fmt::format("{:<14}{:<8}{:>6}{:>6}{:>12}{:>9}  {:<10}{:>7}\n",
+                       reflect::requirements()[i].id, reflect::requirements()[i].level,
+                       touch.positive.size(), touch.negative.size(), touch.transitions,
+                       touch.ignores, touch.explored ? "yes" : "-", touch.mutants);
   }
   const Totals totals = total(coverage);
   out += fmt::format(
@@ -214,8 +208,8 @@ std::string json_of(const Coverage& coverage) {
   for (std::size_t i = 1; i < kRules; ++i) {
     if (is_wire(i)) continue;
     const Touch& touch = coverage.rules[i];
-    rules.push_back(Json::object({{"id", kRequirements[i].id},
-                                  {"level", kRequirements[i].level},
+    rules.push_back(Json::object({{"id", reflect::requirements()[i].id},
+                                  {"level", reflect::requirements()[i].level},
                                   {"positive", touch.positive.size()},
                                   {"negative", touch.negative.size()},
                                   {"transitions", touch.transitions},

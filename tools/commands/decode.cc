@@ -1,5 +1,3 @@
-#include "tools/commands/commands.h"
-
 #include <fmt/format.h>
 
 #include <cstdint>
@@ -7,16 +5,17 @@
 #include <optional>
 #include <string>
 
+#include "codec/lines/capture_file.h"
 #include "codec/reflect/frame.h"
 #include "tools/cli/color.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/input.h"
 #include "tools/cli/output.h"
+#include "tools/commands/commands.h"
 #include "tools/format/csv.h"
 #include "tools/format/filter.h"
 #include "tools/format/jsonl.h"
 #include "tools/format/text.h"
-#include "tools/live/capture_file.h"
 
 namespace rubric::tools {
 namespace {
@@ -168,7 +167,7 @@ class Decode {
   std::uint64_t printed_ = 0;
   std::uint64_t malformed_count_ = 0;
   bool malformed_ = false;
-  std::optional<live::CaptureFile> capture_;
+  std::optional<lines::CaptureFile> capture_;
 };
 
 }  // namespace
@@ -182,11 +181,12 @@ void add_decode(cli::Command& app) {
       .one_of({"text", "jsonl", "csv"})
       .show_default();
   command.add_option("--filter", options->filter,
-                      "Only frames for which this holds: message==updates && src.devid==4");
+                     "Only frames for which this holds: message==updates && src.devid==4");
   command.add_option("--fields", options->fields, "Only these, as in a.b,c");
-  command.add_option("--time", options->time,
-                      "abs (as captured), delta (since the line before), zero (since the first "
-                      "line), none")
+  command
+      .add_option("--time", options->time,
+                  "abs (as captured), delta (since the line before), zero (since the first "
+                  "line), none")
       .one_of({"abs", "delta", "zero", "none"})
       .show_default();
   command.add_option("--count", options->count, "Stop after this many lines")

@@ -1,4 +1,4 @@
-#include "tools/commands/commands.h"
+#include <fmt/format.h>
 
 #include <cstdio>
 #include <memory>
@@ -6,12 +6,11 @@
 #include <string>
 #include <vector>
 
-#include <fmt/format.h>
-
-#include "conformance/suite/cases.h"
-#include "conformance/suite/select.h"
+#include "conformance/test/suite/cases.h"
+#include "conformance/test/suite/select.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/output.h"
+#include "tools/commands/commands.h"
 #include "tools/commands/player.h"
 
 namespace rubric::tools {
@@ -84,7 +83,7 @@ void add_diff(cli::Command& app) {
       app.add_subcommand("diff", "Find the shortest trace on which two implementations differ");
   sub.footer(kDiffFooter);
   sub.add_option("traces", options->traces,
-                  "Golden traces and folders of them; default: those of the kit")
+                 "Golden traces and folders of them; default: those of the kit")
       .type_name("TRACE");
   sub.add_option("--target", options->targets, "An implementation, as in rubric test; twice")
       .required()
@@ -94,14 +93,13 @@ void add_diff(cli::Command& app) {
       .repeatable();
   sub.add_option("--cases", options->selection.globs, "Only cases with such names").repeatable();
   sub.add_option("--requirement", options->selection.requirements,
-                  "Only cases that name this rule, or one of this family").repeatable();
+                 "Only cases that name this rule, or one of this family")
+      .repeatable();
   for (const char* name : {"--target", "--profile", "--cases", "--requirement"}) {
     sub.get_option(name).one_at_a_time();  // One at a time: traces may follow.
   }
   add_player_options(sub, options->shared);
-  sub.callback([options, &sub] {
-    run_player_command(sub, [&] { compare(*options); });
-  });
+  sub.callback([options, &sub] { run_player_command(sub, [&] { compare(*options); }); });
 }
 
 }  // namespace rubric::tools

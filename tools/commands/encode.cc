@@ -1,5 +1,3 @@
-#include "tools/commands/commands.h"
-
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -9,14 +7,15 @@
 #include <system_error>
 
 #include "tools/cli/exit_codes.h"
-#include "tools/record/line_encoder.h"
-#include "tools/record/packet_output.h"
+#include "tools/commands/commands.h"
+#include "tools/encode/line_encoder.h"
+#include "tools/encode/packet_output.h"
 
 namespace rubric::tools {
 namespace {
 
 struct EncodeOptions {
-  record::LineOptions lines;
+  encode::LineOptions lines;
   std::string format = "hex";
   std::string output = "-";
 };
@@ -36,10 +35,10 @@ std::string_view serial_framing(const std::string& format) {
 }
 
 /// Writes all lines. Returns whether all were written.
-bool write_all(const EncodeOptions& options, record::LineEncoder& encoder, record::PacketOutput& output,
-               bool& any) {
+bool write_all(const EncodeOptions& options, encode::LineEncoder& encoder,
+               encode::PacketOutput& output, bool& any) {
   std::string last_place;
-  const auto put = [&](record::EncodedLines& lines, const record::OwnedPacket& packet,
+  const auto put = [&](encode::EncodedLines& lines, const encode::OwnedPacket& packet,
                        const std::string& place) {
     const std::string refused = output.write(packet.view(), packet.interface_name);
     if (!refused.empty()) lines.complain(place, refused);
@@ -49,7 +48,7 @@ bool write_all(const EncodeOptions& options, record::LineEncoder& encoder, recor
     last_place = place;
     return output.open();
   };
-  record::EncodedLines lines(options.lines, encoder, put);
+  encode::EncodedLines lines(options.lines, encoder, put);
   const bool good = lines.all();
   any = lines.any();
   return good;
@@ -58,9 +57,9 @@ bool write_all(const EncodeOptions& options, record::LineEncoder& encoder, recor
 int run_encode(const EncodeOptions& options) {
   const reflect::Protocol& protocol = cli::chosen_protocol(options.lines.input);
   const reflect::Type* message = cli::chosen_message(options.lines.input, protocol);
-  record::LineEncoder encoder(options.lines, protocol, message, serial_framing(options.format));
+  encode::LineEncoder encoder(options.lines, protocol, message, serial_framing(options.format));
   try {
-    record::PacketOutput output(options.format, options.output);
+    encode::PacketOutput output(options.format, options.output);
     bool any = false;
     const bool good = write_all(options, encoder, output, any);
     // A mistyped name must not cost the file that would have been replaced.
@@ -75,7 +74,7 @@ int run_encode(const EncodeOptions& options) {
 }
 
 void check_target(const EncodeOptions& options) {
-  if (record::overwrites(options.output, options.lines.input.files)) {
+  if (encode::overwrites(options.output, options.lines.input.files)) {
     throw cli::UsageError("--output", "'" + options.output + "' is also the input");
   }
 }
@@ -87,16 +86,16 @@ void add_encode(cli::Command& app) {
   cli::Command& sub = app.add_subcommand(
       "encode", "Frames from the JSON lines of 'rubric decode', or from fields alone");
   sub.footer(kEncodeFooter);
-  record::add_line_options(sub, options->lines);
-  record::add_carrier_option(sub, options->lines);
+  encode::add_line_options(sub, options->lines);
+  encode::add_carrier_option(sub, options->lines);
   sub.add_option("--format", options->format, "What to write: hex, hdlc, sf, pcap, pcapng")
-      .one_of(record::container_names())
+      .one_of(encode::container_names())
       .show_default();
   sub.add_option("-o,--output", options->output, "Where to; - is stdout")
       .check(cli::given)
       .show_default();
   sub.callback([options] {
-    record::check_line_options(options->lines);
+    encode::check_line_options(options->lines);
     check_target(*options);
     const int code = run_encode(*options);
     if (code != cli::kExitClean) cli::exit_with(code);

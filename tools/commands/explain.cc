@@ -1,5 +1,3 @@
-#include "tools/commands/commands.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -16,10 +14,11 @@
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/input.h"
 #include "tools/cli/output.h"
-#include "tools/layout/explain_frame.h"
-#include "tools/layout/explain_rule.h"
-#include "tools/layout/explain_type.h"
-#include "tools/layout/frame_guess.h"
+#include "tools/commands/commands.h"
+#include "tools/explain/explain_frame.h"
+#include "tools/explain/explain_rule.h"
+#include "tools/explain/explain_type.h"
+#include "tools/explain/frame_guess.h"
 
 namespace rubric::tools {
 namespace {
@@ -50,17 +49,17 @@ std::string explain_name(const Protocol& protocol, const std::string& name, bool
   const auto add = [&](std::string text) { out += (out.empty() ? "" : "\n") + std::move(text); };
   std::vector<const Protocol*> all = reflect::protocols();
   all.push_back(&tinyos::tables::kProtocol);
-  const auto list = all_cases ? layout::CaseList::kWhole : layout::CaseList::kShort;
-  for (const ReqId rule : layout::rules_named(name)) add(layout::explain_rule(all, rule, list));
+  const auto list = all_cases ? explain::CaseList::kWhole : explain::CaseList::kShort;
+  for (const ReqId rule : explain::rules_named(name)) add(explain::explain_rule(all, rule, list));
   for (const Protocol* layer : layers(protocol)) {
     if (const reflect::Type* type = reflect::find_type(*layer, name)) {
-      add(layout::explain_type(*layer, *type));
+      add(explain::explain_type(*layer, *type));
     }
     for (int i = 0; i < layer->enum_count; ++i) {
-      if (name == layer->enums[i]->name) add(layout::explain_enum(*layer, *layer->enums[i]));
+      if (name == layer->enums[i]->name) add(explain::explain_enum(*layer, *layer->enums[i]));
     }
     for (int i = 0; i < layer->mask_count; ++i) {
-      if (name == layer->masks[i]->name) add(layout::explain_mask(*layer, *layer->masks[i]));
+      if (name == layer->masks[i]->name) add(explain::explain_mask(*layer, *layer->masks[i]));
     }
     if (!out.empty()) break;
   }
@@ -74,9 +73,9 @@ std::vector<std::string> all_names(const Protocol& protocol) {
     for (int i = 0; i < layer->enum_count; ++i) names.emplace_back(layer->enums[i]->name);
     for (int i = 0; i < layer->mask_count; ++i) names.emplace_back(layer->masks[i]->name);
   }
-  for (const std::string& group : layout::rule_groups()) {
+  for (const std::string& group : explain::rule_groups()) {
     names.push_back(group);
-    for (const ReqId rule : layout::rules_named(group)) {
+    for (const ReqId rule : explain::rules_named(group)) {
       names.emplace_back(reflect::requirement(rule).id);
     }
   }
@@ -84,9 +83,8 @@ std::vector<std::string> all_names(const Protocol& protocol) {
 }
 
 std::string in_case(std::string text, int (*to_case)(int)) {
-  std::transform(text.begin(), text.end(), text.begin(), [to_case](unsigned char c) {
-    return static_cast<char>(to_case(c));
-  });
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [to_case](unsigned char c) { return static_cast<char>(to_case(c)); });
   return text;
 }
 
@@ -94,12 +92,11 @@ std::string in_case(std::string text, int (*to_case)(int)) {
 std::string rules_like(const std::string& name) {
   const std::string group = in_case(name.substr(0, name.find('-')), std::toupper);
   const bool letter_and_number = group.size() > 1 && std::isalpha(group[0]) != 0 &&
-                                 std::all_of(group.begin() + 1, group.end(), [](unsigned char c) {
-                                   return std::isdigit(c) != 0;
-                                 });
-  const std::vector<std::string> groups = layout::rule_groups();
+                                 std::all_of(group.begin() + 1, group.end(),
+                                             [](unsigned char c) { return std::isdigit(c) != 0; });
+  const std::vector<std::string> groups = explain::rule_groups();
   std::vector<std::string> rules;
-  for (const ReqId rule : layout::rules_named(group)) {
+  for (const ReqId rule : explain::rules_named(group)) {
     rules.emplace_back(reflect::requirement(rule).id);
   }
   if (group != "WIRE" && !rules.empty()) {
@@ -130,17 +127,17 @@ bool parse_frame(const std::vector<std::string>& words, std::vector<std::uint8_t
 int explain_bytes(const ExplainOptions& options, const Protocol& protocol,
                   const std::vector<std::uint8_t>& bytes, std::string& out) {
   const reflect::Type* message = cli::chosen_message(options.input, protocol);
-  auto given = layout::take_frame(bytes, message ? "bare" : options.framing);
+  auto given = explain::take_frame(bytes, message ? "bare" : options.framing);
   if (!given) {
-    throw cli::UsageError(
-        "X", "these bytes begin like no frame; --framing or --as says what they are");
+    throw cli::UsageError("X",
+                          "these bytes begin like no frame; --framing or --as says what they are");
   }
   if (message) given->what = fmt::format("the message {} alone", message->id);
   // Moving the bytes left them in their place, so the packet still points at them.
   reflect::Frame frame;
   reflect::FrameDecoder(protocol, message).decode(given->packet, frame);
   out = fmt::format("Taken as {}, {} bytes.\n\n", given->what, given->bytes.size());
-  out += layout::explain_frame(frame);
+  out += explain::explain_frame(frame);
   return frame.malformed() ? cli::kExitMalformed : cli::kExitClean;
 }
 
@@ -174,16 +171,16 @@ int run_explain(const ExplainOptions& options) {
 
 void add_explain(cli::Command& app) {
   auto options = std::make_shared<ExplainOptions>();
-  cli::Command& sub = app.add_subcommand("explain", "What a message, a rule, a name or a frame means");
+  cli::Command& sub =
+      app.add_subcommand("explain", "What a message, a rule, a name or a frame means");
   sub.footer(kExplainFooter);
   sub.add_option("X", options->words, "A name, or hex bytes in one word or several").required();
-  sub.add_option("--spec", options->input.spec, "Protocol above the AM layer")
-      .show_default();
+  sub.add_option("--spec", options->input.spec, "Protocol above the AM layer").show_default();
   sub.add_option("--as", options->input.as_message, "The bytes are this message alone")
       .check(cli::given);
   sub.add_option("--framing", options->framing,
-                  "What the bytes are: auto, sf (from the dispatch byte), hdlc (from the kind "
-                  "byte), radio (802.15.4)")
+                 "What the bytes are: auto, sf (from the dispatch byte), hdlc (from the kind "
+                 "byte), radio (802.15.4)")
       .one_of({"auto", "sf", "hdlc", "radio"})
       .show_default();
   sub.add_flag("--cases", options->all_cases, "All golden traces that name a rule, however many");

@@ -1,5 +1,3 @@
-#include "tools/commands/commands.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <unistd.h>
@@ -13,29 +11,30 @@
 #include <vector>
 
 #include "codec/reflect/suggest.h"
-#include "conformance/explorer/counterexample.h"
-#include "conformance/explorer/search.h"
-#include "conformance/flaws/flaws.h"
+#include "codec/text/json.h"
+#include "conformance/explore/counterexample.h"
+#include "conformance/explore/search.h"
 #include "conformance/generated/profiles.h"
-#include "conformance/report/json.h"
+#include "conformance/machine/flaws/flaws.h"
 #include "conformance/trace/print.h"
+#include "tools/cli/command.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/input.h"
 #include "tools/cli/output.h"
-#include "tools/cli/command.h"
+#include "tools/commands/commands.h"
 #include "tools/commands/explore_transitions.h"
 
 namespace rubric::tools {
 namespace {
 
-using explorer::Mask;
-using explorer::Progress;
-using explorer::Result;
-using explorer::Scope;
+using explore::Mask;
+using explore::Progress;
+using explore::Result;
+using explore::Scope;
 using report::Json;
 
 struct ExploreOptions {
-  explorer::Options network;
+  explore::Options network;
   std::string profile = "paper";
   std::string flaw;
   std::string scope = "join";
@@ -51,7 +50,7 @@ struct ExploreOptions {
 
 std::string explore_footer() {
   std::string text = "Properties:\n";
-  for (const auto& p : explorer::properties()) {
+  for (const auto& p : explore::properties()) {
     text += fmt::format("  {:<19} {}\n", p.name, p.sentence);
   }
   text += "Flaws of release 1.0:\n";
@@ -93,16 +92,16 @@ const flaws::Flaw* chosen_flaw(const ExploreOptions& options) {
 }
 
 // Returns the meaning of the options' words.
-explorer::Options resolve(const ExploreOptions& options) {
-  explorer::Options network = options.network;
+explore::Options resolve(const ExploreOptions& options) {
+  explore::Options network = options.network;
   network.profile = chosen_profile(options);
   if (options.requests != 0) {
     network.profile.join_requests_max = static_cast<std::uint8_t>(options.requests);
   }
   if (options.acks != 0) network.profile.ack_join_max = static_cast<std::uint8_t>(options.acks);
   network.scope = options.scope == "full" ? Scope::kFull : Scope::kJoin;
-  if (network.motes + network.sinks > static_cast<int>(explorer::kNodesMax)) {
-    usage(fmt::format("at most {} motes and sinks together", explorer::kNodesMax));
+  if (network.motes + network.sinks > static_cast<int>(explore::kNodesMax)) {
+    usage(fmt::format("at most {} motes and sinks together", explore::kNodesMax));
   }
   if (options.reboot) network.reboots = std::max<std::uint8_t>(network.reboots, 1);
   // Messages that are heard again are answered with new numbers: without a limit there is no end.
@@ -119,9 +118,9 @@ explorer::Options resolve(const ExploreOptions& options) {
   }
   if (!options.properties.empty()) network.properties = 0;
   for (const std::string& name : options.properties) {
-    const auto property = explorer::property_named(name);
-    if (!property) unknown("property", name, explorer::properties());
-    network.properties |= explorer::bit(*property);
+    const auto property = explore::property_named(name);
+    if (!property) unknown("property", name, explore::properties());
+    network.properties |= explore::bit(*property);
   }
   return network;
 }
@@ -131,15 +130,15 @@ template <class Table, class Key>
 std::vector<std::string> names_in(Mask mask, const Table& table, Key key) {
   std::vector<std::string> names;
   for (const auto& entry : table) {
-    if ((mask & explorer::bit(key(entry))) != 0) names.emplace_back(entry.name);
+    if ((mask & explore::bit(key(entry))) != 0) names.emplace_back(entry.name);
   }
   return names;
 }
 std::vector<std::string> property_names(Mask mask) {
-  return names_in(mask, explorer::properties(), [](const auto& p) { return p.property; });
+  return names_in(mask, explore::properties(), [](const auto& p) { return p.property; });
 }
 std::vector<std::string> goal_names(Mask mask) {
-  return names_in(mask, explorer::goals(), [](const auto& g) { return g.goal; });
+  return names_in(mask, explore::goals(), [](const auto& g) { return g.goal; });
 }
 
 struct Verdict {
@@ -150,7 +149,7 @@ struct Verdict {
 };
 
 // Returns options that would make more happen in the network.
-std::string ways_to_widen(const explorer::Options& network) {
+std::string ways_to_widen(const explore::Options& network) {
   std::vector<std::string> ways;
   const auto way = [&](bool open, const char* words) {
     if (open) ways.emplace_back(words);
@@ -166,7 +165,8 @@ std::string ways_to_widen(const explorer::Options& network) {
   return fmt::format("{}", fmt::join(ways, ", "));
 }
 
-Verdict judge(const ExploreOptions& options, const explorer::Options& network, const Result& result) {
+Verdict judge(const ExploreOptions& options, const explore::Options& network,
+              const Result& result) {
   if (result.violation) return {"broken", cli::kVerdictFailed, 0, {}};
   if (!result.complete) return {"inconclusive", cli::kVerdictInconclusive, 0, result.limit};
   if (!options.flaw.empty() && !result.step_acted) {
@@ -174,7 +174,7 @@ Verdict judge(const ExploreOptions& options, const explorer::Options& network, c
             fmt::format("flaw {} never acted in this network; widen it by some of: {}",
                         options.flaw, ways_to_widen(network))};
   }
-  const Mask never = explorer::expected_goals(network) & ~result.goals;
+  const Mask never = explore::expected_goals(network) & ~result.goals;
   if (never != 0) return {"vacuous", cli::kVerdictFailed, never, {}};
   return {"holds", cli::kVerdictExpected, 0, {}};
 }
@@ -213,13 +213,13 @@ std::string text_of(const Result& result, const Verdict& verdict) {
                    "             still lists it (spec/membership.md)\n",
                    result.known_weak_states);
   }
-  for (const auto& goal : explorer::goals()) {
-    if ((verdict.never & explorer::bit(goal.goal)) == 0) continue;
+  for (const auto& goal : explore::goals()) {
+    if ((verdict.never & explore::bit(goal.goal)) == 0) continue;
     fmt::format_to(to, "never        {}: {}\n", goal.name, goal.sentence);
   }
-  for (const auto& property : explorer::properties()) {
+  for (const auto& property : explore::properties()) {
     const Mask broken = result.violation ? result.violation->violated : 0;
-    if ((broken & explorer::bit(property.property)) == 0) continue;
+    if ((broken & explore::bit(property.property)) == 0) continue;
     fmt::format_to(to, "broken       {}: {}\n", property.name, property.sentence);
   }
   fmt::format_to(to, "verdict      {}{}{}\n", verdict.text, verdict.limit.empty() ? "" : ": ",
@@ -276,12 +276,12 @@ class ProgressLine {
   double next_ = 1;
 };
 
-std::string trace_text(explorer::Nodes& nodes, const ExploreOptions& options, const explorer::Path& path,
-                       const std::string& name) {
+std::string trace_text(explore::Nodes& nodes, const ExploreOptions& options,
+                       const explore::Path& path, const std::string& name) {
   std::string note = fmt::format("Found by rubric explore: {} motes, {} sinks, profile {}",
                                  nodes.options().motes, nodes.options().sinks, options.profile);
   if (!options.flaw.empty()) note += ", flaw " + options.flaw;
-  return trace::print(explorer::counterexample(nodes, path, {options.profile, name, note}));
+  return trace::print(explore::counterexample(nodes, path, {options.profile, name, note}));
 }
 
 void run_explore(const ExploreOptions& options) {
@@ -293,10 +293,10 @@ void run_explore(const ExploreOptions& options) {
                              options.format, options.out);
   }
   if (options.format == "dot") usage("--format dot draws --transitions");
-  const auto nodes = std::make_unique<explorer::Nodes>(resolve(options));
+  const auto nodes = std::make_unique<explore::Nodes>(resolve(options));
   ProgressLine line(options.format == "text");
   const Result result =
-      explorer::explore(*nodes, [&](const Progress& progress) { line.show(progress); });
+      explore::explore(*nodes, [&](const Progress& progress) { line.show(progress); });
   line.clear();
   const Verdict verdict = judge(options, nodes->options(), result);
   std::string text;
@@ -326,7 +326,7 @@ void run_explore(const ExploreOptions& options) {
 }
 
 void add_faults(cli::Command& sub, ExploreOptions& options) {
-  explorer::Options& n = options.network;
+  explore::Options& n = options.network;
   sub.add_flag("--loss", n.loss, "Frames and link acks may be lost");
   sub.add_flag("--dup", n.dup, "Frames may be heard again");
   sub.add_flag("--reorder", n.reorder, "Frames of one sender may overtake each other");
@@ -342,10 +342,8 @@ void add_faults(cli::Command& sub, ExploreOptions& options) {
 }
 
 void add_bounds(cli::Command& sub, ExploreOptions& options) {
-  explorer::Options& n = options.network;
-  sub.add_option("--calls", n.calls, "Calls of joinIsland, each mote")
-      .between(1, 8)
-      .show_default();
+  explore::Options& n = options.network;
+  sub.add_option("--calls", n.calls, "Calls of joinIsland, each mote").between(1, 8).show_default();
   sub.add_option("--sends", n.sends, "Messages of each node, in full scope")
       .between(0, 4)
       .show_default();
@@ -358,9 +356,7 @@ void add_bounds(cli::Command& sub, ExploreOptions& options) {
       .show_default();
   sub.add_flag("--exact", n.exact, "Keep apart states that differ in nothing that matters");
   n.threads = std::max(1U, std::thread::hardware_concurrency());
-  sub.add_option("--threads", n.threads, "How many")
-      .between(1, 64)
-      .show_default();
+  sub.add_option("--threads", n.threads, "How many").between(1, 64).show_default();
 }
 
 }  // namespace
@@ -372,10 +368,10 @@ void add_explore(cli::Command& app) {
   sub.footer(explore_footer());
   sub.set_usage_exit_code(cli::kVerdictUsage);
   sub.add_option("--motes", options->network.motes, "How many")
-      .between(1, int{explorer::kMotesMax})
+      .between(1, int{explore::kMotesMax})
       .show_default();
   sub.add_option("--sinks", options->network.sinks, "How many, all in range of all motes")
-      .between(1, int{explorer::kSinksMax})
+      .between(1, int{explore::kSinksMax})
       .show_default();
   add_faults(sub, *options);
   sub.add_option("--scope", options->scope, "join: joins alone; full: and messages of members")
@@ -383,8 +379,8 @@ void add_explore(cli::Command& app) {
       .show_default();
   sub.add_option("--property", options->properties, "Only these; default: all");
   sub.add_option("--flaw", options->flaw,
-                  "Put this flaw of release 1.0 around the machine; what needs an old reply shows "
-                  "with --calls 2, what needs messages with --scope full");
+                 "Put this flaw of release 1.0 around the machine; what needs an old reply shows "
+                 "with --calls 2, what needs messages with --scope full");
   sub.add_option("--profile", options->profile, "paper or deployed").show_default();
   add_bounds(sub, *options);
   sub.add_option("--format", options->format, "text or json; transitions also as dot (Graphviz)")
@@ -393,7 +389,7 @@ void add_explore(cli::Command& app) {
   sub.add_option("--out", options->out, "File for the shortest trace; default stdout");
   add_transition_options(sub, options->transitions);
   sub.add_option("--out-known", options->weakness_out,
-                  "File for the shortest way to a known weakness");
+                 "File for the shortest way to a known weakness");
   sub.callback([options] { run_explore(*options); });
 }
 

@@ -24,25 +24,25 @@ void add_transition_options(cli::Command& sub, TransitionOptions& options) {
 void print_transitions(const TransitionOptions& options, const ExploredMachine& machine,
                        const std::string& format, const std::string& out) {
   std::vector<std::string> names;
-  for (const explorer::PartName& part : explorer::part_names()) names.emplace_back(part.name);
+  for (const explore::PartName& part : explore::part_names()) names.emplace_back(part.name);
   for (const std::string& part : options.parts) {
     if (std::find(names.begin(), names.end(), part) != names.end()) continue;
     throw cli::UsageError(
         fmt::format("unknown part '{}'{}", part, reflect::did_you_mean(part, names)));
   }
-  std::vector<explorer::Diagram> diagrams;
+  std::vector<explore::Diagram> diagrams;
   for (const std::string& name : names) {
-    const bool wanted = options.parts.empty() ||
-                        std::find(options.parts.begin(), options.parts.end(), name) !=
-                            options.parts.end();
-    if (wanted) diagrams.push_back(explorer::transitions_of(name, machine.values, machine.step));
+    const bool wanted =
+        options.parts.empty() ||
+        std::find(options.parts.begin(), options.parts.end(), name) != options.parts.end();
+    if (wanted) diagrams.push_back(explore::transitions_of(name, machine.values, machine.step));
   }
   const std::string text = format == "json"
                                ? transitions_json(diagrams, machine.profile, machine.flaw)
                            : format == "dot" ? transitions_dot(diagrams)
                                              : transitions_text(diagrams);
   if (!cli::write_file(out.empty() ? "-" : out, text)) cli::exit_with(cli::kVerdictBroken);
-  for (const explorer::Diagram& diagram : diagrams) {
+  for (const explore::Diagram& diagram : diagrams) {
     if (!diagram.complete) cli::exit_with(cli::kVerdictInconclusive);
   }
 }

@@ -2,11 +2,11 @@
 // steps.
 #pragma once
 
-#include "tools/cli/command.h"
 #include <string>
 #include <vector>
 
-#include "conformance/explorer/transitions.h"
+#include "conformance/explore/transitions.h"
+#include "tools/cli/command.h"
 
 namespace rubric::tools {
 
@@ -24,7 +24,7 @@ struct ExploredMachine {
   std::string profile;
   machine::Profile values;
   std::string flaw;  ///< Empty: none.
-  explorer::StepFunction step = machine::step;
+  explore::StepFunction step = machine::step;
 };
 
 /// Prints the diagrams and ends the subcommand if that or the search failed.

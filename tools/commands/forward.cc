@@ -1,5 +1,3 @@
-#include "tools/commands/commands.h"
-
 #include <fmt/format.h>
 
 #include <cstdint>
@@ -9,11 +7,12 @@
 #include <string>
 #include <system_error>
 
-#include "conformance/runner/target.h"
+#include "codec/lines/forward/server.h"
+#include "codec/lines/line.h"
+#include "conformance/test/runner/target.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/input.h"
-#include "tools/live/forward/server.h"
-#include "tools/live/line.h"
+#include "tools/commands/commands.h"
 
 namespace rubric::tools {
 namespace {
@@ -27,12 +26,12 @@ struct ForwardOptions {
   forward::Options server;
 };
 
-live::Address source_of(const std::string& given) {
+lines::Address source_of(const std::string& given) {
   std::string name = given;
-  if (name.empty() && std::getenv("MOTECOM") != nullptr) name = live::default_address();
+  if (name.empty() && std::getenv("MOTECOM") != nullptr) name = lines::default_address();
   if (name.empty()) throw cli::UsageError("SOURCE (or $MOTECOM) is required");
   try {
-    return live::required_address(name);
+    return lines::required_address(name);
   } catch (const std::invalid_argument& error) {
     throw cli::UsageError("SOURCE", error.what());
   }
@@ -61,7 +60,7 @@ void print_summary(const std::string& source, const forward::Counts& counts) {
 int run_forward(ForwardOptions& options) {
   options.server.source.address = source_of(options.source);
   check_capture(options.server.write);
-  options.server.source.link.ack_wait = attach::Milliseconds(options.ack_wait_ms);
+  options.server.source.link.ack_wait = lines::Milliseconds(options.ack_wait_ms);
   options.server.source.link.tries = 1 + options.retries;
   options.server.backlog_bytes = options.buffer_kib * 1024;
   options.server.limits.patience = std::chrono::seconds(options.patience_s);
@@ -82,12 +81,14 @@ void add_client_options(cli::Command& command, ForwardOptions& options) {
   command.add_option("--clients", options.server.clients_max, "So many at once, others are refused")
       .between(1, 10'000)
       .show_default();
-  command.add_option("--buffer", options.buffer_kib,
-                     "KiB that a client may be behind; then it is cut off")
+  command
+      .add_option("--buffer", options.buffer_kib,
+                  "KiB that a client may be behind; then it is cut off")
       .between(64, 1 << 20)
       .show_default();
-  command.add_option("--patience", options.patience_s,
-                     "Seconds that a client may take for its handshake, and to end a packet")
+  command
+      .add_option("--patience", options.patience_s,
+                  "Seconds that a client may take for its handshake, and to end a packet")
       .between(1, 86'400)
       .show_default();
 }
@@ -97,8 +98,9 @@ void add_source_options(cli::Command& command, ForwardOptions& options) {
                    "Open a source that is gone again, when it is back; clients stay");
   command.add_flag("--listen-only", options.server.source.link.listen_only,
                    "Write nothing to a serial line; packets of clients are dropped");
-  command.add_option("--timeout", options.ack_wait_ms,
-                     "Serial lines: ms until a packet that is not confirmed is sent again")
+  command
+      .add_option("--timeout", options.ack_wait_ms,
+                  "Serial lines: ms until a packet that is not confirmed is sent again")
       .between(1, 3'600'000)
       .show_default();
   command.add_option("--retries", options.retries, "Serial lines: how often it is sent again")
@@ -113,19 +115,21 @@ void add_forward(cli::Command& app) {
       "forward", "Serve a mote's serial line to many clients, as TinyOS's Serial Forwarder does");
   auto options = std::make_shared<ForwardOptions>();
   command.add_option("SOURCE", options->source,
-                      "serial@DEVICE:BAUD (or a platform, as serial@/dev/ttyUSB0:telosb), "
-                      "network@HOST:PORT or sf@HOST:PORT; without it, $MOTECOM");
+                     "serial@DEVICE:BAUD (or a platform, as serial@/dev/ttyUSB0:telosb), "
+                     "network@HOST:PORT or sf@HOST:PORT; without it, $MOTECOM");
   command.add_option("--port", options->server.port, "Where clients connect; 0: a free port")
       .between(0, 65'535)
       .show_default();
-  command.add_option("--bind", options->server.bind,
-                      "The address to listen at; 0.0.0.0 or :: lets other hosts in")
+  command
+      .add_option("--bind", options->server.bind,
+                  "The address to listen at; 0.0.0.0 or :: lets other hosts in")
       .check(cli::given)
       .show_default();
   add_client_options(command, *options);
   add_source_options(command, *options);
-  command.add_option("--write", options->server.write,
-                      "Keep what goes by, both ways, in this pcapng file; no pipe")
+  command
+      .add_option("--write", options->server.write,
+                  "Keep what goes by, both ways, in this pcapng file; no pipe")
       .check(cli::given);
   command.add_flag("--verbose", options->server.verbose, "Say which clients come and leave");
   command.footer(

@@ -50,7 +50,8 @@ struct GenerateOptions {
 
 constexpr const char* kGenerateFooter =
     "Each message in turn comes up, on each way that leads to it. The expectation of a frame\n"
-    "(schema rubric.generate/1, see tools/generate_format.md) says which fault of which rule\n"
+    "(schema rubric.generate/1, see tools/commands/generate_format.md) says which fault of which "
+    "rule\n"
     "stands where, by construction: no decoder is asked. jsonl carries it in line, with the frame\n"
     "in hex; pcapng also has it as the packets' comment. hdlc, sf and hex hold no radio frames.\n"
     "The same options give the same bytes. Examples:\n"
@@ -185,7 +186,7 @@ class Run {
     for (const std::string& wanted : options_.messages) {
       if (std::find(names.begin(), names.end(), wanted) != names.end()) continue;
       throw cli::UsageError("--message", fmt::format("no frame leads to '{}'{}", wanted,
-                                                          reflect::did_you_mean(wanted, names)));
+                                                     reflect::did_you_mean(wanted, names)));
     }
     std::vector<std::string> left_out;
     std::erase_if(messages_, [&](const Message& message) {

@@ -5,7 +5,7 @@
 #include <iterator>
 
 #include "codec/reflect/fault_text.h"
-#include "conformance/report/json.h"
+#include "codec/text/json.h"
 #include "tools/format/put.h"
 #include "tools/format/record.h"
 

@@ -1,4 +1,4 @@
-// Prints the expectations of rubric generate; tools/generate_format.md describes them.
+// Prints the expectations of rubric generate; tools/commands/generate_format.md describes them.
 #pragma once
 
 #include <cstdint>

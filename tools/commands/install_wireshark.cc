@@ -1,5 +1,3 @@
-#include "tools/commands/commands.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,6 +11,7 @@
 #include "tools/cli/input.h"
 #include "tools/cli/output.h"
 #include "tools/cli/text_file.h"
+#include "tools/commands/commands.h"
 #include "tools/wireshark/folders.h"
 
 namespace rubric::tools {
@@ -94,8 +93,10 @@ void expect_other(const fs::path& program, const fs::path& place) {
 class Place {
  public:
   Place(fs::path folder, const char* name, const InstallWiresharkOptions& options)
-      : folder_(std::move(folder)), path_(folder_ / name),
-        beside_(folder_ / fmt::format(".{}.new", name)), options_(options) {
+      : folder_(std::move(folder)),
+        path_(folder_ / name),
+        beside_(folder_ / fmt::format(".{}.new", name)),
+        options_(options) {
     if (is_there(path_) && !options.force && !is_ours(path_)) {
       refuse(path_, "this is not ours; --force replaces or removes it");
     }
@@ -180,25 +181,27 @@ void install(const InstallWiresharkOptions& options) {
     return extcap.remove();
   }
   if (!fs::exists(program)) {
-    refuse(program, "there is no such file: it belongs beside rubric, as 'cmake --install', the "
-                    "Debian package and the build folder have it");
+    refuse(program,
+           "there is no such file: it belongs beside rubric, as 'cmake --install', the "
+           "Debian package and the build folder have it");
   }
   dissector.write(wireshark::dissector());
   extcap.link(program);
   if (options.dry_run) return;
-  fmt::print("Wireshark shows it, when it is started anew, as 'RUBICON mote or sink'. Or:\n"
-             "  tshark -i rubric -o extcap.rubric.source:serial@/dev/ttyUSB0:telosb\n");
+  fmt::print(
+      "Wireshark shows it, when it is started anew, as 'RUBICON mote or sink'. Or:\n"
+      "  tshark -i rubric -o extcap.rubric.source:serial@/dev/ttyUSB0:telosb\n");
 }
 
 }  // namespace
 
 void add_install_wireshark(cli::Command& app) {
   auto options = std::make_shared<InstallWiresharkOptions>();
-  cli::Command& sub = app.add_subcommand("install-wireshark",
-                                     "Teach Wireshark to dissect and to capture frames");
+  cli::Command& sub =
+      app.add_subcommand("install-wireshark", "Teach Wireshark to dissect and to capture frames");
   sub.footer(kInstallWiresharkFooter);
   sub.add_option("--dir", options->folder,
-                  "Into plugins and extcap of this folder, not the personal ones")
+                 "Into plugins and extcap of this folder, not the personal ones")
       .check(cli::given);
   sub.add_flag("--dry-run", options->dry_run, "Only say what would be done");
   sub.add_flag("--remove", options->remove, "Take both away again");

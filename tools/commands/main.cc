@@ -15,8 +15,8 @@ constexpr const char* kFooter =
 int main(int argc, char** argv) {
   // A closed pipe shows as a failed write, which ends the output quietly.
   std::signal(SIGPIPE, SIG_IGN);
-  rubric::cli::Command program{"rubric",
-                               "Codec and conformance test kit for the RUBICON Communication Layer."};
+  rubric::cli::Command program{
+      "rubric", "Codec and conformance test kit for the RUBICON Communication Layer."};
   program.version(RUBRIC_VERSION);
   program.footer(kFooter);
   rubric::tools::add_decode(program);

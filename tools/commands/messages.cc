@@ -1,23 +1,22 @@
-#include "tools/commands/commands.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <memory>
 
-#include "conformance/report/json.h"
+#include "codec/text/json.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/input.h"
 #include "tools/cli/output.h"
-#include "tools/layout/reach.h"
-#include "tools/layout/table.h"
-#include "tools/layout/type_text.h"
+#include "tools/commands/commands.h"
+#include "tools/explain/reach.h"
+#include "tools/explain/table.h"
+#include "tools/explain/type_text.h"
 
 namespace rubric::tools {
 namespace {
 
-using layout::Reach;
+using explain::Reach;
 using reflect::Protocol;
 using reflect::Type;
 using report::Json;
@@ -52,23 +51,23 @@ std::string places(const std::vector<Reach>& reaches) {
 }
 
 std::string am_text(const Type& type, const std::vector<Reach>& reaches) {
-  std::vector<std::int64_t> numbers = layout::am_types(reaches);
+  std::vector<std::int64_t> numbers = explain::am_types(reaches);
   if (numbers.empty() && type.am_type >= 0) numbers.push_back(type.am_type);
   return fmt::format("{}", fmt::join(numbers, ", "));
 }
 
 std::string text(const Protocol& protocol) {
-  layout::Table table({"AM", "message", "bytes", "in", "what"});
+  explain::Table table({"AM", "message", "bytes", "in", "what"});
   table.align_right(0);
   table.align_right(2);
   for (int i = 0; i < protocol.type_count; ++i) {
     const Type& type = *protocol.types[i];
-    if (layout::is_carrier(protocol, type)) continue;
-    const std::vector<Reach> reaches = layout::reaches(protocol, type);
-    table.add({am_text(type, reaches), type.id, layout::size_text(type), places(reaches),
-               layout::first_sentence(type.doc)});
+    if (explain::is_carrier(protocol, type)) continue;
+    const std::vector<Reach> reaches = explain::reaches(protocol, type);
+    table.add({am_text(type, reaches), type.id, explain::size_text(type), places(reaches),
+               explain::first_sentence(type.doc)});
   }
-  return table.text_within(layout::kColumns) + kMessagesFooter;
+  return table.text_within(explain::kColumns) + kMessagesFooter;
 }
 
 Json json(const Reach& reach) {
@@ -84,11 +83,11 @@ Json json(const Reach& reach) {
 }
 
 Json json(const Protocol& protocol, const Type& type) {
-  const std::vector<Reach> reaches = layout::reaches(protocol, type);
+  const std::vector<Reach> reaches = explain::reaches(protocol, type);
   return Json::object(
       {{"id", type.id},
        {"name", type.name},
-       {"am_types", Json::array(layout::am_types(reaches))},
+       {"am_types", Json::array(explain::am_types(reaches))},
        {"min_size", type.min_size},
        {"max_size", type.max_size == UINT32_MAX ? Json::raw("") : Json(type.max_size)},
        {"reached", Json::array(reaches, [](const Reach& reach) { return json(reach); })},
@@ -100,7 +99,7 @@ std::string json(const Protocol& protocol) {
   std::vector<Json> messages;
   for (int i = 0; i < protocol.type_count; ++i) {
     const Type& type = *protocol.types[i];
-    if (!layout::is_carrier(protocol, type)) messages.push_back(json(protocol, type));
+    if (!explain::is_carrier(protocol, type)) messages.push_back(json(protocol, type));
   }
   const Json out = Json::object({{"schema", "rubric.messages/1"},
                                  {"spec", protocol.id},
@@ -114,8 +113,7 @@ std::string json(const Protocol& protocol) {
 void add_messages(cli::Command& app) {
   auto options = std::make_shared<MessagesOptions>();
   cli::Command& sub = app.add_subcommand("messages", "The messages of a protocol");
-  sub.add_option("--spec", options->input.spec, "Protocol above the AM layer")
-      .show_default();
+  sub.add_option("--spec", options->input.spec, "Protocol above the AM layer").show_default();
   sub.add_option("--format", options->format, "text or json")
       .one_of({"text", "json"})
       .show_default();

@@ -79,8 +79,8 @@ void write_skeleton(const NewAdapterOptions& options) {
 
 void add_new_adapter(cli::Command& app) {
   auto options = std::make_shared<NewAdapterOptions>();
-  cli::Command& sub = app.add_subcommand("new-adapter",
-                                     "Write an adapter to fill with an implementation");
+  cli::Command& sub =
+      app.add_subcommand("new-adapter", "Write an adapter to fill with an implementation");
   sub.footer(kNewAdapterFooter);
   sub.add_option("LANGUAGE", options->language, "python, cpp or java")
       .required()

@@ -1,20 +1,20 @@
 #include "tools/commands/player.h"
 
+#include <fmt/format.h>
+
 #include <chrono>
 #include <cstdio>
 #include <stdexcept>
 #include <utility>
 
-#include <fmt/format.h>
-
-#include "conformance/attach/groups.h"
-#include "conformance/suite/canary.h"
-#include "conformance/suite/run.h"
+#include "conformance/test/suite/canary.h"
+#include "conformance/test/suite/run.h"
+#include "conformance/test/targets/groups.h"
 #include "conformance/trace/headers.h"
 #include "conformance/trace/print.h"
+#include "tools/cli/command.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/input.h"
-#include "tools/cli/command.h"
 
 namespace rubric::tools {
 
@@ -32,7 +32,7 @@ void add_player_options(cli::Command& app, PlayerOptions& options) {
 }
 
 void run_player_command(const cli::Command& app, const std::function<void()>& work) {
-  attach::end_groups_on_signals();
+  targets::end_groups_on_signals();
   try {
     work();
   } catch (const cli::Ending&) {  // An exit code that was chosen.
@@ -57,9 +57,9 @@ trace::File seeded(const trace::File& file, const trace::Case& one, const Player
 AttachedPlayer::AttachedPlayer(const std::string& target, const PlayerOptions& options,
                                std::string profile)
     : profile_(std::move(profile)) {
-  attach::Options how;
+  targets::Options how;
   how.step_timeout = std::chrono::milliseconds(static_cast<int>(options.timeout_seconds * 1000));
-  attachment_ = attach::attach(target, how);
+  attachment_ = targets::attach(target, how);
   suite::require_honest(*attachment_, target);
 }
 
@@ -68,7 +68,7 @@ shrink::Player AttachedPlayer::player() {
 }
 
 std::string AttachedPlayer::name() {
-  const attach::Identity& identity = attachment_->identity();
+  const targets::Identity& identity = attachment_->identity();
   std::string out = identity.name;
   if (!identity.version.empty()) out += " " + identity.version;
   if (!profile_.empty()) out += " (profile " + profile_ + ")";
@@ -78,8 +78,8 @@ std::string AttachedPlayer::name() {
 std::string outcome_text(const runner::CaseResult& result) {
   const std::string_view verdict = runner::verdict_text(result.verdict);
   if (result.failures.empty()) {
-    return result.reason.empty() ? std::string(verdict) : fmt::format("{}: {}", verdict,
-                                                                      result.reason);
+    return result.reason.empty() ? std::string(verdict)
+                                 : fmt::format("{}: {}", verdict, result.reason);
   }
   const runner::Failure& first = result.failures.front();
   return fmt::format("{}: {}{}{}", verdict, fmt::join(first.requirements, " "),

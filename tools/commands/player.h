@@ -1,7 +1,6 @@
 // Opens a `--target` for subcommands that run one trace at a time.
 #pragma once
 
-#include "tools/cli/command.h"
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -9,16 +8,17 @@
 #include <string>
 #include <vector>
 
-#include "conformance/attach/attachment.h"
-#include "conformance/shrink/predicates.h"
+#include "conformance/test/shrink/predicates.h"
+#include "conformance/test/targets/attachment.h"
+#include "tools/cli/command.h"
 
 namespace rubric::tools {
 
 /// The common options of such subcommands.
 struct PlayerOptions {
-  std::string out = "-";                ///< The trace's destination.
+  std::string out = "-";  ///< The trace's destination.
   double timeout_seconds = 5;
-  std::optional<std::uint64_t> seed;    ///< For the nodes, if a trace has none.
+  std::optional<std::uint64_t> seed;  ///< For the nodes, if a trace has none.
 };
 
 /// Adds --out, --timeout and --seed, and the exit codes of verdicts.
@@ -43,7 +43,7 @@ class AttachedPlayer {
   std::string name();
 
  private:
-  std::unique_ptr<attach::Attachment> attachment_;
+  std::unique_ptr<targets::Attachment> attachment_;
   std::string profile_;
 };
 

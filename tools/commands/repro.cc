@@ -1,4 +1,4 @@
-#include "tools/commands/commands.h"
+#include <fmt/format.h>
 
 #include <cstdio>
 #include <memory>
@@ -6,20 +6,19 @@
 #include <string>
 #include <vector>
 
-#include <fmt/format.h>
-
-#include "conformance/explorer/counterexample.h"
-#include "conformance/runner/subject_target.h"
-#include "conformance/script/bytes.h"
-#include "conformance/script/difference.h"
-#include "conformance/script/rtr.h"
-#include "conformance/script/walk.h"
-#include "conformance/script/watch.h"
+#include "conformance/explore/counterexample.h"
+#include "conformance/selftest/scripts/bytes.h"
+#include "conformance/selftest/scripts/difference.h"
+#include "conformance/selftest/scripts/rtr.h"
+#include "conformance/selftest/scripts/walk.h"
+#include "conformance/selftest/scripts/watch.h"
+#include "conformance/test/runner/subject_target.h"
 #include "conformance/trace/print.h"
+#include "tools/cli/command.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/output.h"
 #include "tools/cli/text_file.h"
-#include "tools/cli/command.h"
+#include "tools/commands/commands.h"
 
 namespace rubric::tools {
 namespace {
@@ -57,7 +56,7 @@ flaws::StepFunction step_of(const std::string& target) {
     if (const flaws::Flaw* flaw = flaws::find(target.substr(kFlaw.size()))) return flaw->step;
   }
   throw cli::UsageError("--target " + target +
-                             ": expected machine or machine:FLAW, as rubric explore lists them");
+                        ": expected machine or machine:FLAW, as rubric explore lists them");
 }
 
 Repro repro_machine(Bytes bytes, const ReproOptions& options) {
@@ -85,18 +84,18 @@ Repro repro_nodes(Bytes bytes) {
 }
 
 Repro repro_network(Bytes bytes, const ReproOptions& options) {
-  const explorer::Options network =
+  const explore::Options network =
       script::walk_options(script::walk_scope(bytes), step_of(options.target));
-  const auto nodes = std::make_unique<explorer::Nodes>(network);
-  const explorer::Path path = script::walk(*nodes, bytes);
+  const auto nodes = std::make_unique<explore::Nodes>(network);
+  const explore::Path path = script::walk(*nodes, bytes);
   std::string found;
   std::string name = "repro.walk";
-  for (const explorer::PropertyInfo& property : explorer::properties()) {
-    if ((path.violated & explorer::bit(property.property)) == 0) continue;
+  for (const explore::PropertyInfo& property : explore::properties()) {
+    if ((path.violated & explore::bit(property.property)) == 0) continue;
     if (found.empty()) name = std::string("repro.") + property.name;
     found += (found.empty() ? "" : "; ") + std::string(property.name) + ": " + property.sentence;
   }
-  return {explorer::counterexample(*nodes, path, {"paper", name, ""}), found};
+  return {explore::counterexample(*nodes, path, {"paper", name, ""}), found};
 }
 
 void run_repro(const ReproOptions& options) {
@@ -130,9 +129,8 @@ void add_repro(cli::Command& app) {
   sub.add_option("input", options->input, "The input; - is stdin").required().type_name("FILE");
   sub.add_option("--target", options->target, "machine, or machine:FLAW").show_default();
   sub.add_flag("--exact", options->exact,
-                "Ask for the machine's own numbers and bytes, not for what the rules ask for");
-  sub.add_option("-o,--out", options->out, "Where the trace goes; - is stdout")
-      .show_default();
+               "Ask for the machine's own numbers and bytes, not for what the rules ask for");
+  sub.add_option("-o,--out", options->out, "Where the trace goes; - is stdout").show_default();
   sub.set_usage_exit_code(cli::kVerdictUsage);
   sub.callback([options] { run_repro(*options); });
 }

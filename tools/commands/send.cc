@@ -1,5 +1,3 @@
-#include "tools/commands/commands.h"
-
 #include <fmt/format.h>
 
 #include <chrono>
@@ -10,25 +8,26 @@
 #include <stdexcept>
 #include <string>
 
+#include "codec/lines/sender.h"
+#include "codec/lines/stop.h"
 #include "codec/reflect/fault_text.h"
 #include "codec/reflect/frame.h"
-#include "conformance/runner/target.h"
+#include "conformance/test/runner/target.h"
 #include "tools/cli/color.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/output.h"
+#include "tools/commands/commands.h"
+#include "tools/encode/line_encoder.h"
 #include "tools/format/jsonl.h"
 #include "tools/format/text.h"
-#include "tools/live/sender.h"
-#include "tools/live/stop.h"
-#include "tools/record/line_encoder.h"
 
 namespace rubric::tools {
 namespace {
 
-using attach::Milliseconds;
-using attach::SteadyTime;
-using record::EncodedLines;
-using record::OwnedPacket;
+using encode::EncodedLines;
+using encode::OwnedPacket;
+using lines::Milliseconds;
+using lines::SteadyTime;
 using runner::TargetBroken;
 using std::chrono::steady_clock;
 
@@ -37,8 +36,8 @@ constexpr int kRetriesMost = 10'000;
 constexpr double kListenMostS = 86'400;
 
 struct SendOptions {
-  record::LineOptions lines;
-  std::string to;                ///< Empty: $MOTECOM.
+  encode::LineOptions lines;
+  std::string to;  ///< Empty: $MOTECOM.
   int timeout_ms = 1000;
   int retries = 24;
   int interval_ms = 0;
@@ -61,18 +60,18 @@ constexpr const char* kSendFooter =
     "file could not be read or encoded, and was not sent, 4 a packet was not confirmed, or the\n"
     "line cannot be had or is gone.";
 
-live::Address address_of(const SendOptions& options) {
-  const std::string text = options.to.empty() ? live::default_address() : options.to;
+lines::Address address_of(const SendOptions& options) {
+  const std::string text = options.to.empty() ? lines::default_address() : options.to;
   const char* const whence = options.to.empty() ? "$MOTECOM" : "--to";
   try {
-    return live::required_address(text);
+    return lines::required_address(text);
   } catch (const std::invalid_argument& error) {
     throw cli::UsageError(whence, error.what());
   }
 }
 
-attach::HostLinkOptions link_options(const SendOptions& options) {
-  attach::HostLinkOptions out;
+lines::HostLinkOptions link_options(const SendOptions& options) {
+  lines::HostLinkOptions out;
   out.ack_wait = Milliseconds{options.timeout_ms};
   out.tries = options.retries + 1;
   return out;
@@ -95,7 +94,7 @@ std::string counted(int count, const char* one, const char* many) {
 /// One run of the subcommand.
 class Send {
  public:
-  Send(const SendOptions& options, live::Address address)
+  Send(const SendOptions& options, lines::Address address)
       : options_(options),
         protocol_(cli::chosen_protocol(options.lines.input)),
         encoder_(options.lines, protocol_, cli::chosen_message(options.lines.input, protocol_),
@@ -107,7 +106,7 @@ class Send {
                 [this](const Packet& packet) { came(packet); }) {}
 
   int run() {
-    live::stop_on_signals();
+    lines::stop_on_signals();
     bool good = true;
     try {
       sender_.open();
@@ -134,7 +133,7 @@ class Send {
     const auto wait_for_line = [this](int fd) {
       output_.flush();
       sender_.hear(SteadyTime::max(), fd);
-      return !live::stop_requested();
+      return !lines::stop_requested();
     };
     const auto send = [this](EncodedLines& lines, const OwnedPacket& packet,
                              const std::string& place) { return one(lines, packet, place); };
@@ -154,10 +153,11 @@ class Send {
     }
     const std::size_t max = sender_.packet_bytes_max();
     if (packet.bytes.size() <= max) return {};
-    return fmt::format("expected a packet of at most {} bytes from the dispatch byte on, as {} "
-                       "takes, given {}", max,
-                       sender_.confirms() ? "a mote's serial line" : "a serial forwarder",
-                       packet.bytes.size());
+    return fmt::format(
+        "expected a packet of at most {} bytes from the dispatch byte on, as {} "
+        "takes, given {}",
+        max, sender_.confirms() ? "a mote's serial line" : "a serial forwarder",
+        packet.bytes.size());
   }
 
   // Sends one packet. Returns whether to go on.
@@ -168,26 +168,26 @@ class Send {
       lines.complain(place, why);
       return true;
     }
-    const bool has_packet = packet.framing == Framing::kSf || attach::brings_packet(packet);
+    const bool has_packet = packet.framing == Framing::kSf || lines::brings_packet(packet);
     if (!has_packet || packet.bytes.empty()) {
       ++left_out_;
       return true;
     }
     if (packets_ > 0) sender_.hear(steady_clock::now() + Milliseconds{options_.interval_ms});
-    if (live::stop_requested()) {
+    if (lines::stop_requested()) {
       fmt::print(stderr, "rubric: {}: stopped before this was sent\n", place);
       unsent_ = true;
       return false;
     }
-    const live::Sender::Result result = sender_.send(packet.bytes);
+    const lines::Sender::Result result = sender_.send(packet.bytes);
     report(packet, result);
     if (!result.broken.empty()) throw TargetBroken(result.broken);
     if (result.done) return true;
     unsent_ = true;
-    if (options_.keep_going && !live::stop_requested()) return true;
+    if (options_.keep_going && !lines::stop_requested()) return true;
     fmt::print(stderr, "rubric: {}: {}; nothing behind it is sent{}\n", place,
-               live::stop_requested() ? "stopped" : "not confirmed",
-               live::stop_requested() ? "" : " (--keep-going would)");
+               lines::stop_requested() ? "stopped" : "not confirmed",
+               lines::stop_requested() ? "" : " (--keep-going would)");
     return false;
   }
 
@@ -199,7 +199,7 @@ class Send {
   }
 
   // Prints the packet's line.
-  void report(const Packet& packet, const live::Sender::Result& result) {
+  void report(const Packet& packet, const lines::Sender::Result& result) {
     ++packets_;
     done_ += result.done;
     std::string text = fmt::format("{:>4}  {:<14}  ", packets_, name_of(packet));
@@ -236,7 +236,7 @@ class Send {
     record.frame = &frame_;
     formatter_->print(record, output_.buffer());
     // A closed pipe ends the listening; packets are sent all the same.
-    if (!output_.flush() && listening_) live::request_stop();
+    if (!output_.flush() && listening_) lines::request_stop();
   }
 
   void line_is_gone(const char* what) {
@@ -261,19 +261,19 @@ class Send {
 
   const SendOptions& options_;
   const reflect::Protocol& protocol_;
-  record::LineEncoder encoder_;
+  encode::LineEncoder encoder_;
   reflect::FrameDecoder decoder_;
   std::unique_ptr<format::Formatter> formatter_;
   std::string name_;
   cli::Output output_;
   reflect::Frame frame_;
-  live::Sender sender_;
-  int packets_ = 0;   // Sent packets, whatever their result.
+  lines::Sender sender_;
+  int packets_ = 0;  // Sent packets, whatever their result.
   int done_ = 0;
   int left_out_ = 0;
   std::uint64_t frames_ = 0;  // Received and shown.
   bool unsent_ = false;
-  bool listening_ = false;    // All that there was to send was sent.
+  bool listening_ = false;  // All that there was to send was sent.
 };
 
 void add_timing_options(cli::Command& app, SendOptions& options) {
@@ -287,8 +287,7 @@ void add_timing_options(cli::Command& app, SendOptions& options) {
   app.add_option("--interval", options.interval_ms, "Wait so many ms between packets")
       .between(0, kWaitMostMs)
       .show_default();
-  app.add_flag("--keep-going", options.keep_going,
-               "Go on behind a packet that is not confirmed");
+  app.add_flag("--keep-going", options.keep_going, "Go on behind a packet that is not confirmed");
   app.add_option("--listen", options.listen_s,
                  "Show what comes back, as rubric decode does, until so many seconds after the "
                  "last packet")
@@ -303,7 +302,7 @@ void add_send(cli::Command& app) {
   cli::Command& sub = app.add_subcommand(
       "send", "Packets to a mote: JSON lines of 'rubric decode', or fields alone");
   sub.footer(kSendFooter);
-  record::add_line_options(sub, options->lines);
+  encode::add_line_options(sub, options->lines);
   sub.get_option("FILE").check([](const std::string& text) {
     return text.find('@') != text.npos && (text.starts_with("serial@") || text.starts_with("sf@") ||
                                            text.starts_with("network@"))
@@ -311,19 +310,19 @@ void add_send(cli::Command& app) {
                : std::string();
   });
   sub.add_option("--to", options->to,
-                  "serial@DEVICE:BAUD (or a platform, as serial@/dev/ttyUSB0:telosb), "
-                  "network@HOST:PORT, sf@HOST:PORT (default: $MOTECOM, else sf@localhost:9002)")
+                 "serial@DEVICE:BAUD (or a platform, as serial@/dev/ttyUSB0:telosb), "
+                 "network@HOST:PORT, sf@HOST:PORT (default: $MOTECOM, else sf@localhost:9002)")
       .check(cli::given);
   add_timing_options(sub, *options);
   sub.add_option("--format", options->format,
-                  "With --listen, what comes back as: text, jsonl (rubric.decode/1; what became of "
-                  "packets goes to stderr then)")
+                 "With --listen, what comes back as: text, jsonl (rubric.decode/1; what became of "
+                 "packets goes to stderr then)")
       .one_of({"text", "jsonl"})
       .show_default();
   cli::add_color_option(sub, options->color);
   sub.callback([options] {
-    record::check_line_options(options->lines);
-    live::Address address = address_of(*options);
+    encode::check_line_options(options->lines);
+    lines::Address address = address_of(*options);
     const int code = Send(*options, std::move(address)).run();
     if (code != cli::kExitClean) cli::exit_with(code);
   });

@@ -1,4 +1,4 @@
-#include "tools/commands/commands.h"
+#include <fmt/format.h>
 
 #include <cstdio>
 #include <memory>
@@ -6,11 +6,10 @@
 #include <stdexcept>
 #include <string>
 
-#include <fmt/format.h>
-
-#include "conformance/suite/cases.h"
+#include "conformance/test/suite/cases.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/output.h"
+#include "tools/commands/commands.h"
 #include "tools/commands/player.h"
 
 namespace rubric::tools {
@@ -82,11 +81,10 @@ void shrink_it(const ShrinkOptions& options) {
     throw runner::TargetBroken(name + " does not fail in the same way twice; is a seed ignored?");
   }
   const CaseResult last = shrink::play(shrunk.file, player);
-  const std::string text =
-      shrunk_text(shrunk, name + ".shrunk",
-                  {fmt::format("{} of the {} lines of {}.", shrunk.lines, shrunk.lines_before,
-                               name),
-                   fmt::format("On {}: {}", attached.name(), outcome_text(last))});
+  const std::string text = shrunk_text(
+      shrunk, name + ".shrunk",
+      {fmt::format("{} of the {} lines of {}.", shrunk.lines, shrunk.lines_before, name),
+       fmt::format("On {}: {}", attached.name(), outcome_text(last))});
   if (!cli::write_file(options.shared.out, text)) cli::exit_with(cli::kVerdictBroken);
   fmt::print(stderr, "{}: {} lines shrank to {} in {} runs\n{}\n", name, shrunk.lines_before,
              shrunk.lines, shrunk.tried, outcome_text(last));
@@ -104,9 +102,7 @@ void add_shrink(cli::Command& app) {
   sub.add_option("--profile", options->profile, "Dialect; default: as the trace says")
       .one_of({"paper", "deployed"});
   add_player_options(sub, options->shared);
-  sub.callback([options, &sub] {
-    run_player_command(sub, [&] { shrink_it(*options); });
-  });
+  sub.callback([options, &sub] { run_player_command(sub, [&] { shrink_it(*options); }); });
 }
 
 }  // namespace rubric::tools

@@ -1,5 +1,3 @@
-#include "tools/commands/commands.h"
-
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -9,25 +7,26 @@
 #include <utility>
 #include <vector>
 
-#include "conformance/simulator/capture_recorder.h"
-#include "conformance/simulator/scenarios.h"
-#include "conformance/simulator/simulation.h"
-#include "conformance/simulator/trace_recorder.h"
+#include "conformance/simulate/capture_recorder.h"
+#include "conformance/simulate/scenarios.h"
+#include "conformance/simulate/simulation.h"
+#include "conformance/simulate/trace_recorder.h"
 #include "conformance/trace/print.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/input.h"
 #include "tools/cli/output.h"
+#include "tools/commands/commands.h"
 
 namespace rubric::tools {
 namespace {
 
-using simulator::Scenario;
-using simulator::Statistics;
+using simulate::Scenario;
+using simulate::Statistics;
 
 constexpr const char* kFree = "free";
 
 struct SimulateOptions {
-  simulator::ScenarioOptions network;
+  simulate::ScenarioOptions network;
   std::string scenario = kFree;
   double seconds = 0;  ///< 0: as long as the scenario's story.
   std::string rtr;
@@ -36,9 +35,9 @@ struct SimulateOptions {
 
 std::string simulate_footer() {
   std::string text = "Scenarios:\n";
-  for (const Scenario& scenario : simulator::scenarios()) {
+  for (const Scenario& scenario : simulate::scenarios()) {
     text += fmt::format("  {:<13} {} ({} s)\n", scenario.name, scenario.doc,
-                        scenario.length_us / simulator::kUsPerSecond);
+                        scenario.length_us / simulate::kUsPerSecond);
   }
   return text +
          "The same options give the same run, byte for byte.\n"
@@ -58,24 +57,24 @@ std::string summary(const Statistics& s) {
       "  receptions lost  {:>8}   collided {}, doubled {}, receiver off {}\n"
       "serial frames      {:>8}\n"
       "PEIS messages      {:>8}\n",
-      s.joins, s.join_failures, s.received, s.acks, s.ack_failures, s.synaptic_new,
-      s.synaptic_old, s.synaptic_unknown, s.radio_frames, s.link_acks, s.lost, s.collided,
-      s.doubled, s.unheard, s.serial_frames, s.peis_messages);
+      s.joins, s.join_failures, s.received, s.acks, s.ack_failures, s.synaptic_new, s.synaptic_old,
+      s.synaptic_unknown, s.radio_frames, s.link_acks, s.lost, s.collided, s.doubled, s.unheard,
+      s.serial_frames, s.peis_messages);
 }
 
 void run_simulate(const SimulateOptions& options) {
-  const Scenario& scenario = *simulator::find_scenario(options.scenario);
+  const Scenario& scenario = *simulate::find_scenario(options.scenario);
   const auto length_us =
       options.seconds == 0
           ? scenario.length_us
-          : static_cast<simulator::Micros>(options.seconds * simulator::kUsPerSecond);
-  simulator::Network network = simulator::make_network(scenario, options.network);
-  std::optional<simulator::CaptureRecorder> capture;
-  std::optional<simulator::TraceRecorder> log;
-  std::vector<simulator::Recorder*> recorders;
+          : static_cast<simulate::Micros>(options.seconds * simulate::kUsPerSecond);
+  simulate::Network network = simulate::make_network(scenario, options.network);
+  std::optional<simulate::CaptureRecorder> capture;
+  std::optional<simulate::TraceRecorder> log;
+  std::vector<simulate::Recorder*> recorders;
   if (!options.pcapng.empty()) recorders.push_back(&capture.emplace(network));
   if (!options.rtr.empty()) recorders.push_back(&log.emplace(network, scenario.name));
-  simulator::Simulation simulation(std::move(network), recorders);
+  simulate::Simulation simulation(std::move(network), recorders);
   simulation.run_until(length_us);
   bool good = true;
   if (log) good = cli::write_file(options.rtr, trace::print(log->file()));
@@ -87,7 +86,7 @@ void run_simulate(const SimulateOptions& options) {
 
 std::vector<std::string> scenario_names() {
   std::vector<std::string> names;
-  for (const Scenario& scenario : simulator::scenarios()) names.emplace_back(scenario.name);
+  for (const Scenario& scenario : simulate::scenarios()) names.emplace_back(scenario.name);
   return names;
 }
 
@@ -100,22 +99,24 @@ void add_simulate(cli::Command& app) {
   auto options = std::make_shared<SimulateOptions>();
   cli::Command& sub = app.add_subcommand("simulate", "Run a network of reference machines");
   sub.footer(simulate_footer());
-  const cli::Option motes = sub.add_option("--motes", options->network.motes, "How many, in scenario free")
-                    .between(std::size_t{0}, kMotesMax)
-                    .show_default();
-  const cli::Option sinks = sub.add_option("--sinks", options->network.sinks, "How many, in scenario free")
-                    .between(std::size_t{0}, kSinksMax)
-                    .show_default();
+  const cli::Option motes =
+      sub.add_option("--motes", options->network.motes, "How many, in scenario free")
+          .between(std::size_t{0}, kMotesMax)
+          .show_default();
+  const cli::Option sinks =
+      sub.add_option("--sinks", options->network.sinks, "How many, in scenario free")
+          .between(std::size_t{0}, kSinksMax)
+          .show_default();
   sub.add_option("--seed", options->network.seed, "Decides all that is left to chance")
       .check(cli::whole_number)
       .show_default();
   sub.add_option("--loss", options->network.loss,
-                  "Probability that a receiver misses a radio frame")
+                 "Probability that a receiver misses a radio frame")
       .between(0.0, 1.0)
       .show_default();
   sub.add_option("--dup", options->network.duplication,
-                  "Probability that a receiver gets a radio frame twice: the sender's link repeats "
-                  "it on the air")
+                 "Probability that a receiver gets a radio frame twice: the sender's link repeats "
+                 "it on the air")
       .between(0.0, 1.0)
       .show_default();
   sub.add_option("--seconds", options->seconds, "How long; default: as the scenario says")
@@ -125,11 +126,11 @@ void add_simulate(cli::Command& app) {
       .show_default();
   sub.add_option("--out-rtr", options->rtr, "Log of every node; - is stdout");
   sub.add_option("--out-pcapng", options->pcapng,
-                  "Capture of the radio and of the serial lines; - is stdout");
+                 "Capture of the radio and of the serial lines; - is stdout");
   sub.callback([options, motes, sinks] {
     if (options->scenario != kFree && (motes.is_given() || sinks.is_given())) {
-      throw cli::UsageError("--motes and --sinks are for scenario free; " +
-                                 options->scenario + " has its own");
+      throw cli::UsageError("--motes and --sinks are for scenario free; " + options->scenario +
+                            " has its own");
     }
     if (options->rtr == "-" && options->pcapng == "-") {
       throw cli::UsageError("--out-rtr and --out-pcapng cannot both be stdout");

@@ -1,5 +1,3 @@
-#include "tools/commands/commands.h"
-
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -9,8 +7,9 @@
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/input.h"
 #include "tools/cli/output.h"
-#include "tools/count/counters.h"
-#include "tools/count/report.h"
+#include "tools/commands/commands.h"
+#include "tools/stats/counters.h"
+#include "tools/stats/report.h"
 
 namespace rubric::tools {
 namespace {
@@ -30,7 +29,7 @@ int run_stats(const StatsOptions& options) {
   const reflect::Protocol& protocol = cli::chosen_protocol(options.input);
   const reflect::FrameDecoder decoder(protocol, cli::chosen_message(options.input, protocol));
   reflect::Frame frame;
-  count::Counters counters;
+  stats::Counters counters;
   std::uint64_t index = 0;
   const cli::InputResult result =
       cli::read_packets(options.input, [&](const Packet& packet, const cli::Source& source) {
@@ -39,8 +38,8 @@ int run_stats(const StatsOptions& options) {
         return true;
       });
   cli::Output output;
-  output.buffer().append(options.format == "json" ? count::json_report(counters)
-                                                  : count::text_report(counters));
+  output.buffer().append(options.format == "json" ? stats::json_report(counters)
+                                                  : stats::text_report(counters));
   output.flush();
   std::string reason;
   if (output.failed(&reason)) {

@@ -1,5 +1,3 @@
-#include "tools/commands/commands.h"
-
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -14,15 +12,15 @@
 #include <thread>
 #include <vector>
 
-#include "conformance/attach/groups.h"
-#include "conformance/suite/report/github.h"
-#include "conformance/suite/report/html.h"
-#include "conformance/suite/report/json.h"
-#include "conformance/suite/report/junit.h"
-#include "conformance/suite/report/tap.h"
-#include "conformance/suite/run.h"
-#include "conformance/suite/select.h"
-#include "conformance/suite/text/text.h"
+#include "conformance/test/report/github.h"
+#include "conformance/test/report/html.h"
+#include "conformance/test/report/json.h"
+#include "conformance/test/report/junit.h"
+#include "conformance/test/report/tap.h"
+#include "conformance/test/report/text/text.h"
+#include "conformance/test/suite/run.h"
+#include "conformance/test/suite/select.h"
+#include "conformance/test/targets/groups.h"
 #include "tools/cli/color.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/input.h"
@@ -30,6 +28,7 @@
 #include "tools/cli/progress.h"
 #include "tools/cli/terminal.h"
 #include "tools/cli/verdict.h"
+#include "tools/commands/commands.h"
 
 namespace rubric::tools {
 namespace {
@@ -120,8 +119,8 @@ std::vector<suite::SuiteCase> selected(const TestOptions& options, const suite::
   if (!options.shard.empty()) {
     const auto shard = suite::parse_shard(options.shard);
     if (!shard) {
-      throw cli::UsageError(
-          "--shard", fmt::format("expected I/N as in 2/8, given '{}'", options.shard));
+      throw cli::UsageError("--shard",
+                            fmt::format("expected I/N as in 2/8, given '{}'", options.shard));
     }
     selection.shard = *shard;
   }
@@ -160,13 +159,11 @@ void check_seeds(const TestOptions& options) {
   using suite::kSeedMax;
   const std::uint64_t first = options.seed.value_or(0);
   if (first > kSeedMax) {
-    throw cli::UsageError("--seed",
-                               fmt::format("expected 0 to {}, given {}", kSeedMax, first));
+    throw cli::UsageError("--seed", fmt::format("expected 0 to {}, given {}", kSeedMax, first));
   }
   if (first + options.repeats - 1 > kSeedMax) {
-    throw cli::UsageError(
-        "--repeat", fmt::format("{} seeds from {} on go beyond {}", options.repeats, first,
-                                kSeedMax));
+    throw cli::UsageError("--repeat", fmt::format("{} seeds from {} on go beyond {}",
+                                                  options.repeats, first, kSeedMax));
   }
 }
 
@@ -183,7 +180,10 @@ class Text {
       return;
     }
     output_.buffer().append(text);
-    if (at_once_) output_.flush(); else output_.drain();
+    if (at_once_)
+      output_.flush();
+    else
+      output_.drain();
   }
   bool finish(const TestOptions& options) {
     if (!wanted_) return true;
@@ -204,20 +204,20 @@ class Text {
 };
 
 suite::SuiteRun work(const TestOptions& options, const suite::Cases& cases, suite::Plan plan,
-                     const std::optional<suite::EarlierRun>& earlier,
-                     const suite::TextOptions& how, Text& text) {
+                     const std::optional<suite::EarlierRun>& earlier, const suite::TextOptions& how,
+                     Text& text) {
   suite::SuiteRun all;
   all.traces = options.traces;
   all.shard = options.shard;
   all.seed = options.seed.value_or(0);
   if (!options.profile.empty()) all.profile = options.profile;
-  attach::Options attached;
+  targets::Options attached;
   attached.step_timeout = Milliseconds(static_cast<std::int64_t>(options.timeout_s * 1000));
   attached.start_timeout = std::max(attached.start_timeout, attached.step_timeout);
   const std::size_t worked = plan.cases.size() * plan.repeats;
   cli::Progress progress(worked * options.targets.size(), true, cli::Progress::Unit::kCases);
   for (const std::string& target : options.targets) {
-    const auto make = [&] { return attach::attach(target, attached); };
+    const auto make = [&] { return targets::attach(target, attached); };
     suite::Watcher watcher;
     watcher.started = [&](const suite::ImplementationRun& run) {
       text.add((all.implementations.empty() ? "" : "\n") +
@@ -271,12 +271,12 @@ int run_test(const TestOptions& options) {
   if (options.targets.empty()) throw cli::UsageError("--target is required");
   for (const std::string& target : options.targets) {
     try {
-      attach::attach(target, {});
+      targets::attach(target, {});
     } catch (const std::invalid_argument& error) {
       throw cli::UsageError("--target", fmt::format("'{}': {}", target, error.what()));
     }
   }
-  attach::end_groups_on_signals();
+  targets::end_groups_on_signals();
   plan.profile = options.profile;
   plan.seed = options.seed;
   plan.repeats = options.repeats;
@@ -300,8 +300,9 @@ void add_selection(cli::Command& command, TestOptions& options) {
                      "Golden traces, .rtr files or folders of them (the kit's own)");
   command.add_option("--cases", options.selection.globs, "Cases whose names are like this: 'j4.*'")
       .check(cli::given);
-  command.add_option("--requirement", options.selection.requirements,
-                     "Cases that try this rule or family: J4-SEQ, J4, J")
+  command
+      .add_option("--requirement", options.selection.requirements,
+                  "Cases that try this rule or family: J4-SEQ, J4, J")
       .check(cli::given);
   command.add_option("--role", options.role, "Cases with a node of this role under test")
       .one_of({"mote", "sink", "base_station"});
@@ -312,18 +313,21 @@ void add_selection(cli::Command& command, TestOptions& options) {
 }
 
 void add_options(cli::Command& command, TestOptions& options) {
-  command.add_option("--target", options.targets,
-                     "An implementation: a command, or machine; again for another one")
+  command
+      .add_option("--target", options.targets,
+                  "An implementation: a command, or machine; again for another one")
       .check(cli::given);
   add_selection(command, options);
-  command.add_option("--profile", options.profile,
-                     "paper or deployed, whatever the traces say: what nodes are told to keep to")
+  command
+      .add_option("--profile", options.profile,
+                  "paper or deployed, whatever the traces say: what nodes are told to keep to")
       .one_of({"paper", "deployed"});
-  command.add_option("--seed", options.seed,
-                     "Of what is random in nodes, where a trace has none; 0 to 65535")
+  command
+      .add_option("--seed", options.seed,
+                  "Of what is random in nodes, where a trace has none; 0 to 65535")
       .check(cli::whole_number);
-  command.add_option("--repeat", options.repeats,
-                     "Each case so often, each time with the next seed")
+  command
+      .add_option("--repeat", options.repeats, "Each case so often, each time with the next seed")
       .between(1, 10000)
       .show_default();
   command.add_option("--jobs", options.jobs, "Cases at once, on a process each; 0: cores")
@@ -340,11 +344,13 @@ void add_options(cli::Command& command, TestOptions& options) {
   command.add_option("--out", options.out, "Write to this file; - is stdout")
       .check(cli::given)
       .show_default();
-  command.add_option("--report", options.report,
-                     "Write index.html and all other reports into this folder")
+  command
+      .add_option("--report", options.report,
+                  "Write index.html and all other reports into this folder")
       .check(cli::given);
-  command.add_option("--compare", options.compare,
-                     "report.json of an earlier run: say which verdicts have changed")
+  command
+      .add_option("--compare", options.compare,
+                  "report.json of an earlier run: say which verdicts have changed")
       .check(cli::given);
   command.add_flag("--quiet", options.quiet, "Text: no lines for cases that are as expected");
   command.add_flag("--verbose", options.verbose, "Text: every failure in full");

@@ -7,13 +7,13 @@
 #include <map>
 #include <utility>
 
-#include "conformance/report/json.h"
+#include "codec/text/json.h"
 
 namespace rubric::tools {
 namespace {
 
-using explorer::Diagram;
-using explorer::Transition;
+using explore::Diagram;
+using explore::Transition;
 using report::Json;
 
 std::string one_line(std::string text) {
@@ -30,7 +30,7 @@ std::string trigger_of(const Transition& t) {
 
 Json json_of(const Transition& t) {
   std::vector<std::string> way;
-  for (const explorer::Given& given : t.witness.events) way.push_back(given.text());
+  for (const explore::Given& given : t.witness.events) way.push_back(given.text());
   return Json::object({{"from", t.from},
                        {"to", t.to},
                        {"trigger", t.trigger},
@@ -69,9 +69,7 @@ std::string html(std::string_view text) {
 constexpr std::string_view kBlank = "\u00a0";  // Others are lost at the ends of an SVG's texts.
 constexpr std::string_view kBreak = "<BR ALIGN=\"LEFT\"/>";
 
-std::string small(const std::string& text) {
-  return "<FONT POINT-SIZE=\"10\">" + text + "</FONT>";
-}
+std::string small(const std::string& text) { return "<FONT POINT-SIZE=\"10\">" + text + "</FONT>"; }
 
 std::string guarded(const Transition& t) {
   std::string out = t.trigger;
@@ -111,8 +109,8 @@ std::string node_of(const Diagram& diagram, std::size_t state) {
   for (const Transition& t : diagram.transitions) {
     if (t.from != state || t.to != state) continue;
     if (t.ignored) {
-      ignored += small(html(fmt::format("{0}{1}{1}{2}", guarded(t), kBlank,
-                                        fmt::join(t.rules, " "))));
+      ignored +=
+          small(html(fmt::format("{0}{1}{1}{2}", guarded(t), kBlank, fmt::join(t.rules, " "))));
       ignored += kBreak;
     } else {
       inside += cell(lines_of(t));

@@ -93,70 +93,120 @@ void fault_names(const Protocol&, Names& names) {
 }
 
 constexpr Attribute kAttributes[] = {
-    {"index", [](const Record& r, Visitor v) {
-       return integer(v, static_cast<std::int64_t>(r.index)); }, nullptr, false},
-    {"number", [](const Record& r, Visitor v) {
-       return integer(v, static_cast<std::int64_t>(r.number)); }, nullptr, false},
-    {"offset", [](const Record& r, Visitor v) {
-       return integer(v, static_cast<std::int64_t>(r.packet().offset_bytes)); }, nullptr, false},
+    {"index",
+     [](const Record& r, Visitor v) { return integer(v, static_cast<std::int64_t>(r.index)); },
+     nullptr, false},
+    {"number",
+     [](const Record& r, Visitor v) { return integer(v, static_cast<std::int64_t>(r.number)); },
+     nullptr, false},
+    {"offset",
+     [](const Record& r, Visitor v) {
+       return integer(v, static_cast<std::int64_t>(r.packet().offset_bytes));
+     },
+     nullptr, false},
     {"time", [](const Record& r, Visitor v) { return time(v, r.time_ns); }, nullptr, false},
-    {"interface", [](const Record& r, Visitor v) {
-       return text(v, r.interface_name); }, nullptr, true},
-    {"direction", [](const Record& r, Visitor v) {
-       return text(v, direction_name(r.packet().direction)); }, direction_names, false},
-    {"framing", [](const Record& r, Visitor v) {
-       return text(v, framing_name(r.packet().framing)); }, framing_names, false},
+    {"interface", [](const Record& r, Visitor v) { return text(v, r.interface_name); }, nullptr,
+     true},
+    {"direction",
+     [](const Record& r, Visitor v) { return text(v, direction_name(r.packet().direction)); },
+     direction_names, false},
+    {"framing",
+     [](const Record& r, Visitor v) { return text(v, framing_name(r.packet().framing)); },
+     framing_names, false},
     {"frame.kind", kind, kind_names, false},
-    {"frame.kind_name", [](const Record& r, Visitor v) {
-       return text(v, serial_kind_name(r.packet().kind)); }, kind_names, false},
-    {"frame.serial_seq", [](const Record& r, Visitor v) {
-       return integer_or_absent(v, r.packet().serial_seq); }, nullptr, false},
-    {"frame.crc", [](const Record& r, Visitor v) {
-       return integer_or_absent(v, r.packet().crc); }, nullptr, false},
-    {"frame.dispatch", [](const Record& r, Visitor v) {
-       return integer_or_absent(v, dispatch_of(r.packet())); }, nullptr, false},
-    {"frame.fcf", [](const Record& r, Visitor v) {
-       return !r.frame->mac.present || integer(v, r.frame->mac.fcf); }, nullptr, false},
-    {"frame.dsn", [](const Record& r, Visitor v) {
-       return !r.frame->mac.present || integer(v, r.frame->mac.dsn); }, nullptr, false},
-    {"frame.destpan", [](const Record& r, Visitor v) {
-       return !r.frame->mac.has_addresses || integer(v, r.frame->mac.destpan); }, nullptr, false},
-    {"frame.dest", [](const Record& r, Visitor v) {
-       return !r.frame->mac.has_addresses || integer(v, r.frame->mac.dest); }, nullptr, false},
-    {"frame.src", [](const Record& r, Visitor v) {
-       return !r.frame->mac.has_addresses || integer(v, r.frame->mac.src); }, nullptr, false},
-    {"frame.network", [](const Record& r, Visitor v) {
-       return integer_or_absent(v, network_of(*r.frame)); }, nullptr, false},
-    {"frame.fcs", [](const Record& r, Visitor v) {
-       return integer_or_absent(v, r.packet().fcs); }, nullptr, false},
-    {"am.dest", [](const Record& r, Visitor v) {
-       return !r.frame->am.present || integer(v, r.frame->am.dest); }, nullptr, false},
-    {"am.src", [](const Record& r, Visitor v) {
-       return !r.frame->am.present || integer(v, r.frame->am.src); }, nullptr, false},
-    {"am.length", [](const Record& r, Visitor v) {
-       return !r.frame->am.present || integer(v, r.frame->am.length); }, nullptr, false},
-    {"am.group", [](const Record& r, Visitor v) {
-       return !r.frame->am.present || integer(v, r.frame->am.group); }, nullptr, false},
-    {"am.type", [](const Record& r, Visitor v) {
-       return !r.frame->am.present || integer(v, r.frame->am.type); }, nullptr, false},
-    {"message", [](const Record& r, Visitor v) {
+    {"frame.kind_name",
+     [](const Record& r, Visitor v) { return text(v, serial_kind_name(r.packet().kind)); },
+     kind_names, false},
+    {"frame.serial_seq",
+     [](const Record& r, Visitor v) { return integer_or_absent(v, r.packet().serial_seq); },
+     nullptr, false},
+    {"frame.crc", [](const Record& r, Visitor v) { return integer_or_absent(v, r.packet().crc); },
+     nullptr, false},
+    {"frame.dispatch",
+     [](const Record& r, Visitor v) { return integer_or_absent(v, dispatch_of(r.packet())); },
+     nullptr, false},
+    {"frame.fcf",
+     [](const Record& r, Visitor v) {
+       return !r.frame->mac.present || integer(v, r.frame->mac.fcf);
+     },
+     nullptr, false},
+    {"frame.dsn",
+     [](const Record& r, Visitor v) {
+       return !r.frame->mac.present || integer(v, r.frame->mac.dsn);
+     },
+     nullptr, false},
+    {"frame.destpan",
+     [](const Record& r, Visitor v) {
+       return !r.frame->mac.has_addresses || integer(v, r.frame->mac.destpan);
+     },
+     nullptr, false},
+    {"frame.dest",
+     [](const Record& r, Visitor v) {
+       return !r.frame->mac.has_addresses || integer(v, r.frame->mac.dest);
+     },
+     nullptr, false},
+    {"frame.src",
+     [](const Record& r, Visitor v) {
+       return !r.frame->mac.has_addresses || integer(v, r.frame->mac.src);
+     },
+     nullptr, false},
+    {"frame.network",
+     [](const Record& r, Visitor v) { return integer_or_absent(v, network_of(*r.frame)); }, nullptr,
+     false},
+    {"frame.fcs", [](const Record& r, Visitor v) { return integer_or_absent(v, r.packet().fcs); },
+     nullptr, false},
+    {"am.dest",
+     [](const Record& r, Visitor v) {
+       return !r.frame->am.present || integer(v, r.frame->am.dest);
+     },
+     nullptr, false},
+    {"am.src",
+     [](const Record& r, Visitor v) { return !r.frame->am.present || integer(v, r.frame->am.src); },
+     nullptr, false},
+    {"am.length",
+     [](const Record& r, Visitor v) {
+       return !r.frame->am.present || integer(v, r.frame->am.length);
+     },
+     nullptr, false},
+    {"am.group",
+     [](const Record& r, Visitor v) {
+       return !r.frame->am.present || integer(v, r.frame->am.group);
+     },
+     nullptr, false},
+    {"am.type",
+     [](const Record& r, Visitor v) {
+       return !r.frame->am.present || integer(v, r.frame->am.type);
+     },
+     nullptr, false},
+    {"message",
+     [](const Record& r, Visitor v) {
        const reflect::Type* message = r.decoded().message();
-       return !message || text(v, message->name); }, message_names, false},
+       return !message || text(v, message->name);
+     },
+     message_names, false},
     {"path", path, message_names, false},
     {"notes", notes, note_names, false},
     {"stale", stale, nullptr, true},
     {"stale_bytes", stale_bytes, nullptr, false},
-    {"raw", [](const Record& r, Visitor v) {
-       return v(Value::of_bytes(r.packet().bytes)); }, nullptr, true},
+    {"raw", [](const Record& r, Visitor v) { return v(Value::of_bytes(r.packet().bytes)); },
+     nullptr, true},
     {"error", fault, fault_names, false},
     {"error.fault", fault, fault_names, false},
-    {"error.offset", [](const Record& r, Visitor v) {
-       return !r.frame->malformed() || integer(v, r.frame->error.offset_bytes); }, nullptr, false},
-    {"error.requirement", [](const Record& r, Visitor v) {
-       return !r.frame->malformed() ||
-              text(v, reflect::requirement(r.frame->error.requirement).id); }, nullptr, true},
-    {"error.text", [](const Record& r, Visitor v) {
-       return !r.frame->malformed() || text(v, reflect::error_text(*r.frame)); }, nullptr, true},
+    {"error.offset",
+     [](const Record& r, Visitor v) {
+       return !r.frame->malformed() || integer(v, r.frame->error.offset_bytes);
+     },
+     nullptr, false},
+    {"error.requirement",
+     [](const Record& r, Visitor v) {
+       return !r.frame->malformed() || text(v, reflect::requirement(r.frame->error.requirement).id);
+     },
+     nullptr, true},
+    {"error.text",
+     [](const Record& r, Visitor v) {
+       return !r.frame->malformed() || text(v, reflect::error_text(*r.frame));
+     },
+     nullptr, true},
 };
 
 }  // namespace

@@ -44,8 +44,8 @@ double number_of(const Value& value) {
 }
 
 bool is_number(const Value& value) {
-  return value.kind == ValueKind::kInteger || value.kind == ValueKind::kReal || value.kind == ValueKind::kTime ||
-         value.kind == ValueKind::kBits;
+  return value.kind == ValueKind::kInteger || value.kind == ValueKind::kReal ||
+         value.kind == ValueKind::kTime || value.kind == ValueKind::kBits;
 }
 
 bool is_float(const Value& value) { return value.kind == ValueKind::kReal && value.field; }
@@ -105,10 +105,8 @@ bool Filter::holds(std::size_t index, const Record& record) const {
   const Term& term = terms_[index];
   const auto part_holds = [&](std::size_t part) { return holds(part, record); };
   switch (term.kind) {
-    case Term::Kind::kAny:
-      return std::any_of(term.parts.begin(), term.parts.end(), part_holds);
-    case Term::Kind::kAll:
-      return std::all_of(term.parts.begin(), term.parts.end(), part_holds);
+    case Term::Kind::kAny: return std::any_of(term.parts.begin(), term.parts.end(), part_holds);
+    case Term::Kind::kAll: return std::all_of(term.parts.begin(), term.parts.end(), part_holds);
     case Term::Kind::kNot: return !part_holds(term.parts[0]);
     case Term::Kind::kPresent: return present(term, record);
     case Term::Kind::kCompare: return compares(term, record);

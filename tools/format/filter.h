@@ -1,5 +1,5 @@
-// The expressions of --filter: `message==updates && src.devid==4`. tools/decode_format.md has the
-// grammar.
+// The expressions of --filter: `message==updates && src.devid==4`. tools/commands/decode_format.md
+// has the grammar.
 #pragma once
 
 #include <cstdint>
@@ -34,9 +34,9 @@ struct Operand {
   enum class Kind : std::uint8_t { kInteger, kReal, kText, kPath };
   Kind kind = Kind::kInteger;
   std::int64_t integer = 0;
-  double real = 0;             ///< Also of kInteger.
+  double real = 0;  ///< Also of kInteger.
   std::string text;
-  std::size_t path = 0;        ///< kPath: index into the filter's paths.
+  std::size_t path = 0;  ///< kPath: index into the filter's paths.
 };
 
 /// A part of an expression. Parts refer to others by their index in the filter.

@@ -21,9 +21,7 @@ struct Token {
   std::size_t position = 0;
 };
 
-bool starts_word(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
-}
+bool starts_word(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 // Names of interfaces have colons, those of requirements hyphens.
 bool continues_word(char c) {
@@ -293,8 +291,8 @@ class FilterParser {
     const std::vector<std::string> bits = filter_.paths_[term.path].bit_names();
     do {
       if (token_.kind == TokenKind::kWord && bits.empty()) {
-        fail(fmt::format("{} is no mask, its bits have no names",
-                         filter_.paths_[term.path].text()));
+        fail(
+            fmt::format("{} is no mask, its bits have no names", filter_.paths_[term.path].text()));
       }
       if (token_.kind == TokenKind::kNumber) {
         const Operand number = read_number(token_);

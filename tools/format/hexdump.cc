@@ -37,8 +37,8 @@ std::vector<int> owners(const Record& record, std::vector<std::string>& names) {
     }
     // One more name than the field's own is enough: "dest.pid".
     const reflect::Field* outer = around.empty() ? nullptr : decoded[around.back()].field;
-    std::string name = outer ? fmt::format("{}.{}", outer->name, node.field->name)
-                             : std::string(node.field->name);
+    std::string name =
+        outer ? fmt::format("{}.{}", outer->name, node.field->name) : std::string(node.field->name);
     for (std::uint32_t k = 0; k < node.size; ++k) {
       owner[node.offset + k] = static_cast<int>(names.size());
     }

@@ -25,8 +25,7 @@ class JsonNodes {
   static constexpr std::size_t kMaxElementChars = 2 * 34;
 
   char* object(char* at, const reflect::Decoded& decoded, std::size_t node) const;
-  char* members(char* at, const reflect::Decoded& decoded, std::size_t from,
-                std::size_t end) const;
+  char* members(char* at, const reflect::Decoded& decoded, std::size_t from, std::size_t end) const;
   char* number(char* at, const FieldPlan& plan, std::int64_t value) const;
   char* number_beside(char* at, const FieldPlan& plan, std::int64_t value) const;
   char* array(char* at, const FieldPlan& plan, const reflect::Decoded& decoded,

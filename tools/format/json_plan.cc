@@ -41,8 +41,7 @@ std::size_t plan_mask(const reflect::MaskTable& table, FieldPlan& plan) {
   plan.bits.resize(table.width_bits);
   for (std::size_t bit = 0; bit < plan.bits.size(); ++bit) {
     const char* name = table.bit_names[bit];
-    const std::string text =
-        name ? fmt::format(",\"{}\"", name) : fmt::format(",\"bit{}\"", bit);
+    const std::string text = name ? fmt::format(",\"{}\"", name) : fmt::format(",\"bit{}\"", bit);
     // A name that does not fit is cut in place of the spec compiler, not here.
     if (!plan.bits[bit].set(text)) plan.bits[bit].set(fmt::format(",\"bit{}\"", bit));
     chars += text.size();
@@ -93,8 +92,8 @@ void JsonPlan::add(const Field& field) {
     if (!unit) plan_enum(*field.enumeration, plan);
   }
   if (field.mask) chars += plan.bits_key.size() + plan_mask(*field.mask, plan) + 2;
-  plan.plain = !unit && !field.enumeration && !field.mask && field.kind != Kind::kFloat &&
-               plan.key.size > 0;
+  plan.plain =
+      !unit && !field.enumeration && !field.mask && field.kind != Kind::kFloat && plan.key.size > 0;
   max_member_chars_ = std::max(max_member_chars_, chars + 2 * kPieceRoom);
 }
 

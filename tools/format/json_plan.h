@@ -31,21 +31,21 @@ RUBRIC_INLINE char* put(char* at, const Piece& piece) {
 
 /// Everything about a field that printing needs.
 struct FieldPlan {
-  Piece key;                    ///< `,"seq_num":`
-  Piece nameless;               ///< For enums: `,"type_name":null`
-  Piece bits_open;              ///< For masks: `,"transducers_bits":[`
+  Piece key;        ///< `,"seq_num":`
+  Piece nameless;   ///< For enums: `,"type_name":null`
+  Piece bits_open;  ///< For masks: `,"transducers_bits":[`
   const reflect::Field* field = nullptr;
-  std::string long_key;         ///< The same where it does not fit in `key`.
-  std::string name_key;         ///< `,"type_name":`
-  std::string bits_key;         ///< `,"transducers_bits":`
-  std::string unit_key;         ///< `,"temp_degC":`
+  std::string long_key;  ///< The same where it does not fit in `key`.
+  std::string name_key;  ///< `,"type_name":`
+  std::string bits_key;  ///< `,"transducers_bits":`
+  std::string unit_key;  ///< `,"temp_degC":`
   /// For enums with close values: the member and its name for each value from first_value on,
   /// `,"type":35,"type_name":"updates"`; size 0 for a value without a name.
   std::vector<Piece> members;
   std::int64_t first_value = 0;
-  std::vector<Piece> bits;      ///< For masks: `,"light"` for each bit.
-  bool plain = false;           ///< A number with nothing beside it.
-  bool enumerated = false;      ///< `members` is all there is to know of its names.
+  std::vector<Piece> bits;  ///< For masks: `,"light"` for each bit.
+  bool plain = false;       ///< A number with nothing beside it.
+  bool enumerated = false;  ///< `members` is all there is to know of its names.
 };
 
 /// The plans of a protocol.

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "codec/reflect/fault_text.h"
-#include "conformance/report/text.h"
+#include "codec/text/text.h"
 #include "tools/format/put.h"
 
 namespace rubric::format {
@@ -248,12 +248,8 @@ void append_json(const Value& value, const Record& record, const JsonNodes& node
     case Value::Kind::kInteger:
       out.commit(put_int(out.reserve(kMaxIntChars), value.integer));
       break;
-    case Value::Kind::kReal:
-      out.commit(put_double(out.reserve(kMaxFloatChars), value.real));
-      break;
-    case Value::Kind::kTime:
-      out.commit(put_time(out.reserve(kMaxTimeChars), value.integer));
-      break;
+    case Value::Kind::kReal: out.commit(put_double(out.reserve(kMaxFloatChars), value.real)); break;
+    case Value::Kind::kTime: out.commit(put_time(out.reserve(kMaxTimeChars), value.integer)); break;
     case Value::Kind::kText: append_text_member(out, {}, value.text); break;
     case Value::Kind::kBits: append_json_bits(*value.field, value.integer, out); break;
     case Value::Kind::kBytes: {

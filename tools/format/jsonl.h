@@ -1,4 +1,4 @@
-// JSON lines, schema "rubric.decode/1"; tools/decode_format.md describes it.
+// JSON lines, schema "rubric.decode/1"; tools/commands/decode_format.md describes it.
 #pragma once
 
 #include <string>

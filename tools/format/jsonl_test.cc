@@ -27,8 +27,8 @@ std::vector<std::string> keys(const Json& object) {
 }
 
 const std::vector<std::string> kKeys = {
-    "schema", "index", "offset", "time", "interface", "direction", "framing", "frame", "am",
-    "message", "path", "fields", "notes", "stale", "raw", "error"};
+    "schema", "index",   "offset", "time",   "interface", "direction", "framing", "frame",
+    "am",     "message", "path",   "fields", "notes",     "stale",     "raw",     "error"};
 
 TEST(Jsonl, has_all_keys_in_order_whatever_the_frame) {
   const auto framings = {Framing::kHdlc, Framing::kSf, Framing::kRadio, Framing::kBare};
@@ -100,8 +100,8 @@ TEST(Jsonl, shows_bare_messages_and_units) {
 }
 
 TEST(Jsonl, shows_floats_that_json_lacks_as_strings) {
-  const Json line = print(Sample("0000c07f 0000807f 000080ff 0000c03f 000000c0", Framing::kBare,
-                                 "synaptic_data"));
+  const Json line = print(
+      Sample("0000c07f 0000807f 000080ff 0000c03f 000000c0", Framing::kBare, "synaptic_data"));
   EXPECT_EQ(line["fields"]["values"], Json::parse(R"(["NaN", "Infinity", "-Infinity", 1.5, -2])"));
 }
 
@@ -127,7 +127,7 @@ TEST(Jsonl, says_what_is_remarkable) {
 
 TEST(Jsonl, shows_what_the_framing_breaks) {
   Sample aborted("00 ffff", Framing::kHdlc);
-  aborted.packet.error = Error{Fault::kAborted, 4, ReqId::kWireHdlcEscape};
+  aborted.packet.error = Error{Fault::kAborted, 4, "WIRE-HDLC-ESCAPE"_rule};
   aborted.packet.crc = kAbsent;
   aborted.packet.dropped_bytes = 12;
   aborted.decode();
@@ -137,7 +137,7 @@ TEST(Jsonl, shows_what_the_framing_breaks) {
   EXPECT_EQ(line["error"]["fault"], "aborted");
   EXPECT_EQ(line["error"]["offset"], 3);  // In raw, which lacks the kind byte.
   Sample damage("0a0d0d0a", Framing::kBare);
-  damage.packet.error = Error{Fault::kContainer, 4, ReqId::kWirePcapng};
+  damage.packet.error = Error{Fault::kContainer, 4, "WIRE-PCAPNG"_rule};
   damage.packet.dropped_bytes = 3;
   damage.decode();
   EXPECT_EQ(print(damage)["frame"], Json::parse(R"({"dropped": 3})"));
@@ -145,10 +145,9 @@ TEST(Jsonl, shows_what_the_framing_breaks) {
 
 TEST(Jsonl, prints_selected_fields_flat) {
   const Json line = print(Sample(kUpdates), false, "index,src.devid,updates.value,cur_time,path");
-  EXPECT_EQ(line.dump(),
-            R"({"schema":"rubric.decode/1","index":0,"src.devid":2,)"
-            R"("updates.value":[302,6402,1202],"cur_time":null,)"
-            R"("path":["net_msg","app_msg","updates"]})");
+  EXPECT_EQ(line.dump(), R"({"schema":"rubric.decode/1","index":0,"src.devid":2,)"
+                         R"("updates.value":[302,6402,1202],"cur_time":null,)"
+                         R"("path":["net_msg","app_msg","updates"]})");
   EXPECT_EQ(print(Sample(kUpdates), false, "dest,trans_id_name,updates.transducer_bits").dump(),
             R"({"schema":"rubric.decode/1","index":0,)"
             R"("dest":{"pid":11,"pid_name":null,"devid":65533,"devid_name":"null"},)"

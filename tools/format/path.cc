@@ -78,8 +78,8 @@ Path::Path(std::string_view text, const Protocol& protocol) : text_(text), proto
     if (f.kind == Kind::kStruct && f.repeat != Repeat::kOnce) elements.insert(f.type);
   });
   for_each_field(protocol, [&](const Type& owner, const Field& f) {
-    const bool list = elements.contains(&owner) ||
-                      (f.kind != Kind::kStruct && f.repeat != Repeat::kOnce);
+    const bool list =
+        elements.contains(&owner) || (f.kind != Kind::kStruct && f.repeat != Repeat::kOnce);
     add_targets(f, components_.back(), list);
   });
   for (const Type* type : message_types(protocol)) {
@@ -186,8 +186,8 @@ void Path::find(const Record& record, bool first_only, Visitor visit) const {
     const Node& node = decoded[i];
     while (around.depth && i >= decoded[around.nodes[around.depth - 1]].end) --around.depth;
     // An element of an array has its array's field, which counts once.
-    const bool element = around.depth && decoded[around.nodes[around.depth - 1]].kind ==
-                                             NodeKind::kStructArray &&
+    const bool element = around.depth &&
+                         decoded[around.nodes[around.depth - 1]].kind == NodeKind::kStructArray &&
                          decoded[around.nodes[around.depth - 1]].field == node.field;
     if (element) continue;
     const Target* here = target(node);

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "conformance/report/text.h"
+#include "codec/text/text.h"
 #include "tools/format/put.h"
 
 namespace rubric::format {
@@ -60,9 +60,7 @@ void append_plain_value(const Value& value, const Record& record, const JsonNode
       out.commit(put_int(out.reserve(kMaxIntChars), value.integer));
       break;
     case Value::Kind::kReal: append_real(value.real, value.field != nullptr, out); break;
-    case Value::Kind::kTime:
-      out.commit(put_time(out.reserve(kMaxTimeChars), value.integer));
-      break;
+    case Value::Kind::kTime: out.commit(put_time(out.reserve(kMaxTimeChars), value.integer)); break;
     case Value::Kind::kText: append_harmless(value.text, out); break;
     case Value::Kind::kBits: append_bits(*value.field->mask, value.integer, out); break;
     case Value::Kind::kBytes:

@@ -72,7 +72,9 @@ TEST(Put, hex_of_every_length) {
   std::vector<std::uint8_t> bytes;
   std::string expected;
   for (int i = 0; i < 300; ++i) {
-    EXPECT_EQ(text_of([&](char* at) { return put_hex(at, {bytes.data(), bytes.size()}); }),
+    EXPECT_EQ(text_of([&](char* at) {
+                return put_hex(at, {bytes.data(), bytes.size()});
+              }),
               expected);
     const auto byte = static_cast<std::uint8_t>(i * 7);
     bytes.push_back(byte);

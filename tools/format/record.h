@@ -11,10 +11,10 @@ namespace rubric::format {
 
 /// A decoded frame with the facts that only the run has. Borrowed: valid during the call.
 struct Record {
-  std::uint64_t index = 0;              ///< Counts the frames of all inputs from 0.
-  std::uint64_t number = 1;             ///< The frame in its file, from 1, as in `rubric check`.
-  std::string_view interface_name;      ///< Empty: the input names none.
-  std::int64_t time_ns = kNoTime;       ///< In the form of --time; kNoTime: not shown.
+  std::uint64_t index = 0;          ///< Counts the frames of all inputs from 0.
+  std::uint64_t number = 1;         ///< The frame in its file, from 1, as in `rubric check`.
+  std::string_view interface_name;  ///< Empty: the input names none.
+  std::int64_t time_ns = kNoTime;   ///< In the form of --time; kNoTime: not shown.
   const reflect::Frame* frame = nullptr;
 
   const Packet& packet() const { return *frame->packet; }

@@ -23,13 +23,14 @@ class Robust : public testing::Test {
                   parse_paths("seq_num,value,updates,transducers_bits,payload,error,stale,net_msg",
                               rubicon())),
         csv_(rubicon(), {}),
-        text_(rubicon(), [] {
-          TextOptions options;
-          options.hex = options.color = options.units = true;
-          return options;
-        }()),
-        filter_("seq_num>5 || values<1 || transducers & temp || !error && payload==00",
-                rubicon()) {}
+        text_(rubicon(),
+              [] {
+                TextOptions options;
+                options.hex = options.color = options.units = true;
+                return options;
+              }()),
+        filter_("seq_num>5 || values<1 || transducers & temp || !error && payload==00", rubicon()) {
+  }
 
   void print_all(const Sample& sample) {
     const auto line = nlohmann::json::parse(sample.print(jsonl_));
@@ -94,8 +95,9 @@ TEST_F(Robust, large_messages) {
 
 TEST_F(Robust, random_expressions) {
   constexpr std::string_view kPieces[] = {
-      "message", "==", "updates", "&&", "||", "!", "(", ")", "src.devid", "4", "0x", "&", "|",
-      "temp", "exists", "\"", "'", "1e9", "-1", ".", "!=", "<", "error", "\xff", " ", "not"};
+      "message", "==", "updates", "&&", "||",    "!",      "(",  ")",  "src.devid",
+      "4",       "0x", "&",       "|",  "temp",  "exists", "\"", "'",  "1e9",
+      "-1",      ".",  "!=",      "<",  "error", "\xff",   " ",  "not"};
   int accepted = 0;
   const Sample sample(kUpdates);
   for (int round = 0; round < 20'000; ++round) {

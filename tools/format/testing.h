@@ -32,8 +32,7 @@ inline std::vector<std::uint8_t> from_hex(std::string_view hex) {
 
 /// A packet of given bytes, decoded.
 struct Sample {
-  explicit Sample(std::string_view hex, Framing framing = Framing::kSf,
-                  std::string_view bare = {})
+  explicit Sample(std::string_view hex, Framing framing = Framing::kSf, std::string_view bare = {})
       : Sample(from_hex(hex), framing, bare) {}
   Sample(std::vector<std::uint8_t> content, Framing framing, std::string_view bare = {})
       : bytes(std::move(content)),

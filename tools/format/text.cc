@@ -133,9 +133,8 @@ void append_notes(const Record& record, Styled& styled) {
 void append_error(const Record& record, Styled& styled) {
   const Frame& frame = *record.frame;
   if (!frame.malformed()) return;
-  styled.put(Style::kError,
-             fmt::format("!! {} at {}: {} ", reflect::fault_name(frame.error.fault),
-                         frame.error.offset_bytes, reflect::error_text(frame)));
+  styled.put(Style::kError, fmt::format("!! {} at {}: {} ", reflect::fault_name(frame.error.fault),
+                                        frame.error.offset_bytes, reflect::error_text(frame)));
 }
 
 void append_rule(const Record& record, Styled& styled) {

@@ -12,9 +12,9 @@ namespace rubric::format {
 
 struct TextOptions {
   bool color = false;
-  bool hex = false;           ///< A hex dump below each line.
-  bool units = false;         ///< Values with a unit are shown converted.
-  std::vector<Path> fields;   ///< Only these, where there are any.
+  bool hex = false;          ///< A hex dump below each line.
+  bool units = false;        ///< Values with a unit are shown converted.
+  std::vector<Path> fields;  ///< Only these, where there are any.
 };
 
 /// Index, time, interface and direction, framing, AM addresses, message, fields; a malformed frame

@@ -118,9 +118,8 @@ class FieldPrinter {
       out_.append(fmt::format("{:.6g}{}", converted(field, value), field.unit->symbol));
     } else if (field.mask) {
       append_bits(*field.mask, value, out_);
-    } else if (const char* name = field.enumeration
-                                      ? reflect::enum_name(*field.enumeration, value)
-                                      : nullptr) {
+    } else if (const char* name =
+                   field.enumeration ? reflect::enum_name(*field.enumeration, value) : nullptr) {
       out_.append(name);
     } else if (field.kind == Kind::kFloat) {
       out_.append(fmt::format("{}", float_of_bits(static_cast<std::uint32_t>(value))));

@@ -10,8 +10,8 @@ namespace rubric::format {
 inline constexpr std::size_t kMaxHexBytes = 24;
 
 struct FieldStyle {
-  bool units = false;      ///< Values with a unit are shown converted.
-  bool in_turns = false;   ///< Values in the colours of the hex dump.
+  bool units = false;     ///< Values with a unit are shown converted.
+  bool in_turns = false;  ///< Values in the colours of the hex dump.
 };
 
 /// Appends all fields of the outermost message. Structures of two numbers are pairs, "dest=11:2";

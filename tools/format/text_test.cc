@@ -96,9 +96,10 @@ TEST(Hexdump, names_the_owner_of_each_byte) {
   options.hex = true;
   const Sample sample("00 ffff 0000 0e 00 1c 000b fffd 000b 0002 00 0001 02 030a beef");
   const std::string text = print(sample, options);
-  EXPECT_THAT(text, HasSubstr(
-      "        0000  00 ff ff 00 00 0e 00 1c  00 0b ff fd 00 0b 00 02  ................\n"
-      "              a  b- b  c- c  d  e  f   g- g  h- h  i- i  j- j\n"));
+  EXPECT_THAT(
+      text,
+      HasSubstr("        0000  00 ff ff 00 00 0e 00 1c  00 0b ff fd 00 0b 00 02  ................\n"
+                "              a  b- b  c- c  d  e  f   g- g  h- h  i- i  j- j\n"));
   EXPECT_THAT(text, HasSubstr("        0010  00 00 01 02 03 0a be ef"));
   EXPECT_THAT(text, HasSubstr("\n        h dest.devid  i src.pid  j src.devid"));
 }
@@ -132,12 +133,13 @@ TEST(Csv, has_a_header_and_a_row_a_frame) {
   EXPECT_EQ(header.view(), std::string(csv_columns()) + "\r\n");
   Sample sample(kUpdates);
   EXPECT_EQ(sample.print(all), "0,0,,,,sf,0,65535,28,updates,,,,\r\n");
-  CsvFormatter some(rubicon(), parse_paths("index, src.devid,updates.value,cur_time,devid_name",
-                                           rubicon()));
+  CsvFormatter some(rubicon(),
+                    parse_paths("index, src.devid,updates.value,cur_time,devid_name", rubicon()));
   EXPECT_EQ(sample.print(some), "0,2,302 6402 1202,,null\r\n");
   const Sample bad("00 ffff 0000 0e 00 1c 000b fffd 000b 0002 02 0001 02 030a");
-  EXPECT_EQ(bad.print(all), "0,0,,,,sf,0,65535,28,net_msg,out_of_range,16,WIRE-NET-RELIABLE,"
-                            "\"reliable is 2, allowed are 0 to 1\"\r\n");
+  EXPECT_EQ(bad.print(all),
+            "0,0,,,,sf,0,65535,28,net_msg,out_of_range,16,WIRE-NET-RELIABLE,"
+            "\"reliable is 2, allowed are 0 to 1\"\r\n");
 }
 
 TEST(Path, refuses_what_no_frame_can_have) {

@@ -46,8 +46,8 @@ struct Value {
 class Visitor {
  public:
   template <class F>
-    requires(!std::is_same_v<std::remove_cv_t<F>, Visitor>)
-  Visitor(F& call)  // NOLINT: a borrowed view of a callable.
+  requires(!std::is_same_v<std::remove_cv_t<F>, Visitor>)
+      Visitor(F& call)  // NOLINT: a borrowed view of a callable.
       : object_(&call), call_([](void* object, const Value& value) -> bool {
           return (*static_cast<F*>(object))(value);
         }) {}

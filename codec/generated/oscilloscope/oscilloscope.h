@@ -37,7 +37,7 @@ struct OscilloscopeLayout {
   static Error check_lengths(const Oscilloscope& value) {
     const size_t payload_size = static_cast<size_t>(value.am.length);
     if (RUBRIC_UNLIKELY(value.payload.size() != payload_size)) {
-      return wrong_length(value.payload.size(), payload_size, 8, req::kWireAmLength);
+      return wrong_length(value.payload.size(), payload_size, 8, "WIRE-AM-LENGTH"_rule);
     }
     return no_error();
   }
@@ -70,14 +70,14 @@ class OscilloscopeView {
     const uint8_t* const p = bytes.data();
     if (RUBRIC_UNLIKELY(bytes.size() < 8)) return check_short(bytes);
     if (RUBRIC_UNLIKELY(load_u8(p) != 0)) {
-      return error_at(Fault::kUnexpected, 0, req::kWireAmDispatch);
+      return error_at(Fault::kUnexpected, 0, "WIRE-AM-DISPATCH"_rule);
     }
     if (RUBRIC_UNLIKELY(load_u8(p + 5) > 114)) {
-      return error_at(Fault::kOutOfRange, 5, req::kWireAmLength);
+      return error_at(Fault::kOutOfRange, 5, "WIRE-AM-LENGTH"_rule);
     }
     const size_t payload_size = static_cast<size_t>(load_u8(p + 5));
     if (RUBRIC_UNLIKELY(bytes.size() - 8 < payload_size)) {
-      return truncated(bytes, req::kWireAmLength);
+      return truncated(bytes, "WIRE-AM-LENGTH"_rule);
     }
     Error in_payload = no_error();
     switch (load_u8(p + 7)) {
@@ -140,16 +140,16 @@ class OscilloscopeView {
   // Bytes that end within the first 8; they may be wrong before.
   RUBRIC_COLD static constexpr Error check_short(Bytes bytes) {
     const uint8_t* const p = bytes.data();
-    if (bytes.size() < 1) return truncated(bytes, req::kWireAmDispatch);
+    if (bytes.size() < 1) return truncated(bytes, "WIRE-AM-DISPATCH"_rule);
     if (RUBRIC_UNLIKELY(load_u8(p) != 0)) {
-      return error_at(Fault::kUnexpected, 0, req::kWireAmDispatch);
+      return error_at(Fault::kUnexpected, 0, "WIRE-AM-DISPATCH"_rule);
     }
-    if (bytes.size() < 5) return truncated(bytes, req::kWireAmHeader);
-    if (bytes.size() < 6) return truncated(bytes, req::kWireAmLength);
+    if (bytes.size() < 5) return truncated(bytes, "WIRE-AM-HEADER"_rule);
+    if (bytes.size() < 6) return truncated(bytes, "WIRE-AM-LENGTH"_rule);
     if (RUBRIC_UNLIKELY(load_u8(p + 5) > 114)) {
-      return error_at(Fault::kOutOfRange, 5, req::kWireAmLength);
+      return error_at(Fault::kOutOfRange, 5, "WIRE-AM-LENGTH"_rule);
     }
-    return truncated(bytes, req::kWireAmHeader);
+    return truncated(bytes, "WIRE-AM-HEADER"_rule);
   }
 
   Bytes bytes_;
@@ -163,7 +163,7 @@ inline Result<MutableBytes> write(const Oscilloscope& value, MutableBytes out) {
   if (RUBRIC_UNLIKELY(is_error(wrong))) return Failure{wrong};
   const size_t size = OscilloscopeLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
-    return fail(Fault::kNoRoom, out.size(), req::kWireAmHeader);
+    return fail(Fault::kNoRoom, out.size(), "WIRE-AM-HEADER"_rule);
   }
   OscilloscopeLayout::store(value, out.data());
   const Error error = OscilloscopeView::check(out.first(size));
@@ -179,7 +179,7 @@ class OscilloscopeBuilder {
   /// kNoRoom where `out` is smaller than kMinSizeBytes of the view.
   static constexpr Result<OscilloscopeBuilder> create(MutableBytes out) {
     if (RUBRIC_UNLIKELY(out.size() < OscilloscopeView::kMinSizeBytes)) {
-      return fail(Fault::kNoRoom, out.size(), req::kWireAmHeader);
+      return fail(Fault::kNoRoom, out.size(), "WIRE-AM-HEADER"_rule);
     }
     return OscilloscopeBuilder(out);
   }

@@ -72,7 +72,7 @@ class OscilloscopeMsgView {
   static Result<OscilloscopeMsgView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
   /// The first rule that `bytes` break, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
-    if (RUBRIC_UNLIKELY(bytes.size() < 28)) return truncated(bytes, req::kWireOscilloscope);
+    if (RUBRIC_UNLIKELY(bytes.size() < 28)) return truncated(bytes, "WIRE-OSCILLOSCOPE"_rule);
     return no_error();
   }
 
@@ -126,7 +126,7 @@ class OscilloscopeMsgView {
 inline Result<MutableBytes> write(const OscilloscopeMsg& value, MutableBytes out) {
   const size_t size = OscilloscopeMsgLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
-    return fail(Fault::kNoRoom, out.size(), req::kWireOscilloscope);
+    return fail(Fault::kNoRoom, out.size(), "WIRE-OSCILLOSCOPE"_rule);
   }
   OscilloscopeMsgLayout::store(value, out.data());
   return out.first(size);
@@ -140,7 +140,7 @@ class OscilloscopeMsgBuilder {
   /// kNoRoom where `out` is smaller than kMinSizeBytes of the view.
   static constexpr Result<OscilloscopeMsgBuilder> create(MutableBytes out) {
     if (RUBRIC_UNLIKELY(out.size() < OscilloscopeMsgView::kMinSizeBytes)) {
-      return fail(Fault::kNoRoom, out.size(), req::kWireOscilloscope);
+      return fail(Fault::kNoRoom, out.size(), "WIRE-OSCILLOSCOPE"_rule);
     }
     return OscilloscopeMsgBuilder(out);
   }

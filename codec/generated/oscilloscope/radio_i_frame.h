@@ -74,7 +74,7 @@ class RadioIFrameView {
     const uint8_t* const p = bytes.data();
     if (RUBRIC_UNLIKELY(bytes.size() < 11)) return check_short(bytes);
     if (RUBRIC_UNLIKELY(load_u8(p + 9) != 63)) {
-      return error_at(Fault::kUnexpected, 9, req::kWireRadioNetwork);
+      return error_at(Fault::kUnexpected, 9, "WIRE-RADIO-NETWORK"_rule);
     }
     Error in_payload = no_error();
     switch (load_u8(p + 10)) {
@@ -143,12 +143,12 @@ class RadioIFrameView {
   // Bytes that end within the first 11; they may be wrong before.
   RUBRIC_COLD static constexpr Error check_short(Bytes bytes) {
     const uint8_t* const p = bytes.data();
-    if (bytes.size() < 9) return truncated(bytes, req::kWireRadioHeader);
-    if (bytes.size() < 10) return truncated(bytes, req::kWireRadioNetwork);
+    if (bytes.size() < 9) return truncated(bytes, "WIRE-RADIO-HEADER"_rule);
+    if (bytes.size() < 10) return truncated(bytes, "WIRE-RADIO-NETWORK"_rule);
     if (RUBRIC_UNLIKELY(load_u8(p + 9) != 63)) {
-      return error_at(Fault::kUnexpected, 9, req::kWireRadioNetwork);
+      return error_at(Fault::kUnexpected, 9, "WIRE-RADIO-NETWORK"_rule);
     }
-    return truncated(bytes, req::kWireRadioHeader);
+    return truncated(bytes, "WIRE-RADIO-HEADER"_rule);
   }
 
   Bytes bytes_;
@@ -160,7 +160,7 @@ class RadioIFrameView {
 inline Result<MutableBytes> write(const RadioIFrame& value, MutableBytes out) {
   const size_t size = RadioIFrameLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
-    return fail(Fault::kNoRoom, out.size(), req::kWireRadioHeader);
+    return fail(Fault::kNoRoom, out.size(), "WIRE-RADIO-HEADER"_rule);
   }
   RadioIFrameLayout::store(value, out.data());
   const Error error = RadioIFrameView::check(out.first(size));
@@ -176,7 +176,7 @@ class RadioIFrameBuilder {
   /// kNoRoom where `out` is smaller than kMinSizeBytes of the view.
   static constexpr Result<RadioIFrameBuilder> create(MutableBytes out) {
     if (RUBRIC_UNLIKELY(out.size() < RadioIFrameView::kMinSizeBytes)) {
-      return fail(Fault::kNoRoom, out.size(), req::kWireRadioHeader);
+      return fail(Fault::kNoRoom, out.size(), "WIRE-RADIO-HEADER"_rule);
     }
     return RadioIFrameBuilder(out);
   }
@@ -219,7 +219,7 @@ class RadioIFrameBuilder {
   Result<RadioIFrameView> finish() const {
     const size_t size = 11 + tail_;
     if (RUBRIC_UNLIKELY(out_.size() < size)) {
-      return fail(Fault::kNoRoom, out_.size(), req::kWireRadioHeader);
+      return fail(Fault::kNoRoom, out_.size(), "WIRE-RADIO-HEADER"_rule);
     }
     const Result<RadioIFrameView> whole = RadioIFrameView::parse(out_.first(size));
     if (!whole) return whole;

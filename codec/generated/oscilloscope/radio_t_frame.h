@@ -65,7 +65,7 @@ class RadioTFrameView {
   /// The first rule that `bytes` break, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     const uint8_t* const p = bytes.data();
-    if (RUBRIC_UNLIKELY(bytes.size() < 10)) return truncated(bytes, req::kWireRadioHeader);
+    if (RUBRIC_UNLIKELY(bytes.size() < 10)) return truncated(bytes, "WIRE-RADIO-HEADER"_rule);
     Error in_payload = no_error();
     switch (load_u8(p + 9)) {
       case 147:
@@ -137,7 +137,7 @@ class RadioTFrameView {
 inline Result<MutableBytes> write(const RadioTFrame& value, MutableBytes out) {
   const size_t size = RadioTFrameLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
-    return fail(Fault::kNoRoom, out.size(), req::kWireRadioHeader);
+    return fail(Fault::kNoRoom, out.size(), "WIRE-RADIO-HEADER"_rule);
   }
   RadioTFrameLayout::store(value, out.data());
   const Error error = RadioTFrameView::check(out.first(size));
@@ -153,7 +153,7 @@ class RadioTFrameBuilder {
   /// kNoRoom where `out` is smaller than kMinSizeBytes of the view.
   static constexpr Result<RadioTFrameBuilder> create(MutableBytes out) {
     if (RUBRIC_UNLIKELY(out.size() < RadioTFrameView::kMinSizeBytes)) {
-      return fail(Fault::kNoRoom, out.size(), req::kWireRadioHeader);
+      return fail(Fault::kNoRoom, out.size(), "WIRE-RADIO-HEADER"_rule);
     }
     return RadioTFrameBuilder(out);
   }
@@ -190,7 +190,7 @@ class RadioTFrameBuilder {
   Result<RadioTFrameView> finish() const {
     const size_t size = 10 + tail_;
     if (RUBRIC_UNLIKELY(out_.size() < size)) {
-      return fail(Fault::kNoRoom, out_.size(), req::kWireRadioHeader);
+      return fail(Fault::kNoRoom, out_.size(), "WIRE-RADIO-HEADER"_rule);
     }
     const Result<RadioTFrameView> whole = RadioTFrameView::parse(out_.first(size));
     if (!whole) return whole;

@@ -38,27 +38,27 @@ constexpr Unit kIntervalUnit{"ms", 1, 0};
 constexpr ExprStep kReadingsCount[] = {{Op::kConst, 10}};
 constexpr Field kFields[] = {
     {"version", "\"version\":", 10, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 0, kAny,
-     -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireOscilloscope, nullptr,
+     -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-OSCILLOSCOPE"_rule, nullptr,
      "Version of the interval."},
     {"interval", "\"interval\":", 11, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 2, kAny,
-     -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireOscilloscope, &kIntervalUnit,
+     -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-OSCILLOSCOPE"_rule, &kIntervalUnit,
      "Sampling period."},
     {"id", "\"id\":", 5, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 4, kAny, -1, nullptr,
-     nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireOscilloscope, nullptr,
+     nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-OSCILLOSCOPE"_rule, nullptr,
      "Mote id of the sender."},
     {"count", "\"count\":", 8, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 6, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireOscilloscope, nullptr,
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-OSCILLOSCOPE"_rule, nullptr,
      "Number of the first reading."},
     {"readings", "\"readings\":", 11, Kind::kUint, 2, false, Repeat::kCount, Extent::kOwn, 8,
      kAny, -1, nullptr, nullptr, nullptr, nullptr, {}, {kReadingsCount, 1}, {},
-     ReqId::kWireOscilloscope, nullptr, "Sensor readings."},
+     "WIRE-OSCILLOSCOPE"_rule, nullptr, "Sensor readings."},
 };
 }  // namespace oscilloscope_msg
 }  // namespace of
 namespace types {
 constexpr Type kOscilloscopeMsg{
     "oscilloscope_msg", "oscilloscope_msg", of::oscilloscope_msg::kFields, 5, nullptr, 0, 28, 28,
-    147, ReqId::kWireOscilloscope,
+    147, "WIRE-OSCILLOSCOPE"_rule,
     "Readings of one mote.",
     ""};
 }  // namespace types
@@ -73,17 +73,17 @@ constexpr ExprStep kPayloadSize[] = {{Op::kLoadU8, 5}};
 constexpr Field kFields[] = {
     {"am", "\"am\":", 5, Kind::kStruct, 0, false, Repeat::kOnce, Extent::kOwn, 0, kAny, -1,
      nullptr, nullptr, &::rubric::tinyos::tables::types::kAmHeader, nullptr, {}, {}, {},
-     ReqId::kWireAmHeader, nullptr, ""},
+     "WIRE-AM-HEADER"_rule, nullptr, ""},
     {"payload", "\"payload\":", 10, Kind::kStruct, 0, false, Repeat::kOnce, Extent::kSize, 8,
      kAny, -1, nullptr, nullptr, nullptr, &kPayloadSwitch, {kPayloadSize, 1}, {}, {},
-     ReqId::kWireAmLength, nullptr, ""},
+     "WIRE-AM-LENGTH"_rule, nullptr, ""},
 };
 }  // namespace oscilloscope
 }  // namespace of
 namespace types {
 constexpr Type kOscilloscope{
     "oscilloscope", "oscilloscope", of::oscilloscope::kFields, 2, nullptr, 0, 8, 122, -1,
-    ReqId::kWireAmHeader,
+    "WIRE-AM-HEADER"_rule,
     "The demo application of TinyOS: a mote sends ten readings of its sensor in a message. It "
     "shows that another protocol over the same frames is one more file here.",
     "tinyos-2.x apps/Oscilloscope/Oscilloscope.h"};
@@ -99,14 +99,14 @@ constexpr Switch kPayloadSwitch{{kPayloadKey, 1}, kPayloadCases, 1, nullptr};
 constexpr Field kFields[] = {
     {"mac", "\"mac\":", 6, Kind::kStruct, 0, false, Repeat::kOnce, Extent::kOwn, 0, kAny, -1,
      nullptr, nullptr, &::rubric::tinyos::tables::types::kMacHeader, nullptr, {}, {}, {},
-     ReqId::kWireRadioHeader, nullptr, ""},
+     "WIRE-RADIO-HEADER"_rule, nullptr, ""},
     {"network", "\"network\":", 10, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 9,
      {ValidKind::kOneOf, 0, 0, kNetworkOneOf, 1}, -1, nullptr, nullptr, nullptr, nullptr, {}, {},
-     {}, ReqId::kWireRadioNetwork, nullptr, ""},
+     {}, "WIRE-RADIO-NETWORK"_rule, nullptr, ""},
     {"type", "\"type\":", 7, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 10, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireRadioHeader, nullptr, ""},
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-RADIO-HEADER"_rule, nullptr, ""},
     {"payload", "\"payload\":", 10, Kind::kStruct, 0, false, Repeat::kOnce, Extent::kToEnd, 11,
-     kAny, -1, nullptr, nullptr, nullptr, &kPayloadSwitch, {}, {}, {}, ReqId::kWireRadioLength,
+     kAny, -1, nullptr, nullptr, nullptr, &kPayloadSwitch, {}, {}, {}, "WIRE-RADIO-LENGTH"_rule,
      nullptr, ""},
 };
 }  // namespace radio_i_frame
@@ -114,7 +114,7 @@ constexpr Field kFields[] = {
 namespace types {
 constexpr Type kRadioIFrame{
     "radio_i_frame", "radio_i_frame", of::radio_i_frame::kFields, 4, nullptr, 0, 11, UINT32_MAX,
-    -1, ReqId::kWireRadioHeader,
+    -1, "WIRE-RADIO-HEADER"_rule,
     "",
     ""};
 }  // namespace types
@@ -128,11 +128,11 @@ constexpr Switch kPayloadSwitch{{kPayloadKey, 1}, kPayloadCases, 1, nullptr};
 constexpr Field kFields[] = {
     {"mac", "\"mac\":", 6, Kind::kStruct, 0, false, Repeat::kOnce, Extent::kOwn, 0, kAny, -1,
      nullptr, nullptr, &::rubric::tinyos::tables::types::kMacHeader, nullptr, {}, {}, {},
-     ReqId::kWireRadioHeader, nullptr, ""},
+     "WIRE-RADIO-HEADER"_rule, nullptr, ""},
     {"type", "\"type\":", 7, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 9, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireRadioHeader, nullptr, ""},
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-RADIO-HEADER"_rule, nullptr, ""},
     {"payload", "\"payload\":", 10, Kind::kStruct, 0, false, Repeat::kOnce, Extent::kToEnd, 10,
-     kAny, -1, nullptr, nullptr, nullptr, &kPayloadSwitch, {}, {}, {}, ReqId::kWireRadioLength,
+     kAny, -1, nullptr, nullptr, nullptr, &kPayloadSwitch, {}, {}, {}, "WIRE-RADIO-LENGTH"_rule,
      nullptr, ""},
 };
 }  // namespace radio_t_frame
@@ -140,7 +140,7 @@ constexpr Field kFields[] = {
 namespace types {
 constexpr Type kRadioTFrame{
     "radio_t_frame", "radio_t_frame", of::radio_t_frame::kFields, 3, nullptr, 0, 10, UINT32_MAX,
-    -1, ReqId::kWireRadioHeader,
+    -1, "WIRE-RADIO-HEADER"_rule,
     "",
     ""};
 }  // namespace types

@@ -109,9 +109,9 @@ class AckJoinView {
   constexpr explicit AckJoinView(Bytes bytes) : bytes_(bytes) {}
   // Bytes that end within the first 14; they may be wrong before.
   RUBRIC_COLD static constexpr Error check_short(Bytes bytes) {
-    if (bytes.size() < 8) return truncated(bytes, req::kWireRAddr);
-    if (bytes.size() < 10) return truncated(bytes, req::kWireAckJoin);
-    return truncated(bytes, req::kWireMoteDesc);
+    if (bytes.size() < 8) return truncated(bytes, "WIRE-R-ADDR"_rule);
+    if (bytes.size() < 10) return truncated(bytes, "WIRE-ACK-JOIN"_rule);
+    return truncated(bytes, "WIRE-MOTE-DESC"_rule);
   }
 
   Bytes bytes_;
@@ -123,7 +123,7 @@ class AckJoinView {
 inline Result<MutableBytes> write(const AckJoin& value, MutableBytes out) {
   const size_t size = AckJoinLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
-    return fail(Fault::kNoRoom, out.size(), req::kWireAckJoin);
+    return fail(Fault::kNoRoom, out.size(), "WIRE-ACK-JOIN"_rule);
   }
   AckJoinLayout::store(value, out.data());
   return out.first(size);
@@ -137,7 +137,7 @@ class AckJoinBuilder {
   /// kNoRoom where `out` is smaller than kMinSizeBytes of the view.
   static constexpr Result<AckJoinBuilder> create(MutableBytes out) {
     if (RUBRIC_UNLIKELY(out.size() < AckJoinView::kMinSizeBytes)) {
-      return fail(Fault::kNoRoom, out.size(), req::kWireAckJoin);
+      return fail(Fault::kNoRoom, out.size(), "WIRE-ACK-JOIN"_rule);
     }
     return AckJoinBuilder(out);
   }

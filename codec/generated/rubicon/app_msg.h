@@ -50,7 +50,7 @@ struct AppMsgLayout {
   static size_t size_bytes(const AppMsg& value) { return 2 + value.payload.size(); }
   static Error check_lengths(const AppMsg& value) {
     if (RUBRIC_UNLIKELY(size_bytes(value) > 102)) {
-      return error_at(Fault::kTooLong, 102, req::kWireAppHeader);
+      return error_at(Fault::kTooLong, 102, "WIRE-APP-HEADER"_rule);
     }
     return no_error();
   }
@@ -85,7 +85,7 @@ class AppMsgView {
   static Result<AppMsgView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
   /// The first rule that `bytes` break, or Fault::kNone. At most kMaxSizeBytes of them.
   static constexpr Error check(Bytes bytes) {
-    if (RUBRIC_UNLIKELY(bytes.size() < 2)) return truncated(bytes, req::kWireAppHeader);
+    if (RUBRIC_UNLIKELY(bytes.size() < 2)) return truncated(bytes, "WIRE-APP-HEADER"_rule);
     return no_error();
   }
 
@@ -247,7 +247,7 @@ inline Result<MutableBytes> write(const AppMsg& value, MutableBytes out) {
   if (RUBRIC_UNLIKELY(is_error(wrong))) return Failure{wrong};
   const size_t size = AppMsgLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
-    return fail(Fault::kNoRoom, out.size(), req::kWireAppHeader);
+    return fail(Fault::kNoRoom, out.size(), "WIRE-APP-HEADER"_rule);
   }
   AppMsgLayout::store(value, out.data());
   return out.first(size);
@@ -261,7 +261,7 @@ class AppMsgBuilder {
   /// kNoRoom where `out` is smaller than kMinSizeBytes of the view.
   static constexpr Result<AppMsgBuilder> create(MutableBytes out) {
     if (RUBRIC_UNLIKELY(out.size() < AppMsgView::kMinSizeBytes)) {
-      return fail(Fault::kNoRoom, out.size(), req::kWireAppHeader);
+      return fail(Fault::kNoRoom, out.size(), "WIRE-APP-HEADER"_rule);
     }
     return AppMsgBuilder(out);
   }
@@ -294,7 +294,7 @@ class AppMsgBuilder {
   Result<AppMsgView> finish() const {
     const size_t size = 2 + tail_;
     if (RUBRIC_UNLIKELY(out_.size() < size)) {
-      return fail(Fault::kNoRoom, out_.size(), req::kWireAppHeader);
+      return fail(Fault::kNoRoom, out_.size(), "WIRE-APP-HEADER"_rule);
     }
     const Result<AppMsgView> whole = AppMsgView::parse(out_.first(size));
     if (!whole) return whole;

@@ -53,7 +53,7 @@ struct AppMsgFromPcLayout {
   static size_t size_bytes(const AppMsgFromPc& value) { return 2 + value.payload.size(); }
   static Error check_lengths(const AppMsgFromPc& value) {
     if (RUBRIC_UNLIKELY(size_bytes(value) > 102)) {
-      return error_at(Fault::kTooLong, 102, req::kWireAppHeader);
+      return error_at(Fault::kTooLong, 102, "WIRE-APP-HEADER"_rule);
     }
     return no_error();
   }
@@ -88,7 +88,7 @@ class AppMsgFromPcView {
   static Result<AppMsgFromPcView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
   /// The first rule that `bytes` break, or Fault::kNone. At most kMaxSizeBytes of them.
   static constexpr Error check(Bytes bytes) {
-    if (RUBRIC_UNLIKELY(bytes.size() < 2)) return truncated(bytes, req::kWireAppHeader);
+    if (RUBRIC_UNLIKELY(bytes.size() < 2)) return truncated(bytes, "WIRE-APP-HEADER"_rule);
     return no_error();
   }
 
@@ -272,7 +272,7 @@ inline Result<MutableBytes> write(const AppMsgFromPc& value, MutableBytes out) {
   if (RUBRIC_UNLIKELY(is_error(wrong))) return Failure{wrong};
   const size_t size = AppMsgFromPcLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
-    return fail(Fault::kNoRoom, out.size(), req::kWireAppHeader);
+    return fail(Fault::kNoRoom, out.size(), "WIRE-APP-HEADER"_rule);
   }
   AppMsgFromPcLayout::store(value, out.data());
   return out.first(size);
@@ -286,7 +286,7 @@ class AppMsgFromPcBuilder {
   /// kNoRoom where `out` is smaller than kMinSizeBytes of the view.
   static constexpr Result<AppMsgFromPcBuilder> create(MutableBytes out) {
     if (RUBRIC_UNLIKELY(out.size() < AppMsgFromPcView::kMinSizeBytes)) {
-      return fail(Fault::kNoRoom, out.size(), req::kWireAppHeader);
+      return fail(Fault::kNoRoom, out.size(), "WIRE-APP-HEADER"_rule);
     }
     return AppMsgFromPcBuilder(out);
   }
@@ -319,7 +319,7 @@ class AppMsgFromPcBuilder {
   Result<AppMsgFromPcView> finish() const {
     const size_t size = 2 + tail_;
     if (RUBRIC_UNLIKELY(out_.size() < size)) {
-      return fail(Fault::kNoRoom, out_.size(), req::kWireAppHeader);
+      return fail(Fault::kNoRoom, out_.size(), "WIRE-APP-HEADER"_rule);
     }
     const Result<AppMsgFromPcView> whole = AppMsgFromPcView::parse(out_.first(size));
     if (!whole) return whole;

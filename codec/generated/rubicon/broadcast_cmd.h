@@ -61,7 +61,7 @@ class BroadcastCmdView {
   static Result<BroadcastCmdView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
   /// The first rule that `bytes` break, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
-    if (RUBRIC_UNLIKELY(bytes.size() < 5)) return truncated(bytes, req::kWireBroadcastCmd);
+    if (RUBRIC_UNLIKELY(bytes.size() < 5)) return truncated(bytes, "WIRE-BROADCAST-CMD"_rule);
     return no_error();
   }
 
@@ -107,7 +107,7 @@ class BroadcastCmdView {
 inline Result<MutableBytes> write(const BroadcastCmd& value, MutableBytes out) {
   const size_t size = BroadcastCmdLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
-    return fail(Fault::kNoRoom, out.size(), req::kWireBroadcastCmd);
+    return fail(Fault::kNoRoom, out.size(), "WIRE-BROADCAST-CMD"_rule);
   }
   BroadcastCmdLayout::store(value, out.data());
   return out.first(size);
@@ -121,7 +121,7 @@ class BroadcastCmdBuilder {
   /// kNoRoom where `out` is smaller than kMinSizeBytes of the view.
   static constexpr Result<BroadcastCmdBuilder> create(MutableBytes out) {
     if (RUBRIC_UNLIKELY(out.size() < BroadcastCmdView::kMinSizeBytes)) {
-      return fail(Fault::kNoRoom, out.size(), req::kWireBroadcastCmd);
+      return fail(Fault::kNoRoom, out.size(), "WIRE-BROADCAST-CMD"_rule);
     }
     return BroadcastCmdBuilder(out);
   }

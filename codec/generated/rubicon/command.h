@@ -62,7 +62,7 @@ class CommandView {
   static Result<CommandView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
   /// The first rule that `bytes` break, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
-    if (RUBRIC_UNLIKELY(bytes.size() < 5)) return truncated(bytes, req::kWireCommand);
+    if (RUBRIC_UNLIKELY(bytes.size() < 5)) return truncated(bytes, "WIRE-COMMAND"_rule);
     return no_error();
   }
 
@@ -106,7 +106,7 @@ class CommandView {
 inline Result<MutableBytes> write(const Command& value, MutableBytes out) {
   const size_t size = CommandLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
-    return fail(Fault::kNoRoom, out.size(), req::kWireCommand);
+    return fail(Fault::kNoRoom, out.size(), "WIRE-COMMAND"_rule);
   }
   CommandLayout::store(value, out.data());
   return out.first(size);
@@ -120,7 +120,7 @@ class CommandBuilder {
   /// kNoRoom where `out` is smaller than kMinSizeBytes of the view.
   static constexpr Result<CommandBuilder> create(MutableBytes out) {
     if (RUBRIC_UNLIKELY(out.size() < CommandView::kMinSizeBytes)) {
-      return fail(Fault::kNoRoom, out.size(), req::kWireCommand);
+      return fail(Fault::kNoRoom, out.size(), "WIRE-COMMAND"_rule);
     }
     return CommandBuilder(out);
   }

@@ -96,10 +96,10 @@ class CompleteView {
     const uint8_t* const p = bytes.data();
     if (RUBRIC_UNLIKELY(bytes.size() < 19)) return check_short(bytes);
     if (RUBRIC_UNLIKELY(load_u8(p + 8) > 1)) {
-      return error_at(Fault::kOutOfRange, 8, req::kWireNetReliable);
+      return error_at(Fault::kOutOfRange, 8, "WIRE-NET-RELIABLE"_rule);
     }
     if (RUBRIC_UNLIKELY(load_u8(p + 11) < 2 || load_u8(p + 11) > 102)) {
-      return error_at(Fault::kOutOfRange, 11, req::kWireNetNbytes);
+      return error_at(Fault::kOutOfRange, 11, "WIRE-NET-NBYTES"_rule);
     }
     return no_error();
   }
@@ -154,18 +154,18 @@ class CompleteView {
   // Bytes that end within the first 19; they may be wrong before.
   RUBRIC_COLD static constexpr Error check_short(Bytes bytes) {
     const uint8_t* const p = bytes.data();
-    if (bytes.size() < 8) return truncated(bytes, req::kWireRAddr);
-    if (bytes.size() < 9) return truncated(bytes, req::kWireNetReliable);
+    if (bytes.size() < 8) return truncated(bytes, "WIRE-R-ADDR"_rule);
+    if (bytes.size() < 9) return truncated(bytes, "WIRE-NET-RELIABLE"_rule);
     if (RUBRIC_UNLIKELY(load_u8(p + 8) > 1)) {
-      return error_at(Fault::kOutOfRange, 8, req::kWireNetReliable);
+      return error_at(Fault::kOutOfRange, 8, "WIRE-NET-RELIABLE"_rule);
     }
-    if (bytes.size() < 11) return truncated(bytes, req::kWireComplete);
-    if (bytes.size() < 12) return truncated(bytes, req::kWireNetNbytes);
+    if (bytes.size() < 11) return truncated(bytes, "WIRE-COMPLETE"_rule);
+    if (bytes.size() < 12) return truncated(bytes, "WIRE-NET-NBYTES"_rule);
     if (RUBRIC_UNLIKELY(load_u8(p + 11) < 2 || load_u8(p + 11) > 102)) {
-      return error_at(Fault::kOutOfRange, 11, req::kWireNetNbytes);
+      return error_at(Fault::kOutOfRange, 11, "WIRE-NET-NBYTES"_rule);
     }
-    if (bytes.size() < 14) return truncated(bytes, req::kWireComplete);
-    return truncated(bytes, req::kWireDemo);
+    if (bytes.size() < 14) return truncated(bytes, "WIRE-COMPLETE"_rule);
+    return truncated(bytes, "WIRE-DEMO"_rule);
   }
 
   Bytes bytes_;
@@ -177,7 +177,7 @@ class CompleteView {
 inline Result<MutableBytes> write(const Complete& value, MutableBytes out) {
   const size_t size = CompleteLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
-    return fail(Fault::kNoRoom, out.size(), req::kWireComplete);
+    return fail(Fault::kNoRoom, out.size(), "WIRE-COMPLETE"_rule);
   }
   CompleteLayout::store(value, out.data());
   const Error error = CompleteView::check(out.first(size));
@@ -193,7 +193,7 @@ class CompleteBuilder {
   /// kNoRoom where `out` is smaller than kMinSizeBytes of the view.
   static constexpr Result<CompleteBuilder> create(MutableBytes out) {
     if (RUBRIC_UNLIKELY(out.size() < CompleteView::kMinSizeBytes)) {
-      return fail(Fault::kNoRoom, out.size(), req::kWireComplete);
+      return fail(Fault::kNoRoom, out.size(), "WIRE-COMPLETE"_rule);
     }
     return CompleteBuilder(out);
   }

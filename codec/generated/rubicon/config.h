@@ -55,7 +55,7 @@ class ConfigView {
   static Result<ConfigView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
   /// The first rule that `bytes` break, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
-    if (RUBRIC_UNLIKELY(bytes.size() < 3)) return truncated(bytes, req::kWireConfig);
+    if (RUBRIC_UNLIKELY(bytes.size() < 3)) return truncated(bytes, "WIRE-CONFIG"_rule);
     return no_error();
   }
 
@@ -96,7 +96,7 @@ class ConfigView {
 inline Result<MutableBytes> write(const Config& value, MutableBytes out) {
   const size_t size = ConfigLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
-    return fail(Fault::kNoRoom, out.size(), req::kWireConfig);
+    return fail(Fault::kNoRoom, out.size(), "WIRE-CONFIG"_rule);
   }
   ConfigLayout::store(value, out.data());
   return out.first(size);
@@ -110,7 +110,7 @@ class ConfigBuilder {
   /// kNoRoom where `out` is smaller than kMinSizeBytes of the view.
   static constexpr Result<ConfigBuilder> create(MutableBytes out) {
     if (RUBRIC_UNLIKELY(out.size() < ConfigView::kMinSizeBytes)) {
-      return fail(Fault::kNoRoom, out.size(), req::kWireConfig);
+      return fail(Fault::kNoRoom, out.size(), "WIRE-CONFIG"_rule);
     }
     return ConfigBuilder(out);
   }

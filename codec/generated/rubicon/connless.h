@@ -56,7 +56,7 @@ struct ConnlessLayout {
   static size_t size_bytes(const Connless& value) { return 8 + value.payload.size(); }
   static Error check_lengths(const Connless& value) {
     if (RUBRIC_UNLIKELY(value.payload.size() > 100)) {
-      return error_at(Fault::kOutOfRange, 7, req::kWireConnless);
+      return error_at(Fault::kOutOfRange, 7, "WIRE-CONNLESS"_rule);
     }
     return no_error();
   }
@@ -92,13 +92,13 @@ class ConnlessView {
     const uint8_t* const p = bytes.data();
     if (RUBRIC_UNLIKELY(bytes.size() < 8)) return check_short(bytes);
     if (RUBRIC_UNLIKELY(load_u8(p + 4) > 1)) {
-      return error_at(Fault::kOutOfRange, 4, req::kWireConnless);
+      return error_at(Fault::kOutOfRange, 4, "WIRE-CONNLESS"_rule);
     }
     if (RUBRIC_UNLIKELY(load_u8(p + 7) > 100)) {
-      return error_at(Fault::kOutOfRange, 7, req::kWireConnless);
+      return error_at(Fault::kOutOfRange, 7, "WIRE-CONNLESS"_rule);
     }
     if (RUBRIC_UNLIKELY(bytes.size() - 8 < static_cast<size_t>(load_u8(p + 7)))) {
-      return truncated(bytes, req::kWireConnless);
+      return truncated(bytes, "WIRE-CONNLESS"_rule);
     }
     return no_error();
   }
@@ -147,11 +147,11 @@ class ConnlessView {
   // Bytes that end within the first 8; they may be wrong before.
   RUBRIC_COLD static constexpr Error check_short(Bytes bytes) {
     const uint8_t* const p = bytes.data();
-    if (bytes.size() < 5) return truncated(bytes, req::kWireConnless);
+    if (bytes.size() < 5) return truncated(bytes, "WIRE-CONNLESS"_rule);
     if (RUBRIC_UNLIKELY(load_u8(p + 4) > 1)) {
-      return error_at(Fault::kOutOfRange, 4, req::kWireConnless);
+      return error_at(Fault::kOutOfRange, 4, "WIRE-CONNLESS"_rule);
     }
-    return truncated(bytes, req::kWireConnless);
+    return truncated(bytes, "WIRE-CONNLESS"_rule);
   }
 
   Bytes bytes_;
@@ -165,7 +165,7 @@ inline Result<MutableBytes> write(const Connless& value, MutableBytes out) {
   if (RUBRIC_UNLIKELY(is_error(wrong))) return Failure{wrong};
   const size_t size = ConnlessLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
-    return fail(Fault::kNoRoom, out.size(), req::kWireConnless);
+    return fail(Fault::kNoRoom, out.size(), "WIRE-CONNLESS"_rule);
   }
   ConnlessLayout::store(value, out.data());
   const Error error = ConnlessView::check(out.first(size));
@@ -181,7 +181,7 @@ class ConnlessBuilder {
   /// kNoRoom where `out` is smaller than kMinSizeBytes of the view.
   static constexpr Result<ConnlessBuilder> create(MutableBytes out) {
     if (RUBRIC_UNLIKELY(out.size() < ConnlessView::kMinSizeBytes)) {
-      return fail(Fault::kNoRoom, out.size(), req::kWireConnless);
+      return fail(Fault::kNoRoom, out.size(), "WIRE-CONNLESS"_rule);
     }
     return ConnlessBuilder(out);
   }

@@ -71,7 +71,7 @@ class DataView {
   static Result<DataView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
   /// The first rule that `bytes` break, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
-    if (RUBRIC_UNLIKELY(bytes.size() < 10)) return truncated(bytes, req::kWireData);
+    if (RUBRIC_UNLIKELY(bytes.size() < 10)) return truncated(bytes, "WIRE-DATA"_rule);
     return no_error();
   }
 
@@ -121,7 +121,7 @@ class DataView {
 inline Result<MutableBytes> write(const Data& value, MutableBytes out) {
   const size_t size = DataLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
-    return fail(Fault::kNoRoom, out.size(), req::kWireData);
+    return fail(Fault::kNoRoom, out.size(), "WIRE-DATA"_rule);
   }
   DataLayout::store(value, out.data());
   return out.first(size);
@@ -135,7 +135,7 @@ class DataBuilder {
   /// kNoRoom where `out` is smaller than kMinSizeBytes of the view.
   static constexpr Result<DataBuilder> create(MutableBytes out) {
     if (RUBRIC_UNLIKELY(out.size() < DataView::kMinSizeBytes)) {
-      return fail(Fault::kNoRoom, out.size(), req::kWireData);
+      return fail(Fault::kNoRoom, out.size(), "WIRE-DATA"_rule);
     }
     return DataBuilder(out);
   }

@@ -62,7 +62,7 @@ class DemoView {
   static Result<DemoView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
   /// The first rule that `bytes` break, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
-    if (RUBRIC_UNLIKELY(bytes.size() < 5)) return truncated(bytes, req::kWireDemo);
+    if (RUBRIC_UNLIKELY(bytes.size() < 5)) return truncated(bytes, "WIRE-DEMO"_rule);
     return no_error();
   }
 
@@ -108,7 +108,7 @@ class DemoView {
 inline Result<MutableBytes> write(const Demo& value, MutableBytes out) {
   const size_t size = DemoLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
-    return fail(Fault::kNoRoom, out.size(), req::kWireDemo);
+    return fail(Fault::kNoRoom, out.size(), "WIRE-DEMO"_rule);
   }
   DemoLayout::store(value, out.data());
   return out.first(size);
@@ -122,7 +122,7 @@ class DemoBuilder {
   /// kNoRoom where `out` is smaller than kMinSizeBytes of the view.
   static constexpr Result<DemoBuilder> create(MutableBytes out) {
     if (RUBRIC_UNLIKELY(out.size() < DemoView::kMinSizeBytes)) {
-      return fail(Fault::kNoRoom, out.size(), req::kWireDemo);
+      return fail(Fault::kNoRoom, out.size(), "WIRE-DEMO"_rule);
     }
     return DemoBuilder(out);
   }

@@ -101,7 +101,7 @@ class DemoDataView {
   static Result<DemoDataView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
   /// The first rule that `bytes` break, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
-    if (RUBRIC_UNLIKELY(bytes.size() < 19)) return truncated(bytes, req::kWireDemoData);
+    if (RUBRIC_UNLIKELY(bytes.size() < 19)) return truncated(bytes, "WIRE-DEMO-DATA"_rule);
     return no_error();
   }
 
@@ -166,7 +166,7 @@ class DemoDataView {
 inline Result<MutableBytes> write(const DemoData& value, MutableBytes out) {
   const size_t size = DemoDataLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
-    return fail(Fault::kNoRoom, out.size(), req::kWireDemoData);
+    return fail(Fault::kNoRoom, out.size(), "WIRE-DEMO-DATA"_rule);
   }
   DemoDataLayout::store(value, out.data());
   return out.first(size);
@@ -180,7 +180,7 @@ class DemoDataBuilder {
   /// kNoRoom where `out` is smaller than kMinSizeBytes of the view.
   static constexpr Result<DemoDataBuilder> create(MutableBytes out) {
     if (RUBRIC_UNLIKELY(out.size() < DemoDataView::kMinSizeBytes)) {
-      return fail(Fault::kNoRoom, out.size(), req::kWireDemoData);
+      return fail(Fault::kNoRoom, out.size(), "WIRE-DEMO-DATA"_rule);
     }
     return DemoDataBuilder(out);
   }

@@ -67,7 +67,7 @@ class JoinReplyView {
   static Result<JoinReplyView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
   /// The first rule that `bytes` break, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
-    if (RUBRIC_UNLIKELY(bytes.size() < 10)) return truncated(bytes, req::kWireJoinReply);
+    if (RUBRIC_UNLIKELY(bytes.size() < 10)) return truncated(bytes, "WIRE-JOIN-REPLY"_rule);
     return no_error();
   }
 
@@ -114,7 +114,7 @@ class JoinReplyView {
 inline Result<MutableBytes> write(const JoinReply& value, MutableBytes out) {
   const size_t size = JoinReplyLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
-    return fail(Fault::kNoRoom, out.size(), req::kWireJoinReply);
+    return fail(Fault::kNoRoom, out.size(), "WIRE-JOIN-REPLY"_rule);
   }
   JoinReplyLayout::store(value, out.data());
   return out.first(size);
@@ -128,7 +128,7 @@ class JoinReplyBuilder {
   /// kNoRoom where `out` is smaller than kMinSizeBytes of the view.
   static constexpr Result<JoinReplyBuilder> create(MutableBytes out) {
     if (RUBRIC_UNLIKELY(out.size() < JoinReplyView::kMinSizeBytes)) {
-      return fail(Fault::kNoRoom, out.size(), req::kWireJoinReply);
+      return fail(Fault::kNoRoom, out.size(), "WIRE-JOIN-REPLY"_rule);
     }
     return JoinReplyBuilder(out);
   }

@@ -93,8 +93,8 @@ class JoinRequestView {
   constexpr explicit JoinRequestView(Bytes bytes) : bytes_(bytes) {}
   // Bytes that end within the first 6; they may be wrong before.
   RUBRIC_COLD static constexpr Error check_short(Bytes bytes) {
-    if (bytes.size() < 2) return truncated(bytes, req::kWireJoinRequest);
-    return truncated(bytes, req::kWireMoteDesc);
+    if (bytes.size() < 2) return truncated(bytes, "WIRE-JOIN-REQUEST"_rule);
+    return truncated(bytes, "WIRE-MOTE-DESC"_rule);
   }
 
   Bytes bytes_;
@@ -106,7 +106,7 @@ class JoinRequestView {
 inline Result<MutableBytes> write(const JoinRequest& value, MutableBytes out) {
   const size_t size = JoinRequestLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
-    return fail(Fault::kNoRoom, out.size(), req::kWireJoinRequest);
+    return fail(Fault::kNoRoom, out.size(), "WIRE-JOIN-REQUEST"_rule);
   }
   JoinRequestLayout::store(value, out.data());
   return out.first(size);
@@ -120,7 +120,7 @@ class JoinRequestBuilder {
   /// kNoRoom where `out` is smaller than kMinSizeBytes of the view.
   static constexpr Result<JoinRequestBuilder> create(MutableBytes out) {
     if (RUBRIC_UNLIKELY(out.size() < JoinRequestView::kMinSizeBytes)) {
-      return fail(Fault::kNoRoom, out.size(), req::kWireJoinRequest);
+      return fail(Fault::kNoRoom, out.size(), "WIRE-JOIN-REQUEST"_rule);
     }
     return JoinRequestBuilder(out);
   }

@@ -55,7 +55,7 @@ struct LearningModuleCmdLayout {
   static size_t size_bytes(const LearningModuleCmd& value) { return 8 + value.weights.size(); }
   static Error check_lengths(const LearningModuleCmd& value) {
     if (RUBRIC_UNLIKELY(value.weights.size() > 92)) {
-      return error_at(Fault::kOutOfRange, 7, req::kWireLearningModuleCmd);
+      return error_at(Fault::kOutOfRange, 7, "WIRE-LEARNING-MODULE-CMD"_rule);
     }
     return no_error();
   }
@@ -90,13 +90,15 @@ class LearningModuleCmdView {
   /// The first rule that `bytes` break, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     const uint8_t* const p = bytes.data();
-    if (RUBRIC_UNLIKELY(bytes.size() < 8)) return truncated(bytes, req::kWireLearningModuleCmd);
+    if (RUBRIC_UNLIKELY(bytes.size() < 8)) {
+      return truncated(bytes, "WIRE-LEARNING-MODULE-CMD"_rule);
+    }
     if (RUBRIC_UNLIKELY(load_u8(p + 7) > 92)) {
-      return error_at(Fault::kOutOfRange, 7, req::kWireLearningModuleCmd);
+      return error_at(Fault::kOutOfRange, 7, "WIRE-LEARNING-MODULE-CMD"_rule);
     }
     const size_t weights_size = static_cast<size_t>(load_u8(p + 7));
     if (RUBRIC_UNLIKELY(bytes.size() - 8 < weights_size)) {
-      return truncated(bytes, req::kWireLearningModuleCmd);
+      return truncated(bytes, "WIRE-LEARNING-MODULE-CMD"_rule);
     }
     return no_error();
   }
@@ -160,7 +162,7 @@ inline Result<MutableBytes> write(const LearningModuleCmd& value, MutableBytes o
   if (RUBRIC_UNLIKELY(is_error(wrong))) return Failure{wrong};
   const size_t size = LearningModuleCmdLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
-    return fail(Fault::kNoRoom, out.size(), req::kWireLearningModuleCmd);
+    return fail(Fault::kNoRoom, out.size(), "WIRE-LEARNING-MODULE-CMD"_rule);
   }
   LearningModuleCmdLayout::store(value, out.data());
   return out.first(size);
@@ -174,7 +176,7 @@ class LearningModuleCmdBuilder {
   /// kNoRoom where `out` is smaller than kMinSizeBytes of the view.
   static constexpr Result<LearningModuleCmdBuilder> create(MutableBytes out) {
     if (RUBRIC_UNLIKELY(out.size() < LearningModuleCmdView::kMinSizeBytes)) {
-      return fail(Fault::kNoRoom, out.size(), req::kWireLearningModuleCmd);
+      return fail(Fault::kNoRoom, out.size(), "WIRE-LEARNING-MODULE-CMD"_rule);
     }
     return LearningModuleCmdBuilder(out);
   }

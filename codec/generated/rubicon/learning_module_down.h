@@ -43,7 +43,7 @@ struct LearningModuleDownLayout {
   static size_t size_bytes(const LearningModuleDown& value) { return 4 + value.weights.size() * 4; }
   static Error check_lengths(const LearningModuleDown& value) {
     if (RUBRIC_UNLIKELY(value.weights.size() > 23)) {
-      return error_at(Fault::kOutOfRange, 3, req::kWireLearningModuleDown);
+      return error_at(Fault::kOutOfRange, 3, "WIRE-LEARNING-MODULE-DOWN"_rule);
     }
     return no_error();
   }
@@ -75,13 +75,15 @@ class LearningModuleDownView {
   /// The first rule that `bytes` break, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     const uint8_t* const p = bytes.data();
-    if (RUBRIC_UNLIKELY(bytes.size() < 4)) return truncated(bytes, req::kWireLearningModuleDown);
+    if (RUBRIC_UNLIKELY(bytes.size() < 4)) {
+      return truncated(bytes, "WIRE-LEARNING-MODULE-DOWN"_rule);
+    }
     if (RUBRIC_UNLIKELY(load_u8(p + 3) > 23)) {
-      return error_at(Fault::kOutOfRange, 3, req::kWireLearningModuleDown);
+      return error_at(Fault::kOutOfRange, 3, "WIRE-LEARNING-MODULE-DOWN"_rule);
     }
     const size_t weights_size = static_cast<size_t>(load_u8(p + 3)) * 4;
     if (RUBRIC_UNLIKELY(bytes.size() - 4 < weights_size)) {
-      return truncated(bytes, req::kWireLearningModuleDown);
+      return truncated(bytes, "WIRE-LEARNING-MODULE-DOWN"_rule);
     }
     return no_error();
   }
@@ -136,7 +138,7 @@ inline Result<MutableBytes> write(const LearningModuleDown& value, MutableBytes 
   if (RUBRIC_UNLIKELY(is_error(wrong))) return Failure{wrong};
   const size_t size = LearningModuleDownLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
-    return fail(Fault::kNoRoom, out.size(), req::kWireLearningModuleDown);
+    return fail(Fault::kNoRoom, out.size(), "WIRE-LEARNING-MODULE-DOWN"_rule);
   }
   LearningModuleDownLayout::store(value, out.data());
   return out.first(size);
@@ -150,7 +152,7 @@ class LearningModuleDownBuilder {
   /// kNoRoom where `out` is smaller than kMinSizeBytes of the view.
   static constexpr Result<LearningModuleDownBuilder> create(MutableBytes out) {
     if (RUBRIC_UNLIKELY(out.size() < LearningModuleDownView::kMinSizeBytes)) {
-      return fail(Fault::kNoRoom, out.size(), req::kWireLearningModuleDown);
+      return fail(Fault::kNoRoom, out.size(), "WIRE-LEARNING-MODULE-DOWN"_rule);
     }
     return LearningModuleDownBuilder(out);
   }

@@ -60,7 +60,7 @@ struct LearningModuleFloatCmdLayout {
   }
   static Error check_lengths(const LearningModuleFloatCmd& value) {
     if (RUBRIC_UNLIKELY(value.weights.size() > 23)) {
-      return error_at(Fault::kOutOfRange, 7, req::kWireLearningModuleFloatCmd);
+      return error_at(Fault::kOutOfRange, 7, "WIRE-LEARNING-MODULE-FLOAT-CMD"_rule);
     }
     return no_error();
   }
@@ -96,14 +96,14 @@ class LearningModuleFloatCmdView {
   static constexpr Error check(Bytes bytes) {
     const uint8_t* const p = bytes.data();
     if (RUBRIC_UNLIKELY(bytes.size() < 8)) {
-      return truncated(bytes, req::kWireLearningModuleFloatCmd);
+      return truncated(bytes, "WIRE-LEARNING-MODULE-FLOAT-CMD"_rule);
     }
     if (RUBRIC_UNLIKELY(load_u8(p + 7) > 23)) {
-      return error_at(Fault::kOutOfRange, 7, req::kWireLearningModuleFloatCmd);
+      return error_at(Fault::kOutOfRange, 7, "WIRE-LEARNING-MODULE-FLOAT-CMD"_rule);
     }
     const size_t weights_size = static_cast<size_t>(load_u8(p + 7)) * 4;
     if (RUBRIC_UNLIKELY(bytes.size() - 8 < weights_size)) {
-      return truncated(bytes, req::kWireLearningModuleFloatCmd);
+      return truncated(bytes, "WIRE-LEARNING-MODULE-FLOAT-CMD"_rule);
     }
     return no_error();
   }
@@ -169,7 +169,7 @@ inline Result<MutableBytes> write(const LearningModuleFloatCmd& value, MutableBy
   if (RUBRIC_UNLIKELY(is_error(wrong))) return Failure{wrong};
   const size_t size = LearningModuleFloatCmdLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
-    return fail(Fault::kNoRoom, out.size(), req::kWireLearningModuleFloatCmd);
+    return fail(Fault::kNoRoom, out.size(), "WIRE-LEARNING-MODULE-FLOAT-CMD"_rule);
   }
   LearningModuleFloatCmdLayout::store(value, out.data());
   return out.first(size);
@@ -183,7 +183,7 @@ class LearningModuleFloatCmdBuilder {
   /// kNoRoom where `out` is smaller than kMinSizeBytes of the view.
   static constexpr Result<LearningModuleFloatCmdBuilder> create(MutableBytes out) {
     if (RUBRIC_UNLIKELY(out.size() < LearningModuleFloatCmdView::kMinSizeBytes)) {
-      return fail(Fault::kNoRoom, out.size(), req::kWireLearningModuleFloatCmd);
+      return fail(Fault::kNoRoom, out.size(), "WIRE-LEARNING-MODULE-FLOAT-CMD"_rule);
     }
     return LearningModuleFloatCmdBuilder(out);
   }

@@ -66,7 +66,7 @@ class LearningNotificationView {
   /// The first rule that `bytes` break, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     if (RUBRIC_UNLIKELY(bytes.size() < 4)) {
-      return truncated(bytes, req::kWireLearningNotification);
+      return truncated(bytes, "WIRE-LEARNING-NOTIFICATION"_rule);
     }
     return no_error();
   }
@@ -115,7 +115,7 @@ class LearningNotificationView {
 inline Result<MutableBytes> write(const LearningNotification& value, MutableBytes out) {
   const size_t size = LearningNotificationLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
-    return fail(Fault::kNoRoom, out.size(), req::kWireLearningNotification);
+    return fail(Fault::kNoRoom, out.size(), "WIRE-LEARNING-NOTIFICATION"_rule);
   }
   LearningNotificationLayout::store(value, out.data());
   return out.first(size);
@@ -129,7 +129,7 @@ class LearningNotificationBuilder {
   /// kNoRoom where `out` is smaller than kMinSizeBytes of the view.
   static constexpr Result<LearningNotificationBuilder> create(MutableBytes out) {
     if (RUBRIC_UNLIKELY(out.size() < LearningNotificationView::kMinSizeBytes)) {
-      return fail(Fault::kNoRoom, out.size(), req::kWireLearningNotification);
+      return fail(Fault::kNoRoom, out.size(), "WIRE-LEARNING-NOTIFICATION"_rule);
     }
     return LearningNotificationBuilder(out);
   }

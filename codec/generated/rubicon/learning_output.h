@@ -36,7 +36,7 @@ struct LearningOutputLayout {
   static size_t size_bytes(const LearningOutput& value) { return 2 + value.output.size() * 4; }
   static Error check_lengths(const LearningOutput& value) {
     if (RUBRIC_UNLIKELY(value.output.size() > 24)) {
-      return error_at(Fault::kOutOfRange, 1, req::kWireLearningOutput);
+      return error_at(Fault::kOutOfRange, 1, "WIRE-LEARNING-OUTPUT"_rule);
     }
     return no_error();
   }
@@ -66,13 +66,13 @@ class LearningOutputView {
   /// The first rule that `bytes` break, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     const uint8_t* const p = bytes.data();
-    if (RUBRIC_UNLIKELY(bytes.size() < 2)) return truncated(bytes, req::kWireLearningOutput);
+    if (RUBRIC_UNLIKELY(bytes.size() < 2)) return truncated(bytes, "WIRE-LEARNING-OUTPUT"_rule);
     if (RUBRIC_UNLIKELY(load_u8(p + 1) > 24)) {
-      return error_at(Fault::kOutOfRange, 1, req::kWireLearningOutput);
+      return error_at(Fault::kOutOfRange, 1, "WIRE-LEARNING-OUTPUT"_rule);
     }
     const size_t output_size = static_cast<size_t>(load_u8(p + 1)) * 4;
     if (RUBRIC_UNLIKELY(bytes.size() - 2 < output_size)) {
-      return truncated(bytes, req::kWireLearningOutput);
+      return truncated(bytes, "WIRE-LEARNING-OUTPUT"_rule);
     }
     return no_error();
   }
@@ -124,7 +124,7 @@ inline Result<MutableBytes> write(const LearningOutput& value, MutableBytes out)
   if (RUBRIC_UNLIKELY(is_error(wrong))) return Failure{wrong};
   const size_t size = LearningOutputLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
-    return fail(Fault::kNoRoom, out.size(), req::kWireLearningOutput);
+    return fail(Fault::kNoRoom, out.size(), "WIRE-LEARNING-OUTPUT"_rule);
   }
   LearningOutputLayout::store(value, out.data());
   return out.first(size);
@@ -138,7 +138,7 @@ class LearningOutputBuilder {
   /// kNoRoom where `out` is smaller than kMinSizeBytes of the view.
   static constexpr Result<LearningOutputBuilder> create(MutableBytes out) {
     if (RUBRIC_UNLIKELY(out.size() < LearningOutputView::kMinSizeBytes)) {
-      return fail(Fault::kNoRoom, out.size(), req::kWireLearningOutput);
+      return fail(Fault::kNoRoom, out.size(), "WIRE-LEARNING-OUTPUT"_rule);
     }
     return LearningOutputBuilder(out);
   }

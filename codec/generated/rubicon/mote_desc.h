@@ -64,7 +64,7 @@ class MoteDescView {
   static Result<MoteDescView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
   /// The first rule that `bytes` break, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
-    if (RUBRIC_UNLIKELY(bytes.size() < 4)) return truncated(bytes, req::kWireMoteDesc);
+    if (RUBRIC_UNLIKELY(bytes.size() < 4)) return truncated(bytes, "WIRE-MOTE-DESC"_rule);
     return no_error();
   }
 
@@ -110,7 +110,7 @@ class MoteDescView {
 inline Result<MutableBytes> write(const MoteDesc& value, MutableBytes out) {
   const size_t size = MoteDescLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
-    return fail(Fault::kNoRoom, out.size(), req::kWireMoteDesc);
+    return fail(Fault::kNoRoom, out.size(), "WIRE-MOTE-DESC"_rule);
   }
   MoteDescLayout::store(value, out.data());
   return out.first(size);
@@ -124,7 +124,7 @@ class MoteDescBuilder {
   /// kNoRoom where `out` is smaller than kMinSizeBytes of the view.
   static constexpr Result<MoteDescBuilder> create(MutableBytes out) {
     if (RUBRIC_UNLIKELY(out.size() < MoteDescView::kMinSizeBytes)) {
-      return fail(Fault::kNoRoom, out.size(), req::kWireMoteDesc);
+      return fail(Fault::kNoRoom, out.size(), "WIRE-MOTE-DESC"_rule);
     }
     return MoteDescBuilder(out);
   }

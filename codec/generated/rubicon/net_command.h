@@ -62,7 +62,7 @@ class NetCommandView {
   static Result<NetCommandView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
   /// The first rule that `bytes` break, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
-    if (RUBRIC_UNLIKELY(bytes.size() < 4)) return truncated(bytes, req::kWireNetCommand);
+    if (RUBRIC_UNLIKELY(bytes.size() < 4)) return truncated(bytes, "WIRE-NET-COMMAND"_rule);
     return no_error();
   }
 
@@ -108,7 +108,7 @@ class NetCommandView {
 inline Result<MutableBytes> write(const NetCommand& value, MutableBytes out) {
   const size_t size = NetCommandLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
-    return fail(Fault::kNoRoom, out.size(), req::kWireNetCommand);
+    return fail(Fault::kNoRoom, out.size(), "WIRE-NET-COMMAND"_rule);
   }
   NetCommandLayout::store(value, out.data());
   return out.first(size);
@@ -122,7 +122,7 @@ class NetCommandBuilder {
   /// kNoRoom where `out` is smaller than kMinSizeBytes of the view.
   static constexpr Result<NetCommandBuilder> create(MutableBytes out) {
     if (RUBRIC_UNLIKELY(out.size() < NetCommandView::kMinSizeBytes)) {
-      return fail(Fault::kNoRoom, out.size(), req::kWireNetCommand);
+      return fail(Fault::kNoRoom, out.size(), "WIRE-NET-COMMAND"_rule);
     }
     return NetCommandBuilder(out);
   }

@@ -88,7 +88,7 @@ class NetDataView {
   static Result<NetDataView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
   /// The first rule that `bytes` break, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
-    if (RUBRIC_UNLIKELY(bytes.size() < 15)) return truncated(bytes, req::kWireNetData);
+    if (RUBRIC_UNLIKELY(bytes.size() < 15)) return truncated(bytes, "WIRE-NET-DATA"_rule);
     return no_error();
   }
 
@@ -147,7 +147,7 @@ class NetDataView {
 inline Result<MutableBytes> write(const NetData& value, MutableBytes out) {
   const size_t size = NetDataLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
-    return fail(Fault::kNoRoom, out.size(), req::kWireNetData);
+    return fail(Fault::kNoRoom, out.size(), "WIRE-NET-DATA"_rule);
   }
   NetDataLayout::store(value, out.data());
   return out.first(size);
@@ -161,7 +161,7 @@ class NetDataBuilder {
   /// kNoRoom where `out` is smaller than kMinSizeBytes of the view.
   static constexpr Result<NetDataBuilder> create(MutableBytes out) {
     if (RUBRIC_UNLIKELY(out.size() < NetDataView::kMinSizeBytes)) {
-      return fail(Fault::kNoRoom, out.size(), req::kWireNetData);
+      return fail(Fault::kNoRoom, out.size(), "WIRE-NET-DATA"_rule);
     }
     return NetDataBuilder(out);
   }

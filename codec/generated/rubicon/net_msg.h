@@ -55,7 +55,7 @@ struct NetMsgLayout {
   static size_t size_bytes(const NetMsg& value) { return 12 + value.payload.size(); }
   static Error check_lengths(const NetMsg& value) {
     if (RUBRIC_UNLIKELY(value.payload.size() < 2 || value.payload.size() > 102)) {
-      return error_at(Fault::kOutOfRange, 11, req::kWireNetNbytes);
+      return error_at(Fault::kOutOfRange, 11, "WIRE-NET-NBYTES"_rule);
     }
     return no_error();
   }
@@ -92,14 +92,14 @@ class NetMsgView {
     const uint8_t* const p = bytes.data();
     if (RUBRIC_UNLIKELY(bytes.size() < 12)) return check_short(bytes);
     if (RUBRIC_UNLIKELY(load_u8(p + 8) > 1)) {
-      return error_at(Fault::kOutOfRange, 8, req::kWireNetReliable);
+      return error_at(Fault::kOutOfRange, 8, "WIRE-NET-RELIABLE"_rule);
     }
     if (RUBRIC_UNLIKELY(load_u8(p + 11) < 2 || load_u8(p + 11) > 102)) {
-      return error_at(Fault::kOutOfRange, 11, req::kWireNetNbytes);
+      return error_at(Fault::kOutOfRange, 11, "WIRE-NET-NBYTES"_rule);
     }
     const size_t payload_size = static_cast<size_t>(load_u8(p + 11));
     if (RUBRIC_UNLIKELY(bytes.size() - 12 < payload_size)) {
-      return truncated(bytes, req::kWireNetPayload);
+      return truncated(bytes, "WIRE-NET-PAYLOAD"_rule);
     }
     Error in_payload = no_error();
     switch (load_be16(p + 6)) {
@@ -176,13 +176,13 @@ class NetMsgView {
   // Bytes that end within the first 12; they may be wrong before.
   RUBRIC_COLD static constexpr Error check_short(Bytes bytes) {
     const uint8_t* const p = bytes.data();
-    if (bytes.size() < 8) return truncated(bytes, req::kWireRAddr);
-    if (bytes.size() < 9) return truncated(bytes, req::kWireNetReliable);
+    if (bytes.size() < 8) return truncated(bytes, "WIRE-R-ADDR"_rule);
+    if (bytes.size() < 9) return truncated(bytes, "WIRE-NET-RELIABLE"_rule);
     if (RUBRIC_UNLIKELY(load_u8(p + 8) > 1)) {
-      return error_at(Fault::kOutOfRange, 8, req::kWireNetReliable);
+      return error_at(Fault::kOutOfRange, 8, "WIRE-NET-RELIABLE"_rule);
     }
-    if (bytes.size() < 11) return truncated(bytes, req::kWireNetHeader);
-    return truncated(bytes, req::kWireNetNbytes);
+    if (bytes.size() < 11) return truncated(bytes, "WIRE-NET-HEADER"_rule);
+    return truncated(bytes, "WIRE-NET-NBYTES"_rule);
   }
 
   Bytes bytes_;
@@ -196,7 +196,7 @@ inline Result<MutableBytes> write(const NetMsg& value, MutableBytes out) {
   if (RUBRIC_UNLIKELY(is_error(wrong))) return Failure{wrong};
   const size_t size = NetMsgLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
-    return fail(Fault::kNoRoom, out.size(), req::kWireNetHeader);
+    return fail(Fault::kNoRoom, out.size(), "WIRE-NET-HEADER"_rule);
   }
   NetMsgLayout::store(value, out.data());
   const Error error = NetMsgView::check(out.first(size));
@@ -212,7 +212,7 @@ class NetMsgBuilder {
   /// kNoRoom where `out` is smaller than kMinSizeBytes of the view.
   static constexpr Result<NetMsgBuilder> create(MutableBytes out) {
     if (RUBRIC_UNLIKELY(out.size() < NetMsgView::kMinSizeBytes)) {
-      return fail(Fault::kNoRoom, out.size(), req::kWireNetHeader);
+      return fail(Fault::kNoRoom, out.size(), "WIRE-NET-HEADER"_rule);
     }
     return NetMsgBuilder(out);
   }

@@ -62,7 +62,7 @@ class NetidCmdView {
   static Result<NetidCmdView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
   /// The first rule that `bytes` break, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
-    if (RUBRIC_UNLIKELY(bytes.size() < 5)) return truncated(bytes, req::kWireNetidCmd);
+    if (RUBRIC_UNLIKELY(bytes.size() < 5)) return truncated(bytes, "WIRE-NETID-CMD"_rule);
     return no_error();
   }
 
@@ -106,7 +106,7 @@ class NetidCmdView {
 inline Result<MutableBytes> write(const NetidCmd& value, MutableBytes out) {
   const size_t size = NetidCmdLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
-    return fail(Fault::kNoRoom, out.size(), req::kWireNetidCmd);
+    return fail(Fault::kNoRoom, out.size(), "WIRE-NETID-CMD"_rule);
   }
   NetidCmdLayout::store(value, out.data());
   return out.first(size);
@@ -120,7 +120,7 @@ class NetidCmdBuilder {
   /// kNoRoom where `out` is smaller than kMinSizeBytes of the view.
   static constexpr Result<NetidCmdBuilder> create(MutableBytes out) {
     if (RUBRIC_UNLIKELY(out.size() < NetidCmdView::kMinSizeBytes)) {
-      return fail(Fault::kNoRoom, out.size(), req::kWireNetidCmd);
+      return fail(Fault::kNoRoom, out.size(), "WIRE-NETID-CMD"_rule);
     }
     return NetidCmdBuilder(out);
   }

@@ -56,7 +56,7 @@ class RAddrView {
   static Result<RAddrView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
   /// The first rule that `bytes` break, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
-    if (RUBRIC_UNLIKELY(bytes.size() < 4)) return truncated(bytes, req::kWireRAddr);
+    if (RUBRIC_UNLIKELY(bytes.size() < 4)) return truncated(bytes, "WIRE-R-ADDR"_rule);
     return no_error();
   }
 
@@ -97,7 +97,7 @@ class RAddrView {
 inline Result<MutableBytes> write(const RAddr& value, MutableBytes out) {
   const size_t size = RAddrLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
-    return fail(Fault::kNoRoom, out.size(), req::kWireRAddr);
+    return fail(Fault::kNoRoom, out.size(), "WIRE-R-ADDR"_rule);
   }
   RAddrLayout::store(value, out.data());
   return out.first(size);
@@ -111,7 +111,7 @@ class RAddrBuilder {
   /// kNoRoom where `out` is smaller than kMinSizeBytes of the view.
   static constexpr Result<RAddrBuilder> create(MutableBytes out) {
     if (RUBRIC_UNLIKELY(out.size() < RAddrView::kMinSizeBytes)) {
-      return fail(Fault::kNoRoom, out.size(), req::kWireRAddr);
+      return fail(Fault::kNoRoom, out.size(), "WIRE-R-ADDR"_rule);
     }
     return RAddrBuilder(out);
   }

@@ -63,7 +63,7 @@ class ReadUpdatesView {
   static Result<ReadUpdatesView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
   /// The first rule that `bytes` break, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
-    if (RUBRIC_UNLIKELY(bytes.size() < 5)) return truncated(bytes, req::kWireReadUpdates);
+    if (RUBRIC_UNLIKELY(bytes.size() < 5)) return truncated(bytes, "WIRE-READ-UPDATES"_rule);
     return no_error();
   }
 
@@ -111,7 +111,7 @@ class ReadUpdatesView {
 inline Result<MutableBytes> write(const ReadUpdates& value, MutableBytes out) {
   const size_t size = ReadUpdatesLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
-    return fail(Fault::kNoRoom, out.size(), req::kWireReadUpdates);
+    return fail(Fault::kNoRoom, out.size(), "WIRE-READ-UPDATES"_rule);
   }
   ReadUpdatesLayout::store(value, out.data());
   return out.first(size);
@@ -125,7 +125,7 @@ class ReadUpdatesBuilder {
   /// kNoRoom where `out` is smaller than kMinSizeBytes of the view.
   static constexpr Result<ReadUpdatesBuilder> create(MutableBytes out) {
     if (RUBRIC_UNLIKELY(out.size() < ReadUpdatesView::kMinSizeBytes)) {
-      return fail(Fault::kNoRoom, out.size(), req::kWireReadUpdates);
+      return fail(Fault::kNoRoom, out.size(), "WIRE-READ-UPDATES"_rule);
     }
     return ReadUpdatesBuilder(out);
   }

@@ -50,7 +50,7 @@ class RssiBeaconView {
   static Result<RssiBeaconView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
   /// The first rule that `bytes` break, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
-    if (RUBRIC_UNLIKELY(bytes.size() < 1)) return truncated(bytes, req::kWireRssiBeacon);
+    if (RUBRIC_UNLIKELY(bytes.size() < 1)) return truncated(bytes, "WIRE-RSSI-BEACON"_rule);
     return no_error();
   }
 
@@ -88,7 +88,7 @@ class RssiBeaconView {
 inline Result<MutableBytes> write(const RssiBeacon& value, MutableBytes out) {
   const size_t size = RssiBeaconLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
-    return fail(Fault::kNoRoom, out.size(), req::kWireRssiBeacon);
+    return fail(Fault::kNoRoom, out.size(), "WIRE-RSSI-BEACON"_rule);
   }
   RssiBeaconLayout::store(value, out.data());
   return out.first(size);
@@ -102,7 +102,7 @@ class RssiBeaconBuilder {
   /// kNoRoom where `out` is smaller than kMinSizeBytes of the view.
   static constexpr Result<RssiBeaconBuilder> create(MutableBytes out) {
     if (RUBRIC_UNLIKELY(out.size() < RssiBeaconView::kMinSizeBytes)) {
-      return fail(Fault::kNoRoom, out.size(), req::kWireRssiBeacon);
+      return fail(Fault::kNoRoom, out.size(), "WIRE-RSSI-BEACON"_rule);
     }
     return RssiBeaconBuilder(out);
   }

@@ -62,7 +62,7 @@ class RubiconAckView {
   static Result<RubiconAckView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
   /// The first rule that `bytes` break, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
-    if (RUBRIC_UNLIKELY(bytes.size() < 4)) return truncated(bytes, req::kWireRubiconAck);
+    if (RUBRIC_UNLIKELY(bytes.size() < 4)) return truncated(bytes, "WIRE-RUBICON-ACK"_rule);
     return no_error();
   }
 
@@ -106,7 +106,7 @@ class RubiconAckView {
 inline Result<MutableBytes> write(const RubiconAck& value, MutableBytes out) {
   const size_t size = RubiconAckLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
-    return fail(Fault::kNoRoom, out.size(), req::kWireRubiconAck);
+    return fail(Fault::kNoRoom, out.size(), "WIRE-RUBICON-ACK"_rule);
   }
   RubiconAckLayout::store(value, out.data());
   return out.first(size);
@@ -120,7 +120,7 @@ class RubiconAckBuilder {
   /// kNoRoom where `out` is smaller than kMinSizeBytes of the view.
   static constexpr Result<RubiconAckBuilder> create(MutableBytes out) {
     if (RUBRIC_UNLIKELY(out.size() < RubiconAckView::kMinSizeBytes)) {
-      return fail(Fault::kNoRoom, out.size(), req::kWireRubiconAck);
+      return fail(Fault::kNoRoom, out.size(), "WIRE-RUBICON-ACK"_rule);
     }
     return RubiconAckBuilder(out);
   }

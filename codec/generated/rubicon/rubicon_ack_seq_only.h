@@ -51,7 +51,7 @@ class RubiconAckSeqOnlyView {
       &&)[kCount]) = delete;  // Dies too early.
   /// The first rule that `bytes` break, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
-    if (RUBRIC_UNLIKELY(bytes.size() < 2)) return truncated(bytes, req::kWireRubiconAck);
+    if (RUBRIC_UNLIKELY(bytes.size() < 2)) return truncated(bytes, "WIRE-RUBICON-ACK"_rule);
     return no_error();
   }
 
@@ -91,7 +91,7 @@ class RubiconAckSeqOnlyView {
 inline Result<MutableBytes> write(const RubiconAckSeqOnly& value, MutableBytes out) {
   const size_t size = RubiconAckSeqOnlyLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
-    return fail(Fault::kNoRoom, out.size(), req::kWireRubiconAck);
+    return fail(Fault::kNoRoom, out.size(), "WIRE-RUBICON-ACK"_rule);
   }
   RubiconAckSeqOnlyLayout::store(value, out.data());
   return out.first(size);
@@ -105,7 +105,7 @@ class RubiconAckSeqOnlyBuilder {
   /// kNoRoom where `out` is smaller than kMinSizeBytes of the view.
   static constexpr Result<RubiconAckSeqOnlyBuilder> create(MutableBytes out) {
     if (RUBRIC_UNLIKELY(out.size() < RubiconAckSeqOnlyView::kMinSizeBytes)) {
-      return fail(Fault::kNoRoom, out.size(), req::kWireRubiconAck);
+      return fail(Fault::kNoRoom, out.size(), "WIRE-RUBICON-ACK"_rule);
     }
     return RubiconAckSeqOnlyBuilder(out);
   }

@@ -83,7 +83,7 @@ class SerialDataView {
   static Result<SerialDataView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
   /// The first rule that `bytes` break, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
-    if (RUBRIC_UNLIKELY(bytes.size() < 13)) return truncated(bytes, req::kWireSerialData);
+    if (RUBRIC_UNLIKELY(bytes.size() < 13)) return truncated(bytes, "WIRE-SERIAL-DATA"_rule);
     return no_error();
   }
 
@@ -139,7 +139,7 @@ class SerialDataView {
 inline Result<MutableBytes> write(const SerialData& value, MutableBytes out) {
   const size_t size = SerialDataLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
-    return fail(Fault::kNoRoom, out.size(), req::kWireSerialData);
+    return fail(Fault::kNoRoom, out.size(), "WIRE-SERIAL-DATA"_rule);
   }
   SerialDataLayout::store(value, out.data());
   return out.first(size);
@@ -153,7 +153,7 @@ class SerialDataBuilder {
   /// kNoRoom where `out` is smaller than kMinSizeBytes of the view.
   static constexpr Result<SerialDataBuilder> create(MutableBytes out) {
     if (RUBRIC_UNLIKELY(out.size() < SerialDataView::kMinSizeBytes)) {
-      return fail(Fault::kNoRoom, out.size(), req::kWireSerialData);
+      return fail(Fault::kNoRoom, out.size(), "WIRE-SERIAL-DATA"_rule);
     }
     return SerialDataBuilder(out);
   }

@@ -83,7 +83,7 @@ class SerialJoinedView {
   static Result<SerialJoinedView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
   /// The first rule that `bytes` break, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
-    if (RUBRIC_UNLIKELY(bytes.size() < 9)) return truncated(bytes, req::kWireSerialJoined);
+    if (RUBRIC_UNLIKELY(bytes.size() < 9)) return truncated(bytes, "WIRE-SERIAL-JOINED"_rule);
     return no_error();
   }
 
@@ -140,7 +140,7 @@ class SerialJoinedView {
 inline Result<MutableBytes> write(const SerialJoined& value, MutableBytes out) {
   const size_t size = SerialJoinedLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
-    return fail(Fault::kNoRoom, out.size(), req::kWireSerialJoined);
+    return fail(Fault::kNoRoom, out.size(), "WIRE-SERIAL-JOINED"_rule);
   }
   SerialJoinedLayout::store(value, out.data());
   return out.first(size);
@@ -154,7 +154,7 @@ class SerialJoinedBuilder {
   /// kNoRoom where `out` is smaller than kMinSizeBytes of the view.
   static constexpr Result<SerialJoinedBuilder> create(MutableBytes out) {
     if (RUBRIC_UNLIKELY(out.size() < SerialJoinedView::kMinSizeBytes)) {
-      return fail(Fault::kNoRoom, out.size(), req::kWireSerialJoined);
+      return fail(Fault::kNoRoom, out.size(), "WIRE-SERIAL-JOINED"_rule);
     }
     return SerialJoinedBuilder(out);
   }

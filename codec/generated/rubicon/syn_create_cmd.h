@@ -125,10 +125,10 @@ class SynCreateCmdView {
     const uint8_t* const p = bytes.data();
     if (RUBRIC_UNLIKELY(bytes.size() < 58)) return check_short(bytes);
     if (RUBRIC_UNLIKELY(load_u8(p + 13) > 10)) {
-      return error_at(Fault::kOutOfRange, 13, req::kWireSynCreateCmd);
+      return error_at(Fault::kOutOfRange, 13, "WIRE-SYN-CREATE-CMD"_rule);
     }
     if (RUBRIC_UNLIKELY(load_u8(p + 34) > 10)) {
-      return error_at(Fault::kOutOfRange, 34, req::kWireSynCreateCmd);
+      return error_at(Fault::kOutOfRange, 34, "WIRE-SYN-CREATE-CMD"_rule);
     }
     return no_error();
   }
@@ -202,15 +202,15 @@ class SynCreateCmdView {
   // Bytes that end within the first 58; they may be wrong before.
   RUBRIC_COLD static constexpr Error check_short(Bytes bytes) {
     const uint8_t* const p = bytes.data();
-    if (bytes.size() < 14) return truncated(bytes, req::kWireSynCreateCmd);
+    if (bytes.size() < 14) return truncated(bytes, "WIRE-SYN-CREATE-CMD"_rule);
     if (RUBRIC_UNLIKELY(load_u8(p + 13) > 10)) {
-      return error_at(Fault::kOutOfRange, 13, req::kWireSynCreateCmd);
+      return error_at(Fault::kOutOfRange, 13, "WIRE-SYN-CREATE-CMD"_rule);
     }
-    if (bytes.size() < 35) return truncated(bytes, req::kWireSynCreateCmd);
+    if (bytes.size() < 35) return truncated(bytes, "WIRE-SYN-CREATE-CMD"_rule);
     if (RUBRIC_UNLIKELY(load_u8(p + 34) > 10)) {
-      return error_at(Fault::kOutOfRange, 34, req::kWireSynCreateCmd);
+      return error_at(Fault::kOutOfRange, 34, "WIRE-SYN-CREATE-CMD"_rule);
     }
-    return truncated(bytes, req::kWireSynCreateCmd);
+    return truncated(bytes, "WIRE-SYN-CREATE-CMD"_rule);
   }
 
   Bytes bytes_;
@@ -222,7 +222,7 @@ class SynCreateCmdView {
 inline Result<MutableBytes> write(const SynCreateCmd& value, MutableBytes out) {
   const size_t size = SynCreateCmdLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
-    return fail(Fault::kNoRoom, out.size(), req::kWireSynCreateCmd);
+    return fail(Fault::kNoRoom, out.size(), "WIRE-SYN-CREATE-CMD"_rule);
   }
   SynCreateCmdLayout::store(value, out.data());
   const Error error = SynCreateCmdView::check(out.first(size));
@@ -238,7 +238,7 @@ class SynCreateCmdBuilder {
   /// kNoRoom where `out` is smaller than kMinSizeBytes of the view.
   static constexpr Result<SynCreateCmdBuilder> create(MutableBytes out) {
     if (RUBRIC_UNLIKELY(out.size() < SynCreateCmdView::kMinSizeBytes)) {
-      return fail(Fault::kNoRoom, out.size(), req::kWireSynCreateCmd);
+      return fail(Fault::kNoRoom, out.size(), "WIRE-SYN-CREATE-CMD"_rule);
     }
     return SynCreateCmdBuilder(out);
   }

@@ -29,7 +29,7 @@ struct SynapticDataLayout {
   static size_t size_bytes(const SynapticData& value) { return value.values.size() * 4; }
   static Error check_lengths(const SynapticData& value) {
     if (RUBRIC_UNLIKELY(value.values.size() > 25)) {
-      return error_at(Fault::kTooLong, 0 + 100, req::kWireSynapticData);
+      return error_at(Fault::kTooLong, 0 + 100, "WIRE-SYNAPTIC-DATA"_rule);
     }
     return no_error();
   }
@@ -57,7 +57,9 @@ class SynapticDataView {
   static Result<SynapticDataView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
   /// The first rule that `bytes` break, or Fault::kNone. At most kMaxSizeBytes of them.
   static constexpr Error check(Bytes bytes) {
-    if (RUBRIC_UNLIKELY(bytes.size() % 4 != 0)) return truncated(bytes, req::kWireSynapticData);
+    if (RUBRIC_UNLIKELY(bytes.size() % 4 != 0)) {
+      return truncated(bytes, "WIRE-SYNAPTIC-DATA"_rule);
+    }
     return no_error();
   }
 
@@ -103,7 +105,7 @@ inline Result<MutableBytes> write(const SynapticData& value, MutableBytes out) {
   if (RUBRIC_UNLIKELY(is_error(wrong))) return Failure{wrong};
   const size_t size = SynapticDataLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
-    return fail(Fault::kNoRoom, out.size(), req::kWireSynapticData);
+    return fail(Fault::kNoRoom, out.size(), "WIRE-SYNAPTIC-DATA"_rule);
   }
   SynapticDataLayout::store(value, out.data());
   return out.first(size);
@@ -138,7 +140,7 @@ class SynapticDataBuilder {
   Result<SynapticDataView> finish() const {
     const size_t size = tail_;
     if (RUBRIC_UNLIKELY(out_.size() < size)) {
-      return fail(Fault::kNoRoom, out_.size(), req::kWireSynapticData);
+      return fail(Fault::kNoRoom, out_.size(), "WIRE-SYNAPTIC-DATA"_rule);
     }
     const Result<SynapticDataView> whole = SynapticDataView::parse(out_.first(size));
     if (!whole) return whole;

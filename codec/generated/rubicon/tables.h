@@ -148,20 +148,20 @@ namespace command {
 constexpr Unit kDelayUnit{"ms", 1, 0};
 constexpr Field kFields[] = {
     {"type", "\"type\":", 7, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 0, kAny, -1,
-     &enums::kCommandCode, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireCommand, nullptr,
+     &enums::kCommandCode, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-COMMAND"_rule, nullptr,
      "What is asked for."},
     {"counter", "\"counter\":", 10, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 1, kAny,
-     -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireCommand, nullptr,
+     -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-COMMAND"_rule, nullptr,
      "Number of the request."},
     {"delay", "\"delay\":", 8, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 3, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireCommand, &kDelayUnit,
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-COMMAND"_rule, &kDelayUnit,
      "Delay of the answer."},
 };
 }  // namespace command
 }  // namespace of
 namespace types {
 constexpr Type kCommand{
-    "command", "command", of::command::kFields, 3, nullptr, 0, 5, 5, 11, ReqId::kWireCommand,
+    "command", "command", of::command::kFields, 3, nullptr, 0, 5, 5, 11, "WIRE-COMMAND"_rule,
     "A request for readings, of older tools.",
     "release 1.0"};
 }  // namespace types
@@ -173,24 +173,24 @@ constexpr Unit kTempUnit{"degC", 0.01, -40};
 constexpr Field kFields[] = {
     {"src_island_addr", "\"src_island_addr\":", 18, Kind::kUint, 1, false, Repeat::kOnce,
      Extent::kOwn, 0, kAny, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {},
-     ReqId::kWireSerialData, nullptr, "The mote's island."},
+     "WIRE-SERIAL-DATA"_rule, nullptr, "The mote's island."},
     {"src_mote_addr", "\"src_mote_addr\":", 16, Kind::kUint, 2, false, Repeat::kOnce,
      Extent::kOwn, 1, kAny, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {},
-     ReqId::kWireSerialData, nullptr, "The mote's devid."},
+     "WIRE-SERIAL-DATA"_rule, nullptr, "The mote's devid."},
     {"counter", "\"counter\":", 10, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 3, kAny,
-     -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireSerialData, nullptr,
+     -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-SERIAL-DATA"_rule, nullptr,
      "Number of the request."},
     {"temp", "\"temp\":", 7, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 5, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireSerialData, &kTempUnit,
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-SERIAL-DATA"_rule, &kTempUnit,
      "Temperature, raw; on telosb 0.01 degrees Celsius above -40."},
     {"humid", "\"humid\":", 8, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 7, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireSerialData, nullptr,
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-SERIAL-DATA"_rule, nullptr,
      "Humidity, raw."},
     {"light", "\"light\":", 8, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 9, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireSerialData, nullptr,
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-SERIAL-DATA"_rule, nullptr,
      "Light, raw."},
     {"rssi", "\"rssi\":", 7, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 11, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireSerialData, nullptr,
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-SERIAL-DATA"_rule, nullptr,
      "Signal strength, raw."},
 };
 }  // namespace serial_data
@@ -198,7 +198,7 @@ constexpr Field kFields[] = {
 namespace types {
 constexpr Type kSerialData{
     "serial_data", "serial_data", of::serial_data::kFields, 7, nullptr, 0, 13, 13, 12,
-    ReqId::kWireSerialData,
+    "WIRE-SERIAL-DATA"_rule,
     "Readings of a mote, forwarded by its sink, of older tools.",
     "release 1.0"};
 }  // namespace types
@@ -209,33 +209,33 @@ namespace learning_module_cmd {
 constexpr ExprStep kWeightsCount[] = {{Op::kLoadU8, 7}};
 constexpr Field kFields[] = {
     {"type", "\"type\":", 7, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 0, kAny, -1,
-     &enums::kLearningCode, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireLearningModuleCmd,
-     nullptr, "Which matrix."},
+     &enums::kLearningCode, nullptr, nullptr, nullptr, {}, {}, {},
+     "WIRE-LEARNING-MODULE-CMD"_rule, nullptr, "Which matrix."},
     {"net_id", "\"net_id\":", 9, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 1, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireLearningModuleCmd, nullptr,
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-LEARNING-MODULE-CMD"_rule, nullptr,
      "The learning module."},
     {"seq_num", "\"seq_num\":", 10, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 3, kAny,
-     -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireLearningModuleCmd, nullptr,
+     -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-LEARNING-MODULE-CMD"_rule, nullptr,
      "Of this command."},
     {"rows", "\"rows\":", 7, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 5, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireLearningModuleCmd, nullptr,
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-LEARNING-MODULE-CMD"_rule, nullptr,
      "Rows of the matrix."},
     {"cols", "\"cols\":", 7, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 6, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireLearningModuleCmd, nullptr,
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-LEARNING-MODULE-CMD"_rule, nullptr,
      "Columns of the matrix."},
     {"matrix_size", "\"matrix_size\":", 14, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 7,
      {ValidKind::kRange, 0, 92, nullptr, 0}, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {},
-     ReqId::kWireLearningModuleCmd, nullptr, "Bytes of weights."},
+     "WIRE-LEARNING-MODULE-CMD"_rule, nullptr, "Bytes of weights."},
     {"weights", "\"weights\":", 10, Kind::kUint, 1, false, Repeat::kCount, Extent::kOwn, 8, kAny,
      -1, nullptr, nullptr, nullptr, nullptr, {}, {kWeightsCount, 1}, {},
-     ReqId::kWireLearningModuleCmd, nullptr, "Weights, two in a byte."},
+     "WIRE-LEARNING-MODULE-CMD"_rule, nullptr, "Weights, two in a byte."},
 };
 }  // namespace learning_module_cmd
 }  // namespace of
 namespace types {
 constexpr Type kLearningModuleCmd{
     "learning_module_cmd", "learning_module_cmd", of::learning_module_cmd::kFields, 7, nullptr, 0,
-    8, 100, 20, ReqId::kWireLearningModuleCmd,
+    8, 100, 20, "WIRE-LEARNING-MODULE-CMD"_rule,
     "Weights of a learning module, four bits each, two in a byte.",
     "release 1.0"};
 }  // namespace types
@@ -247,25 +247,25 @@ constexpr ExprStep kWeightsCount[] = {{Op::kLoadU8, 7}};
 constexpr Field kFields[] = {
     {"type", "\"type\":", 7, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 0, kAny, -1,
      &enums::kLearningCode, nullptr, nullptr, nullptr, {}, {}, {},
-     ReqId::kWireLearningModuleFloatCmd, nullptr, "Which matrix."},
+     "WIRE-LEARNING-MODULE-FLOAT-CMD"_rule, nullptr, "Which matrix."},
     {"net_id", "\"net_id\":", 9, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 1, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireLearningModuleFloatCmd, nullptr,
-     "The learning module."},
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-LEARNING-MODULE-FLOAT-CMD"_rule,
+     nullptr, "The learning module."},
     {"seq_num", "\"seq_num\":", 10, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 3, kAny,
-     -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireLearningModuleFloatCmd,
+     -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-LEARNING-MODULE-FLOAT-CMD"_rule,
      nullptr, "Of this command."},
     {"rows", "\"rows\":", 7, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 5, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireLearningModuleFloatCmd, nullptr,
-     "Rows of the matrix."},
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-LEARNING-MODULE-FLOAT-CMD"_rule,
+     nullptr, "Rows of the matrix."},
     {"cols", "\"cols\":", 7, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 6, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireLearningModuleFloatCmd, nullptr,
-     "Columns of the matrix."},
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-LEARNING-MODULE-FLOAT-CMD"_rule,
+     nullptr, "Columns of the matrix."},
     {"matrix_size", "\"matrix_size\":", 14, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 7,
      {ValidKind::kRange, 0, 23, nullptr, 0}, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {},
-     ReqId::kWireLearningModuleFloatCmd, nullptr, "Number of weights."},
+     "WIRE-LEARNING-MODULE-FLOAT-CMD"_rule, nullptr, "Number of weights."},
     {"weights", "\"weights\":", 10, Kind::kFloat, 4, true, Repeat::kCount, Extent::kOwn, 8, kAny,
      -1, nullptr, nullptr, nullptr, nullptr, {}, {kWeightsCount, 1}, {},
-     ReqId::kWireLearningModuleFloatCmd, nullptr, "Weights."},
+     "WIRE-LEARNING-MODULE-FLOAT-CMD"_rule, nullptr, "Weights."},
 };
 }  // namespace learning_module_float_cmd
 }  // namespace of
@@ -273,7 +273,7 @@ namespace types {
 constexpr Type kLearningModuleFloatCmd{
     "learning_module_float_cmd", "learning_module_float_cmd",
     of::learning_module_float_cmd::kFields, 7, nullptr, 0, 8, 100, 21,
-    ReqId::kWireLearningModuleFloatCmd,
+    "WIRE-LEARNING-MODULE-FLOAT-CMD"_rule,
     "Weights of a learning module as floats.",
     "release 1.0"};
 }  // namespace types
@@ -283,17 +283,17 @@ namespace of {
 namespace r_addr {
 constexpr Field kFields[] = {
     {"pid", "\"pid\":", 6, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 0, kAny, -1,
-     &enums::kPid, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireRAddr, nullptr,
+     &enums::kPid, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-R-ADDR"_rule, nullptr,
      "Island, the PEIS id of its proxy."},
     {"devid", "\"devid\":", 8, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 2, kAny, -1,
-     &enums::kDevid, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireRAddr, nullptr,
+     &enums::kDevid, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-R-ADDR"_rule, nullptr,
      "Mote in the island; its TinyOS node id."},
 };
 }  // namespace r_addr
 }  // namespace of
 namespace types {
 constexpr Type kRAddr{
-    "r_addr", "r_addr", of::r_addr::kFields, 2, nullptr, 0, 4, 4, 31, ReqId::kWireRAddr,
+    "r_addr", "r_addr", of::r_addr::kFields, 2, nullptr, 0, 4, 4, 31, "WIRE-R-ADDR"_rule,
     "RUBICON address of a mote, a sink, or the PC or robot of an island.",
     "paper: The RUBICON Addressing Scheme"};
 }  // namespace types
@@ -303,30 +303,30 @@ namespace of {
 namespace serial_joined {
 constexpr Field kFields[] = {
     {"msg_type", "\"msg_type\":", 11, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 0, kAny,
-     16, &enums::kAmType, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireSerialJoined,
+     16, &enums::kAmType, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-SERIAL-JOINED"_rule,
      nullptr, "Kind of the body."},
     {"island_addr", "\"island_addr\":", 14, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 1,
-     kAny, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireSerialJoined, nullptr,
+     kAny, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-SERIAL-JOINED"_rule, nullptr,
      "The island."},
     {"mote_addr", "\"mote_addr\":", 12, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 3,
-     kAny, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireSerialJoined, nullptr,
+     kAny, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-SERIAL-JOINED"_rule, nullptr,
      "The mote's devid."},
     {"mote_type", "\"mote_type\":", 12, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 5,
-     kAny, -1, &enums::kMoteType, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireSerialJoined,
-     nullptr, "Platform."},
+     kAny, -1, &enums::kMoteType, nullptr, nullptr, nullptr, {}, {}, {},
+     "WIRE-SERIAL-JOINED"_rule, nullptr, "Platform."},
     {"transducers", "\"transducers\":", 14, Kind::kMask, 2, false, Repeat::kOnce, Extent::kOwn, 6,
      kAny, -1, nullptr, &masks::kTransducerMask, nullptr, nullptr, {}, {}, {},
-     ReqId::kWireSerialJoined, nullptr, "Sensors on board."},
+     "WIRE-SERIAL-JOINED"_rule, nullptr, "Sensors on board."},
     {"actuators", "\"actuators\":", 12, Kind::kMask, 1, false, Repeat::kOnce, Extent::kOwn, 8,
      kAny, -1, nullptr, &masks::kActuatorMask, nullptr, nullptr, {}, {}, {},
-     ReqId::kWireSerialJoined, nullptr, "Actuators on board."},
+     "WIRE-SERIAL-JOINED"_rule, nullptr, "Actuators on board."},
 };
 }  // namespace serial_joined
 }  // namespace of
 namespace types {
 constexpr Type kSerialJoined{
     "serial_joined", "serial_joined", of::serial_joined::kFields, 6, nullptr, 0, 9, 9, 16,
-    ReqId::kWireSerialJoined,
+    "WIRE-SERIAL-JOINED"_rule,
     "A sink tells its base station of a new mote.",
     "paper: Component Management; release 1.0"};
 }  // namespace types
@@ -337,16 +337,16 @@ namespace transducer_update {
 constexpr Field kFields[] = {
     {"transducer", "\"transducer\":", 13, Kind::kMask, 2, false, Repeat::kOnce, Extent::kOwn, 0,
      kAny, -1, nullptr, &masks::kTransducerMask, nullptr, nullptr, {}, {}, {},
-     ReqId::kWireUpdates, nullptr, "Which one, by its bit."},
+     "WIRE-UPDATES"_rule, nullptr, "Which one, by its bit."},
     {"value", "\"value\":", 8, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 2, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireUpdates, nullptr, "Raw reading."},
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-UPDATES"_rule, nullptr, "Raw reading."},
 };
 }  // namespace transducer_update
 }  // namespace of
 namespace types {
 constexpr Type kTransducerUpdate{
     "transducer_update", "transducer_update", of::transducer_update::kFields, 2, nullptr, 0, 4, 4,
-    -1, ReqId::kWireUpdates,
+    -1, "WIRE-UPDATES"_rule,
     "A transducer and its value.",
     ""};
 }  // namespace types
@@ -357,20 +357,20 @@ namespace updates {
 constexpr ExprStep kUpdatesCount[] = {{Op::kLoadU8, 1}};
 constexpr Field kFields[] = {
     {"type", "\"type\":", 7, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 0, kAny, 35,
-     &enums::kAmType, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireUpdates, nullptr,
+     &enums::kAmType, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-UPDATES"_rule, nullptr,
      "Kind of the body."},
     {"output_size", "\"output_size\":", 14, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 1,
      {ValidKind::kRange, 0, 24, nullptr, 0}, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {},
-     ReqId::kWireUpdates, nullptr, "Number of pairs."},
+     "WIRE-UPDATES"_rule, nullptr, "Number of pairs."},
     {"updates", "\"updates\":", 10, Kind::kStruct, 0, false, Repeat::kCount, Extent::kOwn, 2,
      kAny, -1, nullptr, nullptr, &types::kTransducerUpdate, nullptr, {}, {kUpdatesCount, 1}, {},
-     ReqId::kWireUpdates, nullptr, "The pairs."},
+     "WIRE-UPDATES"_rule, nullptr, "The pairs."},
 };
 }  // namespace updates
 }  // namespace of
 namespace types {
 constexpr Type kUpdates{
-    "updates", "updates", of::updates::kFields, 3, nullptr, 0, 2, 98, 35, ReqId::kWireUpdates,
+    "updates", "updates", of::updates::kFields, 3, nullptr, 0, 2, 98, 35, "WIRE-UPDATES"_rule,
     "Readings of a mote, as pairs of transducer and value.",
     "paper: In-Hospital Transport Test-Bed; release 1.0"};
 }  // namespace types
@@ -381,21 +381,21 @@ namespace read_updates {
 constexpr Unit kSamplingRateUnit{"ms", 1, 0};
 constexpr Field kFields[] = {
     {"type", "\"type\":", 7, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 0, kAny, 36,
-     &enums::kAmType, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireReadUpdates, nullptr,
+     &enums::kAmType, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-READ-UPDATES"_rule, nullptr,
      "Kind of the body."},
     {"sampling_rate", "\"sampling_rate\":", 16, Kind::kUint, 2, false, Repeat::kOnce,
      Extent::kOwn, 1, kAny, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {},
-     ReqId::kWireReadUpdates, &kSamplingRateUnit, "Period of the readings."},
+     "WIRE-READ-UPDATES"_rule, &kSamplingRateUnit, "Period of the readings."},
     {"transducers", "\"transducers\":", 14, Kind::kMask, 2, false, Repeat::kOnce, Extent::kOwn, 3,
      kAny, -1, nullptr, &masks::kTransducerMask, nullptr, nullptr, {}, {}, {},
-     ReqId::kWireReadUpdates, nullptr, "What to read."},
+     "WIRE-READ-UPDATES"_rule, nullptr, "What to read."},
 };
 }  // namespace read_updates
 }  // namespace of
 namespace types {
 constexpr Type kReadUpdates{
     "read_updates", "read_updates", of::read_updates::kFields, 3, nullptr, 0, 5, 5, 36,
-    ReqId::kWireReadUpdates,
+    "WIRE-READ-UPDATES"_rule,
     "Asks a mote for periodic updates.",
     "release 1.0"};
 }  // namespace types
@@ -406,19 +406,19 @@ namespace demo {
 constexpr Unit kPeriodUnit{"ms", 1, 0};
 constexpr Field kFields[] = {
     {"msg_type", "\"msg_type\":", 11, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 0, kAny,
-     1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireDemo, nullptr,
+     1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-DEMO"_rule, nullptr,
      "Kind of the body; 1, not 32."},
     {"sensors_bitmask", "\"sensors_bitmask\":", 18, Kind::kMask, 2, false, Repeat::kOnce,
      Extent::kOwn, 1, kAny, -1, nullptr, &masks::kTransducerMask, nullptr, nullptr, {}, {}, {},
-     ReqId::kWireDemo, nullptr, "What to read."},
+     "WIRE-DEMO"_rule, nullptr, "What to read."},
     {"period", "\"period\":", 9, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 3, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireDemo, &kPeriodUnit, "How often."},
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-DEMO"_rule, &kPeriodUnit, "How often."},
 };
 }  // namespace demo
 }  // namespace of
 namespace types {
 constexpr Type kDemo{
-    "demo", "demo", of::demo::kFields, 3, nullptr, 0, 5, 5, 32, ReqId::kWireDemo,
+    "demo", "demo", of::demo::kFields, 3, nullptr, 0, 5, 5, 32, "WIRE-DEMO"_rule,
     "Starts periodic readings of the demo.",
     "release 1.0"};
 }  // namespace types
@@ -429,32 +429,32 @@ namespace demo_data {
 constexpr Unit kTempUnit{"degC", 0.01, -40};
 constexpr Field kFields[] = {
     {"msg_type", "\"msg_type\":", 11, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 0, kAny,
-     34, &enums::kAmType, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireDemoData, nullptr,
+     34, &enums::kAmType, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-DEMO-DATA"_rule, nullptr,
      "Kind of the body."},
     {"light", "\"light\":", 8, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 1, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireDemoData, nullptr, "Light, raw."},
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-DEMO-DATA"_rule, nullptr, "Light, raw."},
     {"temp", "\"temp\":", 7, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 3, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireDemoData, &kTempUnit,
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-DEMO-DATA"_rule, &kTempUnit,
      "Temperature, raw; on telosb 0.01 degrees Celsius above -40."},
     {"accx", "\"accx\":", 7, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 5, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireDemoData, nullptr,
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-DEMO-DATA"_rule, nullptr,
      "Acceleration along x, raw."},
     {"accy", "\"accy\":", 7, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 7, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireDemoData, nullptr,
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-DEMO-DATA"_rule, nullptr,
      "Acceleration along y, raw."},
     {"pir", "\"pir\":", 6, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 9, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireDemoData, nullptr, "Movement."},
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-DEMO-DATA"_rule, nullptr, "Movement."},
     {"mic", "\"mic\":", 6, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 11, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireDemoData, nullptr,
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-DEMO-DATA"_rule, nullptr,
      "Sound level, raw."},
     {"humid", "\"humid\":", 8, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 13, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireDemoData, nullptr,
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-DEMO-DATA"_rule, nullptr,
      "Humidity, raw."},
     {"magnetic", "\"magnetic\":", 11, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 15,
-     kAny, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireDemoData, nullptr,
+     kAny, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-DEMO-DATA"_rule, nullptr,
      "Magnetic switch."},
     {"my_rssi", "\"my_rssi\":", 10, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 17, kAny,
-     -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireDemoData, nullptr,
+     -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-DEMO-DATA"_rule, nullptr,
      "Signal strength, raw."},
 };
 }  // namespace demo_data
@@ -462,7 +462,7 @@ constexpr Field kFields[] = {
 namespace types {
 constexpr Type kDemoData{
     "demo_data", "demo_data", of::demo_data::kFields, 10, nullptr, 0, 19, 19, 34,
-    ReqId::kWireDemoData,
+    "WIRE-DEMO-DATA"_rule,
     "Periodic readings of the demo.",
     "release 1.0"};
 }  // namespace types
@@ -473,13 +473,13 @@ namespace broadcast_cmd {
 constexpr Unit kClockUnit{"ms", 1, 0};
 constexpr Field kFields[] = {
     {"type", "\"type\":", 7, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 0, kAny, -1,
-     &enums::kLearningCode, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireBroadcastCmd,
+     &enums::kLearningCode, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-BROADCAST-CMD"_rule,
      nullptr, "What to do."},
     {"clock", "\"clock\":", 8, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 1, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireBroadcastCmd, &kClockUnit,
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-BROADCAST-CMD"_rule, &kClockUnit,
      "Period of the clock."},
     {"seq_num", "\"seq_num\":", 10, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 3, kAny,
-     -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireBroadcastCmd, nullptr,
+     -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-BROADCAST-CMD"_rule, nullptr,
      "Of this command."},
 };
 }  // namespace broadcast_cmd
@@ -487,7 +487,7 @@ constexpr Field kFields[] = {
 namespace types {
 constexpr Type kBroadcastCmd{
     "broadcast_cmd", "broadcast_cmd", of::broadcast_cmd::kFields, 3, nullptr, 0, 5, 5, 18,
-    ReqId::kWireBroadcastCmd,
+    "WIRE-BROADCAST-CMD"_rule,
     "Sets the clock of the learning network.",
     "release 1.0"};
 }  // namespace types
@@ -499,43 +499,43 @@ constexpr ExprStep kSrcNeuronsCount[] = {{Op::kConst, 10}};
 constexpr ExprStep kDestNeuronsCount[] = {{Op::kConst, 10}};
 constexpr Field kFields[] = {
     {"type", "\"type\":", 7, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 0, kAny, -1,
-     &enums::kLearningCode, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireSynCreateCmd,
+     &enums::kLearningCode, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-SYN-CREATE-CMD"_rule,
      nullptr, "Outgoing, incoming or local."},
     {"src_island_addr", "\"src_island_addr\":", 18, Kind::kUint, 2, false, Repeat::kOnce,
      Extent::kOwn, 1, kAny, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {},
-     ReqId::kWireSynCreateCmd, nullptr, "Island of the source."},
+     "WIRE-SYN-CREATE-CMD"_rule, nullptr, "Island of the source."},
     {"src_mote_addr", "\"src_mote_addr\":", 16, Kind::kUint, 2, false, Repeat::kOnce,
      Extent::kOwn, 3, kAny, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {},
-     ReqId::kWireSynCreateCmd, nullptr, "Mote of the source."},
+     "WIRE-SYN-CREATE-CMD"_rule, nullptr, "Mote of the source."},
     {"dest_island_addr", "\"dest_island_addr\":", 19, Kind::kUint, 2, false, Repeat::kOnce,
      Extent::kOwn, 5, kAny, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {},
-     ReqId::kWireSynCreateCmd, nullptr, "Island of the destination."},
+     "WIRE-SYN-CREATE-CMD"_rule, nullptr, "Island of the destination."},
     {"dest_mote_addr", "\"dest_mote_addr\":", 17, Kind::kUint, 2, false, Repeat::kOnce,
      Extent::kOwn, 7, kAny, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {},
-     ReqId::kWireSynCreateCmd, nullptr, "Mote of the destination."},
+     "WIRE-SYN-CREATE-CMD"_rule, nullptr, "Mote of the destination."},
     {"src_net_id", "\"src_net_id\":", 13, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 9,
-     kAny, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireSynCreateCmd, nullptr,
-     "Learning module of the source."},
+     kAny, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-SYN-CREATE-CMD"_rule,
+     nullptr, "Learning module of the source."},
     {"dest_net_id", "\"dest_net_id\":", 14, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn,
-     11, kAny, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireSynCreateCmd,
+     11, kAny, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-SYN-CREATE-CMD"_rule,
      nullptr, "Learning module of the destination."},
     {"src_neurons_size", "\"src_neurons_size\":", 19, Kind::kUint, 1, false, Repeat::kOnce,
      Extent::kOwn, 13, {ValidKind::kRange, 0, 10, nullptr, 0}, -1, nullptr, nullptr, nullptr,
-     nullptr, {}, {}, {}, ReqId::kWireSynCreateCmd, nullptr, "Used entries of src_neurons."},
+     nullptr, {}, {}, {}, "WIRE-SYN-CREATE-CMD"_rule, nullptr, "Used entries of src_neurons."},
     {"src_neurons", "\"src_neurons\":", 14, Kind::kUint, 2, false, Repeat::kCount, Extent::kOwn,
      14, kAny, -1, nullptr, nullptr, nullptr, nullptr, {}, {kSrcNeuronsCount, 1}, {},
-     ReqId::kWireSynCreateCmd, nullptr, "Neurons of the source; always whole."},
+     "WIRE-SYN-CREATE-CMD"_rule, nullptr, "Neurons of the source; always whole."},
     {"dest_neurons_size", "\"dest_neurons_size\":", 20, Kind::kUint, 1, false, Repeat::kOnce,
      Extent::kOwn, 34, {ValidKind::kRange, 0, 10, nullptr, 0}, -1, nullptr, nullptr, nullptr,
-     nullptr, {}, {}, {}, ReqId::kWireSynCreateCmd, nullptr, "Used entries of dest_neurons."},
+     nullptr, {}, {}, {}, "WIRE-SYN-CREATE-CMD"_rule, nullptr, "Used entries of dest_neurons."},
     {"dest_neurons", "\"dest_neurons\":", 15, Kind::kUint, 2, false, Repeat::kCount, Extent::kOwn,
      35, kAny, -1, nullptr, nullptr, nullptr, nullptr, {}, {kDestNeuronsCount, 1}, {},
-     ReqId::kWireSynCreateCmd, nullptr, "Neurons of the destination; always whole."},
+     "WIRE-SYN-CREATE-CMD"_rule, nullptr, "Neurons of the destination; always whole."},
     {"params", "\"params\":", 9, Kind::kSint, 1, false, Repeat::kOnce, Extent::kOwn, 55, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireSynCreateCmd, nullptr,
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-SYN-CREATE-CMD"_rule, nullptr,
      "Options of the channel."},
     {"seq_num", "\"seq_num\":", 10, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 56, kAny,
-     -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireSynCreateCmd, nullptr,
+     -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-SYN-CREATE-CMD"_rule, nullptr,
      "Of this command."},
 };
 }  // namespace syn_create_cmd
@@ -543,7 +543,7 @@ constexpr Field kFields[] = {
 namespace types {
 constexpr Type kSynCreateCmd{
     "syn_create_cmd", "syn_create_cmd", of::syn_create_cmd::kFields, 13, nullptr, 0, 58, 58, 19,
-    ReqId::kWireSynCreateCmd,
+    "WIRE-SYN-CREATE-CMD"_rule,
     "Creates a synaptic connection.",
     "paper: Synaptic Communication; release 1.0"};
 }  // namespace types
@@ -553,13 +553,13 @@ namespace of {
 namespace netid_cmd {
 constexpr Field kFields[] = {
     {"type", "\"type\":", 7, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 0, kAny, -1,
-     &enums::kLearningCode, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireNetidCmd, nullptr,
+     &enums::kLearningCode, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-NETID-CMD"_rule, nullptr,
      "What to do."},
     {"net_id", "\"net_id\":", 9, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 1, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireNetidCmd, nullptr,
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-NETID-CMD"_rule, nullptr,
      "The learning module."},
     {"seq_num", "\"seq_num\":", 10, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 3, kAny,
-     -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireNetidCmd, nullptr,
+     -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-NETID-CMD"_rule, nullptr,
      "Of this command."},
 };
 }  // namespace netid_cmd
@@ -567,7 +567,7 @@ constexpr Field kFields[] = {
 namespace types {
 constexpr Type kNetidCmd{
     "netid_cmd", "netid_cmd", of::netid_cmd::kFields, 3, nullptr, 0, 5, 5, 17,
-    ReqId::kWireNetidCmd,
+    "WIRE-NETID-CMD"_rule,
     "A command for one learning module.",
     "release 1.0"};
 }  // namespace types
@@ -577,13 +577,13 @@ namespace of {
 namespace rubicon_ack {
 constexpr Field kFields[] = {
     {"type", "\"type\":", 7, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 0, kAny, 23,
-     &enums::kAmType, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireRubiconAck, nullptr,
+     &enums::kAmType, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-RUBICON-ACK"_rule, nullptr,
      "Kind of the body."},
     {"seq_num", "\"seq_num\":", 10, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 1, kAny,
-     -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireRubiconAck, nullptr,
+     -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-RUBICON-ACK"_rule, nullptr,
      "Of the message that it acknowledges."},
     {"ack", "\"ack\":", 6, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 3, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireRubiconAck, nullptr,
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-RUBICON-ACK"_rule, nullptr,
      "0 is success."},
 };
 }  // namespace rubicon_ack
@@ -591,7 +591,7 @@ constexpr Field kFields[] = {
 namespace types {
 constexpr Type kRubiconAck{
     "rubicon_ack", "rubicon_ack", of::rubicon_ack::kFields, 3, nullptr, 0, 4, 4, -1,
-    ReqId::kWireRubiconAck,
+    "WIRE-RUBICON-ACK"_rule,
     "Acknowledgement of a reliable message, as release 1.0 sends it.",
     "paper: Rubicon ACK"};
 }  // namespace types
@@ -601,7 +601,7 @@ namespace of {
 namespace rubicon_ack_seq_only {
 constexpr Field kFields[] = {
     {"seq_num", "\"seq_num\":", 10, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 0, kAny,
-     -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireRubiconAck, nullptr,
+     -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-RUBICON-ACK"_rule, nullptr,
      "Of the message that it acknowledges."},
 };
 }  // namespace rubicon_ack_seq_only
@@ -609,7 +609,7 @@ constexpr Field kFields[] = {
 namespace types {
 constexpr Type kRubiconAckSeqOnly{
     "rubicon_ack_seq_only", "rubicon_ack_seq_only", of::rubicon_ack_seq_only::kFields, 1, nullptr,
-    0, 2, 2, -1, ReqId::kWireRubiconAck,
+    0, 2, 2, -1, "WIRE-RUBICON-ACK"_rule,
     "Acknowledgement of a reliable message, as the paper describes it.",
     "paper: Rubicon ACK"};
 }  // namespace types
@@ -619,7 +619,7 @@ namespace of {
 namespace synaptic_data {
 constexpr Field kFields[] = {
     {"values", "\"values\":", 9, Kind::kFloat, 4, true, Repeat::kToEnd, Extent::kOwn, 0, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireSynapticData, nullptr,
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-SYNAPTIC-DATA"_rule, nullptr,
      "One for each connection, at most ten; behind a forwarding sink stale values follow."},
 };
 }  // namespace synaptic_data
@@ -627,7 +627,7 @@ constexpr Field kFields[] = {
 namespace types {
 constexpr Type kSynapticData{
     "synaptic_data", "synaptic_data", of::synaptic_data::kFields, 1, nullptr, 0, 0, 100, -1,
-    ReqId::kWireSynapticData,
+    "WIRE-SYNAPTIC-DATA"_rule,
     "The values of a synaptic channel.",
     "paper: Synaptic Communication"};
 }  // namespace types
@@ -665,39 +665,39 @@ constexpr ExprStep kAckSeqOnlyIf[] = {{Op::kLoadU8, 0}, {Op::kConst, 9}, {Op::kE
 constexpr ExprStep kSynapticIf[] = {{Op::kLoadU8, 0}, {Op::kConst, 1}, {Op::kEq, 0}};
 constexpr Field kFields[] = {
     {"trans_id", "\"trans_id\":", 11, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 0, kAny,
-     -1, &enums::kComponent, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireAppHeader,
+     -1, &enums::kComponent, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-APP-HEADER"_rule,
      nullptr, "Transport component."},
     {"app_id", "\"app_id\":", 9, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 1, kAny, -1,
-     &enums::kComponent, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireAppHeader, nullptr,
+     &enums::kComponent, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-APP-HEADER"_rule, nullptr,
      "Application component."},
     {"payload", "\"payload\":", 10, Kind::kBytes, 0, false, Repeat::kOnce, Extent::kToEnd, 2,
-     kAny, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireAppHeader, nullptr,
+     kAny, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-APP-HEADER"_rule, nullptr,
      "The application's bytes."},
 };
 constexpr Interpretation kInterpretations[] = {
     {{"body", "\"body\":", 7, Kind::kStruct, 0, false, Repeat::kOnce, Extent::kToEnd, 2, kAny, -1,
       nullptr, nullptr, nullptr, &kControlLayerSwitch, {}, {}, {kControlLayerIf, 7},
-      ReqId::kWireAppHeader, nullptr, ""},
+      "WIRE-APP-HEADER"_rule, nullptr, ""},
      2},
     {{"body", "\"body\":", 7, Kind::kStruct, 0, false, Repeat::kOnce, Extent::kToEnd, 2, kAny, -1,
-      nullptr, nullptr, nullptr, &kMockupSwitch, {}, {}, {kMockupIf, 7}, ReqId::kWireAppHeader,
+      nullptr, nullptr, nullptr, &kMockupSwitch, {}, {}, {kMockupIf, 7}, "WIRE-APP-HEADER"_rule,
       nullptr, ""},
      2},
     {{"body", "\"body\":", 7, Kind::kStruct, 0, false, Repeat::kOnce, Extent::kToEnd, 2, kAny, -1,
       nullptr, nullptr, nullptr, &kLearningSwitch, {}, {}, {kLearningIf, 7},
-      ReqId::kWireAppHeader, nullptr, ""},
+      "WIRE-APP-HEADER"_rule, nullptr, ""},
      2},
     {{"body", "\"body\":", 7, Kind::kStruct, 0, false, Repeat::kOnce, Extent::kToEnd, 2, kAny, -1,
-      nullptr, nullptr, &types::kRubiconAck, nullptr, {}, {}, {kAckIf, 3}, ReqId::kWireAppHeader,
+      nullptr, nullptr, &types::kRubiconAck, nullptr, {}, {}, {kAckIf, 3}, "WIRE-APP-HEADER"_rule,
       nullptr, ""},
      2},
     {{"body", "\"body\":", 7, Kind::kStruct, 0, false, Repeat::kOnce, Extent::kToEnd, 2, kAny, -1,
       nullptr, nullptr, &types::kRubiconAckSeqOnly, nullptr, {}, {}, {kAckSeqOnlyIf, 3},
-      ReqId::kWireAppHeader, nullptr, ""},
+      "WIRE-APP-HEADER"_rule, nullptr, ""},
      2},
     {{"body", "\"body\":", 7, Kind::kStruct, 0, false, Repeat::kOnce, Extent::kToEnd, 2, kAny, -1,
       nullptr, nullptr, &types::kSynapticData, nullptr, {}, {}, {kSynapticIf, 3},
-      ReqId::kWireAppHeader, nullptr, ""},
+      "WIRE-APP-HEADER"_rule, nullptr, ""},
      2},
 };
 }  // namespace app_msg_from_pc
@@ -705,7 +705,7 @@ constexpr Interpretation kInterpretations[] = {
 namespace types {
 constexpr Type kAppMsgFromPc{
     "app_msg_from_pc", "app_msg", of::app_msg_from_pc::kFields, 3,
-    of::app_msg_from_pc::kInterpretations, 6, 2, 102, -1, ReqId::kWireAppHeader,
+    of::app_msg_from_pc::kInterpretations, 6, 2, 102, -1, "WIRE-APP-HEADER"_rule,
     "Message of the transport level, from the PC or robot of an island.",
     "paper: Message Dispatcher"};
 }  // namespace types
@@ -715,13 +715,13 @@ namespace of {
 namespace learning_notification {
 constexpr Field kFields[] = {
     {"type", "\"type\":", 7, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 0, kAny, 23,
-     &enums::kAmType, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireLearningNotification,
+     &enums::kAmType, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-LEARNING-NOTIFICATION"_rule,
      nullptr, "Kind of the body."},
     {"seq_num", "\"seq_num\":", 10, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 1, kAny,
-     -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireLearningNotification,
+     -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-LEARNING-NOTIFICATION"_rule,
      nullptr, "Of the command."},
     {"ack", "\"ack\":", 6, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 3, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireLearningNotification, nullptr,
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-LEARNING-NOTIFICATION"_rule, nullptr,
      "0 is success."},
 };
 }  // namespace learning_notification
@@ -729,7 +729,7 @@ constexpr Field kFields[] = {
 namespace types {
 constexpr Type kLearningNotification{
     "learning_notification", "learning_notification", of::learning_notification::kFields, 3,
-    nullptr, 0, 4, 4, 23, ReqId::kWireLearningNotification,
+    nullptr, 0, 4, 4, 23, "WIRE-LEARNING-NOTIFICATION"_rule,
     "A learning module answers a command.",
     "release 1.0"};
 }  // namespace types
@@ -740,24 +740,24 @@ namespace learning_module_down {
 constexpr ExprStep kWeightsCount[] = {{Op::kLoadU8, 3}};
 constexpr Field kFields[] = {
     {"type", "\"type\":", 7, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 0, kAny, 24,
-     &enums::kAmType, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireLearningModuleDown,
+     &enums::kAmType, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-LEARNING-MODULE-DOWN"_rule,
      nullptr, "Kind of the body."},
     {"net_id", "\"net_id\":", 9, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 1, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireLearningModuleDown, nullptr,
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-LEARNING-MODULE-DOWN"_rule, nullptr,
      "The learning module."},
     {"matrix_size", "\"matrix_size\":", 14, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 3,
      {ValidKind::kRange, 0, 23, nullptr, 0}, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {},
-     ReqId::kWireLearningModuleDown, nullptr, "Number of weights."},
+     "WIRE-LEARNING-MODULE-DOWN"_rule, nullptr, "Number of weights."},
     {"weights", "\"weights\":", 10, Kind::kFloat, 4, true, Repeat::kCount, Extent::kOwn, 4, kAny,
      -1, nullptr, nullptr, nullptr, nullptr, {}, {kWeightsCount, 1}, {},
-     ReqId::kWireLearningModuleDown, nullptr, "Weights."},
+     "WIRE-LEARNING-MODULE-DOWN"_rule, nullptr, "Weights."},
 };
 }  // namespace learning_module_down
 }  // namespace of
 namespace types {
 constexpr Type kLearningModuleDown{
     "learning_module_down", "learning_module_down", of::learning_module_down::kFields, 4, nullptr,
-    0, 4, 96, 24, ReqId::kWireLearningModuleDown,
+    0, 4, 96, 24, "WIRE-LEARNING-MODULE-DOWN"_rule,
     "Weights of a learning module, to the PC.",
     "release 1.0"};
 }  // namespace types
@@ -768,13 +768,13 @@ namespace learning_output {
 constexpr ExprStep kOutputCount[] = {{Op::kLoadU8, 1}};
 constexpr Field kFields[] = {
     {"type", "\"type\":", 7, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 0, kAny, 25,
-     &enums::kAmType, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireLearningOutput, nullptr,
+     &enums::kAmType, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-LEARNING-OUTPUT"_rule, nullptr,
      "Kind of the body."},
     {"output_size", "\"output_size\":", 14, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 1,
      {ValidKind::kRange, 0, 24, nullptr, 0}, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {},
-     ReqId::kWireLearningOutput, nullptr, "Number of values."},
+     "WIRE-LEARNING-OUTPUT"_rule, nullptr, "Number of values."},
     {"output", "\"output\":", 9, Kind::kFloat, 4, true, Repeat::kCount, Extent::kOwn, 2, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {kOutputCount, 1}, {}, ReqId::kWireLearningOutput,
+     nullptr, nullptr, nullptr, nullptr, {}, {kOutputCount, 1}, {}, "WIRE-LEARNING-OUTPUT"_rule,
      nullptr, "Values."},
 };
 }  // namespace learning_output
@@ -782,7 +782,7 @@ constexpr Field kFields[] = {
 namespace types {
 constexpr Type kLearningOutput{
     "learning_output", "learning_output", of::learning_output::kFields, 3, nullptr, 0, 2, 98, 25,
-    ReqId::kWireLearningOutput,
+    "WIRE-LEARNING-OUTPUT"_rule,
     "Output of a learning module, to the PC.",
     "release 1.0"};
 }  // namespace types
@@ -817,39 +817,39 @@ constexpr ExprStep kAckSeqOnlyIf[] = {{Op::kLoadU8, 0}, {Op::kConst, 9}, {Op::kE
 constexpr ExprStep kSynapticIf[] = {{Op::kLoadU8, 0}, {Op::kConst, 1}, {Op::kEq, 0}};
 constexpr Field kFields[] = {
     {"trans_id", "\"trans_id\":", 11, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 0, kAny,
-     -1, &enums::kComponent, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireAppHeader,
+     -1, &enums::kComponent, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-APP-HEADER"_rule,
      nullptr, "Transport component."},
     {"app_id", "\"app_id\":", 9, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 1, kAny, -1,
-     &enums::kComponent, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireAppHeader, nullptr,
+     &enums::kComponent, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-APP-HEADER"_rule, nullptr,
      "Application component."},
     {"payload", "\"payload\":", 10, Kind::kBytes, 0, false, Repeat::kOnce, Extent::kToEnd, 2,
-     kAny, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireAppHeader, nullptr,
+     kAny, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-APP-HEADER"_rule, nullptr,
      "The application's bytes."},
 };
 constexpr Interpretation kInterpretations[] = {
     {{"body", "\"body\":", 7, Kind::kStruct, 0, false, Repeat::kOnce, Extent::kToEnd, 2, kAny, -1,
       nullptr, nullptr, nullptr, &kControlLayerSwitch, {}, {}, {kControlLayerIf, 7},
-      ReqId::kWireAppHeader, nullptr, ""},
+      "WIRE-APP-HEADER"_rule, nullptr, ""},
      2},
     {{"body", "\"body\":", 7, Kind::kStruct, 0, false, Repeat::kOnce, Extent::kToEnd, 2, kAny, -1,
-      nullptr, nullptr, nullptr, &kMockupSwitch, {}, {}, {kMockupIf, 7}, ReqId::kWireAppHeader,
+      nullptr, nullptr, nullptr, &kMockupSwitch, {}, {}, {kMockupIf, 7}, "WIRE-APP-HEADER"_rule,
       nullptr, ""},
      2},
     {{"body", "\"body\":", 7, Kind::kStruct, 0, false, Repeat::kOnce, Extent::kToEnd, 2, kAny, -1,
       nullptr, nullptr, nullptr, &kLearningSwitch, {}, {}, {kLearningIf, 7},
-      ReqId::kWireAppHeader, nullptr, ""},
+      "WIRE-APP-HEADER"_rule, nullptr, ""},
      2},
     {{"body", "\"body\":", 7, Kind::kStruct, 0, false, Repeat::kOnce, Extent::kToEnd, 2, kAny, -1,
-      nullptr, nullptr, &types::kRubiconAck, nullptr, {}, {}, {kAckIf, 3}, ReqId::kWireAppHeader,
+      nullptr, nullptr, &types::kRubiconAck, nullptr, {}, {}, {kAckIf, 3}, "WIRE-APP-HEADER"_rule,
       nullptr, ""},
      2},
     {{"body", "\"body\":", 7, Kind::kStruct, 0, false, Repeat::kOnce, Extent::kToEnd, 2, kAny, -1,
       nullptr, nullptr, &types::kRubiconAckSeqOnly, nullptr, {}, {}, {kAckSeqOnlyIf, 3},
-      ReqId::kWireAppHeader, nullptr, ""},
+      "WIRE-APP-HEADER"_rule, nullptr, ""},
      2},
     {{"body", "\"body\":", 7, Kind::kStruct, 0, false, Repeat::kOnce, Extent::kToEnd, 2, kAny, -1,
       nullptr, nullptr, &types::kSynapticData, nullptr, {}, {}, {kSynapticIf, 3},
-      ReqId::kWireAppHeader, nullptr, ""},
+      "WIRE-APP-HEADER"_rule, nullptr, ""},
      2},
 };
 }  // namespace app_msg
@@ -857,7 +857,7 @@ constexpr Interpretation kInterpretations[] = {
 namespace types {
 constexpr Type kAppMsg{
     "app_msg", "app_msg", of::app_msg::kFields, 3, of::app_msg::kInterpretations, 6, 2, 102, 30,
-    ReqId::kWireAppHeader,
+    "WIRE-APP-HEADER"_rule,
     "Message of the transport level, from a mote or a sink.",
     "paper: Message Dispatcher"};
 }  // namespace types
@@ -871,30 +871,30 @@ constexpr Switch kPayloadSwitch{{kPayloadKey, 1}, kPayloadCases, 1, &types::kApp
 constexpr ExprStep kPayloadSize[] = {{Op::kLoadU8, 11}};
 constexpr Field kFields[] = {
     {"dest", "\"dest\":", 7, Kind::kStruct, 0, false, Repeat::kOnce, Extent::kOwn, 0, kAny, -1,
-     nullptr, nullptr, &types::kRAddr, nullptr, {}, {}, {}, ReqId::kWireNetHeader, nullptr,
+     nullptr, nullptr, &types::kRAddr, nullptr, {}, {}, {}, "WIRE-NET-HEADER"_rule, nullptr,
      "To whom."},
     {"src", "\"src\":", 6, Kind::kStruct, 0, false, Repeat::kOnce, Extent::kOwn, 4, kAny, -1,
-     nullptr, nullptr, &types::kRAddr, nullptr, {}, {}, {}, ReqId::kWireNetHeader, nullptr,
+     nullptr, nullptr, &types::kRAddr, nullptr, {}, {}, {}, "WIRE-NET-HEADER"_rule, nullptr,
      "From whom."},
     {"reliable", "\"reliable\":", 11, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 8,
      {ValidKind::kRange, 0, 1, nullptr, 0}, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {},
-     ReqId::kWireNetReliable, nullptr, "1 asks for a RUBICON acknowledgement."},
+     "WIRE-NET-RELIABLE"_rule, nullptr, "1 asks for a RUBICON acknowledgement."},
     {"seq_num", "\"seq_num\":", 10, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 9, kAny,
-     -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireNetHeader, nullptr,
+     -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-NET-HEADER"_rule, nullptr,
      "Sequence number."},
     {"nbytes", "\"nbytes\":", 9, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 11,
      {ValidKind::kRange, 2, 102, nullptr, 0}, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {},
-     ReqId::kWireNetNbytes, nullptr, "Bytes of the payload, TRANSID and APPID included."},
+     "WIRE-NET-NBYTES"_rule, nullptr, "Bytes of the payload, TRANSID and APPID included."},
     {"payload", "\"payload\":", 10, Kind::kStruct, 0, false, Repeat::kOnce, Extent::kSize, 12,
      kAny, -1, nullptr, nullptr, nullptr, &kPayloadSwitch, {kPayloadSize, 1}, {}, {},
-     ReqId::kWireNetPayload, nullptr,
+     "WIRE-NET-PAYLOAD"_rule, nullptr,
      "The message of the transport level; who sent it decides what a learning code means."},
 };
 }  // namespace net_msg
 }  // namespace of
 namespace types {
 constexpr Type kNetMsg{
-    "net_msg", "net_msg", of::net_msg::kFields, 6, nullptr, 0, 14, 114, 28, ReqId::kWireNetHeader,
+    "net_msg", "net_msg", of::net_msg::kFields, 6, nullptr, 0, 14, 114, 28, "WIRE-NET-HEADER"_rule,
     "The message of the network level. Over the radio only nbytes of the payload are sent; on "
     "the serial line the whole 114 bytes, and bytes behind the payload are left over from "
     "earlier frames.",
@@ -906,17 +906,17 @@ namespace of {
 namespace config {
 constexpr Field kFields[] = {
     {"type", "\"type\":", 7, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 0, kAny, -1,
-     &enums::kCommandCode, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireConfig, nullptr,
+     &enums::kCommandCode, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-CONFIG"_rule, nullptr,
      "What to set."},
     {"value", "\"value\":", 8, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 1, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireConfig, nullptr,
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-CONFIG"_rule, nullptr,
      "To what; for set_island_id the island."},
 };
 }  // namespace config
 }  // namespace of
 namespace types {
 constexpr Type kConfig{
-    "config", "config", of::config::kFields, 2, nullptr, 0, 3, 3, 37, ReqId::kWireConfig,
+    "config", "config", of::config::kFields, 2, nullptr, 0, 3, 3, 37, "WIRE-CONFIG"_rule,
     "The base station sets up its sink.",
     "release 1.0"};
 }  // namespace types
@@ -933,16 +933,16 @@ constexpr ExprStep kPayloadSize[] = {{Op::kLoadU8, 5}};
 constexpr Field kFields[] = {
     {"am", "\"am\":", 5, Kind::kStruct, 0, false, Repeat::kOnce, Extent::kOwn, 0, kAny, -1,
      nullptr, nullptr, &::rubric::tinyos::tables::types::kAmHeader, nullptr, {}, {}, {},
-     ReqId::kWireAmHeader, nullptr, ""},
+     "WIRE-AM-HEADER"_rule, nullptr, ""},
     {"payload", "\"payload\":", 10, Kind::kStruct, 0, false, Repeat::kOnce, Extent::kSize, 8,
      kAny, -1, nullptr, nullptr, nullptr, &kPayloadSwitch, {kPayloadSize, 1}, {}, {},
-     ReqId::kWireAmLength, nullptr, ""},
+     "WIRE-AM-LENGTH"_rule, nullptr, ""},
 };
 }  // namespace rubicon
 }  // namespace of
 namespace types {
 constexpr Type kRubicon{
-    "rubicon", "rubicon", of::rubicon::kFields, 2, nullptr, 0, 8, 122, -1, ReqId::kWireAmHeader,
+    "rubicon", "rubicon", of::rubicon::kFields, 2, nullptr, 0, 8, 122, -1, "WIRE-AM-HEADER"_rule,
     "The messages of the RUBICON Communication Layer on TinyOS active messages: joins, network "
     "messages between islands, and what applications carry in them. seq is syntax: bytes that "
     "break it are malformed. instances are interpretations: bytes that do not fit one stay "
@@ -955,7 +955,7 @@ namespace of {
 namespace rssi_beacon {
 constexpr Field kFields[] = {
     {"anchor_id", "\"anchor_id\":", 12, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 0,
-     kAny, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireRssiBeacon, nullptr,
+     kAny, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-RSSI-BEACON"_rule, nullptr,
      "The anchor."},
 };
 }  // namespace rssi_beacon
@@ -963,7 +963,7 @@ constexpr Field kFields[] = {
 namespace types {
 constexpr Type kRssiBeacon{
     "rssi_beacon", "rssi_beacon", of::rssi_beacon::kFields, 1, nullptr, 0, 1, 1, 6,
-    ReqId::kWireRssiBeacon,
+    "WIRE-RSSI-BEACON"_rule,
     "Beacon of an anchor for localisation.",
     "paper: In-Hospital Transport Test-Bed; release 1.0"};
 }  // namespace types
@@ -973,21 +973,21 @@ namespace of {
 namespace mote_desc {
 constexpr Field kFields[] = {
     {"mote_type", "\"mote_type\":", 12, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 0,
-     kAny, -1, &enums::kMoteType, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireMoteDesc,
+     kAny, -1, &enums::kMoteType, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-MOTE-DESC"_rule,
      nullptr, "Platform."},
     {"transducers", "\"transducers\":", 14, Kind::kMask, 2, false, Repeat::kOnce, Extent::kOwn, 1,
      kAny, -1, nullptr, &masks::kTransducerMask, nullptr, nullptr, {}, {}, {},
-     ReqId::kWireMoteDesc, nullptr, "Sensors on board."},
+     "WIRE-MOTE-DESC"_rule, nullptr, "Sensors on board."},
     {"actuators", "\"actuators\":", 12, Kind::kMask, 1, false, Repeat::kOnce, Extent::kOwn, 3,
-     kAny, -1, nullptr, &masks::kActuatorMask, nullptr, nullptr, {}, {}, {}, ReqId::kWireMoteDesc,
-     nullptr, "Actuators on board."},
+     kAny, -1, nullptr, &masks::kActuatorMask, nullptr, nullptr, {}, {}, {},
+     "WIRE-MOTE-DESC"_rule, nullptr, "Actuators on board."},
 };
 }  // namespace mote_desc
 }  // namespace of
 namespace types {
 constexpr Type kMoteDesc{
     "mote_desc", "mote_desc", of::mote_desc::kFields, 3, nullptr, 0, 4, 4, -1,
-    ReqId::kWireMoteDesc,
+    "WIRE-MOTE-DESC"_rule,
     "What a mote is and carries.",
     "paper: Component Management"};
 }  // namespace types
@@ -997,10 +997,10 @@ namespace of {
 namespace join_request {
 constexpr Field kFields[] = {
     {"seq_num", "\"seq_num\":", 10, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 0, kAny,
-     -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireJoinRequest, nullptr,
+     -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-JOIN-REQUEST"_rule, nullptr,
      "Of this request."},
     {"mote_desc", "\"mote_desc\":", 12, Kind::kStruct, 0, false, Repeat::kOnce, Extent::kOwn, 2,
-     kAny, -1, nullptr, nullptr, &types::kMoteDesc, nullptr, {}, {}, {}, ReqId::kWireJoinRequest,
+     kAny, -1, nullptr, nullptr, &types::kMoteDesc, nullptr, {}, {}, {}, "WIRE-JOIN-REQUEST"_rule,
      nullptr, "Of the mote that asks."},
 };
 }  // namespace join_request
@@ -1008,7 +1008,7 @@ constexpr Field kFields[] = {
 namespace types {
 constexpr Type kJoinRequest{
     "join_request", "join_request", of::join_request::kFields, 2, nullptr, 0, 6, 6, 14,
-    ReqId::kWireJoinRequest,
+    "WIRE-JOIN-REQUEST"_rule,
     "A mote asks to join.",
     "paper: Component Management"};
 }  // namespace types
@@ -1019,16 +1019,16 @@ namespace join_reply {
 constexpr Unit kCurTimeUnit{"ms", 1, 0};
 constexpr Field kFields[] = {
     {"island_addr", "\"island_addr\":", 14, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 0,
-     kAny, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireJoinReply, nullptr,
+     kAny, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-JOIN-REPLY"_rule, nullptr,
      "The sink's island."},
     {"mote_addr", "\"mote_addr\":", 12, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 2,
-     kAny, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireJoinReply, nullptr,
+     kAny, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-JOIN-REPLY"_rule, nullptr,
      "The mote's devid from now on."},
     {"cur_time", "\"cur_time\":", 11, Kind::kUint, 4, false, Repeat::kOnce, Extent::kOwn, 4, kAny,
-     -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireJoinReply, &kCurTimeUnit,
+     -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-JOIN-REPLY"_rule, &kCurTimeUnit,
      "The sink's clock."},
     {"seq_num", "\"seq_num\":", 10, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 8, kAny,
-     -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireJoinReply, nullptr,
+     -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-JOIN-REPLY"_rule, nullptr,
      "Of the request that it answers."},
 };
 }  // namespace join_reply
@@ -1036,7 +1036,7 @@ constexpr Field kFields[] = {
 namespace types {
 constexpr Type kJoinReply{
     "join_reply", "join_reply", of::join_reply::kFields, 4, nullptr, 0, 10, 10, 15,
-    ReqId::kWireJoinReply,
+    "WIRE-JOIN-REPLY"_rule,
     "A sink offers a place in its island.",
     "paper: Component Management"};
 }  // namespace types
@@ -1046,23 +1046,23 @@ namespace of {
 namespace ack_join {
 constexpr Field kFields[] = {
     {"dest", "\"dest\":", 7, Kind::kStruct, 0, false, Repeat::kOnce, Extent::kOwn, 0, kAny, -1,
-     nullptr, nullptr, &types::kRAddr, nullptr, {}, {}, {}, ReqId::kWireAckJoin, nullptr,
+     nullptr, nullptr, &types::kRAddr, nullptr, {}, {}, {}, "WIRE-ACK-JOIN"_rule, nullptr,
      "The sink."},
     {"src", "\"src\":", 6, Kind::kStruct, 0, false, Repeat::kOnce, Extent::kOwn, 4, kAny, -1,
-     nullptr, nullptr, &types::kRAddr, nullptr, {}, {}, {}, ReqId::kWireAckJoin, nullptr,
+     nullptr, nullptr, &types::kRAddr, nullptr, {}, {}, {}, "WIRE-ACK-JOIN"_rule, nullptr,
      "The mote, by its new address."},
     {"seq_num", "\"seq_num\":", 10, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 8, kAny,
-     -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireAckJoin, nullptr,
+     -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-ACK-JOIN"_rule, nullptr,
      "Of the reply that it takes."},
     {"mote_desc", "\"mote_desc\":", 12, Kind::kStruct, 0, false, Repeat::kOnce, Extent::kOwn, 10,
-     kAny, -1, nullptr, nullptr, &types::kMoteDesc, nullptr, {}, {}, {}, ReqId::kWireAckJoin,
+     kAny, -1, nullptr, nullptr, &types::kMoteDesc, nullptr, {}, {}, {}, "WIRE-ACK-JOIN"_rule,
      nullptr, "Of the mote."},
 };
 }  // namespace ack_join
 }  // namespace of
 namespace types {
 constexpr Type kAckJoin{
-    "ack_join", "ack_join", of::ack_join::kFields, 4, nullptr, 0, 14, 14, 29, ReqId::kWireAckJoin,
+    "ack_join", "ack_join", of::ack_join::kFields, 4, nullptr, 0, 14, 14, 29, "WIRE-ACK-JOIN"_rule,
     "A mote takes the offer.",
     "paper: Component Management"};
 }  // namespace types
@@ -1079,15 +1079,15 @@ constexpr Switch kPayloadSwitch{{kPayloadKey, 1}, kPayloadCases, 5, nullptr};
 constexpr Field kFields[] = {
     {"mac", "\"mac\":", 6, Kind::kStruct, 0, false, Repeat::kOnce, Extent::kOwn, 0, kAny, -1,
      nullptr, nullptr, &::rubric::tinyos::tables::types::kMacHeader, nullptr, {}, {}, {},
-     ReqId::kWireRadioHeader, nullptr, ""},
+     "WIRE-RADIO-HEADER"_rule, nullptr, ""},
     {"network", "\"network\":", 10, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 9,
      {ValidKind::kOneOf, 0, 0, kNetworkOneOf, 1}, -1, nullptr, nullptr, nullptr, nullptr, {}, {},
-     {}, ReqId::kWireRadioNetwork, nullptr, "NALP code of TinyOS in 6LoWPAN."},
+     {}, "WIRE-RADIO-NETWORK"_rule, nullptr, "NALP code of TinyOS in 6LoWPAN."},
     {"type", "\"type\":", 7, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 10, kAny, -1,
-     &enums::kAmType, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireRadioHeader, nullptr,
+     &enums::kAmType, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-RADIO-HEADER"_rule, nullptr,
      "AM type."},
     {"payload", "\"payload\":", 10, Kind::kStruct, 0, false, Repeat::kOnce, Extent::kToEnd, 11,
-     kAny, -1, nullptr, nullptr, nullptr, &kPayloadSwitch, {}, {}, {}, ReqId::kWireRadioLength,
+     kAny, -1, nullptr, nullptr, nullptr, &kPayloadSwitch, {}, {}, {}, "WIRE-RADIO-LENGTH"_rule,
      nullptr, ""},
 };
 }  // namespace radio_i_frame
@@ -1095,7 +1095,7 @@ constexpr Field kFields[] = {
 namespace types {
 constexpr Type kRadioIFrame{
     "radio_i_frame", "radio_i_frame", of::radio_i_frame::kFields, 4, nullptr, 0, 11, UINT32_MAX,
-    -1, ReqId::kWireRadioHeader,
+    -1, "WIRE-RADIO-HEADER"_rule,
     "On the radio, with the 6LoWPAN network byte (I-frame).",
     "TEP 125"};
 }  // namespace types
@@ -1111,12 +1111,12 @@ constexpr Switch kPayloadSwitch{{kPayloadKey, 1}, kPayloadCases, 5, nullptr};
 constexpr Field kFields[] = {
     {"mac", "\"mac\":", 6, Kind::kStruct, 0, false, Repeat::kOnce, Extent::kOwn, 0, kAny, -1,
      nullptr, nullptr, &::rubric::tinyos::tables::types::kMacHeader, nullptr, {}, {}, {},
-     ReqId::kWireRadioHeader, nullptr, ""},
+     "WIRE-RADIO-HEADER"_rule, nullptr, ""},
     {"type", "\"type\":", 7, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 9, kAny, -1,
-     &enums::kAmType, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireRadioHeader, nullptr,
+     &enums::kAmType, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-RADIO-HEADER"_rule, nullptr,
      "AM type."},
     {"payload", "\"payload\":", 10, Kind::kStruct, 0, false, Repeat::kOnce, Extent::kToEnd, 10,
-     kAny, -1, nullptr, nullptr, nullptr, &kPayloadSwitch, {}, {}, {}, ReqId::kWireRadioLength,
+     kAny, -1, nullptr, nullptr, nullptr, &kPayloadSwitch, {}, {}, {}, "WIRE-RADIO-LENGTH"_rule,
      nullptr, ""},
 };
 }  // namespace radio_t_frame
@@ -1124,7 +1124,7 @@ constexpr Field kFields[] = {
 namespace types {
 constexpr Type kRadioTFrame{
     "radio_t_frame", "radio_t_frame", of::radio_t_frame::kFields, 3, nullptr, 0, 10, UINT32_MAX,
-    -1, ReqId::kWireRadioHeader,
+    -1, "WIRE-RADIO-HEADER"_rule,
     "On the radio, without a network byte (T-frame, TFRAMES builds).",
     "TEP 125"};
 }  // namespace types
@@ -1135,24 +1135,24 @@ namespace data {
 constexpr Unit kTempUnit{"degC", 0.01, -40};
 constexpr Field kFields[] = {
     {"counter", "\"counter\":", 10, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 0, kAny,
-     -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireData, nullptr,
+     -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-DATA"_rule, nullptr,
      "Number of the request."},
     {"temp", "\"temp\":", 7, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 2, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireData, &kTempUnit,
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-DATA"_rule, &kTempUnit,
      "Temperature, raw; on telosb 0.01 degrees Celsius above -40."},
     {"humid", "\"humid\":", 8, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 4, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireData, nullptr, "Humidity, raw."},
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-DATA"_rule, nullptr, "Humidity, raw."},
     {"light", "\"light\":", 8, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 6, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireData, nullptr, "Light, raw."},
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-DATA"_rule, nullptr, "Light, raw."},
     {"rssi", "\"rssi\":", 7, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 8, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireData, nullptr,
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-DATA"_rule, nullptr,
      "Signal strength, raw."},
 };
 }  // namespace data
 }  // namespace of
 namespace types {
 constexpr Type kData{
-    "data", "data", of::data::kFields, 5, nullptr, 0, 10, 10, 10, ReqId::kWireData,
+    "data", "data", of::data::kFields, 5, nullptr, 0, 10, 10, 10, "WIRE-DATA"_rule,
     "Readings of a mote, of older tools.",
     "release 1.0"};
 }  // namespace types
@@ -1162,35 +1162,35 @@ namespace of {
 namespace complete {
 constexpr Field kFields[] = {
     {"dest", "\"dest\":", 7, Kind::kStruct, 0, false, Repeat::kOnce, Extent::kOwn, 0, kAny, -1,
-     nullptr, nullptr, &types::kRAddr, nullptr, {}, {}, {}, ReqId::kWireComplete, nullptr,
+     nullptr, nullptr, &types::kRAddr, nullptr, {}, {}, {}, "WIRE-COMPLETE"_rule, nullptr,
      "To whom."},
     {"src", "\"src\":", 6, Kind::kStruct, 0, false, Repeat::kOnce, Extent::kOwn, 4, kAny, -1,
-     nullptr, nullptr, &types::kRAddr, nullptr, {}, {}, {}, ReqId::kWireComplete, nullptr,
+     nullptr, nullptr, &types::kRAddr, nullptr, {}, {}, {}, "WIRE-COMPLETE"_rule, nullptr,
      "From whom."},
     {"reliable", "\"reliable\":", 11, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 8,
      {ValidKind::kRange, 0, 1, nullptr, 0}, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {},
-     ReqId::kWireNetReliable, nullptr, "1 asks for a RUBICON acknowledgement."},
+     "WIRE-NET-RELIABLE"_rule, nullptr, "1 asks for a RUBICON acknowledgement."},
     {"seq_num", "\"seq_num\":", 10, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 9, kAny,
-     -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireComplete, nullptr,
+     -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-COMPLETE"_rule, nullptr,
      "Sequence number."},
     {"nbytes", "\"nbytes\":", 9, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 11,
      {ValidKind::kRange, 2, 102, nullptr, 0}, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {},
-     ReqId::kWireNetNbytes, nullptr, "Bytes behind the header."},
+     "WIRE-NET-NBYTES"_rule, nullptr, "Bytes behind the header."},
     {"trans_id", "\"trans_id\":", 11, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 12,
-     kAny, -1, &enums::kComponent, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireComplete,
+     kAny, -1, &enums::kComponent, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-COMPLETE"_rule,
      nullptr, "Transport component."},
     {"app_id", "\"app_id\":", 9, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 13, kAny, -1,
-     &enums::kComponent, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireComplete, nullptr,
+     &enums::kComponent, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-COMPLETE"_rule, nullptr,
      "Application component."},
     {"payload", "\"payload\":", 10, Kind::kStruct, 0, false, Repeat::kOnce, Extent::kOwn, 14,
-     kAny, -1, nullptr, nullptr, &types::kDemo, nullptr, {}, {}, {}, ReqId::kWireComplete,
+     kAny, -1, nullptr, nullptr, &types::kDemo, nullptr, {}, {}, {}, "WIRE-COMPLETE"_rule,
      nullptr, "The command."},
 };
 }  // namespace complete
 }  // namespace of
 namespace types {
 constexpr Type kComplete{
-    "complete", "complete", of::complete::kFields, 8, nullptr, 0, 19, 19, 33, ReqId::kWireComplete,
+    "complete", "complete", of::complete::kFields, 8, nullptr, 0, 19, 19, 33, "WIRE-COMPLETE"_rule,
     "A whole network message with a demo command in it.",
     "release 1.0"};
 }  // namespace types
@@ -1201,20 +1201,20 @@ namespace net_command {
 constexpr Field kFields[] = {
     {"src_island_addr", "\"src_island_addr\":", 18, Kind::kUint, 1, false, Repeat::kOnce,
      Extent::kOwn, 0, kAny, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {},
-     ReqId::kWireNetCommand, nullptr, "Island of the source."},
+     "WIRE-NET-COMMAND"_rule, nullptr, "Island of the source."},
     {"src_mote_addr", "\"src_mote_addr\":", 16, Kind::kUint, 2, false, Repeat::kOnce,
      Extent::kOwn, 1, kAny, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {},
-     ReqId::kWireNetCommand, nullptr, "Mote of the source."},
+     "WIRE-NET-COMMAND"_rule, nullptr, "Mote of the source."},
     {"type", "\"type\":", 7, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 3, kAny, -1,
-     &enums::kCommandCode, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireNetCommand, nullptr,
-     "What is asked for."},
+     &enums::kCommandCode, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-NET-COMMAND"_rule,
+     nullptr, "What is asked for."},
 };
 }  // namespace net_command
 }  // namespace of
 namespace types {
 constexpr Type kNetCommand{
     "net_command", "net_command", of::net_command::kFields, 3, nullptr, 0, 4, 4, -1,
-    ReqId::kWireNetCommand,
+    "WIRE-NET-COMMAND"_rule,
     "Obsolete network message with a command.",
     "release 1.0"};
 }  // namespace types
@@ -1226,32 +1226,32 @@ constexpr Unit kTempUnit{"degC", 0.01, -40};
 constexpr Field kFields[] = {
     {"src_island_addr", "\"src_island_addr\":", 18, Kind::kUint, 1, false, Repeat::kOnce,
      Extent::kOwn, 0, kAny, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {},
-     ReqId::kWireNetData, nullptr, "Island of the source."},
+     "WIRE-NET-DATA"_rule, nullptr, "Island of the source."},
     {"src_mote_addr", "\"src_mote_addr\":", 16, Kind::kUint, 2, false, Repeat::kOnce,
      Extent::kOwn, 1, kAny, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {},
-     ReqId::kWireNetData, nullptr, "Mote of the source."},
+     "WIRE-NET-DATA"_rule, nullptr, "Mote of the source."},
     {"id", "\"id\":", 5, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 3, kAny, -1, nullptr,
-     nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireNetData, nullptr, "Mote id."},
+     nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-NET-DATA"_rule, nullptr, "Mote id."},
     {"counter", "\"counter\":", 10, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 5, kAny,
-     -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireNetData, nullptr,
+     -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-NET-DATA"_rule, nullptr,
      "Number of the request."},
     {"temp", "\"temp\":", 7, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 7, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireNetData, &kTempUnit,
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-NET-DATA"_rule, &kTempUnit,
      "Temperature, raw; on telosb 0.01 degrees Celsius above -40."},
     {"humid", "\"humid\":", 8, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 9, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireNetData, nullptr,
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-NET-DATA"_rule, nullptr,
      "Humidity, raw."},
     {"light", "\"light\":", 8, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 11, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireNetData, nullptr, "Light, raw."},
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-NET-DATA"_rule, nullptr, "Light, raw."},
     {"rssi", "\"rssi\":", 7, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 13, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireNetData, nullptr,
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-NET-DATA"_rule, nullptr,
      "Signal strength, raw."},
 };
 }  // namespace net_data
 }  // namespace of
 namespace types {
 constexpr Type kNetData{
-    "net_data", "net_data", of::net_data::kFields, 8, nullptr, 0, 15, 15, -1, ReqId::kWireNetData,
+    "net_data", "net_data", of::net_data::kFields, 8, nullptr, 0, 15, 15, -1, "WIRE-NET-DATA"_rule,
     "Obsolete network message with readings.",
     "release 1.0"};
 }  // namespace types
@@ -1262,32 +1262,32 @@ namespace connless {
 constexpr ExprStep kPayloadSize[] = {{Op::kLoadU8, 7}};
 constexpr Field kFields[] = {
     {"msg_type", "\"msg_type\":", 11, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 0, kAny,
-     -1, &enums::kAmType, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireConnless, nullptr,
+     -1, &enums::kAmType, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-CONNLESS"_rule, nullptr,
      "Kind of the payload."},
     {"island_addr", "\"island_addr\":", 14, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 1,
-     kAny, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireConnless, nullptr,
+     kAny, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-CONNLESS"_rule, nullptr,
      "Island."},
     {"mote_addr", "\"mote_addr\":", 12, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 2,
-     kAny, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireConnless, nullptr,
+     kAny, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-CONNLESS"_rule, nullptr,
      "Mote."},
     {"reliable", "\"reliable\":", 11, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 4,
      {ValidKind::kRange, 0, 1, nullptr, 0}, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {},
-     ReqId::kWireConnless, nullptr, "1 asks for an acknowledgement."},
+     "WIRE-CONNLESS"_rule, nullptr, "1 asks for an acknowledgement."},
     {"seq_num", "\"seq_num\":", 10, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 5, kAny,
-     -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireConnless, nullptr,
+     -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-CONNLESS"_rule, nullptr,
      "Sequence number."},
     {"nbytes", "\"nbytes\":", 9, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 7,
      {ValidKind::kRange, 0, 100, nullptr, 0}, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {},
-     ReqId::kWireConnless, nullptr, "Bytes of the payload."},
+     "WIRE-CONNLESS"_rule, nullptr, "Bytes of the payload."},
     {"payload", "\"payload\":", 10, Kind::kBytes, 0, false, Repeat::kOnce, Extent::kSize, 8, kAny,
-     -1, nullptr, nullptr, nullptr, nullptr, {kPayloadSize, 1}, {}, {}, ReqId::kWireConnless,
+     -1, nullptr, nullptr, nullptr, nullptr, {kPayloadSize, 1}, {}, {}, "WIRE-CONNLESS"_rule,
      nullptr, "The application's bytes."},
 };
 }  // namespace connless
 }  // namespace of
 namespace types {
 constexpr Type kConnless{
-    "connless", "connless", of::connless::kFields, 7, nullptr, 0, 8, 108, 27, ReqId::kWireConnless,
+    "connless", "connless", of::connless::kFields, 7, nullptr, 0, 8, 108, 27, "WIRE-CONNLESS"_rule,
     "Obsolete transport message.",
     "release 1.0"};
 }  // namespace types

@@ -57,7 +57,7 @@ class TransducerUpdateView {
       &&)[kCount]) = delete;  // Dies too early.
   /// The first rule that `bytes` break, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
-    if (RUBRIC_UNLIKELY(bytes.size() < 4)) return truncated(bytes, req::kWireUpdates);
+    if (RUBRIC_UNLIKELY(bytes.size() < 4)) return truncated(bytes, "WIRE-UPDATES"_rule);
     return no_error();
   }
 
@@ -100,7 +100,7 @@ class TransducerUpdateView {
 inline Result<MutableBytes> write(const TransducerUpdate& value, MutableBytes out) {
   const size_t size = TransducerUpdateLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
-    return fail(Fault::kNoRoom, out.size(), req::kWireUpdates);
+    return fail(Fault::kNoRoom, out.size(), "WIRE-UPDATES"_rule);
   }
   TransducerUpdateLayout::store(value, out.data());
   return out.first(size);
@@ -114,7 +114,7 @@ class TransducerUpdateBuilder {
   /// kNoRoom where `out` is smaller than kMinSizeBytes of the view.
   static constexpr Result<TransducerUpdateBuilder> create(MutableBytes out) {
     if (RUBRIC_UNLIKELY(out.size() < TransducerUpdateView::kMinSizeBytes)) {
-      return fail(Fault::kNoRoom, out.size(), req::kWireUpdates);
+      return fail(Fault::kNoRoom, out.size(), "WIRE-UPDATES"_rule);
     }
     return TransducerUpdateBuilder(out);
   }

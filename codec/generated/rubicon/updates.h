@@ -38,7 +38,7 @@ struct UpdatesLayout {
   static size_t size_bytes(const Updates& value) { return 2 + value.updates.size() * 4; }
   static Error check_lengths(const Updates& value) {
     if (RUBRIC_UNLIKELY(value.updates.size() > 24)) {
-      return error_at(Fault::kOutOfRange, 1, req::kWireUpdates);
+      return error_at(Fault::kOutOfRange, 1, "WIRE-UPDATES"_rule);
     }
     return no_error();
   }
@@ -70,13 +70,13 @@ class UpdatesView {
   /// The first rule that `bytes` break, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     const uint8_t* const p = bytes.data();
-    if (RUBRIC_UNLIKELY(bytes.size() < 2)) return truncated(bytes, req::kWireUpdates);
+    if (RUBRIC_UNLIKELY(bytes.size() < 2)) return truncated(bytes, "WIRE-UPDATES"_rule);
     if (RUBRIC_UNLIKELY(load_u8(p + 1) > 24)) {
-      return error_at(Fault::kOutOfRange, 1, req::kWireUpdates);
+      return error_at(Fault::kOutOfRange, 1, "WIRE-UPDATES"_rule);
     }
     const size_t updates_size = static_cast<size_t>(load_u8(p + 1)) * 4;
     if (RUBRIC_UNLIKELY(bytes.size() - 2 < updates_size)) {
-      return truncated(bytes, req::kWireUpdates);
+      return truncated(bytes, "WIRE-UPDATES"_rule);
     }
     return no_error();
   }
@@ -126,7 +126,7 @@ inline Result<MutableBytes> write(const Updates& value, MutableBytes out) {
   if (RUBRIC_UNLIKELY(is_error(wrong))) return Failure{wrong};
   const size_t size = UpdatesLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
-    return fail(Fault::kNoRoom, out.size(), req::kWireUpdates);
+    return fail(Fault::kNoRoom, out.size(), "WIRE-UPDATES"_rule);
   }
   UpdatesLayout::store(value, out.data());
   return out.first(size);
@@ -140,7 +140,7 @@ class UpdatesBuilder {
   /// kNoRoom where `out` is smaller than kMinSizeBytes of the view.
   static constexpr Result<UpdatesBuilder> create(MutableBytes out) {
     if (RUBRIC_UNLIKELY(out.size() < UpdatesView::kMinSizeBytes)) {
-      return fail(Fault::kNoRoom, out.size(), req::kWireUpdates);
+      return fail(Fault::kNoRoom, out.size(), "WIRE-UPDATES"_rule);
     }
     return UpdatesBuilder(out);
   }

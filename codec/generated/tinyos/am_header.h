@@ -82,10 +82,10 @@ class AmHeaderView {
     const uint8_t* const p = bytes.data();
     if (RUBRIC_UNLIKELY(bytes.size() < 8)) return check_short(bytes);
     if (RUBRIC_UNLIKELY(load_u8(p) != 0)) {
-      return error_at(Fault::kUnexpected, 0, req::kWireAmDispatch);
+      return error_at(Fault::kUnexpected, 0, "WIRE-AM-DISPATCH"_rule);
     }
     if (RUBRIC_UNLIKELY(load_u8(p + 5) > 114)) {
-      return error_at(Fault::kOutOfRange, 5, req::kWireAmLength);
+      return error_at(Fault::kOutOfRange, 5, "WIRE-AM-LENGTH"_rule);
     }
     return no_error();
   }
@@ -132,16 +132,16 @@ class AmHeaderView {
   // Bytes that end within the first 8; they may be wrong before.
   RUBRIC_COLD static constexpr Error check_short(Bytes bytes) {
     const uint8_t* const p = bytes.data();
-    if (bytes.size() < 1) return truncated(bytes, req::kWireAmDispatch);
+    if (bytes.size() < 1) return truncated(bytes, "WIRE-AM-DISPATCH"_rule);
     if (RUBRIC_UNLIKELY(load_u8(p) != 0)) {
-      return error_at(Fault::kUnexpected, 0, req::kWireAmDispatch);
+      return error_at(Fault::kUnexpected, 0, "WIRE-AM-DISPATCH"_rule);
     }
-    if (bytes.size() < 5) return truncated(bytes, req::kWireAmHeader);
-    if (bytes.size() < 6) return truncated(bytes, req::kWireAmLength);
+    if (bytes.size() < 5) return truncated(bytes, "WIRE-AM-HEADER"_rule);
+    if (bytes.size() < 6) return truncated(bytes, "WIRE-AM-LENGTH"_rule);
     if (RUBRIC_UNLIKELY(load_u8(p + 5) > 114)) {
-      return error_at(Fault::kOutOfRange, 5, req::kWireAmLength);
+      return error_at(Fault::kOutOfRange, 5, "WIRE-AM-LENGTH"_rule);
     }
-    return truncated(bytes, req::kWireAmHeader);
+    return truncated(bytes, "WIRE-AM-HEADER"_rule);
   }
 
   Bytes bytes_;
@@ -153,7 +153,7 @@ class AmHeaderView {
 inline Result<MutableBytes> write(const AmHeader& value, MutableBytes out) {
   const size_t size = AmHeaderLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
-    return fail(Fault::kNoRoom, out.size(), req::kWireAmHeader);
+    return fail(Fault::kNoRoom, out.size(), "WIRE-AM-HEADER"_rule);
   }
   AmHeaderLayout::store(value, out.data());
   const Error error = AmHeaderView::check(out.first(size));
@@ -169,7 +169,7 @@ class AmHeaderBuilder {
   /// kNoRoom where `out` is smaller than kMinSizeBytes of the view.
   static constexpr Result<AmHeaderBuilder> create(MutableBytes out) {
     if (RUBRIC_UNLIKELY(out.size() < AmHeaderView::kMinSizeBytes)) {
-      return fail(Fault::kNoRoom, out.size(), req::kWireAmHeader);
+      return fail(Fault::kNoRoom, out.size(), "WIRE-AM-HEADER"_rule);
     }
     return AmHeaderBuilder(out);
   }

@@ -54,7 +54,7 @@ class MacAckView {
   static Result<MacAckView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
   /// The first rule that `bytes` break, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
-    if (RUBRIC_UNLIKELY(bytes.size() < 3)) return truncated(bytes, req::kWireRadioHeader);
+    if (RUBRIC_UNLIKELY(bytes.size() < 3)) return truncated(bytes, "WIRE-RADIO-HEADER"_rule);
     return no_error();
   }
 
@@ -95,7 +95,7 @@ class MacAckView {
 inline Result<MutableBytes> write(const MacAck& value, MutableBytes out) {
   const size_t size = MacAckLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
-    return fail(Fault::kNoRoom, out.size(), req::kWireRadioHeader);
+    return fail(Fault::kNoRoom, out.size(), "WIRE-RADIO-HEADER"_rule);
   }
   MacAckLayout::store(value, out.data());
   return out.first(size);
@@ -109,7 +109,7 @@ class MacAckBuilder {
   /// kNoRoom where `out` is smaller than kMinSizeBytes of the view.
   static constexpr Result<MacAckBuilder> create(MutableBytes out) {
     if (RUBRIC_UNLIKELY(out.size() < MacAckView::kMinSizeBytes)) {
-      return fail(Fault::kNoRoom, out.size(), req::kWireRadioHeader);
+      return fail(Fault::kNoRoom, out.size(), "WIRE-RADIO-HEADER"_rule);
     }
     return MacAckBuilder(out);
   }

@@ -72,7 +72,7 @@ class MacHeaderView {
   static Result<MacHeaderView> parse(const uint8_t (&&)[kCount]) = delete;  // Dies too early.
   /// The first rule that `bytes` break, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
-    if (RUBRIC_UNLIKELY(bytes.size() < 9)) return truncated(bytes, req::kWireRadioHeader);
+    if (RUBRIC_UNLIKELY(bytes.size() < 9)) return truncated(bytes, "WIRE-RADIO-HEADER"_rule);
     return no_error();
   }
 
@@ -122,7 +122,7 @@ class MacHeaderView {
 inline Result<MutableBytes> write(const MacHeader& value, MutableBytes out) {
   const size_t size = MacHeaderLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
-    return fail(Fault::kNoRoom, out.size(), req::kWireRadioHeader);
+    return fail(Fault::kNoRoom, out.size(), "WIRE-RADIO-HEADER"_rule);
   }
   MacHeaderLayout::store(value, out.data());
   return out.first(size);
@@ -136,7 +136,7 @@ class MacHeaderBuilder {
   /// kNoRoom where `out` is smaller than kMinSizeBytes of the view.
   static constexpr Result<MacHeaderBuilder> create(MutableBytes out) {
     if (RUBRIC_UNLIKELY(out.size() < MacHeaderView::kMinSizeBytes)) {
-      return fail(Fault::kNoRoom, out.size(), req::kWireRadioHeader);
+      return fail(Fault::kNoRoom, out.size(), "WIRE-RADIO-HEADER"_rule);
     }
     return MacHeaderBuilder(out);
   }

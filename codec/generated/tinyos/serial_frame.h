@@ -70,10 +70,10 @@ class SerialFrameView {
   /// The first rule that `bytes` break, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     const uint8_t* const p = bytes.data();
-    if (RUBRIC_UNLIKELY(bytes.size() < 1)) return truncated(bytes, req::kWireSerialKind);
+    if (RUBRIC_UNLIKELY(bytes.size() < 1)) return truncated(bytes, "WIRE-SERIAL-KIND"_rule);
     size_t at = 1;
     if (load_u8(p) == 67 || load_u8(p) == 68) {
-      if (RUBRIC_UNLIKELY(bytes.size() - at < 1)) return truncated(bytes, req::kWireSerialSeq);
+      if (RUBRIC_UNLIKELY(bytes.size() - at < 1)) return truncated(bytes, "WIRE-SERIAL-SEQ"_rule);
       at += 1;
     }
     return no_error();
@@ -128,7 +128,7 @@ class SerialFrameView {
 inline Result<MutableBytes> write(const SerialFrame& value, MutableBytes out) {
   const size_t size = SerialFrameLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
-    return fail(Fault::kNoRoom, out.size(), req::kWireSerialKind);
+    return fail(Fault::kNoRoom, out.size(), "WIRE-SERIAL-KIND"_rule);
   }
   SerialFrameLayout::store(value, out.data());
   return out.first(size);
@@ -142,7 +142,7 @@ class SerialFrameBuilder {
   /// kNoRoom where `out` is smaller than kMinSizeBytes of the view.
   static constexpr Result<SerialFrameBuilder> create(MutableBytes out) {
     if (RUBRIC_UNLIKELY(out.size() < SerialFrameView::kMinSizeBytes)) {
-      return fail(Fault::kNoRoom, out.size(), req::kWireSerialKind);
+      return fail(Fault::kNoRoom, out.size(), "WIRE-SERIAL-KIND"_rule);
     }
     return SerialFrameBuilder(out);
   }
@@ -179,7 +179,7 @@ class SerialFrameBuilder {
   Result<SerialFrameView> finish() const {
     const size_t size = 1 + (has_seq_num() ? 1 : 0) + tail_;
     if (RUBRIC_UNLIKELY(out_.size() < size)) {
-      return fail(Fault::kNoRoom, out_.size(), req::kWireSerialKind);
+      return fail(Fault::kNoRoom, out_.size(), "WIRE-SERIAL-KIND"_rule);
     }
     const Result<SerialFrameView> whole = SerialFrameView::parse(out_.first(size));
     if (!whole) return whole;

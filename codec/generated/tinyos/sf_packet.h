@@ -31,7 +31,7 @@ struct SfPacketLayout {
   static size_t size_bytes(const SfPacket& value) { return 1 + value.packet.size(); }
   static Error check_lengths(const SfPacket& value) {
     if (RUBRIC_UNLIKELY(value.packet.size() < 1 || value.packet.size() > 255)) {
-      return error_at(Fault::kOutOfRange, 0, req::kWireSfLength);
+      return error_at(Fault::kOutOfRange, 0, "WIRE-SF-LENGTH"_rule);
     }
     return no_error();
   }
@@ -60,12 +60,12 @@ class SfPacketView {
   /// The first rule that `bytes` break, or Fault::kNone.
   static constexpr Error check(Bytes bytes) {
     const uint8_t* const p = bytes.data();
-    if (RUBRIC_UNLIKELY(bytes.size() < 1)) return truncated(bytes, req::kWireSfLength);
+    if (RUBRIC_UNLIKELY(bytes.size() < 1)) return truncated(bytes, "WIRE-SF-LENGTH"_rule);
     if (RUBRIC_UNLIKELY(load_u8(p) < 1)) {
-      return error_at(Fault::kOutOfRange, 0, req::kWireSfLength);
+      return error_at(Fault::kOutOfRange, 0, "WIRE-SF-LENGTH"_rule);
     }
     if (RUBRIC_UNLIKELY(bytes.size() - 1 < static_cast<size_t>(load_u8(p)))) {
-      return truncated(bytes, req::kWireSfLength);
+      return truncated(bytes, "WIRE-SF-LENGTH"_rule);
     }
     return no_error();
   }
@@ -108,7 +108,7 @@ inline Result<MutableBytes> write(const SfPacket& value, MutableBytes out) {
   if (RUBRIC_UNLIKELY(is_error(wrong))) return Failure{wrong};
   const size_t size = SfPacketLayout::size_bytes(value);
   if (RUBRIC_UNLIKELY(out.size() < size)) {
-    return fail(Fault::kNoRoom, out.size(), req::kWireSfLength);
+    return fail(Fault::kNoRoom, out.size(), "WIRE-SF-LENGTH"_rule);
   }
   SfPacketLayout::store(value, out.data());
   return out.first(size);
@@ -122,7 +122,7 @@ class SfPacketBuilder {
   /// kNoRoom where `out` is smaller than kMinSizeBytes of the view.
   static constexpr Result<SfPacketBuilder> create(MutableBytes out) {
     if (RUBRIC_UNLIKELY(out.size() < SfPacketView::kMinSizeBytes)) {
-      return fail(Fault::kNoRoom, out.size(), req::kWireSfLength);
+      return fail(Fault::kNoRoom, out.size(), "WIRE-SF-LENGTH"_rule);
     }
     return SfPacketBuilder(out);
   }

@@ -78,13 +78,13 @@ constexpr ExprStep kSeqNumIf[] = {
     {Op::kEq, 0}, {Op::kOr, 0}};
 constexpr Field kFields[] = {
     {"kind", "\"kind\":", 7, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 0, kAny, -1,
-     &enums::kSerialKind, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireSerialKind, nullptr,
+     &enums::kSerialKind, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-SERIAL-KIND"_rule, nullptr,
      "Packet kind. An unknown kind is shown and kept."},
     {"seq_num", "\"seq_num\":", 10, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 1, kAny,
-     -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {kSeqNumIf, 7}, ReqId::kWireSerialSeq,
+     -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {kSeqNumIf, 7}, "WIRE-SERIAL-SEQ"_rule,
      nullptr, "Of the frame to confirm, or of the frame that it confirms."},
     {"packet", "\"packet\":", 9, Kind::kBytes, 0, false, Repeat::kOnce, Extent::kToEnd, -1, kAny,
-     -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireSerialKind, nullptr,
+     -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-SERIAL-KIND"_rule, nullptr,
      "From the dispatch byte on."},
 };
 }  // namespace serial_frame
@@ -92,7 +92,7 @@ constexpr Field kFields[] = {
 namespace types {
 constexpr Type kSerialFrame{
     "serial_frame", "serial_frame", of::serial_frame::kFields, 3, nullptr, 0, 1, UINT32_MAX, -1,
-    ReqId::kWireSerialKind,
+    "WIRE-SERIAL-KIND"_rule,
     "What stands between two flags on the serial line, unescaped, without its CRC. The CRC-16 "
     "over these bytes follows them, low byte first.",
     "TEP 113, section 3.1"};
@@ -105,9 +105,9 @@ constexpr ExprStep kPacketSize[] = {{Op::kLoadU8, 0}};
 constexpr Field kFields[] = {
     {"length", "\"length\":", 9, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 0,
      {ValidKind::kRange, 1, 255, nullptr, 0}, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {},
-     ReqId::kWireSfLength, nullptr, "Bytes of the packet."},
+     "WIRE-SF-LENGTH"_rule, nullptr, "Bytes of the packet."},
     {"packet", "\"packet\":", 9, Kind::kBytes, 0, false, Repeat::kOnce, Extent::kSize, 1, kAny,
-     -1, nullptr, nullptr, nullptr, nullptr, {kPacketSize, 1}, {}, {}, ReqId::kWireSfLength,
+     -1, nullptr, nullptr, nullptr, nullptr, {kPacketSize, 1}, {}, {}, "WIRE-SF-LENGTH"_rule,
      nullptr, "From the dispatch byte on."},
 };
 }  // namespace sf_packet
@@ -115,7 +115,7 @@ constexpr Field kFields[] = {
 namespace types {
 constexpr Type kSfPacket{
     "sf_packet", "sf_packet", of::sf_packet::kFields, 2, nullptr, 0, 2, 256, -1,
-    ReqId::kWireSfLength,
+    "WIRE-SF-LENGTH"_rule,
     "A packet on a serial forwarder connection. The stream begins with two bytes from each "
     "side: 'U' and a version.",
     "TinyOS serial forwarder protocol, version 2"};
@@ -128,29 +128,29 @@ constexpr int64_t kDispatchOneOf[] = {0};
 constexpr Field kFields[] = {
     {"dispatch", "\"dispatch\":", 11, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 0,
      {ValidKind::kOneOf, 0, 0, kDispatchOneOf, 1}, -1, &enums::kDispatch, nullptr, nullptr,
-     nullptr, {}, {}, {}, ReqId::kWireAmDispatch, nullptr,
+     nullptr, {}, {}, {}, "WIRE-AM-DISPATCH"_rule, nullptr,
      "What the bytes behind it are; this kit takes active messages."},
     {"dest", "\"dest\":", 7, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 1, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireAmHeader, nullptr,
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-AM-HEADER"_rule, nullptr,
      "AM address of the receiver; 0xffff is broadcast."},
     {"src", "\"src\":", 6, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 3, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireAmHeader, nullptr,
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-AM-HEADER"_rule, nullptr,
      "AM address of the sender."},
     {"length", "\"length\":", 9, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 5,
      {ValidKind::kRange, 0, 114, nullptr, 0}, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {},
-     ReqId::kWireAmLength, nullptr, "Bytes of the AM payload."},
+     "WIRE-AM-LENGTH"_rule, nullptr, "Bytes of the AM payload."},
     {"group", "\"group\":", 8, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 6, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireAmHeader, nullptr,
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-AM-HEADER"_rule, nullptr,
      "AM group, on the radio the PAN."},
     {"type", "\"type\":", 7, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 7, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireAmHeader, nullptr, "AM type."},
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-AM-HEADER"_rule, nullptr, "AM type."},
 };
 }  // namespace am_header
 }  // namespace of
 namespace types {
 constexpr Type kAmHeader{
     "am_header", "am_header", of::am_header::kFields, 6, nullptr, 0, 8, 8, -1,
-    ReqId::kWireAmHeader,
+    "WIRE-AM-HEADER"_rule,
     "Dispatch byte and serial active-message header, 8 bytes.",
     "TEP 113, section 3.2; TEP 111"};
 }  // namespace types
@@ -160,19 +160,19 @@ namespace of {
 namespace mac_header {
 constexpr Field kFields[] = {
     {"fcf", "\"fcf\":", 6, Kind::kUint, 2, true, Repeat::kOnce, Extent::kOwn, 0, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireRadioHeader, nullptr,
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-RADIO-HEADER"_rule, nullptr,
      "Frame control, 0x8841; 0x8861 asks for a link ack."},
     {"dsn", "\"dsn\":", 6, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 2, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireRadioHeader, nullptr,
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-RADIO-HEADER"_rule, nullptr,
      "Data sequence number, counts up per node."},
     {"destpan", "\"destpan\":", 10, Kind::kUint, 2, true, Repeat::kOnce, Extent::kOwn, 3, kAny,
-     -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireRadioHeader, nullptr,
+     -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-RADIO-HEADER"_rule, nullptr,
      "PAN, the AM group."},
     {"dest", "\"dest\":", 7, Kind::kUint, 2, true, Repeat::kOnce, Extent::kOwn, 5, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireRadioHeader, nullptr,
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-RADIO-HEADER"_rule, nullptr,
      "AM address of the receiver."},
     {"src", "\"src\":", 6, Kind::kUint, 2, true, Repeat::kOnce, Extent::kOwn, 7, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireRadioHeader, nullptr,
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-RADIO-HEADER"_rule, nullptr,
      "AM address of the sender."},
 };
 }  // namespace mac_header
@@ -180,7 +180,7 @@ constexpr Field kFields[] = {
 namespace types {
 constexpr Type kMacHeader{
     "mac_header", "mac_header", of::mac_header::kFields, 5, nullptr, 0, 9, 9, -1,
-    ReqId::kWireRadioHeader,
+    "WIRE-RADIO-HEADER"_rule,
     "802.15.4 data frame header with short addresses in one PAN, 9 bytes, little-endian.",
     "IEEE 802.15.4-2006, section 7.2.1; TEP 125"};
 }  // namespace types
@@ -190,17 +190,17 @@ namespace of {
 namespace mac_ack {
 constexpr Field kFields[] = {
     {"fcf", "\"fcf\":", 6, Kind::kUint, 2, true, Repeat::kOnce, Extent::kOwn, 0, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireRadioHeader, nullptr,
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-RADIO-HEADER"_rule, nullptr,
      "Frame control, 0x0002."},
     {"dsn", "\"dsn\":", 6, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 2, kAny, -1,
-     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, ReqId::kWireRadioHeader, nullptr,
+     nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-RADIO-HEADER"_rule, nullptr,
      "Of the frame that it acknowledges."},
 };
 }  // namespace mac_ack
 }  // namespace of
 namespace types {
 constexpr Type kMacAck{
-    "mac_ack", "mac_ack", of::mac_ack::kFields, 2, nullptr, 0, 3, 3, -1, ReqId::kWireRadioHeader,
+    "mac_ack", "mac_ack", of::mac_ack::kFields, 2, nullptr, 0, 3, 3, -1, "WIRE-RADIO-HEADER"_rule,
     "802.15.4 acknowledgement, without FCS, 3 bytes.",
     "IEEE 802.15.4-2006, section 7.2.2.3"};
 }  // namespace types

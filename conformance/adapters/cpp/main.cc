@@ -197,8 +197,7 @@ void Adapter::transmit(Line line, const Frame& frame) {
   tinyos::AmHeaderLayout::store(header, packet.data());
   packet.insert(packet.end(), frame.payload.begin(), frame.payload.end());
   write("tx", kLines[static_cast<std::size_t>(line)] + " " +
-                  hex_of(Bytes(packet.data(), packet.size())) +
-                  (frame.link_ack ? " linkack" : ""));
+                  hex_of(Bytes(packet.data(), packet.size())) + (frame.link_ack ? " linkack" : ""));
 }
 
 void Adapter::call(const std::string& call) {
@@ -221,8 +220,8 @@ void Adapter::call(const std::string& call) {
   } else if (name == "send") {
     const Data data = with.bytes("data");
     const auto application = static_cast<Component>(with.number<std::uint8_t>("app_id"));
-    const auto number = node_->send(with.address("dest"), application,
-                                    with.number("reliable") == 1, Bytes(data.data(), data.size()));
+    const auto number = node_->send(with.address("dest"), application, with.number("reliable") == 1,
+                                    Bytes(data.data(), data.size()));
     up("send_result(" + std::to_string(number) + ")");
   } else if (name == "interface") {
     result(node_->set_interface(static_cast<Line>(with.number("link")), with.number("on") == 1));

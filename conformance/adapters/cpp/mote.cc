@@ -104,8 +104,7 @@ void Mote::confirmed(bool acked) {
 
 std::uint32_t Mote::clock_ms() const {
   if (!address_) return Node::clock_ms();
-  return clock_at_acceptance_ms_ +
-         static_cast<std::uint32_t>((now() - accepted_at_) * 1000 / 1024);
+  return clock_at_acceptance_ms_ + static_cast<std::uint32_t>((now() - accepted_at_) * 1000 / 1024);
 }
 
 bool Mote::route(const Message& message) {

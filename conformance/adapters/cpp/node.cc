@@ -122,8 +122,13 @@ std::uint16_t Node::send(Address dest, Component application, bool reliable, Byt
   if (dest.island == kLocal) dest.island = address()->island;
   if (dest.device == kLocal) dest.device = address()->device;
   if (dest == *address()) return kNoNumber;
-  const Message message{dest, *address(), reliable, take_number(), Component::kConnless,
-                        application, Data(data.begin(), data.end())};
+  const Message message{dest,
+                        *address(),
+                        reliable,
+                        take_number(),
+                        Component::kConnless,
+                        application,
+                        Data(data.begin(), data.end())};
   if (!route(message)) return kNoNumber;
   if (reliable) awaited_.push_back({message.number, dest, application, now_ + kAckTimeout});
   return message.number;
@@ -175,8 +180,8 @@ void Node::acknowledge(const Message& message) {
   rubicon::RubiconAck ack;
   ack.type = AmType::kLearningNotification;
   ack.seq_num = message.number;
-  route({message.src, *address(), false, take_number(), Component::kRubiconAck,
-         message.application, bytes_of(ack)});
+  route({message.src, *address(), false, take_number(), Component::kRubiconAck, message.application,
+         bytes_of(ack)});
 }
 
 void Node::settle(const Message& ack) {
@@ -199,8 +204,8 @@ void Node::settle(const Message& ack) {
 bool Node::send_values(Address dest, const Values& values) {
   rubicon::SynapticData data;
   for (const float value : values) data.values.push(value);
-  return route({dest, *address(), false, take_number(), Component::kSynChannel,
-                Component::kEsnData, bytes_of(data)});
+  return route({dest, *address(), false, take_number(), Component::kSynChannel, Component::kEsnData,
+                bytes_of(data)});
 }
 
 }  // namespace rubric::cpp_node

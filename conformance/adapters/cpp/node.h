@@ -15,10 +15,10 @@
 namespace rubric::cpp_node {
 
 struct Settings {
-  std::uint16_t device = 0;        ///< Its TinyOS id; of a base station nothing.
-  std::uint16_t island = 0;        ///< Start value of a sink or base station.
-  std::size_t channels = 4;        ///< Synaptic ones, of each direction.
-  std::uint16_t next_number = 1;   ///< The first sequence number.
+  std::uint16_t device = 0;       ///< Its TinyOS id; of a base station nothing.
+  std::uint16_t island = 0;       ///< Start value of a sink or base station.
+  std::size_t channels = 4;       ///< Synaptic ones, of each direction.
+  std::uint16_t next_number = 1;  ///< The first sequence number.
   Ticks now = 0;
 };
 

@@ -12,9 +12,7 @@ namespace {
 constexpr std::size_t kMembersMax = 20;
 constexpr std::size_t kOpenJoinsMax = 20;
 
-Bytes payload_of(const Frame& frame) {
-  return Bytes(frame.payload.data(), frame.payload.size());
-}
+Bytes payload_of(const Frame& frame) { return Bytes(frame.payload.data(), frame.payload.size()); }
 
 }  // namespace
 
@@ -80,8 +78,13 @@ void Sink::may_have_room() {
     report.transducers = member.description.transducers;
     report.actuators = member.description.actuators;
     member.reported = true;
-    hand_up({{address_.island, kNull}, {address_.island, member.device}, false, take_number(),
-             Component::kConnless, Component::kControlLayer, bytes_of(report)});
+    hand_up({{address_.island, kNull},
+             {address_.island, member.device},
+             false,
+             take_number(),
+             Component::kConnless,
+             Component::kControlLayer,
+             bytes_of(report)});
   }
 }
 

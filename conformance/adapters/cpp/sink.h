@@ -14,7 +14,7 @@ class Sink : public Node {
     std::uint16_t device = 0;
     std::uint16_t number = 0;  ///< In its last request.
     MoteDesc description;
-    bool reported = false;     ///< To the base station.
+    bool reported = false;  ///< To the base station.
   };
 
   std::optional<Address> address() const override { return address_; }

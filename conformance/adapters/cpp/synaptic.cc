@@ -30,14 +30,13 @@ std::optional<ChannelId> Synaptic::create(Direction direction, Address own, Addr
                                           std::size_t size, Mode mode) {
   if (peer.island == kLocal) peer.island = own.island;
   const bool out = direction == Direction::kOut;
-  const ChannelId id = out ? channel_id(own.device, peer.device)
-                           : channel_id(peer.device, own.device);
+  const ChannelId id =
+      out ? channel_id(own.device, peer.device) : channel_id(peer.device, own.device);
   Channel* channel = find(direction, id);
   if (size == 0 || (channel ? channel->values.size() : 0) + size > kConnectionsMax) return {};
   if (!channel) {
-    const auto used = std::count_if(channels_.begin(), channels_.end(), [&](const Channel& one) {
-      return one.direction == direction;
-    });
+    const auto used = std::count_if(channels_.begin(), channels_.end(),
+                                    [&](const Channel& one) { return one.direction == direction; });
     if (static_cast<std::size_t>(used) >= room_) return {};
     channel = &channels_.emplace_back();
     channel->direction = direction;

@@ -23,8 +23,8 @@ class Synaptic {
       : room_(room), phase_(phase), world_(world), send_(std::move(send)) {}
 
   /// Returns the channel's id; nothing if it is refused, and then nothing changed.
-  std::optional<ChannelId> create(Direction direction, Address own, Address peer,
-                                  std::size_t size, Mode mode);
+  std::optional<ChannelId> create(Direction direction, Address own, Address peer, std::size_t size,
+                                  Mode mode);
   // These return false if there is no such channel, or no such position.
   bool dispose(ChannelId id);
   bool start(ChannelId id, Ticks now);

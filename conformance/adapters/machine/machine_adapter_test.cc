@@ -2,12 +2,12 @@
 // process.
 #include <gtest/gtest.h>
 
-#include "conformance/attach/attachment.h"
-#include "conformance/runner/case_files.h"
-#include "conformance/runner/run_case.h"
+#include "conformance/test/runner/case_files.h"
+#include "conformance/test/runner/run_case.h"
+#include "conformance/test/targets/attachment.h"
 #include "conformance/trace/print.h"
 
-namespace rubric::attach {
+namespace rubric::targets {
 namespace {
 
 std::string log_of(const runner::CaseResult& result) {
@@ -52,4 +52,4 @@ TEST(MachineAdapter, SaysWhoItIs) {
 }
 
 }  // namespace
-}  // namespace rubric::attach
+}  // namespace rubric::targets

@@ -6,10 +6,10 @@
 #include <stdexcept>
 #include <string>
 
-#include "conformance/attach/serve.h"
-#include "conformance/mutants/generated.h"
-#include "conformance/mutants/legal.h"
-#include "conformance/runner/subject_target.h"
+#include "conformance/selftest/mutants/generated.h"
+#include "conformance/selftest/mutants/legal.h"
+#include "conformance/test/runner/subject_target.h"
+#include "conformance/test/targets/serve.h"
 #include "tools/cli/command.h"
 
 namespace rubric {
@@ -23,16 +23,15 @@ struct Which {
 
 template <class All>
 mutants::StepMaker find(const All& all, const std::string& name) {
-  const auto found = std::find_if(all.begin(), all.end(),
-                                  [&](const auto& one) { return one.name == name; });
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&](const auto& one) { return one.name == name; });
   return found == all.end() ? mutants::StepMaker() : found->step;
 }
 
 std::unique_ptr<runner::Subject> make_subject(const Which& which) {
   if (which.mutant.empty() && which.legal.empty()) return std::make_unique<runner::Machine>();
-  mutants::StepMaker step = which.mutant.empty()
-                                ? find(mutants::legal_variants(), which.legal)
-                                : find(mutants::named_mutants(), which.mutant);
+  mutants::StepMaker step = which.mutant.empty() ? find(mutants::legal_variants(), which.legal)
+                                                 : find(mutants::named_mutants(), which.mutant);
   if (!step && !which.mutant.empty() && !which.cases.empty()) {
     step = find(mutants::generated_mutants(mutants::Golden(which.cases)), which.mutant);
   }
@@ -41,14 +40,14 @@ std::unique_ptr<runner::Subject> make_subject(const Which& which) {
 }
 
 int run(const Which& which) {
-  attach::Identity identity = attach::machine_identity();
+  targets::Identity identity = targets::machine_identity();
   if (!which.mutant.empty() || !which.legal.empty()) {
     identity.name = "broken_or_unusual";
     identity.version = which.mutant + which.legal;
     std::replace(identity.version.begin(), identity.version.end(), ' ', '_');
   }
   runner::SubjectTarget target(make_subject(which));
-  return attach::serve(target, identity, stdin, stdout);
+  return targets::serve(target, identity, stdin, stdout);
 }
 
 }  // namespace
@@ -59,8 +58,7 @@ int main(int argc, char** argv) {
                                "The reference machine as an adapter: rct/1 on standard input and "
                                "output.");
   rubric::Which which;
-  const auto mutant =
-      program.add_option("--mutant", which.mutant, "A broken machine, by its name");
+  const auto mutant = program.add_option("--mutant", which.mutant, "A broken machine, by its name");
   program.add_option("--legal", which.legal, "An unusual machine that keeps the rules, by its name")
       .excludes(mutant);
   program.add_option("--cases", which.cases,

@@ -5,19 +5,19 @@
 #include <chrono>
 #include <cstdio>
 
-#include "conformance/attach/rct_attachment.h"
-#include "conformance/attach/serve.h"
-#include "conformance/mutants/generated.h"
-#include "conformance/mutants/legal.h"
-#include "conformance/runner/subject_target.h"
-#include "tools/readme/number.h"
+#include "conformance/selftest/mutants/generated.h"
+#include "conformance/selftest/mutants/legal.h"
+#include "conformance/test/runner/subject_target.h"
+#include "conformance/test/targets/rct_attachment.h"
+#include "conformance/test/targets/serve.h"
+#include "tools/tests/readme/number.h"
 
 namespace rubric::mutants {
 namespace {
 
-using attach::Process;
-using attach::RctAttachment;
 using runner::CaseVerdict;
+using targets::Process;
+using targets::RctAttachment;
 
 const Golden& golden() {
   static const Golden cases("conformance/cases");
@@ -31,12 +31,12 @@ RctAttachment attached(const StepMaker& step) {
     std::FILE* const out = ::fdopen(out_fd, "w");
     if (!in || !out) return 1;
     runner::SubjectTarget target(std::make_unique<Wrapped>(step));
-    return attach::serve(target, attach::machine_identity(), in, out);
+    return targets::serve(target, targets::machine_identity(), in, out);
   };
   return RctAttachment([serve] { return Process::copy(serve); }, {});
 }
 
-runner::CaseResult run_on(attach::Attachment& attachment, const CaseRef& ref) {
+runner::CaseResult run_on(targets::Attachment& attachment, const CaseRef& ref) {
   return runner::run_case(ref.file->file, *ref.one,
                           [&](const trace::NodeHeader&) { return attachment.target(); });
 }
@@ -102,14 +102,14 @@ TEST(MutantsRct, NoLegalVariantFails) {
 
 // Machines by name, as a user starts them.
 TEST(MutantsRct, NamedOnesAreStartedByName) {
-  const auto mutant = attach::attach(
+  const auto mutant = targets::attach(
       std::string(RUBRIC_MACHINE_ADAPTER) + " --mutant " + named_mutants().front().name, {});
   EXPECT_EQ(mutant->identity().name, "broken_or_unusual");
-  const auto legal = attach::attach(
+  const auto legal = targets::attach(
       std::string(RUBRIC_MACHINE_ADAPTER) + " --legal " + legal_variants().front().name, {});
   EXPECT_EQ(legal->identity().version, legal_variants().front().name);
   const auto unknown =
-      attach::attach(std::string(RUBRIC_MACHINE_ADAPTER) + " --mutant none.such", {});
+      targets::attach(std::string(RUBRIC_MACHINE_ADAPTER) + " --mutant none.such", {});
   EXPECT_THROW(unknown->identity(), runner::TargetBroken);
   EXPECT_EQ(unknown->take_stderr(), "rubric_machine_adapter: no machine is called none.such\n");
 }

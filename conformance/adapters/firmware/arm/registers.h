@@ -24,7 +24,7 @@ constexpr uint32_t kReceiveEmpty = 1U << 4;  // Flag.
 constexpr uint32_t kTransmitFull = 1U << 5;
 constexpr uint32_t kLine8Bits = 3U << 5;
 constexpr uint32_t kLineFifos = 1U << 4;
-constexpr uint32_t kControlOn = 1U << 9 | 1U << 8 | 1U;  // Receiver, transmitter, UART.
+constexpr uint32_t kControlOn = 1U << 9 | 1U << 8 | 1U;     // Receiver, transmitter, UART.
 constexpr uint32_t kReceiveInterrupts = 1U << 6 | 1U << 4;  // Timeout, FIFO level.
 constexpr uint32_t kTransmitInterrupt = 1U << 5;
 

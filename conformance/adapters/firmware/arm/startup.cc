@@ -46,6 +46,6 @@ __attribute__((section(".vectors"), used)) const Vectors vectors = {
     {reset_handler, halt, halt, halt, halt, halt, nullptr, nullptr, nullptr, nullptr, halt, halt,
      nullptr, halt, halt},
     {halt, halt, halt, halt, halt, uart0_handler, uart1_handler, halt, halt, halt,
-     halt, halt, halt, halt, halt, halt, halt, halt, halt, timer0_handler}};
+     halt, halt, halt, halt, halt, halt,          halt,          halt, halt, timer0_handler}};
 
 }  // namespace

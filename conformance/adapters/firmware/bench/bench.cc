@@ -38,23 +38,12 @@ void Bench::hello() {
 void Bench::handle(Bytes record) {
   const Bytes body = record.from(1);
   switch (static_cast<ToBoard>(record[0])) {
-    case ToBoard::kSetup:
-      setup(body.data());
-      break;
-    case ToBoard::kRadio:
-      hear(body);
-      break;
-    case ToBoard::kRadioSent:
-      node_.radio_sent(body[0] != 0);
-      break;
-    case ToBoard::kBusy:
-      set_busy(body[0], body[1] != 0);
-      break;
-    case ToBoard::kCall:
-      call(static_cast<CallCode>(body[0]), body.from(1));
-      break;
-    case ToBoard::kRestart:
-      board_.restart();
+    case ToBoard::kSetup: setup(body.data()); break;
+    case ToBoard::kRadio: hear(body); break;
+    case ToBoard::kRadioSent: node_.radio_sent(body[0] != 0); break;
+    case ToBoard::kBusy: set_busy(body[0], body[1] != 0); break;
+    case ToBoard::kCall: call(static_cast<CallCode>(body[0]), body.from(1)); break;
+    case ToBoard::kRestart: board_.restart();
   }
   ++records_;
   reported_ = false;

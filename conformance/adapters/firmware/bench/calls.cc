@@ -31,31 +31,20 @@ void Bench::result(ChannelResult result) {
 void Bench::call(CallCode code, Bytes arguments) {
   const uint8_t* const p = arguments.data();
   switch (code) {
-    case CallCode::kJoin:
-      return node_.join(descriptor_at(p));
+    case CallCode::kJoin: return node_.join(descriptor_at(p));
     case CallCode::kSend: {
       const uint16_t seq_num = node_.send(address_at(p), p[4], p[5] != 0, arguments.from(6));
       begin(EventCode::kSendResult, 2);
       return put16(seq_num);
     }
     case CallCode::kInterface:
-    case CallCode::kGetInterface:
-      return call_on_lines(code, arguments);
-    case CallCode::kStartAll:
-      node_.start_all();
-      return result(true);
-    case CallCode::kStopAll:
-      node_.channels().stop_all();
-      return result(true);
-    case CallCode::kSetTimeStep:
-      return result(node_.set_time_step(load_be16(p)));
-    case CallCode::kSetIslandId:
-      return result(false);  // A base station's.
-    case CallCode::kGetClock:
-      begin(EventCode::kClock, 4);
-      return put32(node_.clock_ms());
-    default:
-      return call_on_channel(code, p);
+    case CallCode::kGetInterface: return call_on_lines(code, arguments);
+    case CallCode::kStartAll: node_.start_all(); return result(true);
+    case CallCode::kStopAll: node_.channels().stop_all(); return result(true);
+    case CallCode::kSetTimeStep: return result(node_.set_time_step(load_be16(p)));
+    case CallCode::kSetIslandId: return result(false);  // A base station's.
+    case CallCode::kGetClock: begin(EventCode::kClock, 4); return put32(node_.clock_ms());
+    default: return call_on_channel(code, p);
   }
 }
 
@@ -76,16 +65,11 @@ void Bench::call_on_channel(CallCode code, const uint8_t* p) {
   const ChannelId id = load_be32(p);
   const Mode mode = p[5] == 0 ? Mode::kReliable : Mode::kPowerSave;
   switch (code) {
-    case CallCode::kCreateOut:
-      return result(node_.create_out(address_at(p), p[4], mode));
-    case CallCode::kCreateIn:
-      return result(node_.create_in(address_at(p), p[4], mode));
-    case CallCode::kDispose:
-      return result(node_.channels().dispose(id));
-    case CallCode::kStart:
-      return result(node_.start_channel(id));
-    case CallCode::kStop:
-      return result(node_.channels().stop(id));
+    case CallCode::kCreateOut: return result(node_.create_out(address_at(p), p[4], mode));
+    case CallCode::kCreateIn: return result(node_.create_in(address_at(p), p[4], mode));
+    case CallCode::kDispose: return result(node_.channels().dispose(id));
+    case CallCode::kStart: return result(node_.start_channel(id));
+    case CallCode::kStop: return result(node_.channels().stop(id));
     case CallCode::kWriteOutput:
       return result(node_.channels().write(id, p[4], float_of_bits(load_be32(p + 5))));
     case CallCode::kReadInput: {
@@ -94,8 +78,7 @@ void Bench::call_on_channel(CallCode code, const uint8_t* p) {
       put32(bits_of_float(input.value));
       return board_.put(input.success);
     }
-    default:
-      return;
+    default: return;
   }
 }
 

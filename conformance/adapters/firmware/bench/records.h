@@ -11,12 +11,12 @@ namespace firmware {
 
 /// From the bench to the board.
 enum class ToBoard : uint8_t {
-  kSetup = 1,   ///< id u16, island u16, channels u8, last sequence number u16, keep it u8.
-  kRadio,       ///< A packet (dispatch byte, AM header, payload) that the radio hears.
-  kRadioSent,   ///< link ack u8: the last transmission has ended.
-  kBusy,        ///< line u8 (0 radio, 1 serial, 2 application), busy u8.
-  kCall,        ///< CallCode, arguments.
-  kRestart,     ///< Reset the processor; unanswered but by kHello.
+  kSetup = 1,  ///< id u16, island u16, channels u8, last sequence number u16, keep it u8.
+  kRadio,      ///< A packet (dispatch byte, AM header, payload) that the radio hears.
+  kRadioSent,  ///< link ack u8: the last transmission has ended.
+  kBusy,       ///< line u8 (0 radio, 1 serial, 2 application), busy u8.
+  kCall,       ///< CallCode, arguments.
+  kRestart,    ///< Reset the processor; unanswered but by kHello.
 };
 
 /// From the board to the bench.

@@ -1,13 +1,13 @@
 #include "conformance/adapters/firmware/host/avr_board.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdarg>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
-
-#include <fmt/format.h>
 
 extern "C" {
 #include <simavr/avr_uart.h>

@@ -24,8 +24,8 @@ ByteVector net_packet(std::uint16_t am_dest, const std::string& dest, const std:
     const ByteVector address = bytes_of_hex(part);
     bytes.insert(bytes.end(), address.begin(), address.end());
   }
-  const std::uint8_t rest[] = {reliable, 0x12, 0x34, static_cast<std::uint8_t>(2 + data_bytes), 3,
-                               5};
+  const std::uint8_t rest[] = {reliable, 0x12, 0x34, static_cast<std::uint8_t>(2 + data_bytes),
+                               3,        5};
   bytes.insert(bytes.end(), std::begin(rest), std::end(rest));
   bytes.resize(8 + size, 0x7E);
   return bytes;
@@ -122,8 +122,7 @@ TEST_F(AvrBoardTest, NothingHappensWithoutPower) {
   call("get_clock()");
   const auto lines = lines_until(6 * kSecond);
   ASSERT_EQ(lines.size(), 1U);
-  EXPECT_THAT(lines[0], testing::AnyOf(testing::EndsWith("clock(0)"),
-                                       testing::EndsWith("clock(1)"),
+  EXPECT_THAT(lines[0], testing::AnyOf(testing::EndsWith("clock(0)"), testing::EndsWith("clock(1)"),
                                        testing::EndsWith("clock(2)")));
 }
 
@@ -147,12 +146,11 @@ TEST(AvrBoard, AFileThatIsNoFirmwareIsRefused) {
 }
 
 TEST(Words, CallsThatMakeNoSenseAreRefused) {
-  for (const char* text : {"fly()", "join", "join(type=1)",
-                           "join(type=1 transducers=70000 actuators=1)",
-                           "send(dest=11 app_id=5 reliable=0 data=x)",
-                           "send(dest=11:5 app_id=5 reliable=0 data=01)",
-                           "send(dest=11:5 app_id=5 reliable=0 data=x0)", "start(channel=5)",
-                           "write_output(channel=5->1 pos=0 value=zero)"}) {
+  for (const char* text :
+       {"fly()", "join", "join(type=1)", "join(type=1 transducers=70000 actuators=1)",
+        "send(dest=11 app_id=5 reliable=0 data=x)", "send(dest=11:5 app_id=5 reliable=0 data=01)",
+        "send(dest=11:5 app_id=5 reliable=0 data=x0)", "start(channel=5)",
+        "write_output(channel=5->1 pos=0 value=zero)"}) {
     EXPECT_THROW(call_record(text), BadWord) << text;
   }
 }

@@ -253,8 +253,7 @@ void Bridge::handle(Bytes record) {
       chip_.on_air = false;
       if (!chip_.channel_busy) transmit();
       return;
-    case FromBoard::kEvent:
-      return emit("up " + event_text(body));
+    case FromBoard::kEvent: return emit("up " + event_text(body));
     case FromBoard::kIdle:
       reported_ = {body[0], body[1], body[2], load_be32(body.data() + 3)};
       if (reported_.records == sent_records_) in_flight_ = false;

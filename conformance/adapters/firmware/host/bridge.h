@@ -66,11 +66,11 @@ class Bridge final : private Listener {
  private:
   struct Chip {  // The radio.
     bool channel_busy = false;
-    bool has_frame = false;     ///< From kRadio until kRadioSent.
-    bool on_air = false;        ///< Else it waits for the channel.
+    bool has_frame = false;  ///< From kRadio until kRadioSent.
+    bool on_air = false;     ///< Else it waits for the channel.
     bool wants_ack = false;
     ByteVector packet;
-    Instant end = 0;            ///< End of the transmission, unless linkack ends it.
+    Instant end = 0;  ///< End of the transmission, unless linkack ends it.
   };
   struct Reported {  // From the last kIdle.
     std::uint8_t records = 0;
@@ -99,17 +99,17 @@ class Bridge final : private Listener {
   bool greeted_ = false;
   bool ready_ = false;
   bool off_ = false;
-  Instant zero_ = 0;          ///< Time of tick 0.
-  Instant clock_zero_ = 0;    ///< Start of the node's own clock.
-  Instant off_now_ = 0;       ///< The time while it is off.
-  Tick last_tick_ = 0;        ///< Lines are not earlier.
-  ByteVector incoming_;       ///< A record that is not complete.
+  Instant zero_ = 0;        ///< Time of tick 0.
+  Instant clock_zero_ = 0;  ///< Start of the node's own clock.
+  Instant off_now_ = 0;     ///< The time while it is off.
+  Tick last_tick_ = 0;      ///< Lines are not earlier.
+  ByteVector incoming_;     ///< A record that is not complete.
   std::deque<ByteVector> queue_;
-  bool in_flight_ = false;    ///< A record that is not answered yet.
+  bool in_flight_ = false;  ///< A record that is not answered yet.
   std::uint8_t sent_records_ = 0;
   std::uint8_t sent_packets_ = 0;
   std::uint8_t serial_seq_ = 14;  ///< TinyOS's host begins so.
-  Instant fed_serial_ = 0;    ///< Time of the last packet for the line.
+  Instant fed_serial_ = 0;        ///< Time of the last packet for the line.
   Reported reported_;
   Chip chip_;
   bool serial_busy_ = false;

@@ -1,6 +1,7 @@
 #include "conformance/adapters/firmware/host/qemu_board.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <poll.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
@@ -12,8 +13,6 @@
 #include <csignal>
 #include <cstring>
 #include <thread>
-
-#include <fmt/format.h>
 
 #include "conformance/adapters/firmware/bench/records.h"
 
@@ -28,14 +27,13 @@ constexpr std::chrono::seconds kConnectTime{20};
 constexpr std::chrono::milliseconds kRecordTime{20};
 
 nanoseconds duration_of(Instant instant) {
-  return nanoseconds(static_cast<std::int64_t>(
-      static_cast<double>(instant) * 1e9 / static_cast<double>(kInstantsPerSecond)));
+  return nanoseconds(static_cast<std::int64_t>(static_cast<double>(instant) * 1e9 /
+                                               static_cast<double>(kInstantsPerSecond)));
 }
 
 // A UART of the emulator, which connects to `port`.
 std::string chardev(const char* id, const LoopbackPort& port) {
-  return fmt::format("socket,id={},host=127.0.0.1,port={},server=off,nodelay=on", id,
-                     port.port());
+  return fmt::format("socket,id={},host=127.0.0.1,port={},server=off,nodelay=on", id, port.port());
 }
 
 // Detaches the child from standard input and output, which are rct/1's.

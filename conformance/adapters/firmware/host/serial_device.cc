@@ -1,6 +1,7 @@
 #include "conformance/adapters/firmware/host/serial_device.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <termios.h>
@@ -13,8 +14,6 @@
 #include <iostream>
 #include <memory>
 #include <string>
-
-#include <fmt/format.h>
 
 #include "conformance/adapters/firmware/host/bridge.h"
 #include "conformance/adapters/firmware/host/loopback.h"

@@ -1,11 +1,11 @@
 #include "conformance/adapters/firmware/host/session.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <iostream>
 #include <map>
-
-#include <fmt/format.h>
 
 namespace rubric::firmware {
 namespace {

@@ -1,11 +1,11 @@
 #include "conformance/adapters/firmware/host/words.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <limits>
-
-#include <fmt/format.h>
 
 #include "conformance/adapters/firmware/bench/records.h"
 
@@ -83,17 +83,11 @@ void put_real(ByteVector& out, std::string_view value) {
 
 void put(ByteVector& out, char kind, std::string_view value) {
   switch (kind) {
-    case 'b':
-      out.push_back(static_cast<std::uint8_t>(number_of(value, 0xFF)));
-      return;
-    case 'w':
-      return put16(out, number_of(value, 0xFFFF));
-    case 'a':
-      return put_pair(out, value, ":");
-    case 'c':
-      return put_pair(out, value, "->");
-    case 'f':
-      return put_real(out, value);
+    case 'b': out.push_back(static_cast<std::uint8_t>(number_of(value, 0xFF))); return;
+    case 'w': return put16(out, number_of(value, 0xFFFF));
+    case 'a': return put_pair(out, value, ":");
+    case 'c': return put_pair(out, value, "->");
+    case 'f': return put_real(out, value);
     default: {
       if (value.empty() || value[0] != 'x') throw BadWord(fmt::format("{} is not x...", value));
       const ByteVector data = bytes_of_hex(value.substr(1));
@@ -115,20 +109,13 @@ std::string take(Bytes& body, char kind) {
   const Bytes one = body.first(size);
   body = body.from(size);
   switch (kind) {
-    case 'b':
-      return fmt::format("{}", one[0]);
-    case 'w':
-      return fmt::format("{}", load_be16(one.data()));
-    case 'l':
-      return fmt::format("{}", load_be32(one.data()));
-    case 'f':
-      return fmt::format("{}", float_of_bits(load_be32(one.data())));
-    case 'a':
-      return fmt::format("{}:{}", load_be16(one.data()), load_be16(one.data() + 2));
-    case 'c':
-      return fmt::format("{}->{}", load_be16(one.data()), load_be16(one.data() + 2));
-    default:
-      return "x" + hex_of_bytes(one);
+    case 'b': return fmt::format("{}", one[0]);
+    case 'w': return fmt::format("{}", load_be16(one.data()));
+    case 'l': return fmt::format("{}", load_be32(one.data()));
+    case 'f': return fmt::format("{}", float_of_bits(load_be32(one.data())));
+    case 'a': return fmt::format("{}:{}", load_be16(one.data()), load_be16(one.data() + 2));
+    case 'c': return fmt::format("{}->{}", load_be16(one.data()), load_be16(one.data() + 2));
+    default: return "x" + hex_of_bytes(one);
   }
 }
 
@@ -177,8 +164,8 @@ ByteVector call_record(std::string_view text) {
     throw BadWord(fmt::format("{} is no call", text));
   }
   const std::string_view name = text.substr(0, open);
-  const auto* const call = std::find_if(kCalls.begin(), kCalls.end(),
-                                        [&](const Word& one) { return one.name == name; });
+  const auto* const call =
+      std::find_if(kCalls.begin(), kCalls.end(), [&](const Word& one) { return one.name == name; });
   if (call == kCalls.end()) throw BadWord(fmt::format("there is no call {}", name));
   const auto arguments = split(text.substr(open + 1, text.size() - open - 2));
   const std::string_view kinds = call->kinds;
@@ -193,10 +180,9 @@ ByteVector call_record(std::string_view text) {
 }
 
 std::string event_text(Bytes body) {
-  const auto* const event =
-      std::find_if(kEvents.begin(), kEvents.end(), [&](const Word& one) {
-        return !body.empty() && one.code == body[0];
-      });
+  const auto* const event = std::find_if(kEvents.begin(), kEvents.end(), [&](const Word& one) {
+    return !body.empty() && one.code == body[0];
+  });
   if (event == kEvents.end()) throw BadWord("the board sends an event that there is not");
   Bytes rest = body.from(1);
   std::string arguments;

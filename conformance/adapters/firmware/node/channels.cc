@@ -103,15 +103,12 @@ void Channels::begin_clock(Ticks now, Ticks phase) {
   due_ = now + phase + period_;
 }
 
-void Channels::end_clock() {
-  running_ = out_.any_started() || in_.any_started();
-}
+void Channels::end_clock() { running_ = out_.any_started() || in_.any_started(); }
 
 ChannelResult Channels::create(bool out, Address own, Address peer, uint8_t size, Mode mode) {
   //= S1-ID: Creating a channel returns its id: source devid in the upper, destination devid in the
   //= lower 16 bits.
-  const ChannelId id =
-      out ? channel_id(own.devid, peer.devid) : channel_id(peer.devid, own.devid);
+  const ChannelId id = out ? channel_id(own.devid, peer.devid) : channel_id(peer.devid, own.devid);
   ChannelList& list = out ? out_ : in_;
   return {id, list.create(id, own.pid, peer.pid, size, mode, limit_)};
 }

@@ -104,9 +104,7 @@ void Node::send_ack_join() {
   send_message(Line::kRadio, *message, join_.sink, kAmAckJoin, kBytes);
 }
 
-bool Node::ack_join_is_late() const {
-  return clock_.now() - join_.accepted >= kJoinPeriodTicks;
-}
+bool Node::ack_join_is_late() const { return clock_.now() - join_.accepted >= kJoinPeriodTicks; }
 
 void Node::ack_join_left(bool acked) {
   if (join_.phase != Phase::kMember || join_.acked) return;

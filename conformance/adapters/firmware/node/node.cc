@@ -162,9 +162,9 @@ void Node::send_values(Channel& channel) {
   //= S2-CONTENT: Synaptic data has TRANSID SYN_CHANNEL, APPID LEARNING or ESN_DATA, and one
   //= little-endian binary32 for each connection, in order, unreliable.
   const Address dest = {channel.peer_pid, static_cast<uint16_t>(channel.id)};
-  const uint16_t sent = send_own({dest, number(rubicon::Component::kSynChannel),
-                                  number(rubicon::Component::kEsnData), false,
-                                  Bytes(channel.values, size_t{4} * channel.size)});
+  const uint16_t sent =
+      send_own({dest, number(rubicon::Component::kSynChannel), number(rubicon::Component::kEsnData),
+                false, Bytes(channel.values, size_t{4} * channel.size)});
   // Refused for lack of room: the receiver would not know of a change before the next one.
   if (sent == kNoSeq) channel.fresh = true;
 }

@@ -53,8 +53,7 @@ void Node::serial_received(Bytes packet) {
 
 void Node::receive(Line line, uint16_t src, uint8_t type, Bytes payload) {
   const bool join = type == kAmJoin || type == kAmJoinReply || type == kAmAckJoin;
-  const bool known =
-      type == kAmNet || (line == Line::kRadio ? join : kIsSink && type == kAmConfig);
+  const bool known = type == kAmNet || (line == Line::kRadio ? join : kIsSink && type == kAmConfig);
   if (!line_of(line).on || !known || payload.size() > kAmPayloadMax) return;
   if (application_busy_) return wait(line, src, type, payload);
   handle(line, src, type, payload);
@@ -143,8 +142,8 @@ void Node::hear_net_msg(Line line, Bytes payload) {
   const auto message = rubicon::NetMsgView::parse(payload);
   if (!message) return;
   const Address dest = address_of(message->dest());
-  const Route route = line == Line::kRadio ? route_radio(dest, address_of(message->src()))
-                                           : route_serial(dest);
+  const Route route =
+      line == Line::kRadio ? route_radio(dest, address_of(message->src())) : route_serial(dest);
   if (route.onward) forward(route, *message);
   if (route.deliver) deliver(*message);
 }

@@ -99,9 +99,7 @@ bool SerialPort::next_byte(uint8_t& byte) {
       step_ = Step::kBody;
       byte = counted(sending_ack_ ? kSerialAck : kSerialPacketNoAck);
       return true;
-    case Step::kBody:
-      byte = counted(body_byte());
-      return true;
+    case Step::kBody: byte = counted(body_byte()); return true;
     case Step::kCrcLow:
       byte = escaped(static_cast<uint8_t>(crc_));
       step_ = Step::kCrcHigh;

@@ -10,11 +10,11 @@
 namespace rubric {
 namespace firmware {
 
-constexpr uint16_t kBroadcast = 0xFFFF;   ///< As pid, devid and AM address.
-constexpr uint16_t kLocalIsland = 0xFFFE; ///< Replaced by the own island before sending.
-constexpr uint16_t kLocalMote = 0xFFFE;   ///< The node itself.
-constexpr uint16_t kNullDevid = 0xFFFD;   ///< The PC or robot of an island.
-constexpr uint16_t kNoSeq = 0xFFFF;       ///< Returned by a refused send.
+constexpr uint16_t kBroadcast = 0xFFFF;    ///< As pid, devid and AM address.
+constexpr uint16_t kLocalIsland = 0xFFFE;  ///< Replaced by the own island before sending.
+constexpr uint16_t kLocalMote = 0xFFFE;    ///< The node itself.
+constexpr uint16_t kNullDevid = 0xFFFD;    ///< The PC or robot of an island.
+constexpr uint16_t kNoSeq = 0xFFFF;        ///< Returned by a refused send.
 
 /// Returns whether an id means no single island or mote. (decision 132)
 constexpr bool is_reserved(uint16_t id) { return id >= kNullDevid; }
@@ -62,9 +62,7 @@ struct InputValue {
 
 /// Ticks wrap after 48 days; moments are less than half of that apart.
 using Ticks = uint32_t;
-constexpr bool is_reached(Ticks due, Ticks now) {
-  return static_cast<int32_t>(now - due) >= 0;
-}
+constexpr bool is_reached(Ticks due, Ticks now) { return static_cast<int32_t>(now - due) >= 0; }
 
 }  // namespace firmware
 }  // namespace rubric

@@ -1,0 +1,377 @@
+// Serial forwarder streams, radio records, hex text, detection.
+#include <gtest/gtest.h>
+
+#include "codec/containers/capture_time.h"
+#include "codec/containers/hex_reader.h"
+#include "codec/containers/link_record.h"
+#include "codec/containers/sf_reader.h"
+#include "codec/containers/test/testing.h"
+#include "codec/runtime/ieee802154_fcs.h"
+
+namespace rubric {
+namespace {
+
+using testing::from_hex;
+using testing::Kept;
+using testing::read_all;
+using testing::read_split;
+using testing::to_hex;
+using testing::view;
+
+constexpr Error kSound{Fault::kNone, 0, ReqId::kNone};
+
+struct Row {
+  std::uint64_t offset;
+  const char* bytes;
+  Error error;
+  std::uint64_t dropped = 0;
+};
+struct StreamCase {
+  const char* name;
+  const char* input;
+  std::vector<Row> packets;
+};
+
+void check(const StreamCase& row, InputFormat format, const std::string& input) {
+  const auto reader = make_reader(format);
+  const std::vector<Kept> got = read_all(*reader, view(input));
+  ASSERT_EQ(got.size(), row.packets.size()) << row.name;
+  for (std::size_t i = 0; i < got.size(); ++i) {
+    const Row& want = row.packets[i];
+    EXPECT_EQ(got[i].packet.offset_bytes, want.offset) << row.name << ' ' << got[i];
+    EXPECT_EQ(got[i].bytes, from_hex(want.bytes)) << row.name << ' ' << got[i];
+    EXPECT_EQ(got[i].packet.error, want.error) << row.name << ' ' << got[i];
+    EXPECT_EQ(got[i].packet.dropped_bytes, want.dropped) << row.name << ' ' << got[i];
+  }
+  std::mt19937 random(1);
+  for (std::size_t piece_max : {1u, 2u, 5u}) {
+    EXPECT_EQ(read_split(*reader, view(input), random, piece_max), got) << row.name;
+  }
+}
+
+const StreamCase kSfCases[] = {
+    {"Nothing", "", {}},
+    {"HandshakeAlone", "55 20", {}},
+    {"TwoPackets", "55 20 02 00 11 01 33", {{2, "00 11", kSound}, {5, "33", kSound}}},
+    {"HigherVersion", "55 21 01 33", {{2, "33", kSound}}},
+    {"LowerVersion",
+     "55 1f 00",
+     {{0, "55 1f", {Fault::kHandshake, 1, "WIRE-SF-HANDSHAKE"_rule}},
+      {0, "1f 00", {Fault::kCut, 3, "WIRE-SF-LENGTH"_rule}, 0x53}}},
+    {"NoHandshake",
+     "02 00 11",
+     {{0, "02", {Fault::kHandshake, 0, "WIRE-SF-HANDSHAKE"_rule}}, {0, "00 11", kSound}}},
+    {"EmptyPacket",
+     "55 20 00 01 33",
+     {{2, "", {Fault::kEmpty, 0, "WIRE-SF-LENGTH"_rule}}, {3, "33", kSound}}},
+    {"CutInHandshake", "55", {{0, "", {Fault::kCut, 1, "WIRE-SF-HANDSHAKE"_rule}, 1}}},
+    {"CutInPacket", "55 20 04 00 11", {{2, "00 11", {Fault::kCut, 3, "WIRE-SF-LENGTH"_rule}, 2}}},
+    {"CutBehindLength", "55 20 04", {{2, "", {Fault::kCut, 1, "WIRE-SF-LENGTH"_rule}, 4}}},
+};
+
+TEST(WireSfLength, WhatCanBeInAStream) {
+  for (const StreamCase& row : kSfCases) check(row, InputFormat::kSf, from_hex(row.input));
+}
+
+const StreamCase kHexCases[] = {
+    {"Listen", "00 FF FF 00\n00 01\n", {{0, "00ffff00", kSound}, {12, "0001", kSound}}},
+    {"Unbroken", "00ffFF00\r\n", {{0, "00ffff00", kSound}}},
+    {"Prefixed", "0x00 0XfF 0x0001", {{0, "00ff0001", kSound}}},
+    {"CommentsAndBlanks", "# a\n\n  \n\t00 11 # b\n#", {{8, "0011", kSound}}},
+    {"NoEndOfLine", "0011", {{0, "0011", kSound}}},
+    {"NoHex",
+     "00 1g\n22\n",
+     {{0, "3030203167", {Fault::kUnexpected, 4, "WIRE-HEX"_rule}}, {6, "22", kSound}}},
+    {"OddDigits",
+     "001\n22",
+     {{0, "303031", {Fault::kUnexpected, 3, "WIRE-HEX"_rule}}, {4, "22", kSound}}},
+    {"SingleDigit", "0 1", {{0, "302031", {Fault::kUnexpected, 1, "WIRE-HEX"_rule}}}},
+    {"PrefixAlone", "00 0x", {{0, "3030203078", {Fault::kUnexpected, 5, "WIRE-HEX"_rule}}}},
+    {"PrefixInsideAByte",
+     "000x11",
+     {{0, "303030783131", {Fault::kUnexpected, 3, "WIRE-HEX"_rule}}}},
+};
+
+TEST(WireHex, WhatCanBeInAText) {
+  for (const StreamCase& row : kHexCases) check(row, InputFormat::kHex, row.input);
+}
+
+TEST(WireHex, LongLinesAndPackets) {
+  std::string text(2 * 256, '0');
+  text += '\n';
+  text += std::string(3 * kHexLineMax, '1');
+  text += "\n22\n";
+  const auto reader = make_reader(InputFormat::kHex);
+  const std::vector<Kept> got = read_all(*reader, view(text));
+  ASSERT_EQ(got.size(), 3u);
+  EXPECT_EQ(got[0].packet.error, (Error{Fault::kTooLong, 255, "WIRE-SF-LENGTH"_rule}));
+  EXPECT_EQ(got[1].packet.error, (Error{Fault::kTooLong, kHexLineMax, "WIRE-HEX"_rule}));
+  EXPECT_EQ(got[1].packet.dropped_bytes, 2 * kHexLineMax);
+  EXPECT_EQ(got[2].packet.offset_bytes, 513 + 3 * kHexLineMax + 1);
+  std::mt19937 random(2);
+  EXPECT_EQ(read_split(*reader, view(text), random, 50'000), got);
+}
+
+TEST(WireHex, OtherFramings) {
+  ReaderOptions options;
+  options.hex_framing = Framing::kHdlc;
+  options.direction = Direction::kInbound;
+  options.interface_name = "typed";
+  auto reader = make_reader(InputFormat::kHex, options);
+  const std::vector<Kept> serial = read_all(*reader, view("43 01 be 48\n"));
+  ASSERT_EQ(serial.size(), 1u);
+  EXPECT_EQ(serial[0].packet.kind, 0x43);
+  EXPECT_EQ(serial[0].packet.error, kSound);
+  EXPECT_EQ(serial[0].packet.direction, Direction::kInbound);
+  EXPECT_EQ(reader->interfaces().at(0).name, "typed");
+  options.hex_framing = Framing::kRadio;
+  options.hex_has_fcs = true;
+  reader = make_reader(InputFormat::kHex, options);
+  const std::vector<Kept> radio = read_all(*reader, view("02 00 01 31 a4\n02 00 01 31 a5\n"));
+  ASSERT_EQ(radio.size(), 2u);
+  EXPECT_EQ(radio[0].packet.fcs, 0xa431);
+  EXPECT_EQ(radio[0].packet.error, kSound);
+  EXPECT_EQ(radio[1].packet.error, (Error{Fault::kFcs, 3, "WIRE-RADIO-FCS"_rule}));
+}
+
+struct RadioCase {
+  const char* name;
+  std::uint16_t link_type;
+  const char* record;
+  std::uint64_t offset;
+  const char* bytes;
+  int fcs;
+  Error error;
+};
+const RadioCase kRadioCases[] = {
+    {"WithFcs", 195, "02 00 01 31 a4", 0, "02 00 01", 0xa431, kSound},
+    {"WrongFcs",
+     195,
+     "02 00 01 31 a5",
+     0,
+     "02 00 01",
+     0xa531,
+     {Fault::kFcs, 3, "WIRE-RADIO-FCS"_rule}},
+    {"NoRoomForFcs", 195, "02", 0, "02", kAbsent, {Fault::kTooShort, 1, "WIRE-RADIO-FCS"_rule}},
+    {"Empty", 195, "", 0, "", kAbsent, {Fault::kEmpty, 0, "WIRE-RADIO-HEADER"_rule}},
+    {"NoFcs", 230, "02 00 01", 0, "02 00 01", kAbsent, kSound},
+    {"NoFcsEmpty", 230, "", 0, "", kAbsent, {Fault::kEmpty, 0, "WIRE-RADIO-HEADER"_rule}},
+    {"TapFcs16", 283, "00 00 0c 00  00 00 01 00 01 00 00 00  02 00 01 31 a4", 12, "02 00 01",
+     0xa431, kSound},
+    {"TapWrongFcs16",
+     283,
+     "00 00 0c 00  00 00 01 00 01 00 00 00  02 00 01 31 a5",
+     12,
+     "02 00 01",
+     0xa531,
+     {Fault::kFcs, 3, "WIRE-RADIO-FCS"_rule}},
+    {"TapNoFcs", 283, "00 00 0c 00  00 00 01 00 00 00 00 00  02 00 01", 12, "02 00 01", kAbsent,
+     kSound},
+    {"TapOtherField", 283,
+     "00 00 14 00  01 00 04 00 00 00 00 c2  00 00 01 00 01 00 00 00  02 00 01 31 a4", 20,
+     "02 00 01", 0xa431, kSound},
+    {"TapUnpaddedLast", 283, "00 00 09 00  00 00 01 00 01  02 00 01 31 a4", 9, "02 00 01", 0xa431,
+     kSound},
+    {"TapNoFields", 283, "00 00 04 00  02 00 01", 4, "02 00 01", kAbsent, kSound},
+    {"TapFcs32",
+     283,
+     "00 00 0c 00  00 00 01 00 02 00 00 00  02",
+     0,
+     "00 00 0c 00  00 00 01 00 02 00 00 00  02",
+     kAbsent,
+     {Fault::kUnsupported, 8, "WIRE-RADIO-TAP"_rule}},
+    {"TapFcsUnknown",
+     283,
+     "00 00 0c 00  00 00 01 00 03 00 00 00",
+     0,
+     "00 00 0c 00  00 00 01 00 03 00 00 00",
+     kAbsent,
+     {Fault::kUnexpected, 8, "WIRE-RADIO-TAP"_rule}},
+    {"TapFcsWithoutValue",
+     283,
+     "00 00 08 00  00 00 00 00",
+     0,
+     "00 00 08 00  00 00 00 00",
+     kAbsent,
+     {Fault::kTruncated, 4, "WIRE-RADIO-TAP"_rule}},
+    {"TapTooShort",
+     283,
+     "00 00 04",
+     0,
+     "00 00 04",
+     kAbsent,
+     {Fault::kTruncated, 3, "WIRE-RADIO-TAP"_rule}},
+    {"TapVersion",
+     283,
+     "01 00 04 00",
+     0,
+     "01 00 04 00",
+     kAbsent,
+     {Fault::kUnexpected, 0, "WIRE-RADIO-TAP"_rule}},
+    {"TapLengthBelowHeader",
+     283,
+     "00 00 03 00",
+     0,
+     "00 00 03 00",
+     kAbsent,
+     {Fault::kOutOfRange, 2, "WIRE-RADIO-TAP"_rule}},
+    {"TapLengthBeyondRecord",
+     283,
+     "00 00 05 00",
+     0,
+     "00 00 05 00",
+     kAbsent,
+     {Fault::kOutOfRange, 2, "WIRE-RADIO-TAP"_rule}},
+    {"TapHalfField",
+     283,
+     "00 00 06 00 00 00",
+     0,
+     "00 00 06 00 00 00",
+     kAbsent,
+     {Fault::kTruncated, 4, "WIRE-RADIO-TAP"_rule}},
+    {"TapFieldBeyondHeader",
+     283,
+     "00 00 08 00 01 00 04 00",
+     0,
+     "00 00 08 00 01 00 04 00",
+     kAbsent,
+     {Fault::kTruncated, 4, "WIRE-RADIO-TAP"_rule}},
+};
+
+TEST(WireRadioFcs, WhatARecordCanBe) {
+  for (const RadioCase& row : kRadioCases) {
+    const std::string record = from_hex(row.record);
+    Packet packet;
+    decode_radio_record(view(record), row.link_type, packet);
+    EXPECT_EQ(packet.framing, Framing::kRadio) << row.name;
+    EXPECT_EQ(packet.offset_bytes, row.offset) << row.name;
+    EXPECT_EQ(to_hex(packet.bytes), to_hex(view(from_hex(row.bytes)))) << row.name;
+    EXPECT_EQ(packet.fcs, row.fcs) << row.name;
+    EXPECT_EQ(packet.error, row.error) << row.name;
+  }
+}
+
+TEST(WireRadioLength, AtMost127BytesWithFcs) {
+  std::string frame(125, '\x11');
+  const std::uint16_t sum = fcs(view(frame));
+  Packet packet;
+  decode_radio_record(view(frame), 230, packet);
+  EXPECT_EQ(packet.error, kSound);
+  frame += static_cast<char>(sum & 0xFF);
+  frame += static_cast<char>(sum >> 8);
+  decode_radio_record(view(frame), 195, packet);
+  EXPECT_EQ(packet.error, kSound);
+  decode_radio_record(view(frame), 230, packet);
+  EXPECT_EQ(packet.error, (Error{Fault::kTooLong, 125, "WIRE-RADIO-LENGTH"_rule}));
+  frame += '\0';
+  decode_radio_record(view(frame), 195, packet);
+  EXPECT_EQ(packet.error, (Error{Fault::kTooLong, 127, "WIRE-RADIO-LENGTH"_rule}));
+}
+
+TEST(WirePcapng, Times) {
+  EXPECT_EQ(ticks_of_resolution(6), 1'000'000u);
+  EXPECT_EQ(ticks_of_resolution(0), 1u);
+  EXPECT_EQ(ticks_of_resolution(19), 10'000'000'000'000'000'000u);
+  EXPECT_EQ(ticks_of_resolution(20), 0u);
+  EXPECT_EQ(ticks_of_resolution(0x80 | 10), 1024u);
+  EXPECT_EQ(ticks_of_resolution(0x80 | 63), std::uint64_t{1} << 63);
+  EXPECT_EQ(ticks_of_resolution(0xC0), 0u);
+  Interface interface;
+  EXPECT_EQ(time_ns_of_ticks(1'500'000, interface), 1'500'000'000);
+  interface.offset_seconds = -2;
+  EXPECT_EQ(time_ns_of_ticks(1'500'000, interface), -500'000'000);
+  interface = {};
+  interface.ticks_per_second = 1024;
+  EXPECT_EQ(time_ns_of_ticks(500, interface), 488'281'250);
+  interface.ticks_per_second = std::uint64_t{1} << 63;
+  EXPECT_EQ(time_ns_of_ticks(UINT64_MAX, interface), 1'999'999'999);
+  interface.ticks_per_second = 1;
+  EXPECT_EQ(time_ns_of_ticks(UINT64_MAX, interface), kNoTime);
+  interface.ticks_per_second = 0;
+  EXPECT_EQ(time_ns_of_ticks(1, interface), kNoTime);
+}
+
+TEST(Writers, TakeWhatTheyCanHold) {
+  const std::string ack_packet = from_hex("00 ff ff 00 00 03 00 25 63 00 0c");
+  Packet sf;
+  sf.framing = Framing::kSf;
+  sf.bytes = view(ack_packet);
+  Packet serial_ack;
+  serial_ack.framing = Framing::kHdlc;
+  serial_ack.kind = 0x43;
+  serial_ack.serial_seq = 1;
+  serial_ack.crc = 0x48be;
+  Packet radio;
+  radio.framing = Framing::kRadio;
+  radio.bytes = view(ack_packet);
+  Packet bad = sf;
+  bad.error = Error{Fault::kUnexpected, 0, "WIRE-HEX"_rule};
+  const struct {
+    InputFormat format;
+    bool takes[4];  // In the order of `packets`.
+  } rows[] = {
+      {InputFormat::kHdlc, {true, true, false, true}},
+      {InputFormat::kSf, {true, false, false, false}},
+      {InputFormat::kPcap, {false, false, true, false}},
+      {InputFormat::kPcapng, {true, true, true, true}},
+      {InputFormat::kHex, {true, false, true, false}},
+  };
+  const Packet packets[] = {sf, serial_ack, radio, bad};
+  for (const auto& row : rows) {
+    const auto writer = make_writer(row.format, kLinkRadioNoFcs);
+    std::string out;
+    writer->begin(out);
+    for (std::size_t i = 0; i < 4; ++i) {
+      const std::size_t size = out.size();
+      EXPECT_EQ(writer->write(packets[i], out), row.takes[i]) << static_cast<int>(row.format) << i;
+      EXPECT_EQ(out.size() > size, row.takes[i]);
+    }
+  }
+  EXPECT_EQ(make_writer(InputFormat::kJsonl), nullptr);
+  std::string text;
+  HexWriter().write(sf, text);
+  HexWriter(false).write(sf, text);
+  EXPECT_EQ(text, "00 FF FF 00 00 03 00 25 63 00 0C\n00 ff ff 00 00 03 00 25 63 00 0c\n");
+  std::string frame;
+  HdlcWriter().write(sf, frame);
+  EXPECT_EQ(to_hex(view(frame.substr(0, 3))), "7e4500");
+  const auto reader = make_reader(InputFormat::kHdlc);
+  EXPECT_EQ(read_all(*reader, view(frame)).at(0).bytes, ack_packet);
+}
+
+struct DetectCase {
+  const char* name;
+  std::string input;
+  InputFormat format;
+};
+
+TEST(Detect, ByContent) {
+  const std::string ack = from_hex("7e 43 01 be 48 7e");
+  const DetectCase cases[] = {
+      {"Nothing", "", InputFormat::kUnknown},
+      {"Pcapng", from_hex("0a0d0d0a 1c000000 4d3c2b1a"), InputFormat::kPcapng},
+      {"PcapLittle", from_hex("d4c3b2a1 0200"), InputFormat::kPcap},
+      {"PcapBig", from_hex("a1b2c3d4 0002"), InputFormat::kPcap},
+      {"PcapNanoLittle", from_hex("4d3cb2a1"), InputFormat::kPcap},
+      {"PcapNanoBig", from_hex("a1b23c4d"), InputFormat::kPcap},
+      {"Sf", from_hex("55 20 01 33"), InputFormat::kSf},
+      {"SfHandshake", from_hex("55 20"), InputFormat::kSf},
+      {"Jsonl", " \n{\"t_us\":1}", InputFormat::kJsonl},
+      {"HexListen", "00 FF FF 00 00\n00 FF", InputFormat::kHex},
+      {"HexUnbroken", "00ffff0000\n", InputFormat::kHex},
+      {"HexCutInAByte", "00 FF\n00 F", InputFormat::kHex},
+      {"HexComment", "# captured on Monday\n", InputFormat::kHex},
+      {"Text", "hello\nworld\n", InputFormat::kUnknown},
+      {"Hdlc", ack, InputFormat::kHdlc},
+      {"HdlcFromTheMiddle", from_hex("00 11 22 be 48 7e") + ack, InputFormat::kHdlc},
+      {"HdlcFirstFrameUnended", from_hex("7e 45 00 ff ff 00"), InputFormat::kHdlc},
+      {"Noise", from_hex("00 11 22 33 7e 99 88 77 7e"), InputFormat::kUnknown},
+      {"Blank", "  \n\n", InputFormat::kUnknown},
+  };
+  for (const DetectCase& row : cases) EXPECT_EQ(detect(view(row.input)), row.format) << row.name;
+  EXPECT_EQ(make_reader(InputFormat::kUnknown), nullptr);
+  EXPECT_EQ(make_reader(InputFormat::kJsonl), nullptr);
+}
+
+}  // namespace
+}  // namespace rubric

@@ -1,0 +1,32 @@
+// The serial line of a real node over any carrier.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "codec/lines/time.h"
+
+namespace rubric::lines {
+
+/// A serial forwarder packet and the time of its last byte.
+struct TimedPacket {
+  SteadyTime time;
+  std::vector<std::uint8_t> bytes;
+};
+
+/// All functions throw Broken if the line breaks or carries nonsense; it is closed
+/// then, and open() opens it anew.
+class PacketLine {
+ public:
+  virtual ~PacketLine() = default;
+  /// Opens it before `deadline`, unless it is open and the other end is there.
+  virtual void open(SteadyTime deadline) = 0;
+  virtual void close() = 0;
+  virtual void send(const std::vector<std::uint8_t>& packet, SteadyTime deadline) = 0;
+  /// Returns the next packet; nothing if the time is over first.
+  virtual std::optional<TimedPacket> receive(SteadyTime deadline) = 0;
+};
+
+}  // namespace rubric::lines

@@ -1,0 +1,264 @@
+#include "conformance/check/align/align.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "conformance/check/align/align_clock.h"
+#include "conformance/check/align/align_frames.h"
+#include "conformance/check/align/align_order.h"
+
+namespace rubric::check {
+namespace {
+
+std::string decimal(double value, int places, const char* unit) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%.*f %s", places, value, unit);
+  return text;
+}
+
+struct File {
+  bool frames = false;  // It is a capture.
+  bool timed = false;   // Some have stamps.
+  bool radio = false;
+  bool serial = false;
+  bool moved = false;       // It was shifted by frames it shares with another.
+  bool settled = false;     // On a clock, or left as it is.
+  std::uint32_t clock = 0;  // The first file on the same one.
+  std::int64_t first_us = 0;
+  std::int64_t last_us = 0;
+};
+
+class Alignment {
+ public:
+  Alignment(Run& run, const AlignOptions& options)
+      : run_(run), options_(options), files_(run.files.size()) {}
+
+  void align() {
+    look();
+    const auto captures =
+        std::count_if(files_.begin(), files_.end(), [](const File& f) { return f.frames; });
+    if (captures < 2) return;
+    sightings_ = sightings_of(run_);
+    while (const std::optional<std::uint32_t> next = first_unsettled()) {
+      while (settle_one()) continue;
+    }
+    mark_lines();
+    for (std::uint32_t i = 0; i < files_.size(); ++i) {
+      if (files_[i].frames && !files_[i].timed) order(i);
+    }
+  }
+
+ private:
+  void look() {
+    for (const Observation& seen : run_.seen) {
+      const bool radio = seen.kind == Observation::Kind::kRadio;
+      if (!seen.node.empty() || !(radio || seen.kind == Observation::Kind::kSerial)) continue;
+      File& file = files_[seen.place.file];
+      file.frames = true;
+      (radio ? file.radio : file.serial) = true;
+      const std::int64_t time_us = seen.place.time_us;
+      if (time_us == kNoStamp) continue;
+      file.first_us = file.timed ? std::min(file.first_us, time_us) : time_us;
+      file.last_us = file.timed ? std::max(file.last_us, time_us) : time_us;
+      file.timed = true;
+    }
+  }
+
+  // Returns the first file that is not settled, which begins a clock of its own.
+  std::optional<std::uint32_t> first_unsettled() {
+    for (std::uint32_t i = 0; i < files_.size(); ++i) {
+      if (!files_[i].timed || files_[i].settled) continue;
+      files_[i].clock = i;
+      stay(i);
+      files_[i].settled = true;
+      return i;
+    }
+    return std::nullopt;
+  }
+
+  // Settles the file that has most in common with a settled one.
+  bool settle_one() {
+    std::optional<ClockFit> best;
+    std::uint32_t best_a = 0;
+    std::uint32_t best_b = 0;
+    for (std::uint32_t b = 0; b < files_.size(); ++b) {
+      if (!files_[b].timed || files_[b].settled) continue;
+      for (std::uint32_t a = 0; a < files_.size(); ++a) {
+        if (!files_[a].timed || !files_[a].settled) continue;
+        const ClockFit fit = fitted(a, b);
+        if (fit.clocks == Clocks::kUnsure || (best && best->frames >= fit.frames)) continue;
+        best = fit;
+        best_a = a;
+        best_b = b;
+      }
+    }
+    if (!best) return false;
+    files_[best_b].settled = true;
+    files_[best_b].clock = files_[best_a].clock;
+    if (best->clocks == Clocks::kDiffer) move(best_a, best_b, *best);
+    return true;
+  }
+
+  ClockFit fitted(std::uint32_t a, std::uint32_t b) {
+    return fit_clock(run_, common_of(a, b), options_);
+  }
+
+  // Returns the frames that two files with stamps have in common. A line is compared with all
+  // sniffers on the clock of `a`, since one of them may have missed frames or heard them late.
+  CommonFrames common_of(std::uint32_t a, std::uint32_t b) {
+    const auto sniffer = [](const File& file) { return file.timed && file.radio && !file.serial; };
+    if (!sniffer(files_[a]) || files_[b].radio) {
+      return common_frames(run_, sightings_[a], sightings_[b]);
+    }
+    std::vector<const std::vector<Sighting>*> sniffers;
+    for (std::uint32_t i = 0; i < files_.size(); ++i) {
+      const bool one_clock = files_[i].settled && files_[i].clock == files_[a].clock;
+      if (sniffer(files_[i]) && one_clock) sniffers.push_back(&sightings_[i]);
+    }
+    std::vector<Sighting> air = each_once(run_, sniffers, options_.skew_us);
+    return common_frames(run_, air, sightings_[b]);
+  }
+
+  void move(std::uint32_t a, std::uint32_t b, const ClockFit& fit) {
+    for (Observation& seen : run_.seen) {
+      if (seen.place.file != b || !seen.node.empty() || seen.place.time_us == kNoStamp) continue;
+      seen.place.time_us = fit.moved(seen.place.time_us);
+    }
+    files_[b].moved = true;
+    run_.slack_us = std::max(run_.slack_us, std::min(fit.slack_us, options_.response_us));
+    std::string text = run_.files[b] + " is aligned with " + run_.files[a] + " by " +
+                       std::to_string(fit.frames) + " common frames: its clock is " +
+                       decimal(std::abs(static_cast<double>(fit.offset_us)) / 1e6, 6, "s") +
+                       (fit.offset_us < 0 ? " behind" : " ahead") + " (spread " +
+                       decimal(fit.spread_us / 1000, 1, "ms");
+    if (fit.drift != 0) text += ", drift " + decimal(fit.drift * 1e6, 1, "ppm");
+    run_.facts.push_back(text + ")");
+  }
+
+  // Says why file `b` shares no clock with those before. It is taken to share one only where
+  // nothing suggests otherwise.
+  void stay(std::uint32_t b) {
+    bool said = false;
+    for (std::uint32_t a = 0; a < files_.size(); ++a) {
+      if (!files_[a].settled) continue;
+      const bool other = files_[a].radio != files_[b].radio || files_[a].serial != files_[b].serial;
+      const CommonFrames common = common_of(a, b);
+      const bool some = !common.pairs.empty() || !common.guesses.empty();
+      if (!some && !other) continue;
+      if (!said) {
+        run_.facts.push_back(run_.files[b] + " is not aligned with " + run_.files[a] + ": " +
+                             fit_clock(run_, common, options_).why);
+      }
+      said = true;
+      const bool apart = files_[b].first_us > files_[a].last_us + options_.response_us ||
+                         files_[a].first_us > files_[b].last_us + options_.response_us;
+      const bool could = !common.only_a.empty() && !common.only_b.empty();
+      if (!some && !could && !apart) files_[b].clock = files_[a].clock;
+    }
+  }
+
+  // Orders a file without stamps among those on the air's clock.
+  void order(std::uint32_t b) {
+    const std::optional<std::uint32_t> air = air_file();
+    if (!air) return;
+    const std::optional<std::vector<std::uint32_t>> turned = wrong_ways(run_, b);
+    if (turned) turn(*turned, b);
+    const OrderEvidence evidence = evidence_of(b, *air);
+    if (shared_with_timed(b, *air) > evidence.pairs.size()) {  // See duplicates.h.
+      if (turned) turn(*turned, b);
+      return;
+    }
+    OrderFit fit;
+    fit.why = "frames between islands may go either way on its line";
+    if (turned) fit = fit_order(run_, b, evidence, options_);
+    const std::string other = run_.files[*air];
+    if (!fit.good) {
+      if (turned) turn(*turned, b);
+      run_.facts.push_back(run_.files[b] + ", which has no time stamps, is not aligned with " +
+                           other + ": " + fit.why);
+      return;
+    }
+    run_.facts.push_back(run_.files[b] + ", which has no time stamps, is in order with " + other +
+                         " by " + std::to_string(fit.frames) + " common frames, between which " +
+                         std::to_string(fit.between) + " of its " + std::to_string(fit.all) +
+                         " frames lie");
+  }
+
+  // Returns what `b` has in common with the air. A frame that several sniffers heard counts once.
+  OrderEvidence evidence_of(std::uint32_t b, std::uint32_t air) {
+    std::vector<const std::vector<Sighting>*> timed;
+    for (std::uint32_t a = 0; a < files_.size(); ++a) {
+      if (files_[a].timed && files_[a].clock == files_[air].clock) timed.push_back(&sightings_[a]);
+    }
+    std::vector<Sighting> others = each_once(run_, timed, options_.skew_us);
+    if (!files_[b].radio) {  // Frames of another line pass to no other.
+      std::erase_if(others, [&](const Sighting& one) {
+        return run_.seen[one.index].kind != Observation::Kind::kRadio;
+      });
+    }
+    CommonFrames common = common_frames(run_, others, sightings_[b]);
+    std::erase_if(common.pairs,
+                  [&](const Pair& pair) { return run_.seen[pair.a].place.time_us == kNoStamp; });
+    return {std::move(common.pairs), std::move(common.only_a), std::move(common.only_b)};
+  }
+
+  // Counts the frames of `b` that a line with stamps has as well.
+  std::size_t shared_with_timed(std::uint32_t b, std::uint32_t air) {
+    std::set<std::uint32_t> same;
+    for (std::uint32_t a = 0; a < files_.size(); ++a) {
+      if (!files_[a].timed || files_[a].clock != files_[air].clock) continue;
+      for (const Pair& pair : common_frames(run_, sightings_[a], sightings_[b]).pairs) {
+        if (pair.how == Common::kSame) same.insert(pair.b);
+      }
+    }
+    return same.size();
+  }
+
+  // Reverses the direction of these frames of `b`.
+  void turn(const std::vector<std::uint32_t>& frames, std::uint32_t b) {
+    if (frames.empty()) return;
+    for (const std::uint32_t i : frames) run_.seen[i].to_mote = !run_.seen[i].to_mote;
+    sightings_[b] = std::move(sightings_of(run_)[b]);
+  }
+
+  std::optional<std::uint32_t> air_file() const {
+    const auto air = std::find_if(files_.begin(), files_.end(),
+                                  [](const File& f) { return f.timed && f.radio; });
+    if (air == files_.end()) return std::nullopt;
+    return static_cast<std::uint32_t>(air - files_.begin());
+  }
+
+  // Marks lines on another clock than the air's first capture, and those that were put on it.
+  void mark_lines() {
+    const std::optional<std::uint32_t> air = air_file();
+    if (!air) return;
+    for (const Observation& seen : run_.seen) {
+      const File& file = files_[seen.place.file];
+      if (!seen.node.empty() || seen.kind != Observation::Kind::kSerial || !file.timed) continue;
+      const bool own = file.clock != files_[*air].clock;
+      if (!own && (seen.place.file == *air || !(file.moved || files_[*air].moved))) continue;
+      std::vector<bool>& taps = own ? run_.unordered_taps : run_.slack_taps;
+      taps.resize(run_.taps.size());
+      taps[seen.tap] = true;
+    }
+  }
+
+  Run& run_;
+  const AlignOptions& options_;
+  std::vector<File> files_;
+  std::vector<std::vector<Sighting>> sightings_;
+};
+
+}  // namespace
+
+void align(Run& run, const AlignOptions& options) {
+  if (options.enabled && run.files.size() > 1) Alignment(run, options).align();
+}
+
+}  // namespace rubric::check

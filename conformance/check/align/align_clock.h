@@ -1,0 +1,39 @@
+// Computes how far the clock of one capture is ahead of another's, from the frames that both have;
+// align.h says what this rests on.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "conformance/check/align/align.h"
+#include "conformance/check/align/align_frames.h"
+
+namespace rubric::check {
+
+/// The result of a comparison.
+enum class Clocks : std::uint8_t {
+  kAgree,   ///< The frames suggest one clock, or close enough for the rules.
+  kDiffer,  ///< By offset and drift.
+  kUnsure,  ///< The frames do not say; `why` says why.
+};
+
+struct ClockFit {
+  Clocks clocks = Clocks::kUnsure;
+  std::string why;             ///< kUnsure: the second half of a sentence.
+  std::int64_t offset_us = 0;  ///< The second file's clock minus the first's, at `at_us`.
+  double drift = 0;            ///< Grows by this in a second, in seconds.
+  std::int64_t at_us = 0;      ///< On the second file's clock.
+  std::size_t frames = 0;      ///< Pairs that agree.
+  double spread_us = 0;        ///< Nine tenths of them are that close to the middle one.
+
+  std::int64_t slack_us = 0;  ///< Stamps of the two files are that good after moved().
+
+  /// Returns a stamp of the second file on the first one's clock.
+  std::int64_t moved(std::int64_t time_us) const;
+};
+
+/// Fits the clock of the file of `b` to that of the file of `a`. Both have stamps.
+ClockFit fit_clock(const Run& run, const CommonFrames& common, const AlignOptions& options);
+
+}  // namespace rubric::check

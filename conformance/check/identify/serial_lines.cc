@@ -1,0 +1,80 @@
+#include "conformance/check/identify/serial_lines.h"
+
+#include "conformance/check/message.h"
+
+namespace rubric::check {
+namespace {
+
+constexpr std::int64_t kSerialRepeatUs = 1'500'000;  // TinyOS hosts wait 1000 ms.
+constexpr std::size_t kShownMax = 256;
+
+// Returns the island that serial_joined or the source of a passing message shows, never its
+// destination; 0 if neither does.
+std::uint16_t island_of(const Observation& seen, const Net& net, std::uint16_t sink_am) {
+  SerialJoined joined;
+  if (!seen.to_mote && parse_serial_joined(net, joined)) return joined.address.pid;
+  const bool own = seen.to_mote
+                       ? net.src.devid == machine::kNullDevid
+                       : net.src.devid == sink_am ||
+                             net.dest == machine::Address{net.src.pid, machine::kNullDevid};
+  return own ? net.src.pid : std::uint16_t{0};
+}
+
+}  // namespace
+
+SerialLines::SerialLines(const Run& run, const Given& given, Streams& streams)
+    : run_(run), streams_(streams), lines_(run.taps.size()) {
+  // The one line belongs to the one sink that is given.
+  SerialLine* only = nullptr;
+  for (std::size_t tap = 0; tap < lines_.size(); ++tap) {
+    if (run.taps[tap].link != machine::Link::kSerial) continue;
+    if (only != nullptr) return;
+    only = &lines_[tap];
+  }
+  if (only == nullptr || given.only_island() == 0) return;
+  only->given = true;
+  only->island = only->first = given.only_island();
+}
+
+void SerialLines::look(std::uint32_t index) {
+  const Observation& seen = run_.seen[index];
+  SerialLine& line = lines_[seen.tap];
+  const auto show = [&](std::uint16_t island) {
+    line.island = island;
+    line.given = false;
+    if (shown_.size() < kShownMax) shown_.push_back({streams_.sink_am(), island, index});
+  };
+  if (const std::int32_t id = set_island_id(seen.frame); id >= 0 && seen.to_mote) {
+    const auto island = static_cast<std::uint16_t>(id);
+    // It had its given island before, if it was there before.
+    if (line.given && (line.used || streams_.has_sink())) show(line.island);
+    streams_.rename_island(line.island, island);
+    if (line.first == 0) line.first = island;
+    show(island);
+    return;
+  }
+  Net net;
+  if (seen.frame.type != am::kNet || !parse_net(seen.frame.payload, net)) return;
+  if (line.island == 0 || line.given) {
+    if (const std::uint16_t island = island_of(seen, net, streams_.sink_am()); island != 0) {
+      line.first = island;
+      show(island);
+    }
+  }
+  line.used = true;
+  if (seen.to_mote) streams_.heard_on_serial(net, line.island);
+}
+
+bool SerialLines::repeats(std::uint32_t index) {
+  const Observation& seen = run_.seen[index];
+  if (!seen.to_mote || !seen.ack_request) return false;
+  SerialLine& line = lines_[seen.tap];
+  const std::uint32_t before = line.last_down;
+  line.last_down = index + 1;
+  if (before == 0) return false;
+  const Observation& last = run_.seen[before - 1];
+  return last.frame.type == seen.frame.type && equal(last.frame.payload, seen.frame.payload) &&
+         seen.place.time_us - last.place.time_us <= kSerialRepeatUs;
+}
+
+}  // namespace rubric::check

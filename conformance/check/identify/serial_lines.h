@@ -1,0 +1,40 @@
+// Serial lines in the first pass: finds the sink of each.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "conformance/check/identify/given.h"
+#include "conformance/check/identify/streams.h"
+
+namespace rubric::check {
+
+struct SerialLine {
+  std::uint16_t island = 0;  ///< Now; 0: not known.
+  std::uint16_t first = 0;
+  bool given = false;           ///< By the user; no frame has shown it so far.
+  bool used = false;            ///< Some net_msg came.
+  std::uint32_t last_down = 0;  ///< The last packet to the sink that asked for confirmation, + 1.
+};
+
+class SerialLines {
+ public:
+  SerialLines(const Run& run, const Given& given, Streams& streams);
+
+  /// Learns from observation `index`, a serial one.
+  void look(std::uint32_t index);
+  /// Returns whether it is the host's repetition: the same packet with the next number, while its
+  /// confirmation is missing.
+  bool repeats(std::uint32_t index);
+  const SerialLine& at(std::uint32_t tap) const { return lines_[tap]; }
+  /// Returns the islands that lines showed.
+  const std::vector<Shown>& shown() const { return shown_; }
+
+ private:
+  const Run& run_;
+  Streams& streams_;
+  std::vector<SerialLine> lines_;  // By tap.
+  std::vector<Shown> shown_;
+};
+
+}  // namespace rubric::check

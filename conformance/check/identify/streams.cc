@@ -1,0 +1,205 @@
+#include "conformance/check/identify/streams.h"
+
+#include <algorithm>
+
+#include "conformance/check/message.h"
+
+namespace rubric::check {
+namespace {
+
+constexpr std::int64_t kLinkRepeatUs = 100'000;
+constexpr std::uint8_t kGapMax = 8;  // Beyond it a DSN does not follow the one before.
+constexpr std::size_t kHolesMax = 256;
+constexpr std::size_t kStreamsMax = 4096;
+constexpr int kLookMax = 16;  // Streams of one address that may go on, newest first.
+
+// Points that speak for a frame being of a stream. Island agreement ranks above the DSN.
+constexpr int kNoMatch = -1000;
+constexpr int kStrongIsland = 20;
+constexpr int kNextDsn = 6;
+constexpr int kNearDsn = 3;
+constexpr int kDestIsland = 3;  // The sink of that island should send it on.
+constexpr int kSrcIsland = 1;
+constexpr int kMoteIsland = 4;
+constexpr std::uint16_t kBothLines = 0xFFFF;
+
+}  // namespace
+
+Streams::Streams(const Run& run, const Options& options)
+    : run_(run),
+      given_(options),
+      sink_am_(given_.sink_am().value_or(machine::Profile{}.sink_id)),
+      first_of_(65536, kLast) {}
+
+IslandHint Streams::hint_of(const machine::Frame& frame) const {
+  IslandHint hint;
+  Reply reply;
+  Net net;
+  if (frame.type == am::kJoinReply && parse_reply(frame.payload, reply)) {
+    hint.strong = reply.island;
+  } else if (AckJoin ack; frame.type == am::kAckJoin && parse_ack_join(frame.payload, ack)) {
+    hint.mote = ack.src.pid;
+  } else if (frame.type == am::kNet && parse_net(frame.payload, net)) {
+    hint.mote = net.src.pid;
+    // A message of another island's sink may be passed on; it looks like the sink's own.
+    if (net.src.devid == frame.src && net.src.pid == net.dest.pid) {
+      hint.strong = net.src.pid;
+    } else if (net.src.devid == frame.src) {
+      hint.src = net.src.pid;
+      hint.dest = net.dest.pid;
+    } else {
+      if (net.src.devid == machine::kNullDevid) hint.src = net.src.pid;
+      hint.dest = net.dest.pid;
+    }
+    if (net.dest.pid == machine::kBroadcastPid) hint.src = hint.dest = 0;  // Any sink's.
+    for (const Down& down : downs_) {
+      if (down.addresses != net.addresses() || down.seq_num != net.seq_num) continue;
+      hint.line = hint.line == 0 || hint.line == down.island ? down.island : kBothLines;
+    }
+  }
+  return hint;
+}
+
+int Streams::score(const Stream& stream, const Observation& seen, const IslandHint& hint) const {
+  const auto ahead = static_cast<std::uint8_t>(seen.dsn - stream.dsn);
+  if (ahead == 0 || ahead > kGapMax) return kNoMatch;
+  int points = ahead == 1 ? kNextDsn : kNearDsn;
+  if (stream.island == 0) return points;
+  // Motes of two islands may have the same id; but one mote may also change its island.
+  if (!stream.sink) {
+    if (hint.mote == 0) return points;
+    points += hint.mote == stream.island ? kMoteIsland : -kMoteIsland;
+    return points > 0 ? points : kNoMatch;
+  }
+  const bool stale = hint.strong != 0 && hint.strong == stream.last_island;
+  const bool other = hint.strong != 0 && hint.strong != stream.island && !stale;
+  if (other) return stream.given ? points : kNoMatch;  // Rather than two sinks, one given wrongly.
+  if (hint.strong != 0 && !stale) points += kStrongIsland;
+  // A message from another island's base station to that island is the other sink's.
+  if (hint.src != 0 && hint.src == hint.dest && hint.src != stream.island) return kNoMatch;
+  if (hint.src == stream.island) points += kSrcIsland;
+  if (hint.dest == stream.island) points += kDestIsland;
+  if (hint.line == stream.island && hint.line != 0) points += kStrongIsland;
+  return points;
+}
+
+std::uint16_t Streams::assign(std::uint32_t index, bool& repeat) {
+  const Observation& seen = run_.seen[index];
+  const std::int64_t now = seen.place.time_us;
+  const IslandHint hint = hint_of(seen.frame);
+  std::uint16_t best = kLast;
+  int best_score = kNoMatch;
+  bool even = false;
+  int candidates = 0;
+  int looked_at = 0;
+  for (std::uint16_t i = first_of_[seen.frame.src]; i != kLast && looked_at < kLookMax;
+       i = next_[i], ++looked_at) {
+    Stream& stream = streams_[i];
+    const machine::Frame& before = run_.seen[stream.last].frame;
+    if (stream.dsn == seen.dsn && before.dest == seen.frame.dest &&
+        before.type == seen.frame.type && equal(before.payload, seen.frame.payload) &&
+        now - stream.last_us <= kLinkRepeatUs) {
+      repeat = true;
+      stream.last_us = now;
+      return i;
+    }
+    const int points = score(stream, seen, hint);
+    if (points != kNoMatch) ++candidates;
+    even = points == best_score && points != kNoMatch;
+    if (points <= best_score) continue;
+    best = i;
+    best_score = points;
+  }
+  if (even) return kNobody;
+  // With several sinks a frame that shows no island belongs to none for certain: a DSN alone does
+  // not decide.
+  const bool told = hint.strong != 0 || hint.src != 0 || hint.dest != 0 || hint.mote != 0 ||
+                    (hint.line != 0 && hint.line != kBothLines);
+  if (candidates > 1 && (!told || (streams_[best].sink && hint.strong == 0 && hint.src == 0 &&
+                                   hint.dest == 0 && hint.line == 0))) {
+    return kNobody;
+  }
+  if (best == kLast) return open(index, hint);
+  Stream& stream = streams_[best];
+  if (static_cast<std::uint8_t>(seen.dsn - stream.dsn) != 1) {
+    if (stream.holes.size() < kHolesMax) {
+      stream.holes.emplace_back(stream.last_us, now);
+    } else {
+      stream.holes.back().second = now;
+    }
+  }
+  stream.dsn = seen.dsn;
+  stream.last = index;
+  stream.last_us = now;
+  ++stream.frames;
+  if (seen.frame.type == am::kJoin) stream.asked = true;
+  if (!stream.sink && hint.mote != 0) stream.island = hint.mote;
+  if (seen.frame.type == am::kJoinReply && !stream.asked) stream.sink = true;
+  if (stream.sink) guess_island(stream, index, hint);
+  return best;
+}
+
+// Sets the stream's island. A frame's plain statement ranks above the user's, and that above a
+// frame's suggestion.
+void Streams::guess_island(Stream& stream, std::uint32_t index, const IslandHint& hint) const {
+  if (hint.strong != 0 && hint.strong != stream.last_island && stream.plain == 0) {
+    stream.plain = index + 1;
+    stream.plain_island = hint.strong;
+    if (stream.given) stream.island = 0;
+    stream.given = false;
+  }
+  if (stream.island != 0) return;
+  const std::uint16_t said = given_.only_island(stream.am);
+  const bool taken = std::any_of(streams_.begin(), streams_.end(), [&](const Stream& other) {
+    return other.am == stream.am && other.island == said;
+  });
+  stream.given = hint.strong == 0 && said != 0 && !taken;
+  stream.island = hint.strong != 0 ? hint.strong : stream.given ? said : hint.dest;
+  stream.first_island = stream.island;
+}
+
+std::uint16_t Streams::open(std::uint32_t index, const IslandHint& hint) {
+  const Observation& seen = run_.seen[index];
+  if (streams_.size() >= kStreamsMax) return kNobody;  // Bounded, whatever the capture holds.
+  Stream stream;
+  stream.am = seen.frame.src;
+  stream.dsn = seen.dsn;
+  const std::optional<machine::Role> said = given_.role(stream.am);
+  const bool usual = stream.am == sink_am_ || stream.am == machine::Profile{}.sink_id;
+  const bool named = said ? *said == machine::Role::kSink : usual;
+  stream.sink = seen.frame.type == am::kJoinReply || (named && seen.frame.type != am::kJoin);
+  stream.joins = stream.asked = seen.frame.type == am::kJoin;
+  if (stream.sink) {
+    guess_island(stream, index, hint);
+  } else {
+    stream.island = hint.mote;
+  }
+  stream.first = stream.last = index;
+  stream.first_us = stream.last_us = seen.place.time_us;
+  stream.frames = 1;
+  const auto made = static_cast<std::uint16_t>(streams_.size());
+  streams_.push_back(stream);
+  next_.push_back(first_of_[stream.am]);
+  first_of_[stream.am] = made;
+  return made;
+}
+
+bool Streams::has_sink() const {
+  return std::any_of(streams_.begin(), streams_.end(), [](const Stream& s) { return s.sink; });
+}
+
+void Streams::heard_on_serial(const Net& net, std::uint16_t island) {
+  if (island != 0) downs_[down_next_++ % downs_.size()] = {net.addresses(), net.seq_num, island};
+}
+
+void Streams::rename_island(std::uint16_t from, std::uint16_t to) {
+  if (from == 0) return;
+  for (Stream& stream : streams_) {
+    if (!stream.sink || stream.island != from || from == to) continue;
+    stream.last_island = from;
+    stream.island = to;
+    stream.given = false;
+  }
+}
+
+}  // namespace rubric::check

@@ -1,0 +1,81 @@
+// Streams of DSNs: frames of one AM address that follow each other.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "conformance/check/identify/given.h"
+#include "conformance/check/identify/identity.h"
+#include "conformance/check/message.h"
+
+namespace rubric::check {
+
+/// A frame's hints about its sender's island, and their weight.
+struct IslandHint {
+  std::uint16_t strong = 0;  ///< A reply's island, or the pid of the sink's own address.
+  std::uint16_t src = 0;     ///< pid of a message from a base station.
+  std::uint16_t dest = 0;    ///< Destination of a message that is passed on.
+  std::uint16_t mote = 0;    ///< Were it a mote's: its island.
+  std::uint16_t line = 0;    ///< The serial line down which the same message came lately.
+};
+
+struct Stream {
+  std::uint16_t am = 0;
+  std::uint8_t dsn = 0;  ///< In the last frame.
+  bool sink = false;
+  bool joins = false;              ///< Its first frame was a join_request.
+  bool asked = false;              ///< It sent a join_request.
+  bool given = false;              ///< Its island is what the user says, so far.
+  std::uint32_t plain = 0;         ///< The first observation that shows its island, + 1; 0: none.
+  std::uint16_t plain_island = 0;  ///< There.
+  std::uint16_t island = 0;        ///< Now; may change by SET_ISLAND_ID.
+  std::uint16_t first_island = 0;
+  std::uint16_t last_island = 0;  ///< Before SET_ISLAND_ID.
+  std::uint32_t first = 0;        ///< Observations.
+  std::uint32_t last = 0;
+  std::int64_t first_us = 0;
+  std::int64_t last_us = 0;
+  std::uint64_t frames = 0;
+  std::vector<std::pair<std::int64_t, std::int64_t>> holes;
+};
+
+/// Assigns frames to streams, one after the other.
+class Streams {
+ public:
+  Streams(const Run& run, const Options& options);
+  /// Returns the stream of observation `index`, a radio frame with DSN; kNobody if it could be of
+  /// two.
+  std::uint16_t assign(std::uint32_t index, bool& repeat);
+  const std::vector<Stream>& all() const { return streams_; }
+  /// Notes that a base station sends the sink of `island` a message, which it may radiate.
+  void heard_on_serial(const Net& net, std::uint16_t island);
+  std::uint16_t sink_am() const { return sink_am_; }
+  bool has_sink() const;
+  /// Notes that a base station changed the island of the sink with frames of island `from` to `to`.
+  void rename_island(std::uint16_t from, std::uint16_t to);
+
+ private:
+  IslandHint hint_of(const machine::Frame& frame) const;
+  void guess_island(Stream& stream, std::uint32_t index, const IslandHint& hint) const;
+  int score(const Stream& stream, const Observation& seen, const IslandHint& hint) const;
+  std::uint16_t open(std::uint32_t index, const IslandHint& hint);
+
+  struct Down {
+    std::uint64_t addresses = 0;
+    std::uint16_t seq_num = 0;
+    std::uint16_t island = 0;
+  };
+  std::array<Down, 16> downs_{};
+  std::size_t down_next_ = 0;
+
+  static constexpr std::uint16_t kLast = 0xFFFF;
+  const Run& run_;
+  const Given given_;
+  std::uint16_t sink_am_;
+  std::vector<Stream> streams_;
+  std::vector<std::uint16_t> next_;      // Links streams of the same address.
+  std::vector<std::uint16_t> first_of_;  // By AM address.
+};
+
+}  // namespace rubric::check

@@ -1,0 +1,211 @@
+#include "conformance/check/input/duplicates.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <vector>
+
+#include "conformance/check/message.h"
+
+namespace rubric::check {
+namespace {
+
+using machine::Link;
+
+// A tap of a capture with its frames in order.
+struct Source {
+  std::uint32_t tap = 0;
+  std::uint32_t file = 0;
+  Link link = Link::kRadio;
+  bool timed = true;
+  std::int64_t first_us = 0;
+  std::int64_t last_us = 0;
+  std::vector<std::uint32_t> frames;  // Indices into Run::seen.
+};
+
+bool same_frame(const Observation& a, const Observation& b) {
+  return (!a.has_dsn || !b.has_dsn || a.dsn == b.dsn) && a.frame.dest == b.frame.dest &&
+         a.frame.src == b.frame.src && a.frame.type == b.frame.type &&
+         equal(a.frame.payload, b.frame.payload);
+}
+
+// How two sources overlap.
+struct Shared {
+  std::size_t of_a = 0;  // Frames of each that could be in the other.
+  std::size_t of_b = 0;
+  std::size_t both = 0;
+  bool upward = false;      // A sink's frame among them: only its own line has that.
+  std::uint32_t alone = 0;  // A frame of b that a has not.
+};
+
+class Duplicates {
+ public:
+  Duplicates(Run& run, const Options& options) : run_(run), options_(options) {}
+
+  bool drop(std::string& error) {
+    collect();
+    if (!logs_fit(error)) return false;
+    dropped_.assign(run_.seen.size(), false);
+    for (std::size_t b = 1; b < sources_.size(); ++b) {
+      for (std::size_t a = 0; a < b; ++a) {
+        if (sources_[a].file == sources_[b].file || sources_[a].link != sources_[b].link) continue;
+        if (!compare(sources_[a], sources_[b], error)) return false;
+      }
+    }
+    if (std::find(dropped_.begin(), dropped_.end(), true) == dropped_.end()) return true;
+    std::size_t i = 0;
+    std::erase_if(run_.seen, [&](const Observation&) { return dropped_[i++]; });
+    run_.has_time = std::all_of(run_.seen.begin(), run_.seen.end(),
+                                [](const Observation& seen) { return seen.place.timed(); });
+    return true;
+  }
+
+ private:
+  void collect() {
+    std::vector<std::size_t> of_tap(run_.taps.size(), SIZE_MAX);
+    for (std::uint32_t i = 0; i < run_.seen.size(); ++i) {
+      const Observation& seen = run_.seen[i];
+      const bool frame =
+          seen.kind == Observation::Kind::kRadio || seen.kind == Observation::Kind::kSerial;
+      if (!frame || !seen.node.empty()) continue;
+      if (of_tap[seen.tap] == SIZE_MAX) {
+        of_tap[seen.tap] = sources_.size();
+        sources_.push_back({seen.tap,
+                            seen.place.file,
+                            run_.taps[seen.tap].link,
+                            true,
+                            seen.place.time_us,
+                            seen.place.time_us,
+                            {}});
+      }
+      Source& source = sources_[of_tap[seen.tap]];
+      source.timed = source.timed && seen.place.timed();
+      source.last_us = seen.place.time_us;
+      source.frames.push_back(i);
+    }
+    std::sort(sources_.begin(), sources_.end(),
+              [](const Source& a, const Source& b) { return a.tap < b.tap; });
+  }
+
+  std::string file(std::uint32_t index) const { return run_.files[index]; }
+
+  // Checks that logs and captures do not overlap: their frames cannot be told apart.
+  bool logs_fit(std::string& error) const {
+    std::map<std::string_view, std::uint32_t> log_of;
+    for (const Observation& seen : run_.seen) {
+      if (seen.node.empty()) continue;
+      const auto [known, added] = log_of.emplace(seen.node, seen.place.file);
+      if (!added && known->second != seen.place.file) {
+        error = file(seen.place.file) + ": what node " + std::string(seen.node) + " did is in " +
+                file(known->second) +
+                " as well; give one log of each node, or leave one out with --frames N:none";
+        return false;
+      }
+      const bool radio = seen.kind == Observation::Kind::kRadio;
+      if (!radio && seen.kind != Observation::Kind::kSerial) continue;
+      for (const Source& source : sources_) {
+        if ((source.link == Link::kRadio) != radio) continue;
+        if (seen.place.time_us < source.first_us || seen.place.time_us > source.last_us) continue;
+        error = file(seen.place.file) + ":" + std::to_string(seen.place.offset_bytes) +
+                ": frames " + (radio ? "on the air" : "of serial lines") + " are in " +
+                file(source.file) +
+                " as well; give one of the two, or the log's application lines alone";
+        return false;
+      }
+    }
+    return true;
+  }
+
+  // Counts frames that both have between `lo` and `hi`, one for one.
+  Shared shared(const Source& a, const Source& b, std::int64_t lo, std::int64_t hi) const {
+    Shared out;
+    const bool timed = a.timed && b.timed;
+    const auto within = [&](std::uint32_t i) {
+      const std::int64_t at = run_.seen[i].place.time_us;
+      return !timed || (at >= lo && at <= hi);
+    };
+    for (const std::uint32_t i : a.frames) out.of_a += within(i) ? 1 : 0;
+    std::vector<bool> used(timed ? a.frames.size() : 0);
+    std::size_t from = 0;
+    bool alone = false;
+    for (const std::uint32_t i : b.frames) {
+      if (!within(i)) continue;
+      ++out.of_b;
+      const Observation& seen = run_.seen[i];
+      const auto early = [&](const Observation& other) {
+        return timed && other.place.time_us < seen.place.time_us - options_.skew_us;
+      };
+      while (from < a.frames.size() && early(run_.seen[a.frames[from]])) ++from;
+      std::size_t k = from;
+      for (; k < a.frames.size(); ++k) {
+        const Observation& other = run_.seen[a.frames[k]];
+        if (timed && other.place.time_us > seen.place.time_us + options_.skew_us) {
+          k = a.frames.size();
+          break;
+        }
+        if (!(timed && used[k]) && same_frame(other, seen)) break;
+      }
+      if (k >= a.frames.size()) {
+        if (!alone) out.alone = i;
+        alone = true;
+        continue;
+      }
+      ++out.both;
+      out.upward = out.upward || !seen.to_mote;
+      if (timed) used[k] = true;
+      if (!timed) from = k + 1;
+    }
+    return out;
+  }
+
+  bool compare(const Source& a, const Source& b, std::string& error) {
+    const bool timed = a.timed && b.timed;
+    const std::int64_t lo = std::max(a.first_us, b.first_us) - (timed ? options_.skew_us : 0);
+    const std::int64_t hi = std::min(a.last_us, b.last_us) + (timed ? options_.skew_us : 0);
+    if (timed && std::max(a.first_us, b.first_us) > std::min(a.last_us, b.last_us)) return true;
+    const Shared b_in_a = shared(a, b, lo, hi);
+    if (b_in_a.of_a == 0 || b_in_a.of_b == 0) return true;
+    if (b_in_a.both == b_in_a.of_b && (a.timed || !b.timed)) return drop(b, a, b_in_a, lo, hi);
+    const Shared a_in_b = shared(b, a, lo, hi);
+    if (a_in_b.both == a_in_b.of_b) return drop(a, b, a_in_b, lo, hi);
+    if (b_in_a.both == b_in_a.of_b) return drop(b, a, b_in_a, lo, hi);
+    const bool radio = a.link == Link::kRadio;
+    if (radio ? !a.timed && !b.timed : !b_in_a.upward) return true;  // Other times, other lines.
+    error = file(b.file) + ": frame " + std::to_string(run_.seen[b_in_a.alone].place.frame) +
+            " is not in " + file(a.file) + ", which is of the same " +
+            (radio ? "air" : "serial line") +
+            (timed ? " at the same time" : "; without time stamps they cannot be put in order") +
+            ". Give one of the two, or parts that do not overlap, as with --frames " +
+            std::to_string(b.file + 1) + ":none";
+    return false;
+  }
+
+  // Drops all of `which` that `other` has too.
+  bool drop(const Source& which, const Source& other, const Shared& what, std::int64_t lo,
+            std::int64_t hi) {
+    for (std::size_t i = 0; i < run_.seen.size(); ++i) {
+      const Observation& seen = run_.seen[i];
+      if (seen.tap != which.tap || !seen.node.empty()) continue;
+      const std::int64_t at = seen.place.time_us;
+      if (!which.timed || !other.timed || (at >= lo && at <= hi)) dropped_[i] = true;
+    }
+    run_.facts.push_back(file(which.file) + ": " + std::to_string(what.both) +
+                         (what.both == 1 ? " frame is" : " frames are") + " in " +
+                         file(other.file) + " as well and judged once");
+    return true;
+  }
+
+  Run& run_;
+  const Options& options_;
+  std::vector<Source> sources_;
+  std::vector<bool> dropped_;
+};
+
+}  // namespace
+
+bool drop_duplicates(Run& run, const Options& options, std::string& error) {
+  if (run.files.size() < 2) return true;
+  return Duplicates(run, options).drop(error);
+}
+
+}  // namespace rubric::check

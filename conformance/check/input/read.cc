@@ -1,0 +1,280 @@
+#include "conformance/check/input/read.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <limits>
+
+#include "conformance/check/input/read_packet.h"
+#include "conformance/check/input/read_trace.h"
+#include "conformance/check/message.h"
+#include "conformance/check/storage.h"
+
+namespace rubric::check {
+namespace {
+
+constexpr std::int64_t kNsPerUs = 1000;
+constexpr std::size_t kChunkBytes = 1024 * 1024;
+constexpr std::size_t kLookBytes = 4096;  // Enough to recognize a format.
+
+struct FileCloser {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+
+}  // namespace
+
+Bytes RunStorage::keep(Bytes bytes) {
+  if (bytes.empty()) return {};  // The first of all: there is no block yet.
+  if (bytes.size() > kBlockBytes - used_) {
+    blocks_.push_back(std::make_unique<std::uint8_t[]>(std::max(kBlockBytes, bytes.size())));
+    used_ = 0;
+  }
+  std::uint8_t* const to = blocks_.back().get() + used_;
+  std::memcpy(to, bytes.data(), bytes.size());
+  used_ = std::min(kBlockBytes, used_ + bytes.size());
+  return {to, bytes.size()};
+}
+
+std::string_view RunStorage::keep(std::string_view text) {
+  for (const std::string& known : texts_) {
+    if (known == text) return known;
+  }
+  return texts_.emplace_back(text);
+}
+
+namespace {
+
+// A file that is being read.
+struct ReadSource {
+  std::uint32_t file = 0;
+  std::vector<std::uint32_t> taps;  // For its interfaces.
+  std::uint64_t frames = 0;
+};
+
+std::uint32_t tap_of(const Packet& packet, std::string_view interface_name, ReadSource& source,
+                     Run& run) {
+  constexpr std::uint32_t kNone = UINT32_MAX;
+  if (source.taps.size() <= packet.interface_id) source.taps.resize(packet.interface_id + 1, kNone);
+  std::uint32_t& index = source.taps[packet.interface_id];
+  if (index == kNone) {
+    index = static_cast<std::uint32_t>(run.taps.size());
+    Tap tap;
+    tap.name = interface_name.empty() ? std::string_view(run.files[source.file]) : interface_name;
+    run.taps.push_back(tap);
+  }
+  Tap& tap = run.taps[index];
+  if (packet.framing == Framing::kHdlc || packet.framing == Framing::kSf) {
+    tap.link = machine::Link::kSerial;
+  }
+  if (packet.direction != Direction::kUnknown) tap.has_direction = true;
+  return index;
+}
+
+void observe(const Packet& packet, std::string_view interface_name, ReadSource& source, Run& run) {
+  ++source.frames;
+  Observation seen;
+  if (!observe_packet(packet, *run.storage, seen)) return;
+  seen.tap = tap_of(packet, interface_name, source, run);
+  seen.place.file = source.file;
+  seen.place.frame = source.frames;
+  seen.place.offset_bytes = packet.offset_bytes;
+  seen.place.time_us = packet.time_ns == kNoTime ? kNoStamp : packet.time_ns / kNsPerUs;
+  if (seen.kind == Observation::Kind::kSerial) {
+    seen.to_mote = packet.direction == Direction::kUnknown
+                       ? looks_towards_sink(seen.frame)
+                       : packet.direction == Direction::kInbound;
+  } else if (seen.kind == Observation::Kind::kLinkAck && packet.framing == Framing::kHdlc) {
+    seen.to_mote = packet.direction == Direction::kInbound;
+  }
+  run.seen.push_back(seen);
+}
+
+// Makes times count from the first one, and orders what several taps saw.
+Run in_one_order(Run run, const AlignOptions& options) {
+  const auto by_file = [](const Observation& a, const Observation& b) {
+    return a.place.file < b.place.file;
+  };
+  if (!std::is_sorted(run.seen.begin(), run.seen.end(), by_file)) {  // Files that grew at a time.
+    std::stable_sort(run.seen.begin(), run.seen.end(), by_file);
+  }
+  align(run, options);
+  // A log counts from the start of its run. Captures of simulated networks do, too; those of real
+  // ones have stamps of this century, and then the log is taken to begin with the capture.
+  constexpr std::int64_t kTenYearsUs = 315'360'000'000'000;
+  constexpr std::int64_t kNone = std::numeric_limits<std::int64_t>::max();
+  std::int64_t first_us = kNone;
+  bool logged = false;
+  for (const Observation& seen : run.seen) {
+    const std::int64_t time = seen.place.time_us;
+    if (!seen.node.empty()) {
+      logged = true;
+    } else if (time != kNoStamp) {
+      first_us = std::min(first_us, time);
+    }
+  }
+  const std::int64_t logs_us = first_us != kNone && first_us > kTenYearsUs ? first_us : 0;
+  if (logged) {  // It takes time to walk through a large capture.
+    for (Observation& seen : run.seen) {
+      if (!seen.node.empty()) seen.place.time_us += logs_us;
+      if (seen.place.time_us != kNoStamp) first_us = std::min(first_us, seen.place.time_us);
+    }
+  }
+  for (Observation& seen : run.seen) {
+    seen.place.time_us = seen.place.time_us == kNoStamp ? -1 : seen.place.time_us - first_us;
+  }
+  for (LoosePlace& place : run.loose) {
+    place.early_us -= first_us;
+    place.late_us -= first_us;
+  }
+  for (LoggedNode& node : run.nodes) {
+    for (auto& [from, to] : node.busy_us) {
+      from += logs_us - first_us;
+      if (to != kNone) to += logs_us - first_us;
+    }
+  }
+  merge(run);
+  return run;
+}
+
+}  // namespace
+
+struct RunReader::State {
+  ReadAs as;
+  Run run;
+  std::vector<ReadSource> growing;  // By file; others are unused.
+  // One file that is read whole.
+  std::unique_ptr<Reader> reader;
+  ReadSource source;
+
+  void take(const Packet& packet) {
+    const auto& interfaces = reader->interfaces();
+    const bool known = packet.interface_id < interfaces.size();
+    observe(packet, known ? std::string_view(interfaces[packet.interface_id].name) : "", source,
+            run);
+  }
+
+  void begin(const std::string& name, Bytes start, const std::string& interface_name) {
+    run.files.push_back(name);
+    ReaderOptions options;
+    options.interface_name = interface_name;
+    options.hex_framing = as.hex_framing;
+    reader = make_reader(as.format == InputFormat::kUnknown ? detect(start) : as.format, options);
+    source = ReadSource{static_cast<std::uint32_t>(run.files.size() - 1), {}, 0};
+  }
+};
+
+RunReader::RunReader(const ReadAs& as) : state_(std::make_unique<State>()) {
+  state_->as = as;
+  state_->run.storage = std::make_shared<RunStorage>();
+}
+RunReader::~RunReader() = default;
+
+std::uint32_t RunReader::open(const std::string& name) {
+  const auto file = static_cast<std::uint32_t>(state_->run.files.size());
+  state_->run.files.push_back(name);
+  state_->growing.resize(file + 1);
+  state_->growing[file].file = file;
+  return file;
+}
+
+void RunReader::take(std::uint32_t file, const Packet& packet, std::string_view interface_name) {
+  observe(packet, interface_name, state_->growing[file], state_->run);
+}
+
+Run RunReader::snapshot() const { return in_one_order(state_->run, state_->as.align); }
+
+bool RunReader::add_bytes(const std::string& name, std::string_view bytes, std::string& error) {
+  const Bytes all(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+  if (looks_like_trace(bytes)) {
+    state_->run.files.push_back(name);
+    return read_trace(name, bytes, state_->run, error);
+  }
+  state_->begin(name, all.first(std::min(all.size(), kLookBytes)), name);
+  if (!state_->reader) {
+    error = name +
+            ": not a capture that can be judged: neither pcap, pcapng, serial bytes, "
+            "serial forwarder stream, hex nor .rtr";
+    return false;
+  }
+  auto take = [this](const Packet& packet) { state_->take(packet); };
+  state_->reader->feed(all, PacketSink(take));
+  state_->reader->finish(PacketSink(take));
+  return true;
+}
+
+bool RunReader::add_file(const std::string& path, std::string& error) {
+  const std::unique_ptr<std::FILE, FileCloser> file(std::fopen(path.c_str(), "rb"));
+  const auto broken = [&] {
+    error = path + ": " + std::strerror(errno);
+    return false;
+  };
+  if (!file) return broken();
+  std::vector<char> chunk(kChunkBytes);
+  std::size_t size = std::fread(chunk.data(), 1, chunk.size(), file.get());
+  if (std::ferror(file.get())) return broken();
+  if (size < chunk.size() || looks_like_trace({chunk.data(), size})) {
+    std::string all(chunk.data(), size);  // Small, or text that is parsed whole.
+    while ((size = std::fread(chunk.data(), 1, chunk.size(), file.get())) > 0) {
+      all.append(chunk.data(), size);
+    }
+    if (std::ferror(file.get())) return broken();
+    return add_bytes(path, all, error);
+  }
+  const auto* const data = reinterpret_cast<const std::uint8_t*>(chunk.data());
+  state_->begin(path, {data, kLookBytes}, path);
+  if (!state_->reader) return add_bytes(path, {chunk.data(), size}, error);  // Says why not.
+  auto take = [this](const Packet& packet) { state_->take(packet); };
+  do {
+    state_->reader->feed({data, size}, PacketSink(take));
+    size = std::fread(chunk.data(), 1, chunk.size(), file.get());
+  } while (size > 0);
+  if (std::ferror(file.get())) return broken();
+  state_->reader->finish(PacketSink(take));
+  return true;
+}
+
+Run RunReader::finish() {
+  Run run = std::move(state_->run);
+  const ReadAs as = state_->as;
+  state_ = std::make_unique<State>();
+  state_->as = as;
+  state_->run.storage = std::make_shared<RunStorage>();
+  return in_one_order(std::move(run), as.align);
+}
+
+std::optional<Run> read(const std::vector<std::string>& files, std::string& error) {
+  RunReader reader;
+  for (const std::string& file : files) {
+    if (!reader.add_file(file, error)) return std::nullopt;
+  }
+  return reader.finish();
+}
+
+void merge(Run& run) {
+  constexpr std::int64_t kLast = std::numeric_limits<std::int64_t>::max();
+  const auto time_of = [](const Observation& seen) {
+    return seen.place.time_us < 0 ? kLast : seen.place.time_us;
+  };
+  const auto earlier = [&](const Observation& a, const Observation& b) {
+    return time_of(a) < time_of(b);
+  };
+  if (!std::is_sorted(run.seen.begin(), run.seen.end(), earlier)) {
+    std::stable_sort(run.seen.begin(), run.seen.end(), earlier);
+  }
+  run.has_time = std::all_of(run.seen.begin(), run.seen.end(),
+                             [](const Observation& seen) { return seen.place.timed(); });
+  run.start_us = run.seen.empty() ? 0 : std::max<std::int64_t>(0, run.seen.front().place.time_us);
+  const auto last = std::find_if(run.seen.rbegin(), run.seen.rend(),
+                                 [](const Observation& seen) { return seen.place.timed(); });
+  run.end_us = last == run.seen.rend() ? run.start_us : last->place.time_us;
+}
+
+bool looks_towards_sink(const machine::Frame& frame) {
+  if (frame.type == am::kConfig) return true;
+  Net net;
+  return frame.type == am::kNet && parse_net(frame.payload, net) &&
+         net.src.devid == machine::kNullDevid && net.dest.devid != machine::kNullDevid;
+}
+
+}  // namespace rubric::check

@@ -1,0 +1,66 @@
+// Reads files into a Run, in one order of time.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "codec/containers/reader.h"
+#include "conformance/check/align/align.h"
+#include "conformance/check/observation.h"
+
+namespace rubric::check {
+
+/// Formats of captures; .rtr logs are recognized by their first line in any case.
+struct ReadAs {
+  InputFormat format = InputFormat::kUnknown;  ///< kUnknown: found out from the content.
+  Framing hex_framing = Framing::kSf;          ///< Framing of the lines of hex text.
+  AlignOptions align = {};                     ///< Options of the alignment.
+};
+
+/// Collects files to one run. Damaged bytes are observed as such and never stop the reading.
+class RunReader {
+ public:
+  explicit RunReader(const ReadAs& as = {});
+  ~RunReader();
+  RunReader(const RunReader&) = delete;
+  RunReader& operator=(const RunReader&) = delete;
+
+  /// Adds the file at `path`, .rtr text included; the format is found from its content. Returns
+  /// false, with `error` naming file and reason, if it cannot be read at all.
+  bool add_file(const std::string& path, std::string& error);
+  /// Adds bytes at hand; reports use `name`.
+  bool add_bytes(const std::string& name, std::string_view bytes, std::string& error);
+  /// Opens a file or line whose packets come one by one; returns its index among the run's files.
+  std::uint32_t open(const std::string& name);
+  /// Takes the next packet of file `file`, which open() returned; the name is that of the packet's
+  /// interface, empty if it has none.
+  void take(std::uint32_t file, const Packet& packet, std::string_view interface_name);
+  /// Returns what finish() would return now; more may be added afterwards. The bytes of frames are
+  /// shared.
+  Run snapshot() const;
+
+  /// Returns everything that was added, in one order (see merge()), and empties the reader.
+  Run finish();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// Reads all of `files` as one run.
+std::optional<Run> read(const std::vector<std::string>& files, std::string& error);
+
+/// Orders by time what several taps saw. At equal times frames keep the order of their file, and
+/// files the order in which they were given. Radio stamps mark starts of frames and serial stamps
+/// their ends, so a cause precedes its effect as long as the taps share a clock. Frames without a
+/// time come after those with one, make has_time false, and do not change the run's end.
+void merge(Run& run);
+
+/// Returns whether a frame on a serial line goes to the sink, if the capture does not say: a sink's
+/// frames have AM source 0 and destination 0xFFFF just as a host's may, so the message decides.
+bool looks_towards_sink(const machine::Frame& frame);
+
+}  // namespace rubric::check

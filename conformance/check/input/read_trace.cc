@@ -1,0 +1,209 @@
+#include "conformance/check/input/read_trace.h"
+
+#include <map>
+
+#include "conformance/check/storage.h"
+#include "conformance/trace/encode.h"
+#include "conformance/trace/events/app_events.h"
+#include "conformance/trace/parse.h"
+
+namespace rubric::check {
+namespace {
+
+using trace::Line;
+using trace::LinkKind;
+using trace::Op;
+
+machine::Role role_of(trace::Role role) {
+  switch (role) {
+    case trace::Role::kMote: return machine::Role::kMote;
+    case trace::Role::kSink: return machine::Role::kSink;
+    case trace::Role::kBaseStation: break;
+  }
+  return machine::Role::kBaseStation;
+}
+
+class LogReader {
+ public:
+  LogReader(const trace::File& file, const trace::Case& one, Run& run)
+      : run_(run), scope_(trace::scope_of(file, one)), lines_(one.lines()) {}
+
+  void read() {
+    bool marked = false;
+    bool applications = false;
+    for (const trace::NodeHeader& header : scope_.nodes) marked = marked || header.iut;
+    for (const trace::NodeHeader& header : scope_.nodes) {
+      LoggedNode node;
+      node.name = header.name;
+      node.role = role_of(header.role);
+      node.id = header.id.value_or(0);
+      node.island = header.island.value_or(0);
+      node.under_test = !marked || header.iut;
+      for (const Line* line : lines_) {
+        if (line->node != header.name) continue;
+        const std::optional<LinkKind> link = scope_.link(line->link);
+        node.application = node.application || link == LinkKind::kApp;
+        node.hearing = node.hearing ||
+                       (link == LinkKind::kRadio && line->op == Op::kGiven && !is_state(*line));
+        node.busy = node.busy || line->message.name == "busy";
+        node.peis = node.peis || link == LinkKind::kPeis;
+      }
+      run_.nodes.push_back(std::move(node));
+      applications = applications || run_.nodes.back().application;
+    }
+    run_.marked = run_.marked || marked;
+    // If a log has applications, a node with radio input has its application as well, even if that
+    // was never called.
+    for (LoggedNode& node : run_.nodes) {
+      node.application = node.application || (applications && node.hearing);
+    }
+    for (const Line* line : lines_) take(*line);
+  }
+
+ private:
+  // Returns whether the line is about the link itself, not a frame.
+  static bool is_state(const Line& line) {
+    const std::string& name = line.message.name;
+    return name == "linkack" || name == "busy" || name == "idle";
+  }
+
+  std::int64_t time_of(const Line& line) {
+    std::int64_t ticks = line.time.from;
+    if (line.time.base == trace::Time::Base::kPrevious) ticks += last_ticks_;
+    if (line.time.base == trace::Time::Base::kLabel) ticks += labels_[line.time.label];
+    last_ticks_ = ticks;
+    if (!line.label.empty()) labels_[line.label] = ticks;
+    return ticks * 1'000'000 / trace::ticks_per_second(scope_.tick);
+  }
+
+  void take(const Line& line) {
+    const std::int64_t time_us = time_of(line);
+    if (line.op != Op::kGiven && line.op != Op::kEmits) return;
+    if (line.op == Op::kGiven) take_busy(line, time_us);
+    const std::optional<LinkKind> kind = scope_.link(line.link);
+    if (!kind || line.node == "*") return;
+    Observation seen;
+    seen.place.file = static_cast<std::uint32_t>(run_.files.size() - 1);
+    seen.place.frame = ++frames_;
+    seen.place.offset_bytes = line.place.line;
+    seen.place.time_us = time_us;
+    seen.node = run_.storage->keep(std::string_view(line.node));
+    seen.received = line.op == Op::kGiven;
+    const bool frames = *kind != LinkKind::kApp && *kind != LinkKind::kPower;
+    if (frames && !is_state(line)) {
+      take_frame(line, *kind, seen);
+    } else if (*kind == LinkKind::kApp || *kind == LinkKind::kPower) {
+      take_news(line, *kind, seen);
+    }
+  }
+
+  // Keeps one state for all its lines: later checks only wait for the longest.
+  void take_busy(const Line& line, std::int64_t time_us) {
+    const bool busy = line.message.name == "busy";
+    if (!busy && line.message.name != "idle") return;
+    for (LoggedNode& node : run_.nodes) {
+      if (node.name != line.node) continue;
+      if (busy) node.busy_us.emplace_back(time_us, INT64_MAX);
+      if (!busy && !node.busy_us.empty()) node.busy_us.back().second = time_us;
+    }
+  }
+
+  void take_frame(const Line& line, LinkKind kind, Observation& seen) {
+    const trace::AmFrame frame = trace::frame_of(line, scope_);
+    const bool radio = kind == LinkKind::kRadio;
+    seen.frame.link = events::to_link(kind).value_or(machine::Link::kSerial);
+    const bool peis = kind == LinkKind::kPeis;
+    seen.kind = radio  ? Observation::Kind::kRadio
+                : peis ? Observation::Kind::kPeis
+                       : Observation::Kind::kSerial;
+    seen.frame.dest = frame.dest;
+    seen.frame.src = frame.src;
+    seen.frame.type = frame.type;
+    seen.frame.payload = run_.storage->keep(Bytes(frame.payload.data(), frame.payload.size()));
+    seen.tap = tap_of(line.link, seen.frame.link);
+    const trace::NodeHeader* const node = scope_.node(line.node);
+    const bool sink = node != nullptr && node->role == trace::Role::kSink;
+    // The line was given to a sink, or sent by its host.
+    if (kind == LinkKind::kSerial) seen.to_mote = sink == seen.received;
+    run_.seen.push_back(seen);
+  }
+
+  std::uint32_t tap_of(const std::string& name, machine::Link link) {
+    const auto found = taps_.find(name);
+    if (found != taps_.end()) return found->second;
+    const auto made = static_cast<std::uint32_t>(run_.taps.size());
+    run_.taps.push_back({name, link, true});
+    taps_[name] = made;
+    return made;
+  }
+
+  void take_news(const Line& line, LinkKind kind, Observation& seen) {
+    const auto message = std::make_shared<const trace::Concrete>(trace::concrete(line.message));
+    seen.tap = tap_of("app", machine::Link::kRadio);
+    RunStorage& storage = *run_.storage;
+    if (const auto state = events::to_state(*message, kind)) {
+      const bool reboot = std::holds_alternative<machine::Reboot>(*state);
+      if (!reboot && !std::holds_alternative<machine::PowerOff>(*state)) return;
+      seen.kind = Observation::Kind::kReboot;
+      seen.received = false;
+    } else if (const auto call = events::to_call(*message); call && seen.received) {
+      seen.kind = Observation::Kind::kCall;
+      seen.received = false;
+      seen.call = &storage.calls.emplace_back(*call);
+    } else if (const auto notice = events::to_notice(*message); notice && !seen.received) {
+      seen.kind = Observation::Kind::kNotice;
+      seen.notice = &storage.notices.emplace_back(*notice);
+    } else {
+      return;
+    }
+    storage.owned.push_back(message);
+    run_.seen.push_back(seen);
+  }
+
+  Run& run_;
+  trace::Scope scope_;
+  std::vector<const Line*> lines_;
+  std::map<std::string, std::int64_t> labels_;
+  std::map<std::string, std::uint32_t> taps_;
+  std::int64_t last_ticks_ = 0;
+  std::uint64_t frames_ = 0;
+};
+
+}  // namespace
+
+bool looks_like_trace(std::string_view bytes) {
+  while (!bytes.empty()) {
+    const std::size_t end = bytes.find('\n');
+    std::string_view line = bytes.substr(0, end);
+    while (!line.empty() && (line.front() == ' ' || line.front() == '\t')) line.remove_prefix(1);
+    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+    if (!line.empty() && line.front() != '#' && line.front() != ';') {
+      return line.substr(0, 4) == "%rtr";
+    }
+    if (end == std::string_view::npos) return false;
+    bytes.remove_prefix(end + 1);
+  }
+  return false;
+}
+
+bool read_trace(const std::string& name, std::string_view text, Run& run, std::string& error) {
+  const trace::Parsed parsed = trace::parse(text, name);
+  if (!parsed.ok()) {
+    error = parsed.errors();
+    return false;
+  }
+  if (parsed.file.cases.size() != 1) {
+    error = name + ": has " + std::to_string(parsed.file.cases.size()) +
+            " cases; a log of a run has one";
+    return false;
+  }
+  try {
+    LogReader(parsed.file, parsed.file.cases.front(), run).read();
+  } catch (const trace::TraceError& broken) {
+    error = name + ":" + std::to_string(broken.place().line) + ": " + broken.what();
+    return false;
+  }
+  return true;
+}
+
+}  // namespace rubric::check

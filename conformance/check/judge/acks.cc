@@ -1,0 +1,276 @@
+#include "conformance/check/judge/acks.h"
+
+#include <algorithm>
+
+#include "conformance/check/judge/peis_watch.h"
+#include "conformance/machine/transport.h"
+
+namespace rubric::check {
+namespace {
+
+constexpr std::size_t kCrowd = 2;
+constexpr std::int64_t kAroundUs = 100'000;
+
+}  // namespace
+
+Acks::Acks(Context& context, std::size_t devices)
+    : context_(context), arrived_(devices), owed_(devices, 0) {}
+
+void Acks::begin_life(std::uint16_t node) {
+  arrived_[node].clear();
+  owed_[node] = 0;
+}
+
+void Acks::arrived(std::uint16_t node, const Observation& seen, std::uint16_t sender,
+                   const Net& net, const Arrival& arrival) {
+  Ring<Arrived, kRoom>& ring = arrived_[node];
+  Arrived arrived;
+  arrived.net = net;
+  arrived.place = seen.place;
+  arrived.sender = sender;
+  arrived.forbidden = net.sound ? arrival.forbidden : "N11-NBYTES"_rule;
+  arrived.weak = net.sound && arrival.weak;
+  arrived.ackable = arrived.forbidden == ReqId::kNone &&
+                    machine::must_ack(net.reliable == 1, net.dest, net.trans_id, net.app_id);
+  arrived.must_ack = arrived.ackable && !arrival.free;
+  arrived.sure = arrival.sure;
+  if (arrived.must_ack && arrived.sure) ++owed_[node];
+  if (ring.full()) close(node, ring.oldest(0));
+  ring.push(arrived);
+}
+
+void Acks::repeated(std::uint16_t node, const Net& net) {
+  Ring<Arrived, kRoom>& ring = arrived_[node];
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    Arrived& arrived = ring.newest(i);
+    if (!same_message(arrived.net, net)) continue;
+    if (arrived.copies < 255) ++arrived.copies;
+    return;
+  }
+}
+
+void Acks::surely(std::uint16_t node, const Net& net) {
+  Ring<Arrived, kRoom>& ring = arrived_[node];
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    Arrived& arrived = ring.newest(i);
+    if (!same_message(arrived.net, net)) continue;
+    if (arrived.must_ack && !arrived.sure && arrived.acks == 0) ++owed_[node];
+    arrived.sure = true;
+    return;
+  }
+}
+
+void Acks::sent(std::uint16_t node, const Observation& seen, const Net& ack) {
+  const std::int64_t now = seen.place.time_us;
+  const std::int32_t acked = machine::acked_seq_num(ack.body());
+  Ring<Arrived, kRoom>& ring = arrived_[node];
+  // Picks the best message with that number: one that waits for its ack.
+  Arrived* best = nullptr;
+  const auto rank = [](const Arrived& a) {
+    if (a.forbidden != ReqId::kNone) return 0;
+    const bool connless = a.net.trans_id == component::kConnless;
+    if (a.net.reliable != 1 || !connless || a.net.broadcast()) return 1;
+    return a.acks < a.copies ? 3 : 2;
+  };
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    Arrived& arrived = ring.newest(i);
+    if (arrived.net.seq_num != acked || arrived.net.src != ack.dest) continue;
+    if (best == nullptr || rank(arrived) > rank(*best)) best = &arrived;
+  }
+  if (best == nullptr || rank(*best) < 3) {
+    refuse(node, seen, ack, acked, best);
+    return;
+  }
+  if (best->must_ack && best->sure && best->acks == 0) --owed_[node];
+  ++best->acks;
+  if (best->net.app_id != ack.app_id || ack.reliable != 0) {
+    context_.report("T2-CONTENT"_rule, Severity::kFail, seen.place, node,
+                    {"The ack of " + name_of(best->net) + " has APPID " + number(ack.app_id) +
+                         ", reliable " + number(ack.reliable) + ".",
+                     "APPID " + number(best->net.app_id) + ", reliable 0.",
+                     {}});
+    return;
+  }
+  const std::int64_t took = now - best->place.time_us;
+  if (took > context_.ack_timeout_us()) {
+    context_.report("T2-PROMPT"_rule, Severity::kWeak, seen.place, node,
+                    {"The ack of " + name_of(best->net) + " comes after " + ms_text(took) + ".",
+                     "Before the sender's timeout, " + ms_text(context_.ack_timeout_us()) + ".",
+                     {}});
+  }
+  context_.findings.kept("T2-ACK"_rule);
+  context_.findings.kept("T2-ONCE"_rule);
+  context_.findings.kept("T2-CONTENT"_rule);
+}
+
+void Acks::refuse(std::uint16_t node, const Observation& seen, const Net& ack, std::int32_t acked,
+                  Arrived* best) {
+  const std::int64_t now = seen.place.time_us;
+  Said said;
+  ReqId rule = "T2-CONTENT"_rule;
+  Severity severity = Severity::kFail;
+  if (acked < 0) {
+    said.text = "An ack has a body of " + number(ack.body().size()) +
+                " bytes that holds no sequence number.";
+    said.expected = "The acknowledged number, alone or in a learning_notification.";
+  } else if (best == nullptr) {
+    severity =
+        context_.half_heard(node) ? Severity::kInconclusive : context_.without_ever(kNobody, now);
+    said.text = "An ack to " + text_of(ack.dest) + " of number " +
+                number(static_cast<std::uint64_t>(acked)) +
+                ", which no message that came to this node had.";
+    said.expected = "The number of a reliable message from " + text_of(ack.dest) + ".";
+  } else if (best->forbidden != ReqId::kNone) {
+    rule = best->forbidden;
+    if (best->weak) severity = Severity::kWeak;
+    said.text = "It acks " + name_of(best->net) + ", which it should have " +
+                (rule == "N11-NBYTES"_rule ? "dropped." : "ignored.");
+    said.expected = "No effect at this node.";
+  } else if (best->net.is_ack()) {
+    rule = "T2-LOOP"_rule;
+    said.text = "It acks an ack, " + name_of(best->net) + ".";
+    said.expected = "An ack is never acked.";
+  } else if (best->net.reliable != 1) {
+    const bool flag = best->net.reliable == 0;  // Other values: decision 112.
+    rule = flag ? "T2-UNRELIABLE"_rule : "T2-TWO"_rule;
+    if (!flag) severity = Severity::kWeak;
+    said.text =
+        "It acks " + name_of(best->net) + ", whose reliable is " + number(best->net.reliable) + ".";
+    said.expected = "An unreliable message is never acked.";
+  } else if (best->net.broadcast()) {
+    rule = "T2-BROADCAST"_rule;
+    severity = Severity::kWeak;
+    said.text = "It acks the broadcast " + number(best->net.seq_num) + ".";
+    said.expected = "A broadcast is not acked.";
+  } else if (best->net.trans_id != component::kConnless) {
+    rule = "T2-CONTENT"_rule;
+    said.text =
+        "It acks " + name_of(best->net) + ", whose TRANSID is " + number(best->net.trans_id) + ".";
+    said.expected = "Acks of Connectionless messages.";
+    severity = Severity::kInconclusive;
+  } else {
+    rule = "T2-ONCE"_rule;
+    severity = context_.without(best->sender, best->place.time_us, now);
+    said.text = "A second ack of " + name_of(best->net) + ".";
+    said.expected = "One ack for each time that it was received.";
+  }
+  context_.report(rule, severity, seen.place, node, std::move(said));
+}
+
+void Acks::delivered(std::uint16_t node, const Observation& seen,
+                     const machine::Received& received) {
+  Ring<Arrived, kRoom>& ring = arrived_[node];
+  Arrived* best = nullptr;
+  const auto rank = [](const Arrived& a) {
+    if (a.forbidden != ReqId::kNone) return 0;
+    return a.delivered < a.copies ? 2 : 1;
+  };
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    Arrived& arrived = ring.newest(i);
+    if (arrived.net.src != received.src) continue;
+    const bool sound = arrived.net.sound;
+    if (sound &&
+        (arrived.net.app_id != received.app_id || !equal(arrived.net.body(), received.data))) {
+      continue;
+    }
+    // A node may make anything of a malformed message.
+    const std::size_t came = arrived.net.payload.size();
+    if (!sound && came > 2 &&
+        (received.data.size() < came - 2 ||
+         !equal(arrived.net.payload.from(2), received.data.first(came - 2)))) {
+      continue;
+    }
+    if (best == nullptr || rank(arrived) > rank(*best)) best = &arrived;
+  }
+  if (best == nullptr) {
+    // Messages to a base station from other islands pass where no log and no tap is read.
+    const Device& device = context_.device(node);
+    const bool by_peis = device.role == machine::Role::kBaseStation &&
+                         received.src.pid != device.island && !logs_peis(context_.run, node);
+    context_.report("T1-DELIVER"_rule,
+                    by_peis ? Severity::kInconclusive
+                            : context_.without(kNobody, context_.run.start_us, seen.place.time_us),
+                    seen.place, node,
+                    {"The application gets " + number(received.data.size()) + " bytes from " +
+                         text_of(received.src) + " for APPID " + number(received.app_id) +
+                         ", which no message that came to this node had.",
+                     "What the message carried behind TRANSID and APPID.",
+                     {}});
+    return;
+  }
+  if (rank(*best) == 2) {
+    ++best->delivered;
+    const bool owed = best->must_ack && best->sure;
+    best->must_ack = best->must_ack || best->ackable;
+    best->sure = true;  // So it did arrive, and was taken.
+    if (best->must_ack && !owed && best->acks == 0) ++owed_[node];
+    context_.findings.kept("T1-DELIVER"_rule);
+    if (best->must_ack) context_.findings.kept("T2-DELIVER"_rule);
+    return;
+  }
+  const bool forbidden = best->forbidden != ReqId::kNone;
+  const Severity severity =
+      !forbidden   ? context_.without(best->sender, best->place.time_us, seen.place.time_us)
+      : best->weak ? Severity::kWeak
+                   : Severity::kFail;
+  context_.report(forbidden ? best->forbidden : "N2-IN-ORDER"_rule, severity, seen.place, node,
+                  {"The application gets " + name_of(best->net) +
+                       (forbidden ? ", which the node should have dropped or ignored."
+                                  : " more often than it came."),
+                   forbidden ? "No delivery." : "Each message once.",
+                   {}});
+}
+
+void Acks::showed_life(std::uint16_t node, std::int64_t now_us) {
+  if (owed_[node] == 0 || now_us < 0) return;
+  Ring<Arrived, kRoom>& ring = arrived_[node];
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    Arrived& arrived = ring.newest(i);
+    if (!arrived.must_ack || !arrived.sure || arrived.acks > 0) continue;
+    if (now_us - arrived.place.time_us <= context_.response_us()) continue;
+    --owed_[node];
+    arrived.must_ack = false;
+    const Device& device = context_.device(node);
+    // A radio frame of the node may have escaped; a serial line is seen whole.
+    const bool by_radio =
+        device.role == machine::Role::kMote ||
+        (device.role == machine::Role::kSink && arrived.net.src.devid != machine::kNullDevid);
+    std::size_t around = 0;  // Many at once may have found a buffer full (decision 122).
+    for (std::size_t k = 0; k < ring.size(); ++k) {
+      const std::int64_t apart = ring.oldest(k).place.time_us - arrived.place.time_us;
+      if (apart > -kAroundUs && apart < kAroundUs) ++around;
+    }
+    const Severity severity = around > kCrowd || context_.who.damaged(arrived.place.time_us, now_us)
+                                  ? Severity::kInconclusive
+                              : by_radio ? context_.without(node, arrived.place.time_us, now_us)
+                                         : Severity::kFail;
+    context_.report(
+        "T2-ACK"_rule, severity, arrived.place, node,
+        {"It surely received " + name_of(arrived.net) + ", reliable, and sent no ack within " +
+             ms_text(context_.response_us()) + ", though it sent other frames later.",
+         "An ack.",
+         {}});
+  }
+}
+
+void Acks::close(std::uint16_t node, Arrived& arrived) {
+  if (!arrived.must_ack || arrived.acks > 0) return;
+  if (arrived.sure && owed_[node] > 0) --owed_[node];
+  arrived.must_ack = false;
+  if (context_.device(node).hearing && !arrived.sure) return;  // A log says what arrived.
+  context_.report("T2-ACK"_rule, Severity::kInconclusive, arrived.place, node,
+                  {"No ack of " + name_of(arrived.net) + "; nothing proves that it arrived.",
+                   "An ack, if it arrived.",
+                   {}});
+}
+
+void Acks::finish() {
+  for (std::size_t node = 0; node < arrived_.size(); ++node) {
+    Ring<Arrived, kRoom>& ring = arrived_[node];
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      close(static_cast<std::uint16_t>(node), ring.oldest(i));
+    }
+  }
+}
+
+}  // namespace rubric::check

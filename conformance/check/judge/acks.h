@@ -1,0 +1,98 @@
+// Reliable messages and their acks, as their receivers see them; and what is delivered.
+//
+// Decides: whether a node may send each of its acks (T2-ONCE, T2-CONTENT, T2-LOOP, and the rules by
+// which a message must have no effect), whether each reliable message that it surely received got
+// its ack (T2-ACK), and, where a log has its application, whether that got what came and no more
+// (T1-DELIVER, N2-IN-ORDER). Who sends a message, and what ends its waiting, is up to sent.h.
+//
+// Evidence: for each node the last kRoom messages whose last hop led to it (Arrived). The caller
+// says of each (Arrival) whether the machine's routing forbids it any effect, whether the node is
+// free to ignore it (decisions 114, 116, 126), and whether it surely arrived: a log gave it to the
+// node, the serial line confirmed it, or the link acknowledged a frame to the only known sink. An
+// ack belongs to the message whose source is its destination and whose number is in its body; of
+// several, to one that still waits for an ack. A message that reached the application has arrived,
+// whatever was open before.
+//
+// Tolerance: an ack is due within the response time (decision 125); one after the sender's timeout
+// is weak. A repetition by the link is one reception or two, so one ack or two are right (decision
+// 111). A node may ack a message that it is free to ignore, and must if it delivers it.
+//
+// Cannot know: whether a message arrived that nothing proves to have arrived; whether an ack
+// escaped the sniffer; which of two messages with one source and number an ack means; whether a
+// full buffer swallowed the ack.
+//
+// Why an inconclusive finding is never a failure here: a missing ack fails only if the message
+// surely arrived, the response time is over, the node sent something afterwards, no bytes were
+// damaged in between, no more than kCrowd messages came within kAroundUs (decision 122), and the
+// ack cannot have escaped: Context::without() says that of a node that acks by radio, while a
+// serial line is seen whole. What is still open when the run ends, or when kRoom newer messages
+// have come, is inconclusive, or no finding where a log shows that it never arrived. An ack of
+// nothing that came fails only in a run that starts cold, with a complete sniffer, and at a sink of
+// whose line both directions were recorded. A second ack fails only if no second copy of the
+// message can have escaped. What the body of an ack or the rules about the message itself forbid
+// fails at once (or is weak, where the rule is a SHOULD): nothing that escaped would put it right.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "conformance/check/judge/context.h"
+#include "conformance/check/ring.h"
+
+namespace rubric::check {
+
+/// A message on its last hop to a node.
+struct Arrived {
+  Net net;
+  Place place;
+  std::uint16_t sender = kNobody;  ///< The node that sent it on its last hop.
+  ReqId forbidden = ReqId::kNone;  ///< Acking or delivering it breaks this rule.
+  bool weak = false;
+  bool must_ack = false;
+  bool ackable = false;  ///< Apart from `free`: reliable, and so on.
+  bool sure = false;     ///< It surely arrived.
+  std::uint8_t copies = 1;
+  std::uint8_t acks = 0;
+  std::uint8_t delivered = 0;
+};
+
+/// The facts about an arrival.
+struct Arrival {
+  ReqId forbidden = ReqId::kNone;  ///< Why the message must have no effect at the node.
+  bool weak = false;               ///< And that rule is a SHOULD.
+  bool sure = false;               ///< The node surely received it.
+  bool free = false;               ///< The node may ignore it.
+};
+
+class Acks {
+ public:
+  Acks(Context& context, std::size_t devices);
+
+  void begin_life(std::uint16_t node);
+  /// Notes that a message comes to `node`.
+  void arrived(std::uint16_t node, const Observation& seen, std::uint16_t sender, const Net& net,
+               const Arrival& arrival);
+  void repeated(std::uint16_t node, const Net& net);
+  /// Notes that by a log the node received the message.
+  void surely(std::uint16_t node, const Net& net);
+  /// Judges an ack that `node` sends as a message of its own.
+  void sent(std::uint16_t node, const Observation& seen, const Net& ack);
+  /// Judges a message that by a log the application of `node` got.
+  void delivered(std::uint16_t node, const Observation& seen, const machine::Received& received);
+  /// Notes that the node sent something at this time, so whatever it still owes is overdue.
+  void showed_life(std::uint16_t node, std::int64_t now_us);
+  void finish();
+
+ private:
+  static constexpr std::size_t kRoom = 64;
+
+  void close(std::uint16_t node, Arrived& arrived);
+  void refuse(std::uint16_t node, const Observation& seen, const Net& ack, std::int32_t acked,
+              Arrived* best);
+
+  Context& context_;
+  std::vector<Ring<Arrived, kRoom>> arrived_;
+  std::vector<std::uint16_t> owed_;  ///< Surely owed acks of each node.
+};
+
+}  // namespace rubric::check

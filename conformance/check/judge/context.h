@@ -1,0 +1,100 @@
+// State shared by every part of the judgement: the run, who is who, and how to report.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "conformance/check/identify/identity.h"
+#include "conformance/check/judge/findings.h"
+#include "conformance/check/message.h"
+#include "conformance/check/observation.h"
+#include "conformance/machine/actions.h"
+#include "conformance/machine/join.h"
+#include "conformance/machine/ticks.h"
+
+namespace rubric::check {
+
+/// The text of a finding; see Finding.
+struct Said {
+  std::string text;
+  std::string expected;
+  std::vector<Hypothesis> hypotheses;
+};
+
+struct Context {
+  Context(const Run& r, const Options& o, const Identity& w, Findings& f)
+      : run(r), options(o), who(w), findings(f) {}
+  Context(const Context&) = delete;
+  Context& operator=(const Context&) = delete;
+
+  const Run& run;
+  const Options& options;
+  const Identity& who;
+  Findings& findings;
+  bool hears_radio = false;   ///< Some tap is on the air.
+  std::uint16_t sink_am = 1;  ///< AM address of sinks.
+  machine::Actions actions;   ///< For the machine's functions; not read here.
+
+  const machine::Profile& profile() const { return findings.profile(); }
+  const Device& device(std::uint16_t i) const { return who.devices[i]; }
+  /// The only sink on the air; kNobody if there are none or several.
+  std::uint16_t only_sink = kNobody;
+
+  std::vector<std::uint16_t> sinks;       ///< Known ones.
+  std::vector<std::uint16_t> mote_of_am;  ///< The last known mote of each AM address.
+  std::vector<std::uint16_t> next_of_am;  ///< By device: another mote of the same address.
+
+  /// The order of files to each other is unknown, as of raw bytes beside a capture with stamps.
+  bool unordered = false;
+  std::vector<bool> untimed_taps;  ///< If unordered: taps with frames without a stamp,
+                                   ///< or on a clock of their own.
+
+  std::vector<bool> down_taps;  ///< Taps with frames to a sink.
+
+  /// Fills in all of these. Called before anything else.
+  void look_up();
+  /// Calls `call` with each known mote of that address.
+  template <class Call>
+  void for_motes(std::uint16_t am, Call call) const {
+    for (std::uint16_t mote = mote_of_am[am]; mote != kNobody; mote = next_of_am[mote]) call(mote);
+  }
+
+  std::int64_t early_us() const { return machine::us_of(profile().early_ticks); }
+  std::int64_t join_period_us() const { return machine::us_of(profile().join_period_ticks); }
+  std::int64_t response_us() const {
+    return options.response_us.value_or(machine::us_of(profile().response_ticks)) + run.slack_us;
+  }
+  std::int64_t ack_timeout_us() const;
+  machine::JoinContext join_context(std::uint16_t id, std::uint16_t island,
+                                    std::int64_t now_us) const {
+    return {profile(), id, island, 0, machine::ticks_of(now_us)};
+  }
+
+  /// Returns the severity of "X without an earlier Y of `cause`": kFail only if no Y can have
+  /// escaped.
+  Severity without(std::uint16_t cause, std::int64_t from_us, std::int64_t to_us) const;
+  /// Returns the same where Y may lie any time before, even before the capture.
+  Severity without_ever(std::uint16_t cause, std::int64_t to_us) const;
+
+  /// Reports a finding about device `node` at `at`: none about testers, at most kStray about
+  /// unknown senders.
+  void report(ReqId requirement, Severity severity, const Place& at, std::uint16_t node, Said said);
+  /// Returns whether such a finding depends on an order that is unknown.
+  bool rests_on_order(ReqId requirement, const Place& at, std::uint16_t node) const;
+  /// Returns whether a sink's line has only the sink's own frames in the run, as if recorded from a
+  /// line in use that others write to: whatever came down it is unknown.
+  bool half_heard(std::uint16_t node) const;
+  /// Reports a frame of an unknown sender.
+  void report_stranger(const Observation& seen, std::uint16_t node);
+};
+
+// Texts for findings.
+std::string text_of(machine::Address address);
+std::string name_of(const Net& net);  ///< "the message <..> to <..> with number 7"
+std::string ms_text(std::int64_t us);
+std::string number(std::uint64_t n);
+
+}  // namespace rubric::check

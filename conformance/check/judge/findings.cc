@@ -1,0 +1,91 @@
+#include "conformance/check/judge/findings.h"
+
+#include <algorithm>
+#include <cassert>
+#include <tuple>
+
+#include "conformance/generated/profiles.h"
+
+namespace rubric::check {
+namespace {
+
+const machine::NamedProfile& named(bool deployed) {
+  const machine::NamedProfile* const profile =
+      machine::find_profile(deployed ? "deployed" : "paper");
+  assert(profile != nullptr);  // A static_assert is too much for sanitized builds.
+  return *profile;
+}
+
+}  // namespace
+
+Findings::Findings(bool deployed)
+    : profile_(named(deployed).profile),
+      deployed_(deployed),
+      kept_(reflect::requirements().size()) {}
+
+bool Findings::accepted(ReqId requirement) const {
+  for (const machine::AcceptedDifference& difference : named(deployed_).accepted) {
+    if (difference.requirement == requirement) return true;
+  }
+  return false;
+}
+
+void Findings::add(Finding finding) {
+  if (finding.severity > Severity::kNote && accepted(finding.requirement)) {
+    finding.severity = Severity::kNote;
+  }
+  std::erase_if(open_, [&](std::size_t i) {
+    return finding.place.time_us >= 0 && all_[i].last.time_us + kOpenUs < finding.place.time_us;
+  });
+  finding.last = finding.place;
+  for (const std::size_t i : open_) {
+    Finding& before = all_[i];
+    if (before.requirement != finding.requirement || before.severity != finding.severity ||
+        before.node != finding.node || before.place.file != finding.place.file ||
+        finding.place.time_us - before.last.time_us > kEpisodeUs) {
+      continue;
+    }
+    ++before.count;
+    before.last = finding.place;
+    return;
+  }
+  if (all_.size() >= kFindingsMax) {
+    ++dropped_;
+    return;
+  }
+  if (open_.size() >= kOpenMax) open_.erase(open_.begin());
+  open_.push_back(all_.size());
+  all_.push_back(std::move(finding));
+}
+
+std::vector<Finding> Findings::take() {
+  std::stable_sort(all_.begin(), all_.end(), [](const Finding& a, const Finding& b) {
+    return std::tie(a.place.time_us, a.place.file, a.place.frame) <
+           std::tie(b.place.time_us, b.place.file, b.place.frame);
+  });
+  open_.clear();
+  return std::move(all_);
+}
+
+std::vector<std::pair<ReqId, std::uint64_t>> Findings::exercised() const {
+  std::vector<std::pair<ReqId, std::uint64_t>> out;
+  for (std::size_t i = 0; i < kept_.size(); ++i) {
+    if (kept_[i] > 0) out.emplace_back(reflect::requirements()[i].number(), kept_[i]);
+  }
+  return out;
+}
+
+Verdict verdict_of(const std::vector<Finding>& findings) {
+  Severity worst = Severity::kNote;
+  for (const Finding& finding : findings) worst = std::max(worst, finding.severity);
+  switch (worst) {
+    case Severity::kNote: return Verdict::kPass;
+    case Severity::kWeak: return Verdict::kWeak;
+    case Severity::kStray: return Verdict::kStray;
+    case Severity::kInconclusive: return Verdict::kInconclusive;
+    case Severity::kFail: break;
+  }
+  return Verdict::kFail;
+}
+
+}  // namespace rubric::check

@@ -1,0 +1,49 @@
+// Collects findings: accepts differences of the profile, groups repeats, keeps within bounds.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "codec/reflect/requirements.h"
+#include "conformance/check/finding.h"
+#include "conformance/machine/profile.h"
+
+namespace rubric::check {
+
+class Findings {
+ public:
+  explicit Findings(bool deployed);
+
+  /// Adds a finding. Repeats of a rule by a node within 600 ms of the last one are one episode. A
+  /// difference that the profile accepts becomes a note.
+  void add(Finding finding);
+  /// Counts that a rule could have been broken and was kept.
+  void kept(ReqId requirement) { ++kept_[reflect::requirement_index(requirement)]; }
+
+  const machine::Profile& profile() const { return profile_; }
+  /// Returns the findings in order of place; dropped() counts those that did not fit.
+  std::vector<Finding> take();
+  std::uint64_t dropped() const { return dropped_; }
+  std::vector<std::pair<ReqId, std::uint64_t>> exercised() const;
+
+ private:
+  static constexpr std::int64_t kEpisodeUs = 600'000;
+  static constexpr std::int64_t kOpenUs = 5'000'000;  ///< Absences are found late.
+  static constexpr std::size_t kFindingsMax = 20'000;
+  static constexpr std::size_t kOpenMax = 64;
+
+  bool accepted(ReqId requirement) const;
+
+  machine::Profile profile_;
+  bool deployed_ = false;
+  std::vector<Finding> all_;
+  std::vector<std::size_t> open_;  // Episodes that may go on, in all_.
+  std::uint64_t dropped_ = 0;
+  std::vector<std::uint64_t> kept_;  // By place in the catalogue.
+};
+
+/// Returns the gravest verdict of all findings; notes leave a pass.
+Verdict verdict_of(const std::vector<Finding>& findings);
+
+}  // namespace rubric::check

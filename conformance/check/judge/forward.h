@@ -1,0 +1,98 @@
+// Judges what sinks pass on: from the radio to their serial line and back.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "conformance/check/judge/context.h"
+#include "conformance/check/judge/stale.h"
+#include "conformance/check/ring.h"
+#include "conformance/machine/route.h"
+
+namespace rubric::check {
+
+/// A message that a sink may have received, on its way through.
+struct Passing {
+  Net net;
+  Place place;
+  std::uint64_t order = 0;  ///< Counts arrivals at the sink.
+  std::uint16_t sender = kNobody;
+  std::uint16_t am_dest = 0;       ///< The radio frame's destination.
+  ReqId forbidden = ReqId::kNone;  ///< Passing it on breaks this rule.
+  bool weak = false;               ///< And that rule is a SHOULD.
+  bool owed = false;               ///< Surely received, and not yet passed on.
+  bool twin = false;               ///< Another one of the same content is around.
+  std::uint8_t copies = 1;         ///< Times that it may have been received.
+  std::uint8_t passed = 0;
+};
+
+class Forwarding {
+ public:
+  Forwarding(Context& context);
+
+  /// Takes a message on the air, from somebody else, to the address of sinks or to all.
+  void heard_on_radio(const Observation& seen, std::uint16_t sender, const Net& net,
+                      std::uint16_t surely_received_by);
+  /// Notes that the link repeated the frame: on the air, or down the serial line of `sink`.
+  void repeated(const Net& net, std::uint16_t sink);
+  /// Takes a message down the serial line of `sink`.
+  void heard_on_serial(std::uint16_t sink, std::uint16_t base, const Observation& seen,
+                       const Net& net, bool surely_received);
+  /// Returns whether the same message came down the sink's serial line and was not yet radiated.
+  bool came_down(std::uint16_t sink, const Net& net);
+  /// Judges a message on its serial line that is not the sink's own.
+  void sent_on_serial(std::uint16_t sink, const Observation& seen, const Net& net);
+  /// Judges a message by radio that is not the sink's own.
+  void sent_on_radio(std::uint16_t sink, const Observation& seen, const Net& net);
+  /// Notes that the sink's serial line is switched on or off; while off, the sink owes nothing
+  /// there.
+  void serial_set(std::uint16_t sink, bool on);
+  /// Notes that one of the sinks, unknown which, sent this by radio.
+  void somebody_sent(const Net& net);
+  /// Sets the sink's island from now on.
+  void set_island(std::uint16_t sink, std::uint16_t island, std::int64_t now_us);
+  void begin_life(std::uint16_t sink);
+  void finish(std::int64_t end_us);
+
+ private:
+  static constexpr std::size_t kRoom = 256;
+  static constexpr std::size_t kEarlyRoom = 16;
+
+  struct Line {
+    std::uint16_t sink = kNobody;
+    std::uint16_t am = 0;
+    std::uint16_t island = 0;
+    std::uint16_t last_island = 0;  ///< Before SET_ISLAND_ID.
+    std::int64_t island_changed_us = -1'000'000'000;
+    bool off = false;                 // Its serial line, by its application.
+    bool serial = false;              ///< Its line is captured.
+    Ring<Passing, kRoom> up;          ///< From the radio.
+    Ring<Passing, kRoom> down;        ///< From serial.
+    Ring<Passing, kEarlyRoom> early;  ///< On serial before the radio stamp, by skew of the taps.
+    std::uint64_t order = 0;
+    std::uint64_t last_up = 0;  ///< The order of the latest that was passed on.
+    std::uint64_t last_down = 0;
+    std::uint32_t owed_up = 0;
+    std::uint32_t owed_down = 0;
+    Stale stale;  ///< On its serial line.
+  };
+
+  Line* find(std::uint16_t sink);
+  void store(Ring<Passing, kRoom>& ring, const Passing& passing, std::uint32_t& owed);
+  void pass_up(Line& line, Passing& passing, const Observation& seen);
+  void pass_down(Line& line, Passing& passing, const Observation& seen, const Net& net);
+  void refuse_up(Line& line, const Observation& seen, const Net& net);
+  void refuse_down(Line& line, const Observation& seen, const Net& net);
+  void expire_early(Line& line, std::int64_t now_us);
+  void overdue_up(Line& line, std::int64_t now_us);
+  void overdue_down(Line& line, std::int64_t now_us);
+  bool crowded(Line& line, std::int64_t time_us);
+  void unheard(Line& line, const Passing& passing);
+  bool busy(const Line& line, std::int64_t came_us) const;
+  bool out_of_order(const Passing& passing, std::uint64_t& last);
+
+  Context& context_;
+  std::vector<Line> lines_;
+};
+
+}  // namespace rubric::check

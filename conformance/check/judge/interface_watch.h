@@ -1,0 +1,52 @@
+// Judges interfaces that applications switch, where a log has their calls.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "conformance/check/judge/context.h"
+
+namespace rubric::check {
+
+class InterfaceWatch {
+ public:
+  InterfaceWatch(Context& context, std::size_t devices) : context_(context), nodes_(devices) {}
+
+  void begin_life(std::uint16_t node);
+  void called(std::uint16_t node, const Observation& seen);
+  void told(std::uint16_t node, const Observation& seen);
+  /// Judges a frame that `node` sends over `link`.
+  void sent(std::uint16_t node, const Observation& seen);
+  /// Notes a message of the node's own.
+  void own_message(std::uint16_t node, std::uint16_t seq_num);
+  /// Returns whether the interface was off for so long that no frame from before can still come.
+  bool off(std::uint16_t node, machine::Link link, std::int64_t now_us) const;
+  /// Returns whether it is switched off; frames that were just on their way may still have come.
+  bool switched_off(std::uint16_t node, machine::Link link) const;
+  void finish(std::int64_t end_us);
+
+ private:
+  struct Interface {
+    std::optional<bool> on;  ///< Nothing: a node that runs since before the log.
+    std::int64_t changed_us = 0;
+    bool again = false;  ///< Switched on again, and not yet seen to send.
+  };
+  struct Node {
+    std::array<Interface, 2> interfaces;  ///< Radio and serial.
+    bool begun = false;
+    bool sends = false;                    ///< send was called since, and its result is awaited.
+    std::optional<std::uint16_t> left;     ///< The number of a message that left since the call.
+    std::optional<std::uint16_t> awaited;  ///< The number of a message accepted since then.
+    Place accepted;
+  };
+
+  Node& look(std::uint16_t node);
+  static Interface* find(Node& node, machine::Link link);
+
+  Context& context_;
+  std::vector<Node> nodes_;
+};
+
+}  // namespace rubric::check

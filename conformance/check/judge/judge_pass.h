@@ -1,0 +1,76 @@
+// The second pass: shows each observation to the parts that judge it.
+#pragma once
+
+#include <cstdint>
+
+#include "conformance/check/judge/acks.h"
+#include "conformance/check/judge/forward.h"
+#include "conformance/check/judge/interface_watch.h"
+#include "conformance/check/judge/join_watch.h"
+#include "conformance/check/judge/mote_join.h"
+#include "conformance/check/judge/peis_watch.h"
+#include "conformance/check/judge/sent.h"
+#include "conformance/check/judge/sink_join.h"
+#include "conformance/check/judge/synaptic_watch.h"
+#include "conformance/machine/route.h"
+
+namespace rubric::check {
+
+class Judge {
+ public:
+  Judge(const Run& run, const Options& options);
+  Report judge();
+
+ private:
+  bool is(std::uint16_t device, machine::Role role) const;
+  void look(std::uint32_t index);
+  void begin_life(std::uint16_t device);
+  // Takes the link's own repetition, or a log's line that shows who received a frame.
+  void repeated(std::uint32_t index, const Observation& seen, const Mark& mark);
+  // Takes a log's line that gives a node a message that is known from its sender.
+  void surely(const Observation& seen, const Mark& mark, const Net& net);
+  // Returns the sink that surely received a frame for the sinks' address.
+  std::uint16_t sure_sink(std::uint32_t index) const;
+  void radio(std::uint32_t index, const Observation& seen, const Mark& mark);
+  // Takes a join message that is known from its sender: a log's line that gives it to a node, or
+  // the link's repetition, which a node may have heard instead of the first or as well.
+  void joins_heard(std::uint32_t index, const Observation& seen, const Mark& mark);
+  // Takes a reply. Motes whose log has what they were given hear nothing else.
+  void replied(std::uint32_t index, const Observation& seen, const Mark& mark, const Reply& reply);
+  void role_broken(ReqId rule, const char* what, const Observation& seen, std::uint16_t device);
+  void radio_net(std::uint32_t index, const Observation& seen, const Mark& mark, const Net& net);
+  // Takes a message of the node's own.
+  void own_message(std::uint16_t node, const Observation& seen, const Net& net, machine::Link link,
+                   machine::Address own);
+  void mote_hears(std::uint16_t mote, const Observation& seen, const Mark& mark, const Net& net);
+  void hears(std::uint16_t node, const machine::Router& router, machine::Link from,
+             const Observation& seen, std::uint16_t sender, const Net& net, bool sure);
+  // Counts an ack at the originator of the acked message.
+  void ack_comes(const Net& ack);
+  void serial(std::uint32_t index, const Observation& seen, const Mark& mark);
+  void up_serial(const Observation& seen, std::uint16_t sink, const Net& net);
+  void base_station_hears(std::uint16_t sink, const Observation& seen, const Net& net);
+  void down_serial(std::uint32_t index, const Observation& seen, const Mark& mark,
+                   std::uint16_t sink, const Net& net);
+  // Takes a message between base stations, by the log of `base`.
+  void peis(const Observation& seen, std::uint16_t base);
+  void called(const Observation& seen, std::uint16_t device);
+  void told(const Observation& seen, std::uint16_t device);
+
+  const Run& run_;
+  Identity who_;
+  Findings findings_;
+  Context context_;
+  MoteJoins motes_;
+  SinkJoins sinks_;
+  JoinWatch joins_;
+  Forwarding forwarding_;
+  Originals originals_;
+  Acks acks_;
+  SynapticWatch synaptic_;
+  PeisWatch peis_;
+  InterfaceWatch interfaces_;
+  std::uint64_t frames_ = 0;
+};
+
+}  // namespace rubric::check

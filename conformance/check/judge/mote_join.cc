@@ -1,0 +1,331 @@
+#include "conformance/check/judge/mote_join.h"
+
+#include <algorithm>
+
+namespace rubric::check {
+
+using machine::JoinMote;
+using machine::JoinSend;
+using Phase = JoinMote::Phase;
+
+MoteJoins::MoteJoins(Context& context, std::size_t devices) : context_(context), motes_(devices) {
+  for (std::size_t i = 0; i < devices; ++i) {
+    MoteHypothesis start;
+    start.unknown = !context.options.start_cold;
+    motes_[i].set.push_back(start);
+  }
+  // Only a log that has join calls can show that there was none.
+  for (std::size_t i = 0; i < context.run.seen.size(); ++i) {
+    const Observation& seen = context.run.seen[i];
+    const std::uint16_t node = context.who.marks[i].device;
+    if (seen.kind != Observation::Kind::kCall || node == kNobody) continue;
+    if (std::holds_alternative<machine::JoinIsland>(*seen.call)) motes_[node].calls_logged = true;
+  }
+}
+
+void MoteJoins::begin_life(std::uint16_t mote) {
+  const bool logged = motes_[mote].calls_logged;
+  motes_[mote] = MoteWatch{};
+  motes_[mote].set.push_back(MoteHypothesis{});
+  motes_[mote].calls_logged = logged;
+}
+
+bool MoteJoins::may_have_failed(const MoteHypothesis& h, std::int64_t now_us) const {
+  const std::int64_t expiries = kExpiriesMin * context_.join_period_us();
+  return now_us - h.first_request_us >= expiries - context_.early_us();
+}
+
+// Applies a request to a hypothesis. Returns false if the hypothesis does not allow it.
+bool MoteJoins::next_request(const MoteHypothesis& h, std::uint16_t id, std::int64_t now_us,
+                             const Request& request, std::vector<MoteHypothesis>& out) {
+  machine::JoinContext join_context = context_.join_context(id, 0, now_us);
+  const auto fresh_call = [&] {
+    MoteHypothesis next;
+    machine::call_join(next.join, join_context, request.descriptor, request.seq_num,
+                       context_.actions);
+    next.first_request_us = next.last_request_us = now_us;
+    out.push_back(next);
+    return true;
+  };
+  context_.actions.clear();
+  if (h.unknown || h.join.phase == Phase::kOutside) return fresh_call();
+  // A mote that accepted, but had no link ack, may let its timer run on (decision 102).
+  if (h.join.phase == Phase::kMember && (h.sent || h.confirmed)) return false;
+  const std::int64_t least_us = context_.join_period_us() - context_.early_us();
+  const bool in_time = now_us - h.last_request_us >= least_us;
+  bool any = false;
+  MoteHypothesis again = h;
+  again.join.phase = Phase::kJoining;
+  if (in_time &&
+      machine::join_timer(again.join, join_context, context_.actions) == JoinSend::kRequest) {
+    again.last_request_us = now_us;
+    again.renumbered = h.renumbered || request.seq_num != h.join.seq_num;
+    again.join.seq_num = request.seq_num;
+    out.push_back(again);
+    if (h.join.phase == Phase::kMember) {  // It may also repeat its ack_join.
+      out.push_back(h);
+      out.back().last_request_us = now_us;
+      out.back().join.requests = again.join.requests;
+    }
+    any = true;
+  }
+  if (request.seq_num != h.join.seq_num && may_have_failed(h, now_us)) any = fresh_call();
+  return any;
+}
+
+void MoteJoins::request(std::uint16_t mote, const Observation& seen, const Request& request) {
+  MoteWatch& watch = motes_[mote];
+  const Device& device = context_.device(mote);
+  const std::int64_t now = seen.place.time_us;
+  if (seen.frame.dest != context_.sink_am) {
+    context_.report("J1-DEST"_rule, Severity::kFail, seen.place, mote,
+                    {"A join_request goes to AM address " + number(seen.frame.dest) + ".",
+                     "AM address " + number(context_.sink_am) + ", the sink's.",
+                     {}});
+  } else {
+    context_.findings.kept("J1-DEST"_rule);
+  }
+  if (watch.calls_logged && watch.joined_calls == 0 && watch.set.size() == 1 &&
+      !watch.set[0].unknown && watch.set[0].join.phase == Phase::kOutside) {
+    context_.report("J1-CALLED"_rule, Severity::kFail, seen.place, mote,
+                    {"A join_request without a joinIsland call.", "Silence.", {}});
+  }
+  next_.clear();
+  if (!seen.place.timed()) {  // Any number of periods may lie between two frames.
+    MoteHypothesis asked;
+    asked.join.phase = Phase::kJoining;
+    asked.join.requests = 1;
+    asked.join.seq_num = request.seq_num;
+    asked.join.descriptor = request.descriptor;
+    next_.push_back(asked);
+  }
+  for (const MoteHypothesis& h : watch.set) {
+    next_request(h, device.am, now, request, next_);
+  }
+  if (next_.empty()) {
+    refuse_request(mote, seen, request);
+    return;
+  }
+  context_.findings.kept("J8-PERIOD"_rule);
+  context_.findings.kept("J8-LIMIT"_rule);
+  context_.findings.kept("J5-STOP"_rule);
+  keep(watch, next_, mote, seen);
+}
+
+void MoteJoins::refuse_request(std::uint16_t mote, const Observation& seen,
+                               const Request& request) {
+  MoteWatch& watch = motes_[mote];
+  const std::int64_t now = seen.place.time_us;
+  // The furthest hypothesis is the latest state that the mote can have been in.
+  const MoteHypothesis& h = watch.set.back();
+  const bool same = request.seq_num == h.join.seq_num;
+  Said said;
+  ReqId rule = "J8-PERIOD"_rule;
+  // Another number could be the call after a reboot that nobody saw.
+  Severity severity = same ? Severity::kFail : Severity::kInconclusive;
+  const std::int64_t period = context_.join_period_us();
+  if (h.join.phase == Phase::kMember) {
+    rule = "J5-STOP"_rule;
+    if (!h.sent && !h.told) severity = Severity::kInconclusive;  // A link ack alone (decision 102).
+    said.text = "A join_request with number " + number(request.seq_num) +
+                " although the mote has joined " + text_of(h.join.address) + ".";
+    said.expected = "No join_request of a mote that is joined.";
+  } else if (now - h.last_request_us < period - context_.early_us()) {
+    said.text = "A join_request " + ms_text(now - h.last_request_us) + " after the one before it.";
+    said.expected = "At least " + ms_text(period) + " between them (" +
+                    ms_text(context_.early_us()) + " less is tolerated).";
+  } else {
+    rule = "J8-LIMIT"_rule;
+    if (h.renumbered) severity = Severity::kInconclusive;
+    said.text = "The " + number(h.join.requests + 1U) + "th join_request of one call (number " +
+                number(request.seq_num) + ").";
+    said.expected = "At most " + number(context_.profile().join_requests_max) + ", then FAIL.";
+  }
+  for (auto it = watch.set.rbegin(); it != watch.set.rend(); ++it) {
+    said.hypotheses.push_back({sentence(*it), allows(*it), said.text});
+  }
+  context_.report(rule, severity, seen.place, mote, std::move(said));
+  // Go on from what was seen: the call runs, and this was its latest request.
+  MoteHypothesis next = h;
+  if (h.join.phase == Phase::kMember && same) {
+    next.last_request_us = now;
+    watch.set.assign(1, next);
+    return;
+  }
+  next.join.phase = Phase::kJoining;
+  next.join.seq_num = request.seq_num;
+  next.join.descriptor = request.descriptor;
+  if (!same) next.join.requests = 0;
+  ++next.join.requests;
+  next.last_request_us = now;
+  if (!same) next.first_request_us = now;
+  watch.set.assign(1, next);
+}
+
+void MoteJoins::reply(std::uint16_t mote, const Observation& seen, std::uint32_t index,
+                      const Reply& reply, bool surely_received) {
+  MoteWatch& watch = motes_[mote];
+  const Device& device = context_.device(mote);
+  const std::int64_t now = seen.place.time_us;
+  next_.clear();
+  bool asked_for = false;
+  for (const MoteHypothesis& h : watch.set) {
+    MoteHypothesis heard = h;
+    context_.actions.clear();
+    const machine::Address offered{reply.island, reply.mote};
+    if (h.unknown) {
+      next_.push_back(h);  // It may have asked before the capture began, or not.
+      continue;
+    }
+    const JoinSend send =
+        machine::hear_reply(heard.join, context_.join_context(device.am, 0, now), offered,
+                            reply.seq_num, seen.frame.src, context_.actions);
+    if (send != JoinSend::kAck) {
+      next_.push_back(h);
+      asked_for = asked_for || h.join.seq_num == reply.seq_num;
+      continue;
+    }
+    asked_for = true;
+    heard.accepted_us = now;
+    heard.reply = index;
+    heard.acks_seen = 0;
+    if (!surely_received) next_.push_back(h);
+    next_.push_back(heard);
+  }
+  if (!asked_for) {
+    watch.wrong_reply = reply;
+    watch.wrong_place = seen.place;
+  }
+  keep(watch, next_, mote, seen);
+}
+
+// Merges hypotheses that differ only in age; the youngest is the most permissive.
+void MoteJoins::keep(MoteWatch& watch, std::vector<MoteHypothesis>& next, std::uint16_t mote,
+                     const Observation& seen) {
+  watch.set.clear();
+  for (const MoteHypothesis& h : next) {
+    const auto same = std::find_if(watch.set.begin(), watch.set.end(), [&](const auto& other) {
+      return other.unknown == h.unknown && other.join.phase == h.join.phase &&
+             other.join.seq_num == h.join.seq_num && other.join.requests == h.join.requests &&
+             other.join.address == h.join.address && other.join.sink_devid == h.join.sink_devid &&
+             other.acks_seen == h.acks_seen && other.first_request_us == h.first_request_us &&
+             other.confirmed == h.confirmed && other.sent == h.sent;
+    });
+    if (same == watch.set.end()) {
+      watch.set.push_back(h);
+    } else if (same->accepted_us < h.accepted_us) {
+      *same = h;
+    }
+  }
+  if (watch.set.size() <= kSetMax) return;
+  context_.report("J4-ACK"_rule, Severity::kInconclusive, seen.place, mote,
+                  {"More than " + number(kSetMax) + " explanations of this mote's join.",
+                   "Fewer; it is not judged until it joins again.",
+                   {}});
+  MoteHypothesis unknown;
+  unknown.unknown = true;
+  watch.set.assign(1, unknown);
+}
+
+void MoteJoins::net_msg(std::uint16_t mote, const Observation& seen, const Net& net) {
+  MoteWatch& watch = motes_[mote];
+  std::vector<MoteHypothesis>& set = watch.set;
+  if (set.size() == 1 && set[0].join.phase == Phase::kMember && set[0].sent &&
+      set[0].join.address == net.src) {
+    context_.findings.kept("J11-SEND"_rule);
+    context_.findings.kept("N1-SRC"_rule);
+    return;
+  }
+  const std::int64_t now = seen.place.time_us;
+  std::vector<MoteHypothesis> before = set;
+  std::erase_if(set, [&](const MoteHypothesis& h) {
+    return !h.unknown && (h.join.phase != Phase::kMember || h.join.address != net.src);
+  });
+  for (MoteHypothesis& h : set) {
+    const bool was_unknown = h.unknown;
+    if (!was_unknown && h.acks_seen == 0 &&
+        context_.without(mote, h.accepted_us, now) == Severity::kFail) {
+      context_.report("J4-ACK"_rule, Severity::kFail, seen.place, mote,
+                      {"A net_msg from " + text_of(net.src) + " before any ack_join.",
+                       "ack_join first: messages leave in their order.",
+                       {}});
+    }
+    h.unknown = false;
+    h.join.phase = Phase::kMember;
+    h.join.address = net.src;
+    h.acks_seen = std::max<std::uint8_t>(h.acks_seen, 1);
+    h.sent = true;
+    if (was_unknown) h.join.seq_num = 0;
+  }
+  if (!set.empty()) {
+    set.resize(1);
+    return;
+  }
+  Said said;
+  for (auto it = before.rbegin(); it != before.rend(); ++it) {
+    said.hypotheses.push_back(
+        {sentence(*it), allows(*it), "A net_msg from " + text_of(net.src) + " came."});
+  }
+  const MoteHypothesis h_before = before.back();
+  const MoteHypothesis& h = h_before;
+  const bool member = h.join.phase == Phase::kMember;
+  if (member) {
+    said.text = "A net_msg with src " + text_of(net.src) + " from a mote whose address is " +
+                text_of(h.join.address) + ".";
+    said.expected = "src " + text_of(h.join.address) + ".";
+  } else {
+    said.text = "A net_msg from " + text_of(net.src) + " before the mote has joined.";
+    said.expected = "No net_msg before ack_join.";
+  }
+  const std::int64_t since = member ? h.accepted_us : context_.device(mote).first_us;
+  const Severity severity = h.join.phase == Phase::kOutside && h.first_request_us == 0
+                                ? context_.without_ever(mote, now)
+                                : context_.without(mote, since, now);
+  context_.report(member ? "N1-SRC"_rule : "J11-SEND"_rule, severity, seen.place, mote,
+                  std::move(said));
+  MoteHypothesis next;
+  next.join.phase = Phase::kMember;
+  next.join.address = net.src;
+  next.acks_seen = 1;
+  next.sent = true;
+  set.assign(1, next);
+  if (member) set.push_back(h_before);  // Perhaps only this message was wrong.
+}
+
+std::optional<machine::Address> MoteJoins::address(std::uint16_t mote) const {
+  const auto& set = motes_[mote].set;
+  if (set.size() != 1 || set[0].unknown || set[0].join.phase != Phase::kMember) return {};
+  return set[0].join.address;
+}
+
+std::string MoteJoins::sentence(const MoteHypothesis& h) const {
+  if (h.unknown) return "It ran before the capture began.";
+  switch (h.join.phase) {
+    case Phase::kOutside: return "It has not joined and asks nobody.";
+    case Phase::kJoining:
+      return "It waits for the answer to request " + number(h.join.seq_num) + ", sent " +
+             number(h.join.requests) + (h.join.requests == 1 ? " time." : " times.");
+    case Phase::kMember:
+      return "It has accepted the reply to " + number(h.join.seq_num) + " and is " +
+             text_of(h.join.address) + ".";
+  }
+  return {};
+}
+
+std::string MoteJoins::allows(const MoteHypothesis& h) const {
+  if (h.unknown) return "Anything that a mote may send.";
+  switch (h.join.phase) {
+    case Phase::kOutside: return "A join_request.";
+    case Phase::kJoining:
+      return h.join.requests < context_.profile().join_requests_max
+                 ? "A join_request, " + ms_text(context_.join_period_us()) + " after the last."
+                 : "Nothing but FAIL to its application.";
+    case Phase::kMember:
+      return "ack_join to <" + number(h.join.address.pid) + ", " + number(h.join.sink_devid) +
+             "> from " + text_of(h.join.address) + " with number " + number(h.join.seq_num) +
+             ", then messages from that address.";
+  }
+  return {};
+}
+
+}  // namespace rubric::check

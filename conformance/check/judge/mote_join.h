@@ -1,0 +1,124 @@
+// Joins as motes make them: for each life of a mote a set of hypotheses about its join, each one
+// stepped by the very functions of the machine.
+//
+// A sniffer hears what is on the air, not what a mote received. The same frames can leave a mote
+// asking, joined, or outside. So each mote is followed as the set of all states that it may be in,
+// and it is blamed only when no state is left in which it could have done what it did.
+//
+// Decides: whether the join_requests, ack_joins and net_msgs of a mote, and the joined events of
+// its application where a log has them, are those of a mote that keeps the rules (J1, J4, J5, J7,
+// J8, J11-SEND, N1-SRC). A request or ack_join that is owed and never sent is up to join_watch.h.
+//
+// How the set changes:
+// - It starts with one hypothesis: `unknown`, or, where nothing happened before the capture
+//   (`start_cold`) or the mote has rebooted, outside.
+// - A reply to the mote's address goes through machine::hear_reply(). A hypothesis that accepts it
+//   becomes two: it was received, or it was lost. It stays one only where reception is certain: a
+//   log gave the mote that frame, or the link acknowledged it and one known mote has the address
+//   (decision 127). A mote with a log of what its radio was given hears that and nothing else.
+// - A frame that the mote sends leaves only the hypotheses that allow it, stepped by
+//   machine::call_join() and machine::join_timer(). A request may repeat, start a new call after
+//   one that may have failed, or come from a mote that accepted but never learned that its ack_join
+//   arrived (decision 102). `unknown` allows everything, and the frame tells what it becomes.
+// - If none is left, the furthest one, the last of the set, is blamed, and the finding lists them
+//   all. The set then goes on from what was seen, or from `unknown`.
+//
+// Tolerance: requests may come early_us() before the join period is over (decision 128), and as
+// late as they like. FAIL is right from kExpiriesMin periods on, less early_us(). An ack_join may
+// be repeated, kAckJoinsMax times, for a join period after the last request or after the acceptance
+// and the response time; more than kFewAcks repeats are weak. Without stamps a request is always in
+// time. Hypotheses that differ only in age are merged into the younger one, which allows more.
+// Beyond kSetMax of them the mote is inconclusive, and unknown until it joins again.
+//
+// Cannot know: whether a request with a new number is a new call or the same one (decision 104);
+// how a call ended that no log shows; whether the mote heard a link ack that the sniffer heard;
+// that a mote rebooted without a break in its DSNs.
+//
+// Why an inconclusive finding is never a failure here: the machine's own functions decide what a
+// state allows, so the set of a lawful mote stays filled as long as nothing escapes
+// (align_legal_test.cc and legal_test.cc try this with lawful traffic). It can become empty because
+// a frame escaped. Where one would explain what was seen, the severity is that of
+// Context::without(): a failure only if none can have escaped. So it is with a net_msg before the
+// join and with an ack_join that fits the mote's own request. A request with a number that changed
+// is inconclusive, and so is one of a mote that only a link ack shows to have joined. What no
+// escaped frame would put right fails at once: a request to another address, one too early or one
+// too many with the same number, an ack_join that fits no request of the mote.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "conformance/check/judge/context.h"
+#include "conformance/machine/state.h"
+
+namespace rubric::check {
+
+/// A state that a mote may be in. A frame on the air splits it: it was received, or it was lost.
+struct MoteHypothesis {
+  machine::JoinMote join;
+  bool unknown = false;               ///< Nothing is known: it ran before the capture began.
+  std::int64_t first_request_us = 0;  ///< In the present call.
+  std::int64_t last_request_us = 0;
+  std::int64_t accepted_us = 0;  ///< Time of the accepted reply.
+  std::uint32_t reply = 0;       ///< Index of the accepted reply.
+  bool renumbered = false;       ///< Requests of this call had several numbers.
+  std::uint8_t acks_seen = 0;    ///< ack_join on the air.
+  bool confirmed = false;        ///< The link acknowledged its ack_join; it may have heard that.
+  bool unaccepted = false;       ///< It acked what it could not accept.
+  bool told = false;             ///< Its application got joined(SUCCESS).
+  bool sent = false;             ///< It sent a net_msg, so in its own view it is a member.
+};
+
+/// A mote, through its lives.
+struct MoteWatch {
+  std::vector<MoteHypothesis> set;
+  std::optional<Reply> wrong_reply;  ///< The last that its request had not asked for.
+  Place wrong_place;
+  std::int64_t joined_calls = 0;  ///< Calls that have not ended, by a log.
+  bool calls_logged = false;
+  std::optional<machine::JoinIsland> call;  ///< The last, by a log.
+  std::int64_t called_us = 0;
+};
+
+class MoteJoins {
+ public:
+  MoteJoins(Context& context, std::size_t devices);
+
+  void begin_life(std::uint16_t mote);
+  void request(std::uint16_t mote, const Observation& seen, const Request& request);
+  void reply(std::uint16_t mote, const Observation& seen, std::uint32_t index, const Reply& reply,
+             bool surely_received);
+  void ack_join(std::uint16_t mote, const Observation& seen, const AckJoin& ack, bool confirmed);
+  void net_msg(std::uint16_t mote, const Observation& seen, const Net& net);
+  void called(std::uint16_t mote, const Observation& seen, const machine::JoinIsland& call);
+  void told(std::uint16_t mote, const Observation& seen, const machine::Joined& joined);
+  void finish(std::int64_t end_us);
+
+  const std::vector<MoteHypothesis>& set(std::uint16_t mote) const { return motes_[mote].set; }
+
+  /// Returns the own address if every hypothesis agrees on it.
+  std::optional<machine::Address> address(std::uint16_t mote) const;
+
+ private:
+  static constexpr std::size_t kSetMax = 256;
+  static constexpr std::uint8_t kAckJoinsMax = 20;
+  static constexpr std::uint8_t kExpiriesMin = 4;  // Before a FAIL (decision 101).
+
+  bool may_have_failed(const MoteHypothesis& h, std::int64_t now_us) const;
+  bool next_request(const MoteHypothesis& h, std::uint16_t id, std::int64_t now_us,
+                    const Request& request, std::vector<MoteHypothesis>& out);
+  void refuse_request(std::uint16_t mote, const Observation& seen, const Request& request);
+  ReqId why_not_ack(const MoteHypothesis& h, const Observation& seen, const AckJoin& ack) const;
+  void refuse_ack(std::uint16_t mote, const Observation& seen, const AckJoin& ack);
+  std::string sentence(const MoteHypothesis& h) const;
+  std::string allows(const MoteHypothesis& h) const;
+  void keep(MoteWatch& watch, std::vector<MoteHypothesis>& next, std::uint16_t mote,
+            const Observation& seen);
+
+  Context& context_;
+  std::vector<MoteWatch> motes_;
+  std::vector<MoteHypothesis> next_;  // Scratch.
+};
+
+}  // namespace rubric::check

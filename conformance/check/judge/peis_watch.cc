@@ -1,0 +1,176 @@
+#include "conformance/check/judge/peis_watch.h"
+
+#include "conformance/machine/route.h"
+
+namespace rubric::check {
+namespace {
+
+using machine::Link;
+using machine::Role;
+using Onward = machine::Route::Onward;
+
+// How long a host waits for the confirmation of a packet before it sends the next one.
+constexpr std::int64_t kConfirmationUs = 1'100'000;
+constexpr std::size_t kPeisCrowd =
+    2;  // So many at once may have found a buffer full (decision 122).
+
+machine::Router base_station(machine::Address own, std::uint16_t sink_am) {
+  return {Role::kBaseStation, own, true, sink_am};
+}
+
+// On the serial line nbytes and the bytes after the payload may differ (N6-CONTENT).
+bool same_content(const Net& serial, const Net& peis) {
+  return same_message(serial, peis) && serial.payload.size() >= peis.payload.size() &&
+         equal(serial.payload.first(peis.payload.size()), peis.payload);
+}
+
+}  // namespace
+
+bool logs_peis(const Run& run, std::uint16_t node) {
+  return node < run.nodes.size() && run.nodes[node].peis;  // A log's nodes are the first devices.
+}
+
+PeisWatch::PeisWatch(Context& context, std::size_t devices) : context_(context), bases_(devices) {}
+
+PeisWatch::Message* PeisWatch::match(Messages& messages, const Net& net) {
+  for (std::size_t i = 0; i < messages.size(); ++i) {
+    Message& message = messages.oldest(i);
+    if (message.passed) continue;
+    if (same_content(message.net, net) || same_content(net, message.net)) return &message;
+  }
+  return nullptr;
+}
+
+void PeisWatch::came_up(std::uint16_t base, std::uint16_t island, const Observation& seen,
+                        const Net& net, bool surely) {
+  if (!logs_peis(context_.run, base) || island == 0) return;
+  const machine::Route route =
+      machine::route_received(base_station({island, machine::kNullDevid}, context_.sink_am),
+                              Link::kSerial, net.dest, net.src);
+  if (route.onward != Onward::kPeis) return;
+  bases_[base].up.push({net, seen.place, surely && net.sound, false});
+}
+
+void PeisWatch::surely_up(std::uint16_t base, const Net& net) {
+  Messages& up = bases_[base].up;
+  for (std::size_t i = 0; i < up.size(); ++i) {
+    Message& message = up.newest(i);
+    if (!same_message(message.net, net)) continue;
+    message.owed = !message.passed && message.net.sound;
+    return;
+  }
+}
+
+void PeisWatch::sent(std::uint16_t base, const Observation& seen, const Net& net,
+                     machine::Address own) {
+  Base& watch = bases_[base];
+  const bool all = net.dest.pid == machine::kBroadcastPid;
+  if (seen.frame.dest != net.dest.pid || (net.dest.pid == own.pid && !all)) {
+    context_.report(
+        "N8-PEIS"_rule, Severity::kFail, seen.place, base,
+        {"Through PEIS " + name_of(net) + " goes to island " + number(seen.frame.dest) + ".",
+         net.dest.pid == own.pid ? "A message for the own island stays there."
+                                 : "Island " + number(net.dest.pid) + ".",
+         {}});
+  } else {
+    context_.findings.kept("N8-PEIS"_rule);
+  }
+  if (net.src == own) return;
+  Message* const came = match(watch.up, net);
+  if (came == nullptr) {
+    refuse(base, seen, net, watch.up, true);
+  } else {
+    came->passed = true;
+    came->owed = false;
+  }
+  overdue(base, watch.up, true, seen.place.time_us, false);
+}
+
+void PeisWatch::given(std::uint16_t base, const Observation& seen, const Net& net,
+                      machine::Address own) {
+  const machine::Route route =
+      machine::route_received(base_station(own, context_.sink_am), Link::kPeis, net.dest, net.src);
+  const bool onward = route.onward == Onward::kSerial && net.sound;
+  // A base station may pass a broadcast to every island on, or not (decision 114).
+  if (onward || net.dest.pid == machine::kBroadcastPid) {
+    bases_[base].down.push({net, seen.place, onward, false});
+  }
+}
+
+void PeisWatch::went_down(std::uint16_t base, const Observation& seen, const Net& net) {
+  if (!logs_peis(context_.run, base)) return;
+  Base& watch = bases_[base];
+  Message* const came = match(watch.down, net);
+  if (came == nullptr) {
+    refuse(base, seen, net, watch.down, false);
+  } else {
+    came->passed = true;
+    came->owed = false;
+    context_.findings.kept("N8-INCOMING"_rule);
+  }
+  overdue(base, watch.down, false, seen.place.time_us, false);
+}
+
+// Reports a message that matches nothing that came and is not yet passed on.
+void PeisWatch::refuse(std::uint16_t base, const Observation& seen, const Net& net,
+                       Messages& messages, bool up) {
+  const std::string way = up ? "through PEIS" : "to its sink";
+  const std::string origin = up ? "its sink sent" : "PEIS gave it";
+  Message* other = nullptr;
+  for (std::size_t i = 0; i < messages.size() && other == nullptr; ++i) {
+    Message& message = messages.newest(i);
+    const bool near = message.net.src == net.src &&
+                      (message.net.seq_num == net.seq_num ||
+                       (message.net.dest == net.dest && equal(message.net.payload, net.payload)));
+    if (near) other = &message;
+  }
+  Said said;
+  said.text =
+      "The base station hands " + name_of(net) + ", reliable " + number(net.reliable) + ", " + way;
+  said.expected = "What " + origin + ", once, with addresses, reliable, number and payload.";
+  if (other == nullptr) {
+    said.text += "; nothing that " + origin + " was this.";
+  } else if (other->passed && same_content(net, other->net)) {
+    said.text += " again.";
+  } else {
+    said.text += "; " + origin + " " + name_of(other->net) + ", reliable " +
+                 number(other->net.reliable) + ", " + number(other->net.payload.size()) + " bytes.";
+    other->passed = true;
+    other->owed = false;
+  }
+  const bool escaped = other == nullptr && !context_.options.start_cold;
+  context_.report(up ? "N8-PEIS"_rule : "N8-INCOMING"_rule,
+                  escaped ? Severity::kInconclusive : Severity::kFail, seen.place, base,
+                  std::move(said));
+}
+
+void PeisWatch::overdue(std::uint16_t base, Messages& messages, bool up, std::int64_t now_us,
+                        bool end) {
+  if (!context_.run.has_time) return;
+  const std::int64_t wait = context_.response_us() + (end && !up ? kConfirmationUs : 0);
+  std::size_t waiting = 0;
+  for (std::size_t i = 0; i < messages.size(); ++i) waiting += messages.oldest(i).owed ? 1 : 0;
+  for (std::size_t i = 0; i < messages.size(); ++i) {
+    Message& message = messages.oldest(i);
+    if (!message.owed || now_us - message.place.time_us <= wait) continue;
+    message.owed = false;
+    context_.report(up ? "N8-PEIS"_rule : "N8-INCOMING"_rule,
+                    waiting > kPeisCrowd ? Severity::kInconclusive : Severity::kFail, message.place,
+                    base,
+                    {"The base station got " + name_of(message.net) + " from " +
+                         (up ? "its sink and did not put it on PEIS."
+                             : "PEIS and did not hand it to its sink."),
+                     "That message, unchanged, within " + ms_text(context_.response_us()) + ".",
+                     {}});
+  }
+}
+
+void PeisWatch::finish(std::int64_t end_us) {
+  for (std::size_t base = 0; base < bases_.size(); ++base) {
+    const auto index = static_cast<std::uint16_t>(base);
+    overdue(index, bases_[base].up, true, end_us, true);
+    overdue(index, bases_[base].down, false, end_us, true);
+  }
+}
+
+}  // namespace rubric::check

@@ -1,0 +1,57 @@
+// Judges what base stations pass on between their sinks and PEIS, where a log has these lines.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "conformance/check/judge/context.h"
+#include "conformance/check/ring.h"
+
+namespace rubric::check {
+
+/// Returns whether the log has the messages from `node` to PEIS and back.
+bool logs_peis(const Run& run, std::uint16_t node);
+
+class PeisWatch {
+ public:
+  PeisWatch(Context& context, std::size_t devices);
+
+  void begin_life(std::uint16_t base) { bases_[base] = Base{}; }
+  /// Takes a message from the sink of `base`, in `island`; `surely` if a log has it.
+  void came_up(std::uint16_t base, std::uint16_t island, const Observation& seen, const Net& net,
+               bool surely);
+  /// Notes that the log gives `base` a message that came up before.
+  void surely_up(std::uint16_t base, const Net& net);
+  /// Judges a message that `base` gives to PEIS; `own` is its address.
+  void sent(std::uint16_t base, const Observation& seen, const Net& net, machine::Address own);
+  /// Takes a message from PEIS to `base`.
+  void given(std::uint16_t base, const Observation& seen, const Net& net, machine::Address own);
+  /// Judges a message that `base` sends down to its sink and that is not its own.
+  void went_down(std::uint16_t base, const Observation& seen, const Net& net);
+  void finish(std::int64_t end_us);
+
+ private:
+  static constexpr std::size_t kRoom = 64;
+
+  struct Message {
+    Net net;
+    Place place;
+    bool owed = false;  ///< Surely received, to be passed on, and not yet seen to be.
+    bool passed = false;
+  };
+  using Messages = Ring<Message, kRoom>;
+  struct Base {
+    Messages up;    ///< From the sink.
+    Messages down;  ///< From PEIS.
+  };
+
+  static Message* match(Messages& messages, const Net& net);
+  void refuse(std::uint16_t base, const Observation& seen, const Net& net, Messages& messages,
+              bool up);
+  void overdue(std::uint16_t base, Messages& messages, bool up, std::int64_t now_us, bool end);
+
+  Context& context_;
+  std::vector<Base> bases_;
+};
+
+}  // namespace rubric::check

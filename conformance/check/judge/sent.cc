@@ -1,0 +1,323 @@
+#include "conformance/check/judge/sent.h"
+
+#include "conformance/check/judge/peis_watch.h"
+#include "conformance/machine/route.h"
+#include "conformance/machine/transport.h"
+
+namespace rubric::check {
+namespace {
+
+using machine::Link;
+using machine::Role;
+using machine::Route;
+using rubicon::Component;
+
+constexpr std::int64_t kAtOnceUs = 50'000;
+constexpr std::int64_t kTimeouts = 2;  // After so many of the stated ones there is no event.
+constexpr std::size_t kFloatBytes = rubicon::SynapticDataLayout::ValuesAt::kUnitBytes;
+
+bool known_trans(std::uint8_t trans_id) {
+  return trans_id == component::kConnless || trans_id == component::kSynChannel ||
+         trans_id == component::kRubiconAck;
+}
+
+}  // namespace
+
+Originals::Originals(Context& context, std::size_t devices)
+    : context_(context), sent_(devices), orders_(devices, 0), stale_(devices), acks_(devices) {}
+
+void Originals::begin_life(std::uint16_t node) {
+  sent_[node].clear();
+  acks_[node].clear();
+}
+
+void Originals::sent(std::uint16_t node, const Observation& seen, const Net& net, Link link,
+                     machine::Address own) {
+  ++orders_[node];
+  judge_content(node, seen, net);
+  judge_address(node, seen, net, link, own);
+  judge_number(node, seen, net);
+  if (net.sound && net.trans_id == component::kSynChannel) judge_synaptic(node, seen, net);
+  Sent sent;
+  sent.net = net;
+  sent.place = seen.place;
+  sent.order = orders_[node];
+  if (sent_[node].full()) close(node, sent_[node].size() - 1, seen.place.time_us);
+  sent_[node].push(sent);
+}
+
+void Originals::judge_content(std::uint16_t node, const Observation& seen, const Net& net) {
+  if (!net.sound) {
+    const bool range = !NetAt::NbytesAt::allows(net.nbytes);
+    context_.report(range ? "WIRE-NET-NBYTES"_rule : "WIRE-NET-PAYLOAD"_rule, Severity::kFail,
+                    seen.place, node,
+                    {"nbytes is " + number(net.nbytes) + " in a message of " +
+                         number(net.payload.size()) + " bytes.",
+                     "2 to 102, and no more than the message has.",
+                     {}});
+    return;
+  }
+  const std::size_t came = seen.frame.payload.size() - kNetHeaderBytes;
+  if (seen.kind == Observation::Kind::kRadio && came > net.nbytes) {
+    stale_[node].add(seen.place, net.nbytes, came);
+  }
+  if (!NetAt::ReliableAt::allows(net.reliable)) {
+    context_.report("WIRE-NET-RELIABLE"_rule, Severity::kFail, seen.place, node,
+                    {"reliable is " + number(net.reliable) + ".", "0 or 1.", {}});
+  }
+  if (net.dest.pid == machine::kLocalPid) {
+    context_.report("N3-LOCAL"_rule, Severity::kFail, seen.place, node,
+                    {"A message to " + text_of(net.dest) + " leaves the node.",
+                     "The own island's id in place of the local island.",
+                     {}});
+  }
+  if (net.seq_num == machine::kNoSeq) {
+    context_.report(
+        "N12-ERROR"_rule, Severity::kWeak, seen.place, node,
+        {"A message has the number 0xFFFF, the error value of send.", "Another number.", {}});
+  }
+  if (!known_trans(net.trans_id)) {
+    context_.report("T1-WRAP"_rule, Severity::kNote, seen.place, node,
+                    {"A message has the unknown TRANSID " + number(net.trans_id) + ".",
+                     "CONNLESS, SYN_CHANNEL or RUBICON_ACK.",
+                     {}});
+  } else {
+    context_.findings.kept("T1-WRAP"_rule);
+  }
+}
+
+void Originals::judge_address(std::uint16_t node, const Observation& seen, const Net& net,
+                              Link link, machine::Address own) {
+  const Device& device = context_.device(node);
+  // A message to the broadcast island may go anywhere (decision 114); one to oneself is not judged.
+  if (net.dest.pid == machine::kBroadcastPid || net.dest.pid == machine::kLocalPid) return;
+  const Route route = machine::route_own({device.role, own, true, context_.sink_am}, net.dest);
+  const bool up = route.onward == Route::Onward::kSerial;
+  if (device.role == Role::kSink && link == Link::kRadio && up) {
+    context_.report("N6-OWN"_rule, Severity::kFail, seen.place, node,
+                    {"The sink sends " + name_of(net) + " by radio.", "Over serial.", {}});
+    return;
+  }
+  if (link != Link::kRadio || route.onward != Route::Onward::kRadio) return;
+  if (seen.frame.dest == route.am_dest) {
+    context_.findings.kept(route.requirement);
+    return;
+  }
+  context_.report(
+      route.requirement, Severity::kFail, seen.place, node,
+      {"A message to " + text_of(net.dest) + " goes to AM address " + number(seen.frame.dest) + ".",
+       "AM address " + number(route.am_dest) + ".",
+       {}});
+}
+
+void Originals::judge_number(std::uint16_t node, const Observation& seen, const Net& net) {
+  const std::int64_t now = seen.place.time_us;
+  Ring<Sent, kRoom>& ring = sent_[node];
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const Sent& before = ring.newest(i);
+    if (before.net.seq_num != net.seq_num) continue;
+    const bool awaits =
+        before.net.reliable == 1 && !before.acked && before.net.sound && !before.net.broadcast() &&
+        before.net.trans_id == component::kConnless && seen.place.timed() && before.place.timed() &&
+        now - before.place.time_us < context_.ack_timeout_us() - context_.early_us();
+    const bool same = same_message(before.net, net) && same_payload(before.net, net);
+    if (awaits) {
+      // An ack that nobody captured would have ended the wait.
+      const machine::Address dest = before.net.dest;
+      const bool by_sink = dest.devid == context_.sink_am || dest.devid == machine::kNullDevid;
+      const std::uint16_t acker = by_sink ? context_.only_sink : context_.mote_of_am[dest.devid];
+      context_.report(
+          same ? "T3-RESEND"_rule : "N12-REUSE"_rule,
+          context_.without(acker, before.place.time_us, now), seen.place, node,
+          {(same ? "The reliable message with number " : "Number ") + number(net.seq_num) +
+               (same ? " is sent" : " is used") + " again, " + ms_text(now - before.place.time_us) +
+               " after the message with this number that awaits its ack.",
+           same ? "Resending is the application's decision, with a number of its own."
+                : "A number that no message awaits.",
+           {}});
+      return;
+    }
+    // Twice in a row, at once: a number that came again by chance would not do that.
+    const bool at_once = same && i == 0 && before.order + 1 == orders_[node] &&
+                         seen.place.timed() && before.place.timed() &&
+                         now - before.place.time_us < kAtOnceUs;
+    if (at_once) {
+      context_.report("N2-ONCE"_rule, Severity::kFail, seen.place, node,
+                      {"The same message, number " + number(net.seq_num) + ", is sent twice, " +
+                           ms_text(now - before.place.time_us) + " apart.",
+                       "Once.",
+                       {}});
+    }
+    return;
+  }
+  context_.findings.kept("N12-REUSE"_rule);
+}
+
+void Originals::judge_synaptic(std::uint16_t node, const Observation& seen, const Net& net) {
+  Said said;
+  said.expected =
+      "SYN_CHANNEL, LEARNING or ESN_DATA, unreliable, one float for each of at most "
+      "ten connections.";
+  const bool app = net.app_id == static_cast<std::uint8_t>(Component::kLearning) ||
+                   net.app_id == static_cast<std::uint8_t>(Component::kEsnData);
+  const std::size_t bytes = net.body().size();
+  if (net.reliable != 0) {
+    said.text = "Synaptic data is sent reliable.";
+  } else if (!app) {
+    said.text = "Synaptic data has the APPID " + number(net.app_id) + ".";
+  } else if (bytes == 0 || bytes % kFloatBytes != 0 ||
+             bytes / kFloatBytes > machine::kConnectionsMax) {
+    said.text = "Synaptic data has " + number(bytes) + " bytes of values.";
+  }
+  if (!said.text.empty()) {
+    context_.report("S2-CONTENT"_rule, Severity::kFail, seen.place, node, std::move(said));
+  } else {
+    context_.findings.kept("S2-CONTENT"_rule);
+  }
+  if (net.src == net.dest) {
+    context_.report("S4-LOCAL"_rule, Severity::kFail, seen.place, node,
+                    {"Data of a channel from the node to itself is sent.",
+                     "A local channel hands its values over without sending.",
+                     {}});
+  }
+}
+
+void Originals::ack_heard(std::uint16_t node, const Net& ack, std::uint16_t acked) {
+  Ring<Sent, kRoom>& ring = sent_[node];
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    Sent& sent = ring.newest(i);
+    if (sent.net.seq_num == acked && sent.net.reliable == 1) sent.acked = true;
+  }
+  if (context_.device(node).application) acks_[node].push({ack, acked});
+}
+
+void Originals::ack_given(std::uint16_t node, const Net& ack, std::int64_t now_us) {
+  const std::int32_t acked = machine::acked_seq_num(ack.body());
+  Ring<Sent, kRoom>& ring = sent_[node];
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    Sent& sent = ring.newest(i);
+    const bool matches = sent.net.seq_num == acked && sent.net.reliable == 1 &&
+                         sent.net.src == ack.dest && sent.net.dest == ack.src &&
+                         sent.net.app_id == ack.app_id;
+    if (matches && sent.given_us < 0) sent.given_us = now_us;
+  }
+}
+
+void Originals::close(std::uint16_t node, std::size_t newest, std::int64_t now_us) {
+  Ring<Sent, kRoom>& ring = sent_[node];
+  const Sent& sent = ring.newest(newest);
+  if (!context_.device(node).application || !sent.place.timed() || sent.told > 0) return;
+  const bool awaits = sent.net.reliable == 1 && sent.net.sound && !sent.net.broadcast() &&
+                      sent.net.trans_id == component::kConnless;
+  if (!awaits || context_.profile().ack_timeout_ticks == 0) return;
+  for (std::size_t i = 0; i < newest; ++i) {  // Sent again by its application: one event for both.
+    if (ring.newest(i).net.seq_num == sent.net.seq_num) return;
+  }
+  const std::int64_t response_us = context_.response_us();
+  if (sent.given_us >= 0 && now_us - sent.given_us > response_us) {
+    context_.report("T3-SUCCESS"_rule, Severity::kFail, sent.place, node,
+                    {"The node was given the ack of " + name_of(sent.net) + " " +
+                         ms_text(sent.given_us - sent.place.time_us) +
+                         " after it, and its application is told nothing.",
+                     "receive_ack(success).",
+                     {}});
+    return;
+  }
+  // An unstated timeout may be longer than what is assumed (decision 110); for ever it is not.
+  const std::int64_t waited = now_us - sent.place.time_us;
+  if (waited <= kTimeouts * context_.ack_timeout_us() + response_us) return;
+  context_.report("T3-ONCE"_rule, Severity::kFail, sent.place, node,
+                  {"No receive_ack for " + name_of(sent.net) + " in " + ms_text(waited) + ".",
+                   "receive_ack(failure) at the timeout, or receive_ack(success) before.",
+                   {}});
+}
+
+void Originals::finish(std::int64_t end_us) {
+  for (std::size_t node = 0; node < sent_.size(); ++node) {
+    for (std::size_t i = sent_[node].size(); i-- > 0;) {
+      close(static_cast<std::uint16_t>(node), i, end_us);
+    }
+    note_stale(context_, static_cast<std::uint16_t>(node), "WIRE-NET-PAYLOAD"_rule, stale_[node],
+               "On the air a message has ");
+  }
+}
+
+// Returns whether an ack that fits the message in everything was heard.
+bool Originals::rightly_acked(std::uint16_t node, const Net& message) {
+  Ring<Ack, kRoom>& ring = acks_[node];
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const Ack& ack = ring.newest(i);
+    if (ack.number == message.seq_num && ack.net.src == message.dest &&
+        ack.net.app_id == message.app_id) {
+      return true;
+    }
+  }
+  return ring.size() == 0;
+}
+
+void Originals::told(std::uint16_t node, const Observation& seen, const machine::AckReceived& ack) {
+  const std::int64_t now = seen.place.time_us;
+  Ring<Sent, kRoom>& ring = sent_[node];
+  Sent* match = nullptr;
+  for (std::size_t i = 0; i < ring.size() && match == nullptr; ++i) {
+    Sent& sent = ring.newest(i);
+    if (sent.net.seq_num == ack.seq_num && sent.net.reliable == 1) match = &sent;
+  }
+  const std::string what = "receive_ack(" + std::string(ack.success ? "success" : "failure") +
+                           ", number " + number(ack.seq_num) + ")";
+  if (match == nullptr) {
+    // Messages from a base station to other islands pass where no log and no tap is read.
+    const Device& device = context_.device(node);
+    context_.report(ack.success ? "T3-SUCCESS"_rule : "T3-MATCH"_rule,
+                    device.role == Role::kBaseStation && !logs_peis(context_.run, node)
+                        ? Severity::kInconclusive
+                        : context_.without(node, device.first_us, now),
+                    seen.place, node,
+                    {what + " although the node has sent no reliable message with that number.",
+                     "The number of the message that was acked.",
+                     {}});
+    return;
+  }
+  if (match->told++ > 0) {
+    context_.report("T3-ONCE"_rule, Severity::kFail, seen.place, node,
+                    {what + " again.", "One receive_ack for each message.", {}});
+    return;
+  }
+  const std::int64_t waited = now - match->place.time_us;
+  const std::int64_t since_ack = match->given_us < 0 ? 0 : now - match->given_us;
+  if (!ack.success && since_ack > context_.response_us()) {
+    context_.report("T3-SUCCESS"_rule, Severity::kFail, seen.place, node,
+                    {what + ", " + ms_text(now - match->given_us) + " after its ack had come.",
+                     "receive_ack(success) when the ack came.",
+                     {}});
+  } else if (ack.success && match->acked && !rightly_acked(node, match->net)) {
+    const std::uint16_t acker = context_.mote_of_am[match->net.dest.devid];
+    const bool mote =
+        context_.without(acker, match->place.time_us, now) == Severity::kFail && acker != kNobody;
+    const bool sure = context_.device(node).hearing || mote || context_.options.sniffer_complete;
+    context_.report("T3-SENDER"_rule, sure ? Severity::kWeak : Severity::kInconclusive, seen.place,
+                    node,
+                    {what + ", but every ack with that number came from another node than " +
+                         text_of(match->net.dest) + " or for another APPID than " +
+                         number(match->net.app_id) + ".",
+                     "An ack counts from the message's destination, with its APPID.",
+                     {}});
+  } else if (ack.success && !match->acked) {
+    context_.report("T3-SUCCESS"_rule, context_.without(kNobody, match->place.time_us, now),
+                    seen.place, node,
+                    {what + ", but no ack of it was heard.", "No receive_ack before the ack.", {}});
+  } else if (!ack.success && seen.place.timed() && match->place.timed() &&
+             waited < context_.ack_timeout_us() - context_.early_us()) {
+    // Only a stated timeout can be broken (decision 110).
+    const bool stated = context_.options.ack_timeout_us.has_value();
+    context_.report("T3-TIMEOUT"_rule, stated ? Severity::kFail : Severity::kInconclusive,
+                    seen.place, node,
+                    {what + " " + ms_text(waited) + " after the message.",
+                     "Not before the timeout, " + ms_text(context_.ack_timeout_us()) + ".",
+                     {}});
+  } else {
+    context_.findings.kept(ack.success ? "T3-SUCCESS"_rule : "T3-TIMEOUT"_rule);
+  }
+}
+
+}  // namespace rubric::check

@@ -1,0 +1,65 @@
+// Judges messages that nodes send of their own: addressing, numbers, repetitions, synaptic data.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "conformance/check/judge/context.h"
+#include "conformance/check/judge/stale.h"
+#include "conformance/check/ring.h"
+
+namespace rubric::check {
+
+/// A message that a node has sent.
+struct Sent {
+  Net net;
+  Place place;
+  bool acked = false;          ///< Its ack reached the node, or may have.
+  std::int64_t given_us = -1;  ///< When its ack surely reached the node, by a log.
+  std::uint8_t told = 0;       ///< receive_ack events, by a log.
+  std::uint32_t order = 0;     ///< Among the frames of the node.
+};
+
+class Originals {
+ public:
+  Originals(Context& context, std::size_t devices);
+
+  void begin_life(std::uint16_t node);
+  /// Judges a message of its own that `node`, whose address is `own`, sends over `link`.
+  void sent(std::uint16_t node, const Observation& seen, const Net& net, machine::Link link,
+            machine::Address own);
+  /// Counts any other frame of the node on the air.
+  void counted(std::uint16_t node) { ++orders_[node]; }
+  /// Notes that an ack of `number` is on the air to `node`, or down its serial line.
+  void ack_heard(std::uint16_t node, const Net& ack, std::uint16_t number);
+  /// Notes that by a log the node was given this ack.
+  void ack_given(std::uint16_t node, const Net& ack, std::int64_t now_us);
+  /// Judges receive_ack, by a log.
+  void told(std::uint16_t node, const Observation& seen, const machine::AckReceived& ack);
+  void finish(std::int64_t end_us);
+
+ private:
+  static constexpr std::size_t kRoom = 32;
+
+  /// Judges the end of a message that is forgotten now: was its application notified?
+  void close(std::uint16_t node, std::size_t newest, std::int64_t now_us);
+  void judge_content(std::uint16_t node, const Observation& seen, const Net& net);
+  void judge_address(std::uint16_t node, const Observation& seen, const Net& net,
+                     machine::Link link, machine::Address own);
+  void judge_synaptic(std::uint16_t node, const Observation& seen, const Net& net);
+  bool rightly_acked(std::uint16_t node, const Net& message);
+  void judge_number(std::uint16_t node, const Observation& seen, const Net& net);
+
+  Context& context_;
+  std::vector<Ring<Sent, kRoom>> sent_;
+  std::vector<std::uint32_t> orders_;
+  std::vector<Stale> stale_;  ///< On the air.
+  struct Ack {
+    Net net;
+    std::uint16_t number = 0;
+  };
+  std::vector<Ring<Ack, kRoom>> acks_;
+};
+
+}  // namespace rubric::check

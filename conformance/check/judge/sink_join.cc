@@ -1,0 +1,356 @@
+#include "conformance/check/judge/sink_join.h"
+
+#include <algorithm>
+#include <cstdlib>
+
+namespace rubric::check {
+
+using machine::Admission;
+using machine::JoinSink;
+
+SinkJoins::SinkJoins(Context& context) : context_(context) {
+  for (std::size_t i = 0; i < context.who.devices.size(); ++i) {
+    const Device& device = context.who.devices[i];
+    const auto index = static_cast<std::uint16_t>(i);
+    if (device.role == machine::Role::kMote && device.known) motes_.emplace(device.am, index);
+    if (device.role != machine::Role::kSink) continue;
+    SinkWatch sink;
+    sink.device = index;
+    sink.island = device.island;
+    sinks_.push_back(std::move(sink));
+  }
+}
+
+SinkWatch* SinkJoins::find(std::uint16_t sink) {
+  for (SinkWatch& watch : sinks_) {
+    if (watch.device == sink) return &watch;
+  }
+  return nullptr;
+}
+
+std::uint16_t SinkJoins::island(std::uint16_t sink) const {
+  for (const SinkWatch& watch : sinks_) {
+    if (watch.device == sink) return watch.island;
+  }
+  return 0;
+}
+
+std::uint16_t SinkJoins::device_of(std::uint16_t mote_am) const {
+  const auto found = motes_.find(mote_am);
+  return found == motes_.end() ? kNobody : found->second;
+}
+
+PairWatch& SinkJoins::pair(SinkWatch& sink, std::uint16_t mote_am) {
+  PairWatch& watch = sink.motes[mote_am];
+  if (watch.set.empty()) {
+    SinkHypothesis start;
+    start.unknown = !context_.options.start_cold;
+    watch.set.push_back(start);
+  }
+  return watch;
+}
+
+void SinkJoins::begin_life(std::uint16_t sink) {
+  SinkWatch* const watch = find(sink);
+  if (watch == nullptr) return;
+  watch->motes.clear();
+  watch->has_clock = false;
+  watch->debts = 0;
+}
+
+void SinkJoins::set_island(std::uint16_t sink, std::uint16_t island, const Place& at) {
+  SinkWatch* const watch = find(sink);
+  if (watch == nullptr) return;
+  const bool same = watch->island == island;
+  watch->island_set = true;
+  watch->island = island;
+  if (same) return;
+  if (listed(*watch) > 0) {
+    context_.report("N9-MEMBERS"_rule, Severity::kNote, at, sink,
+                    {"The island becomes " + number(island) + " while " + number(listed(*watch)) +
+                         " motes are members; they are cut off.",
+                     "The sink forgets its members.",
+                     {}});
+  }
+  // It may have forgotten its members, or not.
+  SinkHypothesis unknown;
+  unknown.unknown = true;
+  for (auto& [am, pair] : watch->motes) {
+    pair.set.assign(1, unknown);
+    pair.report_due = false;
+  }
+  watch->debts = 0;
+}
+
+// Returns whether the sink may hear it. A sink with a log of what it was given hears nothing else.
+bool SinkJoins::hears(const Device& device, const Observation& seen, bool sure) const {
+  if (!device.known || seen.frame.dest != device.am) return false;
+  return device.hearing ? sure : !seen.received;
+}
+
+JoinSink list_of(const SinkHypothesis& h) {
+  JoinSink list;
+  if (h.member) list.members.push(*h.member);
+  if (h.pending) list.pending.push(*h.pending);
+  return list;
+}
+
+void take_list(const JoinSink& list, SinkHypothesis& h) {
+  h.member = list.members.empty() ? std::nullopt : std::optional(list.members[0]);
+  h.pending = list.pending.empty() ? std::nullopt : std::optional(list.pending[0]);
+}
+
+void SinkJoins::request(std::uint16_t mote_device, const Observation& seen, const Request& request,
+                        std::uint16_t surely_received_by) {
+  const std::uint16_t am = seen.frame.src;
+  if (mote_device != kNobody && context_.device(mote_device).known) {
+    Unanswered& unanswered = unanswered_[am];
+    close_unanswered(am, unanswered);
+    unanswered = {seen.place, request.seq_num, true, false, kNobody};
+  }
+  for (SinkWatch& sink : sinks_) {
+    const Device& device = context_.device(sink.device);
+    const bool sure = surely_received_by == sink.device;
+    if (!hears(device, seen, sure)) continue;
+    PairWatch& watch = pair(sink, am);
+    const bool full = listed(sink) >= context_.profile().members_max;  // Then it may be silent.
+    watch.request_listed = sure && std::all_of(watch.set.begin(), watch.set.end(),
+                                               [](const auto& h) { return h.member.has_value(); });
+    next_.clear();
+    for (const SinkHypothesis& h : watch.set) {
+      SinkHypothesis heard = h;
+      JoinSink list = list_of(heard);
+      context_.actions.clear();
+      const bool answers = machine::hear_request(
+          list, context_.join_context(device.am, sink.island, seen.place.time_us), am,
+          request.seq_num, request.descriptor, context_.actions);
+      take_list(list, heard);
+      if (!sure || h.unknown || full) next_.push_back(h);
+      if (answers) {
+        heard.unknown = false;
+        if (heard.owed == heard.owed_seq.size()) {
+          std::copy(heard.owed_seq.begin() + 1, heard.owed_seq.end(), heard.owed_seq.begin());
+          --heard.owed;
+        }
+        heard.owed_seq[heard.owed++] = request.seq_num;
+        next_.push_back(heard);
+      } else if (sure && !h.unknown) {
+        next_.push_back(heard);
+      }
+    }
+    watch.request = seen.place;
+    watch.request_seq = request.seq_num;
+    watch.asked = true;
+    keep(sink, watch, next_, seen.place);
+  }
+}
+
+void SinkJoins::close_unanswered(std::uint16_t mote_am, Unanswered& unanswered) {
+  if (!unanswered.open) return;
+  unanswered.open = false;
+  // If all sinks have logs, these show who received it.
+  const auto hearing = [&](const SinkWatch& sink) { return context_.device(sink.device).hearing; };
+  if (!sinks_.empty() && std::all_of(sinks_.begin(), sinks_.end(), hearing)) return;
+  for (SinkWatch& sink : sinks_) {  // A sink that lists it is right not to answer.
+    const PairWatch& watch = pair(sink, mote_am);
+    const auto may_list = [](const SinkHypothesis& h) { return h.member.has_value(); };
+    if (std::any_of(watch.set.begin(), watch.set.end(), may_list)) return;
+  }
+  const ReqId rule = unanswered.overtaken ? "J9-INTERLEAVE"_rule : "J3-REPLY"_rule;
+  const std::uint16_t sink = unanswered.sink != kNobody ? unanswered.sink : context_.only_sink;
+  context_.report(
+      rule, Severity::kInconclusive, unanswered.request, sink,
+      {"No reply to the join_request " + number(unanswered.seq_num) + " of mote " +
+           number(mote_am) +
+           (unanswered.overtaken ? ", although a later one of another mote was answered" : "") +
+           "; nothing proves that a sink received it.",
+       "A join_reply, if the request arrived.",
+       {}});
+}
+
+void SinkJoins::reply(std::uint16_t sink_device, const Observation& seen, const Reply& reply) {
+  SinkWatch* const sink = find(sink_device);
+  if (sink == nullptr) return;
+  const std::uint16_t am = seen.frame.dest;
+  PairWatch& watch = pair(*sink, am);
+  for (auto& [other, unanswered] : unanswered_) {
+    if (other == am) {
+      unanswered.open = unanswered.open && unanswered.seq_num != reply.seq_num;
+    } else if (unanswered.open && watch.asked &&
+               unanswered.request.time_us <= watch.request.time_us) {
+      unanswered.overtaken = true;
+      unanswered.sink = sink_device;
+    }
+  }
+  if (sink->island == 0) sink->island = reply.island;
+  if (reply.island != sink->island) {
+    const ReqId rule = sink->island_set ? "N9-SET"_rule : "J3-ADDRESS"_rule;
+    context_.report(rule, Severity::kFail, seen.place, sink_device,
+                    {"join_reply offers island " + number(reply.island) + ".",
+                     "Island " + number(sink->island) + ", the sink's.",
+                     {}});
+  } else if (reply.mote != am) {
+    context_.report(
+        "J3-ADDRESS"_rule, Severity::kFail, seen.place, sink_device,
+        {"join_reply to mote " + number(am) + " gives it the devid " + number(reply.mote) + ".",
+         "mote_addr " + number(am) + ", the TinyOS id of the mote that asked.",
+         {}});
+  } else {
+    context_.findings.kept("J3-ADDRESS"_rule);
+  }
+  judge_clock(*sink, seen, reply);
+  next_.clear();
+  for (const SinkHypothesis& h : watch.set) {
+    SinkHypothesis next = h;
+    if (h.unknown) {
+      next.unknown = false;
+      next.pending = Admission{am, reply.seq_num, {}};
+      next_.push_back(next);
+      continue;
+    }
+    const auto end = next.owed_seq.begin() + next.owed;
+    const auto owed = std::find(next.owed_seq.begin(), end, reply.seq_num);
+    if (owed == end) continue;
+    std::copy(owed + 1, end, owed);
+    next.owed_seq[--next.owed] = 0;
+    next_.push_back(next);
+  }
+  if (next_.empty()) {
+    refuse_reply(*sink, watch, seen, reply);
+  } else {
+    context_.findings.kept("J3-SEQ"_rule);
+    context_.findings.kept("J3-ONCE"_rule);
+    context_.findings.kept("J3-DEST"_rule);
+    const std::size_t members = listed(*sink);
+    const bool new_mote =
+        std::none_of(next_.begin(), next_.end(), [](const SinkHypothesis& h) { return h.member; });
+    if (new_mote && members >= context_.profile().members_max) {
+      context_.report("J3-FULL"_rule, Severity::kWeak, seen.place, sink_device,
+                      {"join_reply to a new mote while " + number(members) + " are members.",
+                       "No reply when the list is full.",
+                       {}});
+    }
+    keep(*sink, watch, next_, seen.place);
+  }
+  watch.answered = true;
+  watch.answered_seq = reply.seq_num;
+}
+
+void SinkJoins::judge_clock(SinkWatch& sink, const Observation& seen, const Reply& reply) {
+  constexpr std::int64_t kOffMs = 1000;
+  const std::int64_t now = seen.place.time_us;
+  if (sink.has_clock && seen.place.timed() && sink.clock_us >= 0) {
+    const std::int64_t passed_ms = (now - sink.clock_us) / 1000;
+    const std::int64_t grown_ms = static_cast<std::int32_t>(reply.time_ms - sink.clock_ms);
+    // A clock in binary ms runs 2.4 % faster than one in ms.
+    const std::int64_t most_ms = passed_ms + passed_ms * 24 / 1000 + kOffMs;
+    Said said;
+    said.text = "cur_time went from " + number(sink.clock_ms) + " to " + number(reply.time_ms) +
+                " while " + number(static_cast<std::uint64_t>(passed_ms)) + " ms passed.";
+    said.expected = "Growth as time passes, within 1 s.";
+    if (grown_ms == 0 && passed_ms >= kOffMs) {
+      context_.report("J3-TIME"_rule, Severity::kFail, seen.place, sink.device, std::move(said));
+    } else if (grown_ms < passed_ms - kOffMs || grown_ms > most_ms) {
+      context_.report("J3-DRIFT"_rule, Severity::kWeak, seen.place, sink.device, std::move(said));
+    } else {
+      context_.findings.kept("J3-TIME"_rule);
+    }
+  }
+  sink.has_clock = true;
+  sink.clock_ms = reply.time_ms;
+  sink.clock_us = now;
+}
+
+void SinkJoins::refuse_reply(SinkWatch& sink, PairWatch& watch, const Observation& seen,
+                             const Reply& reply) {
+  const std::uint16_t am = seen.frame.dest;
+  const std::int64_t now = seen.place.time_us;
+  const SinkHypothesis& h = watch.set.back();
+  const std::uint16_t mote = device_of(am);
+  const std::int64_t since = watch.asked ? watch.request.time_us : context_.run.start_us;
+  Said said;
+  for (auto it = watch.set.rbegin(); it != watch.set.rend(); ++it) {
+    said.hypotheses.push_back({sentence(*it),
+                               it->owed > 0
+                                   ? "A join_reply with number " + number(it->owed_seq[0]) + "."
+                                   : "No join_reply.",
+                               "join_reply with number " + number(reply.seq_num) + "."});
+  }
+  ReqId rule = "J3-ONCE"_rule;
+  Severity severity =
+      watch.asked ? context_.without(mote, since, now) : context_.without_ever(mote, now);
+  const auto asks_this = [&](const auto& entry) {
+    return entry.first != am && entry.second.asked && entry.second.request_seq == reply.seq_num;
+  };
+  if (std::any_of(sink.motes.begin(), sink.motes.end(), asks_this) &&
+      reply.seq_num != watch.request_seq) {
+    rule = "J3-DEST"_rule;
+    severity = Severity::kFail;
+    said.text = "join_reply to AM address " + number(am) +
+                " with the number of another mote's "
+                "request (" +
+                number(reply.seq_num) + ").";
+    said.expected = "A reply to the AM address that asked.";
+  } else if (h.member && watch.asked && reply.seq_num == watch.request_seq &&
+             (watch.request_listed || watch.answered_seq != reply.seq_num)) {
+    rule = "J2-LISTED"_rule;
+    severity = Severity::kFail;
+    said.text = "join_reply to mote " + number(am) + ", which the sink has reported as a member.";
+    said.expected = "No answer to a mote that is listed.";
+  } else if (watch.asked && reply.seq_num != watch.request_seq) {
+    rule = "J3-SEQ"_rule;
+    said.text = "join_reply with number " + number(reply.seq_num) + " to mote " + number(am) +
+                ", whose request has " + number(watch.request_seq) + ".";
+    said.expected = "Number " + number(watch.request_seq) + ".";
+  } else {
+    said.text = watch.asked ? "A second join_reply to one join_request (number " +
+                                  number(reply.seq_num) + ", mote " + number(am) + ")."
+                            : "join_reply to mote " + number(am) + ", which has not asked.";
+    said.expected = "At most one join_reply for each join_request.";
+  }
+  context_.report(rule, severity, seen.place, sink.device, std::move(said));
+  SinkHypothesis next = h;
+  next.unknown = true;  // Its stored request is unknown now.
+  next.owed = 0;
+  watch.set.assign(1, next);
+}
+
+void SinkJoins::keep(SinkWatch& sink, PairWatch& watch, std::vector<SinkHypothesis>& next,
+                     const Place& at) {
+  watch.set.clear();
+  for (const SinkHypothesis& h : next) {
+    if (std::find(watch.set.begin(), watch.set.end(), h) == watch.set.end()) {
+      watch.set.push_back(h);
+    }
+  }
+  if (watch.set.size() <= kSetMax) return;
+  context_.report("J3-REPLY"_rule, Severity::kInconclusive, at, sink.device,
+                  {"More than " + number(kSetMax) + " explanations of what the sink knows.",
+                   "Fewer; this mote's joins are not judged at this sink.",
+                   {}});
+  SinkHypothesis unknown;
+  unknown.unknown = true;
+  watch.set.assign(1, unknown);
+}
+
+std::size_t SinkJoins::listed(const SinkWatch& sink) const {
+  std::size_t count = 0;
+  for (const auto& [am, watch] : sink.motes) {
+    const auto lists = [](const SinkHypothesis& h) { return !h.unknown && h.member; };
+    if (!watch.set.empty() && std::all_of(watch.set.begin(), watch.set.end(), lists)) ++count;
+  }
+  return count;
+}
+
+std::string SinkJoins::sentence(const SinkHypothesis& h) {
+  if (h.unknown) return "The sink may have listed the mote before.";
+  std::string text = h.member ? "The sink lists the mote" : "The sink does not list the mote";
+  if (h.owed > 0)
+    text += ", heard its request and owes a reply to " + number(h.owed_seq[0]);
+  else if (h.pending)
+    text += ", has answered " + number(h.pending->seq_num);
+  if (h.owes_report) text += ", owes serial_joined";
+  return text + ".";
+}
+
+}  // namespace rubric::check

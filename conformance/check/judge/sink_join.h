@@ -1,0 +1,155 @@
+// Joins as sinks answer them: for each pair of sink and mote a set of hypotheses about the sink's
+// list, each one stepped by the very functions of the machine.
+//
+// mote_join.h explains the method. Here a hypothesis says whether the sink lists the mote, which
+// request it stored, and what it owes: join_replies, a serial_joined, a moteJoined. Each pair of a
+// sink and an AM address has a set of its own, as if the sink knew one mote only, so the sets stay
+// small however many motes join at once (decision 106). Only the size of the list joins them: it is
+// taken as full when `members_max` pairs list their mote in every hypothesis.
+//
+// Decides: whether each join_reply answers a request (J3, J2-LISTED, N9-SET), whether each
+// serial_joined and moteJoined follows an ack_join that the sink had to accept (J6), and whether
+// one of these is missing. A missing reply that is surely owed is up to join_watch.h.
+//
+// How a set changes:
+// - It starts as `unknown`, or, with `start_cold`, as that of a sink that never heard of the mote.
+//   A new island id makes it `unknown`: the sink may forget its members or keep them (decision
+//   123).
+// - A request or an ack_join to the sink's address goes through machine::hear_request() or
+//   machine::hear_ack_join(). A hypothesis splits into received and lost, unless the reception is
+//   certain: by a log, or by a link ack where only one sink is known (decision 127).
+// - A reply leaves the hypotheses that owe that number, an announcement those that owe it.
+//   `unknown` allows both and is known afterwards. A descriptor that is announced must be the one
+//   stored.
+// - If none is left, the furthest hypothesis is blamed, and the set goes on from what was seen.
+//
+// Tolerance: the response time for what is owed (decision 125). cur_time may be a second off and
+// may run in binary ms (decision 119). A sink with a full list may be silent (decision 107). Of
+// replies owed to one mote only the newest four are remembered; beyond kSetMax hypotheses the pair
+// is inconclusive.
+//
+// Cannot know: what a sink stored before the capture began; which of several sinks of one address
+// sent a link ack; that a sink forgot a mote without a reboot or a new island that the run shows.
+//
+// Why an inconclusive finding is never a failure here: a reply or an announcement without its cause
+// has the severity of Context::without(), over the time in which the mote's request or ack_join may
+// have escaped. Two replies fail at once, since no escaped frame would put them right: one with a
+// number that only another mote asked with, and one to the last request of a mote that the furthest
+// hypothesis lists. So does wrong content. A missing serial_joined fails only if the ack_join
+// surely arrived, every hypothesis owes the report, the response time is over, the sink sent
+// something up its line afterwards, its list has room, the run starts cold, and no bytes were
+// damaged in between. A missing reply is inconclusive where nothing proves that the request
+// arrived.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <unordered_map>
+#include <vector>
+
+#include "conformance/check/judge/context.h"
+#include "conformance/machine/state.h"
+
+namespace rubric::check {
+
+/// A possible state of a sink's view of one mote, with what it owes.
+struct SinkHypothesis {
+  bool unknown = false;  ///< It may list the mote since before the capture.
+  std::optional<machine::Admission> member;
+  std::optional<machine::Admission> pending;
+  std::array<std::uint16_t, 4> owed_seq{};  ///< Replies, oldest first.
+  std::uint8_t owed = 0;
+  bool owes_report = false;  ///< serial_joined.
+  bool owes_notice = false;  ///< moteJoined to its application.
+  friend bool operator==(const SinkHypothesis&, const SinkHypothesis&) = default;
+};
+
+/// Converts between the machine's list and a hypothesis about one mote.
+machine::JoinSink list_of(const SinkHypothesis& h);
+void take_list(const machine::JoinSink& list, SinkHypothesis& h);
+
+/// A sink and a mote.
+struct PairWatch {
+  std::vector<SinkHypothesis> set;
+  std::uint16_t answered_seq = 0;  ///< In the last reply.
+  bool answered = false;
+  Place request;  ///< The last.
+  std::uint16_t request_seq = 0;
+  bool asked = false;
+  Place ack;                         ///< The last ack_join to this sink.
+  ReqId ignored_ack = ReqId::kNone;  ///< Why the last one must have been ignored.
+  bool report_due = false;           ///< Surely owed since `ack`, and not yet complained about.
+  bool request_listed = false;       ///< The last request surely came while it was listed.
+};
+
+struct SinkWatch {
+  std::uint16_t device = kNobody;
+  std::uint16_t island = 0;
+  bool island_set = false;                             ///< SET_ISLAND_ID was seen.
+  std::unordered_map<std::uint16_t, PairWatch> motes;  ///< By AM address.
+  bool has_clock = false;                              ///< From the last reply:
+  std::uint32_t clock_ms = 0;
+  std::int64_t clock_us = 0;
+  std::uint32_t debts = 0;  ///< Pairs with something due.
+};
+
+class SinkJoins {
+ public:
+  explicit SinkJoins(Context& context);
+
+  void begin_life(std::uint16_t sink);
+  void set_island(std::uint16_t sink, std::uint16_t island, const Place& at);
+  void request(std::uint16_t mote_device, const Observation& seen, const Request& request,
+               std::uint16_t surely_received_by);
+  void reply(std::uint16_t sink, const Observation& seen, const Reply& reply);
+  void ack_join(std::uint16_t mote_device, const Observation& seen, const AckJoin& ack,
+                std::uint16_t surely_received_by);
+  void report(std::uint16_t sink, const Observation& seen, const Net& net,
+              const SerialJoined& joined);
+  void told(std::uint16_t sink, const Observation& seen, const machine::MoteJoined& joined);
+  /// Notes that the sink sent something at this time, so whatever it still owes is overdue.
+  void showed_life(std::uint16_t sink, std::int64_t now_us, bool on_serial);
+  void finish(std::int64_t end_us);
+  /// Notes that somebody else waits for the answer to the mote's last request.
+  void settled(std::uint16_t mote_am) { unanswered_[mote_am].open = false; }
+
+  /// Returns the sink's island now; 0 if unknown.
+  std::uint16_t island(std::uint16_t sink) const;
+  SinkWatch* find(std::uint16_t sink);
+
+ private:
+  static constexpr std::size_t kSetMax = 256;
+
+  PairWatch& pair(SinkWatch& sink, std::uint16_t mote_am);
+  void judge_clock(SinkWatch& sink, const Observation& seen, const Reply& reply);
+  void refuse_reply(SinkWatch& sink, PairWatch& watch, const Observation& seen, const Reply& reply);
+  void refuse_report(SinkWatch& sink, PairWatch& watch, const Place& at, std::uint16_t mote_am,
+                     bool notice);
+  void announce(SinkWatch& sink, const Place& at, machine::Address address,
+                const machine::Descriptor& descriptor, bool notice);
+  void keep(SinkWatch& sink, PairWatch& watch, std::vector<SinkHypothesis>& next, const Place& at);
+  std::uint16_t device_of(std::uint16_t mote_am) const;
+  std::size_t listed(const SinkWatch& sink) const;
+  static std::string sentence(const SinkHypothesis& h);
+
+  struct Unanswered {
+    Place request;
+    std::uint16_t seq_num = 0;
+    bool open = false;
+    bool overtaken = false;  ///< A later request of another mote was answered before.
+    std::uint16_t sink = kNobody;
+  };
+  void close_unanswered(std::uint16_t mote_am, Unanswered& unanswered);
+  void unannounced(const SinkWatch& sink, std::uint16_t mote_am, const PairWatch& watch,
+                   std::int64_t end_us);
+  bool hears(const Device& device, const Observation& seen, bool sure) const;
+
+  Context& context_;
+  std::vector<SinkWatch> sinks_;
+  std::unordered_map<std::uint16_t, Unanswered> unanswered_;
+  std::unordered_map<std::uint16_t, std::uint16_t> motes_;  // Device by AM address.
+  std::vector<SinkHypothesis> next_;
+};
+
+}  // namespace rubric::check

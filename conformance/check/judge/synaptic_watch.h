@@ -1,0 +1,91 @@
+// Compares synaptic data with the channels in an application's log. Without a log, silent.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "conformance/check/judge/context.h"
+#include "conformance/machine/synaptic.h"
+
+namespace rubric::check {
+
+class SynapticWatch {
+ public:
+  SynapticWatch(Context& context, std::size_t devices);
+
+  void begin_life(std::uint16_t node);
+  /// Takes an operation on channels that the application of `node`, whose address is `own`, calls.
+  void called(std::uint16_t node, const Observation& seen, machine::Address own);
+  /// Notes that the mote has joined; until then it sends nothing.
+  void member(std::uint16_t node, std::int64_t now_us);
+  /// Notes that its radio is switched on or off.
+  void able(std::uint16_t node, bool radio_on, std::int64_t now_us);
+  /// Notes that by a log it was given a message for itself.
+  void given(std::uint16_t node, const Observation& seen, const Net& net);
+  /// Judges synData_received.
+  void told(std::uint16_t node, const Observation& seen, const machine::SynDataReceived& data);
+  void finish(std::int64_t end_us);
+  /// Judges synaptic data, a sound net_msg, that `node` sends.
+  void sent(std::uint16_t node, const Observation& seen, const Net& net);
+
+ private:
+  static constexpr std::size_t kChannelsMax = 16;
+
+  /// Times at which a channel did something, newest last; shows the grid of the clock's ticks.
+  struct Ticks {
+    std::array<std::int64_t, 4> at_us{};
+    std::uint8_t count = 0;
+    void add(std::int64_t now_us);
+  };
+  struct Out {
+    machine::ChannelId id = 0;
+    std::int64_t begun_us = -1;  ///< Running since; -1: it does not run.
+    std::int64_t wrote_us = -1;  ///< A value that is to be sent.
+    std::int64_t waits_us = -1;  ///< Silence counts from here.
+    Ticks ticks;
+    std::int64_t sent_us = -1;     ///< The last data; -1: none since it was started.
+    std::int64_t written_us = -1;  ///< The last write that changed something.
+    std::int64_t silent_us = -1;   ///< When it was stopped or disposed; -1: it runs.
+    bool disposed = false;
+  };
+  struct In {
+    machine::ChannelId id = 0;
+    bool local = false;          ///< From the node itself.
+    std::int64_t begun_us = -1;  ///< Running since; -1: it does not run.
+    std::int64_t ended_us = -1;  ///< Stopped or disposed, or created and not started, then.
+    std::int64_t told_us = -1;   ///< The last synData_received.
+    std::int64_t waits_us = -1;  ///< Silence counts from here.
+    std::array<std::int64_t, 4> data_us{-1, -1, -1, -1};  ///< The last data that it was given.
+    std::uint8_t data_next = 0;
+    bool before = false;  ///< Data came while it did not run; it may count, or not.
+    Ticks ticks;
+  };
+  struct Node {
+    bool logged = false;           ///< Its log creates channels.
+    std::int64_t member_us = -1;   ///< A mote: joined since; a sink always is.
+    std::int64_t on_us = 0;        ///< Its radio is on since; -1: it is off.
+    std::int64_t restart_us = -1;  ///< A channel was started while others ran.
+    bool shifted = false;          ///< That shifted the ticks, and was reported.
+    std::vector<In> ins;
+    machine::Synaptic channels;
+    std::int64_t step_us = -1;  ///< The last set_time_step.
+    std::vector<Out> outs;
+  };
+
+  Out* find(Node& node, machine::ChannelId id);
+  static In* find_in(Node& node, machine::ChannelId id);
+  void note_inputs(Node& node, const machine::Synaptic& before, std::int64_t now_us);
+  std::int64_t able_since(std::uint16_t device) const;
+  std::int64_t patience_us(std::uint16_t device, bool first) const;
+  void settle(std::uint16_t device, std::int64_t now_us);
+  void settle_outputs(std::uint16_t device, std::int64_t now_us, std::int64_t able_us);
+  bool crowded(std::uint16_t device, std::int64_t from_us, std::int64_t to_us) const;
+  void judge_grid(std::uint16_t device, const Observation& seen, const Ticks& ticks);
+  void note(Node& node, const machine::Synaptic& before, std::int64_t now_us);
+
+  Context& context_;
+  std::vector<Node> nodes_;
+};
+
+}  // namespace rubric::check

@@ -1,0 +1,22 @@
+// Acknowledgements of the link: whether a frame that asked for one got it.
+#pragma once
+
+#include <cstdint>
+
+#include "conformance/check/observation.h"
+
+namespace rubric::check {
+
+inline constexpr std::int64_t kRadioByteUs = 32;  ///< 250 kbit/s. (IEEE 802.15.4, 6.1.1)
+/// Bytes of a frame on the air around its payload: preamble, SFD, length, MAC header, type, FCS.
+inline constexpr std::int64_t kAroundBytes = 19;
+
+/// Returns whether the 802.15.4 acknowledgement of radio frame `index`, by its DSN, came 0 to 2.5
+/// ms after its end. It proves that *some* node of that address received it; its absence proves
+/// nothing.
+bool link_acked(const Run& run, std::uint32_t index);
+
+/// Returns the same for a packet down a serial line: the mote's stack confirmed its number.
+bool serial_acked(const Run& run, std::uint32_t index);
+
+}  // namespace rubric::check

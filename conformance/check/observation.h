@@ -1,0 +1,142 @@
+// A run: the frames of its files in one order of time, and what the user knows about it.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "conformance/check/finding.h"
+#include "conformance/machine/address.h"
+#include "conformance/machine/event.h"
+
+namespace rubric::check {
+
+/// One thing that was seen.
+struct Observation {
+  enum class Kind : std::uint8_t {
+    kRadio,    ///< An active message on the air; time_us is the start of the frame.
+    kLinkAck,  ///< An 802.15.4 acknowledgement, or that of a serial line; dsn says of what.
+    kSerial,   ///< An active message on a serial line; time_us is the end of the frame.
+    kDamaged,  ///< Bytes that are no frame (bad CRC and the like); no node hears them.
+    kCall,     ///< An application's call, from a .rtr log.
+    kPeis,     ///< A message given to PEIS, or by it to a base station, from a .rtr log.
+    kNotice,   ///< A notice to an application, from a .rtr log.
+    kReboot,   ///< The node lost its memory or its power, by a .rtr log.
+  };
+  Kind kind = Kind::kRadio;
+  bool to_mote = false;      ///< Serial: towards the sink. Without direction flags see Tap.
+  bool ack_request = false;  ///< Asks for an acknowledgement of the link.
+  bool has_dsn = false;      ///< A .rtr log has no DSN; of a serial line the packets with number.
+  std::uint8_t dsn = 0;      ///< Radio and link ack; the sequence number of a serial packet.
+  /// From a .rtr log: `node` was given this frame, so it did receive it. Else `node` sent it.
+  bool received = false;
+  std::uint16_t pan = 0;
+  std::uint32_t tap = 0;  ///< Index into Run::taps.
+  Place place;
+  machine::Frame frame;                 ///< Bytes live as long as the Run.
+  std::string_view node;                ///< From a .rtr log: who sent it, who called; else empty.
+  const machine::Call* call = nullptr;  ///< kCall.
+  const machine::Notice* notice = nullptr;  ///< kNotice.
+  ReqId broken = ReqId::kNone;              ///< kDamaged: the rule that the bytes break.
+};
+
+/// A place where somebody listened: the air, a serial line.
+struct Tap {
+  std::string name;
+  machine::Link link = machine::Link::kRadio;
+  bool has_direction = false;  ///< The capture says which way a frame went.
+};
+
+/// A node as the user describes it (`--node 2=mote`, `--sink 1=11`).
+struct KnownNode {
+  std::uint16_t id = 0;
+  machine::Role role = machine::Role::kMote;
+  std::uint16_t island = 0;  ///< For a sink; 0: unknown.
+};
+
+struct Options {
+  bool deployed = false;          ///< The profile.
+  bool sniffer_complete = false;  ///< Every frame on the air was captured.
+  bool start_cold = false;        ///< Nothing had happened before the first frame.
+  /// Stated response time (decision 125); unstated, the profile's.
+  std::optional<std::int64_t> response_us;
+  /// Stated ack timeout (decision 110); unstated, the profile's; where it has none, the paper's.
+  std::optional<std::int64_t> ack_timeout_us;
+  std::int64_t skew_us = 50'000;  ///< Bound of the skew between the stamps of two taps.
+  std::vector<KnownNode> nodes;
+  std::vector<std::uint16_t> testers;  ///< AM addresses of senders that are no node under test.
+};
+
+/// A node as a .rtr log describes it.
+struct LoggedNode {
+  std::string name;
+  machine::Role role = machine::Role::kMote;
+  std::uint16_t id = 0;
+  std::uint16_t island = 0;  ///< 0: not said.
+  bool under_test = true;    ///< If a log marks some nodes as under test, the others are not.
+  bool application = false;  ///< The log has its application's calls and events.
+  bool hearing = false;      ///< The log has what its radio was given.
+  bool peis = false;         ///< The log has its lines of PEIS.
+  bool busy = false;         ///< A line of it, or its application, was busy for some time.
+  std::vector<std::pair<std::int64_t, std::int64_t>> busy_us;  ///< From when to when.
+};
+
+/// The times between which a frame of a file without stamps must lie, by frames that other files
+/// have.
+struct LoosePlace {
+  std::uint32_t file = 0;
+  std::uint64_t frame = 0;
+  std::int64_t early_us = 0;
+  std::int64_t late_us = 0;
+  /// Two of those frames surround it, and its direction is plain; else it blames no node.
+  bool between = false;
+};
+
+/// Holds the objects that observations point to.
+struct RunStorage;
+
+struct Run {
+  std::vector<std::string> files;
+  std::vector<LoggedNode> nodes;
+  /// A log marks nodes as under test: the trace plays everybody else.
+  bool marked = false;
+  std::shared_ptr<RunStorage> storage;
+  std::vector<Tap> taps;
+  std::vector<std::string> facts;  ///< Results of the reading, a sentence each.
+  std::vector<Observation> seen;   ///< In order of cause: see merge() in read.h.
+  std::int64_t start_us = 0;       ///< The first stamp.
+  std::int64_t end_us = 0;
+  /// Everything has a stamp. Raw bytes carry none: no rule about their times is judged, and beside
+  /// other files nothing fails that depends on the order between the two.
+  bool has_time = true;
+  /// By tap: its clock is not known to be that of the air, so nothing fails that depends on the
+  /// order between the two. Empty if there is no such tap.
+  std::vector<bool> unordered_taps;
+  /// Lines on clocks of their own were put on that of the air, as early as they can be; they may be
+  /// later by this. A failure must be found wherever in that time they are.
+  std::int64_t slack_us = 0;
+  std::vector<bool> slack_taps;  ///< By tap: those lines; empty: none.
+  /// Frames of files without stamps that are in order with others, by file and frame. A failure
+  /// must be found in each order that these bounds allow.
+  std::vector<LoosePlace> loose;
+};
+
+/// The whole answer.
+struct Report {
+  Verdict verdict = Verdict::kPass;
+  std::vector<Finding> findings;  ///< In order of place.
+  std::uint64_t frames = 0;       ///< Judged.
+  /// Facts about the run, one sentence each (nodes, roles, islands, holes).
+  std::vector<std::string> facts;
+  /// Rules that were exercised at least once, with their counts.
+  std::vector<std::pair<ReqId, std::uint64_t>> exercised;
+};
+
+/// Judges a run. Never fails on any input; uses bounded memory.
+Report judge(const Run& run, const Options& options);
+
+}  // namespace rubric::check

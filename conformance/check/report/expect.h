@@ -1,0 +1,52 @@
+// What became of the failures that a report was expected to show.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "conformance/check/observation.h"
+#include "conformance/report/known_failures.h"
+
+namespace rubric::report {
+
+/// What an expectation came to.
+enum class Came : std::uint8_t {
+  kTrue,          ///< A failure is just so.
+  kStale,         ///< Nothing failed that way any more.
+  kOtherMessage,  ///< It fails, but says something else.
+  kNotAsked,      ///< It is about another file or profile.
+};
+/// Returns "matched", "stale", "other_message", "not_applicable".
+std::string_view came_name(Came came);
+
+struct ExpectationResult {
+  Came came = Came::kNotAsked;
+  std::vector<std::size_t> findings;  ///< Those that match; with kOtherMessage those that do not.
+};
+
+constexpr std::size_t kUnexpected = static_cast<std::size_t>(-1);
+
+/// A report compared with its expectations.
+struct Outcome {
+  std::vector<ExpectationResult> results;  ///< One for each expectation.
+  std::vector<std::size_t> expected_by;    ///< One for each finding; kUnexpected: by none.
+  std::uint64_t unexpected_failures = 0;
+  std::uint64_t broken_expectations = 0;  ///< Stale, or with another message.
+  bool nothing_judged = false;            ///< No rule had its chance to be broken.
+  /// The report's verdict; inconclusive if nothing could be judged.
+  check::Verdict verdict = check::Verdict::kPass;
+
+  bool as_expected() const { return unexpected_failures == 0 && broken_expectations == 0; }
+  /// Returns 0 as expected, 1 not, 3 nothing but inconclusive.
+  int exit_code() const { return !as_expected() ? 1 : nothing_judged ? 3 : 0; }
+};
+
+/// Reads a file's text as parse_known_failures() does.
+KnownFailures parse_expectations(std::string_view text, const std::string& name);
+
+Outcome compare(const check::Run& run, const check::Options& options, const check::Report& report,
+                const KnownFailures& known);
+
+}  // namespace rubric::report

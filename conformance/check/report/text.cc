@@ -1,0 +1,350 @@
+#include "conformance/check/report/text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "codec/reflect/fault_text.h"
+#include "conformance/check/report/chart.h"
+#include "conformance/check/report/scene.h"
+#include "conformance/check/report/words.h"
+
+namespace rubric::report {
+namespace {
+
+using check::Finding;
+using check::kNobody;
+using check::Severity;
+
+constexpr std::size_t kFramesBefore = 3;
+constexpr std::size_t kFramesAfter = 2;
+constexpr std::size_t kFactLines = 6;    // More are run together.
+constexpr std::size_t kLinesOfRule = 3;  // Of a rule and severity, without --verbose.
+
+class TextReport {
+ public:
+  TextReport(const Story& story, const TextOptions& options)
+      : story_(story), options_(options), windows_(story.run, story.options, options.judge) {}
+
+  std::string text() {
+    about_the_run();
+    std::vector<std::size_t> lines;  // Findings that get a line each.
+    std::set<std::pair<std::size_t, std::string>> told;
+    const auto& findings = story_.report.findings;
+    for (std::size_t i = 0; i < findings.size(); ++i) {
+      const bool failed = findings[i].severity == Severity::kFail && !is_expected(i);
+      const bool first = failed && told.emplace(reflect::requirement_index(findings[i].requirement),
+                                                findings[i].node)
+                                       .second;
+      if (first || options_.verbose) {
+        in_full(i);
+      } else {
+        lines.push_back(i);
+      }
+    }
+    in_lines(lines);
+    expectations();
+    sum();
+    return std::move(out_);
+  }
+
+  std::string one(std::size_t i) {
+    options_.verbose ? in_full(i) : in_line(i);
+    return std::move(out_);
+  }
+
+ private:
+  bool is_expected(std::size_t i) const { return story_.outcome.expected_by[i] != kUnexpected; }
+
+  std::string_view style_of(Severity severity) const {
+    switch (severity) {
+      case Severity::kFail: return "1;31";
+      case Severity::kWeak: return "33";
+      case Severity::kInconclusive: return "35";
+      case Severity::kStray: return "36";
+      case Severity::kNote: return "2";
+    }
+    return "0";
+  }
+
+  void styled_line(std::string_view style, std::string_view head, std::string_view rest) {
+    out_ += styled(options_, style, head, rest);
+  }
+
+  void about_the_run() {
+    for (std::size_t f = 0; f < story_.run.files.size(); ++f) {
+      const bool several = story_.run.files.size() > 1;
+      out_ += several ? fmt::format("{}. {}\n", f + 1, story_.run.files[f])
+                      : story_.run.files[f] + "\n";
+    }
+    const check::Options& o = story_.options;
+    out_ += wrapped(
+        kIndent,
+        fmt::format("{}; profile {}, sniffer {}, start {}", counted(story_.report.frames, "frame"),
+                    o.deployed ? "deployed" : "paper", o.sniffer_complete ? "complete" : "unknown",
+                    o.start_cold ? "cold" : "unknown"),
+        options_.width);
+    std::string all;
+    for (const std::string& fact : story_.report.facts) all += (all.empty() ? "" : "; ") + fact;
+    if (story_.report.facts.size() > kFactLines) {
+      out_ += wrapped(kIndent, all, options_.width);
+    } else {
+      for (const std::string& fact : story_.report.facts) {
+        out_ += wrapped(kIndent, fact, options_.width);
+      }
+    }
+    if (story_.report.frames == 0) {
+      out_ += wrapped(kIndent, "No frames of this protocol: there is nothing to judge.",
+                      options_.width);
+    }
+    if (!story_.run.has_time) {
+      out_ += wrapped(kIndent, "What has no time stamps is not judged by rules about time.",
+                      options_.width);
+    }
+  }
+
+  std::string times_text(const Finding& finding) const {
+    if (finding.count < 2) return {};
+    std::string out = fmt::format(", {} times", finding.count);
+    if (finding.last.frame != 0) out += fmt::format(" up to frame {}", finding.last.frame);
+    return out;
+  }
+
+  std::string heading(std::size_t i) const {
+    const Finding& finding = story_.report.findings[i];
+    return fmt::format("{}, {}{}{}", trace_id(finding.requirement),
+                       finding.node.empty() ? std::string() : finding.node + ", ",
+                       place_text(story_.run, finding.place), times_text(finding));
+  }
+
+  static std::string_view trace_id(ReqId id) {
+    return id == ReqId::kNone ? std::string_view("(no rule)") : reflect::requirement(id).id;
+  }
+
+  std::string head(std::size_t i) const {
+    std::string name = in_capitals(severity_name(story_.report.findings[i].severity));
+    if (is_expected(i)) name = "EXPECTED " + name;
+    return options_.head.empty() ? name : options_.head + " " + name;
+  }
+
+  void in_full(std::size_t i) {
+    const Finding& finding = story_.report.findings[i];
+    out_ += '\n';
+    styled_line(style_of(finding.severity), head(i), heading(i));
+    out_ += wrapped(kIndent, finding.text, options_.width);
+    const reflect::Requirement& rule = reflect::requirement(finding.requirement);
+    if (finding.requirement != ReqId::kNone) {
+      out_ += field("Rule:",
+                    fmt::format("{} ({} {}; {})", rule.sentence, rule.level, rule.id,
+                                *rule.source == '\0' ? rule.clause : rule.source),
+                    options_);
+    }
+    out_ += field("Allowed:", finding.expected, options_);
+    if (is_expected(i)) {
+      out_ += field("Expected:", story_.expected.entries[story_.outcome.expected_by[i]].reason,
+                    options_);
+    }
+    hypotheses(finding);
+    frames(finding);
+    replay(finding);
+  }
+
+  void hypotheses(const Finding& finding) {
+    if (finding.hypotheses.empty()) return;
+    const bool one = finding.hypotheses.size() == 1;
+    out_ += fmt::format(
+        "{}{}\n", kIndent,
+        one ? "What could explain it:" : "What could explain it, the one that got furthest first:");
+    for (std::size_t h = 0; h < finding.hypotheses.size(); ++h) {
+      const check::Hypothesis& hypothesis = finding.hypotheses[h];
+      out_ += wrapped(fmt::format("{:>4}. ", h + 1), hypothesis.text, options_.width);
+      const std::string_view miss = h == 0 ? "nearest miss:" : "missed:";
+      if (!hypothesis.allowed.empty()) {
+        out_ += wrapped("      allowed next: ", hypothesis.allowed, options_.width);
+      }
+      if (!hypothesis.miss.empty()) {
+        out_ += wrapped(fmt::format("      {:<13} ", miss), hypothesis.miss, options_.width);
+      }
+    }
+  }
+
+  // Returns the frame at the place with some before and after it that concern the same node; for a
+  // sink, only those about the same motes.
+  std::vector<std::size_t> window(std::size_t at, std::uint16_t node) {
+    std::vector<std::uint16_t> topic;
+    if (at < story_.run.seen.size()) topic = scene_->topic(at);
+    const auto chosen = [&](std::size_t i) {
+      if (scene_->is_echo(i) || (node != kNobody && !scene_->concerns(i, node))) return false;
+      const std::vector<std::uint16_t> other = scene_->topic(i);
+      return topic.empty() || std::find_first_of(topic.begin(), topic.end(), other.begin(),
+                                                 other.end()) != topic.end();
+    };
+    std::vector<std::size_t> rows;
+    for (std::size_t i = at; i > 0 && rows.size() < kFramesBefore; --i) {
+      if (chosen(i - 1)) rows.insert(rows.begin(), i - 1);
+    }
+    if (at >= story_.run.seen.size()) return rows;
+    rows.push_back(at);
+    const std::size_t full = rows.size() + kFramesAfter;
+    for (std::size_t i = at + 1; i < story_.run.seen.size() && rows.size() < full; ++i) {
+      if (chosen(i)) rows.push_back(i);
+    }
+    return rows;
+  }
+
+  void frames(const Finding& finding) {
+    if (!scene_) scene_.emplace(story_.run, story_.options);
+    const std::size_t all = story_.run.seen.size();
+    const std::size_t at = finding.place.frame == 0 ? all : index_of(story_.run, finding.place);
+    std::uint16_t node = scene_->node_named(finding.node);
+    if (node == kNobody && at < all) node = scene_->sender(at);
+    const std::vector<std::size_t> rows = window(at, node);
+    if (rows.empty()) return;
+    out_ +=
+        fmt::format("{}Frames{}:\n", kIndent, node == kNobody ? "" : " of " + scene_->name(node));
+    for (const std::size_t i : rows) {
+      const check::Place& place = story_.run.seen[i].place;
+      std::string where = fmt::format("{} {:>5}", i == at ? '>' : ' ', place.frame);
+      if (story_.run.files.size() > 1) where += fmt::format(" of {}", place.file + 1);
+      where += fmt::format("  offset {}", place.offset_bytes);
+      if (place.time_us >= 0) where += fmt::format(", {} s", seconds_text(place.time_us));
+      out_ += fmt::format("{}{}, {}\n", kIndent, where, scene_->route(i));
+      constexpr std::string_view kDeep = "             ";
+      const std::string message = scene_->message(i);
+      // Shows the frame in question in full, the others on one line each.
+      if (i == at || kDeep.size() + message.size() <= options_.width) {
+        out_ += wrapped(kDeep, message, options_.width, kDeep.size() + 2);
+      } else {
+        const std::size_t room = options_.width - kDeep.size() - 3;
+        const std::size_t end = std::min(message.rfind(' ', room), room);
+        out_ += fmt::format("{}{}...\n", kDeep, message.substr(0, end));
+      }
+    }
+    out_ += '\n' + chart(*scene_, rows, at, kIndent.size() + 2, options_.width);
+  }
+
+  void replay(const Finding& finding) {
+    if (options_.command.empty()) return;
+    std::string ranges;
+    if (options_.judge) {
+      for (const FrameRange& range : windows_.around(finding)) {
+        ranges += " --frames " + range_text(range, story_.run.files.size());
+      }
+    }
+    // A command is meant to be copied, so it is not broken.
+    out_ +=
+        fmt::format("\n{}Again:    {}{}{}\n", kIndent, options_.command, options_.files, ranges);
+  }
+
+  // Prints the rest: by severity, then by rule, a few of each.
+  void in_lines(const std::vector<std::size_t>& which) {
+    using Key =
+        std::tuple<int, bool, std::size_t>;  // The last is the rule's place in the catalogue.
+    std::map<Key, std::vector<std::size_t>> groups;
+    for (const std::size_t i : which) {
+      const Finding& finding = story_.report.findings[i];
+      groups[{-static_cast<int>(finding.severity), is_expected(i),
+              reflect::requirement_index(finding.requirement)}]
+          .push_back(i);
+    }
+    if (!groups.empty()) out_ += '\n';
+    for (const auto& [key, group] : groups) {
+      for (std::size_t n = 0; n < group.size(); ++n) {
+        const Finding& finding = story_.report.findings[group[n]];
+        if (n >= kLinesOfRule && group.size() > kLinesOfRule + 1) {
+          out_ += fmt::format("{}and {} more of {} (--verbose lists them)\n", kIndent,
+                              group.size() - n, trace_id(finding.requirement));
+          break;
+        }
+        in_line(group[n]);
+      }
+    }
+  }
+
+  void in_line(std::size_t i) {
+    const Finding& finding = story_.report.findings[i];
+    std::string rest =
+        fmt::format("{}: {}", heading(i), options_.text.empty() ? finding.text : options_.text);
+    if (is_expected(i)) {
+      rest += fmt::format(" Expected: {}",
+                          story_.expected.entries[story_.outcome.expected_by[i]].reason);
+    }
+    styled_line(style_of(finding.severity), head(i), rest);
+  }
+
+  void expectations() {
+    for (std::size_t e = 0; e < story_.outcome.results.size(); ++e) {
+      const ExpectationResult& result = story_.outcome.results[e];
+      const KnownFailure& one = story_.expected.entries[e];
+      const std::string place = fmt::format("{}:{}", story_.expected.name, one.line);
+      if (result.came == Came::kStale) {
+        out_ += '\n';
+        styled_line("1;31", "STALE",
+                    fmt::format("{}: {} does not fail with \"{}\" any more. If that is meant, "
+                                "delete the expectation.",
+                                place, one.requirement, one.message));
+      } else if (result.came == Came::kOtherMessage) {
+        const Finding& finding = story_.report.findings[result.findings.front()];
+        out_ += '\n';
+        styled_line("1;31", "OTHER MESSAGE",
+                    fmt::format("{}: {} was expected to say \"{}\", but {} says: {}", place,
+                                one.requirement, one.message, place_text(story_.run, finding.place),
+                                finding.text));
+      }
+    }
+  }
+
+  void sum() {
+    std::map<Severity, std::uint64_t> counts;
+    std::uint64_t expected = 0;
+    for (std::size_t i = 0; i < story_.report.findings.size(); ++i) {
+      const Severity severity = story_.report.findings[i].severity;
+      ++(is_expected(i) ? expected : counts[severity]);
+    }
+    const Outcome& outcome = story_.outcome;
+    std::string text = counted(counts[Severity::kFail], "failure");
+    if (!story_.expected.entries.empty()) {
+      text += fmt::format(", {} expected, {} not true", counted(expected, "known failure"),
+                          counted(outcome.broken_expectations, "expectation"));
+    }
+    for (const Severity severity :
+         {Severity::kWeak, Severity::kStray, Severity::kInconclusive, Severity::kNote}) {
+      if (counts[severity] == 0) continue;
+      const bool note = severity == Severity::kNote;
+      text += ", " + (note ? counted(counts[severity], "note")
+                           : fmt::format("{} {}", counts[severity], severity_name(severity)));
+    }
+    text += fmt::format("; {} judged, {} exercised", counted(story_.report.frames, "frame"),
+                        counted(story_.report.exercised.size(), "rule"));
+    std::string verdict(verdict_name(outcome.verdict));
+    if (outcome.verdict == check::Verdict::kFail && outcome.as_expected()) {
+      verdict += " as expected";
+    } else if (outcome.nothing_judged) {
+      verdict += ", nothing could be judged";
+    }
+    const bool good = outcome.exit_code() == 0;
+    out_ += '\n';
+    styled_line(good ? "1;32" : "1;31", "Verdict:", fmt::format("{}: {}.", verdict, text));
+  }
+
+  const Story& story_;
+  const TextOptions& options_;
+  Windows windows_;
+  std::optional<Scene> scene_;  // Costs a pass, so only where there is something to show.
+  std::string out_;
+};
+
+}  // namespace
+
+std::string text_report(const Story& story, const TextOptions& options) {
+  return TextReport(story, options).text();
+}
+
+std::string text_finding(const Story& story, std::size_t index, const TextOptions& options) {
+  return TextReport(story, options).one(index);
+}
+
+}  // namespace rubric::report

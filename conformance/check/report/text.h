@@ -1,0 +1,39 @@
+// A report for people.
+#pragma once
+
+#include <string>
+
+#include "codec/text/text.h"
+#include "conformance/check/report/expect.h"
+#include "conformance/check/report/window.h"
+
+namespace rubric::report {
+
+/// The parts of a report. Borrowed.
+struct Story {
+  const check::Run& run;
+  const check::Options& options;
+  const check::Report& report;
+  const KnownFailures& expected;
+  const Outcome& outcome;
+};
+
+struct TextOptions : TextStyle {
+  bool verbose = false;  ///< Every finding in full.
+  /// The command that made this run, ready for a shell: program and options, and its files. Empty
+  /// if the run cannot be repeated.
+  std::string command = "rubric check";
+  std::string files;
+  std::string head;  ///< text_finding(): printed before the severity, in capitals.
+  std::string text;  ///< text_finding(): said in a line in place of the finding's.
+  Judge judge;       ///< Finds parts of the run that show a finding; empty: none.
+};
+
+/// Returns the report: facts about the run, each failure in full (others of the same rule and node
+/// on one line), the rest on a line each, the results of expectations, and the sum.
+std::string text_report(const Story& story, const TextOptions& options);
+
+/// Returns one finding of a story: a line, wrapped to the width; in full with `verbose`.
+std::string text_finding(const Story& story, std::size_t index, const TextOptions& options);
+
+}  // namespace rubric::report

@@ -1,0 +1,38 @@
+#include "conformance/check/report/words.h"
+
+#include <fmt/format.h>
+
+namespace rubric::report {
+std::string_view severity_name(check::Severity severity) {
+  switch (severity) {
+    case check::Severity::kNote: return "note";
+    case check::Severity::kWeak: return "weak";
+    case check::Severity::kStray: return "stray";
+    case check::Severity::kInconclusive: return "inconclusive";
+    case check::Severity::kFail: return "fail";
+  }
+  return "fail";
+}
+
+std::string_view verdict_name(check::Verdict verdict) {
+  switch (verdict) {
+    case check::Verdict::kPass: return "pass";
+    case check::Verdict::kWeak: return "weak";
+    case check::Verdict::kStray: return "stray";
+    case check::Verdict::kInconclusive: return "inconclusive";
+    case check::Verdict::kFail: return "fail";
+  }
+  return "error";
+}
+
+std::string place_text(const check::Run& run, const check::Place& place) {
+  std::string out =
+      place.frame == 0 ? std::string("the end of the run") : fmt::format("frame {}", place.frame);
+  if (place.frame != 0 && run.files.size() > 1 && place.file < run.files.size()) {
+    out += " of " + run.files[place.file];
+  }
+  if (place.time_us >= 0) out += " at " + seconds_text(place.time_us) + " s";
+  return out;
+}
+
+}  // namespace rubric::report

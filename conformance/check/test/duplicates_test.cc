@@ -1,0 +1,138 @@
+// The same air or line in two files of a run.
+#include "conformance/check/input/duplicates.h"
+
+#include <gtest/gtest.h>
+
+#include "conformance/check/input/read.h"
+#include "conformance/check/judge/judge.h"
+
+namespace rubric::check {
+namespace {
+
+const std::string kFirmware = "spec/captures/firmware/";
+const std::string kReliable = kFirmware + "b_reliable.pcapng";
+
+check::Run must_read(const std::vector<std::string>& files) {
+  std::string error;
+  std::optional<check::Run> run = read(files, error);
+  EXPECT_TRUE(run) << error;
+  return run ? std::move(*run) : check::Run{};
+}
+
+std::string error_of(check::Run& run) {
+  std::string error;
+  const bool good = drop_duplicates(run, {}, error);
+  EXPECT_EQ(good, error.empty());
+  return error;
+}
+
+void same_findings(const check::Run& one, const check::Run& two) {
+  const Report before = judge(one, {});
+  const Report after = judge(two, {});
+  EXPECT_EQ(after.frames, before.frames);
+  ASSERT_EQ(after.findings.size(), before.findings.size());
+  for (std::size_t i = 0; i < after.findings.size(); ++i) {
+    EXPECT_EQ(after.findings[i].text, before.findings[i].text);
+    EXPECT_EQ(after.findings[i].place.frame, before.findings[i].place.frame);
+  }
+}
+
+TEST(Duplicates, AFileThatIsGivenTwiceIsJudgedOnce) {
+  check::Run run = must_read({kReliable, kReliable});
+  EXPECT_EQ(error_of(run), "");
+  same_findings(must_read({kReliable}), run);
+  ASSERT_EQ(run.facts.size(), 2U);  // Air and line.
+  EXPECT_NE(run.facts[0].find("judged once"), std::string::npos);
+}
+
+TEST(Duplicates, TheBytesOfALineThatACaptureHasAreJudgedOnce) {
+  for (const bool first : {false, true}) {
+    std::vector<std::string> files = {kReliable, kFirmware + "b_reliable.serial.bin"};
+    if (first) std::swap(files[0], files[1]);
+    check::Run run = must_read(files);
+    EXPECT_FALSE(run.has_time);
+    EXPECT_EQ(error_of(run), "");
+    EXPECT_TRUE(run.has_time);
+    same_findings(must_read({kReliable}), run);
+  }
+}
+
+TEST(Duplicates, ACaptureWithFewerFramesCountsOnlyThroughTheOther) {
+  check::Run run = must_read({kReliable, kReliable});
+  bool odd = false;
+  std::erase_if(run.seen, [&](const Observation& seen) {
+    if (seen.place.file != 0 || seen.kind != Observation::Kind::kRadio) return false;
+    odd = !odd;
+    return odd;
+  });
+  for (Observation& seen : run.seen) {  // Another clock.
+    if (seen.place.file == 0) seen.place.time_us += 10'000;
+  }
+  merge(run);
+  EXPECT_EQ(error_of(run), "");
+  const auto frames = std::count_if(run.seen.begin(), run.seen.end(), [](const Observation& o) {
+    return o.kind == Observation::Kind::kRadio;
+  });
+  const check::Run one = must_read({kReliable});
+  EXPECT_EQ(frames, std::count_if(one.seen.begin(), one.seen.end(), [](const Observation& o) {
+              return o.kind == Observation::Kind::kRadio;
+            }));
+}
+
+TEST(Duplicates, CapturesOfTheSameTimeThatDisagreeAreRefused) {
+  check::Run run = must_read({kReliable, kFirmware + "a_join_data.pcapng"});
+  const std::string error = error_of(run);
+  EXPECT_NE(error.find("a_join_data.pcapng: frame "), std::string::npos) << error;
+  EXPECT_NE(error.find("--frames 2:none"), std::string::npos) << error;
+}
+
+TEST(Duplicates, CapturesOfOtherTimesAreOneRun) {
+  check::Run run = must_read({kReliable, kFirmware + "a_join_data.pcapng"});
+  const std::size_t size = run.seen.size();
+  for (Observation& seen : run.seen) {
+    if (seen.place.file == 1) seen.place.time_us += 3'600'000'000;
+  }
+  merge(run);
+  EXPECT_EQ(error_of(run), "");
+  EXPECT_EQ(run.seen.size(), size);
+}
+
+TEST(Duplicates, LinesOfTwoSinksAreTwoLines) {
+  check::Run run = must_read(
+      {kFirmware + "c_two_islands.serial.bin", kFirmware + "c_two_islands.node101.serial.bin"});
+  const std::size_t size = run.seen.size();
+  EXPECT_EQ(error_of(run), "");
+  EXPECT_EQ(run.seen.size(), size);
+}
+
+TEST(Duplicates, ALogBesideACaptureHasNoFrames) {
+  constexpr const char* kLog = R"(%rtr 1  %profile paper  %tick us
+%node m2 mote id=2
+
+case log
+   @0 m2 < app join(type=1 transducers=1 actuators=1)
+   @1000 m2 > rA am=2->1 join_request(seq_num=5 mote_type=1 transducers=1 actuators=1)
+)";
+  for (const bool capture : {false, true}) {
+    RunReader reader;
+    std::string error;
+    if (capture) {
+      ASSERT_TRUE(reader.add_file(kReliable, error)) << error;
+    }
+    ASSERT_TRUE(reader.add_bytes("log", kLog, error)) << error;
+    if (!capture) {
+      ASSERT_TRUE(reader.add_bytes("again", kLog, error)) << error;
+    }
+    check::Run run = reader.finish();
+    for (Observation& seen : run.seen) {
+      if (!seen.node.empty()) seen.place.time_us += 5'000'000;
+    }
+    error = error_of(run);
+    EXPECT_NE(error.find(capture ? "log:6: frames on the air" : "again: what node m2"),
+              std::string::npos)
+        << capture << ": " << error;
+  }
+}
+
+}  // namespace
+}  // namespace rubric::check

@@ -1,0 +1,94 @@
+// Synaptic channels in logs that have the calls.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "codec/reflect/requirements.h"
+#include "conformance/check/input/read.h"
+#include "conformance/check/judge/judge.h"
+
+namespace rubric::check {
+namespace {
+
+constexpr const char* kBegin = R"(%rtr 1  %profile paper  %tick ms
+%node m2 mote id=2
+%node sA sink id=1 island=11
+
+case log
+   @0 m2 < app join(type=1 transducers=1 actuators=1)
+   @1 m2 > rA am=2->1 join_request(seq_num=5 mote_type=1 transducers=1 actuators=1)
+   @5 sA > rA am=1->2 join_reply(island_addr=11 mote_addr=2 cur_time=5 seq_num=5)
+   @9 m2 > rA am=2->1 ack_join(dest=11:1 src=11:2 seq_num=5 mote_type=1 transducers=1 actuators=1)
+)";
+
+std::string line(int ms, const std::string& rest) {
+  return "   @" + std::to_string(ms) + " m2 " + rest + "\n";
+}
+// `seq_digit` is the last digit of the message's number.
+std::string data(int ms, int seq_digit, const std::string& bytes) {
+  return line(ms, "> rA am=2->1 am(28 x000b0001000b000200000" + std::to_string(seq_digit) +
+                      "06010b" + bytes + ")");
+}
+
+std::string fails(const std::string& log) {
+  RunReader reader;
+  std::string error;
+  EXPECT_TRUE(reader.add_bytes("log", kBegin + log, error)) << error;
+  const check::Run run = reader.finish();
+  Options options;
+  options.start_cold = true;
+  std::string out;
+  for (const Finding& finding : judge(run, options).findings) {
+    if (finding.severity != Severity::kFail) continue;
+    out += std::string(out.empty() ? "" : " ") + reflect::requirement(finding.requirement).id;
+  }
+  return out;
+}
+
+std::string channel(const std::string& mode) {
+  return line(100, "< app create_out(dest=11:1 size=1 mode=" + mode + ")") +
+         line(110, "< app write_output(channel=2->1 pos=0 value=1)") +
+         line(120, "< app start(channel=2->1)");
+}
+
+TEST(SynapticWatch, SteadyDataPasses) {
+  EXPECT_EQ(fails(channel("reliable") + data(600, 1, "0000803f") + data(1090, 2, "0000803f") +
+                  data(1580, 3, "0000803f")),
+            "");
+}
+
+TEST(SynapticWatch, TicksTooCloseFail) {
+  EXPECT_EQ(fails(channel("reliable") + data(600, 1, "0000803f") + data(900, 2, "0000803f")),
+            "S2-TICK");
+}
+
+TEST(SynapticWatch, AnotherPeriodIsKept) {
+  EXPECT_EQ(fails(channel("reliable") + line(130, "< app set_time_step(clock=200)") +
+                  data(600, 1, "0000803f") + data(800, 2, "0000803f")),
+            "");
+}
+
+TEST(SynapticWatch, PowerSaveIsSilentWithoutAChange) {
+  const std::string first = channel("power_save") + data(600, 1, "0000803f");
+  EXPECT_EQ(fails(first + data(2090, 2, "0000803f")), "S3-UNCHANGED");
+  EXPECT_EQ(fails(first + line(2000, "< app write_output(channel=2->1 pos=0 value=2)") +
+                  data(2090, 2, "00000040")),
+            "");
+}
+
+TEST(SynapticWatch, StoppedAndDisposedChannelsAreSilent) {
+  const std::string first = channel("reliable") + data(600, 1, "0000803f");
+  EXPECT_EQ(fails(first + line(700, "< app stop(channel=2->1)") + data(1580, 2, "0000803f")),
+            "S6-STOPPED");
+  EXPECT_EQ(fails(first + line(700, "< app dispose(channel=2->1)") + data(1580, 2, "0000803f")),
+            "S6-DISPOSED");
+}
+
+TEST(SynapticWatch, OneValueForEachConnection) {
+  EXPECT_EQ(fails(channel("reliable") +
+                  line(600, "> rA am=2->1 am(28 x000b0001000b00020000010a010b0000803f0000803f)")),
+            "S2-CONTENT");
+}
+
+}  // namespace
+}  // namespace rubric::check

@@ -1,0 +1,317 @@
+#include "conformance/explore/network.h"
+
+#include <algorithm>
+
+#include "conformance/explore/healing.h"
+
+namespace rubric::explore {
+namespace {
+
+constexpr std::size_t kNodeBytes = 3;
+
+std::uint64_t fold(std::uint64_t a, std::uint64_t b) {
+  const auto product = static_cast<unsigned __int128>(a) * b;
+  return static_cast<std::uint64_t>(product) ^ static_cast<std::uint64_t>(product >> 64);
+}
+
+}  // namespace
+
+Network::Network(Nodes& nodes) : nodes_(nodes), outcomes_(nodes), count_(nodes.count()) {
+  for (std::size_t i = 0; i < count_; ++i) am_address_[i] = nodes.config_of(i).id;
+}
+
+World Network::initial() const {
+  World world;
+  for (std::size_t i = 0; i < count_; ++i) world.node[i] = nodes_.initial(i);
+  return world;
+}
+
+// Puts a copy in the air, unless as many of the same are in flight as may be.
+void Network::fly(World& world, Copy copy) {
+  const Options& options = nodes_.options();
+  std::size_t same = 0;
+  std::size_t place = 0;
+  for (std::size_t i = 0; i < world.copies; ++i) {
+    const Copy other = world.copy[i];
+    if (other == copy) ++same;
+    const bool before =
+        other.sender() < copy.sender() ||
+        (other.sender() == copy.sender() && (!options.reorder || other.frame() <= copy.frame()));
+    if (before) place = i + 1;
+  }
+  if (same >= options.in_flight) return;
+  if (world.copies == World::kCopiesMax) {
+    overflowed_ = true;
+    return;
+  }
+  std::memmove(&world.copy[place + 1], &world.copy[place], (world.copies - place) * sizeof(Copy));
+  world.copy[place] = copy;
+  ++world.copies;
+}
+
+NodeSet Network::addressed(Copy copy) const {
+  const std::uint16_t dest = nodes_.frame(copy.frame()).dest;
+  unsigned set = 0;
+  for (std::size_t i = 0; i < count_; ++i) {
+    if (am_address_[i] == dest || dest == machine::kAmBroadcast) set |= 1U << i;
+  }
+  return static_cast<NodeSet>(set & ~(1U << copy.sender()));
+}
+
+bool Network::in_flight(const World& world, Copy copy) const {
+  const Copy* const end = world.copy.data() + world.copies;
+  return std::find(world.copy.data(), end, copy) != end;
+}
+
+// Applies a node's step and sends its frames.
+void Network::apply(World& world, std::size_t node, std::uint32_t what, Successor* successor) {
+  const Outcome& outcome = outcomes_(world.node[node], what);
+  if (successor != nullptr) {
+    successor->violated |= outcome.violated;
+    successor->goals |= outcome.goals;
+  }
+  if (outcome.overflow) overflowed_ = true;
+  world.node[node] = outcome.next;
+  for (std::uint8_t i = 0; i < outcome.frames; ++i) fly(world, Copy::of(outcome.frame[i], node));
+}
+
+void Network::hear(World& world, Copy copy, NodeSet hearers, Successor* successor) {
+  for (std::size_t i = 0; i < count_; ++i) {
+    if ((hearers >> i & 1) != 0) apply(world, i, event::kFrame + copy.frame(), successor);
+  }
+}
+
+void Network::add_step(const World& world, std::size_t node, std::uint32_t what, Successors& out) {
+  Successor& next = out.push(world);
+  next.move.node = static_cast<std::uint8_t>(node);
+  next.move.what = what;
+  apply(next.world, node, what, &next);
+}
+
+void Network::node_moves(const World& world, std::size_t node, Successors& out) {
+  const Options& options = nodes_.options();
+  const NodeFacts f = facts(world, node);
+  if (f.may_call) add_step(world, node, event::kCall, out);
+  for (std::uint8_t i = 0; i < f.sends; ++i) add_step(world, node, event::kSend + i, out);
+  if (!options.prompt || world.copies == 0) {
+    if (f.join_timer) add_step(world, node, event::kJoinTimer, out);
+    for (std::uint8_t i = 0; i < f.ack_timers; ++i) {
+      add_step(world, node, event::kAckTimer + i, out);
+    }
+  }
+  if (f.serial_sending) add_step(world, node, event::kDoneSerial, out);
+  if (f.radio_sending && f.on_air == 0) add_step(world, node, event::kDoneAcked, out);
+  if (f.radio_sending && f.on_air != 0) {
+    // Without loss the link ack comes as long as the frame may yet be heard.
+    const bool none = options.loss || !in_flight(world, Copy::of(f.on_air, node));
+    if (none) add_step(world, node, event::kDoneUnacked, out);
+  }
+  if (f.may_reboot) add_step(world, node, event::kReboot, out);
+}
+
+// Returns whether no earlier frame of its sender is still in flight.
+bool Network::is_first(const World& world, std::size_t i) const {
+  return nodes_.options().reorder || i == 0 || world.copy[i - 1].sender() != world.copy[i].sender();
+}
+
+// Returns whether a copy that is heard may be heard again.
+bool Network::may_stay(const World& world) const {
+  const Options& options = nodes_.options();
+  return options.dup && (options.dups == 0 || world.doubled < options.dups);
+}
+
+// Delivers a copy. The radio answers at once whatever is addressed to it, before any node reads the
+// frame; with loss, the answer may not arrive.
+void Network::deliver(const World& world, std::size_t i, NodeSet hearers, bool stays,
+                      Successors& out) {
+  const Copy copy = world.copy[i];
+  const bool wanted =
+      nodes_.frame(copy.frame()).link_ack && facts(world, copy.sender()).on_air == copy.frame();
+  for (const bool confirmed : {false, true}) {
+    if (confirmed ? !wanted : wanted && !nodes_.options().loss) continue;
+    Successor& next = out.push(world);
+    next.move.kind = Move::Kind::kDeliver;
+    next.move.copy = copy;
+    next.move.hearers = hearers;
+    next.move.stays = stays;
+    next.move.confirmed = confirmed;
+    if (!stays) next.world.erase(i);
+    if (stays && nodes_.options().dups != 0) ++next.world.doubled;
+    hear(next.world, copy, hearers, &next);
+    if (confirmed) apply(next.world, copy.sender(), event::kDoneAcked, &next);
+  }
+}
+
+void Network::copy_moves(const World& world, std::size_t i, Successors& out) {
+  const Copy copy = world.copy[i];
+  const Options& options = nodes_.options();
+  const bool again = i > 0 && world.copy[i - 1] == copy;  // The same as the one before.
+  if (again || !is_first(world, i)) return;
+  const NodeSet all = addressed(copy);
+  for (unsigned hearers = all; hearers != 0; hearers = (hearers - 1) & all) {
+    if (hearers != all && !options.loss) continue;  // Without loss all hear it.
+    // Hearing by some that ends the copy equals a copy that stays and is then lost.
+    const bool twice = options.loss && options.dup && options.dups == 0 && hearers != all;
+    if (!twice) deliver(world, i, static_cast<NodeSet>(hearers), false, out);
+    if (may_stay(world)) deliver(world, i, static_cast<NodeSet>(hearers), true, out);
+  }
+  if (options.loss || all == 0) {
+    Successor& next = out.push(world);
+    next.move.kind = Move::Kind::kLose;
+    next.move.copy = copy;
+    next.world.erase(i);
+  }
+}
+
+// Two frames overlap: nodes that both are addressed to hear neither.
+void Network::collide(const World& world, std::size_t i, std::size_t k, Successors& out) {
+  const Copy a = world.copy[i];
+  const Copy b = world.copy[k];
+  const auto common = static_cast<NodeSet>(addressed(a) & addressed(b));
+  Successor& next = out.push(world);
+  next.move.kind = Move::Kind::kCollide;
+  next.move.copy = a;
+  next.move.other = b;
+  next.move.hearers = static_cast<NodeSet>(addressed(a) & ~common);
+  next.move.other_hearers = static_cast<NodeSet>(addressed(b) & ~common);
+  next.world.erase(k);
+  next.world.erase(i);
+  hear(next.world, a, next.move.hearers, &next);
+  hear(next.world, b, next.move.other_hearers, &next);
+}
+
+void Network::collisions(const World& world, Successors& out) {
+  for (std::size_t i = 0; i < world.copies; ++i) {
+    for (std::size_t k = i + 1; k < world.copies; ++k) {
+      const Copy a = world.copy[i];
+      const Copy b = world.copy[k];
+      const bool meet = a.sender() != b.sender() && (addressed(a) & addressed(b)) != 0;
+      if (meet && is_first(world, i) && is_first(world, k)) collide(world, i, k, out);
+    }
+  }
+}
+
+void Network::successors(const World& world, Successors& out) {
+  out.clear();
+  for (std::size_t i = 0; i < count_; ++i) node_moves(world, i, out);
+  for (std::size_t i = 0; i < world.copies; ++i) copy_moves(world, i, out);
+  if (nodes_.options().collide) collisions(world, out);
+}
+
+bool Network::at_rest(const World& world) const {
+  if (world.copies != 0) return false;
+  for (std::size_t i = 0; i < count_; ++i) {
+    const NodeFacts& f = facts(world, i);
+    if (f.open || f.open_sends || f.radio_sending || f.serial_sending || f.waiting) return false;
+  }
+  return true;
+}
+
+Mask Network::violated(const World& world, const Successors& ways_on) {
+  const Options& options = nodes_.options();
+  Mask broken = 0;
+  bool open = false;
+  bool open_sends = false;
+  for (std::size_t i = 0; i < count_; ++i) {
+    const NodeFacts& f = facts(world, i);
+    open |= f.open;
+    open_sends |= f.open_sends;
+    for (std::size_t m = 0; f.listed != 0 && m < options.motes; ++m) {
+      const auto island = static_cast<std::uint8_t>(1U << (i - options.motes));
+      const bool acked = (facts(world, m).acked_ever & island) != 0;
+      if ((f.listed >> m & 1) != 0 && !acked) broken |= bit(Property::kListedAcked);
+    }
+  }
+  if (world.copies == 0) {
+    // New calls and reboots come from outside: the node itself must have a next step.
+    const bool way_on = std::any_of(ways_on.begin(), ways_on.end(), [](const Successor& s) {
+      return s.move.what != event::kCall && s.move.what != event::kReboot &&
+             (s.move.what < event::kSend || s.move.what >= event::kFrame);
+    });
+    const bool rest = at_rest(world);
+    const bool ack_times_out = options.profile.ack_timeout_ticks != 0;
+    if (!way_on && !rest) {
+      if (open) broken |= bit(Property::kOneTerminal);
+      if (open_sends && ack_times_out) broken |= bit(Property::kReliableEnds);
+      if (open || !open_sends || ack_times_out) broken |= bit(Property::kNoDeadlock);
+    }
+    bool weak = false;
+    if (!way_on && (options.properties & bit(Property::kJoinSucceeds)) != 0 &&
+        !heals(world, weak)) {
+      broken |= bit(Property::kJoinSucceeds);
+    }
+    if (weak) ++known_weak_;
+  }
+  return broken & options.properties;
+}
+
+bool Network::heals(const World& world, bool& weak) {
+  Healing healing(*this);
+  return healing.succeeds(world, weak);
+}
+
+Mask Network::goals(const World& world) const {
+  const Options& options = nodes_.options();
+  Mask reached = 0;
+  std::uint8_t views = 0;
+  int members = 0;
+  for (std::size_t m = 0; m < options.motes; ++m) {
+    const NodeFacts& mote = facts(world, m);
+    views = static_cast<std::uint8_t>(views | mote.view);
+    if (mote.view != 0) ++members;
+    for (std::size_t s = 0; s < options.sinks; ++s) {
+      const bool listed = (facts(world, options.motes + s).listed >> m & 1) != 0;
+      const bool member = mote.view == 1U << s;
+      if (listed && !member) reached |= bit(Goal::kGhost);
+      if (member && !listed && world.copies == 0 && !mote.radio_sending) {
+        reached |= bit(Goal::kOrphan);
+      }
+    }
+  }
+  if (members > 1) {
+    const bool one = (views & (views - 1)) == 0;
+    reached |= bit(one ? Goal::kSameIsland : Goal::kTwoIslands);
+  }
+  return reached;
+}
+
+std::size_t Network::pack(const World& world, std::uint8_t* out) const {
+  std::uint8_t* p = out;
+  for (std::size_t i = 0; i < count_; ++i, p += kNodeBytes) std::memcpy(p, &world.node[i], 3);
+  *p++ = static_cast<std::uint8_t>(world.copies);
+  *p++ = static_cast<std::uint8_t>(world.doubled);
+  for (std::size_t i = 0; i < world.copies; ++i, p += 3) std::memcpy(p, &world.copy[i], 3);
+  return static_cast<std::size_t>(p - out);
+}
+
+std::size_t Network::unpack(const std::uint8_t* bytes, World& world) const {
+  const std::uint8_t* p = bytes;
+  for (std::size_t i = 0; i < count_; ++i, p += kNodeBytes) {
+    world.node[i] = 0;
+    std::memcpy(&world.node[i], p, kNodeBytes);
+  }
+  world.copies = *p++;
+  world.doubled = *p++;
+  for (std::size_t i = 0; i < world.copies; ++i, p += 3) {
+    std::uint32_t bits = 0;
+    std::memcpy(&bits, p, 3);
+    world.copy[i] = {bits};
+  }
+  return static_cast<std::size_t>(p - bytes);
+}
+
+std::uint64_t Network::fingerprint(const World& world) const {
+  std::uint64_t hash = 0x9E3779B97F4A7C15U ^ (world.doubled << 8 | world.copies);
+  for (std::size_t i = 0; i < count_; i += 2) {
+    const std::uint64_t pair = std::uint64_t{world.node[i]} << 32 | world.node[i + 1];
+    hash = fold(hash ^ pair, 0xE7037ED1A0B428DBU);
+  }
+  for (std::size_t i = 0; i < world.copies; i += 2) {
+    const std::uint64_t second = i + 1 < world.copies ? world.copy[i + 1].bits : 0;
+    hash = fold(hash ^ (std::uint64_t{world.copy[i].bits} << 32 | second), 0x8EBC6AF09C88C6E3U);
+  }
+  hash = fold(hash, 0x589965CC75374CC3U);
+  return hash == 0 ? 1 : hash;
+}
+
+}  // namespace rubric::explore

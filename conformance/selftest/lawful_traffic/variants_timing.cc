@@ -1,0 +1,77 @@
+// Variants of clocks and speed.
+#include "conformance/selftest/lawful_traffic/variants.h"
+
+namespace rubric::lawful {
+namespace {
+
+void lose_first_requests(Plan& plan) {
+  plan.motes[0].boot_us = 200'000;
+  plan.losses.push_back(lose(rubicon::AmType::kJoin, 2, 2'000'000));
+}
+void slow(Plan& plan, Random&) {
+  plan.traits.delay_min_us = 110'000;
+  plan.traits.delay_max_us = 235'000;
+  plan.traits.ack_timeout_us = 2'000'000;
+  plan.foreign_chats = false;
+}
+void timers_slow(Plan& plan, Random&) {
+  lose_first_requests(plan);
+  plan.traits.clock_ppm_min = 17'000;
+  plan.traits.clock_ppm_max = 20'000;
+}
+void timers_fast(Plan& plan, Random&) {
+  lose_first_requests(plan);
+  plan.traits.clock_ppm_min = -35'000;
+  plan.traits.clock_ppm_max = -30'000;
+  plan.traits.access_max_us = 5'000;
+}
+void timers_real_ms(Plan& plan, Random&) {
+  lose_first_requests(plan);
+  plan.traits.join_period_us = 500'000;
+}
+void clock_skew(Plan& plan, Random& random) {
+  plan.traits.clock_ppm_min = -2'000;
+  plan.traits.clock_ppm_max = 2'000;
+  plan.traits.time_offset_ms = static_cast<std::uint32_t>(random.between(1, 1'000'000'000));
+}
+void spread_boots(Plan& plan, Random& random) {
+  for (std::size_t i = 0; i < plan.motes.size(); ++i) {
+    const auto turn = static_cast<std::int64_t>(i);
+    plan.motes[i].boot_us = 500'000 + turn * 3'000'000 + random.between(0, 300'000);
+  }
+}
+void cur_time_binary(Plan& plan, Random& random) {
+  spread_boots(plan, random);
+  plan.traits.binary_time = true;
+}
+void cur_time_wraps(Plan& plan, Random& random) {
+  spread_boots(plan, random);
+  plan.traits.time_offset_ms = UINT32_MAX - 2'000;
+}
+void cur_time_uptime(Plan& plan, Random& random) {
+  spread_boots(plan, random);
+  plan.traits.time_offset_ms = static_cast<std::uint32_t>(random.between(1, 2'000'000'000));
+}
+void busy_channel(Plan& plan, Random&) {
+  lose_first_requests(plan);
+  plan.traits.access_max_us = 28'000;
+  plan.foreign_chats = false;
+}
+
+}  // namespace
+
+std::vector<Variant> timing_variants() {
+  return {
+      {"slow", "nodes take up to 240 ms to react", {125}, slow},
+      {"timers_slow", "clocks that are slow by two percent", {128}, timers_slow},
+      {"timers_fast", "clocks that are fast by up to 3.5 percent", {128}, timers_fast},
+      {"timers_real_ms", "the join timer counts real milliseconds", {128}, timers_real_ms, true},
+      {"clock_skew", "clocks differ by up to 0.4 percent", {119}, clock_skew, true},
+      {"cur_time_binary", "cur_time counts binary milliseconds", {119}, cur_time_binary, true},
+      {"cur_time_wraps", "cur_time steps over its 32 bits", {119}, cur_time_wraps},
+      {"cur_time_uptime", "the sink has been up for long", {119}, cur_time_uptime, true},
+      {"busy_channel", "channel access takes up to 28 ms", {128}, busy_channel, true},
+  };
+}
+
+}  // namespace rubric::lawful

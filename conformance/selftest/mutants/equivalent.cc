@@ -1,0 +1,98 @@
+// Mutants that no golden trace finds. Most are equivalent to a correct node: the change is
+// allowed, or invisible. The others differ in a way that traces do not judge.
+#include <array>
+
+#include "conformance/selftest/mutants/hunt.h"
+
+namespace rubric::mutants {
+namespace {
+
+constexpr const char* kSerialAm =
+    "TinyOS's serial stack looks at no AM address, and no rule asks for one there.";
+constexpr const char* kSerialNbytes =
+    "On the serial line nbytes may count stale bytes behind the payload (N6-CONTENT).";
+constexpr const char* kFreeNumber = "What awaits no ack may have any number (decision 117).";
+constexpr const char* kAckCode =
+    "Any code in an ack is right: it says how the message was handled (decision 108).";
+constexpr const char* kResultTwice =
+    "The result of a call is what a function returns: an attachment that tells it twice says "
+    "nothing "
+    "of the node.";
+constexpr const char* kFailAddress = "No rule says which address joined(FAIL) tells.";
+constexpr const char* kRefusedId = "No rule says which id a refused creation tells.";
+constexpr const char* kWhileOff =
+    "Whether send refuses or queues while the interface is off is free, and a trace has no "
+    "alternatives: it cannot hold what send then told against what it did.";
+constexpr const char* kRepeats =
+    "Whether and how often ack_join is repeated is free, up to a bound (decision 102).";
+constexpr const char* kOrigin =
+    "Where a sink's clock begins is free, and a second is allowed for (decision 119).";
+
+constexpr bool kNotJudged = false;
+
+constexpr std::array kSurvivors{
+    Survivor{"* by serial: am.dest", kSerialAm},
+    Survivor{"* by serial: am.src", kSerialAm},
+    Survivor{"plus one: J6-REPORT * by serial: nbytes", kSerialNbytes},
+    Survivor{"plus one: N6-* by serial: nbytes", kSerialNbytes},
+    Survivor{"plus one: T2-ACK * by serial: nbytes", kSerialNbytes},
+    Survivor{"* J6-REPORT net_msg serial_joined by serial: seq_num", kFreeNumber},
+    Survivor{"* synaptic_data by radio: seq_num", kFreeNumber},
+    Survivor{"* synaptic_data by serial: seq_num", kFreeNumber},
+    Survivor{"* T2-ACK net_msg rubicon_ack by *: seq_num", kFreeNumber},
+    Survivor{"* T2-ACK net_msg rubicon_ack by *: payload.body.ack", kAckCode},
+    Survivor{"double: send N9-SET config", "The same island id a second time changes nothing."},
+    Survivor{"double: tell J11-SEND send_result", kResultTwice, kNotJudged},
+    Survivor{"double: tell N10-OFF send_result", kResultTwice, kNotJudged},
+    Survivor{"double: tell N9-SET op_result", kResultTwice, kNotJudged},
+    Survivor{"double: tell J4-CLOCK clock", kResultTwice, kNotJudged},
+    Survivor{"plus one: tell J4-CLOCK clock: ms", kOrigin},
+    Survivor{"* J3-REPLY join_reply by radio: cur_time", kOrigin},
+    Survivor{"* tell J8-FAIL joined: address.*", kFailAddress},
+    Survivor{"* tell J8-JOINED joined: address.*", kFailAddress},
+    Survivor{"* tell S1-LIMIT channel_result: channel.*", kRefusedId},
+    Survivor{"* tell N10-OFF send_result: seq_num", kWhileOff, kNotJudged},
+    Survivor{"accept: S6-STOPPED mote channels started",
+             "It keeps what comes for a stopped channel, but signals nothing: that is free."},
+    Survivor{"late_ack_takes_a_members_place",
+             "The list is as full as before, so the member that was pushed out gets no answer "
+             "either way; and a list may be longer than 20 (decision 107)."},
+    Survivor{"double: send J4-ACK ack_join", kRepeats},
+    Survivor{"drop: send J4-REPEAT ack_join", kRepeats},
+    Survivor{"delay: tell J8-FAIL joined",
+             "Five timers that are each a little late end a call as late as that (decision 128)."},
+    Survivor{"double: tell N1-SIZE send_result", kResultTwice, kNotJudged},
+    Survivor{"double: tell N4-SELF send_result", kResultTwice, kNotJudged},
+    Survivor{"* N6-OWN net_msg by serial: payload.payload",
+             "Stale bytes may follow on the serial line, so that cases compare bodies that can be "
+             "told from them, those of demo messages.",
+             kNotJudged},
+    Survivor{"plus one: N8-INCOMING net_msg rubicon_ack by serial: nbytes", kSerialNbytes},
+    Survivor{"* tell J11-SEND send_result: seq_num",
+             "A mote may keep what is sent before it joins, and tell its number (decision 118). No "
+             "trace holds the number against what it then sends.",
+             kNotJudged},
+};
+
+bool fits(std::string_view pattern, std::string_view name) {
+  const std::size_t star = pattern.find('*');
+  if (star == std::string_view::npos) return pattern == name;
+  if (name.substr(0, star) != pattern.substr(0, star)) return false;
+  for (std::size_t i = star; i <= name.size(); ++i) {
+    if (fits(pattern.substr(star + 1), name.substr(i))) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::span<const Survivor> survivors() { return kSurvivors; }
+
+const Survivor* find_survivor(std::string_view name) {
+  for (const Survivor& one : kSurvivors) {
+    if (fits(one.name, name)) return &one;
+  }
+  return nullptr;
+}
+
+}  // namespace rubric::mutants

@@ -1,0 +1,91 @@
+#include "conformance/selftest/mutants/hunt.h"
+
+#include <algorithm>
+#include <atomic>
+#include <thread>
+
+#include "conformance/test/runner/case_files.h"
+#include "conformance/test/runner/subject_target.h"
+#include "conformance/trace/print.h"
+
+namespace rubric::mutants {
+namespace {
+
+using runner::CaseResult;
+using runner::CaseVerdict;
+
+bool names(const std::vector<std::string>& requirements, const Mutant& mutant) {
+  return std::any_of(requirements.begin(), requirements.end(), [&](const std::string& name) {
+    const auto& wanted = mutant.requirements;
+    return std::find(wanted.begin(), wanted.end(), trace::requirement_id(name)) != wanted.end();
+  });
+}
+
+bool speaks_of(const trace::Case& one, const Mutant& mutant) {
+  const auto lines = one.lines();
+  return std::any_of(lines.begin(), lines.end(),
+                     [&](const trace::Line* line) { return names(line->requirements, mutant); });
+}
+
+// Returns false to go on with the next case.
+bool judge(const CaseRef& ref, const Mutant& mutant, Found& found) {
+  const CaseResult result = run(ref, mutant.factory());
+  if (result.verdict == CaseVerdict::kPass) return false;
+  const bool named =
+      mutant.requirements.empty() ||
+      std::any_of(result.failures.begin(), result.failures.end(),
+                  [&](const auto& failure) { return names(failure.requirements, mutant); });
+  if (!found.killed || named) {
+    found.by = ref.one->name;
+    found.lines = runner::explain(result, ref.file->file_name);
+  }
+  found.killed = true;
+  found.named = named;
+  return named;
+}
+
+}  // namespace
+
+Golden::Golden(const std::string& folder) : files_(runner::load_cases(folder)) {
+  for (const trace::Parsed& file : files_) {
+    for (const trace::Case& one : file.file.cases) {
+      const CaseRef ref{&file, &one};
+      const CaseResult result = run(ref, [] { return std::make_unique<runner::Machine>(); });
+      (result.verdict == CaseVerdict::kPass ? cases_ : broken_).push_back(ref);
+    }
+  }
+}
+
+CaseResult run(const CaseRef& ref, const runner::SubjectFactory& make) {
+  return runner::run_case(ref.file->file, *ref.one, [&](const trace::NodeHeader&) {
+    return std::make_unique<runner::SubjectTarget>(make());
+  });
+}
+
+Found hunt(const Golden& golden, const Mutant& mutant) {
+  Found found;
+  for (const bool first : {true, false}) {
+    for (const CaseRef& ref : golden.cases()) {
+      const bool speaks = !mutant.requirements.empty() && speaks_of(*ref.one, mutant);
+      if (speaks == first && judge(ref, mutant, found)) return found;
+    }
+  }
+  return found;
+}
+
+std::vector<Found> hunt_all(const Golden& golden, const Mutants& mutants, unsigned threads) {
+  std::vector<Found> found(mutants.size());
+  std::atomic<std::size_t> next{0};
+  const auto work = [&] {
+    for (std::size_t i = next++; i < mutants.size(); i = next++) {
+      found[i] = hunt(golden, mutants[i]);
+    }
+  };
+  std::vector<std::thread> others;
+  for (unsigned i = 1; i < threads; ++i) others.emplace_back(work);
+  work();
+  for (std::thread& other : others) other.join();
+  return found;
+}
+
+}  // namespace rubric::mutants

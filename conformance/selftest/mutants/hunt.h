@@ -1,0 +1,63 @@
+// Runs mutants on golden traces: which trace finds a mutant, and by which rule.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "conformance/selftest/mutants/mutant.h"
+#include "conformance/test/runner/run_case.h"
+#include "conformance/trace/parse.h"
+
+namespace rubric::mutants {
+
+/// A golden trace in its file.
+struct CaseRef {
+  const trace::Parsed* file;
+  const trace::Case* one;
+};
+
+/// The golden traces.
+class Golden {
+ public:
+  /// Reads all .rtr files below the folder. Throws std::runtime_error.
+  explicit Golden(const std::string& folder);
+
+  /// Returns the traces that the machine passes: no other can tell a mutant from it.
+  const std::vector<CaseRef>& cases() const { return cases_; }
+  /// Returns the traces that it does not pass.
+  const std::vector<CaseRef>& broken() const { return broken_; }
+  const std::vector<trace::Parsed>& files() const { return files_; }
+
+ private:
+  std::vector<trace::Parsed> files_;
+  std::vector<CaseRef> cases_;
+  std::vector<CaseRef> broken_;
+};
+
+struct Found {
+  bool killed = false;
+  bool named = false;  ///< A failing line names one of the mutant's rules, or it names none.
+  std::string by;      ///< The trace that killed it; the one that named its rule, if any.
+  std::string lines;   ///< The failures there.
+};
+
+/// Runs the case on it. Everything but a pass kills: the machine itself passes.
+runner::CaseResult run(const CaseRef& ref, const runner::SubjectFactory& make);
+/// Tries the cases, those first that name one of the rules, until one kills it by such a rule.
+Found hunt(const Golden& golden, const Mutant& mutant);
+/// Hunts all of them on so many threads.
+std::vector<Found> hunt_all(const Golden& golden, const Mutants& mutants, unsigned threads);
+
+/// A mutant that no golden trace finds, and why. In names `*` matches anything.
+struct Survivor {
+  const char* name;
+  const char* reason;
+  bool equivalent = true;  ///< The change is free or unseen. False: it is merely not judged.
+};
+std::span<const Survivor> survivors();
+/// Returns the entry for a mutant of this name, or null.
+const Survivor* find_survivor(std::string_view name);
+
+}  // namespace rubric::mutants

@@ -1,0 +1,258 @@
+#include <algorithm>
+
+#include "conformance/machine/transport.h"
+#include "conformance/selftest/mutants/fields.h"
+#include "conformance/selftest/mutants/legal.h"
+
+namespace rubric::mutants {
+namespace {
+
+using machine::Joined;
+using machine::JoinIsland;
+using machine::Received;
+using machine::TimerKind;
+using Variants = std::vector<LegalVariant>;
+
+// Delays all answers to received frames by the same time, so that their order stays.
+template <Ticks kTicks>
+void slow(Moment& moment) {
+  moment.honest();
+  if (moment.heard() == nullptr) return;
+  moment.rewrite([&](const Action& action) {
+    const bool visible =
+        action.what == Action::What::kTransmit || action.what == Action::What::kNotify;
+    if (!visible) return moment.keep(action);
+    moment.hold(action, kTicks);
+  });
+}
+
+void slow_acks(Moment& moment) {
+  moment.honest();
+  moment.rewrite([&](const Action& action) {
+    const bool sent = action.what == Action::What::kTransmit;
+    if (!sent || !is_ack(moment.sent(action))) return moment.keep(action);
+    moment.hold(action, 200);
+  });
+}
+
+void add_times(Variants& out) {
+  out.push_back({"slow_100", "Everything that follows from a frame takes 100 ticks (125).",
+                 always(slow<100>), true});
+  out.push_back({"slow_250", "Everything that follows from a frame takes 250 ticks (125).",
+                 always(slow<250>), true});
+  out.push_back(
+      {"slow_acks", "Acks take 200 ticks, deliveries none (125).", always(slow_acks), true});
+  out.push_back({"join_timer_2_percent_slow", "The join timer takes 510 ticks (128).",
+                 with_profile([](machine::Profile& p) { p.join_period_ticks = 510; })});
+  out.push_back({"ack_timer_2_percent_slow", "The ack timeout takes 1020 ticks (110, 128).",
+                 with_profile([](machine::Profile& p) { p.ack_timeout_ticks = 1020; })});
+  out.push_back({"clock_2_percent_slow", "The synaptic clock's default period is 510 ticks (128).",
+                 always([](Moment& moment) {
+                   auto& period = moment.state.synaptic.period_ticks;
+                   if (period == 500) period = 510;
+                   moment.honest();
+                 })});
+}
+
+struct Renumbered {
+  std::uint16_t before = 0;
+};
+
+// Gives the request that is sent last a number of its own, which is the one that counts.
+void number_for_each_request(Moment& moment, Renumbered& memory) {
+  moment.honest();
+  moment.rewrite([&](const Action& action) {
+    if (action.what != Action::What::kTransmit) return moment.keep(action);
+    Transmit frame = moment.sent(action);
+    if (frame.type == am::kJoin) {
+      memory.before =
+          static_cast<std::uint16_t>(get(frame, join_request::kSeqNum) * 31U + memory.before + 7U);
+      put(frame, join_request::kSeqNum, memory.before);
+      moment.state.join.seq_num = memory.before;
+    }
+    moment.keep(action, frame);
+  });
+}
+
+// Delays joined(SUCCESS) until the link ack of ack_join.
+void joined_on_confirmation(Moment& moment, bool& told) {
+  const bool was_acked = moment.state.join.acked;
+  moment.honest();
+  if (!is_member(moment)) told = false;
+  moment.rewrite([&](const Action& action) {
+    if (action.what == Action::What::kNotify) {
+      const auto* joined = std::get_if<Joined>(&moment.told(action));
+      if (joined != nullptr && joined->success) return;
+    }
+    moment.keep(action);
+  });
+  if (!moment.is(Role::kMote) || was_acked || !moment.state.join.acked || told) return;
+  told = true;
+  moment.actions.notify(Joined{own(moment), true}, "J5-SUCCESS"_rule);
+}
+
+void add_joins(Variants& out) {
+  out.push_back({"fail_at_the_fourth_expiry", "Four requests, then joined(FAIL) (101).",
+                 with_profile([](machine::Profile& p) { p.join_requests_max = 4; })});
+  out.push_back({"number_for_each_request", "Each request has a number of its own (104).",
+                 remembering<Renumbered>(number_for_each_request)});
+  out.push_back({"joined_on_confirmation", "joined(SUCCESS) comes with the link ack (102).",
+                 remembering<bool>(joined_on_confirmation)});
+  out.push_back({"ack_join_once", "ack_join is never repeated (102).",
+                 with_profile([](machine::Profile& p) { p.ack_join_max = 1; })});
+  out.push_back({"clock_of_another_origin", "A sink's clock began a day ago (119).",
+                 on_sent([](Moment&, const Action&, Transmit& frame) {
+                   if (frame.type != am::kJoinReply) return Fate::kKeep;
+                   put(frame, join_reply::kTime, get(frame, join_reply::kTime) + 86'400'000U);
+                   return Fate::kKeep;
+                 })});
+}
+
+// Sends the paper's form of an ack: the number alone.
+Fate short_ack(Moment& moment, const Action&, Transmit& frame) {
+  const bool mine = is_ack(frame) && get(frame, net::kSrcDevid) == own(moment).devid &&
+                    get(frame, net::kSrcPid) == own(moment).pid;
+  if (!mine || frame.payload[net::kNbytes] != net::kAckNbytes) return Fate::kKeep;
+  put(frame, net::kPaperSeq, get(frame, net::kAckedSeq));
+  frame.payload[net::kNbytes] = net::kPaperAckNbytes;
+  const bool serial = frame.link == Link::kSerial;
+  if (serial) {
+    std::fill_n(frame.payload.begin() + net::kPaperSeq.kEnd, net::kAckNbytes - net::kPaperAckNbytes,
+                0);
+  } else {
+    frame.size_bytes = net::kPaperSeq.kEnd;
+  }
+  return Fate::kKeep;
+}
+
+Fate stale_on_serial(Moment& moment, const Action&, Transmit& frame) {
+  const bool up = frame.link == Link::kSerial && moment.is(Role::kSink) && is_net(frame);
+  if (!up) return Fate::kKeep;
+  const std::size_t end = 12U + frame.payload[net::kNbytes];
+  for (std::size_t i = end; i < frame.payload.size(); ++i) {
+    frame.payload[i] = static_cast<std::uint8_t>(0xA5 ^ i);
+  }
+  frame.payload[net::kNbytes] = net::kNbytes.kMax;
+  return Fate::kKeep;
+}
+
+// Acks each copy, delivers the first.
+void delivers_once(Moment& moment, std::vector<std::vector<std::uint8_t>>& seen) {
+  const Frame* const frame = moment.heard(am::kNet);
+  const bool reliable = frame != nullptr && is_net(*frame) && frame->payload[net::kReliable] == 1;
+  moment.honest();
+  if (!reliable) return;
+  const std::vector<std::uint8_t> bytes(frame->payload.begin(), frame->payload.end());
+  const bool copy = std::find(seen.begin(), seen.end(), bytes) != seen.end();
+  seen.push_back(bytes);
+  if (!copy) return;
+  moment.rewrite([&](const Action& action) {
+    const bool told = action.what == Action::What::kNotify;
+    if (!told || !std::holds_alternative<Received>(moment.told(action))) moment.keep(action);
+  });
+}
+
+// Lets a sink send on, once, what one of its motes sent it for another (115).
+void relays(Moment& moment) {
+  moment.honest();
+  const Frame* const frame = moment.heard(am::kNet);
+  const bool radio = frame != nullptr && frame->link == Link::kRadio && moment.is(Role::kSink);
+  if (!radio || !moment.state.radio.on || frame->dest == machine::kAmBroadcast) return;
+  bool other = false;
+  for (const Action& action : moment.actions.all()) {
+    other =
+        other || (action.what == Action::What::kIgnored && action.requirement == "N6-OTHER"_rule);
+  }
+  if (!other || moment.state.radio.sending || moment.state.radio.taken) return;
+  moment.state.radio.sending = true;
+  Transmit& sent =
+      moment.send(Link::kRadio, am::kNet, get(*frame, net::kDestDevid), "N6-OTHER"_rule);
+  const std::size_t size = 12U + frame->payload[net::kNbytes];
+  std::copy_n(frame->payload.begin(), size, sent.payload.begin());
+  sent.size_bytes = static_cast<std::uint8_t>(size);
+}
+
+// Acks a reliable message for an unknown application all the same (111).
+void acks_unknown_apps(Moment& moment) {
+  moment.honest();
+  const Frame* const frame = moment.heard(am::kNet);
+  const bool asked = frame != nullptr && is_net(*frame) && moment.is(Role::kMote) &&
+                     is_member(moment) && frame->payload[net::kReliable] == 1 &&
+                     frame->payload[net::kTransId] == component::kConnless &&
+                     !machine::is_known_app(frame->payload[net::kAppId]) &&
+                     get(*frame, net::kDestPid) == own(moment).pid &&
+                     get(*frame, net::kDestDevid) == own(moment).devid;
+  if (!asked || !moment.actions.transmits().empty() || moment.state.radio.sending) return;
+  moment.state.radio.sending = true;
+  Transmit& ack = moment.send(Link::kRadio, am::kNet, get(*frame, net::kSrcDevid), "T2-ACK"_rule);
+  copy_address(*frame, net::kSrcPid, ack, net::kDestPid);
+  copy_address(*frame, net::kDestPid, ack, net::kSrcPid);
+  put(ack, net::kSeqNum, 4711);
+  ack.payload[net::kNbytes] = net::kPaperAckNbytes;
+  ack.payload[net::kTransId] = component::kRubiconAck;
+  ack.payload[net::kAppId] = frame->payload[net::kAppId];
+  put(ack, net::kPaperSeq, get(*frame, net::kSeqNum));
+  ack.size_bytes = net::kPaperSeq.kEnd;
+}
+
+// Reorders frames of different lines and notices, which have no order among themselves.
+void other_order(Moment& moment) {
+  moment.honest();
+  std::vector<Action> rest;
+  moment.rewrite([&](const Action& action) {
+    if (action.what == Action::What::kNotify) return moment.keep(action);
+    rest.push_back(action);
+  });
+  for (const Action& action : rest) moment.keep(action);
+}
+
+void add_messages(Variants& out) {
+  out.push_back({"short_acks", "Acks hold the number alone (108).", on_sent(short_ack)});
+  out.push_back({"stale_bytes_on_serial", "A sink hands up with nbytes 102 (N6-CONTENT).",
+                 on_sent(stale_on_serial)});
+  out.push_back({"delivers_copies_once", "A repeated message is acked, and delivered once (111).",
+                 remembering<std::vector<std::vector<std::uint8_t>>>(delivers_once)});
+  out.push_back({"acks_unknown_apps", "What is for an unknown APPID is acked (111).",
+                 always(acks_unknown_apps)});
+  out.push_back(
+      {"relays", "A sink sends on what is for another of its motes (115).", always(relays)});
+  out.push_back({"every_island_ignored", "pid 0xFFFF is not taken (114).",
+                 on_heard([](Moment&, Forged& forged) {
+                   return !is_net(forged.frame) ||
+                          get(forged, net::kDestPid) != machine::kBroadcastPid;
+                 })});
+  out.push_back({"app_id_learning", "Synaptic data have APPID LEARNING (120).",
+                 on_sent([](Moment&, const Action&, Transmit& frame) {
+                   if (is_synaptic(frame)) frame.payload[net::kAppId] = 6;
+                   return Fate::kKeep;
+                 })});
+  out.push_back(
+      {"told_first", "What is told comes before what is sent, in a step.", always(other_order)});
+  out.push_back({"own_frames_besides", "A mote beacons with a type of its own now and then.",
+                 always([](Moment& moment) {
+                   moment.honest();
+                   const bool idle = moment.actions.transmits().empty() && is_member(moment) &&
+                                     !moment.state.radio.sending;
+                   if (!idle || moment.called<machine::GetClock>() == nullptr) return;
+                   moment.state.radio.sending = true;
+                   Transmit& beacon = moment.send(Link::kRadio, 200, 0xFFFF, ReqId::kNone);
+                   beacon.size_bytes = 4;
+                 })});
+}
+
+}  // namespace
+
+std::vector<LegalVariant> legal_variants() {
+  Variants out;
+  add_times(out);
+  add_joins(out);
+  add_messages(out);
+  out.push_back({"random_numbers", "Sequence numbers are random (117).", always([](Moment& moment) {
+                   moment.state.sequence.random = true;
+                   moment.state.config.random_seq = true;
+                   moment.honest();
+                 })});
+  return out;
+}
+
+}  // namespace rubric::mutants

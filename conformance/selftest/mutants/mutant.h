@@ -1,0 +1,36 @@
+// Broken machines: each is the machine with a wrapper that makes one mistake. The golden traces
+// must find every one of them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "conformance/selftest/mutants/wrapped.h"
+
+namespace rubric::mutants {
+
+struct Mutant {
+  std::string name;
+  std::string breaks;               ///< In a sentence.
+  std::vector<ReqId> requirements;  ///< Rules that it breaks: a failing line must name one.
+  StepMaker step;
+
+  runner::SubjectFactory factory() const { return wrapped(step); }
+};
+using Mutants = std::vector<Mutant>;
+
+/// Return common mistakes, by the family of the rule that they break. Names are unique.
+Mutants network_mutants();       ///< N1 to N5.
+Mutants island_mutants();        ///< N6 to N9.
+Mutants control_mutants();       ///< N10 to N12.
+Mutants mote_join_mutants();     ///< J, at motes: requests, timer, ends.
+Mutants mote_accept_mutants();   ///< J, at motes: replies and their ack_join.
+Mutants sink_join_mutants();     ///< J, at sinks.
+Mutants delivery_mutants();      ///< T1, T2: to and from applications.
+Mutants transport_mutants();     ///< T2 to T4: acks.
+Mutants synaptic_mutants();      ///< S1 to S3.
+Mutants channel_life_mutants();  ///< S4 to S6.
+/// Returns all of these, and the flaws of release 1.0 (conformance/machine/flaws).
+Mutants named_mutants();
+
+}  // namespace rubric::mutants

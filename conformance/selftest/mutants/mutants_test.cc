@@ -1,0 +1,139 @@
+// The golden traces find every broken machine.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <set>
+#include <thread>
+
+#include "codec/reflect/requirements.h"
+#include "conformance/selftest/mutants/generated.h"
+#include "tools/tests/readme/number.h"
+
+namespace rubric::mutants {
+namespace {
+
+struct Hunted {
+  Mutants mutants;
+  std::vector<Found> found;
+};
+
+const Golden& golden() {
+  static const Golden cases("conformance/cases");
+  return cases;
+}
+
+Hunted hunted(Mutants mutants) {
+  const unsigned threads = std::clamp(std::thread::hardware_concurrency(), 1U, 4U);
+  std::vector<Found> found = hunt_all(golden(), mutants, threads);
+  return {std::move(mutants), std::move(found)};
+}
+const Hunted& named() {
+  static const Hunted all = hunted(named_mutants());
+  return all;
+}
+const Hunted& generated() {
+  static const Hunted all = hunted(generated_mutants(golden()));
+  return all;
+}
+
+// A survivor must be listed with its reason, and each listed one must survive.
+void expect_found(const Hunted& all) {
+  for (std::size_t i = 0; i < all.mutants.size(); ++i) {
+    const Mutant& mutant = all.mutants[i];
+    const Survivor* const listed = find_survivor(mutant.name);
+    if (all.found[i].killed) {
+      EXPECT_EQ(listed, nullptr) << mutant.name << " is listed as a survivor (" << listed->name
+                                 << "), but found by " << all.found[i].by;
+    } else {
+      EXPECT_NE(listed, nullptr) << "no golden trace finds " << mutant.name << ": "
+                                 << mutant.breaks;
+    }
+  }
+}
+
+TEST(Mutants, MachineItselfPasses) {
+  EXPECT_EQ(golden().cases().size(), readme_number("passes # golden traces"));
+  for (const CaseRef& ref : golden().broken()) ADD_FAILURE() << ref.one->name;
+  for (const CaseRef& ref : golden().cases()) {  // So does a wrapper that changes nothing.
+    const auto idle = run(ref, wrapped(always([](Moment& moment) {
+                            moment.honest();
+                            moment.rewrite([&](const Action& action) { moment.keep(action); });
+                          })));
+    EXPECT_EQ(idle.verdict, runner::CaseVerdict::kPass)
+        << runner::explain(idle, ref.file->file_name);
+  }
+}
+
+TEST(Mutants, NamedOnesAreFound) { expect_found(named()); }
+TEST(Mutants, GeneratedOnesAreFound) { expect_found(generated()); }
+
+TEST(Mutants, NamedOnesAreFoundByTheirRule) {
+  for (std::size_t i = 0; i < named().mutants.size(); ++i) {
+    const Found& found = named().found[i];
+    EXPECT_TRUE(!found.killed || found.named)
+        << named().mutants[i].name << " is found, but by no rule of its own:\n"
+        << found.lines;
+  }
+}
+
+TEST(Mutants, NamesAreUnique) {
+  std::set<std::string> names;
+  for (const Mutant& mutant : named().mutants) {
+    EXPECT_TRUE(names.insert(mutant.name).second) << mutant.name;
+    EXPECT_FALSE(mutant.requirements.empty()) << mutant.name;
+    EXPECT_TRUE(mutant.breaks.ends_with('.')) << mutant.name;
+  }
+}
+
+// Every MUST of the behaviour has its mutant.
+TEST(Mutants, EveryRuleIsBroken) {
+  std::set<ReqId, reflect::CatalogueOrder> broken;
+  for (const Mutant& mutant : named().mutants) {
+    broken.insert(mutant.requirements.begin(), mutant.requirements.end());
+  }
+  for (const reflect::Requirement& rule : reflect::requirements().subspan(1)) {
+    const bool behaviour = std::strncmp(rule.id, "WIRE-", 5) != 0;
+    if (!behaviour) continue;
+    EXPECT_TRUE(broken.contains(rule.number())) << rule.id;
+  }
+}
+
+TEST(Mutants, EverySurvivorIsAMutant) {
+  std::set<std::string_view> used;
+  for (const Hunted* all : {&named(), &generated()}) {
+    for (const Mutant& mutant : all->mutants) {
+      if (const auto* listed = find_survivor(mutant.name)) used.insert(listed->name);
+    }
+  }
+  for (const Survivor& one : survivors()) EXPECT_TRUE(used.contains(one.name)) << one.name;
+}
+
+TEST(Mutants, Score) {
+  std::size_t killed = 0;
+  std::size_t equivalent = 0;
+  std::size_t not_judged = 0;
+  for (const Hunted* all : {&named(), &generated()}) {
+    for (std::size_t i = 0; i < all->mutants.size(); ++i) {
+      killed += all->found[i].killed;
+      const Survivor* const listed = find_survivor(all->mutants[i].name);
+      if (listed != nullptr) ++(listed->equivalent ? equivalent : not_judged);
+    }
+  }
+  const std::size_t count = named().mutants.size() + generated().mutants.size();
+  std::printf("mutants: %zu named, %zu generated; killed %zu; equivalent %zu; not judged %zu\n",
+              named().mutants.size(), generated().mutants.size(), killed, equivalent, not_judged);
+  for (const std::string& rule : never_accepted(golden())) {
+    std::printf("not turned into acceptance: %s\n", rule.c_str());
+  }
+  EXPECT_EQ(killed + equivalent + not_judged, count);
+  EXPECT_EQ(count, readme_number("# mutants"));
+  EXPECT_EQ(named().mutants.size(), readme_number("# made by hand"));
+  EXPECT_EQ(generated().mutants.size(), readme_number("by hand, # by rule"));
+  EXPECT_EQ(killed, readme_number("they find #"));
+  EXPECT_EQ(equivalent, readme_number("# are equivalent"));
+  EXPECT_EQ(not_judged, readme_number("# are not judged"));
+}
+
+}  // namespace
+}  // namespace rubric::mutants

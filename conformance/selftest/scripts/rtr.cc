@@ -1,0 +1,179 @@
+#include "conformance/selftest/scripts/rtr.h"
+
+#include <algorithm>
+#include <memory>
+#include <stdexcept>
+
+#include "conformance/selftest/scripts/bytes.h"
+#include "conformance/test/runner/subject_target.h"
+#include "conformance/trace/events/lines.h"
+
+namespace rubric::script {
+namespace {
+
+using runner::Output;
+using trace::Message;
+using trace::Op;
+
+// Inverts config_of() of the runner: first numbers are 1000 + 257 * seed, modulo 2^16.
+std::uint64_t seed_of(std::uint16_t first_seq) {
+  constexpr std::uint32_t kInverseOf257 = 0xFF01;
+  return static_cast<std::uint16_t>((first_seq - 1000U) * kInverseOf257);
+}
+
+events::NodeNames names_of(const std::string& node) { return {node, "rA", "serA"}; }
+
+// The machine as the runner's target, which records its inputs.
+class Recorder : public runner::SubjectTarget {
+ public:
+  explicit Recorder(Script& out) : SubjectTarget(std::make_unique<runner::Machine>()), out_(out) {}
+
+  void reset(const machine::Config& config) override {
+    out_.config = config;
+    SubjectTarget::reset(config);
+  }
+  void give(Ticks now, const machine::Event& event) override {
+    Step step{now - last_, event, {}};
+    if (auto* heard = std::get_if<machine::Heard>(&step.event)) {
+      step.bytes = taken(heard->frame.payload);
+    } else if (auto* called = std::get_if<machine::Called>(&step.event)) {
+      if (auto* send = std::get_if<machine::Send>(&called->call)) step.bytes = taken(send->data);
+    }
+    last_ = now;
+    out_.steps.push_back(std::move(step));
+    SubjectTarget::give(now, event);
+  }
+
+ private:
+  static std::vector<std::uint8_t> taken(Bytes& bytes) {
+    std::vector<std::uint8_t> out(bytes.begin(), bytes.end());
+    bytes = {};
+    return out;
+  }
+
+  Script& out_;
+  Ticks last_ = 0;
+};
+
+// Keeps the outputs after the runner's target is gone.
+class Keeper : public runner::Target {
+ public:
+  Keeper(CaseScript& out) : out_(out), target_(out.script) {}
+  ~Keeper() override { out_.outputs = target_.outputs(); }
+  void reset(const machine::Config& config) override { target_.reset(config); }
+  void give(Ticks now, const machine::Event& event) override { target_.give(now, event); }
+  std::optional<Ticks> next() const override { return target_.next(); }
+  Ticks run_until(Ticks time) override { return target_.run_until(time); }
+  const std::vector<Output>& outputs() const override { return target_.outputs(); }
+  void hold_link_acks(bool hold) override { target_.hold_link_acks(hold); }
+
+ private:
+  CaseScript& out_;
+  Recorder target_;
+};
+
+bool fits(const Script& script) {
+  const auto whole = [](const Step& step) { return fitting_delay(step.delay) == step.delay; };
+  return script.steps.size() <= kStepsMax && script.length() <= kLengthMax &&
+         std::all_of(script.steps.begin(), script.steps.end(), whole);
+}
+
+}  // namespace
+
+std::vector<CaseScript> scripts_of(const trace::File& file, const trace::Case& one) {
+  std::vector<std::unique_ptr<CaseScript>> made;
+  const auto make = [&](const trace::NodeHeader& node) -> std::unique_ptr<runner::Target> {
+    made.push_back(std::make_unique<CaseScript>(CaseScript{node.name, {}, {}}));
+    return std::make_unique<Keeper>(*made.back());
+  };
+  const runner::CaseResult result = runner::run_case(file, one, make);
+  if (result.verdict == runner::CaseVerdict::kError) {
+    throw std::runtime_error(one.name + ": " + result.reason);
+  }
+  std::vector<CaseScript> out;
+  for (const auto& each : made) {
+    Script& script = each->script;
+    Ticks given = 0;
+    for (const Step& step : script.steps) given += step.delay;
+    script.rest = std::min(result.length - given, kRestMax);
+    if (!fits(script)) throw std::runtime_error(one.name + ": too long for a script");
+    out.push_back(std::move(*each));
+  }
+  return out;
+}
+
+trace::NodeHeader node_of(const Script& script) {
+  const machine::Config& config = script.config;
+  trace::NodeHeader node;
+  node.role = static_cast<trace::Role>(config.role);
+  node.iut = true;
+  if (config.role != machine::Role::kBaseStation) {
+    node.id = config.id;
+    node.channels = config.profile.channels_max;
+  }
+  if (config.role != machine::Role::kMote) node.island = config.island;
+  node.name = config.role == machine::Role::kMote   ? "m" + std::to_string(config.id)
+              : config.role == machine::Role::kSink ? "sA"
+                                                    : "bA";
+  return node;
+}
+
+trace::File begin_file(const Script& script) {
+  const machine::Config& config = script.config;
+  trace::File file = trace::File::begin(is_deployed(config.profile) ? "deployed" : "paper");
+  file.header({trace::SeedHeader{seed_of(config.first_seq)}, {}, {}});
+  return file.node(node_of(script));
+}
+
+trace::Line line_of(const Output& output, const std::string& node) {
+  const events::NodeNames names = names_of(node);
+  if (output.is_frame) {
+    return events::emitted_line(output.time, names, output.frame.frame(), output.requirement);
+  }
+  machine::Notice notice = output.notice;
+  if (auto* received = std::get_if<machine::Received>(&notice)) {
+    received->data = Bytes(output.data.data(), output.data.size());
+  }
+  return events::emitted_line(output.time, names, notice, output.requirement);
+}
+
+trace::Line line_of(const Step& step, Ticks now, const std::string& node) {
+  return events::given_line(now, names_of(node), step.whole()).value();
+}
+
+trace::Line nothing_else(Ticks end, const std::string& node, const std::vector<ReqId>& rules) {
+  trace::Line line;
+  line.time = trace::Time::at(0);
+  line.time.to = end;
+  line.node = node;
+  line.op = Op::kMustNot;
+  line.link = "*";
+  line.message = Message::any();
+  for (const ReqId rule : rules) line.requirements.emplace_back(trace::requirement_text(rule));
+  return line;
+}
+
+trace::File to_file(const Script& script, const Played& run, const Title& title) {
+  trace::File file = begin_file(script);
+  const std::string node = node_of(script).name;
+  trace::Case one(title.case_name);
+  for (const std::string& text : title.comments) {
+    one.items.emplace_back(trace::Comment{';', false, " " + text});
+  }
+  one.add(nothing_else(script.length(), node, title.rules));
+  std::size_t shown = 0;
+  const auto show = [&](std::size_t to) {
+    for (; shown < to; ++shown) one.add(line_of(run.outputs[shown], node));
+  };
+  Ticks now = 0;
+  for (std::size_t i = 0; i < run.before.size(); ++i) {
+    show(run.before[i]);
+    now += script.steps[i].delay;
+    one.add(line_of(script.steps[i], now, node));
+  }
+  show(run.outputs.size());
+  file.cases.push_back(std::move(one));
+  return file;
+}
+
+}  // namespace rubric::script

@@ -1,0 +1,47 @@
+// Makes scripts from golden traces, and golden traces from runs of scripts.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "conformance/selftest/scripts/script.h"
+#include "conformance/test/runner/run_case.h"
+#include "conformance/trace/trace.h"
+
+namespace rubric::script {
+
+struct CaseScript {
+  std::string node;
+  Script script;
+  std::vector<runner::Output> outputs;  ///< By the reference machine in the case.
+};
+
+/// Returns a script for each node under test: the runner's inputs to it when all of them are the
+/// reference machine. Throws std::runtime_error if the case cannot be run, or exceeds a script's
+/// bounds.
+std::vector<CaseScript> scripts_of(const trace::File& file, const trace::Case& one);
+
+/// Titles in the trace.
+struct Title {
+  std::string case_name;              ///< For example `repro.one_terminal`.
+  std::vector<std::string> comments;  ///< After the case's name.
+  /// Rules that are broken if the node emits more than it did in this run.
+  std::vector<ReqId> rules;
+};
+
+/// Returns a trace that requires exactly that run, to the tick, and nothing more; trace::check()
+/// finds nothing wrong with it.
+trace::File to_file(const Script& script, const Played& run, const Title& title);
+
+// Parts of that, for traces that require less.
+
+/// Return the node of a script's trace, and the line that shows an output or a step.
+trace::NodeHeader node_of(const Script& script);
+trace::File begin_file(const Script& script);
+trace::Line line_of(const runner::Output& output, const std::string& node);
+trace::Line line_of(const Step& step, Ticks now, const std::string& node);
+/// Returns a `!>` line: nothing but what other lines take, from the start to `end`. It comes first,
+/// so that it counts even if the case ends at a line that finds nothing.
+trace::Line nothing_else(Ticks end, const std::string& node, const std::vector<ReqId>& rules);
+
+}  // namespace rubric::script

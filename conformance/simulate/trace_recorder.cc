@@ -1,0 +1,126 @@
+#include "conformance/simulate/trace_recorder.h"
+
+#include <algorithm>
+#include <utility>
+#include <variant>
+
+#include "conformance/simulate/radio.h"
+#include "conformance/trace/concrete.h"
+
+namespace rubric::simulate {
+namespace {
+
+using trace::LinkKind;
+using trace::Op;
+
+trace::Role role_of(machine::Role role) {
+  switch (role) {
+    case machine::Role::kMote: return trace::Role::kMote;
+    case machine::Role::kSink: return trace::Role::kSink;
+    case machine::Role::kBaseStation: break;
+  }
+  return trace::Role::kBaseStation;
+}
+
+std::string_view text_of(Mishap what) {
+  switch (what) {
+    case Mishap::kLost: return "lost";
+    case Mishap::kCollided: return "collision";
+    case Mishap::kDoubled: return "twice";
+    case Mishap::kUnheard: break;
+  }
+  return "off";
+}
+
+trace::Header header_of(const NodePlan& plan) {
+  trace::NodeHeader node;
+  node.name = plan.name;
+  node.role = role_of(plan.config.role);
+  if (plan.config.role != machine::Role::kBaseStation) node.id = plan.config.id;
+  if (plan.config.role != machine::Role::kMote) node.island = plan.config.island;
+  if (plan.config.profile.channels_max != machine::Profile{}.channels_max) {
+    node.channels = plan.config.profile.channels_max;
+  }
+  node.iut = true;
+  trace::Header header;
+  header.what = node;
+  return header;
+}
+
+trace::Header header_of(std::string_view name, LinkKind kind, std::vector<std::string> nodes) {
+  trace::Header header;
+  header.what = trace::LinkHeader{std::string(name), kind, std::move(nodes)};
+  return header;
+}
+
+}  // namespace
+
+TraceRecorder::TraceRecorder(const Network& network, std::string_view case_name)
+    : names_(network.nodes.size()), file_(trace::File::begin(network.profile)) {
+  trace::Header seed;
+  seed.what = trace::SeedHeader{network.seed};
+  file_.header(std::move(seed));
+  for (NodeId i = 0; i < names_.size(); ++i) {
+    names_[i].node = network.nodes[i].name;
+    names_[i].radio_group = static_cast<std::uint8_t>(kPanId);
+    file_.header(header_of(network.nodes[i]));
+  }
+  const auto is_mote_or_sink = [&](NodeId i) {
+    return network.nodes[i].config.role != machine::Role::kBaseStation;
+  };
+  for (std::size_t radio = 0; radio < network.radios.size(); ++radio) {
+    std::vector<std::string> nodes;
+    for (NodeId i = 0; i < names_.size(); ++i) {
+      if (!is_mote_or_sink(i) || network.nodes[i].radio != radio) continue;
+      names_[i].radio = network.radios[radio].name;
+      nodes.push_back(names_[i].node);
+    }
+    file_.header(header_of(network.radios[radio].name, LinkKind::kRadio, std::move(nodes)));
+  }
+  for (const SerialPlan& line : network.serials) {
+    names_[line.sink].serial = names_[line.base_station].serial = line.name;
+    file_.header(header_of(line.name, LinkKind::kSerial,
+                           {names_[line.sink].node, names_[line.base_station].node}));
+  }
+  std::vector<std::string> base_stations;
+  for (NodeId i = 0; i < names_.size(); ++i) {
+    if (!is_mote_or_sink(i)) base_stations.push_back(names_[i].node);
+  }
+  if (base_stations.size() > 1) {
+    file_.header(header_of("peis", LinkKind::kPeis, std::move(base_stations)));
+  }
+  file_.cases.emplace_back(case_name);
+}
+
+void TraceRecorder::given(Micros time_us, NodeId node, const machine::Event& event) {
+  // The ends of frames and the busy lines are the simulator's own; see link_ack.
+  if (std::holds_alternative<machine::SendDone>(event) ||
+      std::holds_alternative<machine::LinkBusy>(event) ||
+      std::holds_alternative<machine::AppBusy>(event)) {
+    return;
+  }
+  auto line = events::given_line(ticks_of(time_us), names_[node], event);
+  if (line) add(std::move(*line));
+}
+
+void TraceRecorder::did(Micros time_us, NodeId node, const machine::Actions& actions) {
+  for (trace::Line& line : events::emitted_lines(ticks_of(time_us), names_[node], actions)) {
+    add(std::move(line));
+  }
+}
+
+void TraceRecorder::mishap(Micros time_us, NodeId node, Mishap what, const machine::Frame& frame) {
+  const events::NodeNames& names = names_[node];
+  trace::Line line = trace::fault_line(
+      ticks_of(time_us), what == Mishap::kDoubled ? Op::kDup : Op::kLost, names.link(frame.link),
+      events::kind_of(frame.link), events::frame_of(names, frame));
+  line.comment = names.node + ": " + std::string(text_of(what));
+  add(std::move(line));
+}
+
+void TraceRecorder::link_ack(Micros time_us, NodeId node, bool acked) {
+  const machine::SendDone done{machine::Link::kRadio, acked};
+  add(*events::given_line(ticks_of(time_us), names_[node], done));
+}
+
+}  // namespace rubric::simulate

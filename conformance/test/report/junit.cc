@@ -1,0 +1,102 @@
+#include "conformance/test/report/junit.h"
+
+#include <algorithm>
+
+#include "conformance/report/junit.h"
+#include "conformance/test/report/words.h"
+
+namespace rubric::suite {
+namespace {
+
+using report::JunitCase;
+using report::JunitSuite;
+using runner::CaseVerdict;
+using Outcome = JunitCase::Outcome;
+
+// Replaces dots, since readers split at the last one.
+std::string class_name_of(std::string name) {
+  std::replace(name.begin(), name.end(), '.', '_');
+  return "rubric." + name;
+}
+
+JunitCase error(const std::string& class_name, const char* name, const std::string& message) {
+  JunitCase out{.class_name = class_name, .name = name};
+  out.outcome = Outcome::kError;
+  out.type = "error";
+  out.message = message;
+  return out;
+}
+
+JunitCase testcase(const std::string& class_name, const CaseRun& one) {
+  JunitCase out{.class_name = class_name, .name = case_name(one), .file = one.file};
+  out.seconds = report::junit_seconds(one.wall_ms);
+  if (one.unexpected()) {
+    const bool broke = one.result.verdict == CaseVerdict::kError;
+    const bool passes = one.expectation == Expectation::kUnexpectedPass;
+    out.outcome = broke ? Outcome::kError : Outcome::kFailure;
+    out.type = broke ? "error" : passes ? "unexpected_pass" : "fail";
+    out.message = headline(one);
+    out.body = in_full(one);
+  } else if (one.expectation == Expectation::kAsExpected) {
+    out.outcome = Outcome::kSkipped;
+    out.message = "known: " + one.expected_reason;
+  } else if (is_undecided(one)) {
+    out.outcome = Outcome::kSkipped;
+    out.message = std::string(runner::verdict_text(one.result.verdict)) + ": " + headline(one);
+  } else if (one.result.verdict == CaseVerdict::kWeak) {
+    out.output = in_full(one);
+  }
+  return out;
+}
+
+// What goes wrong between cases, and at the end, is nothing of any of them.
+JunitCase outside(const std::string& class_name, const ImplementationRun& run) {
+  std::string text;
+  for (const OutsideFault& one : run.outside) text += outside_text(one) + '\n' + one.stderr_text;
+  JunitCase out{.class_name = class_name, .name = "outside_of_cases"};
+  if (broke_outside(run)) {
+    out = error(class_name, "outside_of_cases", outside_headline(run));
+    out.body = text;
+  } else {
+    out.output = text;
+  }
+  return out;
+}
+
+JunitSuite stale_suite(const SuiteRun& run) {
+  JunitSuite out{.name = "rubric test: expectations", .seconds = report::junit_seconds(0)};
+  for (const StaleExpectation& one : run.stale) {
+    JunitCase& added = out.cases.emplace_back();
+    added.class_name = "rubric.expectations";
+    added.name = one.place;
+    added.outcome = Outcome::kFailure;
+    added.type = "stale";
+    added.message = one.text;
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string junit_report(const SuiteRun& run) {
+  std::vector<JunitSuite> suites;
+  double wall_ms = 0;
+  for (std::size_t i = 0; i < run.implementations.size(); ++i) {
+    const ImplementationRun& one = run.implementations[i];
+    const std::string name = implementation_name(run, i);
+    const std::string class_name = class_name_of(name);
+    JunitSuite& suite = suites.emplace_back();
+    suite.name = "rubric test: " + name;
+    suite.seconds = report::junit_seconds(one.wall_ms);
+    wall_ms += one.wall_ms;
+    if (!one.dishonest.empty()) {
+      suite.cases.push_back(error(class_name, "honesty", one.dishonest));
+    }
+    for (const CaseRun& each : one.cases) suite.cases.push_back(testcase(class_name, each));
+    if (!one.outside.empty()) suite.cases.push_back(outside(class_name, one));
+  }
+  if (!run.stale.empty()) suites.push_back(stale_suite(run));
+  return report::junit_document(suites, "rubric test", report::junit_seconds(wall_ms));
+}
+
+}  // namespace rubric::suite

@@ -1,0 +1,128 @@
+#include "conformance/test/report/log_lines.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "conformance/trace/parse.h"
+#include "conformance/trace/print.h"
+#include "conformance/trace/value_text.h"
+
+namespace rubric::suite {
+namespace {
+
+using trace::Line;
+using trace::NodeHeader;
+using trace::Op;
+using trace::Value;
+
+// How long a frame is on its way in a golden trace: a serial line takes some ticks a message.
+constexpr std::int64_t kOnItsWayTicks = 40;
+
+bool is_meant(std::optional<std::uint16_t> id, const Value& address) {
+  if (address.is(Value::Kind::kNames)) return address.text == "all";
+  if (!address.is(Value::Kind::kNumber)) return false;
+  return address.number == trace::kAmAll || (id && *id == address.number);
+}
+
+void keep_of_island(const std::vector<NodeHeader>& nodes, const Line& line,
+                    std::vector<std::size_t>& senders) {
+  const Value* island = line.message.find("island_addr");
+  const Value* src = line.message.find("src");
+  if (!island && src && src->items.size() == 2) island = &src->items[0];
+  if (!island || !island->is(Value::Kind::kNumber)) return;
+  std::erase_if(senders, [&](std::size_t i) {
+    return !nodes[i].island || *nodes[i].island != island->number;
+  });
+}
+
+// Compares frames without the AM addresses of a serial line and the bytes after a message.
+bool is_same(const Line& before, const Line& line) {
+  return before.link == line.link && before.node != line.node && before.am &&
+         (line.link.starts_with("ser") || *before.am == *line.am) && before.message == line.message;
+}
+
+}  // namespace
+
+std::vector<std::size_t> peers_of(const std::vector<NodeHeader>& nodes, const Line& line) {
+  std::vector<std::size_t> out;
+  const auto self = std::find_if(nodes.begin(), nodes.end(),
+                                 [&](const NodeHeader& node) { return node.name == line.node; });
+  if (!line.am || self == nodes.end()) return out;
+  const Value& address = line.op == Op::kGiven ? line.am->source : line.am->dest;
+  const bool serial = line.link.starts_with("ser");
+  const bool peis = line.link == "peis";
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const NodeHeader& node = nodes[i];
+    if (&node == &*self) continue;
+    const bool base = node.role == trace::Role::kBaseStation;
+    if (serial) {
+      const bool other_end = base != (self->role == trace::Role::kBaseStation);
+      if (other_end && node.role != trace::Role::kMote && node.island == self->island) {
+        out.push_back(i);
+      }
+    } else if (base == peis && is_meant(peis ? node.island : node.id, address)) {
+      out.push_back(i);
+    }
+  }
+  if (line.op == Op::kGiven && out.size() > 1) keep_of_island(nodes, line, out);
+  return out;
+}
+
+std::string short_text(const trace::Message& message) {
+  const std::string& name = message.name;
+  const Value* kind = message.find("payload.trans_id");
+  if (kind && kind->text == "rubicon_ack") {
+    const Value* number = message.find("payload.body.seq_num");
+    return number ? "ack of " + trace::value_text(*number) : "ack";
+  }
+  for (const trace::FieldValue& field : message.fields) {
+    const bool number = field.path == "seq_num" || field.path.ends_with(".seq_num");
+    if (!number && field.path != "result" && field.path != "acked") continue;
+    if (field.value.is(Value::Kind::kNames)) return name + " " + field.value.text;
+    if (!field.value.is(Value::Kind::kNumber)) continue;
+    return name + " " + std::to_string(field.value.number);
+  }
+  return name;
+}
+
+bool is_broken_by(const runner::Failure& failure, const Line& line) {
+  return failure.forbidden && line.op == Op::kEmits &&
+         line.time.from == static_cast<std::int64_t>(failure.time) &&
+         failure.text.ends_with(line.link + " " + trace::print(line.message));
+}
+
+std::optional<Line> asked_line(const runner::Failure& failure) {
+  const trace::Parsed parsed =
+      trace::parse_syntax("%rtr 1\ncase x\n" + failure.expected + "\n", "expected");
+  if (parsed.file.cases.empty() || parsed.file.cases[0].lines().empty()) return std::nullopt;
+  return *parsed.file.cases[0].lines()[0];
+}
+
+std::vector<std::size_t> first_seen(const std::vector<const Line*>& lines) {
+  std::vector<std::size_t> out(lines.size(), kNoLine);
+  // If a node is given the same frame of the same sender again, that is another frame.
+  std::vector<std::pair<std::size_t, const std::string*>> given;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const Line& line = *lines[i];
+    if (line.op != Op::kGiven || !line.am || !line.bytes) continue;
+    for (std::size_t k = i; k-- > 0;) {
+      const Line& before = *lines[k];
+      const std::int64_t ago = line.time.from - before.time.from;
+      if (ago > kOnItsWayTicks) break;
+      if (out[k] != kNoLine || (before.op == Op::kGiven && ago > 0) || !is_same(before, line)) {
+        continue;
+      }
+      if (std::any_of(given.begin(), given.end(), [&](const auto& one) {
+            return one.first == k && *one.second == line.node;
+          })) {
+        continue;
+      }
+      out[i] = k;
+      given.emplace_back(k, &line.node);
+      break;
+    }
+  }
+  return out;
+}
+
+}  // namespace rubric::suite

@@ -1,0 +1,233 @@
+#include "conformance/test/report/text/text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <vector>
+
+#include "codec/reflect/fault_text.h"
+#include "codec/text/text.h"
+#include "conformance/machine/ticks.h"
+#include "conformance/test/report/text/scene.h"
+#include "conformance/test/report/text/style.h"
+#include "conformance/test/report/words.h"
+#include "conformance/trace/trace.h"
+
+namespace rubric::suite {
+namespace {
+
+using report::counted;
+using report::wrapped;
+using runner::CaseVerdict;
+using runner::Failure;
+
+constexpr std::size_t kNameColumns = 40;
+constexpr std::size_t kAlso = 4;  // Further lines of a case that were not kept.
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string out;
+  for (const std::string& word : words) out += (out.empty() ? "" : " ") + word;
+  return out;
+}
+
+// Returns "FAIL", "EXPECTED FAIL", "UNEXPECTED PASS".
+std::string head_of(const CaseRun& one) {
+  const std::string verdict = in_capitals(runner::verdict_text(one.result.verdict));
+  if (one.expectation == Expectation::kAsExpected) return "EXPECTED " + verdict;
+  if (one.expectation == Expectation::kUnexpectedPass) return "UNEXPECTED " + verdict;
+  return verdict;
+}
+
+std::string ms_text(runner::Ticks ticks) {
+  return fmt::format("{:.1f} ms", static_cast<double>(machine::us_of(ticks)) / 1000);
+}
+
+std::string when_text(const Failure& failure) {
+  if (failure.from == failure.to) {
+    return fmt::format("at tick {} ({})", failure.from, ms_text(failure.from));
+  }
+  return fmt::format("from tick {} to {} ({} to {})", failure.from, failure.to,
+                     ms_text(failure.from), ms_text(failure.to));
+}
+
+std::string rule_text(const Failure& failure, const TextOptions& options) {
+  std::string out;
+  for (const std::string& name : failure.requirements) {
+    const reflect::Requirement& rule = reflect::requirement(trace::requirement_id(name));
+    if (*rule.id == '\0') continue;
+    out += field(out.empty() ? "Rule:" : "",
+                 fmt::format("{} ({} {}; {})", rule.sentence, rule.level, rule.id,
+                             *rule.source == '\0' ? rule.clause : rule.source),
+                 options);
+  }
+  return out;
+}
+
+std::string failure_text(const CaseRun& one, const Failure& failure, const TextOptions& options) {
+  std::string out = rule_text(failure, options);
+  if (!failure.expected.empty()) {
+    out += field(failure.forbidden ? "Forbids:" : "Asks for:", failure.expected, options);
+    out += field("",
+                 fmt::format("line {} of {}, {}", failure.place.line, one.file, when_text(failure)),
+                 options);
+  }
+  out += field("But:", failure.text, options);
+  return out;
+}
+
+// Builds the text of story_text().
+class Story {
+ public:
+  Story(const SuiteRun& run, const ImplementationRun& implementation, const TextOptions& options)
+      : run_(run), implementation_(implementation), options_(options) {}
+
+  std::string text() {
+    for (const CaseRun& one : implementation_.cases) {
+      if (one.result.verdict == CaseVerdict::kError || one.result.verdict == CaseVerdict::kFail ||
+          one.expectation != Expectation::kNone) {
+        tell(one);
+      } else if (one.result.verdict == CaseVerdict::kWeak && !options_.quiet) {
+        if (options_.verbose)
+          in_full(one);
+        else
+          weak_.push_back(&one);
+      }
+    }
+    in_lines(brief_);
+    in_lines(weak_);
+    by_reason(CaseVerdict::kInconclusive);
+    by_reason(CaseVerdict::kSkip);
+    return std::move(out_);
+  }
+
+ private:
+  // Returns a key that is equal for similar cases: the rules that they break, or what broke.
+  static std::string kind_of(const CaseRun& one) {
+    if (one.result.verdict == CaseVerdict::kError) return what_broke(one);
+    if (one.result.failures.empty()) return one.name;
+    return joined(one.result.failures.front().requirements);
+  }
+
+  void tell(const CaseRun& one) {
+    const bool known = one.expectation == Expectation::kAsExpected;
+    const bool first = !known && told_.insert(kind_of(one)).second;
+    if (known && options_.quiet) return;
+    if (first || options_.verbose)
+      in_full(one);
+    else
+      brief_.push_back(&one);
+  }
+
+  void in_full(const CaseRun& one) {
+    out_ += '\n';
+    out_ += styled(options_, style_of(one.result.verdict, one.unexpected()), head_of(one),
+                   case_name(one));
+    out_ += wrapped(kIndent, one.comment, options_.width);
+    const bool known = one.expectation == Expectation::kAsExpected;
+    out_ += field(known ? "Expected:" : "Known:", one.expected_reason, options_);
+    if (one.result.verdict == CaseVerdict::kError) {
+      const std::uint32_t line =
+          one.result.failures.empty() ? 0 : one.result.failures.front().place.line;
+      out_ += field("Broke:", one.result.reason, options_);
+      if (line > 0) out_ += field("", fmt::format("at line {} of {}", line, one.file), options_);
+    } else {
+      failures(one);
+    }
+    surroundings(one);
+    out_ += error_text(one.stderr_text, options_);
+    out_ += fmt::format("{}Again:    {}\n", kIndent, replay_command(run_, implementation_, one));
+  }
+
+  void failures(const CaseRun& one) {
+    const std::vector<Failure>& all = one.result.failures;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const Failure& failure = all[i];
+      if (i == 0 || options_.verbose) {
+        out_ += failure_text(one, failure, options_);
+      } else if (i <= kAlso) {
+        const std::string rules = joined(failure.requirements);
+        out_ += field("Also:",
+                      fmt::format("line {}{}: {}", failure.place.line,
+                                  rules.empty() ? "" : " [" + rules + "]", failure.text),
+                      options_);
+      }
+    }
+    if (all.size() > kAlso + 1 && !options_.verbose) {
+      out_ += field("", fmt::format("and {} lines more", all.size() - kAlso - 1), options_);
+    }
+  }
+
+  void surroundings(const CaseRun& one) {
+    if (one.result.failures.empty() || one.result.log.lines().empty()) return;
+    const Failure& failure = one.result.failures.front();
+    out_ += fmt::format("{}Log, in ticks of 1/{} s:\n", kIndent, machine::kTicksPerSecond);
+    out_ += log_around(one, failure, 2 * kIndent.size(), options_.width);
+    if (failure.expected.empty()) return;
+    out_ += '\n' + chart_around(one, failure, 2 * kIndent.size(), options_.width);
+  }
+
+  void in_lines(const std::vector<const CaseRun*>& cases) {
+    if (!cases.empty()) out_ += '\n';
+    for (const CaseRun* one : cases) {
+      std::string rest = fmt::format("{}: {}", case_name(*one), headline(*one));
+      if (one->expectation == Expectation::kAsExpected) rest += ". " + one->expected_reason;
+      out_ +=
+          styled(options_, style_of(one->result.verdict, one->unexpected()), head_of(*one), rest);
+    }
+  }
+
+  void by_reason(CaseVerdict verdict) {
+    std::map<std::string, std::vector<std::string>> reasons;
+    for (const CaseRun& one : implementation_.cases) {
+      if (one.result.verdict == verdict) reasons[one.result.reason].push_back(case_name(one));
+    }
+    if (!reasons.empty()) out_ += '\n';
+    for (const auto& [reason, cases] : reasons) {
+      const std::string names = options_.verbose || cases.size() <= 3
+                                    ? fmt::format(" ({})", joined(cases))
+                                    : std::string();
+      out_ += styled(options_, style_of(verdict, false), in_capitals(runner::verdict_text(verdict)),
+                     fmt::format("{}: {}{}", counted(cases.size(), "case"), reason, names));
+    }
+  }
+
+  const SuiteRun& run_;
+  const ImplementationRun& implementation_;
+  const TextOptions& options_;
+  std::set<std::string> told_;
+  std::vector<const CaseRun*> brief_;
+  std::vector<const CaseRun*> weak_;
+  std::string out_;
+};
+
+}  // namespace
+
+std::string case_text(const CaseRun& one, const TextOptions& options) {
+  if (options.quiet && !one.unexpected()) return {};
+  std::string verdict(runner::verdict_text(one.result.verdict));
+  const std::string_view style = style_of(one.result.verdict, one.unexpected());
+  std::string rest;
+  if (one.expectation == Expectation::kAsExpected) {
+    rest = "as expected";
+  } else if (one.expectation == Expectation::kUnexpectedPass) {
+    rest = "was expected to fail";
+  } else if (one.result.verdict != CaseVerdict::kPass) {
+    rest = headline(one);
+  }
+  const std::string name = case_name(one);
+  std::string out = fmt::format("{:<12} {}", verdict, name);
+  if (!rest.empty()) {
+    out = fmt::format("{:<12} {:<{}} {}", verdict, name, kNameColumns, rest);
+    if (out.size() > options.width) out = out.substr(0, options.width - 3) + "...";
+  }
+  return painted(options, style, verdict) + out.substr(verdict.size()) + '\n';
+}
+
+std::string story_text(const SuiteRun& run, const ImplementationRun& implementation,
+                       const TextOptions& options) {
+  return Story(run, implementation, options).text();
+}
+
+}  // namespace rubric::suite

@@ -1,0 +1,152 @@
+#include "conformance/test/report/words.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "codec/reflect/fault_text.h"
+#include "codec/text/shell.h"
+#include "conformance/test/report/log_lines.h"
+#include "conformance/trace/print.h"
+#include "conformance/trace/trace.h"
+
+namespace rubric::suite {
+namespace {
+
+std::string base_name(const ImplementationRun& run) {
+  const targets::Identity& identity = run.identity;
+  if (identity.name.empty()) return run.target;
+  return identity.version.empty() ? identity.name : identity.name + " " + identity.version;
+}
+
+// A broken target has no rule, and a line of a case need not name one.
+std::string rules_of(const runner::Failure& failure) {
+  return fmt::format("{}", fmt::join(failure.requirements, " "));
+}
+
+// Returns what should have happened: "expected m5 > app joined(result=fail ...), but ".
+std::string asked_text(const runner::Failure& failure) {
+  if (failure.forbidden) return "forbidden, but ";
+  const std::optional<trace::Line> asked = asked_line(failure);
+  if (!asked) return {};
+  return fmt::format("expected {} {} {} {}, but ", asked->node, trace::op_text(asked->op),
+                     asked->link, trace::print(asked->message));
+}
+
+}  // namespace
+
+std::string_view role_text(machine::Role role) {
+  return trace::role_text(static_cast<trace::Role>(role));
+}
+
+std::string_view expectation_text(Expectation expectation) {
+  switch (expectation) {
+    case Expectation::kNone: return "none";
+    case Expectation::kAsExpected: return "as_expected";
+    case Expectation::kOtherwise: return "otherwise";
+    case Expectation::kUnexpectedPass: return "unexpected_pass";
+  }
+  return "none";
+}
+
+std::string implementation_name(const SuiteRun& run, std::size_t index) {
+  const std::string name = base_name(run.implementations[index]);
+  std::size_t before = 0;
+  std::size_t all = 0;
+  for (std::size_t i = 0; i < run.implementations.size(); ++i) {
+    if (base_name(run.implementations[i]) != name) continue;
+    ++all;
+    if (i < index) ++before;
+  }
+  return all == 1 ? name : fmt::format("{} #{}", name, before + 1);
+}
+
+std::string case_name(const CaseRun& one) {
+  return one.repeat == 0 ? one.name : fmt::format("{}#{}", one.name, one.repeat + 1);
+}
+
+bool is_undecided(const CaseRun& one) {
+  return one.result.verdict == runner::CaseVerdict::kSkip ||
+         one.result.verdict == runner::CaseVerdict::kInconclusive;
+}
+
+std::string what_broke(const CaseRun& one) {
+  const std::string& reason = one.result.reason;
+  const std::size_t behind = reason.starts_with('`') ? reason.find("`: ") : reason.npos;
+  return behind == reason.npos ? reason : reason.substr(behind + 3);
+}
+
+std::string headline(const CaseRun& one) {
+  if (one.expectation == Expectation::kUnexpectedPass) {
+    return "it passes, but was expected to fail: " + one.expected_reason;
+  }
+  if (one.result.verdict == runner::CaseVerdict::kError) {
+    const std::string what = what_broke(one);
+    const std::string asked = one.result.reason.substr(0, one.result.reason.size() - what.size());
+    return asked.empty() ? what : fmt::format("{}, at {}", what, asked.substr(0, asked.size() - 2));
+  }
+  if (one.result.failures.empty()) return one.result.reason;
+  const runner::Failure& first = one.result.failures.front();
+  const std::string rules = rules_of(first);
+  std::string out = (rules.empty() ? "" : rules + ": ") + asked_text(first) + first.text;
+  if (one.result.failures.size() > 1) {
+    out += fmt::format(" (and {} more)", one.result.failures.size() - 1);
+  }
+  return out;
+}
+
+std::string in_full(const CaseRun& one) {
+  std::string out;
+  for (const runner::Failure& failure : one.result.failures) {
+    const std::string place = fmt::format("{}:{}: ", one.file, failure.place.line);
+    const std::string rules = rules_of(failure);
+    if (rules.empty() && failure.expected.empty()) {
+      out += place + failure.text + '\n';
+      continue;
+    }
+    out += fmt::format("{}{}{}\n", place, rules.empty() ? "a line that names no rule" : rules,
+                       failure.weak ? " (SHOULD)" : "");
+    for (const std::string& name : failure.requirements) {
+      const ReqId id = trace::requirement_id(name);
+      if (id == ReqId::kNone) continue;
+      const reflect::Requirement& rule = reflect::requirement(id);
+      out += fmt::format("  {} ({}): {}\n", rule.id, rule.level, rule.sentence);
+    }
+    if (!failure.expected.empty()) out += fmt::format("  expected  {}\n", failure.expected);
+    out += fmt::format("  but       {}\n", failure.text);
+  }
+  if (one.result.failures.empty() && !one.result.reason.empty()) out += one.result.reason + "\n";
+  if (!one.stderr_text.empty()) out += "standard error:\n" + one.stderr_text + "\n";
+  return out;
+}
+
+bool broke_outside(const ImplementationRun& implementation) {
+  const auto& all = implementation.outside;
+  return std::any_of(all.begin(), all.end(), [](const OutsideFault& one) { return one.broke; });
+}
+
+std::string outside_text(const OutsideFault& fault) { return fault.text + ", " + fault.when; }
+
+std::string outside_headline(const ImplementationRun& implementation) {
+  const auto& all = implementation.outside;
+  if (all.empty()) return {};
+  const auto gravest = std::max_element(
+      all.begin(), all.end(),
+      [](const OutsideFault& a, const OutsideFault& b) { return a.broke < b.broke; });
+  std::string out = outside_text(*gravest);
+  if (all.size() > 1) out += fmt::format(" (and {} more)", all.size() - 1);
+  return out;
+}
+
+std::string replay_command(const SuiteRun& run, const ImplementationRun& implementation,
+                           const CaseRun& one) {
+  std::string out = "rubric test --target " + report::shell_word(implementation.target) +
+                    " --cases " + report::shell_word(one.name);
+  if (run.profile != "paper") out += " --profile " + run.profile;
+  if (one.seed != 0) out += fmt::format(" --seed {}", one.seed);
+  for (const std::string& path : run.traces) out += " " + report::shell_word(path);
+  return out;
+}
+
+}  // namespace rubric::suite

@@ -1,0 +1,56 @@
+#include "conformance/test/runner/dependence.h"
+
+#include <algorithm>
+#include <set>
+#include <string>
+
+namespace rubric::runner {
+namespace {
+
+using trace::Line;
+using trace::Op;
+using trace::Time;
+using trace::Value;
+using Names = std::set<std::string>;
+
+void add_names(const Value& value, Names& out) {
+  const bool of_variable = value.is(Value::Kind::kVariable) || value.is(Value::Kind::kRange);
+  if (of_variable && !value.text.empty()) out.insert(value.text);
+  for (const Value& item : value.items) add_names(item, out);
+}
+
+Names names_of(const Line& line) {
+  Names out;
+  for (const trace::FieldValue& field : line.message.fields) add_names(field.value, out);
+  if (line.am) {
+    add_names(line.am->source, out);
+    add_names(line.am->dest, out);
+  }
+  return out;
+}
+
+// Returns whether later lines without another reference count their times from this one.
+bool is_counted_from(const Line& line) { return line.op != Op::kMustNot && line.op != Op::kMay; }
+
+}  // namespace
+
+bool is_needed_later(const trace::Case& one, const Line& line) {
+  const Names names = names_of(line);
+  const std::vector<const Line*> lines = one.lines();
+  bool is_previous = is_counted_from(line);
+  for (auto at = std::find(lines.begin(), lines.end(), &line) + 1; at != lines.end(); ++at) {
+    const Line& later = **at;
+    if (is_previous && later.time.base == Time::Base::kPrevious) return true;
+    is_previous = is_previous && !is_counted_from(later);
+    const bool same_label = later.time.base == Time::Base::kLabel && later.time.label == line.label;
+    if (same_label) return true;
+    const Names others = names_of(later);
+    if (std::any_of(names.begin(), names.end(),
+                    [&](const std::string& name) { return others.contains(name); })) {
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace rubric::runner

@@ -1,0 +1,199 @@
+#include "conformance/test/runner/node_log.h"
+
+#include <fmt/format.h>
+
+#include <limits>
+#include <optional>
+
+#include "conformance/generated/profiles.h"
+#include "conformance/test/runner/run_case.h"
+#include "conformance/trace/encode.h"
+#include "conformance/trace/events/app_events.h"
+#include "conformance/trace/match.h"
+#include "conformance/trace/print.h"
+
+namespace rubric::runner {
+namespace {
+
+using machine::Link;
+using trace::LinkKind;
+
+LinkKind kind_of(const Output& output) {
+  if (!output.is_frame) return LinkKind::kApp;
+  switch (output.frame.link) {
+    case Link::kRadio: return LinkKind::kRadio;
+    case Link::kSerial: return LinkKind::kSerial;
+    case Link::kPeis: return LinkKind::kPeis;
+  }
+  return LinkKind::kAny;
+}
+
+trace::Concrete message_of(const Output& output) {
+  if (output.is_frame) {
+    const machine::Transmit& frame = output.frame;
+    const Bytes bytes = frame.bytes();
+    return trace::decode({frame.dest, frame.src, 0, frame.type, {bytes.begin(), bytes.end()}},
+                         kind_of(output));
+  }
+  machine::Notice notice = output.notice;
+  if (auto* received = std::get_if<machine::Received>(&notice)) {
+    received->data = {output.data.data(), output.data.size()};
+  }
+  return trace::concrete(events::from_notice(notice));
+}
+
+bool is_for(const trace::Line& line, const std::string& link) {
+  return line.link == "*" || line.link == link;
+}
+
+}  // namespace
+
+machine::Config config_of(const trace::Scope& scope, const trace::NodeHeader& node) {
+  machine::Config config;
+  config.role = static_cast<machine::Role>(node.role);
+  config.id = node.id.value_or(0);
+  config.island = node.island.value_or(0);
+  config.profile = scope.profile == "deployed" ? machine::kDeployed : machine::kPaper;
+  static_assert(trace::kChannelsMax == machine::kChannelsRoom);
+  config.profile.channels_max = node.channels.value_or(config.profile.channels_max);
+  config.first_seq = static_cast<std::uint16_t>(1000 + 257 * scope.seed);
+  return config;
+}
+
+NodeLog::NodeLog(const trace::Scope& scope, const trace::Case& one, const trace::NodeHeader& header,
+                 std::unique_ptr<Target> target)
+    : name_(header.name), target_(std::move(target)) {
+  link_names_ = {{Link::kRadio, "rA"}, {Link::kSerial, "serA"}, {Link::kPeis, "peis"}};
+  for (const trace::Line* line : one.lines()) {
+    if (line->node != name_) continue;
+    if (const auto kind = scope.link(line->link)) {
+      if (const auto link = events::to_link(*kind)) link_names_[*link] = line->link;
+    }
+  }
+}
+
+std::string NodeLog::link_name(const Output& output) const {
+  return output.is_frame ? link_names_.at(output.frame.link) : "app";
+}
+
+Ticks NodeLog::run_until(Ticks time) {
+  const Ticks reached = target_->run_until(time);
+  read_outputs();
+  return reached;
+}
+
+void NodeLog::read_outputs() {
+  const std::vector<Output>& outputs = target_->outputs();
+  for (std::size_t i = seen_.size(); i < outputs.size(); ++i) {
+    const Output& output = outputs[i];
+    seen_.push_back({message_of(output), link_name(output), false});
+    const Seen& seen = seen_.back();
+    trace::Line line =
+        output.is_frame
+            ? trace::frame_line(output.time, name_, trace::Op::kEmits, seen.link, kind_of(output),
+                                *seen.message.frame)
+            : trace::app_line(output.time, name_, trace::Op::kEmits, "app", seen.message.message);
+    if (output.requirement != ReqId::kNone) {
+      line.requirements.emplace_back(trace::requirement_text(output.requirement));
+    }
+    log_.push_back({output.time, std::move(line)});
+  }
+}
+
+void NodeLog::give(const trace::Line& line, Ticks now, const trace::Scope& scope,
+                   const trace::Bindings& bindings) {
+  const LinkKind kind = scope.link(line.link).value_or(LinkKind::kAny);
+  const trace::Shape* shape = trace::Schema::get().find(line.message.name);
+  const auto link = events::to_link(kind);
+  const bool is_state = shape && shape->app && shape->app->what != trace::AppWhat::kFrame;
+  if (!is_state && link) {
+    const trace::AmFrame frame = trace::frame_of(line, scope, bindings);
+    log_.push_back({now, trace::frame_line(now, name_, trace::Op::kGiven, line.link, kind, frame)});
+    const machine::Frame heard{*link, frame.dest, frame.src, frame.type,
+                               Bytes(frame.payload.data(), frame.payload.size())};
+    target_->give(now, machine::Heard{heard});
+    read_outputs();
+    return;
+  }
+  const trace::Concrete message = trace::concrete(line.message, bindings);
+  log_.push_back({now, trace::app_line(now, name_, trace::Op::kGiven, line.link, message.message)});
+  if (const auto call = events::to_call(message)) {
+    target_->give(now, machine::Called{*call});
+  } else if (const auto state = events::to_state(message, kind)) {
+    if (std::holds_alternative<machine::SendDone>(*state)) {
+      target_->hold_link_acks(--link_acks_to_come > 0);
+    }
+    target_->give(now, *state);
+  } else {
+    throw trace::TraceError(line.place, line.message.name + " cannot be given to a node");
+  }
+  read_outputs();
+}
+
+const Output* NodeLog::take(const trace::Line& line, const Window& window,
+                            trace::Bindings& bindings) {
+  const std::vector<Output>& outputs = target_->outputs();
+  for (std::size_t i = 0; i < seen_.size(); ++i) {
+    Seen& seen = seen_[i];
+    if (seen.taken || !is_for(line, seen.link) || !window.holds(outputs[i].time)) continue;
+    if (const auto next = next_.find(seen.link); next != next_.end() && i < next->second) continue;
+    if (!trace::match(line, seen.message, bindings)) continue;
+    seen.taken = true;
+    next_[seen.link] = i + 1;
+    return &outputs[i];
+  }
+  return nullptr;
+}
+
+void NodeLog::allow(const trace::Line& line, const Window& window,
+                    const trace::Bindings& bindings) {
+  if (const Output* output = forbidden(line, window, bindings)) {
+    seen_[static_cast<std::size_t>(output - target_->outputs().data())].taken = true;
+  }
+}
+
+const Output* NodeLog::forbidden(const trace::Line& line, const Window& window,
+                                 const trace::Bindings& bindings) const {
+  const std::vector<Output>& outputs = target_->outputs();
+  for (std::size_t i = 0; i < seen_.size(); ++i) {
+    const Seen& seen = seen_[i];
+    if (seen.taken || !is_for(line, seen.link) || !window.holds(outputs[i].time)) continue;
+    trace::Bindings copy = bindings;
+    if (trace::match(line, seen.message, copy)) return &outputs[i];
+  }
+  return nullptr;
+}
+
+std::string NodeLog::nearest_miss(const trace::Line& line, const Window& window,
+                                  const trace::Bindings& bindings) const {
+  const std::vector<Output>& outputs = target_->outputs();
+  std::size_t best = std::numeric_limits<std::size_t>::max();
+  std::string text = "it emitted nothing there";
+  for (std::size_t i = 0; i < seen_.size(); ++i) {
+    const Seen& seen = seen_[i];
+    if (seen.taken || !is_for(line, seen.link)) continue;
+    trace::Bindings copy = bindings;
+    const trace::Match match = trace::match(line, seen.message, copy);
+    const bool in_time = window.holds(outputs[i].time);
+    const std::size_t distance = match.distance() * 2 + (in_time ? 0 : 1);
+    if (distance >= best) continue;
+    best = distance;
+    if (match && in_time) {
+      text = fmt::format("at {} it came before one that was to come first", outputs[i].time);
+    } else if (match) {
+      text =
+          fmt::format("it came at {}, not from {} to {}", outputs[i].time, window.from, window.to);
+    } else {
+      text =
+          fmt::format("nearest, at {}: {}: {}", outputs[i].time, text_of(outputs[i]), match.text());
+    }
+  }
+  return text;
+}
+
+std::string NodeLog::text_of(const Output& output) const {
+  const std::size_t index = static_cast<std::size_t>(&output - target_->outputs().data());
+  return fmt::format("{} {}", seen_[index].link, trace::print(seen_[index].message.message));
+}
+
+}  // namespace rubric::runner

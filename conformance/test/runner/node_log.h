@@ -1,0 +1,67 @@
+// A node under test in a case: its target, the outputs so far, and which of them a line has taken.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "conformance/test/runner/expectation.h"
+#include "conformance/test/runner/target.h"
+#include "conformance/trace/concrete.h"
+
+namespace rubric::runner {
+
+struct LoggedLine {
+  Ticks time = 0;
+  trace::Line line;
+};
+
+class NodeLog {
+ public:
+  NodeLog(const trace::Scope& scope, const trace::Case& one, const trace::NodeHeader& header,
+          std::unique_ptr<Target> target);
+
+  const std::string& name() const { return name_; }
+  Target& target() { return *target_; }
+  const Target& target() const { return *target_; }
+  const std::vector<LoggedLine>& log() const { return log_; }
+
+  Ticks run_until(Ticks time);
+  /// Runs a `<` line. Throws trace::TraceError.
+  void give(const trace::Line& line, Ticks now, const trace::Scope& scope,
+            const trace::Bindings& bindings);
+  /// Takes the output that fits a `>` line, and binds its variables. Returns null if there is none
+  /// so far.
+  const Output* take(const trace::Line& line, const Window& window, trace::Bindings& bindings);
+  /// Lets a `?>` line take the first output in its window that no line has taken, in whatever
+  /// order.
+  void allow(const trace::Line& line, const Window& window, const trace::Bindings& bindings);
+  /// Returns the first output that breaks a `!>` line, or null.
+  const Output* forbidden(const trace::Line& line, const Window& window,
+                          const trace::Bindings& bindings) const;
+  /// Explains why no output was taken: the closest one and how it differs.
+  std::string nearest_miss(const trace::Line& line, const Window& window,
+                           const trace::Bindings& bindings) const;
+  std::string text_of(const Output& output) const;
+
+  int link_acks_to_come = 0;
+
+ private:
+  struct Seen {
+    trace::Concrete message;
+    std::string link;
+    bool taken = false;
+  };
+  void read_outputs();
+  std::string link_name(const Output& output) const;
+
+  std::string name_;
+  std::unique_ptr<Target> target_;
+  std::map<machine::Link, std::string> link_names_;
+  std::vector<Seen> seen_;                   // One for each output of the target.
+  std::map<std::string, std::size_t> next_;  // By link: the output after the last taken one.
+  std::vector<LoggedLine> log_;
+};
+
+}  // namespace rubric::runner

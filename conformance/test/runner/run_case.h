@@ -1,0 +1,63 @@
+// Runs a golden trace on implementations: gives them its inputs and compares their outputs with
+// what the lines require.
+//
+// Lines run in their order. `<` happens at its time, or at once if that has passed. `>` takes the
+// first output of that node and link, after the one taken last, that matches in time. `?>` takes
+// one output more, if there is one, when the case is over; `!>` forbids outputs that no line took,
+// and is judged after that. Outputs that no line names are allowed.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "conformance/test/runner/target.h"
+#include "conformance/trace/trace.h"
+
+namespace rubric::runner {
+
+/// Up to kError in the order of gravity. kInconclusive: nothing was broken, but the target does not
+/// show everything; kError: the case itself makes no sense here, or the target broke; kSkip: the
+/// target reports that it cannot do what the case needs.
+enum class CaseVerdict : std::uint8_t { kPass, kWeak, kInconclusive, kFail, kError, kSkip };
+std::string_view verdict_text(CaseVerdict verdict);
+
+/// A line that was not kept.
+struct Failure {
+  trace::Place place;                     ///< Place of the line in its file.
+  std::vector<std::string> requirements;  ///< Named by the line.
+  bool weak = false;                      ///< All of these are SHOULD.
+  Ticks time = 0;                         ///< When the breaking output came, or its time was over.
+  std::string expected;                   ///< The line.
+  std::string text;                       ///< The actual event, with the nearest miss.
+  Ticks from = 0;                         ///< The line's time, since the start of the case.
+  Ticks to = 0;
+  bool forbidden = false;  ///< The line says what must not be emitted.
+};
+
+struct CaseResult {
+  std::string name;
+  CaseVerdict verdict = CaseVerdict::kPass;
+  std::vector<Failure> failures;
+  std::string reason;  ///< Why it is inconclusive, skipped or an error.
+  Ticks length = 0;    ///< Virtual time that passed.
+  trace::Case log;     ///< Everything that was given and came back.
+};
+
+/// Makes the implementation for a node under test.
+using TargetFactory = std::function<std::unique_ptr<Target>(const trace::NodeHeader& node)>;
+
+/// Runs a case; every node under test gets a target. Does not throw: a case that cannot be run is
+/// kError.
+CaseResult run_case(const trace::File& file, const trace::Case& one, const TargetFactory& make);
+
+/// Returns the start configuration of a node of a trace.
+machine::Config config_of(const trace::Scope& scope, const trace::NodeHeader& node);
+
+/// Returns one paragraph for each failure.
+std::string explain(const CaseResult& result, const std::string& file_name);
+
+}  // namespace rubric::runner

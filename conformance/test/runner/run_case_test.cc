@@ -1,0 +1,258 @@
+// A case's requirements compared with a target's outputs: one row for each way to differ.
+#include "conformance/test/runner/run_case.h"
+
+#include <gtest/gtest.h>
+
+#include "conformance/test/runner/subject_target.h"
+#include "conformance/trace/parse.h"
+
+namespace rubric::runner {
+namespace {
+
+// Notifies its application at each of these times of its delay.
+class Ticker : public Target {
+ public:
+  explicit Ticker(std::vector<Ticks> times) : times_(std::move(times)) {}
+  void reset(const machine::Config&) override {}
+  void give(Ticks now, const machine::Event&) override {
+    while (run_until(now) < now) {
+    }
+  }
+  std::optional<Ticks> next() const override {
+    if (done_ == times_.size()) return std::nullopt;
+    return times_[done_];
+  }
+  Ticks run_until(Ticks time) override {
+    if (done_ == times_.size() || times_[done_] > time) return time;
+    Output output;
+    output.time = times_[done_++];
+    output.notice = machine::Clock{output.time};
+    outputs_.push_back(output);
+    return output.time;
+  }
+  const std::vector<Output>& outputs() const override { return outputs_; }
+  void hold_link_acks(bool) override {}
+
+ private:
+  std::vector<Ticks> times_;
+  std::size_t done_ = 0;
+  std::vector<Output> outputs_;
+};
+
+CaseResult run(const std::string& lines, std::vector<Ticks> times) {
+  const trace::Parsed parsed =
+      trace::parse("%rtr 1\n%profile paper\n%node m5 mote id=5 iut\ncase x\n" + lines, "x.rtr");
+  EXPECT_EQ(parsed.errors(), "");
+  return run_case(parsed.file, parsed.file.cases.at(0),
+                  [&](const trace::NodeHeader&) { return std::make_unique<Ticker>(times); });
+}
+
+struct Row {
+  const char* name;
+  const char* lines;
+  std::vector<Ticks> times;
+  CaseVerdict verdict;
+  const char* text;  // In the first failure.
+};
+
+class Rows : public testing::TestWithParam<Row> {};
+
+TEST_P(Rows, AreJudged) {
+  const Row& row = GetParam();
+  const CaseResult result = run(row.lines, row.times);
+  EXPECT_EQ(result.verdict, row.verdict) << explain(result, "x.rtr");
+  if (result.failures.empty()) {
+    EXPECT_STREQ(row.text, "");
+  } else {
+    EXPECT_EQ(result.failures[0].text, row.text);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, Rows,
+    testing::Values(
+        Row{"InTime", "0..50 m5 > app clock(ms=30)\n", {30}, CaseVerdict::kPass, ""},
+        Row{"FirstTick", "30..50 m5 > app clock(ms=30)\n", {30}, CaseVerdict::kPass, ""},
+        Row{"LastTick", "0..30 m5 > app clock(ms=30)\n", {30}, CaseVerdict::kPass, ""},
+        Row{"Late",
+            "0..29 m5 > app clock(ms=30) [J4-ACK]\n",
+            {30},
+            CaseVerdict::kFail,
+            "it came at 30, not from 0 to 29"},
+        Row{"Early",
+            "31..50 m5 > app clock(ms=30)\n",
+            {30},
+            CaseVerdict::kFail,
+            "it came at 30, not from 31 to 50"},
+        Row{"Silent",
+            "0..50 m5 > app clock(*)\n",
+            {},
+            CaseVerdict::kFail,
+            "it emitted nothing there"},
+        Row{"OtherField",
+            "0..50 m5 > app clock(ms=31)\n",
+            {30},
+            CaseVerdict::kFail,
+            "nearest, at 30: app clock(ms=30): ms: expected 31, seen 30"},
+        Row{"OnlyShould",
+            "0..50 m5 > app clock(*) [J1-SEQ]\n",
+            {},
+            CaseVerdict::kWeak,
+            "it emitted nothing there"},
+        Row{"ShouldAndMust",
+            "0..50 m5 > app clock(*) [J1-SEQ J4-ACK]\n",
+            {},
+            CaseVerdict::kFail,
+            "it emitted nothing there"},
+        Row{"Twice",
+            "0..50 m5 > app clock(*)\n@0..90 m5 !> app clock(*)\n",
+            {30, 60},
+            CaseVerdict::kFail,
+            "at 60 it emitted app clock(ms=60)"},
+        Row{"OnceIsTaken",
+            "0..50 m5 > app clock(*)\n@0..50 m5 !> app clock(*)\n",
+            {30, 60},
+            CaseVerdict::kPass,
+            ""},
+        Row{"AtMostTwo",
+            "@0..90 m5 ?> app clock(*)\n@0..90 m5 ?> app clock(*)\n@0..90 m5 !> app clock(*)\n",
+            {30, 60},
+            CaseVerdict::kPass,
+            ""},
+        Row{"AtMostTwoOfThree",
+            "@0..90 m5 !> app clock(*)\n@0..90 m5 ?> app clock(*)\n@0..90 m5 ?> app clock(*)\n",
+            {30, 60, 70},
+            CaseVerdict::kFail,
+            "at 70 it emitted app clock(ms=70)"},
+        Row{"MayNotLate",
+            "@0..50 m5 ?> app clock(*)\n@0..90 m5 !> app clock(*)\n",
+            {60},
+            CaseVerdict::kFail,
+            "at 60 it emitted app clock(ms=60)"},
+        Row{"MayNotOther",
+            "@0..90 m5 ?> app clock(ms=50)\n@0..90 m5 !> app clock(*)\n",
+            {60},
+            CaseVerdict::kFail,
+            "at 60 it emitted app clock(ms=60)"},
+        Row{"NeedNot", "@0..90 m5 ?> app clock(*) [J4-ACK]\n", {}, CaseVerdict::kPass, ""},
+        Row{"MayIsNoTimeToCountFrom",
+            "0..50 m5 > app clock(*)\n0..90 m5 ?> app clock(*)\n30 m5 > app clock(ms=60)\n",
+            {30, 60},
+            CaseVerdict::kPass,
+            ""},
+        Row{"MayTakesWhatIsLeft",
+            "@0..90 m5 ?> app clock(*)\n@0..90 m5 > app clock(ms=60)\n@0..90 m5 !> app clock(*)\n",
+            {30, 60},
+            CaseVerdict::kPass,
+            ""},
+        Row{"Beyond",
+            "0..50 m5 > app clock(ms=$t)\n0..90 m5 > app clock(ms=$t+30..$t+40)\n",
+            {30, 60},
+            CaseVerdict::kPass,
+            ""},
+        Row{"TooFarBeyond",
+            "0..50 m5 > app clock(ms=$t)\n0..90 m5 > app clock(ms=$t+20..$t+29)\n",
+            {30, 60},
+            CaseVerdict::kFail,
+            "nearest, at 60: app clock(ms=60): ms: expected $t+20..$t+29 ($t = 30), seen 60"},
+        Row{"BelowAndNegated",
+            "0..50 m5 > app clock(ms=$t)\n@0..90 m5 !> app clock(ms=!$t-5..$t+29)\n",
+            {30, 60},
+            CaseVerdict::kFail,
+            "at 60 it emitted app clock(ms=60)"},
+        Row{"ForbiddenBeforeItIsTaken",
+            "@0..90 m5 !> * *\n0..50 m5 > app clock(ms=30)\n",
+            {30},
+            CaseVerdict::kPass,
+            ""},
+        Row{"BoundAndForbidden",
+            "0..50 m5 > app clock(ms=$t)\n@0..90 m5 !> app clock(ms=!$t)\n",
+            {30, 60},
+            CaseVerdict::kFail,
+            "at 60 it emitted app clock(ms=60)"},
+        Row{"AfterALabel",
+            "a: 0..50 m5 > app clock(*)\na+20..40 m5 > app clock(*)\n",
+            {30, 60},
+            CaseVerdict::kPass,
+            ""},
+        Row{"AfterThePrevious",
+            "0..50 m5 > app clock(*)\n0..29 m5 > app clock(*)\n",
+            {30, 60},
+            CaseVerdict::kFail,
+            "it came at 60, not from 30 to 59"},
+        Row{"OutOfOrder",
+            "@0..90 m5 > app clock(ms=60)\n@0..90 m5 > app clock(ms=30)\n",
+            {30, 60},
+            CaseVerdict::kFail,
+            "at 30 it came before one that was to come first"}),
+    [](const auto& row) { return std::string(row.param.name); });
+
+// A Ticker that takes no calls.
+class Refuser : public Ticker {
+ public:
+  using Ticker::Ticker;
+  void give(Ticks now, const machine::Event& event) override {
+    Ticker::give(now, event);
+    throw Unsupported("calls");
+  }
+};
+
+CaseResult refused(const std::string& lines, std::vector<Ticks> times) {
+  const trace::Parsed parsed =
+      trace::parse("%rtr 1\n%profile paper\n%node m5 mote id=5 iut\ncase x\n" + lines, "x.rtr");
+  EXPECT_EQ(parsed.errors(), "");
+  return run_case(parsed.file, parsed.file.cases.at(0),
+                  [&](const trace::NodeHeader&) { return std::make_unique<Refuser>(times); });
+}
+
+TEST(RunCase, WhatIsUnsupportedIsSkipped) {
+  const CaseResult result =
+      refused("@90 m5 < app get_clock()\n0..50 m5 > app clock(ms=30)\n@0..90 m5 !> app *\n", {30});
+  EXPECT_EQ(result.verdict, CaseVerdict::kSkip) << explain(result, "x.rtr");
+  EXPECT_EQ(result.reason, "calls");
+}
+
+TEST(RunCase, WhatWasBrokenBeforeStaysBroken) {
+  for (const char* lines : {"@0..90 m5 !> app clock(*) [J4-SEQ]\n@90 m5 < app get_clock()\n",
+                            "@90 m5 < app get_clock()\n@0..80 m5 !> app clock(*) [J4-SEQ]\n"}) {
+    const CaseResult result = refused(lines, {30});
+    EXPECT_EQ(result.verdict, CaseVerdict::kFail) << lines;
+    ASSERT_EQ(result.failures.size(), 1u);
+    EXPECT_EQ(result.failures[0].text, "at 30 it emitted app clock(ms=30)");
+    EXPECT_EQ(result.reason, "calls");
+  }
+}
+
+// Records when it is reset.
+class Started : public Ticker {
+ public:
+  explicit Started(std::string& happened) : Ticker({}), happened_(happened) {}
+  void reset(const machine::Config&) override { happened_ += "reset "; }
+
+ private:
+  std::string& happened_;
+};
+
+TEST(RunCase, NoNodeIsResetBeforeAllAreThere) {  // In real time they would be out of step.
+  const trace::Parsed parsed = trace::parse(
+      "%rtr 1\n%profile paper\n%node m2 mote id=2 iut\n%node m5 mote id=5 iut\ncase x\n"
+      "0..50 m5 !> app clock(*)\n",
+      "x.rtr");
+  ASSERT_EQ(parsed.errors(), "");
+  std::string happened;
+  run_case(parsed.file, parsed.file.cases.at(0), [&](const trace::NodeHeader& header) {
+    happened += header.name + " ";
+    return std::make_unique<Started>(happened);
+  });
+  EXPECT_EQ(happened, "m2 m5 reset reset ");
+}
+
+TEST(RunCase, NothingUnderTestIsAnError) {
+  const trace::Parsed parsed =
+      trace::parse("%rtr 1\n%profile paper\n%node m5 mote id=5\ncase x\n", "x.rtr");
+  const CaseResult result = run_case(parsed.file, parsed.file.cases.at(0), {});
+  EXPECT_EQ(result.verdict, CaseVerdict::kError);
+}
+
+}  // namespace
+}  // namespace rubric::runner

@@ -1,0 +1,73 @@
+// An implementation under test on a clock that the runner turns, wherever it runs.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "codec/lines/broken.h"
+#include "conformance/machine/step.h"
+
+namespace rubric::runner {
+
+using machine::Ticks;
+
+/// An output of the implementation: a frame on a line, or news for its application.
+struct Output {
+  Ticks time = 0;
+  bool is_frame = false;
+  machine::Transmit frame;           ///< If it is a frame.
+  machine::Notice notice;            ///< Else; Received::data are in `data`.
+  std::vector<std::uint8_t> data;    ///< The bytes of Received.
+  ReqId requirement = ReqId::kNone;  ///< The rule that the implementation names; often none.
+};
+
+/// The target broke: it died, hangs, or sends nonsense. An error of the case.
+using TargetBroken = lines::Broken;
+/// The target reports that it cannot do this. The case is skipped.
+class Unsupported : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// The part of a node that a target lets the runner see and do. A node behind a serial line shows
+/// only that line.
+struct Reach {
+  bool radio = true;
+  bool serial = true;
+  bool peis = true;
+  bool app = true;  ///< Calls, events, power, and whether lines are busy.
+};
+
+/// How many ticks a target's times may be off. Zeros if the runner turns its clock.
+struct Tolerance {
+  Ticks early = 0;
+  Ticks late = 0;
+};
+
+/// All but the accessors may throw TargetBroken and Unsupported.
+class Target {
+ public:
+  virtual ~Target() = default;
+  /// Makes it a node that has just started, at tick 0.
+  virtual void reset(const machine::Config& config) = 0;
+  /// Gives an event from outside. Time does not go backwards.
+  virtual void give(Ticks now, const machine::Event& event) = 0;
+  /// Returns the time before which it surely does nothing on its own, unless it is given something;
+  /// nothing: never.
+  virtual std::optional<Ticks> next() const = 0;
+  /// Lets time pass up to and including `time`, but stops at the first instant at which it emits
+  /// something, when all of that instant is done. Returns the instant that is reached.
+  virtual Ticks run_until(Ticks time) = 0;
+  /// Returns all outputs since reset, in order.
+  virtual const std::vector<Output>& outputs() const = 0;
+  /// While set, frames that ask for a link ack end when the runner gives SendDone, not before.
+  virtual void hold_link_acks(bool hold) = 0;
+
+  virtual Reach reach() const { return {}; }
+  virtual Tolerance tolerance() const { return {}; }
+};
+
+}  // namespace rubric::runner

@@ -1,0 +1,52 @@
+// Reasons to keep a trace: a failure of one implementation, or a difference between two.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "conformance/test/runner/run_case.h"
+#include "conformance/test/shrink/shrink.h"
+
+namespace rubric::shrink {
+
+/// An implementation, and the profile that it is to play; empty: the trace's.
+struct Player {
+  runner::TargetFactory make;
+  std::string profile;
+};
+
+/// Returns one case of a file, with the headers that apply to it.
+trace::File only(const trace::File& file, const trace::Case& one);
+/// Runs the only case of `file`.
+runner::CaseResult play(const trace::File& file, const Player& player);
+
+/// Returns a predicate: `player` fails by the same rules as in the first failure of `first`, or
+/// with the same error. If `reference` passes the original it must pass the shrunk trace too, with
+/// any first sequence number; else the trace would require what no rule requires.
+StillShows fails_alike(const runner::CaseResult& first, const Player& player,
+                       const std::optional<Player>& reference);
+
+/// Returns whether one keeps what the other breaks. Freedom within the rules is no difference.
+bool differ(const runner::CaseResult& a, const runner::CaseResult& b);
+
+struct Difference {
+  Shrunk shrunk;
+  std::string case_name;  ///< In the trace from which it was made.
+  runner::CaseResult a;   ///< On the shrunk trace.
+  runner::CaseResult b;
+};
+
+struct DifferenceSearch {
+  std::optional<Difference> shortest;
+  std::size_t compared = 0;            ///< Cases that both played.
+  std::size_t skipped = 0;             ///< Cases that one of them cannot play.
+  std::vector<std::string> different;  ///< Names of all cases that differ.
+};
+
+/// Runs all cases on both, shrinks those that differ, beginning with the smallest and at most
+/// `shrunk_max` of them, and keeps the shortest. Throws runner::TargetBroken if one breaks.
+DifferenceSearch find_difference(const std::vector<const trace::File*>& files, const Player& a,
+                                 const Player& b, std::size_t shrunk_max = 8);
+
+}  // namespace rubric::shrink

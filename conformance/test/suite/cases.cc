@@ -1,0 +1,127 @@
+#include "conformance/test/suite/cases.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+
+#include "conformance/test/runner/case_files.h"
+#include "conformance/test/runner/run_case.h"
+
+namespace rubric::suite {
+namespace {
+
+template <class T>
+void add_once(std::vector<T>& all, const T& one) {
+  if (std::find(all.begin(), all.end(), one) == all.end()) all.push_back(one);
+}
+
+// Returns the comment lines at the begin of a case as one text.
+std::string comment_of(const trace::Case& one) {
+  std::string out = one.comment;
+  for (const trace::Item& item : one.items) {
+    const auto* comment = std::get_if<trace::Comment>(&item);
+    if (!comment) break;
+    std::string_view text = comment->text;
+    text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
+    if (!out.empty() && !text.empty()) out += ' ';
+    out += text;
+  }
+  return out;
+}
+
+SuiteCase suite_case(const trace::Parsed& file, const trace::Case& one) {
+  SuiteCase out;
+  out.file = &file;
+  out.one = &one;
+  const trace::Scope scope = trace::scope_of(file.file, one);
+  out.blank.name = one.name;
+  out.blank.file = file.file_name;
+  out.blank.comment = comment_of(one);
+  out.blank.nodes = scope.nodes;
+  out.blank.links = scope.links;
+  out.blank.seed = scope.seed;
+  out.blank.profile = scope.profile;
+  for (const trace::NodeHeader& node : scope.nodes) {
+    if (node.iut) add_once(out.blank.roles, static_cast<machine::Role>(node.role));
+  }
+  for (const trace::Line* line : one.lines()) {
+    for (const std::string& name : line->requirements) {
+      add_once(out.rules, name);
+      const ReqId id = trace::requirement_id(name);
+      if (id != ReqId::kNone) add_once(out.blank.requirements, id);
+    }
+  }
+  return out;
+}
+
+trace::Parsed read_file(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  if (!in.good() && !in.eof()) throw std::runtime_error(path.string() + ": cannot be read");
+  trace::Parsed file = trace::parse(text, path.generic_string());
+  if (!file.ok()) throw std::runtime_error(file.errors());
+  return file;
+}
+
+}  // namespace
+
+Cases Cases::own() {
+  Cases out;
+  for (const EmbeddedFile& one : embedded_files()) {
+    trace::Parsed file = trace::parse(one.text, one.name);
+    if (!file.ok()) throw std::logic_error(file.errors());
+    out.add(std::move(file));
+  }
+  return out;
+}
+
+Cases Cases::of(const std::vector<std::string>& paths) {
+  Cases out;
+  for (const std::string& path : paths) {
+    if (std::filesystem::is_directory(path)) {
+      for (trace::Parsed& file : runner::load_cases(path)) out.add(std::move(file));
+    } else if (std::filesystem::exists(path)) {
+      out.add(read_file(path));
+    } else {
+      throw std::runtime_error(path + ": no such file or folder");
+    }
+  }
+  return out;
+}
+
+Cases Cases::of_text(std::string_view text, const std::string& file_name) {
+  Cases out;
+  trace::Parsed file = trace::parse(text, file_name);
+  if (!file.ok()) throw std::runtime_error(file.errors());
+  out.add(std::move(file));
+  return out;
+}
+
+const SuiteCase* Cases::find(std::string_view name) const {
+  const auto found = std::find_if(cases_.begin(), cases_.end(),
+                                  [&](const SuiteCase& one) { return one.blank.name == name; });
+  return found == cases_.end() ? nullptr : &*found;
+}
+
+void Cases::add(trace::Parsed file) {
+  const trace::Parsed& kept = files_.emplace_back(std::move(file));
+  for (const trace::Case& one : kept.file.cases) {
+    SuiteCase added = suite_case(kept, one);
+    const std::string place =
+        fmt::format("{}:{}: case {}", kept.file_name, one.place.line, one.name);
+    if (const SuiteCase* other = find(one.name)) {
+      throw std::runtime_error(fmt::format("{}: the name stands in {} too, line {}", place,
+                                           other->blank.file, other->one->place.line));
+    }
+    if (added.blank.roles.empty()) {
+      throw std::runtime_error(place + " has no node under test (iut)");
+    }
+    cases_.push_back(std::move(added));
+  }
+}
+
+}  // namespace rubric::suite

@@ -1,0 +1,276 @@
+// Whatever a process does to us is an error of that case, in bounded time, and the next case
+// passes.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "conformance/test/runner/case_files.h"
+#include "conformance/test/runner/run_case.h"
+#include "conformance/test/targets/attachment.h"
+#include "conformance/test/targets/process_testing.h"
+
+namespace rubric::targets {
+namespace {
+
+using runner::CaseResult;
+using runner::CaseVerdict;
+using std::chrono::milliseconds;
+
+constexpr milliseconds kStepTimeout{600};
+constexpr milliseconds kFaultMax{6000};  // Includes an interpreter's start on a busy host.
+
+struct Fault {
+  const char* name;
+  const char* reason;  ///< A part of the error.
+};
+const Fault kFaults[] = {
+    {"killed", "was killed by signal 9"},
+    {"crashed", "was killed by signal 6"},
+    {"stopped", "gave no answer in time"},
+    {"hung", "gave no answer in time"},
+    {"hung_ignoring_sigterm", "gave no answer in time"},
+    {"half_a_line", "did not end its line of 3 bytes in time"},
+    {"half_a_line_then_end", "ended with status 0, in the middle of a line of 3 bytes"},
+    {"long_line", "wrote a line of more than 65535 bytes"},
+    {"endless_line", "wrote a line of more than 65535 bytes"},
+    {"not_utf8", "byte 0xc3 at column 6 is not printable ASCII"},
+    {"nul_bytes", "byte 0x00 at column 5 is not printable ASCII"},
+    {"carriage_return", "byte 0x0d at column 7 is not printable ASCII"},
+    {"exit_with_words", "ended with status 3"},
+    {"exit_0", "ended with status 0"},
+    {"child_keeps_output", "gave no answer in time"},
+    {"closed_output", "closed its standard output"},
+    {"closed_input", "closed its standard output or input"},
+    {"garbage", "given 'lorem ipsum dolor'"},
+    {"empty_line", "given ''"},
+    {"endless_notes", "an answer of more than 10000 lines"},
+    {"endless_frames", "an answer of more than 10000 lines"},
+    {"done_before_its_time", "done at 99999999, expected 0"},
+    {"bad_hex", "'0000zz' is no even number of hex digits"},
+    {"ready_again", "expected tx, up, next, note or `done`, given 'ready'"},
+    {"unknown_event", "'exploded' is no message"},
+    {"false_next", "it wrote something at 500 after `next -`"},
+    {"refuses_time", "unsupported `until 0`: time"},
+    {"unasked", "something is written behind the closing line"},
+    {"newer_version", "speaks version 2 of the protocol"},
+    {"no_version", "is no version, such as rct/1"},
+    {"no_roles", "it says no roles="},
+    {"unknown_role", "'toaster' is no role"},
+    {"no_name", "lacks its name or version"},
+    {"http", "expected `hello`, given 'HTTP/1.1 400 Bad Request'"},
+    {"refused_hello", "unsupported"},
+};
+
+class AttachFaults : public testing::Test {
+ protected:
+  AttachFaults() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "rubric-XXXXXX").string();
+    if (!::mkdtemp(pattern.data())) throw std::runtime_error("no temporary folder");
+    folder_ = pattern;
+    for (trace::Parsed& file : runner::load_cases("conformance/cases")) {
+      if (file.file.find("j1.request")) file_ = std::move(file);
+    }
+  }
+  ~AttachFaults() override { std::filesystem::remove_all(folder_); }
+
+  std::string flag() const { return (folder_ / "flag").string(); }
+  void raise_flag() const { std::ofstream(flag()) << "1"; }
+  std::unique_ptr<Attachment> adapter(const char* fault) const {
+    return attach(fmt::format("test -e {1} || exec {2}; "
+                              "exec python3 conformance/test/targets/faulty_adapter.py {0} {1} {2}",
+                              fault, flag(), RUBRIC_MACHINE_ADAPTER),
+                  {kStepTimeout, milliseconds(20000)});
+  }
+  // Makes an adapter do something unasked, and waits until it is done.
+  void do_it_now(std::string_view fault) const {
+    std::ofstream(flag() + ".now") << "1";
+    pid_t pid = 0;
+    EXPECT_TRUE(comes([&] { return bool(std::ifstream(flag() + ".done") >> pid); }));
+    if (fault == "ends_unasked") {
+      EXPECT_TRUE(comes([&] { return is_dead(pid); }));
+    }
+    std::filesystem::remove(flag() + ".now");
+    std::filesystem::remove(flag() + ".done");
+  }
+  CaseResult run(Attachment& attachment) const {
+    return runner::run_case(file_.file, *file_.file.find("j1.request"),
+                            [&](const trace::NodeHeader&) { return attachment.target(); });
+  }
+
+  std::filesystem::path folder_;
+  trace::Parsed file_;
+};
+
+bool no_child_is_left() { return ::waitpid(-1, nullptr, WNOHANG) == -1 && errno == ECHILD; }
+
+TEST_F(AttachFaults, EndTheirCaseAndNoOther) {
+  std::size_t errors = 0;
+  std::size_t passes_after = 0;
+  for (const Fault& fault : kFaults) {
+    SCOPED_TRACE(fault.name);
+    raise_flag();
+    const auto before = std::chrono::steady_clock::now();
+    const auto attachment = adapter(fault.name);
+    const CaseResult broken = run(*attachment);
+    EXPECT_EQ(broken.verdict, CaseVerdict::kError);
+    EXPECT_NE(broken.reason.find(fault.reason), std::string::npos) << broken.reason;
+    const std::string words = attachment->take_stderr();
+    const std::string_view name = fault.name;
+    if (name == "exit_with_words") {
+      EXPECT_EQ(words, "out of cheese\n");
+    } else if (name == "endless_notes") {
+      EXPECT_TRUE(words.ends_with("note again\n") && words.size() <= 65536U);
+    } else {
+      EXPECT_EQ(words, "");
+    }
+    const CaseResult after = run(*attachment);
+    EXPECT_EQ(after.verdict, CaseVerdict::kPass) << after.reason;
+    EXPECT_LT(std::chrono::steady_clock::now() - before, kFaultMax);
+    errors += broken.verdict == CaseVerdict::kError;
+    passes_after += after.verdict == CaseVerdict::kPass;
+  }
+  EXPECT_TRUE(no_child_is_left());
+  std::printf("faults of an attachment: %zu, errors of their case: %zu, next case passed: %zu\n",
+              std::size(kFaults), errors, passes_after);
+}
+
+TEST_F(AttachFaults, NoiseOnStandardErrorIsNone) {
+  raise_flag();
+  const auto attachment = adapter("noisy");
+  EXPECT_EQ(run(*attachment).verdict, CaseVerdict::kPass);
+  const std::string words = attachment->take_stderr();
+  EXPECT_EQ(words.size(), 65536U);
+  EXPECT_TRUE(words.ends_with("noise\nthe last words\n"));
+  EXPECT_EQ(attachment->take_stderr(), "");
+}
+
+TEST_F(AttachFaults, CommandThatDoesNotRun) {
+  const auto attachment = attach("exec /no/such/program", {});
+  EXPECT_THROW(attachment->identity(), runner::TargetBroken);
+  EXPECT_NE(attachment->take_stderr().find("/no/such/program"), std::string::npos);
+  const CaseResult result = run(*attachment);
+  EXPECT_EQ(result.verdict, CaseVerdict::kError);
+  EXPECT_NE(result.reason.find("ended with status 127"), std::string::npos) << result.reason;
+  EXPECT_TRUE(no_child_is_left());
+}
+
+TEST_F(AttachFaults, EndBetweenCasesIsNoFaultOfTheNext) {
+  const auto attachment = attach("exec " RUBRIC_MACHINE_ADAPTER, {});
+  EXPECT_EQ(run(*attachment).verdict, CaseVerdict::kPass);
+  siginfo_t info{};  // Its only child.
+  std::ifstream children(fmt::format("/proc/self/task/{}/children", ::getpid()));
+  pid_t child = 0;
+  ASSERT_TRUE(children >> child);
+  ASSERT_EQ(::kill(child, SIGKILL), 0);
+  ASSERT_EQ(::waitid(P_PID, static_cast<id_t>(child), &info, WEXITED | WNOWAIT), 0);
+  EXPECT_TRUE(attachment->take_mishaps().empty());
+  EXPECT_EQ(run(*attachment).verdict, CaseVerdict::kPass);
+  const std::vector<Mishap> mishaps = attachment->take_mishaps();  // But it is reported.
+  ASSERT_EQ(mishaps.size(), 1U);
+  EXPECT_EQ(mishaps[0].text, "was killed by signal 9 (Killed)");
+  EXPECT_TRUE(mishaps[0].broke);
+  attachment->finish();
+  EXPECT_TRUE(attachment->take_mishaps().empty());
+}
+
+// An adapter that passes the case, and does something when nothing is asked.
+TEST_F(AttachFaults, WhatHappensOutsideOfCasesIsTold) {
+  struct Odd {
+    const char* fault;
+    const char* text;
+    bool broke;
+  };
+  const Odd odd[] = {
+      {"speaks_unasked", "wrote 'note by the way'", true},
+      {"half_a_line_unasked", "did not end its line of 4 bytes in time", true},
+      {"ends_unasked", "ended with status 7", true},
+      {"bad_status_at_bye", "ended with status 7", false},
+      {"killed_at_bye", "was killed by signal 9 (Killed)", false},
+      {"speaks_at_bye", "wrote something, and nobody had asked", false},
+      {"hangs_at_bye", "did not end within 600 ms", false},
+  };
+  for (const Odd& one : odd) {
+    SCOPED_TRACE(one.fault);
+    raise_flag();
+    const auto attachment = adapter(one.fault);
+    EXPECT_EQ(run(*attachment).verdict, CaseVerdict::kPass);
+    if (one.broke) do_it_now(one.fault);
+    attachment->finish();
+    const std::vector<Mishap> mishaps = attachment->take_mishaps();
+    ASSERT_EQ(mishaps.size(), 1U);
+    EXPECT_EQ(mishaps[0].text, one.text);
+    EXPECT_EQ(mishaps[0].broke, one.broke);
+    EXPECT_EQ(mishaps[0].stderr_text, "last words\n");
+    EXPECT_EQ(run(*attachment).verdict, CaseVerdict::kPass) << "it can be started again";
+    attachment->finish();
+    EXPECT_TRUE(attachment->take_mishaps().empty());
+  }
+  EXPECT_TRUE(no_child_is_left());
+}
+
+TEST_F(AttachFaults, HonestyIsAsked) {
+  const auto dishonest = attach(
+      "while read -r line; do case $line in hello*) echo hello rct/1 yes_man 1 roles=mote;; "
+      "bye) exit;; *) echo done 0;; esac; done",
+      {});
+  EXPECT_EQ(dishonest->identity().name, "yes_man");
+  EXPECT_EQ(dishonest->honesty(),
+            "line 1 of the answer to `frobnicate 17 radio`: expected `unsupported`, given "
+            "'done 0'");
+  EXPECT_EQ(attach(RUBRIC_MACHINE_ADAPTER, {})->honesty(), "");
+  EXPECT_EQ(attach("machine", {})->honesty(), "");
+}
+
+// Time that did not pass is no silence.
+TEST_F(AttachFaults, RealTimeIsOurs) {
+  const auto jumper = attach(
+      "while read -r word time rest; do case $word in "
+      "hello) echo hello rct/1 jumper 1 roles=mote time=real;; reset) echo ready;; bye) exit;; "
+      "until) echo done $time;; *) echo done $time;; esac; done",
+      {});
+  const trace::Parsed silent = trace::parse(
+      "%rtr 1\n%node m5 mote id=5 iut\ncase silent\n @0..3000 m5 !> rA * [J1-CALLED]\n", "a.rtr");
+  const auto before = std::chrono::steady_clock::now();
+  const CaseResult result =
+      runner::run_case(silent.file, silent.file.cases.at(0),
+                       [&](const trace::NodeHeader&) { return jumper->target(); });
+  EXPECT_EQ(result.verdict, CaseVerdict::kError);
+  EXPECT_NE(result.reason.find("it says that 3000 ticks have passed"), std::string::npos)
+      << result.reason;
+  EXPECT_LT(std::chrono::steady_clock::now() - before, kFaultMax);
+}
+
+// A machine that answers in real time: when the time has come.
+TEST_F(AttachFaults, RealTimeAdapterIsWaitedFor) {
+  const auto patient = attach(
+      "while read -r word time rest; do case $word in "
+      "hello) echo hello rct/1 patient 1 roles=mote time=real;; reset) echo ready;; bye) exit;; "
+      "until) sleep 1.1; echo done $time;; *) echo done $time;; esac; done",
+      {milliseconds(500), milliseconds(20000)});  // Beside the time that is to pass.
+  const trace::Parsed silent = trace::parse(
+      "%rtr 1\n%node m5 mote id=5 iut\ncase silent\n @0..1024 m5 !> rA * [J1-CALLED]\n", "a.rtr");
+  const CaseResult result =
+      runner::run_case(silent.file, silent.file.cases.at(0),
+                       [&](const trace::NodeHeader&) { return patient->target(); });
+  EXPECT_EQ(result.verdict, CaseVerdict::kPass) << result.reason;
+}
+
+TEST_F(AttachFaults, RolesThatItDoesNotPlayAreSkipped) {
+  const auto sink = attach(
+      "while read -r line; do case $line in "
+      "hello*) echo hello rct/1 only_sink 1 roles=sink;; bye) exit;; "
+      "*) echo unsupported;; esac; done",
+      {});
+  const CaseResult result = run(*sink);
+  EXPECT_EQ(result.verdict, CaseVerdict::kSkip);
+  EXPECT_EQ(result.reason, "only_sink plays no mote");
+}
+
+}  // namespace
+}  // namespace rubric::targets

@@ -1,0 +1,122 @@
+#include "conformance/test/targets/groups.h"
+
+#include <poll.h>
+
+#include <array>
+#include <atomic>
+
+#include "conformance/test/runner/target.h"
+
+namespace rubric::targets {
+namespace {
+
+constexpr std::size_t kGroupsMax = 4096;
+constexpr int kTermWaitMs = 100;  // For an orderly end, before there is another.
+constexpr pid_t kFree = 0;
+constexpr pid_t kTaken = -1;  // Taken by a child that is about to start.
+constexpr int kSignals[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT};
+
+// The only data that the handler may touch.
+std::array<std::atomic<pid_t>, kGroupsMax> groups{};
+std::atomic<int> starting = 0;     // Children whose groups are not known yet.
+std::atomic<bool> ending = false;  // The handler is at work.
+static_assert(std::atomic<pid_t>::is_always_lock_free);
+
+void sleep_ms(int ms) { ::poll(nullptr, 0, ms); }  // Handlers may call this.
+
+// Waits for the handler to end this process: nothing may be started any more.
+void wait_for_end() {
+  while (ending) sleep_ms(-1);
+}
+
+bool send_to_all(int signal) {
+  bool any = false;
+  for (const std::atomic<pid_t>& group : groups) {
+    const pid_t id = group;
+    if (id > 0 && ::kill(-id, signal) == 0) any = true;
+  }
+  return any;
+}
+
+extern "C" void end_groups(int signal) {
+  ending = true;
+  while (starting > 0) sleep_ms(1);  // Never our own thread's: it has blocked the signal.
+  if (send_to_all(SIGTERM)) {
+    sleep_ms(kTermWaitMs);
+    send_to_all(SIGKILL);
+  }
+  struct sigaction usual {};
+  usual.sa_handler = SIG_DFL;
+  ::sigaction(signal, &usual, nullptr);
+  ::raise(signal);  // Comes when we return.
+}
+
+sigset_t all_signals() {
+  sigset_t out;
+  ::sigemptyset(&out);
+  for (const int signal : kSignals) ::sigaddset(&out, signal);
+  return out;
+}
+
+std::size_t take_place() {
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    pid_t free = kFree;
+    if (groups[i].compare_exchange_strong(free, kTaken)) return i;
+  }
+  throw runner::TargetBroken("cannot be started: too many processes are attached");
+}
+
+}  // namespace
+
+void end_groups_on_signals() {
+  struct sigaction ours {};
+  ours.sa_handler = end_groups;
+  ours.sa_mask = all_signals();
+  for (const int signal : kSignals) {
+    struct sigaction before {};
+    ::sigaction(signal, nullptr, &before);
+    if (before.sa_handler != SIG_IGN) ::sigaction(signal, &ours, nullptr);
+  }
+}
+
+GroupStart::GroupStart() : place_(take_place()) {
+  const sigset_t all = all_signals();
+  ::pthread_sigmask(SIG_BLOCK, &all, &before_);
+  ++starting;
+  if (ending) {  // Another thread's handler may have been first.
+    --starting;
+    wait_for_end();
+  }
+}
+
+GroupStart::~GroupStart() {
+  if (!started_) groups[place_] = kFree;
+  --starting;
+  ::pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+}
+
+std::size_t GroupStart::started(pid_t group) {
+  groups[place_] = group;
+  started_ = true;
+  return place_;
+}
+
+void GroupStart::in_child() {
+  for (const int signal : kSignals) {
+    struct sigaction now {};
+    ::sigaction(signal, nullptr, &now);
+    if (now.sa_handler != end_groups) continue;
+    now.sa_handler = SIG_DFL;
+    ::sigaction(signal, &now, nullptr);
+  }
+  for (std::atomic<pid_t>& group : groups) group = kFree;
+  starting = 0;
+  ::pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+}
+
+void forget_group(std::size_t place) {
+  groups[place] = kFree;
+  if (ending) wait_for_end();  // A handler may have read the number: it must not become another's.
+}
+
+}  // namespace rubric::targets

@@ -1,0 +1,196 @@
+#include "conformance/test/targets/rct_target.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "conformance/generated/profiles.h"
+#include "conformance/test/runner/subject_target.h"
+#include "conformance/trace/events/app_events.h"
+#include "conformance/trace/trace.h"
+
+namespace rubric::targets {
+namespace {
+
+using machine::Link;
+using runner::TargetBroken;
+using runner::Unsupported;
+
+constexpr std::size_t kOutputsAtOnceMax = 1000;  // At one instant.
+constexpr Ticks kClockSlackTicks = 50;
+
+// 257 has an inverse: returns the seed that makes this first number, as runner::config_of takes it.
+constexpr std::uint16_t seed_of(std::uint16_t first_seq) {
+  return static_cast<std::uint16_t>((first_seq - 1000) * 65281);
+}
+static_assert(seed_of(static_cast<std::uint16_t>(1000 + 257 * 12345)) == 12345);
+
+std::string_view profile_of(const machine::Profile& profile) {
+  for (const machine::NamedProfile& named : machine::kProfiles) {
+    machine::Profile same = named.profile;
+    same.channels_max = profile.channels_max;
+    if (same == profile) return named.name;
+  }
+  throw Unsupported("the profile of the case has no name");
+}
+
+/// Builds the command that makes an event happen.
+struct CommandOf {
+  Ticks now;
+
+  std::string operator()(const machine::Heard& e) const {
+    return fmt::format("rx {} {} {}", now, link_word(e.frame.link), hex_of(e.frame));
+  }
+  std::string operator()(const machine::Called& e) const {
+    return fmt::format("call {} {}", now, plain(events::from_call(e.call)));
+  }
+  std::string operator()(const machine::SendDone& e) const {
+    if (e.link != Link::kRadio) throw Unsupported("only the radio has link acks");
+    return fmt::format("linkack {} {}", now, e.acked ? 1 : 0);
+  }
+  std::string operator()(const machine::LinkBusy& e) const {
+    return fmt::format("line {} {} {}", now, link_word(e.link), e.busy ? "busy" : "idle");
+  }
+  std::string operator()(const machine::AppBusy& e) const {
+    return fmt::format("line {} app {}", now, e.busy ? "busy" : "idle");
+  }
+  std::string operator()(const machine::Reboot&) const {
+    return fmt::format("power {} reboot", now);
+  }
+  std::string operator()(const machine::PowerOff&) const {
+    return fmt::format("power {} off", now);
+  }
+  std::string operator()(const machine::TimerDue&) const {
+    throw Unsupported("timers of an implementation are its own");
+  }
+};
+
+lines::Milliseconds ms_of(Ticks ticks) { return lines::Milliseconds(machine::us_of(ticks) / 1000); }
+
+}  // namespace
+
+void RctTarget::reset(const machine::Config& config) {
+  const std::vector<machine::Role>& roles = client_->identity().roles;
+  if (std::find(roles.begin(), roles.end(), config.role) == roles.end()) {
+    throw Unsupported(
+        fmt::format("{} plays no {}", client_->identity().name, role_word(config.role)));
+  }
+  outputs_.clear();
+  link_acks_.clear();
+  now_ = 0;
+  settled_ = knows_next_ = false;
+  next_.reset();
+  at_instant_ = 0;
+  Asked asked;
+  asked.command =
+      fmt::format("reset {} id={} island={} channels={} seed={} profile={}", role_word(config.role),
+                  config.id, config.island, config.profile.channels_max, seed_of(config.first_seq),
+                  profile_of(config.profile));
+  asked.closing = "ready";
+  clock_.start();
+  client_->ask(asked);
+}
+
+void RctTarget::give(Ticks now, const machine::Event& event) {
+  while (run_until(now) < now) {
+  }
+  if (std::holds_alternative<machine::SendDone>(event) ||
+      std::holds_alternative<machine::Reboot>(event) ||
+      std::holds_alternative<machine::PowerOff>(event)) {
+    link_acks_.clear();
+  }
+  ask(std::visit(CommandOf{now}, event), now, false);
+}
+
+std::optional<Ticks> RctTarget::next() const {
+  std::optional<Ticks> soonest = knows_next_ ? next_ : now_ + kUnknownNextTicks;
+  if (link_acks_.empty()) return soonest;
+  return std::min(link_acks_.front(), soonest.value_or(link_acks_.front()));
+}
+
+Ticks RctTarget::run_until(Ticks time) {
+  const std::size_t before = outputs_.size();
+  while (!link_acks_.empty() && link_acks_.front() <= time) {
+    const Ticks due = std::max(link_acks_.front(), now_);
+    if (due > now_) {
+      const Ticks reached = let_pass(due - 1);
+      if (outputs_.size() > before) return reached;
+    }
+    link_acks_.pop_front();
+    ask(fmt::format("linkack {} 1", due), due, false);
+    if (outputs_.size() > before) {
+      let_pass(now_);
+      return now_;
+    }
+  }
+  return let_pass(time);
+}
+
+// Does the work of run_until, but for link acks. Does not trust `next`: asks with `until` anyway,
+// and then holds the adapter to its `next`.
+Ticks RctTarget::let_pass(Ticks time) {
+  time = std::max(time, now_);
+  if (settled_ && time <= now_) return now_;
+  const bool foretold = knows_next_;
+  const std::optional<Ticks> next = next_;
+  const std::size_t before = outputs_.size();
+  ask(fmt::format("until {}", time), time, true);
+  const bool sooner = outputs_.size() > before && (!next || outputs_[before].time < *next);
+  if (foretold && sooner && !client_->identity().real_time) {  // Real clocks are never so exact.
+    client_->give_up();
+    throw TargetBroken(fmt::format("it wrote something at {} after `next {}`",
+                                   outputs_[before].time, next ? std::to_string(*next) : "-"));
+  }
+  return now_;
+}
+
+Ticks RctTarget::ask(std::string command, Ticks time, bool passes_time) {
+  Asked asked;
+  asked.command = std::move(command);
+  asked.from = passes_time ? now_ : time;
+  asked.to = time;
+  asked.passes_time = passes_time;
+  asked.real_time = client_->identity().real_time;
+  const bool waits = asked.real_time && time > now_;
+  const Answer answer = answer_to(asked, ms_of(waits ? time - now_ : 0));
+  for (const Output& output : answer.outputs) {
+    const bool same = !outputs_.empty() && outputs_.back().time == output.time;
+    at_instant_ = same ? at_instant_ + 1 : 1;
+    if (at_instant_ > kOutputsAtOnceMax) {
+      client_->give_up();
+      throw TargetBroken(fmt::format("`{}`: more than {} frames and events at the instant {}",
+                                     asked.command, kOutputsAtOnceMax, output.time));
+    }
+    outputs_.push_back(output);
+    const machine::Transmit& frame = output.frame;
+    if (!output.is_frame || !frame.link_ack || hold_link_acks_) continue;
+    link_acks_.push_back(output.time + runner::transmission_ticks(frame.link, frame.size_bytes));
+  }
+  now_ = answer.done;
+  if (asked.real_time) compare_clocks(asked.command);
+  settled_ = passes_time;
+  knows_next_ = answer.has_next;
+  next_ = answer.next;
+  return now_;
+}
+
+Answer RctTarget::answer_to(const Asked& asked, lines::Milliseconds more) {
+  try {
+    return client_->ask(asked, more);
+  } catch (const Unsupported& error) {
+    if (!asked.passes_time) throw;
+    client_->give_up();  // A started node lets time pass.
+    throw TargetBroken(std::string("unsupported ") + error.what());
+  }
+}
+
+// Compares clocks: with a clock that is ahead, silence would be reported that nobody observed.
+void RctTarget::compare_clocks(const std::string& command) {
+  const Ticks passed = clock_.now();
+  if (now_ <= passed + passed / 4 + tolerance_.late + kClockSlackTicks) return;
+  client_->give_up();
+  throw TargetBroken(fmt::format("`{}`: it says that {} ticks have passed since `reset`, not {}",
+                                 command, now_, passed));
+}
+
+}  // namespace rubric::targets

@@ -1,0 +1,56 @@
+// A node behind rct/1 on the runner's clock.
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "conformance/test/targets/clock.h"
+#include "conformance/test/targets/rct_client.h"
+
+namespace rubric::targets {
+
+/// How often an adapter without a `next` line is asked, in ticks, when several nodes go on
+/// together.
+constexpr Ticks kUnknownNextTicks = 5;
+
+class RctTarget : public runner::Target {
+ public:
+  /// Gets the client when the target is destroyed.
+  using GiveBack = std::function<void(std::unique_ptr<RctClient>)>;
+  RctTarget(std::unique_ptr<RctClient> client, runner::Tolerance tolerance, GiveBack give_back)
+      : client_(std::move(client)), tolerance_(tolerance), give_back_(std::move(give_back)) {}
+  ~RctTarget() override { give_back_(std::move(client_)); }
+
+  void reset(const machine::Config& config) override;
+  void give(Ticks now, const machine::Event& event) override;
+  std::optional<Ticks> next() const override;
+  Ticks run_until(Ticks time) override;
+  const std::vector<Output>& outputs() const override { return outputs_; }
+  void hold_link_acks(bool hold) override { hold_link_acks_ = hold; }
+  runner::Tolerance tolerance() const override { return tolerance_; }
+
+ private:
+  /// Sends a command and keeps its outputs. Returns the instant of `done`.
+  Ticks ask(std::string command, Ticks time, bool passes_time);
+  Answer answer_to(const Asked& asked, lines::Milliseconds more);
+  Ticks let_pass(Ticks time);
+  void compare_clocks(const std::string& command);
+
+  std::unique_ptr<RctClient> client_;
+  runner::Tolerance tolerance_;
+  GiveBack give_back_;
+  RealClock clock_;  // Since reset; of what runs in real time.
+  std::vector<Output> outputs_;
+  std::deque<Ticks> link_acks_;  // Ends of transmissions that ask for one.
+  bool hold_link_acks_ = false;
+  Ticks now_ = 0;         // Everything before it is done,
+  bool settled_ = false;  // and everything at it.
+  bool knows_next_ = false;
+  std::optional<Ticks> next_;   // If it is known.
+  std::size_t at_instant_ = 0;  // Outputs of the last instant.
+};
+
+}  // namespace rubric::targets

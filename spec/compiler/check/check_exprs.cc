@@ -1,0 +1,274 @@
+// Resolves expressions: their names, their result types, and their ranges.
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <span>
+
+#include "spec/compiler/check/check.h"
+#include "spec/compiler/check/intervals.h"
+#include "spec/compiler/load/expr_parser.h"
+
+namespace rubricc {
+namespace {
+
+constexpr int kStackMax = 8;    // kMaxExprDepth of codec/reflect/schema.h.
+constexpr int kStepsMax = 255;  // reflect::Expr::count is a byte.
+constexpr Interval kConstants{-2147483648LL, 2147483647LL};
+
+ExprShape open() { return {}; }
+
+/// The cost of evaluating: values on the stack and steps in postfix order.
+struct Cost {
+  int stack = 1;
+  int steps = 1;
+};
+Cost cost(const Expr& expr) {
+  Cost out{0, 1};
+  int held = 0;
+  for (const auto& operand : expr.operands) {
+    const Cost one = cost(*operand);
+    out.stack = std::max(out.stack, held + one.stack);
+    out.steps += one.steps;
+    ++held;
+  }
+  out.stack = std::max(out.stack, 1);
+  return out;
+}
+
+class Resolver {
+ public:
+  Resolver(Check& check, const Scope& scope) : check_(check), scope_(scope) {}
+
+  ExprShape resolve(Expr& expr) {
+    switch (expr.op) {
+      case ExprOp::kInt: return number(expr);
+      case ExprOp::kField: return field(expr);
+      case ExprOp::kEnumValue: return enum_value(expr);
+      case ExprOp::kNot: return logic(expr);
+      case ExprOp::kAnd:
+      case ExprOp::kOr: return logic(expr);
+      case ExprOp::kEq:
+      case ExprOp::kNe:
+      case ExprOp::kLt:
+      case ExprOp::kLe:
+      case ExprOp::kGt:
+      case ExprOp::kGe: return comparison(expr);
+      default: return arithmetic(expr);
+    }
+  }
+
+ private:
+  ExprShape number(Expr& expr) { return constant(expr, {Shape::kInt, nullptr}); }
+
+  ExprShape constant(Expr& expr, ExprShape shape) {
+    if (!scope_.wide && (expr.value < kConstants.min || expr.value > kConstants.max)) {
+      check_.error(expr.place, fmt::format("{} is beyond 32 bits", expr.value),
+                   "constants of expressions are signed 32-bit numbers");
+      return open();
+    }
+    expr.range = {expr.value, expr.value};
+    return shape;
+  }
+
+  ExprShape enum_value(Expr& expr) {
+    const Enum* found = find_enum(*scope_.type.spec, expr.path);
+    if (found == nullptr) {
+      check_.error(expr.place, fmt::format("unknown enum in {}", quote(to_text(expr))),
+                   suggestion(expr.path[expr.path.size() - 2], ids_of(scope_.type.spec->enums)));
+      return open();
+    }
+    for (const EnumEntry& entry : found->entries) {
+      if (entry.name != expr.path.back()) continue;
+      expr.value = entry.value;
+      return constant(expr,
+                      expr.to_i ? ExprShape{Shape::kInt, nullptr} : ExprShape{Shape::kEnum, found});
+    }
+    std::vector<std::string> known;
+    for (const EnumEntry& entry : found->entries) known.push_back(entry.name);
+    check_.error(expr.place, fmt::format("unknown enum value {}", quote(to_text(expr))),
+                 suggestion(expr.path.back(), known));
+    return open();
+  }
+
+  /// Returns the field that the path begins with, or null after an error.
+  const Field* head(const Expr& expr) {
+    const std::string& name = expr.path[0];
+    if (scope_.wide) {
+      check_.error(expr.place, fmt::format("{} is no constant", quote(to_text(expr))),
+                   "a number or an enum::value was expected");
+      return nullptr;
+    }
+    const auto& fields = scope_.type.fields;
+    for (std::size_t i = 0; i < fields.size(); ++i) {
+      if (fields[i]->id != name) continue;
+      if (i < scope_.fields_before) return fields[i].get();
+      check_.error(expr.place, fmt::format("field {} is used before it is read", quote(name)),
+                   "only fields further up are known here");
+      return nullptr;
+    }
+    for (const auto& instance : scope_.type.instances) {
+      if (instance->id != name) continue;
+      if (instance->is_peek && scope_.peeks) return instance.get();
+      check_.error(expr.place, fmt::format("instance {} cannot be read here", quote(name)),
+                   "only instances read peeks");
+      return nullptr;
+    }
+    const std::span before(fields.data(), scope_.fields_before);
+    check_.error(expr.place, fmt::format("unknown field {}", quote(name)),
+                 suggestion(name, ids_of(before)));
+    return nullptr;
+  }
+
+  const Field* inner(const Expr& expr, const Field& outer, const std::string& name) {
+    if (outer.kind != ValueKind::kStruct || outer.choice) {
+      check_.error(expr.place, fmt::format("{} has no fields to read", quote(outer.id)),
+                   outer.choice ? "its type depends on a switch" : "it is no structure");
+      return nullptr;
+    }
+    if (outer.extent != ExtentKind::kOwn) {
+      check_.error(expr.place, fmt::format("the fields of {} cannot be read", quote(outer.id)),
+                   "a size delimits it; a structure without one was expected");
+      return nullptr;
+    }
+    for (const auto& field : outer.type->fields) {
+      if (field->id == name) return field.get();
+    }
+    check_.error(expr.place,
+                 fmt::format("unknown field {} of {}", quote(name), quote(outer.type->id)),
+                 suggestion(name, ids_of(outer.type->fields)));
+    return nullptr;
+  }
+
+  /// Returns whether `step` is at a constant place in every frame.
+  bool is_fixed(const Expr& expr, const Field& step) {
+    const std::string what = quote(to_text(expr));
+    if (step.repeat != RepeatKind::kOnce) {
+      check_.error(expr.place, fmt::format("{} is a list", what), "a single number was expected");
+    } else if (step.condition) {
+      check_.error(expr.place, fmt::format("{} may be absent", what),
+                   "a field without 'if' was expected");
+    } else if (step.fixed_offset < 0) {
+      check_.error(expr.place, fmt::format("{} is at no constant position", what),
+                   "what comes before it must have a constant size");
+    } else {
+      return true;
+    }
+    return false;
+  }
+
+  ExprShape field(Expr& expr) {
+    const Field* step = head(expr);
+    std::int64_t offset = 0;
+    for (std::size_t i = 0; step != nullptr; ++i) {
+      if (check_.is_open(step)) return open();
+      if (!is_fixed(expr, *step)) return open();
+      offset += step->fixed_offset;
+      expr.steps.push_back(step);
+      if (i + 1 == expr.path.size()) break;
+      step = inner(expr, *step, expr.path[i + 1]);
+    }
+    if (step == nullptr) return open();
+    if (step->kind != ValueKind::kUint) {
+      check_.error(expr.place,
+                   fmt::format("{} cannot be read in an expression", quote(to_text(expr))),
+                   "an unsigned number was expected");
+      return open();
+    }
+    expr.field = step;
+    expr.offset_bytes = offset;
+    expr.range = step->range;
+    const bool is_enum = step->enumeration != nullptr && !expr.to_i;
+    return is_enum ? ExprShape{Shape::kEnum, step->enumeration} : ExprShape{Shape::kInt, nullptr};
+  }
+
+  bool wants(const Expr& operand, ExprShape found, Shape shape, std::string_view expected) {
+    if (found.shape == shape) return true;
+    if (found.shape != Shape::kOpen) {
+      check_.error(operand.place, fmt::format("{} does not fit here", quote(to_text(operand))),
+                   expected);
+    }
+    return false;
+  }
+
+  ExprShape logic(Expr& expr) {
+    bool ok = true;
+    for (const auto& operand : expr.operands) {
+      ok &= wants(*operand, resolve(*operand), Shape::kBool, "a comparison was expected");
+    }
+    expr.range = {0, 1};
+    return ok ? ExprShape{Shape::kBool, nullptr} : open();
+  }
+
+  ExprShape comparison(Expr& expr) {
+    const ExprShape left = resolve(*expr.operands[0]);
+    const ExprShape right = resolve(*expr.operands[1]);
+    expr.range = {0, 1};
+    if (left.shape == Shape::kOpen || right.shape == Shape::kOpen) return open();
+    const bool ordered = expr.op != ExprOp::kEq && expr.op != ExprOp::kNe;
+    const bool same = left.shape == right.shape && left.enumeration == right.enumeration;
+    if (!same || left.shape == Shape::kBool || (ordered && left.shape == Shape::kEnum)) {
+      check_.error(expr.place,
+                   fmt::format("{} and {} cannot be compared", quote(to_text(*expr.operands[0])),
+                               quote(to_text(*expr.operands[1]))),
+                   "two numbers, or a field and a value of its enum; .to_i makes a number");
+      return open();
+    }
+    return {Shape::kBool, nullptr};
+  }
+
+  ExprShape arithmetic(Expr& expr) {
+    bool ok = true;
+    for (const auto& operand : expr.operands) {
+      ok &= wants(*operand, resolve(*operand), Shape::kInt,
+                  "a number was expected; .to_i makes one of an enum");
+    }
+    if (!ok) return open();
+    const Interval a = expr.operands[0]->range;
+    const Interval b = expr.operands[1]->range;
+    if ((expr.op == ExprOp::kDiv || expr.op == ExprOp::kMod) && b.min <= 0 && b.max >= 0) {
+      check_.error(expr.place, fmt::format("{} can be zero", quote(to_text(*expr.operands[1]))),
+                   "a divisor that is never zero was expected");
+      return open();
+    }
+    const auto range = combine(expr.op, a, b);
+    if (!range) {
+      check_.error(expr.place, fmt::format("{} can overflow 64 bits", quote(to_text(expr))),
+                   "smaller numbers were expected");
+      return open();
+    }
+    expr.range = *range;
+    return {Shape::kInt, nullptr};
+  }
+
+  Check& check_;
+  const Scope& scope_;
+};
+
+}  // namespace
+
+ExprShape resolve_expr(Check& check, Expr& expr, const Scope& scope) {
+  const ExprShape shape = Resolver(check, scope).resolve(expr);
+  if (shape.shape == Shape::kOpen) return shape;
+  const Cost needed = cost(expr);
+  if (needed.stack > kStackMax || needed.steps > kStepsMax) {
+    check.error(expr.place, "the expression is too deep to evaluate",
+                fmt::format("at most {} values are kept", kStackMax));
+    return {};
+  }
+  return shape;
+}
+
+std::optional<std::int64_t> resolve_constant(Check& check, Expr& expr, std::string_view what,
+                                             const Enum* enumeration, const Scope& scope) {
+  const ExprShape found = resolve_expr(check, expr, {scope.type, 0, false, true});
+  if (found.shape == Shape::kOpen) return std::nullopt;
+  const Shape wanted = enumeration == nullptr ? Shape::kInt : Shape::kEnum;
+  if (found.shape == wanted && found.enumeration == enumeration) return expr.range.min;
+  check.error(expr.place, fmt::format("{} does not fit {}", quote(to_text(expr)), quote(what)),
+              enumeration == nullptr
+                  ? std::string("a number was expected")
+                  : fmt::format("a value of {}:: was expected", enumeration->id));
+  return std::nullopt;
+}
+
+}  // namespace rubricc

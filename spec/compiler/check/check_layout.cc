@@ -1,0 +1,211 @@
+// Computes sizes and offsets, beginning with the types that contain nothing.
+#include <algorithm>
+
+#include "spec/compiler/check/check.h"
+#include "spec/compiler/check/intervals.h"
+#include "spec/compiler/load/expr_parser.h"
+
+namespace rubricc {
+namespace {
+
+struct Size {
+  std::uint32_t min = 0;
+  std::uint32_t max = 0;
+};
+
+std::uint32_t bounded(std::uint64_t value) {
+  return static_cast<std::uint32_t>(std::min<std::uint64_t>(value, kUnbounded));
+}
+std::uint32_t times(std::uint32_t size, std::int64_t count) {
+  if (size == kUnbounded && count > 0) return kUnbounded;
+  return bounded(std::uint64_t{size} *
+                 static_cast<std::uint64_t>(std::min<std::int64_t>(count, kUnbounded)));
+}
+std::uint32_t plus(std::uint32_t a, std::uint32_t b) { return bounded(std::uint64_t{a} + b); }
+
+class Layout {
+ public:
+  Layout(Check& check, Type& type) : check_(check), type_(type) {}
+
+  void run() {
+    for (std::size_t i = 0; i < type_.fields.size(); ++i) place(*type_.fields[i], i);
+    if (is_open_) check_.open.insert(&type_);
+    if (!is_open_) check_declared();
+  }
+
+ private:
+  bool last(std::size_t index) const { return index + 1 == type_.fields.size(); }
+
+  void place(Field& field, std::size_t index) {
+    const Scope scope{type_, index};
+    if (is_open_) check_.open.insert(&field);
+    check_field_shape(check_, field);
+    check_values(check_, field, scope);
+    const bool conditional = resolve_condition(field, scope);
+    field.fixed_offset = offset_;
+    if (field.choice) check_switch(check_, *field.choice, field, scope);
+    const bool extent_ok = resolve_number(field, field.size, scope, "size");
+    const bool count_ok = resolve_number(field, field.count, scope, "count");
+    check_last(field, index);
+    if (!extent_ok || !count_ok || check_.is_open(&field) || is_type_open(field)) {
+      // Later fields have an unknown place: report nothing about them.
+      check_.open.insert(&field);
+      is_open_ = true;
+    } else {
+      measure(field, index, conditional);
+    }
+  }
+
+  bool is_type_open(const Field& field) const {
+    if (field.type != nullptr && check_.is_open(field.type)) return true;
+    if (!field.choice) return false;
+    const auto open = [&](const SwitchCase& one) { return check_.is_open(one.type); };
+    return std::any_of(field.choice->cases.begin(), field.choice->cases.end(), open) ||
+           (field.choice->otherwise && open(*field.choice->otherwise));
+  }
+
+  bool resolve_condition(Field& field, const Scope& scope) {
+    if (!field.condition) return false;
+    const ExprShape found = resolve_expr(check_, *field.condition, scope);
+    if (found.shape != Shape::kBool && found.shape != Shape::kOpen) {
+      check_.error(field.condition->place, "'if' is no condition", "a comparison was expected");
+    }
+    return true;
+  }
+
+  /// Resolves a size or a count: a number that is never negative.
+  bool resolve_number(Field& field, ExprPtr& expr, const Scope& scope, std::string_view what) {
+    if (!expr)
+      return what == "size" ? field.extent != ExtentKind::kSize
+                            : field.repeat != RepeatKind::kCount;
+    const ExprShape found = resolve_expr(check_, *expr, scope);
+    if (found.shape == Shape::kOpen) return false;
+    if (found.shape != Shape::kInt) {
+      check_.error(expr->place,
+                   fmt::format("a {} that is no number: {}", what, quote(to_text(*expr))),
+                   "a number was expected; .to_i makes one of an enum");
+      return false;
+    }
+    if (expr->range.min < 0) {
+      check_.error(expr->place,
+                   fmt::format("the {} {} can be negative", what, quote(to_text(*expr))),
+                   fmt::format("it is {} to {}; 'valid' can narrow what it is made of",
+                               expr->range.min, expr->range.max));
+      return false;
+    }
+    if (expr->range.max == 0) {
+      check_.error(expr->place, fmt::format("the {} {} is always 0", what, quote(to_text(*expr))),
+                   "a field has bytes");
+      return false;
+    }
+    return true;
+  }
+
+  void check_last(const Field& field, std::size_t index) {
+    if (last(index)) return;
+    if (field.extent == ExtentKind::kToEnd || field.repeat == RepeatKind::kToEnd) {
+      check_.error(field.place,
+                   fmt::format("field {} takes all bytes but is not the last", quote(field.id)),
+                   "nothing can follow it");
+    }
+  }
+
+  /// Returns the size of one element, before size, repeat and condition.
+  Size element(const Field& field) const {
+    switch (field.kind) {
+      case ValueKind::kBytes: return {0, kUnbounded};
+      case ValueKind::kStruct: break;
+      default: {
+        const auto width = static_cast<std::uint32_t>(field.width_bytes);
+        return {width, width};
+      }
+    }
+    if (!field.choice) return {field.type->min_size, field.type->max_size};
+    // Without `_` anything may stay opaque.
+    if (!field.choice->otherwise) return {0, kUnbounded};
+    std::uint32_t least = field.choice->otherwise->type->min_size;
+    for (const SwitchCase& one : field.choice->cases) least = std::min(least, one.type->min_size);
+    return {least, kUnbounded};
+  }
+
+  void measure(Field& field, std::size_t index, bool conditional) {
+    Size size = element(field);
+    const bool varies = size.min != size.max;
+    if (field.kind == ValueKind::kStruct && varies && field.extent == ExtentKind::kOwn &&
+        (field.repeat != RepeatKind::kOnce || !last(index))) {
+      check_.error(field.place, fmt::format("structure {} varies in size", quote(field.id)),
+                   "only the last field can, or one with a size");
+      is_open_ = true;
+    }
+    if (field.extent == ExtentKind::kSize) size = sized(field, size);
+    if (field.extent == ExtentKind::kToEnd) size.max = kUnbounded;
+    if (field.repeat == RepeatKind::kCount) {
+      const Interval count = field.count->range;
+      size = {times(size.min, count.min), times(size.max, count.max)};
+    }
+    if (field.repeat == RepeatKind::kToEnd) size = {0, kUnbounded};
+    if (conditional) size.min = 0;
+    field.min_size = size.min;
+    field.max_size = size.max;
+    type_.min_size = plus(type_.min_size, size.min);
+    type_.max_size = plus(type_.max_size, size.max);
+    const bool fixed = size.min == size.max && offset_ >= 0;
+    offset_ = fixed ? offset_ + size.min : -1;
+  }
+
+  Size sized(const Field& field, Size inner) {
+    const Interval range = field.size->range;
+    const Size out{std::max(bounded(static_cast<std::uint64_t>(range.min)), inner.min),
+                   bounded(static_cast<std::uint64_t>(range.max))};
+    if (field.kind == ValueKind::kStruct && inner.min > out.max) {
+      check_.error(field.size->place,
+                   fmt::format("{} never fits in {}", quote(field.id), bytes_text(out.max)),
+                   fmt::format("it has at least {}", inner.min));
+      is_open_ = true;
+    }
+    return out;
+  }
+
+  void check_declared() {
+    if (!type_.declared_size) return;
+    const std::int64_t declared = *type_.declared_size;
+    const Place& place = place_of(type_.places, "-size", type_.place);
+    if (type_.max_size != kUnbounded) {
+      if (declared == type_.max_size) return;
+      check_.error(
+          place, fmt::format("-size {} does not add up", declared),
+          fmt::format("the fields of {} take {}", quote(type_.id), bytes_text(type_.max_size)));
+    } else if (declared <= type_.min_size || declared >= kUnbounded) {
+      check_.error(place, fmt::format("-size {} leaves no room", declared),
+                   fmt::format("{} has at least {} and takes what follows", quote(type_.id),
+                               bytes_text(type_.min_size)));
+    } else {
+      type_.max_size = static_cast<std::uint32_t>(declared);
+    }
+  }
+
+  Check& check_;
+  Type& type_;
+  std::int64_t offset_ = 0;
+  bool is_open_ = false;
+};
+
+}  // namespace
+
+void check_layout(Check& check) {
+  for (Type* type : check.order) {
+    if (type->is_mask) {
+      type->min_size = type->max_size = type->bits.size() > 8 ? 2 : 1;
+      if (type->declared_size && *type->declared_size != type->max_size) {
+        check.error(place_of(type->places, "-size", type->place),
+                    fmt::format("-size {} does not add up", *type->declared_size),
+                    "the mask takes " + bytes_text(type->max_size));
+      }
+      continue;
+    }
+    Layout(check, *type).run();
+    check_instances(check, *type);
+  }
+}
+
+}  // namespace rubricc

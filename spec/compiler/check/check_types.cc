@@ -1,0 +1,92 @@
+// Requirements, carriers and AM types.
+#include <algorithm>
+#include <array>
+#include <map>
+
+#include "spec/compiler/check/check.h"
+
+namespace rubricc {
+namespace {
+
+constexpr std::array<std::string_view, 4> kCarriers{"serial", "radio_i", "radio_t", "radio_ack"};
+
+class Requirements {
+ public:
+  explicit Requirements(Check& check) : check_(check) {
+    for (const Requirement& one : check.model.requirements) ids_.push_back(one.id);
+    std::sort(ids_.begin(), ids_.end());
+  }
+
+  void check_type(Type& type) {
+    known(type.requirement, place_of(type.places, "-requirement", type.place));
+    const bool needed = !type.is_mask && type.carrier.empty() && type.id != type.spec->id;
+    if (needed && !type.places.contains("-requirement") && !type.refused_keys) {
+      check_.error(type.place, fmt::format("type {} without requirement", quote(type.id)),
+                   "-requirement: was expected");
+    }
+    for (const auto* list : {&type.fields, &type.instances}) {
+      for (const auto& field : *list) inherit(type, *field);
+    }
+  }
+
+ private:
+  void known(const std::string& id, const Place& place) {
+    if (id.empty() || ids_.empty() || std::binary_search(ids_.begin(), ids_.end(), id)) return;
+    check_.error(place, fmt::format("unknown requirement {}", quote(id)), suggestion(id, ids_));
+  }
+
+  /// Inherits a requirement: the field's own, else that of its type, else that of the type it
+  /// holds.
+  void inherit(const Type& type, Field& field) {
+    known(field.requirement, place_of(field.places, "-requirement", field.place));
+    if (field.requirement.empty()) field.requirement = type.requirement;
+    if (field.requirement.empty() && field.type != nullptr) {
+      field.requirement = field.type->requirement;
+    }
+  }
+
+  Check& check_;
+  std::vector<std::string> ids_;
+};
+
+/// A carrier's switch chooses by AM type; what it chooses must not claim another.
+void check_am_types(Check& check, const Type& carrier) {
+  for (const auto& field : carrier.fields) {
+    if (!field->choice) continue;
+    for (const SwitchCase& one : field->choice->cases) {
+      if (!one.number || one.type == nullptr || one.type->am_types.empty()) continue;
+      const auto& own = one.type->am_types;
+      if (std::find(own.begin(), own.end(), *one.number) != own.end()) continue;
+      check.error(one.place,
+                  fmt::format("case {} leads to {}, whose AM type is {}", *one.number,
+                              quote(one.type_name), own.front()),
+                  "the switch of a carrier and -am-type must agree");
+    }
+  }
+}
+
+}  // namespace
+
+void check_types(Check& check) {
+  Requirements requirements(check);
+  for (const auto& spec : check.model.specs) {
+    std::map<std::string, int> lines;
+    for (const auto& type : spec->types) {
+      requirements.check_type(*type);
+      if (type->carrier.empty()) continue;
+      check_am_types(check, *type);
+      const Place& place = place_of(type->places, "-carrier", type->place);
+      if (std::find(kCarriers.begin(), kCarriers.end(), type->carrier) == kCarriers.end()) {
+        check.error(place, fmt::format("unknown carrier {}", quote(type->carrier)),
+                    suggestion(type->carrier, kCarriers));
+      }
+      const auto [first, fresh] = lines.try_emplace(type->carrier, place.line);
+      if (!fresh) {
+        check.error(place, fmt::format("duplicate carrier {}", quote(type->carrier)),
+                    fmt::format("line {} has it already", first->second));
+      }
+    }
+  }
+}
+
+}  // namespace rubricc

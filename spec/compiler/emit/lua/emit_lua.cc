@@ -1,0 +1,292 @@
+#include "spec/compiler/emit/lua/emit_lua.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <stdexcept>
+
+#include "spec/compiler/emit/cpp_text.h"
+#include "spec/compiler/emit/template.h"
+#include "spec/compiler/lua_code.h"
+
+namespace rubricc {
+namespace {
+
+constexpr std::string_view kFile = R"(<<banner>>
+-- A Wireshark dissector: `rubric install-wireshark` lays it into the folder of Lua plugins.
+
+-- The wire spec as tables.
+local enums, masks, types, rules = {}, {}, {}, {}
+
+<<tables>>
+
+local serial_frame = <<serial_frame>>
+local protocols = {
+<<protocols>>
+}
+local protocol_choices = {
+<<choices>>
+}
+
+<<decode>>
+
+<<crc16>>
+
+<<wireshark>>
+)";
+
+std::string quote(std::string_view text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '\n') {
+      out += "\\n";
+      continue;
+    }
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + "\"";
+}
+
+template <class Named>
+std::string full_name(const Named& named) {
+  return quote(named.spec->id + "." + named.id);
+}
+
+std::string load_text(const Expr& expr) {
+  const Field& field = *expr.field;
+  const std::string order = field.width_bytes == 1 ? "u" : field.little_endian ? "le" : "be";
+  return fmt::format("d:{}{}({})", order, 8 * field.width_bytes, expr.offset_bytes);
+}
+
+const char* operator_text(ExprOp op) {
+  switch (op) {
+    case ExprOp::kAdd: return "+";
+    case ExprOp::kSub: return "-";
+    case ExprOp::kMul: return "*";
+    case ExprOp::kMod: return "%";
+    case ExprOp::kEq: return "==";
+    case ExprOp::kNe: return "~=";
+    case ExprOp::kLt: return "<";
+    case ExprOp::kLe: return "<=";
+    case ExprOp::kGt: return ">";
+    case ExprOp::kGe: return ">=";
+    case ExprOp::kAnd: return "and";
+    case ExprOp::kOr: return "or";
+    default: throw std::logic_error("emit_lua: an operator without a text");
+  }
+}
+
+std::string expr_text(const Expr& expr) {
+  if (expr.op == ExprOp::kInt || expr.op == ExprOp::kEnumValue) return std::to_string(expr.value);
+  if (expr.op == ExprOp::kField) return load_text(expr);
+  const std::string left = expr_text(*expr.operands[0]);
+  if (expr.op == ExprOp::kNot) return "not (" + left + ")";
+  const std::string right = expr_text(*expr.operands[1]);
+  // Both round down, as Kaitai Struct does.
+  if (expr.op == ExprOp::kDiv) return fmt::format("math.floor(({}) / ({}))", left, right);
+  const auto side = [](const Expr& operand, const std::string& text) {
+    return operand.operands.empty() ? text : "(" + text + ")";
+  };
+  return fmt::format("{} {} {}", side(*expr.operands[0], left), operator_text(expr.op),
+                     side(*expr.operands[1], right));
+}
+
+/// `key = value` pairs of a Lua table.
+class Entry {
+ public:
+  void add(std::string_view key, std::string value) {
+    pairs_.push_back(fmt::format("{} = {}", key, value));
+  }
+  void add_text(std::string_view key, std::string_view text) {
+    if (!text.empty()) add(key, quote(text));
+  }
+  void add_function(std::string_view key, const ExprPtr& expr) {
+    if (expr) add(key, "function(d) return " + expr_text(*expr) + " end");
+  }
+  std::string text() const { return fmt::format("{{{}}}", fmt::join(pairs_, ", ")); }
+
+ private:
+  std::vector<std::string> pairs_;
+};
+
+const char* kind_text(ValueKind kind) {
+  switch (kind) {
+    case ValueKind::kUint: return "uint";
+    case ValueKind::kSint: return "sint";
+    case ValueKind::kFloat: return "float";
+    case ValueKind::kMask: return "mask";
+    case ValueKind::kBytes: return "bytes";
+    case ValueKind::kStruct: return "struct";
+  }
+  throw std::logic_error("emit_lua: a kind without a text");
+}
+
+std::string number_list(const std::vector<std::int64_t>& values) {
+  return fmt::format("{{{}}}", fmt::join(values, ", "));
+}
+
+void add_choice(const Field& field, Entry& entry) {
+  entry.add_function("key", field.choice->key);
+  std::vector<std::string> cases;
+  for (const SwitchCase& one : field.choice->cases) {
+    if (one.type == nullptr) continue;
+    cases.push_back(fmt::format("[{}] = {}", one.key, full_name(*one.type)));
+  }
+  entry.add("cases", fmt::format("{{{}}}", fmt::join(cases, ", ")));
+  if (field.choice->otherwise) entry.add("otherwise", full_name(*field.choice->otherwise->type));
+}
+
+std::string field_text(const Field& field) {
+  Entry entry;
+  entry.add_text("name", field.name);
+  entry.add_text("kind", kind_text(field.kind));
+  if (field.width_bytes != 0) entry.add("width", std::to_string(field.width_bytes));
+  if (field.little_endian && field.width_bytes > 1) entry.add("little", "true");
+  if (field.valid && field.valid->one_of.empty()) {
+    entry.add("min", std::to_string(*field.valid->min));
+    entry.add("max", std::to_string(*field.valid->max));
+  } else if (field.valid) {
+    entry.add("one_of", number_list(field.valid->one_of));
+  }
+  if (field.expect) entry.add("expect", std::to_string(*field.expect));
+  if (field.enumeration != nullptr) entry.add("enum", full_name(*field.enumeration));
+  if (field.kind == ValueKind::kMask) entry.add("mask", full_name(*field.type));
+  if (field.kind == ValueKind::kStruct && field.type != nullptr) {
+    entry.add("type", full_name(*field.type));
+  }
+  if (field.choice) add_choice(field, entry);
+  if (field.repeat != RepeatKind::kOnce) entry.add("repeated", "true");
+  if (field.extent == ExtentKind::kToEnd) entry.add("to_end", "true");
+  entry.add_function("size", field.size);
+  entry.add_function("count", field.count);
+  entry.add_function("condition", field.condition);
+  if (field.unit) {
+    entry.add_text("unit", field.unit->symbol);
+    entry.add("scale", fmt::format("{}", field.unit->scale));
+    entry.add("zero", fmt::format("{}", field.unit->offset));
+  }
+  if (field.is_instance) {
+    entry.add("message", "true");
+    entry.add("overlays", std::to_string(field.overlays + 1));
+  }
+  entry.add_text("rule", field.requirement);
+  entry.add_text("doc", field.doc);
+  return entry.text();
+}
+
+std::string type_table(const Type& type) {
+  std::string out = fmt::format("types[{}] = {{\n  name = {},", full_name(type), quote(type.name));
+  if (type.max_size != UINT32_MAX) out += fmt::format(" max = {},", type.max_size);
+  if (!type.requirement.empty()) out += fmt::format(" rule = {},", quote(type.requirement));
+  if (!type.doc.empty()) out += "\n  doc = " + quote(type.doc) + ",";
+  for (const auto& field : type.fields) out += "\n  " + field_text(*field) + ",";
+  std::string interpretations;
+  for (const auto& instance : type.instances) {
+    if (!instance->is_peek) interpretations += "\n    " + field_text(*instance) + ",";
+  }
+  if (!interpretations.empty()) out += "\n  interpretations = {" + interpretations + "\n  },";
+  return out + "\n}\n";
+}
+
+std::string enum_table(const Enum& one) {
+  std::vector<std::string> entries;
+  for (const EnumEntry& entry : one.entries) {
+    entries.push_back(fmt::format("[{}] = {}", entry.value, quote(entry.name)));
+  }
+  return fmt::format("enums[{}] = {{{}}}\n", full_name(one), fmt::join(entries, ", "));
+}
+
+/// Returns bits from the least significant, in a list that begins at 1.
+std::string mask_table(const Type& type) {
+  std::vector<std::string> bits;
+  for (auto bit = type.bits.rbegin(); bit != type.bits.rend(); ++bit) {
+    bits.push_back(bit->unnamed ? "false" : quote(bit->name));
+  }
+  return fmt::format("masks[{}] = {{count = {}, {}}}\n", full_name(type), bits.size(),
+                     fmt::join(bits, ", "));
+}
+
+std::string spec_tables(const Spec& spec) {
+  std::string out;
+  for (const auto& one : spec.enums) out += enum_table(*one);
+  for (const auto& type : spec.types) {
+    out += type->is_mask ? mask_table(*type) : type_table(*type);
+  }
+  return out;
+}
+
+/// Returns the rules that a fault can name.
+std::string rule_tables(const Model& model) {
+  std::string out;
+  for (const Requirement& rule : model.requirements) {
+    if (!rule.id.starts_with("WIRE-")) continue;
+    out += fmt::format("rules[{}] = {{level = {}, text = {}}}\n", quote(rule.id), quote(rule.level),
+                       quote(rule.sentence));
+  }
+  return out;
+}
+
+bool has_carrier(const Spec& spec, std::string_view carrier) {
+  return std::any_of(spec.types.begin(), spec.types.end(),
+                     [&](const auto& type) { return type->carrier == carrier; });
+}
+
+/// Returns the richest protocol first: it is the one that a reader most likely has.
+std::vector<const Spec*> protocols_of(const Model& model) {
+  std::vector<const Spec*> out;
+  for (const auto& spec : model.specs) {
+    if (spec->named && has_carrier(*spec, "serial")) out.push_back(spec.get());
+  }
+  std::stable_sort(out.begin(), out.end(),
+                   [](const Spec* a, const Spec* b) { return a->types.size() > b->types.size(); });
+  return out;
+}
+
+std::string protocol_text(const Spec& spec) {
+  Entry carriers;
+  for (const auto& type : spec.types) {
+    if (!type->carrier.empty()) carriers.add(type->carrier, full_name(*type));
+  }
+  return fmt::format("  {{name = {}, carriers = {}}},", quote(spec.id), carriers.text());
+}
+
+std::string serial_frame_of(const Model& model) {
+  for (const auto& spec : model.specs) {
+    for (const auto& type : spec->types) {
+      if (type->framing == "hdlc") return full_name(*type);
+    }
+  }
+  return "nil";
+}
+
+}  // namespace
+
+GeneratedFiles emit_lua(const Model& model) {
+  const std::vector<const Spec*> protocols = protocols_of(model);
+  if (protocols.empty()) return {};
+  std::string tables, carriers, choices, files;
+  for (const auto& spec : model.specs) tables += spec_tables(*spec);
+  for (std::size_t i = 0; i < protocols.size(); ++i) {
+    const Spec& spec = *protocols[i];
+    carriers += protocol_text(spec) + "\n";
+    choices += fmt::format("  {{{}, {}, {}}},\n", i + 1, quote(spec.title), i + 1);
+    files += (i == 0 ? "" : " ") + spec.file;
+  }
+  const auto lines = [](std::string text) {
+    while (text.ends_with('\n')) text.pop_back();
+    return text;
+  };
+  const std::string text = fill(kFile, {{"banner", banner("-- ", files)},
+                                        {"tables", lines(tables + rule_tables(model))},
+                                        {"serial_frame", serial_frame_of(model)},
+                                        {"protocols", lines(carriers)},
+                                        {"choices", lines(choices)},
+                                        {"decode", lines(std::string(kLuaDecode))},
+                                        {"crc16", lines(std::string(kLuaCrc16))},
+                                        {"wireshark", lines(std::string(kLuaWireshark))}});
+  return {{"tools/wireshark/generated/rubric.lua", text}};
+}
+
+}  // namespace rubricc

@@ -1,0 +1,306 @@
+// Parses expressions by precedence, and prints them again.
+#include "spec/compiler/load/expr_parser.h"
+
+#include <fmt/core.h>
+
+#include <array>
+#include <optional>
+
+#include "spec/compiler/load/yaml_input.h"
+
+namespace rubricc {
+namespace {
+
+constexpr std::size_t kTextMax = 1000;
+constexpr int kDepthMax = 40;
+
+struct Operator {
+  std::string_view text;
+  ExprOp op;
+  int level;  // Binds tighter the higher it is.
+};
+constexpr std::array<Operator, 13> kOperators{{
+    {"or", ExprOp::kOr, 1},
+    {"and", ExprOp::kAnd, 2},
+    {"==", ExprOp::kEq, 4},
+    {"!=", ExprOp::kNe, 4},
+    {"<=", ExprOp::kLe, 4},
+    {">=", ExprOp::kGe, 4},
+    {"<", ExprOp::kLt, 4},
+    {">", ExprOp::kGt, 4},
+    {"+", ExprOp::kAdd, 5},
+    {"-", ExprOp::kSub, 5},
+    {"*", ExprOp::kMul, 6},
+    {"/", ExprOp::kDiv, 6},
+    {"%", ExprOp::kMod, 6},
+}};
+constexpr int kNotLevel = 3;
+constexpr int kComparisonLevel = 4;
+constexpr int kTightest = 6;
+
+bool is_word_start(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool is_word(char c) { return is_word_start(c) || is_digit(c); }
+
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
+
+/// Returns the place of the character `offset` of a YAML scalar. A scalar of several lines has lost
+/// its line ends and indents: its words are looked up in the `source`, which begins with the line
+/// of `begin`. If it is not written as it reads (escapes), that leads to `begin`.
+Place place_in_scalar(const Place& begin, std::string_view text, std::size_t offset,
+                      std::string_view source) {
+  Place at = begin;
+  auto i = static_cast<std::size_t>(begin.column - 1);
+  const auto go_on = [&] {
+    ++at.column;
+    if (source[i++] != '\n') return;
+    ++at.line;
+    at.column = 1;
+  };
+  if (i < source.size() && (source[i] == '|' || source[i] == '>')) {
+    const int header = at.line;
+    while (i < source.size() && at.line == header) go_on();
+  }
+  Place last = at;
+  for (std::size_t k = 0; k < text.size() && k <= offset; ++k) {
+    if (is_blank(text[k])) continue;
+    while (i < source.size() && is_blank(source[i])) go_on();
+    if (i >= source.size() || source[i] != text[k]) return begin;
+    if (k == offset) return at;
+    go_on();
+    last = at;
+  }
+  return last;  // After the end.
+}
+
+struct Fault {};  // Thrown within the parser after the diagnostic, caught in parse_expr.
+
+class Parser {
+ public:
+  Parser(std::string_view text, const Place& place, Diagnostics& diagnostics)
+      : text_(text), place_(place), diagnostics_(diagnostics) {
+    next();
+  }
+
+  ExprPtr whole() {
+    ExprPtr expr = binary(1, 0);
+    if (!token_.empty())
+      fail(fmt::format("unexpected {}", quote(token_)),
+           "an operator or the end of the expression was expected");
+    return expr;
+  }
+
+ private:
+  [[noreturn]] void fail(std::string what, std::string_view expected) {
+    diagnostics_.error(here(), std::move(what), expected);
+    throw Fault{};
+  }
+
+  Place here() const {
+    const std::string_view source = diagnostics_.source_from(place_.file, place_.line);
+    if (!source.empty()) return place_in_scalar(place_, text_, token_start_, source);
+    Place at = place_;
+    at.column += static_cast<int>(token_start_);
+    return at;
+  }
+
+  void next() {
+    while (at_ < text_.size() && (text_[at_] == ' ' || text_[at_] == '\t' || text_[at_] == '\n')) {
+      ++at_;
+    }
+    token_start_ = at_;
+    if (at_ == text_.size()) {
+      token_ = {};
+      return;
+    }
+    std::size_t end = at_ + 1;
+    const std::string_view two = text_.substr(at_, 2);
+    if (is_word(text_[at_])) {
+      while (end < text_.size() && is_word(text_[end])) ++end;
+    } else if (two == "==" || two == "!=" || two == "<=" || two == ">=" || two == "::" ||
+               two == "<<" || two == ">>") {
+      end = at_ + 2;
+    }
+    token_ = text_.substr(at_, end - at_);
+    at_ = end;
+  }
+
+  const Operator* operator_here() const {
+    for (const Operator& candidate : kOperators) {
+      if (candidate.text == token_) return &candidate;
+    }
+    return nullptr;
+  }
+
+  ExprPtr node(ExprOp op, const Place& place) {
+    auto out = std::make_unique<Expr>();
+    out->op = op;
+    out->place = place;
+    return out;
+  }
+
+  ExprPtr binary(int level, int depth) {
+    if (depth > kDepthMax) fail("the expression nests too deep", "write it simpler");
+    if (level == kNotLevel && token_ == "not") {
+      ExprPtr out = node(ExprOp::kNot, here());
+      next();
+      out->operands.push_back(binary(kNotLevel, depth + 1));
+      return out;
+    }
+    ExprPtr left = level == kTightest + 1 ? unary(depth) : binary(level + 1, depth);
+    while (const Operator* found = operator_here()) {
+      if (level > kTightest || found->level != level) break;
+      ExprPtr out = node(found->op, here());
+      next();
+      out->operands.push_back(std::move(left));
+      out->operands.push_back(binary(level + 1, depth));
+      left = std::move(out);
+      if (level == kComparisonLevel) break;
+    }
+    return left;
+  }
+
+  ExprPtr unary(int depth) {
+    if (token_ == "(") {
+      next();
+      ExprPtr inner = binary(1, depth + 1);
+      if (token_ != ")") fail("a bracket is not closed", "')' was expected");
+      next();
+      return inner;
+    }
+    if (token_ == "-") {
+      const Place place = here();
+      next();
+      if (depth > kDepthMax) fail("the expression nests too deep", "write it simpler");
+      ExprPtr inner = unary(depth + 1);
+      if (inner->op == ExprOp::kInt) {
+        inner->value = -inner->value;
+        inner->place = place;
+        return inner;
+      }
+      ExprPtr out = node(ExprOp::kSub, place);
+      out->operands.push_back(node(ExprOp::kInt, place));
+      out->operands.push_back(std::move(inner));
+      return out;
+    }
+    if (!token_.empty() && is_digit(token_[0])) return number();
+    if (!token_.empty() && is_word_start(token_[0]) && operator_here() == nullptr &&
+        token_ != "not") {
+      return name();
+    }
+    fail(token_.empty() ? "the expression ends early" : fmt::format("unexpected {}", quote(token_)),
+         "a number, a field or an enum::value was expected");
+  }
+
+  ExprPtr number() {
+    ExprPtr out = node(ExprOp::kInt, here());
+    const auto value = parse_integer(token_);
+    if (!value)
+      fail(fmt::format("{} is no number", quote(token_)),
+           "decimal or 0x digits of a 64-bit number were expected");
+    out->value = *value;
+    next();
+    return out;
+  }
+
+  std::string word() {
+    if (token_.empty() || !is_word_start(token_[0])) {
+      fail("a name is missing", "a word was expected behind '.' or '::'");
+    }
+    std::string out(token_);
+    next();
+    return out;
+  }
+
+  ExprPtr name() {
+    ExprPtr out = node(ExprOp::kField, here());
+    if (token_[0] == '_') {
+      fail(fmt::format("{} is outside the profile", quote(token_)),
+           "fields of the same structure can be read");
+    }
+    out->path.push_back(word());
+    while (token_ == "::") {
+      out->op = ExprOp::kEnumValue;
+      next();
+      out->path.push_back(word());
+    }
+    if (out->path.size() > 3) {
+      diagnostics_.error(out->place, "too many '::'", "enum::value or spec::enum::value");
+      throw Fault{};
+    }
+    while (token_ == ".") {
+      next();
+      std::string part = word();
+      if (part == "to_i") {
+        out->to_i = true;
+        break;
+      }
+      if (out->op == ExprOp::kEnumValue || out->path.size() >= 16) {
+        fail("unexpected path", "only '.to_i' can follow here");
+      }
+      out->path.push_back(std::move(part));
+    }
+    return out;
+  }
+
+  std::string_view text_;
+  Place place_;
+  Diagnostics& diagnostics_;
+  std::size_t at_ = 0;
+  std::size_t token_start_ = 0;
+  std::string_view token_;
+};
+
+std::string joined(const std::vector<std::string>& words, std::string_view separator) {
+  std::string out;
+  for (const std::string& word : words) {
+    if (!out.empty()) out += separator;
+    out += word;
+  }
+  return out;
+}
+
+int level_of(ExprOp op) {
+  if (op == ExprOp::kNot) return kNotLevel;
+  for (const Operator& candidate : kOperators) {
+    if (candidate.op == op) return candidate.level;
+  }
+  return kTightest + 1;
+}
+
+std::string text_at(const Expr& expr, int level) {
+  std::string out;
+  const int own = level_of(expr.op);
+  switch (expr.op) {
+    case ExprOp::kInt: return std::to_string(expr.value);
+    case ExprOp::kField: return joined(expr.path, ".") + (expr.to_i ? ".to_i" : "");
+    case ExprOp::kEnumValue: return joined(expr.path, "::") + (expr.to_i ? ".to_i" : "");
+    case ExprOp::kNot: out = "not " + text_at(*expr.operands[0], own); break;
+    default:
+      for (const Operator& candidate : kOperators) {
+        if (candidate.op != expr.op) continue;
+        out = fmt::format("{} {} {}", text_at(*expr.operands[0], own), candidate.text,
+                          text_at(*expr.operands[1], own + 1));
+      }
+  }
+  return own < level ? "(" + out + ")" : out;
+}
+
+}  // namespace
+
+ExprPtr parse_expr(std::string_view text, const Place& place, Diagnostics& diagnostics) {
+  if (text.size() > kTextMax) {
+    diagnostics.error(place, "the expression is too long",
+                      fmt::format("at most {} characters are read", kTextMax));
+    return nullptr;
+  }
+  try {
+    return Parser(text, place, diagnostics).whole();
+  } catch (const Fault&) {
+    return nullptr;
+  }
+}
+
+std::string to_text(const Expr& expr) { return text_at(expr, 0); }
+
+}  // namespace rubricc

@@ -1,0 +1,113 @@
+// Loads specs and their imports.
+#include "spec/compiler/load/load.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <optional>
+
+#include "spec/compiler/load/read_spec.h"
+
+namespace rubricc {
+namespace {
+
+constexpr std::size_t kSpecsMax = 100;
+
+std::optional<std::string> read_file(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) return std::nullopt;
+  std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  if (in.bad()) return std::nullopt;
+  return text;
+}
+
+std::string beside(const std::string& file, const std::string& name) {
+  const std::size_t slash = file.rfind('/');
+  return (slash == file.npos ? "" : file.substr(0, slash + 1)) + name + ".ksy";
+}
+
+class Loader {
+ public:
+  Loader(Model& model, Diagnostics& diagnostics) : model_(model), diagnostics_(diagnostics) {}
+
+  void named(const std::string& file) {
+    const auto text = read_file(file);
+    if (!text) {
+      diagnostics_.error({file, 0, 0}, "cannot be read", "");
+      return;
+    }
+    if (Spec* spec = load(file, *text)) spec->named = true;
+  }
+
+  Spec* load(const std::string& file, const std::string& text) {
+    for (const auto& spec : model_.specs) {
+      if (spec->file == file) return spec.get();
+    }
+    diagnostics_.add_source(file, text);
+    auto spec = read_spec(file, text, diagnostics_, budget_);
+    if (spec == nullptr || budget_ < 0) return nullptr;
+    open_.push_back(file);
+    for (std::size_t i = 0; i < spec->import_names.size(); ++i) {
+      import(*spec, spec->import_names[i], spec->import_places[i]);
+    }
+    open_.pop_back();
+    check_name(*spec);
+    model_.specs.push_back(std::move(spec));
+    return model_.specs.back().get();
+  }
+
+ private:
+  void import(Spec& spec, const std::string& name, const Place& place) {
+    const std::string file = beside(spec.file, name);
+    const bool again = std::any_of(spec.imports.begin(), spec.imports.end(),
+                                   [&](const Spec* one) { return one->file == file; });
+    if (again) {
+      diagnostics_.error(place, fmt::format("{} is imported twice", quote(name)));
+      return;
+    }
+    if (std::find(open_.begin(), open_.end(), file) != open_.end()) {
+      diagnostics_.error(place, fmt::format("{} imports itself in a circle", quote(name)),
+                         "imports must end");
+      return;
+    }
+    const bool plain =
+        !name.empty() && name.size() < 100 && name.front() != '/' && name.find("..") == name.npos;
+    const auto text = plain && open_.size() < kSpecsMax ? read_file(file) : std::nullopt;
+    if (!text) {
+      diagnostics_.error(place, fmt::format("import {} not found", quote(name)),
+                         fmt::format("{} was expected", quote(file)));
+      return;
+    }
+    if (const Spec* found = load(file, *text)) spec.imports.push_back(found);
+  }
+
+  void check_name(const Spec& spec) {
+    for (const auto& other : model_.specs) {
+      if (other->id != spec.id || spec.id.empty()) continue;
+      diagnostics_.error(place_of(spec.places, "id", {spec.file, 1, 1}),
+                         fmt::format("a second spec {}", quote(spec.id)),
+                         fmt::format("{} has that id", quote(other->file)));
+    }
+  }
+
+  Model& model_;
+  Diagnostics& diagnostics_;
+  int budget_ = kNodeBudget;
+  std::vector<std::string> open_;
+};
+
+}  // namespace
+
+void load_specs(const std::vector<std::string>& files, Model& model, Diagnostics& diagnostics) {
+  Loader loader(model, diagnostics);
+  for (const std::string& file : files) loader.named(file);
+}
+
+void load_spec_text(const std::string& file, const std::string& text, Model& model,
+                    Diagnostics& diagnostics) {
+  if (Spec* spec = Loader(model, diagnostics).load(file, text)) spec->named = true;
+}
+
+}  // namespace rubricc

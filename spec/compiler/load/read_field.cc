@@ -1,0 +1,339 @@
+// Reads one field, instance or bit of a mask.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+
+#include "spec/compiler/load/expr_parser.h"
+#include "spec/compiler/load/read_spec.h"
+
+namespace rubricc {
+namespace {
+
+constexpr std::array<std::string_view, 16> kSeqKeys{
+    "id",    "type",     "enum", "size",    "size-eos", "repeat",       "repeat-expr", "if",
+    "valid", "contents", "doc",  "doc-ref", "-name",    "-requirement", "-unit",       "-expect"};
+constexpr std::array<std::string_view, 9> kInstanceKeys{
+    "pos", "type", "enum", "size-eos", "if", "doc", "doc-ref", "-name", "-requirement"};
+constexpr std::array<std::string_view, 4> kBitKeys{"id", "type", "doc", "-unnamed"};
+constexpr std::array<std::string_view, 5> kValidKeys{"eq", "min", "max", "any-of", "in-enum"};
+constexpr std::array<std::string_view, 3> kUnitKeys{"symbol", "scale", "offset"};
+constexpr std::array<std::string_view, 2> kSwitchKeys{"switch-on", "cases"};
+
+/// Sets "u2le" and similar types; returns false for every other word.
+bool set_number(const YamlInput& input, const YAML::Node& node, std::string_view word,
+                const Spec& spec, Field& field) {
+  std::string_view base = word.substr(0, 2);
+  const std::string_view suffix = word.size() > 2 ? word.substr(2) : std::string_view{};
+  if (base.size() != 2 || std::string_view("usf").find(base[0]) == base.npos) return false;
+  if (base[1] != '1' && base[1] != '2' && base[1] != '4') return false;
+  if (base[0] == 'f' && base[1] != '4') return false;
+  if (!suffix.empty() && suffix != "be" && suffix != "le") return false;
+  field.kind = base[0] == 'u'   ? ValueKind::kUint
+               : base[0] == 's' ? ValueKind::kSint
+                                : ValueKind::kFloat;
+  field.width_bytes = base[1] - '0';
+  if (field.width_bytes == 1) {
+    if (!suffix.empty()) {
+      input.error(node, "a byte order for one byte", "u1 or s1 was expected");
+    }
+    return true;
+  }
+  field.little_endian = suffix.empty() ? spec.little_endian : suffix == "le";
+  if (suffix.empty() && !spec.places.contains("endian")) {
+    input.error(node, fmt::format("no byte order for {}", quote(word)),
+                "meta: endian, or the suffix be or le was expected");
+  }
+  return true;
+}
+
+std::unique_ptr<Switch> read_switch(const YamlInput& input, const YAML::Node& node) {
+  const YamlMap map(input, node, "a type by switch", kSwitchKeys);
+  auto out = std::make_unique<Switch>();
+  out->place = input.place(node);
+  if (const YamlEntry* key = map.find("switch-on")) {
+    out->place = input.place(key->value);
+    out->key = read_expr(input, key->value, "switch-on");
+  } else {
+    input.error(node, "a type without switch-on", "a type, or switch-on and cases was expected");
+  }
+  const YamlEntry* cases = map.find("cases");
+  if (cases == nullptr) {
+    input.error(node, "a switch without cases", "cases: was expected");
+    return out;
+  }
+  const YamlMap entries(input, cases->value, "cases", std::span<const std::string_view>{});
+  if (entries.entries().empty()) input.error(cases->value, "a switch without cases", "");
+  for (const YamlEntry& entry : entries.entries()) {
+    SwitchCase found;
+    found.place = input.place(entry.key_node);
+    const auto type = yaml_text(input, entry.value, "the type of a case");
+    if (!type) continue;
+    found.type_name = *type;
+    if (entry.key == "_") {
+      out->otherwise = std::move(found);
+      continue;
+    }
+    found.key_expr = read_expr(input, entry.key_node, "a case");
+    if (found.key_expr) out->cases.push_back(std::move(found));
+  }
+  return out;
+}
+
+void read_type_of(const YamlInput& input, const YamlMap& map, const Spec& spec, Field& field) {
+  const YamlEntry* entry = map.find("type");
+  if (entry == nullptr) return;
+  if (entry->value.IsMap()) {
+    field.kind = ValueKind::kStruct;
+    field.choice = read_switch(input, entry->value);
+    return;
+  }
+  const auto word = yaml_text(input, entry->value, "type");
+  if (!word || set_number(input, entry->value, *word, spec, field)) return;
+  if (*word == "b1") {
+    input.error(entry->value, "b1 outside a mask",
+                "-mask: 8 or -mask: 16 was expected at the type");
+    field.kind = ValueKind::kUint;
+    field.width_bytes = 1;
+    return;
+  }
+  field.kind = ValueKind::kStruct;
+  field.type_name = *word;
+}
+
+void read_valid(const YamlInput& input, const YamlMap& map, Field& field) {
+  const YamlEntry* entry = map.find("valid");
+  if (entry == nullptr) return;
+  Valid valid;
+  valid.place = input.place(entry->value);
+  const auto add = [&](const YAML::Node& node) {
+    if (auto expr = read_expr(input, node, "valid")) {
+      valid.one_of_exprs.push_back(std::move(expr));
+    }
+  };
+  if (entry->value.IsMap()) {
+    const YamlMap bounds(input, entry->value, "valid", kValidKeys);
+    if (const YamlEntry* eq = bounds.find("eq")) add(eq->value);
+    if (const YamlEntry* any = bounds.find("any-of")) {
+      for (const YAML::Node& item : yaml_items(input, any->value, "any-of")) add(item);
+      if (valid.one_of_exprs.empty()) input.error(any->value, "no value is valid", "");
+    }
+    if (const YamlEntry* min = bounds.find("min")) {
+      valid.min_expr = read_expr(input, min->value, "min");
+    }
+    if (const YamlEntry* max = bounds.find("max")) {
+      valid.max_expr = read_expr(input, max->value, "max");
+    }
+    valid.in_enum = bounds.boolean("in-enum").value_or(false);
+    const bool range = bounds.has("min") || bounds.has("max");
+    const int kinds = range + bounds.has("eq") + bounds.has("any-of") + bounds.has("in-enum");
+    if (kinds != 1) {
+      input.error(entry->value, "valid mixes rules or has none",
+                  "one of eq, any-of, in-enum, or min and max was expected");
+    }
+  } else {
+    add(entry->value);
+  }
+  field.valid = std::move(valid);
+}
+
+/// Turns `contents` of a number's size into a number with one valid value.
+void read_contents(const YamlInput& input, const YamlMap& map, Field& field) {
+  const YamlEntry* entry = map.find("contents");
+  if (entry == nullptr) return;
+  std::string bytes;
+  std::vector<YAML::Node> items{entry->value};
+  if (entry->value.IsSequence()) items = yaml_items(input, entry->value, "contents");
+  for (const YAML::Node& item : items) {
+    const auto word = yaml_text(input, item, "contents");
+    if (!word) return;
+    const auto number = parse_integer(*word);
+    if (!number) {
+      bytes += *word;
+    } else if (*number >= 0 && *number <= 255) {
+      bytes += static_cast<char>(*number);
+    } else {
+      input.error(item, fmt::format("{} in contents", *number), "a byte was expected");
+      return;
+    }
+  }
+  if (bytes.size() != 1 && bytes.size() != 2 && bytes.size() != 4) {
+    input.error(entry->value, fmt::format("contents of {} bytes", bytes.size()),
+                "1, 2 or 4 bytes are read as one number");
+    return;
+  }
+  for (const char* other : {"type", "size", "size-eos", "valid", "enum", "repeat"}) {
+    if (!map.has(other)) continue;
+    input.error(map.find(other)->key_node, fmt::format("{} beside contents", quote(other)),
+                "contents stand alone");
+  }
+  field.kind = ValueKind::kUint;
+  field.width_bytes = static_cast<int>(bytes.size());
+  std::int64_t value = 0;
+  for (const char c : bytes) value = value << 8 | static_cast<unsigned char>(c);
+  Valid valid;
+  valid.place = input.place(entry->value);
+  valid.one_of.push_back(value);
+  field.valid = std::move(valid);
+}
+
+void read_repeat(const YamlInput& input, const YamlMap& map, Field& field) {
+  const YamlEntry* count = map.find("repeat-expr");
+  if (count != nullptr) field.count = read_expr(input, count->value, "repeat-expr");
+  const auto repeat = map.text("repeat");
+  if (repeat == "expr") {
+    field.repeat = RepeatKind::kCount;
+    if (count == nullptr) {
+      input.error(map.find("repeat")->value, "repeat: expr without a count",
+                  "repeat-expr: was expected");
+    }
+  } else if (repeat == "eos") {
+    field.repeat = RepeatKind::kToEnd;
+  } else if (repeat) {
+    input.error(map.find("repeat")->value, "repeat is " + quote(*repeat),
+                "expr or eos was expected");
+  }
+  if (count != nullptr && repeat != "expr") {
+    input.error(count->key_node, "repeat-expr without repeat: expr", "");
+  }
+}
+
+void read_extent(const YamlInput& input, const YamlMap& map, Field& field) {
+  if (const YamlEntry* size = map.find("size")) {
+    field.size = read_expr(input, size->value, "size");
+    field.extent = ExtentKind::kSize;
+  }
+  const auto to_end = map.boolean("size-eos");
+  if (map.has("size-eos") && !to_end) field.refused_keys = true;
+  if (to_end.value_or(false)) {
+    if (map.has("size")) {
+      input.error(map.find("size-eos")->key_node, "size-eos beside size", "one of both");
+    }
+    field.extent = ExtentKind::kToEnd;
+  }
+}
+
+double read_real(const YamlInput& input, const YamlMap& map, std::string_view key, double absent) {
+  const auto word = map.text(key);
+  if (!word) return absent;
+  double value = 0;
+  const char* const end = word->data() + word->size();
+  const auto [at, fault] = std::from_chars(word->data(), end, value);
+  if (fault == std::errc() && at == end && value > -1e12 && value < 1e12) return value;
+  input.error(map.find(key)->value, fmt::format("{} is {}", quote(key), quote(*word)),
+              "a decimal number was expected");
+  return absent;
+}
+
+void read_unit(const YamlInput& input, const YamlMap& map, Field& field) {
+  const YamlEntry* entry = map.find("-unit");
+  if (entry == nullptr) return;
+  const YamlMap unit(input, entry->value, "-unit", kUnitKeys);
+  Unit out;
+  out.symbol = unit.text("symbol").value_or("");
+  out.scale = read_real(input, unit, "scale", 1);
+  out.offset = read_real(input, unit, "offset", 0);
+  if (out.symbol.empty()) {
+    input.error(entry->value, "a unit without symbol", "symbol: was expected");
+  }
+  field.unit = out;
+}
+
+void read_docs(const YamlMap& map, Field& field) {
+  field.doc = one_line(map.text("doc").value_or(""));
+  if (map.has("doc-ref") && !map.find("doc-ref")->value.IsSequence()) {
+    field.doc_ref = one_line(map.text("doc-ref").value_or(""));
+  }
+  field.requirement = map.text("-requirement").value_or("");
+}
+
+}  // namespace
+
+ExprPtr read_expr(const YamlInput& input, const YAML::Node& node, std::string_view what) {
+  const auto text = yaml_text(input, node, what);
+  if (!text) return nullptr;
+  Place place = input.place(node);
+  if (node.Tag() == "!") ++place.column;  // After the quote.
+  return parse_expr(*text, place, input.diagnostics);
+}
+
+KeyPlaces places_of(const YamlInput& input, const YamlMap& map) {
+  KeyPlaces out;
+  for (const YamlEntry& entry : map.entries()) out[entry.key] = input.place(entry.value);
+  return out;
+}
+
+const Place& place_of(const KeyPlaces& places, std::string_view key, const Place& otherwise) {
+  const auto found = places.find(key);
+  return found == places.end() ? otherwise : found->second;
+}
+
+std::unique_ptr<Field> read_field(const YamlInput& input, const YAML::Node& node, FieldPlace where,
+                                  const Spec& spec, const YamlEntry* instance) {
+  const bool in_seq = where == FieldPlace::kSeq;
+  const YamlMap map(input, node, in_seq ? "a field" : "an instance",
+                    in_seq ? std::span<const std::string_view>(kSeqKeys)
+                           : std::span<const std::string_view>(kInstanceKeys));
+  if (!node.IsMap()) return nullptr;
+  auto field = std::make_unique<Field>();
+  field->places = places_of(input, map);
+  field->refused_keys = map.refused_keys();
+  field->place = input.place(instance != nullptr ? instance->key_node : node);
+  field->is_instance = !in_seq;
+  if (instance != nullptr) {
+    field->id = instance->key;
+  } else if (const auto id = map.text("id")) {
+    field->id = *id;
+    field->place = field->places.at("id");
+  } else {
+    if (!map.has("id")) input.error(node, "a field without id", "id: was expected");
+    return nullptr;
+  }
+  check_id(input.diagnostics, field->place, field->id, "a field");
+  field->name = map.text("-name").value_or(field->id);
+  if (map.has("-name")) {
+    check_id(input.diagnostics, field->places.at("-name"), field->name, "a shown name");
+  }
+  read_docs(map, *field);
+  read_type_of(input, map, spec, *field);
+  read_extent(input, map, *field);
+  read_repeat(input, map, *field);
+  read_valid(input, map, *field);
+  read_contents(input, map, *field);
+  read_unit(input, map, *field);
+  field->enum_name = map.text("enum").value_or("");
+  if (const YamlEntry* entry = map.find("if")) {
+    field->condition = read_expr(input, entry->value, "if");
+  }
+  if (const YamlEntry* entry = map.find("-expect")) {
+    field->expect_expr = read_expr(input, entry->value, "-expect");
+  }
+  if (!in_seq) {
+    const auto position = map.integer("pos");
+    field->position = position.value_or(-1);
+    if (!position) field->places.erase("pos");  // Its value was reported.
+    field->is_peek = field->kind != ValueKind::kStruct && field->extent == ExtentKind::kOwn;
+    if (!map.has("pos")) input.error(instance->key_node, "an instance without pos", "");
+  }
+  return field;
+}
+
+MaskBit read_mask_bit(const YamlInput& input, const YAML::Node& node) {
+  const YamlMap map(input, node, "a bit of a mask", kBitKeys);
+  MaskBit bit;
+  bit.name = map.text("id").value_or("");
+  bit.unnamed = map.boolean("-unnamed").value_or(false);
+  if (!map.has("id")) {
+    input.error(node, "a bit without id", "id: was expected");
+  } else {
+    check_id(input.diagnostics, input.place(map.find("id")->value), bit.name, "a bit");
+  }
+  if (map.text("type") != "b1") {
+    input.error(map.has("type") ? map.find("type")->value : node, "a mask has only bits",
+                "type: b1 was expected");
+  }
+  return bit;
+}
+
+}  // namespace rubricc

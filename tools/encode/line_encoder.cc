@@ -1,0 +1,194 @@
+#include "tools/encode/line_encoder.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <system_error>
+#include <utility>
+
+#include "codec/generated/tinyos/enums.h"
+#include "codec/reflect/encode_number.h"
+#include "codec/reflect/registry.h"
+#include "tools/encode/carriers.h"
+#include "tools/encode/json.h"
+
+namespace rubric::encode {
+
+using reflect::Value;
+
+namespace {
+
+// Defaults of the frames around a single message, unless the command line gives others.
+constexpr int kBroadcast = 0xffff;
+constexpr int kSerialGroup = 0;
+constexpr int kRadioGroup = 0x22;  // TinyOS's default.
+
+}  // namespace
+
+LineEncoder::LineEncoder(const LineOptions& options, const reflect::Protocol& protocol,
+                         const reflect::Type* message, std::string_view serial_framing)
+    : options_(options),
+      protocol_(protocol),
+      message_(message),
+      serial_framing_(serial_framing),
+      reader_(protocol) {
+  if (message_) wrap_ = around();
+}
+
+void LineEncoder::encode(const Value& line, OwnedPacket& out) {
+  if (!message_) return reader_.read(line, out);
+  if (!line.is(Value::Kind::kObject)) {
+    throw RecordError("", fmt::format("expected an object with the fields of {}, given {}",
+                                      message_->name, reflect::value_text(line)));
+  }
+  Value whole = wrap_;
+  whole.set("fields", line);
+  if (framing_ == "radio") {
+    // Every frame of a node takes the next number.
+    const Value& frame = *wrap_.find("frame");
+    whole.items[frame_index_] = frame;
+    whole.items[frame_index_].set("dsn", Value::of_integer(next_dsn_++ & 0xff));
+  }
+  reader_.read(whole, out);
+}
+
+std::string_view LineEncoder::carrier_name() const {
+  if (options_.to_line) return "serial";
+  if (!options_.carrier.empty()) return options_.carrier;
+  const auto reaches = [&](const char* name) {
+    const reflect::Type* carrier = reflect::find_carrier(protocol_, name);
+    return carrier && am_type_on(*carrier, *message_);
+  };
+  return !reaches("serial") && reaches("radio_i") ? "radio" : "serial";
+}
+
+std::int64_t LineEncoder::am_type(std::string_view carrier_name) const {
+  if (options_.am_type) return *options_.am_type;
+  const reflect::Type* carrier =
+      reflect::find_carrier(protocol_, carrier_name == "radio" ? "radio_i" : "serial");
+  if (carrier) {
+    if (const auto type = am_type_on(*carrier, *message_)) return *type;
+  }
+  throw cli::UsageError(
+      "--as", fmt::format("no AM type carries {} itself on {}; give --am-type, {} the message that "
+                          "it travels in{} ('rubric explain {}' says more)",
+                          message_->name, carrier_name == "radio" ? "the radio" : "serial lines",
+                          options_.to_line ? "or send" : "encode",
+                          options_.to_line ? "" : ", or use --carrier none", message_->id));
+}
+
+// Returns the line around the fields.
+Value LineEncoder::around() {
+  const std::string_view carrier = carrier_name();
+  const bool radio = carrier == "radio";
+  framing_ = carrier == "none" ? "bare" : radio ? "radio" : serial_framing_;
+  Value line = Value::of_object();
+  line.set("schema", Value::of_string(kSchema));
+  line.set("framing", Value::of_string(framing_));
+  line.set("path", Value::of_array({Value::of_string(message_->id)}));
+  if (framing_ == "bare") return line;
+  const auto number = [](std::int64_t value) { return Value::of_integer(value); };
+  const int group = options_.group.value_or(radio ? kRadioGroup : kSerialGroup);
+  Value am = Value::of_object();
+  am.set("dest", number(options_.dest.value_or(kBroadcast)));
+  am.set("src", number(options_.src.value_or(0)));
+  am.set("group", number(group));
+  am.set("type", number(am_type(carrier)));
+  line.set("am", std::move(am));
+  Value frame = Value::of_object();
+  if (radio) {
+    frame.set("fcf", number(static_cast<std::int64_t>(tinyos::FrameControl::kData)));
+    frame.set("destpan", number(group));
+  }
+  frame_index_ = line.items.size();
+  line.set("frame", std::move(frame));
+  return line;
+}
+
+EncodedLines::EncodedLines(const LineOptions& options, LineEncoder& encoder, OnPacket on_packet,
+                           Lines::BeforeRead before_read)
+    : encoder_(encoder),
+      on_packet_(std::move(on_packet)),
+      before_read_(std::move(before_read)),
+      files_(options.input.files),
+      as_message_(!options.input.as_message.empty()) {
+  if (files_.empty()) files_.emplace_back("-");
+}
+
+bool EncodedLines::all() {
+  for (const std::string& name : files_) {
+    if (ended_) break;
+    file_ = name == "-" ? "stdin" : name;
+    try {
+      Lines lines(name, before_read_);
+      one(lines);
+    } catch (const std::system_error& error) {
+      complain(file_, error.code().message());
+    }
+  }
+  return good_;
+}
+
+void EncodedLines::complain(const std::string& place, std::string_view what) {
+  fmt::print(stderr, "rubric: {}: {}\n", place, what);
+  good_ = false;
+}
+
+void EncodedLines::one(Lines& lines) {
+  std::string_view line;
+  while (!ended_ && lines.next(line)) {
+    if (line.find_first_not_of(" \t") == std::string_view::npos) continue;
+    any_ = true;
+    const std::string place = fmt::format("{}:{}", file_, lines.number());
+    if (lines.too_long()) {
+      complain(place, fmt::format("expected a line of at most {} bytes", lines.kMaxBytes));
+      continue;
+    }
+    try {
+      encoder_.encode(parse_json(line), packet_);
+      ended_ = !on_packet_(*this, packet_, place);
+    } catch (const JsonError& error) {
+      complain(fmt::format("{}:{}", place, error.column()), error.what());
+    } catch (const RecordError& error) {
+      std::string what = error.what();
+      if (as_message_ && what.starts_with("fields.")) what.erase(0, sizeof("fields.") - 1);
+      complain(place, what);
+    }
+  }
+}
+
+void add_line_options(cli::Command& app, LineOptions& options) {
+  app.add_option("FILE", options.input.files, "JSON lines; none or - is stdin");
+  app.add_option("--spec", options.input.spec, "Protocol above the AM layer").show_default();
+  app.add_option("--as", options.input.as_message,
+                 "Each line is the fields of this message, which is put into a frame")
+      .check(cli::given);
+  app.add_option("--am-type", options.am_type, "With --as, the AM type (default: its own)")
+      .between(0, 0xff);
+  app.add_option("--dest", options.dest, "With --as, the AM destination (default: broadcast)")
+      .between(0, 0xffff);
+  app.add_option("--src", options.src, "With --as, the AM source (default: 0)").between(0, 0xffff);
+  app.add_option("--group", options.group,
+                 options.to_line
+                     ? "With --as, the AM group (default: 0)"
+                     : "With --as, the AM group (default: 0 on serial lines, 0x22 on the radio)")
+      .between(0, 0xff);
+}
+
+void add_carrier_option(cli::Command& app, LineOptions& options) {
+  app.add_option("--carrier", options.carrier,
+                 "With --as, the frame: serial, radio, or none (default: what carries it)")
+      .one_of({"serial", "radio", "none"});
+}
+
+void check_line_options(const LineOptions& options) {
+  const bool wrapping =
+      options.am_type || options.dest || options.src || options.group || !options.carrier.empty();
+  if (wrapping && options.input.as_message.empty()) {
+    throw cli::UsageError(options.to_line ? "--am-type, --dest, --src, --group"
+                                          : "--carrier, --am-type, --dest, --src, --group",
+                          "go with --as MESSAGE; a line of rubric decode has its own frame");
+  }
+}
+
+}  // namespace rubric::encode

@@ -1,0 +1,164 @@
+#include "tools/encode/packet_output.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <system_error>
+
+#include "codec/containers/link_record.h"
+#include "codec/reflect/fault_text.h"
+
+namespace rubric::encode {
+namespace {
+
+constexpr std::string_view kHdlc = "hdlc";
+constexpr std::string_view kSf = "sf";
+constexpr std::string_view kHex = "hex";
+constexpr std::string_view kPcap = "pcap";
+
+std::string_view link_type_name(std::uint16_t link_type) {
+  switch (link_type) {
+    case kLinkSerial: return "serial frames";
+    case kLinkSf: return "serial forwarder packets";
+    case kLinkRadioFcs: return "radio frames with FCS";
+    case kLinkRadioNoFcs: return "radio frames without FCS";
+    case kLinkRadioTap: return "radio frames with TAP header";
+    default: return "packets of no link type";
+  }
+}
+
+// Returns why a writer refused a packet.
+std::string reason(std::string_view container, const Packet& packet, std::uint16_t link_type) {
+  if (container == kPcap && link_type_of(packet) != link_type) {
+    return fmt::format("pcap holds one link type, here {}, and no {}", link_type_name(link_type),
+                       link_type_name(link_type_of(packet)));
+  }
+  if (packet.framing == Framing::kBare && packet.error.fault == Fault::kNone) {
+    return fmt::format("{} holds framed packets, no bare messages", container);
+  }
+  if (packet.framing == Framing::kRadio && (container == kHdlc || container == kSf)) {
+    return fmt::format("{} holds no radio frames", container);
+  }
+  if (packet.error.fault != Fault::kNone) {
+    return fmt::format("{} holds no malformed frames: {}", container,
+                       reflect::fault_sentence(packet.error.fault));
+  }
+  if (packet.bytes.empty()) return fmt::format("{} holds no frames without a packet", container);
+  return fmt::format("{} holds no packet of {} bytes", container, packet.bytes.size());
+}
+
+}  // namespace
+
+const std::vector<std::string>& container_names() {
+  static const std::vector<std::string> names = {"hex", "hdlc", "sf", "pcap", "pcapng"};
+  return names;
+}
+
+Holds holds(std::string_view container) {
+  const bool pcapng = container == "pcapng";
+  return {pcapng || container == kPcap, pcapng, pcapng, pcapng};
+}
+
+bool overwrites(const std::string& output, const std::vector<std::string>& inputs) {
+  struct stat to {};
+  if (output == "-" || ::stat(output.c_str(), &to) != 0 || !S_ISREG(to.st_mode)) return false;
+  const auto is_output = [&to](const std::string& input) {
+    struct stat from {};
+    const int got = input == "-" ? ::fstat(0, &from) : ::stat(input.c_str(), &from);
+    return got == 0 && to.st_dev == from.st_dev && to.st_ino == from.st_ino;
+  };
+  if (inputs.empty()) return is_output("-");
+  return std::any_of(inputs.begin(), inputs.end(), is_output);
+}
+
+PacketOutput::PacketOutput(std::string_view container, const std::string& path)
+    : container_(container) {
+  if (path != "-") open_file(path);
+  output_ = std::make_unique<cli::Output>(fd_);
+}
+
+PacketOutput::~PacketOutput() {
+  output_.reset();
+  if (fd_ > 1) ::close(fd_);
+  if (!created_.empty()) ::unlink(created_.c_str());
+}
+
+void PacketOutput::open_file(const std::string& path) {
+  constexpr int kFlags = O_WRONLY | O_CREAT | O_CLOEXEC;
+  fd_ = ::open(path.c_str(), kFlags | O_EXCL, 0666);
+  if (fd_ >= 0) {
+    created_ = path;
+  } else {
+    fd_ = ::open(path.c_str(), kFlags, 0666);
+  }
+  if (fd_ < 0) throw std::system_error(errno, std::generic_category());
+}
+
+// Makes the writer. A pcap file takes the link type of its first packet.
+bool PacketOutput::make_writer(const Packet& first) {
+  if (container_ == kHdlc) writer_ = std::make_unique<HdlcWriter>();
+  if (container_ == kSf) writer_ = std::make_unique<SfWriter>();
+  if (container_ == kHex) writer_ = std::make_unique<HexWriter>();
+  if (container_ == "pcapng") writer_ = std::make_unique<PcapngWriter>();
+  if (container_ == kPcap) {
+    link_type_ = link_type_of(first);
+    if (link_type_ == 0) return false;
+    writer_ = std::make_unique<PcapWriter>(link_type_);
+  }
+  created_.clear();
+  struct stat status {};
+  const bool file = fd_ > 1 && ::fstat(fd_, &status) == 0 && S_ISREG(status.st_mode);
+  if (file && ::ftruncate(fd_, 0) != 0) throw std::system_error(errno, std::generic_category());
+  writer_->begin(bytes_);
+  output_->buffer().append(bytes_);
+  return true;
+}
+
+std::string PacketOutput::write(const Packet& packet, std::string_view interface_name) {
+  cut_refused_ = false;
+  const bool cut_short = packet.error.fault == Fault::kTooLong ||
+                         (packet.error.fault == Fault::kCut && container_ == kHdlc);
+  if (packet.framing == Framing::kHdlc && cut_short && packet.dropped_bytes) {
+    return fmt::format("{} bytes of this frame were dropped when it was read",
+                       packet.dropped_bytes);
+  }
+  if (packet.error.requirement == "WIRE-SF-HANDSHAKE"_rule) {
+    return "the handshake of a stream is written whole, or not at all";
+  }
+  if (!writer_ && !make_writer(packet)) return reason(container_, packet, link_type_);
+  bytes_.clear();
+  if (!writer_->write(packet, interface_name, bytes_)) {
+    return reason(container_, packet, link_type_);
+  }
+  cut_refused_ = !cut_.empty();
+  cut_.clear();
+  const bool is_stream = container_ == kHdlc || container_ == kSf;
+  if (is_stream && packet.error.fault == Fault::kCut) {
+    cut_ = bytes_;
+  } else {
+    output_->buffer().append(bytes_);
+    output_->drain();
+  }
+  return {};
+}
+
+std::string PacketOutput::finish() {
+  if (!writer_) {
+    Packet none;
+    none.framing = Framing::kHdlc;
+    make_writer(none);
+  }
+  output_->buffer().append(cut_);
+  bytes_.clear();
+  writer_->finish(bytes_);
+  output_->buffer().append(bytes_);
+  output_->flush();
+  std::string what;
+  return output_->failed(&what) ? what : std::string{};
+}
+
+}  // namespace rubric::encode

@@ -1,0 +1,260 @@
+#include "tools/encode/record.h"
+
+#include "codec/containers/link_record.h"
+#include "codec/generated/tinyos/tables.h"
+#include "codec/reflect/encode_number.h"
+#include "codec/reflect/fault_text.h"
+#include "codec/runtime/hdlc.h"
+#include "tools/encode/carriers.h"
+#include "tools/encode/difference.h"
+#include "tools/encode/members.h"
+
+namespace rubric::encode {
+
+using reflect::Type;
+using reflect::Value;
+using reflect::value_text;
+
+namespace {
+
+constexpr std::int64_t kFrameTypeMask = 7;  // IEEE 802.15.4-2006, section 7.2.1.1.1.
+constexpr std::int64_t kFrameTypeAck = 2;
+
+std::string sentence(const std::string& path, const std::string& problem, ReqId rule) {
+  std::string text = path.empty() ? problem : path + ": " + problem;
+  if (rule != ReqId::kNone) text += std::string(" (") + reflect::requirement(rule).id + ')';
+  return text;
+}
+
+// Returns the members of an object that may be missing or null.
+const Value& object_of(const Value& line, std::string_view key) {
+  static const Value kNothing = Value::of_object();
+  const Value* value = given(line, key);
+  if (!value) return kNothing;
+  if (value->is(Value::Kind::kObject)) return *value;
+  throw RecordError(std::string(key), "expected an object or null, given " + value_text(*value));
+}
+
+RecordError no_raw(const std::string& why) { return RecordError("raw", "is missing, and " + why); }
+
+Value without_nulls(const Value& object) {
+  Value kept = Value::of_object();
+  for (std::size_t i = 0; i < object.keys.size(); ++i) {
+    if (!object.items[i].is(Value::Kind::kNull)) kept.set(object.keys[i], object.items[i]);
+  }
+  return kept;
+}
+
+std::int32_t narrow(std::optional<std::int64_t> value) {
+  return value ? static_cast<std::int32_t>(*value) : kAbsent;
+}
+
+void read_serial(const Value& frame, bool whole, Packet& packet) {
+  packet.kind = narrow(integer_of(frame, "frame", "kind", 0xff));
+  if (packet.kind == kAbsent && !frame.find("kind")) packet.kind = kSerialPacketNoAck;
+  packet.serial_seq = narrow(integer_of(frame, "frame", "serial_seq", 0xff));
+  const bool has_seq = serial_kind_has_seq(packet.kind);
+  if (packet.serial_seq != kAbsent && !has_seq) {
+    throw RecordError("frame.serial_seq",
+                      "expected none, as frames of kind " + std::to_string(packet.kind) +
+                          " have none, given " + std::to_string(packet.serial_seq),
+                      "WIRE-SERIAL-SEQ"_rule);
+  }
+  if (whole && has_seq && packet.serial_seq == kAbsent) {
+    throw RecordError("frame.serial_seq",
+                      "is missing: expected a number from 0 to 255, as frames of kind " +
+                          std::to_string(packet.kind) + " have one",
+                      "WIRE-SERIAL-SEQ"_rule);
+  }
+}
+
+// Returns the link type under which a capture file keeps a malformed radio frame as it is.
+std::uint16_t link_type_for(Fault fault, ReqId rule, const Packet& packet) {
+  if (packet.framing != Framing::kRadio) return 0;
+  if (rule == "WIRE-RADIO-TAP"_rule) return kLinkRadioTap;
+  if (fault == Fault::kCut) return kLinkRadioNoFcs;
+  return fault == Fault::kTooLong && packet.fcs == kAbsent ? kLinkRadioNoFcs : kLinkRadioFcs;
+}
+
+void read_around(const Value& line, OwnedPacket& out) {
+  Packet& packet = out.packet;
+  packet = Packet{};
+  packet.framing = framing_of(line);
+  packet.direction = direction_of(line);
+  packet.time_ns = time_of(line.find("time"));
+  packet.offset_bytes =
+      static_cast<std::uint64_t>(integer_of(line, "", "offset", INT64_MAX).value_or(0));
+  out.interface_name = text_of(line, "interface");
+  out.comment = text_of(line, "comment");
+  const Fault fault = fault_of(line);
+  const Value& frame = object_of(line, "frame");
+  packet.dropped_bytes =
+      static_cast<std::uint64_t>(integer_of(frame, "frame", "dropped", INT64_MAX).value_or(0));
+  if (packet.framing == Framing::kHdlc) read_serial(frame, !is_framing_fault(fault), packet);
+  if (packet.framing == Framing::kHdlc || packet.framing == Framing::kRadio) {
+    const char* key = packet.framing == Framing::kHdlc ? "crc" : "fcs";
+    (packet.framing == Framing::kHdlc ? packet.crc : packet.fcs) =
+        narrow(integer_of(frame, "frame", key, 0xffff));
+  }
+  if (is_framing_fault(fault)) {
+    const ReqId rule = reflect::find_requirement(text_of(object_of(line, "error"), "requirement"));
+    packet.error = Error{fault, 0, rule};
+    packet.link_type = link_type_for(fault, rule, packet);
+  }
+}
+
+// Settles the check sum. A missing one is computed. One that does not fit, without an error that
+// says so, was most likely forgotten when something else was changed.
+void settle_check_sum(const Value& line, OwnedPacket& out) {
+  if (out.packet.framing != Framing::kHdlc && out.packet.framing != Framing::kRadio) return;
+  if (is_framing_fault(out.packet.error.fault)) return;
+  const bool serial = out.packet.framing == Framing::kHdlc;
+  const char* key = serial ? "crc" : "fcs";
+  std::int32_t& sum = serial ? out.packet.crc : out.packet.fcs;
+  const std::int32_t computed = check_sum(out.view());
+  if (!object_of(line, "frame").find(key)) sum = computed;
+  if (sum == computed || (sum == kAbsent && !serial)) return;
+  throw RecordError(std::string("frame.") + key,
+                    "expected " + std::to_string(computed) + ", given " +
+                        (sum == kAbsent ? "none" : std::to_string(sum)) + "; delete \"" + key +
+                        "\" to have it computed, or let \"error\" name the fault \"" + key + '"',
+                    serial ? "WIRE-SERIAL-CRC"_rule : "WIRE-RADIO-FCS"_rule);
+}
+
+void read_hex(const Value& line, std::string_view key, std::vector<std::uint8_t>& out) {
+  out.clear();
+  const std::string_view text = text_of(line, key);
+  if (reflect::parse_hex(text, out)) return;
+  throw RecordError(std::string(key),
+                    "expected hex digits, two a byte, given \"" + std::string(text) + '"');
+}
+
+}  // namespace
+
+RecordError::RecordError(const std::string& path, const std::string& problem, ReqId rule)
+    : std::runtime_error(sentence(path, problem, rule)) {}
+
+RecordReader::RecordReader(const reflect::Protocol& protocol) : protocol_(protocol) {}
+
+void RecordReader::read(const Value& line, OwnedPacket& out) {
+  if (!line.is(Value::Kind::kObject)) {
+    throw RecordError("", "expected an object, given " + value_text(line));
+  }
+  const std::string_view schema = text_of(line, "schema");
+  if (schema != kSchema) {
+    throw RecordError("schema", "expected \"" + std::string(kSchema) + "\", given " +
+                                    (schema.empty() ? "none" : '"' + std::string(schema) + '"'));
+  }
+  read_around(line, out);
+  read_hex(line, "stale", stale_);
+  if (!given(line, "raw")) {
+    out.bytes.clear();
+    build(line, out, out.bytes);
+    return settle_check_sum(line, out);
+  }
+  read_hex(line, "raw", out.bytes);
+  settle_check_sum(line, out);
+  if (given(line, "fields") && !given(line, "error")) compare(line, out);
+}
+
+const Type* RecordReader::bare_type(const Value& line) const {
+  const Value* path = given(line, "path");
+  const bool has_path = path && path->is(Value::Kind::kArray) && !path->items.empty();
+  const std::string_view name = has_path ? path->items[0].text : text_of(line, "message");
+  return name.empty() ? nullptr : reflect::find_type(protocol_, name);
+}
+
+RecordReader::Plan RecordReader::plan_radio(const Value& line, const Value& am) const {
+  const Value& frame = object_of(line, "frame");
+  const Value* fields = given(line, "fields");
+  const auto fcf = integer_of(frame, "frame", "fcf", 0xffff);
+  if (fcf && (*fcf & kFrameTypeMask) == kFrameTypeAck) {
+    Value values = Value::of_object();
+    values.set("fcf", Value::of_integer(*fcf));
+    if (const Value* dsn = given(frame, "dsn")) values.set("dsn", *dsn);
+    return {reflect::find_carrier(tinyos::tables::kProtocol, "radio_ack"), std::move(values),
+            nullptr};
+  }
+  const bool has_network = !frame.find("network") || given(frame, "network");
+  const Type* type = reflect::find_carrier(protocol_, has_network ? "radio_i" : "radio_t");
+  const Value payload = fields ? *fields : Value{};
+  return {type, radio_values(with_am_type(line, am, type), frame, has_network, payload), nullptr};
+}
+
+// Returns the parts of the frame, without raw.
+RecordReader::Plan RecordReader::plan(const Value& line, Framing framing) const {
+  const Value* fields = given(line, "fields");
+  const Value am = without_nulls(object_of(line, "am"));
+  if (framing == Framing::kBare) {
+    const Type* message = bare_type(line);
+    if (!message || !fields) throw no_raw("there are no fields of a known message");
+    return {message, *fields, nullptr};
+  }
+  const bool nothing = !fields && am.keys.empty();
+  // A radio acknowledgement is only a frame control field and a number.
+  if (nothing && (framing != Framing::kRadio || !given(object_of(line, "frame"), "fcf") ||
+                  given(object_of(line, "frame"), "dest"))) {
+    throw no_raw("there are neither fields nor am");
+  }
+  Plan made;
+  if (framing == Framing::kRadio) {
+    made = plan_radio(line, am);
+  } else {
+    made.type = reflect::find_carrier(protocol_, "serial");
+    made.more = reflect::payload_choice(protocol_, "radio_i");
+    made.values = serial_values(with_am_type(line, am, made.type), object_of(line, "frame"),
+                                fields ? *fields : Value{});
+  }
+  if (!made.type) throw no_raw(std::string(protocol_.id) + " does not travel in these frames");
+  return made;
+}
+
+// Adds the AM type that a named message implies.
+Value RecordReader::with_am_type(const Value& line, Value am, const Type* carrier) const {
+  const Type* message = bare_type(line);
+  if (!message || !carrier || given(am, "type")) return am;
+  if (const auto am_type = am_type_on(*carrier, *message)) {
+    am.set("type", Value::of_integer(*am_type));
+  }
+  return am;
+}
+
+void RecordReader::build(const Value& line, const OwnedPacket& around,
+                         std::vector<std::uint8_t>& out) const {
+  const Framing framing = around.packet.framing;
+  const bool is_bare = framing == Framing::kBare;
+  // An acknowledgement of the serial line has no packet.
+  if (framing == Framing::kHdlc && !given(line, "fields") && object_of(line, "am").keys.empty()) {
+    return;
+  }
+  const Plan made = plan(line, framing);
+  try {
+    reflect::encode(*made.type, made.values, Bytes(stale_.data(), stale_.size()),
+                    is_bare ? reflect::Tail::kStale : reflect::Tail::kFault, out, made.more);
+  } catch (const reflect::EncodeError& error) {
+    const std::string path = is_bare && !error.path().empty() && error.path() != "stale"
+                                 ? "fields." + error.path()
+                                 : path_in_line(error.path());
+    throw RecordError(path, error.problem(), error.requirement());
+  }
+}
+
+void RecordReader::compare(const Value& line, const OwnedPacket& out) {
+  built_.clear();
+  build(line, out, built_);
+  if (built_ == out.bytes) return;
+  Packet packet = out.view();
+  const bool bare = packet.framing == Framing::kBare;
+  const reflect::FrameDecoder decoder(protocol_, bare ? bare_type(line) : nullptr);
+  decoder.decode(packet, from_raw_);
+  packet.bytes = Bytes(built_.data(), built_.size());
+  decoder.decode(packet, from_fields_);
+  const auto found = first_difference(from_fields_.decoded, from_raw_.decoded);
+  if (!found) return;
+  throw RecordError(
+      bare && found->path != "stale" ? "fields." + found->path : path_in_line(found->path),
+      "given " + found->in_a + ", but \"raw\" says " + found->in_b +
+          "; delete \"raw\" if the fields are meant");
+}
+
+}  // namespace rubric::encode

@@ -1,0 +1,108 @@
+#include "tools/explain/explain_rule.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "codec/reflect/fault_text.h"
+#include "tools/explain/explain_type.h"
+#include "tools/explain/table.h"
+
+namespace rubric::explain {
+namespace {
+
+using reflect::Requirement;
+
+template <class Visit>
+void each_rule(Visit visit) {
+  for (const Requirement& rule : reflect::requirements().subspan(1)) {
+    visit(rule.number(), std::string_view(rule.id));
+  }
+}
+
+std::string roles_text(const Requirement& rule) {
+  std::vector<std::string_view> roles;
+  if (rule.roles & reflect::kRoleMote) roles.emplace_back("mote");
+  if (rule.roles & reflect::kRoleSink) roles.emplace_back("sink");
+  if (rule.roles & reflect::kRoleBaseStation) roles.emplace_back("base station");
+  return fmt::format("{}", fmt::join(roles, ", "));
+}
+
+std::string cases_text(ReqId id, std::string_view title, bool negative, CaseList list,
+                       std::span<const cases::CaseUse> uses) {
+  constexpr std::size_t kFew = 4;
+  std::vector<std::string> names;
+  for (const cases::CaseUse& use : uses) {
+    if (use.requirement != id || use.negative != negative) continue;
+    names.push_back(fmt::format("{}{}({})", use.name, kFirmBlank, use.file));
+  }
+  if (names.empty()) return "";
+  if (list == CaseList::kShort && names.size() > kFew + 1) {
+    const std::size_t more = names.size() - kFew;
+    names.resize(kFew);
+    std::string others = fmt::format("{} more: ", more);
+    for (const char c : fmt::format("rubric explain {} --cases", reflect::requirement(id).id)) {
+      others += c == ' ' ? kFirmBlank : c;  // To be copied from one line.
+    }
+    names.push_back(std::move(others));
+  }
+  return wrapped(fmt::format("{}: {}", title, fmt::join(names, ", ")), 4);
+}
+
+}  // namespace
+
+std::vector<ReqId> rules_named(std::string_view name) {
+  const ReqId one = reflect::find_requirement(name);
+  if (one != ReqId::kNone) return {one};
+  std::string prefix(name);
+  prefix += '-';
+  std::vector<ReqId> out;
+  each_rule([&](ReqId id, std::string_view known) {
+    const bool same = known.size() > prefix.size() &&
+                      std::equal(prefix.begin(), prefix.end(), known.begin(), [](char a, char b) {
+                        return std::toupper(static_cast<unsigned char>(a)) == b;
+                      });
+    if (same) out.push_back(id);
+  });
+  return out;
+}
+
+std::vector<std::string> rule_groups() {
+  std::vector<std::string> out;
+  each_rule([&](ReqId, std::string_view known) {
+    std::string group(known.substr(0, known.find('-')));
+    if (std::find(out.begin(), out.end(), group) == out.end()) out.push_back(std::move(group));
+  });
+  return out;
+}
+
+std::string explain_rule(const std::vector<const reflect::Protocol*>& protocols, ReqId id,
+                         CaseList list, std::span<const cases::CaseUse> uses,
+                         std::span<const machine::NamedProfile> profiles) {
+  const Requirement& rule = reflect::requirement(id);
+  std::string out = fmt::format("{}: {}, {}\n", rule.id, rule.level, rule.clause);
+  out += wrapped(rule.sentence, 2);
+  if (rule.roles != 0) {
+    out += fmt::format("  For: {}{}\n", roles_text(rule),
+                       rule.forbids ? "; it says what must not happen" : "");
+  }
+  out += wrapped(fmt::format("Source: {}", rule.source), 2);
+  if (*rule.deployed != '\0') {
+    out += wrapped(fmt::format("Otherwise in release 1.0: {}", rule.deployed), 2);
+  }
+  for (const machine::NamedProfile& profile : profiles) {
+    for (const machine::AcceptedDifference& one : profile.accepted) {
+      if (one.requirement != id) continue;
+      out += wrapped(fmt::format("Accepted by --profile {}: {}", profile.name, one.sentence), 2);
+    }
+  }
+  out += used_by(protocols, [id](const reflect::Field& f) { return f.requirement == id; });
+  const std::string cases =
+      cases_text(id, "positive", false, list, uses) + cases_text(id, "negative", true, list, uses);
+  if (!cases.empty()) return out + "  Cases:\n" + cases;
+  return rule.roles == 0 ? out : out + "  Cases: none\n";  // Rules of the wire have vectors.
+}
+
+}  // namespace rubric::explain

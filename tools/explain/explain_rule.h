@@ -1,0 +1,34 @@
+// Prints rules for `rubric explain`.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "codec/reflect/schema.h"
+#include "conformance/generated/cases.h"
+#include "conformance/generated/profiles.h"
+
+namespace rubric::explain {
+
+/// Returns the rules of a name, in the catalogue's order, upper and lower case alike: the one of
+/// that id, else the group of those whose ids begin with it and a dash ("J4": J4-ACK, ...).
+std::vector<ReqId> rules_named(std::string_view name);
+
+/// Returns "J4", "WIRE", and so on: the beginnings of ids up to their first dash, each once.
+std::vector<std::string> rule_groups();
+
+/// The number of printed cases of a rule.
+enum class CaseList : std::uint8_t { kShort, kWhole };
+
+/// Returns a rule with its roles and source, the differences of release 1.0 and the profiles, the
+/// fields that refer to it in `protocols`, and its golden cases: if there are many, the first ones,
+/// and how to see the others.
+std::string explain_rule(const std::vector<const reflect::Protocol*>& protocols, ReqId id,
+                         CaseList list = CaseList::kShort,
+                         std::span<const cases::CaseUse> uses = cases::kCaseUses,
+                         std::span<const machine::NamedProfile> profiles = machine::kProfiles);
+
+}  // namespace rubric::explain

@@ -1,0 +1,149 @@
+#include "tools/stats/counters.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "codec/generated/rubicon/tables.h"
+#include "codec/reflect/encode.h"
+#include "tools/stats/report.h"
+
+namespace rubric::stats {
+namespace {
+
+using testing::HasSubstr;
+
+/// Feeds packets from hex text.
+class Feed {
+ public:
+  void packet(const std::string& hex, std::int64_t time_ns, std::string_view file = "a",
+              std::string_view interface_name = "radio") {
+    std::vector<std::uint8_t> bytes;
+    ASSERT_TRUE(reflect::parse_hex(hex, bytes));
+    Packet packet;
+    packet.framing = Framing::kSf;
+    packet.bytes = Bytes(bytes.data(), bytes.size());
+    packet.time_ns = time_ns;
+    decoder_.decode(packet, frame_);
+    counters.take(frame_, {file, interface_name, index_, index_ + 1});
+    ++index_;
+  }
+  Counters counters;
+
+ private:
+  reflect::FrameDecoder decoder_{rubicon::tables::kProtocol};
+  reflect::Frame frame_;
+  std::uint64_t index_ = 0;
+};
+
+constexpr std::int64_t kSecond = 1'000'000'000;
+// An opaque message from 11:2 to 11:null with sequence number 7 or 8, and two that are malformed.
+const std::string kSeven = "00 0001 0000 0e 00 1c 000bfffd 000b0002 00 0007 02 050a";
+const std::string kEight = "00 0001 0000 0e 00 1c 000bfffd 000b0002 00 0008 02 050a";
+const std::string kBadNbytes = "00 0001 0000 0e 00 1c 000bfffd 000b0002 00 0008 67 050a";
+const std::string kConfig = "00 0001 0000 03 00 25 0a000c";
+
+TEST(Counters, MessagesAndPairs) {
+  Feed feed;
+  feed.packet(kSeven, 0);
+  feed.packet(kEight, kSecond);
+  feed.packet(kConfig, 3 * kSecond);
+  const Counters& c = feed.counters;
+  EXPECT_EQ(c.all().frames, 3u);
+  EXPECT_EQ(c.all().bytes, 22u + 22u + 11u);
+  EXPECT_EQ(c.messages().at("app_msg").frames, 2u);
+  EXPECT_EQ(c.messages().at("config").frames, 1u);
+  EXPECT_EQ(c.pairs().at("11:2>11:null").frames, 2u);
+  EXPECT_EQ(c.pairs().at("AM 0>1").frames, 1u);
+  EXPECT_DOUBLE_EQ(c.all().rate(), 2.0 / 3.0);
+  EXPECT_DOUBLE_EQ(c.messages().at("app_msg").rate(), 1);
+}
+
+TEST(Counters, LargestGapWithItsNeighbours) {
+  Feed feed;
+  feed.packet(kSeven, 0);
+  feed.packet(kEight, kSecond);
+  feed.packet(kConfig, 3 * kSecond);
+  feed.packet(kConfig, 4 * kSecond);
+  const Flow& all = feed.counters.all();
+  EXPECT_EQ(all.gap_ns, 2 * kSecond);
+  EXPECT_EQ(all.gap_from.index, 1u);
+  EXPECT_EQ(all.gap_to.index, 2u);
+}
+
+TEST(Counters, TimesOfDifferentFilesAreNotCompared) {
+  Feed feed;
+  feed.packet(kSeven, 0, "a");
+  feed.packet(kEight, 100 * kSecond, "b");
+  EXPECT_EQ(feed.counters.all().gap_ns, -1);
+  EXPECT_EQ(feed.counters.all().rate(), 0);
+}
+
+TEST(Counters, TimeThatRunsBackwards) {
+  Feed feed;
+  feed.packet(kSeven, kSecond);
+  feed.packet(kEight, 0);
+  feed.packet(kConfig, kNoTime);
+  EXPECT_EQ(feed.counters.all().backward, 1u);
+  EXPECT_EQ(feed.counters.all().intervals, 0u);
+}
+
+TEST(Counters, ExtremeTimes) {
+  Feed feed;
+  feed.packet(kSeven, INT64_MIN + 1);
+  feed.packet(kEight, INT64_MAX);
+  EXPECT_EQ(feed.counters.all().gap_ns, INT64_MAX);
+}
+
+TEST(Counters, RepeatedSequenceNumbers) {
+  Feed feed;
+  feed.packet(kSeven, 0);
+  feed.packet(kSeven, 1);
+  feed.packet(kEight, 2);
+  feed.packet(kSeven, 3);
+  EXPECT_EQ(feed.counters.all().repeated, 1u);
+  // The same message on its way through another interface, or in another capture, is no repetition.
+  feed.packet(kSeven, 4, "a", "serial");
+  EXPECT_EQ(feed.counters.all().repeated, 1u);
+  feed.packet(kSeven, 0, "b", "serial");
+  EXPECT_EQ(feed.counters.all().repeated, 1u);
+}
+
+TEST(Counters, FaultsByRule) {
+  Feed feed;
+  feed.packet(kSeven, 0);
+  feed.packet(kBadNbytes, 1);
+  feed.packet(kBadNbytes, 2);
+  const auto& faults = feed.counters.faults();
+  ASSERT_EQ(faults.size(), 1u);
+  const auto& [key, count] = *faults.begin();
+  EXPECT_EQ(key.second, "WIRE-NET-NBYTES"_rule);
+  EXPECT_EQ(count.frames, 2u);
+  EXPECT_EQ(count.first.index, 1u);
+  EXPECT_THAT(text_report(feed.counters), HasSubstr("WIRE-NET-NBYTES"));
+  EXPECT_THAT(json_report(feed.counters),
+              HasSubstr(R"("fault":"out_of_range","requirement":"WIRE-NET-NBYTES","frames":2)"));
+}
+
+TEST(Counters, ManyPairsAreBounded) {
+  Feed feed;
+  for (std::size_t i = 0; i < Counters::kMaxPairs + 500; ++i) {
+    char hex[64];
+    std::snprintf(hex, sizeof(hex), "00 %04x %04x 03 00 25 0a000c", static_cast<unsigned>(i & 0xff),
+                  static_cast<unsigned>(i >> 8));
+    feed.packet(hex, 0);
+  }
+  EXPECT_EQ(feed.counters.pairs().size(), Counters::kMaxPairs + 1);
+  EXPECT_EQ(feed.counters.pairs().at(std::string(Counters::kOtherPairs)).frames, 500u);
+}
+
+TEST(Counters, NothingCounted) {
+  const Counters none;
+  EXPECT_EQ(text_report(none), "0 frames, 0 bytes, 0 malformed\n");
+  EXPECT_THAT(json_report(none), HasSubstr("\"largest_gap\":null"));
+}
+
+}  // namespace
+}  // namespace rubric::stats

@@ -1,0 +1,175 @@
+#include "tools/stats/report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "codec/reflect/fault_text.h"
+#include "codec/text/json.h"
+#include "tools/explain/table.h"
+#include "tools/format/put.h"
+
+namespace rubric::stats {
+namespace {
+
+using report::Json;
+
+using NamedFlow = std::pair<std::string, const Flow*>;
+
+// Returns the most frequent first; equally frequent ones by name, so that the order is always the
+// same.
+std::vector<NamedFlow> sorted(const Counters::Flows& flows) {
+  std::vector<NamedFlow> list;
+  for (const auto& [name, flow] : flows) list.emplace_back(name, &flow);
+  std::sort(list.begin(), list.end(), [](const NamedFlow& a, const NamedFlow& b) {
+    if (a.second->frames != b.second->frames) return a.second->frames > b.second->frames;
+    return a.first < b.first;
+  });
+  return list;
+}
+
+std::string seconds(std::int64_t ns) {
+  char text[format::kMaxTimeChars];
+  return {text, format::put_time(text, ns)};
+}
+
+std::string short_seconds(std::int64_t ns) {
+  return ns < 0 ? std::string{} : fmt::format("{:.3f}", static_cast<double>(ns) / 1e9);
+}
+
+std::string place_text(const Place& place) {
+  return fmt::format("frame {} at {} s, byte {} of {}", place.number, seconds(place.time_ns),
+                     place.offset, place.file);
+}
+
+std::string or_empty(std::uint64_t number) { return number ? std::to_string(number) : ""; }
+
+std::string flows_text(const char* heading, const Counters::Flows& flows) {
+  explain::Table table(
+      {heading, "frames", "bytes", "malformed", "repeated", "frames/s", "largest gap s"});
+  for (std::size_t column = 1; column < 7; ++column) table.align_right(column);
+  for (const auto& [name, flow] : sorted(flows)) {
+    table.add({name, std::to_string(flow->frames), std::to_string(flow->bytes),
+               or_empty(flow->malformed), or_empty(flow->repeated),
+               flow->rate() > 0 ? fmt::format("{:.2f}", flow->rate()) : "",
+               short_seconds(flow->gap_ns)});
+  }
+  return table.empty() ? std::string{} : '\n' + table.text();
+}
+
+std::string faults_text(const Counters& counters) {
+  explain::Table table({"fault", "rule", "frames", "first frame", "of file", "sentence"});
+  table.align_right(2);
+  table.align_right(3);
+  const auto& faults = counters.faults();
+  const bool one_file = std::all_of(faults.begin(), faults.end(), [&](const auto& fault) {
+    return fault.second.first.file == counters.all().last.file;
+  });
+  for (const auto& [key, count] : faults) {
+    const reflect::Requirement& rule = reflect::requirement(key.second);
+    table.add({std::string(reflect::fault_name(key.first)), rule.id, std::to_string(count.frames),
+               std::to_string(count.first.number), one_file ? "" : count.first.file,
+               rule.sentence});
+  }
+  return table.empty() ? std::string{} : '\n' + table.text_within(explain::kColumns);
+}
+
+Json json(const Place& place) {
+  return Json::object(
+      {{"file", place.file},
+       {"index", place.index},
+       {"offset", place.offset},
+       {"time", Json::raw(place.time_ns == kNoTime ? "" : seconds(place.time_ns))}});
+}
+
+void add(const Flow& flow, Json::Members& out) {
+  const auto gap = [&] {
+    return Json::object({{"seconds", Json::raw(seconds(flow.gap_ns))},
+                         {"from", json(flow.gap_from)},
+                         {"to", json(flow.gap_to)}});
+  };
+  const double rate = flow.rate();
+  out.insert(out.end(),
+             {{"frames", flow.frames},
+              {"bytes", flow.bytes},
+              {"malformed", flow.malformed},
+              {"repeated", flow.repeated},
+              {"backward", flow.backward},
+              {"frames_per_second", Json::raw(rate > 0 ? fmt::format("{:.6g}", rate) : "")},
+              {"largest_gap", flow.gap_ns < 0 ? Json::raw("") : gap()}});
+}
+
+Json json(const char* name_key, const Counters::Flows& flows) {
+  return Json::array(
+      sorted(flows),
+      [&](const NamedFlow& one) {
+        Json::Members out = {{name_key, one.first}};
+        add(*one.second, out);
+        return Json::object(out);
+      },
+      "\n");
+}
+
+}  // namespace
+
+std::string text_report(const Counters& counters) {
+  const Flow& all = counters.all();
+  std::string out =
+      fmt::format("{} frames, {} bytes, {} malformed", all.frames, all.bytes, all.malformed);
+  if (all.rate() > 0) {
+    out += fmt::format(", {:.2f} frames/s over {:.3f} s", all.rate(), all.seconds);
+  }
+  if (all.repeated) out += fmt::format(", {} with a repeated sequence number", all.repeated);
+  if (all.backward) out += fmt::format(", {} older than the frame before", all.backward);
+  out += '\n';
+  if (all.gap_ns >= 0) {
+    out += fmt::format("largest gap: {} s\n  from {}\n  to   {}\n", seconds(all.gap_ns),
+                       place_text(all.gap_from), place_text(all.gap_to));
+  }
+  out += flows_text("message", counters.messages());
+  out += flows_text("source>destination", counters.pairs());
+  if (counters.interfaces().size() > 1) {
+    explain::Table table({"interface", "frames"});
+    table.align_right(1);
+    for (const auto& [name, frames] : counters.interfaces()) {
+      table.add({name.empty() ? "(unnamed)" : name, std::to_string(frames)});
+    }
+    out += '\n' + table.text();
+  }
+  out += faults_text(counters);
+  for (const auto& [kind, count] : counters.notes()) {
+    out += fmt::format("\nnoted {} times: {}", count, reflect::note_name(kind));
+  }
+  return counters.notes().empty() ? out : out + '\n';
+}
+
+std::string json_report(const Counters& counters) {
+  Json::Members out = {{"schema", "rubric.stats/1"}};
+  add(counters.all(), out);
+  out.emplace_back("messages", json("message", counters.messages()));
+  out.emplace_back("pairs", json("pair", counters.pairs()));
+  out.emplace_back(
+      "interfaces", Json::array(counters.interfaces(), [](const auto& one) {
+        return Json::object({{"interface", Json::or_null(one.first)}, {"frames", one.second}});
+      }));
+  out.emplace_back("faults",
+                   Json::array(
+                       counters.faults(),
+                       [](const auto& one) {
+                         const auto& [key, count] = one;
+                         return Json::object(
+                             {{"fault", reflect::fault_name(key.first)},
+                              {"requirement", Json::or_null(reflect::requirement(key.second).id)},
+                              {"frames", count.frames},
+                              {"first", json(count.first)}});
+                       },
+                       "\n"));
+  out.emplace_back(
+      "notes", Json::array(counters.notes(), [](const auto& one) {
+        return Json::object({{"note", reflect::note_name(one.first)}, {"count", one.second}});
+      }));
+  return Json::object(out).text() + '\n';
+}
+
+}  // namespace rubric::stats

@@ -1,0 +1,388 @@
+#!/usr/bin/env python3
+"""`rubric check` as its users meet it.
+
+Usage: check_test.py RUBRIC [--regenerate] in the project's folder; --regenerate writes the texts in
+tools/tests/expect/text anew instead of comparing with them.
+"""
+
+import json
+import os
+import pathlib
+import pty
+import re
+import shlex
+import subprocess
+import sys
+import tempfile
+import unittest
+import xml.etree.ElementTree
+
+RUBRIC = sys.argv.pop(1)
+REGENERATE = "--regenerate" in sys.argv and (sys.argv.remove("--regenerate") or True)
+FIRMWARE = pathlib.Path("spec/captures/firmware")
+BASESTATION = pathlib.Path("spec/captures/basestation")
+EXPECT = pathlib.Path("tools/tests/expect")
+WRONG_SEQ = FIRMWARE / "g2_stray_reply_while_joining.pcapng"
+CLEAN = FIRMWARE / "f_synaptic.pcapng"
+
+GOLDEN = {
+    "wrong_seq": [WRONG_SEQ],
+    "malformed_forward": [FIRMWARE / "h4_stale_bytes.pcapng"],
+    "clean": [CLEAN],
+    "clock_stands_still": [FIRMWARE / "a_join_data.pcapng"],
+}
+FINDING_KEYS = ["requirement", "level", "sentence", "severity", "time", "file", "frame", "offset",
+                "node", "text", "expected", "count", "last_frame", "known", "hypotheses"]
+
+
+def rubric(*args, stdin=b"", env=None):
+    """Exit code, stdout, stderr as text."""
+    done = subprocess.run([RUBRIC, *map(str, args)], input=stdin, capture_output=True,
+                          env={**os.environ, **(env or {})})
+    return done.returncode, done.stdout.decode(), done.stderr.decode()
+
+
+def check(*args, **more):
+    return rubric("check", *args, **more)
+
+
+def as_json(*args, **more):
+    code, out, err = check("--format", "json", *args, **more)
+    report = json.loads(out)
+    assert code == report["exit_code"], (args, code, err)
+    return report
+
+
+def failures(report):
+    return [f for f in report["findings"] if f["severity"] == "fail"]
+
+
+def capture_files():
+    return sorted(FIRMWARE.glob("*.pcapng")) + sorted(FIRMWARE.glob("*.serial.bin")) + \
+        sorted(BASESTATION.glob("*.sfstream"))
+
+
+class Folder(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def write(self, name, text):
+        path = self.folder / name
+        path.write_bytes(text if isinstance(text, bytes) else text.encode())
+        return path
+
+
+class Text(Folder):
+    def test_golden(self):
+        for name, files in GOLDEN.items():
+            path = EXPECT / "text" / f"{name}.txt"
+            out = check(*files)[1]
+            if REGENERATE:
+                path.write_text(out)
+            self.assertEqual(out, path.read_text(),
+                             f"{path}; renew with tools/tests/check_test.py RUBRIC --regenerate")
+
+    def test_a_frame_has_the_number_that_decode_shows(self):
+        seen = 0
+        for file in capture_files():
+            out = rubric("decode", "--format", "csv", "--fields", "number,offset", file)[1]
+            offsets = dict(line.split(",") for line in out.splitlines()[1:])
+            for finding in as_json(file)["findings"]:
+                if finding["frame"] is not None:
+                    self.assertEqual(offsets[str(finding["frame"])], str(finding["offset"]), file)
+                    seen += 1
+        self.assertGreater(seen, 20)
+
+    def test_again_shows_the_same_finding(self):
+        """Runs every command below a failure, as it is printed."""
+        ran = 0
+        for file in capture_files():
+            for more in [[], ["--profile", "deployed"], ["--sniffer", "complete"],
+                         ["--start", "cold", "--sniffer", "complete"]]:
+                ran += self.run_again(check(*more, file)[1])
+        self.assertGreater(ran, 5)
+
+    def test_again_of_a_log(self):
+        log = self.folder / "run.rtr"
+        rubric("simulate", "--scenario", "timeline", "--out-rtr", log)
+        complete = ["--sniffer", "complete", "--start", "cold"]
+        rules = {f["requirement"] for f in failures(as_json(*complete, log))}
+        self.assertNotIn("J4-JOINED", rules)
+        # The second mote's reply was never sent, yet it acknowledges it.
+        lines = log.read_text().splitlines(keepends=True)
+        silent = self.write("silent reply.rtr", "".join(
+            line for line in lines if "join_reply(" not in line or "mote_addr=4" not in line))
+        code, out, _ = check(*complete, silent)
+        self.assertEqual(code, 1)
+        self.assertIn("FAIL J4-JOINED, mote 4, ", out)
+        self.assertGreater(self.run_again(out), 0)
+
+    def run_again(self, out):
+        """Runs the command below each failure in full; how many there were."""
+        ran = 0
+        for part in re.split(r"^(?=FAIL )", out, flags=re.M)[1:]:
+            again = re.search(r"^  Again:    rubric (.*)$", part, re.M)
+            if not again:
+                continue  # A line of its own below the first of its rule.
+            heading = part.replace("\n ", "")
+            rule, node, frame = re.match(
+                r"FAIL (\S+), (?:(.*?), )?frame (\d+)\b", heading).groups()
+            code, text, err = rubric(*shlex.split(again[1]), "--format", "json")
+            self.assertEqual((code, err), (1, ""), again[1])
+            found = {(f["requirement"], f["node"], f["frame"]) for f in failures(json.loads(text))}
+            self.assertIn((rule, node, int(frame)), found, again[1])
+            ran += 1
+        return ran
+
+    def test_width(self):
+        for width in (60, 100, 140):
+            out = check("--width", width, FIRMWARE / "h4_stale_bytes.pcapng")[1]
+            # Charts and commands are as wide as they must be.
+            prose = [line for line in out.splitlines() if "|" not in line and "Again:" not in line
+                     and "(" not in line and "unknown 2" not in line]
+            self.assertLessEqual(max(map(len, prose)), width)
+        self.assertEqual(check("--width", 10, CLEAN)[0], 64)
+
+    def test_colours_only_on_terminals(self):
+        self.assertNotIn("\033", check(WRONG_SEQ)[1])
+        self.assertIn("\033[1;31mFAIL\033[0m J4-SEQ", check("--color", "always", WRONG_SEQ)[1])
+        for env, coloured in [({"TERM": "xterm", "NO_COLOR": ""}, True),
+                              ({"TERM": "xterm", "NO_COLOR": "1"}, False),
+                              ({"TERM": "dumb", "NO_COLOR": ""}, False)]:
+            ours, theirs = pty.openpty()
+            with subprocess.Popen([RUBRIC, "check", WRONG_SEQ], stdout=theirs,
+                                  env={**os.environ, **env}) as process:
+                os.close(theirs)
+                out = b""
+                try:
+                    while part := os.read(ours, 65536):
+                        out += part
+                except OSError:
+                    pass  # The other end has closed.
+            os.close(ours)
+            self.assertEqual(process.returncode, 1)
+            self.assertEqual(b"\033[" in out, coloured, env)
+
+    def test_verbose_says_more(self):
+        file = FIRMWARE / "a_join_data.pcapng"
+        short, long = check(file)[1], check("--verbose", file)[1]
+        # The first failure in full; with --verbose the second and the note as well.
+        self.assertEqual((short.count("  Rule: "), long.count("  Rule: ")), (1, 3))
+
+
+class Formats(Folder):
+    def test_json(self):
+        for file in capture_files():
+            report = as_json(file)
+            self.assertEqual(list(report), ["schema", "verdict", "expected", "exit_code", "profile",
+                                            "sniffer", "start", "files", "findings", "counts",
+                                            "facts", "exercised"])
+            self.assertEqual(report["schema"], "rubric.check/1")
+            self.assertEqual(report["files"], [str(file)])
+            for finding in report["findings"]:
+                self.assertEqual(list(finding), FINDING_KEYS)
+                self.assertIn(finding["severity"],
+                              ["fail", "weak", "stray", "inconclusive", "note"])
+                self.assertTrue(finding["text"])
+                self.assertGreaterEqual(finding["count"], 1)
+            for severity in ["fail", "weak", "stray", "inconclusive", "note"]:
+                count = sum(f["severity"] == severity for f in report["findings"])
+                self.assertEqual(report["counts"][severity], count)
+            self.assertEqual(report["counts"]["rules_exercised"], len(report["exercised"]))
+
+    def test_json_places_frames(self):
+        """Number and offset lead to the frame that decode shows."""
+        report = as_json(WRONG_SEQ)
+        [finding] = failures(report)
+        self.assertEqual((finding["requirement"], finding["level"], finding["node"]),
+                         ("J4-SEQ", "MUST", "mote 2"))
+        lines = rubric("decode", "--format", "jsonl", WRONG_SEQ)[1].splitlines()
+        frame = json.loads(lines[finding["frame"] - 1])
+        self.assertEqual((frame["message"], frame["offset"]), ("ack_join", finding["offset"]))
+        self.assertTrue(finding["hypotheses"][0]["miss"])
+
+    def test_junit(self):
+        for file in capture_files():
+            report = as_json(file)
+            code, out, err = check("--format", "junit", file)
+            self.assertEqual((code, err), (report["exit_code"], ""))
+            [suite] = xml.etree.ElementTree.fromstring(out)
+            cases = suite.findall("testcase")
+            names = [case.get("name") for case in cases]
+            self.assertEqual(len(names), len(set(names)))
+            self.assertEqual(int(suite.get("tests")), len(cases))
+            broken = {f["requirement"] for f in failures(report)}
+            self.assertEqual({c.get("name") for c in cases if c.find("failure") is not None},
+                             broken)
+            self.assertEqual(int(suite.get("failures")), len(broken))
+            skipped = {f["requirement"] for f in report["findings"]
+                       if f["severity"] == "inconclusive"} - broken
+            self.assertEqual({c.get("name") for c in cases if c.find("skipped") is not None},
+                             skipped)
+            exercised = {e["requirement"] for e in report["exercised"]}
+            self.assertLessEqual(exercised, set(names))
+            for case in cases:
+                for failure in case.findall("failure"):
+                    self.assertTrue(failure.get("message"))
+                    self.assertIn("Rule: ", failure.text)
+
+    def test_out(self):
+        path = self.folder / "report.json"
+        code, out, err = check("--format", "json", "--out", path, WRONG_SEQ)
+        self.assertEqual((code, out, err), (1, "", ""))
+        self.assertEqual(path.read_text(), check("--format", "json", WRONG_SEQ)[1])
+        code, out, err = check("--out", self.folder / "no" / "report", WRONG_SEQ)
+        self.assertEqual((code, out), (2, ""))
+        self.assertIn("No such file or directory", err)
+        copy = self.write("copy.pcapng", WRONG_SEQ.read_bytes())
+        self.assertEqual(check("--out", copy, copy)[0], 64)
+        self.assertEqual(copy.read_bytes(), WRONG_SEQ.read_bytes())
+
+    def test_out_that_is_full(self):
+        code, _, err = check("--out", "/dev/full", WRONG_SEQ)
+        self.assertEqual(code, 2)
+        self.assertIn("cannot write /dev/full", err)
+
+
+class Expectations(Folder):
+    KNOWN = "- requirement: J4-SEQ\n  message: %s\n  reason: Release 1.0 accepts any reply.\n"
+
+    def against(self, text, *args):
+        return check("--expect", self.write("known.yaml", text), *args)
+
+    def test_known(self):
+        code, out, err = self.against(self.KNOWN % "ack_join", WRONG_SEQ)
+        self.assertEqual((code, err), (0, ""))
+        self.assertIn("EXPECTED FAIL J4-SEQ", out)
+        self.assertIn("Release 1.0 accepts any reply.", out.replace("\n ", ""))
+        self.assertIn("Verdict: fail as expected: 0 failures, 1 known failure expected", out)
+        report = as_json("--expect", self.folder / "known.yaml", WRONG_SEQ)
+        self.assertEqual((report["verdict"], report["expected"]), ("fail", True))
+        [finding] = failures(report)
+        self.assertEqual(finding["known"], "Release 1.0 accepts any reply.")
+        [expectation] = report["expectations"]
+        self.assertEqual((expectation["came"], expectation["line"]), ("matched", 1))
+        self.assertEqual(report["findings"][expectation["findings"][0]], finding)
+
+    def test_not_true(self):
+        for file, message, says, came in [
+            (CLEAN, "ack_join", "STALE", "stale"),
+            (WRONG_SEQ, "a purple frame", "OTHER MESSAGE", "other_message"),
+        ]:
+            code, out, _ = self.against(self.KNOWN % message, file)
+            self.assertEqual(code, 1)
+            self.assertIn(says, out)
+            report = as_json("--expect", self.folder / "known.yaml", file)
+            self.assertEqual((report["expected"], report["expectations"][0]["came"]),
+                             (False, came))
+            suite = check("--format", "junit", "--expect", self.folder / "known.yaml", file)[1]
+            self.assertIn(f'<failure type="{came}"', suite)
+
+    def test_about_other_files(self):
+        text = self.KNOWN % "ack_join" + "  file: 'g2_*'\n"
+        self.assertEqual(self.against(text, WRONG_SEQ)[0], 0)
+        self.assertEqual(self.against(text, CLEAN)[0], 0)
+
+    def test_bad_files(self):
+        for text, says in [
+            ("- {requirement: J4-SEK, message: m, reason: r}\n", "known.yaml:1: no requirement"),
+            ("- {requirement: J4-SEQ, message: m}\n", "known.yaml:1: reason is missing"),
+            ("\n- {requirement: J4-SEQ, reason: m}\n", "known.yaml:2: message is missing"),
+            ("a: b\n", "known.yaml:1: expected a list"),
+            ("- [\n", "known.yaml:2: "),
+        ]:
+            code, out, err = self.against(text, WRONG_SEQ)
+            self.assertEqual((code, out), (64, ""), text)
+            self.assertIn(says, err)
+        code, _, err = check("--expect", self.folder / "none.yaml", WRONG_SEQ)
+        self.assertEqual(code, 66)
+        self.assertIn("none.yaml: No such file", err)
+
+    def test_release_1_0(self):
+        """The known failures of the captured firmware, and nothing else."""
+        for profile in ("paper", "deployed"):
+            for file in sorted(FIRMWARE.glob("*.pcapng")):
+                code, out, _ = check("--profile", profile, "--expect",
+                                     "conformance/cases/release_1_0.yaml", file)
+                self.assertEqual(code, 0, out)
+
+
+class Inputs(Folder):
+    def test_exit_codes(self):
+        self.assertEqual(check(CLEAN)[0], 0)
+        self.assertEqual(check(WRONG_SEQ)[0], 1)
+        beacons = self.write("nothing.hex", "05 12 34\n")
+        code, out, err = check(beacons)
+        self.assertEqual((code, err), (3, ""))
+        self.assertIn("No frames of this protocol: there is nothing to judge.", out)
+        self.assertEqual(as_json(beacons)["verdict"], "inconclusive")
+
+    def test_unreadable(self):
+        for path, says in [
+            (self.folder / "none.pcapng", "No such file or directory"),
+            (self.folder, "Is a directory"),
+            (self.write("empty", b""), "empty"),
+            (self.write("garbage", bytes(range(128, 256)) * 9), "not a capture"),
+        ]:
+            code, out, err = check(path)
+            self.assertEqual((code, out), (66, ""), path)
+            self.assertIn(str(path), err)
+            self.assertIn(says, err)
+            self.assertEqual(check(CLEAN, path)[0], 66)
+
+    def test_usage(self):
+        for args, says in [
+            ([], "FILE is required"),
+            ([CLEAN, "--profile", "papr"], "--profile"),
+            ([CLEAN, "--format", "xml"], "--format"),
+            ([CLEAN, "--node", "2"], "expected ID=ROLE"),
+            ([CLEAN, "--node", "2=moat"], "a role is mote, sink or base-station"),
+            ([CLEAN, "--node", "70000=mote"], "expected 0 to 65535"),
+            ([CLEAN, "--node", "2=mote", "--node", "2=sink"], "another time"),
+            ([CLEAN, "--sink", "1"], "expected ID=ISLAND"),
+            ([CLEAN, "--sink", "1=0"], "no island"),
+            ([CLEAN, "--sink", "2=11", "--node", "2=mote"], "another time"),
+            ([CLEAN, "--tester", "x"], "expected 0 to 65535"),
+            ([CLEAN, "--response", "-1"], "--response"),
+            ([CLEAN, "--frames", "5..1"], "--frames"),
+            ([CLEAN, "--frames", "2:1..5"], "there are 1 files"),
+            ([CLEAN, WRONG_SEQ, "--frames", "1..5"], "of which file?"),
+            ([CLEAN, "--frames", "1..5", "--frames", "7..8"], "one range for each file"),
+            ([CLEAN, "--snifer", "complete"], "did you mean '--sniffer'?"),
+        ]:
+            code, out, err = check(*args)
+            self.assertEqual((code, out), (64, ""), args)
+            self.assertIn(says, err)
+
+    def test_help(self):
+        code, out, _ = check("--help")
+        self.assertEqual(code, 0)
+        for words in ["64 usage", "66 input cannot be read", "--expect", "--sniffer"]:
+            self.assertIn(words, out)
+
+    def test_stdin(self):
+        code, out, _ = check("-", stdin=WRONG_SEQ.read_bytes())
+        self.assertEqual(code, 1)
+        self.assertIn("FAIL J4-SEQ, mote 2, frame 3", out)
+        self.assertEqual(check("-")[0], 66)
+
+    def test_frames(self):
+        self.assertEqual(as_json(WRONG_SEQ, "--frames", "1..2")["counts"]["fail"], 0)
+        self.assertEqual(as_json(WRONG_SEQ, "--frames", "1..3")["counts"]["fail"], 1)
+        both = as_json(CLEAN, WRONG_SEQ, "--frames", "1:none", "--frames", "2:1..3")
+        self.assertEqual([(f["file"], f["frame"]) for f in failures(both)], [(str(WRONG_SEQ), 3)])
+
+    def test_input_format(self):
+        serial = FIRMWARE / "b_reliable.serial.bin"
+        self.assertEqual(as_json("--input-format", "hdlc", serial), as_json(serial))
+        hex_frames = self.write("air.hex", "41881d220001000200 04 c4f5 01 0007 0001\n")
+        self.assertEqual(as_json("--input-format", "hex-radio", hex_frames)["counts"]["frames"], 1)
+
+    def test_testers_are_not_judged(self):
+        self.assertEqual(as_json(WRONG_SEQ, "--tester", "2")["counts"]["fail"], 0)
+
+
+if __name__ == "__main__":
+    unittest.main()

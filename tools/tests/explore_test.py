@@ -1,0 +1,197 @@
+#!/usr/bin/env python3
+"""Tests of `rubric explore` as a program: verdicts, exit codes, formats, where traces go, and the
+state diagrams against those that were read and found right.
+
+Usage: explore_test.py RUBRIC [--regenerate]: writes the diagrams of tools/tests/expect anew; read
+the difference.
+"""
+
+import json
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+RUBRIC = str(pathlib.Path(sys.argv.pop(1)).resolve())
+DIAGRAMS = pathlib.Path(__file__).resolve().parent / "expect/transitions.txt"
+FAULTS = ["--loss", "--dup"]
+# A flaw, a network in which it shows, and the property that its first trace breaks.
+FLAWS = [("accepts_wrong_seq", ["--calls", "2"], "joined_after_reply"),
+         ("one_pending_seq", ["--motes", "2"], "admitted"),
+         ("joined_on_link_ack", ["--calls", "2"], "ack_right_seq"),
+         ("no_fail", [], "one_terminal"),
+         ("seven_requests", [], "requests_bounded"),
+         ("acks_wrong_seq", ["--calls", "2"], "ack_right_seq"),
+         ("answers_members", ["--reorder"], "listed_silent"),
+         ("no_ack_timeout", ["--scope", "full"], "reliable_ends"),
+         ("misread_acks", ["--scope", "full"], "ack_counts")]
+
+
+def explore(*words):
+    return subprocess.run([RUBRIC, "explore", *words], stdout=subprocess.PIPE, text=True,
+                          stderr=subprocess.PIPE, timeout=300)
+
+
+class Explore(unittest.TestCase):
+    def test_says_what_it_found(self):
+        done = explore("--motes", "1", "--sinks", "2", *FAULTS)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        # The machine decides how many; explorer_test has one network's exact numbers.
+        self.assertRegex(done.stdout, r"states +[1-9]\d{2,}\n")
+        self.assertRegex(done.stdout, r"transitions +[1-9]\d{2,}\n")
+        for line in ("depth        ", "bytes a state", "million states/s", "left out",
+                     "second_offer", "verdict      holds"):
+            self.assertIn(line, done.stdout)
+        self.assertEqual(done.stderr, "")  # No progress where stderr is no terminal.
+
+    def test_each_flaw_is_found(self):
+        for flaw, network, broken in FLAWS:
+            with self.subTest(flaw=flaw):
+                done = explore(*network, *FAULTS, "--flaw", flaw, "--format", "json")
+                self.assertEqual(done.returncode, 1, done.stderr)
+                found = json.loads(done.stdout)
+                self.assertEqual(found["verdict"], "broken")
+                self.assertEqual(found["broken"][0], broken)
+                self.assertEqual(found["flaw"], flaw)
+                self.assertTrue(found["trace"].startswith("%rtr 1"))
+                honest = explore(*network, *FAULTS, "--format", "json")
+                self.assertEqual(honest.returncode, 0, honest.stdout)
+                self.assertIsNone(json.loads(honest.stdout)["trace"])
+
+    def test_a_trace_on_stdout_stands_alone(self):
+        done = explore(*FAULTS, "--flaw", "no_fail")
+        self.assertEqual(done.returncode, 1)
+        self.assertTrue(done.stdout.startswith("%rtr 1"))
+        self.assertIn("verdict      broken", done.stderr)
+
+    def test_a_trace_goes_to_its_file(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "broken.rtr"
+            done = explore(*FAULTS, "--flaw", "no_fail", "--out", str(path))
+            self.assertEqual(done.returncode, 1)
+            self.assertIn("verdict      broken", done.stdout)
+            self.assertIn("case explore.one_terminal", path.read_text())
+        done = explore(*FAULTS, "--flaw", "no_fail", "--out", f"{folder}/none/x")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("cannot write", done.stderr)
+
+    def test_only_the_asked_properties_count(self):
+        words = ["--calls", "2", *FAULTS, "--flaw", "joined_on_link_ack", "--format", "json"]
+        done = explore(*words, "--property", "joined_after_reply")
+        self.assertEqual(json.loads(done.stdout)["broken"], ["joined_after_reply"])
+        done = explore(*words, "--property", "one_report", "--property", "queues_bounded")
+        self.assertEqual(done.returncode, 0, done.stdout)
+
+    def test_who_closes_the_pipe_has_seen_enough(self):
+        process = subprocess.Popen([RUBRIC, "explore", *FAULTS, "--flaw", "no_fail"],
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        process.stdout.close()
+        self.assertNotIn("cannot write", process.stderr.read())
+        process.stderr.close()
+        self.assertEqual(process.wait(), 1)
+
+    def test_the_known_weakness_is_told_and_breaks_nothing(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "known.rtr"
+            done = explore(*FAULTS, "--reboot", "--calls", "2", "--out-known", str(path))
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn("spec/membership.md", done.stdout)
+            text = path.read_text()
+            self.assertIn("reboot", text)
+            self.assertIn("case explore.known_weakness", text)
+
+    def test_what_was_never_reached_fails(self):
+        # A mote that misreads every ack breaks nothing of this; but no message ends in success.
+        done = explore("--scope", "full", "--loss", "--flaw", "misread_acks", "--property",
+                       "one_report", "--format", "json")
+        self.assertEqual(done.returncode, 1)
+        found = json.loads(done.stdout)
+        self.assertEqual((found["verdict"], found["never"]), ("vacuous", ["acked"]))
+
+    def test_a_flaw_that_never_acts_decides_nothing(self):
+        # One call has no old replies that the mote could mistake for its own.
+        done = explore(*FAULTS, "--flaw", "accepts_wrong_seq")
+        self.assertEqual(done.returncode, 3, done.stdout)
+        self.assertIn("verdict      inconclusive: flaw accepts_wrong_seq never acted", done.stdout)
+        self.assertIn("--calls 2", done.stdout)
+        found = json.loads(explore(*FAULTS, "--flaw", "accepts_wrong_seq", "--format",
+                                   "json").stdout)
+        self.assertEqual(found["verdict"], "inconclusive")
+        self.assertIn("never acted", found["limit"])
+        # One that acts, but breaks nothing of what was asked, is judged.
+        done = explore("--calls", "2", *FAULTS, "--flaw", "accepts_wrong_seq", "--property",
+                       "queues_bounded")
+        self.assertEqual(done.returncode, 0, done.stdout)
+
+    def test_a_limit_is_inconclusive(self):
+        done = explore("--motes", "2", *FAULTS, "--max-states", "500")
+        self.assertEqual(done.returncode, 3)
+        self.assertIn("verdict      inconclusive: as many states", done.stdout)
+
+    def test_usage(self):
+        for words, text in [(["--flaw", "no_fial"], "did you mean 'no_fail'"),
+                            (["--property", "one_terminl"], "did you mean 'one_terminal'"),
+                            (["--flaw", "time_of_boot"], "time is abstract"),
+                            (["--flaw", "misread_acks"], "--scope full"),
+                            (["--profile", "papr"], "did you mean 'paper'"),
+                            (["--motes", "9"], "--motes"),
+                            (["--max-states", "-1"], "--max-states: expected a number of 0"),
+                            (["--motes", "4", "--sinks", "4"], "at most 6"),
+                            (["--lss"], "did you mean '--loss'")]:
+            with self.subTest(words=words):
+                done = explore(*words)
+                self.assertEqual(done.returncode, 64, done.stderr)
+                self.assertIn(text, done.stderr)
+
+
+class Transitions(unittest.TestCase):
+    def test_are_those_that_were_read(self):
+        done = explore("--transitions")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual(done.stdout, DIAGRAMS.read_text())
+
+    def test_json(self):
+        done = explore("--transitions", "--part", "join", "--format", "json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        found = json.loads(done.stdout)
+        self.assertEqual((found["schema"], found["profile"], found["flaw"]),
+                         ("rubric.transitions/1", "paper", None))
+        part, = found["parts"]
+        self.assertEqual((part["name"], part["complete"]), ("join", True))
+        self.assertGreater(part["worlds"], 1000)
+        stray, = [t for t in part["transitions"] if t["rules"] == ["J4-SEQ"]]
+        self.assertEqual((stray["trigger"], stray["guards"], stray["outputs"], stray["ignored"]),
+                         ("join_reply", ["another number"], [], True))
+        self.assertEqual(stray["from"], stray["to"])
+        self.assertTrue(stray["witness"][-1].startswith("heard join_reply(island_addr=1"))
+        self.assertTrue(stray["witness"][0].startswith("called join("))
+
+    def test_dot(self):
+        done = explore("--transitions", "--format", "dot")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(re.findall(r"^digraph (\w+)", done.stdout, re.M),
+                         ["join", "listing", "message", "output", "input"])
+        self.assertEqual(explore("--format", "dot").returncode, 64)
+
+    def test_a_flaw_shows(self):
+        done = explore("--transitions", "--part", "join", "--flaw", "accepts_wrong_seq")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertNotIn("another number: ignored", done.stdout)
+        self.assertIn("join_reply / joined(success), ack_join", done.stdout)
+
+    def test_usage(self):
+        for words, text in [(["--transitions", "--part", "jion"], "did you mean 'join'"),
+                            (["--part", "join"], "--transitions"),
+                            (["--transitions", "--motes", "2"], "--transitions")]:
+            done = explore(*words)
+            self.assertEqual(done.returncode, 64, done.stderr)
+            self.assertIn(text, done.stderr)
+
+
+if __name__ == "__main__":
+    if "--regenerate" in sys.argv:
+        DIAGRAMS.write_text(explore("--transitions").stdout)
+    else:
+        unittest.main()
