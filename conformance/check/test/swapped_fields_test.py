@@ -9,6 +9,7 @@ reference machine, the vectors and Wireshark's dissector must agree with each ot
 the new bytes what the sound program says of the old ones.
 """
 
+import collections
 import importlib.util
 import json
 import os
@@ -99,8 +100,8 @@ class SwappedFields(unittest.TestCase):
         """As little as it takes, in as little time."""
         out = cls.work / "build"
         known = (BUILD / "CMakeCache.txt").read_text(encoding="utf-8")
-        words = re.findall(r"^(CMAKE_(?:CXX_COMPILER(?:_LAUNCHER)?|PREFIX_PATH)):\w+=(.+)$", known,
-                           re.M)
+        names = r"CXX_COMPILER(?:_LAUNCHER)?|PREFIX_PATH|UNITY_BUILD\w*"
+        words = re.findall(rf"^(CMAKE_(?:{names})):\w+=(.+)$", known, re.M)
         run("cmake", "-S", cls.copy, "-B", out, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
             "-DCMAKE_CXX_FLAGS_RELEASE=-O0 -DNDEBUG", "-DRUBRIC_TESTS=ON", "-DRUBRIC_BENCH=OFF",
             *(f"-D{name}={value}" for name, value in words), cwd=cls.work)
@@ -155,15 +156,25 @@ class SwappedFields(unittest.TestCase):
     def test_simulated_network(self):
         """A run of reference machines is the same run in other bytes, and check passes it."""
         for rubric, path in self.both("network"):
-            run(rubric, "simulate", "--motes", "6", "--sinks", "2", "--seed", "3",
-                "--seconds", "20", "--loss", "0.05", "--out-pcapng", path, cwd=self.copy)
+            run(rubric, "simulate", "--motes", "4", "--seconds", "20", "--out-pcapng", path,
+                cwd=self.copy)
+        (sound, before), (swapped, after) = self.both("network")
+
+        def messages(rubric, path):
+            """Without times: a serial line takes longer for bytes that have to be escaped."""
+            return collections.Counter(
+                json.dumps([record["interface"], record["path"], record["fields"]],
+                           sort_keys=True)
+                for record in self.decoded(rubric, path) if record["message"] != "join_reply")
+        self.assertEqual(messages(sound, before), messages(swapped, after))
         options = ("--sniffer", "complete", "--start", "cold")
-        moved, verdict = self.compare("network", *options)
-        self.assertGreater(moved, 100)
-        self.assertEqual(json.loads(verdict)["counts"]["fail"], 0)
-        # With the layout of the other nobody agrees: the comparison does see the order of fields.
-        (sound, _), (_, after) = self.both("network")
-        self.assertGreater(json.loads(self.checked(sound, after, *options))["counts"]["fail"], 0)
+        counts = [json.loads(self.checked(*one, *options))["counts"]
+                  for one in ((sound, before), (swapped, after), (sound, after))]
+        self.assertEqual(counts[0], counts[1])
+        self.assertEqual(counts[0]["fail"], 0)
+        self.assertGreater(counts[0]["frames"], 100)
+        # By the layout of the other one nothing is right: the order of fields does matter.
+        self.assertGreater(counts[2]["fail"], 0)
 
     def test_captures_of_the_firmware(self):
         """Their frames, encoded anew by each spec, with all that check finds in them."""
@@ -185,11 +196,18 @@ class SwappedFields(unittest.TestCase):
                 moved += more
                 verdicts += verdict
         self.assertGreater(moved, 400)
-        for rule in ("J4-SEQ", "N11"):  # Some are found, so that these are no empty reports.
-            self.assertIn(rule, verdicts)
+        for rule in ("J3-TIME", "N6-CONTENT"):  # These are no empty reports.
+            self.assertIn(f'{{"requirement": "{rule}", "level"', verdicts)
 
     def test_reference_machine_passes_the_golden_traces(self):
-        run(self.swapped, "test", "--target", "machine", cwd=self.copy)
+        """But for the few cases whose net_msg is written as bytes."""
+        out = run(self.swapped, "test", "--target", "machine", cwd=self.copy, codes=(1,))
+        failed = re.findall(r"^fail +(\w+)\.", out, re.M)
+        self.assertLess(len(failed), 6)
+        for family in failed:
+            cases = (ROOT / f"conformance/cases/{family}.rtr").read_text(encoding="utf-8")
+            self.assertIn("am(type=net payload=x", cases)
+        self.assertGreater(len(re.findall(r"^pass ", out, re.M)), 200)
 
     def test_wireshark(self):
         """Each field of generated frames, and of the network above, against `rubric decode`."""
