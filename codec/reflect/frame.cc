@@ -7,6 +7,7 @@
 #include "codec/generated/tinyos/mac_ack.h"
 #include "codec/generated/tinyos/mac_header.h"
 #include "codec/generated/tinyos/tables.h"
+#include "codec/reflect/am_frames.h"
 #include "codec/runtime/hdlc.h"
 
 namespace rubric::reflect {
