@@ -20,17 +20,8 @@ using tinyos::FrameControlPart;
 
 constexpr std::size_t kMacHeaderBytes = tinyos::MacHeaderView::kMaxSizeBytes;
 
-const Field& last_field(const Type& type) { return type.fields[type.field_count - 1]; }
-
-// The byte after the 802.15.4 header, which tells the two kinds of radio frames apart.
-bool is_network(const Type& radio_i, std::uint8_t byte) {
-  for (std::uint16_t i = 0; i < radio_i.field_count; ++i) {
-    const Field& field = radio_i.fields[i];
-    if (field.fixed_offset == static_cast<std::int32_t>(kMacHeaderBytes)) {
-      return field.valid.kind == ValidKind::kOneOf && field.valid.one_of[0] == byte;
-    }
-  }
-  return false;
+const Field& last_field(const Type& type) {
+  return type.fields[type.field_count - 1];
 }
 
 void clear(Frame& out, const Packet& packet) {
@@ -66,6 +57,18 @@ const Switch* payload_choice(const Protocol& protocol, std::string_view carrier)
   return type && type->field_count ? last_field(*type).choice : nullptr;
 }
 
+FrameDecoder::RadioCarrier::RadioCarrier(const Type* carrier) : type(carrier) {
+  if (!type) return;
+  const Field& payload = last_field(*type);
+  payload_at = static_cast<std::size_t>(payload.fixed_offset);
+  type_at = static_cast<std::size_t>(payload.choice->key.steps[0].value);
+  for (std::uint16_t i = 0; i < type->field_count; ++i) {
+    const Field& field = type->fields[i];
+    const bool first = field.fixed_offset == static_cast<std::int32_t>(kMacHeaderBytes);
+    if (first && field.valid.kind == ValidKind::kOneOf) network = field.valid.one_of[0];
+  }
+}
+
 FrameDecoder::FrameDecoder(const Protocol& protocol, const Type* bare)
     : protocol_(protocol),
       bare_(bare),
@@ -77,7 +80,8 @@ FrameDecoder::FrameDecoder(const Protocol& protocol, const Type* bare)
 
 void FrameDecoder::decode(const Packet& packet, Frame& out) const {
   clear(out, packet);
-  const Envelope envelope = headers(packet);
+  Envelope envelope;
+  headers(packet, envelope);
   out.am = envelope.am;
   out.mac = envelope.mac;
   switch (envelope.kind) {
@@ -114,50 +118,6 @@ void FrameDecoder::decode_carrier(const Type& carrier, Bytes bytes, Decoded& out
   const bool ack = &carrier == radio_ack_;
   const Switch* const more = &carrier == serial_ ? radio_choice_ : nullptr;
   reflect::decode(carrier, bytes, Tail::kFault, ack, out, more);
-}
-
-Envelope FrameDecoder::open(const Packet& packet) const {
-  Envelope out = headers(packet);
-  out.error = packet.error;
-  if (out.error.fault != Fault::kNone || !out.carrier) return out;
-  const Bytes bytes = packet.bytes;
-  bool sound = false;
-  if (out.kind == Envelope::Kind::kLinkAck) {
-    sound = bytes.size() == tinyos::MacAckView::kMaxSizeBytes;
-  } else if (out.carrier == serial_) {
-    sound = out.am.present && Am::LengthAt::allows(out.am.length) &&
-            bytes.size() - kAmHeaderBytes == out.am.length;
-  } else {
-    sound = out.am.present;
-  }
-  if (sound) {
-    if (out.am.present) out.payload = bytes.from(bytes.size() - out.am.length);
-    return out;
-  }
-  Decoded decoded;  // Says which rule the bytes break, and where.
-  decode_carrier(*out.carrier, bytes, decoded);
-  out.error = decoded.error;
-  return out;
-}
-
-Envelope FrameDecoder::headers(const Packet& packet) const {
-  Envelope out;
-  out.key = packet.kind;
-  switch (packet.framing) {
-    case Framing::kHdlc:
-      if (packet.kind == kSerialPacketAck || packet.kind == kSerialPacketNoAck) {
-        serial_headers(packet.bytes, out);
-      } else if (packet.kind == kSerialAck) {
-        out.kind = Envelope::Kind::kLinkAck;
-      } else if (packet.kind != kAbsent) {
-        out.kind = Envelope::Kind::kOpaque;
-      }
-      break;
-    case Framing::kSf: serial_headers(packet.bytes, out); break;
-    case Framing::kRadio: radio_headers(packet.bytes, out); break;
-    case Framing::kBare: out.kind = Envelope::Kind::kBare; break;
-  }
-  return out;
 }
 
 void FrameDecoder::serial_headers(Bytes bytes, Envelope& out) const {
@@ -202,21 +162,70 @@ void FrameDecoder::radio_headers(Bytes bytes, Envelope& out) const {
     out.mac.src = Mac::SrcAt::load(p);
   }
   const bool longer = bytes.size() > kMacHeaderBytes;
-  const bool i_frame = radio_i_ && (!longer || is_network(*radio_i_, p[kMacHeaderBytes]));
-  out.mac.has_network = i_frame && longer;
-  if (out.mac.has_network) out.mac.network = p[kMacHeaderBytes];
-  out.carrier = i_frame ? radio_i_ : radio_t_;
-  if (!out.carrier) return;
+  const bool i_frame = radio_i_.type && (!longer || p[kMacHeaderBytes] == radio_i_.network);
+  if (i_frame && longer) {
+    out.mac.has_network = true;
+    out.mac.network = p[kMacHeaderBytes];
+  }
+  const RadioCarrier& carrier = i_frame ? radio_i_ : radio_t_;
+  if (!carrier.type) return;
+  out.carrier = carrier.type;
   out.kind = Envelope::Kind::kMessage;
-  const Field& payload = last_field(*out.carrier);
-  const auto head = static_cast<std::size_t>(payload.fixed_offset);
-  if (bytes.size() < head) return;
+  if (bytes.size() < carrier.payload_at) return;
   out.am = {true,
             out.mac.dest,
             out.mac.src,
-            static_cast<std::uint16_t>(bytes.size() - head),
+            static_cast<std::uint16_t>(bytes.size() - carrier.payload_at),
             static_cast<std::uint8_t>(out.mac.destpan),
-            static_cast<std::uint8_t>(evaluate(payload.choice->key, bytes))};
+            p[carrier.type_at]};
+}
+
+void FrameDecoder::headers(const Packet& packet, Envelope& out) const {
+  out.key = packet.kind;
+  switch (packet.framing) {
+    case Framing::kHdlc:
+      if (packet.kind == kSerialPacketAck || packet.kind == kSerialPacketNoAck) {
+        serial_headers(packet.bytes, out);
+      } else if (packet.kind == kSerialAck) {
+        out.kind = Envelope::Kind::kLinkAck;
+      } else if (packet.kind != kAbsent) {
+        out.kind = Envelope::Kind::kOpaque;
+      }
+      break;
+    case Framing::kSf: serial_headers(packet.bytes, out); break;
+    case Framing::kRadio: radio_headers(packet.bytes, out); break;
+    case Framing::kBare: out.kind = Envelope::Kind::kBare; break;
+  }
+}
+
+Envelope FrameDecoder::open(const Packet& packet) const {
+  Envelope out;
+  headers(packet, out);
+  out.error = packet.error;
+  if (out.error.fault != Fault::kNone || !out.carrier) return out;
+  const Bytes bytes = packet.bytes;
+  bool sound = false;
+  if (out.kind == Envelope::Kind::kLinkAck) {
+    sound = bytes.size() == tinyos::MacAckView::kMaxSizeBytes;
+  } else if (out.carrier == serial_) {
+    sound = out.am.present && Am::LengthAt::allows(out.am.length) &&
+            bytes.size() - kAmHeaderBytes == out.am.length;
+  } else {
+    sound = out.am.present;
+  }
+  if (sound) {
+    if (out.am.present) out.payload = bytes.from(bytes.size() - out.am.length);
+    return out;
+  }
+  out.error = fault_of(*out.carrier, bytes);
+  return out;
+}
+
+__attribute__((cold, noinline)) Error FrameDecoder::fault_of(const Type& carrier,
+                                                             Bytes bytes) const {
+  Decoded decoded;
+  decode_carrier(carrier, bytes, decoded);
+  return decoded.error;
 }
 
 }  // namespace rubric::reflect

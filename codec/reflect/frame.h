@@ -84,16 +84,27 @@ class FrameDecoder {
   const Protocol& protocol() const { return protocol_; }
 
  private:
-  Envelope headers(const Packet& packet) const;
+  // Where a radio carrier's frames have the AM type and the message; found once, as most frames of
+  // a capture are such.
+  struct RadioCarrier {
+    explicit RadioCarrier(const Type* carrier);
+    const Type* type;
+    std::size_t type_at = 0;
+    std::size_t payload_at = 0;
+    std::int64_t network = -1;  ///< The value of the byte after the 802.15.4 header; -1: any.
+  };
+
+  void headers(const Packet& packet, Envelope& out) const;
   void serial_headers(Bytes bytes, Envelope& out) const;
   void radio_headers(Bytes bytes, Envelope& out) const;
   void decode_carrier(const Type& carrier, Bytes bytes, Decoded& out) const;
+  Error fault_of(const Type& carrier, Bytes bytes) const;
 
   const Protocol& protocol_;
   const Type* bare_;
   const Type* serial_;
-  const Type* radio_i_;
-  const Type* radio_t_;
+  RadioCarrier radio_i_;
+  RadioCarrier radio_t_;
   const Type* radio_ack_;
   const Switch* radio_choice_;
 };

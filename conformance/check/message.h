@@ -45,17 +45,21 @@ struct Net {
   }
 };
 
+template <class Field>
+machine::Address address_at(const std::uint8_t* structure) {
+  using Address = rubicon::RAddrLayout;
+  return {static_cast<std::uint16_t>(Within<Field, Address::PidAt>::load(structure)),
+          static_cast<std::uint16_t>(Within<Field, Address::DevidAt>::load(structure))};
+}
+
 /// Reads a net_msg. Returns false if it is shorter than a header. Unlike the view of a net_msg it
 /// reads a header that breaks a rule: its sender is judged, and others may have taken it.
 inline bool parse_net(Bytes bytes, Net& out) {
   using App = rubicon::AppMsgLayout;
   if (bytes.size() < kNetHeaderBytes) return false;
-  const auto address = [&](std::size_t at) {
-    return machine::address_of(rubicon::RAddrView::parse(bytes.from(at)).value());
-  };
   const std::uint8_t* const p = bytes.data();
-  out.dest = address(NetAt::DestAt::kAt);
-  out.src = address(NetAt::SrcAt::kAt);
+  out.dest = address_at<NetAt::DestAt>(p);
+  out.src = address_at<NetAt::SrcAt>(p);
   out.reliable = NetAt::ReliableAt::load(p);
   out.seq_num = NetAt::SeqNumAt::load(p);
   out.nbytes = NetAt::NbytesAt::load(p);

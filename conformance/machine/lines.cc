@@ -193,7 +193,10 @@ void send_join_request(Node& node, ReqId requirement) {
   const Place place =
       put(node, {Link::kRadio, am::kJoin, node.profile().sink_id, requirement, false});
   if (!place) return;
-  rubicon::JoinRequestLayout::store({join.seq_num, wire_of(join.descriptor)}, place.payload);
+  rubicon::JoinRequest request;
+  request.seq_num = join.seq_num;
+  request.mote_desc = wire_of(join.descriptor);
+  rubicon::JoinRequestLayout::store(request, place.payload);
   *place.size_bytes = rubicon::JoinRequestView::kMaxSizeBytes;
 }
 
@@ -202,8 +205,11 @@ void send_ack_join(Node& node, ReqId requirement) {
   //= J4-CONTENT: ack_join has dest <island, sink> of the accepted reply, src the new address, the
   //= request's sequence number and the descriptor of the request, and goes to the sink's AM
   //= address.
-  const rubicon::AckJoin ack{wire_of(Address{join.address.pid, join.sink_devid}),
-                             wire_of(join.address), join.seq_num, wire_of(join.descriptor)};
+  rubicon::AckJoin ack;
+  ack.dest = wire_of(Address{join.address.pid, join.sink_devid});
+  ack.src = wire_of(join.address);
+  ack.seq_num = join.seq_num;
+  ack.mote_desc = wire_of(join.descriptor);
   Interface<4>& radio = node.state.radio;
   const Header header{Link::kRadio, am::kAckJoin, join.sink_devid, requirement, true};
   Place place;
@@ -225,7 +231,11 @@ void send_join_reply(Node& node, std::uint16_t dest, std::uint16_t seq_num) {
   //= J3-SEQ: A join_reply carries the sequence number of the request that it answers.
   //= J3-ADDRESS: A join_reply carries the sink's island id as island_addr and the requesting mote's
   //= TinyOS id as mote_addr.
-  const rubicon::JoinReply reply{node.state.island, dest, clock_ms(node), seq_num};
+  rubicon::JoinReply reply;
+  reply.island_addr = node.state.island;
+  reply.mote_addr = dest;
+  reply.cur_time = clock_ms(node);
+  reply.seq_num = seq_num;
   rubicon::JoinReplyLayout::store(reply, place.payload);
   *place.size_bytes = rubicon::JoinReplyView::kMaxSizeBytes;
 }

@@ -27,7 +27,10 @@ constexpr auto kEsnData = static_cast<std::uint8_t>(rubicon::Component::kEsnData
 }  // namespace component
 
 inline rubicon::RAddr wire_of(Address address) {
-  return {static_cast<rubicon::Pid>(address.pid), static_cast<rubicon::Devid>(address.devid)};
+  rubicon::RAddr wire;
+  wire.pid = static_cast<rubicon::Pid>(address.pid);
+  wire.devid = static_cast<rubicon::Devid>(address.devid);
+  return wire;
 }
 inline Address address_of(rubicon::RAddrView view) {
   return {static_cast<std::uint16_t>(view.pid()), static_cast<std::uint16_t>(view.devid())};

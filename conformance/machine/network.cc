@@ -53,9 +53,11 @@ void fill_net_msg(const Place& place, Link link, const NetHeader& header, std::u
   //= T1-WRAP: The payload of a net_msg begins with TRANSID CONNLESS and the APPID of the sender for
   //= what Connectionless.send was given.
   std::uint8_t* const body = p + kNetHeaderBytes;
-  rubicon::AppMsgLayout::store(
-      {static_cast<rubicon::Component>(trans_id), static_cast<rubicon::Component>(app_id), data},
-      body);
+  rubicon::AppMsg app;
+  app.trans_id = static_cast<rubicon::Component>(trans_id);
+  app.app_id = static_cast<rubicon::Component>(app_id);
+  app.payload = data;
+  rubicon::AppMsgLayout::store(app, body);
   wire.payload = {body, nbytes};
   rubicon::NetMsgLayout::store(wire, p);
   end_net_msg(place, link, kNetHeaderBytes + nbytes);

@@ -23,8 +23,9 @@ constexpr std::size_t kHeaderBytes = reflect::kRadioIHeaderBytes;
 
 std::vector<std::uint8_t> data_frame(const machine::Frame& am, std::uint8_t dsn, bool asks_ack) {
   const auto fcf = asks_ack ? FrameControl::kDataAckRequest : FrameControl::kData;
-  return reflect::radio_frame({reflect::fcf_of(fcf), dsn, kPanId, am.dest, am.src}, am.type,
-                              am.payload);
+  return reflect::radio_frame(
+      {.fcf = reflect::fcf_of(fcf), .dsn = dsn, .destpan = kPanId, .dest = am.dest, .src = am.src},
+      am.type, am.payload);
 }
 
 }  // namespace
@@ -219,7 +220,10 @@ void Radio::answer(const OnAir& frame, std::size_t station) {
   ack->is_ack = true;
   ack->dsn = frame.dsn;
   ack->bytes.resize(tinyos::MacAckView::kMaxSizeBytes);
-  tinyos::MacAckLayout::store({reflect::fcf_of(FrameControl::kAck), frame.dsn}, ack->bytes.data());
+  tinyos::MacAck wire;
+  wire.fcf = reflect::fcf_of(FrameControl::kAck);
+  wire.dsn = frame.dsn;
+  tinyos::MacAckLayout::store(wire, ack->bytes.data());
   ack->life = stations_[station].life;
   queue_.after(random_.between(kLinkAckUs[0], kLinkAckUs[1]), [this, ack] {
     const Station& from = stations_[ack->sender];

@@ -22,8 +22,10 @@ std::vector<std::uint8_t> readings(std::uint16_t transducers, Random& random) {
   updates.type = rubicon::AmType::kUpdates;
   for (unsigned bit = 1; bit <= transducers; bit <<= 1) {
     if ((transducers & bit) == 0) continue;
-    updates.updates.push({rubicon::TransducerMask(static_cast<std::uint16_t>(bit)),
-                          static_cast<std::uint16_t>(random.between(0, kReadingMax))});
+    rubicon::TransducerUpdate update;
+    update.transducer = rubicon::TransducerMask(static_cast<std::uint16_t>(bit));
+    update.value = static_cast<std::uint16_t>(random.between(0, kReadingMax));
+    updates.updates.push(update);
   }
   std::vector<std::uint8_t> body(rubicon::UpdatesLayout::size_bytes(updates));
   rubicon::UpdatesLayout::store(updates, body.data());

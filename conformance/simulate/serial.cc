@@ -30,8 +30,8 @@ Micros shift_us(std::uint8_t kind, std::int32_t seq, Bytes packet) {
 
 void Serial::send(NodeId from, const machine::Frame& frame) {
   auto held = std::make_shared<Held>();
-  held->packet = reflect::serial_packet(
-      {tinyos::Dispatch::kActiveMessage, frame.dest, frame.src, 0, 0, frame.type}, frame.payload);
+  held->packet = reflect::serial_packet({.dest = frame.dest, .src = frame.src, .type = frame.type},
+                                        frame.payload);
   held->am = frame;
   held->am.link = machine::Link::kSerial;
   held->am.payload = Bytes(held->packet.data(), held->packet.size()).from(reflect::kAmHeaderBytes);

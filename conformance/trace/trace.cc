@@ -132,7 +132,7 @@ const Value* Message::find(std::string_view path) const {
 
 std::vector<std::uint8_t> packet_of(const AmFrame& frame) {
   return reflect::serial_packet(
-      {tinyos::Dispatch::kActiveMessage, frame.dest, frame.src, 0, frame.group, frame.type},
+      {.dest = frame.dest, .src = frame.src, .group = frame.group, .type = frame.type},
       Bytes(frame.payload.data(), frame.payload.size()));
 }
 

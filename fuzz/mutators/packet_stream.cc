@@ -49,11 +49,12 @@ std::vector<std::uint8_t> as_serial(const std::vector<std::uint8_t>& frame) {
   if (frame.size() < reflect::kRadioIHeaderBytes) return frame;
   const std::uint8_t* const p = frame.data();
   const Bytes payload = Bytes(p, frame.size()).from(reflect::kRadioIHeaderBytes);
-  std::vector<std::uint8_t> out = reflect::serial_packet(
-      {tinyos::Dispatch::kActiveMessage, Mac::DestAt::load(p), Mac::SrcAt::load(p), 0,
-       static_cast<std::uint8_t>(Mac::DestpanAt::load(p)),
-       static_cast<std::uint8_t>(IFrame::TypeAt::load(p))},
-      payload);
+  std::vector<std::uint8_t> out =
+      reflect::serial_packet({.dest = Mac::DestAt::load(p),
+                              .src = Mac::SrcAt::load(p),
+                              .group = static_cast<std::uint8_t>(Mac::DestpanAt::load(p)),
+                              .type = static_cast<std::uint8_t>(IFrame::TypeAt::load(p))},
+                             payload);
   const std::size_t length = std::min(payload.size(), kAmLengthMax);
   tinyos::AmHeaderLayout::LengthAt::store(out.data(), static_cast<std::uint8_t>(length));
   return out;

@@ -55,9 +55,8 @@ Step heard(const Frame& frame, std::vector<std::uint8_t> payload) {
 
 // Returns the serial form of a frame, whatever line brings it: the table has it for every message.
 std::vector<std::uint8_t> packet_of(const Frame& frame, const std::vector<std::uint8_t>& payload) {
-  return reflect::serial_packet(
-      {tinyos::Dispatch::kActiveMessage, frame.dest, frame.src, 0, 0, frame.type},
-      Bytes(payload.data(), payload.size()));
+  return reflect::serial_packet({.dest = frame.dest, .src = frame.src, .type = frame.type},
+                                Bytes(payload.data(), payload.size()));
 }
 
 }  // namespace
@@ -178,7 +177,8 @@ std::optional<Step> ScriptMutator::answer_to(const Script& script, const Transmi
   rubicon::RubiconAck body;
   body.type = rubicon::AmType::kLearningNotification;
   body.seq_num = message->seq_num();
-  std::vector<std::uint8_t> payload{machine::component::kRubiconAck, message->payload()[1]};
+  std::vector<std::uint8_t> payload{machine::component::kRubiconAck,
+                                    message->payload()[rubicon::AppMsgLayout::AppIdAt::kAt]};
   const std::vector<std::uint8_t> written = bytes_of(body);
   payload.insert(payload.end(), written.begin(), written.end());
   rubicon::NetMsg ack;

@@ -66,6 +66,8 @@ WIRE_BY_HAND = [
                 r"(?:(?:\.data\(\))?\[\d+\]|\.(?:data|begin)\(\) \+ [1-9])"),
      "a byte of a frame by its number"),
     (re.compile(r"\] ?<< ?(?:8|16|24)\b"), "a number of the wire by hand"),
+    (re.compile(r"\b(?:rubicon|tinyos)::(?!\w+(?:View|Layout|Builder)\b)[A-Z]\w+(?: \w+)?"
+                r"\{\s*[^}\s]|Layout::store\(\{"), "the fields of a structure by their order"),
 ]
 # Where bytes are read by hand for a reason, besides tests, which state what they expect.
 HAND_MADE = {
@@ -82,7 +84,8 @@ HAND_MADE = {
     "codec/lines/forwarder.cc": "framing: packets of a serial forwarder",
     "conformance/selftest/scripts/bytes.": "scripts as the fuzzers' bytes",
     "conformance/selftest/scripts/walk.": "walks as the fuzzers' bytes",
-    "fuzz/": "what fuzz targets compare the codec with",
+    "fuzz/support/": "what fuzz targets compare the codec with",
+    "fuzz/targets/": "what fuzz targets compare the codec with",
     "spec/compiler/": "writes the code that loads",
 }
 INCLUDE = re.compile(r'#include "([^"]+)"')
@@ -216,6 +219,8 @@ PLANTED = [
     "  const std::uint8_t trans_id = payload[0];",
     "  std::copy_n(frame.payload.begin() + 4, 4, ack.payload.begin());",
     "  out.type = packet.data()[7];",
+    "  const rubicon::JoinReply reply{island, dest, clock_ms(node), seq_num};",
+    "  rubicon::JoinRequestLayout::store({seq_num, wire_of(what)}, place.payload);",
     "  const int value = bytes[i] << 8 | bytes[i + 1];",
 ]
 SOUND = [
@@ -223,6 +228,8 @@ SOUND = [
     "constexpr std::size_t kMacHeaderBytes = tinyos::MacHeaderView::kMaxSizeBytes;",
     "  const auto reply = rubicon::JoinReplyView::parse(frame.payload);",
     "  std::uint8_t bytes[4096];",
+    "  rubicon::JoinReply reply{};",
+    "std::optional<rubicon::NetMsgView> read(Bytes bytes) {",
     "  return payload.data();  // Not load_be16(p): the view does.",
 ]
 

@@ -9,7 +9,10 @@ Address address_of(rubicon::RAddrView view) {
 }
 
 rubicon::RAddr wire_of(Address address) {
-  return {static_cast<rubicon::Pid>(address.island), static_cast<rubicon::Devid>(address.device)};
+  rubicon::RAddr wire;
+  wire.pid = static_cast<rubicon::Pid>(address.island);
+  wire.devid = static_cast<rubicon::Devid>(address.device);
+  return wire;
 }
 
 std::optional<Message> read_message(Bytes payload) {

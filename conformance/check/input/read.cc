@@ -104,14 +104,21 @@ Run in_one_order(Run run, const AlignOptions& options) {
   constexpr std::int64_t kTenYearsUs = 315'360'000'000'000;
   constexpr std::int64_t kNone = std::numeric_limits<std::int64_t>::max();
   std::int64_t first_us = kNone;
+  bool logged = false;
   for (const Observation& seen : run.seen) {
     const std::int64_t time = seen.place.time_us;
-    if (seen.node.empty() && time != kNoStamp) first_us = std::min(first_us, time);
+    if (!seen.node.empty()) {
+      logged = true;
+    } else if (time != kNoStamp) {
+      first_us = std::min(first_us, time);
+    }
   }
   const std::int64_t logs_us = first_us != kNone && first_us > kTenYearsUs ? first_us : 0;
-  for (Observation& seen : run.seen) {
-    if (!seen.node.empty()) seen.place.time_us += logs_us;
-    if (seen.place.time_us != kNoStamp) first_us = std::min(first_us, seen.place.time_us);
+  if (logged) {  // It takes time to walk through a large capture.
+    for (Observation& seen : run.seen) {
+      if (!seen.node.empty()) seen.place.time_us += logs_us;
+      if (seen.place.time_us != kNoStamp) first_us = std::min(first_us, seen.place.time_us);
+    }
   }
   for (Observation& seen : run.seen) {
     seen.place.time_us = seen.place.time_us == kNoStamp ? -1 : seen.place.time_us - first_us;

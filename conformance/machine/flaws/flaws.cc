@@ -85,9 +85,11 @@ void ack_wrong_reply(State& state, const Frame& frame, Actions& actions) {
   state.join.address = {reply->island_addr(), reply->mote_addr()};
   state.join.sink_devid = frame.src;
   radio.sending = radio.sending_ack_join = true;
-  const rubicon::AckJoin ack{machine::wire_of(machine::Address{state.join.address.pid, frame.src}),
-                             machine::wire_of(state.join.address), reply->seq_num(),
-                             machine::wire_of(state.join.descriptor)};
+  rubicon::AckJoin ack;
+  ack.dest = machine::wire_of(machine::Address{state.join.address.pid, frame.src});
+  ack.src = machine::wire_of(state.join.address);
+  ack.seq_num = reply->seq_num();
+  ack.mote_desc = machine::wire_of(state.join.descriptor);
   Transmit& transmit = actions.transmit("J4-ACK"_rule);
   transmit.link = Link::kRadio;
   transmit.link_ack = true;

@@ -61,15 +61,26 @@ inline std::vector<std::uint8_t> padded(std::vector<std::uint8_t> bytes) {
 }
 
 inline OwnFrame join_request(std::uint16_t mote, std::uint16_t seq_num, const Descriptor& what) {
-  return {Link::kRadio, 1, mote, am::kJoin, written(rubicon::JoinRequest{seq_num, wire_of(what)})};
+  rubicon::JoinRequest request;
+  request.seq_num = seq_num;
+  request.mote_desc = wire_of(what);
+  return {Link::kRadio, 1, mote, am::kJoin, written(request)};
 }
 inline OwnFrame join_reply(std::uint16_t am_dest, Address offered, std::uint32_t time_ms,
                            std::uint16_t seq_num, std::uint16_t am_src = 1) {
-  const rubicon::JoinReply reply{offered.pid, offered.devid, time_ms, seq_num};
+  rubicon::JoinReply reply;
+  reply.island_addr = offered.pid;
+  reply.mote_addr = offered.devid;
+  reply.cur_time = time_ms;
+  reply.seq_num = seq_num;
   return {Link::kRadio, am_dest, am_src, am::kJoinReply, written(reply)};
 }
 inline OwnFrame ack_join(Address dest, Address src, std::uint16_t seq_num, const Descriptor& what) {
-  const rubicon::AckJoin ack{wire_of(dest), wire_of(src), seq_num, wire_of(what)};
+  rubicon::AckJoin ack;
+  ack.dest = wire_of(dest);
+  ack.src = wire_of(src);
+  ack.seq_num = seq_num;
+  ack.mote_desc = wire_of(what);
   return {Link::kRadio, dest.devid, src.devid, am::kAckJoin, written(ack)};
 }
 inline OwnFrame config(std::uint8_t code, std::uint16_t value) {

@@ -43,11 +43,10 @@ void collect(const reflect::Decoded& decoded, std::size_t i, const std::string& 
 // Returns the frame as a packet on its line, which decides how it decodes.
 std::vector<std::uint8_t> packet_of(const Transmit& frame) {
   if (frame.link != Link::kRadio) {
-    return reflect::serial_packet({tinyos::Dispatch::kActiveMessage, 0, 0, 0, 0, frame.type},
-                                  frame.bytes());
+    return reflect::serial_packet({.type = frame.type}, frame.bytes());
   }
   const std::uint16_t fcf = reflect::fcf_of(tinyos::FrameControl::kData);
-  return reflect::radio_frame({fcf, 0, 0, 0, 0}, frame.type, frame.bytes());
+  return reflect::radio_frame({.fcf = fcf}, frame.type, frame.bytes());
 }
 
 void add_one(Transmit& frame, const Place& place) {

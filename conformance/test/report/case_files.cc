@@ -27,8 +27,9 @@ constexpr std::size_t kSafeNameMax = 80;
 
 std::vector<std::uint8_t> radio_frame(const trace::AmFrame& am, std::uint8_t dsn) {
   const std::uint16_t fcf = reflect::fcf_of(tinyos::FrameControl::kData);
-  return reflect::radio_frame({fcf, dsn, am.group, am.dest, am.src}, am.type,
-                              Bytes(am.payload.data(), am.payload.size()));
+  return reflect::radio_frame(
+      {.fcf = fcf, .dsn = dsn, .destpan = am.group, .dest = am.dest, .src = am.src}, am.type,
+      Bytes(am.payload.data(), am.payload.size()));
 }
 
 /// Writes the frames of one case, each once, however many nodes hear it.
