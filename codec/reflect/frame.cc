@@ -20,9 +20,7 @@ using tinyos::FrameControlPart;
 
 constexpr std::size_t kMacHeaderBytes = tinyos::MacHeaderView::kMaxSizeBytes;
 
-const Field& last_field(const Type& type) {
-  return type.fields[type.field_count - 1];
-}
+const Field& last_field(const Type& type) { return type.fields[type.field_count - 1]; }
 
 void clear(Frame& out, const Packet& packet) {
   out.packet = &packet;
