@@ -1,7 +1,7 @@
 // Compares `rubric decode` with Kaitai Struct's own parser: same frames accepted, same faults in
 // the same places, same fields, same bytes left over.
-// Usage: node kaitai_check.js PATH_TO_RUBRIC [COUNT] [SEED]. Without COUNT it compares as many frames
-// as README.md says, as many different mutated ones among them.
+// Usage: node kaitai_check.js PATH_TO_RUBRIC [COUNT] [SEED]. Without COUNT it compares as many
+// frames as README.md says, as many different mutated ones among them.
 'use strict';
 const assert = require('node:assert');
 const fs = require('fs');

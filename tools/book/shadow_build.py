@@ -13,7 +13,7 @@ import sys
 
 EMITTERS = "cpp,tables,requirements,protocols,dictionary,messages,profiles,cases,java,lua"
 # Sources with the tables of all protocols, the routes to their messages, and all rule texts.
-HOLDERS = ("codec/reflect/registry.cc", "codec/generate/routes.cc", "codec/reflect/fault_text.cc")
+HOLDERS = ("codec/reflect/registry.cc", "codec/generate/routes.cc", "codec/reflect/requirements.cc")
 
 
 def run(words, folder):
@@ -27,18 +27,31 @@ def regenerate(copy):
     run(["rubricc", "--emit", EMITTERS, "--out", ".", *specs], copy)
 
 
+def holds_tables(source, root):
+    """Of a source, and of a unit (.cxx) that CMake makes of several, with an #include of each."""
+    holders = {str(root / holder) for holder in HOLDERS}
+    if source.suffix == ".cc":
+        return str(source) in holders
+    return not holders.isdisjoint(source.read_text(encoding="utf-8").split('"'))
+
+
 def rebuild(build, root, copy):
     listed = subprocess.run(["ninja", "-C", build, "-t", "commands", "rubric"], check=True,
                             capture_output=True, text=True).stdout
     known = [shlex.split(line.removeprefix(": && ").removesuffix(" && :"))
              for line in listed.splitlines()]
     objects = []
-    for holder in HOLDERS:
-        words = next(words for words in known if words[-1] == str(root / holder))
-        objects.append(str(copy / "build" / (pathlib.Path(holder).stem + ".o")))
+    for words in known:
+        source = pathlib.Path(words[-1])
+        if source.suffix not in {".cc", ".cxx"} or not holds_tables(source, root):
+            continue
+        ours = copy / "build" / f"holder_{len(objects)}.cc"
+        text = f'#include "{source}"\n' if source.suffix == ".cc" else source.read_text("utf-8")
+        ours.write_text(text.replace(f'"{root}/', f'"{copy}/'), encoding="utf-8")
+        objects.append(f"{ours}.o")
         words[words.index("-o") + 1] = objects[-1]
-        words[words.index("-MF") + 1] = objects[-1] + ".d"
-        words[-1] = str(copy / holder)
+        words[words.index("-MF") + 1] = f"{ours}.d"
+        words[-1] = str(ours)
         run([f"-I{copy}" if word == f"-I{root}" else word for word in words], build)
     program = copy / ".bin/rubric"
     program.unlink()

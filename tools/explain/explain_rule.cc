@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <iterator>
+#include <utility>
 
 #include "codec/reflect/fault_text.h"
 #include "tools/explain/explain_type.h"
@@ -51,6 +53,33 @@ std::string cases_text(ReqId id, std::string_view title, bool negative, CaseList
   return wrapped(fmt::format("{}: {}", title, fmt::join(names, ", ")), 4);
 }
 
+// The parts of the project by the beginnings of their paths; a file is of the last that fits.
+constexpr std::pair<std::string_view, const char*> kParts[] = {
+    {"spec/requirements.yaml", "sentence"},
+    {"spec/wire/", "wire spec"},
+    {"codec/", "codec"},
+    {"conformance/machine/", "machine"},
+    {"conformance/machine/flaws/", "flaws"},
+    {"conformance/check/", "checker"},
+};
+
+std::string places_text(std::string_view rule, std::span<const RulePlace> places) {
+  std::vector<std::string_view> files[std::size(kParts)];
+  for (const RulePlace& place : places) {
+    if (place.rule != rule) continue;
+    const auto part = std::find_if(std::rbegin(kParts), std::rend(kParts), [&](const auto& each) {
+      return place.file.starts_with(each.first);
+    });
+    files[std::rend(kParts) - part - 1].push_back(place.file);
+  }
+  std::string out;
+  for (std::size_t i = 0; i < std::size(kParts); ++i) {
+    if (files[i].empty()) continue;
+    out += wrapped(fmt::format("{}: {}", kParts[i].second, fmt::join(files[i], ", ")), 4);
+  }
+  return out.empty() ? "" : "  In the code:\n" + out;
+}
+
 }  // namespace
 
 std::vector<ReqId> rules_named(std::string_view name) {
@@ -80,6 +109,7 @@ std::vector<std::string> rule_groups() {
 
 std::string explain_rule(const std::vector<const reflect::Protocol*>& protocols, ReqId id,
                          CaseList list, std::span<const cases::CaseUse> uses,
+                         std::span<const RulePlace> places,
                          std::span<const machine::NamedProfile> profiles) {
   const Requirement& rule = reflect::requirement(id);
   std::string out = fmt::format("{}: {}, {}\n", rule.id, rule.level, rule.clause);
@@ -99,6 +129,7 @@ std::string explain_rule(const std::vector<const reflect::Protocol*>& protocols,
     }
   }
   out += used_by(protocols, [id](const reflect::Field& f) { return f.requirement == id; });
+  out += places_text(rule.id, places);
   const std::string cases =
       cases_text(id, "positive", false, list, uses) + cases_text(id, "negative", true, list, uses);
   if (!cases.empty()) return out + "  Cases:\n" + cases;

@@ -23,12 +23,23 @@ std::vector<std::string> rule_groups();
 /// The number of printed cases of a rule.
 enum class CaseList : std::uint8_t { kShort, kWhole };
 
+/// A file of the project in which a rule is written down or kept.
+struct RulePlace {
+  std::string_view rule;  ///< Its id.
+  std::string_view file;  ///< From the project's folder; of the catalogue with the line.
+};
+
+/// Returns the places of all rules: the catalogue's lines, then the sources by file name. Generated
+/// when the program is built.
+std::span<const RulePlace> rule_places();
+
 /// Returns a rule with its roles and source, the differences of release 1.0 and the profiles, the
-/// fields that refer to it in `protocols`, and its golden cases: if there are many, the first ones,
-/// and how to see the others.
+/// fields that refer to it in `protocols`, the files where it is, and its golden cases: if there
+/// are many, the first ones, and how to see the others.
 std::string explain_rule(const std::vector<const reflect::Protocol*>& protocols, ReqId id,
                          CaseList list = CaseList::kShort,
                          std::span<const cases::CaseUse> uses = cases::kCaseUses,
+                         std::span<const RulePlace> places = rule_places(),
                          std::span<const machine::NamedProfile> profiles = machine::kProfiles);
 
 }  // namespace rubric::explain

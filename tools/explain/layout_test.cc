@@ -133,7 +133,7 @@ TEST(Explain, EveryTypeEnumAndMask) {
 }
 
 TEST(Explain, Requirement) {
-  EXPECT_EQ(explain_rule({&kRubicon}, "WIRE-NET-NBYTES"_rule, CaseList::kShort, {}),
+  EXPECT_EQ(explain_rule({&kRubicon}, "WIRE-NET-NBYTES"_rule, CaseList::kShort, {}, {}),
             "WIRE-NET-NBYTES: MUST, wire, messages\n"
             "  nbytes counts TRANSID, APPID and the application payload, so it is 2 to 102.\n"
             "  Source: paper: Memory Occupation; release 1.0\n"
@@ -145,7 +145,11 @@ TEST(Explain, RuleOfBehaviour) {
                                  {"j4.wrong_seq", "a.rtr", "J4-SEQ"_rule, true},
                                  {"j4.right_seq", "b.rtr", "J4-SEQ"_rule, false},
                                  {"j4.old_seq", "b.rtr", "J4-SEQ"_rule, true}};
-  EXPECT_EQ(explain_rule({&kRubicon}, "J4-SEQ"_rule, CaseList::kShort, uses),
+  const RulePlace places[] = {
+      {"J4-SEQ", "spec/requirements.yaml:7"}, {"J4-SEQ", "conformance/check/a.cc"},
+      {"J4-ACK", "conformance/check/b.cc"},   {"J4-SEQ", "conformance/machine/flaws/c.cc"},
+      {"J4-SEQ", "conformance/machine/d.cc"}, {"J4-SEQ", "conformance/machine/e.cc"}};
+  EXPECT_EQ(explain_rule({&kRubicon}, "J4-SEQ"_rule, CaseList::kShort, uses, places),
             "J4-SEQ: MUST, join, mote\n"
             "  A mote ignores a join_reply whose sequence number is not that of its outstanding "
             "request.\n"
@@ -154,6 +158,11 @@ TEST(Explain, RuleOfBehaviour) {
             "  Otherwise in release 1.0: A reply with a wrong number still ends the join, with a "
             "malformed\n"
             "  ack_join.\n"
+            "  In the code:\n"
+            "    sentence: spec/requirements.yaml:7\n"
+            "    machine: conformance/machine/d.cc, conformance/machine/e.cc\n"
+            "    flaws: conformance/machine/flaws/c.cc\n"
+            "    checker: conformance/check/a.cc\n"
             "  Cases:\n"
             "    positive: j4.right_seq (b.rtr)\n"
             "    negative: j4.wrong_seq (a.rtr), j4.old_seq (b.rtr)\n");

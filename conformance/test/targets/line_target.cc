@@ -8,6 +8,7 @@
 #include "codec/generated/rubicon/config.h"
 #include "codec/generated/rubicon/enums.h"
 #include "codec/generated/tinyos/am_header.h"
+#include "conformance/test/targets/process.h"
 #include "conformance/test/targets/rct_text.h"
 #include "conformance/trace/trace.h"
 
