@@ -15,8 +15,10 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_L
     -Wno-stringop-overflow -Wno-stringop-overread)
 endif()
 if(CMAKE_UNITY_BUILD)
-  # It takes a type of an anonymous namespace for shared where the file is included.
-  target_compile_options(rubric_options INTERFACE -Wno-subobject-linkage)
+  # GCC takes a type of an anonymous namespace for shared where the file is included, and clang
+  # takes a local name for a shadow of another file's.
+  target_compile_options(rubric_options INTERFACE
+    $<IF:$<CXX_COMPILER_ID:GNU>,-Wno-subobject-linkage,-Wno-shadow>)
 endif()
 if(RUBRIC_WERROR)
   target_compile_options(rubric_options INTERFACE -Werror)
@@ -38,7 +40,7 @@ function(rubric_library name)
   cmake_parse_arguments(arg "COLD" "" "SOURCES;DEPS" ${ARGN})
   add_library(${name} STATIC ${arg_SOURCES})
   if(arg_COLD)
-    target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+    target_compile_options(${name} PRIVATE $<IF:$<CONFIG:Release>,-O1,-O0>)
   endif()
   # Our warnings are for us: who uses an installed library has options of his own.
   target_link_libraries(${name} PUBLIC $<BUILD_INTERFACE:rubric_options> ${arg_DEPS})
@@ -56,14 +58,12 @@ function(rubric_program name)
 endfunction()
 
 # What all tests include, compiled once.
-if(RUBRIC_TESTS AND NOT RUBRIC_FUZZ)
-  find_package(GTest REQUIRED)
-  find_package(fmt REQUIRED)
+if(RUBRIC_TESTS)
   # A program, as precompiled headers fit code of their own kind alone.
   file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/test_headers.cc CONTENT "int main() {}\n")
   add_executable(rubric_test_headers ${PROJECT_BINARY_DIR}/test_headers.cc)
   target_link_libraries(rubric_test_headers PRIVATE rubric_options GTest::gmock fmt::fmt)
-  target_compile_options(rubric_test_headers PRIVATE $<$<CONFIG:Release>:-O1>)
+  target_compile_options(rubric_test_headers PRIVATE $<IF:$<CONFIG:Release>,-O1,-O0>)
   target_precompile_headers(rubric_test_headers PRIVATE <gmock/gmock.h> <gtest/gtest.h>
     <fmt/format.h> <algorithm> <fstream> <map> <optional> <set> <string> <variant> <vector>)
 endif()
@@ -99,7 +99,7 @@ function(rubric_test name)
   set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
   target_link_libraries(${name} PRIVATE rubric_options ${arg_DEPS} GTest::gmock GTest::gtest_main
     fmt::fmt)
-  target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+  target_compile_options(${name} PRIVATE $<IF:$<CONFIG:Release>,-O1,-O0>)
   target_precompile_headers(${name} REUSE_FROM rubric_test_headers)
   add_test(NAME ${name} COMMAND ${name} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
   rubric_label_test(${name} "${arg_LABEL}" ${arg_FOREIGN} ${name})

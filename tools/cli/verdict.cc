@@ -14,16 +14,15 @@ namespace rubric::cli {
 
 void set_verdict(Command& command, std::function<int()> run) {
   command.set_usage_exit_code(kVerdictUsage);
-  command.callback([name = command.name(), run = std::move(run)] {
-    int code = kVerdictBroken;
+  command.exit_code_of([name = command.name(), run = std::move(run)] {
     try {
-      code = run();
+      return run();
     } catch (const Ending&) {
       throw;
     } catch (const std::exception& error) {
       fmt::print(stderr, "rubric {}: {}\n", name, error.what());
+      return int{kVerdictBroken};
     }
-    exit_with(code);
   });
 }
 

@@ -161,10 +161,9 @@ void add_convert(cli::Command& app) {
       .show_default();
   sub.add_option("--only", options->only, "Leave out packets of other framings: hdlc, sf, radio")
       .one_of({"hdlc", "sf", "radio"});
-  sub.callback([options] {
+  sub.exit_code_of([options] {
     settle_target(*options);
-    const int code = run_convert(*options);
-    if (code != cli::kExitClean) cli::exit_with(code);
+    return run_convert(*options);
   });
 }
 

@@ -94,11 +94,10 @@ void add_encode(cli::Command& app) {
   sub.add_option("-o,--output", options->output, "Where to; - is stdout")
       .check(cli::given)
       .show_default();
-  sub.callback([options] {
+  sub.exit_code_of([options] {
     encode::check_line_options(options->lines);
     check_target(*options);
-    const int code = run_encode(*options);
-    if (code != cli::kExitClean) cli::exit_with(code);
+    return run_encode(*options);
   });
 }
 

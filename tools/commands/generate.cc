@@ -327,11 +327,9 @@ void add_generate(cli::Command& app) {
   sub.add_option("--expect", options->expect, "Where the expectations go, a JSON line a frame")
       .check(cli::given);
   sub.add_flag("--fields", options->fields, "Expectations have each number of a valid frame, too");
-  sub.callback([options] {
+  sub.exit_code_of([options] {
     check_outputs(*options);
-    const reflect::Protocol& protocol = cli::chosen_protocol(options->input);
-    const int code = Run(*options, protocol).run();
-    if (code != cli::kExitClean) cli::exit_with(code);
+    return Run(*options, cli::chosen_protocol(options->input)).run();
   });
 }
 

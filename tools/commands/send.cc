@@ -320,11 +320,9 @@ void add_send(cli::Command& app) {
       .one_of({"text", "jsonl"})
       .show_default();
   cli::add_color_option(sub, options->color);
-  sub.callback([options] {
+  sub.exit_code_of([options] {
     encode::check_line_options(options->lines);
-    lines::Address address = address_of(*options);
-    const int code = Send(*options, std::move(address)).run();
-    if (code != cli::kExitClean) cli::exit_with(code);
+    return Send(*options, address_of(*options)).run();
   });
 }
 
