@@ -297,7 +297,7 @@ class Failing(Folder):
         self.assertIn("nothing was decided", out)
 
     def test_dishonest_is_refused(self):
-        for target, why in [(self.fake("yes_man"), "a command that nobody knows"),
+        for target, why in [(self.fake("yes_man"), "an unknown command"),
                             (self.fake("liar"), "canary.mote has to fail"),
                             ("exit 3", "it does not start"),
                             ("no_such_program_anywhere", "it does not start"),
