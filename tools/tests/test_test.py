@@ -136,7 +136,7 @@ class Running(Folder):
         self.assertEqual(code, 1)
         self.assertEqual(out.count("NOT TRUE"), 1)
         self.assertIn("1 expectation not true", out)
-        self.assertIn("runs that 'j4.*' stands for do not fail so", " ".join(out.split()))
+        self.assertIn("runs that 'j4.*' names do not fail so", " ".join(out.split()))
 
     def test_nobody_at_the_port(self):
         """It is not waited for longer than --timeout says, whatever starts slowly elsewhere."""
