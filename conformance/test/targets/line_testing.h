@@ -8,6 +8,7 @@
 #include <termios.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <stdexcept>
 #include <string>
 
@@ -17,16 +18,23 @@
 
 namespace rubric::targets {
 
+/// Returns a port that nobody uses, another one each time, also to several threads at once. Below
+/// those that connections of this host take by themselves.
 inline std::uint16_t free_port() {
-  const lines::Descriptor socket(::socket(AF_INET, SOCK_STREAM, 0));
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  socklen_t size = sizeof address;
-  auto* const any = reinterpret_cast<sockaddr*>(&address);
-  const bool bound = ::bind(socket.get(), any, size) == 0;
-  if (!bound || ::getsockname(socket.get(), any, &size) != 0) return 0;
-  return ntohs(address.sin_port);
+  constexpr int kFirst = 10'000;
+  constexpr int kPorts = 20'000;
+  static std::atomic<int> next = ::getpid() * 100;  // Far from those of another test.
+  for (int tried = 0; tried < kPorts; ++tried) {
+    const auto port = static_cast<std::uint16_t>(kFirst + next++ % kPorts);
+    const lines::Descriptor socket(::socket(AF_INET, SOCK_STREAM, 0));
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    address.sin_port = htons(port);
+    auto* const any = reinterpret_cast<sockaddr*>(&address);
+    if (::bind(socket.get(), any, sizeof address) == 0) return port;
+  }
+  throw std::runtime_error("no port is free");
 }
 
 inline machine::Config config_of(machine::Role role, std::uint16_t island) {

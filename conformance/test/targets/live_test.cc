@@ -27,8 +27,8 @@ constexpr const char* kSinkUnknown = R"(%rtr 1
 
 case t1.sink_line
 %node sA sink id=1 island=11 iut
-a: 100      sA <  serA am=0->1 net_msg(dest=11:1 src=11:null reliable=0 payload=x6303 ...)
-   a+0..700 sA !> serA *  [T1-UNKNOWN]
+a: 100 sA < serA am=0->1 net_msg(dest=11:1 src=11:null payload.trans_id=99 payload.app_id=3 ...)
+   a+0..700 sA !> serA * [T1-UNKNOWN]
 )";
 
 struct NamedPace {
