@@ -73,8 +73,8 @@ bool shows_life(const trace::AmFrame& frame, const machine::Config& config) {
 
 void LineTarget::reset(const machine::Config& config) {
   if (config.role != role()) {
-    throw Unsupported(
-        fmt::format("a {} is behind the line, no {}", role_word(role()), role_word(config.role)));
+    throw Unsupported(fmt::format("the node at the line is a {}, not a {}", role_word(role()),
+                                  role_word(config.role)));
   }
   if (role() == machine::Role::kSink && config.id != config.profile.sink_id) {
     throw Unsupported(fmt::format("the id of the sink cannot be set to {}", config.id));
@@ -215,14 +215,14 @@ bool LineTarget::take(const lines::TimedPacket& packet) {
   const std::uint8_t dispatch = packet.bytes.size() < At::kEnd ? 0 : packet.bytes[At::kAt];
   if (packet.bytes.empty() || !At::allows(dispatch)) {
     line_.notes += fmt::format(
-        "a packet of dispatch {:02x}, which is no active message, is ignored\n", dispatch);
+        "a packet of dispatch {:02x}, which is not an active message, is ignored\n", dispatch);
     return false;
   }
   trace::AmFrame frame;
   if (!read_packet(packet, frame)) {
     line_.line->close();
-    throw TargetBroken(fmt::format("a packet of {} bytes on the serial line is no active message",
-                                   packet.bytes.size()));
+    throw TargetBroken(fmt::format(
+        "a packet of {} bytes on the serial line is not an active message", packet.bytes.size()));
   }
   if (outputs_.size() >= kOutputsMax) {
     line_.line->close();
