@@ -24,6 +24,7 @@ using trace::Line;
 using trace::Op;
 
 constexpr Ticks kLateTicks = 1500;  // How long a missing output is awaited beyond its time.
+constexpr Ticks kGrainTicks = 10;   // Of an adapter's own clock, or of its rate in a second.
 
 // One case while it runs.
 class Run {
@@ -262,7 +263,8 @@ class Run {
     Ticks early = tolerance.early;
     if (const Window* stimulus = stimulus_at(node, timed, tolerance)) {
       from = stimulus->from;
-      early = std::min(early, (window.to - window.from) / 2);  // Both times are late alike.
+      // What is seen by the end happened by then: nothing but the clock's grain is uncertain.
+      early = std::min({early, kGrainTicks, (window.to - window.from) / 2});
     }
     if (window.to < from + early) return std::nullopt;
     return Window{from, window.to - early};
@@ -353,7 +355,7 @@ class Run {
   const trace::Case& case_;
   const trace::Scope scope_;
   const TargetFactory& make_;
-  trace::Place place_;            // Place of the current line.
+  trace::Place place_;  // Place of the current line.
   std::set<std::string> unseen_;
   bool unjudged_ = false;  // A line's window was too short.
   std::vector<NodeLog> nodes_;
