@@ -278,8 +278,8 @@ std::vector<CaseResult> run_with_application(const std::vector<std::string>& nam
       for (std::size_t i = first; i < names.size(); i += kAtOnce) {
         out[i] = run(*attachment, names[i]);
       }
-      attachment->finish();
-      EXPECT_EQ(attachment->take_mishaps().size(), 0U);
+      // Before it is asked to end: on a busy host that takes longer than anybody waits.
+      for (const Mishap& one : attachment->take_mishaps()) ADD_FAILURE() << one.text;
     });
   }
   for (std::thread& one : threads) one.join();
