@@ -16,6 +16,9 @@ struct Identity {
   std::string version;
   std::vector<machine::Role> roles;  ///< The roles that it can play.
   bool real_time = false;            ///< Its clock cannot be turned.
+  /// A node at its own line, not behind an adapter: cases that the line cannot decide are no
+  /// omission of the node.
+  bool own_line = false;
 };
 
 /// A fault while no case was running.
