@@ -107,7 +107,7 @@ std::vector<KnownFailure> read_one(const YAML::Node& node, KnownTo command,
         pair.second.IsNull() || (pair.second.IsScalar() && pair.second.Scalar().empty());
     if (name == "reason" && empty) throw Mistake{line, "reason is empty: say why this is known"};
     std::string& text = one.*key->text;
-    if (!text.empty()) throw Mistake{line, name + " stands here twice"};
+    if (!text.empty()) throw Mistake{line, name + " is given twice"};
     const bool is_list = name == "skip" && pair.second.IsSequence() && pair.second.size() > 0;
     if (is_list) {
       for (const YAML::Node& each : pair.second) listed_cases.push_back(scalar(each, name));
