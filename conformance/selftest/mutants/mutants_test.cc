@@ -99,6 +99,7 @@ TEST(Mutants, TheRightRuleIsBlamed) {
       "mutants are blamed for a rule of theirs\n",
       named_there.rules, named_there.right, blamed.rules, blamed.right, hit, killed);
   EXPECT_GT(blamed.right * named_there.rules, named_there.right * blamed.rules);
+  EXPECT_GT(blamed.right * 100, blamed.rules * 85);
 }
 
 TEST(Mutants, NamesAreUnique) {

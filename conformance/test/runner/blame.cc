@@ -62,9 +62,10 @@ constexpr Trait kDiffers[] = {
     {"S2-CONTENT", {"differs"}},   {"T2-CONTENT", {"differs"}},
 };
 
-// Ends of rules about what a message holds or where it goes, which no missing message breaks.
-constexpr std::string_view kOfContent[] = {"-CONTENT", "-ADDRESS", "-DEST", "-SEQ",
-                                           "-SRC",     "-WRAP",    "-ORDER"};
+// Ends of rules about what a message holds, where it goes, or that it is accepted, which no missing
+// message breaks.
+constexpr std::string_view kOfContent[] = {"-CONTENT", "-ADDRESS", "-DEST",  "-SEQ",
+                                           "-SRC",     "-WRAP",    "-ORDER", "-ROOM"};
 
 enum Fit { kNo, kPerhaps, kWell };
 

@@ -40,6 +40,7 @@ TEST(Blame, WhatIsMissingHasNoContent) {
   const Rules rules = {"J4-CONTENT", "J4-ACK"};
   EXPECT_EQ(blamed(rules, {"missing"}), "J4-ACK");
   EXPECT_EQ(blamed({"J4-ACK", "J4-CONTENT"}, {"differs", "dest"}), "J4-CONTENT");
+  EXPECT_EQ(blamed({"N1-ROOM", "N1-SEQ", "N2-QUEUE"}, {"missing"}), "N2-QUEUE");
   const Rules reply = {"J3-REPLY", "J3-SEQ", "J3-ADDRESS", "J3-DEST"};
   EXPECT_EQ(blamed(reply, {"differs", "seq_num"}), "J3-SEQ");
   EXPECT_EQ(blamed(reply, {"differs", "am"}), "J3-DEST");

@@ -195,7 +195,7 @@ NearestMiss NodeLog::nearest_miss(const trace::Line& line, const Window& window,
           fmt::format("nearest, at {}: {}: {}", outputs[i].time, text_of(outputs[i]), match.text()),
           {"differs"}};
       for (const trace::Difference& one : match.differences) {
-        miss.evidence.insert(one.path.substr(0, one.path.find('.')));
+        miss.evidence.insert(one.path.substr(0, one.path.find_first_of(". ")));
       }
     }
   }
