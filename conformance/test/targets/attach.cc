@@ -141,11 +141,12 @@ std::unique_ptr<Attachment> attach(const std::string& target, const Options& opt
     throw std::invalid_argument("a target has a name or is a command");
   }
   std::string_view text = target;
-  if (target == "machine") return std::make_unique<MachineAttachment>(nullptr);
-  if (cut(text, "machine:")) return flawed_machine(text);
   if (cut(text, "sf-server:")) return forwarder_server(text, options);
   if (cut(text, "sf:")) return forwarder_client(text, options);
   if (cut(text, "serial:")) return serial_line(text, options);
+  if (!options.app.empty()) throw std::invalid_argument("an app goes with sf-server, sf or serial");
+  if (target == "machine") return std::make_unique<MachineAttachment>(nullptr);
+  if (cut(text, "machine:")) return flawed_machine(text);
   return std::make_unique<RctAttachment>([target] { return Process::run(target); }, options);
 }
 
