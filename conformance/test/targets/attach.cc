@@ -75,7 +75,7 @@ bool cut_end(std::string_view& text, std::string_view end) {
 
 LineNode real_node(Role role, const char* where, std::uint32_t baud) {
   LineNode node;
-  node.identity = {fmt::format("{}_{}", role_word(role), where), "-", {role}, true};
+  node.identity = {fmt::format("{}_{}", role_word(role), where), "-", {role}, true, true};
   node.baud = baud;
   return node;
 }
