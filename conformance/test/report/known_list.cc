@@ -64,13 +64,13 @@ std::string what_was_missing(const std::string& reason) {
   return fmt::format("{} {}{}", command.substr(0, verb), what, reason.substr(end + 1));
 }
 
-struct Entry {
+struct KnownEntry {
   std::string rule;
   std::string cases;
   std::string message;
   std::string target;
   std::string profile;
-  auto operator<=>(const Entry&) const = default;
+  auto operator<=>(const KnownEntry&) const = default;
 };
 
 std::string limits(const std::string& target, const std::string& profile) {
@@ -137,7 +137,7 @@ class KnownList {
     }
   }
 
-  static std::string failure_entry(const Entry& entry, const std::string& reason) {
+  static std::string failure_entry(const KnownEntry& entry, const std::string& reason) {
     return fmt::format("- case: {}\n  requirement: {}\n  message: {}\n  reason: {}\n{}",
                        entry.cases, entry.rule, yaml_text(entry.message), yaml_text(reason),
                        limits(entry.target, entry.profile));
@@ -145,7 +145,7 @@ class KnownList {
 
   const SuiteRun& run_;
   const report::KnownFailures& known_;
-  std::map<Entry, std::string> failures_;  // With their reasons.
+  std::map<KnownEntry, std::string> failures_;  // With their reasons.
   std::map<std::tuple<std::string, std::string, std::string>, std::vector<std::string>> undecided_;
 };
 

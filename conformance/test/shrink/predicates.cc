@@ -87,7 +87,7 @@ DifferenceSearch find_difference(const std::vector<const trace::File*>& files, c
       const trace::File alone = only(*file, one);
       const CaseResult of_a = play(alone, a);
       const CaseResult of_b = play(alone, b);
-      const auto played = [](const CaseResult& one) { return one.verdict < CaseVerdict::kError; };
+      const auto played = [](const CaseResult& of) { return of.verdict < CaseVerdict::kError; };
       if (!played(of_a) || !played(of_b)) {
         ++search.skipped;
         continue;
