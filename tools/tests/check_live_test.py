@@ -88,7 +88,9 @@ class CheckLive(CheckTest):
                 os.write(line.fd, content[at:at + 1000])
                 time.sleep(0.01)
             if severity:
-                self.assertEqual(running.event("found", "T2-ACK")["finding"]["severity"], severity)
+                found = running.event("found")["finding"]
+                self.assertEqual(found["severity"], severity)
+                self.assertIn("What hosts send down its serial line", found["text"])
             frames = offline(path)[1]["counts"]["frames"]
             self.grown(kept, lambda: offline(kept)[1]["counts"]["frames"] > frames)
             code, report, err = running.report()

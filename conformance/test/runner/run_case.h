@@ -51,10 +51,10 @@ struct CaseResult {
   std::string name;
   CaseVerdict verdict = CaseVerdict::kPass;
   std::vector<Failure> failures;
-  std::string reason;  ///< Why it is inconclusive, skipped or an error.
+  std::string reason;            ///< Why it is inconclusive, skipped or an error.
   std::set<std::string> unseen;  ///< Links that it looks at and the target does not show.
   Ticks length = 0;              ///< Virtual time that passed.
-  trace::Case log;     ///< Everything that was given and came back.
+  trace::Case log;               ///< Everything that was given and came back.
 };
 
 /// Makes the implementation for a node under test.
