@@ -2,7 +2,6 @@
 #pragma once
 
 #include <fcntl.h>
-#include <netinet/in.h>
 #include <stdlib.h>
 #include <sys/socket.h>
 #include <termios.h>
@@ -12,6 +11,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "codec/lines/address.h"
 #include "codec/lines/forwarder.h"
 #include "codec/lines/serial.h"
 #include "conformance/test/targets/real_node.h"
@@ -26,13 +26,13 @@ inline std::uint16_t free_port() {
   static std::atomic<int> next = ::getpid() * 100;  // Far from those of another test.
   for (int tried = 0; tried < kPorts; ++tried) {
     const auto port = static_cast<std::uint16_t>(kFirst + next++ % kPorts);
-    const lines::Descriptor socket(::socket(AF_INET, SOCK_STREAM, 0));
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    address.sin_port = htons(port);
-    auto* const any = reinterpret_cast<sockaddr*>(&address);
-    if (::bind(socket.get(), any, sizeof address) == 0) return port;
+    const lines::SocketAddress address = lines::resolve("127.0.0.1", port, true).front();
+    const lines::Descriptor socket = lines::open_socket(address);
+    // A program that another thread starts may hold a copy of this socket for a while: with this
+    // option, as listeners have it, that copy does not keep the port.
+    const int on = 1;
+    ::setsockopt(socket.get(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
+    if (::bind(socket.get(), address.get(), address.size_bytes) == 0) return port;
   }
   throw std::runtime_error("no port is free");
 }
@@ -65,18 +65,19 @@ inline std::unique_ptr<MoteEnd> mote_at(std::uint16_t port) {
 /// A pseudo terminal in place of a serial device.
 class Terminal {
  public:
-  Terminal() : master_(::posix_openpt(O_RDWR | O_NOCTTY)) {
+  Terminal() : master_(::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC)) {
     if (!master_.is_open() || ::grantpt(master_.get()) != 0 || ::unlockpt(master_.get()) != 0) {
       throw std::runtime_error("no pseudo terminal");
     }
     char name[100];
     if (::ptsname_r(master_.get(), name, sizeof name) == 0) name_ = name;
-    slave_ = lines::Descriptor(::open(name_.c_str(), O_RDWR | O_NOCTTY));  // So that it stays.
+    slave_ = lines::Descriptor(
+        ::open(name_.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC));  // So that it stays.
   }
   const std::string& name() const { return name_; }
   std::unique_ptr<MoteEnd> mote_end() const {
     return std::make_unique<MoteEnd>([this](lines::SteadyTime) {
-      return lines::ByteStream(lines::Descriptor(::dup(master_.get())));
+      return lines::ByteStream(lines::Descriptor(::fcntl(master_.get(), F_DUPFD_CLOEXEC, 0)));
     });
   }
   termios settings() const {
