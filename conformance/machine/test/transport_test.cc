@@ -86,29 +86,6 @@ TEST_P(HearAck, CountsOrChangesNothing) {
 INSTANTIATE_TEST_SUITE_P(Transport, HearAck, testing::ValuesIn(kAcks),
                          [](const auto& row) { return std::string(row.param.name); });
 
-TEST(Awaited, T3_Once_DuplicateAndTimeoutAfterAckChangeNothing) {
-  AwaitedList list;
-  sent(list, Profile{}, 0, 7, kControl, kMote4);
-  Actions actions;
-  hear_ack(list, kMote4, kControl, 7, actions);
-  EXPECT_EQ(actions.notices().size(), 1U);
-  actions.clear();
-  hear_ack(list, kMote4, kControl, 7, actions);
-  ack_timeout(list, 0, actions);
-  EXPECT_TRUE(actions.notices().empty());
-  EXPECT_TRUE(list.empty());
-}
-
-TEST(Awaited, T3_Once_LateAckChangesNothing) {
-  AwaitedList list;
-  sent(list, Profile{}, 0, 7, kControl, kMote4);
-  Actions actions;
-  ack_timeout(list, 0, actions);
-  ASSERT_EQ(actions.notices().size(), 1U);
-  hear_ack(list, kMote4, kControl, 7, actions);
-  EXPECT_EQ(actions.notices().size(), 1U);
-}
-
 TEST(Awaited, T3_Timeout_IsFailureAfterTheProfilesTime) {
   AwaitedList list;
   Profile profile;
@@ -132,31 +109,6 @@ TEST(Awaited, T3_Timeout_NoneInAProfileWithout) {
   profile.ack_timeout_ticks = 0;
   sent(list, profile, 1000, 7, kControl, kMote4);
   EXPECT_EQ(list[0].due, 0U);
-}
-
-TEST(Awaited, T4_Several_EachAckEndsTheMessageItNames) {
-  AwaitedList list;
-  for (std::uint16_t i = 0; i < 4; ++i) {
-    const auto devid = static_cast<std::uint16_t>(4 + i);
-    sent(list, Profile{}, i, static_cast<std::uint16_t>(100 + i), kControl, {11, devid});
-  }
-  Actions actions;
-  hear_ack(list, {11, 6}, kControl, 102, actions);
-  ASSERT_EQ(list.size(), 3U);
-  EXPECT_FALSE(is_awaited(list, 102));
-  EXPECT_TRUE(is_awaited(list, 100) && is_awaited(list, 101) && is_awaited(list, 103));
-  ack_timeout(list, 1, actions);
-  EXPECT_FALSE(is_awaited(list, 101));
-  hear_ack(list, {11, 7}, kControl, 103, actions);
-  hear_ack(list, {11, 4}, kControl, 100, actions);
-  EXPECT_TRUE(list.empty());
-  const std::vector<std::pair<std::uint16_t, bool>> expected = {
-      {102, true}, {101, false}, {103, true}, {100, true}};
-  ASSERT_EQ(actions.notices().size(), expected.size());
-  for (std::size_t i = 0; i < expected.size(); ++i) {
-    const auto& told = std::get<AckReceived>(actions.notices()[i]);
-    EXPECT_EQ(std::pair(told.seq_num, told.success), expected[i]);
-  }
 }
 
 TEST(Awaited, FullListKeepsWhatItHas) {
