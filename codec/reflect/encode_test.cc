@@ -181,10 +181,10 @@ const Row kBad[] = {
     bad("NotOneOf", "four_or_six", integer(5), "expected 4 or 6, given 5"),
     bad("OutOfRange", "seven", integer(8), "expected a number from 7 to 7, given 8"),
     bad("UnknownField", "litle", integer(1),
-        "is no field of scalars here, which has colour, flags, little, signed, real, "
+        "is not a field of scalars here, which has colour, flags, little, signed, real, "
         "four_or_six, seven, eight, if_red"),
     bad("ConditionFalse", "if_red", integer(1),
-        "is no field of scalars here, which has colour, flags, little, signed, real, "
+        "is not a field of scalars here, which has colour, flags, little, signed, real, "
         "four_or_six, seven, eight, if_red"),
 };
 
@@ -367,7 +367,8 @@ TEST(Encode, OpaqueInPlaceOfInterpretation) {
   EXPECT_EQ(outcome(toy::kBody, object({{"kind", integer(3)}})), "03");
   Value both = body(3, "payload", string("0105"));
   both.set("body", object({}));
-  EXPECT_EQ(outcome(toy::kBody, both), "body: is no field of body here, which has kind, payload");
+  EXPECT_EQ(outcome(toy::kBody, both),
+            "body: is not a field of body here, which has kind, payload");
 }
 
 TEST(ParseHex, Rows) {

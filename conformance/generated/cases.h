@@ -17,7 +17,7 @@ struct CaseUse {
 };
 
 /// By file, then as they stand there; each case once for a rule and a sign.
-inline constexpr std::array<CaseUse, 1220> kCaseUses{{
+inline constexpr std::array<CaseUse, 1225> kCaseUses{{
     {"j1.request", "conformance/cases/j1.rtr", "J1-REQUEST"_rule, false},
     {"j1.request", "conformance/cases/j1.rtr", "J1-DEST"_rule, true},
     {"j1.request", "conformance/cases/j1.rtr", "J1-REQUEST"_rule, true},
@@ -1297,6 +1297,11 @@ inline constexpr std::array<CaseUse, 1220> kCaseUses{{
     {"two_sinks.lost_reply", "conformance/cases/scenarios/two_sinks.rtr", "J6-ISLAND"_rule, true},
     {"two_sinks.lost_reply", "conformance/cases/scenarios/two_sinks.rtr", "N5-FOREIGN"_rule, true},
     {"two_sinks.lost_reply", "conformance/cases/scenarios/two_sinks.rtr", "J7-ONE"_rule, true},
+    {"seeded.mote", "conformance/cases/seeded.rtr", "J1-REQUEST"_rule, false},
+    {"seeded.mote", "conformance/cases/seeded.rtr", "J4-CONTENT"_rule, false},
+    {"seeded.mote", "conformance/cases/seeded.rtr", "J5-SUCCESS"_rule, false},
+    {"seeded.sink", "conformance/cases/seeded.rtr", "T2-CONTENT"_rule, false},
+    {"seeded.base_station", "conformance/cases/seeded.rtr", "T2-CONTENT"_rule, false},
     {"t2.sink_line", "conformance/cases/serial_line.rtr", "T2-ACK"_rule, false},
     {"t2.sink_line", "conformance/cases/serial_line.rtr", "T2-CONTENT"_rule, false},
     {"t2.sink_line", "conformance/cases/serial_line.rtr", "T2-ONCE"_rule, true},

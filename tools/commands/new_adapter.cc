@@ -6,7 +6,10 @@
 #include <memory>
 #include <string>
 #include <system_error>
+#include <utility>
+#include <vector>
 
+#include "conformance/test/report/known_list.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/output.h"
 #include "tools/commands/commands.h"
@@ -17,10 +20,13 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kNewAdapterFooter =
-    "What it writes answers every command of rct/1 and runs a node that does almost nothing; TODO\n"
-    "marks where your implementation goes. conformance/PORTING.md goes on from there.\n"
+    "The skeleton answers every command of rct/1 with a node that does almost nothing; TODO marks\n"
+    "where your implementation goes; known.yaml lists the cases that it cannot decide yet.\n"
+    "conformance/PORTING.md says how to go on.\n"
     "Files that exist are never overwritten.\n"
     "Exit codes: 0 written, 2 usage, 3 something could not be written, and then nothing was.";
+
+constexpr const char* kKnown = "known.yaml";
 
 struct Language {
   const char* name;
@@ -55,37 +61,37 @@ void write_skeleton(const NewAdapterOptions& options) {
   std::error_code error;
   fs::create_directories(options.out, error);
   if (error) refuse(options.out, error.message());
-  std::vector<const SkeletonFile*> files;
+  std::vector<std::pair<fs::path, std::string>> files;
   for (const SkeletonFile& file : skeleton_files()) {
-    if (file.language != language.name) continue;
-    const fs::path path = fs::path(options.out) / file.name;
+    if (file.language == language.name) files.emplace_back(file.name, file.text);
+  }
+  files.emplace_back(kKnown, suite::list_to_begin_with(suite::Cases::own(), machine::Role::kMote));
+  for (auto& [path, text] : files) {
+    path = fs::path(options.out) / path;
     if (fs::exists(fs::symlink_status(path, error))) {
       refuse(path.string(), "it exists, and may hold your work");
     }
-    files.push_back(&file);
   }
-  for (const SkeletonFile* file : files) {
-    const fs::path path = fs::path(options.out) / file->name;
-    if (!cli::write_file(path.string(), file->text)) cli::exit_with(cli::kExitInput);
+  for (const auto& [path, text] : files) {
+    if (!cli::write_file(path.string(), text)) cli::exit_with(cli::kExitInput);
     fmt::print("wrote {}\n", path.lexically_normal().string());
   }
   fmt::print("Next:\n");
   if (options.out != ".") fmt::print("  cd {}\n", options.out);
   if (*language.build) fmt::print("  {}\n", language.build);
-  fmt::print("  rubric test --target '{}'\n", language.target);
+  fmt::print("  rubric test --target '{}' --expect {}\n", language.target, kKnown);
 }
 
 }  // namespace
 
 void add_new_adapter(cli::Command& app) {
   auto options = std::make_shared<NewAdapterOptions>();
-  cli::Command& sub =
-      app.add_subcommand("new-adapter", "Write an adapter to fill with an implementation");
+  cli::Command& sub = app.add_subcommand("new-adapter", "Write the skeleton of an adapter");
   sub.footer(kNewAdapterFooter);
   sub.add_option("LANGUAGE", options->language, "python, cpp or java")
       .required()
       .one_of({"python", "cpp", "java"});
-  sub.add_option("--out", options->out, "Folder for its files").show_default();
+  sub.add_option("--out", options->out, "Write its files into this folder").show_default();
   sub.callback([options] { write_skeleton(*options); });
 }
 

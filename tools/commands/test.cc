@@ -16,6 +16,7 @@
 #include "conformance/test/report/html.h"
 #include "conformance/test/report/json.h"
 #include "conformance/test/report/junit.h"
+#include "conformance/test/report/known_list.h"
 #include "conformance/test/report/tap.h"
 #include "conformance/test/report/text/text.h"
 #include "conformance/test/suite/run.h"
@@ -45,23 +46,26 @@ constexpr const char* kTestFooter =
     "  sf-server:PORT            a base station that connects to a Serial Forwarder: to us\n"
     "  sf:HOST:PORT              a sink behind a Serial Forwarder\n"
     "  serial:DEVICE[:BAUD]      a sink at a serial line; serial:tcp:HOST:PORT at an emulator's\n"
-    "  sf:HOST:PORT:mote         a mote there; serial:...:mote too. Its line decides nothing.\n"
-    "Without TRACES it is tried with the kit's own golden traces, which the program carries with\n"
-    "it.\n"
+    "  sf:HOST:PORT:mote         a mote there, also serial:...:mote; its line decides nothing\n"
+    "A line shows a part of a node; --app COMMAND adds its application, for cases that need it.\n"
+    "Without TRACES it is tested with the kit's own golden traces, which the program contains.\n"
     "Examples:\n"
     "  rubric test --target ./my_adapter\n"
     "  rubric test --target 'python3 mote.py' --role mote --requirement J --quiet\n"
     "  rubric test --target ./a --target ./b --jobs 4 --expect known.yaml --report out\n"
     "  rubric test --list --requirement J4-SEQ\n"
-    "Before a case is worked each implementation has to refuse an unknown command, and to fail\n"
-    "cases that nobody can pass.\n"
-    "Exit codes: 0 as expected (weak results and skipped cases included), 1 a failure that nobody\n"
-    "expected, or an expectation that is not true, 2 an implementation or the kit broke (between\n"
-    "cases, too), or was not honest, 3 nothing was decided, 64 usage, 66 traces cannot be read.";
+    "Before its first case each implementation has to refuse an unknown command, and to fail\n"
+    "cases that no implementation can pass.\n"
+    "Exit codes: 0 as expected, 1 an unexpected failure, or an expectation that is not true, 2 an\n"
+    "implementation or the kit broke (between cases, too), or was not honest, 3 incomplete: a "
+    "case\n"
+    "of a role that it plays was not decided, and --expect does not list it with a reason;\n"
+    "64 usage, 66 traces cannot be read.";
 
 struct TestOptions {
   std::vector<std::string> traces;
   std::vector<std::string> targets;
+  std::string app;
   suite::Selection selection;
   std::string profile;
   std::string role;
@@ -71,6 +75,8 @@ struct TestOptions {
   unsigned jobs = 1;
   double timeout_s = 5;
   std::string expect;
+  std::string write_expect;
+  std::size_t rules_required = 0;
   std::string format = "text";
   std::string out = "-";
   std::string report;
@@ -209,11 +215,14 @@ suite::SuiteRun work(const TestOptions& options, const suite::Cases& cases, suit
   suite::SuiteRun all;
   all.traces = options.traces;
   all.shard = options.shard;
+  all.app = options.app;
   all.seed = options.seed.value_or(0);
+  all.rules_required = options.rules_required;
   if (!options.profile.empty()) all.profile = options.profile;
   targets::Options attached;
   attached.step_timeout = Milliseconds(static_cast<std::int64_t>(options.timeout_s * 1000));
   attached.start_timeout = std::max(attached.start_timeout, attached.step_timeout);
+  attached.app = options.app;
   const std::size_t worked = plan.cases.size() * plan.repeats;
   cli::Progress progress(worked * options.targets.size(), true, cli::Progress::Unit::kCases);
   for (const std::string& target : options.targets) {
@@ -229,7 +238,7 @@ suite::SuiteRun work(const TestOptions& options, const suite::Cases& cases, suit
     };
     all.implementations.push_back(suite::run(target, make, plan, watcher));
     const suite::ImplementationRun& run = all.implementations.back();
-    text.add(suite::story_text(all, run, how) + suite::totals_text(run, how));
+    text.add(suite::story_text(all, run, how) + suite::totals_text(all, run, how));
   }
   all.stale = suite::untrue(plan.expected, all, cases);
   if (earlier) text.add(suite::changes_text(all, *earlier, options.compare, how));
@@ -271,7 +280,9 @@ int run_test(const TestOptions& options) {
   if (options.targets.empty()) throw cli::UsageError("--target is required");
   for (const std::string& target : options.targets) {
     try {
-      targets::attach(target, {});
+      targets::Options attached;
+      attached.app = options.app;
+      targets::attach(target, attached);
     } catch (const std::invalid_argument& error) {
       throw cli::UsageError("--target", fmt::format("'{}': {}", target, error.what()));
     }
@@ -289,24 +300,27 @@ int run_test(const TestOptions& options) {
   how.verbose = options.verbose;
   how.times = options.verbose || (fd >= 0 && isatty(fd) == 1);
   Text text(options, options.format == "text");
+  const report::KnownFailures expected = plan.expected;
   const suite::SuiteRun all = work(options, cases, std::move(plan), earlier, how, text);
   const bool told = text.finish(options);
-  const bool written = write_formats(options, all, earlier);
+  const bool written = write_formats(options, all, earlier) &&
+                       (options.write_expect.empty() ||
+                        cli::write_file(options.write_expect, suite::known_list(all, expected)));
   return written && told ? suite::exit_code(all) : cli::kVerdictBroken;
 }
 
 void add_selection(cli::Command& command, TestOptions& options) {
   command.add_option("TRACES", options.traces,
                      "Golden traces, .rtr files or folders of them (the kit's own)");
-  command.add_option("--cases", options.selection.globs, "Cases whose names are like this: 'j4.*'")
+  command.add_option("--cases", options.selection.globs, "Run only cases with such names: 'j4.*'")
       .check(cli::given);
   command
       .add_option("--requirement", options.selection.requirements,
-                  "Cases that try this rule or family: J4-SEQ, J4, J")
+                  "Run only cases that try this rule or family: J4-SEQ, J4, J")
       .check(cli::given);
-  command.add_option("--role", options.role, "Cases with a node of this role under test")
+  command.add_option("--role", options.role, "Run only cases with a node of this role under test")
       .one_of({"mote", "sink", "base_station"});
-  command.add_option("--shard", options.shard, "I/N: the Ith of N parts of the cases")
+  command.add_option("--shard", options.shard, "Run only the Ith of N parts of the cases: I/N")
       .check(cli::given);
   command.add_flag("--list", options.list,
                    "Print names, roles and rules of the cases, as text or JSON");
@@ -315,30 +329,47 @@ void add_selection(cli::Command& command, TestOptions& options) {
 void add_options(cli::Command& command, TestOptions& options) {
   command
       .add_option("--target", options.targets,
-                  "An implementation: a command, or machine; again for another one")
+                  "Test this implementation: a command, or machine; again for another one")
+      .check(cli::given);
+  command
+      .add_option("--app", options.app,
+                  "Show the application of a node at its line by this command, and perhaps PEIS")
       .check(cli::given);
   add_selection(command, options);
   command
       .add_option("--profile", options.profile,
-                  "paper or deployed, whatever the traces say: what nodes are told to keep to")
+                  "Tell nodes to keep to paper or deployed, whatever the traces say")
       .one_of({"paper", "deployed"});
   command
       .add_option("--seed", options.seed,
-                  "Of what is random in nodes, where a trace has none; 0 to 65535")
+                  "Seed what is random in nodes, where a trace has no seed; 0 to 65535")
       .check(cli::whole_number);
   command
-      .add_option("--repeat", options.repeats, "Each case so often, each time with the next seed")
+      .add_option("--repeat", options.repeats,
+                  "Run each case this many times, each time with the next seed")
       .between(1, 10000)
       .show_default();
-  command.add_option("--jobs", options.jobs, "Cases at once, on a process each; 0: cores")
+  command
+      .add_option("--jobs", options.jobs,
+                  "Run this many cases at once, each in a process; 0: one a core")
       .between(0, 256)
       .show_default();
-  command.add_option("--timeout", options.timeout_s, "Seconds that a step may take")
+  command.add_option("--timeout", options.timeout_s, "Wait at most this many seconds for a step")
       .between(0.01, 3600.0)
       .show_default();
-  command.add_option("--expect", options.expect, "Known failures with their reasons, as YAML")
+  command
+      .add_option("--expect", options.expect,
+                  "Read known failures with their reasons from this YAML file")
       .check(cli::given);
-  command.add_option("--format", options.format, "text, json (rubric.test/1), junit or tap")
+  command
+      .add_option("--write-expect", options.write_expect,
+                  "Write such a file: what failed or was not decided, with reasons to fill in")
+      .check(cli::given);
+  command
+      .add_option("--require-rules", options.rules_required,
+                  "Require that so many rules are decided, else the run is incomplete")
+      .check(cli::whole_number);
+  command.add_option("--format", options.format, "Print text, json (rubric.test/1), junit or tap")
       .one_of({"text", "json", "junit", "tap"})
       .show_default();
   command.add_option("--out", options.out, "Write to this file; - is stdout")
@@ -350,11 +381,13 @@ void add_options(cli::Command& command, TestOptions& options) {
       .check(cli::given);
   command
       .add_option("--compare", options.compare,
-                  "report.json of an earlier run: say which verdicts have changed")
+                  "Say which verdicts have changed since this report.json")
       .check(cli::given);
-  command.add_flag("--quiet", options.quiet, "Text: no lines for cases that are as expected");
-  command.add_flag("--verbose", options.verbose, "Text: every failure in full");
-  command.add_option("--width", options.width, "Text: columns (those of the terminal, else 100)")
+  command.add_flag("--quiet", options.quiet, "Print no lines for cases that are as expected");
+  command.add_flag("--verbose", options.verbose, "Print every failure in full");
+  command
+      .add_option("--width", options.width,
+                  "Wrap text at this many columns (default: the terminal's, else 100)")
       .between(cli::kColumnsMin, std::size_t{1000});
   cli::add_color_option(command, options.color);
   for (const char* name : {"--target", "--cases", "--requirement"}) {
@@ -365,7 +398,7 @@ void add_options(cli::Command& command, TestOptions& options) {
 }  // namespace
 
 void add_test(cli::Command& app) {
-  cli::Command& command = app.add_subcommand(kCommand, "Try implementations with golden traces");
+  cli::Command& command = app.add_subcommand(kCommand, "Test implementations with golden traces");
   auto options = std::make_shared<TestOptions>();
   add_options(command, *options);
   command.footer(kTestFooter);

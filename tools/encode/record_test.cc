@@ -155,10 +155,9 @@ const Row kRows[] = {
           "framing: expected \"hdlc\", \"sf\", \"radio\" or \"bare\", given \"x\""),
     radio("UnknownDirection", {{"direction", "\"up\""}},
           "direction: expected \"inbound\", \"outbound\" or null, given \"up\""),
-    radio(
-        "BadTime", {{"time", "\"x\""}},
-        "time: expected seconds as a decimal number with at most nine digits behind the point, or "
-        "null, given \"x\""),
+    radio("BadTime", {{"time", "\"x\""}},
+          "time: expected seconds as a decimal number with at most nine digits after the point, or "
+          "null, given \"x\""),
     radio("FrameNoObject", {{"frame", "3"}}, "frame: expected an object or null, given 3"),
     radio("NumberTooLarge", {{"frame.fcs", "65536"}},
           "frame.fcs: expected a number from 0 to 65535, given 65536"),

@@ -23,7 +23,7 @@ from serial_testing import PATIENCE_S, Pty, hdlc, holds
 
 
 class CheckLive(CheckTest):
-    def test_a_failure_is_told_while_the_line_is_open(self):
+    def test_a_failure_is_reported_while_the_line_is_open(self):
         kept = self.folder / "kept.pcapng"
         running, _ = self.served(data(BROKEN_LINE), "--format", "jsonl", "--write", kept)
         found = running.event("found", "J6-CONTENT")["finding"]
@@ -68,7 +68,7 @@ class CheckLive(CheckTest):
         self.assertEqual(running.end()[0], 1)
         self.assertEqual(json.loads(where.read_text())["verdict"], "fail")
 
-    def test_what_is_expected_is_told_as_that(self):
+    def test_what_is_expected_is_reported_as_expected(self):
         known = self.folder / "known.yaml"
         known.write_text("- requirement: J6-CONTENT\n  message: serial_joined\n  reason: Old.\n")
         running, _ = self.served(data(BROKEN_LINE), "--expect", known)
@@ -88,7 +88,9 @@ class CheckLive(CheckTest):
                 os.write(line.fd, content[at:at + 1000])
                 time.sleep(0.01)
             if severity:
-                self.assertEqual(running.event("found", "T2-ACK")["finding"]["severity"], severity)
+                found = running.event("found")["finding"]
+                self.assertEqual(found["severity"], severity)
+                self.assertIn("What hosts send down its serial line", found["text"])
             frames = offline(path)[1]["counts"]["frames"]
             self.grown(kept, lambda: offline(kept)[1]["counts"]["frames"] > frames)
             code, report, err = running.report()
@@ -147,7 +149,7 @@ class CheckLive(CheckTest):
         self.assertEqual((code, report), offline(path))
         self.assertNotIn("J3-REPLY", [one["requirement"] for one in report["findings"]])
 
-    def test_what_is_told_is_what_is_reported(self):
+    def test_what_is_reported_live_is_in_the_last_report(self):
         for capture in (MANY, SERIAL_TOO):
             path = self.folder / capture.name
             path.write_bytes(b"")

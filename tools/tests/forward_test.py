@@ -230,7 +230,7 @@ class Clients(unittest.TestCase):
         self.assertEqual(running.end(None),
                          (3, "rubric: cannot wait for source and clients: Invalid argument"))
 
-    def test_what_is_cut_short_behind_whole_packets(self):
+    def test_what_is_cut_short_after_whole_packets(self):
         mote, running = serving(self, "--timeout", str(1000 * PATIENCE_S))
         first, client = Client(self, running), Client(self, running)
         first.give(packet(1))

@@ -185,7 +185,7 @@ const Damage kDamages[] = {
      16, 0},
 };
 
-TEST(WirePcapng, DamageIsToldAndTheNextBlockFound) {
+TEST(WirePcapng, DamageIsReportedAndTheNextBlockFound) {
   for (const Damage& row : kDamages) {
     File file;
     file.section();

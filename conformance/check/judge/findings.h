@@ -7,13 +7,15 @@
 
 #include "codec/reflect/requirements.h"
 #include "conformance/check/finding.h"
+#include "conformance/check/observation.h"
 #include "conformance/machine/profile.h"
 
 namespace rubric::check {
 
 class Findings {
  public:
-  explicit Findings(bool deployed);
+  /// No episode goes on across one of `steps`.
+  Findings(bool deployed, const std::vector<ClockStep>& steps);
 
   /// Adds a finding. Repeats of a rule by a node within 600 ms of the last one are one episode. A
   /// difference that the profile accepts becomes a note.
@@ -36,6 +38,7 @@ class Findings {
   bool accepted(ReqId requirement) const;
 
   machine::Profile profile_;
+  const std::vector<ClockStep>& steps_;
   bool deployed_ = false;
   std::vector<Finding> all_;
   std::vector<std::size_t> open_;  // Episodes that may go on, in all_.

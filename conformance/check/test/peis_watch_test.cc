@@ -75,7 +75,7 @@ TEST(PeisWatch, WhatComesIsHandedToTheSink) {
   EXPECT_EQ(found_by_end(came), "N8-INCOMING");
 }
 
-TEST(PeisWatch, AsItCame) {
+TEST(PeisWatch, AMessageLeavesAsItCame) {
   const std::string came = up(1000, kToMote) + peis(1025, kToMote);
   EXPECT_EQ(fails(came + at(1031, "bB > serB am=0->1 " + kOther)), "N8-INCOMING");
   EXPECT_EQ(fails(came + at(1031, "bB > serB am=0->1 " + kToMote) +
@@ -92,6 +92,16 @@ TEST(PeisWatch, WhatTheSinkSendsGoesToPeis) {
 
 TEST(PeisWatch, ToTheIslandThatIsMeant) {
   EXPECT_EQ(fails(up(1000, kToPc) + at(1025, "bA > peis am=11->13 " + kToPc)), "N8-PEIS");
+}
+
+// What is odd about a message that has no business on PEIS has that one cause.
+TEST(PeisWatch, WhatNothingMayPutThereIsOneFinding) {
+  const std::string own = "am(28 x000b0002000bfffd010077040305beef)";
+  const std::string once = at(1025, "bA > peis am=11->11 " + own);
+  EXPECT_EQ(fails(once), "N8-PEIS");
+  EXPECT_EQ(fails(once + at(1040, "bA > peis am=11->11 " + own)), "N8-PEIS");
+  const std::string there = "am(28 x000c0002000bfffd010077040305beef)";
+  EXPECT_EQ(fails(peis(1025, there) + peis(1040, there)), "T3-RESEND");
 }
 
 // An ack from another island ends the message; a wrong one does not.

@@ -72,7 +72,7 @@ TEST(Outgoing, SerialHoldsTwo) {
   EXPECT_EQ(base.state.island, kIsland);
 }
 
-TEST(Outgoing, ForwardThatFindsNoPlaceIsLostAndSaidSo) {
+TEST(Outgoing, AForwardThatFindsNoPlaceIsReportedAsLost) {
   Device sink(sink_config());
   OwnFrame up = heard(1, 1);
   up.payload = net_msg({{kIsland, kNullDevid}, {kIsland, 5}});
@@ -154,7 +154,7 @@ TEST(Outgoing, T3Timeout_WaitingForTheRadioDoesNotCount) {
 }
 
 // A forwarded message with the number of an own one that waits does not start its time.
-TEST(Outgoing, T3Timeout_ForwardsStartNobodysTime) {
+TEST(Outgoing, T3Timeout_ForwardsStartNoTimeout) {
   Device sink(sink_config());
   sink.step(LinkBusy{Link::kRadio, true});
   OwnFrame down = heard(1, 1);
@@ -236,7 +236,7 @@ TEST(Control, N10_OffSendsAndHearsNothing) {
   EXPECT_EQ(mark_of(mote.call(message(3)).only_frame()), 3);
 }
 
-TEST(Control, WhatWaitedLeavesWhenSwitchedOn) {
+TEST(Control, WaitingMessagesLeaveWhenTheLineIsSwitchedOn) {
   Device mote = member(5);
   mote.call(message(1)).call(message(2));
   mote.call(SetInterface{Link::kRadio, false});

@@ -213,7 +213,7 @@ TEST(Receive, UnknownAmTypesAreIgnored) {
   }
 }
 
-TEST(Forward, N6_UpTheSerialLineWithZerosBehind) {
+TEST(Forward, N6_UpTheSerialLineFilledWithZeros) {
   Device sink(sink_config());
   const NetFields fields{{kOther, 9}, {kIsland, 5}, true, 0x1234};
   sink.hear(on_radio(1, fields));

@@ -214,8 +214,8 @@ void add_messages(Variants& out) {
                  })});
   out.push_back({"app_id_learning", "Synaptic data have APPID LEARNING (120).",
                  sent_field(is_synaptic, net::kAppId, 6)});
-  out.push_back(
-      {"told_first", "What is told comes before what is sent, in a step.", always(other_order)});
+  out.push_back({"told_first", "In a step, events for the application come before frames.",
+                 always(other_order)});
   out.push_back({"own_frames_besides", "A mote beacons with a type of its own now and then.",
                  after_step([](Moment& moment) {
                    const bool idle = moment.actions.transmits().empty() && is_member(moment) &&

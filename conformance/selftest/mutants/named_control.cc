@@ -54,11 +54,11 @@ void add_switches(Mutants& out) {
         other.link = set->link == Link::kRadio ? Link::kSerial : Link::kRadio;
         moment.honest(machine::Called{other});
       }));
-  add(out, "interface_state_constant", "The state of an interface is told as on.",
+  add(out, "interface_state_constant", "The state of an interface is reported as on.",
       {"N10-STATE"_rule},
       edit_told<machine::InterfaceState>(
           [](Moment&, machine::InterfaceState& told) { told.on = true; }));
-  add(out, "interface_state_inverted", "The state of an interface is told as its opposite.",
+  add(out, "interface_state_inverted", "The state of an interface is reported as its opposite.",
       {"N10-STATE"_rule},
       edit_told<machine::InterfaceState>(
           [](Moment&, machine::InterfaceState& told) { told.on = !told.on; }));

@@ -116,7 +116,7 @@ void add_sink_down(Mutants& out) {
       edit_sent(down, [](Moment&, Transmit& frame) { frame.dest = machine::kAmBroadcast; }));
   add(out, "radiated_signed_by_the_sink", "What a sink sends on has the sink as its source.",
       {"N7-CONTENT"_rule, "N7-RADIO"_rule}, sent_field(down, net::kSrcDevid, 1));
-  add(out, "radiated_with_stale_bytes", "A sink radiates the bytes behind the payload.",
+  add(out, "radiated_with_stale_bytes", "A sink radiates the bytes after the payload.",
       {"N7-CONTENT"_rule}, edit_sent([](Moment& moment, Transmit& frame) {
         const Frame* const heard = moment.heard();
         if (heard == nullptr || !down(moment, frame)) return;
@@ -162,7 +162,7 @@ void add_base_station(Mutants& out) {
       {"N8-PEIS"_rule},
       drop_sent([](const Moment&, const Transmit& frame) { return frame.link == Link::kPeis; }));
   add(out, "peis_to_the_wrong_island",
-      "A base station hands everything to an island that nobody meant.", {"N8-PEIS"_rule},
+      "A base station sends everything to an island that was not meant.", {"N8-PEIS"_rule},
       edit_sent([](Moment& moment, Transmit& frame) {
         if (frame.link == Link::kPeis) {
           frame.dest = static_cast<std::uint16_t>(own(moment).pid + 2);

@@ -84,7 +84,7 @@ void succeeds_twice(Moment& moment) {
 }
 
 void add_join_ends(Mutants& out) {
-  add(out, "joined_with_own_id_only", "joined(SUCCESS) tells an address without the island.",
+  add(out, "joined_with_own_id_only", "joined(SUCCESS) has an address without the island.",
       {"J5-SUCCESS"_rule}, edit_told<Joined>([](Moment&, Joined& joined) {
         if (joined.success) joined.address.pid = 0;
       }));

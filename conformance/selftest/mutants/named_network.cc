@@ -245,7 +245,7 @@ void add_motes(Mutants& out) {
       hear_only([](const Moment& moment, const Frame& frame) {
         return !delivers(moment, frame) || frame.src == 1;
       }));
-  add(out, "foreign_island_delivered", "A mote looks at the devid alone.", {"N5-FOREIGN"_rule},
+  add(out, "foreign_island_delivered", "A mote compares the devid alone.", {"N5-FOREIGN"_rule},
       edit_heard(delivers, [](Moment& moment, Forged& forged) {
         put(forged, net::kDestPid, own(moment).pid);
       }));

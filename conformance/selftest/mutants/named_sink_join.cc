@@ -169,11 +169,11 @@ void add_acks(Mutants& out) {
           if (member != nullptr) sink.pending.push(*member);
         }
       }));
-  add(out, "mote_joined_silently", "A sink tells its application of no member.", {"J6-ADD"_rule},
+  add(out, "mote_joined_silently", "A sink reports no member to its application.", {"J6-ADD"_rule},
       on_told_of<MoteJoined>([](Moment&, MoteJoined&) { return Fate::kDrop; }));
   add(out, "mote_joined_without_descriptor", "moteJoined has an empty descriptor.", {"J6-ADD"_rule},
       edit_told<MoteJoined>([](Moment&, MoteJoined& joined) { joined.descriptor = {}; }));
-  add(out, "not_reported", "A sink tells its base station of no member.",
+  add(out, "not_reported", "A sink reports no member to its base station.",
       {"J6-REPORT"_rule, "J6-CONTENT"_rule}, drop_sent(is_report));
   add(out, "reported_twice", "A sink reports a member twice.", {"J6-REPORT"_rule, "J6-REPEAT"_rule},
       double_sent(is_report));

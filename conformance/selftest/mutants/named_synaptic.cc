@@ -104,7 +104,7 @@ void add_operations(Mutants& out) {
         if (read == nullptr) return moment.honest();
         moment.honest(machine::Called{machine::ReadInput{read->id, 0}});
       }));
-  add(out, "read_past_the_end", "read_input_value tells 0 behind the end.",
+  add(out, "read_past_the_end", "read_input_value returns 0 after the end.",
       {"S1-READ"_rule, "S1-LIMIT"_rule},
       edit_told<InputValue>([](Moment&, InputValue& value) { value.success = true; }));
   add(out, "read_swapped", "Values are read in network order.", {"S1-READ"_rule, "S1-ENLARGE"_rule},

@@ -40,14 +40,17 @@ Json counts(const VerdictCounts& counted) {
 }
 
 Json failure(const runner::Failure& one) {
-  return {{"requirements", one.requirements}, {"weak", one.weak},         {"line", one.place.line},
-          {"time_ticks", one.time},           {"expected", one.expected}, {"text", one.text}};
+  return {
+      {"requirements", one.requirements}, {"suspected", one.suspected}, {"weak", one.weak},
+      {"implied", one.implied},           {"crash", one.crash},         {"line", one.place.line},
+      {"time_ticks", one.time},           {"expected", one.expected},   {"text", one.text}};
 }
 
 Json requirement(const RequirementSummary& one) {
   return {{"id", trace::requirement_text(one.requirement)},
           {"cases", counts(one.cases)},
-          {"broken", one.broken}};
+          {"broken", one.broken},
+          {"suspected", one.suspected}};
 }
 
 Json implementation(const ImplementationRun& run) {
@@ -73,13 +76,13 @@ const Json& member(const Json& object, const char* key, const std::string& place
 
 std::string text_of(const Json& object, const char* key, const std::string& place) {
   const Json& value = member(object, key, place);
-  if (!value.is_string()) throw std::runtime_error(fmt::format("{}: {} is no text", place, key));
+  if (!value.is_string()) throw std::runtime_error(fmt::format("{}: {} is not text", place, key));
   return value.get<std::string>();
 }
 
 const Json& list_of(const Json& object, const char* key, const std::string& place) {
   const Json& value = member(object, key, place);
-  if (!value.is_array()) throw std::runtime_error(fmt::format("{}: {} is no list", place, key));
+  if (!value.is_array()) throw std::runtime_error(fmt::format("{}: {} is not a list", place, key));
   return value;
 }
 
@@ -97,6 +100,7 @@ Json case_json(const CaseRun& one) {
           {"seed", one.seed},
           {"verdict", runner::verdict_text(one.result.verdict)},
           {"unexpected", one.unexpected()},
+          {"owed", one.owed},
           {"expectation", expectation_text(one.expectation)},
           {"expected_reason", one.expected_reason},
           {"reason", one.result.reason},
@@ -121,6 +125,7 @@ Json implementation_json(const ImplementationRun& run) {
           {"real_time", run.identity.real_time},
           {"dishonest", run.dishonest},
           {"outside", std::move(outside)},
+          {"own_line", run.identity.own_line},
           {"wall_ms", run.wall_ms},
           {"counts", counts(count(run))}};
 }
@@ -143,6 +148,7 @@ std::string json_report(const SuiteRun& run) {
                     {"seed", run.seed},
                     {"shard", run.shard},
                     {"traces", run.traces},
+                    {"rules_required", run.rules_required},
                     {"exit_code", exit_code(run)},
                     {"implementations", std::move(implementations)},
                     {"stale", stale_json(run)}};
@@ -168,7 +174,7 @@ EarlierRun read_json_report(std::string_view text) {
   try {
     all = Json::parse(text);
   } catch (const Json::parse_error& error) {
-    throw std::runtime_error(fmt::format("byte {}: this is no JSON", error.byte));
+    throw std::runtime_error(fmt::format("byte {}: this is not JSON", error.byte));
   }
   const std::string schema = text_of(all, "schema", "the report");
   if (schema != kSchema) {
@@ -188,7 +194,7 @@ EarlierRun read_json_report(std::string_view text) {
       const std::string verdict = text_of(each, "verdict", where);
       const Json& repeat = member(each, "repeat", where);
       if (!repeat.is_number_unsigned()) {
-        throw std::runtime_error(fmt::format("{}: repeat is no number", where));
+        throw std::runtime_error(fmt::format("{}: repeat is not a number", where));
       }
       earlier.verdicts[{name, case_name, which, repeat.get<std::uint32_t>()}] = verdict;
     }

@@ -100,8 +100,8 @@ void NodeLog::read_outputs() {
   }
 }
 
-void NodeLog::give(const trace::Line& line, Ticks now, const trace::Scope& scope,
-                   const trace::Bindings& bindings) {
+Window NodeLog::give(const trace::Line& line, Ticks now, const trace::Scope& scope,
+                     const trace::Bindings& bindings) {
   const LinkKind kind = scope.link(line.link).value_or(LinkKind::kAny);
   const trace::Shape* shape = trace::Schema::get().find(line.message.name);
   const auto link = events::to_link(kind);
@@ -111,23 +111,31 @@ void NodeLog::give(const trace::Line& line, Ticks now, const trace::Scope& scope
     log_.push_back({now, trace::frame_line(now, name_, trace::Op::kGiven, line.link, kind, frame)});
     const machine::Frame heard{*link, frame.dest, frame.src, frame.type,
                                Bytes(frame.payload.data(), frame.payload.size())};
-    target_->give(now, machine::Heard{heard});
-    read_outputs();
-    return;
+    return give(now, machine::Heard{heard});
   }
   const trace::Concrete message = trace::concrete(line.message, bindings);
   log_.push_back({now, trace::app_line(now, name_, trace::Op::kGiven, line.link, message.message)});
   if (const auto call = events::to_call(message)) {
-    target_->give(now, machine::Called{*call});
-  } else if (const auto state = events::to_state(message, kind)) {
+    return give(now, machine::Called{*call});
+  }
+  if (const auto state = events::to_state(message, kind)) {
     if (std::holds_alternative<machine::SendDone>(*state)) {
       target_->hold_link_acks(--link_acks_to_come > 0);
     }
-    target_->give(now, *state);
-  } else {
-    throw trace::TraceError(line.place, line.message.name + " cannot be given to a node");
+    return give(now, *state);
   }
+  throw trace::TraceError(line.place, line.message.name + " cannot be given to a node");
+}
+
+// Gives what the last line of the log says, and corrects that line's time.
+Window NodeLog::give(Ticks now, const machine::Event& event) {
+  LoggedLine& logged = log_.back();
+  target_->give(now, event);
+  const Window given = target_->given().value_or(Window{now, now});
+  logged.time = given.from;
+  logged.line.time = trace::Time::at(given.from);
   read_outputs();
+  return given;
 }
 
 const Output* NodeLog::take(const trace::Line& line, const Window& window,
@@ -164,31 +172,58 @@ const Output* NodeLog::forbidden(const trace::Line& line, const Window& window,
   return nullptr;
 }
 
-std::string NodeLog::nearest_miss(const trace::Line& line, const Window& window,
+NearestMiss NodeLog::nearest_miss(const trace::Line& line, const Window& window,
                                   const trace::Bindings& bindings) const {
   const std::vector<Output>& outputs = target_->outputs();
   std::size_t best = std::numeric_limits<std::size_t>::max();
-  std::string text = "it emitted nothing there";
+  NearestMiss miss{"it emitted nothing there", {"missing"}};
   for (std::size_t i = 0; i < seen_.size(); ++i) {
     const Seen& seen = seen_[i];
     if (seen.taken || !is_for(line, seen.link)) continue;
     trace::Bindings copy = bindings;
     const trace::Match match = trace::match(line, seen.message, copy);
     const bool in_time = window.holds(outputs[i].time);
+    const bool other = seen.message.message.name != line.message.name;
+    if (in_time && other && best == std::numeric_limits<std::size_t>::max()) {
+      miss.text = fmt::format("it emitted no {} there", line.message.name);
+    }
+    if (match ? false : other || !in_time) continue;
     const std::size_t distance = match.distance() * 2 + (in_time ? 0 : 1);
     if (distance >= best) continue;
     best = distance;
     if (match && in_time) {
-      text = fmt::format("at {} it came before one that was to come first", outputs[i].time);
+      miss = {fmt::format("at {} it came before one that was to come first", outputs[i].time),
+              {"differs", "order"}};
     } else if (match) {
-      text =
-          fmt::format("it came at {}, not from {} to {}", outputs[i].time, window.from, window.to);
+      miss = {
+          fmt::format("it came at {}, not from {} to {}", outputs[i].time, window.from, window.to),
+          {"missing"}};
     } else {
-      text =
-          fmt::format("nearest, at {}: {}: {}", outputs[i].time, text_of(outputs[i]), match.text());
+      miss = {
+          fmt::format("nearest, at {}: {}: {}", outputs[i].time, text_of(outputs[i]), match.text()),
+          {"differs"}};
+      for (const trace::Difference& one : match.differences) {
+        miss.evidence.insert(one.path.substr(0, one.path.find_first_of(". ")));
+      }
     }
   }
-  return text;
+  return miss;
+}
+
+Evidence NodeLog::evidence_of(const Output& output) const {
+  const std::size_t index = static_cast<std::size_t>(&output - target_->outputs().data());
+  const Seen& seen = seen_[index];
+  const trace::Message& message = seen.message.message;
+  const auto text_at = [&](std::string_view path) {
+    const trace::Value* value = message.find(path);
+    return value ? value->text : std::string();
+  };
+  const bool again = std::any_of(
+      seen_.begin(), seen_.begin() + static_cast<std::ptrdiff_t>(index),
+      [&](const Seen& one) { return one.link == seen.link && one.message.message == message; });
+  const bool ack = text_at("payload.trans_id") == "rubicon_ack";
+  return {std::string(output.is_frame ? trace::link_text(kind_of(output)) : "app"),
+          ack ? "ack" : message.name, text_at("result"), again ? "again" : "new"};
 }
 
 std::string NodeLog::text_of(const Output& output) const {

@@ -1,12 +1,15 @@
 #include "conformance/test/runner/run_case.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <set>
 #include <stdexcept>
 
+#include "conformance/test/runner/blame.h"
 #include "conformance/test/runner/dependence.h"
 #include "conformance/test/runner/expectation.h"
 #include "conformance/test/runner/node_log.h"
@@ -22,26 +25,38 @@ using trace::Line;
 using trace::Op;
 
 constexpr Ticks kLateTicks = 1500;  // How long a missing output is awaited beyond its time.
+constexpr Ticks kGrainTicks = 10;   // Of an adapter's own clock, or of its rate in a second.
+
+// Returns a number that no trace uses by chance, another one for the next seed.
+std::int64_t seeded_number(std::uint64_t seed) {
+  constexpr std::uint64_t kMixer = 40503;  // Odd, so that 16 bits of seed give 16 bits.
+  return static_cast<std::int64_t>(1000 + ((seed + 1) * kMixer & 0xFFFF) % 60'000);
+}
 
 // One case while it runs.
 class Run {
  public:
   Run(const trace::File& file, const trace::Case& one, const TargetFactory& make)
-      : case_(one), scope_(trace::scope_of(file, one)), make_(make), place_(one.place) {}
+      : case_(one), scope_(trace::scope_of(file, one)), make_(make), place_(one.place) {
+    bindings_.set(trace::kSeeded, trace::Value::of(seeded_number(scope_.seed)));
+  }
 
   CaseResult finish() {
     CaseResult result;
     result.name = case_.name;
     try {
       start();
+      begun_ = true;
       for (const Line* line : case_.lines()) {
         place_ = line->place;
         if (!work(*line, result)) break;
       }
       judge_forbidden(result);
-      if (!unseen_.empty() && result.verdict < CaseVerdict::kInconclusive) {
+      if ((!unseen_.empty() || unjudged_) && result.verdict < CaseVerdict::kInconclusive) {
         result.verdict = CaseVerdict::kInconclusive;
-        result.reason = unseen_;
+        result.reason = unseen_.empty() ? "a window is shorter than the tolerance of its times"
+                                        : fmt::format("the target does not show {}",
+                                                      fmt::join(unseen_, " and "));
       }
     } catch (const Unsupported& error) {
       judge_what_came(result);
@@ -50,20 +65,40 @@ class Run {
         result.verdict = CaseVerdict::kSkip;
       }
       result.reason = error.what();
+    } catch (const TargetBroken& error) {
+      if (begun_) {
+        judge_what_came(result);
+        died(result, error.what());
+      } else {
+        broken(result, place_, error.what());
+      }
     } catch (const trace::TraceError& error) {
       broken(result, error.place(), error.what());
     } catch (const std::exception& error) {
       broken(result, place_, error.what());
     }
+    mark_implied(result.failures);
+    result.unseen = std::move(unseen_);
     result.length = now_;
     write_log(result);
     return result;
   }
 
  private:
-  struct Pending {  // Judged when the case is over.
+  // When a line was matched, by the clock that its window counts from.
+  struct Moment {
+    Ticks time = 0;
+    Ticks slack = 0;  // It may have been that much later: a stimulus takes time to hand over.
+  };
+  struct Timed {
     const Line* line;
-    Window window;
+    Window window;  // By the trace, from the earliest time of what it counts from.
+    Ticks slack;    // Of that moment.
+  };
+  struct Stimulus {
+    const NodeLog* node;
+    Ticks asked;  // By the trace.
+    Window given;
   };
 
   void start() {
@@ -93,8 +128,8 @@ class Run {
     return found == nodes_.end() ? nullptr : &*found;
   }
 
-  Window window_of(const Line& line) const {
-    Ticks base = 0;
+  Timed timed(const Line& line) const {
+    Moment base;
     if (line.time.base == trace::Time::Base::kPrevious) base = previous_;
     if (line.time.base == trace::Time::Base::kLabel) {
       const auto found = labels_.find(line.time.label);
@@ -103,13 +138,14 @@ class Run {
       }
       base = found->second;
     }
-    return {base + ticks_of(scope_.tick, line.time.from),
-            base + ticks_of(scope_.tick, line.time.to)};
+    const Window window{base.time + ticks_of(scope_.tick, line.time.from),
+                        base.time + ticks_of(scope_.tick, line.time.to)};
+    return {&line, window, base.slack};
   }
 
-  void matched(const Line& line, Ticks time) {
-    previous_ = time;
-    if (!line.label.empty()) labels_[line.label] = time;
+  void matched(const Line& line, Moment moment) {
+    previous_ = moment;
+    if (!line.label.empty()) labels_[line.label] = moment;
   }
 
   // Lets time pass to `end`, or to the first instant at which a node may emit something. A node
@@ -137,43 +173,44 @@ class Run {
 
   // Runs a line. Returns false if the case cannot go on.
   bool work(const Line& line, CaseResult& result) {
-    const Window window = window_of(line);
+    const Timed timed = this->timed(line);
     NodeLog* node = node_of(line);
     if (!node) {  // Faults of a link, and what nodes do that are not under test: for the reader.
-      if (line.op != Op::kMustNot && line.op != Op::kMay) matched(line, window.from);
+      if (line.op != Op::kMustNot && line.op != Op::kMay) {
+        matched(line, {timed.window.from, timed.slack});
+      }
       return true;
     }
-    if (!is_seen(*node, line)) {
+    if (std::set<std::string> unseen = unseen_of(*node, line); !unseen.empty()) {
+      unseen_.merge(unseen);
       // A visible output may break a rule about every link; a part of the links cannot show that it
       // was kept.
       if (line.op == Op::kMustNot && is_seen_in_part(*node, line)) {
-        forbidden_.push_back({&line, window});
+        forbidden_.push_back(timed);
       }
       return pass_over(line);
     }
     switch (line.op) {
-      case Op::kGiven: give(*node, line, window.from); return true;
-      case Op::kEmits: return expect(*node, line, window, result);
-      case Op::kMustNot: forbidden_.push_back({&line, window}); return true;
-      case Op::kMay: allowed_.push_back({&line, window}); return true;
+      case Op::kGiven: give(*node, timed); return true;
+      case Op::kEmits: return expect(*node, timed, result);
+      case Op::kMustNot: forbidden_.push_back(timed); return true;
+      case Op::kMay: allowed_.push_back(timed); return true;
       default: return true;
     }
   }
 
-  bool is_seen(const NodeLog& node, const Line& line) const {
+  // Returns what a line is about and the target does not show.
+  std::set<std::string> unseen_of(const NodeLog& node, const Line& line) const {
     const Reach reach = node.target().reach();
-    switch (scope_.link(line.link).value_or(trace::LinkKind::kAny)) {
-      case trace::LinkKind::kRadio: return reach.radio;
-      case trace::LinkKind::kSerial: return reach.serial;
-      case trace::LinkKind::kPeis: return reach.peis;
-      case trace::LinkKind::kApp:
-      case trace::LinkKind::kPower: return reach.app;
-      case trace::LinkKind::kAny: return line.op == Op::kMay || sees_all(reach);
-    }
-    return true;
-  }
-  static bool sees_all(const Reach& reach) {
-    return reach.radio && reach.serial && reach.peis && reach.app;
+    const trace::LinkKind kind = scope_.link(line.link).value_or(trace::LinkKind::kAny);
+    const bool any = kind == trace::LinkKind::kAny && line.op != Op::kMay;
+    const bool app = kind == trace::LinkKind::kApp || kind == trace::LinkKind::kPower;
+    std::set<std::string> out;
+    if (!reach.radio && (any || kind == trace::LinkKind::kRadio)) out.insert("radio");
+    if (!reach.serial && (any || kind == trace::LinkKind::kSerial)) out.insert("serial");
+    if (!reach.peis && (any || kind == trace::LinkKind::kPeis)) out.insert("peis");
+    if (!reach.app && (any || app)) out.insert("app");
+    return out;
   }
 
   bool is_seen_in_part(const NodeLog& node, const Line& line) const {
@@ -182,49 +219,92 @@ class Run {
            (reach.radio || reach.serial || reach.peis || reach.app);
   }
 
-  // Passes over a line of which the target shows nothing, or not all. Returns false if the case
-  // cannot go on without it.
-  bool pass_over(const Line& line) {
-    const bool needed =
-        line.op == Op::kGiven || (line.op == Op::kEmits && is_needed_later(case_, line));
-    if (unseen_.empty() || needed) {
-      unseen_ = fmt::format("line {}: the target does not show {}", line.place.line,
-                            line.link == "*" ? "all its links" : line.link);
-    }
-    return !needed;
+  // Returns false if the case cannot go on without a line of which the target shows nothing, or not
+  // all.
+  bool pass_over(const Line& line) const {
+    return line.op != Op::kGiven && (line.op != Op::kEmits || !is_needed_later(case_, line));
   }
 
-  void give(NodeLog& node, const Line& line, Ticks time) {
-    pass_all(time);
-    node.give(line, now_, scope_, bindings_);
-    matched(line, now_);
+  void give(NodeLog& node, const Timed& timed) {
+    pass_all(timed.window.from + timed.slack);
+    stimulus_ = timed.line;
+    const Window given = node.give(*timed.line, now_, scope_, bindings_);
+    now_ = std::max(now_, given.to);
+    stimuli_.push_back({&node, timed.window.from, given});
+    matched(*timed.line, {given.from, given.to - given.from});
   }
 
-  bool expect(NodeLog& node, const Line& line, const Window& window, CaseResult& result) {
-    const Tolerance tolerance = node.target().tolerance();
-    const Window wide{window.from - std::min(window.from, tolerance.early),
-                      window.to + tolerance.late};
+  bool expect(NodeLog& node, const Timed& timed, CaseResult& result) {
+    const Line& line = *timed.line;
     while (true) {
+      const Window wide = widened(node, timed);
       if (const Output* output = node.take(line, wide, bindings_)) {
-        matched(line, output->time);
+        matched(line, {output->time, 0});
         return true;
       }
       if (now_ >= wide.to) break;
       pass(wide.to);
     }
+    const Window wide = widened(node, timed);
     pass_all(wide.to + kLateTicks);
-    fail(result, line, window, wide.to, node.nearest_miss(line, wide, bindings_));
+    NearestMiss miss = node.nearest_miss(line, wide, bindings_);
+    fail(result, line, timed.window, wide.to, std::move(miss.text), miss.evidence);
     return false;
   }
 
-  // Returns the span that a `!>` line surely forbids, where the target's times are not exact.
-  static Window narrowed(const Window& window, const Tolerance& tolerance) {
-    return {window.from + tolerance.late, window.to - std::min(window.to, tolerance.early)};
+  // Times of a target whose clock is real are not exact. An output is seen some ticks late, never
+  // before it happened, and a stimulus takes some ticks to hand over; so a window is widened for
+  // what is asked or allowed, and narrowed for what is forbidden. Their order is exact: what is
+  // seen before a stimulus was no answer to it, and nothing after it comes too early for it. A
+  // window that begins with a stimulus therefore begins there, and only its end is tolerant.
+  Window widened(const NodeLog& node, const Timed& timed) const {
+    const Tolerance tolerance = node.target().tolerance();
+    const Window& window = timed.window;
+    Window wide{window.from - std::min(window.from, tolerance.early),
+                window.to + tolerance.late + timed.slack};
+    if (const Window* stimulus = stimulus_at(node, timed, tolerance)) {
+      // Stimuli just before it may have caused the output, if a trace gives several at once.
+      Ticks first = stimulus->from;
+      for (const Stimulus& one : stimuli_) {
+        if (one.node == &node && one.given.from >= wide.from) {
+          first = std::min(first, one.given.from);
+        }
+      }
+      wide.from = first;
+    }
+    return wide;
+  }
+
+  // Returns nothing if the tolerance is greater than the window.
+  std::optional<Window> narrowed(const NodeLog& node, const Timed& timed) const {
+    const Tolerance tolerance = node.target().tolerance();
+    const Window& window = timed.window;
+    Ticks from = window.from + tolerance.late + timed.slack;
+    Ticks early = tolerance.early;
+    if (const Window* stimulus = stimulus_at(node, timed, tolerance)) {
+      from = stimulus->from;
+      // What is seen by the end happened by then: nothing but the clock's grain is uncertain.
+      early = std::min({early, kGrainTicks, (window.to - window.from) / 2});
+    }
+    if (window.to < from + early) return std::nullopt;
+    return Window{from, window.to - early};
+  }
+
+  // Returns when the node was given the stimulus with which a window begins; null if none does, or
+  // if times are exact.
+  const Window* stimulus_at(const NodeLog& node, const Timed& timed,
+                            const Tolerance& tolerance) const {
+    if (tolerance.early == 0 && tolerance.late == 0) return nullptr;
+    const Ticks from = timed.window.from;
+    for (const Stimulus& one : stimuli_) {
+      if (one.node == &node && (one.asked == from || one.given.from == from)) return &one.given;
+    }
+    return nullptr;
   }
 
   void judge_forbidden(CaseResult& result) {
     Ticks end = now_;
-    for (const Pending& one : forbidden_) end = std::max(end, one.window.to);
+    for (const Timed& one : forbidden_) end = std::max(end, one.window.to);
     pass_all(end);
     judge_outputs(result);
   }
@@ -238,9 +318,9 @@ class Run {
         const bool known = line->time.base == trace::Time::Base::kStart ||
                            (line->time.base == trace::Time::Base::kLabel &&
                             labels_.find(line->time.label) != labels_.end());
-        const Window window = known ? window_of(*line) : Window{0, now_};
-        if (known && line->op == Op::kMustNot) forbidden_.push_back({line, window});
-        if (line->op == Op::kEmits || line->op == Op::kMay) allowed_.push_back({line, window});
+        const Timed one = known ? timed(*line) : Timed{line, {0, now_}, 0};
+        if (known && line->op == Op::kMustNot) forbidden_.push_back(one);
+        if (line->op == Op::kEmits || line->op == Op::kMay) allowed_.push_back(one);
       }
       if (line->place.line == place_.line) reached = false;
     }
@@ -248,32 +328,74 @@ class Run {
   }
 
   void judge_outputs(CaseResult& result) {
-    for (const Pending& one : allowed_) {
-      node_of(*one.line)->allow(*one.line, one.window, bindings_);
-    }
-    for (const Pending& one : forbidden_) {
+    for (const Timed& one : allowed_) {
       NodeLog& node = *node_of(*one.line);
-      const Window window = narrowed(one.window, node.target().tolerance());
-      const Output* output = node.forbidden(*one.line, window, bindings_);
+      node.allow(*one.line, widened(node, one), bindings_);
+    }
+    for (const Timed& one : forbidden_) {
+      NodeLog& node = *node_of(*one.line);
+      const std::optional<Window> window = narrowed(node, one);
+      unjudged_ = unjudged_ || !window;
+      const Output* output = window ? node.forbidden(*one.line, *window, bindings_) : nullptr;
       if (!output) continue;
       fail(result, *one.line, one.window, output->time,
-           fmt::format("at {} it emitted {}", output->time, node.text_of(*output)));
+           fmt::format("at {} it emitted {}", output->time, node.text_of(*output)),
+           node.evidence_of(*output));
     }
     std::stable_sort(result.failures.begin(), result.failures.end(),
                      [](const Failure& a, const Failure& b) { return a.time < b.time; });
   }
 
   void broken(CaseResult& result, trace::Place place, const char* why) {
-    result.failures.push_back({place, {}, false, now_, "", why, now_, now_, false});
+    Failure failure;
+    failure.place = place;
+    failure.time = failure.from = failure.to = now_;
+    failure.text = why;
+    result.failures.push_back(std::move(failure));
     result.verdict = CaseVerdict::kError;
     result.reason = why;
   }
 
+  // Blames what was given last for the end of the target.
+  void died(CaseResult& result, const char* why) {
+    broken(result, stimulus_ ? stimulus_->place : place_, why);
+    result.verdict = CaseVerdict::kFail;
+    Failure& failure = result.failures.back();
+    failure.crash = true;
+    failure.node = stimulus_ ? stimulus_->node : nodes_.front().name();
+    failure.requirements = rules_of_stimulus(failure.node);
+    if (failure.requirements.empty()) return;
+    failure.suspected.assign(failure.requirements.begin() + 1, failure.requirements.end());
+    failure.requirements.resize(1);
+  }
+
+  // Returns the rules of what was given last: those of the first line after it that judges the
+  // node, else of the last one before it.
+  std::vector<std::string> rules_of_stimulus(std::string_view node) const {
+    std::vector<std::string> before;
+    bool after = !stimulus_;
+    for (const Line* line : case_.lines()) {
+      after = after || line == stimulus_;
+      if (line->node != node || line->requirements.empty()) continue;
+      if (after) return line->requirements;
+      before = line->requirements;
+    }
+    return before;
+  }
+
   void fail(CaseResult& result, const Line& line, const Window& window, Ticks time,
-            std::string text) {
-    Failure failure{line.place,  line.requirements,  is_weak(line),
-                    time,        trace::print(line), std::move(text),
-                    window.from, window.to,          line.op == Op::kMustNot};
+            std::string text, const Evidence& evidence) {
+    Failure failure{.place = line.place,
+                    .requirements = line.requirements,
+                    .weak = is_weak(line),
+                    .time = time,
+                    .expected = trace::print(line),
+                    .text = std::move(text),
+                    .from = window.from,
+                    .to = window.to,
+                    .forbidden = line.op == Op::kMustNot,
+                    .node = line.node};
+    blame_one(failure, evidence);
     result.verdict =
         std::max(result.verdict, failure.weak ? CaseVerdict::kWeak : CaseVerdict::kFail);
     result.failures.push_back(std::move(failure));
@@ -293,14 +415,18 @@ class Run {
   const trace::Case& case_;
   const trace::Scope scope_;
   const TargetFactory& make_;
-  trace::Place place_;  // Place of the current line.
-  std::string unseen_;  // The first line of which the target shows nothing.
+  trace::Place place_;              // Place of the current line.
+  const Line* stimulus_ = nullptr;  // Given last.
+  bool begun_ = false;
+  std::set<std::string> unseen_;
+  bool unjudged_ = false;  // A line's window was too short.
   std::vector<NodeLog> nodes_;
-  std::vector<Pending> forbidden_;
-  std::vector<Pending> allowed_;
-  std::map<std::string, Ticks, std::less<>> labels_;
+  std::vector<Stimulus> stimuli_;
+  std::vector<Timed> forbidden_;
+  std::vector<Timed> allowed_;
+  std::map<std::string, Moment, std::less<>> labels_;
   trace::Bindings bindings_;
-  Ticks previous_ = 0;
+  Moment previous_;
   Ticks now_ = 0;
 };
 
@@ -322,12 +448,21 @@ CaseResult run_case(const trace::File& file, const trace::Case& one, const Targe
   return Run(file, one, make).finish();
 }
 
+std::vector<std::string> Failure::rules() const {
+  std::vector<std::string> all = requirements;
+  all.insert(all.end(), suspected.begin(), suspected.end());
+  return all;
+}
+
 std::string explain(const CaseResult& result, const std::string& file_name) {
   std::string out;
   for (const Failure& failure : result.failures) {
     out += fmt::format("{}:{}: {}: ", file_name, failure.place.line, result.name);
     out += failure.requirements.empty() ? "no rule"
                                         : fmt::format("{}", fmt::join(failure.requirements, " "));
+    if (!failure.suspected.empty()) {
+      out += fmt::format(", suspected {}", fmt::join(failure.suspected, " "));
+    }
     out += failure.weak ? " (weak)\n" : "\n";
     if (!failure.expected.empty()) out += fmt::format("  expected  {}\n", failure.expected);
     out += fmt::format("  but       {}\n", failure.text);

@@ -39,12 +39,13 @@ class Ticker : public Target {
   std::vector<Output> outputs_;
 };
 
+template <class Node = Ticker>
 CaseResult run(const std::string& lines, std::vector<Ticks> times) {
   const trace::Parsed parsed =
       trace::parse("%rtr 1\n%profile paper\n%node m5 mote id=5 iut\ncase x\n" + lines, "x.rtr");
   EXPECT_EQ(parsed.errors(), "");
   return run_case(parsed.file, parsed.file.cases.at(0),
-                  [&](const trace::NodeHeader&) { return std::make_unique<Ticker>(times); });
+                  [&](const trace::NodeHeader&) { return std::make_unique<Node>(times); });
 }
 
 struct Row {
@@ -57,9 +58,7 @@ struct Row {
 
 class Rows : public testing::TestWithParam<Row> {};
 
-TEST_P(Rows, AreJudged) {
-  const Row& row = GetParam();
-  const CaseResult result = run(row.lines, row.times);
+void judge(const Row& row, const CaseResult& result) {
   EXPECT_EQ(result.verdict, row.verdict) << explain(result, "x.rtr");
   if (result.failures.empty()) {
     EXPECT_STREQ(row.text, "");
@@ -67,6 +66,8 @@ TEST_P(Rows, AreJudged) {
     EXPECT_EQ(result.failures[0].text, row.text);
   }
 }
+
+TEST_P(Rows, AreJudged) { judge(GetParam(), run(GetParam().lines, GetParam().times)); }
 
 INSTANTIATE_TEST_SUITE_P(
     All, Rows,
@@ -94,6 +95,16 @@ INSTANTIATE_TEST_SUITE_P(
             {30},
             CaseVerdict::kFail,
             "nearest, at 30: app clock(ms=30): ms: expected 31, seen 30"},
+        Row{"OtherFieldAtAnotherTime",
+            "0..29 m5 > app clock(ms=31)\n",
+            {30},
+            CaseVerdict::kFail,
+            "it emitted nothing there"},
+        Row{"OtherMessage",
+            "0..50 m5 > app joined(*)\n",
+            {30},
+            CaseVerdict::kFail,
+            "it emitted no joined there"},
         Row{"OnlyShould",
             "0..50 m5 > app clock(*) [J1-SEQ]\n",
             {},
@@ -187,6 +198,124 @@ INSTANTIATE_TEST_SUITE_P(
             "at 30 it came before one that was to come first"}),
     [](const auto& row) { return std::string(row.param.name); });
 
+// In real time: its times may be 10 ticks off, and it takes 4 to give it something.
+class RealTicker : public Ticker {
+ public:
+  using Ticker::Ticker;
+  void give(Ticks now, const machine::Event& event) override {
+    Ticker::give(now, event);
+    given_ = {now, now + 4};
+  }
+  Tolerance tolerance() const override { return {10, 10}; }
+  std::optional<Window> given() const override { return given_; }
+
+ private:
+  Window given_;
+};
+
+class RealRows : public testing::TestWithParam<Row> {};
+
+TEST_P(RealRows, AreJudged) {
+  judge(GetParam(), run<RealTicker>(GetParam().lines, GetParam().times));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, RealRows,
+    testing::Values(
+        Row{"AnswersPromptly",
+            "a: 100 m5 < app get_clock()\na+0..50 m5 > app clock(*)\n",
+            {100},
+            CaseVerdict::kPass,
+            ""},
+        Row{"AnswersAtTheLimit",
+            "a: 100 m5 < app get_clock()\na+0..50 m5 > app clock(*)\n",
+            {164},
+            CaseVerdict::kPass,
+            ""},
+        Row{"AnswersTooLate",
+            "a: 100 m5 < app get_clock()\na+0..50 m5 > app clock(*)\n",
+            {165},
+            CaseVerdict::kFail,
+            "it came at 165, not from 100 to 164"},
+        Row{"EmitsBeforeItIsAsked",
+            "a: 100 m5 < app get_clock()\na+0..50 m5 > app clock(*)\n",
+            {99},
+            CaseVerdict::kFail,
+            "it came at 99, not from 100 to 164"},
+        Row{"EmitsBeforeItIsTempted",
+            "a: 100 m5 < app get_clock()\na+0..50 m5 !> app clock(*)\n",
+            {99},
+            CaseVerdict::kPass,
+            ""},
+        Row{"FallsAtOnce",
+            "a: 100 m5 < app get_clock()\na+0..50 m5 !> app clock(*)\n",
+            {101},
+            CaseVerdict::kFail,
+            "at 101 it emitted app clock(ms=101)"},
+        Row{"FallsAfterAStimulusThatIsNoLabel",
+            "a: 60 m5 < app get_clock()\na+40 m5 < app get_clock()\n"
+            "a+40..90 m5 !> app clock(*)\n",
+            {105},
+            CaseVerdict::kFail,
+            "at 105 it emitted app clock(ms=105)"},
+        Row{"FallsAfterThePrevious",
+            "100 m5 < app get_clock()\n0..50 m5 !> app clock(*)\n",
+            {101},
+            CaseVerdict::kFail,
+            "at 101 it emitted app clock(ms=101)"},
+        Row{"FallsAfterAnAbsoluteTime",
+            "100 m5 < app get_clock()\n@100..150 m5 !> app clock(*)\n",
+            {101},
+            CaseVerdict::kFail,
+            "at 101 it emitted app clock(ms=101)"},
+        Row{"FallsAtTheEnd",
+            "a: 100 m5 < app get_clock()\na+0..50 m5 !> app clock(*)\n",
+            {140},
+            CaseVerdict::kFail,
+            "at 140 it emitted app clock(ms=140)"},
+        Row{"MayBeAfterTheEnd",
+            "a: 100 m5 < app get_clock()\na+0..50 m5 !> app clock(*)\n",
+            {141},
+            CaseVerdict::kPass,
+            ""},
+        Row{"FallsInAShortWindow",
+            "a: 100 m5 < app get_clock()\na+0..8 m5 !> app clock(*)\n",
+            {103},
+            CaseVerdict::kFail,
+            "at 103 it emitted app clock(ms=103)"},
+        Row{"MayBeBeforeALaterStart",
+            "a: 100 m5 < app get_clock()\na+30..90 m5 !> app clock(*)\n",
+            {143},
+            CaseVerdict::kPass,
+            ""},
+        Row{"FallsAfterALaterStart",
+            "a: 100 m5 < app get_clock()\na+30..90 m5 !> app clock(*)\n",
+            {144},
+            CaseVerdict::kFail,
+            "at 144 it emitted app clock(ms=144)"},
+        Row{"MayComeLate",
+            "a: 100 m5 < app get_clock()\na+0..50 m5 ?> app clock(*)\na+0..90 m5 !> app *\n",
+            {164},
+            CaseVerdict::kPass,
+            ""},
+        Row{"AnswersTheFirstOfTwoAtOnce",
+            "a: 100 m5 < app get_clock()\nb: a+0 m5 < app get_clock()\n"
+            "b+0..50 m5 > app clock(*)\n",
+            {102},
+            CaseVerdict::kPass,
+            ""},
+        Row{"CountsFromAnOutputBothWays",
+            "a: 0..50 m5 > app clock(*)\na+30..50 m5 > app clock(*)\n",
+            {30, 51},
+            CaseVerdict::kPass,
+            ""},
+        Row{"ShorterThanTheTolerance",
+            "a: 0..50 m5 > app clock(*)\na+1..20 m5 !> app clock(*)\n",
+            {30, 40},
+            CaseVerdict::kInconclusive,
+            ""}),
+    [](const auto& row) { return std::string(row.param.name); });
+
 // A Ticker that takes no calls.
 class Refuser : public Ticker {
  public:
@@ -197,30 +326,54 @@ class Refuser : public Ticker {
   }
 };
 
-CaseResult refused(const std::string& lines, std::vector<Ticks> times) {
-  const trace::Parsed parsed =
-      trace::parse("%rtr 1\n%profile paper\n%node m5 mote id=5 iut\ncase x\n" + lines, "x.rtr");
-  EXPECT_EQ(parsed.errors(), "");
-  return run_case(parsed.file, parsed.file.cases.at(0),
-                  [&](const trace::NodeHeader&) { return std::make_unique<Refuser>(times); });
-}
-
 TEST(RunCase, WhatIsUnsupportedIsSkipped) {
-  const CaseResult result =
-      refused("@90 m5 < app get_clock()\n0..50 m5 > app clock(ms=30)\n@0..90 m5 !> app *\n", {30});
+  const CaseResult result = run<Refuser>(
+      "@90 m5 < app get_clock()\n0..50 m5 > app clock(ms=30)\n@0..90 m5 !> app *\n", {30});
   EXPECT_EQ(result.verdict, CaseVerdict::kSkip) << explain(result, "x.rtr");
   EXPECT_EQ(result.reason, "calls");
 }
 
-TEST(RunCase, WhatWasBrokenBeforeStaysBroken) {
+TEST(RunCase, ARuleBrokenBeforeASkipStaysBroken) {
   for (const char* lines : {"@0..90 m5 !> app clock(*) [J4-SEQ]\n@90 m5 < app get_clock()\n",
                             "@90 m5 < app get_clock()\n@0..80 m5 !> app clock(*) [J4-SEQ]\n"}) {
-    const CaseResult result = refused(lines, {30});
+    const CaseResult result = run<Refuser>(lines, {30});
     EXPECT_EQ(result.verdict, CaseVerdict::kFail) << lines;
     ASSERT_EQ(result.failures.size(), 1u);
     EXPECT_EQ(result.failures[0].text, "at 30 it emitted app clock(ms=30)");
     EXPECT_EQ(result.reason, "calls");
   }
+}
+
+// A Ticker that dies of a call.
+class Mortal : public Ticker {
+ public:
+  using Ticker::Ticker;
+  void give(Ticks, const machine::Event&) override { throw TargetBroken("was killed"); }
+};
+
+TEST(RunCase, WhatKillsItBlamesTheRuleOfTheStimulus) {
+  const trace::Parsed parsed = trace::parse(
+      "%rtr 1\n%profile paper\n%node m5 mote id=5 iut\ncase x\n0..50 m5 > app clock(*) [J4-CLOCK]\n"
+      "@90 m5 < app get_clock()\n0..50 m5 > app clock(*) [J4-SEQ J4-ACK]\n@0..90 m5 !> app * "
+      "[J1-SEQ]\n",
+      "x.rtr");
+  ASSERT_EQ(parsed.errors(), "");
+  const auto play = [&](std::vector<Ticks> times) {
+    return run_case(parsed.file, parsed.file.cases.at(0),
+                    [&](const trace::NodeHeader&) { return std::make_unique<Mortal>(times); });
+  };
+  const CaseResult result = play({30});
+  EXPECT_EQ(result.verdict, CaseVerdict::kFail);
+  EXPECT_EQ(result.reason, "was killed");
+  ASSERT_EQ(result.failures.size(), 1u);
+  EXPECT_TRUE(result.failures[0].crash);
+  EXPECT_EQ(result.failures[0].place.line, 6u);
+  EXPECT_EQ(result.failures[0].requirements, std::vector<std::string>{"J4-SEQ"});
+  EXPECT_EQ(result.failures[0].suspected, std::vector<std::string>{"J4-ACK"});
+  const CaseResult before = play({30, 60, 70});
+  ASSERT_EQ(before.failures.size(), 2u) << "what it broke before stays broken";
+  EXPECT_TRUE(before.failures[0].weak);
+  EXPECT_FALSE(before.failures[1].implied) << "a SHOULD kills nobody";
 }
 
 // Records when it is reset.

@@ -75,7 +75,7 @@ bool cut_end(std::string_view& text, std::string_view end) {
 
 LineNode real_node(Role role, const char* where, std::uint32_t baud) {
   LineNode node;
-  node.identity = {fmt::format("{}_{}", role_word(role), where), "-", {role}, true};
+  node.identity = {fmt::format("{}_{}", role_word(role), where), "-", {role}, true, true};
   node.baud = baud;
   return node;
 }
@@ -117,7 +117,7 @@ std::unique_ptr<Attachment> serial_line(std::string_view text, const Options& op
     if (const std::size_t colon = text.rfind(':'); colon != std::string_view::npos) {
       const std::string_view word = text.substr(colon + 1);
       const auto known = lines::baud_of(word);
-      if (!known) throw std::invalid_argument(fmt::format("'{}' is no speed or platform", word));
+      if (!known) throw std::invalid_argument(fmt::format("'{}' is not a speed or platform", word));
       baud = *known;
       text = text.substr(0, colon);
     }
@@ -141,11 +141,12 @@ std::unique_ptr<Attachment> attach(const std::string& target, const Options& opt
     throw std::invalid_argument("a target has a name or is a command");
   }
   std::string_view text = target;
-  if (target == "machine") return std::make_unique<MachineAttachment>(nullptr);
-  if (cut(text, "machine:")) return flawed_machine(text);
   if (cut(text, "sf-server:")) return forwarder_server(text, options);
   if (cut(text, "sf:")) return forwarder_client(text, options);
   if (cut(text, "serial:")) return serial_line(text, options);
+  if (!options.app.empty()) throw std::invalid_argument("an app goes with sf-server, sf or serial");
+  if (target == "machine") return std::make_unique<MachineAttachment>(nullptr);
+  if (cut(text, "machine:")) return flawed_machine(text);
   return std::make_unique<RctAttachment>([target] { return Process::run(target); }, options);
 }
 

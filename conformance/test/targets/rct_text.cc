@@ -20,6 +20,15 @@ using trace::Value;
 constexpr std::string_view kLinkWords[] = {"radio", "serial", "peis"};
 constexpr std::string_view kRoleWords[] = {"mote", "sink", "base_station"};
 
+struct LinkShown {
+  std::string_view word;
+  bool runner::Reach::*shown;
+};
+constexpr LinkShown kLinksShown[] = {{"app", &runner::Reach::app},
+                                     {"peis", &runner::Reach::peis},
+                                     {"radio", &runner::Reach::radio},
+                                     {"serial", &runner::Reach::serial}};
+
 template <class T, std::size_t N>
 std::optional<T> find_word(const std::string_view (&words)[N], std::string_view word) {
   const auto* const found = std::find(std::begin(words), std::end(words), word);
@@ -55,6 +64,28 @@ std::optional<Link> link_of(std::string_view word) { return find_word<Link>(kLin
 std::string_view role_word(Role role) { return kRoleWords[static_cast<std::size_t>(role)]; }
 std::optional<Role> role_of(std::string_view word) { return find_word<Role>(kRoleWords, word); }
 
+std::string links_text(const runner::Reach& links) {
+  std::string out;
+  for (const LinkShown& one : kLinksShown) {
+    if (links.*one.shown) out += (out.empty() ? "" : ",") + std::string(one.word);
+  }
+  return out;
+}
+
+std::optional<runner::Reach> links_of(std::string_view text) {
+  runner::Reach out{false, false, false, false};
+  while (true) {
+    const std::size_t size = std::min(text.find(','), text.size());
+    const auto* const found =
+        std::find_if(std::begin(kLinksShown), std::end(kLinksShown),
+                     [&](const LinkShown& one) { return one.word == text.substr(0, size); });
+    if (found == std::end(kLinksShown)) return std::nullopt;
+    out.*found->shown = true;
+    if (size == text.size()) return out;
+    text.remove_prefix(size + 1);
+  }
+}
+
 std::string unprintable(std::string_view line) {
   for (std::size_t i = 0; i < line.size(); ++i) {
     const auto byte = static_cast<unsigned char>(line[i]);
@@ -77,11 +108,11 @@ std::string frame_of(std::string_view hex, machine::Frame& frame,
                      std::vector<std::uint8_t>& bytes) {
   std::string packet;
   if (hex.empty() || !trace::read_hex_bytes(hex, packet)) {
-    return fmt::format("{} is no even number of hex digits", trace::quoted(hex));
+    return fmt::format("{} is not an even number of hex digits", trace::quoted(hex));
   }
   trace::AmFrame am;
   if (!trace::parse_packet(packet, am)) {
-    return fmt::format("{} is no packet: 00, destination, source, length, group, type, payload",
+    return fmt::format("{} is not a packet: 00, destination, source, length, group, type, payload",
                        trace::quoted(hex));
   }
   if (am.payload.size() > machine::kAmPayloadMax) {
@@ -126,11 +157,11 @@ std::string read_plain(std::string_view text, trace::Concrete& out) {
   const bool pattern = message.open || message.form == trace::Message::Form::kAny ||
                        std::any_of(message.fields.begin(), message.fields.end(),
                                    [](const auto& field) { return is_pattern(field.value); });
-  if (pattern) return "only plain values can stand here, no patterns";
+  if (pattern) return "expected a plain value, not a pattern";
   try {
     out = trace::concrete(message);
     if (message.fields.size() > trace::Schema::get().find(message.name)->app->field_count) {
-      return "a field stands there twice";
+      return "a field is given twice";
     }
   } catch (const trace::TraceError& error) {
     return error.what();

@@ -126,23 +126,25 @@ std::string help_text() {
          "  --extcap-dlts         Print what kinds of packets come from there\n"
          "  --extcap-config       Print what can be set\n"
          "  --extcap-reload-option NAME\n"
-         "                        With --extcap-config: only the choices of that option\n"
+         "                        With --extcap-config, print only the choices of this option\n"
          "  --capture             Capture, until SIGINT, SIGTERM, or FILE's reader has gone\n"
-         "  --fifo FILE           The capture is written here, as pcapng\n"
+         "  --fifo FILE           Write the capture to this file, as pcapng\n"
          "  --extcap-interface NAME\n"
-         "                        One of --extcap-interfaces\n"
+         "                        Use this one of --extcap-interfaces\n"
          "  --extcap-capture-filter FILTER\n"
-         "                        Only frames for which this holds, as in rubric decode --filter;\n"
-         "                        without --capture: print what is wrong with it\n"
-         "  --source ADDRESS      serial@DEVICE:BAUD (or a platform, as telosb for BAUD),\n"
-         "                        network@HOST:PORT, a serial line through TCP, or sf@HOST:PORT,\n"
-         "                        a serial forwarder; default: $MOTECOM, or sf@localhost:9002\n"
+         "                        Capture only frames for which this holds, as in\n"
+         "                        rubric decode --filter; without --capture, print what is wrong\n"
+         "                        with it\n"
+         "  --source ADDRESS      Capture from serial@DEVICE:BAUD (or a platform, as telosb for\n"
+         "                        BAUD), network@HOST:PORT, a serial line through TCP, or\n"
+         "                        sf@HOST:PORT, a serial forwarder (default: $MOTECOM, or\n"
+         "                        sf@localhost:9002)\n"
          "  --other-source ADDRESS\n"
-         "                        The same; if it is not empty --source does not count\n"
+         "                        Capture from this instead of --source, unless it is empty\n"
          "  --listen-only         Write nothing to a serial line: confirm no frames\n"
-         "  --reconnect           Open a line that is gone again, when it is back\n"
-         "  --spec PROTOCOL       Whose names FILTER uses; default: rubicon\n"
-         "Options that are not known are passed over.\n"
+         "  --reconnect           Open a line again when it comes back\n"
+         "  --spec PROTOCOL       Use the names of this protocol in FILTER (default: rubicon)\n"
+         "Unknown options are ignored.\n"
          "\n"
          "Examples:\n"
          "  tshark -D | grep rubric\n"
@@ -254,7 +256,7 @@ std::string config(std::string_view reload) {
   argument(kListenOnly, "--listen-only", "Listen only", "boolflag",
            "Write nothing to a serial line: confirm no frames", "{default=false}");
   argument(kReconnect, "--reconnect", "Reconnect", "boolflag",
-           "Open a line that is gone again, when it is back", "{default=false}");
+           "Open a line again when it comes back", "{default=false}");
   argument(kSpec, "--spec", "Protocol of the capture filter", "selector",
            "Whose names of messages and fields the capture filter uses");
   return out + sources() + specs();

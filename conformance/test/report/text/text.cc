@@ -50,7 +50,7 @@ std::vector<Row> rows_around(const CaseRun& one, const runner::Failure& failure)
   std::size_t at = 0;  // After its cause.
   bool breaks = false;
   for (std::size_t i = 0; i < lines.size() && !breaks; ++i) {
-    if (time_of(*lines[i]) > failure.time) break;
+    if (time_of(*lines[i]) > (failure.forbidden ? failure.time : failure.to)) break;
     at = i + 1;
     breaks = is_broken_by(failure, *lines[i]);
   }
@@ -189,7 +189,11 @@ std::string failure_text(const CaseRun& one, const Failure& failure, const TextO
                  fmt::format("line {} of {}, {}", failure.place.line, one.file, when_text(failure)),
                  options);
   }
-  out += field("But:", failure.text, options);
+  out += field(failure.crash ? "Broke:" : "But:", failure.text, options);
+  if (failure.crash) {
+    out += field("", fmt::format("after line {} of {}", failure.place.line, one.file), options);
+  }
+  out += field("Suspects:", joined(failure.suspected), options);
   return out;
 }
 
@@ -221,7 +225,8 @@ class Story {
  private:
   // Returns a key that is equal for similar cases: the rules that they break, or what broke.
   static std::string kind_of(const CaseRun& one) {
-    if (one.result.verdict == CaseVerdict::kError) return what_broke(one);
+    const bool crashed = !one.result.failures.empty() && one.result.failures.front().crash;
+    if (one.result.verdict == CaseVerdict::kError || crashed) return what_broke(one);
     if (one.result.failures.empty()) return one.name;
     return joined(one.result.failures.front().requirements);
   }
@@ -263,8 +268,8 @@ class Story {
       if (i == 0 || options_.verbose) {
         out_ += failure_text(one, failure, options_);
       } else if (i <= kAlso) {
-        const std::string rules = joined(failure.requirements);
-        out_ += field("Also:",
+        const std::string rules = joined(failure.rules());
+        out_ += field(failure.implied ? "Then:" : "Also:",
                       fmt::format("line {}{}: {}", failure.place.line,
                                   rules.empty() ? "" : " [" + rules + "]", failure.text),
                       options_);
@@ -297,7 +302,9 @@ class Story {
   void by_reason(CaseVerdict verdict) {
     std::map<std::string, std::vector<std::string>> reasons;
     for (const CaseRun& one : implementation_.cases) {
-      if (one.result.verdict == verdict) reasons[one.result.reason].push_back(case_name(one));
+      if (one.result.verdict != verdict) continue;
+      const std::string listed = one.expected_reason.empty() ? "" : ", as listed: ";
+      reasons[one.result.reason + listed + one.expected_reason].push_back(case_name(one));
     }
     if (!reasons.empty()) out_ += '\n';
     for (const auto& [reason, cases] : reasons) {
@@ -322,6 +329,8 @@ class Story {
 
 std::string case_text(const CaseRun& one, const TextOptions& options) {
   if (options.quiet && !one.unexpected()) return {};
+  // One sentence for all of them will do.
+  if (!options.verbose && is_beyond_reach(one)) return {};
   std::string verdict(runner::verdict_text(one.result.verdict));
   const std::string_view style = style_of(one.result.verdict, one.unexpected());
   std::string rest;

@@ -69,11 +69,13 @@ GeneratedFiles emit_messages(const Spec& spec) {
   std::string routes;
   const std::vector<Route> found = routes_of(spec);
   for (const Route& one : found) {
+    // Named here, since the order in which arguments are evaluated is the compiler's.
+    const std::string choices = lists.name_of("RouteChoice", "Choices", one.choices);
+    const std::string lengths = lists.name_of("RouteLength", "Lengths", one.lengths);
     routes += fmt::format("    {{{}, &{}, {}, {},\n     {}, {}}},\n", cpp_string(one.carrier),
                           type_name(spec, *one.type), one.offset,
-                          one.room == UINT32_MAX ? "UINT32_MAX" : std::to_string(one.room),
-                          lists.name_of("RouteChoice", "Choices", one.choices),
-                          lists.name_of("RouteLength", "Lengths", one.lengths));
+                          one.room == UINT32_MAX ? "UINT32_MAX" : std::to_string(one.room), choices,
+                          lengths);
   }
   std::string parts = lists.text();
   if (!routes.empty()) parts += "\nconstexpr Route kRouteList[] = {\n" + routes + "};";
