@@ -21,11 +21,6 @@ void split_serial_content(Bytes content, Packet& packet) {
   packet.bytes = content.sub(begin, end - begin);
 }
 
-std::size_t serial_content_size(const Packet& packet) {
-  return (packet.kind == kAbsent ? 0u : 1u) + (packet.serial_seq == kAbsent ? 0u : 1u) +
-         packet.bytes.size() + (packet.crc == kAbsent ? 0u : kSerialCrcBytes);
-}
-
 void append_serial_content(const Packet& packet, std::string& out) {
   if (packet.kind != kAbsent) out += static_cast<char>(packet.kind);
   if (packet.serial_seq != kAbsent) out += static_cast<char>(packet.serial_seq);

@@ -23,9 +23,6 @@ namespace rubric {
 /// packet's dropped_bytes must be set before.
 void split_serial_content(Bytes content, Packet& packet);
 
-/// Returns the size of what split_serial_content split.
-std::size_t serial_content_size(const Packet& packet);
-
 /// Appends the content that split_serial_content split to `out`: its exact inverse.
 void append_serial_content(const Packet& packet, std::string& out);
 

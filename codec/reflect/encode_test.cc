@@ -97,8 +97,11 @@ TEST(Encode, Scalars) {
 struct Row {
   const char* name;
   Pairs changes;
-  const char* expected;
+  std::string expected;
 };
+Row bad(const char* name, const std::string& field, Value value, const char* problem) {
+  return {name, {{field, std::move(value)}}, field + ": " + problem};
+}
 void PrintTo(const Row& row, std::ostream* out) { *out << row.name; }
 
 const Row kGood[] = {
@@ -143,26 +146,17 @@ INSTANTIATE_TEST_SUITE_P(Rows, EncodeGood, testing::ValuesIn(kGood),
                          [](const auto& row) { return row.param.name; });
 
 const Row kBad[] = {
-    {"Missing", {{"little", {}}}, "little: is missing: expected a number from 0 to 65535"},
-    {"TooLarge",
-     {{"little", integer(65536)}},
-     "little: expected a number from 0 to 65535, given 65536"},
-    {"Negative", {{"little", integer(-1)}}, "little: expected a number from 0 to 65535, given -1"},
-    {"BelowSigned",
-     {{"signed", integer(-32769)}},
-     "signed: expected a number from -32768 to 32767, given -32769"},
-    {"NoNumber",
-     {{"little", string("x")}},
-     "little: expected a number from 0 to 65535, given \"x\""},
-    {"RealForInteger",
-     {{"little", real("1.5")}},
-     "little: expected a number from 0 to 65535, given 1.5"},
-    {"ObjectForNumber",
-     {{"little", pair(1, 2)}},
-     "little: expected a number from 0 to 65535, given an object"},
-    {"UnknownName",
-     {{"colour", string("pink")}},
-     "colour: expected a name of colour (red, green, blue), given \"pink\""},
+    bad("Missing", "little", {}, "is missing: expected a number from 0 to 65535"),
+    bad("TooLarge", "little", integer(65536), "expected a number from 0 to 65535, given 65536"),
+    bad("Negative", "little", integer(-1), "expected a number from 0 to 65535, given -1"),
+    bad("BelowSigned", "signed", integer(-32769),
+        "expected a number from -32768 to 32767, given -32769"),
+    bad("NoNumber", "little", string("x"), "expected a number from 0 to 65535, given \"x\""),
+    bad("RealForInteger", "little", real("1.5"), "expected a number from 0 to 65535, given 1.5"),
+    bad("ObjectForNumber", "little", pair(1, 2),
+        "expected a number from 0 to 65535, given an object"),
+    bad("UnknownName", "colour", string("pink"),
+        "expected a name of colour (red, green, blue), given \"pink\""),
     {"UnknownNameBeside",
      {{"colour_name", string("pink")}},
      "colour: colour_name: expected a name of colour (red, green, blue), given \"pink\""},
@@ -174,29 +168,24 @@ const Row kBad[] = {
      {{"flags_bits", array({string("up")})}},
      "flags: is given as 131, but flags_bits says 1; expected one of them alone, or both the "
      "same"},
-    {"UnknownBit",
-     {{"flags", array({string("bit8")})}},
-     "flags: expected bits of flags (up, down, bit2, bit3, bit4, bit5, bit6, odd), given "
-     "\"bit8\""},
+    bad("UnknownBit", "flags", array({string("bit8")}),
+        "expected bits of flags (up, down, bit2, bit3, bit4, bit5, bit6, odd), given "
+        "\"bit8\""),
     {"BitsNoArray",
      {{"flags_bits", integer(3)}},
      "flags: flags_bits: expected an array of bit names, given 3"},
-    {"FloatTooLarge",
-     {{"real", real("1e39")}},
-     "real: expected a number that binary32 can hold, given 1e39"},
-    {"FloatNoNumber",
-     {{"real", string("nan")}},
-     "real: expected a number, \"NaN\", \"Infinity\" or \"-Infinity\", given \"nan\""},
-    {"NotOneOf", {{"four_or_six", integer(5)}}, "four_or_six: expected 4 or 6, given 5"},
-    {"OutOfRange", {{"seven", integer(8)}}, "seven: expected a number from 7 to 7, given 8"},
-    {"UnknownField",
-     {{"litle", integer(1)}},
-     "litle: is not a field of scalars here, which has colour, flags, little, signed, real, "
-     "four_or_six, seven, eight, if_red"},
-    {"ConditionFalse",
-     {{"if_red", integer(1)}},
-     "if_red: is not a field of scalars here, which has colour, flags, little, signed, real, "
-     "four_or_six, seven, eight, if_red"},
+    bad("FloatTooLarge", "real", real("1e39"),
+        "expected a number that binary32 can hold, given 1e39"),
+    bad("FloatNoNumber", "real", string("nan"),
+        "expected a number, \"NaN\", \"Infinity\" or \"-Infinity\", given \"nan\""),
+    bad("NotOneOf", "four_or_six", integer(5), "expected 4 or 6, given 5"),
+    bad("OutOfRange", "seven", integer(8), "expected a number from 7 to 7, given 8"),
+    bad("UnknownField", "litle", integer(1),
+        "is not a field of scalars here, which has colour, flags, little, signed, real, "
+        "four_or_six, seven, eight, if_red"),
+    bad("ConditionFalse", "if_red", integer(1),
+        "is not a field of scalars here, which has colour, flags, little, signed, real, "
+        "four_or_six, seven, eight, if_red"),
 };
 
 class EncodeBad : public testing::TestWithParam<Row> {};

@@ -11,7 +11,6 @@
 #include "codec/runtime/fault.h"
 #include "codec/runtime/result.h"
 
-#define RUBRIC_LIKELY(x) __builtin_expect(!!(x), 1)
 #define RUBRIC_UNLIKELY(x) __builtin_expect(!!(x), 0)
 // Marks functions that report a failure: the hot path does not carry their code.
 #define RUBRIC_COLD __attribute__((cold, noinline))

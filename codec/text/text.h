@@ -42,10 +42,6 @@ std::size_t utf8_length(std::string_view text);
 
 /// Returns `text` as a JSON string with quotes. Bytes that are not UTF-8 become U+FFFD.
 std::string json_string(std::string_view text);
-/// Returns the same, or null for an empty text.
-inline std::string json_string_or_null(std::string_view text) {
-  return text.empty() ? "null" : json_string(text);
-}
 /// Writes the same at a place that has room for 6 * text.size() + 2 characters; returns its end.
 char* put_json_string(char* at, std::string_view text);
 

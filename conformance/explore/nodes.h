@@ -2,17 +2,43 @@
 // of step() for each event, computed once. A network's state is then a few numbers.
 #pragma once
 
+#include <array>
+#include <cassert>
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <mutex>
 #include <string>
 #include <unordered_map>
 #include <vector>
 
-#include "conformance/explore/chunked.h"
 #include "conformance/explore/history.h"
 #include "conformance/explore/options.h"
 
 namespace rubric::explore {
+
+// A list that grows without moving its elements, so that others may read while one appends.
+
+/// Appending needs a lock. Reading an element learned of through that lock, or through a barrier
+/// after it, needs none.
+template <typename T, std::size_t kChunk = 1024, std::size_t kChunks = 16384>
+class ChunkedList {
+ public:
+  std::size_t size() const { return size_; }
+  bool full() const { return size_ == kChunk * kChunks; }
+  T& operator[](std::size_t i) { return chunks_[i / kChunk][i % kChunk]; }
+  const T& operator[](std::size_t i) const { return chunks_[i / kChunk][i % kChunk]; }
+  T& push(T value) {
+    assert(!full());
+    auto& chunk = chunks_[size_ / kChunk];
+    if (!chunk) chunk = std::make_unique<T[]>(kChunk);
+    return chunk[size_++ % kChunk] = std::move(value);
+  }
+
+ private:
+  std::array<std::unique_ptr<T[]>, kChunks> chunks_;
+  std::size_t size_ = 0;
+};
 
 using NodeId = std::uint32_t;   ///< A node's state with its monitor.
 using FrameId = std::uint16_t;  ///< A frame on the radio; 0 is a link ack.

@@ -1,18 +1,154 @@
 #include "conformance/explore/search.h"
 
+#include <sys/mman.h>
+
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cstdint>
 #include <limits>
 #include <memory>
+#include <new>
 #include <thread>
 #include <utility>
+#include <vector>
 
-#include "conformance/explore/frontier.h"
-#include "conformance/explore/visited.h"
+#include "conformance/explore/network.h"
 
 namespace rubric::explore {
 namespace {
+
+// States that wait to be expanded, packed one after the other.
+
+/// The state, and the index among its successors, from which a state was reached first.
+struct PathLink {
+  static constexpr std::uint16_t kStart = 0xFFFF;
+  std::uint32_t index = 0;  ///< Index among the states of its thread.
+  std::uint16_t thread = 0;
+  std::uint16_t way = kStart;
+};
+
+/// Neighbouring states of one thread.
+struct Chunk {
+  const std::uint8_t* bytes = nullptr;
+  std::size_t states = 0;
+  std::uint32_t first_index = 0;
+  std::uint8_t thread = 0;
+};
+
+class Frontier {
+ public:
+  void add(const Network& network, const World& world, std::uint32_t index, std::uint8_t thread) {
+    if (states_ % kChunkStates == 0) marks_.push_back({bytes_.size(), index, thread});
+    ++states_;
+    std::array<std::uint8_t, kPackedMax> packed;
+    const std::size_t size = network.pack(world, packed.data());
+    bytes_.insert(bytes_.end(), packed.data(), packed.data() + size);
+  }
+  std::size_t states() const { return states_; }
+  /// Appends its chunks, which stay valid while it is neither moved nor added to.
+  void chunks(std::vector<Chunk>& out) const {
+    for (std::size_t i = 0; i < marks_.size(); ++i) {
+      const bool last = i + 1 == marks_.size();
+      const std::size_t states = last ? states_ - i * kChunkStates : kChunkStates;
+      out.push_back(
+          {bytes_.data() + marks_[i].offset_bytes, states, marks_[i].index, marks_[i].thread});
+    }
+  }
+
+ private:
+  static constexpr std::size_t kChunkStates = 512;
+  static constexpr std::size_t kPackedMax = 3 * kNodesMax + 2 + 3 * World::kCopiesMax;
+  struct Mark {
+    std::size_t offset_bytes;
+    std::uint32_t index;
+    std::uint8_t thread;
+  };
+  std::vector<std::uint8_t> bytes_;
+  std::vector<Mark> marks_;
+  std::size_t states_ = 0;
+};
+
+// The set of visited states, as fingerprints of 64 bits: eight bytes a place.
+
+/// Open addressing; several threads insert at once without locks. It grows between batches, not
+/// during one.
+class Visited {
+ public:
+  Visited() { allocate(std::size_t{1} << 18); }
+
+  /// Makes room for so many more. No thread may insert meanwhile.
+  void reserve(std::size_t more);
+  /// Returns how many more fit without growing.
+  std::size_t room() const;
+  /// Prefetches the place of a fingerprint, for an insert soon.
+  void prefetch(std::uint64_t fingerprint) const {
+    __builtin_prefetch(&slots_[fingerprint & mask_], 1, 1);
+  }
+  /// Inserts `fingerprint`, which is not 0. Returns true if it is new.
+  bool insert(std::uint64_t fingerprint) {
+    for (std::size_t i = fingerprint & mask_;; i = (i + 1) & mask_) {
+      std::uint64_t there = slots_[i].load(std::memory_order_relaxed);
+      if (there == fingerprint) return false;
+      if (there != 0) continue;
+      if (slots_[i].compare_exchange_strong(there, fingerprint, std::memory_order_relaxed)) {
+        return true;
+      }
+      if (there == fingerprint) return false;
+    }
+  }
+  /// Counts inserted states after a batch, since counting each would cost more than inserting.
+  void add_to_size(std::size_t inserted) { size_ += inserted; }
+  std::size_t size() const { return size_; }
+  std::size_t memory_bytes() const { return (mask_ + 1) * sizeof(std::uint64_t); }
+
+ private:
+  struct Release {
+    std::size_t bytes;
+    void operator()(std::atomic<std::uint64_t>* slots) const;
+  };
+  void allocate(std::size_t slots);
+
+  std::unique_ptr<std::atomic<std::uint64_t>[], Release> slots_ {
+    nullptr, Release { 0 }
+  };
+  std::size_t mask_ = 0;
+  std::size_t size_ = 0;
+};
+
+constexpr std::size_t kFullPercent = 60;
+
+void Visited::Release::operator()(std::atomic<std::uint64_t>* slots) const {
+  if (slots != nullptr) munmap(slots, bytes);
+}
+
+// Allocates zeroed memory from the system, in large pages if there are any.
+void Visited::allocate(std::size_t slots) {
+  const std::size_t bytes = slots * sizeof(std::uint64_t);
+  void* const memory =
+      mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (memory == MAP_FAILED) throw std::bad_alloc();
+  madvise(memory, bytes, MADV_HUGEPAGE);
+  slots_ = {static_cast<std::atomic<std::uint64_t>*>(memory), Release{bytes}};
+  mask_ = slots - 1;
+}
+
+std::size_t Visited::room() const {
+  const std::size_t most = (mask_ + 1) / 100 * kFullPercent;
+  return most > size_ ? most - size_ : 0;
+}
+
+void Visited::reserve(std::size_t more) {
+  while (room() < more) {
+    const auto old = std::move(slots_);
+    const std::size_t old_slots = mask_ + 1;
+    allocate(2 * old_slots);
+    for (std::size_t i = 0; i < old_slots; ++i) {
+      const std::uint64_t fingerprint = old[i].load(std::memory_order_relaxed);
+      if (fingerprint != 0) insert(fingerprint);
+    }
+  }
+}
 
 using Clock = std::chrono::steady_clock;
 

@@ -24,7 +24,7 @@
 //    within the step that began it, unless a link ack is awaited or Options::busy is set. Calls,
 //    reboots and sends are limited, repeated hearings may be. What lies beyond is not explored, and
 //    nothing is said of it.
-// 6. Fingerprints (visited.h). A state is known by 64 bits of hash. With n states the probability
+// 6. Fingerprints (search.cc). A state is known by 64 bits of hash. With n states the probability
 //    that two share them is at most n^2 / 2^65. One of the two is then not expanded, so a violation
 //    could be missed. None is invented: a path is walked again from the start.
 // Motes are not exchanged for each other and no order of independent steps is left out: there is

@@ -8,10 +8,7 @@
 #include "fuzz/support/embedded_files.h"
 #include "fuzz/support/places.h"
 #include "fuzz/support/require.h"
-#include "spec/compiler/emit/cpp/emit_cpp.h"
 #include "spec/compiler/emit/emit.h"
-#include "spec/compiler/emit/java/emit_java.h"
-#include "spec/compiler/emit/lua/emit_lua.h"
 #include "spec/compiler/load/load.h"
 
 namespace {

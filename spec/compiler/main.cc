@@ -8,10 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "spec/compiler/emit/cpp/emit_cpp.h"
 #include "spec/compiler/emit/emit.h"
-#include "spec/compiler/emit/java/emit_java.h"
-#include "spec/compiler/emit/lua/emit_lua.h"
 #include "spec/compiler/load/load.h"
 #include "tools/cli/command.h"
 

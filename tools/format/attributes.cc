@@ -92,111 +92,80 @@ void fault_names(const Protocol&, Names& names) {
   }
 }
 
+template <auto kNumber>
+bool of_packet(const Record& r, Visitor visit) {
+  return integer_or_absent(visit, r.packet().*kNumber);
+}
+template <auto kNumber>
+bool of_mac(const Record& r, Visitor visit) {
+  return !r.frame->mac.present || integer(visit, r.frame->mac.*kNumber);
+}
+template <auto kNumber>
+bool of_mac_addresses(const Record& r, Visitor visit) {
+  return !r.frame->mac.has_addresses || integer(visit, r.frame->mac.*kNumber);
+}
+template <auto kNumber>
+bool of_am(const Record& r, Visitor visit) {
+  return !r.frame->am.present || integer(visit, r.frame->am.*kNumber);
+}
+
 constexpr Attribute kAttributes[] = {
     {"index",
-     [](const Record& r, Visitor v) { return integer(v, static_cast<std::int64_t>(r.index)); },
-     nullptr, false},
+     [](const Record& r, Visitor v) { return integer(v, static_cast<std::int64_t>(r.index)); }},
     {"number",
-     [](const Record& r, Visitor v) { return integer(v, static_cast<std::int64_t>(r.number)); },
-     nullptr, false},
+     [](const Record& r, Visitor v) { return integer(v, static_cast<std::int64_t>(r.number)); }},
     {"offset",
      [](const Record& r, Visitor v) {
        return integer(v, static_cast<std::int64_t>(r.packet().offset_bytes));
-     },
-     nullptr, false},
-    {"time", [](const Record& r, Visitor v) { return time(v, r.time_ns); }, nullptr, false},
+     }},
+    {"time", [](const Record& r, Visitor v) { return time(v, r.time_ns); }},
     {"interface", [](const Record& r, Visitor v) { return text(v, r.interface_name); }, nullptr,
      true},
     {"direction",
      [](const Record& r, Visitor v) { return text(v, direction_name(r.packet().direction)); },
-     direction_names, false},
+     direction_names},
     {"framing",
      [](const Record& r, Visitor v) { return text(v, framing_name(r.packet().framing)); },
-     framing_names, false},
-    {"frame.kind", kind, kind_names, false},
+     framing_names},
+    {"frame.kind", kind, kind_names},
     {"frame.kind_name",
      [](const Record& r, Visitor v) { return text(v, serial_kind_name(r.packet().kind)); },
-     kind_names, false},
-    {"frame.serial_seq",
-     [](const Record& r, Visitor v) { return integer_or_absent(v, r.packet().serial_seq); },
-     nullptr, false},
-    {"frame.crc", [](const Record& r, Visitor v) { return integer_or_absent(v, r.packet().crc); },
-     nullptr, false},
+     kind_names},
+    {"frame.serial_seq", of_packet<&Packet::serial_seq>},
+    {"frame.crc", of_packet<&Packet::crc>},
     {"frame.dispatch",
-     [](const Record& r, Visitor v) { return integer_or_absent(v, dispatch_of(r.packet())); },
-     nullptr, false},
-    {"frame.fcf",
-     [](const Record& r, Visitor v) {
-       return !r.frame->mac.present || integer(v, r.frame->mac.fcf);
-     },
-     nullptr, false},
-    {"frame.dsn",
-     [](const Record& r, Visitor v) {
-       return !r.frame->mac.present || integer(v, r.frame->mac.dsn);
-     },
-     nullptr, false},
-    {"frame.destpan",
-     [](const Record& r, Visitor v) {
-       return !r.frame->mac.has_addresses || integer(v, r.frame->mac.destpan);
-     },
-     nullptr, false},
-    {"frame.dest",
-     [](const Record& r, Visitor v) {
-       return !r.frame->mac.has_addresses || integer(v, r.frame->mac.dest);
-     },
-     nullptr, false},
-    {"frame.src",
-     [](const Record& r, Visitor v) {
-       return !r.frame->mac.has_addresses || integer(v, r.frame->mac.src);
-     },
-     nullptr, false},
+     [](const Record& r, Visitor v) { return integer_or_absent(v, dispatch_of(r.packet())); }},
+    {"frame.fcf", of_mac<&reflect::MacHeader::fcf>},
+    {"frame.dsn", of_mac<&reflect::MacHeader::dsn>},
+    {"frame.destpan", of_mac_addresses<&reflect::MacHeader::destpan>},
+    {"frame.dest", of_mac_addresses<&reflect::MacHeader::dest>},
+    {"frame.src", of_mac_addresses<&reflect::MacHeader::src>},
     {"frame.network",
-     [](const Record& r, Visitor v) { return integer_or_absent(v, network_of(*r.frame)); }, nullptr,
-     false},
-    {"frame.fcs", [](const Record& r, Visitor v) { return integer_or_absent(v, r.packet().fcs); },
-     nullptr, false},
-    {"am.dest",
-     [](const Record& r, Visitor v) {
-       return !r.frame->am.present || integer(v, r.frame->am.dest);
-     },
-     nullptr, false},
-    {"am.src",
-     [](const Record& r, Visitor v) { return !r.frame->am.present || integer(v, r.frame->am.src); },
-     nullptr, false},
-    {"am.length",
-     [](const Record& r, Visitor v) {
-       return !r.frame->am.present || integer(v, r.frame->am.length);
-     },
-     nullptr, false},
-    {"am.group",
-     [](const Record& r, Visitor v) {
-       return !r.frame->am.present || integer(v, r.frame->am.group);
-     },
-     nullptr, false},
-    {"am.type",
-     [](const Record& r, Visitor v) {
-       return !r.frame->am.present || integer(v, r.frame->am.type);
-     },
-     nullptr, false},
+     [](const Record& r, Visitor v) { return integer_or_absent(v, network_of(*r.frame)); }},
+    {"frame.fcs", of_packet<&Packet::fcs>},
+    {"am.dest", of_am<&reflect::ActiveMessage::dest>},
+    {"am.src", of_am<&reflect::ActiveMessage::src>},
+    {"am.length", of_am<&reflect::ActiveMessage::length>},
+    {"am.group", of_am<&reflect::ActiveMessage::group>},
+    {"am.type", of_am<&reflect::ActiveMessage::type>},
     {"message",
      [](const Record& r, Visitor v) {
        const reflect::Type* message = r.decoded().message();
        return !message || text(v, message->name);
      },
-     message_names, false},
-    {"path", path, message_names, false},
-    {"notes", notes, note_names, false},
+     message_names},
+    {"path", path, message_names},
+    {"notes", notes, note_names},
     {"stale", stale, nullptr, true},
-    {"stale_bytes", stale_bytes, nullptr, false},
+    {"stale_bytes", stale_bytes},
     {"raw", [](const Record& r, Visitor v) { return v(Value::of_bytes(r.packet().bytes)); },
      nullptr, true},
-    {"error", fault, fault_names, false},
-    {"error.fault", fault, fault_names, false},
+    {"error", fault, fault_names},
+    {"error.fault", fault, fault_names},
     {"error.offset",
      [](const Record& r, Visitor v) {
        return !r.frame->malformed() || integer(v, r.frame->error.offset_bytes);
-     },
-     nullptr, false},
+     }},
     {"error.requirement",
      [](const Record& r, Visitor v) {
        return !r.frame->malformed() || text(v, reflect::requirement(r.frame->error.requirement).id);

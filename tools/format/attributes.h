@@ -16,8 +16,8 @@ struct Attribute {
   std::string_view name;
   bool (*visit)(const Record&, Visitor);
   /// Adds the possible names of its values; null if they are numbers or free text.
-  void (*names)(const reflect::Protocol&, std::vector<std::string>&);
-  bool free_text;
+  void (*names)(const reflect::Protocol&, std::vector<std::string>&) = nullptr;
+  bool free_text = false;
 };
 
 /// Returns the attribute of this name, or null.

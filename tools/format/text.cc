@@ -2,16 +2,314 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
 #include "codec/reflect/fault_text.h"
-#include "tools/format/hexdump.h"
+#include "tools/format/json_nodes.h"
 #include "tools/format/plain_value.h"
 #include "tools/format/put.h"
-#include "tools/format/text_fields.h"
+#include "tools/format/record.h"
+#include "tools/format/style.h"
 
 namespace rubric::format {
 namespace {
 
+using reflect::Decoded;
+using reflect::Field;
 using reflect::Frame;
+using reflect::Kind;
+using reflect::Node;
+using reflect::NodeKind;
+
+// Prints the bytes of a frame, and the field of each.
+
+constexpr std::size_t kRowBytes = 16;
+constexpr std::size_t kLineChars = 100;
+constexpr std::string_view kIndent = "        ";
+constexpr std::string_view kLetters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ";
+constexpr int kNobody = -1;
+constexpr int kStale = -2;
+
+/// Returns a byte's field, by the order of leaves; kNobody or kStale.
+std::vector<int> owners(const Record& record, std::vector<std::string>& names) {
+  const Decoded& decoded = record.decoded();
+  std::vector<int> owner(decoded.bytes.size(), kNobody);
+  std::vector<std::size_t> around;
+  for (std::size_t i = 0; i < decoded.node_count(); ++i) {
+    const Node& node = decoded[i];
+    while (!around.empty() && i >= decoded[around.back()].end) around.pop_back();
+    if (node.kind == NodeKind::kStruct || node.kind == NodeKind::kStructArray) {
+      around.push_back(i);
+      continue;
+    }
+    // One more name than the field's own is enough: "dest.pid".
+    const reflect::Field* outer = around.empty() ? nullptr : decoded[around.back()].field;
+    std::string name =
+        outer ? fmt::format("{}.{}", outer->name, node.field->name) : std::string(node.field->name);
+    for (std::uint32_t k = 0; k < node.size; ++k) {
+      owner[node.offset + k] = static_cast<int>(names.size());
+    }
+    names.push_back(std::move(name));
+  }
+  for (std::size_t i = 0; i < decoded.stale_count(); ++i) {
+    const reflect::Range range = decoded.stale()[i];
+    for (std::uint32_t k = 0; k < range.size; ++k) owner[range.offset + k] = kStale;
+  }
+  return owner;
+}
+
+char letter(int owner) {
+  if (owner == kStale) return '~';
+  return owner < 0 ? ' ' : kLetters[static_cast<std::size_t>(owner) % kLetters.size()];
+}
+
+Style style_of(int owner) {
+  if (owner == kStale) return Style::kDim;
+  return owner < 0 ? Style::kPlain : Style::kField;
+}
+
+/// Prints the rows of one frame.
+class Dump {
+ public:
+  Dump(const Record& record, bool color, Buffer& out)
+      : record_(record), styled_(out, color), out_(out), owner_(owners(record, names_)) {}
+
+  void print() {
+    const std::size_t size = owner_.size();
+    for (std::size_t row = 0; row < size; row += kRowBytes) {
+      const std::size_t end = std::min(row + kRowBytes, size);
+      bytes(row, end);
+      if (!styled_.color()) letters(row, end);
+    }
+    if (!styled_.color()) key();
+  }
+
+ private:
+  bool is_fault(std::size_t i) const {
+    return record_.frame->malformed() && record_.frame->error.offset_bytes == i;
+  }
+
+  void bytes(std::size_t row, std::size_t end) {
+    const Bytes bytes = record_.packet().bytes;
+    out_.append(kIndent);
+    styled_.put(Style::kDim, fmt::format("{:04x} ", row));
+    for (std::size_t i = row; i < end; ++i) {
+      out_.append(i == row + kRowBytes / 2 ? "  " : " ");
+      const Style style = is_fault(i) ? Style::kError : style_of(owner_[i]);
+      styled_.begin(style, static_cast<std::size_t>(std::max(owner_[i], 0)));
+      out_.append(fmt::format("{:02x}", bytes[i]));
+      styled_.end();
+    }
+    const std::size_t missing = kRowBytes - (end - row);
+    out_.append(3 * missing + (end - row <= kRowBytes / 2) + 2, ' ');
+    for (std::size_t i = row; i < end; ++i) {
+      const char c = static_cast<char>(bytes[i]);
+      out_.append(c >= ' ' && c <= '~' ? c : '.');
+    }
+    out_.append('\n');
+  }
+
+  void letters(std::size_t row, std::size_t end) {
+    std::string line(kIndent);
+    line += "     ";
+    for (std::size_t i = row; i < end; ++i) {
+      line += i == row + kRowBytes / 2 ? "  " : " ";
+      line += letter(owner_[i]);
+      // A dash where the field continues.
+      const bool goes_on = owner_[i] >= 0 && i + 1 < owner_.size() && owner_[i + 1] == owner_[i];
+      line += is_fault(i) ? '!' : goes_on ? '-' : ' ';
+    }
+    while (line.ends_with(' ')) line.pop_back();
+    out_.append(line);
+    out_.append('\n');
+  }
+
+  void key() {
+    std::string line(kIndent);
+    for (std::size_t i = 0; i < names_.size(); ++i) {
+      const std::string entry = fmt::format("{} {}", letter(static_cast<int>(i)), names_[i]);
+      if (line.size() + entry.size() > kLineChars) {
+        out_.append(line);
+        out_.append('\n');
+        line = kIndent;
+      }
+      if (line.size() > kIndent.size()) line += "  ";
+      line += entry;
+    }
+    if (line.size() == kIndent.size()) return;
+    out_.append(line);
+    out_.append('\n');
+  }
+
+  const Record& record_;
+  Styled styled_;
+  Buffer& out_;
+  std::vector<std::string> names_;
+  std::vector<int> owner_;
+};
+
+// Appends rows of sixteen bytes. With colour a byte has its field's; without, there is a row of
+// letters below each, and a key to them at the end. '~' marks stale bytes, '!' the first byte of a
+// fault.
+void append_hexdump(const Record& record, bool color, Buffer& out) {
+  Dump(record, color, out).print();
+}
+
+// Prints the fields of a frame on one line: name=value.
+
+/// Bytes of an opaque field or frame that a line shows.
+constexpr std::size_t kMaxHexBytes = 24;
+
+struct FieldStyle {
+  bool units = false;     ///< Values with a unit are shown converted.
+  bool in_turns = false;  ///< Values in the colours of the hex dump.
+};
+
+// Appends hex of the first `most` bytes, and their number if there are more.
+void append_hex_short(Bytes bytes, std::size_t most, Buffer& out) {
+  if (bytes.empty()) return out.append("(empty)");
+  const std::size_t shown = std::min(bytes.size(), most);
+  out.commit(put_hex(out.reserve(2 * shown), bytes.first(shown)));
+  if (shown < bytes.size()) out.append(fmt::format("..({} bytes)", bytes.size()));
+}
+
+constexpr std::uint32_t kMaxElements = 24;
+
+/// Prints the nodes of one frame, counting leaves as the hex dump does.
+class FieldPrinter {
+ public:
+  FieldPrinter(const Record& record, FieldStyle style, Styled& styled)
+      : decoded_(record.decoded()), style_(style), styled_(styled), out_(styled.out()) {
+    turn_ = 0;
+    for (std::size_t i = 0; i < record.frame->payload_node; ++i) turn_ += is_leaf(decoded_[i]);
+  }
+
+  void message(std::size_t node) {
+    for (std::size_t i = node + 1; i < decoded_[node].end; i = decoded_[i].end) member(i);
+  }
+
+ private:
+  static bool is_leaf(const Node& node) {
+    return node.kind == NodeKind::kNumber || node.kind == NodeKind::kNumberArray ||
+           node.kind == NodeKind::kBytes;
+  }
+  bool is_message(const Node& node) const {
+    const auto* end = decoded_.path() + decoded_.path_count();
+    return node.type && std::find(decoded_.path(), end, node.type) != end;
+  }
+  bool is_pair(std::size_t node) const {
+    return decoded_[node].end == node + 3 && decoded_[node + 1].kind == NodeKind::kNumber &&
+           decoded_[node + 2].kind == NodeKind::kNumber;
+  }
+
+  void member(std::size_t i) {
+    const Node& node = decoded_[i];
+    if (node.kind == NodeKind::kStruct && is_message(node)) {
+      styled_.put(Style::kDim, "| ");
+      message(i);
+      return;
+    }
+    if (node.kind == NodeKind::kStruct && node.end == i + 1) return;  // Cut off before its start.
+    name(*node.field, node.kind == NodeKind::kStruct && !is_pair(i) ? "{" : "=");
+    value(i);
+    out_.append(' ');
+  }
+
+  void name(const Field& field, std::string_view behind) {
+    styled_.begin(Style::kDim);
+    out_.append(field.name);
+    out_.append(behind);
+    styled_.end();
+  }
+
+  // Prints a structure that is no pair after its opening brace.
+  void value(std::size_t i) {
+    const Node& node = decoded_[i];
+    switch (node.kind) {
+      case NodeKind::kNumber: leaf([&] { number(*node.field, node.value); }); break;
+      case NodeKind::kNumberArray: leaf([&] { numbers(node); }); break;
+      case NodeKind::kBytes:
+        leaf([&] {
+          append_hex_short(decoded_.bytes.sub(node.offset, node.size), kMaxHexBytes, out_);
+        });
+        break;
+      case NodeKind::kStruct: structure(i); break;
+      case NodeKind::kStructArray: structures(i); break;
+    }
+  }
+
+  template <class Print>
+  void leaf(Print print) {
+    if (style_.in_turns) styled_.begin(Style::kField, turn_);
+    ++turn_;
+    print();
+    if (style_.in_turns) styled_.end();
+  }
+
+  void structure(std::size_t i) {
+    if (is_pair(i)) {
+      value(i + 1);
+      out_.append(':');
+      value(i + 2);
+      return;
+    }
+    message(i);
+    if (out_.view().back() == ' ') out_.shrink(out_.size() - 1);
+    styled_.put(Style::kDim, "}");
+  }
+
+  void structures(std::size_t i) {
+    out_.append('[');
+    for (std::size_t k = i + 1; k < decoded_[i].end; k = decoded_[k].end) {
+      if (k != i + 1) out_.append(' ');
+      if (!is_pair(k)) styled_.put(Style::kDim, "{");
+      structure(k);
+    }
+    out_.append(']');
+  }
+
+  void number(const Field& field, std::int64_t value) {
+    if (style_.units && field.unit) {
+      out_.append(fmt::format("{:.6g}{}", converted(field, value), field.unit->symbol));
+    } else if (field.mask) {
+      append_bits(*field.mask, value, out_);
+    } else if (const char* name =
+                   field.enumeration ? reflect::enum_name(*field.enumeration, value) : nullptr) {
+      out_.append(name);
+    } else if (field.kind == Kind::kFloat) {
+      out_.append(fmt::format("{}", float_of_bits(static_cast<std::uint32_t>(value))));
+    } else {
+      out_.commit(put_int(out_.reserve(kMaxIntChars), value));
+    }
+  }
+
+  void numbers(const Node& node) {
+    const std::uint8_t* at = decoded_.bytes.data() + node.offset;
+    out_.append('[');
+    for (std::uint32_t k = 0; k < node.count && k < kMaxElements; ++k) {
+      if (k) out_.append(' ');
+      number(*node.field, reflect::load_number(*node.field, at));
+      at += node.field->width_bytes;
+    }
+    if (node.count > kMaxElements) out_.append(fmt::format(" ..{} in all", node.count));
+    out_.append(']');
+  }
+
+  const Decoded& decoded_;
+  const FieldStyle style_;
+  Styled& styled_;
+  Buffer& out_;
+  std::size_t turn_ = 0;
+};
+
+// Appends all fields of the outermost message. Structures of two numbers are pairs, "dest=11:2";
+// messages within the message follow after a bar.
+void append_fields(const Record& record, FieldStyle style, Styled& styled) {
+  FieldPrinter(record, style, styled).message(record.frame->payload_node);
+}
 
 constexpr std::uint16_t kAmBroadcast = 0xffff;
 

@@ -8,7 +8,7 @@ import subprocess
 import sys
 import unittest
 
-from forward_testing import Client, Mote, Running, from_mote
+from forward_testing import Client, from_mote, serving
 from serial_testing import PATIENCE_S
 
 COMMAND = [sys.argv[2], "-cp", sys.argv[3], "rubric.basestation.ForwarderClient"]
@@ -31,9 +31,7 @@ class Java(unittest.TestCase):
         return process
 
     def test_two_base_stations_and_a_listener(self):
-        mote = Mote(self).on_a_port()
-        running = Running(self, mote.source, "--verbose", "--timeout", str(1000 * PATIENCE_S))
-        mote.accept()
+        mote, running = serving(self, "--verbose", "--timeout", str(1000 * PATIENCE_S))
         listener = Client(self, running)
         stations = []
         for _ in range(2):

@@ -14,7 +14,8 @@ import tempfile
 import tty
 import unittest
 
-from forward_testing import RUBRIC, SANITIZED, Client, Mote, Running, from_mote, packet
+from forward_testing import (RUBRIC, SANITIZED, Client, Mote, Running, ended, from_mote, packet,
+                             serving)
 from serial_testing import PATIENCE_S, hdlc
 
 
@@ -22,9 +23,7 @@ class Sources(unittest.TestCase):
     maxDiff = 2000
 
     def test_a_source_that_goes(self):
-        mote = Mote(self).on_a_port()
-        running = Running(self, mote.source)
-        mote.accept()
+        mote, running = serving(self)
         client = Client(self, running)
         wanted = [packet(number, 100) for number in range(200)]
         mote.say(b"".join(map(from_mote, wanted)))
@@ -37,9 +36,7 @@ class Sources(unittest.TestCase):
         running.wait_for(f"^rubric: {mote.source}: the line broke: the other end closed it$")
 
     def test_who_comes_too_late_does_not_keep_it_awake(self):
-        mote = Mote(self).on_a_port()
-        running = Running(self, mote.source)
-        mote.accept()
+        mote, running = serving(self)
         Client(self, running, receive_bytes=4096)  # It takes nothing: the rest is waited for.
         mote.say(b"".join(from_mote(packet(number, 100)) for number in range(8000)))
         mote.connection.close()
@@ -51,9 +48,7 @@ class Sources(unittest.TestCase):
         self.assertLess(running.cpu_seconds, 0.3)
 
     def test_a_source_that_comes_back(self):
-        mote = Mote(self).on_a_port()
-        running = Running(self, mote.source, "--reconnect")
-        mote.accept()
+        mote, running = serving(self, "--reconnect")
         client = Client(self, running)
         for number in range(2):
             mote.say(from_mote(packet(number)))
@@ -97,13 +92,11 @@ class Sources(unittest.TestCase):
                                    ("sf@127.0.0.1:1", 3, "cannot connect"),
                                    ("serial@/dev/ttyUSB0", 2, "expected serial@DEVICE:BAUD"),
                                    ("capture.pcapng", 2, "expected serial@DEVICE:BAUD, network")):
-            done = subprocess.run([RUBRIC, "forward", source, "--port", "0"], capture_output=True,
-                                  text=True, check=False, timeout=PATIENCE_S)
+            done = ended(source, "--port", "0")
             self.assertEqual((done.returncode, done.stdout), (code, ""), source)
             self.assertIn(what, done.stderr)
         environment = {key: value for key, value in os.environ.items() if key != "MOTECOM"}
-        done = subprocess.run([RUBRIC, "forward", "--port", "0"], capture_output=True, text=True,
-                              check=False, timeout=PATIENCE_S, env=environment)
+        done = ended("--port", "0", env=environment)
         self.assertEqual(done.returncode, 2)
         self.assertIn("SOURCE", done.stderr)
 
@@ -134,21 +127,12 @@ class Sources(unittest.TestCase):
         self.assertEqual(second.end(None)[0], 3)
 
     def test_a_forwarder_of_itself(self):
-        with socket.create_server(("127.0.0.1", 0)) as free:
-            port = free.getsockname()[1]
-        done = subprocess.run([RUBRIC, "forward", f"sf@127.0.0.1:{port}", "--port", str(port)],
-                              capture_output=True, text=True, check=False, timeout=PATIENCE_S)
-        self.assertEqual(done.returncode, 3)
-        self.assertIn("this is where this forwarder itself listens", done.stderr)
-
-    def test_a_forwarder_of_itself_that_listens_everywhere(self):
-        with socket.create_server(("127.0.0.1", 0)) as free:
-            port = str(free.getsockname()[1])
-        done = subprocess.run([RUBRIC, "forward", f"sf@127.0.0.1:{port}", "--port", port,
-                               "--bind", "0.0.0.0"],
-                              capture_output=True, text=True, check=False, timeout=PATIENCE_S)
-        self.assertEqual(done.returncode, 3)
-        self.assertIn("this is where this forwarder itself listens", done.stderr)
+        for more in ([], ["--bind", "0.0.0.0"]):
+            with socket.create_server(("127.0.0.1", 0)) as free:
+                port = str(free.getsockname()[1])
+            done = ended(f"sf@127.0.0.1:{port}", "--port", port, *more)
+            self.assertEqual(done.returncode, 3)
+            self.assertIn("this is where this forwarder itself listens", done.stderr)
 
     def test_the_same_port_of_another_address_is_another_forwarder(self):
         mote = Mote(self).on_a_terminal()
@@ -169,17 +153,14 @@ class Sources(unittest.TestCase):
         self.assertIn("cannot connect: Too many open files", done.stderr)
 
     def test_a_port_that_is_taken(self):
-        mote = Mote(self).on_a_terminal()
-        running = Running(self, mote.source)
-        done = subprocess.run([RUBRIC, "forward", mote.source, "--port", str(running.port)],
-                              capture_output=True, text=True, check=False, timeout=PATIENCE_S)
+        mote, running = serving(self, terminal=True)
+        done = ended(mote.source, "--port", str(running.port))
         self.assertEqual(done.returncode, 3)
         self.assertIn(f"cannot listen at 127.0.0.1, port {running.port}: Address already in use",
                       done.stderr)
 
     def test_other_hosts_are_let_in_only_aloud(self):
-        mote = Mote(self).on_a_terminal()
-        running = Running(self, mote.source)
+        mote, running = serving(self, terminal=True)
         self.assertEqual(running.host, "127.0.0.1")
         self.assertEqual(running.end()[0], 0)
         self.assertFalse(any("WARNING" in line for line in running.complaints))
@@ -192,16 +173,13 @@ class Sources(unittest.TestCase):
             socket.create_server(("::1", 0), family=socket.AF_INET6).close()
         except OSError:
             self.skipTest("this host has no IPv6")
-        mote = Mote(self).on_a_terminal()
-        running = Running(self, mote.source, "--bind", "::1")
+        mote, running = serving(self, "--bind", "::1", terminal=True)
         client = Client(self, running)
         mote.say(from_mote(packet(1)))
         self.assertEqual(client.packet(), packet(1))
 
     def test_listen_only(self):
-        mote = Mote(self).on_a_port()
-        running = Running(self, mote.source, "--listen-only")
-        mote.accept()
+        mote, running = serving(self, "--listen-only")
         client = Client(self, running)
         client.give(packet(1))
         client.give(packet(2))
@@ -214,9 +192,7 @@ class Sources(unittest.TestCase):
     def test_what_goes_by_is_kept(self):
         with tempfile.TemporaryDirectory(prefix="rubric-forward-") as folder:
             kept = pathlib.Path(folder) / "kept.pcapng"
-            mote = Mote(self).on_a_port()
-            running = Running(self, mote.source, "--write", kept)
-            mote.accept()
+            mote, running = serving(self, "--write", kept)
             client = Client(self, running)
             mote.say(from_mote(packet(1)))
             self.assertEqual(client.packet(), packet(1))
@@ -252,9 +228,7 @@ class Sources(unittest.TestCase):
             os.mkfifo(pipe)
             reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
             self.addCleanup(os.close, reader)
-            done = subprocess.run([RUBRIC, "forward", "sf@127.0.0.1:1", "--port", "0",
-                                   "--write", pipe],
-                                  capture_output=True, text=True, check=False, timeout=PATIENCE_S)
+            done = ended("sf@127.0.0.1:1", "--port", "0", "--write", pipe)
         self.assertEqual(done.returncode, 2)
         self.assertIn(f"--write: {pipe} is not a regular file", done.stderr)
 

@@ -11,7 +11,7 @@ import subprocess
 import sys
 import unittest
 
-from forward_testing import RUBRIC, SANITIZED, Client, Mote, Running, from_mote, packet
+from forward_testing import RUBRIC, SANITIZED, Client, from_mote, packet, serving
 from serial_testing import PATIENCE_S, hdlc
 
 SOCKET_BYTES = 4096  # Of those who are slow, so that the kernel keeps little for them.
@@ -21,8 +21,7 @@ class Clients(unittest.TestCase):
     maxDiff = 2000
 
     def test_all_clients_get_the_same_in_order(self):
-        mote = Mote(self).on_a_terminal()
-        running = Running(self, mote.source)
+        mote, running = serving(self, terminal=True)
         clients = [Client(self, running) for _ in range(5)]
         wanted = [packet(number, 4 * (number % 20)) for number in range(500)]
         for data in wanted:
@@ -39,9 +38,7 @@ class Clients(unittest.TestCase):
                              "0 to it; 6 clients, 0 cut off"))
 
     def test_malformed_frames_are_counted_and_not_passed_on(self):
-        mote = Mote(self).on_a_port()
-        running = Running(self, mote.source)
-        mote.accept()
+        mote, running = serving(self)
         client = Client(self, running)
         good = from_mote(packet(1))
         mote.say(good[:9] + bytes([good[9] ^ 1]) + good[10:] + b"\x7e\x45\x7e" +
@@ -50,9 +47,7 @@ class Clients(unittest.TestCase):
         self.assertRegex(running.end()[1], r": 1 packets from it \(3 malformed frames\), 0 to it")
 
     def test_a_client_that_stops_reading_is_cut_off_alone(self):
-        mote = Mote(self).on_a_port()
-        running = Running(self, mote.source, "--buffer", "64")
-        mote.accept()
+        mote, running = serving(self, "--buffer", "64")
         good = Client(self, running)
         stalled = Client(self, running, receive_bytes=SOCKET_BYTES)
         total = 0
@@ -71,8 +66,7 @@ class Clients(unittest.TestCase):
         self.assertRegex(running.end()[1], f": {total + 1} packets .*; 2 clients, 1 cut off$")
 
     def test_a_packet_for_the_mote_is_sent_until_it_is_confirmed(self):
-        mote = Mote(self).on_a_terminal()
-        running = Running(self, mote.source, "--timeout", "100")
+        mote, running = serving(self, "--timeout", "100", terminal=True)
         client = Client(self, running)
         client.give(packet(1))
         client.give(packet(2))
@@ -94,8 +88,7 @@ class Clients(unittest.TestCase):
         self.assertEqual(running.end()[0], 0)
 
     def test_packets_that_ask_for_it_are_confirmed(self):
-        mote = Mote(self).on_a_terminal()
-        running = Running(self, mote.source)
+        mote, running = serving(self, terminal=True)
         client = Client(self, running)
         mote.say(hdlc(b"\x44\x2a" + packet(1)))
         self.assertEqual(mote.frame(), b"\x43\x2a")
@@ -103,9 +96,7 @@ class Clients(unittest.TestCase):
         self.assertEqual(running.end()[0], 0)
 
     def test_clients_take_turns(self):
-        mote = Mote(self).on_a_port()
-        running = Running(self, mote.source)
-        mote.accept()
+        mote, running = serving(self)
         greedy, modest = Client(self, running), Client(self, running)
         for number in range(30):
             greedy.give(packet(number))
@@ -122,9 +113,7 @@ class Clients(unittest.TestCase):
         self.assertLess(places[-1], 8, "the packets of one keep those of the other waiting")
 
     def test_a_mote_that_confirms_nothing(self):
-        mote = Mote(self).on_a_port()
-        running = Running(self, mote.source, "--timeout", "100", "--retries", "2")
-        mote.accept()
+        mote, running = serving(self, "--timeout", "100", "--retries", "2")
         client = Client(self, running)
         for number in range(4):
             client.give(packet(number))
@@ -143,9 +132,7 @@ class Clients(unittest.TestCase):
         self.assertEqual(len(running.complaints), 3, running.complaints)
 
     def test_bad_clients_are_cut_off_and_others_are_not(self):
-        mote = Mote(self).on_a_port()
-        running = Running(self, mote.source, "--patience", "1")
-        mote.accept()
+        mote, running = serving(self, "--patience", "1")
         good = Client(self, running)
         for sent, why in ((b"G", "begins with 47, not with 55 20"),
                           (b"U\x1f", "begins with 55 1f, not with 55 20"),
@@ -171,9 +158,7 @@ class Clients(unittest.TestCase):
         self.assertRegex(running.end()[1], "; 11 clients, 8 cut off$")
 
     def test_what_a_client_sent_before_it_left_is_sent(self):
-        mote = Mote(self).on_a_port()
-        running = Running(self, mote.source)
-        mote.accept()
+        mote, running = serving(self)
         for number in range(3):
             client = Client(self, running)
             client.give(packet(number))
@@ -183,9 +168,7 @@ class Clients(unittest.TestCase):
         self.assertEqual(found, [packet(number) for number in (0, 1, 2, 10, 11, 12)])
 
     def test_too_many_clients(self):
-        mote = Mote(self).on_a_port()
-        running = Running(self, mote.source, "--clients", "2", "--verbose")
-        mote.accept()
+        mote, running = serving(self, "--clients", "2", "--verbose")
         clients = [Client(self, running) for _ in range(2)]
         for _ in range(3):
             refused = socket.create_connection((running.host, running.port), PATIENCE_S)
@@ -201,9 +184,7 @@ class Clients(unittest.TestCase):
         self.assertEqual(sum("is refused" in line for line in running.complaints), 1)
 
     def test_who_left_gives_way_while_the_source_is_gone(self):
-        mote = Mote(self).on_a_port()
-        running = Running(self, mote.source, "--clients", "3", "--reconnect")
-        mote.accept()
+        mote, running = serving(self, "--clients", "3", "--reconnect")
         mote.listener.close()
         mote.connection.close()
         running.wait_for("the other end closed it")
@@ -219,19 +200,14 @@ class Clients(unittest.TestCase):
         self.assertRegex(running.end()[1], ", 6 not sent; 7 clients, 0 cut off$")
 
     def test_more_clients_than_the_shell_allows_descriptors(self):
-        mote = Mote(self).on_a_port()
-        running = Running(self, mote.source, "--clients", "100", limits="ulimit -S -n 64")
-        mote.accept()
+        mote, running = serving(self, "--clients", "100", limits="ulimit -S -n 64")
         clients = [Client(self, running) for _ in range(100)]
         mote.say(from_mote(packet(1)))
         self.assertEqual([client.packet() for client in clients], [packet(1)] * 100)
         self.assertRegex(running.end()[1], "; 100 clients, 0 cut off$")
 
     def test_clients_never_take_the_descriptors_of_the_source(self):
-        mote = Mote(self).on_a_port()
-        running = Running(self, mote.source, "--clients", "500", "--reconnect",
-                          limits="ulimit -n 64")
-        mote.accept()
+        mote, running = serving(self, "--clients", "500", "--reconnect", limits="ulimit -n 64")
         running.wait_for("^rubric: no more than 32 clients at once: only 64 descriptors are")
         clients = [Client(self, running) for _ in range(32)]
         refused = socket.create_connection((running.host, running.port), PATIENCE_S)
@@ -245,9 +221,7 @@ class Clients(unittest.TestCase):
 
     @unittest.skipIf(SANITIZED, "a sanitizer needs descriptors of its own")
     def test_a_wait_that_fails_ends_it(self):
-        mote = Mote(self).on_a_port()
-        running = Running(self, mote.source)
-        mote.accept()
+        mote, running = serving(self)
         clients = [Client(self, running) for _ in range(8)]
         # Poll takes no more of them than there may be descriptors.
         resource.prlimit(running.process.pid, resource.RLIMIT_NOFILE, (8, 8))
@@ -257,9 +231,7 @@ class Clients(unittest.TestCase):
                          (3, "rubric: cannot wait for source and clients: Invalid argument"))
 
     def test_what_is_cut_short_after_whole_packets(self):
-        mote = Mote(self).on_a_port()
-        running = Running(self, mote.source, "--timeout", str(1000 * PATIENCE_S))
-        mote.accept()
+        mote, running = serving(self, "--timeout", str(1000 * PATIENCE_S))
         first, client = Client(self, running), Client(self, running)
         first.give(packet(1))
         self.assertEqual(mote.frame()[2:], packet(1))  # The others wait until it is confirmed.
@@ -275,8 +247,7 @@ class Clients(unittest.TestCase):
         self.assertRegex(running.end()[1], ", 2 to it; 3 clients, 1 cut off$")
 
     def test_rubric_decode_is_a_client(self):
-        mote = Mote(self).on_a_terminal()
-        running = Running(self, mote.source, "--verbose")
+        mote, running = serving(self, "--verbose", terminal=True)
         with subprocess.Popen([RUBRIC, "decode", f"sf@127.0.0.1:{running.port}", "--count", "3",
                                "--format", "csv", "--fields", "message,am.type"],
                               stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
@@ -288,8 +259,7 @@ class Clients(unittest.TestCase):
         running.wait_for("has left")
 
     def test_rubric_send_is_a_client(self):
-        mote = Mote(self).on_a_terminal()
-        running = Running(self, mote.source)
+        mote, running = serving(self, terminal=True)
         with subprocess.Popen([RUBRIC, "send", "--as", "config", "--to",
                                f"sf@127.0.0.1:{running.port}"], stdin=subprocess.PIPE,
                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as send:

@@ -16,16 +16,12 @@ import sys
 import threading
 import tty
 
-from serial_testing import PATIENCE_S, crc, hdlc
+from serial_testing import PATIENCE_S, hdlc, unframed
 
 RUBRIC = os.path.abspath(sys.argv[1])
 with open(RUBRIC, "rb") as program:
     # Sanitizers open pipes to see whether memory can be read: without descriptors they see faults.
     SANITIZED = b"__ubsan_handle" in program.read()
-
-
-def unescaped(frame):
-    return re.sub(rb"\x7d(.)", lambda found: bytes([found[1][0] ^ 0x20]), frame, flags=re.S)
 
 
 def packet(number, size=20):
@@ -179,9 +175,7 @@ class Mote:
             match = re.search(rb"\x7e([^\x7e]+)\x7e", self.read)
             if match:
                 self.read = self.read[match.end():]
-                content = unescaped(match[1])
-                self.test.assertEqual(crc(content[:-2]).to_bytes(2, "little"), content[-2:])
-                return content[:-2]
+                return unframed(match[1])
             if not select.select([self.connection], [], [], PATIENCE_S)[0]:
                 raise AssertionError("the host sends nothing")
             more = self.connection.read(1000)
@@ -195,3 +189,16 @@ class Mote:
         self.test.assertEqual(content[0], 0x44)
         self.say(hdlc(bytes([0x43, content[1]])))
         return content[2:]
+
+
+def serving(test, *arguments, terminal=False, **more):
+    """A mote, and a forwarder of its line."""
+    mote = Mote(test).on_a_terminal() if terminal else Mote(test).on_a_port()
+    running = Running(test, mote.source, *arguments, **more)
+    return mote if terminal else mote.accept(), running
+
+
+def ended(*arguments, **more):
+    """A forwarder that does not begin to serve."""
+    return subprocess.run([RUBRIC, "forward", *arguments], capture_output=True, text=True,
+                          check=False, timeout=PATIENCE_S, **more)

@@ -7,7 +7,6 @@ terminals and sockets.
 
 import json
 import os
-import re
 import signal
 import socket
 import struct
@@ -18,7 +17,7 @@ import unittest
 
 from live_testing import RUBRIC, Mote, lines_of
 from send_testing import CLEAN, LONG_MS, NOT_SENT, Base, config, confirms, line, send
-from serial_testing import ACK, PACKET_ACK, PACKET_NOACK, PATIENCE_S, UNKNOWN, Pty, hdlc
+from serial_testing import ACK, PACKET_ACK, PACKET_NOACK, PATIENCE_S, Pty, hdlc
 
 DEMO = "spec/captures/basestation/s04_acks.from_sink.sfstream"
 
@@ -44,21 +43,6 @@ class Serial(Base):
         self.assertEqual(out.count(" confirmed after 1 try"), 300)
         mote.end()
         self.assertEqual(mote.packets, [((14 + i) % 256, config(i)) for i in range(300)])
-
-    def test_sent_again_until_confirmed(self):
-        def answer(mote, seq, _):
-            return hdlc(bytes([ACK, seq])) if len(mote.packets) == 3 else None
-
-        to, mote = self.mote(answer)
-        code, out, err = send("--as", "config", "--to", to, "--timeout", "1000", "--retries", "9",
-                              text=line(12))
-        self.assertEqual(code, CLEAN, err)
-        found = re.fullmatch(r"   1  config          confirmed after (\d+) tries, (\d+) ms\n", out)
-        self.assertTrue(found, out)
-        self.assertGreaterEqual(int(found[1]), 3)
-        self.assertGreaterEqual(int(found[2]), 2000)
-        mote.end()
-        self.assertEqual(mote.packets[:3], [(14 + i, config(12)) for i in range(3)])
 
     def test_not_confirmed(self):
         for more, wanted in (((), [(14, 1), (15, 1), (16, 1)]),
@@ -86,37 +70,6 @@ class Serial(Base):
         self.assertEqual(code, NOT_SENT, err)
         self.assertRegex(out, r"not confirmed after 1 try, \d+ ms; 1 confirmation of other numbers "
                               r"came\n$")
-
-    def test_a_slow_mote_gets_each_once_more_at_most(self):
-        """A late confirmation counts, and does not confirm the next packet."""
-        def answer(_, seq, __):
-            time.sleep(0.15)
-            return hdlc(bytes([ACK, seq]))
-
-        to, mote = self.mote(answer)
-        code, out, err = send("--as", "config", "--to", to, "--timeout", "100", "--retries", "1000",
-                              text="".join(line(value) for value in range(5)))
-        self.assertEqual(code, CLEAN, err + out)
-        mote.end()
-        self.assertEqual([seq for seq, _ in mote.packets],
-                         [14 + i for i in range(len(mote.packets))])
-        order = [packet for _, packet in mote.packets]
-        self.assertEqual(sorted(set(order), key=order.index), [config(i) for i in range(5)])
-
-    def test_noise_and_questions_between(self):
-        """Nonsense is ignored; frames that ask for an answer get one."""
-        noise = b"\x00\x11\x22\x7e" + hdlc(b"\x45\x00\x01")[:-2] + b"\x7e\x7d\x7e"
-        asked = hdlc(bytes([PACKET_ACK, 0x2a]) + config(1)) + hdlc(b"\x99\x01\x02")
-
-        def answer(_, seq, __):
-            return noise + asked + hdlc(bytes([ACK, seq])) + hdlc(bytes([UNKNOWN, PACKET_ACK]))
-
-        to, mote = self.mote(answer)
-        code, _, err = send("--as", "config", "--to", to, "--timeout", LONG_MS, text=line(1) * 2)
-        self.assertEqual(code, CLEAN, err)
-        mote.end()
-        wanted = [bytes([ACK, 0x2a]), bytes([UNKNOWN, 0x99])]
-        self.assertEqual(mote.others[:2], wanted)
 
     def test_a_mote_that_disappears(self):
         device = Pty(self)

@@ -153,7 +153,7 @@ struct Damage {
   const char* name;
   // Puts something wrong between two good packets.
   void (*put)(File&);
-  Error error;
+  std::uint32_t offset;   // Of the fault, in bytes.
   std::uint64_t dropped;  // 0: the bad block is delivered whole.
 };
 const Damage kDamages[] = {
@@ -162,51 +162,27 @@ const Damage kDamages[] = {
        f.packet(0, 2, kRadioAck);
        f.out.back() ^= 1;
      },
-     {Fault::kContainer, 36, "WIRE-PCAPNG"_rule},
+     36, 28},
+    {"LengthNotOfFour", [](File& f) { f.out += f.n(6, 4) + f.n(41, 4) + std::string(32, 'x'); }, 4,
      28},
-    {"LengthNotOfFour",
-     [](File& f) { f.out += f.n(6, 4) + f.n(41, 4) + std::string(32, 'x'); },
-     {Fault::kContainer, 4, "WIRE-PCAPNG"_rule},
-     28},
-    {"LengthTooSmall",
-     [](File& f) { f.out += f.n(6, 4) + f.n(8, 4) + std::string(8, 'x'); },
-     {Fault::kContainer, 4, "WIRE-PCAPNG"_rule},
-     4},
+    {"LengthTooSmall", [](File& f) { f.out += f.n(6, 4) + f.n(8, 4) + std::string(8, 'x'); }, 4, 4},
     {"LengthAbsurd",
-     [](File& f) { f.out += f.n(6, 4) + f.n(0xFFFFFFF0, 4) + std::string(101, 'x'); },
-     {Fault::kContainer, 4, "WIRE-PCAPNG"_rule},
-     97},
+     [](File& f) { f.out += f.n(6, 4) + f.n(0xFFFFFFF0, 4) + std::string(101, 'x'); }, 4, 97},
     {"LengthBeyondTheFile",
-     [](File& f) { f.out += f.n(6, 4) + f.n(0x100000, 4) + std::string(24, 'x'); },
-     {Fault::kContainer, 4, "WIRE-PCAPNG"_rule},
-     20},
+     [](File& f) { f.out += f.n(6, 4) + f.n(0x100000, 4) + std::string(24, 'x'); }, 4, 20},
     {"WrongByteOrderMagic",
-     [](File& f) { f.out += f.n(0x0A0D0D0A, 4) + f.n(28, 4) + std::string(20, 'x'); },
-     {Fault::kContainer, 8, "WIRE-PCAPNG"_rule},
-     16},
+     [](File& f) { f.out += f.n(0x0A0D0D0A, 4) + f.n(28, 4) + std::string(20, 'x'); }, 8, 16},
     {"CapturedMoreThanTheBlock",
      [](File& f) {
        f.packet(0, 2, kRadioAck);
        f.out[f.out.size() - 20] = 9;  // The captured length.
      },
-     {Fault::kContainer, 20, "WIRE-PCAPNG"_rule},
-     0},
-    {"UnknownInterface",
-     [](File& f) { f.packet(7, 2, kRadioAck); },
-     {Fault::kContainer, 8, "WIRE-PCAPNG"_rule},
-     0},
-    {"PacketBlockTooShort",
-     [](File& f) { f.block(6, std::string(12, 'x')); },
-     {Fault::kContainer, 4, "WIRE-PCAPNG"_rule},
-     0},
-    {"InterfaceTooShort",
-     [](File& f) { f.block(1, "abcd"); },
-     {Fault::kContainer, 4, "WIRE-PCAPNG"_rule},
-     0},
-    {"InterfaceOptionOverruns",
-     [](File& f) { f.interface(147, f.n(2, 2) + f.n(5, 2) + "abcd"); },
-     {Fault::kContainer, 16, "WIRE-PCAPNG"_rule},
-     0},
+     20, 0},
+    {"UnknownInterface", [](File& f) { f.packet(7, 2, kRadioAck); }, 8, 0},
+    {"PacketBlockTooShort", [](File& f) { f.block(6, std::string(12, 'x')); }, 4, 0},
+    {"InterfaceTooShort", [](File& f) { f.block(1, "abcd"); }, 4, 0},
+    {"InterfaceOptionOverruns", [](File& f) { f.interface(147, f.n(2, 2) + f.n(5, 2) + "abcd"); },
+     16, 0},
 };
 
 TEST(WirePcapng, DamageIsReportedAndTheNextBlockFound) {
@@ -223,7 +199,8 @@ TEST(WirePcapng, DamageIsReportedAndTheNextBlockFound) {
     ASSERT_EQ(got.size(), 3u) << row.name;
     EXPECT_EQ(got[0].packet.error, kSound) << row.name;
     EXPECT_EQ(got[1].packet.offset_bytes, begin) << row.name;
-    EXPECT_EQ(got[1].packet.error, row.error) << row.name << got[1];
+    EXPECT_EQ(got[1].packet.error, (Error{Fault::kContainer, row.offset, "WIRE-PCAPNG"_rule}))
+        << row.name << got[1];
     EXPECT_EQ(got[1].packet.dropped_bytes, row.dropped) << row.name;
     EXPECT_EQ(got[1].bytes, file.out.substr(begin, end - begin - row.dropped)) << row.name;
     EXPECT_EQ(got[2].packet.time_ns, 3000) << row.name;

@@ -177,7 +177,7 @@ TEST(WireHdlcLong, LimitsOfLength) {
     ASSERT_EQ(got.size(), 2u);
     EXPECT_EQ(got[0].packet.error, (Error{Fault::kTooLong, 255, "WIRE-HDLC-LONG"_rule}));
     EXPECT_EQ(got[0].packet.crc, kAbsent);
-    EXPECT_EQ(serial_content_size(got[0].get()), kHdlcKeptMax);
+    EXPECT_EQ(1 + got[0].bytes.size(), kHdlcKeptMax);  // With its kind.
     EXPECT_EQ(got[0].packet.dropped_bytes, 100'000 - kHdlcKeptMax);
     EXPECT_EQ(got[1].packet.error, kSound);
     std::mt19937 random(3);

@@ -48,7 +48,6 @@ class Source {
   void open(lines::SteadyTime now);
   /// Closes it. Throws nothing. A packet that was not given yet is kept for the next time.
   void close(lines::SteadyTime now);
-  bool is_closed() const { return state_ == State::kClosed; }
   bool is_up() const { return state_ == State::kUp; }
   /// Returns its socket, if it is one and connected.
   int socket() const;

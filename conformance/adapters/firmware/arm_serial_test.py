@@ -8,6 +8,7 @@ or the suite over TCP.
 import collections
 import json
 import os
+import pathlib
 import select
 import socket
 import struct
@@ -17,43 +18,27 @@ import termios
 import time
 import tty
 
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "tools/tests"))
+
+# pylint: disable-next=wrong-import-position
+from serial_testing import ACK, PACKET_ACK, PACKET_NOACK, hdlc, unframed
+
 PATIENCE_S = 20  # For a machine that is busy with other tests.
 AGAIN_S = 1
-FLAG, ESCAPE = 0x7E, 0x7D
-ACK, PACKET_ACK, PACKET_NOACK = 0x43, 0x44, 0x45
 CONNLESS, MOCKUP, RUBICON_ACK = 3, 5, 9
 PC = 0xFFFD
 
 
-def crc16(data):
-    crc = 0
-    for byte in data:
-        crc ^= byte << 8
-        for _ in range(8):
-            crc = crc << 1 & 0xFFFF ^ (0x1021 if crc & 0x8000 else 0)
-    return crc
-
-
-def frame(content):
-    content += struct.pack("<H", crc16(content))
-    out = bytearray([FLAG])
-    for byte in content:
-        out += bytes([ESCAPE, byte ^ 0x20]) if byte in (FLAG, ESCAPE) else bytes([byte])
-    return bytes(out + bytes([FLAG]))
-
-
 def contents(stream):
     """Returns the intact frames in `stream`."""
-    for part in stream.split(bytes([FLAG])):
-        out, escaped = bytearray(), False
-        for byte in part:
-            if byte == ESCAPE:
-                escaped = True
-            else:
-                out.append(byte ^ 0x20 if escaped else byte)
-                escaped = False
-        if len(out) >= 4 and crc16(out[:-2]) == struct.unpack("<H", out[-2:])[0]:
-            yield bytes(out[:-2])
+    for part in stream.split(b"\x7e"):
+        try:
+            content = unframed(part)
+        except AssertionError:
+            continue
+        if len(content) >= 2:
+            yield content
 
 
 def net_packet(dest, src, reliable, seq, body):
@@ -95,12 +80,12 @@ def is_rubicon_ack(content):
 def talk(line):
     """A new island id, and a reliable message that is acked from there."""
     config = struct.pack(">BHHBBBBH", 0, 1, 0, 3, 0, 37, 10, 12)
-    os.write(line, frame(bytes([PACKET_NOACK]) + config))
-    message = net_packet((12, 1), (12, PC), 1, 77, bytes([CONNLESS, MOCKUP, FLAG, ESCAPE]))
-    os.write(line, frame(bytes([PACKET_NOACK]) + message[:-1]))  # Cut short, so dropped.
-    ask(line, frame(bytes([PACKET_ACK, 14]) + message), is_confirmation)
+    os.write(line, hdlc(bytes([PACKET_NOACK]) + config))
+    message = net_packet((12, 1), (12, PC), 1, 77, bytes([CONNLESS, MOCKUP, 0x7E, 0x7D]))
+    os.write(line, hdlc(bytes([PACKET_NOACK]) + message[:-1]))  # Cut short, so dropped.
+    ask(line, hdlc(bytes([PACKET_ACK, 14]) + message), is_confirmation)
     # The ack may have come in one piece with the confirmation, so it is asked for once more.
-    ask(line, frame(bytes([PACKET_ACK, 15]) + message), is_rubicon_ack)
+    ask(line, hdlc(bytes([PACKET_ACK, 15]) + message), is_rubicon_ack)
 
 
 def work_suite(rubric, device):

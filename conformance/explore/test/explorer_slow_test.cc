@@ -9,20 +9,33 @@
 namespace rubric::explore {
 namespace {
 
-// Two motes and two sinks, one copy of a frame in flight, loss and duplication.
+// Loss and duplication, one copy of a frame in flight.
+Options network(std::uint8_t motes) {
+  Options options;
+  options.profile = machine::kPaper;
+  options.motes = motes;
+  options.loss = options.dup = true;
+  options.threads = 2;
+  return options;
+}
+
+// Searches all of it: nothing breaks and every goal is reached.
+Result holds(const Options& options) {
+  const auto nodes = std::make_unique<Nodes>(options);
+  const Result result = explore(*nodes);
+  EXPECT_TRUE(result.complete) << result.limit;
+  EXPECT_FALSE(result.violation);
+  EXPECT_EQ(expected_goals(options) & ~result.goals, 0U);
+  return result;
+}
+
 TEST(ExploreSlow, TwoMotesAndTwoSinks) {
   Progress alone;
   for (const unsigned threads : {1U, 2U}) {
-    Options options;
-    options.profile = machine::kPaper;
-    options.motes = options.sinks = 2;
-    options.loss = options.dup = true;
+    Options options = network(2);
+    options.sinks = 2;
     options.threads = threads;
-    const auto nodes = std::make_unique<Nodes>(options);
-    const Result result = explore(*nodes);
-    EXPECT_TRUE(result.complete) << result.limit;
-    EXPECT_FALSE(result.violation);
-    EXPECT_EQ(expected_goals(options) & ~result.goals, 0U);
+    const Result result = holds(options);
     if (threads == 1) alone = result.progress;
     EXPECT_EQ(result.progress.states, alone.states);
     EXPECT_EQ(result.progress.transitions, alone.transitions);
@@ -33,34 +46,19 @@ TEST(ExploreSlow, TwoMotesAndTwoSinks) {
 }
 
 TEST(ExploreSlow, ThreeMotes) {
-  Options options;
-  options.profile = machine::kPaper;
-  options.motes = 3;
-  options.loss = options.dup = options.prompt = true;
+  Options options = network(3);
+  options.prompt = true;
   options.profile.join_requests_max = options.profile.ack_join_max = 2;
-  options.threads = 2;
-  const auto nodes = std::make_unique<Nodes>(options);
-  const Result result = explore(*nodes);
-  EXPECT_TRUE(result.complete) << result.limit;
-  EXPECT_FALSE(result.violation);
-  EXPECT_EQ(expected_goals(options) & ~result.goals, 0U);
+  holds(options);
 }
 
 TEST(ExploreSlow, TwoMotesWithEveryFault) {
-  Options options;
-  options.profile = machine::kPaper;
-  options.motes = 2;
-  options.loss = options.dup = options.reorder = options.collide = true;
+  Options options = network(2);
+  options.reorder = options.collide = true;
   options.reboots = 1;
   options.calls = 2;
   options.profile.join_requests_max = options.profile.ack_join_max = 2;
-  options.threads = 2;
-  const auto nodes = std::make_unique<Nodes>(options);
-  const Result result = explore(*nodes);
-  EXPECT_TRUE(result.complete) << result.limit;
-  EXPECT_FALSE(result.violation);
-  EXPECT_GT(result.known_weak_states, 0U);
-  EXPECT_EQ(expected_goals(options) & ~result.goals, 0U);
+  EXPECT_GT(holds(options).known_weak_states, 0U);
 }
 
 }  // namespace

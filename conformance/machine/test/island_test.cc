@@ -6,33 +6,11 @@ namespace {
 
 using Payload = std::vector<std::uint8_t>;
 
-TEST(IslandId, SinkTakesItAndForgetsMembers) {
-  Device sink(sink_config());
-  list_member(sink, 5);
-  sink.hear(join_request(6, 7, kDescriptor)).done();
-  sink.hear(set_island_id(kOther));
-  EXPECT_EQ(sink.labels(), (std::vector{followed("N9-SET"_rule), followed("N9-MEMBERS"_rule)}));
-  EXPECT_TRUE(sink.state.sink.members.empty());
-  EXPECT_TRUE(sink.state.sink.pending.empty());
-  EXPECT_EQ(own_address(sink.state), (Address{kOther, 1}));
-  sink.hear(ack_join({kOther, 1}, {kOther, 6}, 7, kDescriptor));
-  EXPECT_EQ(sink.labels(), (std::vector{ignored("J6-SEQ"_rule)}));
-}
-
 TEST(IslandId, SameIslandKeepsMembers) {
   Device sink(sink_config());
   list_member(sink, 5);
   EXPECT_EQ(sink.hear(set_island_id(kIsland)).labels(), (std::vector{followed("N9-SET"_rule)}));
   EXPECT_NE(find_member(sink.state.sink, 5), nullptr);
-}
-
-TEST(IslandId, WaitingReplyOfTheOldIslandIsForgotten) {
-  Device sink(sink_config());
-  sink.step(LinkBusy{Link::kRadio, true});
-  sink.hear(join_request(6, 7, kDescriptor));
-  sink.hear(set_island_id(kOther));
-  sink.step(LinkBusy{Link::kRadio, false});
-  EXPECT_TRUE(sink.silent());
 }
 
 TEST(IslandId, N9Other_OtherConfigChangesNothing) {

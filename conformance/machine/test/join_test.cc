@@ -42,28 +42,6 @@ class MoteJoin : public testing::Test {
   Actions actions_;
 };
 
-TEST_F(MoteJoin, J1_CallAsks) {
-  EXPECT_EQ(call(), JoinSend::kRequest);
-  EXPECT_EQ(join_.phase, Phase::kJoining);
-  EXPECT_EQ(join_.due, 1500U);
-  EXPECT_EQ(join_.descriptor, kDescriptor);
-  EXPECT_EQ(join_.seq_num, 100);
-  EXPECT_TRUE(actions_.all().empty());
-}
-
-TEST_F(MoteJoin, J4_AcceptsMatchingReply) {
-  call();
-  now_ += 20;
-  EXPECT_EQ(reply(), JoinSend::kAck);
-  EXPECT_EQ(told_by(), "J5-SUCCESS"_rule);
-  EXPECT_EQ(told().address, kOffer);
-  EXPECT_TRUE(told().success);
-  EXPECT_EQ(join_.phase, Phase::kMember);
-  EXPECT_EQ(join_.address, kOffer);
-  EXPECT_EQ(join_.due, 0U);
-  EXPECT_EQ(join_.accepted, 1020U);
-}
-
 TEST_F(MoteJoin, J4Seq_IgnoresEveryOtherNumber) {
   call();
   const JoinMote before = join_;
@@ -73,47 +51,6 @@ TEST_F(MoteJoin, J4Seq_IgnoresEveryOtherNumber) {
     ASSERT_EQ(ignored_by(), "J4-SEQ"_rule);
     ASSERT_EQ(join_, before);
   }
-}
-
-TEST_F(MoteJoin, J4Joined_IgnoresReplyWithoutRequest) {
-  EXPECT_EQ(reply(), JoinSend::kNone);
-  EXPECT_EQ(ignored_by(), "J4-JOINED"_rule);
-  EXPECT_EQ(join_, JoinMote{});
-}
-
-TEST_F(MoteJoin, J4Joined_IgnoresRepeatedReply) {
-  call();
-  reply();
-  const JoinMote before = join_;
-  EXPECT_EQ(reply(), JoinSend::kNone);
-  EXPECT_EQ(ignored_by(), "J4-JOINED"_rule);
-  EXPECT_EQ(join_, before);
-}
-
-TEST_F(MoteJoin, J7Choice_IgnoresSecondSink) {
-  call();
-  reply();
-  const JoinMote before = join_;
-  EXPECT_EQ(reply(100, {kOther, 5}), JoinSend::kNone);
-  EXPECT_EQ(ignored_by(), "J7-CHOICE"_rule);
-  EXPECT_EQ(join_, before);
-}
-
-TEST_F(MoteJoin, J8_FiveRequestsThenFail) {
-  call();
-  for (int i = 0; i < 4; ++i) {
-    EXPECT_EQ(timer(), JoinSend::kRequest);
-    EXPECT_EQ(join_.due, now_ + 500);
-    EXPECT_EQ(join_.seq_num, 100);
-    EXPECT_TRUE(actions_.all().empty());
-  }
-  EXPECT_EQ(timer(), JoinSend::kNone);
-  EXPECT_EQ(now_, 1000U + 5 * 500);
-  EXPECT_EQ(told_by(), "J8-FAIL"_rule);
-  EXPECT_FALSE(told().success);
-  EXPECT_EQ(join_.phase, Phase::kOutside);
-  EXPECT_EQ(reply(), JoinSend::kNone);
-  EXPECT_EQ(ignored_by(), "J4-JOINED"_rule);
 }
 
 TEST_F(MoteJoin, J8_DeployedSendsSevenAndSaysNothing) {
@@ -137,16 +74,6 @@ TEST_F(MoteJoin, J5Stop_TimerAfterAcceptanceDoesNothing) {
   EXPECT_EQ(join_, before);
 }
 
-TEST_F(MoteJoin, J8Joined_CallOfMemberFailsAtOnce) {
-  call();
-  reply();
-  const JoinMote before = join_;
-  EXPECT_EQ(call(101), JoinSend::kNone);
-  EXPECT_EQ(told_by(), "J8-JOINED"_rule);
-  EXPECT_FALSE(told().success);
-  EXPECT_EQ(join_, before);
-}
-
 TEST_F(MoteJoin, J5Once_CallWhileJoiningEndsAtOnceAndDisturbsNothing) {
   call();
   const JoinMote before = join_;
@@ -154,26 +81,6 @@ TEST_F(MoteJoin, J5Once_CallWhileJoiningEndsAtOnceAndDisturbsNothing) {
   EXPECT_EQ(told_by(), "J5-ONCE"_rule);
   EXPECT_FALSE(told().success);
   EXPECT_EQ(join_, before);
-}
-
-TEST_F(MoteJoin, J4Repeat_UntilTheLinkConfirms) {
-  call();
-  reply();
-  EXPECT_EQ(sent(false), JoinSend::kAck);
-  EXPECT_EQ(sent(true), JoinSend::kNone);
-  EXPECT_TRUE(join_.acked);
-  EXPECT_EQ(sent(false), JoinSend::kNone);  // Nothing is open any more.
-  EXPECT_EQ(join_.acks, 2);
-}
-
-TEST_F(MoteJoin, J4Few_FiveInAll) {
-  call();
-  reply();
-  for (int i = 0; i < 4; ++i) EXPECT_EQ(sent(false), JoinSend::kAck);
-  EXPECT_EQ(sent(false), JoinSend::kNone);
-  EXPECT_EQ(rule(Action::What::kFollowed), "J4-FEW"_rule);
-  EXPECT_EQ(join_.acks, 5);
-  EXPECT_EQ(join_.phase, Phase::kMember);
 }
 
 TEST_F(MoteJoin, J4Repeat_NotAfterThePeriod) {
@@ -214,28 +121,6 @@ class SinkJoin : public testing::Test {
   Actions actions_;
 };
 
-TEST_F(SinkJoin, J3J6_RequestThenAck) {
-  const Descriptor what{2, 3, 0x1234};
-  EXPECT_TRUE(request(5, 100, what));
-  EXPECT_TRUE(actions_.all().empty());
-  EXPECT_EQ(find_member(sink_, 5), nullptr);
-  EXPECT_EQ(*find_pending(sink_, 5), (Admission{5, 100, what}));
-  EXPECT_TRUE(ack(5, 100));
-  EXPECT_EQ(find_pending(sink_, 5), nullptr);
-  EXPECT_EQ(*find_member(sink_, 5), (Admission{5, 100, what}));
-  ASSERT_EQ(actions_.all().size(), 1U);
-  EXPECT_EQ(actions_.all()[0].requirement, "J6-ADD"_rule);
-  const auto told = std::get<MoteJoined>(actions_.notices()[0]);
-  EXPECT_EQ(told.address, (Address{kIsland, 5}));
-  EXPECT_EQ(told.descriptor, what);
-}
-
-TEST_F(SinkJoin, J6Seq_AckWithoutRequest) {
-  EXPECT_FALSE(ack(5, 100));
-  EXPECT_EQ(ignored_by(), "J6-SEQ"_rule);
-  EXPECT_TRUE(sink_.members.empty());
-}
-
 TEST_F(SinkJoin, J6Seq_OnlyTheNumberStoredLast) {
   request(5, 100);
   request(5, 101);
@@ -245,14 +130,6 @@ TEST_F(SinkJoin, J6Seq_OnlyTheNumberStoredLast) {
   EXPECT_TRUE(ack(5, 101));
 }
 
-TEST_F(SinkJoin, J6Island_AckForAnotherIsland) {
-  request(5, 100);
-  const JoinSink before = sink_;
-  EXPECT_FALSE(ack(5, 100, kOther));
-  EXPECT_EQ(ignored_by(), "J6-ISLAND"_rule);
-  EXPECT_EQ(sink_, before);
-}
-
 TEST_F(SinkJoin, J6Repeat_RepeatedAckChangesNothing) {
   join(5, 100);
   const JoinSink before = sink_;
@@ -260,14 +137,6 @@ TEST_F(SinkJoin, J6Repeat_RepeatedAckChangesNothing) {
   EXPECT_EQ(ignored_by(), "J6-REPEAT"_rule);
   EXPECT_FALSE(ack(5, 101));
   EXPECT_EQ(ignored_by(), "J6-SEQ"_rule);
-  EXPECT_EQ(sink_, before);
-}
-
-TEST_F(SinkJoin, J2_ListedMoteIsIgnored) {
-  join(5, 100);
-  const JoinSink before = sink_;
-  EXPECT_FALSE(request(5, 101));
-  EXPECT_EQ(ignored_by(), "J2-LISTED"_rule);
   EXPECT_EQ(sink_, before);
 }
 
@@ -299,15 +168,6 @@ TEST_F(SinkJoin, J9_AnyInterleavingOfTwoJoins) {
     EXPECT_EQ(*find_member(sink_, 5), (Admission{5, 50, {5, 0, 5}}));
     EXPECT_EQ(*find_member(sink_, 6), (Admission{6, 60, {6, 0, 6}}));
   }
-}
-
-TEST_F(SinkJoin, J3Full_NoAnswerWhenTwentyAreListed) {
-  for (std::uint16_t mote = 2; mote < 22; ++mote) join(mote, mote);
-  EXPECT_EQ(sink_.members.size(), 20U);
-  const JoinSink before = sink_;
-  EXPECT_FALSE(request(40, 1));
-  EXPECT_EQ(ignored_by(), "J3-FULL"_rule);
-  EXPECT_EQ(sink_, before);
 }
 
 TEST_F(SinkJoin, J3Overwrite_LateAckFindsNoPlace) {

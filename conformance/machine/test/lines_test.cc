@@ -72,16 +72,6 @@ TEST(Outgoing, SerialHoldsTwo) {
   EXPECT_EQ(base.state.island, kIsland);
 }
 
-TEST(Outgoing, TakenLineIsLeftAlone) {
-  Device mote = member(5);
-  mote.step(LinkBusy{Link::kRadio, true});
-  EXPECT_TRUE(mote.call(message(1)).actions.transmits().empty());
-  mote.step(LinkBusy{Link::kRadio, false});
-  EXPECT_EQ(mark_of(mote.only_frame()), 1);
-  mote.step(LinkBusy{Link::kRadio, true}).done();
-  EXPECT_TRUE(mote.call(message(2)).actions.transmits().empty());
-}
-
 TEST(Outgoing, AForwardThatFindsNoPlaceIsReportedAsLost) {
   Device sink(sink_config());
   OwnFrame up = heard(1, 1);

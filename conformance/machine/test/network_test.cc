@@ -115,42 +115,6 @@ TEST(Send, WithoutAckTimeoutTheOldestIsGivenUp) {
   EXPECT_TRUE(mote.silent());
 }
 
-TEST(Receive, DeliversWithoutTheHeaders) {
-  Device mote = member(5);
-  mote.hear(on_radio(5, {{kIsland, 5}, {kIsland, 6}}));
-  EXPECT_EQ(mote.labels(), (std::vector{followed("N5-DELIVER"_rule), told("T1-DELIVER"_rule),
-                                        followed("T2-UNRELIABLE"_rule)}));
-  const auto got = mote.notice<Received>();
-  EXPECT_EQ(got.src, (Address{kIsland, 6}));
-  EXPECT_EQ(got.app_id, 10);
-  ASSERT_EQ(got.data.size(), 1U);
-  EXPECT_EQ(got.data[0], 0xAB);
-}
-
-TEST(Receive, T2_ReliableIsDeliveredAndAckedEachTime) {
-  Device mote = member(5);
-  for (int i = 0; i < 2; ++i) {
-    mote.hear(on_radio(5, {{kIsland, 5}, {kIsland, kNullDevid}, true, 0x4321}));
-    EXPECT_EQ(mote.labels(), (std::vector{followed("N5-DELIVER"_rule), told("T2-DELIVER"_rule),
-                                          sent("T2-ACK"_rule)}));
-    const auto ack = rubicon::NetMsgView::parse(mote.only_frame().bytes());
-    ASSERT_TRUE(ack);
-    EXPECT_EQ(mote.only_frame().dest, 1);  // The sink leads to the PC.
-    EXPECT_EQ(address_of(ack->dest()), (Address{kIsland, kNullDevid}));
-    EXPECT_EQ(ack->reliable(), 0);
-    const Bytes body = ack->payload();
-    EXPECT_EQ(Payload(body.begin(), body.end()), (Payload{9, 10, 23, 0x43, 0x21, 0}));
-    mote.done();
-  }
-}
-
-TEST(Receive, T2_BroadcastIsDeliveredAndNotAcked) {
-  Device mote = member(5);
-  mote.hear(on_radio(kAmBroadcast, {{kIsland, kBroadcastDevid}, {kIsland, 6}, true}));
-  EXPECT_EQ(mote.labels(), (std::vector{followed("N5-DELIVER"_rule), told("T2-DELIVER"_rule),
-                                        followed("T2-BROADCAST"_rule)}));
-}
-
 // A sink delivers by its devid what came by serial for another island's sink; it does not ack it.
 TEST(Receive, T2Ack_NotForAnotherIslandsSink) {
   Device sink(sink_config());
@@ -179,21 +143,6 @@ TEST(Receive, T1_UnknownIsDropped) {
   }
 }
 
-TEST(Receive, T3_AckEndsTheMessageItNames) {
-  Device mote = member(5);
-  const std::uint16_t first = mote.call(Send{{kIsland, 6}, 10, true, {}}).state.sequence.last;
-  mote.done();
-  mote.call(Send{{kIsland, 6}, 10, true, {}}).done();
-  const auto low = static_cast<std::uint8_t>(first);
-  const OwnFrame ack = on_radio(5, {{kIsland, 5}, {kIsland, 6}, false, 9, {9, 10, 23, 0, low, 0}});
-  mote.hear(ack);
-  EXPECT_TRUE(mote.notice<AckReceived>().success);
-  EXPECT_EQ(mote.notice<AckReceived>().seq_num, first);
-  EXPECT_EQ(mote.state.awaited.size(), 1U);
-  EXPECT_EQ(mote.hear(ack).labels(),
-            (std::vector{followed("N5-DELIVER"_rule), ignored("T3-MATCH"_rule)}));
-}
-
 TEST(Receive, T2Loop_ReliableAckIsNotAcked) {
   Device mote = member(5);
   mote.hear(on_radio(5, {{kIsland, 5}, {kIsland, 6}, true, 9, {9, 10, 23, 0, 77, 0}}));
@@ -203,12 +152,6 @@ TEST(Receive, T2Loop_ReliableAckIsNotAcked) {
   mote.hear(on_radio(5, {{kIsland, 5}, {kIsland, 6}, false, 9, {9, 10, 23}}));
   EXPECT_EQ(mote.labels(),
             (std::vector{followed("N5-DELIVER"_rule), ignored("WIRE-RUBICON-ACK"_rule)}));
-}
-
-TEST(Receive, J11Hear_NotBeforeJoining) {
-  Device mote(mote_config(5));
-  mote.hear(on_radio(5, {{kIsland, 5}, {kIsland, 6}, true}));
-  EXPECT_EQ(mote.labels(), (std::vector{ignored("J11-HEAR"_rule)}));
 }
 
 TEST(Receive, N11_MalformedIsDroppedAndTheNextIsHandled) {
@@ -278,26 +221,6 @@ TEST(Forward, N6_UpTheSerialLineFilledWithZeros) {
   EXPECT_EQ(sink.only_frame().link, Link::kSerial);
   EXPECT_EQ(sink.only_frame().dest, kAmBroadcast);
   EXPECT_EQ(sink.only_payload(), padded(net_msg(fields)));
-}
-
-TEST(Forward, N7_DownByRadioWithoutStaleBytes) {
-  Device sink(sink_config());
-  const NetFields fields{{kIsland, 5}, {kOther, 9}, true, 0x1234};
-  OwnFrame frame = on_serial(fields);
-  std::fill(frame.payload.begin() + 15, frame.payload.end(), std::uint8_t{0xEE});
-  sink.hear(frame);
-  EXPECT_EQ(sink.labels(), (std::vector{sent("N7-RADIO"_rule)}));
-  EXPECT_EQ(sink.only_frame().dest, 5);
-  EXPECT_EQ(sink.only_frame().src, 1);
-  EXPECT_EQ(sink.only_payload(), net_msg(fields));
-}
-
-TEST(Forward, N7_BroadcastIsDeliveredAndRadiated) {
-  Device sink(sink_config());
-  sink.hear(on_serial({{kIsland, kBroadcastDevid}, {kIsland, kNullDevid}}));
-  EXPECT_EQ(sink.labels(), (std::vector{sent("N7-RADIO"_rule), followed("N7-DELIVER"_rule),
-                                        told("T1-DELIVER"_rule), followed("T2-UNRELIABLE"_rule)}));
-  EXPECT_EQ(sink.only_frame().dest, kAmBroadcast);
 }
 
 // Mote, sink, base station, PEIS, base station, sink, mote: and the ack the same way back.

@@ -186,18 +186,6 @@ TEST(JoinStep, DeployedSinkReportsEachJoinOfAListedMote) {
   EXPECT_EQ(sink.labels(), (std::vector{told("J6-ADD"_rule), sent("J6-REPORT"_rule)}));
 }
 
-TEST(JoinStep, J10_RolesIgnoreWhatIsNotTheirs) {
-  Device mote = member(5);
-  OwnFrame request = join_request(6, 1, kDescriptor);
-  request.dest = kAmBroadcast;
-  EXPECT_EQ(mote.hear(request).labels(), (std::vector{ignored("J10-MOTE"_rule)}));
-  OwnFrame ack = ack_join({kIsland, 5}, {kIsland, 6}, 1, kDescriptor);
-  EXPECT_EQ(mote.hear(ack).labels(), (std::vector{ignored("J10-MOTE"_rule)}));
-  Device sink(sink_config());
-  EXPECT_EQ(sink.hear(join_reply(1, {kIsland, 1}, 0, 1)).labels(),
-            (std::vector{ignored("J10-SINK"_rule)}));
-}
-
 TEST(JoinStep, J3Address_NobodyHasAReservedIdOrTheSinks) {
   const std::uint16_t nobodys[] = {0xFFFF, 0xFFFE, 0xFFFD, 1};
   for (const std::uint16_t from : nobodys) {
@@ -222,23 +210,6 @@ TEST(JoinStep, J4Address_OffersOfWhatTheMoteIsNot) {
   }
   mote.hear(join_reply(5, {kIsland, 5}, 0, mote.state.join.seq_num));
   EXPECT_EQ(mote.state.join.phase, Phase::kMember);
-}
-
-TEST(JoinStep, J6Sender_AckJoinThatContradictsItsFrame) {
-  Device sink(sink_config());
-  sink.hear(join_request(5, 100, kDescriptor)).done();
-  const State before = sink.state;
-  OwnFrame other_dest = ack_join({kIsland, 2}, {kIsland, 5}, 100, kDescriptor);
-  other_dest.dest = 1;
-  OwnFrame other_source = ack_join({kIsland, 1}, {kIsland, 5}, 100, kDescriptor);
-  other_source.src = 6;
-  const OwnFrame other_island = ack_join({kIsland, 1}, {kOther, 5}, 100, kDescriptor);
-  for (const OwnFrame& frame : {other_dest, other_source, other_island}) {
-    EXPECT_EQ(sink.hear(frame).labels(), (std::vector{ignored("J6-SENDER"_rule)}));
-    EXPECT_EQ(sink.state, before);
-  }
-  sink.hear(ack_join({kIsland, 1}, {kIsland, 5}, 100, kDescriptor));
-  EXPECT_NE(find_member(sink.state.sink, 5), nullptr);
 }
 
 TEST(JoinStep, ShortJoinMessagesAreIgnored) {

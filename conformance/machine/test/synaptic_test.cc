@@ -1,16 +1,93 @@
 // Operations on synaptic channels, and data that arrive. A test's name begins with its rule.
-#include "conformance/machine/test/synaptic_fixture.h"
+#include "conformance/machine/synaptic.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
 
 namespace rubric::machine {
 namespace {
 
-TEST_F(SynapticTest, S1_Id_SourceAboveDestination) {
-  EXPECT_TRUE(create_out(3));
-  EXPECT_EQ(id_, kToSink);
-  EXPECT_EQ(rule(), "S1-ID"_rule);
-  EXPECT_TRUE(create_in(3));
-  EXPECT_EQ(id_, kFromPeer);
-}
+// One node reduced to its synaptic part, for its tests.
+
+constexpr Address kSink{11, 1};
+constexpr Address kOwn{11, 2};
+constexpr Address kPeer{11, 5};
+constexpr ChannelId kToSink = 0x0002'0001;
+constexpr ChannelId kFromPeer = 0x0005'0002;
+constexpr ChannelId kLocal = 0x0002'0002;
+
+struct Signal {
+  ChannelId id;
+  DataStatus status;
+  friend bool operator==(const Signal&, const Signal&) = default;
+};
+
+/// Starts as mote 2 of island 11 at time 1000.
+class SynapticTest : public testing::Test {
+ protected:
+  SynapticTest() { config_.id = kOwn.devid; }
+
+  bool call(const Call& call) {
+    actions_.clear();
+    call_synaptic(synaptic_, config_, own_, now_, call, actions_);
+    EXPECT_TRUE(actions_.transmits().empty());
+    EXPECT_EQ(actions_.notices().size(), 1U);
+    const Notice& notice = actions_.notices()[0];
+    if (const auto* made = std::get_if<ChannelResult>(&notice)) {
+      id_ = made->id;
+      return made->success;
+    }
+    if (const auto* read = std::get_if<InputValue>(&notice)) {
+      bits_ = bits_of_float(read->value);
+      return read->success;
+    }
+    return std::get<OperationResult>(notice).success;
+  }
+  ReqId rule() const { return actions_.all().back().requirement; }
+  bool create_out(std::uint8_t size, Mode mode = Mode::kReliable, Address peer = kSink) {
+    return call(CreateChannel{Direction::kOut, peer, size, mode});
+  }
+  bool create_in(std::uint8_t size, Address peer = kPeer) {
+    return call(CreateChannel{Direction::kIn, peer, size, Mode::kReliable});
+  }
+  bool write(ChannelId id, std::uint8_t pos, float value) {
+    return call(WriteOutput{id, pos, value});
+  }
+  std::uint32_t read_bits(ChannelId id, std::uint8_t pos) {
+    EXPECT_TRUE(call(ReadInput{id, pos}));
+    return bits_;
+  }
+  // Lets the clock tick when it is due.
+  std::vector<Signal> tick() {
+    EXPECT_NE(synaptic_.due, 0U);
+    now_ = synaptic_.due;
+    sends_.clear();
+    actions_.clear();
+    tick_synaptic(synaptic_, own_, now_, sends_, actions_);
+    std::vector<Signal> signals;
+    for (const Notice& notice : actions_.notices()) {
+      const auto& told = std::get<SynDataReceived>(notice);
+      signals.push_back({told.id, told.status});
+    }
+    return signals;
+  }
+  void hear(Address src, const std::vector<std::uint32_t>& values, std::size_t cut_bytes = 0) {
+    std::vector<std::uint8_t> bytes(values.size() * 4);
+    for (std::size_t i = 0; i < values.size(); ++i) store_le32(bytes.data() + 4 * i, values[i]);
+    actions_.clear();
+    hear_synaptic(synaptic_, own_, src, Bytes(bytes.data(), bytes.size() - cut_bytes), actions_);
+  }
+
+  Config config_;
+  Address own_ = kOwn;
+  Synaptic synaptic_;
+  Ticks now_ = 1000;
+  Actions actions_;
+  SynapticSends sends_;
+  ChannelId id_ = 0;
+  std::uint32_t bits_ = 0;
+};
 
 TEST_F(SynapticTest, S1_Id_HoldsNoIsland) {
   EXPECT_TRUE(create_out(3));
@@ -81,19 +158,6 @@ TEST_F(SynapticTest, S1_Limit_TenConnections) {
   EXPECT_EQ(synaptic_.out[0].size, 6);
   EXPECT_TRUE(create_out(4));
   EXPECT_EQ(synaptic_.out[0].size, 10);
-}
-
-TEST_F(SynapticTest, S1_Limit_FourChannelsOfEachDirection) {
-  for (std::uint16_t devid = 10; devid < 14; ++devid) {
-    EXPECT_TRUE(create_out(1, Mode::kReliable, {11, devid}));
-    EXPECT_TRUE(create_in(1, {11, devid}));
-  }
-  const Synaptic before = synaptic_;
-  EXPECT_FALSE(create_out(1, Mode::kReliable, {11, 14}));
-  EXPECT_EQ(rule(), "S1-LIMIT"_rule);
-  EXPECT_FALSE(create_in(1, {11, 14}));
-  EXPECT_TRUE(synaptic_ == before);
-  EXPECT_TRUE(create_in(1, {11, 13}));  // Enlarging needs no place.
 }
 
 TEST_F(SynapticTest, S1_Limit_AsManyChannelsAsTheNodeSays) {
@@ -178,33 +242,6 @@ TEST_F(SynapticTest, S1_Clock_DefaultAndSet) {
   EXPECT_EQ(synaptic_.due, now_ + 300);
 }
 
-TEST_F(SynapticTest, S5_Unknown_ReportedNotStored) {
-  create_in(1);
-  create_out(1, Mode::kReliable, {11, 9});
-  call(StartAllChannels{});
-  const Synaptic before = synaptic_;
-  hear({11, 9}, {1});
-  ASSERT_EQ(actions_.notices().size(), 1U);
-  const auto& told = std::get<SynDataReceived>(actions_.notices()[0]);
-  EXPECT_EQ(told.id, 0x0009'0002U);
-  EXPECT_EQ(told.status, DataStatus::kUnknownChannel);
-  EXPECT_EQ(rule(), "S5-UNKNOWN"_rule);
-  EXPECT_TRUE(synaptic_ == before);
-}
-
-TEST_F(SynapticTest, S6_Stopped_NotStartedSendsSignalsStoresNothing) {
-  create_out(1);
-  create_out(1, Mode::kReliable, {11, 8});
-  create_in(1);
-  call(StartChannel{kToSink});
-  hear(kPeer, {5});
-  EXPECT_TRUE(actions_.notices().empty());
-  EXPECT_EQ(rule(), "S6-STOPPED"_rule);
-  EXPECT_TRUE(tick().empty());
-  EXPECT_EQ(sends_.size(), 1U);
-  EXPECT_EQ(read_bits(kFromPeer, 0), 0U);
-}
-
 TEST_F(SynapticTest, S6_Stopped_DataBeforeTheStopIsNotNewAfterTheNextStart) {
   create_out(1);
   create_in(1);
@@ -246,38 +283,152 @@ TEST_F(SynapticTest, S6_Disposed_LastStartedChannelEndsTheClock) {
   EXPECT_EQ(std::get<SynDataReceived>(actions_.notices()[0]).status, DataStatus::kUnknownChannel);
 }
 
-TEST_F(SynapticTest, S6_Others_StopOneStopAll) {
-  create_out(1);
-  create_out(1, Mode::kReliable, {11, 8});
-  create_in(1);
-  call(StartAllChannels{});
-  EXPECT_TRUE(call(StopChannel{kToSink}));
-  EXPECT_EQ(tick().size(), 1U);
-  ASSERT_EQ(sends_.size(), 1U);
-  EXPECT_EQ(sends_[0].dest.devid, 8);
-  EXPECT_TRUE(call(StopAllChannels{}));
-  EXPECT_EQ(rule(), "S1-ALL"_rule);
-  EXPECT_EQ(synaptic_.due, 0U);
-  EXPECT_TRUE(call(StopAllChannels{}));
-}
-
-TEST_F(SynapticTest, S6_Clock_RestartDoesNotShift) {
-  create_out(1);
-  create_in(1);
-  call(StartAllChannels{});
-  tick();
-  const Ticks due = synaptic_.due;
-  now_ += 100;
-  call(StopChannel{kToSink});
-  now_ += 100;
-  call(StartChannel{kToSink});
-  EXPECT_EQ(synaptic_.due, due);
-  EXPECT_EQ(actions_.all()[0].requirement, "S6-CLOCK"_rule);
-}
-
 TEST_F(SynapticTest, StartAllOfNothingStartsNoClock) {
   EXPECT_TRUE(call(StartAllChannels{}));
   EXPECT_EQ(synaptic_.due, 0U);
+}
+
+// The clock of synaptic channels. A test's name begins with its rule.
+
+using SynapticClock = SynapticTest;
+
+struct PhaseCase {
+  Role role;
+  std::uint16_t devid;
+  Ticks phase;
+};
+
+TEST_F(SynapticClock, S2_Phase_OfMotesOnly) {
+  const PhaseCase cases[] = {{Role::kMote, 2, 30},          {Role::kMote, 4, 90},
+                             {Role::kMote, 1, 0},           {Role::kMote, 0, 0},
+                             {Role::kMote, 60000, 1799970}, {Role::kSink, 7, 0}};
+  for (const PhaseCase& c : cases) {
+    synaptic_ = {};
+    config_.role = c.role;
+    own_.devid = c.devid;
+    create_out(1);
+    call(StartChannel{id_});
+    EXPECT_EQ(synaptic_.due, now_ + c.phase + 500) << c.devid;
+  }
+}
+
+TEST_F(SynapticClock, S2_Phase_StaysWhenTheStepIsSetBeforeTheFirstTick) {
+  own_.devid = 4;
+  create_out(1);
+  call(StartChannel{id_});
+  now_ += 50;
+  call(SetTimeStep{200});
+  EXPECT_EQ(synaptic_.due, now_ + 90 + 200);
+  tick();
+  EXPECT_EQ(synaptic_.due, now_ + 200);
+  now_ += 50;
+  call(SetTimeStep{300});
+  EXPECT_EQ(synaptic_.due, now_ + 300);
+  call(StopAllChannels{});
+  call(StartAllChannels{});
+  EXPECT_EQ(synaptic_.due, now_ + 90 + 300);
+}
+
+TEST_F(SynapticClock, S2_Send_NanKeepsItsBits) {
+  create_out(1);
+  const std::uint32_t nan_bits = 0x7FC0'1234;
+  write(kToSink, 0, float_of_bits(nan_bits));
+  call(StartAllChannels{});
+  tick();
+  EXPECT_EQ(sends_[0].value_bits[0], nan_bits);
+}
+
+TEST_F(SynapticClock, S2_Tick_PeriodApartWhateverIsStarted) {
+  create_out(1);
+  create_in(1);
+  call(StartChannel{kToSink});
+  const Ticks first = synaptic_.due;
+  tick();
+  EXPECT_EQ(synaptic_.due, first + 500);
+  now_ += 200;
+  call(StartChannel{kFromPeer});
+  EXPECT_EQ(synaptic_.due, first + 500);
+  tick();
+  EXPECT_EQ(synaptic_.due, first + 1000);
+}
+
+TEST_F(SynapticClock, S2_Tick_WithoutClockNothingHappens) {
+  create_out(1);
+  actions_.clear();
+  tick_synaptic(synaptic_, own_, now_, sends_, actions_);
+  EXPECT_TRUE(sends_.empty() && actions_.notices().empty());
+  EXPECT_EQ(synaptic_.due, 0U);
+}
+
+TEST_F(SynapticClock, S3_PowerSave_ComparesBits) {
+  create_out(1, Mode::kPowerSave);
+  call(StartChannel{kToSink});
+  const float nan_value = float_of_bits(0x7FC0'0000);
+  write(kToSink, 0, nan_value);
+  tick();
+  write(kToSink, 0, nan_value);
+  tick();
+  EXPECT_TRUE(sends_.empty());
+  write(kToSink, 0, 0.0F);
+  tick();
+  write(kToSink, 0, -0.0F);
+  tick();
+  EXPECT_EQ(sends_.size(), 1U);
+}
+
+TEST_F(SynapticClock, S3_PowerSave_FirstTickAfterEachStart) {
+  create_out(1, Mode::kPowerSave);
+  for (int i = 0; i < 2; ++i) {
+    call(StartChannel{kToSink});
+    tick();
+    EXPECT_EQ(sends_.size(), 1U);
+    call(StartChannel{kToSink});  // It is started, so nothing changes.
+    tick();
+    EXPECT_TRUE(sends_.empty());
+    call(StopChannel{kToSink});
+  }
+}
+
+TEST_F(SynapticClock, S4_Local_PowerSaveHandsOverChangesOnly) {
+  create_out(1, Mode::kPowerSave, {kLocalPid, kOwn.devid});
+  create_in(1, kOwn);
+  call(StartAllChannels{});
+  EXPECT_EQ(tick(), (std::vector<Signal>{{kLocal, DataStatus::kNew}}));
+  EXPECT_EQ(tick(), (std::vector<Signal>{{kLocal, DataStatus::kOld}}));
+  EXPECT_TRUE(sends_.empty());
+}
+
+TEST_F(SynapticClock, S4_Local_WithoutInputNothingIsSent) {
+  create_out(1, Mode::kReliable, kOwn);
+  call(StartAllChannels{});
+  EXPECT_TRUE(tick().empty());
+  EXPECT_TRUE(sends_.empty());
+  EXPECT_EQ(rule(), "S4-LOCAL"_rule);
+}
+
+TEST_F(SynapticClock, S3_Changed_RefusedChangeGoesWithTheNextTick) {
+  create_out(1, Mode::kPowerSave);
+  create_out(1, Mode::kPowerSave, {11, 8});
+  call(StartAllChannels{});
+  tick();
+  ASSERT_EQ(sends_.size(), 2U);
+  keep_change(synaptic_, sends_[1].id);
+  tick();
+  ASSERT_EQ(sends_.size(), 1U);
+  EXPECT_EQ(sends_[0].dest.devid, 8);
+  tick();
+  EXPECT_TRUE(sends_.empty());
+}
+
+// Its id is that of the channel to itself, but the other end is elsewhere.
+TEST_F(SynapticClock, S4_Local_InputFromAnotherIslandTakesNothing) {
+  create_out(1, Mode::kReliable, kOwn);
+  create_in(1, {12, kOwn.devid});
+  EXPECT_EQ(id_, kLocal);
+  write(kLocal, 0, 1.0F);
+  call(StartAllChannels{});
+  EXPECT_EQ(tick(), (std::vector<Signal>{{kLocal, DataStatus::kOld}}));
+  EXPECT_EQ(read_bits(kLocal, 0), 0U);
 }
 
 }  // namespace

@@ -165,32 +165,17 @@ StepMaker remembering(void (*step)(Moment&, Memory&)) {
     return [step, memory = Memory{}](Moment& moment) mutable { step(moment, memory); };
   };
 }
-inline StepMaker drop_sent(bool (*which)(const Moment&, const Transmit&)) {
-  return on_sent([which](Moment& moment, const Action&, Transmit& frame) {
-    return which(moment, frame) ? Fate::kDrop : Fate::kKeep;
-  });
-}
-inline StepMaker double_sent(bool (*which)(const Moment&, const Transmit&)) {
-  return on_sent([which](Moment& moment, const Action&, Transmit& frame) {
-    return which(moment, frame) ? Fate::kTwice : Fate::kKeep;
-  });
-}
-/// Makes a wrapper that changes a field in frames of a type.
-template <class Field>
-StepMaker sent_field(std::uint8_t am_type, Field field,
-                     unsigned (*other)(const Moment&, unsigned)) {
+/// Makes a wrapper that changes a field in some frames that are sent, or sets it.
+template <class Field, std::invocable<const Moment&, unsigned> Other>
+StepMaker sent_field(Which<Transmit> which, Field field, Other other) {
   return on_sent([=](Moment& moment, const Action&, Transmit& frame) {
-    if (frame.type == am_type) put(frame, field, other(moment, get(frame, field)));
+    if (which(moment, frame)) put(frame, field, other(moment, get(frame, field)));
     return Fate::kKeep;
   });
 }
-/// Makes a wrapper that ignores no such frame: it mends the frame first.
-inline StepMaker mended(bool (*wrong)(const Moment&, const Frame&),
-                        void (*mend)(Moment&, Forged&)) {
-  return on_heard([=](Moment& moment, Forged& forged) {
-    if (wrong(moment, forged.frame)) mend(moment, forged);
-    return true;
-  });
+template <class Field>
+StepMaker sent_field(Which<Transmit> which, Field field, unsigned value) {
+  return sent_field(which, field, [=](const Moment&, unsigned) { return value; });
 }
 
 }  // namespace rubric::mutants

@@ -44,13 +44,6 @@ StepMaker at_kind(const std::string& kind, void (*act)(Moment&, const Action&)) 
 
 const char* const kRoles[] = {"mote", "sink", "base_station"};
 
-bool ignores(const Actions& actions, ReqId requirement) {
-  for (const Action& action : actions.all()) {
-    if (action.what == Action::What::kIgnored && action.requirement == requirement) return true;
-  }
-  return false;
-}
-
 bool ignores_anything(const Actions& actions) {
   for (const Action& action : actions.all()) {
     if (action.what == Action::What::kIgnored) return true;
@@ -138,21 +131,16 @@ Mutants action_mutants(const Golden& golden) {
   kinds.erase("");
   Mutants out;
   for (const std::string& kind : kinds) {
-    out.push_back(
-        {"drop: " + kind, "It does not happen.", {}, at_kind(kind, [](Moment&, const Action&) {})});
-    out.push_back({"double: " + kind,
-                   "It happens twice.",
-                   {},
-                   at_kind(kind, [](Moment& moment, const Action& action) {
-                     moment.keep(action);
-                     moment.keep(action);
-                   })});
-    out.push_back({"delay: " + kind,
-                   "It happens a period later.",
-                   {},
-                   at_kind(kind, [](Moment& moment, const Action& action) {
-                     moment.hold(action, kPeriodTicks);
-                   })});
+    add(out, "drop: " + kind, "It does not happen.", {},
+        at_kind(kind, [](Moment&, const Action&) {}));
+    add(out, "double: " + kind, "It happens twice.", {},
+        at_kind(kind, [](Moment& moment, const Action& action) {
+          moment.keep(action);
+          moment.keep(action);
+        }));
+    add(out, "delay: " + kind, "It happens a period later.", {},
+        at_kind(kind,
+                [](Moment& moment, const Action& action) { moment.hold(action, kPeriodTicks); }));
   }
   return out;
 }
@@ -163,10 +151,8 @@ Mutants acceptance_mutants(const Golden& golden) {
     for (const std::size_t i : found) {
       const std::string name = "accept: " + text(ignored.requirement) + " " +
                                kRoles[static_cast<int>(ignored.role)] + " " + mends()[i].name;
-      out.push_back({name,
-                     "What the rule ignores is accepted.",
-                     {},
-                     only(ignored.role, accepting(ignored.requirement, i))});
+      add(out, name, "What the rule ignores is accepted.", {},
+          only(ignored.role, accepting(ignored.requirement, i)));
     }
   }
   return out;

@@ -48,9 +48,9 @@ Mutants generated_mutants(const Golden& golden);
 
 /// A way to accept what a rule ignores: mends the frame, or the state for this one step.
 struct Mend {
-  const char* name;
+  std::string name;
   /// Returns false if it is not applicable; it did nothing then.
-  bool (*step)(Moment&);
+  std::function<bool(Moment&)> step;
 };
 std::span<const Mend> mends();
 

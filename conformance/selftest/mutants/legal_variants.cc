@@ -43,14 +43,13 @@ void add_times(Variants& out) {
   out.push_back(
       {"slow_acks", "Acks take 200 ticks, deliveries none (125).", always(slow_acks), true});
   out.push_back({"join_timer_2_percent_slow", "The join timer takes 510 ticks (128).",
-                 with_profile([](machine::Profile& p) { p.join_period_ticks = 510; })});
+                 with_profile(&machine::Profile::join_period_ticks, 510)});
   out.push_back({"ack_timer_2_percent_slow", "The ack timeout takes 1020 ticks (110, 128).",
-                 with_profile([](machine::Profile& p) { p.ack_timeout_ticks = 1020; })});
+                 with_profile(&machine::Profile::ack_timeout_ticks, 1020)});
   out.push_back({"clock_2_percent_slow", "The synaptic clock's default period is 510 ticks (128).",
-                 always([](Moment& moment) {
+                 before_step([](Moment& moment) {
                    auto& period = moment.state.synaptic.period_ticks;
                    if (period == 500) period = 510;
-                   moment.honest();
                  })});
 }
 
@@ -93,26 +92,24 @@ void joined_on_confirmation(Moment& moment, bool& told) {
 
 void add_joins(Variants& out) {
   out.push_back({"fail_at_the_fourth_expiry", "Four requests, then joined(FAIL) (101).",
-                 with_profile([](machine::Profile& p) { p.join_requests_max = 4; })});
+                 with_profile(&machine::Profile::join_requests_max, 4)});
   out.push_back({"number_for_each_request", "Each request has a number of its own (104).",
                  remembering<Renumbered>(number_for_each_request)});
   out.push_back({"joined_on_confirmation", "joined(SUCCESS) comes with the link ack (102).",
                  remembering<bool>(joined_on_confirmation)});
   out.push_back({"ack_join_once", "ack_join is never repeated (102).",
-                 with_profile([](machine::Profile& p) { p.ack_join_max = 1; })});
+                 with_profile(&machine::Profile::ack_join_max, 1)});
   out.push_back({"clock_of_another_origin", "A sink's clock began a day ago (119).",
-                 on_sent([](Moment&, const Action&, Transmit& frame) {
-                   if (frame.type != am::kJoinReply) return Fate::kKeep;
+                 edit_sent(am::kJoinReply, [](Moment&, Transmit& frame) {
                    put(frame, join_reply::kTime, get(frame, join_reply::kTime) + 86'400'000U);
-                   return Fate::kKeep;
                  })});
 }
 
 // Sends the paper's form of an ack: the number alone.
-Fate short_ack(Moment& moment, const Action&, Transmit& frame) {
+void short_ack(Moment& moment, Transmit& frame) {
   const bool mine = is_ack(frame) && get(frame, net::kSrcDevid) == own(moment).devid &&
                     get(frame, net::kSrcPid) == own(moment).pid;
-  if (!mine || frame.payload[net::kNbytes] != net::kAckNbytes) return Fate::kKeep;
+  if (!mine || frame.payload[net::kNbytes] != net::kAckNbytes) return;
   put(frame, net::kPaperSeq, get(frame, net::kAckedSeq));
   frame.payload[net::kNbytes] = net::kPaperAckNbytes;
   const bool serial = frame.link == Link::kSerial;
@@ -122,18 +119,16 @@ Fate short_ack(Moment& moment, const Action&, Transmit& frame) {
   } else {
     frame.size_bytes = net::kPaperSeq.kEnd;
   }
-  return Fate::kKeep;
 }
 
-Fate stale_on_serial(Moment& moment, const Action&, Transmit& frame) {
+void stale_on_serial(Moment& moment, Transmit& frame) {
   const bool up = frame.link == Link::kSerial && moment.is(Role::kSink) && is_net(frame);
-  if (!up) return Fate::kKeep;
+  if (!up) return;
   const std::size_t end = 12U + frame.payload[net::kNbytes];
   for (std::size_t i = end; i < frame.payload.size(); ++i) {
     frame.payload[i] = static_cast<std::uint8_t>(0xA5 ^ i);
   }
   frame.payload[net::kNbytes] = net::kNbytes.kMax;
-  return Fate::kKeep;
 }
 
 // Acks each copy, delivers the first.
@@ -158,12 +153,9 @@ void relays(Moment& moment) {
   const Frame* const frame = moment.heard(am::kNet);
   const bool radio = frame != nullptr && frame->link == Link::kRadio && moment.is(Role::kSink);
   if (!radio || !moment.state.radio.on || frame->dest == machine::kAmBroadcast) return;
-  bool other = false;
-  for (const Action& action : moment.actions.all()) {
-    other =
-        other || (action.what == Action::What::kIgnored && action.requirement == "N6-OTHER"_rule);
-  }
-  if (!other || moment.state.radio.sending || moment.state.radio.taken) return;
+  if (!ignores(moment.actions, "N6-OTHER"_rule) || moment.state.radio.sending ||
+      moment.state.radio.taken)
+    return;
   moment.state.radio.sending = true;
   Transmit& sent =
       moment.send(Link::kRadio, am::kNet, get(*frame, net::kDestDevid), "N6-OTHER"_rule);
@@ -207,9 +199,9 @@ void other_order(Moment& moment) {
 }
 
 void add_messages(Variants& out) {
-  out.push_back({"short_acks", "Acks hold the number alone (108).", on_sent(short_ack)});
+  out.push_back({"short_acks", "Acks hold the number alone (108).", edit_sent(short_ack)});
   out.push_back({"stale_bytes_on_serial", "A sink hands up with nbytes 102 (N6-CONTENT).",
-                 on_sent(stale_on_serial)});
+                 edit_sent(stale_on_serial)});
   out.push_back({"delivers_copies_once", "A repeated message is acked, and delivered once (111).",
                  remembering<std::vector<std::vector<std::uint8_t>>>(delivers_once)});
   out.push_back({"acks_unknown_apps", "What is for an unknown APPID is acked (111).",
@@ -217,20 +209,15 @@ void add_messages(Variants& out) {
   out.push_back(
       {"relays", "A sink sends on what is for another of its motes (115).", always(relays)});
   out.push_back({"every_island_ignored", "pid 0xFFFF is not taken (114).",
-                 on_heard([](Moment&, Forged& forged) {
-                   return !is_net(forged.frame) ||
-                          get(forged, net::kDestPid) != machine::kBroadcastPid;
+                 hear_only([](const Moment&, const Frame& frame) {
+                   return !is_net(frame) || get(frame, net::kDestPid) != machine::kBroadcastPid;
                  })});
   out.push_back({"app_id_learning", "Synaptic data have APPID LEARNING (120).",
-                 on_sent([](Moment&, const Action&, Transmit& frame) {
-                   if (is_synaptic(frame)) frame.payload[net::kAppId] = 6;
-                   return Fate::kKeep;
-                 })});
+                 sent_field(is_synaptic, net::kAppId, 6)});
   out.push_back({"told_first", "In a step, events for the application come before frames.",
                  always(other_order)});
   out.push_back({"own_frames_besides", "A mote beacons with a type of its own now and then.",
-                 always([](Moment& moment) {
-                   moment.honest();
+                 after_step([](Moment& moment) {
                    const bool idle = moment.actions.transmits().empty() && is_member(moment) &&
                                      !moment.state.radio.sending;
                    if (!idle || moment.called<machine::GetClock>() == nullptr) return;
@@ -247,11 +234,11 @@ std::vector<LegalVariant> legal_variants() {
   add_times(out);
   add_joins(out);
   add_messages(out);
-  out.push_back({"random_numbers", "Sequence numbers are random (117).", always([](Moment& moment) {
-                   moment.state.sequence.random = true;
-                   moment.state.config.random_seq = true;
-                   moment.honest();
-                 })});
+  out.push_back(
+      {"random_numbers", "Sequence numbers are random (117).", before_step([](Moment& moment) {
+         moment.state.sequence.random = true;
+         moment.state.config.random_seq = true;
+       })});
   return out;
 }
 

@@ -1,6 +1,7 @@
 // Ways to accept what a rule ignores. Each is a machine that does not know one of the rules.
 #include <algorithm>
-#include <array>
+#include <concepts>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -14,111 +15,21 @@ namespace {
 using machine::Address;
 using Phase = machine::JoinMote::Phase;
 
-// Makes the node hear the frame with a change.
-template <class Edit>
-bool hear_changed(Moment& moment, std::uint8_t am_type, std::size_t least_bytes, Edit edit) {
-  const Frame* const frame = moment.heard(am_type);
-  if (frame == nullptr || frame->payload.size() < least_bytes) return false;
-  Forged& forged = moment.forge(*frame);
-  if (!edit(forged)) return false;
-  moment.honest(machine::Heard{forged.frame});
-  return true;
-}
-
-bool own_island(Moment& moment) {
-  return hear_changed(moment, am::kNet, net::kBody, [&](Forged& forged) {
-    put(forged, net::kDestPid, own(moment).pid);
+// Makes the node hear the frame with a change; the edit may return that it makes none.
+template <class Edit>  // (Moment&, Forged&).
+std::function<bool(Moment&)> hears(std::uint8_t am_type, std::size_t least_bytes, Edit edit) {
+  return [=](Moment& moment) {
+    const Frame* const frame = moment.heard(am_type);
+    if (frame == nullptr || frame->payload.size() < least_bytes) return false;
+    Forged& forged = moment.forge(*frame);
+    if constexpr (std::predicate<Edit, Moment&, Forged&>) {
+      if (!edit(moment, forged)) return false;
+    } else {
+      edit(moment, forged);
+    }
+    moment.honest(machine::Heard{forged.frame});
     return true;
-  });
-}
-
-bool own_devid(Moment& moment) {
-  return hear_changed(moment, am::kNet, net::kBody, [&](Forged& forged) {
-    put(forged, net::kDestDevid, own(moment).devid);
-    return true;
-  });
-}
-
-bool own_address(Moment& moment) {
-  return hear_changed(moment, am::kNet, net::kBody, [&](Forged& forged) {
-    put(forged, net::kDestPid, own(moment).pid);
-    put(forged, net::kDestDevid, own(moment).devid);
-    return true;
-  });
-}
-
-bool own_source(Moment& moment) {
-  return hear_changed(moment, am::kNet, net::kBody, [&](Forged& forged) {
-    put(forged, net::kSrcPid, own(moment).pid);
-    return true;
-  });
-}
-
-bool for_the_base_station(Moment& moment) {
-  return hear_changed(moment, am::kNet, net::kBody, [&](Forged& forged) {
-    put(forged, net::kDestPid, own(moment).pid);
-    put(forged, net::kDestDevid, machine::kNullDevid);
-    return true;
-  });
-}
-
-bool nbytes_that_came(Moment& moment) {
-  return hear_changed(moment, am::kNet, net::kBody, [&](Forged& forged) {
-    const std::size_t came = std::min<std::size_t>(forged.size() - 12, 102);
-    forged.bytes[net::kNbytes] = static_cast<std::uint8_t>(came);
-    return true;
-  });
-}
-
-bool filled_up(Moment& moment) {
-  return hear_changed(moment, am::kNet, 12, [&](Forged& forged) {
-    const std::size_t nbytes = std::clamp<std::size_t>(forged.bytes[net::kNbytes], 2, 102);
-    forged.bytes[net::kNbytes] = static_cast<std::uint8_t>(nbytes);
-    const std::size_t size = std::max(forged.size(), 12 + nbytes);
-    std::fill(forged.bytes.begin() + static_cast<std::ptrdiff_t>(forged.size()),
-              forged.bytes.begin() + static_cast<std::ptrdiff_t>(size), std::uint8_t{5});
-    forged.resize(size);
-    return true;
-  });
-}
-
-bool reliable_is_yes(Moment& moment) {
-  return hear_changed(moment, am::kNet, net::kBody, [&](Forged& forged) {
-    return std::exchange(forged.bytes[net::kReliable], std::uint8_t{1}) > 1;
-  });
-}
-
-bool plain_transport(Moment& moment) {
-  return hear_changed(moment, am::kNet, net::kBody, [&](Forged& forged) {
-    forged.bytes[net::kTransId] = component::kConnless;
-    return true;
-  });
-}
-
-bool known_application(Moment& moment) {
-  return hear_changed(moment, am::kNet, net::kBody, [&](Forged& forged) {
-    forged.bytes[net::kAppId] = 5;  // MOCKUP.
-    return true;
-  });
-}
-
-bool ack_number_fits(Moment& moment) {
-  return hear_changed(moment, am::kNet, net::kAckedSeq + 2, [&](Forged& forged) {
-    if (!is_ack(forged.frame) || moment.state.awaited.empty()) return false;
-    put(forged, net::kAckedSeq, moment.state.awaited[0].seq_num);
-    return true;
-  });
-}
-
-bool ack_sender_fits(Moment& moment) {
-  return hear_changed(moment, am::kNet, net::kAckedSeq + 2, [&](Forged& forged) {
-    if (!is_ack(forged.frame) || moment.state.awaited.empty()) return false;
-    const machine::Awaited& awaited = moment.state.awaited[0];
-    put(forged, net::kSrcPid, awaited.dest.pid);
-    put(forged, net::kSrcDevid, awaited.dest.devid);
-    forged.bytes[net::kAppId] = awaited.app_id;
-    return true;
-  });
+  };
 }
 
 bool ack_awaited_after_all(Moment& moment) {
@@ -129,13 +40,6 @@ bool ack_awaited_after_all(Moment& moment) {
                              moment.now + 1000});
   moment.honest();
   return true;
-}
-
-bool reply_number_fits(Moment& moment) {
-  return hear_changed(moment, am::kJoinReply, 10, [&](Forged& forged) {
-    put(forged, join_reply::kSeqNum, moment.state.join.seq_num);
-    return true;
-  });
 }
 
 bool reply_expected(Moment& moment) {
@@ -164,22 +68,6 @@ bool place_made(Moment& moment) {
   members.erase(0);
   moment.honest();
   return true;
-}
-
-bool ack_join_number_fits(Moment& moment) {
-  return hear_changed(moment, am::kAckJoin, 14, [&](Forged& forged) {
-    const auto* asked = machine::find_pending(moment.state.sink, get(forged, ack_join::kSrcDevid));
-    if (asked == nullptr) return false;
-    put(forged, ack_join::kSeqNum, asked->seq_num);
-    return true;
-  });
-}
-
-bool ack_join_island_fits(Moment& moment) {
-  return hear_changed(moment, am::kAckJoin, 14, [&](Forged& forged) {
-    put(forged, ack_join::kDestPid, moment.state.island);
-    return true;
-  });
 }
 
 bool ack_join_asked_for(Moment& moment) {
@@ -257,13 +145,6 @@ bool outgoing_oldest_gives_way(Moment& moment) {
   return true;
 }
 
-bool config_obeyed(Moment& moment) {
-  return hear_changed(moment, am::kConfig, 3, [](Forged& forged) {
-    forged.bytes[config::kType] = config::kSetIslandId;
-    return true;
-  });
-}
-
 bool taken_for_net(Moment& moment) {
   const Frame* const frame = moment.heard();
   if (frame == nullptr || frame->type == am::kNet) return false;
@@ -303,43 +184,105 @@ bool island_of_the_frame(Moment& moment) {
   return true;
 }
 
-constexpr std::array kMends{
-    Mend{"own island", own_island},
-    Mend{"own devid", own_devid},
-    Mend{"own address", own_address},
-    Mend{"source of own island", own_source},
-    Mend{"for the base station", for_the_base_station},
-    Mend{"island of the frame", island_of_the_frame},
-    Mend{"nbytes that came", nbytes_that_came},
-    Mend{"filled up to nbytes", filled_up},
-    Mend{"reliable 1", reliable_is_yes},
-    Mend{"TRANSID CONNLESS", plain_transport},
-    Mend{"APPID MOCKUP", known_application},
-    Mend{"number of an awaited ack", ack_number_fits},
-    Mend{"sender and APPID of an awaited ack", ack_sender_fits},
-    Mend{"ack awaited after all", ack_awaited_after_all},
-    Mend{"number of the request", reply_number_fits},
-    Mend{"reply expected", reply_expected},
-    Mend{"member forgotten", member_forgotten},
-    Mend{"place made in the list", place_made},
-    Mend{"number of the open join", ack_join_number_fits},
-    Mend{"island of the sink", ack_join_island_fits},
-    Mend{"join open after all", ack_join_asked_for},
-    Mend{"as a sink", as_a_sink},
-    Mend{"as a mote", as_a_mote},
-    Mend{"as a joining mote", as_a_joining_mote},
-    Mend{"as a member", as_a_member},
-    Mend{"switched on", switched_on},
-    Mend{"oldest incoming gives way", oldest_gives_way},
-    Mend{"oldest outgoing gives way", outgoing_oldest_gives_way},
-    Mend{"config obeyed", config_obeyed},
-    Mend{"taken for a net_msg", taken_for_net},
-    Mend{"channels started", channels_started},
-    Mend{"accepted just now", accepted_just_now},
-};
+void add(std::vector<Mend>& out, const char* name, std::function<bool(Moment&)> step) {
+  out.push_back({name, std::move(step)});
+}
+
+std::vector<Mend> make_mends() {
+  std::vector<Mend> out;
+  add(out, "own island", hears(am::kNet, net::kBody, [](Moment& moment, Forged& forged) {
+        put(forged, net::kDestPid, own(moment).pid);
+      }));
+  add(out, "own devid", hears(am::kNet, net::kBody, [](Moment& moment, Forged& forged) {
+        put(forged, net::kDestDevid, own(moment).devid);
+      }));
+  add(out, "own address", hears(am::kNet, net::kBody, [](Moment& moment, Forged& forged) {
+        put(forged, net::kDestPid, own(moment).pid);
+        put(forged, net::kDestDevid, own(moment).devid);
+      }));
+  add(out, "source of own island", hears(am::kNet, net::kBody, [](Moment& moment, Forged& forged) {
+        put(forged, net::kSrcPid, own(moment).pid);
+      }));
+  add(out, "for the base station", hears(am::kNet, net::kBody, [](Moment& moment, Forged& forged) {
+        put(forged, net::kDestPid, own(moment).pid);
+        put(forged, net::kDestDevid, machine::kNullDevid);
+      }));
+  add(out, "island of the frame", island_of_the_frame);
+  add(out, "nbytes that came", hears(am::kNet, net::kBody, [](Moment&, Forged& forged) {
+        const std::size_t came = std::min<std::size_t>(forged.size() - 12, 102);
+        forged.bytes[net::kNbytes] = static_cast<std::uint8_t>(came);
+      }));
+  add(out, "filled up to nbytes", hears(am::kNet, 12, [](Moment&, Forged& forged) {
+        const std::size_t nbytes = std::clamp<std::size_t>(forged.bytes[net::kNbytes], 2, 102);
+        forged.bytes[net::kNbytes] = static_cast<std::uint8_t>(nbytes);
+        const std::size_t size = std::max(forged.size(), 12 + nbytes);
+        std::fill(forged.bytes.begin() + static_cast<std::ptrdiff_t>(forged.size()),
+                  forged.bytes.begin() + static_cast<std::ptrdiff_t>(size), std::uint8_t{5});
+        forged.resize(size);
+      }));
+  add(out, "reliable 1", hears(am::kNet, net::kBody, [](Moment&, Forged& forged) {
+        return std::exchange(forged.bytes[net::kReliable], std::uint8_t{1}) > 1;
+      }));
+  add(out, "TRANSID CONNLESS", hears(am::kNet, net::kBody, [](Moment&, Forged& forged) {
+        forged.bytes[net::kTransId] = component::kConnless;
+      }));
+  add(out, "APPID MOCKUP", hears(am::kNet, net::kBody, [](Moment&, Forged& forged) {
+        forged.bytes[net::kAppId] = 5;  // MOCKUP.
+      }));
+  add(out, "number of an awaited ack",
+      hears(am::kNet, net::kAckedSeq + 2, [](Moment& moment, Forged& forged) {
+        if (!is_ack(forged.frame) || moment.state.awaited.empty()) return false;
+        put(forged, net::kAckedSeq, moment.state.awaited[0].seq_num);
+        return true;
+      }));
+  add(out, "sender and APPID of an awaited ack",
+      hears(am::kNet, net::kAckedSeq + 2, [](Moment& moment, Forged& forged) {
+        if (!is_ack(forged.frame) || moment.state.awaited.empty()) return false;
+        const machine::Awaited& awaited = moment.state.awaited[0];
+        put(forged, net::kSrcPid, awaited.dest.pid);
+        put(forged, net::kSrcDevid, awaited.dest.devid);
+        forged.bytes[net::kAppId] = awaited.app_id;
+        return true;
+      }));
+  add(out, "ack awaited after all", ack_awaited_after_all);
+  add(out, "number of the request", hears(am::kJoinReply, 10, [](Moment& moment, Forged& forged) {
+        put(forged, join_reply::kSeqNum, moment.state.join.seq_num);
+      }));
+  add(out, "reply expected", reply_expected);
+  add(out, "member forgotten", member_forgotten);
+  add(out, "place made in the list", place_made);
+  add(out, "number of the open join", hears(am::kAckJoin, 14, [](Moment& moment, Forged& forged) {
+        const auto* asked =
+            machine::find_pending(moment.state.sink, get(forged, ack_join::kSrcDevid));
+        if (asked == nullptr) return false;
+        put(forged, ack_join::kSeqNum, asked->seq_num);
+        return true;
+      }));
+  add(out, "island of the sink", hears(am::kAckJoin, 14, [](Moment& moment, Forged& forged) {
+        put(forged, ack_join::kDestPid, moment.state.island);
+      }));
+  add(out, "join open after all", ack_join_asked_for);
+  add(out, "as a sink", as_a_sink);
+  add(out, "as a mote", as_a_mote);
+  add(out, "as a joining mote", as_a_joining_mote);
+  add(out, "as a member", as_a_member);
+  add(out, "switched on", switched_on);
+  add(out, "oldest incoming gives way", oldest_gives_way);
+  add(out, "oldest outgoing gives way", outgoing_oldest_gives_way);
+  add(out, "config obeyed", hears(am::kConfig, 3, [](Moment&, Forged& forged) {
+        forged.bytes[config::kType] = config::kSetIslandId;
+      }));
+  add(out, "taken for a net_msg", taken_for_net);
+  add(out, "channels started", channels_started);
+  add(out, "accepted just now", accepted_just_now);
+  return out;
+}
 
 }  // namespace
 
-std::span<const Mend> mends() { return kMends; }
+std::span<const Mend> mends() {
+  static const std::vector<Mend> kMends = make_mends();
+  return kMends;
+}
 
 }  // namespace rubric::mutants

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "conformance/selftest/mutants/wrapped.h"
@@ -18,6 +19,11 @@ struct Mutant {
   runner::SubjectFactory factory() const { return wrapped(step); }
 };
 using Mutants = std::vector<Mutant>;
+
+inline void add(Mutants& out, std::string name, std::string breaks, std::vector<ReqId> requirements,
+                StepMaker step) {
+  out.push_back({std::move(name), std::move(breaks), std::move(requirements), std::move(step)});
+}
 
 /// Return common mistakes, by the family of the rule that they break. Names are unique.
 Mutants network_mutants();       ///< N1 to N5.

@@ -73,34 +73,23 @@ void stores_unknown(Moment& moment) {
 }
 
 void add_local_and_unknown(Mutants& out) {
-  out.push_back({"local_data_on_the_air",
-                 "A channel from a node to itself sends a frame.",
-                 {"S4-LOCAL"_rule},
-                 always(sends_local)});
-  out.push_back({"local_data_lost",
-                 "A channel from a node to itself hands nothing over.",
-                 {"S4-LOCAL"_rule},
-                 always(drops_local)});
-  out.push_back({"unknown_channel_stored",
-                 "Data of an unknown channel go to the first one.",
-                 {"S5-UNKNOWN"_rule},
-                 always(stores_unknown)});
-  out.push_back({"unknown_channel_silent",
-                 "Data of an unknown channel are not reported.",
-                 {"S5-UNKNOWN"_rule},
-                 on_told_of<SynDataReceived>([](Moment&, SynDataReceived& data) {
-                   const bool unknown = data.status == machine::DataStatus::kUnknownChannel;
-                   return unknown ? Fate::kDrop : Fate::kKeep;
-                 })});
-  out.push_back({"unknown_channel_new",
-                 "Data of an unknown channel are reported as new.",
-                 {"S5-UNKNOWN"_rule},
-                 on_told_of<SynDataReceived>([](Moment&, SynDataReceived& data) {
-                   if (data.status == machine::DataStatus::kUnknownChannel) {
-                     data.status = machine::DataStatus::kNew;
-                   }
-                   return Fate::kKeep;
-                 })});
+  add(out, "local_data_on_the_air", "A channel from a node to itself sends a frame.",
+      {"S4-LOCAL"_rule}, always(sends_local));
+  add(out, "local_data_lost", "A channel from a node to itself hands nothing over.",
+      {"S4-LOCAL"_rule}, always(drops_local));
+  add(out, "unknown_channel_stored", "Data of an unknown channel go to the first one.",
+      {"S5-UNKNOWN"_rule}, always(stores_unknown));
+  add(out, "unknown_channel_silent", "Data of an unknown channel are not reported.",
+      {"S5-UNKNOWN"_rule}, on_told_of<SynDataReceived>([](Moment&, SynDataReceived& data) {
+        const bool unknown = data.status == machine::DataStatus::kUnknownChannel;
+        return unknown ? Fate::kDrop : Fate::kKeep;
+      }));
+  add(out, "unknown_channel_new", "Data of an unknown channel are reported as new.",
+      {"S5-UNKNOWN"_rule}, edit_told<SynDataReceived>([](Moment&, SynDataReceived& data) {
+        if (data.status == machine::DataStatus::kUnknownChannel) {
+          data.status = machine::DataStatus::kNew;
+        }
+      }));
 }
 
 template <class Call>
@@ -108,8 +97,7 @@ StepMaker refuses_silently(ReqId requirement) {
   return [requirement]() -> Step {
     return [requirement](Moment& moment) {
       if (moment.called<Call>() == nullptr) return moment.honest();
-      moment.nothing();
-      moment.actions.notify(machine::OperationResult{true}, requirement);
+      moment.answer(machine::OperationResult{true}, requirement);
     };
   };
 }
@@ -128,77 +116,55 @@ void starts_at_creation(Moment& moment) {
 }
 
 void add_ends(Mutants& out) {
-  out.push_back({"stopped_channel_goes_on",
-                 "stop_syn_channel changes nothing.",
-                 {"S6-STOPPED"_rule},
-                 refuses_silently<StopChannel>("S6-STOPPED"_rule)});
-  out.push_back({"stop_all_goes_on",
-                 "stop_all_syn_channels changes nothing.",
-                 {"S6-STOPPED"_rule},
-                 refuses_silently<StopAllChannels>("S6-STOPPED"_rule)});
-  out.push_back({"starts_at_creation",
-                 "A channel runs from its creation on.",
-                 {"S6-STOPPED"_rule},
-                 always(starts_at_creation)});
-  out.push_back({"stop_stops_all",
-                 "stop_syn_channel stops every channel.",
-                 {"S6-OTHERS"_rule},
-                 always([](Moment& moment) {
-                   if (moment.called<StopChannel>() == nullptr) return moment.honest();
-                   moment.honest(machine::Called{StopAllChannels{}});
-                 })});
-  out.push_back({"disposed_channel_goes_on",
-                 "Disposing a channel changes nothing (release 1.0).",
-                 {"S6-DISPOSED"_rule},
-                 refuses_silently<DisposeChannel>("S6-DISPOSED"_rule)});
-  out.push_back({"disposed_channel_keeps_its_place",
-                 "Disposing a channel stops it, and keeps its place.",
-                 {"S6-DISPOSED"_rule},
-                 always([](Moment& moment) {
-                   const DisposeChannel* const dispose = moment.called<DisposeChannel>();
-                   if (dispose == nullptr) return moment.honest();
-                   moment.honest(machine::Called{StopChannel{dispose->id}});
-                 })});
-  out.push_back({"dispose_takes_all",
-                 "Disposing a channel disposes of every one.",
-                 {"S6-DISPOSED"_rule, "S6-OTHERS"_rule, "S2-SEND"_rule},
-                 always([](Moment& moment) {
-                   const bool disposes = moment.called<DisposeChannel>() != nullptr;
-                   moment.honest();
-                   if (!disposes) return;
-                   moment.state.synaptic.out.clear();
-                   moment.state.synaptic.in.clear();
-                 })});
-  out.push_back({"start_does_nothing",
-                 "start_syn_channel says yes and starts nothing.",
-                 {"S1-START"_rule, "S2-SEND"_rule, "S2-SIGNAL"_rule},
-                 refuses_silently<StartChannel>("S1-START"_rule)});
-  out.push_back({"start_all_does_nothing",
-                 "start_all_syn_channels says yes and starts nothing.",
-                 {"S1-ALL"_rule, "S2-SEND"_rule, "S2-SIGNAL"_rule},
-                 refuses_silently<machine::StartAllChannels>("S1-ALL"_rule)});
-  out.push_back({"start_shifts_the_clock",
-                 "Starting a channel begins the clock anew for all.",
-                 {"S6-CLOCK"_rule, "S2-SEND"_rule, "S2-PHASE"_rule},
-                 always([](Moment& moment) {
-                   moment.honest();
-                   auto& synaptic = moment.state.synaptic;
-                   if (moment.called<StartChannel>() != nullptr && synaptic.due != 0) {
-                     synaptic.due =
-                         moment.now + synaptic.period_ticks + (own(moment).devid - 1U) * 30U;
-                   }
-                 })});
-  out.push_back({"start_all_starts_outputs",
-                 "start_all_syn_channels starts no input.",
-                 {"S2-SIGNAL"_rule},
-                 always([](Moment& moment) {
-                   const machine::Synaptic before = moment.state.synaptic;
-                   moment.honest();
-                   if (moment.called<machine::StartAllChannels>() == nullptr) return;
-                   for (std::size_t i = 0; i < before.in.size(); ++i) {
-                     moment.state.synaptic.in[i].started = before.in[i].started;
-                   }
-                 })});
+  add(out, "stopped_channel_goes_on", "stop_syn_channel changes nothing.", {"S6-STOPPED"_rule},
+      refuses_silently<StopChannel>("S6-STOPPED"_rule));
+  add(out, "stop_all_goes_on", "stop_all_syn_channels changes nothing.", {"S6-STOPPED"_rule},
+      refuses_silently<StopAllChannels>("S6-STOPPED"_rule));
+  add(out, "starts_at_creation", "A channel runs from its creation on.", {"S6-STOPPED"_rule},
+      always(starts_at_creation));
+  add(out, "stop_stops_all", "stop_syn_channel stops every channel.", {"S6-OTHERS"_rule},
+      always([](Moment& moment) {
+        if (moment.called<StopChannel>() == nullptr) return moment.honest();
+        moment.honest(machine::Called{StopAllChannels{}});
+      }));
+  add(out, "disposed_channel_goes_on", "Disposing a channel changes nothing (release 1.0).",
+      {"S6-DISPOSED"_rule}, refuses_silently<DisposeChannel>("S6-DISPOSED"_rule));
+  add(out, "disposed_channel_keeps_its_place", "Disposing a channel stops it, and keeps its place.",
+      {"S6-DISPOSED"_rule}, always([](Moment& moment) {
+        const DisposeChannel* const dispose = moment.called<DisposeChannel>();
+        if (dispose == nullptr) return moment.honest();
+        moment.honest(machine::Called{StopChannel{dispose->id}});
+      }));
+  add(out, "dispose_takes_all", "Disposing a channel disposes of every one.",
+      {"S6-DISPOSED"_rule, "S6-OTHERS"_rule, "S2-SEND"_rule}, always([](Moment& moment) {
+        const bool disposes = moment.called<DisposeChannel>() != nullptr;
+        moment.honest();
+        if (!disposes) return;
+        moment.state.synaptic.out.clear();
+        moment.state.synaptic.in.clear();
+      }));
+  add(out, "start_does_nothing", "start_syn_channel says yes and starts nothing.",
+      {"S1-START"_rule, "S2-SEND"_rule, "S2-SIGNAL"_rule},
+      refuses_silently<StartChannel>("S1-START"_rule));
+  add(out, "start_all_does_nothing", "start_all_syn_channels says yes and starts nothing.",
+      {"S1-ALL"_rule, "S2-SEND"_rule, "S2-SIGNAL"_rule},
+      refuses_silently<machine::StartAllChannels>("S1-ALL"_rule));
+  add(out, "start_shifts_the_clock", "Starting a channel begins the clock anew for all.",
+      {"S6-CLOCK"_rule, "S2-SEND"_rule, "S2-PHASE"_rule}, after_step([](Moment& moment) {
+        auto& synaptic = moment.state.synaptic;
+        if (moment.called<StartChannel>() != nullptr && synaptic.due != 0) {
+          synaptic.due = moment.now + synaptic.period_ticks + (own(moment).devid - 1U) * 30U;
+        }
+      }));
+  add(out, "start_all_starts_outputs", "start_all_syn_channels starts no input.",
+      {"S2-SIGNAL"_rule}, always([](Moment& moment) {
+        const machine::Synaptic before = moment.state.synaptic;
+        moment.honest();
+        if (moment.called<machine::StartAllChannels>() == nullptr) return;
+        for (std::size_t i = 0; i < before.in.size(); ++i) {
+          moment.state.synaptic.in[i].started = before.in[i].started;
+        }
+      }));
 }
 
 void append(Mutants& out, const Mutants& more) { out.insert(out.end(), more.begin(), more.end()); }

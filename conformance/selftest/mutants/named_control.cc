@@ -23,62 +23,45 @@ void as_if_on(Moment& moment) {
 }
 
 void add_switches(Mutants& out) {
-  out.push_back({"interface_off_still_sends",
-                 "An interface that is off sends.",
-                 {"N10-OFF"_rule},
-                 always([](Moment& moment) {
-                   if (moment.called<Send>() != nullptr) return as_if_on(moment);
-                   moment.honest();
-                 })});
-  out.push_back({"interface_off_still_hears",
-                 "An interface that is off receives.",
-                 {"N10-OFF"_rule},
-                 always([](Moment& moment) {
-                   if (moment.heard() != nullptr) return as_if_on(moment);
-                   moment.honest();
-                 })});
-  out.push_back({"interface_off_sends_synaptic",
-                 "Timers send on a radio that is off.",
-                 {"N10-OFF"_rule, "N2-QUEUE"_rule},
-                 always([](Moment& moment) {
-                   if (std::holds_alternative<machine::TimerDue>(moment.event)) {
-                     return as_if_on(moment);
-                   }
-                   moment.honest();
-                 })});
-  out.push_back({"off_for_good",
-                 "An interface that was off never comes on again.",
-                 {"N10-ON"_rule},
-                 always([](Moment& moment) {
-                   const SetInterface* const set = moment.called<SetInterface>();
-                   if (set == nullptr || !set->on) return moment.honest();
-                   moment.nothing();
-                   moment.actions.notify(machine::OperationResult{true}, "N10-ON"_rule);
-                 })});
-  out.push_back({"switches_crossed",
-                 "Switching the radio off switches the serial line.",
-                 {"N10-OFF"_rule},
-                 always([](Moment& moment) {
-                   const SetInterface* const set = moment.called<SetInterface>();
-                   if (set == nullptr) return moment.honest();
-                   SetInterface other = *set;
-                   other.link = set->link == Link::kRadio ? Link::kSerial : Link::kRadio;
-                   moment.honest(machine::Called{other});
-                 })});
-  out.push_back({"interface_state_constant",
-                 "The state of an interface is reported as on.",
-                 {"N10-STATE"_rule},
-                 on_told_of<machine::InterfaceState>([](Moment&, machine::InterfaceState& told) {
-                   told.on = true;
-                   return Fate::kKeep;
-                 })});
-  out.push_back({"interface_state_inverted",
-                 "The state of an interface is reported as its opposite.",
-                 {"N10-STATE"_rule},
-                 on_told_of<machine::InterfaceState>([](Moment&, machine::InterfaceState& told) {
-                   told.on = !told.on;
-                   return Fate::kKeep;
-                 })});
+  add(out, "interface_off_still_sends", "An interface that is off sends.", {"N10-OFF"_rule},
+      always([](Moment& moment) {
+        if (moment.called<Send>() != nullptr) return as_if_on(moment);
+        moment.honest();
+      }));
+  add(out, "interface_off_still_hears", "An interface that is off receives.", {"N10-OFF"_rule},
+      always([](Moment& moment) {
+        if (moment.heard() != nullptr) return as_if_on(moment);
+        moment.honest();
+      }));
+  add(out, "interface_off_sends_synaptic", "Timers send on a radio that is off.",
+      {"N10-OFF"_rule, "N2-QUEUE"_rule}, always([](Moment& moment) {
+        if (std::holds_alternative<machine::TimerDue>(moment.event)) {
+          return as_if_on(moment);
+        }
+        moment.honest();
+      }));
+  add(out, "off_for_good", "An interface that was off never comes on again.", {"N10-ON"_rule},
+      always([](Moment& moment) {
+        const SetInterface* const set = moment.called<SetInterface>();
+        if (set == nullptr || !set->on) return moment.honest();
+        moment.answer(machine::OperationResult{true}, "N10-ON"_rule);
+      }));
+  add(out, "switches_crossed", "Switching the radio off switches the serial line.",
+      {"N10-OFF"_rule}, always([](Moment& moment) {
+        const SetInterface* const set = moment.called<SetInterface>();
+        if (set == nullptr) return moment.honest();
+        SetInterface other = *set;
+        other.link = set->link == Link::kRadio ? Link::kSerial : Link::kRadio;
+        moment.honest(machine::Called{other});
+      }));
+  add(out, "interface_state_constant", "The state of an interface is reported as on.",
+      {"N10-STATE"_rule},
+      edit_told<machine::InterfaceState>(
+          [](Moment&, machine::InterfaceState& told) { told.on = true; }));
+  add(out, "interface_state_inverted", "The state of an interface is reported as its opposite.",
+      {"N10-STATE"_rule},
+      edit_told<machine::InterfaceState>(
+          [](Moment&, machine::InterfaceState& told) { told.on = !told.on; }));
 }
 
 // Old memory that holds the rest of a message whose nbytes is too large.
@@ -100,66 +83,52 @@ void trusts_nbytes(Moment& moment, Memory& memory) {
 }
 
 void add_malformed(Mutants& out) {
-  out.push_back({"nbytes_trusted",
-                 "A node reads as many bytes as nbytes promises.",
-                 {"N11-NBYTES"_rule},
-                 remembering<Memory>(trusts_nbytes)});
-  out.push_back({"nbytes_cut_to_what_came",
-                 "A node mends an nbytes that promises too much.",
-                 {"N11-NBYTES"_rule},
-                 on_heard([](Moment&, Forged& forged) {
-                   if (forged.frame.type != am::kNet || forged.size() < 14) return true;
-                   const std::size_t came = std::min<std::size_t>(forged.size() - 12, 102);
-                   std::uint8_t& nbytes = forged.bytes[net::kNbytes];
-                   if (nbytes > came) nbytes = static_cast<std::uint8_t>(came);
-                   return true;
-                 })});
-  out.push_back({"nbytes_below_2_is_empty",
-                 "A message without APPID is taken as an empty one.",
-                 {"N11-NBYTES"_rule},
-                 on_heard([](Moment&, Forged& forged) {
-                   const bool net = forged.frame.type == am::kNet && forged.size() >= 12;
-                   if (!net || forged.bytes[net::kNbytes] >= 2) return true;
-                   forged.bytes[net::kNbytes] = 2;
-                   forged.bytes[net::kTransId] = component::kConnless;
-                   forged.bytes[net::kAppId] = 5;
-                   forged.resize(14);
-                   return true;
-                 })});
-  out.push_back({"malformed_kills",
-                 "After a malformed message a node hears no more.",
-                 {"N11-NEXT"_rule},
-                 remembering<bool>([](Moment& moment, bool& dead) {
-                   if (dead && moment.heard() != nullptr) return moment.nothing();
-                   moment.honest();
-                   for (const Action& action : moment.actions.all()) {
-                     dead = dead || (action.what == Action::What::kIgnored &&
-                                     action.requirement == "N11-NBYTES"_rule);
-                   }
-                 })});
-  out.push_back({"malformed_eats_the_next",
-                 "The message after a malformed one is lost.",
-                 {"N11-NEXT"_rule},
-                 remembering<bool>([](Moment& moment, bool& skip) {
-                   const Frame* const frame = moment.heard(am::kNet);
-                   const bool good = frame != nullptr && is_net(*frame) &&
-                                     frame->payload[net::kNbytes] + 12U <= frame->payload.size();
-                   if (skip && good) {
-                     skip = false;
-                     return moment.nothing();
-                   }
-                   moment.honest();
-                   for (const Action& action : moment.actions.all()) {
-                     skip = skip || (action.what == Action::What::kIgnored &&
-                                     action.requirement == "N11-NBYTES"_rule);
-                   }
-                 })});
-  out.push_back({"longest_message_dropped",
-                 "A node takes 101 bytes for the most.",
-                 {"N11-NEXT"_rule, "T1-DELIVER"_rule},
-                 on_heard([](Moment&, Forged& forged) {
-                   return !is_net(forged.frame) || forged.bytes[net::kNbytes] < 102;
-                 })});
+  add(out, "nbytes_trusted", "A node reads as many bytes as nbytes promises.", {"N11-NBYTES"_rule},
+      remembering<Memory>(trusts_nbytes));
+  add(out, "nbytes_cut_to_what_came", "A node mends an nbytes that promises too much.",
+      {"N11-NBYTES"_rule}, edit_heard([](Moment&, Forged& forged) {
+        if (forged.frame.type != am::kNet || forged.size() < 14) return;
+        const std::size_t came = std::min<std::size_t>(forged.size() - 12, 102);
+        std::uint8_t& nbytes = forged.bytes[net::kNbytes];
+        if (nbytes > came) nbytes = static_cast<std::uint8_t>(came);
+      }));
+  add(out, "nbytes_below_2_is_empty", "A message without APPID is taken as an empty one.",
+      {"N11-NBYTES"_rule}, edit_heard([](Moment&, Forged& forged) {
+        const bool net = forged.frame.type == am::kNet && forged.size() >= 12;
+        if (!net || forged.bytes[net::kNbytes] >= 2) return;
+        forged.bytes[net::kNbytes] = 2;
+        forged.bytes[net::kTransId] = component::kConnless;
+        forged.bytes[net::kAppId] = 5;
+        forged.resize(14);
+      }));
+  add(out, "malformed_kills", "After a malformed message a node hears no more.", {"N11-NEXT"_rule},
+      remembering<bool>([](Moment& moment, bool& dead) {
+        if (dead && moment.heard() != nullptr) return moment.nothing();
+        moment.honest();
+        for (const Action& action : moment.actions.all()) {
+          dead = dead ||
+                 (action.what == Action::What::kIgnored && action.requirement == "N11-NBYTES"_rule);
+        }
+      }));
+  add(out, "malformed_eats_the_next", "The message after a malformed one is lost.",
+      {"N11-NEXT"_rule}, remembering<bool>([](Moment& moment, bool& skip) {
+        const Frame* const frame = moment.heard(am::kNet);
+        const bool good = frame != nullptr && is_net(*frame) &&
+                          frame->payload[net::kNbytes] + 12U <= frame->payload.size();
+        if (skip && good) {
+          skip = false;
+          return moment.nothing();
+        }
+        moment.honest();
+        for (const Action& action : moment.actions.all()) {
+          skip = skip ||
+                 (action.what == Action::What::kIgnored && action.requirement == "N11-NBYTES"_rule);
+        }
+      }));
+  add(out, "longest_message_dropped", "A node takes 101 bytes for the most.",
+      {"N11-NEXT"_rule, "T1-DELIVER"_rule}, hear_only([](const Moment&, const Frame& frame) {
+        return !is_net(frame) || frame.payload[net::kNbytes] < 102;
+      }));
 }
 
 // Sets a number for a send: in the message, in the result and among the awaited.
@@ -184,24 +153,19 @@ void renumber(Moment& moment, std::uint16_t number) {
 }
 
 void add_numbers(Mutants& out) {
-  out.push_back({"awaited_number_reused",
-                 "Every message has number 7.",
-                 {"N12-REUSE"_rule},
-                 always([](Moment& moment) { renumber(moment, 7); })});
-  out.push_back({"number_for_each_destination",
-                 "Numbers count for each destination, from 1, and collide.",
-                 {"N12-REUSE"_rule},
-                 remembering<std::vector<std::uint16_t>>(
-                     [](Moment& moment, std::vector<std::uint16_t>& counts) {
-                       const Send* const send = moment.called<Send>();
-                       if (send == nullptr) return moment.honest();
-                       counts.resize(0x10000);
-                       renumber(moment, ++counts[send->dest.devid]);
-                     })});
-  out.push_back({"error_value_used",
-                 "Messages have number 0xFFFF.",
-                 {"N12-ERROR"_rule, "N12-REUSE"_rule},
-                 always([](Moment& moment) { renumber(moment, machine::kNoSeq); })});
+  add(out, "awaited_number_reused", "Every message has number 7.", {"N12-REUSE"_rule},
+      always([](Moment& moment) { renumber(moment, 7); }));
+  add(out, "number_for_each_destination",
+      "Numbers count for each destination, from 1, and collide.", {"N12-REUSE"_rule},
+      remembering<std::vector<std::uint16_t>>(
+          [](Moment& moment, std::vector<std::uint16_t>& counts) {
+            const Send* const send = moment.called<Send>();
+            if (send == nullptr) return moment.honest();
+            counts.resize(0x10000);
+            renumber(moment, ++counts[send->dest.devid]);
+          }));
+  add(out, "error_value_used", "Messages have number 0xFFFF.", {"N12-ERROR"_rule, "N12-REUSE"_rule},
+      always([](Moment& moment) { renumber(moment, machine::kNoSeq); }));
 }
 
 }  // namespace

@@ -22,7 +22,24 @@ bool has_room(const Actions& actions, const Action& action) {
   return action.what != Action::What::kNotify || actions.notices().size() < Actions::kNoticesMax;
 }
 
+// Lets frames of a kind that is sent end so.
+StepMaker sent_to(Fate fate, Which<Transmit> which) {
+  return on_sent([=](Moment& moment, const Action&, Transmit& frame) {
+    return which(moment, frame) ? fate : Fate::kKeep;
+  });
+}
+template <class Kind>
+bool any(const Moment&, const Kind&) {
+  return true;
+}
+
 }  // namespace
+
+bool ignores(const Actions& actions, ReqId requirement) {
+  return std::any_of(actions.all().begin(), actions.all().end(), [=](const Action& action) {
+    return action.what == Action::What::kIgnored && action.requirement == requirement;
+  });
+}
 
 const Frame* Moment::heard() const {
   const auto* heard = std::get_if<machine::Heard>(&event);
@@ -140,6 +157,24 @@ StepMaker always(void (*step)(Moment&)) {
   return [step] { return Step(step); };
 }
 
+StepMaker before_step(void (*change)(Moment&)) {
+  return [change]() -> Step {
+    return [change](Moment& moment) {
+      change(moment);
+      moment.honest();
+    };
+  };
+}
+
+StepMaker after_step(void (*change)(Moment&)) {
+  return [change]() -> Step {
+    return [change](Moment& moment) {
+      moment.honest();
+      change(moment);
+    };
+  };
+}
+
 StepMaker on_sent(SentEdit edit) {
   return [edit = std::move(edit)]() -> Step {
     return [edit](Moment& moment) {
@@ -182,6 +217,32 @@ StepMaker on_heard(HeardEdit edit) {
       moment.honest(machine::Heard{forged.frame});
     };
   };
+}
+
+StepMaker drop_sent(Which<Transmit> which) { return sent_to(Fate::kDrop, which); }
+
+StepMaker double_sent(Which<Transmit> which) { return sent_to(Fate::kTwice, which); }
+
+StepMaker edit_sent(Which<Transmit> which, void (*edit)(Moment&, Transmit&)) {
+  return on_sent([=](Moment& moment, const Action&, Transmit& frame) {
+    if (which(moment, frame)) edit(moment, frame);
+    return Fate::kKeep;
+  });
+}
+
+StepMaker edit_sent(void (*edit)(Moment&, Transmit&)) { return edit_sent(any<Transmit>, edit); }
+
+StepMaker edit_heard(Which<Frame> which, void (*edit)(Moment&, Forged&)) {
+  return on_heard([=](Moment& moment, Forged& forged) {
+    if (which(moment, forged.frame)) edit(moment, forged);
+    return true;
+  });
+}
+
+StepMaker edit_heard(void (*edit)(Moment&, Forged&)) { return edit_heard(any<Frame>, edit); }
+
+StepMaker hear_only(Which<Frame> which) {
+  return on_heard([=](Moment& moment, Forged& forged) { return which(moment, forged.frame); });
 }
 
 StepMaker with_profile(std::function<void(machine::Profile&)> edit) {

@@ -2,9 +2,11 @@
 // between the machine and the world, but never the machine itself.
 #pragma once
 
+#include <concepts>
 #include <deque>
 #include <functional>
 #include <memory>
+#include <type_traits>
 #include <vector>
 
 #include "conformance/test/runner/subject.h"
@@ -48,6 +50,9 @@ struct Body {
   std::vector<std::vector<std::uint8_t>> data;  ///< This step's notices point at these.
 };
 
+/// Returns whether an action ignores something by that rule.
+bool ignores(const Actions& actions, ReqId requirement);
+
 /// One step, for a wrapper to change.
 class Moment {
  public:
@@ -64,6 +69,11 @@ class Moment {
   /// Runs the machine's step for another event.
   void honest(const Event& other) { machine::step(state, now, other, actions); }
   void nothing() { actions.clear(); }
+  /// Does nothing but tell this.
+  void answer(const Notice& notice, ReqId requirement) {
+    actions.clear();
+    actions.notify(notice, requirement);
+  }
 
   bool is(Role role) const { return state.config.role == role; }
   /// Returns the frame that is heard, of that type if one is given; or null.
@@ -134,6 +144,9 @@ enum class Fate : std::uint8_t { kKeep, kDrop, kTwice };
 
 /// Makes a wrapper without a memory.
 StepMaker always(void (*step)(Moment&));
+/// Make wrappers that change something, and run the machine's step after it or before it.
+StepMaker before_step(void (*change)(Moment&));
+StepMaker after_step(void (*change)(Moment&));
 /// Changes, drops or doubles frames that are sent.
 using SentEdit = std::function<Fate(Moment&, const Action&, Transmit&)>;
 StepMaker on_sent(SentEdit edit);
@@ -145,6 +158,10 @@ using HeardEdit = std::function<bool(Moment&, Forged&)>;
 StepMaker on_heard(HeardEdit edit);
 /// Makes a wrapper that uses another profile.
 StepMaker with_profile(std::function<void(machine::Profile&)> edit);
+template <class Number>
+StepMaker with_profile(Number machine::Profile::*field, std::type_identity_t<Number> value) {
+  return with_profile([=](machine::Profile& profile) { profile.*field = value; });
+}
 
 template <class T>
 StepMaker on_told_of(std::function<Fate(Moment&, T&)> edit) {
@@ -153,5 +170,38 @@ StepMaker on_told_of(std::function<Fate(Moment&, T&)> edit) {
     return told == nullptr ? Fate::kKeep : edit(moment, *told);
   });
 }
+/// Changes notices of a kind, and keeps each.
+template <class T>
+StepMaker edit_told(void (*edit)(Moment&, T&)) {
+  return on_told_of<T>([edit](Moment& moment, T& told) {
+    edit(moment, told);
+    return Fate::kKeep;
+  });
+}
+
+/// The frames that a wrapper meddles with: those of an AM type, or those that pass a test.
+template <class Kind>  // Transmit or Frame.
+class Which {
+ public:
+  Which(std::uint8_t am_type)
+      : test_([=](const Moment&, const Kind& frame) { return frame.type == am_type; }) {}
+  Which(bool (*test)(const Kind&))
+      : test_([=](const Moment&, const Kind& frame) { return test(frame); }) {}
+  template <std::predicate<const Moment&, const Kind&> Test>
+  Which(Test test) : test_(test) {}
+  bool operator()(const Moment& moment, const Kind& frame) const { return test_(moment, frame); }
+
+ private:
+  std::function<bool(const Moment&, const Kind&)> test_;
+};
+
+StepMaker drop_sent(Which<Transmit> which);
+StepMaker double_sent(Which<Transmit> which);
+StepMaker edit_sent(Which<Transmit> which, void (*edit)(Moment&, Transmit&));
+StepMaker edit_sent(void (*edit)(Moment&, Transmit&));
+StepMaker edit_heard(Which<Frame> which, void (*edit)(Moment&, Forged&));
+StepMaker edit_heard(void (*edit)(Moment&, Forged&));
+/// Makes a wrapper that does not hear any other frames.
+StepMaker hear_only(Which<Frame> which);
 
 }  // namespace rubric::mutants

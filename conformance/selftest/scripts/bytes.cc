@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
+#include <utility>
 
 #include "conformance/generated/profiles.h"
 #include "conformance/machine/address.h"
@@ -23,6 +25,8 @@ enum Kind : std::uint8_t {
   kPowerOff,
   kKinds = 32,
 };
+
+constexpr std::make_index_sequence<std::variant_size_v<machine::Call>> kCalls;
 
 constexpr std::uint8_t kDeployedBit = 0x80;
 constexpr std::uint32_t kNan = 0x7FC00000;  // Text has one NaN only.
@@ -47,10 +51,28 @@ class Reader {
   }
   std::size_t below(std::size_t n) { return u8() % n; }
   bool flag() { return below(2) == 1; }
-  machine::Address address() {
-    const std::uint16_t pid = u16();
-    return {pid, u16()};
+  template <class T>
+  void u8(T& value) {
+    value = static_cast<T>(u8());
   }
+  template <class T>
+  void u16(T& value) {
+    value = static_cast<T>(u16());
+  }
+  void u32(std::uint32_t& value) { value = u32(); }
+  template <class T>
+  void choice(T& value, std::size_t n) {
+    value = static_cast<T>(below(n));
+  }
+  void address(machine::Address& value) {
+    u16(value.pid);
+    u16(value.devid);
+  }
+  void real(float& value) {
+    value = std::bit_cast<float>(u32());
+    if (value != value) value = std::bit_cast<float>(kNan);
+  }
+  void bytes(std::vector<std::uint8_t>& value, std::size_t max) { value = bytes(max); }
   std::vector<std::uint8_t> bytes(std::size_t max) {
     std::vector<std::uint8_t> out(below(max + 1));
     for (std::uint8_t& byte : out) byte = u8();
@@ -70,10 +92,11 @@ class Writer {
   Writer& u16(std::size_t value) { return u8(value >> 8).u8(value); }
   Writer& u32(std::uint32_t value) { return u16(value >> 16).u16(value); }
   Writer& address(machine::Address value) { return u16(value.pid).u16(value.devid); }
-  Writer& bytes(const std::vector<std::uint8_t>& bytes) {
+  void choice(auto value, std::size_t) { u8(static_cast<std::size_t>(value)); }
+  void real(float value) { u32(std::bit_cast<std::uint32_t>(value)); }
+  void bytes(const std::vector<std::uint8_t>& bytes, std::size_t) {
     u8(bytes.size());
     out_.insert(out_.end(), bytes.begin(), bytes.end());
-    return *this;
   }
   std::size_t size() const { return out_.size(); }
   std::vector<std::uint8_t> take() { return std::move(out_); }
@@ -121,99 +144,47 @@ void write_config(const machine::Config& config, Writer& out) {
   out.u8(config.profile.channels_max - 1U).u16(config.first_seq);
 }
 
-machine::Descriptor read_descriptor(Reader& in) {
-  machine::Descriptor out;
-  out.mote_type = in.u8();
-  out.actuators = in.u8();
-  out.transducers = in.u16();
-  return out;
-}
-
-machine::CreateChannel read_channel(Reader& in) {
-  machine::CreateChannel out;
-  out.direction = static_cast<machine::Direction>(in.flag());
-  out.peer = in.address();
-  out.size = in.u8();
-  out.mode = static_cast<machine::Mode>(in.flag());
-  return out;
-}
-
-machine::WriteOutput read_value(Reader& in) {
-  machine::WriteOutput out;
-  out.id = in.u32();
-  out.pos = in.u8();
-  out.value = std::bit_cast<float>(in.u32());
-  if (out.value != out.value) out.value = std::bit_cast<float>(kNan);
-  return out;
+// Passes the fields of a call in the order of their bytes to a Reader or a Writer. `bytes` are the
+// data of a send.
+template <class Io, class Call>
+void pass(Io& io, Call& call, auto& bytes) {
+  if constexpr (requires { call.descriptor; }) {
+    io.u8(call.descriptor.mote_type);
+    io.u8(call.descriptor.actuators);
+    io.u16(call.descriptor.transducers);
+  }
+  if constexpr (requires { call.reliable; }) {
+    io.address(call.dest);
+    io.u8(call.app_id);
+    io.choice(call.reliable, 2);
+    io.bytes(bytes, kSendBytesMax);
+  }
+  if constexpr (requires { call.link; }) io.choice(call.link, 3);
+  if constexpr (requires { call.on; }) io.choice(call.on, 2);
+  if constexpr (requires { call.direction; }) {
+    io.choice(call.direction, 2);
+    io.address(call.peer);
+    io.u8(call.size);
+    io.choice(call.mode, 2);
+  }
+  if constexpr (requires { call.id; }) io.u32(call.id);
+  if constexpr (requires { call.pos; }) io.u8(call.pos);
+  if constexpr (requires { call.value; }) io.real(call.value);
+  if constexpr (requires { call.ticks; }) io.u16(call.ticks);
+  if constexpr (requires { call.island; }) io.u16(call.island);
 }
 
 // Not inlined: g++ 12 takes the variant's padding for uninitialised data.
+template <std::size_t... kIndex>
 [[gnu::noinline]] machine::Call read_call(std::size_t which, Reader& in,
-                                          std::vector<std::uint8_t>& bytes) {
-  switch (which) {
-    case 0: return machine::JoinIsland{read_descriptor(in)};
-    case 1: {
-      machine::Send send;
-      send.dest = in.address();
-      send.app_id = in.u8();
-      send.reliable = in.flag();
-      bytes = in.bytes(kSendBytesMax);
-      return send;
-    }
-    case 2: {
-      const auto link = static_cast<Link>(in.below(3));
-      return machine::SetInterface{link, in.flag()};
-    }
-    case 3: return machine::GetInterface{static_cast<Link>(in.below(3))};
-    case 4: return read_channel(in);
-    case 5: return machine::DisposeChannel{in.u32()};
-    case 6: return machine::StartChannel{in.u32()};
-    case 7: return machine::StopChannel{in.u32()};
-    case 8: return machine::StartAllChannels{};
-    case 9: return machine::StopAllChannels{};
-    case 10: return read_value(in);
-    case 11: {
-      const machine::ChannelId id = in.u32();
-      return machine::ReadInput{id, in.u8()};
-    }
-    case 12: return machine::SetTimeStep{in.u16()};
-    case 13: return machine::SetIslandId{in.u16()};
-    default: return machine::GetClock{};
-  }
+                                          std::vector<std::uint8_t>& bytes,
+                                          std::index_sequence<kIndex...>) {
+  machine::Call call;
+  const bool known = ((which == kIndex && (pass(in, call.emplace<kIndex>(), bytes), true)) || ...);
+  assert(known);
+  (void)known;
+  return call;
 }
-
-struct CallWriter {
-  Writer& out;
-  const std::vector<std::uint8_t>& bytes;
-
-  void operator()(const machine::JoinIsland& c) const {
-    out.u8(c.descriptor.mote_type).u8(c.descriptor.actuators).u16(c.descriptor.transducers);
-  }
-  void operator()(const machine::Send& c) const {
-    out.address(c.dest).u8(c.app_id).u8(c.reliable).bytes(bytes);
-  }
-  void operator()(const machine::SetInterface& c) const {
-    out.u8(static_cast<std::size_t>(c.link)).u8(c.on);
-  }
-  void operator()(const machine::GetInterface& c) const {
-    out.u8(static_cast<std::size_t>(c.link));
-  }
-  void operator()(const machine::CreateChannel& c) const {
-    out.u8(static_cast<std::size_t>(c.direction)).address(c.peer).u8(c.size);
-    out.u8(static_cast<std::size_t>(c.mode));
-  }
-  void operator()(const machine::DisposeChannel& c) const { out.u32(c.id); }
-  void operator()(const machine::StartChannel& c) const { out.u32(c.id); }
-  void operator()(const machine::StopChannel& c) const { out.u32(c.id); }
-  void operator()(const machine::WriteOutput& c) const {
-    out.u32(c.id).u8(c.pos).u32(std::bit_cast<std::uint32_t>(c.value));
-  }
-  void operator()(const machine::ReadInput& c) const { out.u32(c.id).u8(c.pos); }
-  void operator()(const machine::SetTimeStep& c) const { out.u16(c.ticks); }
-  void operator()(const machine::SetIslandId& c) const { out.u16(c.island); }
-  template <class Other>
-  void operator()(const Other&) const {}
-};
 
 Ticks read_delay(Reader& in) {
   const Ticks value = in.u16();
@@ -241,7 +212,7 @@ Step read_step(Role role, Reader& in) {
     default: break;
   }
   if (kind >= kCall && kind < kLinkAck) {
-    step.event = machine::Called{read_call(kind - kCall, in, step.bytes)};
+    step.event = machine::Called{read_call(kind - kCall, in, step.bytes, kCalls)};
     return step;
   }
   machine::Frame frame;
@@ -271,10 +242,10 @@ void write_step(Role role, const Step& step, Writer& out) {
     begin(kHeard);
     const machine::Frame& frame = heard->frame;
     out.u8(number_of(role, frame.link)).u16(frame.dest).u16(frame.src).u8(frame.type);
-    out.bytes(step.bytes);
+    out.bytes(step.bytes, machine::kAmPayloadMax);
   } else if (const auto* called = std::get_if<machine::Called>(&step.event)) {
     begin(kCall + called->call.index());
-    std::visit(CallWriter{out, step.bytes}, called->call);
+    std::visit([&](const auto& call) { pass(out, call, step.bytes); }, called->call);
   } else if (const auto* done = std::get_if<machine::SendDone>(&step.event)) {
     begin(kLinkAck);
     out.u8(done->acked);

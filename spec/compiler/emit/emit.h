@@ -1,11 +1,31 @@
 // The emitters: they turn a checked model into files, and decide nothing.
 #pragma once
 
-#include "spec/compiler/generated_file.h"
+#include <string>
+#include <vector>
+
 #include "spec/compiler/model.h"
 
 namespace rubricc {
 
+/// The result of an emitter; main.cc writes it.
+struct GeneratedFile {
+  std::string path;  // From the project's folder, with '/': "codec/generated/rubicon/tables.h".
+  std::string text;
+};
+using GeneratedFiles = std::vector<GeneratedFile>;
+
+/// Emits codec/generated/<spec>/*.h, the codec of one checked spec in C++14: a header for each
+/// structure and mask, one for the enums, and one with everything, for tests and tools. The headers
+/// depend on codec/runtime only.
+GeneratedFiles emit_cpp(const Spec& spec);
+/// Emits conformance/adapters/java/generated/rubric/wire/<spec>/*.java of one checked spec: a class
+/// for each structure (a view of its bytes and a writer of its values), and one each for masks,
+/// enums, and the list of a spec's messages. They need conformance/adapters/java/wire only.
+GeneratedFiles emit_java(const Spec& spec);
+/// Emits tools/wireshark/generated/rubric.lua: one file for all named specs that have a serial
+/// carrier, and their imports; nothing if there is none. For Lua 5.2 and later.
+GeneratedFiles emit_lua(const Model& model);
 /// Emits codec/generated/<spec>/tables.h: reflection tables, see codec/reflect/schema.h.
 GeneratedFiles emit_tables(const Spec& spec);
 /// Emits codec/generated/requirements_table.h.

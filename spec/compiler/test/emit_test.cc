@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <sstream>
 
-#include "spec/compiler/emit/cpp/emit_cpp.h"
 #include "spec/compiler/emit/cpp_text.h"
 #include "spec/compiler/emit/tables/routes.h"
 #include "spec/compiler/load/load.h"

@@ -23,7 +23,6 @@ constexpr uint8_t kRadioOutRoom = 4;
 constexpr uint8_t kRadioInRoom = 4;
 constexpr uint8_t kSerialOutRoom = 2;
 constexpr uint8_t kSerialInRoom = 2;
-constexpr uint8_t kMessagesRoom = kRadioOutRoom + kRadioInRoom + kSerialOutRoom + kSerialInRoom;
 
 constexpr uint8_t kChannelsRoom = RUBRIC_FIRMWARE_CHANNELS;
 constexpr uint8_t kConnectionsMax = 10;

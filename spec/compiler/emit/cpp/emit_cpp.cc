@@ -1,11 +1,10 @@
 // The C++ codec: the files, and the comment and includes at the top of each.
-#include "spec/compiler/emit/cpp/emit_cpp.h"
-
 #include <algorithm>
 #include <set>
 
 #include "spec/compiler/emit/cpp/emit_cpp_parts.h"
 #include "spec/compiler/emit/cpp/emit_cpp_text.h"
+#include "spec/compiler/emit/emit.h"
 #include "spec/compiler/emit/template.h"
 
 namespace rubricc {

@@ -1,11 +1,10 @@
 // Emits the Java messages: the files, and the head of each.
-#include "spec/compiler/emit/java/emit_java.h"
-
 #include <algorithm>
 #include <array>
 
 #include "spec/compiler/emit/cpp/emit_cpp_text.h"
 #include "spec/compiler/emit/cpp_text.h"
+#include "spec/compiler/emit/emit.h"
 #include "spec/compiler/emit/java/emit_java_text.h"
 #include "spec/compiler/emit/template.h"
 

@@ -1,5 +1,3 @@
-#include "spec/compiler/emit/lua/emit_lua.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 #include <stdexcept>
 
 #include "spec/compiler/emit/cpp_text.h"
+#include "spec/compiler/emit/emit.h"
 #include "spec/compiler/emit/template.h"
 #include "spec/compiler/lua_code.h"
 

@@ -1,6 +1,5 @@
 package rubric.basestation;
 
-import rubric.wire.rubicon.Devid;
 import rubric.wire.rubicon.Pid;
 import rubric.wire.rubicon.RAddr;
 
@@ -12,10 +11,6 @@ public record Address(int pid, int devid) {
 
   RAddr.Writer toWire() {
     return new RAddr.Writer().pid(pid).devid(devid);
-  }
-
-  boolean isBroadcast() {
-    return pid == Pid.BROADCAST || devid == Devid.BROADCAST;
   }
 
   /** Returns whether an id means no single island or mote. (decision 132) */
