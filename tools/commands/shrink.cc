@@ -73,6 +73,7 @@ void shrink_it(const ShrinkOptions& options) {
   }
   const trace::Case& one = found->file.cases.at(0);
   std::optional<shrink::Player> reference = machine.player();
+  reference->stated = player.stated;
   if (!passes(shrink::play(found->file, *reference))) reference.reset();
   const auto shows = shrink::fails_alike(found->result, player, reference);
   const shrink::Shrunk shrunk = shrink::shrink(found->file, one, shows);

@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "conformance/generated/profiles.h"
+#include "conformance/trace/events/parameters.h"
 
 namespace rubric::check {
 namespace {
@@ -18,10 +19,12 @@ const machine::NamedProfile& named(bool deployed) {
 
 }  // namespace
 
-Findings::Findings(bool deployed)
+Findings::Findings(bool deployed, const trace::Statement& stated)
     : profile_(named(deployed).profile),
       deployed_(deployed),
-      kept_(reflect::requirements().size()) {}
+      kept_(reflect::requirements().size()) {
+  events::state(profile_, stated);
+}
 
 bool Findings::accepted(ReqId requirement) const {
   for (const machine::AcceptedDifference& difference : named(deployed_).accepted) {

@@ -8,12 +8,13 @@
 #include "codec/reflect/requirements.h"
 #include "conformance/check/finding.h"
 #include "conformance/machine/profile.h"
+#include "conformance/trace/parameters.h"
 
 namespace rubric::check {
 
 class Findings {
  public:
-  explicit Findings(bool deployed);
+  explicit Findings(bool deployed, const trace::Statement& stated = {});
 
   /// Adds a finding. Repeats of a rule by a node within 600 ms of the last one are one episode. A
   /// difference that the profile accepts becomes a note.

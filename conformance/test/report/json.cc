@@ -119,6 +119,7 @@ Json implementation_json(const ImplementationRun& run) {
           {"version", run.identity.version},
           {"roles", roles(run.identity.roles)},
           {"real_time", run.identity.real_time},
+          {"stated", trace::statement_text(run.identity.stated)},
           {"dishonest", run.dishonest},
           {"outside", std::move(outside)},
           {"wall_ms", run.wall_ms},

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "conformance/test/runner/target.h"
+#include "conformance/trace/parameters.h"
 
 namespace rubric::targets {
 
@@ -16,6 +17,7 @@ struct Identity {
   std::string version;
   std::vector<machine::Role> roles;  ///< The roles that it can play.
   bool real_time = false;            ///< Its clock cannot be turned.
+  trace::Statement stated = {};
 };
 
 /// A fault while no case was running.
@@ -59,6 +61,7 @@ struct Options {
   /// The same for the first command, `hello`, while an interpreter or an emulator starts, and for a
   /// node that connects to us.
   std::chrono::milliseconds start_timeout{20000};
+  trace::Statement stated = {};  ///< Counts more than what the implementation states itself.
 };
 
 /// Opens the target that the user wrote: `machine`, `machine:FLAW` (conformance/machine/flaws),
