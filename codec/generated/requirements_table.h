@@ -61,7 +61,7 @@ constexpr reflect::Requirement kRequirements[] = {
      "TEP 113, section 3.2; TEP 111",
      0, false, ""},
     {"WIRE-AM-LENGTH", "MUST", "wire, active messages",
-     "The length of an active message is at most 114 and is the number of bytes behind its "
+     "The length of an active message is at most 114 and is the number of bytes after its "
      "header.",
      "paper: Memory Occupation; TEP 111",
      0, false, ""},
@@ -71,7 +71,7 @@ constexpr reflect::Requirement kRequirements[] = {
      "IEEE 802.15.4-2006, section 7.2.1; TEP 125",
      0, false, ""},
     {"WIRE-RADIO-NETWORK", "MUST", "wire, radio",
-     "In an I-frame the network byte 0x3F stands before the AM type; a T-frame has none.",
+     "In an I-frame the network byte 0x3F comes before the AM type; a T-frame has none.",
      "TEP 125",
      0, false, ""},
     {"WIRE-RADIO-LENGTH", "MUST", "wire, radio",
@@ -115,7 +115,7 @@ constexpr reflect::Requirement kRequirements[] = {
      "paper: Memory Occupation; release 1.0",
      0, false, ""},
     {"WIRE-NET-PAYLOAD", "MUST", "wire, messages",
-     "A network message holds at least the nbytes that its header promises; bytes behind "
+     "A network message holds at least the nbytes that its header promises; bytes after "
      "them are stale and mean nothing.",
      "paper: The Network level; release 1.0",
      0, false, ""},
@@ -364,7 +364,7 @@ constexpr reflect::Requirement kRequirements[] = {
      reflect::kRoleSink, true, ""},
     {"N6-CONTENT", "MUST", "network, sink",
      "What a sink forwards keeps addresses, reliable, sequence number and payload; on the "
-     "serial line only nbytes and the bytes behind the payload may differ.",
+     "serial line only nbytes and the bytes after the payload may differ.",
      "paper: The Inter-Island Connectivity; release 1.0 NetworkP",
      reflect::kRoleSink, true, ""},
     {"N6-ONCE", "MUST", "network, sink",
@@ -393,7 +393,7 @@ constexpr reflect::Requirement kRequirements[] = {
      reflect::kRoleSink, false, ""},
     {"N7-CONTENT", "MUST", "network, sink",
      "What a sink sends on by radio keeps addresses, reliable, sequence number, nbytes and "
-     "payload, and no byte behind the payload.",
+     "payload, and no byte after the payload.",
      "paper: The Inter-Island Connectivity",
      reflect::kRoleSink, true, ""},
     {"N7-FOREIGN", "SHOULD", "network, sink",

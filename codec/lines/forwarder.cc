@@ -23,7 +23,7 @@ void ForwarderLine::begin(SteadyTime deadline) {
   }
   if (bytes_[0] != kMagic || bytes_[1] < kVersion) {
     broken(
-        fmt::format("the other end is no serial forwarder's: it begins with {:02x} {:02x}, not "
+        fmt::format("the other end is not a serial forwarder's: it begins with {:02x} {:02x}, not "
                     "with 55 20",
                     bytes_[0], bytes_[1]));
   }

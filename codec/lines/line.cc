@@ -42,7 +42,7 @@ Address network(Address::Kind kind, std::string_view text, std::string_view rest
     if (rest.find(':') == rest.npos) throw std::invalid_argument("no port");
     out.at = lines::read_host_port(rest);
   } catch (const std::invalid_argument&) {
-    throw std::invalid_argument(fmt::format("'{}': expected HOST:PORT behind the @", text));
+    throw std::invalid_argument(fmt::format("'{}': expected HOST:PORT after the @", text));
   }
   return out;
 }

@@ -75,7 +75,7 @@ void Sender::greet() {
   }
   if (hello[0] != kSfMagic || hello[1] < kSfVersion) {
     throw Broken(
-        fmt::format("the other end is no serial forwarder's: it begins with "
+        fmt::format("the other end is not a serial forwarder's: it begins with "
                     "{:02x} {:02x}, not with 55 20",
                     hello[0], hello[1]));
   }

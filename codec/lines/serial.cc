@@ -58,7 +58,7 @@ ByteStream open_serial_device(const std::string& path, std::uint32_t baud) {
   Descriptor device(::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
   if (!device.is_open()) throw broken("cannot be opened");
   termios settings{};
-  if (::tcgetattr(device.get(), &settings) != 0) throw broken("is no serial line");
+  if (::tcgetattr(device.get(), &settings) != 0) throw broken("is not a serial line");
   ::cfmakeraw(&settings);
   settings.c_cflag |= CLOCAL | CREAD;
   settings.c_cc[VMIN] = 1;  // A read without bytes is the end of the line, never an empty one.

@@ -126,7 +126,7 @@ HostPort read_host_port(std::string_view text) {
   const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), out.port);
   if (error != std::errc() || end != port.data() + port.size() || out.port == 0 ||
       out.host.empty()) {
-    throw std::invalid_argument(fmt::format("'{}' is no HOST:PORT", text));
+    throw std::invalid_argument(fmt::format("'{}' is not a HOST:PORT", text));
   }
   return out;
 }

@@ -167,7 +167,7 @@ TEST_P(DecodeBody, IsInterpretedOrOpaqueNeverMalformed) {
 INSTANTIATE_TEST_SUITE_P(All, DecodeBody, ::testing::ValuesIn(kBodies),
                          [](const auto& row) { return row.param.name; });
 
-TEST(Decode, BytesBehindACarrier_AreAFault) {
+TEST(Decode, BytesAfterACarrier_AreAFault) {
   const Message m("rubicon", "00 ffff 0000 03 00 25 0a000c 77", Tail::kFault);
   EXPECT_EQ(m->error.fault, Fault::kTrailing);
   EXPECT_EQ(m->error.offset_bytes, 11u);

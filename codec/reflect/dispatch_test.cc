@@ -178,7 +178,7 @@ std::string difference(const char* carrier, Bytes frame, Tally& tally) {
     return "";
   }
   const std::size_t behind = trailing ? static_cast<std::size_t>(decoded.error_value) : 0;
-  if (view->stale().size() != behind) return "other bytes behind the frame";
+  if (view->stale().size() != behind) return "other bytes after the frame";
   Follower follower(decoded);
   follower.message(*view, 0);
   if (!follower.comparer().difference().empty()) return follower.comparer().difference();

@@ -173,7 +173,7 @@ class Encoder {
         known += std::string(k ? ", " : "") + type.fields[k].name;
       }
       push_path(object.keys[i]);
-      fail("is no field of " + std::string(type.name) + " here, which has " + known,
+      fail("is not a field of " + std::string(type.name) + " here, which has " + known,
            type.requirement);
     }
     fail("expected each field once", type.requirement);

@@ -191,11 +191,11 @@ const Row kBad[] = {
     {"OutOfRange", {{"seven", integer(8)}}, "seven: expected a number from 7 to 7, given 8"},
     {"UnknownField",
      {{"litle", integer(1)}},
-     "litle: is no field of scalars here, which has colour, flags, little, signed, real, "
+     "litle: is not a field of scalars here, which has colour, flags, little, signed, real, "
      "four_or_six, seven, eight, if_red"},
     {"ConditionFalse",
      {{"if_red", integer(1)}},
-     "if_red: is no field of scalars here, which has colour, flags, little, signed, real, "
+     "if_red: is not a field of scalars here, which has colour, flags, little, signed, real, "
      "four_or_six, seven, eight, if_red"},
 };
 
@@ -378,7 +378,8 @@ TEST(Encode, OpaqueInPlaceOfInterpretation) {
   EXPECT_EQ(outcome(toy::kBody, object({{"kind", integer(3)}})), "03");
   Value both = body(3, "payload", string("0105"));
   both.set("body", object({}));
-  EXPECT_EQ(outcome(toy::kBody, both), "body: is no field of body here, which has kind, payload");
+  EXPECT_EQ(outcome(toy::kBody, both),
+            "body: is not a field of body here, which has kind, payload");
 }
 
 TEST(ParseHex, Rows) {

@@ -28,7 +28,7 @@ constexpr FaultText kFaults[] = {
     {"fcs", "the check sum of the radio frame does not match"},
     {"too_short", "the frame is below the smallest possible size"},
     {"too_long", "the frame is beyond the largest possible size"},
-    {"aborted", "the sender gave the frame up: an escape stands directly before a flag"},
+    {"aborted", "the sender gave the frame up: an escape comes directly before a flag"},
     {"cut", "the input ends in the middle of it"},
     {"empty", "the packet has no bytes"},
     {"handshake", "the stream does not begin with its handshake"},
@@ -146,7 +146,7 @@ std::string note_text(const Note& note) {
   const std::string key = std::to_string(note.value);
   const std::string name = note.field ? note.field->name : "field";
   switch (note.kind) {
-    case NoteKind::kUnknownMessage: return name + " is no message known here, its key is " + key;
+    case NoteKind::kUnknownMessage: return name + " is not a message known here, its key is " + key;
     case NoteKind::kDoesNotFit:
       return name + " has the key " + key + " and does not fit " +
              (note.type ? note.type->name : "its message");

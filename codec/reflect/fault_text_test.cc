@@ -35,7 +35,7 @@ TEST(FaultText, finds_requirements) {
   EXPECT_EQ(find_requirement(""), ReqId::kNone);
 }
 
-TEST(FaultText, tells_the_numbers) {
+TEST(FaultText, says_the_numbers) {
   EXPECT_EQ(text_of("config", {10, 0}), "value needs 2 bytes, the bytes end at 2");
   EXPECT_EQ(text_of("config", {10, 0, 12, 0}), "1 byte more than the length says");
   EXPECT_EQ(text_of("net_msg", {0, 11, 0, 2, 0, 11, 0, 1, 0, 0, 1, 119}),

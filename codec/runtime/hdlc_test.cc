@@ -109,7 +109,7 @@ const BadCase kBad[] = {
      8},
 };
 
-TEST(WireHdlcShort, BadFramesAreToldAndTheNextIsFound) {
+TEST(WireHdlcShort, BadFramesAreReportedAndTheNextIsFound) {
   for (const BadCase& row : kBad) {
     uint8_t buffer[8];
     HdlcDeframer deframer(buffer);

@@ -43,7 +43,7 @@ constexpr std::array<PropertyInfo, kPropertyCount> kProperties{{
      {"J6-ADD"_rule, "J9-INTERLEAVE"_rule, kNone}},
     {P::kOneReport,
      "one_report",
-     "Each join is told once: one moteJoined and one serial_joined.",
+     "Each join is reported once: one moteJoined and one serial_joined.",
      {"J6-REPEAT"_rule, "J6-REPORT"_rule, kNone}},
     {P::kQueuesBounded,
      "queues_bounded",

@@ -61,6 +61,7 @@ JoinSend call_join(JoinMote& join, const JoinContext& context, const Descriptor&
     actions.notify(Joined{{0, context.id}, false}, "J5-ONCE"_rule);
     return JoinSend::kNone;
   }
+  //= J1-CALLED: A mote sends no join_request unless joinIsland was called.
   join = JoinMote{};
   join.phase = JoinMote::Phase::kJoining;
   join.requests = 1;
@@ -91,6 +92,7 @@ JoinSend hear_reply(JoinMote& join, const JoinContext& context, Address offered,
     return JoinSend::kNone;
   }
   join.phase = JoinMote::Phase::kMember;
+  //= J7-ONE: In its own view a mote is a member of at most one island.
   join.address = offered;
   join.sink_devid = sink_am;
   join.acks = 1;
@@ -98,6 +100,7 @@ JoinSend hear_reply(JoinMote& join, const JoinContext& context, Address offered,
   join.accepted = context.now;
   //= J5-STOP: A mote that is joined sends no further join_request.
   join.due = 0;
+  //= J5-ACCEPT: joined(SUCCESS) is never signalled before a reply was accepted.
   actions.notify(Joined{offered, true}, "J5-SUCCESS"_rule);
   return JoinSend::kAck;
 }

@@ -46,6 +46,7 @@ bool is_stale(const Node& node, const Buffered& frame) {
 
 //= J3-TIME: cur_time of a join_reply is the sink's clock in ms when it replies; it does not stand
 //= still for a second or more between replies.
+//= J3-DRIFT: Between two join_replies cur_time grows as time did, to within a second.
 // Sets the time of a reply that waited for the radio to that at which it leaves.
 void set_time(std::uint8_t* join_reply, const Node& node) {
   rubicon::JoinReplyLayout::CurTimeAt::store(join_reply, clock_ms(node));
@@ -69,6 +70,7 @@ void flush_line(Node& node, Interface<kRoom>& line, Link link) {
     transmit.size_bytes = frame.size_bytes;
     transmit.dest = frame.dest;
     transmit.src = frame.src;
+    //= N2-ONCE: A message that send accepted is sent once and unchanged.
     std::copy_n(frame.payload.begin(), frame.size_bytes, transmit.payload.begin());
     if (frame.type == am::kJoinReply) set_time(transmit.payload.data(), node);
     line.sending = true;
@@ -226,6 +228,8 @@ void send_ack_join(Node& node, ReqId requirement) {
 
 void send_join_reply(Node& node, std::uint16_t dest, std::uint16_t seq_num) {
   //= J3-DEST: A join_reply is sent to the AM address that asked.
+  //= J3-ONCE: A sink sends at most one join_reply for each join_request, and none without one.
+  // Called once for each request that hear_request() accepts.
   const Place place = put(node, {Link::kRadio, am::kJoinReply, dest, "J3-REPLY"_rule, false});
   if (!place) return;
   //= J3-SEQ: A join_reply carries the sequence number of the request that it answers.

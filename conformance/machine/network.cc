@@ -68,9 +68,9 @@ void forward(Node& node, const Route& route, rubicon::NetMsgView message) {
   const Place place = put(node, {link, am::kNet, route.am_dest, route.requirement, false});
   if (!place) return;
   //= N6-CONTENT: What a sink forwards keeps addresses, reliable, sequence number and payload; on
-  //= the serial line only nbytes and the bytes behind the payload may differ.
+  //= the serial line only nbytes and the bytes after the payload may differ.
   //= N7-CONTENT: What a sink sends on by radio keeps addresses, reliable, sequence number, nbytes
-  //= and payload, and no byte behind the payload.
+  //= and payload, and no byte after the payload.
   //= N8-INCOMING: A base station hands a message from PEIS for a mote of its island to its sink
   //= with addresses, reliable, sequence number and payload kept.
   const Bytes bytes = message.bytes();
@@ -108,6 +108,8 @@ void hear_connless(Node& node, rubicon::NetMsgView message, std::uint8_t app_id,
   // A message for another island's sink, which is delivered by its devid, gets no ack (decision
   // 126).
   if (dest != own_address(node.state)) return actions.followed("T2-ACK"_rule);
+  //= T2-ONCE: A reliable message is answered by one ack for each time that it is received.
+  //= T2-PROMPT: An ack comes before the sender's timeout.
   send_ack(node, src, app_id, message.seq_num());
 }
 
@@ -157,6 +159,8 @@ std::uint16_t send_own(Node& node, const OwnMessage& message, ReqId& refused) {
   if (local) dest.pid = router.own.pid;
   const Route route = route_own(router, dest);
   const Link link = link_of(route.onward);
+  //= N1-ROOM: send accepts a message of a member while the outgoing buffer has room, unless the
+  //= interface is off or as many acks are awaited as the node has room for.
   refused = route.onward == Route::Onward::kNowhere ? route.requirement : line_refusal(state, link);
   // A message can ask for an ack only if there is a place to remember that it is awaited.
   if (refused == ReqId::kNone && message.reliable && !can_await(state.awaited, node.profile())) {
@@ -186,6 +190,7 @@ void hear_net_msg(Node& node, Link from, Bytes bytes) {
     //= N11-NBYTES: A net_msg whose nbytes is over 102, under 2, or more than arrived is dropped: no
     //= delivery, no ack, no forward.
     //= T2-TWO: A message whose reliable is neither 0 nor 1 is not acked.
+    //= N11-NEXT: After a malformed message the next good one is handled as always.
     const ReqId rule = message.error().requirement;
     return node.actions.ignored(rule == "WIRE-NET-RELIABLE"_rule ? rule : "N11-NBYTES"_rule);
   }

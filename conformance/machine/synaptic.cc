@@ -71,8 +71,8 @@ struct SynapticCall {
     if (!any_started(synaptic)) synaptic.due = synaptic.phase_ticks = 0;
   }
 
-  // Starts a channel. An output sends at its first tick in either mode. An input has nothing new
-  // yet.
+  // Starts a channel. An input has nothing new yet.
+  //= S3-FIRST: The first tick after start sends the values in either mode.
   static void start(Channel& channel, bool out) {
     if (channel.started) return;
     channel.started = true;

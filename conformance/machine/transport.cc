@@ -40,6 +40,8 @@ void hear_ack(AwaitedList& list, Address from, std::uint8_t app_id, std::uint16_
               Actions& actions) {
   for (std::size_t i = 0; i < list.size(); ++i) {
     const Awaited& awaited = list[i];
+    //= T4-SEVERAL: Several reliable messages may await their acks at once; each ack ends the
+    //= message it names.
     if (awaited.seq_num != seq_num) continue;
     //= T3-SENDER: An ack counts only if it comes from the message's destination and carries its
     //= APPID.
@@ -60,6 +62,8 @@ void ack_timeout(AwaitedList& list, std::size_t index, Actions& actions) {
   if (index >= list.size() || list[index].due == 0) return actions.ignored("T3-ONCE"_rule);
   const Awaited awaited = list[index];
   list.erase(index);
+  //= T3-RESEND: Connectionless never sends a message again by itself; that is the application's
+  //= decision.
   actions.notify(AckReceived{awaited.app_id, awaited.seq_num, false}, "T3-TIMEOUT"_rule);
 }
 

@@ -75,7 +75,7 @@ KnownFailure read_one(const YAML::Node& node, const Keys& keys,
                                       fmt::join(names_of(keys, false), ", "))};
     }
     std::string& text = one.*key->text;
-    if (!text.empty()) throw Mistake{line, name + " stands here twice"};
+    if (!text.empty()) throw Mistake{line, name + " is given twice"};
     text = scalar(pair.second, name);
     if (name == "profile" && text != "paper" && text != "deployed") {
       throw Mistake{line, fmt::format("profile is paper or deployed, not '{}'", text)};

@@ -37,7 +37,7 @@ class FileCheck {
     for (const Case& one : file_.cases) {
       const auto [at, fresh] = names.emplace(one.name, one.place);
       if (!fresh) {
-        report_(one.place, "case " + quoted(one.name) + " stands already in line " +
+        report_(one.place, "case " + quoted(one.name) + " is already in line " +
                                std::to_string(at->second.line));
       }
       check_case(one);
@@ -88,7 +88,7 @@ class FileCheck {
         report_(header.place, "link " + quoted(link->name) + " is said twice");
       }
       if (link->name == "app" || link->name == "power") {
-        report_(header.place, quoted(link->name) + " is no name for a link between nodes");
+        report_(header.place, quoted(link->name) + " is not a name for a link between nodes");
       }
     }
   }
@@ -143,9 +143,9 @@ class FileCheck {
   void case_header(const Header& header, bool lines, Said& said) {
     if (std::holds_alternative<VersionHeader>(header.what) ||
         std::holds_alternative<TickHeader>(header.what)) {
-      report_(header.place, "%rtr and %tick stand before the first case");
+      report_(header.place, "%rtr and %tick come before the first case");
     } else if (lines && !std::holds_alternative<NoteHeader>(header.what)) {
-      report_(header.place, "the headers of a case stand before its lines");
+      report_(header.place, "the headers of a case come before its lines");
     }
     check_header(header, said);
   }
@@ -178,7 +178,7 @@ class FileCheck {
     }
     const auto [at, fresh] = labels.emplace(line.label, line.place);
     if (!fresh) {
-      report_(line.place, "label " + quoted(line.label) + " stands already in line " +
+      report_(line.place, "label " + quoted(line.label) + " is already in line " +
                               std::to_string(at->second.line));
     }
   }

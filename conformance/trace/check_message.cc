@@ -110,7 +110,7 @@ class MessageCheck {
   bool must_be_whole() const { return given() && !line_.bytes; }
 
   void any() {
-    if (given()) fail(line_.message.place, "'*' says nothing of what is given to the node");
+    if (given()) fail(line_.message.place, "expected what to give to the node, given '*'");
     if (line_.message.form != Message::Form::kBare) {
       fail(line_.message.place, "'*' is any message and has no fields");
     }
@@ -125,7 +125,7 @@ class MessageCheck {
       const std::string problem = leaf_misfit(*side, Domain::devid());
       if (!problem.empty()) fail(line_.place, "am: " + problem);
       if (side->is(Value::Kind::kAny) && must_be_whole()) {
-        fail(line_.place, "am: '*' where an address has to be given");
+        fail(line_.place, "am: expected an address, given '*'");
       }
       variables(*side, line_.place);
     }
@@ -202,8 +202,8 @@ class MessageCheck {
 
   // Checks that a stimulus has single values.
   void single(const Value& value, Place place) {
-    if (value.is(Value::Kind::kAny)) fail(place, "'*' where a value has to be given");
-    if (value.is(Value::Kind::kRange)) fail(place, "a range where a value has to be given");
+    if (value.is(Value::Kind::kAny)) fail(place, "expected a value, given '*'");
+    if (value.is(Value::Kind::kRange)) fail(place, "expected a value, given a range");
     for (const Value& item : value.items) single(item, place);
   }
 

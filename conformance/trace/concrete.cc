@@ -293,7 +293,7 @@ void put_pair(const AppField& field, const Value& value, Place place, Concrete& 
 Concrete concrete(const Message& message, const Bindings& bindings) {
   const Shape* shape = Schema::get().find(message.name);
   if (!shape || !shape->app) {
-    throw TraceError(message.place, "'" + message.name + "' is no message of an application");
+    throw TraceError(message.place, "'" + message.name + "' is not a message of an application");
   }
   if (message.form != Message::Form::kFields && shape->app->field_count > 0) {
     throw TraceError(message.place, "'" + message.name + "' needs its fields");

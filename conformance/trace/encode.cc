@@ -231,7 +231,7 @@ std::vector<std::uint8_t> encode_tree(const Message& message, const reflect::Typ
 AmFrame encode_message(const Message& message, const Bindings& bindings, bool any) {
   const Shape* shape = Schema::get().find(message.name);
   if (!shape || (!shape->type && message.name != kFrameName)) {
-    throw TraceError(message.place, "'" + message.name + "' is no message of a frame");
+    throw TraceError(message.place, "'" + message.name + "' is not a message of a frame");
   }
   if (message.form != Message::Form::kFields) {
     throw TraceError(message.place, "'" + message.name + "' needs its fields");

@@ -61,7 +61,7 @@ class Parser {
     }
     if (const std::size_t at = find_foreign(line); at != std::string_view::npos) {
       return fail({number, static_cast<std::uint32_t>(at + 1)},
-                  "a byte that is no UTF-8 text, or a control character");
+                  "a byte that is not UTF-8 text, or a control character");
     }
     Scanner in(line, number);
     in.skip_blanks();

@@ -190,7 +190,7 @@ void parse_fields(Scanner& in, Message& message) {
     in.skip_blanks();
     if (in.at_end()) throw LineError{open, "'(' without its ')'"};
     if (in.take(')')) break;
-    if (message.open) in.fail("expected ')' behind '...'");
+    if (message.open) in.fail("expected ')' after '...'");
     if (in.rest().starts_with("...")) {
       message.open = true;
       in.advance(3);
@@ -238,10 +238,10 @@ void parse_bytes(Scanner& in, Line& line) {
     } else if (read_hex_bytes(text.substr(at, 2), *line.bytes)) {
       at += 2;
     } else {
-      in.fail_at(text, "expected bytes in hex behind '|'");
+      in.fail_at(text, "expected bytes in hex after '|'");
     }
   }
-  if (line.bytes->empty()) in.fail_at(text, "expected bytes in hex behind '|'");
+  if (line.bytes->empty()) in.fail_at(text, "expected bytes in hex after '|'");
 }
 
 // Reads nothing, or `; text`.

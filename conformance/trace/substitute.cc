@@ -40,10 +40,10 @@ std::int64_t plain_number(const Domain& domain, const Value& value, Place place)
 
 Value substituted(const Value& value, const Bindings& bindings, Place place) {
   if (value.is(Value::Kind::kAny)) {
-    throw TraceError(place, "'*' where a value has to be given");
+    throw TraceError(place, "expected a value, given '*'");
   }
   if (value.is(Value::Kind::kRange)) {
-    throw TraceError(place, "the range " + value_text(value) + " where a value has to be given");
+    throw TraceError(place, "expected a value, given the range " + value_text(value));
   }
   if (value.is(Value::Kind::kVariable)) {
     const Value* bound = bindings.find(value.text);

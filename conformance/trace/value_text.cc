@@ -73,7 +73,7 @@ std::string read_quoted(std::string_view text, Value& out) {
                read_hex_bytes(text.substr(i + 2, 2), out.text)) {
       i += 3;
     } else {
-      return "in text a backslash stands before \", \\ or x and two hex digits";
+      return "in text a backslash comes before \", \\ or x and two hex digits";
     }
   }
   return {};
@@ -179,7 +179,7 @@ std::string read_plain(std::string_view text, Value& out) {
   if (text[0] == '$') {
     out.kind = Kind::kVariable;
     out.text = text.substr(1);
-    return is_name(out.text) ? "" : "expected a variable's name behind '$', given " + quoted;
+    return is_name(out.text) ? "" : "expected a variable's name after '$', given " + quoted;
   }
   if (text[0] == 'x' && read_hex_bytes(text.substr(1), out.text)) {
     out.kind = Kind::kBytes;
@@ -285,7 +285,7 @@ std::string read_value(std::string_view text, Value& out) {
   const bool negated = text.starts_with('!');
   if (negated) text.remove_prefix(1);
   if (negated && text == "*") return "nothing is other than *";
-  if (negated && text.starts_with('!')) return "'!' stands once";
+  if (negated && text.starts_with('!')) return "'!' is given twice";
   std::string problem = read_plain(text, out);
   out.negated = negated;
   return problem;

@@ -178,7 +178,7 @@ def main():
         if isinstance(answer, dict):
             tally.take(frame, answer)
         else:
-            tally.report(frame, f"the answer is no JSON object: {line.strip()[:80]}")
+            tally.report(frame, f"the answer is not a JSON object: {line.strip()[:80]}")
     return tally.exit_code(len(frames))
 
 

@@ -140,18 +140,18 @@ class Harness(Scratch):
         """)
         self.assert_names(said, "300 skipped", "Too little was compared")
 
-    def test_an_early_end_is_told(self):
+    def test_an_early_end_is_reported(self):
         said = self.decoder(1, """
             print(json.dumps({"skip": True}))
         """)
         self.assert_names(said, "frame 2, ", "no answer came")
 
-    def test_what_is_no_answer_is_told(self):
+    def test_what_is_not_an_answer_is_reported(self):
         said = self.decoder(1, """
             for line in sys.stdin:
                 print("yes")
         """)
-        self.assert_names(said, "the answer is no JSON object: yes")
+        self.assert_names(said, "the answer is not a JSON object: yes")
         said = self.decoder(1, """
             for line in sys.stdin:
                 print(json.dumps({"accept": "yes"}))

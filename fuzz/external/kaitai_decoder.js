@@ -64,7 +64,7 @@ function answer(parsers, Stream, shown, line) {
       frame.buffer.slice(frame.byteOffset, frame.byteOffset + frame.length));
   try {
     const object = new Parser(stream);
-    if (!stream.isEof()) return {accept: false, why: 'bytes behind the end'};
+    if (!stream.isEof()) return {accept: false, why: 'bytes after the end'};
     return {accept: true, fields: numbers(object, shown, {})};
   } catch (error) {
     // Any other error is a crash, not a verdict.

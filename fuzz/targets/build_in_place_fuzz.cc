@@ -143,7 +143,7 @@ void check(Input in) {
 
   require(std::all_of(all.begin() + static_cast<std::ptrdiff_t>(size), all.end(),
                       [](std::uint8_t byte) { return byte == kUntouched; }),
-          "nothing behind the room is written");
+          "nothing after the room is written");
   std::vector<std::uint8_t> out(size);
   const auto written = write(value, MutableBytes(out.data(), size));
   const Result<View> finished = builder.finish();

@@ -69,7 +69,7 @@ class Guarded {
   void check() const {
     require(std::all_of(all_.begin() + size_, all_.begin() + size_ + kGuard,
                         [](std::uint8_t byte) { return byte == kUntouched; }),
-            "nothing behind the room is written");
+            "nothing after the room is written");
   }
 
  private:

@@ -60,7 +60,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
               error.what());
     }
   } catch (const FilterError& error) {
-    require(error.position() <= text.size(), "a mistake stands within the text");
+    require(error.position() <= text.size(), "a mistake is within the text");
     require(!error.explain(text).empty(), "a mistake is explained");
   }
   return 0;

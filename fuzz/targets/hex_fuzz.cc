@@ -46,7 +46,7 @@ void check_lines(const std::string& text, const std::vector<Kept>& packets) {
       require(packet.packet.offset_bytes == begin, "a packet begins where its line does");
       require(packet.bytes == bytes.value_or(line), "a packet holds what its line says");
       const bool unreadable = packet.packet.error.fault == Fault::kUnexpected;
-      require(unreadable == !bytes, "a line that is no hex text is refused");
+      require(unreadable == !bytes, "a line that is not hex text is refused");
     }
     begin = end + 1;
   }

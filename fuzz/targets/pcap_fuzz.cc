@@ -68,7 +68,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::vector<Kept> packets = fuzz::read_in_any_pieces(make, file);
   fuzz::require_in_place(packets, file);
   if (!has_header(file)) {
-    require(packets.size() == 1, "what is no file is one damage");
+    require(packets.size() == 1, "what is not a file is one damage");
     return 0;
   }
   bool rest = false;

@@ -60,7 +60,7 @@ void check_addresses(const Kept& kept, const reflect::Frame& frame) {
   if (!usual) return require(!frame.am.present, "only data frames carry active messages");
   require(frame.mac.destpan == little(kept, 3) && frame.mac.dest == little(kept, 5) &&
               frame.mac.src == little(kept, 7),
-          "addresses stand behind the sequence number");
+          "addresses follow the sequence number");
   if (kept.bytes.size() < 10) return;
   const bool network = kept.bytes[9] == 0x3F;
   const std::size_t type_at = network ? 10 : 9;

@@ -107,7 +107,7 @@ int run(const Options& options) {
       if (!write(options.out, file)) return kCannotReadOrWrite;
     }
   } catch (const std::logic_error& e) {  // A check let pass what an emitter cannot print.
-    std::cerr << "rubricc: a mistake of the compiler itself: " << e.what() << '\n';
+    std::cerr << "rubricc: a bug of the compiler: " << e.what() << '\n';
     return kDiagnostics;
   }
   return kOk;
@@ -119,21 +119,23 @@ int main(int argc, char** argv) {
   Options options;
   rubric::cli::Command program(
       "rubricc",
-      "rubricc: checks wire specs (a strict profile of Kaitai Struct) and generates from "
-      "them. Exit code: 0 fine, 1 mistakes in the input, 2 wrong usage, 3 a file cannot "
-      "be read or written.");
-  program.add_option("--requirements", options.requirements, "The catalogue of requirements")
+      "Check wire specs (a strict profile of Kaitai Struct) and generate code from them.");
+  program
+      .add_option("--requirements", options.requirements,
+                  "Read the catalogue of requirements from this file")
       .show_default();
-  program.add_option("--profiles", options.profiles, "The folder of the profiles (.yaml)")
+  program.add_option("--profiles", options.profiles, "Read the profiles (.yaml) from this folder")
       .show_default();
-  program.add_option("--cases", options.cases, "The folder of the golden traces (.rtr)")
+  program.add_option("--cases", options.cases, "Read the golden traces (.rtr) from this folder")
       .show_default();
-  auto check = program.add_flag("--check", options.check, "Only check");
-  auto emit = program.add_option("--emit", options.emit, "What to generate, separated by commas")
+  auto check = program.add_flag("--check", options.check, "Check, and write nothing");
+  auto emit = program.add_option("--emit", options.emit, "Generate these, separated by commas")
                   .delimiter(',')
                   .one_of(kEmitters);
-  const auto out = program.add_option("--out", options.out, "The folder to write into");
+  const auto out = program.add_option("--out", options.out, "Write into this folder");
   program.add_option("FILE", options.files, "Wire specs (.ksy)").required();
+  program.footer(
+      "Exit codes: 0 fine, 1 mistakes in the input, 2 usage, 3 a file cannot be read or written.");
   check.excludes(emit).excludes(out);
   emit.needs(out);
   program.exit_code_of([&] {

@@ -153,7 +153,7 @@ types:
   net_msg:
     doc: |
       The message of the network level. Over the radio only nbytes of the payload are sent; on the
-      serial line the whole 114 bytes, and bytes behind the payload are left over from earlier
+      serial line the whole 114 bytes, and bytes after the payload are left over from earlier
       frames.
     doc-ref: "paper: The Network level"
     -am-type: 28
@@ -338,7 +338,7 @@ types:
       - id: values
         type: f4le
         repeat: eos
-        doc: One for each connection, at most ten; behind a forwarding sink stale values follow.
+        doc: One for each connection, at most ten; after a forwarding sink stale values follow.
 
   # Joining an island.
 
@@ -556,7 +556,7 @@ types:
         valid:
           min: 2
           max: 102
-        doc: Bytes behind the header.
+        doc: Bytes after the header.
         -requirement: WIRE-NET-NBYTES
       - id: trans_id
         type: u1

@@ -12,7 +12,7 @@ doc-ref: TEP 111, TEP 113, TEP 125
 types:
   serial_frame:
     doc: |
-      What stands between two flags on the serial line, unescaped, without its CRC. The CRC-16 over
+      What is between two flags on the serial line, unescaped, without its CRC. The CRC-16 over
       these bytes follows them, low byte first.
     doc-ref: TEP 113, section 3.1
     -framing: hdlc
@@ -58,7 +58,7 @@ types:
         type: u1
         enum: dispatch
         valid: dispatch::active_message
-        doc: What the bytes behind it are; this kit takes active messages.
+        doc: What the bytes after it are; this kit takes active messages.
         -requirement: WIRE-AM-DISPATCH
       - id: dest
         type: u2

@@ -128,7 +128,7 @@ class Book(unittest.TestCase):
         row = re.search(r"<code>seq_num</code></th><td>(\d+)</td><td>(\d+)</td>", text)
         self.assertEqual(row.groups(), ("8", "2"))
 
-    def test_a_trace_is_there_as_it_stands(self):
+    def test_a_trace_is_shown_unchanged(self):
         found = re.search(r'<details class="case" id="j4.wrong_seq".*?</details>', self.text, re.S)
         self.assertIn("%profile paper", found[0])
         self.assertIn("b+2..99   m5 !&gt; rA  ack_join(*)", found[0])
@@ -210,7 +210,7 @@ class Mistakes(unittest.TestCase):
     def test_links(self):
         self.only("# A\n\nSee\n[here](#nowhere).\n", r"10-a\.md:4: #nowhere leads nowhere")
         self.only("# A\n\n[x](../README.md)\n", r"10-a\.md:3: '../README.md' leads to a file")
-        self.only("# A\n\n[x](https://nodots/a)\n", r"10-a\.md:3: .* is no address")
+        self.only("# A\n\n[x](https://nodots/a)\n", r"10-a\.md:3: .* is not an address")
         self.only("# A\n\n## Same\n\n[b](#b)\n", r"20-b\.md:3: #same exists already, in 10-a\.md",
                   b="# B\n\n## Same\n")
         self.only("# A\n\n## Text {#find}\n", r"10-a\.md:3: #find exists already, in the page")

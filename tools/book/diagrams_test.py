@@ -69,7 +69,7 @@ class Diagrams(unittest.TestCase):
     def test_they_are_the_same_each_time(self):
         self.assertEqual(diagrams.states_svg(RUBRIC, "join"), diagrams.states_svg(RUBRIC, "join"))
 
-    def test_what_there_is_not(self):
+    def test_what_does_not_exist(self):
         with self.assertRaisesRegex(RuntimeError, "did you mean 'j4.accept'"):
             diagrams.chart_svg(RUBRIC, "j4.acept")
         with self.assertRaises(KeyError):

@@ -3,7 +3,7 @@ project of its own, from top to bottom:
 
     ```console              each `$ ` line is run by bash; what it prints must be what follows it
     ```cpp file=a.cc        is written to a.cc and compiled to a program a, with all warnings;
-                            an ```output block behind it is what a prints
+                            an ```output block after it is what a prints
     ```cpp file=a.cc with=copy  the same, with the headers of the copy, which may be generated anew
     ```cpp file=a.cc build=cmake    is written only: the text builds it itself
     ```cpp file=a.cc for=mote   is compiled for an ATmega128, a Cortex-M3 and this computer
@@ -157,7 +157,7 @@ class Place:
         """Returns the required text of the block; `before` is the block before it."""
         if block.language == "output":
             if before is None or before.language != "cpp" or "file" not in before.words:
-                raise Wrong("an output block stands behind a cpp block with file=")
+                raise Wrong("an output block follows a cpp block with file=")
             return self.must(["./" + before.words["file"].removesuffix(".cc")])
         if block.language == "console":
             return self.console(block.text)

@@ -74,7 +74,7 @@ class Snippets(unittest.TestCase):
         self.fails(f"```cpp file=bad.cc\n{VIEW.format('return config ? 1 : 0;')}```\n\n"
                    "```output\n```\n", 10, "ends with 1")
         self.fails(f"```cpp file=same.cc\n{good}```\n\n```output\nmore\n```\n", 10, "should show")
-        self.fails("```output\n```\n", 1, "behind a cpp block")
+        self.fails("```output\n```\n", 1, "follows a cpp block")
 
     def test_options_of_what_is_not_run(self):
         self.works("```sh\nrubric decode x --follow --count 2 | head -n 1   # no --such\n```\n")

@@ -279,14 +279,15 @@ std::vector<std::string> protocol_names() {
 void add_input_options(Command& app, InputOptions& options) {
   app.add_option("FILE", options.files, "Captures, in order; none or - is stdin");
   app.add_option("--input-format", options.format,
-                 "What the input is: auto, hdlc (bytes of a serial line), sf (serial forwarder), "
+                 "Read the input as auto, hdlc (bytes of a serial line), sf (serial forwarder), "
                  "pcap, pcapng, hex (text, from the dispatch byte on), hex-radio (text, 802.15.4 "
-                 "without FCS), bare (one message, with --as)")
+                 "without FCS) or bare (one message, with --as)")
       .one_of({"auto", "hdlc", "sf", "pcap", "pcapng", "hex", kHexRadio, "bare"})
       .show_default();
-  app.add_option("--spec", options.spec, "Protocol above the AM layer").show_default();
-  app.add_option("--as", options.as_message,
-                 "The input is this message alone: each line of hex text, or a binary file whole")
+  app.add_option("--spec", options.spec, "Use this protocol above the AM layer").show_default();
+  app.add_option(
+         "--as", options.as_message,
+         "Read the input as this message alone: each line of hex text, or a binary file whole")
       .check(given);
 }
 
@@ -302,10 +303,10 @@ void add_live_options(Command& app, InputOptions& options) {
   app.get_option("FILE").check(check).description(
       "Captures, in order; none or - is stdin. Or lines in use: serial@DEVICE:BAUD (or a platform, "
       "as serial@/dev/ttyUSB0:telosb), network@HOST:PORT, sf@HOST:PORT");
-  app.add_flag("--follow", options.follow, "At the end of a file wait for more of it");
+  app.add_flag("--follow", options.follow, "Wait for more at the end of a file");
   app.add_flag("--listen-only", options.listen_only,
                "Confirm no frames of a serial line, so that nothing is written to it");
-  app.add_flag("--reconnect", options.reconnect, "Open a line that is gone again, when it is back");
+  app.add_flag("--reconnect", options.reconnect, "Open a line again when it comes back");
 }
 
 const reflect::Protocol& chosen_protocol(const InputOptions& options) {

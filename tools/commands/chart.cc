@@ -26,15 +26,16 @@ namespace {
 
 constexpr const char* kChartFooter =
     "A case is one of the kit's own golden traces (rubric test --list) or one of a file of yours:\n"
-    "FILE.rtr, or FILE.rtr:CASE. Its stimuli are given to the reference machine and what comes of\n"
-    "them is drawn: who sends what to whom, when (a tick is 1/1024 s), and by which rule; behind\n"
-    "what had no effect stands the rule that says so. rubric explain RULE prints a rule.\n"
+    "FILE.rtr, or FILE.rtr:CASE. The reference machine runs it, and the chart shows who sends "
+    "what\n"
+    "to whom, when (a tick is 1/1024 s) and by which rule; a stimulus without effect has the rule\n"
+    "that says so beside it. rubric explain RULE prints a rule.\n"
     "An SVG needs nothing else and follows the page's text colour.\n"
     "Examples:\n"
     "  rubric chart j4.wrong_seq\n"
     "  rubric chart open_door.lost --format svg --out open_door.svg\n"
     "  rubric chart my_traces.rtr:mine --target ./my_adapter\n"
-    "Exit codes: 0 drawn, 1 drawn, but the trace was not kept, 2 the trace cannot be worked or\n"
+    "Exit codes: 0 drawn, 1 drawn, but the trace was not kept, 2 the trace cannot be run or\n"
     "the output not be written, 64 usage, 66 the file cannot be read.";
 
 struct ChartOptions {
@@ -158,12 +159,15 @@ void add_chart(cli::Command& app) {
   sub.add_option("case", options->what, "A case's name, FILE.rtr or FILE.rtr:CASE")
       .required()
       .check(cli::given);
-  sub.add_option("--format", options->format, "text or svg").one_of({"text", "svg"}).show_default();
+  sub.add_option("--format", options->format, "Draw as text or svg")
+      .one_of({"text", "svg"})
+      .show_default();
   sub.add_option("--target", options->target,
                  "Draw what this implementation does instead, as rubric test has it")
       .check(cli::given);
   sub.add_option("-o,--out", options->out, "Write to this file; - is stdout").show_default();
-  sub.add_option("--width", options->width, "Text: columns (those of the terminal, else 100)")
+  sub.add_option("--width", options->width,
+                 "Wrap text at this many columns (default: the terminal's, else 100)")
       .between(60, 1000);
   sub.callback([options] { run_chart(*options); });
 }

@@ -35,19 +35,18 @@ constexpr const char* kCheckFooter =
     "What two files both have of one air or line is judged once; files of one air or line that\n"
     "disagree are refused (66). Beside a capture a log has application lines.\n"
     "A node that --node or --sink names is never an unknown sender, and what they say wins over\n"
-    "guesses. What the run plainly shows wins over them, and that is said as inconclusive.\n"
+    "guesses. What the run plainly shows wins over them, and is reported as inconclusive.\n"
     "Frames count from 1, times from the first one. PEIS messages of a log are not read.\n"
     "Lines in use, and with --follow files that grow, are judged as frames come, several at a\n"
-    "time. A finding is told when it has stood for 1 s beyond what nodes may take, and withdrawn\n"
-    "when later frames explain it. Ctrl-C, or the end of all sources, ends with the report;\n"
+    "time. A finding is reported when 1 s more than nodes may take has passed, and withdrawn when\n"
+    "later frames explain it. Ctrl-C, or the end of all sources, ends with the report;\n"
     "'rubric check' of the capture that --write keeps says the same. Sniffers should write packet\n"
     "by packet, as dumpcap and tcpdump -U do. Memory: about 0.4 kB a frame, all of them. With\n"
     "--format json or junit findings go to stderr as they come; jsonl has a line of each.\n"
     "Exit codes: 0 as expected (weak findings, strays, notes and what stays inconclusive beside\n"
-    "decided things included), 1 a failure that nobody expected, or an expectation that is not\n"
-    "true, 2 the kit broke or could not write, 3 nothing but inconclusive: no rule was found\n"
-    "kept or broken, 64 usage,\n"
-    "66 input cannot be read, or a source broke off and nothing failed.";
+    "decided things included), 1 an unexpected failure, or an expectation that is not true, 2 the\n"
+    "kit broke or could not write, 3 nothing but inconclusive: no rule was found kept or broken,\n"
+    "64 usage, 66 input cannot be read, or a source broke off and nothing failed.";
 
 check::Run read_run(const CheckOptions& options) {
   check::RunReader reader(read_as(options));
@@ -102,62 +101,71 @@ void add_options(cli::Command& command, CheckOptions& options) {
       "$MOTECOM");
   command.add_option("--write", options.write, "Keep what lines in use send in this pcapng file")
       .check(cli::given);
-  command.add_option("--profile", options.profile, "Rules of the paper, or as release 1.0 has them")
+  command
+      .add_option("--profile", options.profile,
+                  "Judge by the rules of the paper, or as release 1.0 has them")
       .one_of({"paper", "deployed"})
       .show_default();
   command
       .add_option("--format", options.format,
-                  "text, json (rubric.check/1), jsonl (an event a line) or junit")
+                  "Print text, json (rubric.check/1), jsonl (an event a line) or junit")
       .one_of({"text", "json", "jsonl", "junit"})
       .show_default();
-  command.add_option("--expect", options.expect, "Known failures with their reasons, as YAML")
+  command
+      .add_option("--expect", options.expect,
+                  "Read known failures with their reasons from this YAML file")
       .check(cli::given);
   command.add_option("--out", options.out, "Write to this file; - is stdout")
       .check(cli::given)
       .show_default();
-  command.add_option("--node", options.nodes, "ID=ROLE: 2=mote; mote, sink or base-station");
-  command.add_option("--sink", options.sinks, "ID=ISLAND of a sink: 1=11");
-  command.add_option("--tester", options.testers,
-                     "AM address of a sender that is not to be judged");
+  command.add_option("--node", options.nodes,
+                     "Name a node's role as ID=ROLE: 2=mote; mote, sink or base-station");
+  command.add_option("--sink", options.sinks, "Name a sink's island as ID=ISLAND: 1=11");
+  command.add_option("--tester", options.testers, "Do not judge the sender with this AM address");
   command
       .add_option("--sniffer", options.sniffer,
-                  "complete: every frame on the air is in the capture; else unknown")
+                  "Say that every frame on the air is in the capture: complete, else unknown")
       .one_of({"complete", "unknown"})
       .show_default();
   command
       .add_option("--start", options.start,
-                  "cold: nothing had happened before the first frame; else unknown")
+                  "Say that nothing had happened before the first frame: cold, else unknown")
       .one_of({"cold", "unknown"})
       .show_default();
   add_state_option(command, options.stated);
   command
       .add_option("--response", options.response_ms,
-                  "ms until a node must have reacted (the profile's 300 ticks, 293 ms)")
+                  "Give nodes this many ms to react (default: the profile's 300 ticks, 293 ms)")
       .between(0.0, 3.6e6);
   command
-      .add_option("--ack-timeout", options.ack_timeout_ms,
-                  "ms until a reliable message has timed out (the profile's 1000 ticks, "
-                  "976.6 ms)")
+      .add_option(
+          "--ack-timeout", options.ack_timeout_ms,
+          "Let a reliable message time out after this many ms (default: the profile's 1000 ticks, "
+          "976.6 ms)")
       .between(0.0, 3.6e6);
-  command.add_option("--skew", options.skew_ms, "ms between the clocks of two taps, at most (50)")
+  command
+      .add_option("--skew", options.skew_ms,
+                  "Allow this many ms between the clocks of two taps (default: 50)")
       .between(0.0, 3.6e6);
   command
       .add_option("--align", options.align,
-                  "auto: captures whose clocks differ are put on one by the frames that they "
-                  "share; off: stamps are taken as they are")
+                  "Put captures whose clocks differ on one clock, by the frames that they share: "
+                  "auto; off takes stamps as they are")
       .one_of({"auto", "off"})
       .show_default();
   command.add_option("--frames", options.frames,
-                     "A..B: only these frames; N:A..B of the Nth file, N:none none of it");
+                     "Judge only frames A..B; N:A..B those of the Nth file, N:none none of it");
   command
       .add_option("--input-format", options.input.format,
-                  "What captures are: auto, hdlc (bytes of a serial line), sf (serial "
-                  "forwarder), pcap, pcapng, hex (text, from the dispatch byte on), hex-radio "
+                  "Read captures as auto, hdlc (bytes of a serial line), sf (serial "
+                  "forwarder), pcap, pcapng, hex (text, from the dispatch byte on) or hex-radio "
                   "(text, 802.15.4 without FCS)")
       .one_of({"auto", "hdlc", "sf", "pcap", "pcapng", "hex", "hex-radio"})
       .show_default();
-  command.add_flag("--verbose", options.verbose, "Text: every finding in full; live also notes");
-  command.add_option("--width", options.width, "Text: columns (those of the terminal, else 100)")
+  command.add_flag("--verbose", options.verbose, "Print every finding in full; live, also notes");
+  command
+      .add_option("--width", options.width,
+                  "Wrap text at this many columns (default: the terminal's, else 100)")
       .between(cli::kColumnsMin, std::size_t{1000});
   cli::add_color_option(command, options.color);
   for (const char* name : {"--node", "--sink", "--tester", "--frames"}) {
@@ -169,7 +177,7 @@ void add_options(cli::Command& command, CheckOptions& options) {
 
 void add_check(cli::Command& app) {
   cli::Command& command =
-      app.add_subcommand(kCheckCommand, "Hold captures and logs against the rules");
+      app.add_subcommand(kCheckCommand, "Check captures and logs against the rules");
   auto options = std::make_shared<CheckOptions>();
   add_options(command, *options);
   command.footer(kCheckFooter);

@@ -173,8 +173,7 @@ void print_fish(const std::vector<NamedCommand>& commands) {
 
 void add_completion(cli::Command& app) {
   auto shell = std::make_shared<std::string>();
-  cli::Command& sub =
-      app.add_subcommand("completion", "Print what a shell needs to complete commands");
+  cli::Command& sub = app.add_subcommand("completion", "Print the completion script of a shell");
   sub.add_option("SHELL", *shell, "bash, zsh or fish").required().one_of({"bash", "zsh", "fish"});
   sub.footer(
       "Examples:\n"

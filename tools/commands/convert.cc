@@ -22,7 +22,8 @@ struct ConvertOptions {
 };
 
 constexpr const char* kConvertFooter =
-    "What the target cannot hold is said on stderr. pcap holds one link type, that of the first\n"
+    "What the target cannot hold is reported on stderr. pcap holds one link type, that of the "
+    "first\n"
     "packet; --only chooses among serial and radio.\n"
     "Exit codes: 0 converted, 2 usage, 3 input cannot be read or output cannot be written.";
 
@@ -147,19 +148,21 @@ int run_convert(const ConvertOptions& options) {
 
 void add_convert(cli::Command& app) {
   auto options = std::make_shared<ConvertOptions>();
-  cli::Command& sub = app.add_subcommand("convert", "Packets from one container into another");
+  cli::Command& sub =
+      app.add_subcommand("convert", "Convert packets from one container into another");
   sub.footer(kConvertFooter);
   sub.add_option("FILE", options->input.files,
                  "Captures, and last the target unless -o names it; - is stdin or stdout");
-  sub.add_option("-o,--output", options->output, "Where to; - is stdout").check(cli::given);
+  sub.add_option("-o,--output", options->output, "Write to this file; - is stdout")
+      .check(cli::given);
   sub.add_option("--format", options->format,
-                 "What to write: hex, hdlc, sf, pcap, pcapng (default: by the target's suffix)")
+                 "Write hex, hdlc, sf, pcap or pcapng (default: by the target's suffix)")
       .one_of(encode::container_names());
   sub.add_option("--input-format", options->input.format,
-                 "What the input is: auto, hdlc, sf, pcap, pcapng, hex")
+                 "Read the input as auto, hdlc, sf, pcap, pcapng or hex")
       .one_of({"auto", "hdlc", "sf", "pcap", "pcapng", "hex"})
       .show_default();
-  sub.add_option("--only", options->only, "Leave out packets of other framings: hdlc, sf, radio")
+  sub.add_option("--only", options->only, "Keep only packets of this framing: hdlc, sf or radio")
       .one_of({"hdlc", "sf", "radio"});
   sub.exit_code_of([options] {
     settle_target(*options);

@@ -251,18 +251,17 @@ int run_coverage(const CoverageOptions& options) {
 
 void add_coverage(cli::Command& app) {
   auto options = std::make_shared<CoverageOptions>();
-  cli::Command& sub = app.add_subcommand("coverage", "Which rules are tested, and by what");
+  cli::Command& sub = app.add_subcommand("coverage", "Count what tests each rule");
   sub.footer(
-      "Counts, for each rule of behaviour, golden traces that ask for it and that forbid "
-      "something\n"
-      "by it, steps of the machine that name it while it works them, whether the explorer meets "
-      "it\n"
-      "in small networks, and named mutants that break it.\n"
-      "Exit codes: 0 covered, 1 a MUST without a case, a forbidding rule that no case attempts, or "
-      "a\n"
-      "case that is wrong, 2 output cannot be written, 64 usage, 66 the cases cannot be read.");
-  sub.add_option("--cases", options->cases, "Folder of golden traces").show_default();
-  sub.add_option("--format", options->format, "text or json")
+      "Counts for each rule of behaviour: golden traces that ask for it, golden traces that "
+      "forbid\n"
+      "something by it, steps of the machine that name it in these traces, and named mutants that\n"
+      "break it; and says whether the explorer meets it in small networks.\n"
+      "Exit codes: 0 covered, 1 a MUST without a case, a forbidding rule that no case attempts, "
+      "or\n"
+      "a case that is wrong, 2 output cannot be written, 64 usage, 66 the cases cannot be read.");
+  sub.add_option("--cases", options->cases, "Read golden traces from this folder").show_default();
+  sub.add_option("--format", options->format, "Print text or json")
       .one_of({"text", "json"})
       .show_default();
   sub.set_usage_exit_code(cli::kVerdictUsage);

@@ -177,22 +177,22 @@ void add_decode(cli::Command& app) {
   auto options = std::make_shared<DecodeOptions>();
   cli::add_input_options(command, options->input);
   cli::add_live_options(command, options->input);
-  command.add_option("--format", options->format, "text, jsonl (rubric.decode/1) or csv")
+  command.add_option("--format", options->format, "Print text, jsonl (rubric.decode/1) or csv")
       .one_of({"text", "jsonl", "csv"})
       .show_default();
   command.add_option("--filter", options->filter,
-                     "Only frames for which this holds: message==updates && src.devid==4");
-  command.add_option("--fields", options->fields, "Only these, as in a.b,c");
+                     "Print only frames for which this holds: message==updates && src.devid==4");
+  command.add_option("--fields", options->fields, "Print only these fields, as in a.b,c");
   command
       .add_option("--time", options->time,
-                  "abs (as captured), delta (since the line before), zero (since the first "
-                  "line), none")
+                  "Print times as abs (as captured), delta (since the line before), zero (since "
+                  "the first line) or none")
       .one_of({"abs", "delta", "zero", "none"})
       .show_default();
   command.add_option("--count", options->count, "Stop after this many lines")
       .check(cli::at_least_one);
-  command.add_flag("--hex", options->hex, "Text: a hex dump below each line");
-  command.add_flag("--strict", options->strict, "Exit code 1 for noted frames, too");
+  command.add_flag("--hex", options->hex, "Print a hex dump below each line of text");
+  command.add_flag("--strict", options->strict, "End with 1 for noted frames, too");
   command.add_flag("--units", options->units, "Show values in their units, such as degrees C");
   command.add_option("--write", options->write, "Keep all frames in this pcapng file as well")
       .check(cli::given);

@@ -35,9 +35,9 @@ constexpr const char* kDiffFooter =
     "3 no case could be compared, 64 usage, 66 a trace cannot be read.";
 
 void compare(const DiffOptions& options) {
-  if (options.targets.size() != 2) throw cli::UsageError("--target has to stand twice");
+  if (options.targets.size() != 2) throw cli::UsageError("--target must be given twice");
   if (!options.profiles.empty() && options.profiles.size() != 2) {
-    throw cli::UsageError("--profile has to stand twice, once for each target");
+    throw cli::UsageError("--profile must be given twice, once for each target");
   }
   const suite::Cases cases =
       options.traces.empty() ? suite::Cases::own() : suite::Cases::of(options.traces);
@@ -56,7 +56,7 @@ void compare(const DiffOptions& options) {
   const shrink::DifferenceSearch found =
       shrink::find_difference(pointers, players[0]->player(), players[1]->player());
   if (found.compared == 0) {
-    std::fputs("no case could be worked on both\n", stderr);
+    std::fputs("no case could be run on both\n", stderr);
     cli::exit_with(cli::kVerdictInconclusive);
   }
   fmt::print(stderr, "{} cases compared, {} differ, {} that one of them cannot play\n",
@@ -85,15 +85,18 @@ void add_diff(cli::Command& app) {
   sub.add_option("traces", options->traces,
                  "Golden traces and folders of them; default: those of the kit")
       .type_name("TRACE");
-  sub.add_option("--target", options->targets, "An implementation, as in rubric test; twice")
+  sub.add_option("--target", options->targets,
+                 "Compare this implementation, as in rubric test; twice")
       .required()
       .repeatable();
-  sub.add_option("--profile", options->profiles, "Dialect of each target; default: as traces say")
+  sub.add_option("--profile", options->profiles,
+                 "Set the profile of each target (default: as traces say)")
       .one_of({"paper", "deployed"})
       .repeatable();
-  sub.add_option("--cases", options->selection.globs, "Only cases with such names").repeatable();
+  sub.add_option("--cases", options->selection.globs, "Compare only cases with such names")
+      .repeatable();
   sub.add_option("--requirement", options->selection.requirements,
-                 "Only cases that name this rule, or one of this family")
+                 "Compare only cases that try this rule or family")
       .repeatable();
   for (const char* name : {"--target", "--profile", "--cases", "--requirement"}) {
     sub.get_option(name).one_at_a_time();  // One at a time: traces may follow.

@@ -84,14 +84,14 @@ void check_target(const EncodeOptions& options) {
 void add_encode(cli::Command& app) {
   auto options = std::make_shared<EncodeOptions>();
   cli::Command& sub = app.add_subcommand(
-      "encode", "Frames from the JSON lines of 'rubric decode', or from fields alone");
+      "encode", "Make frames from the JSON lines of 'rubric decode', or from fields alone");
   sub.footer(kEncodeFooter);
   encode::add_line_options(sub, options->lines);
   encode::add_carrier_option(sub, options->lines);
-  sub.add_option("--format", options->format, "What to write: hex, hdlc, sf, pcap, pcapng")
+  sub.add_option("--format", options->format, "Write hex, hdlc, sf, pcap or pcapng")
       .one_of(encode::container_names())
       .show_default();
-  sub.add_option("-o,--output", options->output, "Where to; - is stdout")
+  sub.add_option("-o,--output", options->output, "Write to this file; - is stdout")
       .check(cli::given)
       .show_default();
   sub.exit_code_of([options] {

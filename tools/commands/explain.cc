@@ -129,8 +129,8 @@ int explain_bytes(const ExplainOptions& options, const Protocol& protocol,
   const reflect::Type* message = cli::chosen_message(options.input, protocol);
   auto given = explain::take_frame(bytes, message ? "bare" : options.framing);
   if (!given) {
-    throw cli::UsageError("X",
-                          "these bytes begin like no frame; --framing or --as says what they are");
+    throw cli::UsageError(
+        "X", "these bytes begin like no frame; say what they are with --framing or --as");
   }
   if (message) given->what = fmt::format("the message {} alone", message->id);
   // Moving the bytes left them in their place, so the packet still points at them.
@@ -171,19 +171,19 @@ int run_explain(const ExplainOptions& options) {
 
 void add_explain(cli::Command& app) {
   auto options = std::make_shared<ExplainOptions>();
-  cli::Command& sub =
-      app.add_subcommand("explain", "What a message, a rule, a name or a frame means");
+  cli::Command& sub = app.add_subcommand("explain", "Explain a message, a rule, a name or a frame");
   sub.footer(kExplainFooter);
   sub.add_option("X", options->words, "A name, or hex bytes in one word or several").required();
-  sub.add_option("--spec", options->input.spec, "Protocol above the AM layer").show_default();
-  sub.add_option("--as", options->input.as_message, "The bytes are this message alone")
+  sub.add_option("--spec", options->input.spec, "Use this protocol above the AM layer")
+      .show_default();
+  sub.add_option("--as", options->input.as_message, "Read the bytes as this message alone")
       .check(cli::given);
   sub.add_option("--framing", options->framing,
-                 "What the bytes are: auto, sf (from the dispatch byte), hdlc (from the kind "
-                 "byte), radio (802.15.4)")
+                 "Read the bytes as auto, sf (from the dispatch byte), hdlc (from the kind byte) "
+                 "or radio (802.15.4)")
       .one_of({"auto", "sf", "hdlc", "radio"})
       .show_default();
-  sub.add_flag("--cases", options->all_cases, "All golden traces that name a rule, however many");
+  sub.add_flag("--cases", options->all_cases, "Print all golden traces that name a rule");
   sub.exit_code_of([options] { return run_explain(*options); });
 }
 

@@ -327,36 +327,41 @@ void run_explore(const ExploreOptions& options) {
 
 void add_faults(cli::Command& sub, ExploreOptions& options) {
   explore::Options& n = options.network;
-  sub.add_flag("--loss", n.loss, "Frames and link acks may be lost");
-  sub.add_flag("--dup", n.dup, "Frames may be heard again");
-  sub.add_flag("--reorder", n.reorder, "Frames of one sender may overtake each other");
-  sub.add_flag("--collide", n.collide, "Frames may destroy each other");
-  sub.add_flag("--reboot", options.reboot, "Each mote may lose its memory once");
-  sub.add_flag("--prompt", n.prompt, "No frame outlives a timer");
-  sub.add_flag("--busy", n.busy, "The end of each transmission is a step of its own");
-  sub.add_option("--dups", n.dups, "Frames heard again in all; 0: any number (scope full: 1)")
+  sub.add_flag("--loss", n.loss, "Let frames and link acks be lost");
+  sub.add_flag("--dup", n.dup, "Let frames be heard again");
+  sub.add_flag("--reorder", n.reorder, "Let frames of one sender overtake each other");
+  sub.add_flag("--collide", n.collide, "Let frames destroy each other");
+  sub.add_flag("--reboot", options.reboot, "Let each mote lose its memory once");
+  sub.add_flag("--prompt", n.prompt, "Let no frame outlive a timer");
+  sub.add_flag("--busy", n.busy, "Make the end of each transmission a step of its own");
+  sub.add_option("--dups", n.dups,
+                 "Let this many frames in all be heard again; 0: any number (scope full: 1)")
       .between(0, 200);
-  sub.add_option("--in-flight", n.in_flight, "Copies of one frame in flight")
+  sub.add_option("--in-flight", n.in_flight, "Let this many copies of one frame be in flight")
       .between(1, 4)
       .show_default();
 }
 
 void add_bounds(cli::Command& sub, ExploreOptions& options) {
   explore::Options& n = options.network;
-  sub.add_option("--calls", n.calls, "Calls of joinIsland, each mote").between(1, 8).show_default();
-  sub.add_option("--sends", n.sends, "Messages of each node, in full scope")
+  sub.add_option("--calls", n.calls, "Let each mote call joinIsland this many times")
+      .between(1, 8)
+      .show_default();
+  sub.add_option("--sends", n.sends, "Let each node send this many messages, in full scope")
       .between(0, 4)
       .show_default();
-  sub.add_option("--requests", options.requests, "join_requests of a call; default: the profile's")
+  sub.add_option("--requests", options.requests,
+                 "Let a call send this many join_requests (default: the profile's)")
       .between(1, 20);
-  sub.add_option("--acks", options.acks, "ack_joins of a join; default: the profile's")
+  sub.add_option("--acks", options.acks,
+                 "Let a join send this many ack_joins (default: the profile's)")
       .between(1, 20);
-  sub.add_option("--max-states", n.states_max, "Stop, inconclusive, at so many; 0: never")
+  sub.add_option("--max-states", n.states_max, "Stop, inconclusive, at this many states; 0: never")
       .check(cli::whole_number)
       .show_default();
   sub.add_flag("--exact", n.exact, "Keep apart states that differ in nothing that matters");
   n.threads = std::max(1U, std::thread::hardware_concurrency());
-  sub.add_option("--threads", n.threads, "How many").between(1, 64).show_default();
+  sub.add_option("--threads", n.threads, "Run this many threads").between(1, 64).show_default();
 }
 
 }  // namespace
@@ -367,29 +372,32 @@ void add_explore(cli::Command& app) {
       app.add_subcommand("explore", "Try everything that can happen in a small network");
   sub.footer(explore_footer());
   sub.set_usage_exit_code(cli::kVerdictUsage);
-  sub.add_option("--motes", options->network.motes, "How many")
+  sub.add_option("--motes", options->network.motes, "Explore this many motes")
       .between(1, int{explore::kMotesMax})
       .show_default();
-  sub.add_option("--sinks", options->network.sinks, "How many, all in range of all motes")
+  sub.add_option("--sinks", options->network.sinks,
+                 "Explore this many sinks, all in range of all motes")
       .between(1, int{explore::kSinksMax})
       .show_default();
   add_faults(sub, *options);
-  sub.add_option("--scope", options->scope, "join: joins alone; full: and messages of members")
+  sub.add_option("--scope", options->scope,
+                 "Explore joins alone: join; and messages of members: full")
       .one_of({"join", "full"})
       .show_default();
-  sub.add_option("--property", options->properties, "Only these; default: all");
+  sub.add_option("--property", options->properties, "Check only these (default: all)");
   sub.add_option("--flaw", options->flaw,
-                 "Put this flaw of release 1.0 around the machine; what needs an old reply shows "
-                 "with --calls 2, what needs messages with --scope full");
-  sub.add_option("--profile", options->profile, "paper or deployed").show_default();
+                 "Give the machine this flaw of release 1.0; one that needs an old reply shows "
+                 "with --calls 2, one that needs messages with --scope full");
+  sub.add_option("--profile", options->profile, "Keep to paper or deployed").show_default();
   add_bounds(sub, *options);
-  sub.add_option("--format", options->format, "text or json; transitions also as dot (Graphviz)")
+  sub.add_option("--format", options->format,
+                 "Print text or json; transitions also as dot (Graphviz)")
       .one_of({"text", "json", "dot"})
       .show_default();
-  sub.add_option("--out", options->out, "File for the shortest trace; default stdout");
+  sub.add_option("--out", options->out, "Write the shortest trace to this file (default: stdout)");
   add_transition_options(sub, options->transitions);
   sub.add_option("--out-known", options->weakness_out,
-                 "File for the shortest way to a known weakness");
+                 "Write the shortest way to a known weakness to this file");
   sub.callback([options] { run_explore(*options); });
 }
 

@@ -17,7 +17,7 @@ void add_transition_options(cli::Command& sub, TransitionOptions& options) {
                    "Print the state diagrams of a node's parts instead, as the machine makes them");
   sub.exclude_all_but(wanted, {"--profile", "--flaw", "--format", "--out"});
   sub.add_option("--part", options.parts,
-                 "Transitions of this part alone: join, listing, message, output, input")
+                 "Print transitions of this part alone: join, listing, message, output, input")
       .needs(wanted);
 }
 

@@ -43,7 +43,7 @@ void check_capture(const std::string& path) {
   std::error_code none;
   const auto status = std::filesystem::status(path, none);
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-    throw cli::UsageError("--write", path + " is no regular file");
+    throw cli::UsageError("--write", path + " is not a regular file");
   }
 }
 
@@ -78,32 +78,36 @@ int run_forward(ForwardOptions& options) {
 }
 
 void add_client_options(cli::Command& command, ForwardOptions& options) {
-  command.add_option("--clients", options.server.clients_max, "So many at once, others are refused")
+  command
+      .add_option("--clients", options.server.clients_max,
+                  "Serve at most this many at once; refuse others")
       .between(1, 10'000)
       .show_default();
   command
-      .add_option("--buffer", options.buffer_kib,
-                  "KiB that a client may be behind; then it is cut off")
+      .add_option("--buffer", options.buffer_kib, "Cut off a client that is this many KiB behind")
       .between(64, 1 << 20)
       .show_default();
   command
       .add_option("--patience", options.patience_s,
-                  "Seconds that a client may take for its handshake, and to end a packet")
+                  "Cut off a client that takes more seconds than this for its handshake, or to end "
+                  "a packet")
       .between(1, 86'400)
       .show_default();
 }
 
 void add_source_options(cli::Command& command, ForwardOptions& options) {
   command.add_flag("--reconnect", options.server.reconnect,
-                   "Open a source that is gone again, when it is back; clients stay");
+                   "Open a source again when it comes back; clients stay");
   command.add_flag("--listen-only", options.server.source.link.listen_only,
-                   "Write nothing to a serial line; packets of clients are dropped");
+                   "Write nothing to a serial line; drop packets of clients");
   command
       .add_option("--timeout", options.ack_wait_ms,
-                  "Serial lines: ms until a packet that is not confirmed is sent again")
+                  "On a serial line, send an unconfirmed packet again after this many ms")
       .between(1, 3'600'000)
       .show_default();
-  command.add_option("--retries", options.retries, "Serial lines: how often it is sent again")
+  command
+      .add_option("--retries", options.retries,
+                  "On a serial line, send it again at most this many times")
       .between(0, 10'000)
       .show_default();
 }
@@ -117,24 +121,24 @@ void add_forward(cli::Command& app) {
   command.add_option("SOURCE", options->source,
                      "serial@DEVICE:BAUD (or a platform, as serial@/dev/ttyUSB0:telosb), "
                      "network@HOST:PORT or sf@HOST:PORT; without it, $MOTECOM");
-  command.add_option("--port", options->server.port, "Where clients connect; 0: a free port")
+  command.add_option("--port", options->server.port, "Listen on this port; 0: a free one")
       .between(0, 65'535)
       .show_default();
   command
       .add_option("--bind", options->server.bind,
-                  "The address to listen at; 0.0.0.0 or :: lets other hosts in")
+                  "Listen at this address; 0.0.0.0 or :: lets other hosts in")
       .check(cli::given)
       .show_default();
   add_client_options(command, *options);
   add_source_options(command, *options);
   command
       .add_option("--write", options->server.write,
-                  "Keep what goes by, both ways, in this pcapng file; no pipe")
+                  "Keep packets of both directions in this pcapng file, not a pipe")
       .check(cli::given);
   command.add_flag("--verbose", options->server.verbose, "Say which clients come and leave");
   command.footer(
-      "The first line on stdout says where it listens: 'listening on 127.0.0.1:9002'. Everybody\n"
-      "who can connect there reads all packets and can send to the motes.\n"
+      "The first line on stdout says where it listens: 'listening on 127.0.0.1:9002'. Whoever\n"
+      "can connect there reads all packets and can send to the motes.\n"
       "Examples:\n"
       "  rubric forward serial@/dev/ttyUSB0:telosb             # until Ctrl-C\n"
       "  rubric decode sf@localhost:9002                       # one of many clients\n"

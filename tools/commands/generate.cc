@@ -49,12 +49,12 @@ struct GenerateOptions {
 };
 
 constexpr const char* kGenerateFooter =
-    "Each message in turn comes up, on each way that leads to it. The expectation of a frame\n"
-    "(schema rubric.generate/1, see tools/commands/generate_format.md) says which fault of which "
-    "rule\n"
-    "stands where, by construction: no decoder is asked. jsonl carries it in line, with the frame\n"
-    "in hex; pcapng also has it as the packets' comment. hdlc, sf and hex hold no radio frames.\n"
-    "The same options give the same bytes. Examples:\n"
+    "Makes each message in turn, on each way that leads to it. The expectation of a frame (schema\n"
+    "rubric.generate/1, see tools/commands/generate_format.md) says which fault is where, and by\n"
+    "which rule; it is known by construction, without a decoder. jsonl has it with the frame in\n"
+    "hex, pcapng as the packet's comment. hdlc, sf and hex hold no radio frames.\n"
+    "The same options give the same bytes.\n"
+    "Examples:\n"
     "  rubric generate --count 10000 --format hdlc -o frames.hdlc --expect frames.jsonl\n"
     "  rubric generate --valid 0 --message net_msg --format pcapng -o bad.pcapng\n"
     "  rubric generate --count 5 | jq -r '.verdict + \" \" + .what'\n"
@@ -304,29 +304,30 @@ void check_outputs(const GenerateOptions& options) {
 void add_generate(cli::Command& app) {
   auto options = std::make_shared<GenerateOptions>();
   cli::Command& sub = app.add_subcommand(
-      "generate", "Valid and near-valid frames, and what a decoder must say of each");
+      "generate", "Generate valid and near-valid frames, and what a decoder must say of each");
   sub.footer(kGenerateFooter);
-  sub.add_option("--count", options->count, "How many frames")
+  sub.add_option("--count", options->count, "Make this many frames")
       .check(cli::at_least_one)
       .show_default();
-  sub.add_option("--seed", options->seed, "What chance begins with")
+  sub.add_option("--seed", options->seed, "Seed all that is left to chance")
       .check(cli::whole_number)
       .show_default();
-  sub.add_option("--valid", options->valid, "Share of the frames in which nothing is wrong")
+  sub.add_option("--valid", options->valid, "Make this share of the frames valid")
       .check(share, "SHARE")
       .show_default();
-  sub.add_option("--format", options->format, "What to write: hdlc, sf, pcapng, hex, jsonl")
+  sub.add_option("--format", options->format, "Write hdlc, sf, pcapng, hex or jsonl")
       .one_of(container_names())
       .show_default();
-  sub.add_option("--spec,--protocol", options->input.spec, "Protocol above the AM layer")
+  sub.add_option("--spec,--protocol", options->input.spec, "Use this protocol above the AM layer")
       .show_default();
-  sub.add_option("--message", options->messages, "Only these messages").check(cli::given);
-  sub.add_option("-o,--output", options->output, "Where to; - is stdout")
+  sub.add_option("--message", options->messages, "Make only these messages").check(cli::given);
+  sub.add_option("-o,--output", options->output, "Write to this file; - is stdout")
       .check(cli::given)
       .show_default();
-  sub.add_option("--expect", options->expect, "Where the expectations go, a JSON line a frame")
+  sub.add_option("--expect", options->expect,
+                 "Write the expectations to this file, a JSON line a frame")
       .check(cli::given);
-  sub.add_flag("--fields", options->fields, "Expectations have each number of a valid frame, too");
+  sub.add_flag("--fields", options->fields, "Add each number of a valid frame to its expectation");
   sub.exit_code_of([options] {
     check_outputs(*options);
     return Run(*options, cli::chosen_protocol(options->input)).run();

@@ -27,8 +27,8 @@ struct MessagesOptions {
 };
 
 constexpr const char* kMessagesFooter =
-    "\nAM is a message's own number; it stands in frames under that number where 'in' is serial\n"
-    "or radio. No frame leads to a message 'by name', only --as; see 'rubric explain NAME'.\n";
+    "\nAM is a message's own number, under which serial or radio frames carry it where 'in' says\n"
+    "so. No frame leads to a message 'by name', only --as; see 'rubric explain NAME'.\n";
 
 // Returns the shown name, or that of the type if several types share the shown one.
 std::string place(const Reach& reach, const std::vector<Reach>& reaches) {
@@ -112,9 +112,10 @@ std::string json(const Protocol& protocol) {
 
 void add_messages(cli::Command& app) {
   auto options = std::make_shared<MessagesOptions>();
-  cli::Command& sub = app.add_subcommand("messages", "The messages of a protocol");
-  sub.add_option("--spec", options->input.spec, "Protocol above the AM layer").show_default();
-  sub.add_option("--format", options->format, "text or json")
+  cli::Command& sub = app.add_subcommand("messages", "List the messages of a protocol");
+  sub.add_option("--spec", options->input.spec, "Use this protocol above the AM layer")
+      .show_default();
+  sub.add_option("--format", options->format, "Print text or json")
       .one_of({"text", "json"})
       .show_default();
   sub.callback([options] {

@@ -17,8 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kNewAdapterFooter =
-    "What it writes answers every command of rct/1 and runs a node that does almost nothing; TODO\n"
-    "marks where your implementation goes. conformance/PORTING.md goes on from there.\n"
+    "The skeleton answers every command of rct/1 with a node that does almost nothing; TODO marks\n"
+    "where your implementation goes. conformance/PORTING.md says how to go on.\n"
     "Files that exist are never overwritten.\n"
     "Exit codes: 0 written, 2 usage, 3 something could not be written, and then nothing was.";
 
@@ -79,13 +79,12 @@ void write_skeleton(const NewAdapterOptions& options) {
 
 void add_new_adapter(cli::Command& app) {
   auto options = std::make_shared<NewAdapterOptions>();
-  cli::Command& sub =
-      app.add_subcommand("new-adapter", "Write an adapter to fill with an implementation");
+  cli::Command& sub = app.add_subcommand("new-adapter", "Write the skeleton of an adapter");
   sub.footer(kNewAdapterFooter);
   sub.add_option("LANGUAGE", options->language, "python, cpp or java")
       .required()
       .one_of({"python", "cpp", "java"});
-  sub.add_option("--out", options->out, "Folder for its files").show_default();
+  sub.add_option("--out", options->out, "Write its files into this folder").show_default();
   sub.callback([options] { write_skeleton(*options); });
 }
 

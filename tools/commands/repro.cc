@@ -32,9 +32,9 @@ struct ReproOptions {
 };
 
 constexpr const char* kReproFooter =
-    "The trace gives a node what the input gives it and asks for what the reference machine does\n"
-    "then; of machine:FLAW it says which promise it breaks. An input of nodes_fuzz is written so\n"
-    "that every implementation may use its freedom, and tells on what the two nodes differ.\n"
+    "The trace gives a node the stimuli of the input and expects what the reference machine does;\n"
+    "for machine:FLAW it names the property that breaks. A trace from nodes_fuzz leaves every\n"
+    "implementation its freedom, and says where the two nodes differ.\n"
     "Examples:\n"
     "  rubric repro machine crash-1f0c --out crash.rtr\n"
     "  rubric repro machine crash-22ab --target machine:no_fail --out no_fail.rtr\n"
@@ -123,14 +123,15 @@ void add_repro(cli::Command& app) {
   cli::Command& sub =
       app.add_subcommand("repro", "Write an input of a stateful fuzz target as a trace");
   sub.footer(kReproFooter);
-  sub.add_option("fuzzer", options->fuzzer, "Whose input it is")
+  sub.add_option("fuzzer", options->fuzzer, "The fuzz target whose input it is")
       .required()
       .one_of({"machine", "nodes", "network"});
   sub.add_option("input", options->input, "The input; - is stdin").required().type_name("FILE");
-  sub.add_option("--target", options->target, "machine, or machine:FLAW").show_default();
+  sub.add_option("--target", options->target, "Run machine, or machine:FLAW").show_default();
   sub.add_flag("--exact", options->exact,
                "Ask for the machine's own numbers and bytes, not for what the rules ask for");
-  sub.add_option("-o,--out", options->out, "Where the trace goes; - is stdout").show_default();
+  sub.add_option("-o,--out", options->out, "Write the trace to this file; - is stdout")
+      .show_default();
   sub.set_usage_exit_code(cli::kVerdictUsage);
   sub.callback([options] { run_repro(*options); });
 }

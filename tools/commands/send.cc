@@ -50,7 +50,7 @@ struct SendOptions {
 constexpr const char* kSendFooter =
     "Packets go one at a time. On a serial line each is sent again, as TinyOS hosts do, until the\n"
     "mote confirms it; what the mote wants confirmed is confirmed, too. A serial forwarder\n"
-    "confirms nothing. Frames without a packet, as confirmations in a capture, are left out.\n"
+    "confirms nothing. Frames without a packet, such as confirmations, are left out.\n"
     "Examples:\n"
     "  echo '{\"type\":10,\"value\":12}' |\n"
     "    rubric send --as config --to serial@/dev/ttyUSB0:telosb\n"
@@ -185,7 +185,7 @@ class Send {
     if (result.done) return true;
     unsent_ = true;
     if (options_.keep_going && !lines::stop_requested()) return true;
-    fmt::print(stderr, "rubric: {}: {}; nothing behind it is sent{}\n", place,
+    fmt::print(stderr, "rubric: {}: {}; nothing after it is sent{}\n", place,
                lines::stop_requested() ? "stopped" : "not confirmed",
                lines::stop_requested() ? "" : " (--keep-going would)");
     return false;
@@ -278,18 +278,19 @@ class Send {
 
 void add_timing_options(cli::Command& app, SendOptions& options) {
   app.add_option("--timeout", options.timeout_ms,
-                 "Serial lines: ms until a packet that is not confirmed is sent again")
+                 "On a serial line, send an unconfirmed packet again after this many ms")
       .between(1, kWaitMostMs)
       .show_default();
-  app.add_option("--retries", options.retries, "Serial lines: how often it is sent again")
+  app.add_option("--retries", options.retries,
+                 "On a serial line, send it again at most this many times")
       .between(0, kRetriesMost)
       .show_default();
-  app.add_option("--interval", options.interval_ms, "Wait so many ms between packets")
+  app.add_option("--interval", options.interval_ms, "Wait this many ms between packets")
       .between(0, kWaitMostMs)
       .show_default();
-  app.add_flag("--keep-going", options.keep_going, "Go on behind a packet that is not confirmed");
+  app.add_flag("--keep-going", options.keep_going, "Go on after a packet that is not confirmed");
   app.add_option("--listen", options.listen_s,
-                 "Show what comes back, as rubric decode does, until so many seconds after the "
+                 "Print what comes back, as rubric decode does, until this many seconds after the "
                  "last packet")
       .between(0.0, kListenMostS);
 }
@@ -300,7 +301,7 @@ void add_send(cli::Command& app) {
   auto options = std::make_shared<SendOptions>();
   options->lines.to_line = true;
   cli::Command& sub = app.add_subcommand(
-      "send", "Packets to a mote: JSON lines of 'rubric decode', or fields alone");
+      "send", "Send packets to a mote: JSON lines of 'rubric decode', or fields alone");
   sub.footer(kSendFooter);
   encode::add_line_options(sub, options->lines);
   sub.get_option("FILE").check([](const std::string& text) {
@@ -310,13 +311,13 @@ void add_send(cli::Command& app) {
                : std::string();
   });
   sub.add_option("--to", options->to,
-                 "serial@DEVICE:BAUD (or a platform, as serial@/dev/ttyUSB0:telosb), "
-                 "network@HOST:PORT, sf@HOST:PORT (default: $MOTECOM, else sf@localhost:9002)")
+                 "Send to serial@DEVICE:BAUD (or a platform, as serial@/dev/ttyUSB0:telosb), "
+                 "network@HOST:PORT or sf@HOST:PORT (default: $MOTECOM, else sf@localhost:9002)")
       .check(cli::given);
   add_timing_options(sub, *options);
   sub.add_option("--format", options->format,
-                 "With --listen, what comes back as: text, jsonl (rubric.decode/1; what became of "
-                 "packets goes to stderr then)")
+                 "With --listen, print what comes back as text or jsonl (rubric.decode/1; what "
+                 "became of the packets then goes to stderr)")
       .one_of({"text", "jsonl"})
       .show_default();
   cli::add_color_option(sub, options->color);

@@ -98,9 +98,11 @@ void add_shrink(cli::Command& app) {
   cli::Command& sub = app.add_subcommand("shrink", "Make a failing trace as small as it can be");
   sub.footer(kShrinkFooter);
   sub.add_option("trace", options->trace, "A .rtr file").required().type_name("TRACE");
-  sub.add_option("--target", options->target, "The implementation, as in rubric test").required();
-  sub.add_option("--case", options->case_name, "Which case; default: the first that fails");
-  sub.add_option("--profile", options->profile, "Dialect; default: as the trace says")
+  sub.add_option("--target", options->target, "Run this implementation, as in rubric test")
+      .required();
+  sub.add_option("--case", options->case_name, "Shrink this case (default: the first that fails)");
+  sub.add_option("--profile", options->profile,
+                 "Keep to paper or deployed (default: as the trace says)")
       .one_of({"paper", "deployed"});
   add_player_options(sub, options->shared);
   sub.callback([options, &sub] { run_player_command(sub, [&] { shrink_it(*options); }); });

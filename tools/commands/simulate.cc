@@ -100,33 +100,33 @@ void add_simulate(cli::Command& app) {
   cli::Command& sub = app.add_subcommand("simulate", "Run a network of reference machines");
   sub.footer(simulate_footer());
   const cli::Option motes =
-      sub.add_option("--motes", options->network.motes, "How many, in scenario free")
+      sub.add_option("--motes", options->network.motes, "Run this many motes, in scenario free")
           .between(std::size_t{0}, kMotesMax)
           .show_default();
   const cli::Option sinks =
-      sub.add_option("--sinks", options->network.sinks, "How many, in scenario free")
+      sub.add_option("--sinks", options->network.sinks, "Run this many sinks, in scenario free")
           .between(std::size_t{0}, kSinksMax)
           .show_default();
-  sub.add_option("--seed", options->network.seed, "Decides all that is left to chance")
+  sub.add_option("--seed", options->network.seed, "Seed all that is left to chance")
       .check(cli::whole_number)
       .show_default();
   sub.add_option("--loss", options->network.loss,
-                 "Probability that a receiver misses a radio frame")
+                 "Let a receiver miss a radio frame with this probability")
       .between(0.0, 1.0)
       .show_default();
   sub.add_option("--dup", options->network.duplication,
-                 "Probability that a receiver gets a radio frame twice: the sender's link repeats "
-                 "it on the air")
+                 "Let a receiver get a radio frame twice with this probability: the sender's link "
+                 "repeats it on the air")
       .between(0.0, 1.0)
       .show_default();
-  sub.add_option("--seconds", options->seconds, "How long; default: as the scenario says")
+  sub.add_option("--seconds", options->seconds, "Run for this long (default: as the scenario says)")
       .between(0.001, kSecondsMax);
-  sub.add_option("--scenario", options->scenario, "Which network")
+  sub.add_option("--scenario", options->scenario, "Run this network")
       .one_of(scenario_names())
       .show_default();
-  sub.add_option("--out-rtr", options->rtr, "Log of every node; - is stdout");
+  sub.add_option("--out-rtr", options->rtr, "Write a log of every node; - is stdout");
   sub.add_option("--out-pcapng", options->pcapng,
-                 "Capture of the radio and of the serial lines; - is stdout");
+                 "Write a capture of the radio and of the serial lines; - is stdout");
   sub.callback([options, motes, sinks] {
     if (options->scenario != kFree && (motes.is_given() || sinks.is_given())) {
       throw cli::UsageError("--motes and --sinks are for scenario free; " + options->scenario +

@@ -13,7 +13,7 @@ namespace rubric::tools {
 inline void add_state_option(cli::Command& command, std::vector<std::string>& stated) {
   command
       .add_option("--state", stated,
-                  "NAME=VALUE: what the implementation states of itself, as ack_timeout=2000; "
+                  "State a parameter of the implementation, NAME=VALUE as in ack_timeout=2000; "
                   "again for another; names: " +
                       trace::parameter_names())
       .one_at_a_time();

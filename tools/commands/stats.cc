@@ -55,11 +55,11 @@ int run_stats(const StatsOptions& options) {
 void add_stats(cli::Command& app) {
   auto options = std::make_shared<StatsOptions>();
   cli::Command& sub = app.add_subcommand(
-      "stats", "Counts by message, addresses and fault; rates, gaps, repetitions");
+      "stats", "Count frames by message, addresses and fault; find rates, gaps and repetitions");
   sub.footer(kStatsFooter);
   cli::add_input_options(sub, options->input);
   cli::add_live_options(sub, options->input);
-  sub.add_option("--format", options->format, "text or json")
+  sub.add_option("--format", options->format, "Print text or json")
       .one_of({"text", "json"})
       .show_default();
   sub.exit_code_of([options] { return run_stats(*options); });

@@ -46,19 +46,21 @@ constexpr const char* kTestFooter =
     "  sf-server:PORT            a base station that connects to a Serial Forwarder: to us\n"
     "  sf:HOST:PORT              a sink behind a Serial Forwarder\n"
     "  serial:DEVICE[:BAUD]      a sink at a serial line; serial:tcp:HOST:PORT at an emulator's\n"
-    "  sf:HOST:PORT:mote         a mote there; serial:...:mote too. Its line decides nothing.\n"
-    "Without TRACES it is tried with the kit's own golden traces, which the program carries with\n"
-    "it.\n"
+    "  sf:HOST:PORT:mote         a mote there, also serial:...:mote; its line decides nothing\n"
+    "Without TRACES it is tested with the kit's own golden traces, which the program contains.\n"
     "Examples:\n"
     "  rubric test --target ./my_adapter\n"
     "  rubric test --target 'python3 mote.py' --role mote --requirement J --quiet\n"
     "  rubric test --target ./a --target ./b --jobs 4 --expect known.yaml --report out\n"
     "  rubric test --list --requirement J4-SEQ\n"
-    "Before a case is worked each implementation has to refuse an unknown command, and to fail\n"
-    "cases that nobody can pass.\n"
-    "Exit codes: 0 as expected (weak results and skipped cases included), 1 a failure that nobody\n"
-    "expected, or an expectation that is not true, 2 an implementation or the kit broke (between\n"
-    "cases, too), or was not honest, 3 nothing was decided, 64 usage, 66 traces cannot be read.";
+    "Before its first case each implementation has to refuse an unknown command, and to fail "
+    "cases\n"
+    "that no implementation can pass.\n"
+    "Exit codes: 0 as expected (weak results and skipped cases included), 1 an unexpected "
+    "failure,\n"
+    "or an expectation that is not true, 2 an implementation or the kit broke (between cases, "
+    "too),\n"
+    "or was not honest, 3 nothing was decided, 64 usage, 66 traces cannot be read.";
 
 struct TestOptions {
   std::vector<std::string> traces;
@@ -302,15 +304,15 @@ int run_test(const TestOptions& options) {
 void add_selection(cli::Command& command, TestOptions& options) {
   command.add_option("TRACES", options.traces,
                      "Golden traces, .rtr files or folders of them (the kit's own)");
-  command.add_option("--cases", options.selection.globs, "Cases whose names are like this: 'j4.*'")
+  command.add_option("--cases", options.selection.globs, "Run only cases with such names: 'j4.*'")
       .check(cli::given);
   command
       .add_option("--requirement", options.selection.requirements,
-                  "Cases that try this rule or family: J4-SEQ, J4, J")
+                  "Run only cases that try this rule or family: J4-SEQ, J4, J")
       .check(cli::given);
-  command.add_option("--role", options.role, "Cases with a node of this role under test")
+  command.add_option("--role", options.role, "Run only cases with a node of this role under test")
       .one_of({"mote", "sink", "base_station"});
-  command.add_option("--shard", options.shard, "I/N: the Ith of N parts of the cases")
+  command.add_option("--shard", options.shard, "Run only the Ith of N parts of the cases: I/N")
       .check(cli::given);
   command.add_flag("--list", options.list,
                    "Print names, roles and rules of the cases, as text or JSON");
@@ -319,31 +321,36 @@ void add_selection(cli::Command& command, TestOptions& options) {
 void add_options(cli::Command& command, TestOptions& options) {
   command
       .add_option("--target", options.targets,
-                  "An implementation: a command, or machine; again for another one")
+                  "Test this implementation: a command, or machine; again for another one")
       .check(cli::given);
   add_selection(command, options);
   command
       .add_option("--profile", options.profile,
-                  "paper or deployed, whatever the traces say: what nodes are told to keep to")
+                  "Tell nodes to keep to paper or deployed, whatever the traces say")
       .one_of({"paper", "deployed"});
   add_state_option(command, options.stated);
   command
       .add_option("--seed", options.seed,
-                  "Of what is random in nodes, where a trace has none; 0 to 65535")
+                  "Seed what is random in nodes, where a trace has no seed; 0 to 65535")
       .check(cli::whole_number);
   command
-      .add_option("--repeat", options.repeats, "Each case so often, each time with the next seed")
+      .add_option("--repeat", options.repeats,
+                  "Run each case this many times, each time with the next seed")
       .between(1, 10000)
       .show_default();
-  command.add_option("--jobs", options.jobs, "Cases at once, on a process each; 0: cores")
+  command
+      .add_option("--jobs", options.jobs,
+                  "Run this many cases at once, each in a process; 0: one a core")
       .between(0, 256)
       .show_default();
-  command.add_option("--timeout", options.timeout_s, "Seconds that a step may take")
+  command.add_option("--timeout", options.timeout_s, "Wait at most this many seconds for a step")
       .between(0.01, 3600.0)
       .show_default();
-  command.add_option("--expect", options.expect, "Known failures with their reasons, as YAML")
+  command
+      .add_option("--expect", options.expect,
+                  "Read known failures with their reasons from this YAML file")
       .check(cli::given);
-  command.add_option("--format", options.format, "text, json (rubric.test/1), junit or tap")
+  command.add_option("--format", options.format, "Print text, json (rubric.test/1), junit or tap")
       .one_of({"text", "json", "junit", "tap"})
       .show_default();
   command.add_option("--out", options.out, "Write to this file; - is stdout")
@@ -355,11 +362,13 @@ void add_options(cli::Command& command, TestOptions& options) {
       .check(cli::given);
   command
       .add_option("--compare", options.compare,
-                  "report.json of an earlier run: say which verdicts have changed")
+                  "Say which verdicts have changed since this report.json")
       .check(cli::given);
-  command.add_flag("--quiet", options.quiet, "Text: no lines for cases that are as expected");
-  command.add_flag("--verbose", options.verbose, "Text: every failure in full");
-  command.add_option("--width", options.width, "Text: columns (those of the terminal, else 100)")
+  command.add_flag("--quiet", options.quiet, "Print no lines for cases that are as expected");
+  command.add_flag("--verbose", options.verbose, "Print every failure in full");
+  command
+      .add_option("--width", options.width,
+                  "Wrap text at this many columns (default: the terminal's, else 100)")
       .between(cli::kColumnsMin, std::size_t{1000});
   cli::add_color_option(command, options.color);
   for (const char* name : {"--target", "--cases", "--requirement"}) {
@@ -370,7 +379,7 @@ void add_options(cli::Command& command, TestOptions& options) {
 }  // namespace
 
 void add_test(cli::Command& app) {
-  cli::Command& command = app.add_subcommand(kCommand, "Try implementations with golden traces");
+  cli::Command& command = app.add_subcommand(kCommand, "Test implementations with golden traces");
   auto options = std::make_shared<TestOptions>();
   add_options(command, *options);
   command.footer(kTestFooter);

@@ -43,7 +43,7 @@ class Builder final : public nlohmann::json_sax<json> {
 
   bool start_object(std::size_t) override { return open(Value::of_object()); }
   bool key(string_t& name) override {
-    if (open_.back()->find(name)) throw JsonError("the key \"" + name + "\" stands twice", 1);
+    if (open_.back()->find(name)) throw JsonError("the key \"" + name + "\" is given twice", 1);
     open_.back()->keys.push_back(name);
     return true;
   }

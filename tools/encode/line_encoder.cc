@@ -159,25 +159,29 @@ void EncodedLines::one(Lines& lines) {
 
 void add_line_options(cli::Command& app, LineOptions& options) {
   app.add_option("FILE", options.input.files, "JSON lines; none or - is stdin");
-  app.add_option("--spec", options.input.spec, "Protocol above the AM layer").show_default();
+  app.add_option("--spec", options.input.spec, "Use this protocol above the AM layer")
+      .show_default();
   app.add_option("--as", options.input.as_message,
-                 "Each line is the fields of this message, which is put into a frame")
+                 "Read each line as the fields of this message, and put it into a frame")
       .check(cli::given);
-  app.add_option("--am-type", options.am_type, "With --as, the AM type (default: its own)")
+  app.add_option("--am-type", options.am_type, "With --as, set the AM type (default: its own)")
       .between(0, 0xff);
-  app.add_option("--dest", options.dest, "With --as, the AM destination (default: broadcast)")
+  app.add_option("--dest", options.dest, "With --as, set the AM destination (default: broadcast)")
       .between(0, 0xffff);
-  app.add_option("--src", options.src, "With --as, the AM source (default: 0)").between(0, 0xffff);
-  app.add_option("--group", options.group,
-                 options.to_line
-                     ? "With --as, the AM group (default: 0)"
-                     : "With --as, the AM group (default: 0 on serial lines, 0x22 on the radio)")
+  app.add_option("--src", options.src, "With --as, set the AM source (default: 0)")
+      .between(0, 0xffff);
+  app.add_option(
+         "--group", options.group,
+         options.to_line
+             ? "With --as, set the AM group (default: 0)"
+             : "With --as, set the AM group (default: 0 on serial lines, 0x22 on the radio)")
       .between(0, 0xff);
 }
 
 void add_carrier_option(cli::Command& app, LineOptions& options) {
-  app.add_option("--carrier", options.carrier,
-                 "With --as, the frame: serial, radio, or none (default: what carries it)")
+  app.add_option(
+         "--carrier", options.carrier,
+         "With --as, choose the frame: serial, radio or none (default: what carries the message)")
       .one_of({"serial", "radio", "none"});
 }
 

@@ -45,7 +45,7 @@ std::int64_t time_of(const Value* value) {
   const auto wrong = [&] {
     return RecordError("time",
                        "expected seconds as a decimal number with at most nine digits "
-                       "behind the point, or null, given " +
+                       "after the point, or null, given " +
                            value_text(*value));
   };
   if (!value->is(Value::Kind::kInteger) && !value->is(Value::Kind::kReal)) throw wrong();

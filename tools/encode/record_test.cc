@@ -163,7 +163,7 @@ const Row kRows[] = {
     {"BadTime",
      true,
      {{"time", "\"x\""}},
-     "time: expected seconds as a decimal number with at most nine digits behind the point, or "
+     "time: expected seconds as a decimal number with at most nine digits after the point, or "
      "null, given \"x\""},
     {"FrameNoObject", true, {{"frame", "3"}}, "frame: expected an object or null, given 3"},
     {"NumberTooLarge",

@@ -63,10 +63,10 @@ constexpr std::pair<std::string_view, const char*> kParts[] = {
     {"conformance/check/", "checker"},
 };
 
-std::string places_text(std::string_view rule, std::span<const RulePlace> places) {
+std::string places_text(const Requirement& rule, std::span<const RulePlace> places) {
   std::vector<std::string_view> files[std::size(kParts)];
   for (const RulePlace& place : places) {
-    if (place.rule != rule) continue;
+    if (place.rule != rule.id) continue;
     const auto part = std::find_if(std::rbegin(kParts), std::rend(kParts), [&](const auto& each) {
       return place.file.starts_with(each.first);
     });
@@ -77,7 +77,12 @@ std::string places_text(std::string_view rule, std::span<const RulePlace> places
     if (files[i].empty()) continue;
     out += wrapped(fmt::format("{}: {}", kParts[i].second, fmt::join(files[i], ", ")), 4);
   }
-  return out.empty() ? "" : "  In the code:\n" + out;
+  if (out.empty()) return "";
+  const bool of_behaviour = rule.roles != 0;
+  if (of_behaviour && files[std::size(kParts) - 1].empty()) {
+    out += "    checker: none; golden traces alone try it\n";
+  }
+  return "  In the code:\n" + out;
 }
 
 }  // namespace
@@ -129,7 +134,7 @@ std::string explain_rule(const std::vector<const reflect::Protocol*>& protocols,
     }
   }
   out += used_by(protocols, [id](const reflect::Field& f) { return f.requirement == id; });
-  out += places_text(rule.id, places);
+  out += places_text(rule, places);
   const std::string cases =
       cases_text(id, "positive", false, list, uses) + cases_text(id, "negative", true, list, uses);
   if (!cases.empty()) return out + "  Cases:\n" + cases;

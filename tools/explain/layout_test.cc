@@ -170,6 +170,9 @@ TEST(Explain, RuleOfBehaviour) {
   EXPECT_THAT(text, HasSubstr("  For: mote\n"));
   EXPECT_THAT(text, HasSubstr("  Accepted by --profile deployed: A joinIsland call without"));
   EXPECT_THAT(text, testing::EndsWith("  Cases: none\n"));
+  const RulePlace unseen[] = {{"S1-ID", "conformance/machine/synaptic.cc"}};
+  EXPECT_THAT(explain_rule({}, "S1-ID"_rule, {}, {}, unseen),
+              HasSubstr("    checker: none; golden traces alone try it\n"));
   EXPECT_THAT(explain_rule({}, "T2-LOOP"_rule, {}), HasSubstr("For: mote, sink, base station;"));
 }
 
@@ -232,7 +235,7 @@ const GuessRow kGuesses[] = {
 
 class Guesses : public testing::TestWithParam<GuessRow> {};
 
-TEST_P(Guesses, Taken) {
+TEST_P(Guesses, OfTheFramingOfBytes) {
   std::vector<std::uint8_t> bytes;
   ASSERT_TRUE(reflect::parse_hex(GetParam().hex, bytes));
   const auto frame = take_frame(bytes, "auto");

@@ -47,7 +47,7 @@ class Lexer {
     for (const std::string_view symbol : {"==", "!=", "<=", ">=", "&&", "||"}) {
       if (text_.substr(at_).starts_with(symbol)) return take(TokenKind::kSymbol, 2);
     }
-    if (c == '=') throw FilterError("'=' is no comparison, '==' is", at_);
+    if (c == '=') throw FilterError("'=' is not a comparison, '==' is", at_);
     if (std::string_view("<>!()&|").find(c) != std::string_view::npos) {
       return take(TokenKind::kSymbol, 1);
     }
@@ -123,7 +123,7 @@ std::int64_t read_hex(const Token& token) {
   const char* end = token.text.data() + token.text.size();
   const auto [stop, error] = std::from_chars(token.text.data() + 2, end, value, 16);
   if (error != std::errc{} || stop != end || value > INT64_MAX) {
-    throw FilterError(fmt::format("'{}' is no number", token.text), token.position);
+    throw FilterError(fmt::format("'{}' is not a number", token.text), token.position);
   }
   return static_cast<std::int64_t>(value);
 }
@@ -145,7 +145,7 @@ Operand read_number(const Token& token) {
   operand.kind = Operand::Kind::kReal;
   const auto real = std::from_chars(begin, end, operand.real);
   if (real.ec != std::errc{} || real.ptr != end) {
-    throw FilterError(fmt::format("'{}' is no number", token.text), token.position);
+    throw FilterError(fmt::format("'{}' is not a number", token.text), token.position);
   }
   return operand;
 }
@@ -291,8 +291,8 @@ class FilterParser {
     const std::vector<std::string> bits = filter_.paths_[term.path].bit_names();
     do {
       if (token_.kind == TokenKind::kWord && bits.empty()) {
-        fail(
-            fmt::format("{} is no mask, its bits have no names", filter_.paths_[term.path].text()));
+        fail(fmt::format("{} is not a mask, its bits have no names",
+                         filter_.paths_[term.path].text()));
       }
       if (token_.kind == TokenKind::kNumber) {
         const Operand number = read_number(token_);

@@ -107,7 +107,7 @@ class Captures(unittest.TestCase):
         """A decoded serial frame against its record; an ACK has no packet."""
         self.assertEqual(line["framing"], "hdlc")
         self.assertEqual(line["frame"]["kind"], row["proto"])
-        if "am_type" not in row:  # An ACK: the byte behind the kind is what it confirms.
+        if "am_type" not in row:  # An ACK: the byte after the kind is what it confirms.
             self.assertIsNone(line["am"])
             self.assertEqual(line["frame"]["serial_seq"], int(row["hdlc"][4:6], 16))
             return

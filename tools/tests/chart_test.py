@@ -180,7 +180,7 @@ class Chart(unittest.TestCase):
             xml.etree.ElementTree.parse(out)
             self.assertEqual(chart("j4.accept", "--out", f"{folder}/none/x").returncode, 2)
 
-    def test_what_there_is_not(self):
+    def test_what_does_not_exist(self):
         for words, code, text in [
                 (["j4.wrongseq"], 64, "did you mean 'j4.wrong_seq'"),
                 (["conformance/cases/j4.rtr:j4.acept"], 64, "did you mean 'j4.accept'"),

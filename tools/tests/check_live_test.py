@@ -23,7 +23,7 @@ from serial_testing import PATIENCE_S, Pty, hdlc, holds
 
 
 class CheckLive(CheckTest):
-    def test_a_failure_is_told_while_the_line_is_open(self):
+    def test_a_failure_is_reported_while_the_line_is_open(self):
         kept = self.folder / "kept.pcapng"
         running, _ = self.served(data(BROKEN_LINE), "--format", "jsonl", "--write", kept)
         found = running.event("found", "J6-CONTENT")["finding"]
@@ -68,7 +68,7 @@ class CheckLive(CheckTest):
         self.assertEqual(running.end()[0], 1)
         self.assertEqual(json.loads(where.read_text())["verdict"], "fail")
 
-    def test_what_is_expected_is_told_as_that(self):
+    def test_what_is_expected_is_reported_as_expected(self):
         known = self.folder / "known.yaml"
         known.write_text("- requirement: J6-CONTENT\n  message: serial_joined\n  reason: Old.\n")
         running, _ = self.served(data(BROKEN_LINE), "--expect", known)
@@ -147,7 +147,7 @@ class CheckLive(CheckTest):
         self.assertEqual((code, report), offline(path))
         self.assertNotIn("J3-REPLY", [one["requirement"] for one in report["findings"]])
 
-    def test_what_is_told_is_what_is_reported(self):
+    def test_what_is_reported_live_is_in_the_last_report(self):
         for capture in (MANY, SERIAL_TOO):
             path = self.folder / capture.name
             path.write_bytes(b"")

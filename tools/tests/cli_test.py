@@ -114,7 +114,7 @@ class ExitCodes(unittest.TestCase):
 
 
 class Damage(unittest.TestCase):
-    def test_a_cut_file_prints_what_stands_before(self):
+    def test_a_cut_file_prints_what_comes_before_the_cut(self):
         whole = JOIN.read_bytes()
         all_lines = lines(decode(JOIN, "--format", "jsonl"))
         done = decode("--format", "jsonl", stdin=whole[:5000])
@@ -125,7 +125,7 @@ class Damage(unittest.TestCase):
         self.assertEqual(shown[:-1], all_lines[:len(shown) - 1])
         self.assertEqual(json.loads(shown[-1])["error"]["fault"], "cut")
 
-    def test_what_stands_behind_a_damaged_block_is_found(self):
+    def test_what_follows_a_damaged_block_is_found(self):
         whole = bytearray(JOIN.read_bytes())
         all_lines = [json.loads(line) for line in lines(decode(JOIN, "--format", "jsonl"))]
         place = all_lines[20]["offset"] - 24  # The length of the block that holds it.
@@ -187,7 +187,7 @@ class Output(unittest.TestCase):
         self.assertEqual((line["framing"], line["fields"]["value"], line["raw"]),
                          ("bare", 12, "0a000c"))
 
-    def test_a_capture_file_is_no_bare_message(self):
+    def test_a_capture_file_is_not_a_bare_message(self):
         done = decode("--as", "config", JOIN)
         self.assertEqual((done.returncode, done.stdout), (INPUT, b""))
         self.assertIn("this is pcapng; --as takes a message alone", done.stderr.decode())

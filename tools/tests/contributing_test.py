@@ -43,7 +43,7 @@ def command_mistakes(line, known, presets):
         if not word.startswith("build/") and not (ROOT / word).exists():
             yield f"no file {word}"
         elif program and not os.access(ROOT / word, os.X_OK):
-            yield f"{word} is no program"
+            yield f"{word} is not a program"
 
 
 def name_mistakes(name, known):

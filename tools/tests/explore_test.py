@@ -60,7 +60,7 @@ class Explore(unittest.TestCase):
                 self.assertEqual(honest.returncode, 0, honest.stdout)
                 self.assertIsNone(json.loads(honest.stdout)["trace"])
 
-    def test_a_trace_on_stdout_stands_alone(self):
+    def test_a_trace_on_stdout_is_alone_there(self):
         done = explore(*FAULTS, "--flaw", "no_fail")
         self.assertEqual(done.returncode, 1)
         self.assertTrue(done.stdout.startswith("%rtr 1"))
@@ -92,7 +92,7 @@ class Explore(unittest.TestCase):
         process.stderr.close()
         self.assertEqual(process.wait(), 1)
 
-    def test_the_known_weakness_is_told_and_breaks_nothing(self):
+    def test_the_known_weakness_is_reported_and_breaks_nothing(self):
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder) / "known.rtr"
             done = explore(*FAULTS, "--reboot", "--calls", "2", "--out-known", str(path))

@@ -267,7 +267,7 @@ class Captures(Base):
         for source, code, what in (
                 ("serial@/no/such:57600", 3, "/no/such: cannot be opened"),
                 ("serial@/no such/mote:57600", 3, "/no such/mote: cannot be opened"),
-                ("serial@/dev/null:115200", 3, "is no serial line"),
+                ("serial@/dev/null:115200", 3, "is not a serial line"),
                 ("sf@127.0.0.1:1", 3, "cannot connect"),
                 ("serial@/dev/ttyUSB0", 2, "expected serial@DEVICE:BAUD"),
                 ("sf@nowhere", 2, "expected HOST:PORT"),

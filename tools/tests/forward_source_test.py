@@ -116,7 +116,7 @@ class Sources(unittest.TestCase):
         mote.say(b"SSH-2.0")
         out, err = running.communicate(timeout=PATIENCE_S)
         self.assertEqual((running.returncode, out), (3, ""))
-        self.assertIn("the other end is no serial forwarder: it does not begin with 55 20", err)
+        self.assertIn("the other end is not a serial forwarder: it does not begin with 55 20", err)
 
     def test_a_forwarder_of_a_forwarder(self):
         mote = Mote(self).on_a_terminal()
@@ -231,7 +231,7 @@ class Sources(unittest.TestCase):
         self.assertEqual(out.split()[1:],
                          ["outbound,69", "inbound,68", "outbound,67", "outbound,69"])
 
-    def test_a_capture_that_cannot_be_written_is_told_at_once(self):
+    def test_a_capture_that_cannot_be_written_is_reported_at_once(self):
         with tempfile.TemporaryDirectory(prefix="rubric-forward-") as folder:
             kept = pathlib.Path(folder) / "kept.pcapng"
             mote = Mote(self).on_a_port()
@@ -256,7 +256,7 @@ class Sources(unittest.TestCase):
                                    "--write", pipe],
                                   capture_output=True, text=True, check=False, timeout=PATIENCE_S)
         self.assertEqual(done.returncode, 2)
-        self.assertIn(f"--write: {pipe} is no regular file", done.stderr)
+        self.assertIn(f"--write: {pipe} is not a regular file", done.stderr)
 
 
 if __name__ == "__main__":

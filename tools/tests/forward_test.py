@@ -256,7 +256,7 @@ class Clients(unittest.TestCase):
         self.assertEqual(running.end(None),
                          (3, "rubric: cannot wait for source and clients: Invalid argument"))
 
-    def test_what_is_cut_short_behind_whole_packets(self):
+    def test_what_is_cut_short_after_whole_packets(self):
         mote = Mote(self).on_a_port()
         running = Running(self, mote.source, "--timeout", str(1000 * PATIENCE_S))
         mote.accept()

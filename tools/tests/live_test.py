@@ -131,7 +131,7 @@ class Live(LiveTest):
                                   check=False)
             self.assertEqual((done.returncode, done.stdout), (2, ""), name)
             self.assertIn(what, done.stderr)
-        for name, what in (("serial@/dev/null:115200", "is no serial line"),
+        for name, what in (("serial@/dev/null:115200", "is not a serial line"),
                            ("serial@/no/such:57600", "cannot be opened"),
                            ("sf@127.0.0.1:1", "cannot connect")):
             done = subprocess.run([RUBRIC, "decode", name], capture_output=True, text=True,

@@ -18,7 +18,7 @@ from serial_testing import ACK, PACKET_NOACK, PATIENCE_S, hdlc
 
 
 class Input(Base):
-    def test_bad_lines_are_told_and_not_sent(self):
+    def test_bad_lines_are_reported_and_not_sent(self):
         to, mote = self.mote(confirms)
         text = line(1) + '{"type":10,"value":70000}\n' + "{\n" + '{"kind":1}\n' + line(2)
         code, out, err = send("--as", "config", "--to", to, "--timeout", LONG_MS, text=text)
@@ -76,7 +76,7 @@ class Input(Base):
     def test_lines_that_cannot_be_had(self):
         with socket.create_server(("127.0.0.1", 0)) as taken:
             free = taken.getsockname()[1]
-        for to, what in (("serial@/dev/null:115200", "is no serial line"),
+        for to, what in (("serial@/dev/null:115200", "is not a serial line"),
                          ("serial@/no/such:57600", "cannot be opened"),
                          (f"network@127.0.0.1:{free}", "cannot connect")):
             code, out, err = send("--as", "config", "--to", to, text=line(1))
@@ -208,7 +208,7 @@ class SerialForwarder(Base):
             code, out, err = send("--as", "config", "--to", to, text=line(1))
             thread.join(PATIENCE_S)
         self.assertEqual((code, out), (NOT_SENT, ""))
-        self.assertIn(f"rubric: {to}: the other end is no serial forwarder's: it begins with 53 "
+        self.assertIn(f"rubric: {to}: the other end is not a serial forwarder's: it begins with 53 "
                       "53, not with 55 20\n", err)
 
     def test_a_forwarder_that_goes(self):

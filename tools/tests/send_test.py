@@ -73,7 +73,7 @@ class Serial(Base):
                 self.assertEqual(err, "rubric: 2 packets, 0 confirmed, 2 not\n")
             else:
                 self.assertEqual(out.count("\n"), 1)
-                self.assertEqual(err, "rubric: stdin:1: not confirmed; nothing behind it is sent "
+                self.assertEqual(err, "rubric: stdin:1: not confirmed; nothing after it is sent "
                                       "(--keep-going would)\n"
                                       "rubric: 1 packet, 0 confirmed, 1 not\n")
             mote.end()
@@ -246,7 +246,7 @@ class Serial(Base):
         code, out, err = running.end(signal.SIGTERM)
         self.assertEqual(code, NOT_SENT)
         self.assertIn("not confirmed after 1 try", out)
-        self.assertEqual(err, "rubric: stdin:1: stopped; nothing behind it is sent\n"
+        self.assertEqual(err, "rubric: stdin:1: stopped; nothing after it is sent\n"
                               "rubric: 1 packet, 0 confirmed, 1 not\n")
         mote.end()
         self.assertEqual(mote.packets, [(14, config(1))])

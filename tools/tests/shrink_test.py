@@ -92,7 +92,7 @@ class Shrink(unittest.TestCase):
         self.assertEqual(code, 0, err)
         self.assertIn("[J8-LIMIT", out)
 
-    def test_a_seed_stands_in_what_is_made(self):
+    def test_a_seed_is_in_what_is_made(self):
         with moody() as target:
             self.assertEqual(run("shrink", str(CASE), "--target", target)[0], 3)
             code, out, err = run("shrink", str(CASE), "--target", target, "--seed", "7")
@@ -125,7 +125,7 @@ class Shrink(unittest.TestCase):
         code, _, err = run("shrink", "nowhere.rtr", "--target", "machine")
         self.assertEqual(code, 66, err)
 
-    def test_a_target_that_is_none(self):
+    def test_an_unknown_target(self):
         code, _, err = run("shrink", str(CASE), "--target", "exit 3", "--timeout", "2")
         self.assertEqual(code, 2, err)
 
@@ -153,12 +153,12 @@ class Diff(unittest.TestCase):
         self.assertEqual(code, 1, err)
         self.assertIn("J8", out)
 
-    def test_a_thing_and_itself(self):
+    def test_a_target_and_itself(self):
         code, out, err = run("diff", "--target", "machine", "--target", MACHINE, "--cases", "j*")
         self.assertEqual((code, out), (0, ""), err)
         self.assertIn("0 differ", err)
 
-    def test_traces_may_stand_between_the_options(self):
+    def test_traces_may_be_between_the_options(self):
         code, _, err = run("diff", "--target", "machine", "conformance/cases/j1.rtr", "--target",
                            MACHINE)
         self.assertEqual(code, 0, err)

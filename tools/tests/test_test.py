@@ -176,7 +176,7 @@ class Running(Folder):
         self.assertEqual(code, 1)
         self.assertEqual(out.count("NOT TRUE"), 1)
         self.assertIn("1 expectation not true", out)
-        self.assertIn("runs that 'j4.*' stands for do not fail so", " ".join(out.split()))
+        self.assertIn("runs that 'j4.*' names do not fail so", " ".join(out.split()))
 
     def test_nobody_at_the_port(self):
         """It is not waited for longer than --timeout says, whatever starts slowly elsewhere."""
@@ -337,7 +337,7 @@ class Failing(Folder):
         self.assertIn("nothing was decided", out)
 
     def test_dishonest_is_refused(self):
-        for target, why in [(self.fake("yes_man"), "a command that nobody knows"),
+        for target, why in [(self.fake("yes_man"), "an unknown command"),
                             (self.fake("liar"), "canary.mote has to fail"),
                             ("exit 3", "it does not start"),
                             ("no_such_program_anywhere", "it does not start"),

@@ -209,7 +209,7 @@ const Damage kDamages[] = {
      0},
 };
 
-TEST(WirePcapng, DamageIsToldAndTheNextBlockFound) {
+TEST(WirePcapng, DamageIsReportedAndTheNextBlockFound) {
   for (const Damage& row : kDamages) {
     File file;
     file.section();

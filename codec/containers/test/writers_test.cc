@@ -98,7 +98,7 @@ TEST(WirePcap, DamageIsNoRecord) {
   EXPECT_EQ(written, "");
 }
 
-TEST(WireHdlcEscape, AFrameCutBehindItsFirstEscapeComesBack) {
+TEST(WireHdlcEscape, AFrameCutAfterItsFirstEscapeComesBack) {
   HdlcReader reader;
   const std::string stream = from_hex("7e 7d");
   const std::vector<Kept> got = read_all(reader, view(stream));

@@ -13,10 +13,10 @@ using reflect::RouteChoice;
 using reflect::RouteLength;
 using reflect::RouteTable;
 
-constexpr RouteLength kLengths0[] = {
-    {5, 1, false, 8}};
-constexpr RouteChoice kChoices1[] = {
+constexpr RouteChoice kChoices0[] = {
     {7, 1, false, 147}};
+constexpr RouteLength kLengths1[] = {
+    {5, 1, false, 8}};
 constexpr RouteChoice kChoices2[] = {
     {10, 1, false, 147}};
 constexpr RouteChoice kChoices3[] = {
@@ -24,7 +24,7 @@ constexpr RouteChoice kChoices3[] = {
 
 constexpr Route kRouteList[] = {
     {"serial", &oscilloscope::tables::types::kOscilloscopeMsg, 8, 114,
-     kChoices1, 1, kLengths0, 1},
+     kChoices0, 1, kLengths1, 1},
     {"radio_i", &oscilloscope::tables::types::kOscilloscopeMsg, 11, UINT32_MAX,
      kChoices2, 1, nullptr, 0},
     {"radio_t", &oscilloscope::tables::types::kOscilloscopeMsg, 10, UINT32_MAX,

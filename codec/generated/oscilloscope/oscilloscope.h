@@ -57,7 +57,7 @@ class OscilloscopeView {
   /// What the bytes of payload may hold.
   enum class PayloadKind : uint8_t { kOpaque, kOscilloscopeMsg };
 
-  /// Checks everything once. Bytes behind the structure are stale().
+  /// Checks everything once. Bytes after the structure are stale().
   static constexpr Result<OscilloscopeView> parse(Bytes bytes) {
     const Error error = check(bytes);
     if (RUBRIC_UNLIKELY(is_error(error))) return Failure{error};

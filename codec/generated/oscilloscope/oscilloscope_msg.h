@@ -62,7 +62,7 @@ class OscilloscopeMsgView {
   static constexpr size_t kMinSizeBytes = 28;
   static constexpr size_t kMaxSizeBytes = 28;
 
-  /// Checks everything once. Bytes behind the structure are stale().
+  /// Checks everything once. Bytes after the structure are stale().
   static constexpr Result<OscilloscopeMsgView> parse(Bytes bytes) {
     const Error error = check(bytes);
     if (RUBRIC_UNLIKELY(is_error(error))) return Failure{error};

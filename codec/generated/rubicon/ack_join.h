@@ -58,7 +58,7 @@ class AckJoinView {
   static constexpr size_t kMinSizeBytes = 14;
   static constexpr size_t kMaxSizeBytes = 14;
 
-  /// Checks everything once. Bytes behind the structure are stale().
+  /// Checks everything once. Bytes after the structure are stale().
   static constexpr Result<AckJoinView> parse(Bytes bytes) {
     const Error error = check(bytes);
     if (RUBRIC_UNLIKELY(is_error(error))) return Failure{error};

@@ -74,7 +74,7 @@ class AppMsgView {
       kLearningOutput, kRubiconAck, kRubiconAckSeqOnly,
       kSynapticData };
 
-  /// Checks everything once. Bytes behind the greatest size are left out.
+  /// Checks everything once. Bytes after the greatest size are left out.
   static constexpr Result<AppMsgView> parse(Bytes bytes) {
     bytes = at_most(bytes, kMaxSizeBytes);
     const Error error = check(bytes);

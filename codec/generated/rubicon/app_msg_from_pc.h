@@ -77,7 +77,7 @@ class AppMsgFromPcView {
       kLearningModuleFloatCmd, kNetidCmd, kRubiconAck,
       kRubiconAckSeqOnly, kSynapticData };
 
-  /// Checks everything once. Bytes behind the greatest size are left out.
+  /// Checks everything once. Bytes after the greatest size are left out.
   static constexpr Result<AppMsgFromPcView> parse(Bytes bytes) {
     bytes = at_most(bytes, kMaxSizeBytes);
     const Error error = check(bytes);

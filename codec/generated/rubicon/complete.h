@@ -32,7 +32,7 @@ struct Complete {
   uint8_t reliable = 0;
   /// Bytes 9-10. Sequence number.
   uint16_t seq_num = 0;
-  /// Byte 11. Bytes behind the header. From 2 to 102. WIRE-NET-NBYTES.
+  /// Byte 11. Bytes after the header. From 2 to 102. WIRE-NET-NBYTES.
   uint8_t nbytes = 0;
   /// Byte 12. Transport component.
   Component trans_id = Component();
@@ -83,7 +83,7 @@ class CompleteView {
   static constexpr size_t kMinSizeBytes = 19;
   static constexpr size_t kMaxSizeBytes = 19;
 
-  /// Checks everything once. Bytes behind the structure are stale().
+  /// Checks everything once. Bytes after the structure are stale().
   static constexpr Result<CompleteView> parse(Bytes bytes) {
     const Error error = check(bytes);
     if (RUBRIC_UNLIKELY(is_error(error))) return Failure{error};
@@ -112,7 +112,7 @@ class CompleteView {
   constexpr uint8_t reliable() const { return load_u8(bytes_.data() + 8); }
   /// Bytes 9-10. Sequence number.
   constexpr uint16_t seq_num() const { return load_be16(bytes_.data() + 9); }
-  /// Byte 11. Bytes behind the header. From 2 to 102. WIRE-NET-NBYTES.
+  /// Byte 11. Bytes after the header. From 2 to 102. WIRE-NET-NBYTES.
   constexpr uint8_t nbytes() const { return load_u8(bytes_.data() + 11); }
   /// Byte 12. Transport component.
   constexpr Component trans_id() const {
@@ -220,7 +220,7 @@ class CompleteBuilder {
   }
   /// Bytes 9-10. Sequence number.
   void set_seq_num(uint16_t value) { store_be16(out_.data() + 9, value); }
-  /// Byte 11. Bytes behind the header. From 2 to 102. WIRE-NET-NBYTES.
+  /// Byte 11. Bytes after the header. From 2 to 102. WIRE-NET-NBYTES.
   RUBRIC_MUST_USE bool set_nbytes(uint8_t value) {
     if (value < 2 || value > 102) return false;
     store_u8(out_.data() + 11, value);

@@ -79,7 +79,7 @@ class ConnlessView {
   static constexpr size_t kMinSizeBytes = 8;
   static constexpr size_t kMaxSizeBytes = 108;
 
-  /// Checks everything once. Bytes behind the structure are stale().
+  /// Checks everything once. Bytes after the structure are stale().
   static constexpr Result<ConnlessView> parse(Bytes bytes) {
     const Error error = check(bytes);
     if (RUBRIC_UNLIKELY(is_error(error))) return Failure{error};

@@ -91,7 +91,7 @@ class DemoDataView {
   static constexpr size_t kMinSizeBytes = 19;
   static constexpr size_t kMaxSizeBytes = 19;
 
-  /// Checks everything once. Bytes behind the structure are stale().
+  /// Checks everything once. Bytes after the structure are stale().
   static constexpr Result<DemoDataView> parse(Bytes bytes) {
     const Error error = check(bytes);
     if (RUBRIC_UNLIKELY(is_error(error))) return Failure{error};

@@ -57,7 +57,7 @@ class JoinReplyView {
   static constexpr size_t kMinSizeBytes = 10;
   static constexpr size_t kMaxSizeBytes = 10;
 
-  /// Checks everything once. Bytes behind the structure are stale().
+  /// Checks everything once. Bytes after the structure are stale().
   static constexpr Result<JoinReplyView> parse(Bytes bytes) {
     const Error error = check(bytes);
     if (RUBRIC_UNLIKELY(is_error(error))) return Failure{error};

@@ -63,7 +63,7 @@ class LearningModuleDownView {
   static constexpr size_t kMinSizeBytes = 4;
   static constexpr size_t kMaxSizeBytes = 96;
 
-  /// Checks everything once. Bytes behind the structure are stale().
+  /// Checks everything once. Bytes after the structure are stale().
   static constexpr Result<LearningModuleDownView> parse(Bytes bytes) {
     const Error error = check(bytes);
     if (RUBRIC_UNLIKELY(is_error(error))) return Failure{error};

@@ -83,7 +83,7 @@ class LearningModuleFloatCmdView {
   static constexpr size_t kMinSizeBytes = 8;
   static constexpr size_t kMaxSizeBytes = 100;
 
-  /// Checks everything once. Bytes behind the structure are stale().
+  /// Checks everything once. Bytes after the structure are stale().
   static constexpr Result<LearningModuleFloatCmdView> parse(Bytes bytes) {
     const Error error = check(bytes);
     if (RUBRIC_UNLIKELY(is_error(error))) return Failure{error};

@@ -55,7 +55,7 @@ class LearningOutputView {
   static constexpr size_t kMinSizeBytes = 2;
   static constexpr size_t kMaxSizeBytes = 98;
 
-  /// Checks everything once. Bytes behind the structure are stale().
+  /// Checks everything once. Bytes after the structure are stale().
   static constexpr Result<LearningOutputView> parse(Bytes bytes) {
     const Error error = check(bytes);
     if (RUBRIC_UNLIKELY(is_error(error))) return Failure{error};

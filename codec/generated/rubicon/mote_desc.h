@@ -54,7 +54,7 @@ class MoteDescView {
   static constexpr size_t kMinSizeBytes = 4;
   static constexpr size_t kMaxSizeBytes = 4;
 
-  /// Checks everything once. Bytes behind the structure are stale().
+  /// Checks everything once. Bytes after the structure are stale().
   static constexpr Result<MoteDescView> parse(Bytes bytes) {
     const Error error = check(bytes);
     if (RUBRIC_UNLIKELY(is_error(error))) return Failure{error};

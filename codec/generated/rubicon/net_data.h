@@ -78,7 +78,7 @@ class NetDataView {
   static constexpr size_t kMinSizeBytes = 15;
   static constexpr size_t kMaxSizeBytes = 15;
 
-  /// Checks everything once. Bytes behind the structure are stale().
+  /// Checks everything once. Bytes after the structure are stale().
   static constexpr Result<NetDataView> parse(Bytes bytes) {
     const Error error = check(bytes);
     if (RUBRIC_UNLIKELY(is_error(error))) return Failure{error};

@@ -2,7 +2,7 @@
 // Renew with: cmake --build --preset release --target regenerate
 //
 // net_msg. The message of the network level. Over the radio only nbytes of the payload are sent; on
-// the serial line the whole 114 bytes, and bytes behind the payload are left over from earlier
+// the serial line the whole 114 bytes, and bytes after the payload are left over from earlier
 // frames. (paper: The Network level)
 //
 //   byte  field               type                  rule
@@ -79,7 +79,7 @@ class NetMsgView {
   /// What the bytes of payload may hold.
   enum class PayloadKind : uint8_t { kOpaque, kAppMsgFromPc, kAppMsg };
 
-  /// Checks everything once. Bytes behind the structure are stale().
+  /// Checks everything once. Bytes after the structure are stale().
   static constexpr Result<NetMsgView> parse(Bytes bytes) {
     const Error error = check(bytes);
     if (RUBRIC_UNLIKELY(is_error(error))) return Failure{error};

@@ -52,7 +52,7 @@ class NetidCmdView {
   static constexpr size_t kMinSizeBytes = 5;
   static constexpr size_t kMaxSizeBytes = 5;
 
-  /// Checks everything once. Bytes behind the structure are stale().
+  /// Checks everything once. Bytes after the structure are stale().
   static constexpr Result<NetidCmdView> parse(Bytes bytes) {
     const Error error = check(bytes);
     if (RUBRIC_UNLIKELY(is_error(error))) return Failure{error};

@@ -53,7 +53,7 @@ class ReadUpdatesView {
   static constexpr size_t kMinSizeBytes = 5;
   static constexpr size_t kMaxSizeBytes = 5;
 
-  /// Checks everything once. Bytes behind the structure are stale().
+  /// Checks everything once. Bytes after the structure are stale().
   static constexpr Result<ReadUpdatesView> parse(Bytes bytes) {
     const Error error = check(bytes);
     if (RUBRIC_UNLIKELY(is_error(error))) return Failure{error};

@@ -40,7 +40,7 @@ class RssiBeaconView {
   static constexpr size_t kMinSizeBytes = 1;
   static constexpr size_t kMaxSizeBytes = 1;
 
-  /// Checks everything once. Bytes behind the structure are stale().
+  /// Checks everything once. Bytes after the structure are stale().
   static constexpr Result<RssiBeaconView> parse(Bytes bytes) {
     const Error error = check(bytes);
     if (RUBRIC_UNLIKELY(is_error(error))) return Failure{error};

@@ -64,7 +64,7 @@ class RubiconView {
   enum class PayloadKind : uint8_t { kOpaque, kCommand, kSerialData, kLearningModuleCmd,
       kLearningModuleFloatCmd, kNetMsg, kConfig };
 
-  /// Checks everything once. Bytes behind the structure are stale().
+  /// Checks everything once. Bytes after the structure are stale().
   static constexpr Result<RubiconView> parse(Bytes bytes) {
     const Error error = check(bytes);
     if (RUBRIC_UNLIKELY(is_error(error))) return Failure{error};

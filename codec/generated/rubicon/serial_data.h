@@ -73,7 +73,7 @@ class SerialDataView {
   static constexpr size_t kMinSizeBytes = 13;
   static constexpr size_t kMaxSizeBytes = 13;
 
-  /// Checks everything once. Bytes behind the structure are stale().
+  /// Checks everything once. Bytes after the structure are stale().
   static constexpr Result<SerialDataView> parse(Bytes bytes) {
     const Error error = check(bytes);
     if (RUBRIC_UNLIKELY(is_error(error))) return Failure{error};

@@ -112,7 +112,7 @@ class SynCreateCmdView {
   static constexpr size_t kMinSizeBytes = 58;
   static constexpr size_t kMaxSizeBytes = 58;
 
-  /// Checks everything once. Bytes behind the structure are stale().
+  /// Checks everything once. Bytes after the structure are stale().
   static constexpr Result<SynCreateCmdView> parse(Bytes bytes) {
     const Error error = check(bytes);
     if (RUBRIC_UNLIKELY(is_error(error))) return Failure{error};

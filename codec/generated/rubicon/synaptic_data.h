@@ -14,7 +14,7 @@ namespace rubicon {
 
 /// synaptic_data as a value.
 struct SynapticData {
-  /// From byte 0. One for each connection, at most ten; behind a forwarding sink stale values
+  /// From byte 0. One for each connection, at most ten; after a forwarding sink stale values
   /// follow.
   Array<float, 25> values;
 };
@@ -46,7 +46,7 @@ class SynapticDataView {
   static constexpr size_t kMinSizeBytes = 0;
   static constexpr size_t kMaxSizeBytes = 100;
 
-  /// Checks everything once. Bytes behind the greatest size are left out.
+  /// Checks everything once. Bytes after the greatest size are left out.
   static constexpr Result<SynapticDataView> parse(Bytes bytes) {
     bytes = at_most(bytes, kMaxSizeBytes);
     const Error error = check(bytes);
@@ -63,7 +63,7 @@ class SynapticDataView {
     return no_error();
   }
 
-  /// From byte 0. One for each connection, at most ten; behind a forwarding sink stale values
+  /// From byte 0. One for each connection, at most ten; after a forwarding sink stale values
   /// follow.
   constexpr NumberArrayView<F32Le> values() const {
     return detail::Access::view<NumberArrayView<F32Le>>(bytes_);
@@ -121,7 +121,7 @@ class SynapticDataBuilder {
     return SynapticDataBuilder(out);
   }
 
-  /// From byte 0. One for each connection, at most ten; behind a forwarding sink stale values
+  /// From byte 0. One for each connection, at most ten; after a forwarding sink stale values
   /// follow. Copies `n` elements; false where there is no room.
   RUBRIC_MUST_USE bool set_values(const float* from, size_t n) {
     if (n > 25) return false;

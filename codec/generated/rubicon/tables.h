@@ -620,7 +620,7 @@ namespace synaptic_data {
 constexpr Field kFields[] = {
     {"values", "\"values\":", 9, Kind::kFloat, 4, true, Repeat::kToEnd, Extent::kOwn, 0, kAny, -1,
      nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-SYNAPTIC-DATA"_rule, nullptr,
-     "One for each connection, at most ten; behind a forwarding sink stale values follow."},
+     "One for each connection, at most ten; after a forwarding sink stale values follow."},
 };
 }  // namespace synaptic_data
 }  // namespace of
@@ -896,7 +896,7 @@ namespace types {
 constexpr Type kNetMsg{
     "net_msg", "net_msg", of::net_msg::kFields, 6, nullptr, 0, 14, 114, 28, "WIRE-NET-HEADER"_rule,
     "The message of the network level. Over the radio only nbytes of the payload are sent; on "
-    "the serial line the whole 114 bytes, and bytes behind the payload are left over from "
+    "the serial line the whole 114 bytes, and bytes after the payload are left over from "
     "earlier frames.",
     "paper: The Network level"};
 }  // namespace types
@@ -1175,7 +1175,7 @@ constexpr Field kFields[] = {
      "Sequence number."},
     {"nbytes", "\"nbytes\":", 9, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 11,
      {ValidKind::kRange, 2, 102, nullptr, 0}, -1, nullptr, nullptr, nullptr, nullptr, {}, {}, {},
-     "WIRE-NET-NBYTES"_rule, nullptr, "Bytes behind the header."},
+     "WIRE-NET-NBYTES"_rule, nullptr, "Bytes after the header."},
     {"trans_id", "\"trans_id\":", 11, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 12,
      kAny, -1, &enums::kComponent, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-COMPLETE"_rule,
      nullptr, "Transport component."},

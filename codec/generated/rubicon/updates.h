@@ -59,7 +59,7 @@ class UpdatesView {
   static constexpr size_t kMinSizeBytes = 2;
   static constexpr size_t kMaxSizeBytes = 98;
 
-  /// Checks everything once. Bytes behind the structure are stale().
+  /// Checks everything once. Bytes after the structure are stale().
   static constexpr Result<UpdatesView> parse(Bytes bytes) {
     const Error error = check(bytes);
     if (RUBRIC_UNLIKELY(is_error(error))) return Failure{error};

@@ -21,7 +21,7 @@ namespace tinyos {
 
 /// am_header as a value. Its bytes are borrowed.
 struct AmHeader {
-  /// Byte 0. What the bytes behind it are; this kit takes active messages. WIRE-AM-DISPATCH.
+  /// Byte 0. What the bytes after it are; this kit takes active messages. WIRE-AM-DISPATCH.
   Dispatch dispatch = Dispatch();
   /// Bytes 1-2. AM address of the receiver; 0xffff is broadcast.
   uint16_t dest = 0;
@@ -69,7 +69,7 @@ class AmHeaderView {
   static constexpr size_t kMinSizeBytes = 8;
   static constexpr size_t kMaxSizeBytes = 8;
 
-  /// Checks everything once. Bytes behind the structure are stale().
+  /// Checks everything once. Bytes after the structure are stale().
   static constexpr Result<AmHeaderView> parse(Bytes bytes) {
     const Error error = check(bytes);
     if (RUBRIC_UNLIKELY(is_error(error))) return Failure{error};
@@ -90,7 +90,7 @@ class AmHeaderView {
     return no_error();
   }
 
-  /// Byte 0. What the bytes behind it are; this kit takes active messages. WIRE-AM-DISPATCH.
+  /// Byte 0. What the bytes after it are; this kit takes active messages. WIRE-AM-DISPATCH.
   constexpr Dispatch dispatch() const { return static_cast<Dispatch>(load_u8(bytes_.data())); }
   /// Bytes 1-2. AM address of the receiver; 0xffff is broadcast.
   constexpr uint16_t dest() const { return load_be16(bytes_.data() + 1); }
@@ -174,7 +174,7 @@ class AmHeaderBuilder {
     return AmHeaderBuilder(out);
   }
 
-  /// Byte 0. What the bytes behind it are; this kit takes active messages. WIRE-AM-DISPATCH.
+  /// Byte 0. What the bytes after it are; this kit takes active messages. WIRE-AM-DISPATCH.
   RUBRIC_MUST_USE bool set_dispatch(Dispatch value) {
     if (static_cast<uint8_t>(value) != 0) return false;
     store_u8(out_.data(), static_cast<uint8_t>(value));

@@ -44,7 +44,7 @@ class MacAckView {
   static constexpr size_t kMinSizeBytes = 3;
   static constexpr size_t kMaxSizeBytes = 3;
 
-  /// Checks everything once. Bytes behind the structure are stale().
+  /// Checks everything once. Bytes after the structure are stale().
   static constexpr Result<MacAckView> parse(Bytes bytes) {
     const Error error = check(bytes);
     if (RUBRIC_UNLIKELY(is_error(error))) return Failure{error};

@@ -62,7 +62,7 @@ class MacHeaderView {
   static constexpr size_t kMinSizeBytes = 9;
   static constexpr size_t kMaxSizeBytes = 9;
 
-  /// Checks everything once. Bytes behind the structure are stale().
+  /// Checks everything once. Bytes after the structure are stale().
   static constexpr Result<MacHeaderView> parse(Bytes bytes) {
     const Error error = check(bytes);
     if (RUBRIC_UNLIKELY(is_error(error))) return Failure{error};

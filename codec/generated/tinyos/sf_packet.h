@@ -49,7 +49,7 @@ class SfPacketView {
   static constexpr size_t kMinSizeBytes = 2;
   static constexpr size_t kMaxSizeBytes = 256;
 
-  /// Checks everything once. Bytes behind the structure are stale().
+  /// Checks everything once. Bytes after the structure are stale().
   static constexpr Result<SfPacketView> parse(Bytes bytes) {
     const Error error = check(bytes);
     if (RUBRIC_UNLIKELY(is_error(error))) return Failure{error};

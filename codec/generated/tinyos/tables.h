@@ -93,8 +93,8 @@ namespace types {
 constexpr Type kSerialFrame{
     "serial_frame", "serial_frame", of::serial_frame::kFields, 3, nullptr, 0, 1, UINT32_MAX, -1,
     "WIRE-SERIAL-KIND"_rule,
-    "What stands between two flags on the serial line, unescaped, without its CRC. The CRC-16 "
-    "over these bytes follows them, low byte first.",
+    "What is between two flags on the serial line, unescaped, without its CRC. The CRC-16 over "
+    "these bytes follows them, low byte first.",
     "TEP 113, section 3.1"};
 }  // namespace types
 
@@ -129,7 +129,7 @@ constexpr Field kFields[] = {
     {"dispatch", "\"dispatch\":", 11, Kind::kUint, 1, false, Repeat::kOnce, Extent::kOwn, 0,
      {ValidKind::kOneOf, 0, 0, kDispatchOneOf, 1}, -1, &enums::kDispatch, nullptr, nullptr,
      nullptr, {}, {}, {}, "WIRE-AM-DISPATCH"_rule, nullptr,
-     "What the bytes behind it are; this kit takes active messages."},
+     "What the bytes after it are; this kit takes active messages."},
     {"dest", "\"dest\":", 7, Kind::kUint, 2, false, Repeat::kOnce, Extent::kOwn, 1, kAny, -1,
      nullptr, nullptr, nullptr, nullptr, {}, {}, {}, "WIRE-AM-HEADER"_rule, nullptr,
      "AM address of the receiver; 0xffff is broadcast."},

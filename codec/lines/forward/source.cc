@@ -143,7 +143,7 @@ void Source::read(lines::SteadyTime now) {
 void Source::heard(const Packet& packet) {
   if (!broken_.empty()) return;
   if (packet.error.fault == Fault::kHandshake) {
-    broken_ = "the other end is no serial forwarder: it does not begin with 55 20";
+    broken_ = "the other end is not a serial forwarder: it does not begin with 55 20";
     return;
   }
   if (handlers_.on_frame) {

@@ -54,15 +54,16 @@ int run(const Which& which) {
 }  // namespace rubric
 
 int main(int argc, char** argv) {
-  rubric::cli::Command program("rubric_machine_adapter",
-                               "The reference machine as an adapter: rct/1 on standard input and "
-                               "output.");
+  rubric::cli::Command program(
+      "rubric_machine_adapter",
+      "Run the reference machine as an adapter: rct/1 on standard input and output.");
   rubric::Which which;
-  const auto mutant = program.add_option("--mutant", which.mutant, "A broken machine, by its name");
-  program.add_option("--legal", which.legal, "An unusual machine that keeps the rules, by its name")
+  const auto mutant =
+      program.add_option("--mutant", which.mutant, "Run the broken machine of this name");
+  program.add_option("--legal", which.legal, "Run the unusual but legal machine of this name")
       .excludes(mutant);
   program.add_option("--cases", which.cases,
-                     "Golden traces; mutants that are generated from them can be named, too");
+                     "Read these golden traces, so that --mutant can name a mutant made from them");
   program.exit_code_of([&] {
     try {
       return rubric::run(which);

@@ -361,7 +361,7 @@ class Fit {
     const Bounds bounds = bounds_of(in_, options_);
     if (bounds.low && bounds.high &&
         *bounds.low - *bounds.high > static_cast<double>(options_.skew_us)) {
-      return unsure("some of the frames that are in both would stand before their causes");
+      return unsure("some of the frames that are in both would come before their causes");
     }
     out_.clocks = Clocks::kDiffer;
     out_.offset_us = base_us + std::llround(ahead_of(in_, options_));

@@ -194,7 +194,7 @@ void Acks::delivered(std::uint16_t node, const Observation& seen,
                     {"The application gets " + number(received.data.size()) + " bytes from " +
                          text_of(received.src) + " for APPID " + number(received.app_id) +
                          ", which no message that came to this node had.",
-                     "What the message carried behind TRANSID and APPID.",
+                     "What the message carried after TRANSID and APPID.",
                      {}});
     return;
   }

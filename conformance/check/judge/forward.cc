@@ -207,7 +207,7 @@ void Forwarding::pass_up(Line& line, Passing& passing, const Observation& seen) 
   if (out_of_order(passing, line.last_up)) {
     context_.report(
         "N2-ORDER"_rule, Severity::kFail, seen.place, line.sink,
-        {"The sink forwards " + name_of(passing.net) + " behind one that it heard later.",
+        {"The sink forwards " + name_of(passing.net) + " after one that it heard later.",
          "Received messages are handled in the order of arrival.",
          {}});
   }

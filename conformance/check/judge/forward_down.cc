@@ -27,8 +27,8 @@ void Forwarding::pass_down(Line& line, Passing& passing, const Observation& seen
     context_.report("N7-CONTENT"_rule, Severity::kFail, seen.place, line.sink,
                     {"The sink radiates " + name_of(net) + " with " +
                          number(seen.frame.payload.size() - kNetHeaderBytes - net.payload.size()) +
-                         " bytes behind its payload.",
-                     "No byte behind the payload.",
+                         " bytes after its payload.",
+                     "No byte after the payload.",
                      {}});
   } else {
     context_.findings.kept("N7-RADIO"_rule);
@@ -36,7 +36,7 @@ void Forwarding::pass_down(Line& line, Passing& passing, const Observation& seen
   }
   if (out_of_order(passing, line.last_down)) {
     context_.report("N2-ORDER"_rule, Severity::kFail, seen.place, line.sink,
-                    {"The sink radiates " + name_of(net) + " behind one that it got later.",
+                    {"The sink radiates " + name_of(net) + " after one that it got later.",
                      "Messages leave in the order in which they came.",
                      {}});
   }

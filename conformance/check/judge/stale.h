@@ -30,13 +30,13 @@ inline void note_stale(Context& context, std::uint16_t node, ReqId requirement, 
                        const char* what) {
   if (stale.frames == 0) return;
   std::string text = std::string(what) + number(stale.stated_bytes) + " bytes where " +
-                     number(stale.content_bytes) + " are content; what lies behind them is stale";
+                     number(stale.content_bytes) + " are content; what follows is stale";
   if (stale.frames > 1) {
     text += ", here and in " + number(stale.frames - 1) + " more up to frame " +
             number(stale.last.frame);
   }
   context.report(requirement, Severity::kNote, stale.first, node,
-                 {text + ".", "No byte behind the content.", {}});
+                 {text + ".", "No byte after the content.", {}});
 }
 
 }  // namespace rubric::check

@@ -89,7 +89,7 @@ const BadFile kBadFiles[] = {
      "known.yaml:4: unknown key 'frame'; known are requirement, node, file, profile, message, "
      "reason"},
     {"- requirement: J4-SEQ\n  message: m\n  message: m\n  reason: r\n",
-     "known.yaml:3: message stands here twice"},
+     "known.yaml:3: message is given twice"},
     {"- requirement: J4-SEQ\n  message: m\n  reason: r\n  profile: papr\n",
      "known.yaml:4: profile is paper or deployed, not 'papr'"},
     {"- requirement: [\n", "known.yaml:2: end of sequence flow not found"},

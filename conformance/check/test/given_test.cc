@@ -183,7 +183,7 @@ TEST(Given, ANodeThatIsNowhereIsAFact) {
   EXPECT_EQ(report.facts.back(), "AM address 9, given: no frame of it");
 }
 
-TEST(Given, ALogsOwnWordIsHeldAgainstTheUsers) {
+TEST(Given, ALogThatContradictsTheUserIsReported) {
   constexpr const char* kLog = R"(%rtr 1  %profile paper  %tick us
 %node m2 mote id=2
 %node sA sink id=1 island=11

@@ -61,7 +61,7 @@ TEST(InterfaceWatch, OnSendsAgain) {
   EXPECT_EQ(all(kOff + kOn + send(600) + end(700)), "");
 }
 
-TEST(InterfaceWatch, ItsStateIsTold) {
+TEST(InterfaceWatch, ItsStateIsReported) {
   const std::string asked = m2(300, "< app get_interface(radio)");
   const std::string on = m2(300, "> app interface_state(radio on)");
   const std::string off = m2(300, "> app interface_state(radio off)");

@@ -75,7 +75,7 @@ TEST(PeisWatch, WhatComesIsHandedToTheSink) {
   EXPECT_EQ(found_by_end(came), "N8-INCOMING");
 }
 
-TEST(PeisWatch, AsItCame) {
+TEST(PeisWatch, AMessageLeavesAsItCame) {
   const std::string came = up(1000, kToMote) + peis(1025, kToMote);
   EXPECT_EQ(fails(came + at(1031, "bB > serB am=0->1 " + kOther)), "N8-INCOMING");
   EXPECT_EQ(fails(came + at(1031, "bB > serB am=0->1 " + kToMote) +

@@ -145,7 +145,7 @@ TEST(Simulated, PartsOfRunsAreJudged) {
   EXPECT_GT(parts, 1000U);
 }
 
-TEST(Simulated, NoFailIsToldWhileARunGrows) {
+TEST(Simulated, NoFailureIsReportedWhileARunGrows) {
   Told told;
   for (const simulate::Scenario& scenario : simulate::scenarios()) {
     for (const double loss : {0.0, 0.2}) {
@@ -160,7 +160,7 @@ TEST(Simulated, NoFailIsToldWhileARunGrows) {
               static_cast<unsigned long long>(told.withdrawn));
 }
 
-TEST(Simulated, ScenariosHaveNoFail) {
+TEST(Simulated, ScenariosDoNotFail) {
   Count count;
   for (const simulate::Scenario& scenario : simulate::scenarios()) {
     for (std::uint64_t seed = 1; seed <= kScenarioSeeds; ++seed) {
@@ -173,7 +173,7 @@ TEST(Simulated, ScenariosHaveNoFail) {
   EXPECT_EQ(count.judgements, 6 * kScenarioSeeds * simulate::scenarios().size());
 }
 
-TEST(Simulated, FreeNetworksHaveNoFail) {
+TEST(Simulated, FreeNetworksDoNotFail) {
   Count count;
   const simulate::Scenario* const free = simulate::find_scenario("free");
   ASSERT_NE(free, nullptr);

@@ -48,7 +48,7 @@ TEST(Stale, SerialLinesAreNotedOnce) {
   EXPECT_EQ(report.verdict, Verdict::kPass);
 }
 
-TEST(Stale, SoAreFramesOnTheAir) {
+TEST(Stale, FramesOnTheAirAreNotedOnce) {
   Script script;
   script.join(0, 11, 2, 100);
   NetFields net = update(1);

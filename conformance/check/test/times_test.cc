@@ -57,7 +57,7 @@ TEST(Times, OfOneFileAreJudgedBesideAFileWithoutAny) {
   EXPECT_TRUE(clock);
 }
 
-TEST(Times, NothingFailsForAnOrderThatNobodyKnows) {
+TEST(Times, NothingFailsByAnUnknownOrder) {
   for (const char* name : kCaptures) {
     for (const bool strict : {false, true}) {
       auto run = capture(name);

@@ -29,7 +29,7 @@ Report report(std::vector<Finding> findings, std::vector<std::string> facts = {}
   return out;
 }
 
-TEST(WatchTest, WhatStandsForAWhileIsToldOnce) {
+TEST(WatchTest, WhatLastsForAWhileIsReportedOnce) {
   Watch watch(kSettleUs);
   const Report one = report({finding(3, "mote 2"), finding(5, "mote 2")});
   EXPECT_TRUE(watch.update(one, 0).empty());
@@ -42,7 +42,7 @@ TEST(WatchTest, WhatStandsForAWhileIsToldOnce) {
   EXPECT_TRUE(watch.update(one, 10 * kSettleUs).empty());
 }
 
-TEST(WatchTest, WhatIsExplainedBeforeIsNeverTold) {
+TEST(WatchTest, WhatIsExplainedBeforeIsNeverReported) {
   Watch watch(kSettleUs);
   EXPECT_TRUE(watch.update(report({finding(3, "mote 2")}), 0).empty());
   EXPECT_TRUE(watch.update(report({}), kSettleUs - 1).empty());
@@ -51,7 +51,7 @@ TEST(WatchTest, WhatIsExplainedBeforeIsNeverTold) {
   EXPECT_EQ(watch.update(report({finding(3, "mote 2")}), 2 * kSettleUs).size(), 1u);
 }
 
-TEST(WatchTest, ASeverityThatChangesIsTold) {
+TEST(WatchTest, ASeverityThatChangesIsReported) {
   Watch watch(0);
   EXPECT_EQ(watch.update(report({finding(3, "a", Severity::kInconclusive)}), 0).size(), 1u);
   const std::vector<Change> told = watch.update(report({finding(3, "a")}), 1);
@@ -87,7 +87,7 @@ TEST(WatchTest, WhatIsGoneIsWithdrawnWithItsReason) {
   }
 }
 
-TEST(WatchTest, AnEpisodeThatGrowsOverAFindingIsNoWithdrawal) {
+TEST(WatchTest, AnEpisodeThatGrowsOverAFindingIsNotAWithdrawal) {
   Watch watch(0);
   watch.update(report({finding(3, "mote 2"), finding(9, "mote 2")}), 0);
   Finding episode = finding(3, "mote 2");
@@ -96,7 +96,7 @@ TEST(WatchTest, AnEpisodeThatGrowsOverAFindingIsNoWithdrawal) {
   EXPECT_TRUE(watch.update(report({episode}), 1).empty());
 }
 
-TEST(WatchTest, SeveralOfARuleAndFrameAreToldEach) {
+TEST(WatchTest, SeveralOfARuleAndFrameAreReportedEach) {
   Watch watch(0);
   const Report twice = report({finding(3, "mote 2"), finding(3, "mote 2")});
   EXPECT_EQ(watch.update(twice, 0).size(), 2u);

@@ -240,7 +240,7 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& param) { return std::string(param.param.flaw); });
 
 // If a flaw never acts, an unbroken run proves nothing.
-TEST(ExploreFlaws, WhetherOneActedIsTold) {
+TEST(ExploreFlaws, WhetherOneActedIsReported) {
   Options options = network(1, 1);
   EXPECT_FALSE(run(options).step_acted);  // The machine itself.
   options.step = flaws::find("accepts_wrong_seq")->step;

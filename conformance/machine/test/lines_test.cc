@@ -82,7 +82,7 @@ TEST(Outgoing, TakenLineIsLeftAlone) {
   EXPECT_TRUE(mote.call(message(2)).actions.transmits().empty());
 }
 
-TEST(Outgoing, ForwardThatFindsNoPlaceIsLostAndSaidSo) {
+TEST(Outgoing, AForwardThatFindsNoPlaceIsReportedAsLost) {
   Device sink(sink_config());
   OwnFrame up = heard(1, 1);
   up.payload = net_msg({{kIsland, kNullDevid}, {kIsland, 5}});
@@ -164,7 +164,7 @@ TEST(Outgoing, T3Timeout_WaitingForTheRadioDoesNotCount) {
 }
 
 // A forwarded message with the number of an own one that waits does not start its time.
-TEST(Outgoing, T3Timeout_ForwardsStartNobodysTime) {
+TEST(Outgoing, T3Timeout_ForwardsStartNoTimeout) {
   Device sink(sink_config());
   sink.step(LinkBusy{Link::kRadio, true});
   OwnFrame down = heard(1, 1);
@@ -246,7 +246,7 @@ TEST(Control, N10_OffSendsAndHearsNothing) {
   EXPECT_EQ(mark_of(mote.call(message(3)).only_frame()), 3);
 }
 
-TEST(Control, WhatWaitedLeavesWhenSwitchedOn) {
+TEST(Control, WaitingMessagesLeaveWhenTheLineIsSwitchedOn) {
   Device mote = member(5);
   mote.call(message(1)).call(message(2));
   mote.call(SetInterface{Link::kRadio, false});

@@ -270,7 +270,7 @@ TEST(Receive, UnknownAmTypesAreIgnored) {
   }
 }
 
-TEST(Forward, N6_UpTheSerialLineWithZerosBehind) {
+TEST(Forward, N6_UpTheSerialLineFilledWithZeros) {
   Device sink(sink_config());
   const NetFields fields{{kOther, 9}, {kIsland, 5}, true, 0x1234};
   sink.hear(on_radio(1, fields));
@@ -280,7 +280,7 @@ TEST(Forward, N6_UpTheSerialLineWithZerosBehind) {
   EXPECT_EQ(sink.only_payload(), padded(net_msg(fields)));
 }
 
-TEST(Forward, N7_DownByRadioWithoutWhatStandsBehind) {
+TEST(Forward, N7_DownByRadioWithoutStaleBytes) {
   Device sink(sink_config());
   const NetFields fields{{kIsland, 5}, {kOther, 9}, true, 0x1234};
   OwnFrame frame = on_serial(fields);

@@ -32,7 +32,7 @@ TEST(JoinStep, SinkAnswersWithItsClock) {
   EXPECT_EQ(sink.only_payload(), (Payload{0, 11, 0, 5, 0, 0, 0x07, 0xD0, 0x12, 0x34}));
 }
 
-TEST(JoinStep, J3Time_ReplyThatWaitedTellsTheTimeAtWhichItLeaves) {
+TEST(JoinStep, J3Time_AReplyThatWaitedHasTheTimeAtWhichItLeaves) {
   Device sink(sink_config());
   sink.step(LinkBusy{Link::kRadio, true});
   sink.hear(join_request(5, 1, kDescriptor));

@@ -80,18 +80,21 @@ int run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  rubric::cli::Command program("rubric_lawful",
-                               "Captures of legal RUBICON networks, to test checkers for false "
-                               "alarms.");
+  rubric::cli::Command program(
+      "rubric_lawful",
+      "Write captures of legal RUBICON networks, to test checkers for false alarms.");
   Options options;
-  program.add_option("--variant", options.variant, "A variant's name, all (each once), or mixed")
+  program.add_option("--variant", options.variant, "Write this variant, all (each once) or mixed")
       .show_default();
-  program.add_option("--seed", options.seed, "The first seed").show_default();
-  program.add_option("--count", options.count, "Networks of each variant, with seeds that count up")
+  program.add_option("--seed", options.seed, "Begin with this seed").show_default();
+  program
+      .add_option("--count", options.count,
+                  "Write this many networks of each variant, with seeds that count up")
       .show_default();
-  program.add_option("--out", options.folder, "Folder for NAME-SEED.pcapng, .json and .app.jsonl");
+  program.add_option("--out", options.folder,
+                     "Write NAME-SEED.pcapng, .json and .app.jsonl into this folder");
   program.add_flag("--list", options.list,
-                   "Print the variants with the decisions they are readings of");
+                   "Print the variants, each with the decisions that it reads in its own way");
   program.footer("Exit codes: 0 written, 2 usage, 3 cannot be written.");
   program.exit_code_of([&] { return run(options); });
   return program.parse_and_run(argc, argv);

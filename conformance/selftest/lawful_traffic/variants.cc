@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::string_view kLater = "It is younger than these variants.";
 constexpr WithoutVariant kWithout[] = {
-    {124, "No message tells that a node leaves; mote_leaves shows a mote that falls silent."},
+    {124, "No message says that a node leaves; mote_leaves shows a mote that falls silent."},
     {129, "How many channels a node can have is its own affair; no capture shows one refused."},
     {130, kLater},
     {131, kLater},

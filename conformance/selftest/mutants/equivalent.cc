@@ -8,9 +8,9 @@ namespace rubric::mutants {
 namespace {
 
 constexpr const char* kSerialAm =
-    "TinyOS's serial stack looks at no AM address, and no rule asks for one there.";
+    "TinyOS's serial stack ignores AM addresses, and no rule asks for one there.";
 constexpr const char* kSerialNbytes =
-    "On the serial line nbytes may count stale bytes behind the payload (N6-CONTENT).";
+    "On the serial line nbytes may count stale bytes after the payload (N6-CONTENT).";
 constexpr const char* kFreeNumber = "What awaits no ack may have any number (decision 117).";
 constexpr const char* kAckCode =
     "Any code in an ack is right: it says how the message was handled (decision 108).";
@@ -18,8 +18,8 @@ constexpr const char* kResultTwice =
     "The result of a call is what a function returns: an attachment that tells it twice says "
     "nothing "
     "of the node.";
-constexpr const char* kFailAddress = "No rule says which address joined(FAIL) tells.";
-constexpr const char* kRefusedId = "No rule says which id a refused creation tells.";
+constexpr const char* kFailAddress = "No rule says which address joined(FAIL) has.";
+constexpr const char* kRefusedId = "No rule says which id a refused creation returns.";
 constexpr const char* kWhileOff =
     "Whether send refuses or queues while the interface is off is free, and a trace has no "
     "alternatives: it cannot hold what send then told against what it did.";

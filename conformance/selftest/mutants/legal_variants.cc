@@ -226,8 +226,8 @@ void add_messages(Variants& out) {
                    if (is_synaptic(frame)) frame.payload[net::kAppId] = 6;
                    return Fate::kKeep;
                  })});
-  out.push_back(
-      {"told_first", "What is told comes before what is sent, in a step.", always(other_order)});
+  out.push_back({"told_first", "In a step, events for the application come before frames.",
+                 always(other_order)});
   out.push_back({"own_frames_besides", "A mote beacons with a type of its own now and then.",
                  always([](Moment& moment) {
                    moment.honest();

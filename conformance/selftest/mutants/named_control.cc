@@ -66,14 +66,14 @@ void add_switches(Mutants& out) {
                    moment.honest(machine::Called{other});
                  })});
   out.push_back({"interface_state_constant",
-                 "The state of an interface is told as on.",
+                 "The state of an interface is reported as on.",
                  {"N10-STATE"_rule},
                  on_told_of<machine::InterfaceState>([](Moment&, machine::InterfaceState& told) {
                    told.on = true;
                    return Fate::kKeep;
                  })});
   out.push_back({"interface_state_inverted",
-                 "The state of an interface is told as its opposite.",
+                 "The state of an interface is reported as its opposite.",
                  {"N10-STATE"_rule},
                  on_told_of<machine::InterfaceState>([](Moment&, machine::InterfaceState& told) {
                    told.on = !told.on;

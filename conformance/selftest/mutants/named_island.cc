@@ -168,7 +168,7 @@ void add_sink_down(Mutants& out) {
                    return Fate::kKeep;
                  })});
   out.push_back({"radiated_with_stale_bytes",
-                 "A sink radiates the bytes behind the payload.",
+                 "A sink radiates the bytes after the payload.",
                  {"N7-CONTENT"_rule},
                  on_sent([](Moment& moment, const Action&, Transmit& frame) {
                    const Frame* const heard = moment.heard();
@@ -229,7 +229,7 @@ void add_base_station(Mutants& out) {
        {"N8-PEIS"_rule},
        drop_sent([](const Moment&, const Transmit& frame) { return frame.link == Link::kPeis; })});
   out.push_back({"peis_to_the_wrong_island",
-                 "A base station hands everything to an island that nobody meant.",
+                 "A base station sends everything to an island that was not meant.",
                  {"N8-PEIS"_rule},
                  on_sent([](Moment& moment, const Action&, Transmit& frame) {
                    if (frame.link == Link::kPeis) {

@@ -106,7 +106,7 @@ void succeeds_twice(Moment& moment) {
 
 void add_join_ends(Mutants& out) {
   out.push_back({"joined_with_own_id_only",
-                 "joined(SUCCESS) tells an address without the island.",
+                 "joined(SUCCESS) has an address without the island.",
                  {"J5-SUCCESS"_rule},
                  on_told_of<Joined>([](Moment&, Joined& joined) {
                    if (joined.success) joined.address.pid = 0;

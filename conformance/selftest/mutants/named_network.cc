@@ -333,7 +333,7 @@ void add_motes(Mutants& out) {
                    return !delivers(moment, forged.frame) || forged.frame.src == 1;
                  })});
   out.push_back({"foreign_island_delivered",
-                 "A mote looks at the devid alone.",
+                 "A mote compares the devid alone.",
                  {"N5-FOREIGN"_rule},
                  on_heard([](Moment& moment, Forged& forged) {
                    if (delivers(moment, forged.frame)) put(forged, net::kDestPid, own(moment).pid);

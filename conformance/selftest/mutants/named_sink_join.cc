@@ -240,7 +240,7 @@ void add_acks(Mutants& out) {
                    moment.honest();
                  })});
   out.push_back({"mote_joined_silently",
-                 "A sink tells its application of no member.",
+                 "A sink reports no member to its application.",
                  {"J6-ADD"_rule},
                  on_told_of<MoteJoined>([](Moment&, MoteJoined&) { return Fate::kDrop; })});
   out.push_back({"mote_joined_without_descriptor",
@@ -251,7 +251,7 @@ void add_acks(Mutants& out) {
                    return Fate::kKeep;
                  })});
   out.push_back({"not_reported",
-                 "A sink tells its base station of no member.",
+                 "A sink reports no member to its base station.",
                  {"J6-REPORT"_rule, "J6-CONTENT"_rule},
                  drop_sent(is_report)});
   out.push_back({"reported_twice",

@@ -134,7 +134,7 @@ void add_operations(Mutants& out) {
                    moment.honest(machine::Called{machine::ReadInput{read->id, 0}});
                  })});
   out.push_back({"read_past_the_end",
-                 "read_input_value tells 0 behind the end.",
+                 "read_input_value returns 0 after the end.",
                  {"S1-READ"_rule, "S1-LIMIT"_rule},
                  on_told_of<InputValue>([](Moment&, InputValue& value) {
                    value.success = true;

@@ -52,7 +52,7 @@ TEST(Difference, NoneInGoldenTraces) {
   EXPECT_GT(compared * 10, steps * 7);  // Free steps must not swallow others.
 }
 
-TEST(Difference, NoneInChangedOnes) {
+TEST(Difference, NoneInChangedTraces) {
   const std::vector<CaseScript> scripts = golden_scripts();
   std::mt19937 random(3);
   for (int i = 0; i < 4000; ++i) {

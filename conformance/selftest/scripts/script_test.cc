@@ -99,7 +99,7 @@ TEST(Script, AnyBytesAreAScript) {
   }
 }
 
-TEST(Script, NothingIsAMoteToWhichNothingHappens) {
+TEST(Script, NoBytesAreAMoteToWhichNothingHappens) {
   const Script script = decode({});
   EXPECT_EQ(script.config.role, machine::Role::kMote);
   EXPECT_EQ(script.config.id, 5);

@@ -44,7 +44,7 @@ TEST(Watched, TheMachineKeepsItsPromisesInGoldenTraces) {
   }
 }
 
-TEST(Watched, AndInChangedOnes) {
+TEST(Watched, TheMachineKeepsItsPromisesInChangedTraces) {
   std::mt19937 random(11);
   int runs = 0;
   for (const Script& script : golden_scripts()) {

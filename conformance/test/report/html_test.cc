@@ -142,7 +142,7 @@ TEST(LogLines, AFrameThatTwoNodesShowIsOne) {
   EXPECT_GT(heard, 30u);
 }
 
-TEST(LogLines, PeersAreWhoIsMeant) {
+TEST(LogLines, PeersAreTheNodesThatAreMeant) {
   const CaseRun& accept = one("j4.accept");  // m5, sA of island 11 and sB of island 12.
   std::map<std::string, std::vector<std::size_t>> peers;
   for (const trace::Line* line : accept.result.log.lines()) {
@@ -291,7 +291,7 @@ TEST(Html, DataStaysInItsPlace) {
   }
 }
 
-TEST(Html, FilesStandInTheFolderUnderNamesOfTheirOwn) {
+TEST(Html, FilesInTheFolderHaveNamesOfTheirOwn) {
   Folder folder;
   write_html_report(hostile("../../x"), nullptr, folder.path());
   EXPECT_THAT(folder.files(),

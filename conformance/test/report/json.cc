@@ -73,13 +73,13 @@ const Json& member(const Json& object, const char* key, const std::string& place
 
 std::string text_of(const Json& object, const char* key, const std::string& place) {
   const Json& value = member(object, key, place);
-  if (!value.is_string()) throw std::runtime_error(fmt::format("{}: {} is no text", place, key));
+  if (!value.is_string()) throw std::runtime_error(fmt::format("{}: {} is not text", place, key));
   return value.get<std::string>();
 }
 
 const Json& list_of(const Json& object, const char* key, const std::string& place) {
   const Json& value = member(object, key, place);
-  if (!value.is_array()) throw std::runtime_error(fmt::format("{}: {} is no list", place, key));
+  if (!value.is_array()) throw std::runtime_error(fmt::format("{}: {} is not a list", place, key));
   return value;
 }
 
@@ -169,7 +169,7 @@ EarlierRun read_json_report(std::string_view text) {
   try {
     all = Json::parse(text);
   } catch (const Json::parse_error& error) {
-    throw std::runtime_error(fmt::format("byte {}: this is no JSON", error.byte));
+    throw std::runtime_error(fmt::format("byte {}: this is not JSON", error.byte));
   }
   const std::string schema = text_of(all, "schema", "the report");
   if (schema != kSchema) {
@@ -189,7 +189,7 @@ EarlierRun read_json_report(std::string_view text) {
       const std::string verdict = text_of(each, "verdict", where);
       const Json& repeat = member(each, "repeat", where);
       if (!repeat.is_number_unsigned()) {
-        throw std::runtime_error(fmt::format("{}: repeat is no number", where));
+        throw std::runtime_error(fmt::format("{}: repeat is not a number", where));
       }
       earlier.verdicts[{name, case_name, which, repeat.get<std::uint32_t>()}] = verdict;
     }

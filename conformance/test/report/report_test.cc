@@ -118,7 +118,7 @@ TEST(Report, AnnotationsAreTheGravestFirstAndEscaped) {
             "%0Aof it\n");
 }
 
-TEST(Report, ARefusedImplementationIsNoSuccess) {
+TEST(Report, ARefusedImplementationIsNotASuccess) {
   SuiteRun run = every_kind();
   run.stale.clear();
   run.implementations[0].cases.clear();
@@ -187,7 +187,7 @@ TEST(Report, JunitCountsAndEscapes) {
             std::string::npos);
 }
 
-TEST(Report, NamesAreUniqueWhereACaseIsRepeatedOrAnImplementationStandsTwice) {
+TEST(Report, NamesAreUniqueWhereACaseOrAnImplementationIsRepeated) {
   SuiteRun run = every_kind();
   run.implementations[0].cases = {one("x", CaseVerdict::kPass), one("x", CaseVerdict::kPass)};
   run.implementations[0].cases[1].repeat = 1;
@@ -309,15 +309,15 @@ struct BadJson {
 };
 TEST(Report, WhatIsNoReportIsRefusedWithItsPlace) {
   const BadJson rows[] = {
-      {"", "byte 1: this is no JSON"},
-      {"{\"schema\": ", "byte 12: this is no JSON"},
+      {"", "byte 1: this is not JSON"},
+      {"{\"schema\": ", "byte 12: this is not JSON"},
       {"[]", "the report: there is no \"schema\""},
       {"{\"schema\":\"rubric.check/1\"}", "schema is \"rubric.check/1\"; this reads rubric.test/1"},
       {"{\"schema\":\"rubric.test/1\"}", "the report: there is no \"implementations\""},
       {"{\"schema\":\"rubric.test/1\",\"implementations\":{}}",
-       "the report: implementations is no list"},
+       "the report: implementations is not a list"},
       {"{\"schema\":\"rubric.test/1\",\"implementations\":[{\"name\":1}]}",
-       "implementations[0]: name is no text"},
+       "implementations[0]: name is not text"},
       {"{\"schema\":\"rubric.test/1\",\"implementations\":[{\"name\":\"a\",\"cases\":[{}]}]}",
        "implementations[0].cases[0]: there is no \"name\""},
   };

@@ -118,7 +118,7 @@ class Blind : public SerialOnly {
   std::vector<Output> none_;
 };
 
-TEST(Blind, NothingPassesOfWhichNothingIsSeen) {
+TEST(Blind, WhatIsNotSeenDoesNotPass) {
   for (const trace::Parsed& file : load_cases("conformance/cases")) {
     for (const trace::Case& one : file.file.cases) {
       const CaseResult result = run_case(file.file, one, [](const trace::NodeHeader&) {

@@ -212,7 +212,7 @@ TEST(RunCase, WhatIsUnsupportedIsSkipped) {
   EXPECT_EQ(result.reason, "calls");
 }
 
-TEST(RunCase, WhatWasBrokenBeforeStaysBroken) {
+TEST(RunCase, ARuleBrokenBeforeASkipStaysBroken) {
   for (const char* lines : {"@0..90 m5 !> app clock(*) [J4-SEQ]\n@90 m5 < app get_clock()\n",
                             "@90 m5 < app get_clock()\n@0..80 m5 !> app clock(*) [J4-SEQ]\n"}) {
     const CaseResult result = refused(lines, {30});

@@ -72,7 +72,7 @@ TEST(Shrink, KeepsWhatItIsAskedFor) {
   EXPECT_TRUE(trace::check(out.file).empty());
 }
 
-TEST(Shrink, WhatDoesNotShowItStaysAsItWas) {
+TEST(Shrink, ATraceThatDoesNotFailIsUnchanged) {
   const trace::Parsed& file = golden().front();
   const Shrunk out =
       shrink(file.file, file.file.cases[0], [](const trace::File&) { return false; });
@@ -133,7 +133,7 @@ TEST(Difference, OfTheProfiles) {
   EXPECT_EQ(search.shortest->b.verdict, CaseVerdict::kFail);
 }
 
-TEST(Difference, NoneBetweenAThingAndItself) {
+TEST(Difference, NoneOfAMachineToItself) {
   const DifferenceSearch search = find_difference(golden_files(), machine(), machine());
   EXPECT_FALSE(search.shortest);
   EXPECT_EQ(search.different, std::vector<std::string>{});

@@ -58,7 +58,7 @@ std::string dishonesty(targets::Attachment& attachment) {
   try {
     const targets::Identity& identity = attachment.identity();
     if (identity.roles.empty()) return "it plays no role";
-    doing = "it does not refuse a command that nobody knows";
+    doing = "it does not refuse an unknown command";
     if (const std::string wrong = attachment.honesty(); !wrong.empty()) {
       return fmt::format("{}: {}", doing, wrong);
     }

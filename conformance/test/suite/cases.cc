@@ -114,7 +114,7 @@ void Cases::add(trace::Parsed file) {
     const std::string place =
         fmt::format("{}:{}: case {}", kept.file_name, one.place.line, one.name);
     if (const SuiteCase* other = find(one.name)) {
-      throw std::runtime_error(fmt::format("{}: the name stands in {} too, line {}", place,
+      throw std::runtime_error(fmt::format("{}: the name is also in {}, line {}", place,
                                            other->blank.file, other->one->place.line));
     }
     if (added.blank.roles.empty()) {

@@ -98,7 +98,7 @@ std::string why_untrue(const KnownFailure& entry, const std::vector<const CaseRu
     names.resize(kNamed);
     names.emplace_back("...");
   }
-  return fmt::format("{} of the {} runs that '{}' stands for do not fail so ({}). The first: {}",
+  return fmt::format("{} of the {} runs that '{}' names do not fail so ({}). The first: {}",
                      untrue.size(), asked, entry.cases, fmt::join(names, ", "), first);
 }
 

@@ -118,7 +118,7 @@ std::unique_ptr<Attachment> serial_line(std::string_view text, const Options& op
     if (const std::size_t colon = text.rfind(':'); colon != std::string_view::npos) {
       const std::string_view word = text.substr(colon + 1);
       const auto known = lines::baud_of(word);
-      if (!known) throw std::invalid_argument(fmt::format("'{}' is no speed or platform", word));
+      if (!known) throw std::invalid_argument(fmt::format("'{}' is not a speed or platform", word));
       baud = *known;
       text = text.substr(0, colon);
     }

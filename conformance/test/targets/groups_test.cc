@@ -127,7 +127,7 @@ std::size_t count_with(const std::string& words) {
 }
 
 // While several threads start and end children all the time none is forgotten.
-TEST(Groups, NoneThatIsJustStartingIsForgotten) {
+TEST(Groups, ProcessesThatAreStartingEndToo) {
   for (int round = 0; round < 5; ++round) {
     const std::string mark = fmt::format("1000.{}{}", ::getpid(), round);
     Program program([&](const Program::Say& say) {

@@ -42,8 +42,8 @@ class UsedLineTarget : public LineTarget {
 void LineTarget::reset(const machine::Config& config) {
   const machine::Role role = node_.identity.roles.front();
   if (config.role != role) {
-    throw Unsupported(
-        fmt::format("a {} is behind the line, no {}", role_word(role), role_word(config.role)));
+    throw Unsupported(fmt::format("the node at the line is a {}, not a {}", role_word(role),
+                                  role_word(config.role)));
   }
   if (role == machine::Role::kSink && config.id != config.profile.sink_id) {
     throw Unsupported(fmt::format("the id of the sink cannot be set to {}", config.id));
@@ -115,8 +115,8 @@ bool LineTarget::take(const lines::TimedPacket& packet) {
   using At = tinyos::AmHeaderLayout::DispatchAt;
   const std::uint8_t dispatch = packet.bytes.size() < At::kEnd ? 0 : packet.bytes[At::kAt];
   if (packet.bytes.empty() || !At::allows(dispatch)) {
-    notes_ += fmt::format("a packet of dispatch {:02x}, which is no active message, is ignored\n",
-                          dispatch);
+    notes_ += fmt::format(
+        "a packet of dispatch {:02x}, which is not an active message, is ignored\n", dispatch);
     return false;
   }
   trace::AmFrame frame;
@@ -125,8 +125,8 @@ bool LineTarget::take(const lines::TimedPacket& packet) {
   const bool whole = trace::parse_packet(bytes, frame);
   if (!whole || frame.payload.size() > machine::kAmPayloadMax) {
     line_.close();
-    throw TargetBroken(
-        fmt::format("a packet of {} bytes on the serial line is no active message", bytes.size()));
+    throw TargetBroken(fmt::format(
+        "a packet of {} bytes on the serial line is not an active message", bytes.size()));
   }
   if (outputs_.size() >= kOutputsMax) {
     line_.close();

@@ -297,7 +297,7 @@ std::string Process::end(lines::Milliseconds grace) {
   kill();
   if (!itself) return fmt::format("did not end within {} ms", grace.count());
   if (!WIFEXITED(status_) || WEXITSTATUS(status_) != 0) return status_text(status_);
-  return spoke ? "wrote something, and nobody had asked" : "";
+  return spoke ? "wrote something that was not asked for" : "";
 }
 
 void Process::kill() {

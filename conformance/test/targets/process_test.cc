@@ -48,7 +48,7 @@ TEST(Process, LongestLine) {
   EXPECT_EQ(broken_by([&] { cat->read_line(in(5000)); }), "wrote a line of more than 65535 bytes");
 }
 
-TEST(Process, NobodyReads) {
+TEST(Process, WritingToAProcessThatDoesNotReadEndsInTime) {
   const auto sleeper = Process::run("exec sleep 1000");
   const auto before = steady_clock::now();
   const std::string wrong =
@@ -71,13 +71,13 @@ TEST(Process, WholeGroupIsKilled) {
   EXPECT_TRUE(comes([&] { return is_dead(child); }));
 }
 
-TEST(Process, EndTellsHowItWent) {
+TEST(Process, EndSaysHowItEnded) {
   EXPECT_EQ(Process::run("cat; exit 0")->end(lines::Milliseconds(5000)), "");
   EXPECT_EQ(Process::run("cat; exit 2")->end(lines::Milliseconds(5000)), "ended with status 2");
   EXPECT_EQ(Process::run("cat; kill -KILL $$")->end(lines::Milliseconds(5000)),
             "was killed by signal 9 (Killed)");
   EXPECT_EQ(Process::run("cat; echo and one more thing")->end(lines::Milliseconds(5000)),
-            "wrote something, and nobody had asked");
+            "wrote something that was not asked for");
   EXPECT_EQ(Process::run("trap '' TERM; sleep 1000")->end(lines::Milliseconds(50)),
             "did not end within 50 ms");
 }

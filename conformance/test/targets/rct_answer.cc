@@ -24,7 +24,7 @@ std::string read_roles(std::string_view list, std::vector<machine::Role>& out) {
     const std::size_t size = std::min(list.find(','), list.size());
     const auto role = role_of(list.substr(0, size));
     if (!role) {
-      return quoted(list.substr(0, size)) + " is no role: mote, sink or base_station";
+      return quoted(list.substr(0, size)) + " is not a role: mote, sink or base_station";
     }
     out.push_back(*role);
     list.remove_prefix(std::min(size + 1, list.size()));
@@ -33,7 +33,8 @@ std::string read_roles(std::string_view list, std::vector<machine::Role>& out) {
 }
 std::string read_time(std::string_view word, bool& real) {
   real = word == "real";
-  return real || word == "virtual" ? std::string() : quoted(word) + " is no time: virtual or real";
+  return real || word == "virtual" ? std::string()
+                                   : quoted(word) + " is not a time: virtual or real";
 }
 
 bool is_family(std::string_view text) {
@@ -93,7 +94,7 @@ bool AnswerReader::take(std::string_view line) {
 
 Ticks AnswerReader::time(std::string_view word) const {
   const auto read = number_of(word, kTicksMax);
-  if (!read) fail(fmt::format("{} is no time in ticks", quoted(word)));
+  if (!read) fail(fmt::format("{} is not a time in ticks", quoted(word)));
   return *read;
 }
 
@@ -118,7 +119,7 @@ ReqId AnswerReader::requirement(std::string_view& line) const {
     const std::string_view word = words.next();
     const ReqId id = trace::requirement_id(word);
     if (id == ReqId::kNone && !is_family(word)) {
-      fail(fmt::format("{} is no rule of the catalogue", quoted(word)));
+      fail(fmt::format("{} is not a rule of the catalogue", quoted(word)));
     }
     if (out == ReqId::kNone) out = id;
   } while (!words.at_end());
@@ -143,7 +144,7 @@ void AnswerReader::tx(Words words) {
   output.is_frame = true;
   const std::string_view link = words.next();
   const auto which = link_of(link);
-  if (!which) fail(fmt::format("{} is no link: radio, serial or peis", quoted(link)));
+  if (!which) fail(fmt::format("{} is not a link: radio, serial or peis", quoted(link)));
   machine::Frame frame;
   std::vector<std::uint8_t> bytes;
   if (std::string wrong = frame_of(words.next(), frame, bytes); !wrong.empty()) fail(wrong);
@@ -153,7 +154,7 @@ void AnswerReader::tx(Words words) {
   output.requirement = requirement(rest);
   output.frame.link_ack = rest == " linkack";
   if (!output.frame.link_ack && rest.size() > 1) {
-    fail(fmt::format("expected `linkack` or the end behind the frame, given {}",
+    fail(fmt::format("expected `linkack` or the end after the frame, given {}",
                      shown(rest.substr(1))));
   }
   if (output.frame.link_ack && *which != machine::Link::kRadio) {
@@ -178,7 +179,7 @@ void AnswerReader::up(Words words) {
     fail(fmt::format("{}: {}", shown(text), wrong));
   }
   const auto notice = events::to_notice(message);
-  if (!notice) fail(fmt::format("{} is no event or result for an application", shown(text)));
+  if (!notice) fail(fmt::format("{} is not an event or result for an application", shown(text)));
   output.notice = *notice;
   if (auto* received = std::get_if<machine::Received>(&output.notice)) {
     output.data.assign(received->data.begin(), received->data.end());
@@ -225,7 +226,7 @@ Identity read_hello(const std::string& line) {
   const std::string_view version = words.next();
   const auto number =
       version.starts_with("rct/") ? number_of(version.substr(4), 1'000'000) : std::nullopt;
-  if (!number) throw broken(quoted(version) + " is no version, such as rct/1");
+  if (!number) throw broken(quoted(version) + " is not a version, such as rct/1");
   if (*number != kRctVersion) {
     throw broken(fmt::format("it speaks version {} of the protocol, the runner no other than {}",
                              *number, kRctVersion));
@@ -239,7 +240,7 @@ Identity read_hello(const std::string& line) {
     const std::string_view word = words.next();
     const std::size_t size = word.find('=');
     if (size == 0 || size == std::string_view::npos) {
-      throw broken(quoted(word) + " is no key=value, such as roles=mote");
+      throw broken(quoted(word) + " is not key=value, such as roles=mote");
     }
     const std::string_view key = word.substr(0, size);
     const std::string_view value = word.substr(size + 1);

@@ -106,7 +106,7 @@ AnswerReader RctClient::converse(const Asked& asked, lines::Milliseconds timeout
       reading = false;
       if (closed) break;
     }
-    if (process_->has_output()) throw TargetBroken("something is written behind the closing line");
+    if (process_->has_output()) throw TargetBroken("something follows the closing line");
   } catch (const TargetBroken& error) {
     give_up();
     keep_notes(reader);

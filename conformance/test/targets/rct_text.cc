@@ -77,11 +77,11 @@ std::string frame_of(std::string_view hex, machine::Frame& frame,
                      std::vector<std::uint8_t>& bytes) {
   std::string packet;
   if (hex.empty() || !trace::read_hex_bytes(hex, packet)) {
-    return fmt::format("{} is no even number of hex digits", trace::quoted(hex));
+    return fmt::format("{} is not an even number of hex digits", trace::quoted(hex));
   }
   trace::AmFrame am;
   if (!trace::parse_packet(packet, am)) {
-    return fmt::format("{} is no packet: 00, destination, source, length, group, type, payload",
+    return fmt::format("{} is not a packet: 00, destination, source, length, group, type, payload",
                        trace::quoted(hex));
   }
   if (am.payload.size() > machine::kAmPayloadMax) {
@@ -126,11 +126,11 @@ std::string read_plain(std::string_view text, trace::Concrete& out) {
   const bool pattern = message.open || message.form == trace::Message::Form::kAny ||
                        std::any_of(message.fields.begin(), message.fields.end(),
                                    [](const auto& field) { return is_pattern(field.value); });
-  if (pattern) return "only plain values can stand here, no patterns";
+  if (pattern) return "expected a plain value, not a pattern";
   try {
     out = trace::concrete(message);
     if (message.fields.size() > trace::Schema::get().find(message.name)->app->field_count) {
-      return "a field stands there twice";
+      return "a field is given twice";
     }
   } catch (const trace::TraceError& error) {
     return error.what();

@@ -268,7 +268,7 @@ TEST(RealTime, SerialDevice) {
   ::close(master);
 }
 
-TEST(RealTime, NobodyThere) {
+TEST(RealTime, NothingListens) {
   const auto before = steady_clock::now();
   const Options hasty{lines::Milliseconds(200), lines::Milliseconds(200)};
   const std::uint16_t port = free_port();
@@ -284,7 +284,7 @@ TEST(RealTime, NobodyThere) {
        fmt::format("cannot connect to 127.0.0.1:{}: Connection refused", port)},
       {"serial:/dev/no_such_line:57600",
        "/dev/no_such_line: cannot be opened: No such file or directory"},
-      {"serial:/dev/null", "/dev/null: is no serial line: Inappropriate ioctl for device"},
+      {"serial:/dev/null", "/dev/null: is not a serial line: Inappropriate ioctl for device"},
   };
   for (const Absent& one : absent) {
     const auto attachment = attach(one.target, hasty);
@@ -297,7 +297,7 @@ TEST(RealTime, NobodyThere) {
 }
 
 // A node that is not there when we connect is not about to start.
-TEST(RealTime, NobodyThereIsNoLongWait) {
+TEST(RealTime, WhereNothingListensTheWaitIsShort) {
   const Options patient{lines::Milliseconds(200), lines::Milliseconds(60000)};
   const std::uint16_t port = free_port();
   const auto before = steady_clock::now();
@@ -342,13 +342,14 @@ TEST(RealTime, ForwardersThatBreak) {
   };
   const Bad bad[] = {
       {{'H', 'T', 'T', 'P'},
-       "the other end is no serial forwarder's: it begins with 48 54, not "
+       "the other end is not a serial forwarder's: it begins with 48 54, not "
        "with 55 20"},
-      {{'U', 0x1F}, "the other end is no serial forwarder's: it begins with 55 1f, not with 55 20"},
+      {{'U', 0x1F},
+       "the other end is not a serial forwarder's: it begins with 55 1f, not with 55 20"},
       {{'U', ' '}, "the line broke: the other end closed it"},
       {{'U', ' ', 5, 0, 0}, "the line broke: the other end closed it"},
       {{'U', ' ', 0}, "a serial forwarder packet of no bytes"},
-      {{'U', ' ', 3, 0, 1, 2}, "a packet of 3 bytes on the serial line is no active message"},
+      {{'U', ' ', 3, 0, 1, 2}, "a packet of 3 bytes on the serial line is not an active message"},
   };
   for (const Bad& one : bad) {
     const std::uint16_t port = free_port();

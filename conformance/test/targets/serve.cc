@@ -19,7 +19,7 @@ using runner::Unsupported;
 
 Ticks time_of(std::string_view word) {
   const auto time = number_of(word, kTicksMax);
-  if (!time) throw Unsupported(fmt::format("{} is no time", word));
+  if (!time) throw Unsupported(fmt::format("{} is not a time", word));
   return *time;
 }
 
@@ -29,13 +29,14 @@ void expect_end(const Words& words) {
 
 machine::Link line_of(std::string_view word) {
   const auto link = link_of(word);
-  if (!link) throw Unsupported(fmt::format("{} is no line", word));
+  if (!link) throw Unsupported(fmt::format("{} is not a line", word));
   return *link;
 }
 
 // Returns whether it is the second of two words.
 bool choice(std::string_view word, std::string_view no, std::string_view yes) {
-  if (word != no && word != yes) throw Unsupported(fmt::format("{} is no {} or {}", word, no, yes));
+  if (word != no && word != yes)
+    throw Unsupported(fmt::format("{} is not {} or {}", word, no, yes));
   return word == yes;
 }
 
@@ -59,7 +60,7 @@ void read_frame(Words words, Told& out) {
 void read_call(std::string_view text, Told& out) {
   if (std::string wrong = read_plain(text, out.message); !wrong.empty()) throw Unsupported(wrong);
   const auto call = events::to_call(out.message);
-  if (!call) throw Unsupported(fmt::format("{} is no call", text));
+  if (!call) throw Unsupported(fmt::format("{} is not a call", text));
   out.event = machine::Called{*call};
 }
 
@@ -88,7 +89,7 @@ void read_event(std::string_view command, Words words, Told& out) {
 
 std::uint16_t number_behind(std::string_view word, std::string_view name) {
   const auto number = number_of(word.substr(name.size()), 0xFFFF);
-  if (!number) throw Unsupported(fmt::format("{} is no number", word));
+  if (!number) throw Unsupported(fmt::format("{} is not a number", word));
   return static_cast<std::uint16_t>(*number);
 }
 
@@ -96,7 +97,7 @@ machine::Config read_config(Words words) {
   machine::Config config;
   const std::string_view role = words.next();
   const auto known = role_of(role);
-  if (!known) throw Unsupported(fmt::format("{} is no role", role));
+  if (!known) throw Unsupported(fmt::format("{} is not a role", role));
   config.role = *known;
   std::optional<std::uint8_t> channels;
   while (!words.at_end()) {
@@ -158,7 +159,7 @@ std::string Server::answer(std::string_view command) {
 
 std::string Server::hello(std::string_view words) {
   if (!words.starts_with("rct/") || !number_of(words.substr(4), 1'000'000)) {
-    throw Unsupported("this is no version");
+    throw Unsupported("this is not a version");
   }
   std::string roles;
   for (const machine::Role role : identity_.roles) {

@@ -18,7 +18,7 @@ trace::Concrete parsed(const std::string& text) {
 class CallText : public testing::TestWithParam<const char*> {};
 class NoticeText : public testing::TestWithParam<const char*> {};
 
-TEST_P(CallText, SameAgain) {
+TEST_P(CallText, ReadsBackWhatItWrites) {
   const trace::Concrete message = parsed(GetParam());
   const auto call = to_call(message);
   ASSERT_TRUE(call);
@@ -35,7 +35,7 @@ INSTANTIATE_TEST_SUITE_P(
                     "write_output(channel=2->1 pos=2 value=0.5)", "read_input(channel=2->1 pos=9)",
                     "set_time_step(clock=250)", "set_island_id(island=12)", "get_clock()"));
 
-TEST_P(NoticeText, SameAgain) {
+TEST_P(NoticeText, ReadsBackWhatItWrites) {
   const trace::Concrete message = parsed(GetParam());
   const auto notice = to_notice(message);
   ASSERT_TRUE(notice);

@@ -52,7 +52,7 @@ const Wrong kWrong[] = {
     {"AmSide", "3 m5 > rA am=2->x01 *",
      "17: expected an AM address: a number, all, a variable or *, given 'x01'"},
     {"OpenBracket", "3 m5 > rA net_msg(dest=11:2", "18: '(' without its ')'"},
-    {"BehindDots", "3 m5 > rA net_msg(... dest=11:2)", "23: expected ')' behind '...'"},
+    {"BehindDots", "3 m5 > rA net_msg(... dest=11:2)", "23: expected ')' after '...'"},
     {"QuoteInside", "3 m5 > rA net_msg(dest=\"a\"b\"c\")",
      "24: a quote within text is written \\\""},
     {"Path", "3 m5 > rA net_msg(.dest=11:2)", "19: expected a field's path, given '.dest'"},
@@ -80,24 +80,24 @@ const Wrong kWrong[] = {
     {"ChannelPair", "3 m5 > app syn_data(1->)",
      "21: expected a number, a name, a variable or * on each side of '->'"},
     {"Variable", "3 m5 > rA net_msg(seq_num=$)",
-     "27: expected a variable's name behind '$', given '$'"},
+     "27: expected a variable's name after '$', given '$'"},
     {"NotAny", "3 m5 > rA net_msg(seq_num=!*)", "27: nothing is other than *"},
-    {"TwiceNot", "3 m5 > rA net_msg(seq_num=!!1)", "27: '!' stands once"},
+    {"TwiceNot", "3 m5 > rA net_msg(seq_num=!!1)", "27: '!' is given twice"},
     {"Quote", "3 m5 > app received(data=\"ab ...)", "26: text without a closing quote"},
     {"Escape", "3 m5 > app received(data=\"a\\n\" ...)",
-     "26: in text a backslash stands before \", \\ or x and two hex digits"},
+     "26: in text a backslash comes before \", \\ or x and two hex digits"},
     {"ListEnd", "3 m5 > rA net_msg(values=[1 2 ...)", "26: a list without its closing bracket"},
     {"ListInList", "3 m5 > rA net_msg(values=[[1] ...)", "26: a list within a list"},
     {"InList", "3 m5 > rA net_msg(values=[1 )] ...)", "26: unexpected ')' in a list"},
     {"Requirements", "3 m5 > rA * [J1", "16: expected requirements and ']'"},
     {"RequirementWord", "3 m5 > rA * [J4 j1]", "17: expected a requirement, as J4-SEQ, given 'j1'"},
-    {"HalfAByte", "3 m5 > rA * | 0 0", "15: expected bytes in hex behind '|'"},
-    {"NoBytes", "3 m5 > rA * | ; none", "15: expected bytes in hex behind '|'"},
-    {"Bytes", "3 m5 > rA * | 00f", "15: expected bytes in hex behind '|'"},
+    {"HalfAByte", "3 m5 > rA * | 0 0", "15: expected bytes in hex after '|'"},
+    {"NoBytes", "3 m5 > rA * | ; none", "15: expected bytes in hex after '|'"},
+    {"Bytes", "3 m5 > rA * | 00f", "15: expected bytes in hex after '|'"},
     {"Rest", "3 m5 > rA * # no comment", "13: expected the end of the line, given '# no comment'"},
     {"Case", "case ?", "6: expected the name of a case"},
     {"CaseAlone", "case", "5: expected the name of a case"},
-    {"CaseTwice", "case a", "6: case 'a' stands already in line 4"},
+    {"CaseTwice", "case a", "6: case 'a' is already in line 4"},
     {"Header", "%what",
      "1: expected %rtr, %profile, %tick, %node, %link, %seed, %for or %note, given '%what'"},
     {"Version", "%rtr 2", "6: expected version 1, given '2'"},
@@ -130,13 +130,13 @@ const Wrong kWrong[] = {
     {"LinkNode", "%link l radio m/5", "15: expected a node, given 'm/5'"},
     {"HeaderRest", "%seed 1 2", "9: expected the end of the line, given '2'"},
     // Checks of the whole.
-    {"VersionInCase", "%rtr 1", "1: %rtr and %tick stand before the first case"},
-    {"TickInCase", "%tick ms", "1: %rtr and %tick stand before the first case"},
+    {"VersionInCase", "%rtr 1", "1: %rtr and %tick come before the first case"},
+    {"TickInCase", "%tick ms", "1: %rtr and %tick come before the first case"},
     {"SeedTwice", "%seed 1 %seed 2", "9: %seed is said twice"},
     {"ProfileTwice", "%profile paper %profile paper", "16: %profile is said twice"},
     {"NodeTwice", "%node a mote id=1 %node a mote id=1", "19: node 'a' is said twice"},
     {"LinkTwice", "%link a radio %link a radio", "15: link 'a' is said twice"},
-    {"LinkApp", "%link app radio", "1: 'app' is no name for a link between nodes"},
+    {"LinkApp", "%link app radio", "1: 'app' is not a name for a link between nodes"},
     {"NeedsId", "%node a mote", "1: node 'a' needs id="},
     {"NeedsIsland", "%node a sink id=1", "1: node 'a' needs island="},
     {"MoteIsland", "%node a mote id=1 island=2",
@@ -151,7 +151,7 @@ const Wrong kWrong[] = {
     {"ShiftedUnbound", "3 m5 > rA join_request(seq_num=$q+1..$q+2 ...)",
      "24: no line above binds $q"},
     {"ShiftedGiven", "3 m5 < rA join_request(seq_num=$q+1..$q+2 ...)",
-     "24: a range where a value has to be given"},
+     "24: expected a value, given a range"},
     {"LabelOfNothing", "b: 3 m5 !> rA *", "1: label 'b' at what does not happen"},
     {"WindowGiven", "0..5 m5 < app get_clock()",
      "1: a window where something is given at one time: 0..5"},
@@ -168,13 +168,13 @@ const Wrong kWrong[] = {
     {"LostOnApp", "0 app lost joined(*)", "1: nothing is lost or doubled on 'app'"},
     {"UnknownMessage", "0 m5 > rA join_reqest(*)",
      "11: unknown message 'join_reqest' (did you mean 'join_request'?)"},
-    {"AnyGiven", "0 m5 < rA *", "11: '*' says nothing of what is given to the node"},
+    {"AnyGiven", "0 m5 < rA *", "11: expected what to give to the node, given '*'"},
     {"AnyWithFields", "0 m5 > rA *(a=1)", "11: '*' is any message and has no fields"},
     {"AmOnApp", "0 m5 > app am=1->2 joined(*)", "1: there are no AM addresses on 'app'"},
     {"AmRange", "0 m5 > rA am=70000->2 *",
      "1: am: expected a number from 0 to 65535 or of null, local, broadcast, given '70000'"},
     {"AmAnyGiven", "0 m5 < rA am=*->5 am(type=1 payload=x)",
-     "1: am: '*' where an address has to be given"},
+     "1: am: expected an address, given '*'"},
     {"Travels", "0 m5 > app net_msg(*)", "12: 'net_msg' does not travel on 'app'"},
     {"TravelsSerial", "0 sA > serA join_request(*)",
      "13: 'join_request' does not travel on 'serA'"},
@@ -220,12 +220,9 @@ const Wrong kWrong[] = {
      "19: payload.body.values: expected a number, given 'x00'"},
     {"Structure", "0 m5 > rA net_msg(payload=5 ...)",
      "19: payload: it has fields: expected bytes (x0a0b), or the fields one by one"},
-    {"AnyValueGiven", "0 m5 < rA join_reply(seq_num=* ...)",
-     "22: '*' where a value has to be given"},
-    {"RangeGiven", "0 m5 < rA join_reply(seq_num=1..2 ...)",
-     "22: a range where a value has to be given"},
-    {"AnyInAddressGiven", "0 m5 < app send(dest=11:* ...)",
-     "17: '*' where a value has to be given"},
+    {"AnyValueGiven", "0 m5 < rA join_reply(seq_num=* ...)", "22: expected a value, given '*'"},
+    {"RangeGiven", "0 m5 < rA join_reply(seq_num=1..2 ...)", "22: expected a value, given a range"},
+    {"AnyInAddressGiven", "0 m5 < app send(dest=11:* ...)", "17: expected a value, given '*'"},
     {"UnboundGiven", "0 m5 < rA join_reply(seq_num=$q ...)", "22: no line above binds $q"},
     {"UnboundNot", "0 m5 > rA join_reply(seq_num=!$q ...)", "22: no line above binds $q"},
     {"UnboundMustNot", "0 m5 !> rA join_request(seq_num=$q ...)", "25: no line above binds $q"},
@@ -253,7 +250,7 @@ const Wrong kWrong[] = {
 
 class Diagnostics : public testing::TestWithParam<Wrong> {};
 
-TEST_P(Diagnostics, ToldWithPlace) {
+TEST_P(Diagnostics, HaveTheirPlace) {
   const Parsed parsed = parse(std::string(kAbove) + GetParam().line, "t.rtr");
   EXPECT_EQ(parsed.errors(), std::string("t.rtr:5:") + GetParam().expected + "\n");
 }
@@ -271,10 +268,10 @@ const Wrong kWrongFiles[] = {
      "3:1: a line before the first case; 'case NAME' begins one"},
     {"LateHeader",
      "%rtr 1\n%node m5 mote id=5\ncase a\n%note one\n0 m5 < app get_clock()\n%note two\n%seed 1\n",
-     "7:1: the headers of a case stand before its lines"},
+     "7:1: the headers of a case come before its lines"},
     {"LabelTwice",
      "%rtr 1\n%node m5 mote id=5\ncase a\nb: 0 m5 < app get_clock()\nb: 0 m5 < app get_clock()\n",
-     "5:1: label 'b' stands already in line 4"},
+     "5:1: label 'b' is already in line 4"},
     {"TimeGoesBack",
      "%rtr 1\n%node m5 mote id=5\ncase a\n@9 m5 < app get_clock()\n@8 m5 < app get_clock()\n",
      "5:1: time goes back, from @9 to @8"},
@@ -285,7 +282,7 @@ const Wrong kWrongFiles[] = {
 
 class FileDiagnostics : public testing::TestWithParam<Wrong> {};
 
-TEST_P(FileDiagnostics, ToldWithPlace) {
+TEST_P(FileDiagnostics, HaveTheirPlace) {
   const Parsed parsed = parse(GetParam().line, "t.rtr");
   EXPECT_EQ(parsed.errors(), std::string("t.rtr:") + GetParam().expected + "\n");
 }

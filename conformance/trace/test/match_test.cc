@@ -76,7 +76,7 @@ TEST(Match, Differences) {
             match(message("net_msg(dest=1:1 src=1:1 seq_num=1 ...)"), seen, ignored).distance());
 }
 
-TEST(Match, ABodyThatNobodyUnderstandsIsItsBytes) {
+TEST(Match, AnUnknownBodyIsItsBytes) {
   const Concrete seen =
       decode(frame(28, "000b0001 000b0005 00 0009 03 03 05 41"), LinkKind::kRadio);
   EXPECT_EQ(differences("net_msg(payload.body=x41 ...)", seen), "");

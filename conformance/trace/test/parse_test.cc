@@ -140,7 +140,7 @@ TEST(Hostile, LongLine) {
 TEST(Hostile, LongestLine) {
   std::string line = "%rtr 1\ncase a\n0 m5 > rA join_request(";
   while (line.size() < Parsed::kLineBytesMax) line += "!!!!";
-  EXPECT_THAT(errors(line), testing::StartsWith("t.rtr:3:24: '!' stands once"));
+  EXPECT_THAT(errors(line), testing::StartsWith("t.rtr:3:24: '!' is given twice"));
   std::string word = "%rtr 1\ncase a\n";
   word.append(Parsed::kLineBytesMax, 'a');
   EXPECT_LT(errors(word).size(), 400u);
@@ -153,7 +153,7 @@ TEST(Hostile, LongestLine) {
 }
 
 TEST(Hostile, Bytes) {
-  const std::string where = "t.rtr:2:3: a byte that is no UTF-8 text, or a control character\n";
+  const std::string where = "t.rtr:2:3: a byte that is not UTF-8 text, or a control character\n";
   for (const std::string& bytes :
        {std::string("\0", 1), std::string("\x01"), std::string("\xFF"), std::string("\xC0\x80"),
         std::string("\xED\xA0\x80"), std::string("\xF4\x90\x80\x80"), std::string("\xE2\x82"),

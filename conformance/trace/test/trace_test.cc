@@ -132,14 +132,13 @@ TEST(Encode, VariablesAndOtherValues) {
   EXPECT_EQ(encoded("ack_join(dest=$q:$q ...)", bindings), "29 0007000700000000000000000000");
 }
 
-TEST(Encode, WhatCannotBe) {
-  EXPECT_EQ(encoded("join_reply(seq_num=* ...)"), "12: '*' where a value has to be given");
-  EXPECT_EQ(encoded("join_reply(seq_num=1..2 ...)"),
-            "12: the range 1..2 where a value has to be given");
+TEST(Encode, RefusesWhatCannotBeEncoded) {
+  EXPECT_EQ(encoded("join_reply(seq_num=* ...)"), "12: expected a value, given '*'");
+  EXPECT_EQ(encoded("join_reply(seq_num=1..2 ...)"), "12: expected a value, given the range 1..2");
   EXPECT_EQ(encoded("join_reply(seq_num=$q ...)"), "12: nothing has bound $q");
   EXPECT_EQ(encoded("ack_join(dest=11:$q ...)"), "10: nothing has bound $q");
   EXPECT_EQ(encoded("join_reply(*)"), "1: 'join_reply' needs its fields");
-  EXPECT_EQ(encoded("joined(11:5 success)"), "1: 'joined' is no message of a frame");
+  EXPECT_EQ(encoded("joined(11:5 success)"), "1: 'joined' is not a message of a frame");
   EXPECT_EQ(encoded("join_reply(seq_num=1)"),
             "1: join_reply: island_addr: is missing: expected a number from 0 to 65535");
   EXPECT_EQ(encoded("net_msg(reliable=2 ...)"), "9: expected a number from 0 to 1, given '2'");
@@ -228,7 +227,7 @@ TEST(App, CallsAndEvents) {
   EXPECT_EQ(made("start(2:1)"), "7: channel: expected a channel, as 2->1");
   EXPECT_EQ(made("joined(11:5)"), "1: field result of joined is missing");
   EXPECT_EQ(made("joined(*)"), "1: 'joined' needs its fields");
-  EXPECT_EQ(made("net_msg(...)"), "1: 'net_msg' is no message of an application");
+  EXPECT_EQ(made("net_msg(...)"), "1: 'net_msg' is not a message of an application");
   const Concrete joined = concrete(message("joined(11:5 success)"));
   EXPECT_EQ(joined.pair("address"), std::pair(std::uint16_t{11}, std::uint16_t{5}));
   EXPECT_EQ(joined.number("result"), 1);

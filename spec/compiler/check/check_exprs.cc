@@ -94,7 +94,7 @@ class Resolver {
   const Field* head(const Expr& expr) {
     const std::string& name = expr.path[0];
     if (scope_.wide) {
-      check_.error(expr.place, fmt::format("{} is no constant", quote(to_text(expr))),
+      check_.error(expr.place, fmt::format("{} is not a constant", quote(to_text(expr))),
                    "a number or an enum::value was expected");
       return nullptr;
     }
@@ -122,7 +122,7 @@ class Resolver {
   const Field* inner(const Expr& expr, const Field& outer, const std::string& name) {
     if (outer.kind != ValueKind::kStruct || outer.choice) {
       check_.error(expr.place, fmt::format("{} has no fields to read", quote(outer.id)),
-                   outer.choice ? "its type depends on a switch" : "it is no structure");
+                   outer.choice ? "its type depends on a switch" : "it is not a structure");
       return nullptr;
     }
     if (outer.extent != ExtentKind::kOwn) {

@@ -21,7 +21,7 @@ void check_peek(Check& check, const Type& type, Field& peek) {
   peek.fixed_offset = peek.position;
   peek.min_size = peek.max_size = static_cast<std::uint32_t>(peek.width_bytes);
   if (peek.kind != ValueKind::kUint) {
-    check.error(peek.place, fmt::format("peek {} is no unsigned number", quote(peek.id)),
+    check.error(peek.place, fmt::format("peek {} is not an unsigned number", quote(peek.id)),
                 "an instance is a number at pos, or a type over size-eos bytes at pos");
     check.open.insert(&peek);
   }
@@ -32,7 +32,7 @@ void check_peek(Check& check, const Type& type, Field& peek) {
   const auto end = static_cast<std::uint64_t>(peek.position + peek.width_bytes);
   if (!check.is_open(&type) && end > type.max_size) {
     check.error(peek.place,
-                fmt::format("peek {} lies behind the end of {}", quote(peek.id), quote(type.id)),
+                fmt::format("peek {} lies after the end of {}", quote(peek.id), quote(type.id)),
                 fmt::format("{} has at most {}", quote(type.id), bytes_text(type.max_size)));
   }
 }
@@ -67,7 +67,7 @@ void check_interpretation(Check& check, const Type& type, Field& instance) {
   if (!instance.condition) return;
   const ExprShape found = resolve_expr(check, *instance.condition, scope);
   if (found.shape != Shape::kBool && found.shape != Shape::kOpen) {
-    check.error(instance.condition->place, "'if' is no condition", "a comparison was expected");
+    check.error(instance.condition->place, "'if' is not a condition", "a comparison was expected");
   }
 }
 

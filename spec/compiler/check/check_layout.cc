@@ -68,7 +68,7 @@ class Layout {
     if (!field.condition) return false;
     const ExprShape found = resolve_expr(check_, *field.condition, scope);
     if (found.shape != Shape::kBool && found.shape != Shape::kOpen) {
-      check_.error(field.condition->place, "'if' is no condition", "a comparison was expected");
+      check_.error(field.condition->place, "'if' is not a condition", "a comparison was expected");
     }
     return true;
   }
@@ -82,7 +82,7 @@ class Layout {
     if (found.shape == Shape::kOpen) return false;
     if (found.shape != Shape::kInt) {
       check_.error(expr->place,
-                   fmt::format("a {} that is no number: {}", what, quote(to_text(*expr))),
+                   fmt::format("a {} that is not a number: {}", what, quote(to_text(*expr))),
                    "a number was expected; .to_i makes one of an enum");
       return false;
     }

@@ -24,7 +24,7 @@ class Names {
     const auto& [other, line] = found->second;
     if (other == name) {
       check_.error(place, fmt::format("duplicate {} {}", what_, quote(name)),
-                   fmt::format("it stands already in line {}", line));
+                   fmt::format("it is already in line {}", line));
     } else {
       check_.error(
           place, fmt::format("{}s {} and {} differ only in '_'", what_, quote(other), quote(name)),

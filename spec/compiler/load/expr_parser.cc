@@ -196,7 +196,7 @@ class Parser {
     ExprPtr out = node(ExprOp::kInt, here());
     const auto value = parse_integer(token_);
     if (!value)
-      fail(fmt::format("{} is no number", quote(token_)),
+      fail(fmt::format("{} is not a number", quote(token_)),
            "decimal or 0x digits of a 64-bit number were expected");
     out->value = *value;
     next();
@@ -205,7 +205,7 @@ class Parser {
 
   std::string word() {
     if (token_.empty() || !is_word_start(token_[0])) {
-      fail("a name is missing", "a word was expected behind '.' or '::'");
+      fail("a name is missing", "a word was expected after '.' or '::'");
     }
     std::string out(token_);
     next();

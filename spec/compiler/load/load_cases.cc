@@ -89,7 +89,7 @@ class CaseReader {
     if (!line.words.empty() && line.words[0].text.starts_with('%')) return;
     if (line.open != std::string::npos) {
       diagnostics_.error(place(number, line.open), "'[' without ']'",
-                         "a rule stands between them, such as [J4-SEQ]");
+                         "a rule is between them, such as [J4-SEQ]");
     }
     if (!line.words.empty() && line.words[0].text == "case") begin_case(line, number);
     const bool negative = std::any_of(line.words.begin(), line.words.end(),
@@ -110,7 +110,7 @@ class CaseReader {
     if (fresh) return;
     diagnostics_.error(
         here, fmt::format("case {} twice", rubricc::quote(case_)),
-        fmt::format("it stands already in {}:{}", first->second.file, first->second.line));
+        fmt::format("it is already in {}:{}", first->second.file, first->second.line));
   }
 
   void read_tag(const Word& tag, int number, bool negative) {

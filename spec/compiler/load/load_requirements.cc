@@ -33,7 +33,7 @@ std::uint8_t read_roles(const YamlInput& input, const YAML::Node& node) {
   std::uint8_t out = 0;
   const auto items = yaml_items(input, node, "roles");
   if (node.IsSequence() && node.size() == 0) {
-    input.error(node, "'roles' is empty", "a rule that nobody must follow is none");
+    input.error(node, "'roles' is empty", "name the roles that must follow it");
   }
   for (const YAML::Node& item : items) {
     const auto word = yaml_text(input, item, "a role");
@@ -112,7 +112,7 @@ void load_requirements_text(const std::string& file, const std::string& text, Mo
       model.requirements.push_back(std::move(found));
     } else if (id == found.id) {
       diagnostics.error(found.place, fmt::format("requirement {} twice", quote(id)),
-                        fmt::format("it stands already in line {}", line));
+                        fmt::format("it is already in line {}", line));
     } else {
       diagnostics.error(found.place,
                         fmt::format("requirement {} has the number of {}, {}", quote(found.id),

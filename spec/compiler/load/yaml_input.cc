@@ -105,7 +105,7 @@ YamlMap::YamlMap(const YamlInput& input, const YAML::Node& node, std::string_vie
     const std::string& key = pair.first.Scalar();
     if (const YamlEntry* first = find(key)) {
       input.error(pair.first, fmt::format("{} twice in {}", quote(key), what),
-                  fmt::format("it stands already in line {}", input.place(first->key_node).line));
+                  fmt::format("it is already in line {}", input.place(first->key_node).line));
       continue;
     }
     if (!allowed.empty() && std::find(allowed.begin(), allowed.end(), key) == allowed.end()) {

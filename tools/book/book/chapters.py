@@ -60,7 +60,7 @@ def _check(chapter, mistakes):
         if "{{" in bare:
             mistakes.add(chapter.file, number, "expected a directive alone on its line")
         if _TAG.search(re.sub(r"<https?://[^>]*>", "", bare)):
-            mistakes.add(chapter.file, number, "expected no HTML; '<' in text stands in `code`")
+            mistakes.add(chapter.file, number, "expected no HTML; put '<' in text into `code`")
         found = _HEADING.match(value)
         if not found:
             continue

@@ -56,7 +56,7 @@ def external_fault(target):
     if parts.scheme not in {"https", "http"}:
         return f"'{target}' leads to a file that the reader may not have; expected https://..."
     if not re.fullmatch(r"[\w-]+(\.[\w-]+)+(:\d+)?", parts.netloc) or re.search(r"\s", target):
-        return f"'{target}' is no address; expected https://HOST/PATH"
+        return f"'{target}' is not an address; expected https://HOST/PATH"
     return None
 
 

@@ -12,7 +12,7 @@ def fitted(svg, prefix):
     """
     found = re.search(r"<svg.*</svg>", svg, re.S)
     if not found:
-        raise ValueError("the drawing is no <svg> element")
+        raise ValueError("the drawing is not an <svg> element")
     svg = re.sub(r"<!--.*?-->", "", found[0], flags=re.S)
     style = "\n".join(re.findall(r"<style>(.*?)</style>", svg, re.S))
     svg = re.sub(r"<style>.*?</style>\s*", "", svg, flags=re.S)

@@ -112,7 +112,7 @@ std::string config(std::string_view reload) {
   argument(kListenOnly, "--listen-only", "Listen only", "boolflag",
            "Write nothing to a serial line: confirm no frames", "{default=false}");
   argument(kReconnect, "--reconnect", "Reconnect", "boolflag",
-           "Open a line that is gone again, when it is back", "{default=false}");
+           "Open a line again when it comes back", "{default=false}");
   argument(kSpec, "--spec", "Protocol of the capture filter", "selector",
            "Whose names of messages and fields the capture filter uses");
   return out + sources() + specs();

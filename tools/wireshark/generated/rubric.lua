@@ -11,7 +11,7 @@ enums["tinyos.serial_kind"] = {[67] = "ack", [68] = "packet_ack", [69] = "packet
 enums["tinyos.dispatch"] = {[0] = "active_message", [1] = "cc1000", [2] = "ieee802154", [255] = "unknown"}
 types["tinyos.serial_frame"] = {
   name = "serial_frame", rule = "WIRE-SERIAL-KIND",
-  doc = "What stands between two flags on the serial line, unescaped, without its CRC. The CRC-16 over these bytes follows them, low byte first.",
+  doc = "What is between two flags on the serial line, unescaped, without its CRC. The CRC-16 over these bytes follows them, low byte first.",
   {name = "kind", kind = "uint", width = 1, enum = "tinyos.serial_kind", rule = "WIRE-SERIAL-KIND", doc = "Packet kind. An unknown kind is shown and kept."},
   {name = "seq_num", kind = "uint", width = 1, condition = function(d) return (d:u8(0) == 67) or (d:u8(0) == 68) end, rule = "WIRE-SERIAL-SEQ", doc = "Of the frame to confirm, or of the frame that it confirms."},
   {name = "packet", kind = "bytes", to_end = true, rule = "WIRE-SERIAL-KIND", doc = "From the dispatch byte on."},
@@ -25,7 +25,7 @@ types["tinyos.sf_packet"] = {
 types["tinyos.am_header"] = {
   name = "am_header", max = 8, rule = "WIRE-AM-HEADER",
   doc = "Dispatch byte and serial active-message header, 8 bytes.",
-  {name = "dispatch", kind = "uint", width = 1, one_of = {0}, enum = "tinyos.dispatch", rule = "WIRE-AM-DISPATCH", doc = "What the bytes behind it are; this kit takes active messages."},
+  {name = "dispatch", kind = "uint", width = 1, one_of = {0}, enum = "tinyos.dispatch", rule = "WIRE-AM-DISPATCH", doc = "What the bytes after it are; this kit takes active messages."},
   {name = "dest", kind = "uint", width = 2, rule = "WIRE-AM-HEADER", doc = "AM address of the receiver; 0xffff is broadcast."},
   {name = "src", kind = "uint", width = 2, rule = "WIRE-AM-HEADER", doc = "AM address of the sender."},
   {name = "length", kind = "uint", width = 1, min = 0, max = 114, rule = "WIRE-AM-LENGTH", doc = "Bytes of the AM payload."},
@@ -120,7 +120,7 @@ masks["rubicon.transducer_mask"] = {count = 16, "light", "temp", "accel_x", "acc
 masks["rubicon.actuator_mask"] = {count = 8, "led", "open", false, false, false, false, false, false}
 types["rubicon.net_msg"] = {
   name = "net_msg", max = 114, rule = "WIRE-NET-HEADER",
-  doc = "The message of the network level. Over the radio only nbytes of the payload are sent; on the serial line the whole 114 bytes, and bytes behind the payload are left over from earlier frames.",
+  doc = "The message of the network level. Over the radio only nbytes of the payload are sent; on the serial line the whole 114 bytes, and bytes after the payload are left over from earlier frames.",
   {name = "dest", kind = "struct", type = "rubicon.r_addr", rule = "WIRE-NET-HEADER", doc = "To whom."},
   {name = "src", kind = "struct", type = "rubicon.r_addr", rule = "WIRE-NET-HEADER", doc = "From whom."},
   {name = "reliable", kind = "uint", width = 1, min = 0, max = 1, rule = "WIRE-NET-RELIABLE", doc = "1 asks for a RUBICON acknowledgement."},
@@ -173,7 +173,7 @@ types["rubicon.rubicon_ack_seq_only"] = {
 types["rubicon.synaptic_data"] = {
   name = "synaptic_data", max = 100, rule = "WIRE-SYNAPTIC-DATA",
   doc = "The values of a synaptic channel.",
-  {name = "values", kind = "float", width = 4, little = true, repeated = true, rule = "WIRE-SYNAPTIC-DATA", doc = "One for each connection, at most ten; behind a forwarding sink stale values follow."},
+  {name = "values", kind = "float", width = 4, little = true, repeated = true, rule = "WIRE-SYNAPTIC-DATA", doc = "One for each connection, at most ten; after a forwarding sink stale values follow."},
 }
 types["rubicon.join_request"] = {
   name = "join_request", max = 6, rule = "WIRE-JOIN-REQUEST",
@@ -254,7 +254,7 @@ types["rubicon.complete"] = {
   {name = "src", kind = "struct", type = "rubicon.r_addr", rule = "WIRE-COMPLETE", doc = "From whom."},
   {name = "reliable", kind = "uint", width = 1, min = 0, max = 1, rule = "WIRE-NET-RELIABLE", doc = "1 asks for a RUBICON acknowledgement."},
   {name = "seq_num", kind = "uint", width = 2, rule = "WIRE-COMPLETE", doc = "Sequence number."},
-  {name = "nbytes", kind = "uint", width = 1, min = 2, max = 102, rule = "WIRE-NET-NBYTES", doc = "Bytes behind the header."},
+  {name = "nbytes", kind = "uint", width = 1, min = 2, max = 102, rule = "WIRE-NET-NBYTES", doc = "Bytes after the header."},
   {name = "trans_id", kind = "uint", width = 1, enum = "rubicon.component", rule = "WIRE-COMPLETE", doc = "Transport component."},
   {name = "app_id", kind = "uint", width = 1, enum = "rubicon.component", rule = "WIRE-COMPLETE", doc = "Application component."},
   {name = "payload", kind = "struct", type = "rubicon.demo", rule = "WIRE-COMPLETE", doc = "The command."},
@@ -414,9 +414,9 @@ rules["WIRE-SF-HANDSHAKE"] = {level = "MUST", text = "A serial forwarder stream 
 rules["WIRE-SF-LENGTH"] = {level = "MUST", text = "A serial forwarder packet is a length byte of 1 to 255 and that many bytes from the dispatch byte on."}
 rules["WIRE-AM-DISPATCH"] = {level = "MUST", text = "The dispatch byte of an active message is 0x00."}
 rules["WIRE-AM-HEADER"] = {level = "MUST", text = "The serial active-message header is dest, src (16 bits each, big-endian), length, group and type (8 bits each)."}
-rules["WIRE-AM-LENGTH"] = {level = "MUST", text = "The length of an active message is at most 114 and is the number of bytes behind its header."}
+rules["WIRE-AM-LENGTH"] = {level = "MUST", text = "The length of an active message is at most 114 and is the number of bytes after its header."}
 rules["WIRE-RADIO-HEADER"] = {level = "MUST", text = "A radio frame begins with an 802.15.4 header whose fields are little-endian, with short addresses in one PAN."}
-rules["WIRE-RADIO-NETWORK"] = {level = "MUST", text = "In an I-frame the network byte 0x3F stands before the AM type; a T-frame has none."}
+rules["WIRE-RADIO-NETWORK"] = {level = "MUST", text = "In an I-frame the network byte 0x3F comes before the AM type; a T-frame has none."}
 rules["WIRE-RADIO-LENGTH"] = {level = "MUST", text = "A radio frame has at most 127 bytes, its FCS included."}
 rules["WIRE-RADIO-FCS"] = {level = "MUST", text = "The last two bytes of a radio frame are its FCS, the CRC-16 of ITU-T with reflected bits, low byte first."}
 rules["WIRE-RADIO-TAP"] = {level = "MUST", text = "The TAP header before a radio frame has version 0 and a length that covers its TLV fields."}
@@ -426,7 +426,7 @@ rules["WIRE-HEX"] = {level = "MUST", text = "Hex text has two hex digits for eac
 rules["WIRE-NET-HEADER"] = {level = "MUST", text = "A network message has a 12-byte header: dest, src, reliable, seq_num, nbytes."}
 rules["WIRE-NET-RELIABLE"] = {level = "MUST", text = "The reliable field of a network message is 0 or 1."}
 rules["WIRE-NET-NBYTES"] = {level = "MUST", text = "nbytes counts TRANSID, APPID and the application payload, so it is 2 to 102."}
-rules["WIRE-NET-PAYLOAD"] = {level = "MUST", text = "A network message holds at least the nbytes that its header promises; bytes behind them are stale and mean nothing."}
+rules["WIRE-NET-PAYLOAD"] = {level = "MUST", text = "A network message holds at least the nbytes that its header promises; bytes after them are stale and mean nothing."}
 rules["WIRE-APP-HEADER"] = {level = "MUST", text = "A transport message begins with TRANSID and APPID, one byte each."}
 rules["WIRE-R-ADDR"] = {level = "MUST", text = "A RUBICON address is the pair pid and devid, 16 bits each, big-endian."}
 rules["WIRE-MOTE-DESC"] = {level = "MUST", text = "A mote descriptor is the mote type (8 bits), the transducer mask (16 bits) and the actuator mask (8 bits)."}
@@ -802,7 +802,7 @@ local RADIO_FRAME_MAX = 125         -- aMaxPHYPacketSize without FCS.
 local FCS_BYTES = 2
 local SERIAL_ACK, PACKET_ACK, PACKET_NOACK = 67, 68, 69  -- TEP 113, section 3.1.
 local CONTENT_MIN = 4               -- Kind, a byte, CRC.
-local AFTER_HEADER_MAX = 254        -- Bytes behind kind and sequence number, CRC included.
+local AFTER_HEADER_MAX = 254        -- Bytes after kind and sequence number, CRC included.
 local SF_PACKET_MAX = 255           -- What a length byte can say.
 
 -- Fields, by their names in filters.

@@ -106,7 +106,7 @@ void AvrBoard::connect(Uart& uart, char name) {
 
 void AvrBoard::load() {
   if (std::ifstream(elf_file_).get() != 0x7F) {  // simavr loads what is not there without a word.
-    throw BoardBroken(fmt::format("{} cannot be read, or is no ELF file", elf_file_));
+    throw BoardBroken(fmt::format("{} cannot be read, or is not an ELF file", elf_file_));
   }
   elf_firmware_t firmware;
   std::memset(&firmware, 0, sizeof(firmware));

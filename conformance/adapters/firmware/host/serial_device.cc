@@ -108,7 +108,7 @@ class TcpLine : public Device {
 int serve_serial_device(QemuBoard& board, std::uint16_t island, bool over_tcp) {
   Bridge bridge(board);
   const Firmware firmware = bridge.greet();
-  if (!firmware.is_sink) throw BoardBroken("this is no firmware of a sink");
+  if (!firmware.is_sink) throw BoardBroken("this is not firmware of a sink");
   NodeSetup setup;
   setup.id = 1;
   setup.island = island;

@@ -75,7 +75,7 @@ void put_pair(ByteVector& out, std::string_view value, std::string_view between)
 void put_real(ByteVector& out, std::string_view value) {
   float real = 0;
   const auto end = std::from_chars(value.data(), value.data() + value.size(), real);
-  if (end.ptr != value.data() + value.size()) throw BadWord(fmt::format("{} is no real", value));
+  if (end.ptr != value.data() + value.size()) throw BadWord(fmt::format("{} is not a real", value));
   const std::uint32_t bits = bits_of_float(real);
   put16(out, bits >> 16);
   put16(out, bits & 0xFFFF);
@@ -135,7 +135,7 @@ std::uint32_t number_of(std::string_view word, std::uint32_t max) {
   std::uint32_t value = 0;
   const auto end = std::from_chars(word.data(), word.data() + word.size(), value);
   if (end.ec != std::errc{} || end.ptr != word.data() + word.size() || value > max) {
-    throw BadWord(fmt::format("{} is no number up to {}", word, max));
+    throw BadWord(fmt::format("{} is not a number up to {}", word, max));
   }
   return value;
 }
@@ -161,7 +161,7 @@ std::string hex_of_bytes(Bytes bytes) {
 ByteVector call_record(std::string_view text) {
   const std::size_t open = text.find('(');
   if (open == std::string_view::npos || text.back() != ')') {
-    throw BadWord(fmt::format("{} is no call", text));
+    throw BadWord(fmt::format("{} is not a call", text));
   }
   const std::string_view name = text.substr(0, open);
   const auto* const call =

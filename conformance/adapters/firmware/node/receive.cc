@@ -152,9 +152,9 @@ void Node::forward(const Route& route, rubicon::NetMsgView message) {
   Message* const place = take_place(route.line);
   if (place == nullptr) return;
   //= N6-CONTENT: What a sink forwards keeps addresses, reliable, sequence number and payload; on
-  //= the serial line only nbytes and the bytes behind the payload may differ.
+  //= the serial line only nbytes and the bytes after the payload may differ.
   //= N7-CONTENT: What a sink sends on by radio keeps addresses, reliable, sequence number, nbytes
-  //= and payload, and no byte behind the payload.
+  //= and payload, and no byte after the payload.
   const Bytes bytes = message.bytes();
   memcpy(place->room(), bytes.data(), bytes.size());
   send_net_msg(route.line, *place, route.am_dest, bytes.size());

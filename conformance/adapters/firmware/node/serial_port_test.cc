@@ -167,7 +167,7 @@ TEST_F(SerialPortTest, WhatIsSentIsAnUnconfirmedPacketBetweenFlags) {
   EXPECT_EQ(bytes.back(), kHdlcFlag);
 }
 
-TEST_F(SerialPortTest, TwoFlagsStandBetweenFrames) {
+TEST_F(SerialPortTest, TwoFlagsAreBetweenFrames) {
   node_.send({11, kNullDevid}, 5, false, Bytes());
   node_.send({11, kNullDevid}, 5, false, Bytes());
   ByteVector bytes = port_.drain();

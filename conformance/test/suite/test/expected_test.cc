@@ -55,7 +55,7 @@ Outcome hold(const std::string& yaml, CaseRun one, const char* target = "./node"
   return {one.expectation, one.unexpected(), run.stale, exit_code(run)};
 }
 
-TEST(Expected, AsItSays) {
+TEST(Expected, FailsAsTheEntrySays) {
   const Outcome out = hold(kEntry, failed({kAck}));
   EXPECT_EQ(out.expectation, Expectation::kAsExpected);
   EXPECT_FALSE(out.unexpected);
@@ -63,7 +63,7 @@ TEST(Expected, AsItSays) {
   EXPECT_EQ(out.exit_code, 0);
 }
 
-TEST(Expected, NotSpokenOf) {
+TEST(Expected, FailsWithoutAnEntry) {
   const Outcome out = hold("[]", failed({kAck}));
   EXPECT_EQ(out.expectation, Expectation::kNone);
   EXPECT_EQ(out.exit_code, 1);
@@ -112,7 +112,7 @@ TEST(Expected, FamiliesGlobsAndLinesWithoutRule) {
   EXPECT_EQ(hold(entry("j4.accept", "none"), failed({failure({}, "nothing")})).exit_code, 0);
 }
 
-TEST(Expected, AnEntryIsNotTrueOnce) {
+TEST(Expected, AnUntrueEntryIsReportedOnce) {
   static const Cases cases = Cases::own();
   const report::KnownFailures file = parse_expected(
       "- {case: 'j*', requirement: J4, message: nothing, reason: Known.}\n", "known.yaml");
@@ -130,8 +130,8 @@ TEST(Expected, AnEntryIsNotTrueOnce) {
   EXPECT_EQ(stale[0].place, "known.yaml:1");
   const std::string& text = stale[0].text;
   EXPECT_THAT(text, HasSubstr(std::to_string(all - 1) + " of the " + std::to_string(all) +
-                              " runs that 'j*' stands for do not fail so (" + node.cases[0].name +
-                              ", " + node.cases[2].name + ", "));
+                              " runs that 'j*' names do not fail so (" + node.cases[0].name + ", " +
+                              node.cases[2].name + ", "));
   EXPECT_THAT(text, HasSubstr(", ...). The first: " + node.cases[0].name + " was expected"));
   for (CaseRun& one : node.cases) {
     one.result.verdict = CaseVerdict::kFail;
@@ -140,7 +140,7 @@ TEST(Expected, AnEntryIsNotTrueOnce) {
   EXPECT_TRUE(untrue(file, run, cases).empty());
 }
 
-TEST(Expected, AnEmptyFileKnowsOfNothing) {
+TEST(Expected, AnEmptyFileExpectsNothing) {
   for (const char* text : {"", "# all mended\n"}) {
     EXPECT_EQ(hold(text, failed({})).exit_code, 0);
     EXPECT_EQ(hold(text, failed({kAck})).exit_code, 1);
@@ -163,7 +163,7 @@ TEST(Expected, OfAnotherTargetOrProfile) {
   EXPECT_EQ(hold(std::string(kEntry) + "  profile: deployed\n", failed({})).exit_code, 0);
 }
 
-TEST(Expected, WhatWasNotWorkedToItsEndSaysNothing) {
+TEST(Expected, UnfinishedCasesDecideNothing) {
   for (const CaseVerdict verdict : {CaseVerdict::kSkip, CaseVerdict::kInconclusive}) {
     CaseRun one = failed({});
     one.result.verdict = verdict;
@@ -200,7 +200,7 @@ TEST(ExpectedFile, SaysWhatIsWrongAndWhere) {
   EXPECT_EQ(why("case: x"), "k.yaml:1: expected a list of expected failures");
   EXPECT_EQ(why("- x"), "k.yaml:1: expected case, requirement, message and reason");
   EXPECT_EQ(why("- case: x\n  message: y\n  reason: z\n"), "k.yaml:1: requirement is missing");
-  EXPECT_EQ(why("\n- case: x\n  case: y\n"), "k.yaml:3: case stands here twice");
+  EXPECT_EQ(why("\n- case: x\n  case: y\n"), "k.yaml:3: case is given twice");
   EXPECT_EQ(why("- case: [x]\n"), "k.yaml:1: case: expected a text");
   EXPECT_THAT(why("- requirement: J44\n"), HasSubstr("k.yaml:1: no requirement is called 'J44'"));
   EXPECT_THAT(why("- profile: x\n"), HasSubstr("profile is paper or deployed"));

@@ -78,7 +78,7 @@ TEST(Run, TheMachinePassesWhateverTheSeed) {
   }
 }
 
-TEST(Honesty, ACanaryThatPassesEndsItAll) {
+TEST(Honesty, ACanaryThatPassesEndsTheRun) {
   int targets = 0;
   const ImplementationRun run = suite::run("x", fake([&](FakeAttachment& one) {
                                              one.make = parrot;
@@ -108,10 +108,10 @@ TEST(Honesty, EachRoleHasACanary) {
   }
 }
 
-TEST(Honesty, AnswersToNonsense) {
+TEST(Honesty, AnAnswerToAnUnknownCommandEndsTheRun) {
   const ImplementationRun run =
       suite::run("x", fake([](FakeAttachment& one) { one.honest = "it said done"; }), plan());
-  EXPECT_THAT(run.dishonest, HasSubstr("a command that nobody knows: it said done"));
+  EXPECT_THAT(run.dishonest, HasSubstr("an unknown command: it said done"));
 }
 
 TEST(Honesty, CanBeRequired) {
@@ -212,7 +212,7 @@ TEST(Run, WhatItCannotPlayIsSkipped) {
   EXPECT_GT(rules.untried, 0U);
 }
 
-TEST(Run, NothingButSkippedIsNoSuccess) {
+TEST(Run, SkippedCasesAloneAreNotASuccess) {
   SuiteRun all;
   all.implementations.push_back(suite::run(
       "x", fake([](FakeAttachment& one) { one.who.roles = {machine::Role::kBaseStation}; }),

@@ -112,7 +112,7 @@ TEST(Selection, FamiliesOfRules) {
   EXPECT_FALSE(is_of("J4-SEQ", ""));
 }
 
-TEST(Cases, KnowWhatTheyAreAbout) {
+TEST(Cases, KnowTheirRulesRolesAndNodes) {
   const Cases cases = Cases::of_text(kTraces, "x.rtr");
   const CaseRun& mote = cases.find("a.mote")->blank;
   EXPECT_EQ(mote.comment, "Catches one thing and another.");
@@ -141,7 +141,7 @@ TEST(Cases, TheProgramCarriesThoseOfTheProject) {
   }
 }
 
-TEST(Cases, OfTheUserAreHeldToSense) {
+TEST(Cases, OfTheUserMustMakeSense) {
   const auto why = [](const std::string& text) -> std::string {
     try {
       Cases::of_text("%rtr 1\n%profile paper\n" + text, "x.rtr");

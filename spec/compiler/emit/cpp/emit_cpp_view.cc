@@ -349,8 +349,8 @@ std::string emit_view(const Layout& layout, const Spec& spec) {
                {"max", is_unbounded(type.max_size) ? "SIZE_MAX" : std::to_string(type.max_size)},
                {"kinds", kinds},
                {"stale_doc", exact ? "All bytes are part of it."
-                             : all ? "Bytes behind the greatest size are left out."
-                                   : "Bytes behind the structure are stale()."},
+                             : all ? "Bytes after the greatest size are left out."
+                                   : "Bytes after the structure are stale()."},
                {"clamp", layout.clamps ? "bytes = at_most(bytes, kMaxSizeBytes);" : ""},
                {"check", check},
                {"getters", getters},

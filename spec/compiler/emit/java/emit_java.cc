@@ -141,8 +141,8 @@ std::string about(const Layout& layout, const Spec& spec) {
 }
 
 std::string parse_doc(const Layout& layout) {
-  const char* const end = !layout.has_tail ? "Bytes behind the structure are stale()."
-                          : layout.clamps  ? "Bytes behind the greatest size are left out."
+  const char* const end = !layout.has_tail ? "Bytes after the structure are stale()."
+                          : layout.clamps  ? "Bytes after the greatest size are left out."
                                            : "All bytes are part of it.";
   return javadoc(std::string("Checks everything once. ") + end, 2);
 }

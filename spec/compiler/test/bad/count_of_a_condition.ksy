@@ -1,4 +1,4 @@
-# expect: 15:24: a count that is no number: 'n < 4'; a number was expected; .to_i makes one of an
+# expect: 15:24: a count that is not a number: 'n < 4'; a number was expected; .to_i makes one of an
 #   enum
 meta:
   id: bad

@@ -1,4 +1,4 @@
-# expect: 15:3: 'color' twice in enums; it stands already in line 12
+# expect: 15:3: 'color' twice in enums; it is already in line 12
 meta:
   id: bad
   endian: be

@@ -1,4 +1,4 @@
-# expect: 15:5: duplicate enum value 'red'; it stands already in line 13
+# expect: 15:5: duplicate enum value 'red'; it is already in line 13
 meta:
   id: bad
   endian: be

@@ -1,4 +1,4 @@
-# expect: 12:7: duplicate field 'a'; it stands already in line 9
+# expect: 12:7: duplicate field 'a'; it is already in line 9
 meta:
   id: bad
   endian: be

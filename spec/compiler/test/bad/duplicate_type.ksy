@@ -1,4 +1,4 @@
-# expect: 11:3: 'one' twice in types; it stands already in line 6
+# expect: 11:3: 'one' twice in types; it is already in line 6
 meta:
   id: bad
   endian: be

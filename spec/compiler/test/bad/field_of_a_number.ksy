@@ -1,4 +1,4 @@
-# expect: 12:15: 'n' has no fields to read; it is no structure
+# expect: 12:15: 'n' has no fields to read; it is not a structure
 meta:
   id: bad
   endian: be

@@ -1,4 +1,4 @@
-# expect: 13:13: 'if' is no condition; a comparison was expected
+# expect: 13:13: 'if' is not a condition; a comparison was expected
 meta:
   id: bad
   endian: be

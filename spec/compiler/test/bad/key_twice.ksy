@@ -1,4 +1,4 @@
-# expect: 11:9: 'type' twice in a field; it stands already in line 10
+# expect: 11:9: 'type' twice in a field; it is already in line 10
 meta:
   id: bad
   endian: be

@@ -1,4 +1,4 @@
-# expect: 20:5: '-requirement' twice in a type; it stands already in line 19
+# expect: 20:5: '-requirement' twice in a type; it is already in line 19
 # expect: 21:15: unknown carrier 'usb'; known are serial, radio_i, radio_t, radio_ack
 # expect: 23:13: name 'Length'; lower snake case was expected
 # expect: 27:15: unknown enum 'colour'; did you mean 'color'?
@@ -8,7 +8,7 @@
 # expect: 32:9: unknown key 'typ' of a field; did you mean 'type'?
 # expect: 33:15: unknown type 'u3'; did you mean 'u1'?
 # expect: 34:9: a field without id; id: was expected
-# expect: 36:7: peek 'peek' is no unsigned number; an instance is a number at pos, or a type over
+# expect: 36:7: peek 'peek' is not an unsigned number; an instance is a number at pos, or a type over
 #   size-eos bytes at pos
 # expect: 43:5: duplicate enum value 2; line 42 names it already
 meta:

@@ -1,4 +1,4 @@
-# expect: 12:17: a name is missing; a word was expected behind '.' or '::'
+# expect: 12:17: a name is missing; a word was expected after '.' or '::'
 meta:
   id: bad
   endian: be

@@ -1,4 +1,4 @@
-# expect: 12:7: peek 'b' lies behind the end of 'one'; 'one' has at most 1 byte
+# expect: 12:7: peek 'b' lies after the end of 'one'; 'one' has at most 1 byte
 meta:
   id: bad
   endian: be

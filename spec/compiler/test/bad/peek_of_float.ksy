@@ -1,4 +1,4 @@
-# expect: 15:7: peek 'b' is no unsigned number; an instance is a number at pos, or a type over
+# expect: 15:7: peek 'b' is not an unsigned number; an instance is a number at pos, or a type over
 #   size-eos bytes at pos
 meta:
   id: bad

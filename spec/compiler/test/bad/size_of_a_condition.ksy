@@ -1,4 +1,4 @@
-# expect: 13:17: a size that is no number: 'n == 1'; a number was expected; .to_i makes one of an
+# expect: 13:17: a size that is not a number: 'n == 1'; a number was expected; .to_i makes one of an
 #   enum
 meta:
   id: bad

@@ -1,4 +1,4 @@
-# expect: 13:15: a size that is no number: 'n'; a number was expected; .to_i makes one of an enum
+# expect: 13:15: a size that is not a number: 'n'; a number was expected; .to_i makes one of an enum
 meta:
   id: bad
   endian: be

@@ -1,4 +1,4 @@
-# expect: 13:16: 'a' is no constant; a number or an enum::value was expected
+# expect: 13:16: 'a' is not a constant; a number or an enum::value was expected
 meta:
   id: bad
   endian: be

@@ -13,7 +13,7 @@ local RADIO_FRAME_MAX = 125         -- aMaxPHYPacketSize without FCS.
 local FCS_BYTES = 2
 local SERIAL_ACK, PACKET_ACK, PACKET_NOACK = 67, 68, 69  -- TEP 113, section 3.1.
 local CONTENT_MIN = 4               -- Kind, a byte, CRC.
-local AFTER_HEADER_MAX = 254        -- Bytes behind kind and sequence number, CRC included.
+local AFTER_HEADER_MAX = 254        -- Bytes after kind and sequence number, CRC included.
 local SF_PACKET_MAX = 255           -- What a length byte can say.
 
 -- Fields, by their names in filters.

@@ -26,7 +26,7 @@ public final class AppMsg extends WireView {
     super(bytes, MAX_SIZE_BYTES);
   }
 
-  /** Checks everything once. Bytes behind the greatest size are left out. */
+  /** Checks everything once. Bytes after the greatest size are left out. */
   public static AppMsg parse(ByteBuffer bytes) throws WireException {
     final WireReader in = new WireReader(bytes);
     check(in);

@@ -29,7 +29,7 @@ public final class AppMsgFromPc extends WireView {
     super(bytes, MAX_SIZE_BYTES);
   }
 
-  /** Checks everything once. Bytes behind the greatest size are left out. */
+  /** Checks everything once. Bytes after the greatest size are left out. */
   public static AppMsgFromPc parse(ByteBuffer bytes) throws WireException {
     final WireReader in = new WireReader(bytes);
     check(in);

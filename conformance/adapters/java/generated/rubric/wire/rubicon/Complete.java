@@ -31,7 +31,7 @@ public final class Complete extends WireView {
     super(bytes, Integer.MAX_VALUE);
   }
 
-  /** Checks everything once. Bytes behind the structure are stale(). */
+  /** Checks everything once. Bytes after the structure are stale(). */
   public static Complete parse(ByteBuffer bytes) throws WireException {
     final WireReader in = new WireReader(bytes);
     check(in);
@@ -70,7 +70,7 @@ public final class Complete extends WireView {
     return Wire.u2be(bytes, 9);
   }
 
-  /** Byte 11. Bytes behind the header. From 2 to 102. WIRE-NET-NBYTES. */
+  /** Byte 11. Bytes after the header. From 2 to 102. WIRE-NET-NBYTES. */
   public int nbytes() {
     return Wire.u1(bytes, 11);
   }
@@ -160,7 +160,7 @@ public final class Complete extends WireView {
       return this;
     }
 
-    /** Byte 11. Bytes behind the header. From 2 to 102. WIRE-NET-NBYTES. */
+    /** Byte 11. Bytes after the header. From 2 to 102. WIRE-NET-NBYTES. */
     public Writer nbytes(int value) {
       nbytes = Wire.fit(value, 0, 255);
       return this;

@@ -21,7 +21,7 @@ import rubric.wire.WireWriter;
 //   12    payload             bytes                   WIRE-NET-PAYLOAD
 /**
  * net_msg. The message of the network level. Over the radio only nbytes of the payload are
- * sent; on the serial line the whole 114 bytes, and bytes behind the payload are left over from
+ * sent; on the serial line the whole 114 bytes, and bytes after the payload are left over from
  * earlier frames. (paper: The Network level)
  */
 public final class NetMsg extends WireView {
@@ -33,7 +33,7 @@ public final class NetMsg extends WireView {
     super(bytes, Integer.MAX_VALUE);
   }
 
-  /** Checks everything once. Bytes behind the structure are stale(). */
+  /** Checks everything once. Bytes after the structure are stale(). */
   public static NetMsg parse(ByteBuffer bytes) throws WireException {
     final WireReader in = new WireReader(bytes);
     check(in);

@@ -27,7 +27,7 @@ public final class RssiBeacon extends WireView {
     super(bytes, Integer.MAX_VALUE);
   }
 
-  /** Checks everything once. Bytes behind the structure are stale(). */
+  /** Checks everything once. Bytes after the structure are stale(). */
   public static RssiBeacon parse(ByteBuffer bytes) throws WireException {
     final WireReader in = new WireReader(bytes);
     check(in);

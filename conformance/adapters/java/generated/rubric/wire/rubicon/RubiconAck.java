@@ -29,7 +29,7 @@ public final class RubiconAck extends WireView {
     super(bytes, Integer.MAX_VALUE);
   }
 
-  /** Checks everything once. Bytes behind the structure are stale(). */
+  /** Checks everything once. Bytes after the structure are stale(). */
   public static RubiconAck parse(ByteBuffer bytes) throws WireException {
     final WireReader in = new WireReader(bytes);
     check(in);

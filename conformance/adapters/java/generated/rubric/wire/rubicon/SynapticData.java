@@ -24,7 +24,7 @@ public final class SynapticData extends WireView {
     super(bytes, MAX_SIZE_BYTES);
   }
 
-  /** Checks everything once. Bytes behind the greatest size are left out. */
+  /** Checks everything once. Bytes after the greatest size are left out. */
   public static SynapticData parse(ByteBuffer bytes) throws WireException {
     final WireReader in = new WireReader(bytes);
     check(in);
@@ -38,7 +38,7 @@ public final class SynapticData extends WireView {
   }
 
   /**
-   * From byte 0. One for each connection, at most ten; behind a forwarding sink stale values
+   * From byte 0. One for each connection, at most ten; after a forwarding sink stale values
    * follow.
    */
   public float[] values() {
@@ -73,7 +73,7 @@ public final class SynapticData extends WireView {
     }
 
     /**
-     * From byte 0. One for each connection, at most ten; behind a forwarding sink stale values
+     * From byte 0. One for each connection, at most ten; after a forwarding sink stale values
      * follow.
      */
     public Writer values(float[] value) {

@@ -32,7 +32,7 @@ public final class AmHeader extends WireView {
     super(bytes, Integer.MAX_VALUE);
   }
 
-  /** Checks everything once. Bytes behind the structure are stale(). */
+  /** Checks everything once. Bytes after the structure are stale(). */
   public static AmHeader parse(ByteBuffer bytes) throws WireException {
     final WireReader in = new WireReader(bytes);
     check(in);
@@ -50,7 +50,7 @@ public final class AmHeader extends WireView {
   }
 
   /**
-   * Byte 0. What the bytes behind it are; this kit takes active messages. See {@link Dispatch}.
+   * Byte 0. What the bytes after it are; this kit takes active messages. See {@link Dispatch}.
    * WIRE-AM-DISPATCH.
    */
   public int dispatch() {
@@ -123,7 +123,7 @@ public final class AmHeader extends WireView {
     }
 
     /**
-     * Byte 0. What the bytes behind it are; this kit takes active messages. See {@link
+     * Byte 0. What the bytes after it are; this kit takes active messages. See {@link
      * Dispatch}. WIRE-AM-DISPATCH.
      */
     public Writer dispatch(int value) {

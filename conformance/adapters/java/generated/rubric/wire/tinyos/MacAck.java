@@ -28,7 +28,7 @@ public final class MacAck extends WireView {
     super(bytes, Integer.MAX_VALUE);
   }
 
-  /** Checks everything once. Bytes behind the structure are stale(). */
+  /** Checks everything once. Bytes after the structure are stale(). */
   public static MacAck parse(ByteBuffer bytes) throws WireException {
     final WireReader in = new WireReader(bytes);
     check(in);

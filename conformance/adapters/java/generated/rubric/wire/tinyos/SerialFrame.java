@@ -17,8 +17,8 @@ import rubric.wire.WireWriter;
 //   1     seq_num             u1                      WIRE-SERIAL-SEQ
 //   -     packet              bytes                   WIRE-SERIAL-KIND
 /**
- * serial_frame. What stands between two flags on the serial line, unescaped, without its CRC.
- * The CRC-16 over these bytes follows them, low byte first. (TEP 113, section 3.1)
+ * serial_frame. What is between two flags on the serial line, unescaped, without its CRC. The
+ * CRC-16 over these bytes follows them, low byte first. (TEP 113, section 3.1)
  */
 public final class SerialFrame extends WireView {
   public static final int MIN_SIZE_BYTES = 1;

@@ -52,24 +52,24 @@ const Fault kFaults[] = {
     {"endless_notes", "an answer of more than 10000 lines"},
     {"endless_frames", "an answer of more than 10000 lines"},
     {"done_before_its_time", "done at 99999999, expected 0"},
-    {"bad_hex", "'0000zz' is no even number of hex digits"},
+    {"bad_hex", "'0000zz' is not an even number of hex digits"},
     {"ready_again", "expected tx, up, next, note or `done`, given 'ready'"},
-    {"unknown_event", "'exploded' is no message"},
+    {"unknown_event", "'exploded' is not a message"},
     {"false_next", "it wrote something at 500 after `next -`"},
     {"refuses_time", "unsupported `until 0`: time"},
-    {"unasked", "something is written behind the closing line"},
+    {"unasked", "something follows the closing line"},
     {"newer_version", "speaks version 2 of the protocol"},
-    {"no_version", "is no version, such as rct/1"},
+    {"no_version", "is not a version, such as rct/1"},
     {"no_roles", "it says no roles="},
-    {"unknown_role", "'toaster' is no role"},
+    {"unknown_role", "'toaster' is not a role"},
     {"no_name", "lacks its name or version"},
     {"http", "expected `hello`, given 'HTTP/1.1 400 Bad Request'"},
     {"refused_hello", "unsupported"},
 };
 
-class AttachFaults : public testing::Test {
+class BrokenAdapters : public testing::Test {
  protected:
-  AttachFaults() {
+  BrokenAdapters() {
     std::string pattern = (std::filesystem::temp_directory_path() / "rubric-XXXXXX").string();
     if (!::mkdtemp(pattern.data())) throw std::runtime_error("no temporary folder");
     folder_ = pattern;
@@ -77,7 +77,7 @@ class AttachFaults : public testing::Test {
       if (file.file.find("j1.request")) file_ = std::move(file);
     }
   }
-  ~AttachFaults() override { std::filesystem::remove_all(folder_); }
+  ~BrokenAdapters() override { std::filesystem::remove_all(folder_); }
 
   std::string flag() const { return (folder_ / "flag").string(); }
   void raise_flag() const { std::ofstream(flag()) << "1"; }
@@ -109,7 +109,7 @@ class AttachFaults : public testing::Test {
 
 bool no_child_is_left() { return ::waitpid(-1, nullptr, WNOHANG) == -1 && errno == ECHILD; }
 
-TEST_F(AttachFaults, EndTheirCaseAndNoOther) {
+TEST_F(BrokenAdapters, FailTheirCaseAlone) {
   std::size_t errors = 0;
   std::size_t passes_after = 0;
   for (const Fault& fault : kFaults) {
@@ -140,7 +140,7 @@ TEST_F(AttachFaults, EndTheirCaseAndNoOther) {
               std::size(kFaults), errors, passes_after);
 }
 
-TEST_F(AttachFaults, NoiseOnStandardErrorIsNone) {
+TEST_F(BrokenAdapters, NoiseOnStandardErrorIsAllowed) {
   raise_flag();
   const auto attachment = adapter("noisy");
   EXPECT_EQ(run(*attachment).verdict, CaseVerdict::kPass);
@@ -150,7 +150,7 @@ TEST_F(AttachFaults, NoiseOnStandardErrorIsNone) {
   EXPECT_EQ(attachment->take_stderr(), "");
 }
 
-TEST_F(AttachFaults, CommandThatDoesNotRun) {
+TEST_F(BrokenAdapters, CommandThatDoesNotRun) {
   const auto attachment = attach("exec /no/such/program", {});
   EXPECT_THROW(attachment->identity(), runner::TargetBroken);
   EXPECT_NE(attachment->take_stderr().find("/no/such/program"), std::string::npos);
@@ -160,7 +160,7 @@ TEST_F(AttachFaults, CommandThatDoesNotRun) {
   EXPECT_TRUE(no_child_is_left());
 }
 
-TEST_F(AttachFaults, EndBetweenCasesIsNoFaultOfTheNext) {
+TEST_F(BrokenAdapters, AnEndBetweenCasesDoesNotFailTheNext) {
   const auto attachment = attach("exec " RUBRIC_MACHINE_ADAPTER, {});
   EXPECT_EQ(run(*attachment).verdict, CaseVerdict::kPass);
   siginfo_t info{};  // Its only child.
@@ -180,7 +180,7 @@ TEST_F(AttachFaults, EndBetweenCasesIsNoFaultOfTheNext) {
 }
 
 // An adapter that passes the case, and does something when nothing is asked.
-TEST_F(AttachFaults, WhatHappensOutsideOfCasesIsTold) {
+TEST_F(BrokenAdapters, WhatHappensOutsideOfCasesIsReported) {
   struct Odd {
     const char* fault;
     const char* text;
@@ -192,7 +192,7 @@ TEST_F(AttachFaults, WhatHappensOutsideOfCasesIsTold) {
       {"ends_unasked", "ended with status 7", true},
       {"bad_status_at_bye", "ended with status 7", false},
       {"killed_at_bye", "was killed by signal 9 (Killed)", false},
-      {"speaks_at_bye", "wrote something, and nobody had asked", false},
+      {"speaks_at_bye", "wrote something that was not asked for", false},
       {"hangs_at_bye", "did not end within 600 ms", false},
   };
   for (const Odd& one : odd) {
@@ -214,7 +214,7 @@ TEST_F(AttachFaults, WhatHappensOutsideOfCasesIsTold) {
   EXPECT_TRUE(no_child_is_left());
 }
 
-TEST_F(AttachFaults, HonestyIsAsked) {
+TEST_F(BrokenAdapters, DishonestOnesAreFound) {
   const auto dishonest = attach(
       "while read -r line; do case $line in hello*) echo hello rct/1 yes_man 1 roles=mote;; "
       "bye) exit;; *) echo done 0;; esac; done",
@@ -228,7 +228,7 @@ TEST_F(AttachFaults, HonestyIsAsked) {
 }
 
 // Time that did not pass is no silence.
-TEST_F(AttachFaults, RealTimeIsOurs) {
+TEST_F(BrokenAdapters, RealTimeIsMeasuredByOurClock) {
   const auto jumper = attach(
       "while read -r word time rest; do case $word in "
       "hello) echo hello rct/1 jumper 1 roles=mote time=real;; reset) echo ready;; bye) exit;; "
@@ -247,7 +247,7 @@ TEST_F(AttachFaults, RealTimeIsOurs) {
 }
 
 // A machine that answers in real time: when the time has come.
-TEST_F(AttachFaults, RealTimeAdapterIsWaitedFor) {
+TEST_F(BrokenAdapters, RealTimeAdapterIsWaitedFor) {
   const auto patient = attach(
       "while read -r word time rest; do case $word in "
       "hello) echo hello rct/1 patient 1 roles=mote time=real;; reset) echo ready;; bye) exit;; "
@@ -261,7 +261,7 @@ TEST_F(AttachFaults, RealTimeAdapterIsWaitedFor) {
   EXPECT_EQ(result.verdict, CaseVerdict::kPass) << result.reason;
 }
 
-TEST_F(AttachFaults, RolesThatItDoesNotPlayAreSkipped) {
+TEST_F(BrokenAdapters, RolesThatItDoesNotPlayAreSkipped) {
   const auto sink = attach(
       "while read -r line; do case $line in "
       "hello*) echo hello rct/1 only_sink 1 roles=sink;; bye) exit;; "
