@@ -95,13 +95,13 @@ std::vector<LegalVariant> stated_variants() {
                  false,
                  {{ParameterId::kResponse, 350}}});
   out.push_back({"response_450",
-                 "All answers take 450 ticks (125).",
-                 late(450),
+                 "All answers take 440 ticks (125).",
+                 late(440),
                  true,
                  {{ParameterId::kResponse, 450}}});
   out.push_back({"response_100",
-                 "All answers come within 100 ticks (125).",
-                 late(100),
+                 "All answers take 90 ticks (125).",
+                 late(90),
                  true,
                  {{ParameterId::kResponse, 100}}});
   out.push_back({"synaptic_period_1000",
@@ -131,7 +131,7 @@ std::vector<LegalVariant> stated_variants() {
                  {{ParameterId::kResponse, 350},
                   {ParameterId::kJoinPeriod, 1024},
                   {ParameterId::kAckTimeout, 2500},
-                  {ParameterId::kChannelAccess, 20},
+                  {ParameterId::kChannelAccess, 60},
                   {ParameterId::kSynapticPeriod, 800},
                   {ParameterId::kSynapticPhase, 40}}});
   return out;

@@ -126,7 +126,8 @@ Fate short_ack(Moment& moment, const Action&, Transmit& frame) {
 }
 
 Fate stale_on_serial(Moment& moment, const Action&, Transmit& frame) {
-  const bool up = frame.link == Link::kSerial && moment.is(Role::kSink) && is_net(frame);
+  const bool up = frame.link == Link::kSerial && moment.is(Role::kSink) && is_net(frame) &&
+                  !is_synaptic(frame);  // Its nbytes says how many values there are.
   if (!up) return Fate::kKeep;
   const std::size_t end = 12U + frame.payload[net::kNbytes];
   for (std::size_t i = end; i < frame.payload.size(); ++i) {
