@@ -21,8 +21,9 @@ struct TimedPacket {
 class PacketLine {
  public:
   virtual ~PacketLine() = default;
-  /// Opens it before `deadline`, unless it is open and the other end is there.
-  virtual void open(SteadyTime deadline) = 0;
+  /// Opens it before `deadline`, unless it is open and the other end is there. Returns whether it
+  /// opened it.
+  virtual bool open(SteadyTime deadline) = 0;
   virtual void close() = 0;
   virtual void send(const std::vector<std::uint8_t>& packet, SteadyTime deadline) = 0;
   /// Returns the next packet; nothing if the time is over first.

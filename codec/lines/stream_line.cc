@@ -6,12 +6,12 @@ namespace rubric::lines {
 
 using std::chrono::steady_clock;
 
-void StreamLine::open(SteadyTime deadline) {
+bool StreamLine::open(SteadyTime deadline) {
   if (stream_.is_open()) {
     try {
       while (read_some(steady_clock::now())) {
       }
-      return;
+      return false;
     } catch (const Broken&) {  // It has gone since.
     }
   }
@@ -22,6 +22,7 @@ void StreamLine::open(SteadyTime deadline) {
     close();
     throw;
   }
+  return true;
 }
 
 bool StreamLine::read_some(SteadyTime deadline) {

@@ -15,7 +15,7 @@ class StreamLine : public PacketLine {
   using Connect = std::function<ByteStream(SteadyTime deadline)>;
   explicit StreamLine(Connect connect) : connect_(std::move(connect)) {}
 
-  void open(SteadyTime deadline) override;
+  bool open(SteadyTime deadline) override;
   void close() override { stream_.close(); }
 
  protected:

@@ -1,6 +1,7 @@
 // A run: the frames of its files in one order of time, and what the user knows about it.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -99,6 +100,28 @@ struct LoosePlace {
   bool between = false;
 };
 
+/// The first frame after a step of its recorder's clock, or a frame whose stamp alone is wrong.
+struct ClockStep {
+  static constexpr std::int64_t kUnknown = -1;
+  std::uint32_t file = 0;
+  std::uint64_t frame = 0;
+  std::int64_t time_us = 0;          ///< Where the frame was put: as early as it can be.
+  std::int64_t later_us = kUnknown;  ///< It may be later by this; kUnknown: with all that follow.
+
+  bool alone() const { return later_us != kUnknown; }
+};
+
+/// Returns whether a clock stepped between two times, or the frame at one of them has a wrong
+/// stamp. `steps` are in order of time.
+inline bool stepped(const std::vector<ClockStep>& steps, std::int64_t from_us, std::int64_t to_us) {
+  const auto first = std::lower_bound(
+      steps.begin(), steps.end(), from_us,
+      [](const ClockStep& step, std::int64_t time_us) { return step.time_us < time_us; });
+  return std::any_of(first, steps.end(), [&](const ClockStep& step) {
+    return step.time_us <= to_us && (step.time_us > from_us || step.alone());
+  });
+}
+
 /// Holds the objects that observations point to.
 struct RunStorage;
 
@@ -128,6 +151,8 @@ struct Run {
   /// Frames of files without stamps that are in order with others, by file and frame. A failure
   /// must be found in each order that these bounds allow.
   std::vector<LoosePlace> loose;
+  /// In order of time. What compares times before and after one is inconclusive.
+  std::vector<ClockStep> steps;
 };
 
 /// The whole answer.

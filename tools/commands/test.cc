@@ -47,6 +47,7 @@ constexpr const char* kTestFooter =
     "  sf:HOST:PORT              a sink behind a Serial Forwarder\n"
     "  serial:DEVICE[:BAUD]      a sink at a serial line; serial:tcp:HOST:PORT at an emulator's\n"
     "  sf:HOST:PORT:mote         a mote there, also serial:...:mote; its line decides nothing\n"
+    "A line shows a part of a node; --app COMMAND adds its application, for cases that need it.\n"
     "Without TRACES it is tested with the kit's own golden traces, which the program contains.\n"
     "Examples:\n"
     "  rubric test --target ./my_adapter\n"
@@ -65,6 +66,7 @@ constexpr const char* kTestFooter =
 struct TestOptions {
   std::vector<std::string> traces;
   std::vector<std::string> targets;
+  std::string app;
   suite::Selection selection;
   std::string profile;
   std::string role;
@@ -213,12 +215,14 @@ suite::SuiteRun work(const TestOptions& options, const suite::Cases& cases, suit
   suite::SuiteRun all;
   all.traces = options.traces;
   all.shard = options.shard;
+  all.app = options.app;
   all.seed = options.seed.value_or(0);
   if (!options.profile.empty()) all.profile = options.profile;
   targets::Options attached;
   attached.step_timeout = Milliseconds(static_cast<std::int64_t>(options.timeout_s * 1000));
   attached.start_timeout = std::max(attached.start_timeout, attached.step_timeout);
   attached.stated = statement_of(options.stated);
+  attached.app = options.app;
   const std::size_t worked = plan.cases.size() * plan.repeats;
   cli::Progress progress(worked * options.targets.size(), true, cli::Progress::Unit::kCases);
   for (const std::string& target : options.targets) {
@@ -277,7 +281,9 @@ int run_test(const TestOptions& options) {
   statement_of(options.stated);
   for (const std::string& target : options.targets) {
     try {
-      targets::attach(target, {});
+      targets::Options attached;
+      attached.app = options.app;
+      targets::attach(target, attached);
     } catch (const std::invalid_argument& error) {
       throw cli::UsageError("--target", fmt::format("'{}': {}", target, error.what()));
     }
@@ -322,6 +328,10 @@ void add_options(cli::Command& command, TestOptions& options) {
   command
       .add_option("--target", options.targets,
                   "Test this implementation: a command, or machine; again for another one")
+      .check(cli::given);
+  command
+      .add_option("--app", options.app,
+                  "Show the application of a node at its line by this command, and perhaps PEIS")
       .check(cli::given);
   add_selection(command, options);
   command

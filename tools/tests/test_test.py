@@ -178,6 +178,18 @@ class Running(Folder):
         self.assertIn("1 expectation not true", out)
         self.assertIn("runs that 'j4.*' names do not fail so", " ".join(out.split()))
 
+    def test_cases_beyond_reach_are_one_sentence(self):
+        """An adapter may show some links of its node only."""
+        partial = f"{HONEST} | sed -u s/time=virtual/'& links=app,serial'/"
+        code, out, _ = test("--target", partial, "--role", "mote", "--requirement", "J8")
+        self.assertEqual(code, 3)
+        self.assertNotRegex(out, "(?m)^inconclusive ")
+        self.assertRegex(out, r"What is attached decides 0 of \d+ cases; the others need radio as")
+        self.assertRegex(out, r"INCONCLUSIVE \d+ cases: the target does not show radio")
+        code, _, err = test("--target", HONEST, "--app", "true")
+        self.assertEqual(code, 64)
+        self.assertIn("an app goes with sf-server, sf or serial", err)
+
     def test_nobody_at_the_port(self):
         """It is not waited for longer than --timeout says, whatever starts slowly elsewhere."""
         for target in ("sf:127.0.0.1:1", "serial:tcp:127.0.0.1:1", "sf:127.0.0.1:1:mote"):

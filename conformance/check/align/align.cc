@@ -29,6 +29,7 @@ struct File {
   bool serial = false;
   bool moved = false;       // It was shifted by frames it shares with another.
   bool settled = false;     // On a clock, or left as it is.
+  bool stepped = false;     // Its clock stepped: no one shift fits.
   std::uint32_t clock = 0;  // The first file on the same one.
   std::int64_t first_us = 0;
   std::int64_t last_us = 0;
@@ -68,6 +69,9 @@ class Alignment {
       file.last_us = file.timed ? std::max(file.last_us, time_us) : time_us;
       file.timed = true;
     }
+    for (const ClockStep& step : run_.steps) {
+      if (!step.alone()) files_[step.file].stepped = true;
+    }
   }
 
   // Returns the first file that is not settled, which begins a clock of its own.
@@ -88,9 +92,9 @@ class Alignment {
     std::uint32_t best_a = 0;
     std::uint32_t best_b = 0;
     for (std::uint32_t b = 0; b < files_.size(); ++b) {
-      if (!files_[b].timed || files_[b].settled) continue;
+      if (!files_[b].timed || files_[b].settled || files_[b].stepped) continue;
       for (std::uint32_t a = 0; a < files_.size(); ++a) {
-        if (!files_[a].timed || !files_[a].settled) continue;
+        if (!files_[a].timed || !files_[a].settled || files_[a].stepped) continue;
         const ClockFit fit = fitted(a, b);
         if (fit.clocks == Clocks::kUnsure || (best && best->frames >= fit.frames)) continue;
         best = fit;
@@ -150,16 +154,17 @@ class Alignment {
       const bool other = files_[a].radio != files_[b].radio || files_[a].serial != files_[b].serial;
       const CommonFrames common = common_of(a, b);
       const bool some = !common.pairs.empty() || !common.guesses.empty();
+      const bool steps = files_[a].stepped || files_[b].stepped;
       if (!some && !other) continue;
       if (!said) {
         run_.facts.push_back(run_.files[b] + " is not aligned with " + run_.files[a] + ": " +
-                             fit_clock(run_, common, options_).why);
+                             (steps ? "a clock steps" : fit_clock(run_, common, options_).why));
       }
       said = true;
       const bool apart = files_[b].first_us > files_[a].last_us + options_.response_us ||
                          files_[a].first_us > files_[b].last_us + options_.response_us;
       const bool could = !common.only_a.empty() && !common.only_b.empty();
-      if (!some && !could && !apart) files_[b].clock = files_[a].clock;
+      if (!some && !could && !apart && !steps) files_[b].clock = files_[a].clock;
     }
   }
 

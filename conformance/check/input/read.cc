@@ -6,6 +6,7 @@
 #include <cstring>
 #include <limits>
 
+#include "conformance/check/align/steps.h"
 #include "conformance/check/input/read_packet.h"
 #include "conformance/check/input/read_trace.h"
 #include "conformance/check/message.h"
@@ -98,6 +99,7 @@ Run in_one_order(Run run, const AlignOptions& options) {
   if (!std::is_sorted(run.seen.begin(), run.seen.end(), by_file)) {  // Files that grew at a time.
     std::stable_sort(run.seen.begin(), run.seen.end(), by_file);
   }
+  mend_steps(run);
   align(run, options);
   // A log counts from the start of its run. Captures of simulated networks do, too; those of real
   // ones have stamps of this century, and then the log is taken to begin with the capture.
@@ -123,6 +125,7 @@ Run in_one_order(Run run, const AlignOptions& options) {
   for (Observation& seen : run.seen) {
     seen.place.time_us = seen.place.time_us == kNoStamp ? -1 : seen.place.time_us - first_us;
   }
+  place_steps(run);
   for (LoosePlace& place : run.loose) {
     place.early_us -= first_us;
     place.late_us -= first_us;

@@ -114,8 +114,8 @@ void Acks::refuse(std::uint16_t node, const Observation& seen, const Net& ack, s
                 " bytes that holds no sequence number.";
     said.expected = "The acknowledged number, alone or in a learning_notification.";
   } else if (best == nullptr) {
-    severity =
-        context_.half_heard(node) ? Severity::kInconclusive : context_.without_ever(kNobody, now);
+    if (context_.half_heard(node)) return context_.needs_host(node, seen.place);
+    severity = context_.on_line(node, context_.without_ever(kNobody, now));
     said.text = "An ack to " + text_of(ack.dest) + " of number " +
                 number(static_cast<std::uint64_t>(acked)) +
                 ", which no message that came to this node had.";
@@ -150,7 +150,7 @@ void Acks::refuse(std::uint16_t node, const Observation& seen, const Net& ack, s
     severity = Severity::kInconclusive;
   } else {
     rule = "T2-ONCE"_rule;
-    severity = context_.without(best->sender, best->place.time_us, now);
+    severity = context_.on_line(node, context_.without(best->sender, best->place.time_us, now));
     said.text = "A second ack of " + name_of(best->net) + ".";
     said.expected = "One ack for each time that it was received.";
   }
@@ -245,7 +245,7 @@ void Acks::showed_life(std::uint16_t node, std::int64_t now_us) {
                               : by_radio ? context_.without(node, arrived.place.time_us, now_us)
                                          : Severity::kFail;
     context_.report(
-        "T2-ACK"_rule, severity, arrived.place, node,
+        "T2-ACK"_rule, context_.on_line(node, severity), arrived.place, node,
         {"It surely received " + name_of(arrived.net) + ", reliable, and sent no ack within " +
              ms_text(context_.response_us()) + ", though it sent other frames later.",
          "An ack.",

@@ -12,6 +12,7 @@
 #include "codec/reflect/requirements.h"
 #include "conformance/check/input/read.h"
 #include "conformance/check/judge/findings.h"
+#include "conformance/check/judge/judge_pass.h"
 
 namespace rubric::check {
 namespace {
@@ -116,6 +117,80 @@ Report judge_each_order(const Run& run, const Options& options) {
         early.contains(name) && late.contains(name) && (seen || never.contains(name));
     if (!stands) finding.severity = Severity::kInconclusive;
   }
+  report.verdict = verdict_of(report.findings);
+  return report;
+}
+
+namespace {
+
+constexpr std::int64_t kMuchLaterUs = 7'200'000'000;
+
+// Returns the run with each step's frames much later, and frames with a wrong stamp as late as they
+// can be.
+Run with_late_steps(const Run& run) {
+  Run out = run;
+  const auto later_us = [&](std::int64_t time_us) {
+    std::int64_t sum_us = 0;
+    for (const ClockStep& step : run.steps) {
+      if (!step.alone() && step.time_us <= time_us) sum_us += kMuchLaterUs;
+    }
+    return sum_us;
+  };
+  for (ClockStep& step : out.steps) step.time_us += later_us(step.time_us);
+  for (Observation& seen : out.seen) {
+    if (!seen.place.in_order()) continue;
+    const auto alone = std::find_if(run.steps.begin(), run.steps.end(), [&](const ClockStep& step) {
+      return step.alone() && step.file == seen.place.file && step.frame == seen.place.frame;
+    });
+    if (alone != run.steps.end()) seen.place.time_us += alone->later_us;
+    seen.place.time_us += later_us(seen.place.time_us);
+  }
+  merge(out);
+  out.has_time = run.has_time;
+  out.start_us = run.start_us + later_us(run.start_us);
+  out.end_us = run.end_us + later_us(run.end_us);
+  return out;
+}
+
+}  // namespace
+
+Report judge_each_gap(const Run& run, const Options& options) {
+  Report report = Judge(run, options).judge();
+  Report late = Judge(with_late_steps(run), options).judge();
+  const std::set<Name> soon_blamed = blamed_in(report);
+  const std::set<Name> late_blamed = blamed_in(late);
+  const std::int64_t first_us = run.steps.front().time_us;
+  // Nothing ties the clock of a log to one that stepped.
+  const auto logged = [&](const Finding& finding) {
+    return finding.place.time_us >= first_us &&
+           std::any_of(run.nodes.begin(), run.nodes.end(),
+                       [&](const LoggedNode& node) { return node.name == finding.node; });
+  };
+  for (Finding& finding : report.findings) {
+    if (!blames(finding)) continue;
+    if (late_blamed.contains(name_of(finding)) && !logged(finding)) continue;
+    finding.severity = Severity::kInconclusive;
+  }
+  std::map<std::pair<std::uint32_t, std::uint64_t>, const Place*> places;
+  for (const Observation& seen : run.seen) {
+    places[{seen.place.file, seen.place.frame}] = &seen.place;
+  }
+  const auto place_again = [&](Place& place) {
+    const auto known = places.find({place.file, place.frame});
+    place = known != places.end() ? *known->second : Place{};
+  };
+  for (Finding& finding : late.findings) {
+    if (!blames(finding) || soon_blamed.contains(name_of(finding))) continue;
+    finding.severity = Severity::kInconclusive;
+    place_again(finding.place);
+    place_again(finding.last);
+    report.findings.push_back(std::move(finding));
+  }
+  std::stable_sort(report.findings.begin(), report.findings.end(),
+                   [](const auto& a, const auto& b) {
+                     return std::tie(a.place.time_us, a.place.file, a.place.frame) <
+                            std::tie(b.place.time_us, b.place.file, b.place.frame);
+                   });
   report.verdict = verdict_of(report.findings);
   return report;
 }

@@ -12,4 +12,8 @@ namespace rubric::check {
 /// found without the loose files too, since their beginning and end are unknown.
 Report judge_each_order(const Run& run, const Options& options);
 
+/// Judges `run`, a recorder's clock of which stepped, as if the frames after each step had come at
+/// once, and as if they had come much later. What only one of the two has is inconclusive.
+Report judge_each_gap(const Run& run, const Options& options);
+
 }  // namespace rubric::check

@@ -9,6 +9,51 @@
 namespace rubric::check {
 namespace {
 
+constexpr std::size_t kNumbersMin = 24;         // Of a line; a fifth of all frames shows by then.
+constexpr std::size_t kHoleShare = 50;          // Frames of the air for each hole among them.
+constexpr std::int64_t kHostWaitsUs = 900'000;  // Hosts wait 1 s for a confirmation.
+
+// Returns, by tap, whether frames of a serial line are missing from the capture, or may be. Hosts
+// number their packets, and send the next one when the mote has confirmed the last. A line with few
+// such numbers is no better than the capture of the air, whose frames are all numbered; alone it
+// proves nothing.
+std::vector<bool> find_lossy_taps(const Run& run, bool lossy_air) {
+  struct Line {
+    const Observation* last = nullptr;
+    bool confirmed = false;
+    std::uint8_t damaged = 0;  // Frames since then; each may have been a packet or its ack.
+    std::size_t numbers = 0;   // That followed, or confirmed.
+  };
+  std::vector<Line> lines(run.taps.size());
+  std::vector<bool> out(run.taps.size());
+  for (const Observation& seen : run.seen) {
+    if (!seen.node.empty() || run.taps[seen.tap].link != machine::Link::kSerial) continue;
+    Line& line = lines[seen.tap];
+    if (seen.kind == Observation::Kind::kDamaged) {
+      if (line.damaged < 127) ++line.damaged;
+    } else if (seen.kind == Observation::Kind::kLinkAck && !seen.to_mote && line.last != nullptr) {
+      const auto ahead = static_cast<std::int8_t>(seen.dsn - line.last->dsn);
+      line.confirmed = line.confirmed || ahead == 0;
+      ++line.numbers;
+      if (ahead > line.damaged) out[seen.tap] = true;
+    } else if (seen.kind == Observation::Kind::kSerial && seen.to_mote && seen.ack_request) {
+      if (line.last != nullptr) {
+        const auto ahead = static_cast<std::uint8_t>(seen.dsn - line.last->dsn);
+        const bool soon =
+            !seen.place.timed() || seen.place.time_us - line.last->place.time_us < kHostWaitsUs;
+        const bool unconfirmed = !line.confirmed && line.damaged == 0 && soon;
+        if (ahead > 1 + line.damaged || unconfirmed) out[seen.tap] = true;
+      }
+      line = {&seen, false, 0, line.numbers + 1};
+    }
+  }
+  for (std::size_t tap = 0; tap < lines.size() && lossy_air; ++tap) {
+    const bool serial = run.taps[tap].link == machine::Link::kSerial;
+    if (serial && lines[tap].numbers < kNumbersMin) out[tap] = true;
+  }
+  return out;
+}
+
 bool is_of(ReqId requirement, std::string_view group) {
   return std::string_view(reflect::requirement(requirement).id).starts_with(group);
 }
@@ -16,6 +61,15 @@ bool is_of(ReqId requirement, std::string_view group) {
 }  // namespace
 
 void Context::look_up() {
+  down_taps.resize(run.taps.size());
+  for (const Observation& seen : run.seen) {
+    if (seen.kind == Observation::Kind::kSerial && seen.to_mote) down_taps[seen.tap] = true;
+  }
+  last_us.assign(who.devices.size(), -1);
+  for (std::size_t i = 0; i < run.seen.size(); ++i) {
+    const std::uint16_t sender = who.marks[i].device;
+    if (sender != kNobody) last_us[sender] = run.seen[i].place.time_us;
+  }
   sink_am = profile().sink_id;
   mote_of_am.assign(65536, kNobody);
   next_of_am.assign(who.devices.size(), kNobody);
@@ -46,10 +100,14 @@ void Context::look_up() {
   for (const Tap& tap : run.taps) {
     hears_radio = hears_radio || tap.link == machine::Link::kRadio;
   }
-  down_taps.resize(run.taps.size());
-  for (const Observation& seen : run.seen) {
-    if (seen.kind == Observation::Kind::kSerial && seen.to_mote) down_taps[seen.tap] = true;
+  std::size_t holes = 0;
+  std::uint64_t frames = 0;
+  for (const Device& device : who.devices) {
+    holes += device.holes.size();
+    frames += device.frames;
   }
+  const bool lossy_air = !options.sniffer_complete && kHoleShare * holes >= frames;
+  lossy_taps = find_lossy_taps(run, lossy_air);
   untimed_taps = run.unordered_taps;
   untimed_taps.resize(run.taps.size());
   unordered = std::find(untimed_taps.begin(), untimed_taps.end(), true) != untimed_taps.end();
@@ -87,6 +145,64 @@ bool Context::half_heard(std::uint16_t node) const {
   return !d.hearing && !d.taps.empty() && !down;
 }
 
+Severity Context::on_line(std::uint16_t node, Severity severity) const {
+  const Device& d = device(node);
+  const bool base = d.role == machine::Role::kBaseStation && d.partner != kNobody;
+  const std::vector<std::uint32_t>& taps = base ? device(d.partner).taps : d.taps;
+  const bool lossy =
+      std::any_of(taps.begin(), taps.end(), [this](std::uint32_t tap) { return lossy_taps[tap]; });
+  // Where files are in no order, a frame of another line may be taken for this node's.
+  return lossy || unordered ? std::min(severity, Severity::kInconclusive) : severity;
+}
+
+void Context::needs_host(std::uint16_t sink, const Place& at) {
+  Gathered& gathered = unseen_[sink];
+  if (gathered.count++ == 0) gathered.first.place = at;
+  gathered.first.last = at;
+}
+
+// Returns whether the finding is one of many that finish() reports as one.
+bool Context::gather(const Finding& finding, std::uint16_t node) {
+  const Device& d = device(node);
+  if (finding.severity != Severity::kInconclusive || d.application || d.hearing) return false;
+  if (d.role == machine::Role::kBaseStation && d.partner != kNobody && half_heard(d.partner)) {
+    needs_host(d.partner, finding.place);
+    return true;
+  }
+  if (!finding.place.in_order() || finding.place.time_us <= last_us[node]) return false;
+  Gathered& gathered = silent_[node];
+  if (gathered.count++ == 0) gathered.first = finding;
+  gathered.first.last = finding.place;
+  return true;
+}
+
+void Context::finish() {
+  for (auto& [node, gathered] : silent_) {
+    gathered.first.count = gathered.count;
+    if (gathered.count > 1) {
+      gathered.first.text = "Nothing of " + device(node).name + " is seen from here on, and " +
+                            number(gathered.count) +
+                            " things that it may owe stay open. The first: " + gathered.first.text;
+    }
+    findings.add(std::move(gathered.first));
+  }
+  for (auto& [sink, gathered] : unseen_) {
+    gathered.first.severity = Severity::kInconclusive;
+    gathered.first.count = gathered.count;
+    gathered.first.node = device(sink).name;
+    gathered.first.text =
+        "What hosts send down its serial line is not in the run, as on a line of a "
+        "forwarder that others write to: " +
+        number(gathered.count) +
+        (gathered.count == 1 ? " thing that depends" : " things that depend") +
+        " on it cannot be judged.";
+    gathered.first.expected = "A capture of both directions of the line.";
+    findings.add(std::move(gathered.first));
+  }
+  silent_.clear();
+  unseen_.clear();
+}
+
 std::int64_t Context::ack_timeout_us() const {
   if (options.ack_timeout_us) return *options.ack_timeout_us;
   // A profile without a timeout describes its nodes, not how long others wait (decision 110).
@@ -103,6 +219,12 @@ bool Context::ack_timeout_stated() const {
 Severity Context::without(std::uint16_t cause, std::int64_t from_us, std::int64_t to_us) const {
   return who.maybe_unseen(cause, from_us, to_us, options) ? Severity::kInconclusive
                                                           : Severity::kFail;
+}
+
+Severity Context::without_mote(std::uint16_t am, std::int64_t from_us, std::int64_t to_us) const {
+  Severity out = mote_of_am[am] == kNobody ? without(kNobody, from_us, to_us) : Severity::kFail;
+  for_motes(am, [&](std::uint16_t mote) { out = std::min(out, without(mote, from_us, to_us)); });
+  return out;
 }
 
 Severity Context::without_ever(std::uint16_t cause, std::int64_t to_us) const {
@@ -129,6 +251,7 @@ void Context::report(ReqId requirement, Severity severity, const Place& at, std:
   if (blames && rests_on_order(requirement, at, node)) {
     finding.severity = Severity::kInconclusive;
   }
+  if (node != kNobody && gather(finding, node)) return;
   findings.add(std::move(finding));
 }
 

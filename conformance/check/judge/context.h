@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -54,6 +55,9 @@ struct Context {
 
   std::vector<bool> down_taps;  ///< Taps with frames to a sink.
 
+  std::vector<bool> lossy_taps;       ///< Serial lines of which the capture misses frames.
+  std::vector<std::int64_t> last_us;  ///< By device: when something of it was seen last.
+
   /// Fills in all of these. Called before anything else.
   void look_up();
   /// Calls `call` with each known mote of that address.
@@ -77,6 +81,8 @@ struct Context {
   /// Returns the severity of "X without an earlier Y of `cause`": kFail only if no Y can have
   /// escaped.
   Severity without(std::uint16_t cause, std::int64_t from_us, std::int64_t to_us) const;
+  /// Returns the same where any mote of that address may have sent Y.
+  Severity without_mote(std::uint16_t am, std::int64_t from_us, std::int64_t to_us) const;
   /// Returns the same where Y may lie any time before, even before the capture.
   Severity without_ever(std::uint16_t cause, std::int64_t to_us) const;
 
@@ -88,8 +94,26 @@ struct Context {
   /// Returns whether a sink's line has only the sink's own frames in the run, as if recorded from a
   /// line in use that others write to: whatever came down it is unknown.
   bool half_heard(std::uint16_t node) const;
+  /// Counts something that depends on what came down such a line; finish() reports all at once.
+  void needs_host(std::uint16_t sink, const Place& at);
+  /// Returns `severity`, or kInconclusive if frames are missing from the capture of the line of
+  /// `node`, a sink or base station: for findings that rest on a line's frame that is not there.
+  Severity on_line(std::uint16_t node, Severity severity) const;
+  /// Reports what was gathered about nodes that fell silent and hosts that are not in the run.
+  void finish();
   /// Reports a frame of an unknown sender.
   void report_stranger(const Observation& seen, std::uint16_t node);
+
+ private:
+  /// Findings that are told as one.
+  struct Gathered {
+    Finding first;
+    std::uint32_t count = 0;
+  };
+  bool gather(const Finding& finding, std::uint16_t node);
+
+  std::map<std::uint16_t, Gathered> silent_;  // By device, after its last frame.
+  std::map<std::uint16_t, Gathered> unseen_;  // By sink, about what hosts send down its line.
 };
 
 // Texts for findings.

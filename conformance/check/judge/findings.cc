@@ -19,8 +19,10 @@ const machine::NamedProfile& named(bool deployed) {
 
 }  // namespace
 
-Findings::Findings(bool deployed, const trace::Statement& stated)
+Findings::Findings(bool deployed, const std::vector<ClockStep>& steps,
+                   const trace::Statement& stated)
     : profile_(named(deployed).profile),
+      steps_(steps),
       deployed_(deployed),
       kept_(reflect::requirements().size()) {
   events::state(profile_, stated);
@@ -40,12 +42,13 @@ void Findings::add(Finding finding) {
   std::erase_if(open_, [&](std::size_t i) {
     return finding.place.time_us >= 0 && all_[i].last.time_us + kOpenUs < finding.place.time_us;
   });
-  finding.last = finding.place;
+  if (finding.count == 1) finding.last = finding.place;
   for (const std::size_t i : open_) {
     Finding& before = all_[i];
     if (before.requirement != finding.requirement || before.severity != finding.severity ||
         before.node != finding.node || before.place.file != finding.place.file ||
-        finding.place.time_us - before.last.time_us > kEpisodeUs) {
+        finding.place.time_us - before.last.time_us > kEpisodeUs ||
+        stepped(steps_, before.last.time_us, finding.place.time_us)) {
       continue;
     }
     ++before.count;

@@ -7,6 +7,7 @@
 
 #include "codec/reflect/requirements.h"
 #include "conformance/check/finding.h"
+#include "conformance/check/observation.h"
 #include "conformance/machine/profile.h"
 #include "conformance/trace/parameters.h"
 
@@ -14,7 +15,8 @@ namespace rubric::check {
 
 class Findings {
  public:
-  explicit Findings(bool deployed, const trace::Statement& stated = {});
+  /// No episode goes on across one of `steps`.
+  Findings(bool deployed, const std::vector<ClockStep>& steps, const trace::Statement& stated = {});
 
   /// Adds a finding. Repeats of a rule by a node within 600 ms of the last one are one episode. A
   /// difference that the profile accepts becomes a note.
@@ -37,6 +39,7 @@ class Findings {
   bool accepted(ReqId requirement) const;
 
   machine::Profile profile_;
+  const std::vector<ClockStep>& steps_;
   bool deployed_ = false;
   std::vector<Finding> all_;
   std::vector<std::size_t> open_;  // Episodes that may go on, in all_.

@@ -159,7 +159,10 @@ void Forwarding::heard_on_serial(std::uint16_t sink, std::uint16_t base, const O
     passing.forbidden = "N7-FOREIGN"_rule;
     passing.weak = true;
   }
-  passing.owed = onward && net.sound && net.reliable <= 1 && surely_received &&
+  passing.sure = surely_received;
+  // A log says what was received.
+  passing.owed = onward && net.sound && net.reliable <= 1 &&
+                 (surely_received || !context_.device(sink).hearing) &&
                  net.dest.pid != machine::kBroadcastPid;
   store(line->down, passing, line->owed_down);
   const bool foreign = net.dest.pid != line->island && net.dest.pid != machine::kBroadcastPid;
@@ -196,8 +199,10 @@ void Forwarding::pass_up(Line& line, Passing& passing, const Observation& seen) 
                   name_of(passing.net) + " to its base station.";
       said.expected = "It is ignored: neither its destination nor its source makes it this sink's.";
     }
-    context_.report(passing.forbidden, passing.weak ? Severity::kWeak : Severity::kFail, seen.place,
-                    line.sink, std::move(said));
+    const bool format = passing.forbidden == "N11-NBYTES"_rule;
+    Severity severity = passing.weak ? Severity::kWeak : Severity::kFail;
+    if (!format) severity = context_.on_line(line.sink, severity);  // SET_ISLAND_ID may be missing.
+    context_.report(passing.forbidden, severity, seen.place, line.sink, std::move(said));
   } else {
     context_.findings.kept("N6-CONTENT"_rule);
     context_.findings.kept("N6-ONCE"_rule);
@@ -206,7 +211,7 @@ void Forwarding::pass_up(Line& line, Passing& passing, const Observation& seen) 
   }
   if (out_of_order(passing, line.last_up)) {
     context_.report(
-        "N2-ORDER"_rule, Severity::kFail, seen.place, line.sink,
+        "N2-ORDER"_rule, context_.on_line(line.sink, Severity::kFail), seen.place, line.sink,
         {"The sink forwards " + name_of(passing.net) + " after one that it heard later.",
          "Received messages are handled in the order of arrival.",
          {}});

@@ -20,7 +20,8 @@ struct Passing {
   std::uint16_t am_dest = 0;       ///< The radio frame's destination.
   ReqId forbidden = ReqId::kNone;  ///< Passing it on breaks this rule.
   bool weak = false;               ///< And that rule is a SHOULD.
-  bool owed = false;               ///< Surely received, and not yet passed on.
+  bool owed = false;               ///< Received, and not yet passed on.
+  bool sure = true;                ///< The reception is proven.
   bool twin = false;               ///< Another one of the same content is around.
   std::uint8_t copies = 1;         ///< Times that it may have been received.
   std::uint8_t passed = 0;
@@ -47,6 +48,8 @@ class Forwarding {
   /// Notes that the sink's serial line is switched on or off; while off, the sink owes nothing
   /// there.
   void serial_set(std::uint16_t sink, bool on);
+  /// Notes that the sink sent something by radio, so what it should have radiated is overdue.
+  void showed_life(std::uint16_t sink, std::int64_t now_us);
   /// Notes that one of the sinks, unknown which, sent this by radio.
   void somebody_sent(const Net& net);
   /// Sets the sink's island from now on.
@@ -87,6 +90,7 @@ class Forwarding {
   void overdue_up(Line& line, std::int64_t now_us);
   void overdue_down(Line& line, std::int64_t now_us);
   bool crowded(Line& line, std::int64_t time_us);
+  bool also_elsewhere(const Line& line, const Net& net);
   void unheard(Line& line, const Passing& passing);
   bool busy(const Line& line, std::int64_t came_us) const;
   bool out_of_order(const Passing& passing, std::uint64_t& last);

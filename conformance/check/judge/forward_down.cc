@@ -4,7 +4,6 @@
 #include "conformance/check/judge/forward.h"
 
 namespace rubric::check {
-namespace {}  // namespace
 
 void Forwarding::pass_down(Line& line, Passing& passing, const Observation& seen, const Net& net) {
   if (passing.forbidden != ReqId::kNone) {
@@ -35,7 +34,8 @@ void Forwarding::pass_down(Line& line, Passing& passing, const Observation& seen
     context_.findings.kept("N7-CONTENT"_rule);
   }
   if (out_of_order(passing, line.last_down)) {
-    context_.report("N2-ORDER"_rule, Severity::kFail, seen.place, line.sink,
+    context_.report("N2-ORDER"_rule, context_.on_line(line.sink, Severity::kFail), seen.place,
+                    line.sink,
                     {"The sink radiates " + name_of(net) + " after one that it got later.",
                      "Messages leave in the order in which they came.",
                      {}});
@@ -45,7 +45,6 @@ void Forwarding::pass_down(Line& line, Passing& passing, const Observation& seen
 void Forwarding::sent_on_radio(std::uint16_t sink, const Observation& seen, const Net& net) {
   Line* const line = find(sink);
   if (line == nullptr || !line->serial) return;
-  const std::int64_t now = seen.place.time_us;
   Passing* near = nullptr;
   for (std::size_t i = 0; i < line->down.size(); ++i) {
     Passing& passing = line->down.newest(i);
@@ -60,10 +59,8 @@ void Forwarding::sent_on_radio(std::uint16_t sink, const Observation& seen, cons
     if (passing.owed) --line->owed_down;
     passing.owed = false;
     pass_down(*line, passing, seen, net);
-    if (line->owed_down > 0) overdue_down(*line, now);
     return;
   }
-  if (line->owed_down > 0) overdue_down(*line, now);
   // Sending on by radio what it heard for another mote of its island is legal, once (decision 115).
   for (std::size_t i = 0; i < line->up.size(); ++i) {
     Passing& passing = line->up.newest(i);
@@ -75,6 +72,11 @@ void Forwarding::sent_on_radio(std::uint16_t sink, const Observation& seen, cons
     return;
   }
   if (near != nullptr) refuse_down(*line, seen, net);
+}
+
+void Forwarding::showed_life(std::uint16_t sink, std::int64_t now_us) {
+  Line* const line = find(sink);
+  if (line != nullptr && line->owed_down > 0) overdue_down(*line, now_us);
 }
 
 bool Forwarding::came_down(std::uint16_t sink, const Net& net) {
@@ -135,7 +137,8 @@ void Forwarding::refuse_down(Line& line, const Observation& seen, const Net& net
   if (same_message(best->net, net) && same_payload(best->net, net)) {
     said.text = "The sink radiates " + name_of(net) + " again.";
     said.expected = "Once for each time that it came over serial.";
-    context_.report("N2-ONCE"_rule, Severity::kFail, seen.place, line.sink, std::move(said));
+    context_.report("N2-ONCE"_rule, context_.on_line(line.sink, Severity::kFail), seen.place,
+                    line.sink, std::move(said));
     return;
   }
   said.text = "The sink radiates " + name_of(net) + ", reliable " + number(net.reliable) +
@@ -144,10 +147,22 @@ void Forwarding::refuse_down(Line& line, const Observation& seen, const Net& net
               ", reliable " + number(best->net.reliable) + ", nbytes " + number(best->net.nbytes) +
               ".";
   said.expected = "Addresses, reliable, number, nbytes and payload as they came.";
-  context_.report("N7-CONTENT"_rule, Severity::kFail, seen.place, line.sink, std::move(said));
+  context_.report("N7-CONTENT"_rule, context_.on_line(line.sink, Severity::kFail), seen.place,
+                  line.sink, std::move(said));
   if (best->owed) --line.owed_down;
   best->owed = false;
   if (best->passed < 255) ++best->passed;
+}
+
+// Returns whether the same message came down another sink's line, which may have radiated it.
+bool Forwarding::also_elsewhere(const Line& line, const Net& net) {
+  return std::any_of(lines_.begin(), lines_.end(), [&](Line& other) {
+    if (&other == &line) return false;
+    for (std::size_t i = 0; i < other.down.size(); ++i) {
+      if (same_message(other.down.newest(i).net, net)) return true;
+    }
+    return false;
+  });
 }
 
 // Reports what was surely received and is missing though the sink has shown life long after.
@@ -164,7 +179,7 @@ void Forwarding::overdue_up(Line& line, std::int64_t now_us) {
         own_island ? "N6-FORWARD"_rule : "N6-ROUTE"_rule,
         crowded(line, passing.place.time_us) || context_.who.damaged(passing.place.time_us, now_us)
             ? Severity::kInconclusive
-            : Severity::kFail,
+            : context_.on_line(line.sink, Severity::kFail),
         passing.place, line.sink,
         {"The sink received " + name_of(passing.net) +
              " (the link acknowledged it) and did not put it on its serial line, "
@@ -182,11 +197,14 @@ void Forwarding::overdue_down(Line& line, std::int64_t now_us) {
     passing.owed = false;
     --line.owed_down;
     if (busy(line, passing.place.time_us)) continue;
-    const Severity severity = crowded(line, passing.place.time_us)
-                                  ? Severity::kInconclusive
-                                  : context_.without(line.sink, passing.place.time_us, now_us);
-    context_.report("N7-RADIO"_rule, severity, passing.place, line.sink,
-                    {"The sink confirmed " + name_of(passing.net) +
+    const bool open =
+        !passing.sure || crowded(line, passing.place.time_us) || also_elsewhere(line, passing.net);
+    const Severity severity =
+        open ? Severity::kInconclusive : context_.without(line.sink, passing.place.time_us, now_us);
+    context_.report("N7-RADIO"_rule, context_.on_line(line.sink, severity), passing.place,
+                    line.sink,
+                    {(passing.sure ? "The sink confirmed " : "Nothing proves that the sink took ") +
+                         name_of(passing.net) +
                          " on its serial line and did not radiate it, though it sent other frames "
                          "later.",
                      "A radio frame to " + number(passing.am_dest) + " within " +

@@ -194,6 +194,7 @@ void JoinWatch::clock_told(std::uint16_t mote, const Observation& seen, std::uin
     const machine::Frame& frame = context_.run.seen[h.reply].frame;
     Reply reply;
     // A clock before the join shows nothing; nor does one after a reply that nobody saw.
+    if (stepped(context_.run.steps, h.accepted_us, seen.place.time_us)) return;
     if (h.unknown || h.join.phase != Phase::kMember || frame.type != am::kJoinReply ||
         !parse_reply(frame.payload, reply) || reply.seq_num != h.join.seq_num) {
       return;

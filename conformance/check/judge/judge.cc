@@ -14,7 +14,7 @@ using Kind = Observation::Kind;
 Judge::Judge(const Run& run, const Options& options)
     : run_(run),
       who_(identify(run, options)),
-      findings_(options.deployed, trace::joined(options.stated, run.stated)),
+      findings_(options.deployed, run.steps, trace::joined(options.stated, run.stated)),
       context_(run, options, who_, findings_),
       motes_((context_.look_up(), context_), who_.devices.size()),
       sinks_(context_),
@@ -38,6 +38,7 @@ Report Judge::judge() {
   synaptic_.finish(run_.end_us);
   peis_.finish(run_.end_us);
   interfaces_.finish(run_.end_us);
+  context_.finish();
   report.frames = frames_;
   report.facts = who_.facts;
   if (findings_.dropped() > 0) {
@@ -64,6 +65,9 @@ void Judge::look(std::uint32_t index) {
       radio(index, seen, mark);
       if (mark.device == kNobody) break;
       joins_.showed_life(mark.device, seen.place.time_us);
+      if (is(mark.device, Role::kSink)) {
+        forwarding_.showed_life(mark.device, seen.place.time_us);
+      }
       if (!seen.received) interfaces_.sent(mark.device, seen);
       break;
     case Kind::kSerial:
@@ -235,8 +239,8 @@ void Judge::told(const Observation& seen, std::uint16_t device) {
 }
 
 Report judge(const Run& run, const Options& options) {
-  const bool one_order = run.loose.empty() && run.slack_taps.empty();
-  return one_order ? Judge(run, options).judge() : judge_each_order(run, options);
+  if (!run.loose.empty() || !run.slack_taps.empty()) return judge_each_order(run, options);
+  return run.steps.empty() ? Judge(run, options).judge() : judge_each_gap(run, options);
 }
 
 }  // namespace rubric::check

@@ -26,6 +26,14 @@ std::string ack_text(const AckJoin& ack) {
 
 }  // namespace
 
+// Returns the known sink of that island; kNobody if there is none.
+std::uint16_t MoteJoins::sink_of(std::uint16_t island) const {
+  const auto sink =
+      std::find_if(context_.sinks.begin(), context_.sinks.end(),
+                   [&](std::uint16_t device) { return context_.device(device).island == island; });
+  return sink == context_.sinks.end() ? kNobody : *sink;
+}
+
 // Returns the rule that forbids this ack_join to the hypothesis; kNone if it is allowed.
 ReqId MoteJoins::why_not_ack(const MoteHypothesis& h, const Observation& seen,
                              const AckJoin& ack) const {
@@ -103,6 +111,16 @@ void MoteJoins::refuse_ack(std::uint16_t mote, const Observation& seen, const Ac
     said.text =
         "ack_join has " + ack_text(ack) + ", to AM address " + number(seen.frame.dest) + ".";
     said.expected = ack_text(expected_ack(h)) + ", to AM address " + number(context_.sink_am) + ".";
+    // Another sink's offer, or a request with another number, may have escaped.
+    if (rule == "J7-CHOICE"_rule && h.acks_seen == 0) {
+      severity = context_.without(sink_of(ack.dest.pid), h.first_request_us, now);
+    } else if (ack.seq_num != h.join.seq_num) {
+      const bool asked_so = std::any_of(watch.set.begin(), watch.set.end(), [&](const auto& other) {
+        return other.join.phase == Phase::kJoining && other.join.seq_num == ack.seq_num;
+      });
+      const bool elsewhere = ack.dest.pid != h.join.address.pid;  // A mote with the same id there.
+      severity = context_.without(asked_so || elsewhere ? kNobody : mote, h.last_request_us, now);
+    }
   } else {
     // It acks a reply that it should not have accepted; the last replies may show which.
     const bool recent = watch.wrong_reply && now - watch.wrong_place.time_us <= kRecentUs;
@@ -123,6 +141,9 @@ void MoteJoins::refuse_ack(std::uint16_t mote, const Observation& seen, const Ac
     said.expected = asked ? "No ack_join but to a reply with number " + number(h.join.seq_num) + "."
                           : "No ack_join without a request.";
     // One that fits its own request could answer a right reply that nobody captured.
+    if (asked && ack.seq_num != h.join.seq_num) {  // Its own, asked anew.
+      severity = context_.without(mote, h.last_request_us, now);
+    }
     if (own) severity = context_.without(kNobody, h.first_request_us, now);
     if (!asked) severity = context_.without(mote, context_.device(mote).first_us, now);
     if (!asked && h.first_request_us == 0) severity = context_.without_ever(mote, now);

@@ -278,9 +278,14 @@ void MoteJoins::net_msg(std::uint16_t mote, const Observation& seen, const Net& 
     said.expected = "No net_msg before ack_join.";
   }
   const std::int64_t since = member ? h.accepted_us : context_.device(mote).first_us;
-  const Severity severity = h.join.phase == Phase::kOutside && h.first_request_us == 0
-                                ? context_.without_ever(mote, now)
-                                : context_.without(mote, since, now);
+  Severity severity = h.join.phase == Phase::kOutside && h.first_request_us == 0
+                          ? context_.without_ever(mote, now)
+                          : context_.without(mote, since, now);
+  // Of two motes with one id in two islands it may be the other.
+  const std::uint16_t am = context_.device(mote).am;
+  if (context_.next_of_am[context_.mote_of_am[am]] != kNobody) {
+    severity = std::min(severity, Severity::kInconclusive);
+  }
   context_.report(member ? "N1-SRC"_rule : "J11-SEND"_rule, severity, seen.place, mote,
                   std::move(said));
   MoteHypothesis next;

@@ -109,6 +109,7 @@ class MoteJoins {
   bool next_request(const MoteHypothesis& h, std::uint16_t id, std::int64_t now_us,
                     const Request& request, std::vector<MoteHypothesis>& out);
   void refuse_request(std::uint16_t mote, const Observation& seen, const Request& request);
+  std::uint16_t sink_of(std::uint16_t island) const;
   ReqId why_not_ack(const MoteHypothesis& h, const Observation& seen, const AckJoin& ack) const;
   void refuse_ack(std::uint16_t mote, const Observation& seen, const AckJoin& ack);
   std::string sentence(const MoteHypothesis& h) const;

@@ -94,7 +94,8 @@ void Originals::judge_address(std::uint16_t node, const Observation& seen, const
   const Route route = machine::route_own({device.role, own, true, context_.sink_am}, net.dest);
   const bool up = route.onward == Route::Onward::kSerial;
   if (device.role == Role::kSink && link == Link::kRadio && up) {
-    context_.report("N6-OWN"_rule, Severity::kFail, seen.place, node,
+    // Its base station may have handed it down (decision 126).
+    context_.report("N6-OWN"_rule, context_.on_line(node, Severity::kFail), seen.place, node,
                     {"The sink sends " + name_of(net) + " by radio.", "Over serial.", {}});
     return;
   }
@@ -128,7 +129,8 @@ void Originals::judge_number(std::uint16_t node, const Observation& seen, const 
       const std::uint16_t acker = by_sink ? context_.only_sink : context_.mote_of_am[dest.devid];
       context_.report(
           same ? "T3-RESEND"_rule : "N12-REUSE"_rule,
-          context_.without(acker, before.place.time_us, now), seen.place, node,
+          context_.on_line(node, context_.without(acker, before.place.time_us, now)), seen.place,
+          node,
           {(same ? "The reliable message with number " : "Number ") + number(net.seq_num) +
                (same ? " is sent" : " is used") + " again, " + ms_text(now - before.place.time_us) +
                " after the message with this number that awaits its ack.",
@@ -142,7 +144,7 @@ void Originals::judge_number(std::uint16_t node, const Observation& seen, const 
                          seen.place.timed() && before.place.timed() &&
                          now - before.place.time_us < kAtOnceUs;
     if (at_once) {
-      context_.report("N2-ONCE"_rule, Severity::kFail, seen.place, node,
+      context_.report("N2-ONCE"_rule, context_.on_line(node, Severity::kFail), seen.place, node,
                       {"The same message, number " + number(net.seq_num) + ", is sent twice, " +
                            ms_text(now - before.place.time_us) + " apart.",
                        "Once.",

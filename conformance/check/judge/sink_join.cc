@@ -12,7 +12,6 @@ SinkJoins::SinkJoins(Context& context) : context_(context) {
   for (std::size_t i = 0; i < context.who.devices.size(); ++i) {
     const Device& device = context.who.devices[i];
     const auto index = static_cast<std::uint16_t>(i);
-    if (device.role == machine::Role::kMote && device.known) motes_.emplace(device.am, index);
     if (device.role != machine::Role::kSink) continue;
     SinkWatch sink;
     sink.device = index;
@@ -35,11 +34,6 @@ std::uint16_t SinkJoins::island(std::uint16_t sink) const {
   return 0;
 }
 
-std::uint16_t SinkJoins::device_of(std::uint16_t mote_am) const {
-  const auto found = motes_.find(mote_am);
-  return found == motes_.end() ? kNobody : found->second;
-}
-
 PairWatch& SinkJoins::pair(SinkWatch& sink, std::uint16_t mote_am) {
   PairWatch& watch = sink.motes[mote_am];
   if (watch.set.empty()) {
@@ -56,6 +50,7 @@ void SinkJoins::begin_life(std::uint16_t sink) {
   watch->motes.clear();
   watch->has_clock = false;
   watch->debts = 0;
+  watch->reported_us = -1;
 }
 
 void SinkJoins::set_island(std::uint16_t sink, std::uint16_t island, const Place& at) {
@@ -80,6 +75,7 @@ void SinkJoins::set_island(std::uint16_t sink, std::uint16_t island, const Place
     pair.report_due = false;
   }
   watch->debts = 0;
+  watch->reported_us = -1;
 }
 
 // Returns whether the sink may hear it. A sink with a log of what it was given hears nothing else.
@@ -185,7 +181,8 @@ void SinkJoins::reply(std::uint16_t sink_device, const Observation& seen, const 
   if (sink->island == 0) sink->island = reply.island;
   if (reply.island != sink->island) {
     const ReqId rule = sink->island_set ? "N9-SET"_rule : "J3-ADDRESS"_rule;
-    context_.report(rule, Severity::kFail, seen.place, sink_device,
+    // SET_ISLAND_ID may have escaped.
+    context_.report(rule, context_.on_line(sink_device, Severity::kFail), seen.place, sink_device,
                     {"join_reply offers island " + number(reply.island) + ".",
                      "Island " + number(sink->island) + ", the sink's.",
                      {}});
@@ -239,9 +236,13 @@ void SinkJoins::reply(std::uint16_t sink_device, const Observation& seen, const 
 void SinkJoins::judge_clock(SinkWatch& sink, const Observation& seen, const Reply& reply) {
   constexpr std::int64_t kOffMs = 1000;
   const std::int64_t now = seen.place.time_us;
-  if (sink.has_clock && seen.place.timed() && sink.clock_us >= 0) {
-    const std::int64_t passed_ms = (now - sink.clock_us) / 1000;
+  const bool stepped = check::stepped(context_.run.steps, sink.clock_us, now);
+  if (!sink.has_clock || stepped || reply.time_ms != sink.clock_ms) sink.still_us = now;
+  if (sink.has_clock && seen.place.timed() && sink.clock_us >= 0 && !stepped) {
     const std::int64_t grown_ms = static_cast<std::int32_t>(reply.time_ms - sink.clock_ms);
+    std::int64_t passed_ms = (now - sink.clock_us) / 1000;
+    // Replies that follow each other fast stand still together.
+    if (grown_ms == 0 && passed_ms < kOffMs) passed_ms = (now - sink.still_us) / 1000;
     // A clock in binary ms runs 2.4 % faster than one in ms.
     const std::int64_t most_ms = passed_ms + passed_ms * 24 / 1000 + kOffMs;
     Said said;
@@ -266,7 +267,6 @@ void SinkJoins::refuse_reply(SinkWatch& sink, PairWatch& watch, const Observatio
   const std::uint16_t am = seen.frame.dest;
   const std::int64_t now = seen.place.time_us;
   const SinkHypothesis& h = watch.set.back();
-  const std::uint16_t mote = device_of(am);
   const std::int64_t since = watch.asked ? watch.request.time_us : context_.run.start_us;
   Said said;
   for (auto it = watch.set.rbegin(); it != watch.set.rend(); ++it) {
@@ -277,15 +277,14 @@ void SinkJoins::refuse_reply(SinkWatch& sink, PairWatch& watch, const Observatio
                                "join_reply with number " + number(reply.seq_num) + "."});
   }
   ReqId rule = "J3-ONCE"_rule;
-  Severity severity =
-      watch.asked ? context_.without(mote, since, now) : context_.without_ever(mote, now);
+  Severity severity = context_.without_mote(am, since, now);
+  if (!watch.asked && !context_.options.start_cold) severity = Severity::kInconclusive;
   const auto asks_this = [&](const auto& entry) {
     return entry.first != am && entry.second.asked && entry.second.request_seq == reply.seq_num;
   };
   if (std::any_of(sink.motes.begin(), sink.motes.end(), asks_this) &&
       reply.seq_num != watch.request_seq) {
-    rule = "J3-DEST"_rule;
-    severity = Severity::kFail;
+    rule = "J3-DEST"_rule;  // Two motes may use the same number, and one request have escaped.
     said.text = "join_reply to AM address " + number(am) +
                 " with the number of another mote's "
                 "request (" +

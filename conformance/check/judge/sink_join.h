@@ -91,7 +91,10 @@ struct SinkWatch {
   bool has_clock = false;                              ///< From the last reply:
   std::uint32_t clock_ms = 0;
   std::int64_t clock_us = 0;
-  std::uint32_t debts = 0;  ///< Pairs with something due.
+  std::int64_t still_us = 0;      ///< Of the first reply with that cur_time.
+  std::uint32_t debts = 0;        ///< Pairs with something due.
+  std::int64_t serial_us = -1;    ///< Its last frame on its serial line.
+  std::int64_t reported_us = -1;  ///< The latest ack_join that it reported.
 };
 
 class SinkJoins {
@@ -129,7 +132,6 @@ class SinkJoins {
   void announce(SinkWatch& sink, const Place& at, machine::Address address,
                 const machine::Descriptor& descriptor, bool notice);
   void keep(SinkWatch& sink, PairWatch& watch, std::vector<SinkHypothesis>& next, const Place& at);
-  std::uint16_t device_of(std::uint16_t mote_am) const;
   std::size_t listed(const SinkWatch& sink) const;
   static std::string sentence(const SinkHypothesis& h);
 
@@ -141,6 +143,8 @@ class SinkJoins {
     std::uint16_t sink = kNobody;
   };
   void close_unanswered(std::uint16_t mote_am, Unanswered& unanswered);
+  /// Reports each serial_joined that is overdue; `end`: no frame of the sink comes any more.
+  void overdue_reports(SinkWatch& sink, bool end);
   void unannounced(const SinkWatch& sink, std::uint16_t mote_am, const PairWatch& watch,
                    std::int64_t end_us);
   bool hears(const Device& device, const Observation& seen, bool sure) const;
@@ -148,7 +152,6 @@ class SinkJoins {
   Context& context_;
   std::vector<SinkWatch> sinks_;
   std::unordered_map<std::uint16_t, Unanswered> unanswered_;
-  std::unordered_map<std::uint16_t, std::uint16_t> motes_;  // Device by AM address.
   std::vector<SinkHypothesis> next_;
 };
 

@@ -89,7 +89,8 @@ void SinkJoins::announce(SinkWatch& sink, const Place& at, machine::Address addr
   const ReqId content = notice ? "J6-ADD"_rule : "J6-CONTENT"_rule;
   if (address.pid != sink.island) {
     const ReqId rule = sink.island_set ? "N9-SET"_rule : content;
-    context_.report(rule, Severity::kFail, at, sink.device,
+    // SET_ISLAND_ID may have escaped.
+    context_.report(rule, context_.on_line(sink.device, Severity::kFail), at, sink.device,
                     {"A new member " + text_of(address) + " is announced by the sink of island " +
                          number(sink.island) + ".",
                      "Its address in island " + number(sink.island) + ".",
@@ -123,6 +124,9 @@ void SinkJoins::announce(SinkWatch& sink, const Place& at, machine::Address addr
     refuse_report(sink, watch, at, address.devid, notice);
     return;
   }
+  if (!notice && watch.ack.frame != 0) {
+    sink.reported_us = std::max(sink.reported_us, watch.ack.time_us);
+  }
   if (stored && *stored != descriptor) {
     // A sink with one memory for all motes would announce the descriptor of another mote's request.
     context_.report(
@@ -149,13 +153,12 @@ void SinkJoins::refuse_report(SinkWatch& sink, PairWatch& watch, const Place& at
         {sentence(*it), "No announcement of this mote.", "The mote is announced as a new member."});
   }
   const std::string what = notice ? "moteJoined" : "serial_joined";
-  const std::uint16_t mote = device_of(mote_am);
   ReqId rule = "J6-ADD"_rule;
   const bool has_ack = watch.ack.frame != 0;
   // The request to which the ack belongs may have escaped as well.
   std::int64_t since = context_.run.start_us;
   if (has_ack && watch.asked) since = std::min(watch.ack.time_us, watch.request.time_us);
-  Severity severity = context_.without(mote, since, at.time_us);
+  Severity severity = context_.without_mote(mote_am, since, at.time_us);
   if (!has_ack && !context_.options.start_cold) severity = Severity::kInconclusive;
   if (h.member) {
     rule = "J6-REPEAT"_rule;
@@ -187,28 +190,43 @@ void SinkJoins::refuse_report(SinkWatch& sink, PairWatch& watch, const Place& at
 
 void SinkJoins::showed_life(std::uint16_t sink_device, std::int64_t now_us, bool on_serial) {
   SinkWatch* const sink = find(sink_device);
-  if (sink == nullptr || sink->debts == 0 || !on_serial || now_us < 0) return;
-  for (auto& [am, watch] : sink->motes) {
-    if (!watch.report_due || now_us <= watch.ack.time_us + context_.response_us()) continue;
+  if (sink == nullptr || !on_serial || now_us < 0) return;
+  sink->serial_us = now_us;
+  if (sink->debts > 0) overdue_reports(*sink, false);
+}
+
+void SinkJoins::overdue_reports(SinkWatch& sink, bool end) {
+  std::vector<std::uint16_t> due;
+  for (const auto& [am, watch] : sink.motes) {
+    const std::int64_t due_us = watch.ack.time_us + context_.response_us();
+    if (watch.report_due && sink.serial_us > due_us) due.push_back(am);
+  }
+  std::sort(due.begin(), due.end(), [&](std::uint16_t a, std::uint16_t b) {
+    return std::pair(sink.motes[a].ack.time_us, a) < std::pair(sink.motes[b].ack.time_us, b);
+  });
+  for (const std::uint16_t am : due) {
+    PairWatch& watch = sink.motes[am];
+    // Its list may be full of members from before the capture, unless it has taken a later one.
+    const bool room = context_.options.start_cold || sink.reported_us > watch.ack.time_us;
+    if (!room && !end) continue;
     watch.report_due = false;
-    --sink->debts;
+    --sink.debts;
     const auto owes = [](const SinkHypothesis& h) { return !h.unknown && h.owes_report; };
     if (!std::all_of(watch.set.begin(), watch.set.end(), owes)) continue;
     // With a full list, even of members from before the capture, nothing is owed.
-    if (listed(*sink) >= context_.profile().members_max) continue;
+    if (listed(sink) >= context_.profile().members_max) continue;
     context_.report(
         "J6-REPORT"_rule,
-        context_.options.start_cold && !context_.who.damaged(watch.ack.time_us, now_us)
-            ? Severity::kFail
+        room && !context_.who.damaged(watch.ack.time_us, sink.serial_us)
+            ? context_.on_line(sink.device, Severity::kFail)
             : Severity::kInconclusive,
-        watch.ack, sink->device,
+        watch.ack, sink.device,
         {"The ack_join of mote " + number(am) +
              " was received (the link acknowledged it), and no serial_joined followed "
              "within " +
              ms_text(context_.response_us()) + ", though the sink sent other frames later.",
          "One serial_joined for the new member.",
          {}});
-    for (SinkHypothesis& h : watch.set) h.owes_report = false;
   }
 }
 
@@ -231,7 +249,8 @@ void SinkJoins::unannounced(const SinkWatch& sink, std::uint16_t mote_am, const 
 }
 
 void SinkJoins::finish(std::int64_t end_us) {
-  for (const SinkWatch& sink : sinks_) {
+  for (SinkWatch& sink : sinks_) {
+    overdue_reports(sink, true);
     for (const auto& [am, watch] : sink.motes) unannounced(sink, am, watch, end_us);
   }
   std::vector<std::uint16_t> open;

@@ -119,6 +119,20 @@ class Script {
     return *this;
   }
 
+  /// Makes the frame down a line that was added last a numbered packet, which the mote confirms.
+  Script& confirm(bool captured = true) {
+    run.seen.back().ack_request = run.seen.back().has_dsn = true;
+    run.seen.back().dsn = serial_number++;
+    if (!captured) return *this;
+    Observation seen = run.seen.back();
+    seen.kind = Observation::Kind::kLinkAck;
+    seen.to_mote = false;
+    seen.place.time_us += 2000;
+    ++seen.place.frame;
+    run.seen.push_back(seen);
+    return *this;
+  }
+
   Script& request(double ms, std::uint16_t mote, std::uint16_t seq_num,
                   const machine::Descriptor& descriptor = kDescriptor) {
     Payload out;
@@ -178,6 +192,7 @@ class Script {
   Run run;
   std::map<std::uint32_t, std::uint8_t> dsn;
   std::uint16_t mote_key = 0;
+  std::uint8_t serial_number = 0;
 
  private:
   Observation at(double ms) {

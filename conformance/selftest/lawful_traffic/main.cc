@@ -2,11 +2,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 
 #include "conformance/selftest/lawful_traffic/generate.h"
+#include "conformance/selftest/lawful_traffic/recorder.h"
 #include "tools/cli/command.h"
 
 namespace {
@@ -24,6 +26,9 @@ void list() {
   }
   for (const WithoutVariant& none : without_variant()) {
     fmt::print("decision {} has none: {}\n", none.decision, none.reason);
+  }
+  for (const Recorder& recorder : recorders()) {
+    fmt::print("recorder {:<18} {}\n", recorder.name, recorder.summary);
   }
 }
 
@@ -44,6 +49,7 @@ bool write_traffic(const std::filesystem::path& folder, const Traffic& traffic) 
 
 struct Options {
   std::string variant = "all";
+  std::string recorder = "exact";
   std::string folder;
   std::uint64_t seed = 1;
   std::uint64_t count = 1;
@@ -66,12 +72,19 @@ int run(const Options& options) {
     return 0;
   }
   const std::vector<std::string> names = chosen(options.variant);
+  const auto named = [&](const Recorder& one) { return one.name == options.recorder; };
+  if (std::none_of(recorders().begin(), recorders().end(), named)) {
+    throw rubric::cli::UsageError("no recorder is named " + options.recorder +
+                                  "; --list shows them");
+  }
   if (options.folder.empty()) throw rubric::cli::UsageError("--out is required");
   std::error_code ignored;
   std::filesystem::create_directories(options.folder, ignored);
   for (const std::string& name : names) {
     for (std::uint64_t i = 0; i < options.count; ++i) {
-      if (!write_traffic(options.folder, generate(name, options.seed + i))) return kCannotWrite;
+      Traffic traffic = generate(name, options.seed + i);
+      record(traffic, options.recorder, options.seed + i);
+      if (!write_traffic(options.folder, traffic)) return kCannotWrite;
     }
   }
   return 0;
@@ -86,6 +99,8 @@ int main(int argc, char** argv) {
   Options options;
   program.add_option("--variant", options.variant, "Write this variant, all (each once) or mixed")
       .show_default();
+  program.add_option("--recorder", options.recorder, "Record the traffic in this way")
+      .show_default();
   program.add_option("--seed", options.seed, "Begin with this seed").show_default();
   program
       .add_option("--count", options.count,
@@ -93,8 +108,10 @@ int main(int argc, char** argv) {
       .show_default();
   program.add_option("--out", options.folder,
                      "Write NAME-SEED.pcapng, .json and .app.jsonl into this folder");
-  program.add_flag("--list", options.list,
-                   "Print the variants, each with the decisions that it reads in its own way");
+  program.add_flag(
+      "--list", options.list,
+      "Print the variants, each with the decisions that it reads in its own way, and the "
+      "recorders");
   program.footer("Exit codes: 0 written, 2 usage, 3 cannot be written.");
   program.exit_code_of([&] { return run(options); });
   return program.parse_and_run(argc, argv);

@@ -129,7 +129,11 @@ void World::peis(std::uint16_t from_island, const NetMessage& message) {
 }
 
 void World::capture_radio(std::int64_t time_us, Octets record) {
-  if (!plan_.capture_radio || random_.chance(plan_.sniffer_misses_percent)) return;
+  if (!plan_.capture_radio) return;
+  if (random_.chance(plan_.sniffer_misses_percent)) {
+    missed_first_ = missed_first_ || traffic_.packets.empty();
+    return;
+  }
   traffic_.packets.push_back(
       {time_us, "radio", kLinkRadioFcs, Direction::kUnknown, std::move(record)});
 }
@@ -152,7 +156,7 @@ void World::finish() {
     return packet.time_us < plan_.capture_from_us || packet.time_us > plan_.end_us;
   });
   traffic_.sniffer_complete = plan_.sniffer_misses_percent == 0;
-  traffic_.cold_start = plan_.capture_from_us == 0;
+  traffic_.cold_start = plan_.capture_from_us == 0 && !missed_first_;
   traffic_.has_radio = plan_.capture_radio;
   traffic_.has_serial = plan_.capture_serial;
   traffic_.all_well_formed = plan_.all_well_formed;

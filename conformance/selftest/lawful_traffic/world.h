@@ -74,6 +74,7 @@ class World {
   Scheduler scheduler_;
   Air air_;
   Traffic traffic_;
+  bool missed_first_ = false;  // By the sniffer; then the capture does not begin cold.
   std::vector<Device*> devices_;
   std::vector<std::unique_ptr<Mote>> motes_;
   std::vector<std::unique_ptr<Sink>> sinks_;

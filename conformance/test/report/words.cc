@@ -126,6 +126,10 @@ bool broke_outside(const ImplementationRun& implementation) {
   return std::any_of(all.begin(), all.end(), [](const OutsideFault& one) { return one.broke; });
 }
 
+bool is_beyond_reach(const CaseRun& one) {
+  return one.result.verdict == runner::CaseVerdict::kInconclusive && !one.result.unseen.empty();
+}
+
 std::string outside_text(const OutsideFault& fault) { return fault.text + ", " + fault.when; }
 
 std::string outside_headline(const ImplementationRun& implementation) {
@@ -143,6 +147,7 @@ std::string replay_command(const SuiteRun& run, const ImplementationRun& impleme
                            const CaseRun& one) {
   std::string out = "rubric test --target " + report::shell_word(implementation.target) +
                     " --cases " + report::shell_word(one.name);
+  if (!run.app.empty()) out += " --app " + report::shell_word(run.app);
   if (run.profile != "paper") out += " --profile " + run.profile;
   if (one.seed != 0) out += fmt::format(" --seed {}", one.seed);
   for (const std::string& path : run.traces) out += " " + report::shell_word(path);

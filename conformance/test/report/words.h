@@ -24,6 +24,8 @@ std::string implementation_name(const SuiteRun& run, std::size_t index);
 std::string case_name(const CaseRun& one);
 /// Returns whether it was skipped or is inconclusive.
 bool is_undecided(const CaseRun& one);
+/// Returns whether it is inconclusive since the target shows a part of its node only.
+bool is_beyond_reach(const CaseRun& one);
 /// Returns why an error is one, without the command that was asked then.
 std::string what_broke(const CaseRun& one);
 /// Returns one line: the first failure, or why there is no verdict.

@@ -104,8 +104,8 @@ void NodeLog::read_outputs() {
   }
 }
 
-void NodeLog::give(const trace::Line& line, Ticks now, const trace::Scope& scope,
-                   const trace::Bindings& bindings) {
+Window NodeLog::give(const trace::Line& line, Ticks now, const trace::Scope& scope,
+                     const trace::Bindings& bindings) {
   const LinkKind kind = scope.link(line.link).value_or(LinkKind::kAny);
   const trace::Shape* shape = trace::Schema::get().find(line.message.name);
   const auto link = events::to_link(kind);
@@ -115,23 +115,31 @@ void NodeLog::give(const trace::Line& line, Ticks now, const trace::Scope& scope
     log_.push_back({now, trace::frame_line(now, name_, trace::Op::kGiven, line.link, kind, frame)});
     const machine::Frame heard{*link, frame.dest, frame.src, frame.type,
                                Bytes(frame.payload.data(), frame.payload.size())};
-    target_->give(now, machine::Heard{heard});
-    read_outputs();
-    return;
+    return give(now, machine::Heard{heard});
   }
   const trace::Concrete message = trace::concrete(line.message, bindings);
   log_.push_back({now, trace::app_line(now, name_, trace::Op::kGiven, line.link, message.message)});
   if (const auto call = events::to_call(message)) {
-    target_->give(now, machine::Called{*call});
-  } else if (const auto state = events::to_state(message, kind)) {
+    return give(now, machine::Called{*call});
+  }
+  if (const auto state = events::to_state(message, kind)) {
     if (std::holds_alternative<machine::SendDone>(*state)) {
       target_->hold_link_acks(--link_acks_to_come > 0);
     }
-    target_->give(now, *state);
-  } else {
-    throw trace::TraceError(line.place, line.message.name + " cannot be given to a node");
+    return give(now, *state);
   }
+  throw trace::TraceError(line.place, line.message.name + " cannot be given to a node");
+}
+
+// Gives what the last line of the log says, and corrects that line's time.
+Window NodeLog::give(Ticks now, const machine::Event& event) {
+  LoggedLine& logged = log_.back();
+  target_->give(now, event);
+  const Window given = target_->given().value_or(Window{now, now});
+  logged.time = given.from;
+  logged.line.time = trace::Time::at(given.from);
   read_outputs();
+  return given;
 }
 
 const Output* NodeLog::take(const trace::Line& line, const Window& window,

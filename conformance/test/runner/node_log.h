@@ -28,9 +28,9 @@ class NodeLog {
   const std::vector<LoggedLine>& log() const { return log_; }
 
   Ticks run_until(Ticks time);
-  /// Runs a `<` line. Throws trace::TraceError.
-  void give(const trace::Line& line, Ticks now, const trace::Scope& scope,
-            const trace::Bindings& bindings);
+  /// Runs a `<` line. Returns when it was given. Throws trace::TraceError.
+  Window give(const trace::Line& line, Ticks now, const trace::Scope& scope,
+              const trace::Bindings& bindings);
   /// Takes the output that fits a `>` line, and binds its variables. Returns null if there is none
   /// so far.
   const Output* take(const trace::Line& line, const Window& window, trace::Bindings& bindings);
@@ -53,6 +53,7 @@ class NodeLog {
     std::string link;
     bool taken = false;
   };
+  Window give(Ticks now, const machine::Event& event);
   void read_outputs();
   std::string link_name(const Output& output) const;
 

@@ -1,11 +1,13 @@
 #include "conformance/test/runner/run_case.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cstdlib>
 #include <map>
 #include <optional>
+#include <set>
 #include <stdexcept>
 
 #include "conformance/test/runner/dependence.h"
@@ -40,9 +42,11 @@ class Run {
         if (!work(*line, result)) break;
       }
       judge_forbidden(result);
-      if (!unseen_.empty() && result.verdict < CaseVerdict::kInconclusive) {
+      if ((!unseen_.empty() || unjudged_) && result.verdict < CaseVerdict::kInconclusive) {
         result.verdict = CaseVerdict::kInconclusive;
-        result.reason = unseen_;
+        result.reason = unseen_.empty() ? "a window is shorter than the tolerance of its times"
+                                        : fmt::format("the target does not show {}",
+                                                      fmt::join(unseen_, " and "));
       }
     } catch (const Unsupported& error) {
       judge_what_came(result);
@@ -56,15 +60,27 @@ class Run {
     } catch (const std::exception& error) {
       broken(result, place_, error.what());
     }
+    result.unseen = std::move(unseen_);
     result.length = now_;
     write_log(result);
     return result;
   }
 
  private:
-  struct Pending {  // Judged when the case is over.
+  // When a line was matched, by the clock that its window counts from.
+  struct Moment {
+    Ticks time = 0;
+    Ticks slack = 0;  // It may have been that much later: a stimulus takes time to hand over.
+  };
+  struct Timed {
     const Line* line;
-    Window window;
+    Window window;  // By the trace, from the earliest time of what it counts from.
+    Ticks slack;    // Of that moment.
+  };
+  struct Stimulus {
+    const NodeLog* node;
+    Ticks asked;  // By the trace.
+    Window given;
   };
 
   void start() {
@@ -94,8 +110,8 @@ class Run {
     return found == nodes_.end() ? nullptr : &*found;
   }
 
-  Window window_of(const Line& line) const {
-    Ticks base = 0;
+  Timed timed(const Line& line) const {
+    Moment base;
     if (line.time.base == trace::Time::Base::kPrevious) base = previous_;
     if (line.time.base == trace::Time::Base::kLabel) {
       const auto found = labels_.find(line.time.label);
@@ -104,14 +120,15 @@ class Run {
       }
       base = found->second;
     }
-    const Window window{base + amount(line, line.time.from, line.time.from_terms),
-                        base + amount(line, line.time.to, line.time.to_terms)};
+    const Window window{base.time + amount(line, line.time.from, line.time.from_terms),
+                        base.time + amount(line, line.time.to, line.time.to_terms)};
     if (window.to < window.from) {
       throw trace::TraceError(
-          line.place, fmt::format("{} is no time with what is stated: {} to {}",
-                                  trace::print(line.time), window.from - base, window.to - base));
+          line.place,
+          fmt::format("{} is no time with what is stated: {} to {}", trace::print(line.time),
+                      window.from - base.time, window.to - base.time));
     }
-    return window;
+    return {&line, window, base.slack};
   }
 
   // Returns the ticks of a time, its parameters included, with the values of the line's node.
@@ -134,9 +151,9 @@ class Run {
     return events::assumed(profile_of(scope_), id);
   }
 
-  void matched(const Line& line, Ticks time) {
-    previous_ = time;
-    if (!line.label.empty()) labels_[line.label] = time;
+  void matched(const Line& line, Moment moment) {
+    previous_ = moment;
+    if (!line.label.empty()) labels_[line.label] = moment;
   }
 
   // Lets time pass to `end`, or to the first instant at which a node may emit something. A node
@@ -164,43 +181,44 @@ class Run {
 
   // Runs a line. Returns false if the case cannot go on.
   bool work(const Line& line, CaseResult& result) {
-    const Window window = window_of(line);
+    const Timed timed = this->timed(line);
     NodeLog* node = node_of(line);
     if (!node) {  // Faults of a link, and what nodes do that are not under test: for the reader.
-      if (line.op != Op::kMustNot && line.op != Op::kMay) matched(line, window.from);
+      if (line.op != Op::kMustNot && line.op != Op::kMay) {
+        matched(line, {timed.window.from, timed.slack});
+      }
       return true;
     }
-    if (!is_seen(*node, line)) {
+    if (std::set<std::string> unseen = unseen_of(*node, line); !unseen.empty()) {
+      unseen_.merge(unseen);
       // A visible output may break a rule about every link; a part of the links cannot show that it
       // was kept.
       if (line.op == Op::kMustNot && is_seen_in_part(*node, line)) {
-        forbidden_.push_back({&line, window});
+        forbidden_.push_back(timed);
       }
       return pass_over(line);
     }
     switch (line.op) {
-      case Op::kGiven: give(*node, line, window.from); return true;
-      case Op::kEmits: return expect(*node, line, window, result);
-      case Op::kMustNot: forbidden_.push_back({&line, window}); return true;
-      case Op::kMay: allowed_.push_back({&line, window}); return true;
+      case Op::kGiven: give(*node, timed); return true;
+      case Op::kEmits: return expect(*node, timed, result);
+      case Op::kMustNot: forbidden_.push_back(timed); return true;
+      case Op::kMay: allowed_.push_back(timed); return true;
       default: return true;
     }
   }
 
-  bool is_seen(const NodeLog& node, const Line& line) const {
+  // Returns what a line is about and the target does not show.
+  std::set<std::string> unseen_of(const NodeLog& node, const Line& line) const {
     const Reach reach = node.target().reach();
-    switch (scope_.link(line.link).value_or(trace::LinkKind::kAny)) {
-      case trace::LinkKind::kRadio: return reach.radio;
-      case trace::LinkKind::kSerial: return reach.serial;
-      case trace::LinkKind::kPeis: return reach.peis;
-      case trace::LinkKind::kApp:
-      case trace::LinkKind::kPower: return reach.app;
-      case trace::LinkKind::kAny: return line.op == Op::kMay || sees_all(reach);
-    }
-    return true;
-  }
-  static bool sees_all(const Reach& reach) {
-    return reach.radio && reach.serial && reach.peis && reach.app;
+    const trace::LinkKind kind = scope_.link(line.link).value_or(trace::LinkKind::kAny);
+    const bool any = kind == trace::LinkKind::kAny && line.op != Op::kMay;
+    const bool app = kind == trace::LinkKind::kApp || kind == trace::LinkKind::kPower;
+    std::set<std::string> out;
+    if (!reach.radio && (any || kind == trace::LinkKind::kRadio)) out.insert("radio");
+    if (!reach.serial && (any || kind == trace::LinkKind::kSerial)) out.insert("serial");
+    if (!reach.peis && (any || kind == trace::LinkKind::kPeis)) out.insert("peis");
+    if (!reach.app && (any || app)) out.insert("app");
+    return out;
   }
 
   bool is_seen_in_part(const NodeLog& node, const Line& line) const {
@@ -209,49 +227,89 @@ class Run {
            (reach.radio || reach.serial || reach.peis || reach.app);
   }
 
-  // Passes over a line of which the target shows nothing, or not all. Returns false if the case
-  // cannot go on without it.
-  bool pass_over(const Line& line) {
-    const bool needed =
-        line.op == Op::kGiven || (line.op == Op::kEmits && is_needed_later(case_, line));
-    if (unseen_.empty() || needed) {
-      unseen_ = fmt::format("line {}: the target does not show {}", line.place.line,
-                            line.link == "*" ? "all its links" : line.link);
-    }
-    return !needed;
+  // Returns false if the case cannot go on without a line of which the target shows nothing, or not
+  // all.
+  bool pass_over(const Line& line) const {
+    return line.op != Op::kGiven && (line.op != Op::kEmits || !is_needed_later(case_, line));
   }
 
-  void give(NodeLog& node, const Line& line, Ticks time) {
-    pass_all(time);
-    node.give(line, now_, scope_, bindings_);
-    matched(line, now_);
+  void give(NodeLog& node, const Timed& timed) {
+    pass_all(timed.window.from + timed.slack);
+    const Window given = node.give(*timed.line, now_, scope_, bindings_);
+    now_ = std::max(now_, given.to);
+    stimuli_.push_back({&node, timed.window.from, given});
+    matched(*timed.line, {given.from, given.to - given.from});
   }
 
-  bool expect(NodeLog& node, const Line& line, const Window& window, CaseResult& result) {
-    const Tolerance tolerance = node.target().tolerance();
-    const Window wide{window.from - std::min(window.from, tolerance.early),
-                      window.to + tolerance.late};
+  bool expect(NodeLog& node, const Timed& timed, CaseResult& result) {
+    const Line& line = *timed.line;
     while (true) {
+      const Window wide = widened(node, timed);
       if (const Output* output = node.take(line, wide, bindings_)) {
-        matched(line, output->time);
+        matched(line, {output->time, 0});
         return true;
       }
       if (now_ >= wide.to) break;
       pass(wide.to);
     }
+    const Window wide = widened(node, timed);
     pass_all(wide.to + kLateTicks);
-    fail(result, line, window, wide.to, node.nearest_miss(line, wide, bindings_));
+    fail(result, line, timed.window, wide.to, node.nearest_miss(line, wide, bindings_));
     return false;
   }
 
-  // Returns the span that a `!>` line surely forbids, where the target's times are not exact.
-  static Window narrowed(const Window& window, const Tolerance& tolerance) {
-    return {window.from + tolerance.late, window.to - std::min(window.to, tolerance.early)};
+  // Times of a target whose clock is real are not exact. An output is seen some ticks late, never
+  // before it happened, and a stimulus takes some ticks to hand over; so a window is widened for
+  // what is asked or allowed, and narrowed for what is forbidden. Their order is exact: what is
+  // seen before a stimulus was no answer to it, and nothing after it comes too early for it. A
+  // window that begins with a stimulus therefore begins there, and only its end is tolerant.
+  Window widened(const NodeLog& node, const Timed& timed) const {
+    const Tolerance tolerance = node.target().tolerance();
+    const Window& window = timed.window;
+    Window wide{window.from - std::min(window.from, tolerance.early),
+                window.to + tolerance.late + timed.slack};
+    if (const Window* stimulus = stimulus_at(node, timed, tolerance)) {
+      // Stimuli just before it may have caused the output, if a trace gives several at once.
+      Ticks first = stimulus->from;
+      for (const Stimulus& one : stimuli_) {
+        if (one.node == &node && one.given.from >= wide.from) {
+          first = std::min(first, one.given.from);
+        }
+      }
+      wide.from = first;
+    }
+    return wide;
+  }
+
+  // Returns nothing if the tolerance is greater than the window.
+  std::optional<Window> narrowed(const NodeLog& node, const Timed& timed) const {
+    const Tolerance tolerance = node.target().tolerance();
+    const Window& window = timed.window;
+    Ticks from = window.from + tolerance.late + timed.slack;
+    Ticks early = tolerance.early;
+    if (const Window* stimulus = stimulus_at(node, timed, tolerance)) {
+      from = stimulus->from;
+      early = std::min(early, (window.to - window.from) / 2);  // Both times are late alike.
+    }
+    if (window.to < from + early) return std::nullopt;
+    return Window{from, window.to - early};
+  }
+
+  // Returns when the node was given the stimulus with which a window begins; null if none does, or
+  // if times are exact.
+  const Window* stimulus_at(const NodeLog& node, const Timed& timed,
+                            const Tolerance& tolerance) const {
+    if (tolerance.early == 0 && tolerance.late == 0) return nullptr;
+    const Ticks from = timed.window.from;
+    for (const Stimulus& one : stimuli_) {
+      if (one.node == &node && (one.asked == from || one.given.from == from)) return &one.given;
+    }
+    return nullptr;
   }
 
   void judge_forbidden(CaseResult& result) {
     Ticks end = now_;
-    for (const Pending& one : forbidden_) end = std::max(end, one.window.to);
+    for (const Timed& one : forbidden_) end = std::max(end, one.window.to);
     pass_all(end);
     judge_outputs(result);
   }
@@ -265,9 +323,9 @@ class Run {
         const bool known = line->time.base == trace::Time::Base::kStart ||
                            (line->time.base == trace::Time::Base::kLabel &&
                             labels_.find(line->time.label) != labels_.end());
-        const Window window = known ? window_of(*line) : Window{0, now_};
-        if (known && line->op == Op::kMustNot) forbidden_.push_back({line, window});
-        if (line->op == Op::kEmits || line->op == Op::kMay) allowed_.push_back({line, window});
+        const Timed one = known ? timed(*line) : Timed{line, {0, now_}, 0};
+        if (known && line->op == Op::kMustNot) forbidden_.push_back(one);
+        if (line->op == Op::kEmits || line->op == Op::kMay) allowed_.push_back(one);
       }
       if (line->place.line == place_.line) reached = false;
     }
@@ -275,13 +333,15 @@ class Run {
   }
 
   void judge_outputs(CaseResult& result) {
-    for (const Pending& one : allowed_) {
-      node_of(*one.line)->allow(*one.line, one.window, bindings_);
-    }
-    for (const Pending& one : forbidden_) {
+    for (const Timed& one : allowed_) {
       NodeLog& node = *node_of(*one.line);
-      const Window window = narrowed(one.window, node.target().tolerance());
-      const Output* output = node.forbidden(*one.line, window, bindings_);
+      node.allow(*one.line, widened(node, one), bindings_);
+    }
+    for (const Timed& one : forbidden_) {
+      NodeLog& node = *node_of(*one.line);
+      const std::optional<Window> window = narrowed(node, one);
+      unjudged_ = unjudged_ || !window;
+      const Output* output = window ? node.forbidden(*one.line, *window, bindings_) : nullptr;
       if (!output) continue;
       fail(result, *one.line, one.window, output->time,
            fmt::format("at {} it emitted {}", output->time, node.text_of(*output)));
@@ -321,13 +381,15 @@ class Run {
   const trace::Scope scope_;
   const TargetFactory& make_;
   trace::Place place_;  // Place of the current line.
-  std::string unseen_;  // The first line of which the target shows nothing.
+  std::set<std::string> unseen_;
+  bool unjudged_ = false;  // A line's window was too short.
   std::vector<NodeLog> nodes_;
-  std::vector<Pending> forbidden_;
-  std::vector<Pending> allowed_;
-  std::map<std::string, Ticks, std::less<>> labels_;
+  std::vector<Stimulus> stimuli_;
+  std::vector<Timed> forbidden_;
+  std::vector<Timed> allowed_;
+  std::map<std::string, Moment, std::less<>> labels_;
   trace::Bindings bindings_;
-  Ticks previous_ = 0;
+  Moment previous_;
   Ticks now_ = 0;
 };
 

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -43,7 +44,8 @@ struct CaseResult {
   CaseVerdict verdict = CaseVerdict::kPass;
   std::vector<Failure> failures;
   std::string reason;  ///< Why it is inconclusive, skipped or an error.
-  Ticks length = 0;    ///< Virtual time that passed.
+  std::set<std::string> unseen;  ///< Links that it looks at and the target does not show.
+  Ticks length = 0;              ///< Virtual time that passed.
   trace::Case log;     ///< Everything that was given and came back.
 };
 

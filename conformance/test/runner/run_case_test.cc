@@ -39,12 +39,13 @@ class Ticker : public Target {
   std::vector<Output> outputs_;
 };
 
+template <class Node = Ticker>
 CaseResult run(const std::string& lines, std::vector<Ticks> times) {
   const trace::Parsed parsed =
       trace::parse("%rtr 1\n%profile paper\n%node m5 mote id=5 iut\ncase x\n" + lines, "x.rtr");
   EXPECT_EQ(parsed.errors(), "");
   return run_case(parsed.file, parsed.file.cases.at(0),
-                  [&](const trace::NodeHeader&) { return std::make_unique<Ticker>(times); });
+                  [&](const trace::NodeHeader&) { return std::make_unique<Node>(times); });
 }
 
 struct Row {
@@ -57,9 +58,7 @@ struct Row {
 
 class Rows : public testing::TestWithParam<Row> {};
 
-TEST_P(Rows, AreJudged) {
-  const Row& row = GetParam();
-  const CaseResult result = run(row.lines, row.times);
+void judge(const Row& row, const CaseResult& result) {
   EXPECT_EQ(result.verdict, row.verdict) << explain(result, "x.rtr");
   if (result.failures.empty()) {
     EXPECT_STREQ(row.text, "");
@@ -67,6 +66,8 @@ TEST_P(Rows, AreJudged) {
     EXPECT_EQ(result.failures[0].text, row.text);
   }
 }
+
+TEST_P(Rows, AreJudged) { judge(GetParam(), run(GetParam().lines, GetParam().times)); }
 
 INSTANTIATE_TEST_SUITE_P(
     All, Rows,
@@ -187,6 +188,124 @@ INSTANTIATE_TEST_SUITE_P(
             "at 30 it came before one that was to come first"}),
     [](const auto& row) { return std::string(row.param.name); });
 
+// In real time: its times may be 10 ticks off, and it takes 4 to give it something.
+class RealTicker : public Ticker {
+ public:
+  using Ticker::Ticker;
+  void give(Ticks now, const machine::Event& event) override {
+    Ticker::give(now, event);
+    given_ = {now, now + 4};
+  }
+  Tolerance tolerance() const override { return {10, 10}; }
+  std::optional<Window> given() const override { return given_; }
+
+ private:
+  Window given_;
+};
+
+class RealRows : public testing::TestWithParam<Row> {};
+
+TEST_P(RealRows, AreJudged) {
+  judge(GetParam(), run<RealTicker>(GetParam().lines, GetParam().times));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, RealRows,
+    testing::Values(
+        Row{"AnswersPromptly",
+            "a: 100 m5 < app get_clock()\na+0..50 m5 > app clock(*)\n",
+            {100},
+            CaseVerdict::kPass,
+            ""},
+        Row{"AnswersAtTheLimit",
+            "a: 100 m5 < app get_clock()\na+0..50 m5 > app clock(*)\n",
+            {164},
+            CaseVerdict::kPass,
+            ""},
+        Row{"AnswersTooLate",
+            "a: 100 m5 < app get_clock()\na+0..50 m5 > app clock(*)\n",
+            {165},
+            CaseVerdict::kFail,
+            "it came at 165, not from 100 to 164"},
+        Row{"EmitsBeforeItIsAsked",
+            "a: 100 m5 < app get_clock()\na+0..50 m5 > app clock(*)\n",
+            {99},
+            CaseVerdict::kFail,
+            "it came at 99, not from 100 to 164"},
+        Row{"EmitsBeforeItIsTempted",
+            "a: 100 m5 < app get_clock()\na+0..50 m5 !> app clock(*)\n",
+            {99},
+            CaseVerdict::kPass,
+            ""},
+        Row{"FallsAtOnce",
+            "a: 100 m5 < app get_clock()\na+0..50 m5 !> app clock(*)\n",
+            {101},
+            CaseVerdict::kFail,
+            "at 101 it emitted app clock(ms=101)"},
+        Row{"FallsAfterAStimulusThatIsNoLabel",
+            "a: 60 m5 < app get_clock()\na+40 m5 < app get_clock()\n"
+            "a+40..90 m5 !> app clock(*)\n",
+            {105},
+            CaseVerdict::kFail,
+            "at 105 it emitted app clock(ms=105)"},
+        Row{"FallsAfterThePrevious",
+            "100 m5 < app get_clock()\n0..50 m5 !> app clock(*)\n",
+            {101},
+            CaseVerdict::kFail,
+            "at 101 it emitted app clock(ms=101)"},
+        Row{"FallsAfterAnAbsoluteTime",
+            "100 m5 < app get_clock()\n@100..150 m5 !> app clock(*)\n",
+            {101},
+            CaseVerdict::kFail,
+            "at 101 it emitted app clock(ms=101)"},
+        Row{"FallsAtTheEnd",
+            "a: 100 m5 < app get_clock()\na+0..50 m5 !> app clock(*)\n",
+            {140},
+            CaseVerdict::kFail,
+            "at 140 it emitted app clock(ms=140)"},
+        Row{"MayBeAfterTheEnd",
+            "a: 100 m5 < app get_clock()\na+0..50 m5 !> app clock(*)\n",
+            {141},
+            CaseVerdict::kPass,
+            ""},
+        Row{"FallsInAShortWindow",
+            "a: 100 m5 < app get_clock()\na+0..8 m5 !> app clock(*)\n",
+            {103},
+            CaseVerdict::kFail,
+            "at 103 it emitted app clock(ms=103)"},
+        Row{"MayBeBeforeALaterStart",
+            "a: 100 m5 < app get_clock()\na+30..90 m5 !> app clock(*)\n",
+            {143},
+            CaseVerdict::kPass,
+            ""},
+        Row{"FallsAfterALaterStart",
+            "a: 100 m5 < app get_clock()\na+30..90 m5 !> app clock(*)\n",
+            {144},
+            CaseVerdict::kFail,
+            "at 144 it emitted app clock(ms=144)"},
+        Row{"MayComeLate",
+            "a: 100 m5 < app get_clock()\na+0..50 m5 ?> app clock(*)\na+0..90 m5 !> app *\n",
+            {164},
+            CaseVerdict::kPass,
+            ""},
+        Row{"AnswersTheFirstOfTwoAtOnce",
+            "a: 100 m5 < app get_clock()\nb: a+0 m5 < app get_clock()\n"
+            "b+0..50 m5 > app clock(*)\n",
+            {102},
+            CaseVerdict::kPass,
+            ""},
+        Row{"CountsFromAnOutputBothWays",
+            "a: 0..50 m5 > app clock(*)\na+30..50 m5 > app clock(*)\n",
+            {30, 51},
+            CaseVerdict::kPass,
+            ""},
+        Row{"ShorterThanTheTolerance",
+            "a: 0..50 m5 > app clock(*)\na+1..20 m5 !> app clock(*)\n",
+            {30, 40},
+            CaseVerdict::kInconclusive,
+            ""}),
+    [](const auto& row) { return std::string(row.param.name); });
+
 // A Ticker that takes no calls.
 class Refuser : public Ticker {
  public:
@@ -197,17 +316,9 @@ class Refuser : public Ticker {
   }
 };
 
-CaseResult refused(const std::string& lines, std::vector<Ticks> times) {
-  const trace::Parsed parsed =
-      trace::parse("%rtr 1\n%profile paper\n%node m5 mote id=5 iut\ncase x\n" + lines, "x.rtr");
-  EXPECT_EQ(parsed.errors(), "");
-  return run_case(parsed.file, parsed.file.cases.at(0),
-                  [&](const trace::NodeHeader&) { return std::make_unique<Refuser>(times); });
-}
-
 TEST(RunCase, WhatIsUnsupportedIsSkipped) {
-  const CaseResult result =
-      refused("@90 m5 < app get_clock()\n0..50 m5 > app clock(ms=30)\n@0..90 m5 !> app *\n", {30});
+  const CaseResult result = run<Refuser>(
+      "@90 m5 < app get_clock()\n0..50 m5 > app clock(ms=30)\n@0..90 m5 !> app *\n", {30});
   EXPECT_EQ(result.verdict, CaseVerdict::kSkip) << explain(result, "x.rtr");
   EXPECT_EQ(result.reason, "calls");
 }
@@ -215,7 +326,7 @@ TEST(RunCase, WhatIsUnsupportedIsSkipped) {
 TEST(RunCase, ARuleBrokenBeforeASkipStaysBroken) {
   for (const char* lines : {"@0..90 m5 !> app clock(*) [J4-SEQ]\n@90 m5 < app get_clock()\n",
                             "@90 m5 < app get_clock()\n@0..80 m5 !> app clock(*) [J4-SEQ]\n"}) {
-    const CaseResult result = refused(lines, {30});
+    const CaseResult result = run<Refuser>(lines, {30});
     EXPECT_EQ(result.verdict, CaseVerdict::kFail) << lines;
     ASSERT_EQ(result.failures.size(), 1u);
     EXPECT_EQ(result.failures[0].text, "at 30 it emitted app clock(ms=30)");

@@ -41,6 +41,13 @@ struct Reach {
   bool app = true;  ///< Calls, events, power, and whether lines are busy.
 };
 
+/// A span of time with both ends included.
+struct Window {
+  Ticks from = 0;
+  Ticks to = 0;
+  bool holds(Ticks time) const { return from <= time && time <= to; }
+};
+
 /// How many ticks a target's times may be off. Zeros if the runner turns its clock.
 struct Tolerance {
   Ticks early = 0;
@@ -68,6 +75,9 @@ class Target {
 
   virtual Reach reach() const { return {}; }
   virtual Tolerance tolerance() const { return {}; }
+  /// Returns when the last event was given, if that took time: between these ticks. Outputs before
+  /// it have earlier times; the others do not.
+  virtual std::optional<Window> given() const { return std::nullopt; }
 };
 
 }  // namespace rubric::runner

@@ -76,6 +76,7 @@ struct SuiteRun {
   std::string profile = "paper";    ///< As the user chose.
   std::uint64_t seed = 0;           ///< For cases that state none; each repeat adds one.
   std::string shard;                ///< "2/8", or empty.
+  std::string app;                  ///< The command that shows applications, or empty.
   std::vector<std::string> traces;  ///< Files and folders of the user; none: the kit's own cases.
   std::vector<ImplementationRun> implementations;
   std::vector<StaleExpectation> stale;

@@ -76,7 +76,8 @@ bool cut_end(std::string_view& text, std::string_view end) {
 
 LineNode real_node(Role role, const char* where, std::uint32_t baud, const Options& options) {
   LineNode node;
-  node.identity = {fmt::format("{}_{}", role_word(role), where), "-", {role}, true, options.stated};
+  node.identity = {fmt::format("{}_{}", role_word(role), where), "-", {role}, true};
+  node.identity.stated = options.stated;
   node.baud = baud;
   return node;
 }
@@ -143,11 +144,12 @@ std::unique_ptr<Attachment> attach(const std::string& target, const Options& opt
     throw std::invalid_argument("a target has a name or is a command");
   }
   std::string_view text = target;
-  if (target == "machine") return std::make_unique<MachineAttachment>(nullptr, options);
-  if (cut(text, "machine:")) return flawed_machine(text, options);
   if (cut(text, "sf-server:")) return forwarder_server(text, options);
   if (cut(text, "sf:")) return forwarder_client(text, options);
   if (cut(text, "serial:")) return serial_line(text, options);
+  if (!options.app.empty()) throw std::invalid_argument("an app goes with sf-server, sf or serial");
+  if (target == "machine") return std::make_unique<MachineAttachment>(nullptr, options);
+  if (cut(text, "machine:")) return flawed_machine(text, options);
   return std::make_unique<RctAttachment>([target] { return Process::run(target); }, options);
 }
 

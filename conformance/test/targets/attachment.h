@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,8 +16,9 @@ namespace rubric::targets {
 struct Identity {
   std::string name;
   std::string version;
-  std::vector<machine::Role> roles;  ///< The roles that it can play.
-  bool real_time = false;            ///< Its clock cannot be turned.
+  std::vector<machine::Role> roles;         ///< The roles that it can play.
+  bool real_time = false;                   ///< Its clock cannot be turned.
+  std::optional<runner::Reach> shown = {};  ///< If it shows a part of its links only.
   trace::Statement stated = {};
 };
 
@@ -62,12 +64,14 @@ struct Options {
   /// node that connects to us.
   std::chrono::milliseconds start_timeout{20000};
   trace::Statement stated = {};  ///< Counts more than what the implementation states itself.
+  /// A command that uses rct/1 for what a line does not show (AppChannel); empty: none.
+  std::string app = {};
 };
 
 /// Opens the target that the user wrote: `machine`, `machine:FLAW` (conformance/machine/flaws),
 /// `sf-server:PORT`, `sf:HOST:PORT`, `serial:DEVICE[:BAUD]`, `serial:tcp:HOST:PORT`, the last three
 /// perhaps with `:mote` at the end, else a shell command that uses rct/1. Starts nothing yet.
-/// Throws std::invalid_argument if the text makes no sense.
+/// Throws std::invalid_argument if the text makes no sense, or has no line for `options.app`.
 std::unique_ptr<Attachment> attach(const std::string& target, const Options& options);
 
 }  // namespace rubric::targets

@@ -1,7 +1,10 @@
 // The clock of a target that cannot be turned, and the error of its times.
 #pragma once
 
+#include <atomic>
 #include <chrono>
+#include <cstdint>
+#include <thread>
 
 #include "conformance/test/runner/target.h"
 
@@ -23,9 +26,24 @@ class RealClock {
   Steady::time_point start_ = Steady::now();
 };
 
-/// Returns the tolerance, measured once in the first 200 ms of use: twice the worst delay with
-/// which this host wakes a sleeping thread, at least 10 ticks. It counts for early times too, as
-/// times are compared with others that were taken late.
-runner::Tolerance tolerance_of_this_host();
+/// Measures how late this host wakes a sleeping thread, in a thread of its own.
+class DelayWatch {
+ public:
+  DelayWatch() : thread_([this] { watch(); }) {}
+  ~DelayWatch();
+  std::chrono::microseconds worst() const { return std::chrono::microseconds(worst_us_); }
+
+ private:
+  void watch();
+
+  std::atomic<bool> stop_{false};
+  std::atomic<std::int64_t> worst_us_{0};
+  std::thread thread_;
+};
+
+/// Returns twice the worst delay with which this host wakes a sleeping thread, at least 10 ticks:
+/// the worst one of 200 ms at the first use, or `seen`, if that is worse. It counts for early times
+/// too, as times are compared with others that were taken late.
+runner::Tolerance tolerance_of_this_host(std::chrono::microseconds seen = {});
 
 }  // namespace rubric::targets

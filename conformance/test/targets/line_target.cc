@@ -3,11 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <future>
+#include <iterator>
 #include <utility>
 
+#include "codec/generated/rubicon/app_msg.h"
 #include "codec/generated/rubicon/config.h"
 #include "codec/generated/rubicon/enums.h"
+#include "codec/generated/rubicon/net_msg.h"
 #include "codec/generated/tinyos/am_header.h"
+#include "conformance/machine/messages.h"
 #include "conformance/test/targets/process.h"
 #include "conformance/test/targets/rct_text.h"
 #include "conformance/trace/trace.h"
@@ -22,78 +27,157 @@ using std::chrono::steady_clock;
 
 constexpr lines::Milliseconds kQuiet{60};
 constexpr lines::Milliseconds kQuietMax{2000};  // A node that never pauses is used as it is.
-constexpr Ticks kStepTicks = 5;                 // For several nodes that go on together.
-constexpr std::size_t kOutputsMax = 100'000;    // In a case.
+constexpr lines::Milliseconds kAnswerMax{350};  // 300 ticks, and the way.
+constexpr lines::Milliseconds kLifeMax{3000};   // For a node to start behind a new line.
+constexpr lines::Milliseconds kAskAgain{500};
+constexpr std::uint16_t kAskedSeqNum = 0xFFF0;
+constexpr lines::Milliseconds kAskApp{5};     // How often the app is asked for news.
+constexpr Ticks kStepTicks = 5;               // For several nodes that go on together.
+constexpr std::size_t kOutputsMax = 100'000;  // In a case.
 constexpr std::uint32_t kFrameBits = (1 + 8 + machine::kAmPayloadMax + 4) * 10;
 
 // Keeps an attachment's one node in use while it lives.
 class UsedLineTarget : public LineTarget {
  public:
-  UsedLineTarget(lines::PacketLine& line, const LineNode& node, const Options& options,
-                 std::string& notes, std::shared_ptr<int> use)
-      : LineTarget(line, node, options, notes), use_(std::move(use)) {}
+  UsedLineTarget(NodeLine& line, std::unique_ptr<AppChannel> app, std::shared_ptr<int> use)
+      : LineTarget(line, std::move(app)), use_(std::move(use)) {}
 
  private:
   std::shared_ptr<int> use_;
 };
 
+bool read_packet(const lines::TimedPacket& packet, trace::AmFrame& out) {
+  const std::string_view bytes(reinterpret_cast<const char*>(packet.bytes.data()),
+                               packet.bytes.size());
+  return trace::parse_packet(bytes, out) && out.payload.size() <= machine::kAmPayloadMax;
+}
+
+machine::Frame to_sink(std::uint8_t type, Bytes payload) {
+  return {machine::Link::kSerial, 1, 0, type, payload};
+}
+
+// Returns whether a node that starts with `config` has sent this, and is there.
+bool shows_life(const trace::AmFrame& frame, const machine::Config& config) {
+  const Bytes payload(frame.payload.data(), frame.payload.size());
+  if (config.role == machine::Role::kBaseStation) {
+    const auto told = rubicon::ConfigView::parse(payload);
+    return frame.type == machine::am::kConfig && told &&
+           told->type() == rubicon::CommandCode::kSetIslandId;
+  }
+  const auto message = rubicon::NetMsgView::parse(payload);
+  return frame.type == machine::am::kNet && message &&
+         machine::address_of(message->src()) == machine::Address{config.island, config.id};
+}
+
 }  // namespace
 
 void LineTarget::reset(const machine::Config& config) {
-  const machine::Role role = node_.identity.roles.front();
-  if (config.role != role) {
-    throw Unsupported(fmt::format("the node at the line is a {}, not a {}", role_word(role),
+  if (config.role != role()) {
+    throw Unsupported(fmt::format("the node at the line is a {}, not a {}", role_word(role()),
                                   role_word(config.role)));
   }
-  if (role == machine::Role::kSink && config.id != config.profile.sink_id) {
+  if (role() == machine::Role::kSink && config.id != config.profile.sink_id) {
     throw Unsupported(fmt::format("the id of the sink cannot be set to {}", config.id));
   }
-  line_.open(step_deadline());
-  if (!is_mote()) let_settle();  // A mote's line shows nothing.
-  if (role == machine::Role::kSink) {
-    set_island(config.island == 1 ? 2 : 1);
-    set_island(config.island);
+  std::future<void> started;  // An app that starts the node is ready when the node has connected.
+  if (app_) started = std::async(std::launch::async, [&] { app_->reset(config); });
+  line_.open();
+  if (app_) started.get();
+  if (!is_mote()) {  // A mote's line shows nothing.
+    if (!line_.is_new) let_settle();
+    if (role() == machine::Role::kSink) set_island(config);
+    if (line_.is_new) await_life(config);
     let_settle();
   }
+  line_.is_new = false;
+  tolerance_of_this_host();  // Measures now, not in the middle of the case.
+  if (app_) app_->poll();
   outputs_.clear();
   clock_.start();
   now_ = 0;
 }
 
+void LineTarget::await_life(const machine::Config& config) {
+  const bool is_sink = role() == machine::Role::kSink;
+  const lines::SteadyTime end = steady_clock::now() + kLifeMax;
+  for (bool again = false; steady_clock::now() < end; again = true) {
+    if (is_sink && again) set_island(config);
+    if (is_sink) ask_for_ack(config);
+    const lines::SteadyTime pause = is_sink ? steady_clock::now() + kAskAgain : end;
+    while (const auto packet = line_.line->receive(pause)) {
+      trace::AmFrame frame;
+      if (read_packet(*packet, frame) && shows_life(frame, config)) return;
+    }
+  }
+  line_.mishaps.push_back(
+      {fmt::format("{} within {} s after its line was opened",
+                   is_sink ? "confirmed no reliable message" : "did not tell its sink the island",
+                   kLifeMax.count() / 1000),
+       false,
+       {}});
+}
+
 void LineTarget::let_settle() {
   const lines::SteadyTime end = steady_clock::now() + kQuietMax;
-  while (steady_clock::now() < end && line_.receive(steady_clock::now() + kQuiet)) {
+  const lines::SteadyTime answered = std::min(end, line_.last_given + kAnswerMax);
+  while (steady_clock::now() < end &&
+         line_.line->receive(std::max(answered, steady_clock::now() + kQuiet))) {
   }
 }
 
-void LineTarget::set_island(std::uint16_t island) {
-  rubicon::Config message;
-  message.type = rubicon::CommandCode::kSetIslandId;
-  message.value = island;
-  std::uint8_t room[machine::kAmPayloadMax];
-  const auto bytes = write(message, MutableBytes(room));
-  if (!bytes) throw TargetBroken("no message sets an island");
-  machine::Frame frame;
-  frame.link = machine::Link::kSerial;
-  frame.dest = 1;
-  frame.type = static_cast<std::uint8_t>(rubicon::AmType::kConfig);
-  frame.payload = *bytes;
-  send(frame);
+// Sets another island, and then that of the case.
+void LineTarget::set_island(const machine::Config& config) {
+  for (const int island : {config.island == 1 ? 2 : 1, int{config.island}}) {
+    rubicon::Config message;
+    message.type = rubicon::CommandCode::kSetIslandId;
+    message.value = static_cast<std::uint16_t>(island);
+    std::uint8_t room[rubicon::ConfigView::kMaxSizeBytes];
+    rubicon::ConfigLayout::store(message, room);
+    send(to_sink(machine::am::kConfig, Bytes(room, sizeof room)));
+  }
+}
+
+// Sends a reliable message for the sink, as long as they are on serial lines.
+void LineTarget::ask_for_ack(const machine::Config& config) {
+  rubicon::AppMsg app;
+  app.trans_id = rubicon::Component::kConnless;
+  app.app_id = rubicon::Component::kMockup;
+  std::uint8_t body[2];
+  rubicon::AppMsgLayout::store(app, body);
+  rubicon::NetMsg message;
+  message.dest = machine::wire_of(machine::Address{config.island, config.id});
+  message.src = machine::wire_of(machine::Address{config.island, machine::kNullDevid});
+  message.reliable = 1;
+  message.seq_num = kAskedSeqNum;
+  message.payload = Bytes(body, sizeof body);
+  std::uint8_t room[machine::kAmPayloadMax] = {};
+  rubicon::NetMsgLayout::store(message, room);
+  send(to_sink(machine::am::kNet, Bytes(room, sizeof room)));
+  line_.last_given = steady_clock::now();
 }
 
 void LineTarget::give(Ticks now, const machine::Event& event) {
   while (run_until(now) < now) {
   }
   const auto* const heard = std::get_if<machine::Heard>(&event);
-  if (!heard || heard->frame.link != machine::Link::kSerial) {
-    throw Unsupported("a serial line alone cannot make that happen");
-  }
-  send(heard->frame);
+  const bool is_serial = heard && heard->frame.link == machine::Link::kSerial;
+  if (!is_serial && !app_) throw Unsupported("a serial line alone cannot make that happen");
+  if (app_) take(app_->poll());
+  while (const auto packet = line_.line->receive(steady_clock::now())) take(*packet);
   now_ = std::max(now_, clock_.now());
+  if (!outputs_.empty() && outputs_.back().time == now_) ++now_;  // Seen before it.
+  given_ = {now_, now_};
+  if (is_serial) {
+    send(heard->frame);
+  } else {
+    take(app_->give(event));
+  }
+  line_.last_given = steady_clock::now();
+  given_->to = std::max(now_, clock_.now());
 }
 
 void LineTarget::send(const machine::Frame& frame) {
-  line_.send(
+  line_.line->send(
       trace::packet_of(
           {frame.dest, frame.src, 0, frame.type, {frame.payload.begin(), frame.payload.end()}}),
       step_deadline());
@@ -102,11 +186,26 @@ void LineTarget::send(const machine::Frame& frame) {
 std::optional<Ticks> LineTarget::next() const { return now_ + kStepTicks; }
 
 Ticks LineTarget::run_until(Ticks time) {
-  while (const auto packet = line_.receive(clock_.begin_of(time + 1))) {
-    if (take(*packet)) return now_;
+  const lines::SteadyTime end = clock_.begin_of(time + 1);
+  while (true) {
+    const lines::SteadyTime pause = app_ ? std::min(end, steady_clock::now() + kAskApp) : end;
+    const auto packet = line_.line->receive(pause);
+    const bool any = packet && take(*packet);
+    if ((app_ && take(app_->poll())) || any) return now_;
+    if (!packet && pause == end) break;
   }
   now_ = std::max(now_, time);
   return now_;
+}
+
+// Takes what the app says. Returns whether it is anything.
+bool LineTarget::take(std::vector<Output> outputs) {
+  now_ = outputs.empty() ? now_ : std::max(now_, clock_.now());
+  for (Output& output : outputs) {
+    output.time = now_;
+    outputs_.push_back(std::move(output));
+  }
+  return !outputs.empty();
 }
 
 // Takes a packet. Returns false if it is not the node's.
@@ -115,21 +214,18 @@ bool LineTarget::take(const lines::TimedPacket& packet) {
   using At = tinyos::AmHeaderLayout::DispatchAt;
   const std::uint8_t dispatch = packet.bytes.size() < At::kEnd ? 0 : packet.bytes[At::kAt];
   if (packet.bytes.empty() || !At::allows(dispatch)) {
-    notes_ += fmt::format(
+    line_.notes += fmt::format(
         "a packet of dispatch {:02x}, which is not an active message, is ignored\n", dispatch);
     return false;
   }
   trace::AmFrame frame;
-  const std::string_view bytes(reinterpret_cast<const char*>(packet.bytes.data()),
-                               packet.bytes.size());
-  const bool whole = trace::parse_packet(bytes, frame);
-  if (!whole || frame.payload.size() > machine::kAmPayloadMax) {
-    line_.close();
+  if (!read_packet(packet, frame)) {
+    line_.line->close();
     throw TargetBroken(fmt::format(
-        "a packet of {} bytes on the serial line is not an active message", bytes.size()));
+        "a packet of {} bytes on the serial line is not an active message", packet.bytes.size()));
   }
   if (outputs_.size() >= kOutputsMax) {
-    line_.close();
+    line_.line->close();
     throw TargetBroken(fmt::format("more than {} packets on the serial line", kOutputsMax));
   }
   now_ = std::max(now_, clock_.tick_of(packet.time));
@@ -146,44 +242,84 @@ bool LineTarget::take(const lines::TimedPacket& packet) {
 }
 
 runner::Tolerance LineTarget::tolerance() const {
-  const runner::Tolerance host = tolerance_of_this_host();
-  const Ticks line = machine::ticks_to_hold(2 * machine::kUsPerSecond * kFrameBits / node_.baud);
+  const runner::Tolerance host = tolerance_of_this_host(delays_.worst());
+  const Ticks line =
+      machine::ticks_to_hold(2 * machine::kUsPerSecond * kFrameBits / line_.node.baud);
   return {host.early + line, host.late + line};
 }
 
 lines::SteadyTime LineTarget::step_deadline() const {
-  return steady_clock::now() + options_.step_timeout;
+  return steady_clock::now() + line_.options.step_timeout;
+}
+
+LineAttachment::LineAttachment(std::unique_ptr<lines::PacketLine> line, LineNode node,
+                               const Options& options) {
+  line_.line = std::move(line);
+  line_.node = std::move(node);
+  line_.options = options;
+  if (options.app.empty()) return;
+  app_.emplace([command = options.app] { return Process::run(command); }, options);
 }
 
 const Identity& LineAttachment::identity() {
-  open();
-  return node_.identity;
+  if (!app_) {
+    line_.open();
+    return line_.node.identity;
+  }
+  Identity& ours = line_.node.identity;
+  const Identity& app = app_->identity();
+  if (!app.real_time || std::ranges::find(app.roles, ours.roles.front()) == app.roles.end()) {
+    throw TargetBroken(fmt::format("its app is no {} in real time", role_word(ours.roles.front())));
+  }
+  ours.name = app.name;
+  ours.version = app.version;
+  return ours;
 }
 
 std::unique_ptr<runner::Target> LineAttachment::target() {
   if (!in_use_.expired()) {
     throw Unsupported("one real node is attached, and the case has several");
   }
-  if (node_.restarts && used_) line_->close();
-  open();
+  identity();
+  if (line_.node.restarts && used_) line_.line->close();
+  std::unique_ptr<AppChannel> app;
+  if (app_) {
+    app = std::make_unique<AppChannel>(app_->take(), [this](std::unique_ptr<RctClient> client) {
+      app_->give_back(std::move(client));
+    });
+  } else {
+    line_.open();
+  }
   used_ = true;
   auto use = std::make_shared<int>(0);
   in_use_ = use;
-  return std::make_unique<UsedLineTarget>(*line_, node_, options_, notes_, std::move(use));
+  return std::make_unique<UsedLineTarget>(line_, std::move(app), std::move(use));
 }
 
-// Waits that long only for a node that starts and then connects by itself.
-void LineAttachment::open() {
-  const bool starts = node_.comes_to_us && (!opened_ || node_.restarts);
-  line_->open(steady_clock::now() + (starts ? options_.start_timeout : options_.step_timeout));
-  opened_ = true;
+void NodeLine::open() {
+  const bool starts = node.comes_to_us && (!opened || node.restarts);
+  const auto timeout = starts ? options.start_timeout : options.step_timeout;
+  if (line->open(steady_clock::now() + timeout)) is_new = true;
+  opened = true;
+}
+
+void LineAttachment::finish() {
+  if (app_) app_->finish();
+}
+
+std::vector<Mishap> LineAttachment::take_mishaps() {
+  std::vector<Mishap> out = std::exchange(line_.mishaps, {});
+  if (app_) std::ranges::move(app_->take_mishaps(), std::back_inserter(out));
+  return out;
 }
 
 std::string LineAttachment::take_stderr() {
-  if (notes_.size() > Process::kStderrBytesMax) {
-    notes_.erase(0, notes_.size() - Process::kStderrBytesMax);
+  std::string& notes = line_.notes;
+  if (app_) notes += app_->take_stderr();
+  if (notes.size() > Process::kStderrBytesMax) {
+    notes.erase(0, notes.size() - Process::kStderrBytesMax);
   }
-  return std::exchange(notes_, {});
+  return std::exchange(notes, {});
 }
 
 }  // namespace rubric::targets

@@ -1,11 +1,15 @@
 // A real node that is visible only through its serial line, in real time.
 //
 // A node cannot be restarted through its line. Instead reset does this:
-// - the line is opened if it is not, and input is dropped until nothing comes for 60 ms;
+// - where the attachment says `restart`, the connection of an earlier case is closed, and the node
+//   has to connect again: for a base station that a script restarts;
+// - the line is opened if it is not;
 // - a sink is sent another island and then that of the case, which makes it forget its members
 //   (N9);
-// - where the attachment says `restart`, the connection of an earlier case is closed first, and the
-//   node has to connect again: for a base station that a script restarts.
+// - after a line was opened, the node is awaited, for 3 s at most: a base station tells its sink
+//   the island, and a sink confirms a reliable message, which is sent again every 500 ms;
+// - input is dropped until nothing comes for 60 ms, and what was given last cannot be answered any
+//   more (decision 125).
 // All else stays as the case before left it: sequence numbers, awaited acks, channels. The id of a
 // sink must be 1, and a base station's island that of the cases, 11.
 //
@@ -14,12 +18,14 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "codec/lines/packet_line.h"
-#include "conformance/test/targets/attachment.h"
-#include "conformance/test/targets/clock.h"
+#include "conformance/test/targets/app_channel.h"
+#include "conformance/test/targets/rct_attachment.h"
 
 namespace rubric::targets {
 
@@ -31,12 +37,25 @@ struct LineNode {
   std::uint32_t baud = 115200;
 };
 
+/// The line of a node, for one case after the other.
+struct NodeLine {
+  /// Opens it, if it is not open. Waits for a node that starts and then connects by itself.
+  void open();
+
+  std::unique_ptr<lines::PacketLine> line;
+  LineNode node;
+  Options options;
+  bool opened = false;           ///< Once, at least.
+  bool is_new = false;           ///< It was opened, and the node has not been awaited since.
+  lines::SteadyTime last_given;  ///< In any case.
+  std::string notes;
+  std::vector<Mishap> mishaps;
+};
+
 class LineTarget : public runner::Target {
  public:
-  /// `line`, `node` and `notes` must outlive it.
-  LineTarget(lines::PacketLine& line, const LineNode& node, const Options& options,
-             std::string& notes)
-      : line_(line), node_(node), options_(options), notes_(notes) {}
+  /// `line` must outlive it. `app` may be null.
+  LineTarget(NodeLine& line, std::unique_ptr<AppChannel> app) : line_(line), app_(std::move(app)) {}
 
   void reset(const machine::Config& config) override;
   void give(runner::Ticks now, const machine::Event& event) override;
@@ -44,47 +63,52 @@ class LineTarget : public runner::Target {
   runner::Ticks run_until(runner::Ticks time) override;
   const std::vector<runner::Output>& outputs() const override { return outputs_; }
   void hold_link_acks(bool) override {}
-  runner::Reach reach() const override { return {false, !is_mote(), false, false}; }
-  /// Returns the tolerance of this host plus the time of a stimulus and its answer on the serial
-  /// line.
+  runner::Reach reach() const override {
+    const runner::Reach app = app_ ? app_->shown() : runner::Reach{false, false, false, false};
+    const bool has_radio = role() != machine::Role::kBaseStation;
+    return {!has_radio, !is_mote(), app.peis, app.app};
+  }
+  /// Returns the tolerance of this host, as it was during the case, plus the time of a stimulus and
+  /// its answer on the serial line.
   runner::Tolerance tolerance() const override;
+  std::optional<runner::Window> given() const override { return given_; }
 
  private:
-  bool is_mote() const { return node_.identity.roles.front() == machine::Role::kMote; }
+  machine::Role role() const { return line_.node.identity.roles.front(); }
+  bool is_mote() const { return role() == machine::Role::kMote; }
   void send(const machine::Frame& frame);
-  void set_island(std::uint16_t island);
+  void set_island(const machine::Config& config);
+  void ask_for_ack(const machine::Config& config);
+  void await_life(const machine::Config& config);
   void let_settle();
   bool take(const lines::TimedPacket& packet);
+  bool take(std::vector<Output> outputs);
   lines::SteadyTime step_deadline() const;
 
-  lines::PacketLine& line_;
-  const LineNode& node_;
-  const Options options_;
-  std::string& notes_;
+  NodeLine& line_;
+  std::unique_ptr<AppChannel> app_;
   RealClock clock_;
   std::vector<runner::Output> outputs_;
   runner::Ticks now_ = 0;
+  std::optional<runner::Window> given_;
+  const DelayWatch delays_;
 };
 
 class LineAttachment : public Attachment {
  public:
-  LineAttachment(std::unique_ptr<lines::PacketLine> line, LineNode node, const Options& options)
-      : line_(std::move(line)), node_(std::move(node)), options_(options) {}
+  LineAttachment(std::unique_ptr<lines::PacketLine> line, LineNode node, const Options& options);
 
   const Identity& identity() override;
   /// Returns one target at a time; throws runner::Unsupported if a case has several nodes.
   std::unique_ptr<runner::Target> target() override;
-  std::string honesty() override { return {}; }
+  std::string honesty() override { return app_ ? app_->honesty() : std::string(); }
   std::string take_stderr() override;
+  std::vector<Mishap> take_mishaps() override;
+  void finish() override;
 
  private:
-  void open();
-
-  std::unique_ptr<lines::PacketLine> line_;
-  LineNode node_;
-  Options options_;
-  std::string notes_;
-  bool opened_ = false;  // Once, at least.
+  NodeLine line_;
+  std::optional<RctAttachment> app_;
   bool used_ = false;
   std::weak_ptr<int> in_use_;  // Held by the target in use.
 };

@@ -36,6 +36,10 @@ std::string read_time(std::string_view word, bool& real) {
   return real || word == "virtual" ? std::string()
                                    : quoted(word) + " is not a time: virtual or real";
 }
+std::string read_links(std::string_view list, std::optional<runner::Reach>& out) {
+  out = links_of(list);
+  return out ? std::string() : quoted(list) + " are no links: of app, peis, radio and serial";
+}
 
 bool is_family(std::string_view text) {
   return std::ranges::any_of(reflect::requirements(), [&](const auto& one) {
@@ -244,14 +248,16 @@ Identity read_hello(const std::string& line) {
     }
     const std::string_view key = word.substr(0, size);
     const std::string_view value = word.substr(size + 1);
-    if (key != "roles" && key != "time") {
+    if (key != "roles" && key != "time" && key != "links") {
       std::string wrong = trace::add_stated(word, out.stated);
       if (!wrong.empty()) throw broken(wrong);
       continue;
     }
     if (!keys.insert(key).second) throw broken(fmt::format("it says {}= twice", key));
-    const std::string wrong =
-        key == "roles" ? read_roles(value, out.roles) : read_time(value, out.real_time);
+    std::string wrong;
+    if (key == "roles") wrong = read_roles(value, out.roles);
+    if (key == "time") wrong = read_time(value, out.real_time);
+    if (key == "links") wrong = read_links(value, out.shown);
     if (!wrong.empty()) throw broken(wrong);
   }
   if (out.roles.empty()) throw broken("it says no roles=");

@@ -2,8 +2,6 @@
 
 #include <utility>
 
-#include "conformance/test/targets/clock.h"
-
 namespace rubric::targets {
 
 const Identity& RctAttachment::identity() {
@@ -14,8 +12,7 @@ const Identity& RctAttachment::identity() {
 std::unique_ptr<runner::Target> RctAttachment::target() {
   std::unique_ptr<RctClient> client = take();
   return std::make_unique<RctTarget>(
-      std::move(client), tolerance_,
-      [this](std::unique_ptr<RctClient> used) { give_back(std::move(used)); });
+      std::move(client), [this](std::unique_ptr<RctClient> used) { give_back(std::move(used)); });
 }
 
 std::string RctAttachment::honesty() {
@@ -44,7 +41,6 @@ std::unique_ptr<RctClient> RctAttachment::take() {
     keep_stderr(*client);
     throw;
   }
-  if (identity_.real_time) tolerance_ = tolerance_of_this_host();
   return client;
 }
 

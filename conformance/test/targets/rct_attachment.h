@@ -28,16 +28,17 @@ class RctAttachment : public Attachment {
   std::vector<Mishap> take_mishaps() override { return std::exchange(mishaps_, {}); }
   void finish() override;
 
- private:
+  /// Returns a process that waits, to be given back.
   std::unique_ptr<RctClient> take();
-  bool waits(RctClient& client);
   void give_back(std::unique_ptr<RctClient> client);
+
+ private:
+  bool waits(RctClient& client);
   void keep_stderr(RctClient& client);
 
   Starter start_;
   Options options_;
   Identity identity_;
-  runner::Tolerance tolerance_;
   std::vector<std::unique_ptr<RctClient>> idle_;
   std::string stderr_;
   std::vector<Mishap> mishaps_;

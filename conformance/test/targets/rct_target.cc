@@ -72,6 +72,16 @@ lines::Milliseconds ms_of(Ticks ticks) { return lines::Milliseconds(machine::us_
 
 }  // namespace
 
+std::string command_of(const machine::Event& event, Ticks now) {
+  return std::visit(CommandOf{now}, event);
+}
+
+std::string reset_command(const machine::Config& config) {
+  return fmt::format("reset {} id={} island={} channels={} seed={} profile={}",
+                     role_word(config.role), config.id, config.island, config.profile.channels_max,
+                     seed_of(config.first_seq), profile_of(config.profile));
+}
+
 void RctTarget::reset(const machine::Config& config) {
   const std::vector<machine::Role>& roles = client_->identity().roles;
   if (std::find(roles.begin(), roles.end(), config.role) == roles.end()) {
@@ -80,15 +90,13 @@ void RctTarget::reset(const machine::Config& config) {
   }
   outputs_.clear();
   link_acks_.clear();
+  given_.reset();
   now_ = 0;
   settled_ = knows_next_ = false;
   next_.reset();
   at_instant_ = 0;
   Asked asked;
-  asked.command =
-      fmt::format("reset {} id={} island={} channels={} seed={} profile={}", role_word(config.role),
-                  config.id, config.island, config.profile.channels_max, seed_of(config.first_seq),
-                  profile_of(config.profile));
+  asked.command = reset_command(config);
   asked.closing = "ready";
   clock_.start();
   client_->ask(asked);
@@ -102,7 +110,15 @@ void RctTarget::give(Ticks now, const machine::Event& event) {
       std::holds_alternative<machine::PowerOff>(event)) {
     link_acks_.clear();
   }
-  ask(std::visit(CommandOf{now}, event), now, false);
+  if (!client_->identity().real_time) {
+    ask(command_of(event, now), now, false);
+    return;
+  }
+  const bool just_emitted = !outputs_.empty() && outputs_.back().time == now;
+  const Ticks from = just_emitted ? now + 1 : now;
+  given_ = {from, from};
+  ask(command_of(event, now), now, false);
+  given_->to = std::max(now_, from);
 }
 
 std::optional<Ticks> RctTarget::next() const {
@@ -116,7 +132,8 @@ Ticks RctTarget::run_until(Ticks time) {
   while (!link_acks_.empty() && link_acks_.front() <= time) {
     const Ticks due = std::max(link_acks_.front(), now_);
     if (due > now_) {
-      const Ticks reached = let_pass(due - 1);
+      // A real clock has to get there before anything can happen then.
+      const Ticks reached = let_pass(client_->identity().real_time ? due : due - 1);
       if (outputs_.size() > before) return reached;
     }
     link_acks_.pop_front();
@@ -165,6 +182,7 @@ Ticks RctTarget::ask(std::string command, Ticks time, bool passes_time) {
                                      asked.command, kOutputsAtOnceMax, output.time));
     }
     outputs_.push_back(output);
+    if (given_) outputs_.back().time = std::max(output.time, given_->from);
     const machine::Transmit& frame = output.frame;
     if (!output.is_frame || !frame.link_ack || hold_link_acks_) continue;
     link_acks_.push_back(output.time + runner::transmission_ticks(frame.link, frame.size_bytes));
@@ -190,7 +208,7 @@ Answer RctTarget::answer_to(const Asked& asked, lines::Milliseconds more) {
 // Compares clocks: with a clock that is ahead, silence would be reported that nobody observed.
 void RctTarget::compare_clocks(const std::string& command) {
   const Ticks passed = clock_.now();
-  if (now_ <= passed + passed / 4 + tolerance_.late + kClockSlackTicks) return;
+  if (now_ <= passed + passed / 4 + tolerance().late + kClockSlackTicks) return;
   client_->give_up();
   throw TargetBroken(fmt::format("`{}`: it says that {} ticks have passed since `reset`, not {}",
                                  command, now_, passed));

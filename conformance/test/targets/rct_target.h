@@ -16,12 +16,21 @@ namespace rubric::targets {
 /// together.
 constexpr Ticks kUnknownNextTicks = 5;
 
+/// Returns the command that makes an event happen. Throws runner::Unsupported if there is none.
+std::string command_of(const machine::Event& event, Ticks now);
+/// Returns the command that starts a node. Throws runner::Unsupported.
+std::string reset_command(const machine::Config& config);
+
 class RctTarget : public runner::Target {
  public:
   /// Gets the client when the target is destroyed.
   using GiveBack = std::function<void(std::unique_ptr<RctClient>)>;
-  RctTarget(std::unique_ptr<RctClient> client, runner::Tolerance tolerance, GiveBack give_back)
-      : client_(std::move(client)), tolerance_(tolerance), give_back_(std::move(give_back)) {}
+  RctTarget(std::unique_ptr<RctClient> client, GiveBack give_back)
+      : client_(std::move(client)), give_back_(std::move(give_back)) {
+    if (!client_->identity().real_time) return;
+    tolerance_of_this_host();  // Measures now, not in the middle of a case.
+    delays_.emplace();
+  }
   ~RctTarget() override { give_back_(std::move(client_)); }
 
   void reset(const machine::Config& config) override;
@@ -30,7 +39,13 @@ class RctTarget : public runner::Target {
   Ticks run_until(Ticks time) override;
   const std::vector<Output>& outputs() const override { return outputs_; }
   void hold_link_acks(bool hold) override { hold_link_acks_ = hold; }
-  runner::Tolerance tolerance() const override { return tolerance_; }
+  runner::Reach reach() const override {
+    return client_->identity().shown.value_or(runner::Reach{});
+  }
+  runner::Tolerance tolerance() const override {
+    return delays_ ? tolerance_of_this_host(delays_->worst()) : runner::Tolerance{};
+  }
+  std::optional<runner::Window> given() const override { return given_; }
 
  private:
   /// Sends a command and keeps its outputs. Returns the instant of `done`.
@@ -40,11 +55,12 @@ class RctTarget : public runner::Target {
   void compare_clocks(const std::string& command);
 
   std::unique_ptr<RctClient> client_;
-  runner::Tolerance tolerance_;
+  std::optional<DelayWatch> delays_;  // In real time.
   GiveBack give_back_;
   RealClock clock_;  // Since reset; of what runs in real time.
   std::vector<Output> outputs_;
-  std::deque<Ticks> link_acks_;  // Ends of transmissions that ask for one.
+  std::optional<runner::Window> given_;  // In real time.
+  std::deque<Ticks> link_acks_;          // Ends of transmissions that ask for one.
   bool hold_link_acks_ = false;
   Ticks now_ = 0;         // Everything before it is done,
   bool settled_ = false;  // and everything at it.

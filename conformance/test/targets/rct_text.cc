@@ -20,6 +20,15 @@ using trace::Value;
 constexpr std::string_view kLinkWords[] = {"radio", "serial", "peis"};
 constexpr std::string_view kRoleWords[] = {"mote", "sink", "base_station"};
 
+struct LinkShown {
+  std::string_view word;
+  bool runner::Reach::*shown;
+};
+constexpr LinkShown kLinksShown[] = {{"app", &runner::Reach::app},
+                                     {"peis", &runner::Reach::peis},
+                                     {"radio", &runner::Reach::radio},
+                                     {"serial", &runner::Reach::serial}};
+
 template <class T, std::size_t N>
 std::optional<T> find_word(const std::string_view (&words)[N], std::string_view word) {
   const auto* const found = std::find(std::begin(words), std::end(words), word);
@@ -54,6 +63,28 @@ std::string_view link_word(Link link) { return kLinkWords[static_cast<std::size_
 std::optional<Link> link_of(std::string_view word) { return find_word<Link>(kLinkWords, word); }
 std::string_view role_word(Role role) { return kRoleWords[static_cast<std::size_t>(role)]; }
 std::optional<Role> role_of(std::string_view word) { return find_word<Role>(kRoleWords, word); }
+
+std::string links_text(const runner::Reach& links) {
+  std::string out;
+  for (const LinkShown& one : kLinksShown) {
+    if (links.*one.shown) out += (out.empty() ? "" : ",") + std::string(one.word);
+  }
+  return out;
+}
+
+std::optional<runner::Reach> links_of(std::string_view text) {
+  runner::Reach out{false, false, false, false};
+  while (true) {
+    const std::size_t size = std::min(text.find(','), text.size());
+    const auto* const found =
+        std::find_if(std::begin(kLinksShown), std::end(kLinksShown),
+                     [&](const LinkShown& one) { return one.word == text.substr(0, size); });
+    if (found == std::end(kLinksShown)) return std::nullopt;
+    out.*found->shown = true;
+    if (size == text.size()) return out;
+    text.remove_prefix(size + 1);
+  }
+}
 
 std::string unprintable(std::string_view line) {
   for (std::size_t i = 0; i < line.size(); ++i) {

@@ -39,6 +39,10 @@ std::string_view link_word(machine::Link link);
 std::optional<machine::Link> link_of(std::string_view word);
 std::string_view role_word(machine::Role role);
 std::optional<machine::Role> role_of(std::string_view word);
+/// Returns the links of a `links=` word, "app,peis".
+std::string links_text(const runner::Reach& links);
+/// Reads them; returns nothing if one is not known.
+std::optional<runner::Reach> links_of(std::string_view text);
 
 /// Returns what makes a text no line of the protocol: "byte 0xff at column 3 is not printable
 /// ASCII"; empty if nothing does.

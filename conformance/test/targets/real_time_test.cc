@@ -4,9 +4,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <netinet/in.h>
 #include <stdlib.h>
-#include <sys/socket.h>
 #include <termios.h>
 #include <unistd.h>
 
@@ -15,7 +13,7 @@
 #include "conformance/test/runner/case_files.h"
 #include "conformance/test/runner/run_case.h"
 #include "conformance/test/targets/attachment.h"
-#include "conformance/test/targets/real_node.h"
+#include "conformance/test/targets/line_testing.h"
 
 namespace rubric::targets {
 namespace {
@@ -23,7 +21,7 @@ namespace {
 using runner::CaseVerdict;
 using std::chrono::steady_clock;
 
-constexpr Options kOptions{lines::Milliseconds(4000), lines::Milliseconds(5000)};
+const Options kOptions{lines::Milliseconds(4000), lines::Milliseconds(5000)};
 
 // Short ones; conformance/cases/serial_line.rtr has the full set.
 constexpr const char* kData = "payload.trans_id=connless payload.app_id=mockup payload.payload=x01";
@@ -84,37 +82,6 @@ void expect(CaseVerdict verdict, Attachment& attachment, const char* name) {
   EXPECT_EQ(runner::verdict_text(result.verdict), runner::verdict_text(verdict))
       << name << ": " << result.reason << '\n'
       << runner::explain(result, "serial_line.rtr");
-}
-
-std::uint16_t free_port() {
-  const lines::Descriptor socket(::socket(AF_INET, SOCK_STREAM, 0));
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  socklen_t size = sizeof address;
-  auto* const any = reinterpret_cast<sockaddr*>(&address);
-  const bool bound = ::bind(socket.get(), any, size) == 0;
-  if (!bound || ::getsockname(socket.get(), any, &size) != 0) return 0;
-  return ntohs(address.sin_port);
-}
-
-machine::Config config_of(machine::Role role, std::uint16_t island) {
-  machine::Config config;
-  config.role = role;
-  config.id = role == machine::Role::kSink ? 1 : 0;
-  config.island = island;
-  return config;
-}
-
-std::unique_ptr<lines::PacketLine> forwarder_at(std::uint16_t port) {
-  auto listener = std::make_shared<lines::Listener>(lines::HostPort{"127.0.0.1", port});
-  return std::make_unique<lines::ForwarderLine>(
-      [listener](lines::SteadyTime by) { return listener->accept(by); });
-}
-std::unique_ptr<lines::PacketLine> forwarder_to(std::uint16_t port) {
-  return std::make_unique<lines::ForwarderLine>([port](lines::SteadyTime by) {
-    return lines::connect_tcp({"127.0.0.1", port}, by);
-  });
 }
 
 // A sink whose acks have a wrong number.
@@ -197,7 +164,7 @@ TEST(RealTime, MoteBehindAForwarder) {
   expect(CaseVerdict::kInconclusive, *attachment, "mote.silent");
   expect(CaseVerdict::kInconclusive, *attachment, "mote.silent_everywhere");
   EXPECT_EQ(run(*attachment, "mote.silent_everywhere").reason,
-            "line 38: the target does not show all its links");
+            "the target does not show app and peis and radio and serial");
   expect(CaseVerdict::kSkip, *attachment, "sink.ack");
 }
 
@@ -231,9 +198,7 @@ TEST(RealTime, BaseStationThatIsStartedAnew) {
 
 TEST(RealTime, SerialLineThroughTcp) {
   const std::uint16_t port = free_port();
-  auto listener = std::make_shared<lines::Listener>(lines::HostPort{"127.0.0.1", port});
-  auto end =
-      std::make_unique<MoteEnd>([listener](lines::SteadyTime by) { return listener->accept(by); });
+  std::unique_ptr<MoteEnd> end = mote_at(port);
   MoteEnd& mote = *end;
   const RealNode sink(std::move(end), config_of(machine::Role::kSink, 3));
   const auto attachment = attach(fmt::format("serial:tcp:127.0.0.1:{}", port), kOptions);
@@ -250,22 +215,14 @@ TEST(RealTime, SerialLineThroughTcp) {
 }
 
 TEST(RealTime, SerialDevice) {
-  const int master = ::posix_openpt(O_RDWR | O_NOCTTY);
-  ASSERT_TRUE(master >= 0 && ::grantpt(master) == 0 && ::unlockpt(master) == 0);
-  const std::string name = ::ptsname(master);
-  const lines::Descriptor slave(::open(name.c_str(), O_RDWR | O_NOCTTY));  // So that it stays.
-  const RealNode sink(std::make_unique<MoteEnd>([&](lines::SteadyTime) {
-                        return lines::ByteStream(lines::Descriptor(::dup(master)));
-                      }),
-                      config_of(machine::Role::kSink, 3));
-  const auto attachment = attach(fmt::format("serial:{}:telosb", name), kOptions);
+  const Terminal terminal;
+  const RealNode sink(terminal.mote_end(), config_of(machine::Role::kSink, 3));
+  const auto attachment = attach(fmt::format("serial:{}:telosb", terminal.name()), kOptions);
   expect(CaseVerdict::kPass, *attachment, "sink.ack");
   expect(CaseVerdict::kPass, *attachment, "sink.new_island");
-  termios settings{};
-  ASSERT_EQ(::tcgetattr(slave.get(), &settings), 0);
+  const termios settings = terminal.settings();
   EXPECT_EQ(::cfgetispeed(&settings), B115200);
   EXPECT_EQ(settings.c_lflag & (ECHO | ICANON | ISIG), 0U);
-  ::close(master);
 }
 
 TEST(RealTime, NothingListens) {
@@ -309,7 +266,8 @@ TEST(RealTime, WhereNothingListensTheWaitIsShort) {
   EXPECT_LT(steady_clock::now() - before, lines::Milliseconds(20000));
 }
 
-// The other end of a forwarder's connection: writes the handshake, reads a while, writes the rest.
+// The other end of a forwarder's connection: writes the handshake and what a sink would, reads a
+// while, writes the rest.
 class Peer {
  public:
   Peer(std::uint16_t port, std::vector<std::uint8_t> script)
@@ -323,8 +281,11 @@ class Peer {
       const auto end = steady_clock::now() + lines::Milliseconds(600);
       stream.write(Bytes(script_.data(), 2), end);
       std::uint8_t room[512];
-      std::size_t heard = 0;  // The handshake, an island twice, the stimulus.
-      while (heard < 40 && steady_clock::now() < end) heard += stream.read(room, end);
+      const std::uint8_t alive[] = {22,   0, 0xFF, 0xFF, 0, 0, 14, 0, 28, 0, 11, 0xFF,
+                                    0xFD, 0, 11,   0,    1, 0, 0,  0, 2,  3, 5};
+      stream.write(Bytes(alive, sizeof alive), end);
+      std::size_t heard = 0;  // The handshake, an island twice, a message, the stimulus.
+      while (heard < 150 && steady_clock::now() < end) heard += stream.read(room, end);
       stream.write(Bytes(script_.data() + 2, script_.size() - 2), end);
     } catch (const runner::TargetBroken&) {  // We were left.
     }

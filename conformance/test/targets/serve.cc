@@ -165,8 +165,10 @@ std::string Server::hello(std::string_view words) {
   for (const machine::Role role : identity_.roles) {
     roles += (roles.empty() ? "" : ",") + std::string(role_word(role));
   }
-  return fmt::format("hello rct/{} {} {} roles={} time={}\n", kRctVersion, identity_.name,
-                     identity_.version, roles, identity_.real_time ? "real" : "virtual");
+  std::string links;
+  if (identity_.shown) links = " links=" + links_text(*identity_.shown);
+  return fmt::format("hello rct/{} {} {} roles={} time={}{}\n", kRctVersion, identity_.name,
+                     identity_.version, roles, identity_.real_time ? "real" : "virtual", links);
 }
 
 std::string Server::reset(std::string_view words) {
@@ -184,7 +186,8 @@ std::string Server::event(std::string_view word, std::string_view rest) {
   Told told;
   read_event(word, words, told);
   target_.give(time, told.event);
-  return done(time);
+  const std::optional<runner::Window> given = target_.given();
+  return done(given ? given->to : time);
 }
 
 std::string Server::until(std::string_view rest) {
@@ -200,7 +203,8 @@ std::string Server::done(Ticks time) {
     out += output_line(all[told_]) + '\n';
   }
   const auto next = target_.next();
-  out += next ? fmt::format("next {}\n", std::max(*next, time)) : "next -\n";
+  if (next) out += fmt::format("next {}\n", std::max(*next, time));
+  if (!next && !identity_.real_time) out += "next -\n";
   return out + fmt::format("done {}\n", time);
 }
 

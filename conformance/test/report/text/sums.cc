@@ -1,6 +1,9 @@
 // The text before and after the cases.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <set>
+#include <string>
 #include <vector>
 
 #include "codec/text/text.h"
@@ -33,6 +36,25 @@ std::string broken_text(const ImplementationRun& implementation) {
     out += trace::requirement_text(rule.requirement);
   }
   return out;
+}
+
+// Says how many cases can be decided where a part of the node's links is shown.
+std::string reach_text(const ImplementationRun& implementation, const TextOptions& options) {
+  std::size_t played = 0;
+  std::size_t beyond = 0;
+  std::set<std::string> unseen;
+  for (const CaseRun& one : implementation.cases) {
+    played += one.result.verdict != CaseVerdict::kSkip;
+    if (!is_beyond_reach(one)) continue;
+    ++beyond;
+    unseen.insert(one.result.unseen.begin(), one.result.unseen.end());
+  }
+  if (beyond == 0) return {};
+  return wrapped(kIndent,
+                 fmt::format("What is attached decides {} of {}; the others need {} as well "
+                             "(conformance/PORTING.md; --app shows more of a node at its line).",
+                             played - beyond, counted(played, "case"), fmt::join(unseen, ", ")),
+                 options.width);
 }
 
 // Describes faults that happened between cases.
@@ -105,6 +127,7 @@ std::string totals_text(const ImplementationRun& implementation, const TextOptio
                  fmt::format("Of {} rules {} tried: {} kept, {} broken, {} not decided.", rules.all,
                              rules.all - rules.untried, rules.kept, rules.broken, rules.undecided),
                  options.width);
+  out += reach_text(implementation, options);
   out += outside(implementation, options);
   const std::string broken = broken_text(implementation);
   if (!broken.empty()) out += wrapped(fmt::format("{}Broken: ", kIndent), broken, options.width);

@@ -206,6 +206,8 @@ class Story {
 
 std::string case_text(const CaseRun& one, const TextOptions& options) {
   if (options.quiet && !one.unexpected()) return {};
+  // One sentence for all of them will do.
+  if (!options.verbose && is_beyond_reach(one)) return {};
   std::string verdict(runner::verdict_text(one.result.verdict));
   const std::string_view style = style_of(one.result.verdict, one.unexpected());
   std::string rest;

@@ -7,9 +7,14 @@ import java.nio.charset.StandardCharsets;
 import java.util.List;
 import java.util.OptionalLong;
 import java.util.concurrent.BlockingQueue;
+import java.util.concurrent.CompletableFuture;
+import java.util.concurrent.ExecutionException;
 import java.util.concurrent.LinkedBlockingQueue;
 import java.util.concurrent.ThreadLocalRandom;
 import java.util.concurrent.TimeUnit;
+import java.util.concurrent.TimeoutException;
+import java.util.function.BiFunction;
+import java.util.function.Consumer;
 import rubric.wire.WireException;
 
 /**
@@ -22,6 +27,7 @@ import rubric.wire.WireException;
  */
 public final class ForwarderClient {
   private static final String USAGE = "usage: ForwarderClient HOST:PORT ISLAND\n";
+  private static final long HAPPEN_MS = 2000;
   private static final long TICKS_PER_SECOND = 1024;
   private static final long NANOS_PER_SECOND = 1_000_000_000;
 
@@ -34,12 +40,14 @@ public final class ForwarderClient {
   private final BlockingQueue<Event> events = new LinkedBlockingQueue<>();
   private final SerialForwarder forwarder;
   private final BaseStation station;
+  private final Consumer<Action> others;
   private final long start = System.nanoTime();
 
-  private ForwarderClient(SerialForwarder forwarder, int island) {
+  /** What does not go to the serial line goes to `others`. */
+  ForwarderClient(SerialForwarder forwarder, BaseStation station, Consumer<Action> others) {
     this.forwarder = forwarder;
-    // Numbers of an earlier run may still be awaited somewhere.
-    station = new BaseStation(island, ThreadLocalRandom.current().nextInt(0x10000));
+    this.station = station;
+    this.others = others;
   }
 
   /** Exit code: 0 the forwarder closed the connection, 1 it could not be used, 2 wrong usage. */
@@ -52,7 +60,12 @@ public final class ForwarderClient {
       System.exit(2);
     }
     try (SerialForwarder forwarder = new SerialForwarder(args[0].substring(0, colon), port)) {
-      new ForwarderClient(forwarder, island).run(island);
+      // Numbers of an earlier run may still be awaited somewhere.
+      final int firstSeqNum = ThreadLocalRandom.current().nextInt(0x10000);
+      final ForwarderClient client = new ForwarderClient(
+          forwarder, new BaseStation(island, firstSeqNum), ForwarderClient::print);
+      listen("calls", client::readCalls);
+      client.run(island);
       System.exit(0); // Though somebody still waits for a line of standard input.
     } catch (IOException e) {
       System.err.println("ForwarderClient: " + args[0] + ": " + e.getMessage());
@@ -69,10 +82,10 @@ public final class ForwarderClient {
     }
   }
 
-  private void run(int island) throws IOException, InterruptedException {
+  /** Until the connection ends. */
+  void run(int island) throws IOException, InterruptedException {
     perform(station.setIslandId(island, now()));
     listen("serial", this::readPackets);
-    listen("calls", this::readCalls);
     while (true) {
       final Event event = next();
       final long now = now();
@@ -95,7 +108,7 @@ public final class ForwarderClient {
     return events.poll(Math.max(0, nanos), TimeUnit.NANOSECONDS);
   }
 
-  private long now() {
+  long now() {
     final long nanos = System.nanoTime() - start;
     return nanos / NANOS_PER_SECOND * TICKS_PER_SECOND
         + nanos % NANOS_PER_SECOND * TICKS_PER_SECOND / NANOS_PER_SECOND;
@@ -103,16 +116,41 @@ public final class ForwarderClient {
 
   private void perform(List<Action> actions) throws IOException {
     for (final Action action : actions) {
-      if (!(action instanceof Action.Transmit)) {
-        System.out.println(action);
-        continue;
-      }
-      final Frame frame = ((Action.Transmit) action).frame();
-      if (frame.link() == Link.SERIAL) {
-        forwarder.write(frame.toPacket());
+      if (action instanceof Action.Transmit
+          && ((Action.Transmit) action).frame().link() == Link.SERIAL) {
+        forwarder.write(((Action.Transmit) action).frame().toPacket());
       } else {
-        System.err.println("ForwarderClient: no way to island " + frame.dest());
+        others.accept(action);
       }
+    }
+  }
+
+  private static void print(Action action) {
+    if (action instanceof Action.Transmit) {
+      final Frame frame = ((Action.Transmit) action).frame();
+      System.err.println("ForwarderClient: no way to island " + frame.dest());
+    } else {
+      System.out.println(action);
+    }
+  }
+
+  /** Something happens beside the line; returns when what follows has been done. */
+  void happen(BiFunction<BaseStation, Long, List<Action>> what) {
+    final CompletableFuture<Void> done = new CompletableFuture<>();
+    events.add(now -> {
+      try {
+        perform(what.apply(station, now));
+        done.complete(null);
+      } catch (IllegalArgumentException e) {
+        done.completeExceptionally(e);
+      }
+      return List.of();
+    });
+    try {
+      done.get(HAPPEN_MS, TimeUnit.MILLISECONDS);
+    } catch (InterruptedException | ExecutionException | TimeoutException e) {
+      final String why = e.getCause() == null ? "the line has ended" : e.getCause().getMessage();
+      throw new IllegalArgumentException(why);
     }
   }
 

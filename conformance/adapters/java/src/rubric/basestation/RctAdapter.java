@@ -15,11 +15,12 @@ import rubric.wire.WireException;
  * The base station behind rct/1 on standard input and output, in virtual time. The protocol is
  * described in conformance/PORTING.md.
  */
-public final class RctAdapter {
+public class RctAdapter {
   private static final String HELLO =
-      "hello rct/1 java_base_station 1.0 roles=base_station time=virtual";
+      "hello rct/1 java_base_station 1.0 roles=base_station ";
 
-  private final PrintStream out;
+  protected final PrintStream out;
+  private boolean started = false;
   private BaseStation station;
   private long now = 0;
 
@@ -28,14 +29,26 @@ public final class RctAdapter {
   }
 
   public static void main(String[] args) throws IOException {
+    new RctAdapter(standardOutput()).run();
+  }
+
+  static PrintStream standardOutput() {
+    return new PrintStream(System.out, false, StandardCharsets.ISO_8859_1);
+  }
+
+  /** Until `bye` or the end of standard input. */
+  void run() throws IOException {
     final BufferedReader in =
         new BufferedReader(new InputStreamReader(System.in, StandardCharsets.ISO_8859_1));
-    final PrintStream out = new PrintStream(System.out, false, StandardCharsets.ISO_8859_1);
-    final RctAdapter adapter = new RctAdapter(out);
     for (String line = in.readLine(); line != null && !line.equals("bye"); line = in.readLine()) {
-      adapter.answer(line);
+      answer(line);
       out.flush();
     }
+  }
+
+  /** Words of the answer to hello. */
+  String kind() {
+    return "time=virtual";
   }
 
   /** Writes what follows from a command, and the closing line. */
@@ -53,7 +66,7 @@ public final class RctAdapter {
     switch (words[0]) {
       case "hello":
         if (words.length < 2 || !words[1].matches("rct/[1-9][0-9]*")) break;
-        return HELLO;
+        return HELLO + kind();
       case "reset":
         return reset(words);
       case "rx":
@@ -62,7 +75,7 @@ public final class RctAdapter {
       case "line":
       case "power":
       case "until":
-        if (station == null) throw new IllegalArgumentException("reset comes first");
+        if (!started) throw new IllegalArgumentException("reset comes first");
         return at(words);
       default:
         break;
@@ -81,13 +94,19 @@ public final class RctAdapter {
     final int island = Integer.parseInt(options.getOrDefault("island", "0"));
     if (island < 0 || island > 65535) throw new IllegalArgumentException("island " + island);
     final long seed = Long.parseUnsignedLong(options.getOrDefault("seed", "0"));
-    station = new BaseStation(island, (int) (1000 + 257 * (seed & 0xffff)));
-    now = 0;
+    start(island, new BaseStation(island, (int) (1000 + 257 * (seed & 0xffff))));
+    started = true;
     return "ready";
   }
 
+  /** A station that has just started takes the place of the one before. */
+  void start(int island, BaseStation station) {
+    this.station = station;
+    now = 0;
+  }
+
   /** A command with a time. */
-  private String at(String[] words) {
+  String at(String[] words) {
     final long time = Long.parseLong(words.length > 1 ? words[1] : "");
     if (time < now) throw new IllegalArgumentException("time goes back to " + time);
     if (words[0].equals("until")) return until(time);
@@ -97,7 +116,7 @@ public final class RctAdapter {
       write(station.timeout(now));
     }
     now = time;
-    write(event(words[0], words.length > 2 ? words[2] : ""));
+    write(event(station, words[0], words.length > 2 ? words[2] : "", now));
     return next();
   }
 
@@ -110,19 +129,20 @@ public final class RctAdapter {
     return next();
   }
 
-  private List<Action> event(String command, String rest) {
+  /** What a command makes happen. */
+  static List<Action> event(BaseStation station, String command, String rest, long now) {
     final String[] words = rest.split(" ");
     switch (command) {
       case "rx":
         if (words.length != 2) break;
-        return hear(link(words[0]), Hex.parse(words[1]));
+        return hear(station, link(words[0]), Hex.parse(words[1]), now);
       case "call":
         return new Call(rest).on(station, now);
       case "linkack":
         return List.of(); // A base station asks for none.
       case "line":
         if (words.length != 2 || !words[1].matches("busy|idle")) break;
-        return line(words[0], words[1].equals("busy"));
+        return line(station, words[0], words[1].equals("busy"), now);
       case "power":
         if (!rest.matches("off|reboot")) break;
         return rest.equals("reboot") ? station.reboot(now) : station.powerOff(now);
@@ -132,7 +152,7 @@ public final class RctAdapter {
     throw new IllegalArgumentException("not an argument of " + command + ": " + rest);
   }
 
-  private List<Action> hear(Link link, byte[] packet) {
+  private static List<Action> hear(BaseStation station, Link link, byte[] packet, long now) {
     try {
       return station.hear(Frame.parse(link, packet), now);
     } catch (WireException e) { // No active message: nobody listens.
@@ -140,7 +160,7 @@ public final class RctAdapter {
     }
   }
 
-  private List<Action> line(String name, boolean busy) {
+  private static List<Action> line(BaseStation station, String name, boolean busy, long now) {
     if (name.equals("app")) return station.appBusy(busy, now);
     // PEIS is a network of PCs, and the radio is not the station's.
     return link(name) == Link.SERIAL ? station.serialTaken(busy, now) : List.of();
@@ -159,16 +179,18 @@ public final class RctAdapter {
   }
 
   private boolean write(List<Action> actions) {
-    for (final Action action : actions) {
-      final String rule = " [" + action.rule() + "]\n";
-      if (action instanceof Action.Transmit) {
-        final Frame frame = ((Action.Transmit) action).frame();
-        out.print("tx " + now + " " + frame.link() + " " + Hex.of(frame.toPacket()) + rule);
-      } else {
-        out.print("up " + now + " " + action + rule);
-      }
-    }
+    for (final Action action : actions) write(action, now);
     return !actions.isEmpty();
+  }
+
+  void write(Action action, long time) {
+    final String rule = " [" + action.rule() + "]\n";
+    if (action instanceof Action.Transmit) {
+      final Frame frame = ((Action.Transmit) action).frame();
+      out.print("tx " + time + " " + frame.link() + " " + Hex.of(frame.toPacket()) + rule);
+    } else {
+      out.print("up " + time + " " + action + rule);
+    }
   }
 
   private String next() {

@@ -1,0 +1,398 @@
+#include "conformance/check/align/steps.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <set>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "conformance/check/align/align.h"
+#include "conformance/check/message.h"
+#include "conformance/machine/transport.h"
+
+namespace rubric::check {
+namespace {
+
+constexpr std::int64_t kJitterUs = 10'000;  // Frames that a recorder's buffer turned round.
+constexpr std::int64_t kAcrossUs = 50'000;  // The same between two taps of it.
+constexpr std::int64_t kGoesOnUs = 1'000;   // How soon the first frame after a step comes.
+constexpr std::int64_t kLateAckUs = 50'000;
+constexpr std::size_t kInterruptedMax = 4;  // More often it is the nodes that are slow.
+constexpr std::int64_t kResponseUs = AlignOptions{}.response_us;
+constexpr std::int64_t kRepeatUs = 810'000;  // After its reply an ack_join comes no later.
+constexpr std::int64_t kSilenceUs = 20'000'000;
+constexpr std::int64_t kSilences = 10;  // Times the longest of the others.
+constexpr std::size_t kManyFrames = 40;
+constexpr std::size_t kTurnedMax = 8;
+constexpr std::uint8_t kGapMax = 8;  // Beyond it a DSN is another sender's.
+constexpr std::size_t kFactsMax = 8;
+
+std::string seconds(std::int64_t us) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.3f s", static_cast<double>(us) / 1e6);
+  return text;
+}
+
+// An exchange of frames: what kind, between whom, with which number.
+enum class Hop : std::uint8_t { kReply, kAckJoin, kRepeat, kReport, kUp, kDown, kAck };
+using Exchange = std::tuple<Hop, std::uint64_t, std::uint16_t>;
+
+// Returns how long the second frame may take.
+std::int64_t limit_us(Hop hop) { return hop == Hop::kRepeat ? kRepeatUs : kResponseUs; }
+
+std::uint64_t addresses_of(machine::Address src, machine::Address dest) {
+  return std::uint64_t{dest.pid} << 48 | std::uint64_t{dest.devid} << 32 |
+         std::uint64_t{src.pid} << 16 | src.devid;
+}
+
+void exchanges_of_net(const Observation& seen, std::vector<Exchange>& ends,
+                      std::vector<Exchange>& begins) {
+  Net net;
+  if (!parse_net(seen.frame.payload, net) || !net.sound) return;
+  const bool radio = seen.kind == Observation::Kind::kRadio;
+  SerialJoined joined;
+  if (!radio && !seen.to_mote && parse_serial_joined(net, joined)) {
+    ends.emplace_back(Hop::kReport, joined.address.devid, joined.address.pid);
+    return;
+  }
+  if (radio) ends.emplace_back(Hop::kDown, net.addresses(), net.seq_num);
+  if (radio) begins.emplace_back(Hop::kUp, net.addresses(), net.seq_num);
+  if (!radio && seen.to_mote) begins.emplace_back(Hop::kDown, net.addresses(), net.seq_num);
+  if (!radio && !seen.to_mote) ends.emplace_back(Hop::kUp, net.addresses(), net.seq_num);
+  const std::int32_t acked = net.is_ack() ? machine::acked_seq_num(net.body()) : -1;
+  if (acked >= 0) {
+    ends.emplace_back(Hop::kAck, addresses_of(net.dest, net.src),
+                      static_cast<std::uint16_t>(acked));
+  } else if (net.reliable == 1 && net.src.pid == net.dest.pid) {
+    begins.emplace_back(Hop::kAck, net.addresses(), net.seq_num);
+  }
+}
+
+// Appends the exchanges that a frame ends, and those that it begins.
+void exchanges(const Observation& seen, std::vector<Exchange>& ends,
+               std::vector<Exchange>& begins) {
+  const bool radio = seen.kind == Observation::Kind::kRadio;
+  if (!radio && seen.kind != Observation::Kind::kSerial) return;
+  const machine::Frame& frame = seen.frame;
+  Request request;
+  Reply reply;
+  AckJoin ack;
+  if (frame.type == am::kNet) {
+    exchanges_of_net(seen, ends, begins);
+  } else if (radio && frame.type == am::kJoin && parse_request(frame.payload, request)) {
+    begins.emplace_back(Hop::kReply, frame.src, request.seq_num);
+  } else if (radio && frame.type == am::kJoinReply && parse_reply(frame.payload, reply)) {
+    ends.emplace_back(Hop::kReply, frame.dest, reply.seq_num);
+    begins.emplace_back(Hop::kAckJoin, frame.dest, reply.seq_num);
+    begins.emplace_back(Hop::kRepeat, frame.dest, reply.seq_num);
+  } else if (radio && frame.type == am::kAckJoin && parse_ack_join(frame.payload, ack)) {
+    ends.emplace_back(Hop::kAckJoin, frame.src, ack.seq_num);
+    begins.emplace_back(Hop::kReport, ack.src.devid, ack.src.pid);
+    ends.emplace_back(Hop::kRepeat, frame.src, ack.seq_num);
+  }
+}
+
+// One recorder's frames with stamps, in the order of the file.
+class Recorded {
+ public:
+  Recorded(Run& run, std::vector<std::uint32_t> frames)
+      : run_(run), frames_(std::move(frames)), suspect_(frames_.size(), What::kGood) {
+    for (const std::uint32_t i : frames_) stamps_.push_back(run.seen[i].place.time_us);
+    std::size_t turned = 0;
+    for (std::size_t i = 1; i < stamps_.size(); ++i) turned += stamps_[i] < stamps_[i - 1] ? 1 : 0;
+    in_order_ = turned <= kTurnedMax;
+  }
+
+  void mend() {
+    look_back();
+    look_forth();
+    go_on();
+    keep_order();
+  }
+  bool stepped() const { return stepped_; }
+
+ private:
+  enum class What : std::uint8_t { kGood, kStep, kAlone };
+
+  std::size_t tap(std::size_t i) const { return run_.seen[frames_[i]].tap; }
+
+  void look_back() {
+    std::vector<std::size_t> last(run_.taps.size(), SIZE_MAX);  // Of each tap.
+    for (std::size_t i = 0; i < stamps_.size(); ++i) {
+      const std::size_t own = last[tap(i)];
+      last[tap(i)] = i;
+      if (i == 0 || suspect_[i] != What::kGood) continue;
+      const bool before_own =
+          own != SIZE_MAX && good_between(own, i) && stamps_[i] < stamps_[own] - kJitterUs;
+      const bool across = suspect_[i - 1] != What::kAlone &&
+                          stamps_[i] < stamps_[i - 1] - (in_order_ ? kJitterUs : kAcrossUs);
+      if (before_own || across) backwards(i, before_own ? own : i - 1);
+    }
+  }
+
+  // Returns whether no step lies between two frames.
+  bool good_between(std::size_t from, std::size_t to) const {
+    if (suspect_[from] == What::kAlone) return false;
+    for (std::size_t i = from + 1; i < to; ++i) {
+      if (suspect_[i] == What::kStep) return false;
+    }
+    return true;
+  }
+
+  // Takes frame `i`, whose stamp is before that of frame `high`.
+  void backwards(std::size_t i, std::size_t high) {
+    const std::int64_t off_us = stamps_[high] - stamps_[i];
+    // The stamp of `high` alone: it is after all that follow.
+    const bool high_wrong = high == 0 || stamps_[i] >= stamps_[high - 1] - kJitterUs;
+    // The stamp of `i` alone: it is before all that came.
+    const bool low_wrong = i + 1 == stamps_.size() || stamps_[i + 1] >= stamps_[high] - kJitterUs;
+    const auto near = [&](std::size_t from, std::size_t to) {
+      return stamps_[to] - stamps_[from] < off_us / 2;
+    };
+    if (high_wrong && !low_wrong && high > 0 && near(high - 1, i)) {
+      suspect_[high] = What::kAlone;
+      return;
+    }
+    if (low_wrong && !high_wrong && i + 1 < stamps_.size() && near(high, i + 1)) {
+      suspect_[i] = What::kAlone;
+      return;
+    }
+    suspect_[i] = What::kStep;
+    if (high_wrong && high > 0) suspect_[high] = What::kStep;
+    if (low_wrong && i + 1 < stamps_.size()) suspect_[i + 1] = What::kStep;
+  }
+
+  void look_forth() {
+    if (stamps_.size() < kManyFrames) return;
+    interrupted();
+    std::int64_t longest = 0;
+    std::int64_t second = 0;
+    std::size_t at = 0;
+    for (std::size_t i = 1; i < stamps_.size(); ++i) {
+      if (suspect_[i] != What::kGood || suspect_[i - 1] == What::kAlone) continue;
+      const std::int64_t gap = stamps_[i] - stamps_[i - 1];
+      if (gap > kLateAckUs && late_ack(i) && nothing_lost(i, UINT8_MAX)) suspect_[i] = What::kStep;
+      if (gap > longest) {
+        second = longest;
+        longest = gap;
+        at = i;
+      } else {
+        second = std::max(second, gap);
+      }
+    }
+    if (longest > kSilenceUs && longest > kSilences * second) {
+      suspect_[at] = What::kStep;
+    }
+  }
+
+  // Marks silences without which effects came in time after their causes.
+  void interrupted() {
+    std::map<Exchange, std::size_t> causes;
+    std::set<std::size_t> silences;  // By the frame after each.
+    std::vector<Exchange> ends;
+    std::vector<Exchange> begins;
+    for (std::size_t i = 0; i < stamps_.size(); ++i) {
+      ends.clear();
+      begins.clear();
+      exchanges(run_.seen[frames_[i]], ends, begins);
+      for (const Exchange& end : ends) {
+        const auto cause = causes.find(end);
+        if (cause == causes.end()) continue;
+        const bool repeats = std::get<Hop>(end) == Hop::kRepeat;
+        for (const std::size_t at : late_by_silence(cause->second, i, limit_us(std::get<Hop>(end)),
+                                                    repeats ? kInterruptedMax : 1)) {
+          if (repeats || nothing_lost(at)) silences.insert(at);
+        }
+        if (!repeats) causes.erase(cause);
+      }
+      for (const Exchange& begin : begins) causes[begin] = i;
+    }
+    if (silences.size() > kInterruptedMax) return;
+    for (const std::size_t at : silences) suspect_[at] = What::kStep;
+  }
+
+  // Returns whether no sender's DSNs show that frames before `at` are missing: then the cause may
+  // be one of these.
+  bool nothing_lost(std::size_t at, std::uint8_t gap_max = kGapMax) const {
+    std::map<std::uint16_t, std::uint8_t> before;  // The last DSN of each address.
+    for (std::size_t i = 0; i < stamps_.size() && !(i >= at && before.empty()); ++i) {
+      const Observation& seen = run_.seen[frames_[i]];
+      if (seen.kind != Observation::Kind::kRadio || !seen.has_dsn) continue;
+      const auto known = before.find(seen.frame.src);
+      if (i < at) {
+        before[seen.frame.src] = seen.dsn;
+      } else if (known != before.end()) {
+        const auto ahead = static_cast<std::uint8_t>(seen.dsn - known->second);
+        if (ahead > 1 && ahead <= gap_max) return false;
+        before.erase(known);
+      }
+    }
+    return true;
+  }
+
+  // Returns the frames after the longest silences between two frames, at most `count`, if the time
+  // from one to the other is more than `limit_us` and without these silences it is not.
+  std::vector<std::size_t> late_by_silence(std::size_t from, std::size_t to, std::int64_t limit_us,
+                                           std::size_t count) const {
+    std::int64_t all_us = 0;
+    std::vector<std::pair<std::int64_t, std::size_t>> gaps;
+    for (std::size_t i = from + 1; i <= to; ++i) {
+      if (suspect_[i] != What::kGood || suspect_[i - 1] == What::kAlone) continue;
+      gaps.emplace_back(stamps_[i] - stamps_[i - 1], i);
+      all_us += gaps.back().first;
+    }
+    std::sort(gaps.rbegin(), gaps.rend());
+    std::vector<std::size_t> out;
+    for (const auto& [gap_us, at] : gaps) {
+      if (all_us <= limit_us) return out;
+      if (out.size() == count) break;
+      all_us -= gap_us;
+      out.push_back(at);
+    }
+    return all_us <= limit_us ? out : std::vector<std::size_t>{};
+  }
+
+  // Returns whether frame `i` acknowledges the one directly before it.
+  bool late_ack(std::size_t i) const {
+    const Observation& ack = run_.seen[frames_[i]];
+    const Observation& sent = run_.seen[frames_[i - 1]];
+    return ack.kind == Observation::Kind::kLinkAck && sent.kind == Observation::Kind::kRadio &&
+           sent.ack_request && sent.has_dsn && sent.dsn == ack.dsn && sent.tap == ack.tap;
+  }
+
+  // Lets times go on after each step.
+  void go_on() {
+    std::int64_t shift_us = 0;
+    std::int64_t last_us = 0;
+    std::size_t said = 0;
+    for (std::size_t i = 0; i < stamps_.size(); ++i) {
+      Place& place = run_.seen[frames_[i]].place;
+      std::int64_t time_us = stamps_[i] + shift_us;
+      if (suspect_[i] == What::kStep) {
+        shift_us += last_us + kGoesOnUs - time_us;
+        time_us = last_us + kGoesOnUs;
+        step(place, ClockStep::kUnknown);
+        const std::int64_t by_us = stamps_[i] - stamps_[i - 1];
+        say(said, "the clock of " + name(i) + " steps " + (by_us < 0 ? "back" : "forth") + " by " +
+                      seconds(std::abs(by_us)) + " at frame " + std::to_string(place.frame) +
+                      "; what spans this moment is inconclusive");
+        stepped_ = true;
+      } else if (suspect_[i] == What::kAlone) {
+        const bool ends = i + 1 == stamps_.size();
+        const std::int64_t next_us = ends ? last_us : stamps_[i + 1] + shift_us;
+        const std::int64_t off_us = time_us < last_us ? time_us - last_us : time_us - next_us;
+        time_us = last_us;
+        step(place, std::max<std::int64_t>(0, next_us - last_us));
+        say(said, "the stamp of frame " + std::to_string(place.frame) + " of " + name(i) +
+                      " is wrong by about " + seconds(std::abs(off_us)) +
+                      "; it came between its neighbours");
+      }
+      place.time_us = time_us;
+      last_us = std::max(last_us, time_us);
+      if (i == 0) last_us = time_us;
+    }
+    if (said > kFactsMax) {
+      run_.facts.push_back(name(0) + ": " + std::to_string(said - kFactsMax) +
+                           " more steps or wrong stamps");
+    }
+  }
+
+  // Keeps each tap, or all of them, in the order of the file, where stamps are off by less than a
+  // step.
+  void keep_order() {
+    std::vector<std::int64_t> last(run_.taps.size(), kNoStamp);
+    for (const std::uint32_t i : frames_) {
+      std::int64_t& latest = last[in_order_ ? 0 : run_.seen[i].tap];
+      std::int64_t& time_us = run_.seen[i].place.time_us;
+      time_us = latest = std::max(latest, time_us);
+    }
+  }
+
+  void step(const Place& place, std::int64_t later_us) {
+    run_.steps.push_back({place.file, place.frame, 0, later_us});
+  }
+  void say(std::size_t& said, std::string fact) {
+    if (++said <= kFactsMax) run_.facts.push_back(std::move(fact));
+  }
+  const std::string& name(std::size_t i) const {
+    return run_.files[run_.seen[frames_[i]].place.file];
+  }
+
+  Run& run_;
+  std::vector<std::uint32_t> frames_;  // Indices into Run::seen.
+  std::vector<std::int64_t> stamps_;
+  std::vector<What> suspect_;
+  bool in_order_ = true;  // The file has its taps' frames in the order of time.
+  bool stepped_ = false;
+};
+
+// Returns whether most changes from one tap to another go forth in time, as a recorder of several
+// taps writes them.
+bool alternates(const Run& run, const std::vector<std::uint32_t>& frames) {
+  std::size_t changes = 0;
+  std::size_t back = 0;
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    const Observation& before = run.seen[frames[i - 1]];
+    const Observation& seen = run.seen[frames[i]];
+    if (before.tap == seen.tap) continue;
+    ++changes;
+    back += seen.place.time_us < before.place.time_us - kAcrossUs ? 1 : 0;
+  }
+  return 4 * back <= changes;
+}
+
+void mend_file(Run& run, const std::vector<std::uint32_t>& frames) {
+  if (frames.empty()) return;
+  if (alternates(run, frames)) return Recorded(run, frames).mend();
+  std::vector<std::vector<std::uint32_t>> of_tap(run.taps.size());
+  for (const std::uint32_t i : frames) of_tap[run.seen[i].tap].push_back(i);
+  bool stepped = false;
+  for (std::vector<std::uint32_t>& tap : of_tap) {
+    if (tap.empty()) continue;
+    Recorded recorded(run, std::move(tap));
+    recorded.mend();
+    stepped = stepped || recorded.stepped();
+  }
+  if (!stepped) return;
+  run.unordered_taps.resize(run.taps.size());  // Nothing ties the taps together any more.
+  for (const std::uint32_t i : frames) {
+    const std::uint32_t tap = run.seen[i].tap;
+    if (run.taps[tap].link == machine::Link::kSerial) run.unordered_taps[tap] = true;
+  }
+}
+
+}  // namespace
+
+void mend_steps(Run& run) {
+  std::vector<std::uint32_t> frames;
+  for (std::uint32_t i = 0; i < run.seen.size(); ++i) {
+    const Observation& seen = run.seen[i];
+    if (!frames.empty() && run.seen[frames.front()].place.file != seen.place.file) {
+      mend_file(run, frames);
+      frames.clear();
+    }
+    if (seen.node.empty() && seen.place.time_us != kNoStamp) frames.push_back(i);
+  }
+  mend_file(run, frames);
+}
+
+void place_steps(Run& run) {
+  if (run.steps.empty()) return;
+  const auto by_frame = [](const ClockStep& a, const ClockStep& b) {
+    return std::tie(a.file, a.frame) < std::tie(b.file, b.frame);
+  };
+  std::sort(run.steps.begin(), run.steps.end(), by_frame);
+  for (const Observation& seen : run.seen) {
+    const ClockStep of_frame{seen.place.file, seen.place.frame};
+    const auto step = std::lower_bound(run.steps.begin(), run.steps.end(), of_frame, by_frame);
+    if (step == run.steps.end() || by_frame(of_frame, *step)) continue;
+    step->time_us = seen.place.time_us;
+  }
+  std::sort(run.steps.begin(), run.steps.end(),
+            [](const ClockStep& a, const ClockStep& b) { return a.time_us < b.time_us; });
+}
+
+}  // namespace rubric::check

@@ -1,0 +1,98 @@
+// Recorders: their clocks step, drift, or fail once; or they miss packets of every tap.
+#include "conformance/selftest/lawful_traffic/recorder.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace rubric::lawful {
+namespace {
+
+constexpr std::int64_t kEpochUs = 20'000'000'000;  // A clock that can step back.
+constexpr std::int64_t kStepMinUs = 20'000;
+constexpr std::int64_t kBackMinUs = 1'200'000;
+constexpr std::size_t kStepOrders = 17;
+constexpr int kDroppedPercent = 20;
+constexpr std::int64_t kDriftPpm = 500;
+
+// Returns a size from 20 ms to 44 minutes; each order of magnitude is as likely.
+std::int64_t forth_us(Random& random) {
+  const std::int64_t order = kStepMinUs << random.below(kStepOrders);
+  return order + random.between(0, order);
+}
+// The same, from 1.2 s on: back by less than the time that nodes wait hides in a silence.
+std::int64_t back_us(Random& random) { return std::max(forth_us(random), kBackMinUs); }
+
+// Moves the stamps of `count` packets from a random one on; SIZE_MAX: of all that follow.
+void move_some(Traffic& traffic, Random& random, std::int64_t by_us, std::size_t count) {
+  if (traffic.packets.empty()) return;
+  const std::size_t first = random.below(traffic.packets.size());
+  for (std::size_t i = first; i < traffic.packets.size() && i - first < count; ++i) {
+    traffic.packets[i].time_us += by_us;
+  }
+}
+
+void exact(Traffic&, Random&) {}
+void steps_back(Traffic& traffic, Random& random) {
+  move_some(traffic, random, -back_us(random), SIZE_MAX);
+}
+void steps_forth(Traffic& traffic, Random& random) {
+  move_some(traffic, random, forth_us(random), SIZE_MAX);
+}
+void steps_often(Traffic& traffic, Random& random) {
+  for (int i = 0; i < 4; ++i) {
+    const std::int64_t by_us = random.chance(50) ? forth_us(random) : -back_us(random);
+    move_some(traffic, random, by_us, SIZE_MAX);
+  }
+}
+void wrong_stamp(Traffic& traffic, Random& random) {
+  const std::int64_t by_us = back_us(random);
+  move_some(traffic, random, random.chance(50) ? by_us : -by_us, 1);
+}
+void drifts(Traffic& traffic, Random& random) {
+  const std::int64_t ppm = random.chance(50) ? kDriftPpm : -kDriftPpm;
+  for (LegalPacket& packet : traffic.packets) {
+    packet.time_us += (packet.time_us - kEpochUs) * ppm / 1'000'000;
+  }
+}
+void drops(Traffic& traffic, Random& random) {
+  bool first = true;  // It stays, so that a cold start remains one.
+  std::erase_if(traffic.packets, [&](const LegalPacket&) {
+    return !std::exchange(first, false) && random.chance(kDroppedPercent);
+  });
+  traffic.sniffer_complete = false;
+}
+void drops_and_steps(Traffic& traffic, Random& random) {
+  drops(traffic, random);
+  steps_often(traffic, random);
+}
+
+constexpr Recorder kRecorders[] = {
+    {"exact", "every packet with its time", exact},
+    {"steps_back", "the clock steps back once, by 1.2 s to 44 minutes", steps_back},
+    {"steps_forth", "the clock steps forth once, by 20 ms to 44 minutes", steps_forth},
+    {"steps_often", "the clock steps four times, back or forth", steps_often},
+    {"wrong_stamp", "one stamp is wrong by 1.2 s to 44 minutes", wrong_stamp},
+    {"drifts", "the clock is wrong by 500 ppm", drifts},
+    {"drops", "a fifth of all packets is missing, on the air and on lines", drops},
+    {"drops_and_steps", "a fifth is missing, and the clock steps four times", drops_and_steps},
+};
+
+}  // namespace
+
+std::span<const Recorder> recorders() { return kRecorders; }
+
+void record(Traffic& traffic, std::string_view recorder, std::uint64_t seed) {
+  for (const Recorder& one : kRecorders) {
+    if (one.name != recorder) continue;
+    if (one.record == exact) return;
+    for (LegalPacket& packet : traffic.packets) packet.time_us += kEpochUs;
+    Random random(seed);
+    one.record(traffic, random);
+    return;
+  }
+  throw std::invalid_argument("no recorder is named " + std::string(recorder));
+}
+
+}  // namespace rubric::lawful
