@@ -9,8 +9,10 @@
 
 namespace rubric::report {
 
-/// A failure that is known. Requirement, message and reason are required, and of `rubric test` the
-/// cases; other texts are empty where the file does not limit the entry by them.
+/// A failure that is known, or cases that are known not to be decided. Requirement, message and
+/// reason are required, and of `rubric test` the cases; an entry of undecided cases has no
+/// requirement and no message. Other texts are empty where the file does not limit the entry by
+/// them.
 struct KnownFailure {
   std::string requirement;  ///< "J4-SEQ"; of `rubric test` also "J4", or "none".
   std::string message;      ///< Part of what the failure says.
@@ -20,6 +22,7 @@ struct KnownFailure {
   std::string file;        ///< `rubric check`: a glob that the file's path or name matches.
   std::string cases;       ///< `rubric test`: a name, or a glob: each of them fails so.
   std::string target;      ///< `rubric test`: a glob for the target or the implementation's name.
+  bool skip = false;       ///< `rubric test`: its cases are not decided.
   std::uint32_t line = 0;  ///< In its file, from 1.
 };
 
@@ -29,6 +32,10 @@ struct KnownFailures {
 };
 
 enum class KnownTo : std::uint8_t { kCheck, kTest };
+
+/// Returns whether the words, numbers and signs of `message` stand in `text`, in this order and
+/// with nothing else between them. Blanks between them do not count.
+bool has_tokens(std::string_view text, std::string_view message);
 
 /// Reads a YAML list of maps; an empty text is an empty list. `mistake` says what is wrong with a
 /// requirement, or returns an empty text. Throws std::runtime_error with "name:line: what".

@@ -7,6 +7,7 @@
 
 #include "codec/reflect/requirements.h"
 #include "conformance/trace/check_message.h"
+#include "conformance/trace/concrete.h"
 #include "conformance/trace/print.h"
 #include "conformance/trace/value_text.h"
 
@@ -125,7 +126,7 @@ class FileCheck {
     Said said;
     const Scope scope = scope_of(file_, one);
     std::unordered_map<std::string, Place> labels;
-    BoundNames bound;
+    BoundNames bound{kSeeded};
     bool lines = false;
     std::int64_t latest = 0;
     for (const Item& item : one.items) {

@@ -24,6 +24,9 @@ class TraceError : public std::runtime_error {
   Place place_;
 };
 
+/// The variable that is bound from the start, to a number of 16 bits that the seed chooses.
+inline constexpr const char* kSeeded = "seeded";
+
 /// The values of `$q` and other variables in a case: numbers, reals, bytes, and addresses, channels
 /// and lists of these.
 class Bindings {

@@ -6,7 +6,10 @@
 #include <memory>
 #include <string>
 #include <system_error>
+#include <utility>
+#include <vector>
 
+#include "conformance/test/report/known_list.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/output.h"
 #include "tools/commands/commands.h"
@@ -18,9 +21,12 @@ namespace fs = std::filesystem;
 
 constexpr const char* kNewAdapterFooter =
     "The skeleton answers every command of rct/1 with a node that does almost nothing; TODO marks\n"
-    "where your implementation goes. conformance/PORTING.md says how to go on.\n"
+    "where your implementation goes; known.yaml lists the cases that it cannot decide yet.\n"
+    "conformance/PORTING.md says how to go on.\n"
     "Files that exist are never overwritten.\n"
     "Exit codes: 0 written, 2 usage, 3 something could not be written, and then nothing was.";
+
+constexpr const char* kKnown = "known.yaml";
 
 struct Language {
   const char* name;
@@ -55,24 +61,25 @@ void write_skeleton(const NewAdapterOptions& options) {
   std::error_code error;
   fs::create_directories(options.out, error);
   if (error) refuse(options.out, error.message());
-  std::vector<const SkeletonFile*> files;
+  std::vector<std::pair<fs::path, std::string>> files;
   for (const SkeletonFile& file : skeleton_files()) {
-    if (file.language != language.name) continue;
-    const fs::path path = fs::path(options.out) / file.name;
+    if (file.language == language.name) files.emplace_back(file.name, file.text);
+  }
+  files.emplace_back(kKnown, suite::list_to_begin_with(suite::Cases::own(), machine::Role::kMote));
+  for (auto& [path, text] : files) {
+    path = fs::path(options.out) / path;
     if (fs::exists(fs::symlink_status(path, error))) {
       refuse(path.string(), "it exists, and may hold your work");
     }
-    files.push_back(&file);
   }
-  for (const SkeletonFile* file : files) {
-    const fs::path path = fs::path(options.out) / file->name;
-    if (!cli::write_file(path.string(), file->text)) cli::exit_with(cli::kExitInput);
+  for (const auto& [path, text] : files) {
+    if (!cli::write_file(path.string(), text)) cli::exit_with(cli::kExitInput);
     fmt::print("wrote {}\n", path.lexically_normal().string());
   }
   fmt::print("Next:\n");
   if (options.out != ".") fmt::print("  cd {}\n", options.out);
   if (*language.build) fmt::print("  {}\n", language.build);
-  fmt::print("  rubric test --target '{}'\n", language.target);
+  fmt::print("  rubric test --target '{}' --expect {}\n", language.target, kKnown);
 }
 
 }  // namespace

@@ -5,7 +5,10 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
+#include "conformance/selftest/mutants/legal.h"
+#include "conformance/test/runner/subject_target.h"
 #include "conformance/test/suite/cases.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/output.h"
@@ -27,8 +30,10 @@ struct ShrinkOptions {
 };
 
 constexpr const char* kShrinkFooter =
-    "The result fails by the same rule, and the reference machine passes it if it passes the\n"
-    "original; without any one of its lines it would not. It is a golden trace of its own.\n"
+    "The result fails at the same line and by the same rule; the reference machine and all its\n"
+    "legal variants pass it, as far as they pass the original. Without any one of its lines it "
+    "would\n"
+    "not do so. It is a golden trace of its own.\n"
     "Examples:\n"
     "  rubric shrink j4.rtr --target './my_adapter' --case j4.wrong_seq --out small.rtr\n"
     "  rubric test --target './my_adapter' small.rtr\n"
@@ -58,13 +63,30 @@ std::optional<Failing> find_failing(const suite::Cases& cases, const ShrinkOptio
   return std::nullopt;
 }
 
+// Returns the reference machine and its legal variants, as far as they pass a trace with what is
+// stated.
+std::vector<shrink::Player> references(const trace::File& file, const trace::Statement& stated) {
+  std::vector<runner::SubjectFactory> all = {[] { return std::make_unique<runner::Machine>(); }};
+  for (const mutants::LegalVariant& one : mutants::legal_variants()) {
+    all.push_back(mutants::wrapped(one.step));
+  }
+  std::vector<shrink::Player> out;
+  for (const runner::SubjectFactory& make : all) {
+    const shrink::Player player{[make](const trace::NodeHeader&) {
+                                  return std::make_unique<runner::SubjectTarget>(make());
+                                },
+                                "", stated};
+    if (passes(shrink::play(file, player))) out.push_back(player);
+  }
+  return out;
+}
+
 void shrink_it(const ShrinkOptions& options) {
   const suite::Cases cases = suite::Cases::of({options.trace});
   if (!options.case_name.empty() && !cases.find(options.case_name)) {
     throw cli::UsageError(options.trace + " has no case " + options.case_name);
   }
   AttachedPlayer attached(options.target, options.shared, options.profile);
-  AttachedPlayer machine("machine", options.shared, "");
   const shrink::Player player = attached.player();
   const auto found = find_failing(cases, options, player);
   if (!found) {
@@ -72,10 +94,8 @@ void shrink_it(const ShrinkOptions& options) {
     cli::exit_with(cli::kVerdictInconclusive);
   }
   const trace::Case& one = found->file.cases.at(0);
-  std::optional<shrink::Player> reference = machine.player();
-  reference->stated = player.stated;
-  if (!passes(shrink::play(found->file, *reference))) reference.reset();
-  const auto shows = shrink::fails_alike(found->result, player, reference);
+  const auto shows =
+      shrink::fails_alike(found->result, player, references(found->file, player.stated));
   const shrink::Shrunk shrunk = shrink::shrink(found->file, one, shows);
   const std::string& name = one.name;
   if (shrunk.lines_before == 0) {

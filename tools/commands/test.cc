@@ -16,6 +16,7 @@
 #include "conformance/test/report/html.h"
 #include "conformance/test/report/json.h"
 #include "conformance/test/report/junit.h"
+#include "conformance/test/report/known_list.h"
 #include "conformance/test/report/tap.h"
 #include "conformance/test/report/text/text.h"
 #include "conformance/test/suite/run.h"
@@ -54,14 +55,13 @@ constexpr const char* kTestFooter =
     "  rubric test --target 'python3 mote.py' --role mote --requirement J --quiet\n"
     "  rubric test --target ./a --target ./b --jobs 4 --expect known.yaml --report out\n"
     "  rubric test --list --requirement J4-SEQ\n"
-    "Before its first case each implementation has to refuse an unknown command, and to fail "
-    "cases\n"
-    "that no implementation can pass.\n"
-    "Exit codes: 0 as expected (weak results and skipped cases included), 1 an unexpected "
-    "failure,\n"
-    "or an expectation that is not true, 2 an implementation or the kit broke (between cases, "
-    "too),\n"
-    "or was not honest, 3 nothing was decided, 64 usage, 66 traces cannot be read.";
+    "Before its first case each implementation has to refuse an unknown command, and to fail\n"
+    "cases that no implementation can pass.\n"
+    "Exit codes: 0 as expected, 1 an unexpected failure, or an expectation that is not true, 2 an\n"
+    "implementation or the kit broke (between cases, too), or was not honest, 3 incomplete: a "
+    "case\n"
+    "of a role that it plays was not decided, and --expect does not list it with a reason;\n"
+    "64 usage, 66 traces cannot be read.";
 
 struct TestOptions {
   std::vector<std::string> traces;
@@ -77,6 +77,8 @@ struct TestOptions {
   double timeout_s = 5;
   std::vector<std::string> stated;
   std::string expect;
+  std::string write_expect;
+  std::size_t rules_required = 0;
   std::string format = "text";
   std::string out = "-";
   std::string report;
@@ -217,6 +219,7 @@ suite::SuiteRun work(const TestOptions& options, const suite::Cases& cases, suit
   all.shard = options.shard;
   all.app = options.app;
   all.seed = options.seed.value_or(0);
+  all.rules_required = options.rules_required;
   if (!options.profile.empty()) all.profile = options.profile;
   targets::Options attached;
   attached.step_timeout = Milliseconds(static_cast<std::int64_t>(options.timeout_s * 1000));
@@ -238,7 +241,7 @@ suite::SuiteRun work(const TestOptions& options, const suite::Cases& cases, suit
     };
     all.implementations.push_back(suite::run(target, make, plan, watcher));
     const suite::ImplementationRun& run = all.implementations.back();
-    text.add(suite::story_text(all, run, how) + suite::totals_text(run, how));
+    text.add(suite::story_text(all, run, how) + suite::totals_text(all, run, how));
   }
   all.stale = suite::untrue(plan.expected, all, cases);
   if (earlier) text.add(suite::changes_text(all, *earlier, options.compare, how));
@@ -301,9 +304,12 @@ int run_test(const TestOptions& options) {
   how.verbose = options.verbose;
   how.times = options.verbose || (fd >= 0 && isatty(fd) == 1);
   Text text(options, options.format == "text");
+  const report::KnownFailures expected = plan.expected;
   const suite::SuiteRun all = work(options, cases, std::move(plan), earlier, how, text);
   const bool told = text.finish(options);
-  const bool written = write_formats(options, all, earlier);
+  const bool written = write_formats(options, all, earlier) &&
+                       (options.write_expect.empty() ||
+                        cli::write_file(options.write_expect, suite::known_list(all, expected)));
   return written && told ? suite::exit_code(all) : cli::kVerdictBroken;
 }
 
@@ -360,6 +366,14 @@ void add_options(cli::Command& command, TestOptions& options) {
       .add_option("--expect", options.expect,
                   "Read known failures with their reasons from this YAML file")
       .check(cli::given);
+  command
+      .add_option("--write-expect", options.write_expect,
+                  "Write such a file: what failed or was not decided, with reasons to fill in")
+      .check(cli::given);
+  command
+      .add_option("--require-rules", options.rules_required,
+                  "Require that so many rules are decided, else the run is incomplete")
+      .check(cli::whole_number);
   command.add_option("--format", options.format, "Print text, json (rubric.test/1), junit or tap")
       .one_of({"text", "json", "junit", "tap"})
       .show_default();

@@ -101,7 +101,7 @@ def broken_rules(report, verdicts=("fail", "weak")):
     rules = {}
     for case in cases_of(report):
         for failure in case["failures"] if case["verdict"] in verdicts else []:
-            for rule in failure["requirements"]:
+            for rule in failure["requirements"] + failure["suspected"]:
                 rules.setdefault(rule, {})[case["name"]] = True
     return rules
 

@@ -124,7 +124,7 @@ class Formats(Folder):
                          r"0 cases with another verdict, 1 new, [1-9]\d* gone")
         self.assertRegex(out, r"\n  rubric_python_mote[ .\d]*: j4\.few is new: pass\n")
         self.assertRegex(out, r"\n  rubric_python_mote[ .\d]*: j8\.\w+ is gone, was pass\n")
-        for text, says in [("{", "no JSON"), ("{}", "schema")]:
+        for text, says in [("{", "not JSON"), ("{}", "schema")]:
             code, _, err = test("--target", HONEST, "--compare", self.write("x.json", text))
             self.assertEqual(code, 66)
             self.assertIn(says, err)

@@ -22,12 +22,12 @@ constexpr std::int64_t kGoesOnUs = 1'000;   // How soon the first frame after a 
 constexpr std::int64_t kLateAckUs = 50'000;
 constexpr std::size_t kInterruptedMax = 4;  // More often it is the nodes that are slow.
 constexpr std::int64_t kResponseUs = AlignOptions{}.response_us;
-constexpr std::int64_t kRepeatUs = 810'000;  // After its reply an ack_join comes no later.
+constexpr std::int64_t kAckRepeatUs = 810'000;  // After its reply an ack_join comes no later.
 constexpr std::int64_t kSilenceUs = 20'000'000;
 constexpr std::int64_t kSilences = 10;  // Times the longest of the others.
 constexpr std::size_t kManyFrames = 40;
 constexpr std::size_t kTurnedMax = 8;
-constexpr std::uint8_t kGapMax = 8;  // Beyond it a DSN is another sender's.
+constexpr std::uint8_t kDsnGapMax = 8;  // Beyond it a DSN is another sender's.
 constexpr std::size_t kFactsMax = 8;
 
 std::string seconds(std::int64_t us) {
@@ -41,7 +41,7 @@ enum class Hop : std::uint8_t { kReply, kAckJoin, kRepeat, kReport, kUp, kDown, 
 using Exchange = std::tuple<Hop, std::uint64_t, std::uint16_t>;
 
 // Returns how long the second frame may take.
-std::int64_t limit_us(Hop hop) { return hop == Hop::kRepeat ? kRepeatUs : kResponseUs; }
+std::int64_t limit_us(Hop hop) { return hop == Hop::kRepeat ? kAckRepeatUs : kResponseUs; }
 
 std::uint64_t addresses_of(machine::Address src, machine::Address dest) {
   return std::uint64_t{dest.pid} << 48 | std::uint64_t{dest.devid} << 32 |
@@ -216,7 +216,7 @@ class Recorded {
 
   // Returns whether no sender's DSNs show that frames before `at` are missing: then the cause may
   // be one of these.
-  bool nothing_lost(std::size_t at, std::uint8_t gap_max = kGapMax) const {
+  bool nothing_lost(std::size_t at, std::uint8_t gap_max = kDsnGapMax) const {
     std::map<std::uint16_t, std::uint8_t> before;  // The last DSN of each address.
     for (std::size_t i = 0; i < stamps_.size() && !(i >= at && before.empty()); ++i) {
       const Observation& seen = run_.seen[frames_[i]];

@@ -216,8 +216,9 @@ void Judge::peis(const Observation& seen, std::uint16_t base) {
       device.partner == kNobody ? device.island : sinks_.island(device.partner);
   const machine::Address own{island, machine::kNullDevid};
   if (!seen.received) {
-    if (net.src == own) own_message(base, seen, net, machine::Link::kPeis, own);
-    return peis_.sent(base, seen, net, own);
+    const bool at_home = peis_.sent(base, seen, net, own);
+    if (at_home && net.src == own) own_message(base, seen, net, machine::Link::kPeis, own);
+    return;
   }
   peis_.given(base, seen, net, own);
   hears(base, {Role::kBaseStation, own, true, context_.sink_am}, machine::Link::kPeis, seen,

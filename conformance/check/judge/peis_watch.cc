@@ -61,11 +61,12 @@ void PeisWatch::surely_up(std::uint16_t base, const Net& net) {
   }
 }
 
-void PeisWatch::sent(std::uint16_t base, const Observation& seen, const Net& net,
+bool PeisWatch::sent(std::uint16_t base, const Observation& seen, const Net& net,
                      machine::Address own) {
   Base& watch = bases_[base];
   const bool all = net.dest.pid == machine::kBroadcastPid;
-  if (seen.frame.dest != net.dest.pid || (net.dest.pid == own.pid && !all)) {
+  const bool stray = seen.frame.dest != net.dest.pid || (net.dest.pid == own.pid && !all);
+  if (stray) {
     context_.report(
         "N8-PEIS"_rule, Severity::kFail, seen.place, base,
         {"Through PEIS " + name_of(net) + " goes to island " + number(seen.frame.dest) + ".",
@@ -75,15 +76,16 @@ void PeisWatch::sent(std::uint16_t base, const Observation& seen, const Net& net
   } else {
     context_.findings.kept("N8-PEIS"_rule);
   }
-  if (net.src == own) return;
+  if (net.src == own) return !stray;
   Message* const came = match(watch.up, net);
-  if (came == nullptr) {
-    refuse(base, seen, net, watch.up, true);
-  } else {
+  if (came != nullptr) {
     came->passed = true;
     came->owed = false;
+  } else if (!stray) {
+    refuse(base, seen, net, watch.up, true);
   }
   overdue(base, watch.up, true, seen.place.time_us, false);
+  return !stray;
 }
 
 void PeisWatch::given(std::uint16_t base, const Observation& seen, const Net& net,

@@ -70,7 +70,7 @@ Outcome compare(const check::Run& run, const check::Options& options, const chec
       for (std::size_t i = 0; i < report.findings.size(); ++i) {
         const Finding& finding = report.findings[i];
         if (!is_about(one, run, finding)) continue;
-        const bool same = finding.text.find(one.message) != std::string::npos;
+        const bool same = has_tokens(finding.text, one.message);
         (same ? result.findings : others).push_back(i);
         if (same && out.expected_by[i] == kUnexpected) out.expected_by[i] = e;
       }

@@ -94,6 +94,16 @@ TEST(PeisWatch, ToTheIslandThatIsMeant) {
   EXPECT_EQ(fails(up(1000, kToPc) + at(1025, "bA > peis am=11->13 " + kToPc)), "N8-PEIS");
 }
 
+// What is odd about a message that has no business on PEIS has that one cause.
+TEST(PeisWatch, WhatNothingMayPutThereIsOneFinding) {
+  const std::string own = "am(28 x000b0002000bfffd010077040305beef)";
+  const std::string once = at(1025, "bA > peis am=11->11 " + own);
+  EXPECT_EQ(fails(once), "N8-PEIS");
+  EXPECT_EQ(fails(once + at(1040, "bA > peis am=11->11 " + own)), "N8-PEIS");
+  const std::string there = "am(28 x000c0002000bfffd010077040305beef)";
+  EXPECT_EQ(fails(peis(1025, there) + peis(1040, there)), "T3-RESEND");
+}
+
 // An ack from another island ends the message; a wrong one does not.
 TEST(PeisWatch, AcksOfBaseStationsAreKnown) {
   const std::string sent = at(1000, "bA < app send(dest=12:null app_id=5 reliable=1 data=xbeef)") +

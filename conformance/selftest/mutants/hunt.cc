@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <set>
 #include <thread>
 
 #include "conformance/test/runner/case_files.h"
@@ -28,6 +29,15 @@ bool speaks_of(const trace::Case& one, const Mutant& mutant) {
                      [&](const trace::Line* line) { return names(line->requirements, mutant); });
 }
 
+Blame blame(const std::set<std::string>& rules, const Mutant& mutant) {
+  Blame out;
+  for (const std::string& rule : rules) {
+    ++out.rules;
+    out.right += names({rule}, mutant);
+  }
+  return out;
+}
+
 // Returns false to go on with the next case.
 bool judge(const CaseRef& ref, const Mutant& mutant, Found& found) {
   const CaseResult result = run(ref, mutant.factory());
@@ -35,10 +45,18 @@ bool judge(const CaseRef& ref, const Mutant& mutant, Found& found) {
   const bool named =
       mutant.requirements.empty() ||
       std::any_of(result.failures.begin(), result.failures.end(),
-                  [&](const auto& failure) { return names(failure.requirements, mutant); });
+                  [&](const auto& failure) { return names(failure.rules(), mutant); });
   if (!found.killed || named) {
     found.by = ref.one->name;
     found.lines = runner::explain(result, ref.file->file_name);
+    std::set<std::string> all;
+    std::set<std::string> blamed;
+    for (const runner::Failure& failure : result.failures) {
+      for (const std::string& rule : failure.rules()) all.insert(rule);
+      if (!failure.implied) blamed.insert(failure.requirements.begin(), failure.requirements.end());
+    }
+    found.named_there = blame(all, mutant);
+    found.blamed_there = blame(blamed, mutant);
   }
   found.killed = true;
   found.named = named;

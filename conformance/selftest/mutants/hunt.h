@@ -36,11 +36,19 @@ class Golden {
   std::vector<CaseRef> broken_;
 };
 
+/// Rules of failing lines, and how many of them are the mutant's.
+struct Blame {
+  std::size_t rules = 0;
+  std::size_t right = 0;
+};
+
 struct Found {
   bool killed = false;
   bool named = false;  ///< A failing line names one of the mutant's rules, or it names none.
   std::string by;      ///< The trace that killed it; the one that named its rule, if any.
   std::string lines;   ///< The failures there.
+  Blame named_there;   ///< The rules that these lines name, each once.
+  Blame blamed_there;  ///< Those that the failures blame.
 };
 
 /// Runs the case on it. Everything but a pass kills: the machine itself passes.

@@ -77,6 +77,31 @@ TEST(Mutants, NamedOnesAreFoundByTheirRule) {
   }
 }
 
+// The rule that is blamed is far more often the broken one than any rule that a failing line names.
+TEST(Mutants, TheRightRuleIsBlamed) {
+  Blame named_there;
+  Blame blamed;
+  std::size_t hit = 0;
+  std::size_t killed = 0;
+  for (std::size_t i = 0; i < named().mutants.size(); ++i) {
+    const Found& found = named().found[i];
+    if (!found.killed) continue;
+    ++killed;
+    hit += found.blamed_there.right > 0;
+    if (found.blamed_there.right == 0) std::printf("%s\n", named().mutants[i].name.c_str());
+    named_there.rules += found.named_there.rules;
+    named_there.right += found.named_there.right;
+    blamed.rules += found.blamed_there.rules;
+    blamed.right += found.blamed_there.right;
+  }
+  std::printf(
+      "of %zu rules that failing lines name %zu are broken; of %zu blamed %zu; %zu of %zu "
+      "mutants are blamed for a rule of theirs\n",
+      named_there.rules, named_there.right, blamed.rules, blamed.right, hit, killed);
+  EXPECT_GT(blamed.right * named_there.rules, named_there.right * blamed.rules);
+  EXPECT_GT(blamed.right * 100, blamed.rules * 85);
+}
+
 TEST(Mutants, NamesAreUnique) {
   std::set<std::string> names;
   for (const Mutant& mutant : named().mutants) {

@@ -294,7 +294,7 @@ class Chart {
     row.detail = asked ? "no " + short_text(asked->message) : "it broke";
     point_at(row);
     const auto next = std::find_if(rows_.begin(), rows_.end(), [&](const SequenceRow& other) {
-      return std::stoull(other.number) > failure.time;
+      return std::stoull(other.number) > failure.to;
     });
     rows_.insert(next, std::move(row));
   }

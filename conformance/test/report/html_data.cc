@@ -202,7 +202,7 @@ class Data {
   void add_to(Json& out, const runner::Failure& one, const std::vector<const Line*>& lines) {
     const auto row = std::find_if(lines.begin(), lines.end(),
                                   [&](const Line* line) { return is_broken_by(one, *line); });
-    for (const std::string& name : one.requirements) {
+    for (const std::string& name : one.rules()) {
       const ReqId id = trace::requirement_id(name);
       if (id != ReqId::kNone) rules_.insert(id);
     }

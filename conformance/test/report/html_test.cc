@@ -347,6 +347,7 @@ TEST(HtmlData, KnowsTheEarlierRunAndWhatBrokeARule) {
   failure.place = {14, 1};
   failure.requirements = {"J4-ACK"};
   failure.expected = "0..300 m5 !> rA ack_join(*)";
+  failure.node = lines[at]->node;
   failure.time = static_cast<runner::Ticks>(lines[at]->time.from);
   failure.text = "it emitted rA " + trace::print(lines[at]->message);
   failure.forbidden = true;

@@ -40,14 +40,17 @@ Json counts(const VerdictCounts& counted) {
 }
 
 Json failure(const runner::Failure& one) {
-  return {{"requirements", one.requirements}, {"weak", one.weak},         {"line", one.place.line},
-          {"time_ticks", one.time},           {"expected", one.expected}, {"text", one.text}};
+  return {
+      {"requirements", one.requirements}, {"suspected", one.suspected}, {"weak", one.weak},
+      {"implied", one.implied},           {"crash", one.crash},         {"line", one.place.line},
+      {"time_ticks", one.time},           {"expected", one.expected},   {"text", one.text}};
 }
 
 Json requirement(const RequirementSummary& one) {
   return {{"id", trace::requirement_text(one.requirement)},
           {"cases", counts(one.cases)},
-          {"broken", one.broken}};
+          {"broken", one.broken},
+          {"suspected", one.suspected}};
 }
 
 Json implementation(const ImplementationRun& run) {
@@ -97,6 +100,7 @@ Json case_json(const CaseRun& one) {
           {"seed", one.seed},
           {"verdict", runner::verdict_text(one.result.verdict)},
           {"unexpected", one.unexpected()},
+          {"owed", one.owed},
           {"expectation", expectation_text(one.expectation)},
           {"expected_reason", one.expected_reason},
           {"reason", one.result.reason},
@@ -122,6 +126,7 @@ Json implementation_json(const ImplementationRun& run) {
           {"stated", trace::statement_text(run.identity.stated)},
           {"dishonest", run.dishonest},
           {"outside", std::move(outside)},
+          {"own_line", run.identity.own_line},
           {"wall_ms", run.wall_ms},
           {"counts", counts(count(run))}};
 }
@@ -144,6 +149,7 @@ std::string json_report(const SuiteRun& run) {
                     {"seed", run.seed},
                     {"shard", run.shard},
                     {"traces", run.traces},
+                    {"rules_required", run.rules_required},
                     {"exit_code", exit_code(run)},
                     {"implementations", std::move(implementations)},
                     {"stale", stale_json(run)}};

@@ -1,5 +1,7 @@
 #include "conformance/test/report/junit.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "conformance/report/junit.h"
@@ -34,15 +36,16 @@ JunitCase testcase(const std::string& class_name, const CaseRun& one) {
     const bool broke = one.result.verdict == CaseVerdict::kError;
     const bool passes = one.expectation == Expectation::kUnexpectedPass;
     out.outcome = broke ? Outcome::kError : Outcome::kFailure;
-    out.type = broke ? "error" : passes ? "unexpected_pass" : "fail";
+    out.type = broke ? "error" : one.owed ? "incomplete" : passes ? "unexpected_pass" : "fail";
     out.message = headline(one);
     out.body = in_full(one);
   } else if (one.expectation == Expectation::kAsExpected) {
     out.outcome = Outcome::kSkipped;
     out.message = "known: " + one.expected_reason;
-  } else if (is_undecided(one)) {
+  } else if (one.undecided()) {
     out.outcome = Outcome::kSkipped;
-    out.message = std::string(runner::verdict_text(one.result.verdict)) + ": " + headline(one);
+    out.message = fmt::format("{}: {}", runner::verdict_text(one.result.verdict),
+                              one.expected_reason.empty() ? headline(one) : one.expected_reason);
   } else if (one.result.verdict == CaseVerdict::kWeak) {
     out.output = in_full(one);
   }

@@ -86,7 +86,7 @@ std::string short_text(const trace::Message& message) {
 }
 
 bool is_broken_by(const runner::Failure& failure, const Line& line) {
-  return failure.forbidden && line.op == Op::kEmits &&
+  return failure.forbidden && line.op == Op::kEmits && line.node == failure.node &&
          line.time.from == static_cast<std::int64_t>(failure.time) &&
          failure.text.ends_with(line.link + " " + trace::print(line.message));
 }

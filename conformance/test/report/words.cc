@@ -66,11 +66,6 @@ std::string case_name(const CaseRun& one) {
   return one.repeat == 0 ? one.name : fmt::format("{}#{}", one.name, one.repeat + 1);
 }
 
-bool is_undecided(const CaseRun& one) {
-  return one.result.verdict == runner::CaseVerdict::kSkip ||
-         one.result.verdict == runner::CaseVerdict::kInconclusive;
-}
-
 std::string what_broke(const CaseRun& one) {
   const std::string& reason = one.result.reason;
   const std::size_t behind = reason.starts_with('`') ? reason.find("`: ") : reason.npos;
@@ -81,10 +76,13 @@ std::string headline(const CaseRun& one) {
   if (one.expectation == Expectation::kUnexpectedPass) {
     return "it passes, but was expected to fail: " + one.expected_reason;
   }
-  if (one.result.verdict == runner::CaseVerdict::kError) {
+  const bool crashed = !one.result.failures.empty() && one.result.failures.front().crash;
+  if (one.result.verdict == runner::CaseVerdict::kError || crashed) {
     const std::string what = what_broke(one);
-    const std::string asked = one.result.reason.substr(0, one.result.reason.size() - what.size());
-    return asked.empty() ? what : fmt::format("{}, at {}", what, asked.substr(0, asked.size() - 2));
+    std::string asked = one.result.reason.substr(0, one.result.reason.size() - what.size());
+    if (!asked.empty()) asked = ", at " + asked.substr(0, asked.size() - 2);
+    const std::string rules = crashed ? rules_of(one.result.failures.front()) : std::string();
+    return (rules.empty() ? "" : rules + ": ") + what + asked;
   }
   if (one.result.failures.empty()) return one.result.reason;
   const runner::Failure& first = one.result.failures.front();
@@ -105,8 +103,11 @@ std::string in_full(const CaseRun& one) {
       out += place + failure.text + '\n';
       continue;
     }
-    out += fmt::format("{}{}{}\n", place, rules.empty() ? "a line that names no rule" : rules,
-                       failure.weak ? " (SHOULD)" : "");
+    const std::string suspected = fmt::format("{}", fmt::join(failure.suspected, " "));
+    out += fmt::format("{}{}{}{}{}\n", place, rules.empty() ? "a line that names no rule" : rules,
+                       suspected.empty() ? "" : ", suspected " + suspected,
+                       failure.weak ? " (SHOULD)" : "",
+                       failure.implied ? " (implied by what is above)" : "");
     for (const std::string& name : failure.requirements) {
       const ReqId id = trace::requirement_id(name);
       if (id == ReqId::kNone) continue;

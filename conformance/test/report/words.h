@@ -22,8 +22,6 @@ std::string_view expectation_text(Expectation expectation);
 std::string implementation_name(const SuiteRun& run, std::size_t index);
 /// Returns "j4.accept", and "j4.accept#2" for a repeated case.
 std::string case_name(const CaseRun& one);
-/// Returns whether it was skipped or is inconclusive.
-bool is_undecided(const CaseRun& one);
 /// Returns whether it is inconclusive since the target shows a part of its node only.
 bool is_beyond_reach(const CaseRun& one);
 /// Returns why an error is one, without the command that was asked then.

@@ -176,31 +176,58 @@ const Output* NodeLog::forbidden(const trace::Line& line, const Window& window,
   return nullptr;
 }
 
-std::string NodeLog::nearest_miss(const trace::Line& line, const Window& window,
+NearestMiss NodeLog::nearest_miss(const trace::Line& line, const Window& window,
                                   const trace::Bindings& bindings) const {
   const std::vector<Output>& outputs = target_->outputs();
   std::size_t best = std::numeric_limits<std::size_t>::max();
-  std::string text = "it emitted nothing there";
+  NearestMiss miss{"it emitted nothing there", {"missing"}};
   for (std::size_t i = 0; i < seen_.size(); ++i) {
     const Seen& seen = seen_[i];
     if (seen.taken || !is_for(line, seen.link)) continue;
     trace::Bindings copy = bindings;
     const trace::Match match = trace::match(line, seen.message, copy);
     const bool in_time = window.holds(outputs[i].time);
+    const bool other = seen.message.message.name != line.message.name;
+    if (in_time && other && best == std::numeric_limits<std::size_t>::max()) {
+      miss.text = fmt::format("it emitted no {} there", line.message.name);
+    }
+    if (match ? false : other || !in_time) continue;
     const std::size_t distance = match.distance() * 2 + (in_time ? 0 : 1);
     if (distance >= best) continue;
     best = distance;
     if (match && in_time) {
-      text = fmt::format("at {} it came before one that was to come first", outputs[i].time);
+      miss = {fmt::format("at {} it came before one that was to come first", outputs[i].time),
+              {"differs", "order"}};
     } else if (match) {
-      text =
-          fmt::format("it came at {}, not from {} to {}", outputs[i].time, window.from, window.to);
+      miss = {
+          fmt::format("it came at {}, not from {} to {}", outputs[i].time, window.from, window.to),
+          {"missing"}};
     } else {
-      text =
-          fmt::format("nearest, at {}: {}: {}", outputs[i].time, text_of(outputs[i]), match.text());
+      miss = {
+          fmt::format("nearest, at {}: {}: {}", outputs[i].time, text_of(outputs[i]), match.text()),
+          {"differs"}};
+      for (const trace::Difference& one : match.differences) {
+        miss.evidence.insert(one.path.substr(0, one.path.find_first_of(". ")));
+      }
     }
   }
-  return text;
+  return miss;
+}
+
+Evidence NodeLog::evidence_of(const Output& output) const {
+  const std::size_t index = static_cast<std::size_t>(&output - target_->outputs().data());
+  const Seen& seen = seen_[index];
+  const trace::Message& message = seen.message.message;
+  const auto text_at = [&](std::string_view path) {
+    const trace::Value* value = message.find(path);
+    return value ? value->text : std::string();
+  };
+  const bool again = std::any_of(
+      seen_.begin(), seen_.begin() + static_cast<std::ptrdiff_t>(index),
+      [&](const Seen& one) { return one.link == seen.link && one.message.message == message; });
+  const bool ack = text_at("payload.trans_id") == "rubicon_ack";
+  return {std::string(output.is_frame ? trace::link_text(kind_of(output)) : "app"),
+          ack ? "ack" : message.name, text_at("result"), again ? "again" : "new"};
 }
 
 std::string NodeLog::text_of(const Output& output) const {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "conformance/test/runner/blame.h"
 #include "conformance/test/runner/expectation.h"
 #include "conformance/test/runner/target.h"
 #include "conformance/trace/concrete.h"
@@ -15,6 +16,13 @@ namespace rubric::runner {
 struct LoggedLine {
   Ticks time = 0;
   trace::Line line;
+};
+
+/// How the closest output missed a line: one of the same message in its window, or the very output
+/// at another time.
+struct NearestMiss {
+  std::string text;
+  Evidence evidence;
 };
 
 class NodeLog {
@@ -40,10 +48,11 @@ class NodeLog {
   /// Returns the first output that breaks a `!>` line, or null.
   const Output* forbidden(const trace::Line& line, const Window& window,
                           const trace::Bindings& bindings) const;
-  /// Explains why no output was taken: the closest one and how it differs.
-  std::string nearest_miss(const trace::Line& line, const Window& window,
+  /// Explains why no output was taken.
+  NearestMiss nearest_miss(const trace::Line& line, const Window& window,
                            const trace::Bindings& bindings) const;
   std::string text_of(const Output& output) const;
+  Evidence evidence_of(const Output& output) const;
 
   int link_acks_to_come = 0;
 

@@ -10,6 +10,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "conformance/test/runner/blame.h"
 #include "conformance/test/runner/dependence.h"
 #include "conformance/test/runner/expectation.h"
 #include "conformance/test/runner/node_log.h"
@@ -25,18 +26,28 @@ using trace::Line;
 using trace::Op;
 
 constexpr Ticks kLateTicks = 1500;  // How long a missing output is awaited beyond its time.
+constexpr Ticks kGrainTicks = 10;   // Of an adapter's own clock, or of its rate in a second.
+
+// Returns a number that no trace uses by chance, another one for the next seed.
+std::int64_t seeded_number(std::uint64_t seed) {
+  constexpr std::uint64_t kMixer = 40503;  // Odd, so that 16 bits of seed give 16 bits.
+  return static_cast<std::int64_t>(1000 + ((seed + 1) * kMixer & 0xFFFF) % 60'000);
+}
 
 // One case while it runs.
 class Run {
  public:
   Run(const trace::File& file, const trace::Case& one, const TargetFactory& make)
-      : case_(one), scope_(trace::scope_of(file, one)), make_(make), place_(one.place) {}
+      : case_(one), scope_(trace::scope_of(file, one)), make_(make), place_(one.place) {
+    bindings_.set(trace::kSeeded, trace::Value::of(seeded_number(scope_.seed)));
+  }
 
   CaseResult finish() {
     CaseResult result;
     result.name = case_.name;
     try {
       start();
+      begun_ = true;
       for (const Line* line : case_.lines()) {
         place_ = line->place;
         if (!work(*line, result)) break;
@@ -55,11 +66,19 @@ class Run {
         result.verdict = CaseVerdict::kSkip;
       }
       result.reason = error.what();
+    } catch (const TargetBroken& error) {
+      if (begun_) {
+        judge_what_came(result);
+        died(result, error.what());
+      } else {
+        broken(result, place_, error.what());
+      }
     } catch (const trace::TraceError& error) {
       broken(result, error.place(), error.what());
     } catch (const std::exception& error) {
       broken(result, place_, error.what());
     }
+    mark_implied(result.failures);
     result.unseen = std::move(unseen_);
     result.length = now_;
     write_log(result);
@@ -235,6 +254,7 @@ class Run {
 
   void give(NodeLog& node, const Timed& timed) {
     pass_all(timed.window.from + timed.slack);
+    stimulus_ = timed.line;
     const Window given = node.give(*timed.line, now_, scope_, bindings_);
     now_ = std::max(now_, given.to);
     stimuli_.push_back({&node, timed.window.from, given});
@@ -254,7 +274,8 @@ class Run {
     }
     const Window wide = widened(node, timed);
     pass_all(wide.to + kLateTicks);
-    fail(result, line, timed.window, wide.to, node.nearest_miss(line, wide, bindings_));
+    NearestMiss miss = node.nearest_miss(line, wide, bindings_);
+    fail(result, line, timed.window, wide.to, std::move(miss.text), miss.evidence);
     return false;
   }
 
@@ -289,7 +310,8 @@ class Run {
     Ticks early = tolerance.early;
     if (const Window* stimulus = stimulus_at(node, timed, tolerance)) {
       from = stimulus->from;
-      early = std::min(early, (window.to - window.from) / 2);  // Both times are late alike.
+      // What is seen by the end happened by then: nothing but the clock's grain is uncertain.
+      early = std::min({early, kGrainTicks, (window.to - window.from) / 2});
     }
     if (window.to < from + early) return std::nullopt;
     return Window{from, window.to - early};
@@ -344,23 +366,63 @@ class Run {
       const Output* output = window ? node.forbidden(*one.line, *window, bindings_) : nullptr;
       if (!output) continue;
       fail(result, *one.line, one.window, output->time,
-           fmt::format("at {} it emitted {}", output->time, node.text_of(*output)));
+           fmt::format("at {} it emitted {}", output->time, node.text_of(*output)),
+           node.evidence_of(*output));
     }
     std::stable_sort(result.failures.begin(), result.failures.end(),
                      [](const Failure& a, const Failure& b) { return a.time < b.time; });
   }
 
   void broken(CaseResult& result, trace::Place place, const char* why) {
-    result.failures.push_back({place, {}, false, now_, "", why, now_, now_, false});
+    Failure failure;
+    failure.place = place;
+    failure.time = failure.from = failure.to = now_;
+    failure.text = why;
+    result.failures.push_back(std::move(failure));
     result.verdict = CaseVerdict::kError;
     result.reason = why;
   }
 
+  // Blames what was given last for the end of the target.
+  void died(CaseResult& result, const char* why) {
+    broken(result, stimulus_ ? stimulus_->place : place_, why);
+    result.verdict = CaseVerdict::kFail;
+    Failure& failure = result.failures.back();
+    failure.crash = true;
+    failure.node = stimulus_ ? stimulus_->node : nodes_.front().name();
+    failure.requirements = rules_of_stimulus(failure.node);
+    if (failure.requirements.empty()) return;
+    failure.suspected.assign(failure.requirements.begin() + 1, failure.requirements.end());
+    failure.requirements.resize(1);
+  }
+
+  // Returns the rules of what was given last: those of the first line after it that judges the
+  // node, else of the last one before it.
+  std::vector<std::string> rules_of_stimulus(std::string_view node) const {
+    std::vector<std::string> before;
+    bool after = !stimulus_;
+    for (const Line* line : case_.lines()) {
+      after = after || line == stimulus_;
+      if (line->node != node || line->requirements.empty()) continue;
+      if (after) return line->requirements;
+      before = line->requirements;
+    }
+    return before;
+  }
+
   void fail(CaseResult& result, const Line& line, const Window& window, Ticks time,
-            std::string text) {
-    Failure failure{line.place,  line.requirements,  is_weak(line),
-                    time,        trace::print(line), std::move(text),
-                    window.from, window.to,          line.op == Op::kMustNot};
+            std::string text, const Evidence& evidence) {
+    Failure failure{.place = line.place,
+                    .requirements = line.requirements,
+                    .weak = is_weak(line),
+                    .time = time,
+                    .expected = trace::print(line),
+                    .text = std::move(text),
+                    .from = window.from,
+                    .to = window.to,
+                    .forbidden = line.op == Op::kMustNot,
+                    .node = line.node};
+    blame_one(failure, evidence);
     result.verdict =
         std::max(result.verdict, failure.weak ? CaseVerdict::kWeak : CaseVerdict::kFail);
     result.failures.push_back(std::move(failure));
@@ -380,7 +442,9 @@ class Run {
   const trace::Case& case_;
   const trace::Scope scope_;
   const TargetFactory& make_;
-  trace::Place place_;  // Place of the current line.
+  trace::Place place_;              // Place of the current line.
+  const Line* stimulus_ = nullptr;  // Given last.
+  bool begun_ = false;
   std::set<std::string> unseen_;
   bool unjudged_ = false;  // A line's window was too short.
   std::vector<NodeLog> nodes_;
@@ -411,12 +475,21 @@ CaseResult run_case(const trace::File& file, const trace::Case& one, const Targe
   return Run(file, one, make).finish();
 }
 
+std::vector<std::string> Failure::rules() const {
+  std::vector<std::string> all = requirements;
+  all.insert(all.end(), suspected.begin(), suspected.end());
+  return all;
+}
+
 std::string explain(const CaseResult& result, const std::string& file_name) {
   std::string out;
   for (const Failure& failure : result.failures) {
     out += fmt::format("{}:{}: {}: ", file_name, failure.place.line, result.name);
     out += failure.requirements.empty() ? "no rule"
                                         : fmt::format("{}", fmt::join(failure.requirements, " "));
+    if (!failure.suspected.empty()) {
+      out += fmt::format(", suspected {}", fmt::join(failure.suspected, " "));
+    }
     out += failure.weak ? " (weak)\n" : "\n";
     if (!failure.expected.empty()) out += fmt::format("  expected  {}\n", failure.expected);
     out += fmt::format("  but       {}\n", failure.text);

@@ -21,22 +21,30 @@
 namespace rubric::runner {
 
 /// Up to kError in the order of gravity. kInconclusive: nothing was broken, but the target does not
-/// show everything; kError: the case itself makes no sense here, or the target broke; kSkip: the
-/// target reports that it cannot do what the case needs.
+/// show everything; kError: the case itself makes no sense here, or the target did not start;
+/// kSkip: the target reports that it cannot do what the case needs.
 enum class CaseVerdict : std::uint8_t { kPass, kWeak, kInconclusive, kFail, kError, kSkip };
 std::string_view verdict_text(CaseVerdict verdict);
 
-/// A line that was not kept.
+/// A line that was not kept, or the death of the target.
 struct Failure {
   trace::Place place;                     ///< Place of the line in its file.
-  std::vector<std::string> requirements;  ///< Named by the line.
-  bool weak = false;                      ///< All of these are SHOULD.
+  std::vector<std::string> requirements;  ///< The rule that is blamed; none if the line names none.
+  bool weak = false;                      ///< All rules of the line are SHOULD.
   Ticks time = 0;                         ///< When the breaking output came, or its time was over.
   std::string expected;                   ///< The line.
   std::string text;                       ///< The actual event, with the nearest miss.
   Ticks from = 0;                         ///< The line's time, since the start of the case.
   Ticks to = 0;
   bool forbidden = false;  ///< The line says what must not be emitted.
+  /// The target died, hung or wrote nonsense after the line, which gave it something last.
+  bool crash = false;
+  std::string node = {};                    ///< The node under test, as the trace calls it.
+  std::vector<std::string> suspected = {};  ///< Other rules that the line names.
+  bool implied = false;                     ///< An earlier failure of the node can be its cause.
+
+  /// Returns all rules that the line names, the blamed one first.
+  std::vector<std::string> rules() const;
 };
 
 struct CaseResult {

@@ -95,6 +95,16 @@ INSTANTIATE_TEST_SUITE_P(
             {30},
             CaseVerdict::kFail,
             "nearest, at 30: app clock(ms=30): ms: expected 31, seen 30"},
+        Row{"OtherFieldAtAnotherTime",
+            "0..29 m5 > app clock(ms=31)\n",
+            {30},
+            CaseVerdict::kFail,
+            "it emitted nothing there"},
+        Row{"OtherMessage",
+            "0..50 m5 > app joined(*)\n",
+            {30},
+            CaseVerdict::kFail,
+            "it emitted no joined there"},
         Row{"OnlyShould",
             "0..50 m5 > app clock(*) [J1-SEQ]\n",
             {},
@@ -332,6 +342,38 @@ TEST(RunCase, ARuleBrokenBeforeASkipStaysBroken) {
     EXPECT_EQ(result.failures[0].text, "at 30 it emitted app clock(ms=30)");
     EXPECT_EQ(result.reason, "calls");
   }
+}
+
+// A Ticker that dies of a call.
+class Mortal : public Ticker {
+ public:
+  using Ticker::Ticker;
+  void give(Ticks, const machine::Event&) override { throw TargetBroken("was killed"); }
+};
+
+TEST(RunCase, WhatKillsItBlamesTheRuleOfTheStimulus) {
+  const trace::Parsed parsed = trace::parse(
+      "%rtr 1\n%profile paper\n%node m5 mote id=5 iut\ncase x\n0..50 m5 > app clock(*) [J4-CLOCK]\n"
+      "@90 m5 < app get_clock()\n0..50 m5 > app clock(*) [J4-SEQ J4-ACK]\n@0..90 m5 !> app * "
+      "[J1-SEQ]\n",
+      "x.rtr");
+  ASSERT_EQ(parsed.errors(), "");
+  const auto play = [&](std::vector<Ticks> times) {
+    return run_case(parsed.file, parsed.file.cases.at(0),
+                    [&](const trace::NodeHeader&) { return std::make_unique<Mortal>(times); });
+  };
+  const CaseResult result = play({30});
+  EXPECT_EQ(result.verdict, CaseVerdict::kFail);
+  EXPECT_EQ(result.reason, "was killed");
+  ASSERT_EQ(result.failures.size(), 1u);
+  EXPECT_TRUE(result.failures[0].crash);
+  EXPECT_EQ(result.failures[0].place.line, 6u);
+  EXPECT_EQ(result.failures[0].requirements, std::vector<std::string>{"J4-SEQ"});
+  EXPECT_EQ(result.failures[0].suspected, std::vector<std::string>{"J4-ACK"});
+  const CaseResult before = play({30, 60, 70});
+  ASSERT_EQ(before.failures.size(), 2u) << "what it broke before stays broken";
+  EXPECT_TRUE(before.failures[0].weak);
+  EXPECT_FALSE(before.failures[1].implied) << "a SHOULD kills nobody";
 }
 
 // Records when it is reset.

@@ -22,11 +22,12 @@ trace::File only(const trace::File& file, const trace::Case& one);
 /// Runs the only case of `file`.
 runner::CaseResult play(const trace::File& file, const Player& player);
 
-/// Returns a predicate: `player` fails by the same rules as in the first failure of `first`, or
-/// with the same error. If `reference` passes the original it must pass the shrunk trace too, with
-/// any first sequence number; else the trace would require what no rule requires.
+/// Returns a predicate: `player` fails at the same line and by the same rule as in the first
+/// failure of `first`, and not as a consequence of another one. All `references`, which pass the
+/// original, pass the shrunk trace too, with any first sequence number; else the trace would
+/// require what no rule requires.
 StillShows fails_alike(const runner::CaseResult& first, const Player& player,
-                       const std::optional<Player>& reference);
+                       const std::vector<Player>& references);
 
 /// Returns whether one keeps what the other breaks. Freedom within the rules is no difference.
 bool differ(const runner::CaseResult& a, const runner::CaseResult& b);
@@ -41,12 +42,12 @@ struct Difference {
 struct DifferenceSearch {
   std::optional<Difference> shortest;
   std::size_t compared = 0;            ///< Cases that both played.
-  std::size_t skipped = 0;             ///< Cases that one of them cannot play.
+  std::size_t skipped = 0;             ///< Cases that one of them cannot play or did not begin.
   std::vector<std::string> different;  ///< Names of all cases that differ.
 };
 
 /// Runs all cases on both, shrinks those that differ, beginning with the smallest and at most
-/// `shrunk_max` of them, and keeps the shortest. Throws runner::TargetBroken if one breaks.
+/// `shrunk_max` of them, and keeps the shortest. One that dies in a case breaks it.
 DifferenceSearch find_difference(const std::vector<const trace::File*>& files, const Player& a,
                                  const Player& b, std::size_t shrunk_max = 8);
 

@@ -40,14 +40,14 @@ bool is_about(const KnownFailure& one, const ImplementationRun& implementation,
 }
 
 bool has_message(const KnownFailure& one, const Failure& failure) {
-  return failure.text.find(one.message) != std::string::npos ||
-         failure.expected.find(one.message) != std::string::npos;
+  return report::has_tokens(failure.text, one.message) ||
+         report::has_tokens(failure.expected, one.message);
 }
 
 bool has_rule(const KnownFailure& one, const Failure& failure) {
   if (one.requirement == kNoRule) return failure.requirements.empty();
-  return std::any_of(failure.requirements.begin(), failure.requirements.end(),
-                     [&](const std::string& rule) { return is_of(rule, one.requirement); });
+  return std::ranges::any_of(failure.rules(),
+                             [&](const std::string& rule) { return is_of(rule, one.requirement); });
 }
 
 bool is_so(const KnownFailure& one, const CaseRun& run) {
@@ -58,8 +58,9 @@ bool is_so(const KnownFailure& one, const CaseRun& run) {
 // Returns the behaviour that the profile accepts instead, or null. For a missing output one
 // accepted rule is enough; for a forbidden output each rule that forbids it has to be accepted.
 const char* accepted(const machine::NamedProfile* profile, const Failure& failure) {
+  if (failure.crash) return nullptr;
   const char* sentence = nullptr;
-  for (const std::string& rule : failure.requirements) {
+  for (const std::string& rule : failure.rules()) {
     const char* found = nullptr;
     for (const machine::AcceptedDifference& one : profile->accepted) {
       if (trace::requirement_id(rule) == one.requirement) found = one.sentence;
@@ -71,7 +72,18 @@ const char* accepted(const machine::NamedProfile* profile, const Failure& failur
 }
 
 bool is_decided(const CaseRun& one) {
-  return one.result.verdict <= CaseVerdict::kWeak || one.result.verdict == CaseVerdict::kFail;
+  return !one.undecided() && one.result.verdict != CaseVerdict::kError;
+}
+
+// Sets whether the file says why a case is not decided.
+void excuse(const report::KnownFailures& expected, const ImplementationRun& implementation,
+            CaseRun& one) {
+  for (const KnownFailure& entry : expected.entries) {
+    if (!entry.skip || !is_about(entry, implementation, one)) continue;
+    one.owed = false;
+    one.expected_reason = entry.reason;
+    return;
+  }
 }
 
 std::string why_untrue(const KnownFailure& entry, const CaseRun& one) {
@@ -110,17 +122,19 @@ report::KnownFailures parse_expected(std::string_view text, const std::string& n
 
 void expect(const report::KnownFailures& expected, const ImplementationRun& implementation,
             CaseRun& one) {
+  if (one.undecided()) excuse(expected, implementation, one);
   if (!is_decided(one)) return;
   std::vector<const KnownFailure*> entries;
   for (const KnownFailure& entry : expected.entries) {
-    if (is_about(entry, implementation, one)) entries.push_back(&entry);
+    if (!entry.skip && is_about(entry, implementation, one)) entries.push_back(&entry);
   }
   const machine::NamedProfile* dialect = machine::find_profile(one.profile);
   bool all_known = true;  // Each failure that is no SHOULD.
   for (const Failure& failure : one.result.failures) {
     const char* reason = dialect ? accepted(dialect, failure) : nullptr;
     const auto& lines = one.lines_of_profile;
-    if (!reason && std::find(lines.begin(), lines.end(), failure.place.line) != lines.end()) {
+    if (!reason && !failure.crash &&
+        std::find(lines.begin(), lines.end(), failure.place.line) != lines.end()) {
       reason = kOfProfile;
     }
     for (const KnownFailure* entry : entries) {
@@ -144,6 +158,18 @@ void expect(const report::KnownFailures& expected, const ImplementationRun& impl
   }
 }
 
+std::optional<std::string> reason_of(const report::KnownFailures& expected,
+                                     const ImplementationRun& implementation, const CaseRun& one,
+                                     const Failure& failure) {
+  for (const KnownFailure& entry : expected.entries) {
+    if (!entry.skip && is_about(entry, implementation, one) && has_rule(entry, failure) &&
+        has_message(entry, failure)) {
+      return entry.reason;
+    }
+  }
+  return std::nullopt;
+}
+
 std::vector<StaleExpectation> untrue(const report::KnownFailures& expected, const SuiteRun& run,
                                      const Cases& all) {
   std::vector<StaleExpectation> out;
@@ -157,10 +183,20 @@ std::vector<StaleExpectation> untrue(const report::KnownFailures& expected, cons
       continue;
     }
     std::vector<const CaseRun*> asked;
+    bool undecided = false;
     for (const ImplementationRun& implementation : run.implementations) {
       for (const CaseRun& one : implementation.cases) {
-        if (is_about(entry, implementation, one) && is_decided(one)) asked.push_back(&one);
+        if (!is_about(entry, implementation, one)) continue;
+        if (is_decided(one)) asked.push_back(&one);
+        undecided = undecided || !is_decided(one);
       }
+    }
+    if (entry.skip) {
+      if (!undecided && !asked.empty()) {
+        out.push_back({place, fmt::format("{} is listed as skipped, but was decided: delete it",
+                                          entry.cases)});
+      }
+      continue;
     }
     std::vector<const CaseRun*> untrue;
     std::copy_if(asked.begin(), asked.end(), std::back_inserter(untrue),

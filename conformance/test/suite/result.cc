@@ -1,11 +1,14 @@
 #include "conformance/test/suite/result.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <set>
 #include <string_view>
 
 #include "codec/reflect/fault_text.h"
 #include "codec/reflect/requirements.h"
+#include "codec/text/text.h"
 #include "conformance/trace/trace.h"
 
 namespace rubric::suite {
@@ -13,23 +16,28 @@ namespace {
 
 using runner::CaseVerdict;
 
-bool is_decided(CaseVerdict verdict) {
-  return verdict == CaseVerdict::kPass || verdict == CaseVerdict::kWeak ||
-         verdict == CaseVerdict::kFail;
-}
+using Rules = std::set<ReqId, reflect::CatalogueOrder>;
 
-std::set<ReqId, reflect::CatalogueOrder> broken_rules(const CaseRun& one) {
-  std::set<ReqId, reflect::CatalogueOrder> out;
+// Returns the rules that the failures of a case blame, or else name.
+Rules rules_of(const CaseRun& one, bool blamed) {
+  Rules out;
   for (const runner::Failure& failure : one.result.failures) {
-    for (const std::string& name : failure.requirements) out.insert(trace::requirement_id(name));
+    for (const std::string& name : failure.rules()) {
+      const bool first = !failure.requirements.empty() && name == failure.requirements.front();
+      if (!blamed || (first && !failure.implied)) out.insert(trace::requirement_id(name));
+    }
   }
   return out;
 }
 
 }  // namespace
 
+bool CaseRun::undecided() const {
+  return result.verdict == CaseVerdict::kSkip || result.verdict == CaseVerdict::kInconclusive;
+}
+
 bool CaseRun::unexpected() const {
-  if (result.verdict == CaseVerdict::kError) return true;
+  if (result.verdict == CaseVerdict::kError || owed) return true;
   if (result.verdict == CaseVerdict::kFail) return expectation != Expectation::kAsExpected;
   return expectation == Expectation::kOtherwise || expectation == Expectation::kUnexpectedPass;
 }
@@ -37,17 +45,38 @@ bool CaseRun::unexpected() const {
 int exit_code(const SuiteRun& run) {
   bool broke = false;
   bool failed = !run.stale.empty();
-  bool decided = false;
+  bool complete = true;
   for (const ImplementationRun& implementation : run.implementations) {
     broke = broke || !implementation.dishonest.empty();
     for (const OutsideFault& one : implementation.outside) broke = broke || one.broke;
     for (const CaseRun& one : implementation.cases) {
       broke = broke || one.result.verdict == CaseVerdict::kError;
-      failed = failed || one.unexpected();
-      decided = decided || is_decided(one.result.verdict);
+      failed = failed || (one.unexpected() && !one.owed);
     }
+    complete = complete && incomplete(run, implementation).empty();
   }
-  return broke ? 2 : failed ? 1 : decided ? 0 : 3;
+  return broke ? 2 : failed ? 1 : complete ? 0 : 3;
+}
+
+std::string incomplete(const SuiteRun& run, const ImplementationRun& implementation) {
+  std::size_t decided = 0;
+  std::size_t owed = 0;
+  for (const CaseRun& one : implementation.cases) {
+    decided += !one.undecided();
+    owed += one.owed;
+  }
+  const RuleTotals rules = rule_totals(implementation);
+  const std::size_t rules_decided = rules.kept + rules.broken + rules.suspected;
+  if (decided == 0) return "nothing was decided";
+  if (owed > 0) {
+    return fmt::format("{} {} neither decided nor listed with a reason",
+                       report::counted(owed, "case"), owed == 1 ? "is" : "are");
+  }
+  if (rules_decided < run.rules_required) {
+    return fmt::format("{} decided, of {} required", report::counted(rules_decided, "rule"),
+                       run.rules_required);
+  }
+  return {};
 }
 
 VerdictCounts count(const ImplementationRun& run) {
@@ -59,12 +88,14 @@ VerdictCounts count(const ImplementationRun& run) {
 std::vector<RequirementSummary> by_requirement(const ImplementationRun& run) {
   std::map<ReqId, RequirementSummary, reflect::CatalogueOrder> rules;
   for (const CaseRun& one : run.cases) {
-    const auto broken = broken_rules(one);
+    const Rules broken = rules_of(one, true);
+    const Rules named = rules_of(one, false);
     for (const ReqId id : one.requirements) {
       RequirementSummary& rule = rules[id];
       rule.requirement = id;
       ++rule.cases[one.result.verdict];
-      if (broken.contains(id)) ++rule.broken;
+      rule.broken += broken.contains(id);
+      rule.suspected += named.contains(id) && !broken.contains(id);
     }
   }
   std::vector<RequirementSummary> out;
@@ -86,6 +117,8 @@ RuleTotals rule_totals(const ImplementationRun& run) {
     };
     if (rule.broken > 0) {
       ++totals.broken;
+    } else if (rule.suspected > 0) {
+      ++totals.suspected;
     } else if (cases(CaseVerdict::kPass) + cases(CaseVerdict::kWeak) > 0) {
       ++totals.kept;
     } else if (cases(CaseVerdict::kFail) + cases(CaseVerdict::kError) +
@@ -94,7 +127,7 @@ RuleTotals rule_totals(const ImplementationRun& run) {
       ++totals.undecided;
     }
   }
-  totals.untried = totals.all - totals.kept - totals.broken - totals.undecided;
+  totals.untried = totals.all - totals.kept - totals.broken - totals.suspected - totals.undecided;
   return totals;
 }
 

@@ -38,11 +38,19 @@ struct CaseRun {
   std::vector<std::uint32_t> lines_of_profile;
   Expectation expectation = Expectation::kNone;
   std::string expected_reason;  ///< From the file.
+  /// Skipped, as it needs a role that the implementation does not play, or is for other values than
+  /// it states.
+  bool foreign = false;
+  /// It had to be decided and was not: the case is not foreign, and the file does not
+  /// list it as skipped. No case at the own line of a node, which names what the line cannot show.
+  bool owed = false;
   double wall_ms = 0;
   std::string stderr_text;  ///< Written while it broke.
 
-  /// Returns whether it makes the run fail: an error, a failure that the file does not have in this
-  /// form, or the pass of an expected failure.
+  /// Returns whether it is skipped or inconclusive.
+  bool undecided() const;
+  /// Returns whether it keeps the run from being as expected: an error, a failure that the file
+  /// does not have in this form, the pass of an expected failure, or a verdict that is owed.
   bool unexpected() const;
 };
 
@@ -80,11 +88,16 @@ struct SuiteRun {
   std::vector<std::string> traces;  ///< Files and folders of the user; none: the kit's own cases.
   std::vector<ImplementationRun> implementations;
   std::vector<StaleExpectation> stale;
+  std::size_t rules_required = 0;  ///< That each implementation has to decide.
 };
 
 /// Returns 0 as expected, 1 for an unexpected failure or an expectation that does not hold, 2 for
-/// an error, a dishonest implementation, or one that broke between cases, 3 if nothing was decided.
+/// an error, a dishonest implementation, or one that broke between cases, and 3 if it is
+/// incomplete.
 int exit_code(const SuiteRun& run);
+/// Returns why an implementation's run is incomplete: cases that are owed, nothing that was
+/// decided, or fewer rules than required. Empty if it is complete.
+std::string incomplete(const SuiteRun& run, const ImplementationRun& implementation);
 
 using VerdictCounts = std::map<runner::CaseVerdict, std::size_t>;
 VerdictCounts count(const ImplementationRun& run);
@@ -93,8 +106,8 @@ VerdictCounts count(const ImplementationRun& run);
 struct RequirementSummary {
   ReqId requirement = ReqId::kNone;
   VerdictCounts cases;
-  /// Cases with a failed line that names this rule.
-  std::size_t broken = 0;
+  std::size_t broken = 0;     ///< Cases with a failure that blames this rule.
+  std::size_t suspected = 0;  ///< Others in which a failed line names it, or an implied failure.
 };
 /// Returns every rule that a case of the run names, in the catalogue's order.
 std::vector<RequirementSummary> by_requirement(const ImplementationRun& run);
@@ -102,8 +115,9 @@ std::vector<RequirementSummary> by_requirement(const ImplementationRun& run);
 /// Results of the rules of behaviour, those of the wire apart: each counts once.
 struct RuleTotals {
   std::size_t all = 0;   ///< In the catalogue.
-  std::size_t kept = 0;  ///< A case that names it passed, and none broke it.
+  std::size_t kept = 0;  ///< A case that names it passed, none broke it, and none makes it suspect.
   std::size_t broken = 0;
+  std::size_t suspected = 0;  ///< No case broke it for sure, but what one broke may come from it.
   std::size_t undecided = 0;  ///< Cases name it, but they ended before it was decided.
   std::size_t untried = 0;    ///< No case names it that was run.
 };

@@ -138,7 +138,9 @@ CaseRun run_one(const SuiteCase& one, targets::Attachment& attachment, const std
     } else {
       out.result.verdict = CaseVerdict::kSkip;
       out.result.reason = missing;
+      out.foreign = true;
     }
+    out.owed = out.undecided() && !out.foreign && !attachment.identity().own_line;
   } catch (const std::exception& error) {  // It did not start again.
     out.result.verdict = CaseVerdict::kError;
     out.result.reason = error.what();

@@ -76,7 +76,7 @@ bool cut_end(std::string_view& text, std::string_view end) {
 
 LineNode real_node(Role role, const char* where, std::uint32_t baud, const Options& options) {
   LineNode node;
-  node.identity = {fmt::format("{}_{}", role_word(role), where), "-", {role}, true};
+  node.identity = {fmt::format("{}_{}", role_word(role), where), "-", {role}, true, true};
   node.identity.stated = options.stated;
   node.baud = baud;
   return node;

@@ -16,8 +16,11 @@ namespace rubric::targets {
 struct Identity {
   std::string name;
   std::string version;
-  std::vector<machine::Role> roles;         ///< The roles that it can play.
-  bool real_time = false;                   ///< Its clock cannot be turned.
+  std::vector<machine::Role> roles;  ///< The roles that it can play.
+  bool real_time = false;            ///< Its clock cannot be turned.
+  /// A node at its own line, not behind an adapter: cases that the line cannot decide are no
+  /// omission of the node.
+  bool own_line = false;
   std::optional<runner::Reach> shown = {};  ///< If it shows a part of its links only.
   trace::Statement stated = {};
 };

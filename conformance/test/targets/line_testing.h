@@ -91,4 +91,39 @@ class Terminal {
   std::string name_;
 };
 
+/// Sends bytes through a pseudo terminal of its own all the time. On a busy host the kernel may
+/// hold back what is in one for seconds; a node behind one then breaks rules that it keeps.
+class TerminalWatch {
+ public:
+  TerminalWatch() : thread_([this] { watch(); }) {}
+  ~TerminalWatch() {
+    stop_ = true;
+    thread_.join();
+  }
+  lines::Milliseconds worst() const { return lines::Milliseconds(worst_ms_); }
+
+ private:
+  void watch() {
+    const Terminal terminal;
+    const std::unique_ptr<MoteEnd> end = terminal.mote_end();
+    end->open(std::chrono::steady_clock::now());
+    lines::ByteStream host = lines::open_serial_device(terminal.name(), 115200);
+    while (!stop_) {
+      const auto sent = std::chrono::steady_clock::now();
+      end->send({0}, sent + kMax);
+      std::uint8_t room[100];
+      host.read(room, sent + kMax);
+      const auto took = std::chrono::steady_clock::now() - sent;
+      worst_ms_ = std::max<std::int64_t>(
+          worst_ms_, std::chrono::duration_cast<lines::Milliseconds>(took).count());
+      std::this_thread::sleep_for(lines::Milliseconds(5));
+    }
+  }
+
+  static constexpr lines::Milliseconds kMax{10'000};
+  std::atomic<bool> stop_{false};
+  std::atomic<std::int64_t> worst_ms_{0};
+  std::thread thread_;
+};
+
 }  // namespace rubric::targets

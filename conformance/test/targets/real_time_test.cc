@@ -208,7 +208,7 @@ TEST(RealTime, SerialLineThroughTcp) {
   expect(CaseVerdict::kPass, *attachment, "sink.ack");
   mote.deaf_to = 1000;
   const runner::CaseResult deaf = run(*attachment, "sink.ack");
-  EXPECT_EQ(deaf.verdict, CaseVerdict::kError);
+  EXPECT_EQ(deaf.verdict, CaseVerdict::kError);  // Already when it is reset.
   EXPECT_EQ(deaf.reason, "the node does not confirm packets on its serial line");
   mote.deaf_to = 0;
   expect(CaseVerdict::kPass, *attachment, "sink.ack");
@@ -317,7 +317,9 @@ TEST(RealTime, ForwardersThatBreak) {
     const Peer peer(port, one.bytes);
     const auto attachment = attach(fmt::format("sf:127.0.0.1:{}", port), kOptions);
     const runner::CaseResult result = run(*attachment, "sink.ack");
-    EXPECT_EQ(result.verdict, CaseVerdict::kError);
+    // The case has begun or not when the line breaks.
+    EXPECT_GE(result.verdict, CaseVerdict::kFail);
+    EXPECT_LE(result.verdict, CaseVerdict::kError);
     EXPECT_EQ(result.reason, one.reason);
   }
 }

@@ -93,7 +93,8 @@ function failureView(failure, run) {
   h('h3', {}, failure.requirements.length
     ? failure.requirements.map((id, i) => [i ? ' ' : '', ruleLink(id)])
     : asked ? 'A line without a rule' : 'It broke',
-  failure.weak && h('span', { class: 'flag' }, 'SHOULD')),
+  failure.weak && h('span', { class: 'flag' }, 'SHOULD'),
+  failure.implied && h('span', { class: 'flag' }, 'implied')),
   failure.requirements.map((id) => ruleOf(id) && h('p', {}, ruleOf(id).sentence)),
   h('dl', { class: 'facts' },
     asked && h('div', {},
@@ -101,7 +102,9 @@ function failureView(failure, run) {
       h('dd', {}, h('code', {}, failure.expected),
         h('div', { class: 'soft' }, `${when} (${real} ms), line ${failure.line} of `,
           h('code', {}, data.cases.find((one) => one.runs.includes(run)).file)))),
-    h('div', {}, h('dt', {}, asked ? 'But' : 'How'), h('dd', { class: 'but' }, failure.text))));
+    h('div', {}, h('dt', {}, asked ? 'But' : 'How'), h('dd', { class: 'but' }, failure.text)),
+    failure.suspected.length > 0 && h('div', {}, h('dt', {}, 'Suspected'),
+      h('dd', {}, failure.suspected.map((id, i) => [i ? ' ' : '', ruleLink(id)])))));
 }
 
 // ---- Charts, which the program has drawn.

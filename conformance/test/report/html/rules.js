@@ -5,7 +5,10 @@ const ruleFilter = { text: '', state: 'all' };
 const casesOf = new Map(Object.keys(data.rules).map((id) => [id, []]));
 for (const one of data.cases) for (const id of one.requirements) casesOf.get(id)?.push(one);
 
-const breaks = (run, id) => run.failures.some((failure) => failure.requirements.includes(id));
+const breaks = (run, id) => run.failures.some((failure) => !failure.implied &&
+  failure.requirements.includes(id));
+const suspects = (run, id) => run.failures.some((failure) =>
+  failure.requirements.includes(id) || failure.suspected.includes(id));
 
 // Returns a rule's state for an implementation: a verdict's name for its colour, and words.
 function stateOf(id, implementation) {
@@ -16,13 +19,16 @@ function stateOf(id, implementation) {
     const weak = bad.every((run) => run.verdict === 'weak');
     return [weak ? 'weak' : 'fail', `broken in ${bad.length} of ${runs.length}`];
   }
+  const odd = runs.filter((run) => suspects(run, id)).length;
+  if (odd) return ['inconclusive', `suspected in ${odd} of ${runs.length}`];
   const good = runs.filter((run) => run.verdict === 'pass' || run.verdict === 'weak').length;
   if (good) return ['pass', good === runs.length ? `kept in ${good}` : `kept in ${good} of ` +
     runs.length];
   return ['skip', runs.length ? 'not decided' : 'not tried'];
 }
 
-const kRuleStates = [['all', 'all'], ['bad', 'broken'], ['pass', 'kept'], ['skip', 'not decided']];
+const kRuleStates = [['all', 'all'], ['bad', 'broken'], ['inconclusive', 'suspected'],
+  ['pass', 'kept'], ['skip', 'not decided']];
 
 function ruleFits(id, states) {
   const words = ruleFilter.text.toLowerCase().split(/\s+/).filter(Boolean);

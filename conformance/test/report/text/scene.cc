@@ -36,7 +36,7 @@ std::vector<Row> rows_around(const CaseRun& one, const runner::Failure& failure)
   std::size_t at = 0;  // After its cause.
   bool breaks = false;
   for (std::size_t i = 0; i < lines.size() && !breaks; ++i) {
-    if (time_of(*lines[i]) > failure.time) break;
+    if (time_of(*lines[i]) > (failure.forbidden ? failure.time : failure.to)) break;
     at = i + 1;
     breaks = is_broken_by(failure, *lines[i]);
   }

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <array>
 #include <set>
 #include <string>
 #include <vector>
@@ -28,14 +29,17 @@ std::string roles_text(const std::vector<machine::Role>& roles) {
   return out;
 }
 
-std::string broken_text(const ImplementationRun& implementation) {
+// Names the rules of a list after `title`; empty if there are none.
+template <class Takes>
+std::string rules_line(const ImplementationRun& implementation, const char* title,
+                       const TextOptions& options, Takes takes) {
   std::string out;
   for (const RequirementSummary& rule : by_requirement(implementation)) {
-    if (rule.broken == 0) continue;
+    if (!takes(rule)) continue;
     if (!out.empty()) out += ' ';
     out += trace::requirement_text(rule.requirement);
   }
-  return out;
+  return out.empty() ? out : wrapped(fmt::format("{}{}: ", kIndent, title), out, options.width);
 }
 
 // Says how many cases can be decided where a part of the node's links is shown.
@@ -109,7 +113,8 @@ std::string opening_text(const SuiteRun& run, const ImplementationRun& implement
   return wrapped("", out, options.width, kIndent.size());
 }
 
-std::string totals_text(const ImplementationRun& implementation, const TextOptions& options) {
+std::string totals_text(const SuiteRun& run, const ImplementationRun& implementation,
+                        const TextOptions& options) {
   if (!implementation.dishonest.empty()) return {};
   const VerdictCounts counts = count(implementation);
   std::string out;
@@ -123,14 +128,23 @@ std::string totals_text(const ImplementationRun& implementation, const TextOptio
   if (options.times) out += fmt::format(" in {:.2f} s", implementation.wall_ms / 1000);
   out = wrapped("", fmt::format("{}: {}.", implementation.identity.name, out), options.width,
                 kIndent.size());
-  out += wrapped(kIndent,
-                 fmt::format("Of {} rules {} tried: {} kept, {} broken, {} not decided.", rules.all,
-                             rules.all - rules.untried, rules.kept, rules.broken, rules.undecided),
-                 options.width);
+  out += wrapped(
+      kIndent,
+      fmt::format("Of {} rules {} tried: {} kept, {} broken, {}{} not decided.", rules.all,
+                  rules.all - rules.untried, rules.kept, rules.broken,
+                  rules.suspected == 0 ? "" : fmt::format("{} suspected, ", rules.suspected),
+                  rules.undecided),
+      options.width);
+  const std::string missing = incomplete(run, implementation);
+  if (!missing.empty())
+    out += wrapped(fmt::format("{}Incomplete: ", kIndent), missing + '.', options.width);
   out += reach_text(implementation, options);
   out += outside(implementation, options);
-  const std::string broken = broken_text(implementation);
-  if (!broken.empty()) out += wrapped(fmt::format("{}Broken: ", kIndent), broken, options.width);
+  out += rules_line(implementation, "Broken", options,
+                    [](const RequirementSummary& rule) { return rule.broken > 0; });
+  out += rules_line(implementation, "Suspected", options, [](const RequirementSummary& rule) {
+    return rule.broken == 0 && rule.suspected > 0;
+  });
   return '\n' + out;
 }
 
@@ -163,13 +177,15 @@ std::string closing_text(const SuiteRun& run, const TextOptions& options) {
   std::size_t errors = 0;
   std::size_t refused = 0;
   std::size_t broken = 0;
+  std::size_t owed = 0;
   for (const ImplementationRun& implementation : run.implementations) {
     refused += !implementation.dishonest.empty();
     broken += broke_outside(implementation);
     for (const CaseRun& one : implementation.cases) {
       const bool error = one.result.verdict == CaseVerdict::kError;
       errors += error;
-      failures += one.unexpected() && !error;
+      failures += one.unexpected() && !error && !one.owed;
+      owed += one.owed;
       expected += one.expectation == Expectation::kAsExpected;
     }
   }
@@ -184,10 +200,9 @@ std::string closing_text(const SuiteRun& run, const TextOptions& options) {
   if (broken > 0) {
     text += fmt::format(", {} broke between cases", counted(broken, "implementation"));
   }
-  const char* verdict = code == 0   ? "as expected"
-                        : code == 1 ? "not as expected"
-                        : code == 2 ? "broken"
-                                    : "nothing was decided";
+  if (owed > 0) text += fmt::format(", {} not decided", counted(owed, "case"));
+  constexpr std::array kVerdictOfCode = {"as expected", "not as expected", "broken", "incomplete"};
+  const char* const verdict = kVerdictOfCode.at(static_cast<std::size_t>(code));
   out += '\n';
   return out + styled(options, code == 0 ? "1;32" : "1;31",
                       "Verdict:", fmt::format("{}: {}.", verdict, text));

@@ -73,7 +73,11 @@ std::string failure_text(const CaseRun& one, const Failure& failure, const TextO
                  fmt::format("line {} of {}, {}", failure.place.line, one.file, when_text(failure)),
                  options);
   }
-  out += field("But:", failure.text, options);
+  out += field(failure.crash ? "Broke:" : "But:", failure.text, options);
+  if (failure.crash) {
+    out += field("", fmt::format("after line {} of {}", failure.place.line, one.file), options);
+  }
+  out += field("Suspects:", joined(failure.suspected), options);
   return out;
 }
 
@@ -105,7 +109,8 @@ class Story {
  private:
   // Returns a key that is equal for similar cases: the rules that they break, or what broke.
   static std::string kind_of(const CaseRun& one) {
-    if (one.result.verdict == CaseVerdict::kError) return what_broke(one);
+    const bool crashed = !one.result.failures.empty() && one.result.failures.front().crash;
+    if (one.result.verdict == CaseVerdict::kError || crashed) return what_broke(one);
     if (one.result.failures.empty()) return one.name;
     return joined(one.result.failures.front().requirements);
   }
@@ -147,8 +152,8 @@ class Story {
       if (i == 0 || options_.verbose) {
         out_ += failure_text(one, failure, options_);
       } else if (i <= kAlso) {
-        const std::string rules = joined(failure.requirements);
-        out_ += field("Also:",
+        const std::string rules = joined(failure.rules());
+        out_ += field(failure.implied ? "Then:" : "Also:",
                       fmt::format("line {}{}: {}", failure.place.line,
                                   rules.empty() ? "" : " [" + rules + "]", failure.text),
                       options_);
@@ -181,7 +186,9 @@ class Story {
   void by_reason(CaseVerdict verdict) {
     std::map<std::string, std::vector<std::string>> reasons;
     for (const CaseRun& one : implementation_.cases) {
-      if (one.result.verdict == verdict) reasons[one.result.reason].push_back(case_name(one));
+      if (one.result.verdict != verdict) continue;
+      const std::string listed = one.expected_reason.empty() ? "" : ", as listed: ";
+      reasons[one.result.reason + listed + one.expected_reason].push_back(case_name(one));
     }
     if (!reasons.empty()) out_ += '\n';
     for (const auto& [reason, cases] : reasons) {

@@ -24,8 +24,9 @@ std::string case_text(const CaseRun& one, const TextOptions& options);
 /// undecided cases by reason.
 std::string story_text(const SuiteRun& run, const ImplementationRun& implementation,
                        const TextOptions& options);
-/// Returns counts, rules and times of an implementation.
-std::string totals_text(const ImplementationRun& implementation, const TextOptions& options);
+/// Returns counts, rules and times of an implementation, and why its run is incomplete.
+std::string totals_text(const SuiteRun& run, const ImplementationRun& implementation,
+                        const TextOptions& options);
 /// Returns the cases whose verdict changed since an earlier run, that it lacks, and that are gone
 /// since; `name` is the user's name for that run.
 std::string changes_text(const SuiteRun& run, const EarlierRun& earlier, const std::string& name,

@@ -172,6 +172,12 @@ TEST(Expected, UnfinishedCasesDecideNothing) {
     EXPECT_TRUE(out.untrue.empty());
     EXPECT_EQ(out.exit_code, 3);
   }
+  CaseRun died = failed({kAck});
+  died.result.failures[0].crash = true;
+  EXPECT_EQ(hold(kEntry, died).exit_code, 0) << "a death can be expected";
+  died.profile = "deployed";
+  died.result.failures[0].requirements = {"T3-TIMEOUT"};
+  EXPECT_EQ(hold("[]", died).exit_code, 1) << "no profile accepts a death";
   CaseRun broke = failed({kAck});
   broke.result.verdict = CaseVerdict::kError;
   EXPECT_EQ(hold(kEntry, broke).exit_code, 2) << "an error is never expected";
@@ -186,6 +192,64 @@ TEST(Expected, DifferencesThatTheProfileAccepts) {
   EXPECT_EQ(hold("[]", one).exit_code, 1);
   one.result.failures = {failure({"J8-FAIL", "J8-LIMIT"}, "it emitted x", false, true)};
   EXPECT_EQ(hold("[]", one).exit_code, 1) << "each rule that forbids it counts";
+}
+
+// Runs one case that passes and one that is owed.
+Outcome hold_owed(const std::string& yaml, bool owed = true) {
+  static const Cases all = Cases::own();
+  const report::KnownFailures expected = parse_expected(yaml, "known.yaml");
+  SuiteRun run;
+  ImplementationRun& implementation = run.implementations.emplace_back();
+  implementation.cases = {failed({}), failed({})};
+  CaseRun& one = implementation.cases[1];
+  one.name = "j8.fail";
+  if (owed) one.result.verdict = CaseVerdict::kSkip;
+  one.owed = owed;
+  expect(expected, implementation, one);
+  run.stale = untrue(expected, run, all);
+  return {one.expectation, one.unexpected(), run.stale, exit_code(run)};
+}
+
+TEST(Expected, WhatIsNotDecidedIsOwedUnlessItIsListed) {
+  EXPECT_EQ(hold_owed("[]").exit_code, 3);
+  EXPECT_EQ(hold_owed("[]", false).exit_code, 0);
+  for (const char* listed : {"j8.fail", "'j8.*'", "[j4.few, j8.fail]"}) {
+    const std::string entry = std::string("- skip: ") + listed + "\n  reason: We cannot.\n";
+    EXPECT_EQ(hold_owed(entry).exit_code, 0) << listed;
+    EXPECT_FALSE(hold_owed(entry).unexpected);
+    EXPECT_EQ(hold_owed(entry + "  target: ./other\n").exit_code, 3);
+    const Outcome decided = hold_owed(entry, false);
+    EXPECT_EQ(decided.exit_code, 1) << listed;
+    EXPECT_EQ(decided.untrue.size(), 1U) << "j4.few was not chosen";
+  }
+  const auto listed = parse_expected("- {skip: [a.b, c.d], reason: x}", "k.yaml").entries;
+  ASSERT_EQ(listed.size(), 2U);
+  EXPECT_EQ(listed[0].cases + listed[1].cases + listed[0].reason + listed[1].reason, "a.bc.dxx");
+  EXPECT_EQ(hold_owed("- {skip: j4.accept, reason: x}").exit_code, 1) << "it was decided";
+  EXPECT_EQ(hold_owed("- {skip: 'j*', reason: x}").exit_code, 0) << "one of them was not";
+  EXPECT_EQ(hold_owed("- {skip: j8.gone, reason: x}").untrue.size(), 1U);
+}
+
+TEST(Expected, SomeRulesCanBeRequired) {
+  SuiteRun run;
+  ImplementationRun& implementation = run.implementations.emplace_back();
+  implementation.cases = {failed({})};
+  implementation.cases[0].requirements = {"J4-ACK"_rule};
+  run.rules_required = 1;
+  EXPECT_EQ(exit_code(run), 0);
+  run.rules_required = 2;
+  EXPECT_EQ(exit_code(run), 3);
+  EXPECT_EQ(incomplete(run, implementation), "1 rule decided, of 2 required");
+}
+
+TEST(Expected, MessagesAreComparedByTheirWords) {
+  using report::has_tokens;
+  EXPECT_TRUE(has_tokens("c+0..2000 sA  !>  rA join_reply(*)", "sA !> rA join_reply( *"));
+  EXPECT_TRUE(has_tokens("at 7 it emitted rA x", "it emitted"));
+  EXPECT_TRUE(has_tokens("anything", ""));
+  EXPECT_FALSE(has_tokens("it emitted rA join_reply(*)", "join"));
+  EXPECT_FALSE(has_tokens("number 17", "number 1"));
+  EXPECT_FALSE(has_tokens("a b c", "a c"));
 }
 
 TEST(ExpectedFile, SaysWhatIsWrongAndWhere) {
@@ -204,7 +268,13 @@ TEST(ExpectedFile, SaysWhatIsWrongAndWhere) {
   EXPECT_EQ(why("- case: [x]\n"), "k.yaml:1: case: expected a text");
   EXPECT_THAT(why("- requirement: J44\n"), HasSubstr("k.yaml:1: no requirement is called 'J44'"));
   EXPECT_THAT(why("- profile: x\n"), HasSubstr("profile is paper or deployed"));
-  EXPECT_THAT(why("- node: x\n"), HasSubstr("unknown key 'node'"));
+  EXPECT_THAT(why("- nodes: x\n"), HasSubstr("unknown key 'nodes'"));
+  EXPECT_EQ(why("- requirement: J4\n  node: x\n"),
+            "k.yaml:2: 'node' belongs to a list for rubric check; this one is for rubric test");
+  EXPECT_EQ(why("- case: x\n  reason: ''\n"), "k.yaml:2: reason is empty: say why this is known");
+  EXPECT_EQ(why("- case: x\n  reason:\n"), "k.yaml:2: reason is empty: say why this is known");
+  EXPECT_EQ(why("- skip: []\n  reason: x\n"), "k.yaml:1: skip: expected a text");
+  EXPECT_THAT(why("- {skip: x, requirement: J4, reason: y}\n"), HasSubstr("unknown key"));
   EXPECT_THAT(why("- {"), HasSubstr("k.yaml:1: "));
 }
 

@@ -133,7 +133,7 @@ TEST(Honesty, WhatDoesNotStart) {
   EXPECT_EQ(run.dishonest, "it does not start: no such program");
 }
 
-TEST(Run, WhatBreaksIsAnErrorOfItsCaseAlone) {
+TEST(Run, WhatBreaksIsAFailureOfItsCaseAlone) {
   int made = 0;
   const ImplementationRun run = suite::run("x", fake([&](FakeAttachment& one) {
                                              one.says = "boo\n";
@@ -152,7 +152,9 @@ TEST(Run, WhatBreaksIsAnErrorOfItsCaseAlone) {
       continue;
     }
     ++errors;
-    EXPECT_EQ(one.result.verdict, CaseVerdict::kError);
+    EXPECT_EQ(one.result.verdict, CaseVerdict::kFail);
+    ASSERT_EQ(one.result.failures.size(), 1U);
+    EXPECT_EQ(one.result.failures[0].requirements.size(), 1U) << one.name;
     EXPECT_EQ(one.result.reason, "killed by signal 11");
     EXPECT_EQ(one.stderr_text, "boo\n");
     EXPECT_TRUE(one.unexpected());
@@ -160,7 +162,7 @@ TEST(Run, WhatBreaksIsAnErrorOfItsCaseAlone) {
   EXPECT_EQ(errors, run.cases.size() / 2);
   SuiteRun all;
   all.implementations.push_back(run);
-  EXPECT_EQ(exit_code(all), 2);
+  EXPECT_EQ(exit_code(all), 1);
 }
 
 TEST(Run, WhatHappensBetweenCasesIsKept) {
@@ -257,17 +259,26 @@ TEST(Results, RulesThatBroke) {
     one.requirements = std::move(rules);
     one.result.verdict = verdict;
     if (!broken.empty()) one.result.failures.emplace_back().requirements = std::move(broken);
+    return &one;
   };
   add(CaseVerdict::kPass, {"J4-SEQ"_rule, "J4-ACK"_rule}, {});
   add(CaseVerdict::kFail, {"J4-SEQ"_rule, "J5-ONCE"_rule, "J8-LIMIT"_rule}, {"J4-SEQ"});
   add(CaseVerdict::kSkip, {"T1-WRAP"_rule}, {});
+  add(CaseVerdict::kPass, {"J3-SEQ"_rule, "J3-DEST"_rule}, {});
+  runner::CaseResult& one =
+      add(CaseVerdict::kFail, {"J3-SEQ"_rule, "J3-DEST"_rule}, {"J4-SEQ"})->result;
+  one.failures[0].suspected = {"J3-SEQ"};
+  runner::Failure& later = one.failures.emplace_back();
+  later.requirements = {"J3-DEST"};
+  later.implied = true;
   const RuleTotals rules = rule_totals(run);
   EXPECT_EQ(rules.kept, 1U) << "J4-ACK";
   EXPECT_EQ(rules.broken, 1U) << "J4-SEQ";
+  EXPECT_EQ(rules.suspected, 2U) << "J3-SEQ by the line, J3-DEST by an implied failure";
   EXPECT_EQ(rules.undecided, 2U) << "J5-ONCE and J8-LIMIT";
-  EXPECT_EQ(rules.untried, rules.all - 4);
+  EXPECT_EQ(rules.untried, rules.all - 6);
   const std::vector<RequirementSummary> all = by_requirement(run);
-  ASSERT_EQ(all.size(), 5U);
+  ASSERT_EQ(all.size(), 7U);
   EXPECT_TRUE(std::is_sorted(all.begin(), all.end(), [](const auto& a, const auto& b) {
     return reflect::CatalogueOrder()(a.requirement, b.requirement);
   }));

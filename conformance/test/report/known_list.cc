@@ -1,0 +1,187 @@
+#include "conformance/test/report/known_list.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <set>
+#include <tuple>
+#include <vector>
+
+#include "codec/reflect/fault_text.h"
+#include "codec/reflect/requirements.h"
+#include "codec/text/text.h"
+#include "conformance/test/report/log_lines.h"
+#include "conformance/test/suite/expected.h"
+#include "conformance/trace/schema.h"
+
+namespace rubric::suite {
+namespace {
+
+constexpr std::size_t kColumns = 100;
+
+std::string yaml_text(std::string_view text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+  }
+  return out + '"';
+}
+
+std::string comment(const std::string& text) {
+  return '\n' + report::wrapped("# ", text, kColumns);
+}
+
+// Returns words of a failure that do not change with its time or with the numbers that a seed
+// makes.
+std::string message_of(const runner::Failure& failure) {
+  constexpr std::string_view kEmitted = "it emitted ";
+  if (failure.forbidden) {
+    const std::size_t at = failure.text.find(kEmitted);
+    if (at != std::string::npos) {
+      return failure.text.substr(at, failure.text.find('(', at) - at);
+    }
+  }
+  const std::optional<trace::Line> asked = asked_line(failure);
+  if (failure.crash || !asked) return failure.text;
+  const std::string node = asked->node + ' ' + std::string(trace::op_text(asked->op));
+  if (asked->am) return asked->message.name;
+  return fmt::format("{} {} {}", node, asked->link, asked->message.name);
+}
+
+// Returns why a case is not decided, without times and arguments: "call join: no such call" for
+// "`call 0 join(type=1)`: no such call".
+std::string what_was_missing(const std::string& reason) {
+  const std::size_t end = reason.find("`: ");
+  if (!reason.starts_with('`') || end == std::string::npos) return reason;
+  const std::string_view command = std::string_view(reason).substr(1, end - 1);
+  const std::size_t verb = command.find(' ');
+  const std::size_t name = command.find_first_not_of("0123456789 ", verb);
+  if (verb == command.npos || name == command.npos) return reason;
+  const std::string_view what = command.substr(name, command.find_first_of("( ", name) - name);
+  return fmt::format("{} {}{}", command.substr(0, verb), what, reason.substr(end + 1));
+}
+
+struct Entry {
+  std::string rule;
+  std::string cases;
+  std::string message;
+  std::string target;
+  std::string profile;
+  auto operator<=>(const Entry&) const = default;
+};
+
+std::string limits(const std::string& target, const std::string& profile) {
+  std::string out;
+  if (!target.empty()) out += "  target: " + yaml_text(target) + '\n';
+  if (!profile.empty()) out += "  profile: " + profile + '\n';
+  return out;
+}
+
+std::string skip_entry(const std::vector<std::string>& cases, const std::string& reason,
+                       const std::string& target) {
+  std::string out = "- skip:\n";
+  for (const std::string& name : cases) out += "    - " + name + '\n';
+  return out + "  reason: " + yaml_text(reason) + '\n' + limits(target, "");
+}
+
+class KnownList {
+ public:
+  KnownList(const SuiteRun& run, const report::KnownFailures& known) : run_(run), known_(known) {
+    for (const ImplementationRun& implementation : run.implementations) {
+      for (const CaseRun& one : implementation.cases) take(implementation, one);
+    }
+  }
+
+  std::string text() const {
+    std::string out =
+        "# What is known to fail, and what is not decided. `rubric test --expect` reads this file, "
+        "and\n# wants a reason for each entry.\n";
+    for (const reflect::Requirement& rule : reflect::requirements()) {
+      bool first = true;
+      for (const auto& [entry, reason] : failures_) {
+        if (entry.rule != rule.id) continue;
+        if (first) out += comment(fmt::format("{} ({}): {}", rule.id, rule.level, rule.sentence));
+        first = false;
+        out += failure_entry(entry, reason);
+      }
+    }
+    for (const auto& [entry, reason] : failures_) {
+      if (entry.rule == "none") out += comment("No rule") + failure_entry(entry, reason);
+    }
+    for (const auto& [why, cases] : undecided_) {
+      const auto& [said, reason, target] = why;
+      out += comment("Not decided: " + said) + skip_entry(cases, reason, target);
+    }
+    return out;
+  }
+
+ private:
+  void take(const ImplementationRun& implementation, const CaseRun& one) {
+    const std::string target = run_.implementations.size() > 1 ? implementation.target : "";
+    if (one.owed || (one.undecided() && !one.expected_reason.empty())) {
+      std::vector<std::string>& cases =
+          undecided_[{what_was_missing(one.result.reason), one.expected_reason, target}];
+      if (cases.empty() || cases.back() != one.name) cases.push_back(one.name);
+    }
+    if (one.result.verdict != runner::CaseVerdict::kFail) return;
+    for (const runner::Failure& failure : one.result.failures) {
+      const std::optional<std::string> known = reason_of(known_, implementation, one, failure);
+      if (failure.weak || (!known && one.expectation == Expectation::kAsExpected)) continue;
+      const std::string rule = failure.requirements.empty() ? "none" : failure.requirements.front();
+      const std::string profile = one.profile == "paper" ? "" : one.profile;
+      failures_.insert(
+          {{rule, one.name, message_of(failure), target, profile}, known.value_or("")});
+    }
+  }
+
+  static std::string failure_entry(const Entry& entry, const std::string& reason) {
+    return fmt::format("- case: {}\n  requirement: {}\n  message: {}\n  reason: {}\n{}",
+                       entry.cases, entry.rule, yaml_text(entry.message), yaml_text(reason),
+                       limits(entry.target, entry.profile));
+  }
+
+  const SuiteRun& run_;
+  const report::KnownFailures& known_;
+  std::map<Entry, std::string> failures_;  // With their reasons.
+  std::map<std::tuple<std::string, std::string, std::string>, std::vector<std::string>> undecided_;
+};
+
+bool is_given_call(const SuiteCase& one, const trace::Line& line) {
+  const trace::Shape* shape = trace::Schema::get().find(line.message.name);
+  const bool under_test = std::any_of(
+      one.blank.nodes.begin(), one.blank.nodes.end(),
+      [&](const trace::NodeHeader& node) { return node.iut && node.name == line.node; });
+  return under_test && line.op == trace::Op::kGiven && shape && shape->app &&
+         shape->app->what == trace::AppWhat::kCall && line.message.name != "get_clock";
+}
+
+}  // namespace
+
+std::string known_list(const SuiteRun& run, const report::KnownFailures& known) {
+  return KnownList(run, known).text();
+}
+
+std::string list_to_begin_with(const Cases& cases, machine::Role role) {
+  std::map<std::string, std::vector<std::string>> by_call;
+  for (const SuiteCase& one : cases.all()) {
+    if (one.blank.roles != std::vector{role}) continue;
+    const std::vector<const trace::Line*> lines = one.one->lines();
+    const auto call = std::find_if(lines.begin(), lines.end(), [&](const trace::Line* line) {
+      return is_given_call(one, *line);
+    });
+    if (call != lines.end()) by_call[(*call)->message.name].push_back(one.blank.name);
+  }
+  std::string out =
+      "# What this adapter cannot do yet. Write it again as you go on, so that it shrinks:\n"
+      "# rubric test --target ... --expect known.yaml --write-expect known.yaml\n";
+  for (const auto& [call, names] : by_call) {
+    const std::string why = fmt::format("The node has no {}() yet.", call);
+    out += comment(why) + skip_entry(names, why, "");
+  }
+  return out;
+}
+
+}  // namespace rubric::suite

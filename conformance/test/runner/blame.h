@@ -1,0 +1,34 @@
+// Decides which rule a line that was not kept blames, by what the evidence shows.
+//
+// A line may name several rules. One of them is broken for sure, the others are suspected only.
+// Each rule of the table in blame.cc says what an output that breaks it looks like: an event is no
+// message that is sent again, an ack none that the application sent. The rule that fits best is
+// blamed; of several that fit alike the one that the line names first.
+//
+// After a node's first failure it is in another state than the case assumes, so that what it breaks
+// later in the case proves nothing: such failures are implied by the first.
+#pragma once
+
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "conformance/test/runner/run_case.h"
+
+namespace rubric::runner {
+
+/// Words for what was seen. Of a forbidden output its link ("radio", "serial", "peis", "app"), its
+/// message ("ack" for a net_msg that acks), its result ("success", "fail"), and whether the node
+/// emitted it before ("again", "new"). Of an output that did not come "missing"; or, if one came
+/// that was like it, "differs" and in what: "am", names of fields, "order".
+using Evidence = std::set<std::string, std::less<>>;
+
+/// Moves the rules of a line that are only suspected from the failure's requirements to
+/// `suspected`.
+void blame_one(Failure& failure, const Evidence& evidence);
+
+/// Marks the failures of each node that its first one implies. Failures are in the order of time.
+void mark_implied(std::vector<Failure>& failures);
+
+}  // namespace rubric::runner

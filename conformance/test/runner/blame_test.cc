@@ -1,0 +1,68 @@
+// Blame by evidence: one rule of a line, and what an earlier failure implies.
+#include "conformance/test/runner/blame.h"
+
+#include <gtest/gtest.h>
+
+namespace rubric::runner {
+namespace {
+
+using Rules = std::vector<std::string>;
+
+std::string blamed(Rules rules, const Evidence& evidence) {
+  Failure failure;
+  failure.requirements = std::move(rules);
+  const std::size_t all = failure.requirements.size();
+  blame_one(failure, evidence);
+  EXPECT_EQ(failure.requirements.size(), 1u);
+  EXPECT_EQ(failure.suspected.size(), all - 1);
+  EXPECT_EQ(failure.rules().size(), all);
+  return failure.requirements.front();
+}
+
+TEST(Blame, AnAckEventIsNoResend) {
+  const Rules rules = {"T3-RESEND", "T3-ONCE"};
+  EXPECT_EQ(blamed(rules, {"app", "ack_received", "fail", "again"}), "T3-ONCE");
+  EXPECT_EQ(blamed(rules, {"radio", "net_msg", "again"}), "T3-RESEND");
+  EXPECT_EQ(blamed({"T3-MATCH", "T3-TIMEOUT"}, {"app", "ack_received", "fail"}), "T3-TIMEOUT");
+}
+
+TEST(Blame, ByLinkAndRepetition) {
+  const Rules up = {"N8-INCOMING", "N8-PEIS", "T3-RESEND"};
+  EXPECT_EQ(blamed(up, {"peis", "net_msg", "new"}), "N8-PEIS");
+  EXPECT_EQ(blamed(up, {"serial", "net_msg", "new"}), "N8-INCOMING");
+  const Rules on = {"N6-ONCE", "N7-CONTENT"};
+  EXPECT_EQ(blamed(on, {"radio", "net_msg", "again"}), "N6-ONCE");
+  EXPECT_EQ(blamed(on, {"radio", "net_msg", "new"}), "N7-CONTENT");
+  EXPECT_EQ(blamed({"N2-ONCE", "T2-ONCE"}, {"radio", "ack", "again"}), "T2-ONCE");
+}
+
+TEST(Blame, WhatIsMissingHasNoContent) {
+  const Rules rules = {"J4-CONTENT", "J4-ACK"};
+  EXPECT_EQ(blamed(rules, {"missing"}), "J4-ACK");
+  EXPECT_EQ(blamed({"J4-ACK", "J4-CONTENT"}, {"differs", "dest"}), "J4-CONTENT");
+  EXPECT_EQ(blamed({"N1-ROOM", "N1-SEQ", "N2-QUEUE"}, {"missing"}), "N2-QUEUE");
+  const Rules reply = {"J3-REPLY", "J3-SEQ", "J3-ADDRESS", "J3-DEST"};
+  EXPECT_EQ(blamed(reply, {"differs", "seq_num"}), "J3-SEQ");
+  EXPECT_EQ(blamed(reply, {"differs", "am"}), "J3-DEST");
+  EXPECT_EQ(blamed(reply, {"missing"}), "J3-REPLY");
+}
+
+TEST(Blame, TheFirstOfThoseThatFitAlike) {
+  EXPECT_EQ(blamed({"S6-OTHERS", "S6-STOPPED"}, {"radio", "net_msg", "new"}), "S6-OTHERS");
+  Failure none;
+  blame_one(none, {"missing"});
+  EXPECT_TRUE(none.rules().empty());
+}
+
+TEST(Blame, LaterFailuresOfANodeAreImplied) {
+  std::vector<Failure> failures(5);
+  const char* const nodes[] = {"m5", "m5", "sA", "m5", "sA"};
+  for (std::size_t i = 0; i < failures.size(); ++i) failures[i].node = nodes[i];
+  failures[0].weak = true;
+  mark_implied(failures);
+  const bool implied[] = {false, false, false, true, true};
+  for (std::size_t i = 0; i < failures.size(); ++i) EXPECT_EQ(failures[i].implied, implied[i]) << i;
+}
+
+}  // namespace
+}  // namespace rubric::runner
