@@ -809,7 +809,7 @@ constexpr reflect::Requirement kRequirements[] = {
      "Release 1.0 has no power-save mode."},
     {"S1-CLOCK", "MUST", "synaptic, operations",
      "set_time_step sets the period of the clock, 500 ms by default.",
-     "paper: Synaptic Communication",
+     "paper: Synaptic Communication; decision 133",
      reflect::kRoleMote | reflect::kRoleSink, false, ""},
     {"S2-SEND", "MUST", "synaptic, clock",
      "At each tick every started output channel in reliable mode, but for a channel to "

@@ -11,6 +11,14 @@ inline constexpr std::int64_t kRadioByteUs = 32;  ///< 250 kbit/s. (IEEE 802.15.
 /// Bytes of a frame on the air around its payload: preamble, SFD, length, MAC header, type, FCS.
 inline constexpr std::int64_t kAroundBytes = 19;
 
+/// Returns how long a captured radio frame is on the air after its time, that is after its start.
+/// Its receivers have it then, not before, and their times count from there. 0 for all else: serial
+/// frames have the time of their end, and logs that of what the node did.
+inline std::int64_t air_us(const Observation& seen) {
+  if (seen.kind != Observation::Kind::kRadio || !seen.node.empty()) return 0;
+  return (static_cast<std::int64_t>(seen.frame.payload.size()) + kAroundBytes) * kRadioByteUs;
+}
+
 /// Returns whether the 802.15.4 acknowledgement of radio frame `index`, by its DSN, came 0 to 2.5
 /// ms after its end. It proves that *some* node of that address received it; its absence proves
 /// nothing.

@@ -13,6 +13,7 @@
 #include "conformance/check/finding.h"
 #include "conformance/machine/address.h"
 #include "conformance/machine/event.h"
+#include "conformance/trace/parameters.h"
 
 namespace rubric::check {
 
@@ -63,6 +64,8 @@ struct Options {
   bool deployed = false;          ///< The profile.
   bool sniffer_complete = false;  ///< Every frame on the air was captured.
   bool start_cold = false;        ///< Nothing had happened before the first frame.
+  /// Stated of every node; what logs state of theirs comes after it, then the profile.
+  trace::Statement stated = {};
   /// Stated response time (decision 125); unstated, the profile's.
   std::optional<std::int64_t> response_us;
   /// Stated ack timeout (decision 110); unstated, the profile's; where it has none, the paper's.
@@ -125,6 +128,8 @@ struct RunStorage;
 struct Run {
   std::vector<std::string> files;
   std::vector<LoggedNode> nodes;
+  /// What logs state of their nodes under test; `channels` are not seen.
+  trace::Statement stated = {};
   /// A log marks nodes as under test: the trace plays everybody else.
   bool marked = false;
   std::shared_ptr<RunStorage> storage;

@@ -39,7 +39,7 @@ trace::Header header_of(const NodePlan& plan) {
   if (plan.config.role != machine::Role::kBaseStation) node.id = plan.config.id;
   if (plan.config.role != machine::Role::kMote) node.island = plan.config.island;
   if (plan.config.profile.channels_max != machine::Profile{}.channels_max) {
-    node.channels = plan.config.profile.channels_max;
+    node.stated.push_back({trace::ParameterId::kChannels, plan.config.profile.channels_max});
   }
   node.iut = true;
   trace::Header header;

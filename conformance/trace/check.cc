@@ -48,7 +48,7 @@ class FileCheck {
  private:
   // The headers of a file or a case.
   struct Said {
-    bool version = false, profile = false, tick = false, seed = false;
+    bool version = false, profile = false, tick = false, seed = false, values = false;
     std::unordered_set<std::string> nodes, links;
   };
 
@@ -77,6 +77,7 @@ class FileCheck {
     if (std::holds_alternative<ProfileHeader>(header.what)) once(said.profile, header, "%profile");
     if (std::holds_alternative<TickHeader>(header.what)) once(said.tick, header, "%tick");
     if (std::holds_alternative<SeedHeader>(header.what)) once(said.seed, header, "%seed");
+    if (std::holds_alternative<ForHeader>(header.what)) once(said.values, header, "%for");
     if (const auto* node = std::get_if<NodeHeader>(&header.what)) {
       if (!said.nodes.insert(node->name).second) {
         report_(header.place, "node " + quoted(node->name) + " is said twice");
@@ -102,7 +103,9 @@ class FileCheck {
       report_(place, "a mote has no island of its own: " + quoted(node.name) + " joins one");
     }
     if (node.id && base) report_(place, "a base station has no TinyOS id");
-    if (node.channels && base) report_(place, "a base station has no synaptic channels");
+    if (find(node.stated, ParameterId::kChannels) && base) {
+      report_(place, "a base station has no synaptic channels");
+    }
   }
 
   void link_nodes(const std::vector<Item>& items, const Scope& scope) {
@@ -155,16 +158,19 @@ class FileCheck {
       report_(line.place, "no line above has the label " + quoted(time.label));
     }
     if (time.base == Time::Base::kStart && time.exact()) {
-      if (time.from < latest) {
+      if (time.from_terms.empty() && time.from < latest) {
         report_(line.place,
                 "time goes back, from @" + std::to_string(latest) + " to " + print(time));
       }
-      latest = std::max(latest, time.from);
+      if (time.from_terms.empty()) latest = std::max(latest, time.from);
     }
     if (line.op == Op::kGiven && !time.exact() && time.base != Time::Base::kStart) {
       report_(line.place, "a window where something is given at one time: " + print(time));
     }
     if (line.label.empty()) return;
+    if (find_parameter(line.label)) {
+      report_(line.place, "label " + quoted(line.label) + " is the name of a parameter");
+    }
     if (line.op == Op::kMustNot) {
       report_(line.place, "label " + quoted(line.label) + " at what does not happen");
     }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -44,5 +45,10 @@ inline bool set_seed_if_none(File& file, const Case& one, std::uint64_t seed) {
   file.header({SeedHeader{seed}, {}, {}});
   return true;
 }
+
+/// Makes the nodes under test of a case state these, too. Returns what contradicts: a node of which
+/// the trace states something else ("the case is for members=20, and members=8 is stated"); or
+/// nothing. A case that creates more channels than are stated contradicts, too.
+std::string state(File& file, Case& one, const Statement& statement);
 
 }  // namespace rubric::trace

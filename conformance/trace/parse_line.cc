@@ -22,13 +22,63 @@ std::int64_t ticks(Scanner& in, std::string_view text) {
   return number;
 }
 
-// Reads `12` or `0..50`.
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+constexpr std::int64_t kFactorMax = 1000;
+
+// Reads `response` or `4*join_period`.
+Term term(Scanner& in, std::string_view text) {
+  Term out;
+  std::string_view name = text;
+  if (const std::size_t star = text.find('*'); star != std::string_view::npos) {
+    out.factor = ticks(in, text.substr(0, star));
+    if (out.factor > kFactorMax) {
+      in.fail_at(text, "expected a factor from 0 to " + std::to_string(kFactorMax) + ", given " +
+                           quoted(text));
+    }
+    name = text.substr(star + 1);
+  }
+  const Parameter* const known = find_parameter(name);
+  if (!known) {
+    in.fail_at(text, "expected ticks or a parameter, given " + quoted(name) + "; known are " +
+                         parameter_names());
+  }
+  out.parameter = known->id;
+  return out;
+}
+
+// Reads `12`, or parameters with a number before or after them: `join_period+response-1`. Returns
+// the number.
+std::int64_t amount(Scanner& in, const std::string_view text, std::vector<Term>& terms) {
+  std::int64_t number = 0;
+  bool numbered = false;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::int64_t sign = at > 0 && text[at - 1] == '-' ? -1 : 1;
+    const std::size_t end = std::min(text.find_first_of("+-", at), text.size());
+    const std::string_view word = text.substr(at, end - at);
+    if (!std::all_of(word.begin(), word.end(), is_digit)) {
+      terms.push_back(term(in, word));
+      terms.back().factor *= sign;
+    } else if (numbered || word.empty() || (at > 0 && end < text.size())) {
+      in.fail_at(text, "expected a time in ticks, given " + quoted(text));
+    } else {
+      number = sign * ticks(in, word);
+      numbered = true;
+    }
+    at = end + 1;
+  }
+  return number;
+}
+
+// Reads `12`, `0..50` or `0..response+50`.
 void window(Scanner& in, std::string_view text, Time& time) {
   const std::size_t dots = text.find("..");
-  time.from = time.to = ticks(in, text.substr(0, dots));
+  time.from = time.to = amount(in, text.substr(0, dots), time.from_terms);
+  time.to_terms = time.from_terms;
   if (dots == std::string_view::npos) return;
-  time.to = ticks(in, text.substr(dots + 2));
-  if (time.to < time.from) {
+  time.to_terms.clear();
+  time.to = amount(in, text.substr(dots + 2), time.to_terms);
+  if (time.from_terms == time.to_terms && time.to < time.from) {
     in.fail_at(text, "the window " + quoted(text) + " ends before it begins");
   }
 }
@@ -40,12 +90,12 @@ Time parse_time(Scanner& in) {
   if (text[0] == '@') {
     time.base = Time::Base::kStart;
     text.remove_prefix(1);
-  } else if (const std::size_t plus = text.find('+'); plus != std::string_view::npos) {
+  } else if (const std::string_view word = text.substr(0, text.find_first_of("+-.*"));
+             is_name(word) && !find_parameter(word) && text.substr(word.size()).starts_with('+')) {
     time.base = Time::Base::kLabel;
-    time.label = text.substr(0, plus);
-    if (!is_name(time.label)) in.fail_at(text, "expected a label before '+'");
-    text.remove_prefix(plus + 1);
-  } else if (is_name(text)) {
+    time.label = word;
+    text.remove_prefix(word.size() + 1);
+  } else if (is_name(text) && !find_parameter(text)) {
     in.fail_at(text, "expected a time; " + quoted(text) +
                          " wants '+' and ticks as a time, or "
                          "':' as a label");
@@ -274,15 +324,6 @@ std::uint16_t small_number(Scanner& in, std::string_view text, const char* what)
   return static_cast<std::uint16_t>(number);
 }
 
-std::uint8_t channel_count(Scanner& in, std::string_view text) {
-  std::int64_t number = 0;
-  if (!read_integer(text, number) || number < 1 || number > kChannelsMax) {
-    in.fail_at(text, "expected a number of channels from 1 to " + std::to_string(kChannelsMax) +
-                         ", given " + quoted(text));
-  }
-  return static_cast<std::uint8_t>(number);
-}
-
 NodeHeader parse_node(Scanner& in) {
   NodeHeader node;
   std::string_view word = header_word(in);
@@ -303,10 +344,12 @@ NodeHeader parse_node(Scanner& in) {
       node.id = small_number(in, word.substr(3), "a TinyOS id");
     } else if (word.starts_with("island=") && !node.island) {
       node.island = small_number(in, word.substr(7), "an island");
-    } else if (word.starts_with("channels=") && !node.channels) {
-      node.channels = channel_count(in, word.substr(9));
-    } else {
-      in.fail_at(word, "expected id=, island=, channels= or iut, each once, given " + quoted(word));
+    } else if (word == "iut" || word.starts_with("id=") || word.starts_with("island=") ||
+               word.find('=') == std::string_view::npos) {
+      in.fail_at(word,
+                 "expected id=, island=, a parameter or iut, each once, given " + quoted(word));
+    } else if (const std::string wrong = add_stated(word, node.stated); !wrong.empty()) {
+      in.fail_at(word, wrong);
     }
   }
   return node;
@@ -363,14 +406,24 @@ void parse_what(Scanner& in, Header& header) {
     std::int64_t seed = 0;
     if (!read_integer(word, seed) || seed < 0) in.fail_at(word, "expected a seed, a number");
     header.what = SeedHeader{static_cast<std::uint64_t>(seed)};
+  } else if (keyword == "%for") {
+    ForHeader values;
+    std::string_view word = header_word(in);
+    do {
+      if (const std::string wrong = add_stated(word, values.values); !wrong.empty()) {
+        in.fail_at(word, wrong);
+      }
+    } while (!(word = header_word(in)).empty());
+    header.what = std::move(values);
   } else if (keyword == "%note") {
     const std::string_view text = in.rest();
     in.advance(text.size());
     if (trimmed(text).empty()) in.fail("expected the text of the note");
     header.what = NoteHeader{std::string(trimmed(text))};
   } else {
-    in.fail_at(keyword, "expected %rtr, %profile, %tick, %node, %link, %seed or %note, given " +
-                            quoted(keyword));
+    in.fail_at(keyword,
+               "expected %rtr, %profile, %tick, %node, %link, %seed, %for or %note, given " +
+                   quoted(keyword));
   }
 }
 

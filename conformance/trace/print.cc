@@ -21,11 +21,31 @@ void put_comment(const std::string& comment, std::string& out) {
   if (!comment.empty()) out += "  ; " + comment;
 }
 
+void put_amount(std::int64_t ticks, const std::vector<Term>& terms, std::string& out) {
+  const bool number_first = terms.empty() || terms.front().factor < 0;
+  if (number_first) out += std::to_string(ticks);
+  for (const Term& term : terms) {
+    if (term.factor < 0) {
+      out += '-';
+    } else if (number_first || &term != &terms.front()) {
+      out += '+';
+    }
+    const std::int64_t times = term.factor < 0 ? -term.factor : term.factor;
+    if (times != 1) out += std::to_string(times) + '*';
+    out += parameter(term.parameter).name;
+  }
+  if (number_first || ticks == 0) return;
+  if (ticks > 0) out += '+';
+  out += std::to_string(ticks);
+}
+
 void put_time(const Time& time, std::string& out) {
   if (time.base == Time::Base::kStart) out += '@';
   if (time.base == Time::Base::kLabel) out += time.label + '+';
-  out += std::to_string(time.from);
-  if (!time.exact()) out += ".." + std::to_string(time.to);
+  put_amount(time.from, time.from_terms, out);
+  if (time.exact()) return;
+  out += "..";
+  put_amount(time.to, time.to_terms, out);
 }
 
 struct HeaderText {
@@ -35,12 +55,13 @@ struct HeaderText {
   void operator()(const ProfileHeader& h) const { out += "%profile " + h.name; }
   void operator()(const TickHeader& h) const { out += "%tick " + std::string(tick_text(h.tick)); }
   void operator()(const SeedHeader& h) const { out += "%seed " + std::to_string(h.seed); }
+  void operator()(const ForHeader& h) const { out += "%for " + statement_text(h.values); }
   void operator()(const NoteHeader& h) const { out += "%note " + h.text; }
   void operator()(const NodeHeader& h) const {
     out += "%node " + h.name + ' ' + std::string(role_text(h.role));
     if (h.id) out += " id=" + std::to_string(*h.id);
     if (h.island) out += " island=" + std::to_string(*h.island);
-    if (h.channels) out += " channels=" + std::to_string(*h.channels);
+    if (!h.stated.empty()) out += ' ' + statement_text(h.stated);
     if (h.iut) out += " iut";
   }
   void operator()(const LinkHeader& h) const {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "codec/runtime/rule.h"
+#include "conformance/trace/parameters.h"
 
 namespace rubric::trace {
 
@@ -143,7 +144,15 @@ enum class Op : std::uint8_t {
 std::string_view op_text(Op op);
 constexpr bool is_fault(Op op) { return op == Op::kLost || op == Op::kDup; }
 
-/// A time in ticks of the file: exactly `from`, or from `from` to `to`, both included.
+/// `4*join_period` in a time: so many times a parameter of the line's node.
+struct Term {
+  std::int64_t factor = 1;  ///< Below 0 after a minus sign.
+  ParameterId parameter = ParameterId::kResponse;
+  friend bool operator==(const Term&, const Term&) = default;
+};
+
+/// A time in ticks of the file: exactly `from`, or from `from` to `to`, both included. Parameters
+/// come on top of these.
 struct Time {
   enum class Base : std::uint8_t {
     kPrevious,  ///< `5`, `0..50`: after the line that was matched last.
@@ -154,13 +163,15 @@ struct Time {
   std::int64_t from = 0;
   std::int64_t to = 0;
   std::string label;
+  std::vector<Term> from_terms = {};
+  std::vector<Term> to_terms = {};
 
   static Time at(std::int64_t ticks) { return {Base::kStart, ticks, ticks, {}}; }
   static Time after(std::int64_t ticks) { return {Base::kPrevious, ticks, ticks, {}}; }
   static Time after(std::string_view label, std::int64_t from, std::int64_t to) {
     return {Base::kLabel, from, to, std::string(label)};
   }
-  bool exact() const { return from == to; }
+  bool exact() const { return from == to && from_terms == to_terms; }
   friend bool operator==(const Time&, const Time&) = default;
 };
 
@@ -204,17 +215,13 @@ struct TickHeader {
   Tick tick = Tick::kBinaryMs;
   friend bool operator==(const TickHeader&, const TickHeader&) = default;
 };
-/// The most synaptic channels of a direction that a node may state (decision 129).
-constexpr std::uint8_t kChannelsMax = 8;
-
 struct NodeHeader {
   std::string name;
   Role role = Role::kMote;
   std::optional<std::uint16_t> id;      ///< TinyOS id; motes and sinks have one.
   std::optional<std::uint16_t> island;  ///< For sinks and base stations when they start.
   bool iut = false;                     ///< Under test.
-  /// Synaptic channels of each direction, from 1 to kChannelsMax; else the profile's (S1-LIMIT).
-  std::optional<std::uint8_t> channels = {};
+  Statement stated = {};                ///< Other parameters are the profile's.
   friend bool operator==(const NodeHeader&, const NodeHeader&) = default;
 };
 struct LinkHeader {
@@ -227,13 +234,18 @@ struct SeedHeader {
   std::uint64_t seed = 0;
   friend bool operator==(const SeedHeader&, const SeedHeader&) = default;
 };
+/// Implementations that state other values are not tried by the case.
+struct ForHeader {
+  Statement values;
+  friend bool operator==(const ForHeader&, const ForHeader&) = default;
+};
 struct NoteHeader {
   std::string text;
   friend bool operator==(const NoteHeader&, const NoteHeader&) = default;
 };
 struct Header {
   std::variant<VersionHeader, ProfileHeader, TickHeader, NodeHeader, LinkHeader, SeedHeader,
-               NoteHeader>
+               ForHeader, NoteHeader>
       what;
   std::string comment;  ///< Not of a note, which is text to the end of its line.
   Place place;

@@ -17,6 +17,7 @@
 #include "tools/commands/check_news.h"
 #include "tools/commands/check_options.h"
 #include "tools/commands/commands.h"
+#include "tools/commands/stated.h"
 #include "tools/encode/packet_output.h"
 
 namespace rubric::tools {
@@ -131,6 +132,7 @@ void add_options(cli::Command& command, CheckOptions& options) {
                   "Say that nothing had happened before the first frame: cold, else unknown")
       .one_of({"cold", "unknown"})
       .show_default();
+  add_state_option(command, options.stated);
   command
       .add_option("--response", options.response_ms,
                   "Give nodes this many ms to react (default: the profile's 300 ticks, 293 ms)")

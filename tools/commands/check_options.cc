@@ -14,6 +14,7 @@
 #include "tools/cli/color.h"
 #include "tools/cli/terminal.h"
 #include "tools/cli/verdict.h"
+#include "tools/commands/stated.h"
 
 namespace rubric::tools {
 namespace {
@@ -94,6 +95,7 @@ check::Options oracle_options(const CheckOptions& options) {
   out.response_us = microseconds(options.response_ms);
   out.ack_timeout_us = microseconds(options.ack_timeout_ms);
   out.skew_us = microseconds(options.skew_ms).value_or(out.skew_us);
+  out.stated = statement_of(options.stated);
   out.nodes = known_nodes(options);
   for (const std::string& text : options.testers) out.testers.push_back(address("--tester", text));
   return out;
@@ -148,6 +150,10 @@ check::ReadAs read_as(const CheckOptions& options) {
   if (format == "hex-radio") out.hex_framing = Framing::kRadio;
   out.align.enabled = options.align == "auto";
   out.align.skew_us = microseconds(options.skew_ms).value_or(out.align.skew_us);
+  const trace::Statement stated = statement_of(options.stated);
+  if (const std::int64_t* const ticks = find(stated, trace::ParameterId::kResponse)) {
+    out.align.response_us = machine::us_of(static_cast<machine::Ticks>(*ticks));
+  }
   out.align.response_us = microseconds(options.response_ms).value_or(out.align.response_us);
   return out;
 }
@@ -174,6 +180,7 @@ std::string command_of(const CheckOptions& options) {
   if (options.sniffer != "unknown") add("--sniffer", options.sniffer);
   if (options.start != "unknown") add("--start", options.start);
   for (const std::string& tester : options.testers) add("--tester", tester);
+  for (const std::string& one : options.stated) add("--state", one);
   if (options.response_ms) add("--response", fmt::format("{}", *options.response_ms));
   if (options.ack_timeout_ms) add("--ack-timeout", fmt::format("{}", *options.ack_timeout_ms));
   if (options.skew_ms) add("--skew", fmt::format("{}", *options.skew_ms));

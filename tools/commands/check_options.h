@@ -31,6 +31,7 @@ struct CheckOptions {
   std::vector<std::string> sinks;
   std::vector<std::string> frames;
   std::vector<std::string> testers;
+  std::vector<std::string> stated;
   std::optional<double> response_ms;
   std::optional<double> ack_timeout_ms;
   std::optional<double> skew_ms;

@@ -15,6 +15,7 @@
 #include "tools/cli/command.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/input.h"
+#include "tools/commands/stated.h"
 
 namespace rubric::tools {
 
@@ -26,6 +27,7 @@ void add_player_options(cli::Command& app, PlayerOptions& options) {
                  "Wait at most this many seconds for an answer")
       .between(0.01, 3600.0)
       .show_default();
+  add_state_option(app, options.stated);
   app.add_option("--seed", options.seed, "Seed what is random in nodes, where a trace has no seed")
       .check(cli::whole_number)
       .between(std::uint64_t{0}, suite::kSeedMax);
@@ -59,13 +61,15 @@ AttachedPlayer::AttachedPlayer(const std::string& target, const PlayerOptions& o
                                std::string profile)
     : profile_(std::move(profile)) {
   targets::Options how;
+  how.stated = statement_of(options.stated);
   how.step_timeout = std::chrono::milliseconds(static_cast<int>(options.timeout_seconds * 1000));
   attachment_ = targets::attach(target, how);
   suite::require_honest(*attachment_, target);
 }
 
 shrink::Player AttachedPlayer::player() {
-  return {[this](const trace::NodeHeader&) { return attachment_->target(); }, profile_};
+  return {[this](const trace::NodeHeader&) { return attachment_->target(); }, profile_,
+          attachment_->identity().stated};
 }
 
 std::string AttachedPlayer::name() {

@@ -18,10 +18,11 @@ namespace rubric::tools {
 struct PlayerOptions {
   std::string out = "-";  ///< The trace's destination.
   double timeout_seconds = 5;
+  std::vector<std::string> stated;
   std::optional<std::uint64_t> seed;  ///< For the nodes, if a trace has none.
 };
 
-/// Adds --out, --timeout and --seed, and the exit codes of verdicts.
+/// Adds --out, --timeout, --state and --seed, and the exit codes of verdicts.
 void add_player_options(cli::Command& app, PlayerOptions& options);
 
 /// Runs `work`; prints its exceptions on stderr and turns them into exit codes: 2 the kit or an

@@ -63,8 +63,9 @@ std::optional<Failing> find_failing(const suite::Cases& cases, const ShrinkOptio
   return std::nullopt;
 }
 
-// Returns the reference machine and its legal variants, as far as they pass a trace.
-std::vector<shrink::Player> references(const trace::File& file) {
+// Returns the reference machine and its legal variants, as far as they pass a trace with what is
+// stated.
+std::vector<shrink::Player> references(const trace::File& file, const trace::Statement& stated) {
   std::vector<runner::SubjectFactory> all = {[] { return std::make_unique<runner::Machine>(); }};
   for (const mutants::LegalVariant& one : mutants::legal_variants()) {
     all.push_back(mutants::wrapped(one.step));
@@ -74,7 +75,7 @@ std::vector<shrink::Player> references(const trace::File& file) {
     const shrink::Player player{[make](const trace::NodeHeader&) {
                                   return std::make_unique<runner::SubjectTarget>(make());
                                 },
-                                ""};
+                                "", stated};
     if (passes(shrink::play(file, player))) out.push_back(player);
   }
   return out;
@@ -93,7 +94,8 @@ void shrink_it(const ShrinkOptions& options) {
     cli::exit_with(cli::kVerdictInconclusive);
   }
   const trace::Case& one = found->file.cases.at(0);
-  const auto shows = shrink::fails_alike(found->result, player, references(found->file));
+  const auto shows =
+      shrink::fails_alike(found->result, player, references(found->file, player.stated));
   const shrink::Shrunk shrunk = shrink::shrink(found->file, one, shows);
   const std::string& name = one.name;
   if (shrunk.lines_before == 0) {

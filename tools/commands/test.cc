@@ -30,6 +30,7 @@
 #include "tools/cli/terminal.h"
 #include "tools/cli/verdict.h"
 #include "tools/commands/commands.h"
+#include "tools/commands/stated.h"
 
 namespace rubric::tools {
 namespace {
@@ -74,6 +75,7 @@ struct TestOptions {
   std::uint32_t repeats = 1;
   unsigned jobs = 1;
   double timeout_s = 5;
+  std::vector<std::string> stated;
   std::string expect;
   std::string write_expect;
   std::size_t rules_required = 0;
@@ -222,6 +224,7 @@ suite::SuiteRun work(const TestOptions& options, const suite::Cases& cases, suit
   targets::Options attached;
   attached.step_timeout = Milliseconds(static_cast<std::int64_t>(options.timeout_s * 1000));
   attached.start_timeout = std::max(attached.start_timeout, attached.step_timeout);
+  attached.stated = statement_of(options.stated);
   attached.app = options.app;
   const std::size_t worked = plan.cases.size() * plan.repeats;
   cli::Progress progress(worked * options.targets.size(), true, cli::Progress::Unit::kCases);
@@ -278,6 +281,7 @@ int run_test(const TestOptions& options) {
   plan.cases = selected(options, cases);
   if (options.list) return list(options, plan.cases);
   if (options.targets.empty()) throw cli::UsageError("--target is required");
+  statement_of(options.stated);
   for (const std::string& target : options.targets) {
     try {
       targets::Options attached;
@@ -340,6 +344,7 @@ void add_options(cli::Command& command, TestOptions& options) {
       .add_option("--profile", options.profile,
                   "Tell nodes to keep to paper or deployed, whatever the traces say")
       .one_of({"paper", "deployed"});
+  add_state_option(command, options.stated);
   command
       .add_option("--seed", options.seed,
                   "Seed what is random in nodes, where a trace has no seed; 0 to 65535")

@@ -310,6 +310,24 @@ class Expectations(Folder):
 
 
 class Inputs(Folder):
+    def rules(self, *args):
+        return [finding["requirement"] for finding in failures(as_json(*args))]
+
+    def test_stated(self):
+        """A mote whose join timer is longer or shorter than the profile's."""
+        lines = "".join(f"  @{t} m5 > rA am=5->1 join_request(seq_num=7 mote_type=telosb_demo "
+                        "transducers=light actuators=led)\n" for t in (0, 300, 600))
+        head = "%rtr 1\n%node m5 mote id=5{} iut\n%node sA sink id=1 island=11\ncase run\n"
+        plain = self.write("plain.rtr", head.format("") + lines)
+        stated = self.write("stated.rtr", head.format(" join_period=300") + lines)
+        self.assertEqual(self.rules(plain), ["J8-PERIOD"])
+        self.assertEqual(self.rules(plain, "--state", "join_period=300"), [])
+        self.assertEqual(self.rules(stated), [])
+        self.assertEqual(self.rules(stated, "--state", "join_period=400"), ["J8-PERIOD"])
+        code, _, err = check(plain, "--state", "join_perod=300")
+        self.assertEqual(code, 64)
+        self.assertIn("known are response, join_period", " ".join(err.split()))
+
     def test_exit_codes(self):
         self.assertEqual(check(CLEAN)[0], 0)
         self.assertEqual(check(WRONG_SEQ)[0], 1)

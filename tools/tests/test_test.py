@@ -116,6 +116,46 @@ class Running(Folder):
         self.assertIn(f"line 5 of {trace}", out)
         self.assertIn(f"--cases own.clock {trace}\n", out)
 
+    def test_what_is_stated_moves_the_windows(self):
+        """A mote with timers of its own passes when it states them, in hello or by --state."""
+        slow = self.mote_with("JOIN_PERIOD = 500", "JOIN_PERIOD = 1024")
+        some = ["--role", "mote", "--requirement", "J", "--quiet"]
+        self.assertEqual(test("--target", slow, *some)[0], 1)
+        code, out, _ = test("--target", slow, "--state", "join_period=1024", *some)
+        self.assertEqual(code, 0, out)
+        self.assertIn("; states join_period=1024", " ".join(out.split()))
+        states = (self.folder / "mote/adapter.py")
+        states.write_text(states.read_text().replace("virtual", "virtual join_period=1024"))
+        self.assertEqual(test("--target", slow, *some)[0], 0)
+        # What is said here counts more than hello, and nobody may state what he does not keep.
+        code, out, _ = test("--target", slow, "--state", "join_period=500", *some)
+        self.assertEqual(code, 1)
+        code, out, _ = test("--target", HONEST, "--state", "ack_timeout=2000", "--cases",
+                            "t3.timeout")
+        self.assertEqual(code, 1)
+        self.assertIn("T3-TIMEOUT", out)
+        self.assertEqual(test("--target", "machine", "--state", "ack_timeout=2000", "--state",
+                              "response=350")[0], 0)
+
+    def test_stated_values_that_a_case_is_not_for(self):
+        out = test("--target", "machine", "--state", "join_requests=7", "--cases", "j8.*")[1]
+        self.assertRegex(" ".join(out.split()),
+                         r"skip j8\.at_most_five the case is for join_requests=5")
+        code, out, _ = test("--target", "machine", "--state", "channels=1", "--requirement", "S")
+        self.assertEqual(code, 0, out)
+        self.assertIn("the case is for channels=2, and channels=1 is stated", " ".join(out.split()))
+
+    def test_statements_that_make_no_sense(self):
+        for word, why in (("ack_timout=2000", "known are response, join_period, join_requests"),
+                          ("response=0", "expected response from 1 to 65535 ticks"),
+                          ("response", "expected response from 1 to 65535 ticks")):
+            code, _, err = test("--target", "machine", "--state", word)
+            self.assertEqual(code, 64, word)
+            self.assertIn(why, " ".join(err.split()))
+        code, _, err = test("--target", "machine", "--state", "response=9", "--state", "response=9")
+        self.assertEqual(code, 64)
+        self.assertIn("response is stated twice", err)
+
     def test_several_targets(self):
         code, out, _ = test("--target", "machine", "--target", self.impatient_mote(),
                             "--requirement", "J8")

@@ -6,6 +6,7 @@
 #include "conformance/trace/encode.h"
 #include "conformance/trace/events/app_events.h"
 #include "conformance/trace/parse.h"
+#include "conformance/trace/print.h"
 
 namespace rubric::check {
 namespace {
@@ -33,6 +34,7 @@ class LogReader {
     bool applications = false;
     for (const trace::NodeHeader& header : scope_.nodes) marked = marked || header.iut;
     for (const trace::NodeHeader& header : scope_.nodes) {
+      if (!marked || header.iut) take_statement(header);
       LoggedNode node;
       node.name = header.name;
       node.role = role_of(header.role);
@@ -61,6 +63,20 @@ class LogReader {
   }
 
  private:
+  // One statement holds for all nodes of a run. The number of channels is each node's own, and is
+  // not judged.
+  void take_statement(const trace::NodeHeader& node) {
+    for (const trace::Stated& one : node.stated) {
+      if (one.id == trace::ParameterId::kChannels) continue;
+      const std::int64_t* const said = find(run_.stated, one.id);
+      if (said && *said != one.value) {
+        throw trace::TraceError(
+            {}, "nodes state different values of " + std::string(trace::parameter(one.id).name));
+      }
+      if (!said) run_.stated.push_back(one);
+    }
+  }
+
   // Returns whether the line is about the link itself, not a frame.
   static bool is_state(const Line& line) {
     const std::string& name = line.message.name;
@@ -68,6 +84,9 @@ class LogReader {
   }
 
   std::int64_t time_of(const Line& line) {
+    if (!line.time.from_terms.empty()) {
+      throw trace::TraceError(line.place, "a log has times in ticks, not " + print(line.time));
+    }
     std::int64_t ticks = line.time.from;
     if (line.time.base == trace::Time::Base::kPrevious) ticks += last_ticks_;
     if (line.time.base == trace::Time::Base::kLabel) ticks += labels_[line.time.label];

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "conformance/check/judge/peis_watch.h"
+#include "conformance/check/links.h"
 #include "conformance/machine/transport.h"
 
 namespace rubric::check {
@@ -27,6 +28,7 @@ void Acks::arrived(std::uint16_t node, const Observation& seen, std::uint16_t se
   Arrived arrived;
   arrived.net = net;
   arrived.place = seen.place;
+  arrived.whole_us = seen.place.time_us + air_us(seen);
   arrived.sender = sender;
   arrived.forbidden = net.sound ? arrival.forbidden : "N11-NBYTES"_rule;
   arrived.weak = net.sound && arrival.weak;
@@ -227,7 +229,7 @@ void Acks::showed_life(std::uint16_t node, std::int64_t now_us) {
   for (std::size_t i = 0; i < ring.size(); ++i) {
     Arrived& arrived = ring.newest(i);
     if (!arrived.must_ack || !arrived.sure || arrived.acks > 0) continue;
-    if (now_us - arrived.place.time_us <= context_.response_us()) continue;
+    if (now_us - arrived.whole_us <= context_.response_us()) continue;
     --owed_[node];
     arrived.must_ack = false;
     const Device& device = context_.device(node);

@@ -13,9 +13,10 @@
 // several, to one that still waits for an ack. A message that reached the application has arrived,
 // whatever was open before.
 //
-// Tolerance: an ack is due within the response time (decision 125); one after the sender's timeout
-// is weak. A repetition by the link is one reception or two, so one ack or two are right (decision
-// 111). A node may ack a message that it is free to ignore, and must if it delivers it.
+// Tolerance: an ack is due within the response time (decision 125) after the message's end; one
+// after the sender's timeout is weak. A repetition by the link is one reception or two, so one ack
+// or two are right (decision 111). A node may ack a message that it is free to ignore, and must if
+// it delivers it.
 //
 // Cannot know: whether a message arrived that nothing proves to have arrived; whether an ack
 // escaped the sniffer; which of two messages with one source and number an ack means; whether a
@@ -45,6 +46,7 @@ namespace rubric::check {
 struct Arrived {
   Net net;
   Place place;
+  std::int64_t whole_us = -1;      ///< When the receiver has it whole.
   std::uint16_t sender = kNobody;  ///< The node that sent it on its last hop.
   ReqId forbidden = ReqId::kNone;  ///< Acking or delivering it breaks this rule.
   bool weak = false;

@@ -210,6 +210,12 @@ std::int64_t Context::ack_timeout_us() const {
   return machine::us_of(own != 0 ? own : machine::Profile{}.ack_timeout_ticks);
 }
 
+bool Context::ack_timeout_stated() const {
+  constexpr auto kAckTimeout = trace::ParameterId::kAckTimeout;
+  return options.ack_timeout_us.has_value() || find(options.stated, kAckTimeout) ||
+         find(run.stated, kAckTimeout);
+}
+
 Severity Context::without(std::uint16_t cause, std::int64_t from_us, std::int64_t to_us) const {
   return who.maybe_unseen(cause, from_us, to_us, options) ? Severity::kInconclusive
                                                           : Severity::kFail;

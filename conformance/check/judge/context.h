@@ -72,6 +72,7 @@ struct Context {
     return options.response_us.value_or(machine::us_of(profile().response_ticks)) + run.slack_us;
   }
   std::int64_t ack_timeout_us() const;
+  bool ack_timeout_stated() const;
   machine::JoinContext join_context(std::uint16_t id, std::uint16_t island,
                                     std::int64_t now_us) const {
     return {profile(), id, island, 0, machine::ticks_of(now_us)};

@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "conformance/generated/profiles.h"
+#include "conformance/trace/events/parameters.h"
 
 namespace rubric::check {
 namespace {
@@ -18,11 +19,14 @@ const machine::NamedProfile& named(bool deployed) {
 
 }  // namespace
 
-Findings::Findings(bool deployed, const std::vector<ClockStep>& steps)
+Findings::Findings(bool deployed, const std::vector<ClockStep>& steps,
+                   const trace::Statement& stated)
     : profile_(named(deployed).profile),
       steps_(steps),
       deployed_(deployed),
-      kept_(reflect::requirements().size()) {}
+      kept_(reflect::requirements().size()) {
+  events::state(profile_, stated);
+}
 
 bool Findings::accepted(ReqId requirement) const {
   for (const machine::AcceptedDifference& difference : named(deployed_).accepted) {

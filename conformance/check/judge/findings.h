@@ -9,13 +9,14 @@
 #include "conformance/check/finding.h"
 #include "conformance/check/observation.h"
 #include "conformance/machine/profile.h"
+#include "conformance/trace/parameters.h"
 
 namespace rubric::check {
 
 class Findings {
  public:
   /// No episode goes on across one of `steps`.
-  Findings(bool deployed, const std::vector<ClockStep>& steps);
+  Findings(bool deployed, const std::vector<ClockStep>& steps, const trace::Statement& stated = {});
 
   /// Adds a finding. Repeats of a rule by a node within 600 ms of the last one are one episode. A
   /// difference that the profile accepts becomes a note.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "conformance/check/links.h"
+
 namespace rubric::check {
 namespace {
 
@@ -96,6 +98,7 @@ void Forwarding::heard_on_radio(const Observation& seen, std::uint16_t sender, c
     Passing passing;
     passing.net = net;
     passing.place = seen.place;
+    passing.whole_us = seen.place.time_us + air_us(seen);
     passing.order = ++line.order;
     passing.sender = sender;
     const bool onward = route.onward == Route::Onward::kSerial;
@@ -150,6 +153,7 @@ void Forwarding::heard_on_serial(std::uint16_t sink, std::uint16_t base, const O
   Passing passing;
   passing.net = net;
   passing.place = seen.place;
+  passing.whole_us = seen.place.time_us + air_us(seen);
   passing.order = ++line->order;
   passing.sender = base;
   passing.am_dest = onward ? route.am_dest : net.dest.devid;

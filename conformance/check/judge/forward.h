@@ -15,7 +15,8 @@ namespace rubric::check {
 struct Passing {
   Net net;
   Place place;
-  std::uint64_t order = 0;  ///< Counts arrivals at the sink.
+  std::int64_t whole_us = -1;  ///< When the sink has it whole.
+  std::uint64_t order = 0;     ///< Counts arrivals at the sink.
   std::uint16_t sender = kNobody;
   std::uint16_t am_dest = 0;       ///< The radio frame's destination.
   ReqId forbidden = ReqId::kNone;  ///< Passing it on breaks this rule.

@@ -170,7 +170,7 @@ void Forwarding::overdue_up(Line& line, std::int64_t now_us) {
   if (now_us < 0) return;
   for (std::size_t i = 0; i < line.up.size(); ++i) {
     Passing& passing = line.up.oldest(i);
-    if (!passing.owed || now_us - passing.place.time_us <= context_.response_us()) continue;
+    if (!passing.owed || now_us - passing.whole_us <= context_.response_us()) continue;
     passing.owed = false;
     --line.owed_up;
     if (busy(line, passing.place.time_us)) continue;
@@ -193,7 +193,7 @@ void Forwarding::overdue_down(Line& line, std::int64_t now_us) {
   if (now_us < 0) return;
   for (std::size_t i = 0; i < line.down.size(); ++i) {
     Passing& passing = line.down.oldest(i);
-    if (!passing.owed || now_us - passing.place.time_us <= context_.response_us()) continue;
+    if (!passing.owed || now_us - passing.whole_us <= context_.response_us()) continue;
     passing.owed = false;
     --line.owed_down;
     if (busy(line, passing.place.time_us)) continue;

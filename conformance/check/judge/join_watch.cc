@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "conformance/check/links.h"
+
 namespace rubric::check {
 namespace {
 
@@ -61,7 +63,7 @@ void JoinWatch::surely_asked(std::uint16_t sink, std::uint32_t index, std::uint1
   debt.mote_am = am;
   debt.seq_num = seq_num;
   debt.index = index;
-  debt.due_us = seen.place.time_us + context_.response_us();
+  debt.due_us = seen.place.time_us + air_us(seen) + context_.response_us();
   if (!still_owed(sink, debt)) return;
   owe(sink, debt);
   sinks_.settled(am);
@@ -89,7 +91,8 @@ void JoinWatch::surely_offered(std::uint16_t mote, std::uint32_t index, const Re
   debt.owes = Owes::kAck;
   debt.seq_num = reply.seq_num;
   debt.index = index;
-  debt.due_us = context_.run.seen[index].place.time_us + context_.response_us();
+  const Observation& seen = context_.run.seen[index];
+  debt.due_us = seen.place.time_us + air_us(seen) + context_.response_us();
   if (still_owed(mote, debt)) owe(mote, debt);
 }
 

@@ -14,7 +14,7 @@ using Kind = Observation::Kind;
 Judge::Judge(const Run& run, const Options& options)
     : run_(run),
       who_(identify(run, options)),
-      findings_(options.deployed, run.steps),
+      findings_(options.deployed, run.steps, trace::joined(options.stated, run.stated)),
       context_(run, options, who_, findings_),
       motes_((context_.look_up(), context_), who_.devices.size()),
       sinks_(context_),

@@ -311,7 +311,7 @@ void Originals::told(std::uint16_t node, const Observation& seen, const machine:
   } else if (!ack.success && seen.place.timed() && match->place.timed() &&
              waited < context_.ack_timeout_us() - context_.early_us()) {
     // Only a stated timeout can be broken (decision 110).
-    const bool stated = context_.options.ack_timeout_us.has_value();
+    const bool stated = context_.ack_timeout_stated();
     context_.report("T3-TIMEOUT"_rule, stated ? Severity::kFail : Severity::kInconclusive,
                     seen.place, node,
                     {what + " " + ms_text(waited) + " after the message.",

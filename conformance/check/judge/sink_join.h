@@ -78,6 +78,7 @@ struct PairWatch {
   std::uint16_t request_seq = 0;
   bool asked = false;
   Place ack;                         ///< The last ack_join to this sink.
+  std::int64_t ack_whole_us = -1;    ///< When the sink has it whole.
   ReqId ignored_ack = ReqId::kNone;  ///< Why the last one must have been ignored.
   bool report_due = false;           ///< Surely owed since `ack`, and not yet complained about.
   bool request_listed = false;       ///< The last request surely came while it was listed.

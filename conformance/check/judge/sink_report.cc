@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "conformance/check/judge/sink_join.h"
+#include "conformance/check/links.h"
 
 namespace rubric::check {
 
@@ -50,6 +51,7 @@ void SinkJoins::ack_join(std::uint16_t, const Observation& seen, const AckJoin& 
       next_.push_back(heard);
     }
     watch.ack = seen.place;
+    watch.ack_whole_us = seen.place.time_us + air_us(seen);
     watch.ignored_ack = admitted ? ReqId::kNone : ignored;
     if (sure && all_admit && !watch.report_due && !device.taps.empty()) {
       watch.report_due = true;
@@ -198,7 +200,7 @@ void SinkJoins::showed_life(std::uint16_t sink_device, std::int64_t now_us, bool
 void SinkJoins::overdue_reports(SinkWatch& sink, bool end) {
   std::vector<std::uint16_t> due;
   for (const auto& [am, watch] : sink.motes) {
-    const std::int64_t due_us = watch.ack.time_us + context_.response_us();
+    const std::int64_t due_us = watch.ack_whole_us + context_.response_us();
     if (watch.report_due && sink.serial_us > due_us) due.push_back(am);
   }
   std::sort(due.begin(), due.end(), [&](std::uint16_t a, std::uint16_t b) {
@@ -235,7 +237,7 @@ void SinkJoins::unannounced(const SinkWatch& sink, std::uint16_t mote_am, const 
                             std::int64_t end_us) {
   const Device& device = context_.device(sink.device);
   if (!device.hearing || !device.application || !watch.ack.timed() || watch.set.empty()) return;
-  if (end_us <= watch.ack.time_us + context_.response_us()) return;
+  if (end_us <= watch.ack_whole_us + context_.response_us()) return;
   const auto owes = [](const SinkHypothesis& h) { return !h.unknown && h.owes_notice; };
   if (!std::all_of(watch.set.begin(), watch.set.end(), owes)) return;
   if (listed(sink) > context_.profile().members_max) return;

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "conformance/check/test/align_testing.h"
+#include "conformance/check/test/frames_testing.h"
 #include "conformance/selftest/lawful_traffic/generate.h"
 #include "conformance/selftest/lawful_traffic/variants.h"
 
@@ -26,6 +27,7 @@ void judge_apart(const std::string& variant, std::uint64_t seed, Count& count) {
   const lawful::Traffic traffic = lawful::generate(variant, seed);
   if (!traffic.has_radio || !traffic.has_serial) return;
   Options options;
+  options.stated = stated_by(traffic.stated);
   for (const lawful::NodeInfo& node : traffic.nodes) {
     if (node.role == lawful::Role::kTester) options.testers.push_back(node.id);
   }

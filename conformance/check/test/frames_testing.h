@@ -1,8 +1,11 @@
 // The frames of some runs, for tests that print how many different ones they judged.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cstdint>
 #include <set>
+#include <sstream>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -26,6 +29,14 @@ inline void add_frames(const Run& run, FrameSet& frames) {
     bytes.push_back(frame.type);
     frames.emplace(seen.place.time_us, run.taps[seen.tap].name, std::move(bytes));
   }
+}
+
+/// Returns what `join_period=300 response=450` states.
+inline trace::Statement stated_by(const std::string& text) {
+  std::istringstream words(text);
+  trace::Statement out;
+  for (std::string word; words >> word;) EXPECT_EQ(trace::add_stated(word, out), "");
+  return out;
 }
 
 }  // namespace rubric::check

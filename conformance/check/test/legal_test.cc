@@ -50,6 +50,7 @@ void judge_both(const std::string& variant, std::uint64_t seed, const std::strin
   lawful::Traffic traffic = lawful::generate(variant, seed);
   lawful::record(traffic, recorder, seed);
   Options options;
+  options.stated = stated_by(traffic.stated);
   for (const lawful::NodeInfo& node : traffic.nodes) {
     if (node.role == lawful::Role::kTester) options.testers.push_back(node.id);
   }
@@ -77,6 +78,20 @@ TEST(Legal, NothingFails) {
               static_cast<unsigned long long>(count.fails));
   EXPECT_EQ(count.frames.size(), readme_number("alarm in # different frames"));
   EXPECT_GE(variants, 20U);
+}
+
+// What is legal since it is stated fails where nothing is.
+TEST(Legal, UnstatedItFails) {
+  for (const char* name : {"stated_join_timer", "stated_requests", "stated_busy_channel"}) {
+    std::size_t fails = 0;
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+      RunReader reader;
+      std::string error;
+      ASSERT_TRUE(reader.add_bytes(name, lawful::to_pcapng(lawful::generate(name, seed)), error));
+      fails += judge(reader.finish(), {}).verdict == Verdict::kFail;
+    }
+    EXPECT_GT(fails, 0U) << name;
+  }
 }
 
 // The stamps are wrong and packets are missing; the nodes are honest all the same. RUBRIC_SEEDS

@@ -37,7 +37,37 @@ TEST(Stated, TheResponseTimeIsTheProfilesUnlessStated) {
   EXPECT_EQ(failures_of(unreported(302 * kTickMs, options), "J6-REPORT"_rule), 1U);
   options.response_us = 300'000;
   EXPECT_EQ(failures_of(unreported(302 * kTickMs, options), "J6-REPORT"_rule), 0U);
-  EXPECT_EQ(failures_of(unreported(301, options), "J6-REPORT"_rule), 1U);
+  // The ack_join takes more than 1 ms on the air, and the time begins with its end.
+  EXPECT_EQ(failures_of(unreported(301, options), "J6-REPORT"_rule), 0U);
+  EXPECT_EQ(failures_of(unreported(302, options), "J6-REPORT"_rule), 1U);
+}
+
+// A sink that surely got a reliable message at 1000 ms never acks it, and sends another frame
+// `later_ms` after its start.
+Report unacked(double later_ms, const Options& options) {
+  Script script;
+  script.join(0, 11, 2, 100);
+  NetFields net;
+  net.dest = {11, 1};
+  net.src = {11, 2};
+  net.reliable = 1;
+  net.seq_num = 5;
+  script.radio(1000, 2, 1, am::kNet, net.bytes(), 0, true).link_ack();
+  NetFields other;
+  other.dest = {11, 2};
+  other.src = {11, 1};
+  other.seq_num = 900;
+  script.net(1000 + later_ms, 1, 2, other, 11);
+  return judge(script.run, options);
+}
+
+TEST(Stated, AResponseCountsFromTheEndOfItsCause) {
+  Options options;
+  options.sniffer_complete = options.start_cold = true;
+  options.response_us = 300'000;
+  constexpr double kAirMs = 35 * 0.032;  // 16 bytes, and 19 around them.
+  EXPECT_EQ(failures_of(unacked(300 + kAirMs - 0.01, options), "T2-ACK"_rule), 0U);
+  EXPECT_EQ(failures_of(unacked(300 + kAirMs + 0.01, options), "T2-ACK"_rule), 1U);
 }
 
 // Judges a log in which a node is notified of a timeout `after_ms` after its message.

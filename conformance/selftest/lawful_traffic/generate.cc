@@ -57,6 +57,7 @@ Traffic generate(std::string_view variant, std::uint64_t seed) {
     traffic.decisions.insert(traffic.decisions.end(), part->decisions.begin(),
                              part->decisions.end());
     traffic.worst = std::max(traffic.worst, part->worst);
+    traffic.stated += part->stated;
   }
   std::sort(traffic.decisions.begin(), traffic.decisions.end());
   traffic.decisions.erase(std::unique(traffic.decisions.begin(), traffic.decisions.end()),

@@ -14,10 +14,12 @@ namespace rubric::lawful {
 struct Variant {
   std::string_view name;
   std::string_view summary;
-  std::vector<int> decisions;  ///< Decisions, 101 to 132, that it shows readings of.
+  std::vector<int> decisions;  ///< Decisions, 101 to 133, that it shows readings of.
   void (*configure)(Plan& plan, Random& random);
   bool mixes = false;  ///< May be part of `mixed`.
   Worst worst = Worst::kPass;
+  /// What the nodes state of themselves, as `rubric check --state` takes it; legal only so.
+  std::string_view stated = {};
 };
 
 /// Returns all variants, in the order in which they are listed.

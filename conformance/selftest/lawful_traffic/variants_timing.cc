@@ -57,6 +57,33 @@ void busy_channel(Plan& plan, Random&) {
   plan.traits.access_max_us = 28'000;
   plan.foreign_chats = false;
 }
+void stated_join_timer(Plan& plan, Random&) {
+  lose_first_requests(plan);
+  plan.traits.join_period_us = 292'969;  // 300 ticks.
+}
+void stated_slow_join_timer(Plan& plan, Random&) {
+  lose_first_requests(plan);
+  plan.losses[0] = lose(rubicon::AmType::kJoin, 2, 3'500'000);
+  plan.traits.join_period_us = 1'000'000;
+}
+void stated_requests(Plan& plan, Random&) {
+  plan.motes[0].boot_us = 200'000;
+  plan.losses.push_back(lose(rubicon::AmType::kJoin, 2, 3'000'000));
+  plan.traits.requests_max = 8;
+}
+void stated_slow(Plan& plan, Random&) {
+  plan.traits.delay_min_us = 340'000;
+  plan.traits.delay_max_us = 380'000;
+  plan.traits.join_period_us = 1'000'000;
+  plan.traits.ack_timeout_us = 3'000'000;
+  plan.foreign_chats = false;
+}
+void stated_busy_channel(Plan& plan, Random&) {
+  lose_first_requests(plan);
+  plan.traits.access_max_us = 90'000;
+  plan.traits.ack_timeout_us = 2'000'000;
+  plan.foreign_chats = false;
+}
 
 }  // namespace
 
@@ -71,6 +98,41 @@ std::vector<Variant> timing_variants() {
       {"cur_time_wraps", "cur_time steps over its 32 bits", {119}, cur_time_wraps},
       {"cur_time_uptime", "the sink has been up for long", {119}, cur_time_uptime, true},
       {"busy_channel", "channel access takes up to 28 ms", {128}, busy_channel, true},
+      {"stated_join_timer",
+       "a join timer of 300 ticks, as stated",
+       {133},
+       stated_join_timer,
+       false,
+       Worst::kPass,
+       "join_period=300"},
+      {"stated_slow_join_timer",
+       "a join timer of 1024 ticks, as stated",
+       {133},
+       stated_slow_join_timer,
+       false,
+       Worst::kPass,
+       "join_period=1024"},
+      {"stated_requests",
+       "eight requests of one call, as stated",
+       {101},
+       stated_requests,
+       false,
+       Worst::kPass,
+       "join_requests=8"},
+      {"stated_slow",
+       "nodes take 340 to 380 ms to react, as stated",
+       {125, 133},
+       stated_slow,
+       false,
+       Worst::kPass,
+       "response=450 join_period=1024 ack_timeout=3072"},
+      {"stated_busy_channel",
+       "channel access takes up to 90 ms, as stated",
+       {128},
+       stated_busy_channel,
+       false,
+       Worst::kPass,
+       "channel_access=95"},
   };
 }
 

@@ -7,6 +7,7 @@
 
 #include "conformance/test/runner/case_files.h"
 #include "conformance/test/runner/subject_target.h"
+#include "conformance/trace/headers.h"
 #include "conformance/trace/print.h"
 
 namespace rubric::mutants {
@@ -78,6 +79,18 @@ CaseResult run(const CaseRef& ref, const runner::SubjectFactory& make) {
   return runner::run_case(ref.file->file, *ref.one, [&](const trace::NodeHeader&) {
     return std::make_unique<runner::SubjectTarget>(make());
   });
+}
+
+CaseResult run(const CaseRef& ref, const runner::SubjectFactory& make,
+               const trace::Statement& stated) {
+  trace::Parsed file;
+  file.file.head = ref.file->file.head;
+  trace::Case one = *ref.one;
+  CaseResult result;
+  result.reason = trace::state(file.file, one, stated);
+  if (result.reason.empty()) return run({&file, &one}, make);
+  result.verdict = CaseVerdict::kSkip;
+  return result;
 }
 
 Found hunt(const Golden& golden, const Mutant& mutant) {

@@ -53,6 +53,9 @@ struct Found {
 
 /// Runs the case on it. Everything but a pass kills: the machine itself passes.
 runner::CaseResult run(const CaseRef& ref, const runner::SubjectFactory& make);
+/// Runs it on an implementation that states this.
+runner::CaseResult run(const CaseRef& ref, const runner::SubjectFactory& make,
+                       const trace::Statement& stated);
 /// Tries the cases, those first that name one of the rules, until one kills it by such a rule.
 Found hunt(const Golden& golden, const Mutant& mutant);
 /// Hunts all of them on so many threads.

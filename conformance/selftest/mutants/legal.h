@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "conformance/selftest/mutants/wrapped.h"
+#include "conformance/trace/parameters.h"
 
 namespace rubric::mutants {
 
@@ -14,8 +15,14 @@ struct LegalVariant {
   std::string reading;  ///< Its behaviour, and the decision that allows it.
   StepMaker step;
   bool weak = false;  ///< A decision calls it weak.
+  trace::Statement stated = {};
 };
 
 std::vector<LegalVariant> legal_variants();
+/// Those that are legal since they state it.
+std::vector<LegalVariant> stated_variants();
+
+/// Makes each frame wait for the channel before it leaves by radio, up to `most` ticks.
+StepMaker backing_off(std::uint32_t seed, Ticks most);
 
 }  // namespace rubric::mutants

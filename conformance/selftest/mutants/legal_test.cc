@@ -3,23 +3,32 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
+#include "conformance/generated/profiles.h"
 #include "conformance/selftest/mutants/hunt.h"
+#include "conformance/trace/events/parameters.h"
 #include "tools/tests/readme/number.h"
 
 namespace rubric::mutants {
 namespace {
 
+std::vector<LegalVariant> all_variants() {
+  std::vector<LegalVariant> all = legal_variants();
+  for (LegalVariant& one : stated_variants()) all.push_back(std::move(one));
+  return all;
+}
+
 TEST(Legal, NoGoldenTraceFails) {
   const Golden golden("conformance/cases");
-  const std::vector<LegalVariant> variants = legal_variants();
+  const std::vector<LegalVariant> variants = all_variants();
   std::set<std::string> names;
   std::size_t weak = 0;
   for (const LegalVariant& variant : variants) {
     EXPECT_TRUE(names.insert(variant.name).second) << variant.name;
     for (const CaseRef& ref : golden.cases()) {
-      const auto result = run(ref, wrapped(variant.step));
+      const auto result = run(ref, wrapped(variant.step), variant.stated);
       const bool allowed = result.verdict == runner::CaseVerdict::kPass ||
                            (variant.weak && result.verdict == runner::CaseVerdict::kWeak);
       weak += result.verdict == runner::CaseVerdict::kWeak;
@@ -35,15 +44,74 @@ TEST(Legal, NoGoldenTraceFails) {
 // Each one differs from the machine somewhere, as it should.
 TEST(Legal, EachDiffersFromTheMachine) {
   const Golden golden("conformance/cases");
-  for (const LegalVariant& variant : legal_variants()) {
+  for (const LegalVariant& variant : all_variants()) {
     bool differs = false;
     for (const CaseRef& ref : golden.cases()) {
       const auto machine = run(ref, [] { return std::make_unique<runner::Machine>(); });
-      const auto other = run(ref, wrapped(variant.step));
+      const auto other = run(ref, wrapped(variant.step), variant.stated);
       differs = differs || !(machine.log == other.log);
       if (differs) break;
     }
     EXPECT_TRUE(differs) << variant.name;
+  }
+}
+
+// With a back-off of 0.3 to 10 ms before each frame, in many ways.
+TEST(Legal, BackOffFailsNoTrace) {
+  const Golden golden("conformance/cases");
+  for (std::uint32_t seed = 0; seed < 40; ++seed) {
+    for (const CaseRef& ref : golden.cases()) {
+      const auto result =
+          run(ref, wrapped(backing_off(seed, 10)), {{trace::ParameterId::kChannelAccess, 30}});
+      EXPECT_EQ(result.verdict, runner::CaseVerdict::kPass)
+          << "seed " << seed << ": " << runner::explain(result, ref.file->file_name);
+    }
+  }
+}
+
+// The machine with parameters of its own, whatever its configuration says.
+class Stubborn : public runner::Machine {
+ public:
+  explicit Stubborn(trace::Statement kept) : kept_(std::move(kept)) {}
+  void start(const machine::Config& config) override {
+    machine::Config own = config;
+    own.profile = machine::kPaper;
+    events::state(own.profile, kept_);
+    Machine::start(own);
+  }
+
+ private:
+  trace::Statement kept_;
+};
+
+std::size_t failures(const Golden& golden, const runner::SubjectFactory& make,
+                     const trace::Statement& stated) {
+  return static_cast<std::size_t>(std::ranges::count_if(golden.cases(), [&](const CaseRef& ref) {
+    return run(ref, make, stated).verdict == runner::CaseVerdict::kFail;
+  }));
+}
+
+// One that states a parameter and keeps the default, or the other way round, is found.
+TEST(Legal, WhatIsStatedMustBeKept) {
+  const Golden golden("conformance/cases");
+  for (const LegalVariant& variant : stated_variants()) {
+    const trace::ParameterId id = variant.stated.front().id;
+    const trace::Statement nothing;
+    if (id == trace::ParameterId::kResponse) continue;
+    if (id == trace::ParameterId::kChannelAccess) {
+      EXPECT_GT(failures(golden, wrapped(variant.step), nothing), 0U) << variant.name;
+      continue;
+    }
+    const auto keeps = [&](const trace::Statement& kept) {
+      return [kept] { return std::make_unique<Stubborn>(kept); };
+    };
+    EXPECT_GT(failures(golden, keeps(nothing), variant.stated), 0U) << variant.name << " stated";
+    EXPECT_GT(failures(golden, keeps(variant.stated), nothing), 0U) << variant.name << " kept";
+  }
+  for (const LegalVariant& variant : legal_variants()) {
+    if (variant.name != "slow_250") continue;
+    EXPECT_EQ(failures(golden, wrapped(variant.step), {}), 0U);
+    EXPECT_GT(failures(golden, wrapped(variant.step), {{trace::ParameterId::kResponse, 100}}), 50U);
   }
 }
 

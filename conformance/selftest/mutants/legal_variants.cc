@@ -122,7 +122,8 @@ void short_ack(Moment& moment, Transmit& frame) {
 }
 
 void stale_on_serial(Moment& moment, Transmit& frame) {
-  const bool up = frame.link == Link::kSerial && moment.is(Role::kSink) && is_net(frame);
+  const bool up = frame.link == Link::kSerial && moment.is(Role::kSink) && is_net(frame) &&
+                  !is_synaptic(frame);  // Its nbytes says how many values there are.
   if (!up) return;
   const std::size_t end = 12U + frame.payload[net::kNbytes];
   for (std::size_t i = end; i < frame.payload.size(); ++i) {

@@ -109,7 +109,7 @@ trace::NodeHeader node_of(const Script& script) {
   node.iut = true;
   if (config.role != machine::Role::kBaseStation) {
     node.id = config.id;
-    node.channels = config.profile.channels_max;
+    node.stated.push_back({trace::ParameterId::kChannels, config.profile.channels_max});
   }
   if (config.role != machine::Role::kMote) node.island = config.island;
   node.name = config.role == machine::Role::kMote   ? "m" + std::to_string(config.id)

@@ -123,6 +123,7 @@ Json implementation_json(const ImplementationRun& run) {
           {"version", run.identity.version},
           {"roles", roles(run.identity.roles)},
           {"real_time", run.identity.real_time},
+          {"stated", trace::statement_text(run.identity.stated)},
           {"dishonest", run.dishonest},
           {"outside", std::move(outside)},
           {"own_line", run.identity.own_line},

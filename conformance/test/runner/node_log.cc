@@ -9,6 +9,7 @@
 #include "conformance/test/runner/run_case.h"
 #include "conformance/trace/encode.h"
 #include "conformance/trace/events/app_events.h"
+#include "conformance/trace/events/parameters.h"
 #include "conformance/trace/match.h"
 #include "conformance/trace/print.h"
 
@@ -48,14 +49,17 @@ bool is_for(const trace::Line& line, const std::string& link) {
 
 }  // namespace
 
+machine::Profile profile_of(const trace::Scope& scope) {
+  return scope.profile == "deployed" ? machine::kDeployed : machine::kPaper;
+}
+
 machine::Config config_of(const trace::Scope& scope, const trace::NodeHeader& node) {
   machine::Config config;
   config.role = static_cast<machine::Role>(node.role);
   config.id = node.id.value_or(0);
   config.island = node.island.value_or(0);
-  config.profile = scope.profile == "deployed" ? machine::kDeployed : machine::kPaper;
-  static_assert(trace::kChannelsMax == machine::kChannelsRoom);
-  config.profile.channels_max = node.channels.value_or(config.profile.channels_max);
+  config.profile = profile_of(scope);
+  events::state(config.profile, node.stated);
   config.first_seq = static_cast<std::uint16_t>(1000 + 257 * scope.seed);
   return config;
 }

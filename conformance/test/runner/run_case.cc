@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <map>
 #include <optional>
 #include <set>
@@ -14,7 +15,7 @@
 #include "conformance/test/runner/expectation.h"
 #include "conformance/test/runner/node_log.h"
 #include "conformance/trace/encode.h"
-#include "conformance/trace/events/app_events.h"
+#include "conformance/trace/events/parameters.h"
 #include "conformance/trace/match.h"
 #include "conformance/trace/print.h"
 
@@ -138,9 +139,35 @@ class Run {
       }
       base = found->second;
     }
-    const Window window{base.time + ticks_of(scope_.tick, line.time.from),
-                        base.time + ticks_of(scope_.tick, line.time.to)};
+    const Window window{base.time + amount(line, line.time.from, line.time.from_terms),
+                        base.time + amount(line, line.time.to, line.time.to_terms)};
+    if (window.to < window.from) {
+      throw trace::TraceError(
+          line.place,
+          fmt::format("{} is no time with what is stated: {} to {}", trace::print(line.time),
+                      window.from - base.time, window.to - base.time));
+    }
     return {&line, window, base.slack};
+  }
+
+  // Returns the ticks of a time, its parameters included, with the values of the line's node.
+  Ticks amount(const Line& line, std::int64_t number, const std::vector<trace::Term>& terms) const {
+    const Ticks size = ticks_of(scope_.tick, std::abs(number));
+    std::int64_t sum = number < 0 ? -static_cast<std::int64_t>(size) : size;
+    for (const trace::Term& term : terms) sum += term.factor * value(line.node, term.parameter);
+    return static_cast<Ticks>(std::max<std::int64_t>(sum, 0));
+  }
+
+  // Nodes that state nothing themselves, since the trace plays them, are taken for the others'
+  // like.
+  std::int64_t value(std::string_view name, trace::ParameterId id) const {
+    const trace::NodeHeader* const own = scope_.node(name);
+    if (const std::int64_t* stated = own ? find(own->stated, id) : nullptr) return *stated;
+    for (const trace::NodeHeader& node : scope_.nodes) {
+      const std::int64_t* const stated = node.iut ? find(node.stated, id) : nullptr;
+      if (stated) return *stated;
+    }
+    return events::assumed(profile_of(scope_), id);
   }
 
   void matched(const Line& line, Moment moment) {

@@ -64,7 +64,9 @@ using TargetFactory = std::function<std::unique_ptr<Target>(const trace::NodeHea
 /// kError.
 CaseResult run_case(const trace::File& file, const trace::Case& one, const TargetFactory& make);
 
-/// Returns the start configuration of a node of a trace.
+/// Returns the profile that a trace is for.
+machine::Profile profile_of(const trace::Scope& scope);
+/// Returns the start configuration of a node of a trace, with what it states.
 machine::Config config_of(const trace::Scope& scope, const trace::NodeHeader& node);
 
 /// Returns one paragraph for each failure.

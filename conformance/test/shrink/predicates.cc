@@ -54,7 +54,11 @@ CaseResult play(const trace::File& file, const Player& player) {
   if (!player.profile.empty()) {
     trace::set_header(asked, asked.cases.at(0), trace::ProfileHeader{player.profile});
   }
-  return runner::run_case(asked, asked.cases.at(0), player.make);
+  CaseResult result;
+  result.reason = trace::state(asked, asked.cases.at(0), player.stated);
+  if (result.reason.empty()) return runner::run_case(asked, asked.cases.at(0), player.make);
+  result.verdict = CaseVerdict::kSkip;
+  return result;
 }
 
 StillShows fails_alike(const CaseResult& first, const Player& player,

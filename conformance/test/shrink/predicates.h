@@ -10,10 +10,11 @@
 
 namespace rubric::shrink {
 
-/// An implementation, and the profile that it is to play; empty: the trace's.
+/// An implementation, the profile that it is to play (empty: the trace's), and what it states.
 struct Player {
   runner::TargetFactory make;
   std::string profile;
+  trace::Statement stated = {};
 };
 
 /// Returns one case of a file, with the headers that apply to it.

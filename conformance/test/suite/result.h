@@ -38,8 +38,10 @@ struct CaseRun {
   std::vector<std::uint32_t> lines_of_profile;
   Expectation expectation = Expectation::kNone;
   std::string expected_reason;  ///< From the file.
-  bool foreign = false;  ///< Skipped, as it needs a role that the implementation does not play.
-  /// It had to be decided and was not: the implementation plays its roles, and the file does not
+  /// Skipped, as it needs a role that the implementation does not play, or is for other values than
+  /// it states.
+  bool foreign = false;
+  /// It had to be decided and was not: the case is not foreign, and the file does not
   /// list it as skipped. No case at the own line of a node, which names what the line cannot show.
   bool owed = false;
   double wall_ms = 0;

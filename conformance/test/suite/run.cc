@@ -127,7 +127,9 @@ CaseRun run_one(const SuiteCase& one, targets::Attachment& attachment, const std
   }
   if (seed && trace::set_seed_if_none(head, itself, *seed)) out.seed = *seed;
   try {
-    const std::string missing = missing_role(out, attachment.identity());
+    std::string missing = missing_role(out, attachment.identity());
+    if (missing.empty()) missing = trace::state(head, itself, attachment.identity().stated);
+    out.nodes = trace::scope_of(head, itself).nodes;
     if (missing.empty()) {
       out.result = runner::run_case(head, itself,
                                     [&](const trace::NodeHeader&) { return attachment.target(); });

@@ -34,7 +34,8 @@ class FlawedMachine : public runner::Machine {
 /// The reference machine in this process, perhaps with a flaw.
 class MachineAttachment : public Attachment {
  public:
-  explicit MachineAttachment(const flaws::Flaw* flaw) : flaw_(flaw) {
+  MachineAttachment(const flaws::Flaw* flaw, const Options& options) : flaw_(flaw) {
+    identity_.stated = options.stated;
     if (flaw) identity_.version = flaw->name;
   }
   const Identity& identity() override { return identity_; }
@@ -52,9 +53,9 @@ class MachineAttachment : public Attachment {
   Identity identity_ = machine_identity();
 };
 
-std::unique_ptr<Attachment> flawed_machine(std::string_view name) {
+std::unique_ptr<Attachment> flawed_machine(std::string_view name, const Options& options) {
   const flaws::Flaw* flaw = flaws::find(name);
-  if (flaw) return std::make_unique<MachineAttachment>(flaw);
+  if (flaw) return std::make_unique<MachineAttachment>(flaw, options);
   std::vector<std::string> names;
   for (const flaws::Flaw& one : flaws::all()) names.emplace_back(one.name);
   throw std::invalid_argument(
@@ -73,9 +74,10 @@ bool cut_end(std::string_view& text, std::string_view end) {
   return true;
 }
 
-LineNode real_node(Role role, const char* where, std::uint32_t baud) {
+LineNode real_node(Role role, const char* where, std::uint32_t baud, const Options& options) {
   LineNode node;
   node.identity = {fmt::format("{}_{}", role_word(role), where), "-", {role}, true, true};
+  node.identity.stated = options.stated;
   node.baud = baud;
   return node;
 }
@@ -88,7 +90,7 @@ Role cut_role(std::string_view& text) {
 }
 
 std::unique_ptr<Attachment> forwarder_server(std::string_view text, const Options& options) {
-  LineNode node = real_node(Role::kBaseStation, "at_forwarder", kForwarderBaud);
+  LineNode node = real_node(Role::kBaseStation, "at_forwarder", kForwarderBaud, options);
   node.comes_to_us = true;
   node.restarts = cut_end(text, ":restart");
   auto listener = std::make_shared<lines::Listener>(lines::read_host_port(text));
@@ -103,7 +105,7 @@ std::unique_ptr<Attachment> forwarder_client(std::string_view text, const Option
   auto line = std::make_unique<lines::ForwarderLine>(
       [at](lines::SteadyTime deadline) { return lines::connect_tcp(at, deadline); });
   return std::make_unique<LineAttachment>(
-      std::move(line), real_node(role, "behind_forwarder", kForwarderBaud), options);
+      std::move(line), real_node(role, "behind_forwarder", kForwarderBaud, options), options);
 }
 
 std::unique_ptr<Attachment> serial_line(std::string_view text, const Options& options) {
@@ -127,7 +129,8 @@ std::unique_ptr<Attachment> serial_line(std::string_view text, const Options& op
     };
   }
   return std::make_unique<LineAttachment>(std::make_unique<lines::SerialLine>(std::move(connect)),
-                                          real_node(role, "on_serial_line", baud), options);
+                                          real_node(role, "on_serial_line", baud, options),
+                                          options);
 }
 
 }  // namespace
@@ -145,8 +148,8 @@ std::unique_ptr<Attachment> attach(const std::string& target, const Options& opt
   if (cut(text, "sf:")) return forwarder_client(text, options);
   if (cut(text, "serial:")) return serial_line(text, options);
   if (!options.app.empty()) throw std::invalid_argument("an app goes with sf-server, sf or serial");
-  if (target == "machine") return std::make_unique<MachineAttachment>(nullptr);
-  if (cut(text, "machine:")) return flawed_machine(text);
+  if (target == "machine") return std::make_unique<MachineAttachment>(nullptr, options);
+  if (cut(text, "machine:")) return flawed_machine(text, options);
   return std::make_unique<RctAttachment>([target] { return Process::run(target); }, options);
 }
 

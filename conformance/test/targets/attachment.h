@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "conformance/test/runner/target.h"
+#include "conformance/trace/parameters.h"
 
 namespace rubric::targets {
 
@@ -21,6 +22,7 @@ struct Identity {
   /// omission of the node.
   bool own_line = false;
   std::optional<runner::Reach> shown = {};  ///< If it shows a part of its links only.
+  trace::Statement stated = {};
 };
 
 /// A fault while no case was running.
@@ -64,6 +66,7 @@ struct Options {
   /// The same for the first command, `hello`, while an interpreter or an emulator starts, and for a
   /// node that connects to us.
   std::chrono::milliseconds start_timeout{20000};
+  trace::Statement stated = {};  ///< Counts more than what the implementation states itself.
   /// A command that uses rct/1 for what a line does not show (AppChannel); empty: none.
   std::string app = {};
 };

@@ -248,7 +248,11 @@ Identity read_hello(const std::string& line) {
     }
     const std::string_view key = word.substr(0, size);
     const std::string_view value = word.substr(size + 1);
-    if (key != "roles" && key != "time" && key != "links") continue;  // For later runners.
+    if (key != "roles" && key != "time" && key != "links") {
+      std::string wrong = trace::add_stated(word, out.stated);
+      if (!wrong.empty()) throw broken(wrong);
+      continue;
+    }
     if (!keys.insert(key).second) throw broken(fmt::format("it says {}= twice", key));
     std::string wrong;
     if (key == "roles") wrong = read_roles(value, out.roles);

@@ -174,20 +174,29 @@ std::string hello_wrong_with(const std::string& line) {
   return "";
 }
 
-TEST(RctAnswer, HelloMayGrow) {
+TEST(RctAnswer, Hello) {
   const Identity who =
-      read_hello("hello rct/1 a 2 caps=linkack,x roles=mote,sink time=real x= caps=more");
+      read_hello("hello rct/1 a 2 response=350 roles=mote,sink time=real join_period=1024");
   EXPECT_EQ(who.name, "a");
   EXPECT_EQ(who.version, "2");
   EXPECT_EQ(who.roles, (std::vector{machine::Role::kMote, machine::Role::kSink}));
   EXPECT_TRUE(who.real_time);
+  EXPECT_EQ(trace::statement_text(who.stated), "response=350 join_period=1024");
   EXPECT_EQ(hello_wrong_with("hello rct/1 a 2 roles=mote roles=sink"), "it says roles= twice");
   EXPECT_EQ(hello_wrong_with("hello rct/1 a 2 roles=mote time=real time=real"),
             "it says time= twice");
   EXPECT_NE(hello_wrong_with("hello rct/1 a 2 roles=mote time=warped"), "");
   EXPECT_NE(hello_wrong_with("hello rct/1 a 2 roles=mote fast"), "");
   EXPECT_NE(hello_wrong_with("hello rct/1 a 2 roles=mote =fast"), "");
-  EXPECT_EQ(hello_wrong_with("hello rct/1 a 2 caps=x"), "it says no roles=");
+  EXPECT_EQ(hello_wrong_with("hello rct/1 a 2 response=1"), "it says no roles=");
+  EXPECT_EQ(hello_wrong_with("hello rct/1 a 2 roles=mote ack_timout=2000"),
+            "'ack_timout' is no parameter that can be stated; known are response, join_period, "
+            "join_requests, ack_joins, ack_timeout, channel_access, members, channels, "
+            "synaptic_period, synaptic_phase");
+  EXPECT_EQ(hello_wrong_with("hello rct/1 a 2 roles=mote channels=9"),
+            "expected channels from 1 to 8 channels, given '9'");
+  EXPECT_EQ(hello_wrong_with("hello rct/1 a 2 roles=mote response=9 response=9"),
+            "response is stated twice");
 }
 
 TEST(RctAnswer, RealTimeGoesOn) {

@@ -36,6 +36,7 @@ std::unique_ptr<RctClient> RctAttachment::take() {
   auto client = std::make_unique<RctClient>(start_(), options_);
   try {
     identity_ = client->hello();
+    identity_.stated = trace::joined(options_.stated, identity_.stated);
   } catch (const runner::TargetBroken&) {
     keep_stderr(*client);
     throw;

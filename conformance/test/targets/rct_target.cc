@@ -7,6 +7,7 @@
 #include "conformance/generated/profiles.h"
 #include "conformance/test/runner/subject_target.h"
 #include "conformance/trace/events/app_events.h"
+#include "conformance/trace/events/parameters.h"
 #include "conformance/trace/trace.h"
 
 namespace rubric::targets {
@@ -28,7 +29,9 @@ static_assert(seed_of(static_cast<std::uint16_t>(1000 + 257 * 12345)) == 12345);
 std::string_view profile_of(const machine::Profile& profile) {
   for (const machine::NamedProfile& named : machine::kProfiles) {
     machine::Profile same = named.profile;
-    same.channels_max = profile.channels_max;
+    for (const trace::Parameter& one : trace::parameters()) {
+      events::state(same, {{one.id, events::value_of(profile, one.id)}});
+    }
     if (same == profile) return named.name;
   }
   throw Unsupported("the profile of the case has no name");

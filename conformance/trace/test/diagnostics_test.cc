@@ -15,6 +15,10 @@ struct Wrong {
   const char* expected;
 };
 
+#define KNOWN                                                        \
+  "join_requests, ack_joins, ack_timeout, channel_access, members, " \
+  "channels, synaptic_period, synaptic_phase"
+
 constexpr const char* kAbove =
     "%rtr 1   %profile paper\n"
     "%node m5 mote id=5 iut   %node sA sink id=1 island=11   %node sB sink id=1 island=12\n"
@@ -23,11 +27,18 @@ constexpr const char* kAbove =
 
 const Wrong kWrong[] = {
     {"NoTime", "x", "1: expected a time; 'x' wants '+' and ticks as a time, or ':' as a label"},
-    {"Time", "4x m5 > rA *", "1: expected a time in ticks, given '4x'"},
+    {"Time", "4x m5 > rA *",
+     "1: expected ticks or a parameter, given '4x'; known are response, "
+     "join_period, " KNOWN},
+    {"TimeParameter", "0..patience m5 > rA *",
+     "4: expected ticks or a parameter, given 'patience'; known are response, join_period, " KNOWN},
+    {"TimeFactor", "2000*response m5 > rA *",
+     "1: expected a factor from 0 to 1000, given '2000*response'"},
+    {"LabelParameter", "response: 3 m5 > rA *", "1: label 'response' is the name of a parameter"},
     {"NegativeTime", "-4 m5 > rA *", "1: expected a time in ticks, given '-4'"},
     {"TimeAlone", "a:", "3: expected a time"},
     {"Window", "9..3 m5 > rA *", "1: the window '9..3' ends before it begins"},
-    {"LabelBeforePlus", "7+3 m5 > rA *", "1: expected a label before '+'"},
+    {"LabelBeforePlus", "7+3 m5 > rA *", "1: expected a time in ticks, given '7+3'"},
     {"Label", "7: 3 m5 > rA *", "1: expected a label before ':', given '7'"},
     {"NoNode", "3", "2: expected a node or a link"},
     {"Node", "3 m(5) > rA *", "3: expected a node or a link, given 'm(5)'"},
@@ -88,25 +99,32 @@ const Wrong kWrong[] = {
     {"CaseAlone", "case", "5: expected the name of a case"},
     {"CaseTwice", "case a", "6: case 'a' is already in line 4"},
     {"Header", "%what",
-     "1: expected %rtr, %profile, %tick, %node, %link, %seed or %note, given '%what'"},
+     "1: expected %rtr, %profile, %tick, %node, %link, %seed, %for or %note, given '%what'"},
     {"Version", "%rtr 2", "6: expected version 1, given '2'"},
     {"Profile", "%profile mine", "10: expected paper or deployed, given 'mine'"},
     {"Tick", "%tick s", "7: expected binary_ms, ms or us, given 's'"},
     {"Seed", "%seed x", "7: expected a seed, a number"},
+    {"For", "%for",
+     "5: '' is no parameter that can be stated; known are response, join_period, " KNOWN},
+    {"ForTwice", "%for channels=4 %for channels=4", "17: %for is said twice"},
     {"Note", "%note  ", "8: expected the text of the note"},
     {"NodeName", "%node ?", "7: expected a node's name"},
     {"NodeRole", "%node n robot", "9: expected mote, sink or base_station, given 'robot'"},
     {"NodeWord", "%node n mote id=1 id=2",
-     "19: expected id=, island=, channels= or iut, each once, given 'id=2'"},
+     "19: expected id=, island=, a parameter or iut, each once, given 'id=2'"},
     {"NodeId", "%node n mote id=65536", "17: expected a TinyOS id from 0 to 65535, given '65536'"},
     {"NodeIsland", "%node n sink id=1 island=x",
      "26: expected an island from 0 to 65535, given 'x'"},
     {"NodeChannels", "%node n sink id=1 island=2 channels=9",
-     "37: expected a number of channels from 1 to 8, given '9'"},
+     "28: expected channels from 1 to 8 channels, given '9'"},
     {"NodeNoChannels", "%node n mote id=1 channels=0",
-     "28: expected a number of channels from 1 to 8, given '0'"},
+     "19: expected channels from 1 to 8 channels, given '0'"},
     {"NodeChannelsTwice", "%node n mote id=1 channels=5 channels=5",
-     "30: expected id=, island=, channels= or iut, each once, given 'channels=5'"},
+     "30: channels is stated twice"},
+    {"NodeParameter", "%node n mote id=1 patience=5",
+     "19: 'patience' is no parameter that can be stated; known are response, join_period, " KNOWN},
+    {"NodeParameterValue", "%node n mote id=1 response=0",
+     "19: expected response from 1 to 65535 ticks, given '0'"},
     {"LinkName", "%link", "6: expected a link's name"},
     {"LinkKind", "%link l wire", "9: expected radio, serial or peis, given 'wire'"},
     {"LinkNode", "%link l radio m/5", "15: expected a node, given 'm/5'"},

@@ -110,11 +110,33 @@ Message any_message() {
   return message;
 }
 
+std::vector<Term> any_terms() {
+  std::vector<Term> terms;
+  const int count = *inRange(0, 4);
+  for (int i = 0; i < count; ++i) {
+    const Parameter& one = parameters()[*inRange<std::size_t>(0, parameters().size())];
+    terms.push_back({*inRange(-1000, 1000), one.id});
+  }
+  return terms;
+}
+
+// A number below 0 can only follow.
+std::int64_t number_beside(const std::vector<Term>& terms) {
+  return *inRange(terms.empty() || terms.front().factor < 0 ? 0 : -1000, 1000);
+}
+
 Time any_time() {
   Time time;
   time.base = *rc::gen::element(Time::Base::kPrevious, Time::Base::kLabel, Time::Base::kStart);
   time.from = *inRange<std::int64_t>(0, 1000000000000);
   time.to = coin() ? time.from : time.from + *inRange(0, 1000);
+  time.from_terms = any_terms();
+  time.to_terms = coin() ? time.from_terms : any_terms();
+  const bool alike = time.from_terms == time.to_terms;
+  if (!time.from_terms.empty()) time.from = number_beside(time.from_terms);
+  if (!time.from_terms.empty() || !time.to_terms.empty()) {
+    time.to = alike ? time.from + *inRange(0, 1000) : number_beside(time.to_terms);
+  }
   if (time.base == Time::Base::kLabel) time.label = name();
   return time;
 }
@@ -145,9 +167,17 @@ Line any_line() {
   return line;
 }
 
+Statement any_statement() {
+  Statement out;
+  for (const Parameter& one : parameters()) {
+    if (coin()) out.push_back({one.id, *inRange(one.min, one.max + 1)});
+  }
+  return out;
+}
+
 Header any_header() {
   Header header;
-  switch (*inRange(0, 7)) {
+  switch (*inRange(0, 8)) {
     case 0: header.what = VersionHeader{}; break;
     case 1: header.what = ProfileHeader{pick({"paper", "deployed"})}; break;
     case 2:
@@ -158,7 +188,7 @@ Header any_header() {
           name(), *rc::gen::element(Role::kMote, Role::kSink, Role::kBaseStation), {}, {}, coin()};
       if (coin()) node.id = *rc::gen::arbitrary<std::uint16_t>();
       if (coin()) node.island = *rc::gen::arbitrary<std::uint16_t>();
-      if (coin()) node.channels = static_cast<std::uint8_t>(*inRange(1, kChannelsMax + 1));
+      node.stated = any_statement();
       header.what = node;
       break;
     }
@@ -171,6 +201,12 @@ Header any_header() {
       break;
     }
     case 5: header.what = SeedHeader{*inRange<std::uint64_t>(0, 1000000000000)}; break;
+    case 6: {
+      ForHeader wanted{any_statement()};
+      if (wanted.values.empty()) wanted.values.push_back({ParameterId::kMembers, 20});
+      header.what = wanted;
+      break;
+    }
     default: header.what = NoteHeader{"note " + words()};
   }
   if (std::holds_alternative<NoteHeader>(header.what)) {

@@ -154,6 +154,24 @@ bool busy(const Traffic&, const Frames& f) {
   return *low >= 458'000 && *high - *low > 8'000;
 }
 
+bool stated_join_timer(const Traffic&, const Frames& f) {
+  return std::abs(mean_gap(f) - 292'969) < 8'000;
+}
+bool stated_slow_join_timer(const Traffic&, const Frames& f) {
+  return std::abs(mean_gap(f) - 1'000'000) < 8'000;
+}
+bool stated_requests(const Traffic&, const Frames& f) {
+  return requests(f, 2).size() > 5 && distinct_seqs(requests(f, 2)) == 1;
+}
+bool stated_slow(const Traffic&, const Frames& f) {
+  return slowest_reply(f) > 330'000 && slowest_reply(f) < 480'000;
+}
+bool stated_busy(const Traffic&, const Frames& f) {
+  const auto some = gaps(requests(f, 2));
+  const auto [low, high] = std::minmax_element(some.begin(), some.end());
+  return *low >= 395'000 && *high - *low > 20'000;
+}
+
 bool foreign(const Traffic&, const Frames& f) {
   return any(f, [](const Seen& s) { return s.radio && s.am_type == 0x70; }) &&
          any(f, [](const Seen& s) { return s.radio && s.am_type == 0x3E; });
@@ -212,6 +230,11 @@ const std::vector<Feature>& other_features() {
       {"cur_time_wraps", wraps},
       {"cur_time_uptime", uptime},
       {"busy_channel", busy},
+      {"stated_join_timer", stated_join_timer},
+      {"stated_slow_join_timer", stated_slow_join_timer},
+      {"stated_requests", stated_requests},
+      {"stated_slow", stated_slow},
+      {"stated_busy_channel", stated_busy},
       {"foreign_protocols", foreign},
       {"rssi_beacons", beacons},
       {"corrupt_frames", corrupt},

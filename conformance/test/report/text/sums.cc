@@ -109,6 +109,7 @@ std::string opening_text(const SuiteRun& run, const ImplementationRun& implement
   out += fmt::format("; {}, profile {}", counted(cases, "case"), run.profile);
   if (run.seed != 0) out += fmt::format(", seed {}", run.seed);
   if (!run.shard.empty()) out += fmt::format(", shard {}", run.shard);
+  if (!who.stated.empty()) out += "; states " + trace::statement_text(who.stated);
   return wrapped("", out, options.width, kIndent.size());
 }
 

@@ -1,0 +1,62 @@
+// The parameters that an implementation states of itself (its IXIT): one list for traces, rct/1,
+// `rubric test --state` and `rubric check --state`. Their defaults are those of the profile.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace rubric::trace {
+
+enum class ParameterId : std::uint8_t {
+  kResponse,
+  kJoinPeriod,
+  kJoinRequests,
+  kAckJoins,
+  kAckTimeout,
+  kChannelAccess,
+  kMembers,
+  kChannels,
+  kSynapticPeriod,
+  kSynapticPhase,
+};
+
+struct Parameter {
+  ParameterId id;
+  const char* name;  ///< `ack_timeout`
+  const char* unit;  ///< "ticks", or what is counted.
+  std::int64_t min;
+  std::int64_t max;
+  int decision;     ///< The number of the decision that lets an implementation state it.
+  const char* doc;  ///< A sentence.
+};
+
+/// In the order of their ids.
+std::span<const Parameter> parameters();
+const Parameter& parameter(ParameterId id);
+/// Returns the parameter of this name, or null.
+const Parameter* find_parameter(std::string_view name);
+/// Returns the names of all, for errors: "response, join_period, ...".
+std::string parameter_names();
+
+/// `ack_timeout=2000`
+struct Stated {
+  ParameterId id = ParameterId::kResponse;
+  std::int64_t value = 0;
+  friend bool operator==(const Stated&, const Stated&) = default;
+};
+/// Each parameter at most once.
+using Statement = std::vector<Stated>;
+
+/// Returns the value that is stated, or null.
+const std::int64_t* find(const Statement& statement, ParameterId id);
+/// Adds what `word` states, such as `ack_timeout=2000`; returns what is wrong with it, or nothing.
+std::string add_stated(std::string_view word, Statement& out);
+/// Returns `first`, and what only `second` states.
+Statement joined(Statement first, const Statement& second);
+/// Returns "ack_timeout=2000 response=350".
+std::string statement_text(const Statement& statement);
+
+}  // namespace rubric::trace
