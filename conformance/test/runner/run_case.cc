@@ -141,13 +141,21 @@ class Run {
     }
     const Window window{base.time + amount(line, line.time.from, line.time.from_terms),
                         base.time + amount(line, line.time.to, line.time.to_terms)};
-    if (window.to < window.from) {
+    if (is_empty(window) && (line.op != Op::kMustNot || !states_anything())) {
       throw trace::TraceError(
           line.place,
           fmt::format("{} is no time with what is stated: {} to {}", trace::print(line.time),
                       window.from - base.time, window.to - base.time));
     }
     return {&line, window, base.slack};
+  }
+
+  // A line forbids nothing where what is stated leaves no time between two frames.
+  static bool is_empty(const Window& window) { return window.to < window.from; }
+  bool states_anything() const {
+    return std::any_of(scope_.nodes.begin(), scope_.nodes.end(), [](const trace::NodeHeader& node) {
+      return node.iut && !node.stated.empty();
+    });
   }
 
   // Returns the ticks of a time, its parameters included, with the values of the line's node.
@@ -220,7 +228,9 @@ class Run {
     switch (line.op) {
       case Op::kGiven: give(*node, timed); return true;
       case Op::kEmits: return expect(*node, timed, result);
-      case Op::kMustNot: forbidden_.push_back(timed); return true;
+      case Op::kMustNot:
+        if (!is_empty(timed.window)) forbidden_.push_back(timed);
+        return true;
       case Op::kMay: allowed_.push_back(timed); return true;
       default: return true;
     }
@@ -346,7 +356,7 @@ class Run {
                            (line->time.base == trace::Time::Base::kLabel &&
                             labels_.find(line->time.label) != labels_.end());
         const Timed one = known ? timed(*line) : Timed{line, {0, now_}, 0};
-        if (known && line->op == Op::kMustNot) forbidden_.push_back(one);
+        if (known && line->op == Op::kMustNot && !is_empty(one.window)) forbidden_.push_back(one);
         if (line->op == Op::kEmits || line->op == Op::kMay) allowed_.push_back(one);
       }
       if (line->place.line == place_.line) reached = false;
