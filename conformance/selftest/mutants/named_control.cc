@@ -82,6 +82,28 @@ void trusts_nbytes(Moment& moment, Memory& memory) {
   moment.honest(machine::Heard{forged.frame});
 }
 
+// What a serial line carries may be longer than what nbytes says.
+void add_lengths(Mutants& out) {
+  add(out, "serial_cut_at_63",
+      "A message of less than 63 bytes is filled up to 63 on the serial line.", {"N11-WHOLE"_rule},
+      edit_sent([](Moment&, Transmit& frame) {
+        if (frame.link != Link::kSerial || !is_net(frame)) return;
+        const int used = 12 + frame.payload[net::kNbytes];
+        frame.size_bytes = static_cast<std::uint8_t>(std::max(used, 63));
+      }));
+  add(out, "short_on_serial_dropped", "A message that is cut short on the serial line is dropped.",
+      {"N11-SHORT"_rule}, hear_only([](const Moment&, const Frame& frame) {
+        return frame.link != Link::kSerial || !is_net(frame) ||
+               frame.payload.size() == machine::kAmPayloadMax;
+      }));
+  add(out, "whole_on_serial_dropped", "A message with bytes after its nbytes is dropped.",
+      {"N7-RADIO"_rule, "N8-DELIVER"_rule, "N7-DELIVER"_rule, "T2-ACK"_rule},
+      hear_only([](const Moment&, const Frame& frame) {
+        return frame.link != Link::kSerial || !is_net(frame) ||
+               frame.payload.size() == 12U + frame.payload[net::kNbytes];
+      }));
+}
+
 void add_malformed(Mutants& out) {
   add(out, "nbytes_trusted", "A node reads as many bytes as nbytes promises.", {"N11-NBYTES"_rule},
       remembering<Memory>(trusts_nbytes));
@@ -173,6 +195,7 @@ void add_numbers(Mutants& out) {
 Mutants control_mutants() {
   Mutants out;
   add_switches(out);
+  add_lengths(out);
   add_malformed(out);
   add_numbers(out);
   return out;
