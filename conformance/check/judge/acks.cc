@@ -229,7 +229,7 @@ void Acks::showed_life(std::uint16_t node, std::int64_t now_us) {
   for (std::size_t i = 0; i < ring.size(); ++i) {
     Arrived& arrived = ring.newest(i);
     if (!arrived.must_ack || !arrived.sure || arrived.acks > 0) continue;
-    if (now_us - arrived.whole_us <= context_.response_us()) continue;
+    if (now_us <= context_.due_us(node, arrived.whole_us)) continue;
     --owed_[node];
     arrived.must_ack = false;
     const Device& device = context_.device(node);

@@ -210,6 +210,16 @@ std::int64_t Context::ack_timeout_us() const {
   return machine::us_of(own != 0 ? own : machine::Profile{}.ack_timeout_ticks);
 }
 
+std::int64_t Context::due_us(std::uint16_t node, std::int64_t whole_us) const {
+  std::int64_t due = whole_us + response_us();
+  if (node >= run.nodes.size()) return due;
+  for (const auto& [from, to] : run.nodes[node].busy_us) {
+    if (from > due || to < whole_us) continue;
+    due = to == INT64_MAX ? to : std::max(due, to + 2 * response_us());
+  }
+  return due;
+}
+
 bool Context::ack_timeout_stated() const {
   constexpr auto kAckTimeout = trace::ParameterId::kAckTimeout;
   return options.ack_timeout_us.has_value() || find(options.stated, kAckTimeout) ||

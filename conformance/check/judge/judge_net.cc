@@ -156,12 +156,23 @@ void Judge::serial(std::uint32_t index, const Observation& seen, const Mark& mar
   if (!seen.to_mote) sinks_.showed_life(mark.device, seen.place.time_us, true);
   Net net;
   if (seen.frame.type != am::kNet || !parse_net(seen.frame.payload, net)) return;
+  if (!seen.received) whole(seen, mark.device);
   if (seen.to_mote) {
     down_serial(index, seen, mark, sink, net);
   } else {
     up_serial(seen, sink, net);
   }
   if (net.is_ack()) ack_comes(net);
+}
+
+void Judge::whole(const Observation& seen, std::uint16_t sender) {
+  constexpr std::size_t kWhole = rubicon::NetMsgView::kMaxSizeBytes;
+  const std::size_t size = seen.frame.payload.size();
+  if (size >= kWhole || !cut_short_.insert(sender).second) return;
+  context_.report("N11-WHOLE"_rule, Severity::kWeak, seen.place, sender,
+                  {"A net_msg of " + number(size) + " bytes on the serial line.",
+                   number(kWhole) + " bytes; hosts of release 1.0 drop what is shorter.",
+                   {}});
 }
 
 void Judge::up_serial(const Observation& seen, std::uint16_t sink, const Net& net) {
