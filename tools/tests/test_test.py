@@ -248,7 +248,7 @@ class Failing(Folder):
                       "  Forbids:  b+2..99 m5 !> rA ack_join(*) [J4-SEQ]\n",
                       "of conformance/cases/j4.rtr, from tick 2 to 99 (2.0 ms to 96.7 ms)",
                       "  But:      at 2 it emitted rA ack_join(", "    > @2        m5 > rA am=5->1",
-                      "<<<\n", "  Broken: J4-SEQ\n  Suspected: J4-ACK J5-ACCEPT\n",
+                      "<<<\n", "  Broken: J4-SEQ\n  Suspected: J4-ACK J5-SUCCESS J5-ACCEPT\n",
                       "  Then:     line 33 [J4-ACK]: ", "1 unexpected result."]:
             self.assertIn(words, out)
 
