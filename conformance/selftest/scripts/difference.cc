@@ -166,6 +166,9 @@ class Lenient {
     } else if (output.requirement == "T2-ACK"_rule || output.requirement == "S2-SEND"_rule ||
                output.requirement == "S3-CHANGED"_rule || output.requirement == "J6-REPORT"_rule) {
       free_field(line, "seq_num");
+      // An ack holds the number alone, or a code as well (decision 108).
+      FieldValue* const nbytes = field(line, "nbytes");
+      if (nbytes && output.requirement == "T2-ACK"_rule) nbytes->value = Value::range(4, 6);
     } else {
       variable(line, "seq_num");
     }
