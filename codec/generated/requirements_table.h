@@ -104,11 +104,11 @@ constexpr reflect::Requirement kRequirements[] = {
      0, false, ""},
     {"WIRE-NET-HEADER", "MUST", "wire, messages",
      "A network message has a 12-byte header: dest, src, reliable, seq_num, nbytes.",
-     "paper: The Network level",
+     "paper: The Network level; release 1.0; decision 137",
      0, false, ""},
     {"WIRE-NET-RELIABLE", "MUST", "wire, messages",
      "The reliable field of a network message is 0 or 1.",
-     "paper: The Network level",
+     "paper: The Network level; decision 112",
      0, false, ""},
     {"WIRE-NET-NBYTES", "MUST", "wire, messages",
      "nbytes counts TRANSID, APPID and the application payload, so it is 2 to 102.",
@@ -121,30 +121,30 @@ constexpr reflect::Requirement kRequirements[] = {
      0, false, ""},
     {"WIRE-APP-HEADER", "MUST", "wire, messages",
      "A transport message begins with TRANSID and APPID, one byte each.",
-     "paper: Message Dispatcher",
+     "paper: Message Dispatcher; release 1.0; decision 137",
      0, false, ""},
     {"WIRE-R-ADDR", "MUST", "wire, messages",
      "A RUBICON address is the pair pid and devid, 16 bits each, big-endian.",
-     "paper: The RUBICON Addressing Scheme",
+     "paper: The RUBICON Addressing Scheme; release 1.0; decision 137",
      0, false, ""},
     {"WIRE-MOTE-DESC", "MUST", "wire, messages",
      "A mote descriptor is the mote type (8 bits), the transducer mask (16 bits) and the "
      "actuator mask (8 bits).",
-     "paper: Component Management",
+     "paper: Component Management; release 1.0; decision 137",
      0, false, ""},
     {"WIRE-JOIN-REQUEST", "MUST", "wire, messages",
      "A join request is its sequence number and the mote's descriptor, 6 bytes.",
-     "paper: Component Management",
+     "paper: Component Management; release 1.0; decision 137",
      0, false, ""},
     {"WIRE-JOIN-REPLY", "MUST", "wire, messages",
      "A join reply is the island, the mote's devid, the current time and the request's "
      "sequence number, 10 bytes.",
-     "paper: Component Management",
+     "paper: Component Management; release 1.0; decision 137",
      0, false, ""},
     {"WIRE-ACK-JOIN", "MUST", "wire, messages",
      "The acknowledgement of a join is both addresses, the sequence number and the "
      "descriptor, 14 bytes.",
-     "paper: Component Management",
+     "paper: Component Management; release 1.0; decision 137",
      0, false, ""},
     {"WIRE-SERIAL-JOINED", "MUST", "wire, messages",
      "The sink's report of a new mote is its kind (16), island, mote and descriptor, 9 "
@@ -178,7 +178,7 @@ constexpr reflect::Requirement kRequirements[] = {
     {"WIRE-SYN-CREATE-CMD", "MUST", "wire, messages",
      "A command that creates a synaptic connection is 58 bytes, with at most ten neurons a "
      "side in arrays that are always whole.",
-     "paper: Synaptic Communication; release 1.0",
+     "release 1.0",
      0, false, ""},
     {"WIRE-LEARNING-MODULE-CMD", "MUST", "wire, messages",
      "A learning module command carries at most 92 bytes of weights, as many as matrix_size "
@@ -207,11 +207,11 @@ constexpr reflect::Requirement kRequirements[] = {
     {"WIRE-RUBICON-ACK", "MUST", "wire, messages",
      "The body of a RUBICON acknowledgement holds the sequence number that it acknowledges, "
      "alone or within a learning notification.",
-     "paper: Rubicon ACK; release 1.0",
+     "paper: Rubicon ACK; release 1.0; decision 108",
      0, false, ""},
     {"WIRE-SYNAPTIC-DATA", "MUST", "wire, messages",
      "Synaptic data are little-endian binary32 floats, one for each connection.",
-     "paper: Synaptic Communication; release 1.0",
+     "paper: Synaptic Communication; release 1.0; decision 136",
      0, false, ""},
     {"WIRE-DEMO", "MUST", "wire, messages",
      "A demo command is its kind (1), a transducer mask and a period, 5 bytes.",
@@ -227,7 +227,7 @@ constexpr reflect::Requirement kRequirements[] = {
      0, false, ""},
     {"WIRE-UPDATES", "MUST", "wire, messages",
      "Updates are pairs of transducer and value, as many as output_size says, at most 24.",
-     "paper: In-Hospital Transport Test-Bed; release 1.0",
+     "paper: AAL Test-bed; release 1.0; decision 4",
      0, false, ""},
     {"WIRE-READ-UPDATES", "MUST", "wire, messages",
      "A request for updates is its kind (36), a period and a transducer mask, 5 bytes.",
@@ -263,7 +263,7 @@ constexpr reflect::Requirement kRequirements[] = {
     {"N1-SRC", "MUST", "network, send",
      "What a node sends on behalf of its applications carries the node's own address as "
      "src; a base station's src is <its island, NULL>.",
-     "paper: The Network level",
+     "paper: The Network level; release 1.0 NetworkP; decision 137",
      reflect::kRoleMote | reflect::kRoleSink | reflect::kRoleBaseStation, false, ""},
     {"N1-SEQ", "MUST", "network, send",
      "send returns the sequence number that the message carries.",
@@ -302,7 +302,7 @@ constexpr reflect::Requirement kRequirements[] = {
     {"N2-IN-ORDER", "MUST", "network, buffers",
      "Messages that arrived while the application was busy are handled in the order of "
      "their arrival, each once.",
-     "paper: The Network level",
+     "paper: The Network level; decision 125",
      reflect::kRoleMote | reflect::kRoleSink, true, ""},
     {"N2-IN-FULL", "MUST", "network, buffers",
      "A message that finds the incoming buffer full is dropped; those queued before it are "
@@ -318,12 +318,12 @@ constexpr reflect::Requirement kRequirements[] = {
     {"N4-MOTE", "MUST", "network, addressing",
      "On the radio a net_msg for a mote of the sender's own island is sent to that mote's "
      "AM address, a broadcast to AM address 0xFFFF.",
-     "paper: The Intra-Island Connectivity",
+     "paper: The Intra-Island Connectivity; decision 114",
      reflect::kRoleMote | reflect::kRoleSink, true, ""},
     {"N4-SINK", "MUST", "network, addressing",
      "A mote sends a net_msg for another island, or with devid NULL, to the AM address of "
      "its sink.",
-     "paper: The Inter-Island Connectivity",
+     "paper: The Inter-Island Connectivity; release 1.0 NetworkP; decision 137",
      reflect::kRoleMote, true, ""},
     {"N4-SELF", "SHOULD", "network, addressing",
      "A node refuses a message whose dest is the node itself.",
@@ -332,26 +332,26 @@ constexpr reflect::Requirement kRequirements[] = {
     {"N5-DELIVER", "MUST", "network, mote",
      "A mote delivers a net_msg, sent or sent on by a node of its island, whose dest is its "
      "island and its own devid or the broadcast devid.",
-     "paper: Island Collision Resolution and Safe Join",
+     "paper: The Topology and the Routing of the Ecology; decision 116",
      reflect::kRoleMote, false, ""},
     {"N5-FOREIGN", "MUST", "network, mote",
      "A mote ignores a net_msg whose dest.pid is another island; 0xFFFF, every island, may "
      "be delivered or ignored.",
-     "paper: Island Collision Resolution and Safe Join",
+     "paper: Island Collision Resolution and Safe Join; decision 114",
      reflect::kRoleMote, true, ""},
     {"N5-OTHER", "MUST", "network, mote",
      "A mote ignores a net_msg of its own island whose devid is another mote or NULL.",
-     "paper: The Topology and the Routing of the Ecology",
+     "paper: The Topology and the Routing of the Ecology; decision 137",
      reflect::kRoleMote, true, ""},
     {"N6-DELIVER", "MUST", "network, sink",
      "A sink delivers a net_msg from the radio, sent by a node of its island, whose dest is "
      "its island and its own devid or the broadcast devid.",
-     "paper: Island Collision Resolution and Safe Join",
+     "paper: The Topology and the Routing of the Ecology; decision 116",
      reflect::kRoleSink, false, ""},
     {"N6-FORWARD", "MUST", "network, sink",
      "A sink forwards a net_msg from the radio, sent by a node of its island, with dest "
      "<its island, NULL> to its base station over serial.",
-     "paper: The Network level",
+     "paper: The RUBICON Addressing Scheme; release 1.0 NetworkP; decision 137",
      reflect::kRoleSink, false, ""},
     {"N6-ROUTE", "MUST", "network, sink",
      "A sink forwards a net_msg from the radio whose dest.pid is foreign and whose src.pid "
@@ -379,7 +379,7 @@ constexpr reflect::Requirement kRequirements[] = {
      reflect::kRoleSink, true, ""},
     {"N6-OWN", "MUST", "network, sink",
      "What a sink itself sends to <its island, NULL> or to another island goes over serial.",
-     "paper: The Inter-Island Connectivity",
+     "paper: The Inter-Island Connectivity; release 1.0 NetworkP; decision 137",
      reflect::kRoleSink, false, ""},
     {"N7-DELIVER", "MUST", "network, sink",
      "A sink delivers a net_msg from serial for its island whose devid is its own or the "
@@ -394,7 +394,7 @@ constexpr reflect::Requirement kRequirements[] = {
     {"N7-CONTENT", "MUST", "network, sink",
      "What a sink sends on by radio keeps addresses, reliable, sequence number, nbytes and "
      "payload, and no byte after the payload.",
-     "paper: The Inter-Island Connectivity",
+     "paper: The Inter-Island Connectivity; decision 113",
      reflect::kRoleSink, true, ""},
     {"N7-FOREIGN", "SHOULD", "network, sink",
      "A sink does not send a net_msg from serial for another island on the radio.",
@@ -418,7 +418,7 @@ constexpr reflect::Requirement kRequirements[] = {
      "Release 1.0 hands it on with reliable 0 and sequence number 5."},
     {"N8-DELIVER", "MUST", "network, base station",
      "A base station delivers a message with dest <its island, NULL> to its application.",
-     "paper: The Inter-Island Connectivity",
+     "paper: The Inter-Island Connectivity; decision 137",
      reflect::kRoleBaseStation, false, ""},
     {"N8-LOOP", "SHOULD", "network, base station",
      "A base station does not hand a message for another island to its own sink.",
@@ -486,7 +486,7 @@ constexpr reflect::Requirement kRequirements[] = {
      reflect::kRoleMote, true, ""},
     {"J1-SEQ", "SHOULD", "join, mote",
      "A new joinIsland call uses a sequence number other than the one of the call before it.",
-     "paper: Component Management",
+     "paper: Component Management; decision 104",
      reflect::kRoleMote, true, ""},
     {"J1-CALLED", "MUST", "join, mote",
      "A mote sends no join_request unless joinIsland was called.",
@@ -500,7 +500,7 @@ constexpr reflect::Requirement kRequirements[] = {
     {"J3-REPLY", "MUST", "join, sink",
      "A sink whose list has room answers a join_request of a mote that it does not list "
      "with a join_reply.",
-     "paper: Component Management",
+     "paper: Component Management; decision 107",
      reflect::kRoleSink, false, ""},
     {"J3-ONCE", "MUST", "join, sink",
      "A sink sends at most one join_reply for each join_request, and none without one.",
@@ -517,7 +517,7 @@ constexpr reflect::Requirement kRequirements[] = {
      reflect::kRoleSink, true, ""},
     {"J3-DEST", "MUST", "join, sink",
      "A join_reply is sent to the AM address that asked.",
-     "paper: Component Management",
+     "paper: Component Management; release 1.0",
      reflect::kRoleSink, true, ""},
     {"J3-TIME", "MUST", "join, sink",
      "cur_time of a join_reply is the sink's clock in ms when it replies; it does not stand "
@@ -546,7 +546,7 @@ constexpr reflect::Requirement kRequirements[] = {
      "ack_join has dest <island, sink> of the accepted reply, src the new address, the "
      "request's sequence number and the descriptor of the request, and goes to the sink's "
      "AM address.",
-     "paper: Component Management",
+     "paper: Component Management; release 1.0; decision 137",
      reflect::kRoleMote, true, ""},
     {"J4-SEQ", "MUST", "join, mote",
      "A mote ignores a join_reply whose sequence number is not that of its outstanding "
@@ -579,7 +579,7 @@ constexpr reflect::Requirement kRequirements[] = {
     {"J5-SUCCESS", "MUST", "join, mote",
      "A mote that accepted a reply signals joined(address, SUCCESS) with the address of the "
      "reply; only while ack_join is unconfirmed may the call fail instead.",
-     "paper: Component Management",
+     "paper: Component Management; decision 102",
      reflect::kRoleMote, false, ""},
     {"J5-ACCEPT", "MUST", "join, mote",
      "joined(SUCCESS) is never signalled before a reply was accepted.",
@@ -604,7 +604,7 @@ constexpr reflect::Requirement kRequirements[] = {
     {"J6-SEQ", "MUST", "join, sink",
      "A sink ignores an ack_join whose sequence number is not the one it stored for that "
      "mote.",
-     "paper: Component Management",
+     "paper: Component Management; decision 104",
      reflect::kRoleSink, true, ""},
     {"J6-ISLAND", "MUST", "join, sink",
      "A sink ignores an ack_join whose dest.pid is not its island.",
@@ -631,7 +631,7 @@ constexpr reflect::Requirement kRequirements[] = {
     {"J6-REPEAT", "MUST", "join, sink",
      "A repeated ack_join changes nothing: one moteJoined and one serial_joined for each "
      "join.",
-     "paper: Component Management",
+     "paper: Component Management; decision 105",
      reflect::kRoleSink, true, ""},
     {"J7-CHOICE", "MUST", "join, mote",
      "With several sinks in range a mote sends ack_join only for the island that it chose "
@@ -649,7 +649,7 @@ constexpr reflect::Requirement kRequirements[] = {
      reflect::kRoleMote, false, ""},
     {"J8-PERIOD", "MUST", "join, mote",
      "A join_request follows the one before it no earlier than the join timeout.",
-     "paper: Component Management; decision 128",
+     "paper: Component Management; decision 128; decision 133",
      reflect::kRoleMote, true, ""},
     {"J8-LIMIT", "MUST", "join, mote",
      "A joinIsland call sends at most five join_requests.",
@@ -705,7 +705,7 @@ constexpr reflect::Requirement kRequirements[] = {
     {"T2-ACK", "MUST", "transport, acks",
      "A reliable Connectionless message to the node itself, with an APPID that it knows, is "
      "answered by an ack.",
-     "paper: Rubicon ACK",
+     "paper: Rubicon ACK; decision 111",
      reflect::kRoleMote | reflect::kRoleSink | reflect::kRoleBaseStation, false, ""},
     {"T2-ONCE", "MUST", "transport, acks",
      "A reliable message is answered by one ack for each time that it is received.",
@@ -719,7 +719,7 @@ constexpr reflect::Requirement kRequirements[] = {
     {"T2-DELIVER", "MUST", "transport, acks",
      "A reliable message is delivered to the application as well; a repeated one at least "
      "once.",
-     "paper: Rubicon ACK",
+     "paper: Rubicon ACK; decision 111",
      reflect::kRoleMote | reflect::kRoleSink | reflect::kRoleBaseStation, false, ""},
     {"T2-UNRELIABLE", "MUST", "transport, acks",
      "A message with reliable 0 is never acked.",
@@ -744,19 +744,19 @@ constexpr reflect::Requirement kRequirements[] = {
     {"T3-SUCCESS", "MUST", "transport, acks",
      "The matching ack of a reliable message is signalled as receive_ack(success) to the "
      "application that sent it.",
-     "paper: Rubicon ACK",
+     "paper: Rubicon ACK; decision 108; decision 109",
      reflect::kRoleMote | reflect::kRoleSink | reflect::kRoleBaseStation, false,
      "The number is read from the wrong offset."},
     {"T3-TIMEOUT", "MUST", "transport, acks",
      "A reliable message without its ack is signalled as receive_ack(failure) when its "
      "timeout expires, not before.",
-     "paper: Rubicon ACK",
+     "paper: Rubicon ACK; decision 110",
      reflect::kRoleMote | reflect::kRoleSink | reflect::kRoleBaseStation, false,
      "There is no ack timeout."},
     {"T3-ONCE", "MUST", "transport, acks",
      "Each reliable message ends in exactly one receive_ack; late and duplicate acks change "
      "nothing.",
-     "paper: Rubicon ACK",
+     "paper: Rubicon ACK; decision 109",
      reflect::kRoleMote | reflect::kRoleSink | reflect::kRoleBaseStation, true, ""},
     {"T3-MATCH", "MUST", "transport, acks",
      "An ack whose sequence number is that of no message awaiting its ack changes nothing.",
@@ -769,12 +769,12 @@ constexpr reflect::Requirement kRequirements[] = {
     {"T3-RESEND", "MUST", "transport, acks",
      "Connectionless never sends a message again by itself; that is the application's "
      "decision.",
-     "paper: Rubicon ACK",
+     "paper: Rubicon ACK; decision 134",
      reflect::kRoleMote | reflect::kRoleSink | reflect::kRoleBaseStation, true, ""},
     {"T4-SEVERAL", "MUST", "transport, acks",
      "Several reliable messages may await their acks at once; each ack ends the message it "
      "names.",
-     "paper: The Transport level",
+     "paper: The Transport level; decision 109",
      reflect::kRoleMote | reflect::kRoleSink | reflect::kRoleBaseStation, false, ""},
     {"S1-ID", "MUST", "synaptic, operations",
      "Creating a channel returns its id: source devid in the upper, destination devid in "
@@ -793,12 +793,12 @@ constexpr reflect::Requirement kRequirements[] = {
     {"S1-WRITE", "MUST", "synaptic, operations",
      "write_output_value sets the value at pos, which the next tick sends; a pos outside "
      "the channel is refused.",
-     "paper: Synaptic Communication",
+     "paper: Synaptic Communication; decision 137",
      reflect::kRoleMote | reflect::kRoleSink, false, ""},
     {"S1-READ", "MUST", "synaptic, operations",
      "read_input_value tells the value at pos that was received last; a pos outside the "
      "channel is refused.",
-     "paper: Synaptic Communication",
+     "paper: Synaptic Communication; decision 137",
      reflect::kRoleMote | reflect::kRoleSink, false, ""},
     {"S1-START", "MUST", "synaptic, operations",
      "start_syn_channel starts that channel: its values are sent, or its data signalled, "
@@ -823,7 +823,7 @@ constexpr reflect::Requirement kRequirements[] = {
     {"S2-SEND", "MUST", "synaptic, clock",
      "At each tick every started output channel in reliable mode, but for a channel to "
      "itself, sends its values to its destination.",
-     "paper: Synaptic Communication",
+     "paper: Synaptic Communication; decision 130",
      reflect::kRoleMote | reflect::kRoleSink, false, ""},
     {"S2-CONTENT", "MUST", "synaptic, clock",
      "Synaptic data has TRANSID SYN_CHANNEL, APPID LEARNING or ESN_DATA, and one "

@@ -38,7 +38,8 @@ class Hasher {
 
 void add(Hasher& hasher, const Profile& p) {
   hasher.add(p.ticks_per_second, p.join_period_ticks, p.ack_timeout_ticks, p.synaptic_period_ticks);
-  const unsigned switches = (p.join_fail_signalled ? 1u : 0u) | (p.listed_ignored ? 2u : 0u);
+  const unsigned switches =
+      (p.join_fail_signalled ? 1u : 0u) | (p.listed_ignored ? 2u : 0u) | (p.short_acks ? 4u : 0u);
   hasher.add(p.join_requests_max, p.ack_join_max, p.members_max, p.sink_id);
   hasher.add(p.response_ticks, p.early_ticks, p.synaptic_phase_ticks,
              static_cast<std::uint16_t>(switches | unsigned{p.channels_max} << 8));

@@ -1,8 +1,9 @@
 // The network level and the message dispatcher: net_msg from the application and from the lines.
 #include <algorithm>
 
-#include "codec/generated/rubicon/learning_notification.h"
 #include "codec/generated/rubicon/net_msg.h"
+#include "codec/generated/rubicon/rubicon_ack.h"
+#include "codec/generated/rubicon/rubicon_ack_seq_only.h"
 #include "codec/generated/rubicon/serial_joined.h"
 #include "conformance/machine/lines.h"
 #include "conformance/machine/messages.h"
@@ -79,15 +80,22 @@ void forward(Node& node, const Route& route, rubicon::NetMsgView message) {
 }
 
 void send_ack(Node& node, Address to, std::uint8_t app_id, std::uint16_t seq_num) {
-  std::uint8_t body[rubicon::LearningNotificationView::kMaxSizeBytes];
-  rubicon::LearningNotification ack;
-  ack.type = rubicon::AmType::kLearningNotification;
-  ack.seq_num = seq_num;
-  rubicon::LearningNotificationLayout::store(ack, body);
+  std::uint8_t body[rubicon::RubiconAckView::kMaxSizeBytes];
+  std::size_t size_bytes = rubicon::RubiconAckSeqOnlyView::kMaxSizeBytes;
+  if (node.profile().short_acks) {
+    rubicon::RubiconAckSeqOnlyLayout::SeqNumAt::store(body, seq_num);
+  } else {
+    rubicon::RubiconAck ack;
+    ack.type = rubicon::AmType::kLearningNotification;
+    ack.seq_num = seq_num;
+    rubicon::RubiconAckLayout::store(ack, body);
+    size_bytes = sizeof body;
+  }
   //= T2-CONTENT: An ack has TRANSID RUBICON_ACK, the APPID and the sequence number of the message,
   //= is unreliable, and goes to the message's source.
   ReqId refused = ReqId::kNone;
-  send_own(node, {to, component::kRubiconAck, app_id, false, body, "T2-ACK"_rule}, refused);
+  send_own(node, {to, component::kRubiconAck, app_id, false, {body, size_bytes}, "T2-ACK"_rule},
+           refused);
   if (refused != ReqId::kNone) node.actions.ignored(refused);
 }
 

@@ -16,6 +16,7 @@ struct Profile {
   bool join_fail_signalled = true;            ///< joined(FAIL) after the last request.
   std::uint8_t ack_join_max = 5;              ///< ack_join sent at most, while no link ack comes.
   bool listed_ignored = true;                 ///< J2: a sink ignores a mote that it lists.
+  bool short_acks = true;                     ///< An ack holds the number alone (decision 108).
   std::uint8_t members_max = 20;              ///< In a sink's list; at most kMembersMax.
   std::uint8_t sink_id = 1;                   ///< AM address and devid of every sink.
   std::uint16_t ack_timeout_ticks = 1000;     ///< For a reliable message; 0: none.

@@ -8,9 +8,9 @@
 #include <set>
 #include <string>
 
-#include "codec/reflect/requirements.h"
 #include "conformance/check/input/read.h"
 #include "conformance/check/judge/judge.h"
+#include "conformance/check/test/failures.h"
 #include "conformance/check/test/testing.h"
 #include "conformance/selftest/lawful_traffic/generate.h"
 
@@ -36,16 +36,6 @@ check::Run stepped_at(Script script, double ms, double by_ms, std::size_t count 
   place_steps(script.run);
   merge(script.run);
   return script.run;
-}
-
-std::multiset<std::string> failures_of(const Report& report) {
-  std::multiset<std::string> out;
-  for (const Finding& finding : report.findings) {
-    if (finding.severity != Severity::kFail) continue;
-    out.insert(reflect::requirement(finding.requirement).id + std::string(" ") + finding.node +
-               " " + std::to_string(finding.place.frame));
-  }
-  return out;
 }
 
 // Two motes join, at 0 and 1000 ms; the first one sends a message each 400 ms.

@@ -3,9 +3,9 @@
 
 #include <set>
 
-#include "codec/reflect/requirements.h"
 #include "conformance/check/input/read.h"
 #include "conformance/check/judge/judge.h"
+#include "conformance/check/test/failures.h"
 #include "conformance/check/test/testing.h"
 
 namespace rubric::check {
@@ -24,16 +24,6 @@ void lose_serial_times(Run& run) {
     seen.place.time_us = -1;
   }
   merge(run);
-}
-
-std::multiset<std::string> failures_of(const Report& report) {
-  std::multiset<std::string> out;
-  for (const Finding& finding : report.findings) {
-    if (finding.severity != Severity::kFail) continue;
-    out.insert(reflect::requirement(finding.requirement).id + std::string(" ") + finding.node +
-               " " + std::to_string(finding.place.frame));
-  }
-  return out;
 }
 
 std::optional<check::Run> capture(const std::string& name) {

@@ -9,6 +9,8 @@
 #include "codec/generated/rubicon/join_reply.h"
 #include "codec/generated/rubicon/join_request.h"
 #include "codec/generated/rubicon/net_msg.h"
+#include "codec/generated/rubicon/rubicon_ack.h"
+#include "codec/generated/rubicon/rubicon_ack_seq_only.h"
 #include "conformance/machine/messages.h"
 
 namespace rubric::flaws {
@@ -29,8 +31,11 @@ namespace am = machine::am;
 
 using rubicon::AppMsgLayout;
 using rubicon::NetMsgLayout;
-using AckAt = Within<NetMsgLayout::PayloadAt,
-                     Within<AppMsgLayout::PayloadAt, rubicon::RubiconAckLayout::SeqNumAt>>;
+template <class Field>
+using OfBody = Within<NetMsgLayout::PayloadAt, Within<AppMsgLayout::PayloadAt, Field>>;
+using AckTypeAt = OfBody<rubicon::RubiconAckLayout::TypeAt>;
+using AckAt = OfBody<rubicon::RubiconAckLayout::SeqNumAt>;
+using ShortAckAt = OfBody<rubicon::RubiconAckSeqOnlyLayout::SeqNumAt>;
 using TransIdAt = Within<NetMsgLayout::PayloadAt, AppMsgLayout::TransIdAt>;
 
 const Frame* heard(const Event& event, std::uint8_t type) {
@@ -192,11 +197,15 @@ void no_ack_timeout(State& state, Ticks now, const Event& event, Actions& action
 
 void misread_acks(State& state, Ticks now, const Event& event, Actions& actions) {
   const Frame* const frame = heard(event, am::kNet);
-  const bool ack = frame != nullptr && frame->payload.size() >= AckAt::kEnd &&
+  const bool ack = frame != nullptr && frame->payload.size() >= ShortAckAt::kEnd &&
                    TransIdAt::load(frame->payload.data()) == rubicon::Component::kRubiconAck;
   if (!ack) return machine::step(state, now, event, actions);
+  const std::uint8_t* const bytes = frame->payload.data();
+  const bool coded = frame->payload.size() >= AckAt::kEnd &&
+                     AckTypeAt::load(bytes) == rubicon::AmType::kLearningNotification;
+  const std::size_t at = coded ? AckAt::kAt : ShortAckAt::kAt;
   Forged forged(*frame);
-  std::reverse(forged.bytes() + AckAt::kAt, forged.bytes() + AckAt::kEnd);
+  std::reverse(forged.bytes() + at, forged.bytes() + at + 2);
   machine::step(state, now, forged.event(), actions);
 }
 

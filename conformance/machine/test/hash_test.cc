@@ -36,6 +36,7 @@ TEST(Hash, EveryDifferenceCounts) {
       [](State& s) { s.config.role = Role::kMote; },
       [](State& s) { s.config.profile.join_period_ticks++; },
       [](State& s) { s.config.profile.listed_ignored = false; },
+      [](State& s) { s.config.profile.short_acks = false; },
       [](State& s) { s.config.profile.join_fail_signalled = false; },
       [](State& s) { s.config.profile.members_max--; },
       [](State& s) { s.config.profile.channels_max++; },

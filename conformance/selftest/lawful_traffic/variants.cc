@@ -16,6 +16,10 @@ constexpr WithoutVariant kWithout[] = {
     {130, kLater},
     {131, kLater},
     {132, kLater},
+    {135, "The PCs of this traffic have no channels."},
+    {136, "What a connection means to applications is not on the air."},
+    {137, "All traffic has the bytes of release 1.0."},
+    {138, "It makes no rule."},
 };
 
 void usual(Plan&, Random&) {}

@@ -12,8 +12,6 @@ constexpr const char* kSerialAm =
 constexpr const char* kSerialNbytes =
     "On the serial line nbytes may count stale bytes after the payload (N6-CONTENT).";
 constexpr const char* kFreeNumber = "What awaits no ack may have any number (decision 117).";
-constexpr const char* kAckCode =
-    "Any code in an ack is right: it says how the message was handled (decision 108).";
 constexpr const char* kResultTwice =
     "The result of a call is what a function returns: an attachment that tells it twice says "
     "nothing "
@@ -39,8 +37,7 @@ constexpr std::array kSurvivors{
     Survivor{"* J6-REPORT net_msg serial_joined by serial: seq_num", kFreeNumber},
     Survivor{"* synaptic_data by radio: seq_num", kFreeNumber},
     Survivor{"* synaptic_data by serial: seq_num", kFreeNumber},
-    Survivor{"* T2-ACK net_msg rubicon_ack by *: seq_num", kFreeNumber},
-    Survivor{"* T2-ACK net_msg rubicon_ack by *: payload.body.ack", kAckCode},
+    Survivor{"* T2-ACK net_msg rubicon_ack_seq_only by *: seq_num", kFreeNumber},
     Survivor{"double: send N9-SET config", "The same island id a second time changes nothing."},
     Survivor{"double: tell J11-SEND send_result", kResultTwice, kNotJudged},
     Survivor{"double: tell N10-OFF send_result", kResultTwice, kNotJudged},

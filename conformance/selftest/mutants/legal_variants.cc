@@ -105,26 +105,12 @@ void add_joins(Variants& out) {
                  })});
 }
 
-// Sends the paper's form of an ack: the number alone.
-void short_ack(Moment& moment, Transmit& frame) {
-  const bool mine = is_ack(frame) && get(frame, net::kSrcDevid) == own(moment).devid &&
-                    get(frame, net::kSrcPid) == own(moment).pid;
-  if (!mine || frame.payload[net::kNbytes] != net::kAckNbytes) return;
-  put(frame, net::kPaperSeq, get(frame, net::kAckedSeq));
-  frame.payload[net::kNbytes] = net::kPaperAckNbytes;
-  const bool serial = frame.link == Link::kSerial;
-  if (serial) {
-    std::fill_n(frame.payload.begin() + net::kPaperSeq.kEnd, net::kAckNbytes - net::kPaperAckNbytes,
-                0);
-  } else {
-    frame.size_bytes = net::kPaperSeq.kEnd;
-  }
-}
-
 void stale_on_serial(Moment& moment, Transmit& frame) {
   const bool up = frame.link == Link::kSerial && moment.is(Role::kSink) && is_net(frame) &&
                   !is_synaptic(frame);  // Its nbytes says how many values there are.
-  if (!up) return;
+  const bool own_ack = is_ack(frame) && get(frame, net::kSrcPid) == own(moment).pid &&
+                       get(frame, net::kSrcDevid) == own(moment).devid;
+  if (!up || own_ack) return;  // An ack's nbytes is 4 or 6 (decision 108).
   const std::size_t end = 12U + frame.payload[net::kNbytes];
   for (std::size_t i = end; i < frame.payload.size(); ++i) {
     frame.payload[i] = static_cast<std::uint8_t>(0xA5 ^ i);
@@ -206,7 +192,8 @@ void cut_on_serial(Moment&, Transmit& frame) {
 }
 
 void add_messages(Variants& out) {
-  out.push_back({"short_acks", "Acks hold the number alone (108).", edit_sent(short_ack)});
+  out.push_back({"acks_with_a_code", "Acks are learning_notifications, as in release 1.0 (108).",
+                 with_profile(&machine::Profile::short_acks, false)});
   out.push_back({"stale_bytes_on_serial", "A sink hands up with nbytes 102 (N6-CONTENT).",
                  edit_sent(stale_on_serial)});
   out.push_back({"cut_on_serial", "On the serial line messages end after their nbytes (140).",

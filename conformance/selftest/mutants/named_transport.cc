@@ -37,12 +37,21 @@ void add_message_acks(Mutants& out) {
       }));
   add(out, "ack_other_number", "An ack names the number plus one.",
       {"T2-CONTENT"_rule, "T2-ACK"_rule}, edit_sent(is_ack, [](Moment&, Transmit& frame) {
-        put(frame, net::kAckedSeq, get(frame, net::kAckedSeq) + 1U);
+        put(frame, net::kPaperSeq, get(frame, net::kPaperSeq) + 1U);
       }));
   add(out, "ack_number_swapped", "The number in an ack has the wrong byte order.",
       {"T2-CONTENT"_rule, "T2-ACK"_rule}, edit_sent(is_ack, [](Moment&, Transmit& frame) {
-        std::reverse(frame.payload.begin() + net::kAckedSeq,
-                     frame.payload.begin() + net::kAckedSeq.kEnd);
+        std::reverse(frame.payload.begin() + net::kPaperSeq,
+                     frame.payload.begin() + net::kPaperSeq.kEnd);
+      }));
+  add(out, "ack_of_another_kind", "An ack is four bytes that do not begin with 23.",
+      {"T2-CONTENT"_rule, "T2-ACK"_rule}, edit_sent([](Moment&, Transmit& frame) {
+        if (!is_ack(frame) || frame.payload[net::kNbytes] != net::kPaperAckNbytes) return;
+        put(frame, net::kAckedSeq, get(frame, net::kPaperSeq));
+        frame.payload[net::kBody] = net::kAck + 1;
+        frame.payload[net::kNbytes] = net::kAckNbytes;
+        if (frame.link != Link::kSerial)
+          frame.size_bytes = net::kBody + rubicon::RubiconAckView::kMaxSizeBytes;
       }));
   add(out, "ack_reliable", "An ack asks to be acked.", {"T2-CONTENT"_rule},
       sent_field(is_ack, net::kReliable, 1));
@@ -64,7 +73,7 @@ void add_message_acks(Mutants& out) {
             moment.rewrite([&](const Action& action) {
               const bool sent = action.what == Action::What::kTransmit;
               if (!sent || !is_ack(moment.sent(action))) return moment.keep(action);
-              const std::uint16_t number = get(moment.sent(action), net::kAckedSeq);
+              const std::uint16_t number = get(moment.sent(action), net::kPaperSeq);
               const bool before = std::find(acked.begin(), acked.end(), number) != acked.end();
               acked.push_back(number);
               if (!before) moment.keep(action);

@@ -122,11 +122,11 @@ bool is_decided(const machine::Config& config, const machine::Call& call) {
 // The machine, and the first moment from which others may differ.
 class Probe : public runner::Machine {
  public:
-  explicit Probe(flaws::StepFunction of) : step_(of) {}
+  explicit Probe(flaws::StepFunction of) : Machine(of) {}
   void step(Ticks now, const machine::Event& event, machine::Actions& actions) override {
     late_sends(now);
     const State before = state_;
-    step_(state_, now, event, actions);
+    Machine::step(now, event, actions);
     if (is_free(before, now, event, actions)) free_at(now);
     remember_sends(event, actions, now);
     late_sends(now);
@@ -225,7 +225,6 @@ class Probe : public runner::Machine {
   }
   void free_at(Ticks time) { free_ = std::min(time, free_.value_or(time)); }
 
-  flaws::StepFunction step_;
   std::optional<Ticks> free_;
   std::vector<Sent> sent_;
 };

@@ -157,7 +157,7 @@ class Chart {
       : one_(one), heeds_(heeds), stage_(one, apps), lines_(one.result.log.lines()) {}
 
   report::Sequence take(bool with_failures = false) {
-    const std::vector<std::size_t> before = first_seen(lines_);
+    const std::vector<std::size_t> before = first_seen(lines_, true);
     find_heeds();
     find_links();
     rows_of_.assign(lines_.size(), kNoLine);

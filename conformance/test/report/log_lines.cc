@@ -35,10 +35,25 @@ void keep_of_island(const std::vector<NodeHeader>& nodes, const Line& line,
   });
 }
 
+// Compares acks, whichever body they have.
+bool is_same_ack(const trace::Message& before, const trace::Message& message) {
+  const Value* const kind = message.find("payload.trans_id");
+  if (kind == nullptr || kind->text != "rubicon_ack") return false;
+  constexpr std::string_view kPaths[] = {
+      "dest", "src", "seq_num", "payload.trans_id", "payload.app_id", "payload.body.seq_num"};
+  return std::all_of(std::begin(kPaths), std::end(kPaths), [&](std::string_view path) {
+    const Value* const a = before.find(path);
+    const Value* const b = message.find(path);
+    return a != nullptr && b != nullptr && *a == *b;
+  });
+}
+
 // Compares frames without the AM addresses of a serial line and the bytes after a message.
-bool is_same(const Line& before, const Line& line) {
+bool is_same(const Line& before, const Line& line, bool acks_in_any_form) {
   return before.link == line.link && before.node != line.node && before.am &&
-         (line.link.starts_with("ser") || *before.am == *line.am) && before.message == line.message;
+         (line.link.starts_with("ser") || *before.am == *line.am) &&
+         (before.message == line.message ||
+          (acks_in_any_form && is_same_ack(before.message, line.message)));
 }
 
 }  // namespace
@@ -98,7 +113,7 @@ std::optional<Line> asked_line(const runner::Failure& failure) {
   return *parsed.file.cases[0].lines()[0];
 }
 
-std::vector<std::size_t> first_seen(const std::vector<const Line*>& lines) {
+std::vector<std::size_t> first_seen(const std::vector<const Line*>& lines, bool acks_in_any_form) {
   std::vector<std::size_t> out(lines.size(), kNoLine);
   // If a node is given the same frame of the same sender again, that is another frame.
   std::vector<std::pair<std::size_t, const std::string*>> given;
@@ -109,7 +124,8 @@ std::vector<std::size_t> first_seen(const std::vector<const Line*>& lines) {
       const Line& before = *lines[k];
       const std::int64_t ago = line.time.from - before.time.from;
       if (ago > kOnItsWayTicks) break;
-      if (out[k] != kNoLine || (before.op == Op::kGiven && ago > 0) || !is_same(before, line)) {
+      if (out[k] != kNoLine || (before.op == Op::kGiven && ago > 0) ||
+          !is_same(before, line, acks_in_any_form)) {
         continue;
       }
       if (std::any_of(given.begin(), given.end(), [&](const auto& one) {

@@ -30,7 +30,10 @@ std::optional<trace::Line> asked_line(const runner::Failure& failure);
 
 constexpr std::size_t kNoLine = std::numeric_limits<std::size_t>::max();
 /// Returns for each line the earlier one that shows the same frame: as its sender emitted it, or as
-/// another node was given it. kNoLine if it is the first.
-std::vector<std::size_t> first_seen(const std::vector<const trace::Line*>& lines);
+/// another node was given it. kNoLine if it is the first. Golden traces hand acks on with a code,
+/// in whose place a node may have sent the number alone (decision 108); with `acks_in_any_form`
+/// that is the same frame as well.
+std::vector<std::size_t> first_seen(const std::vector<const trace::Line*>& lines,
+                                    bool acks_in_any_form = false);
 
 }  // namespace rubric::suite

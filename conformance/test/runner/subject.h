@@ -20,18 +20,24 @@ class Subject {
   virtual DueTimers timers() const = 0;
 };
 
-/// The reference machine.
+/// The reference machine, or one whose step is wrapped in a flaw.
 class Machine : public Subject {
  public:
+  using StepFunction = void (*)(machine::State&, machine::Ticks, const machine::Event&,
+                                machine::Actions&);
+  explicit Machine(StepFunction step = machine::step) : step_(step) {}
   void start(const machine::Config& config) override { state_ = machine::start(config); }
   void step(machine::Ticks now, const machine::Event& event, machine::Actions& actions) override {
-    machine::step(state_, now, event, actions);
+    step_(state_, now, event, actions);
   }
   DueTimers timers() const override { return machine::timers(state_); }
   const machine::State& state() const { return state_; }
 
  protected:
   machine::State state_;
+
+ private:
+  StepFunction step_;
 };
 
 using SubjectFactory = std::function<std::unique_ptr<Subject>()>;

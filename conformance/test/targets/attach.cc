@@ -19,18 +19,6 @@ using machine::Role;
 constexpr std::uint32_t kForwarderBaud = 57600;  // The slower common one; not reported.
 constexpr std::uint32_t kSerialBaud = 115200;
 
-/// Wraps the machine's step in a named release-1.0 flaw.
-class FlawedMachine : public runner::Machine {
- public:
-  explicit FlawedMachine(flaws::StepFunction flawed) : step_(flawed) {}
-  void step(machine::Ticks now, const machine::Event& event, machine::Actions& actions) override {
-    step_(state_, now, event, actions);
-  }
-
- private:
-  flaws::StepFunction step_;
-};
-
 /// The reference machine in this process, perhaps with a flaw.
 class MachineAttachment : public Attachment {
  public:
@@ -43,10 +31,8 @@ class MachineAttachment : public Attachment {
   }
   const Identity& identity() override { return identity_; }
   std::unique_ptr<runner::Target> target() override {
-    if (!flaw_) {
-      return std::make_unique<runner::SubjectTarget>(std::make_unique<runner::Machine>());
-    }
-    return std::make_unique<runner::SubjectTarget>(std::make_unique<FlawedMachine>(flaw_->step));
+    return std::make_unique<runner::SubjectTarget>(
+        std::make_unique<runner::Machine>(flaw_ ? flaw_->step : machine::step));
   }
   std::string honesty() override { return {}; }
   std::string take_stderr() override { return {}; }

@@ -21,21 +21,10 @@ namespace {
 
 constexpr lines::Milliseconds kNap{1};
 
-class Flawed : public runner::Machine {
- public:
-  explicit Flawed(flaws::StepFunction flawed) : step_(flawed) {}
-  void step(machine::Ticks now, const machine::Event& event, machine::Actions& actions) override {
-    step_(state_, now, event, actions);
-  }
-
- private:
-  flaws::StepFunction step_;
-};
-
 std::unique_ptr<runner::Subject> subject_of(const std::string& flaw) {
   if (flaw == "none") return std::make_unique<runner::Machine>();
   if (flaw == "overacking") return std::make_unique<Overacking>();
-  return std::make_unique<Flawed>(flaws::find(flaw)->step);
+  return std::make_unique<runner::Machine>(flaws::find(flaw)->step);
 }
 
 // What both have in common: outputs come by themselves, and are shown when somebody asks.

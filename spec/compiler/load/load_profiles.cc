@@ -21,6 +21,7 @@ constexpr std::array kFields{
     ProfileField{"join_fail_signalled", 0, 1, true},
     ProfileField{"ack_join_max", 1, kU8, false},
     ProfileField{"listed_ignored", 0, 1, true},
+    ProfileField{"short_acks", 0, 1, true},
     ProfileField{"members_max", 1, 20, false},
     ProfileField{"sink_id", 1, kU8, false},
     ProfileField{"ack_timeout_ticks", 0, kU16, false},

@@ -1,0 +1,67 @@
+#!/usr/bin/env python3
+"""Holds paper.yaml: no paragraph is left out, and rules and decisions named are there.
+
+Usage: paper_test.py PROJECT_FOLDER
+"""
+
+import pathlib
+import re
+import sys
+import unittest
+
+import yaml
+
+SPEC = pathlib.Path(sys.argv.pop(1)) / "spec"
+
+
+def load(path):
+    return yaml.safe_load((SPEC / path).read_text(encoding="utf-8"))
+
+
+class Paper(unittest.TestCase):
+    def setUp(self):
+        self.sources = {rule["id"]: rule["source"] for rule in load("requirements.yaml")}
+        self.decisions = {int(path.name[:4]) for path in (SPEC / "decisions").glob("[0-9]*.md")}
+        self.clauses = {one["clause"]: one["paragraphs"] for one in load("rules/paper.yaml")}
+
+    def paragraphs(self):
+        for clause, paragraphs in self.clauses.items():
+            for one in paragraphs:
+                yield f"{clause}, {one['nr']}", one
+
+    def test_clauses_and_ordinals_are_without_gaps(self):
+        names = [one["clause"] for one in load("rules/paper.yaml")]
+        self.assertEqual(len(names), len(set(names)))
+        for clause, paragraphs in self.clauses.items():
+            self.assertEqual([one["nr"] for one in paragraphs],
+                             list(range(1, len(paragraphs) + 1)), clause)
+
+    def test_every_paragraph_is_covered_or_not_judged(self):
+        for place, one in self.paragraphs():
+            self.assertIn(set(one) - {"nr", "says"}, ({"covers"}, {"not_judged"}), place)
+            self.assertTrue(one["says"].strip(), place)
+            self.assertTrue(one.get("covers") or one.get("not_judged"), place)
+            self.assertEqual(len(one.get("covers", [])), len(set(one.get("covers", []))), place)
+
+    def test_what_is_named_exists(self):
+        for place, one in self.paragraphs():
+            for name in one.get("covers", []) + [one.get("not_judged", 138)]:
+                known = self.decisions if isinstance(name, int) else self.sources
+                self.assertIn(name, known, place)
+
+    def test_every_rule_of_the_paper_is_reached_in_its_clause(self):
+        for rule, source in self.sources.items():
+            for clause in re.findall(r"paper: ([^;]+)", source):
+                self.assertIn(clause, self.clauses, rule)
+                reached = [one for one in self.clauses[clause] if rule in one.get("covers", [])]
+                self.assertTrue(reached, f"no paragraph of {clause} covers {rule}")
+
+    def test_every_reading_of_the_paper_is_reached(self):
+        named = {name for _, one in self.paragraphs()
+                 for name in one.get("covers", []) + [one.get("not_judged")]}
+        missing = {one for one in self.decisions if one > 100} - named
+        self.assertEqual(missing, set(), "no paragraph names these decisions")
+
+
+if __name__ == "__main__":
+    unittest.main()
