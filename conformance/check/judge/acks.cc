@@ -93,7 +93,7 @@ void Acks::sent(std::uint16_t node, const Observation& seen, const Net& ack) {
                      {}});
     return;
   }
-  const std::int64_t took = now - best->place.time_us;
+  const std::int64_t took = now - best->whole_us;
   if (took > context_.ack_timeout_us()) {
     context_.report("T2-PROMPT"_rule, Severity::kWeak, seen.place, node,
                     {"The ack of " + name_of(best->net) + " comes after " + ms_text(took) + ".",
