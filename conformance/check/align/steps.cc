@@ -60,11 +60,12 @@ void exchanges_of_net(const Observation& seen, std::vector<Exchange>& ends,
   if (radio) begins.emplace_back(Hop::kUp, net.addresses(), net.seq_num);
   if (!radio && seen.to_mote) begins.emplace_back(Hop::kDown, net.addresses(), net.seq_num);
   if (!radio && !seen.to_mote) ends.emplace_back(Hop::kUp, net.addresses(), net.seq_num);
+  const bool to_sink = seen.to_mote && net.dest.devid == machine::Profile{}.sink_id;
   const std::int32_t acked = net.is_ack() ? machine::acked_seq_num(net.body()) : -1;
   if (acked >= 0) {
     ends.emplace_back(Hop::kAck, addresses_of(net.dest, net.src),
                       static_cast<std::uint16_t>(acked));
-  } else if (net.reliable == 1 && net.src.pid == net.dest.pid) {
+  } else if (net.reliable == 1 && (net.src.pid == net.dest.pid || to_sink)) {
     begins.emplace_back(Hop::kAck, net.addresses(), net.seq_num);
   }
 }
@@ -227,19 +228,22 @@ class Recorded {
     return silences;
   }
 
-  // Returns whether no sender's DSNs show that frames before `at` are missing: then the cause may
-  // be one of these.
+  // Returns whether no sender's DSNs show that frames before `at` are missing, more than those that
+  // came damaged: then the cause may be one of these.
   bool nothing_lost(std::size_t at, std::uint8_t gap_max = kDsnGapMax) const {
-    std::map<std::uint16_t, std::uint8_t> before;  // The last DSN of each address.
+    std::map<std::uint16_t, std::pair<std::uint8_t, std::size_t>> before;  // By address: the last
+    std::size_t damaged = 0;                                               // DSN, and these so far.
     for (std::size_t i = 0; i < stamps_.size() && !(i >= at && before.empty()); ++i) {
       const Observation& seen = run_.seen[frames_[i]];
+      damaged += seen.kind == Observation::Kind::kDamaged ? 1 : 0;
       if (seen.kind != Observation::Kind::kRadio || !seen.has_dsn) continue;
       const auto known = before.find(seen.frame.src);
       if (i < at) {
-        before[seen.frame.src] = seen.dsn;
+        before[seen.frame.src] = {seen.dsn, damaged};
       } else if (known != before.end()) {
-        const auto ahead = static_cast<std::uint8_t>(seen.dsn - known->second);
-        if (ahead > 1 && ahead <= gap_max) return false;
+        const auto ahead = static_cast<std::uint8_t>(seen.dsn - known->second.first);
+        const bool gap = ahead > 1 + damaged - known->second.second;
+        if (gap && ahead <= gap_max) return false;
         before.erase(known);
       }
     }

@@ -137,8 +137,9 @@ class Identifier {
     }
     return found;
   }
+  // Returns the host of a sink, by the log; nobody for a base station, whose sink settle() finds.
   std::uint16_t base_station_of(std::uint16_t sink) const {
-    if (sink == kNobody) return kNobody;
+    if (sink == kNobody || run_.nodes[sink].role == Role::kBaseStation) return kNobody;
     for (std::size_t i = 0; i < run_.nodes.size(); ++i) {
       const LoggedNode& node = run_.nodes[i];
       if (node.role == Role::kBaseStation && node.island == run_.nodes[sink].island) {

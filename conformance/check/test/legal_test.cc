@@ -91,8 +91,11 @@ TEST(Legal, NoAlarmComesBack) {
   constexpr Alarm kAlarms[] = {
       {"ack_join_often", 12, "drops_and_steps"},  // A step between repeats; the reply was dropped.
       {"stated_slow", 13, "steps_forth"},         // A step among reactions that all are slow.
-      {"mixed", 275, "drops"},                    // A repeat after a message; the join was dropped.
-      {"two_sinks_first", 14, "exact"},           // A PC's message on the other island's line.
+      {"foreign_mote_to_sink", 46, "steps_forth"},  // A step before an ack to another island.
+      {"mixed", 372, "drops"},                      // A lossy line, shown by an ack without packet.
+      {"mixed", 584, "steps_often"},                // A step after a damaged frame.
+      {"mixed", 275, "drops"},           // A repeat after a message; the join was dropped.
+      {"two_sinks_first", 14, "exact"},  // A PC's message on the other island's line.
   };
   Count count;
   for (const Alarm& one : kAlarms) judge_both(one.variant, one.seed, one.recorder, count);
