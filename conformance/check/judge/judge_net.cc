@@ -48,7 +48,8 @@ void Judge::radio_net(std::uint32_t index, const Observation& seen, const Mark& 
       own_message(sender, seen, net, machine::Link::kRadio, net.src);
     } else {
       acks_.showed_life(sender, seen.place.time_us);
-      forwarding_.sent_on_radio(sender, seen, net);
+      const bool known = forwarding_.sent_on_radio(sender, seen, net);
+      if (!known && !net.sound) originals_.judge_content(sender, seen, net);
     }
   }
   if (sender == kNobody && seen.frame.src == context_.sink_am) forwarding_.somebody_sent(net);
@@ -149,8 +150,9 @@ void Judge::serial(std::uint32_t index, const Observation& seen, const Mark& mar
   if (const std::int32_t id = set_island_id(seen.frame); id >= 0 && seen.to_mote) {
     if (interfaces_.switched_off(sink, machine::Link::kSerial)) return;  // It hears nothing.
     const auto island = static_cast<std::uint16_t>(id);
-    sinks_.set_island(sink, island, seen.place);
-    forwarding_.set_island(sink, island, seen.place.time_us);
+    const bool sure = serial_acked(run_, index) || mark.receiver == sink;
+    sinks_.set_island(sink, island, seen.place, sure);
+    forwarding_.set_island(sink, island, seen.place.time_us, sure);
     return;
   }
   if (!seen.to_mote) sinks_.showed_life(mark.device, seen.place.time_us, true);
