@@ -17,7 +17,7 @@ struct CaseUse {
 };
 
 /// By file, then as they stand there; each case once for a rule and a sign.
-inline constexpr std::array<CaseUse, 1322> kCaseUses{{
+inline constexpr std::array<CaseUse, 1328> kCaseUses{{
     {"edges_j.late_join", "conformance/cases/edges_j.rtr", "J4-CLOCK"_rule, false},
     {"edges_j.first_reserved_island", "conformance/cases/edges_j.rtr", "J4-ACK"_rule, false},
     {"edges_j.first_reserved_island", "conformance/cases/edges_j.rtr", "J4-CONTENT"_rule, false},
@@ -52,6 +52,7 @@ inline constexpr std::array<CaseUse, 1322> kCaseUses{{
     {"edges_j.sink_short_ack_join", "conformance/cases/edges_j.rtr", "J6-ONLY"_rule, true},
     {"edges_j.sink_short_ack_join", "conformance/cases/edges_j.rtr", "N11-NEXT"_rule, false},
     {"edges_j.sink_short_ack_join", "conformance/cases/edges_j.rtr", "J6-ADD"_rule, false},
+    {"edges_j.many_open_joins", "conformance/cases/edges_j.rtr", "N6-FORWARD"_rule, false},
     {"edges_j.request_while_the_application_is_busy",
      "conformance/cases/edges_j.rtr", "J3-REPLY"_rule, false},
     {"edges_j.request_while_the_application_is_busy",
@@ -81,6 +82,12 @@ inline constexpr std::array<CaseUse, 1322> kCaseUses{{
     {"edges_n.island_change_keeps_the_rest", "conformance/cases/edges_n.rtr", "N9-SET"_rule, true},
     {"edges_n.island_change_keeps_the_rest",
      "conformance/cases/edges_n.rtr", "N2-ONCE"_rule, true},
+    {"edges_n.switched_off_while_waiting", "conformance/cases/edges_n.rtr", "N2-BUSY"_rule, true},
+    {"edges_n.switched_off_while_waiting", "conformance/cases/edges_n.rtr", "N10-OFF"_rule, true},
+    {"edges_n.switched_off_while_waiting", "conformance/cases/edges_n.rtr", "N10-ON"_rule, false},
+    {"edges_n.switched_off_while_waiting",
+     "conformance/cases/edges_n.rtr", "N2-QUEUE"_rule, false},
+    {"edges_n.switched_off_while_waiting", "conformance/cases/edges_n.rtr", "N2-ONCE"_rule, true},
     {"edges_n.mote_clock_told_once", "conformance/cases/edges_n.rtr", "J4-CLOCK"_rule, false},
     {"edges_n.mote_clock_told_once", "conformance/cases/edges_n.rtr", "J4-CLOCK"_rule, true},
     {"edges_n.mote_refusals_told_once", "conformance/cases/edges_n.rtr", "N1-SIZE"_rule, false},
