@@ -27,7 +27,7 @@ using runner::CaseVerdict;
 
 constexpr rlim_t kCpuSeconds = 10;  // For all traces, in this process.
 constexpr unsigned kWallSeconds = 120;
-constexpr std::chrono::seconds kStepTimeout{2};
+constexpr std::chrono::seconds kStepTimeout{5};
 constexpr int kKilled = 1;
 constexpr int kBroken = 2;
 

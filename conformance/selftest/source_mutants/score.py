@@ -6,7 +6,8 @@ Usage: score.py [--every N] [--file NAME] [--jobs N] [--cases FOLDER] SUBJECT MU
 MUTANTS is the list that generate.py wrote, RUN the program source_mutants_run, TARGET what that
 takes. survivors/SUBJECT.yaml lists the mutants that no trace finds, with reasons; `open` are those
 without one. If others survive, or one of those does not, the exit code is 1. --every 10 tries each
-tenth mutant only.
+tenth mutant only. --renew takes those that are found, or are no mutants any more, off the list, and
+adds the others as open.
 """
 
 import argparse
@@ -45,6 +46,27 @@ def read_survivors(path):
                     raise ValueError(f"listed twice: {file}, {function}: {one}")
                 out[file, function, old, one] = entry
     return out
+
+
+def write_survivors(path, found):
+    """found: key of a mutant and its entry, None if nobody has judged it."""
+    entries = {}
+    for key, entry in found:
+        entry = entry or {"kind": "open", "reason": "Nobody has judged it yet."}
+        head = {name: entry[name] for name in ("kind", "decision", "reason") if name in entry}
+        lines = entries.setdefault(json.dumps(head), {})
+        lines.setdefault(key[:3], []).append(key[3])
+    comment = next(iter(path.read_text(encoding="utf-8").splitlines()), "")
+    with path.open("w", encoding="utf-8") as out:
+        print(comment if comment.startswith("#") else "# ../README.md says how to read it.", file=out)
+        for head in sorted(entries, key=lambda head: '"open"' in head):
+            first = "- "
+            for name, value in json.loads(head).items():
+                print(f"{first}{name}: {json.dumps(value) if name == 'reason' else value}", file=out)
+                first = "  "
+            print("  mutants:", file=out)
+            for line, news in entries[head].items():
+                print(f"  - {json.dumps([*line, *dict.fromkeys(news)])}", file=out)
 
 
 def run_part(command, part):
@@ -93,6 +115,7 @@ class Score:
 
 def main():
     parser = argparse.ArgumentParser()
+    parser.add_argument("--renew", action="store_true")
     parser.add_argument("--every", type=int, default=1)
     parser.add_argument("--file", default="")
     parser.add_argument("--jobs", type=int, default=min(4, os.cpu_count() or 1))
@@ -102,7 +125,8 @@ def main():
     parser.add_argument("run")
     parser.add_argument("target")
     options = parser.parse_args()
-    survivors = read_survivors(HERE / "survivors" / f"{options.subject}.yaml")
+    path = HERE / "survivors" / f"{options.subject}.yaml"
+    survivors = read_survivors(path)
     mutants = json.loads(options.mutants.read_text(encoding="utf-8"))
     wrong = 0
     for key in survivors.keys() - {key_of(mutant) for mutant in mutants}:
@@ -125,7 +149,10 @@ def main():
             if not entry or entry["kind"] == "open":
                 show(mutant, "" if entry else ": not listed")
     score.print()
-    if wrong:
+    if options.renew and tried == mutants:
+        write_survivors(path, [(key_of(one), survivors.get(key_of(one))) for one in mutants
+                               if verdicts[one["number"]][0] == "survived"])
+    elif wrong:
         print(f"{wrong} mutants are not as survivors/{options.subject}.yaml says")
     return 1 if wrong else 0
 
