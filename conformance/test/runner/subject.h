@@ -25,7 +25,7 @@ class Machine : public Subject {
  public:
   using StepFunction = void (*)(machine::State&, machine::Ticks, const machine::Event&,
                                 machine::Actions&);
-  explicit Machine(StepFunction step = machine::step) : step_(step) {}
+  explicit Machine(StepFunction function = machine::step) : step_(function) {}
   void start(const machine::Config& config) override { state_ = machine::start(config); }
   void step(machine::Ticks now, const machine::Event& event, machine::Actions& actions) override {
     step_(state_, now, event, actions);
