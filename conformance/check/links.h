@@ -10,6 +10,8 @@ namespace rubric::check {
 inline constexpr std::int64_t kRadioByteUs = 32;  ///< 250 kbit/s. (IEEE 802.15.4, 6.1.1)
 /// Bytes of a frame on the air around its payload: preamble, SFD, length, MAC header, type, FCS.
 inline constexpr std::int64_t kAroundBytes = 19;
+/// The longest frame on the air: preamble, SFD and length before 127 bytes.
+inline constexpr std::int64_t kAirMaxUs = (6 + 127) * kRadioByteUs;
 
 /// Returns how long a captured radio frame is on the air after its time, that is after its start.
 /// Its receivers have it then, not before, and their times count from there. 0 for all else: serial

@@ -20,6 +20,7 @@ constexpr Sign kShows[] = {
     {"N7-RADIO", "radio"},
     {"N7-CONTENT", "radio new"},
     {"N8-PEIS", "peis"},
+    {"N8-PEIS", "missing"},
     {"N8-INCOMING", "serial"},
     {"J1-REQUEST", "join_request"},
     {"J1-CALLED", "join_request"},
@@ -44,6 +45,7 @@ constexpr Sign kShows[] = {
     {"T3-RESEND", "net_msg again"},
     {"S2-TICK", "radio"},
     {"S2-SIGNAL", "syn_data"},
+    {"S2-SIGNAL", "missing"},
 };
 /// What differs in a message that came.
 constexpr Sign kDiffers[] = {
@@ -64,6 +66,7 @@ constexpr Sign kDiffers[] = {
     {"J6-CONTENT", "differs"},
     {"T1-WRAP", "payload"},
     {"T2-CONTENT", "differs"},
+    {"T3-SUCCESS", "seq_num"},
     {"S2-CONTENT", "differs"},
 };
 /// Rules about what a message holds, where it goes, or that it is accepted, which no missing

@@ -26,8 +26,8 @@ Link link_of(Route::Onward onward) {
   return Link::kRadio;
 }
 
-// Ends a net_msg; on the serial line it always has its full length.
 void end_net_msg(const Place& place, Link link, std::size_t size_bytes) {
+  //= N11-WHOLE: A net_msg on the serial line has all 114 bytes of a message, whatever its nbytes.
   if (link == Link::kSerial) {
     std::fill(place.payload + size_bytes, place.payload + kAmPayloadMax, std::uint8_t{0});
     size_bytes = kAmPayloadMax;
@@ -202,6 +202,8 @@ void hear_net_msg(Node& node, Link from, Bytes bytes) {
     const ReqId rule = message.error().requirement;
     return node.actions.ignored(rule == "WIRE-NET-RELIABLE"_rule ? rule : "N11-NBYTES"_rule);
   }
+  //= N11-SHORT: A net_msg on the serial line that ends after its nbytes is handled like one of 114
+  //= bytes.
   const Route route =
       route_received(router, from, address_of(message->dest()), address_of(message->src()));
   const bool nowhere = route.onward == Route::Onward::kNowhere;

@@ -25,6 +25,7 @@ struct AppField {
   std::uint32_t max = 0;
   const reflect::EnumTable* names = nullptr;
   const reflect::MaskTable* mask = nullptr;
+  bool derived = false;  ///< Says how much there is of another field.
 };
 
 enum class AppWhat : std::uint8_t {
@@ -109,7 +110,8 @@ constexpr AppField kClock[] = {{"ms", AppKind::kNumber, 0xFFFFFFFF}};
 
 constexpr AppField kLinkAck[] = {{"acked", AppKind::kNumber, 1}};
 constexpr AppField kFrame[] = {{"type", AppKind::kNumber, 0xFF, &wire::enums::kAmType, nullptr},
-                               {"payload", AppKind::kBytes}};
+                               {"payload", AppKind::kBytes},
+                               {"size", AppKind::kNumber, 114, nullptr, nullptr, true}};
 
 template <std::size_t N>
 constexpr AppMessage message(const char* name, AppWhat what, const AppField (&fields)[N]) {

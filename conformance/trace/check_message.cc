@@ -227,6 +227,7 @@ class MessageCheck {
   void missing(const std::vector<FieldValue>& whole, const Shape& shape) {
     if (!shape.app || line_.message.open || is_fault(line_.op)) return;
     for (const AppField& field : shape.app->all()) {
+      if (field.derived) continue;
       const bool there = std::any_of(whole.begin(), whole.end(), [&](const FieldValue& one) {
         return one.path.substr(0, one.path.find('.')) == field.name;
       });

@@ -240,8 +240,13 @@ Concrete decode_raw(const AmFrame& frame) {
   bytes.bytes = payload;
   out.message =
       Message::named(kFrameName).with("type", type.show()).with("payload", Value::bytes(payload));
+  Leaf size;
+  size.path = "size";
+  size.domain = Domain::of(app::kFrame[2]);
+  size.number = static_cast<std::int64_t>(frame.payload.size());
   out.leaves.push_back(std::move(type));
   out.leaves.push_back(std::move(bytes));
+  out.leaves.push_back(std::move(size));
   return out;
 }
 
@@ -306,6 +311,7 @@ Concrete concrete(const Message& message, const Bindings& bindings) {
   for (const AppField& field : shape->app->all()) {
     const auto given = std::find_if(fields.begin(), fields.end(),
                                     [&](const FieldValue& one) { return one.path == field.name; });
+    if (given == fields.end() && field.derived) continue;
     if (given == fields.end() && !message.open) {
       throw TraceError(message.place,
                        "field " + std::string(field.name) + " of " + message.name + " is missing");

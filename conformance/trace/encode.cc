@@ -16,6 +16,7 @@ using Tree = reflect::Value;
 
 constexpr int kAttemptsMax = 256;
 constexpr std::size_t kIndexMax = 128;
+constexpr std::size_t kPayloadMax = 114;
 
 std::string hex_of(std::string_view bytes) {
   std::string text;
@@ -241,12 +242,16 @@ AmFrame encode_message(const Message& message, const Bindings& bindings, bool an
     const Concrete given = concrete(message, bindings);
     frame.type = static_cast<std::uint8_t>(given.leaves[0].number);
     frame.payload.assign(given.leaves[1].bytes.begin(), given.leaves[1].bytes.end());
+    const Leaf* const size = given.leaf("size");
+    if (size && size->number != static_cast<std::int64_t>(frame.payload.size())) {
+      throw TraceError(message.place, "the payload has " + std::to_string(frame.payload.size()) +
+                                          " bytes, not " + std::to_string(size->number));
+    }
   } else {
     frame.type = shape->am_type;
     frame.payload =
         encode_tree(message, *shape->type, Builder(message, *shape, bindings, any).build());
   }
-  constexpr std::size_t kPayloadMax = 114;
   if (frame.payload.size() > kPayloadMax) {
     throw TraceError(message.place, message.name + " has " + std::to_string(frame.payload.size()) +
                                         " bytes, at most " + std::to_string(kPayloadMax));
@@ -337,6 +342,9 @@ AmFrame frame_of(const Line& line, const Scope& scope, const Bindings& bindings)
     return frame;
   }
   frame = encode(line.message, bindings);
+  // On a serial line a net_msg has its full length (decision 140).
+  const bool serial = scope.link(line.link) == LinkKind::kSerial;
+  if (serial && line.message.name == "net_msg") frame.payload.resize(kPayloadMax);
   frame.src =
       line.am ? am_number(line.am->source, bindings, line.place) : source(line, scope, frame);
   frame.dest = line.am ? am_number(line.am->dest, bindings, line.place) : destination(line, scope);

@@ -1,5 +1,6 @@
 #include "conformance/trace/headers.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace rubric::trace {
@@ -14,21 +15,40 @@ std::int64_t channels_created(const Case& one, std::string_view node, std::strin
   });
 }
 
-std::string contradiction(const Stated& wanted, const Stated& stated) {
-  if (wanted.id != stated.id || wanted.value == stated.value) return {};
-  return "the case is for " + statement_text({wanted}) + ", and " + statement_text({stated}) +
+// Returns how many motes join in the case, those included that a sink refuses.
+std::int64_t motes_joined(const Case& one) {
+  std::vector<const Value*> sources;
+  for (const Line* const line : one.lines()) {
+    const bool sent = line->op == Op::kGiven || line->op == Op::kEmits;
+    const Value* const source = line->message.find("src");
+    if (!sent || line->message.name != "ack_join" || !source) continue;
+    const bool known = std::any_of(sources.begin(), sources.end(),
+                                   [&](const Value* other) { return *other == *source; });
+    if (!known) sources.push_back(source);
+  }
+  return static_cast<std::int64_t>(sources.size());
+}
+
+std::string contradiction(const StatedRange& wanted, const Stated& stated) {
+  if (wanted.id != stated.id) return {};
+  if (wanted.least <= stated.value && stated.value <= wanted.most) return {};
+  return "the case is for " + range_text(wanted) + ", and " + statement_text({stated}) +
          " is stated";
 }
 
 // Returns what one node contradicts.
 std::string contradiction(const Case& one, const NodeHeader& node, const Stated& stated) {
   if (const std::int64_t* const said = find(node.stated, stated.id)) {
-    return contradiction({stated.id, *said}, stated);
+    return contradiction({stated.id, *said, *said}, stated);
   }
-  if (stated.id != ParameterId::kChannels) return {};
-  const std::int64_t created = std::max(channels_created(one, node.name, "create_out"),
-                                        channels_created(one, node.name, "create_in"));
-  return created > stated.value ? contradiction({stated.id, created}, stated) : std::string();
+  std::int64_t needed = 0;
+  if (stated.id == ParameterId::kChannels) {
+    needed = std::max(channels_created(one, node.name, "create_out"),
+                      channels_created(one, node.name, "create_in"));
+  } else if (stated.id == ParameterId::kMembers && node.role == Role::kSink) {
+    needed = motes_joined(one);
+  }
+  return contradiction({stated.id, needed, parameter(stated.id).max}, stated);
 }
 
 }  // namespace
@@ -40,9 +60,10 @@ std::string state(File& file, Case& one, const Statement& statement) {
       const auto* const header = std::get_if<Header>(&item);
       const auto* const wanted = header ? std::get_if<ForHeader>(&header->what) : nullptr;
       if (!wanted) continue;
-      for (const Stated& each : statement) {
-        const std::int64_t* const value = find(wanted->values, each.id);
-        if (value && wrong.empty()) wrong = contradiction({each.id, *value}, each);
+      for (const StatedRange& range : wanted->values) {
+        for (const Stated& each : statement) {
+          if (wrong.empty()) wrong = contradiction(range, each);
+        }
       }
     }
   }

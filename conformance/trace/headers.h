@@ -48,7 +48,8 @@ inline bool set_seed_if_none(File& file, const Case& one, std::uint64_t seed) {
 
 /// Makes the nodes under test of a case state these, too. Returns what contradicts: a node of which
 /// the trace states something else ("the case is for members=20, and members=8 is stated"); or
-/// nothing. A case that creates more channels than are stated contradicts, too.
+/// nothing. A case that creates more channels than are stated contradicts, too, as
+/// does one in which more motes join than a sink lists.
 std::string state(File& file, Case& one, const Statement& statement);
 
 }  // namespace rubric::trace

@@ -12,7 +12,7 @@ constexpr std::int64_t kTicksMax = 0xFFFF;
 
 // Decisions of spec/decisions, less their 0.
 constexpr std::array<Parameter, 10> kParameters{{
-    {ParameterId::kResponse, "response", "ticks", 1, kTicksMax, 125,
+    {ParameterId::kResponse, "response", "ticks", 1, 1500, 125,
      "How long a reply, an ack or a forward may take."},
     {ParameterId::kJoinPeriod, "join_period", "ticks", 1, kTicksMax, 133,
      "From one join_request to the next."},
@@ -22,7 +22,7 @@ constexpr std::array<Parameter, 10> kParameters{{
      "ack_joins at most, while the link layer confirms none."},
     {ParameterId::kAckTimeout, "ack_timeout", "ticks", 1, kTicksMax, 110,
      "How long a reliable message awaits its ack."},
-    {ParameterId::kChannelAccess, "channel_access", "ticks", 0, 255, 128,
+    {ParameterId::kChannelAccess, "channel_access", "ticks", 0, 100, 128,
      "How long the radio may wait for the channel, so how much shorter a timer may look."},
     {ParameterId::kMembers, "members", "motes", 1, 20, 107, "Members that a sink lists."},
     {ParameterId::kChannels, "channels", "channels", 1, 8, 129,
@@ -92,6 +92,33 @@ std::string statement_text(const Statement& statement) {
     if (!out.empty()) out += ' ';
     out += parameter(one.id).name + ('=' + std::to_string(one.value));
   }
+  return out;
+}
+
+std::string add_range(std::string_view word, std::vector<StatedRange>& out) {
+  const std::size_t dots = word.find("..");
+  Statement ends;
+  std::string wrong = add_stated(word.substr(0, dots), ends);
+  if (!wrong.empty()) return wrong;
+  const Stated least = ends.front();
+  if (dots != std::string_view::npos) {
+    ends.clear();
+    wrong = add_stated(
+        std::string(parameter(least.id).name) + '=' + std::string(word.substr(dots + 2)), ends);
+    if (!wrong.empty()) return wrong;
+  }
+  const StatedRange range{least.id, least.value, ends.front().value};
+  if (range.most < range.least) return quoted(word) + " ends before it begins";
+  for (const StatedRange& other : out) {
+    if (other.id == range.id) return parameter(range.id).name + std::string(" is stated twice");
+  }
+  out.push_back(range);
+  return {};
+}
+
+std::string range_text(const StatedRange& range) {
+  std::string out = statement_text({{range.id, range.least}});
+  if (range.most != range.least) out += ".." + std::to_string(range.most);
   return out;
 }
 

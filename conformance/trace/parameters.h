@@ -59,4 +59,16 @@ Statement joined(Statement first, const Statement& second);
 /// Returns "ack_timeout=2000 response=350".
 std::string statement_text(const Statement& statement);
 
+/// `join_requests=2..255`, or `members=20`, which is both ends.
+struct StatedRange {
+  ParameterId id = ParameterId::kResponse;
+  std::int64_t least = 0;
+  std::int64_t most = 0;
+  friend bool operator==(const StatedRange&, const StatedRange&) = default;
+};
+/// Adds the range that `word` says; returns what is wrong with it, or nothing.
+std::string add_range(std::string_view word, std::vector<StatedRange>& out);
+/// Returns "join_requests=2..255".
+std::string range_text(const StatedRange& range);
+
 }  // namespace rubric::trace

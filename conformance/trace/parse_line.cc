@@ -408,7 +408,7 @@ void parse_what(Scanner& in, Header& header) {
     ForHeader values;
     std::string_view word = header_word(in);
     do {
-      if (const std::string wrong = add_stated(word, values.values); !wrong.empty()) {
+      if (const std::string wrong = add_range(word, values.values); !wrong.empty()) {
         in.fail_at(word, wrong);
       }
     } while (!(word = header_word(in)).empty());

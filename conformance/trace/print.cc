@@ -55,7 +55,10 @@ struct HeaderText {
   void operator()(const ProfileHeader& h) const { out += "%profile " + h.name; }
   void operator()(const TickHeader& h) const { out += "%tick " + std::string(tick_text(h.tick)); }
   void operator()(const SeedHeader& h) const { out += "%seed " + std::to_string(h.seed); }
-  void operator()(const ForHeader& h) const { out += "%for " + statement_text(h.values); }
+  void operator()(const ForHeader& h) const {
+    out += "%for";
+    for (const StatedRange& range : h.values) out += ' ' + range_text(range);
+  }
   void operator()(const NoteHeader& h) const { out += "%note " + h.text; }
   void operator()(const NodeHeader& h) const {
     out += "%node " + h.name + ' ' + std::string(role_text(h.role));

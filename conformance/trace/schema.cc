@@ -161,6 +161,7 @@ Domain Domain::of(const AppField& field) {
   if (field.kind == AppKind::kReal) domain.kind = Kind::kReal;
   if (field.kind == AppKind::kBytes) domain.kind = Kind::kBytes;
   domain.max = field.max;
+  domain.derived = field.derived;
   domain.names = field.names;
   domain.mask = field.mask;
   return domain;

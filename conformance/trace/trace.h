@@ -236,7 +236,7 @@ struct SeedHeader {
 };
 /// Implementations that state other values are not tried by the case.
 struct ForHeader {
-  Statement values;
+  std::vector<StatedRange> values;  ///< Each parameter at most once.
   friend bool operator==(const ForHeader&, const ForHeader&) = default;
 };
 struct NoteHeader {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "conformance/trace/events/parameters.h"
 #include "conformance/trace/parameters.h"
 #include "tools/cli/command.h"
 
@@ -26,6 +27,8 @@ inline trace::Statement statement_of(const std::vector<std::string>& stated) {
     const std::string wrong = trace::add_stated(word, out);
     if (!wrong.empty()) throw cli::UsageError("--state", wrong);
   }
+  const std::string wrong = events::contradiction(out);
+  if (!wrong.empty()) throw cli::UsageError("--state", wrong);
   return out;
 }
 

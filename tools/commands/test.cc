@@ -218,13 +218,14 @@ suite::SuiteRun work(const TestOptions& options, const suite::Cases& cases, suit
   all.traces = options.traces;
   all.shard = options.shard;
   all.app = options.app;
+  all.stated = statement_of(options.stated);
   all.seed = options.seed.value_or(0);
   all.rules_required = options.rules_required;
   if (!options.profile.empty()) all.profile = options.profile;
   targets::Options attached;
   attached.step_timeout = Milliseconds(static_cast<std::int64_t>(options.timeout_s * 1000));
   attached.start_timeout = std::max(attached.start_timeout, attached.step_timeout);
-  attached.stated = statement_of(options.stated);
+  attached.stated = all.stated;
   attached.app = options.app;
   const std::size_t worked = plan.cases.size() * plan.repeats;
   cli::Progress progress(worked * options.targets.size(), true, cli::Progress::Unit::kCases);

@@ -2,6 +2,7 @@
 // writes its outputs. All that is special to an implementation is in call() and in the events.
 #include <cmath>
 #include <iostream>
+#include <map>
 #include <memory>
 
 #include "codec/generated/tinyos/am_header.h"
@@ -81,6 +82,7 @@ class Adapter : public World {
   std::string role_;
   Settings settings_;
   std::unique_ptr<Node> node_;  // None while the power is off.
+  std::map<Line, bool> taken_;  // By somebody else, whether the node has power or not.
   Ticks now_ = 0;
   bool wrote_ = false;
 };
@@ -126,6 +128,7 @@ std::string Adapter::work(const std::vector<std::string>& words, Ticks time) {
   } else if (command == "line" && words.size() == 4) {
     const bool busy = words[3] == "busy";
     if (node_ && words[2] == "app") node_->set_application_busy(busy);
+    if (words[2] != "app") taken_[line_of(words[2])] = busy;
     if (node_ && words[2] != "app") node_->set_busy(line_of(words[2]), busy);
   } else if (command != "until") {
     throw Unsupported(command);
@@ -145,6 +148,7 @@ void Adapter::reset(const std::vector<std::string>& words) {
   const auto seed = arguments.number<std::uint64_t>("seed");
   settings_.next_number = static_cast<std::uint16_t>(1000 + 257 * seed);
   now_ = 0;
+  taken_.clear();
   start();
 }
 
@@ -155,6 +159,7 @@ void Adapter::start() {
   if (role_ == "sink") node_ = std::make_unique<Sink>(settings_, *this);
   if (role_ == "base_station") node_ = std::make_unique<BaseStation>(settings_, *this);
   if (!node_) throw Unsupported("role " + role_);
+  for (const auto& [line, busy] : taken_) node_->set_busy(line, busy);
 }
 
 // Lets time pass to `time`, or to the first instant at which the node writes something.

@@ -110,6 +110,35 @@ class ForwarderClientTest(unittest.TestCase):
             self.assertEqual(code, 0)
             self.assertIn("no active message", complaints)
 
+    def test_packets_that_end_within_their_header(self):
+        for size in range(1, 8):
+            with self.subTest(size), Forwarder() as sink:
+                sink.packet(), sink.news()
+                whole = net_msg(bytes.fromhex("000b0005"), 3, 5, b"\1")
+                sink.give(whole[:size])
+                sink.give(whole)
+                self.assertEqual(sink.news(), "received(11:5 5 x01)")
+
+    def test_a_message_that_comes_with_the_handshake(self):
+        whole = net_msg(bytes.fromhex("000b0005"), 3, 10, b"OPEN", reliable=1, number=40)
+        with Forwarder(b"U " + bytes([len(whole)]) + whole) as sink:
+            self.assertEqual({sink.news(), sink.news()},
+                             {"op_result(success)", "received(11:5 10 x4f50454e)"})
+            packets = [sink.packet(), sink.packet()]
+            self.assertIn(packet(37, bytes([10, 0, 11]), dest=1), packets)
+            self.assertIn(bytes.fromhex("06090a17002800"), [one[19:26] for one in packets])
+
+    def test_many_messages_at_once(self):
+        with Forwarder() as sink:
+            sink.packet(), sink.news()
+            mote = bytes.fromhex("000b0005")
+            flood = [net_msg(mote, 3, 5, bytes([i]), reliable=1, number=i) for i in range(200)]
+            sink.line.sendall(b"".join(bytes([len(one)]) + one for one in flood))
+            self.assertEqual([sink.news() for _ in flood],
+                             [f"received(11:5 5 x{i:02x})" for i in range(200)])
+            self.assertEqual([sink.packet()[23:25] for _ in flood],
+                             [i.to_bytes(2, "big") for i in range(200)])
+
     def test_calls_acks_and_a_timeout_in_real_time(self):
         with Forwarder() as sink:
             sink.packet(), sink.news()

@@ -69,7 +69,7 @@ class Mote:
     the commands of rct/1, with their words behind the time; `settings` are those of `reset`."""
 
     def __init__(self, world, settings):
-        self.world, self.device = world, int(settings["id"])
+        self.world, self.device, self.busy = world, int(settings["id"]), False
         self.room = int(settings["channels"])
         self.number = (1000 + 257 * int(settings["seed"])) & 0xFFFF
         self.start()
@@ -78,7 +78,7 @@ class Mote:
         """Forgets all but its next sequence number."""
         self.is_on, self.started_at = True, self.now
         self.interfaces = {0: True, 1: True}    # Radio, serial.
-        self.busy = self.application_busy = False
+        self.application_busy = False
         self.outgoing, self.incoming = collections.deque(), collections.deque()
         self.address = None                     # Of a member.
         self.request = None                     # Its number, while a joinIsland call is under way.
@@ -136,7 +136,7 @@ class Mote:
         return True
 
     def flush(self):
-        while self.outgoing and not self.busy and self.interfaces[0]:
+        while self.outgoing and not self.busy and self.is_on and self.interfaces[0]:
             packet = self.outgoing.popleft()
             if packet[7] == JOIN:
                 if packet[8:10] != struct.pack(">H", self.request or 0):
@@ -145,8 +145,8 @@ class Mote:
             self.world.tx("radio", packet)
 
     def line(self, line, state):
-        if self.is_on and line == "radio":
-            self.busy = state == "busy"
+        if line == "radio":
+            self.busy = state == "busy"     # Whether the mote has power or not.
             self.flush()
         if self.is_on and line == "app":
             self.application_busy = state == "busy"

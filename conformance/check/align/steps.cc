@@ -22,6 +22,7 @@ constexpr std::int64_t kGoesOnUs = 1'000;   // How soon the first frame after a 
 constexpr std::int64_t kLateAckUs = 50'000;
 constexpr std::size_t kInterruptedMax = 4;  // More often it is the nodes that are slow.
 constexpr std::int64_t kResponseUs = AlignOptions{}.response_us;
+constexpr std::int64_t kSlowestUs = 1'000'000;  // Nobody waits for nodes that are slower.
 constexpr std::int64_t kAckRepeatUs = 810'000;  // After its reply an ack_join comes no later.
 constexpr std::int64_t kSilenceUs = 20'000'000;
 constexpr std::int64_t kSilences = 10;  // Times the longest of the others.
@@ -39,9 +40,6 @@ std::string seconds(std::int64_t us) {
 // An exchange of frames: what kind, between whom, with which number.
 enum class Hop : std::uint8_t { kReply, kAckJoin, kRepeat, kReport, kUp, kDown, kAck };
 using Exchange = std::tuple<Hop, std::uint64_t, std::uint16_t>;
-
-// Returns how long the second frame may take.
-std::int64_t limit_us(Hop hop) { return hop == Hop::kRepeat ? kAckRepeatUs : kResponseUs; }
 
 std::uint64_t addresses_of(machine::Address src, machine::Address dest) {
   return std::uint64_t{dest.pid} << 48 | std::uint64_t{dest.devid} << 32 |
@@ -62,11 +60,12 @@ void exchanges_of_net(const Observation& seen, std::vector<Exchange>& ends,
   if (radio) begins.emplace_back(Hop::kUp, net.addresses(), net.seq_num);
   if (!radio && seen.to_mote) begins.emplace_back(Hop::kDown, net.addresses(), net.seq_num);
   if (!radio && !seen.to_mote) ends.emplace_back(Hop::kUp, net.addresses(), net.seq_num);
+  const bool to_sink = seen.to_mote && net.dest.devid == machine::Profile{}.sink_id;
   const std::int32_t acked = net.is_ack() ? machine::acked_seq_num(net.body()) : -1;
   if (acked >= 0) {
     ends.emplace_back(Hop::kAck, addresses_of(net.dest, net.src),
                       static_cast<std::uint16_t>(acked));
-  } else if (net.reliable == 1 && net.src.pid == net.dest.pid) {
+  } else if (net.reliable == 1 && (net.src.pid == net.dest.pid || to_sink)) {
     begins.emplace_back(Hop::kAck, net.addresses(), net.seq_num);
   }
 }
@@ -92,6 +91,7 @@ void exchanges(const Observation& seen, std::vector<Exchange>& ends,
     ends.emplace_back(Hop::kAckJoin, frame.src, ack.seq_num);
     begins.emplace_back(Hop::kReport, ack.src.devid, ack.src.pid);
     ends.emplace_back(Hop::kRepeat, frame.src, ack.seq_num);
+    begins.push_back(ends.back());
   }
 }
 
@@ -188,10 +188,21 @@ class Recorded {
     }
   }
 
-  // Marks silences without which effects came in time after their causes.
+  // Marks silences without which effects came in time after their causes. Where there are more
+  // than a clock has steps the nodes are slow, so that their usual time is more.
   void interrupted() {
+    for (std::int64_t usual_us = kResponseUs; usual_us <= kSlowestUs; usual_us += usual_us / 8) {
+      const std::set<std::size_t> silences = silences_beyond(usual_us);
+      if (silences.size() > kInterruptedMax) continue;
+      for (const std::size_t at : silences) suspect_[at] = What::kStep;
+      return;
+    }
+  }
+
+  // Returns these silences, by the frame after each, where nodes take `usual_us` to react.
+  std::set<std::size_t> silences_beyond(std::int64_t usual_us) const {
     std::map<Exchange, std::size_t> causes;
-    std::set<std::size_t> silences;  // By the frame after each.
+    std::set<std::size_t> silences;
     std::vector<Exchange> ends;
     std::vector<Exchange> begins;
     for (std::size_t i = 0; i < stamps_.size(); ++i) {
@@ -202,31 +213,37 @@ class Recorded {
         const auto cause = causes.find(end);
         if (cause == causes.end()) continue;
         const bool repeats = std::get<Hop>(end) == Hop::kRepeat;
-        for (const std::size_t at : late_by_silence(cause->second, i, limit_us(std::get<Hop>(end)),
-                                                    repeats ? kInterruptedMax : 1)) {
+        for (const std::size_t at :
+             late_by_silence(cause->second, i, repeats ? kAckRepeatUs : usual_us,
+                             repeats ? kInterruptedMax : 1)) {
           if (repeats || nothing_lost(at)) silences.insert(at);
         }
         if (!repeats) causes.erase(cause);
       }
-      for (const Exchange& begin : begins) causes[begin] = i;
+      for (const Exchange& begin : begins) {
+        const bool repeated = std::find(ends.begin(), ends.end(), begin) != ends.end();
+        if (!repeated || !causes.contains(begin)) causes[begin] = i;  // The first counts.
+      }
     }
-    if (silences.size() > kInterruptedMax) return;
-    for (const std::size_t at : silences) suspect_[at] = What::kStep;
+    return silences;
   }
 
-  // Returns whether no sender's DSNs show that frames before `at` are missing: then the cause may
-  // be one of these.
+  // Returns whether no sender's DSNs show that frames before `at` are missing, more than those that
+  // came damaged: then the cause may be one of these.
   bool nothing_lost(std::size_t at, std::uint8_t gap_max = kDsnGapMax) const {
-    std::map<std::uint16_t, std::uint8_t> before;  // The last DSN of each address.
+    std::map<std::uint16_t, std::pair<std::uint8_t, std::size_t>> before;  // By address: the last
+    std::size_t damaged = 0;                                               // DSN, and these so far.
     for (std::size_t i = 0; i < stamps_.size() && !(i >= at && before.empty()); ++i) {
       const Observation& seen = run_.seen[frames_[i]];
+      damaged += seen.kind == Observation::Kind::kDamaged ? 1 : 0;
       if (seen.kind != Observation::Kind::kRadio || !seen.has_dsn) continue;
       const auto known = before.find(seen.frame.src);
       if (i < at) {
-        before[seen.frame.src] = seen.dsn;
+        before[seen.frame.src] = {seen.dsn, damaged};
       } else if (known != before.end()) {
-        const auto ahead = static_cast<std::uint8_t>(seen.dsn - known->second);
-        if (ahead > 1 && ahead <= gap_max) return false;
+        const auto ahead = static_cast<std::uint8_t>(seen.dsn - known->second.first);
+        const bool gap = ahead > 1 + damaged - known->second.second;
+        if (gap && ahead <= gap_max) return false;
         before.erase(known);
       }
     }

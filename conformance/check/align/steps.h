@@ -19,8 +19,8 @@
 // - Forth, in a file of kManyFrames: an acknowledgement of the link that comes kLateAckUs after its
 //   frame, with nothing between the two; a silence of all taps without which an effect, such as a
 //   forward, came in time after its cause, and before which no sender's DSNs have a gap (more than
-//   kInterruptedMax of them are slow nodes); or a silence that is longer than kSilenceUs and by far
-//   than any other (kSilences).
+//   kInterruptedMax of them are slow nodes: then "in time" is what leaves so many); or a silence
+//   that is longer than kSilenceUs and by far than any other (kSilences).
 //
 // Cannot know: a step forth that looks like an ordinary silence, and one back that is shorter than
 // the silence in which it happened.

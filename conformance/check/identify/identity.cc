@@ -91,6 +91,7 @@ class Identifier {
     const std::uint16_t node = logged(seen.node);
     const bool serial = seen.kind == Observation::Kind::kSerial && node != kNobody;
     if (serial && run_.nodes[node].role == Role::kSink) logged_sink_[seen.tap] = node;
+    if (serial && run_.nodes[node].role == Role::kBaseStation) logged_host_[seen.tap] = node;
     if (!seen.received) {
       mark.device = node;
       if (seen.kind == Observation::Kind::kRadio) out_.hears_radio = true;
@@ -137,8 +138,9 @@ class Identifier {
     }
     return found;
   }
+  // Returns the host of a sink, by the log; nobody for a base station, whose sink settle() finds.
   std::uint16_t base_station_of(std::uint16_t sink) const {
-    if (sink == kNobody) return kNobody;
+    if (sink == kNobody || run_.nodes[sink].role == Role::kBaseStation) return kNobody;
     for (std::size_t i = 0; i < run_.nodes.size(); ++i) {
       const LoggedNode& node = run_.nodes[i];
       if (node.role == Role::kBaseStation && node.island == run_.nodes[sink].island) {
@@ -299,7 +301,11 @@ class Identifier {
     out_.sink_of_tap.assign(run_.taps.size(), kNobody);
     for (std::uint32_t tap = 0; tap < run_.taps.size(); ++tap) {
       if (run_.taps[tap].link != machine::Link::kSerial) continue;
-      const SerialLine& line = lines_.at(tap);
+      SerialLine line = lines_.at(tap);
+      const auto host = logged_host_.find(tap);
+      if (line.island == 0 && host != logged_host_.end()) {
+        line.island = line.first = run_.nodes[host->second].island;
+      }
       const auto owner = logged_sink_.find(tap);
       if (line.island == 0 && owner == logged_sink_.end()) continue;
       std::uint16_t sink = owner == logged_sink_.end() ? sink_of(line) : owner->second;
@@ -310,7 +316,7 @@ class Identifier {
         device.am = is_sink ? am : machine::Profile{}.sink_id;
         device.role = Role::kSink;
         device.island = line.first;
-        device.judged = !run_.marked;
+        device.judged = !run_.marked && !is_tester(device.am);
         sink = add(device);
       }
       const bool logs = owner != logged_sink_.end();
@@ -359,7 +365,11 @@ class Identifier {
     Mark& mark = out_.marks[index];
     if (!seen.node.empty()) {
       const bool given = seen.kind == Observation::Kind::kSerial && mark.receiver != kNobody;
-      if (given && mark.device == kNobody) mark.device = out_.devices[mark.receiver].partner;
+      if (!given || mark.device != kNobody) return;
+      mark.device = out_.devices[mark.receiver].partner;
+      // A log has all that its nodes under test sent: it is one of these, with other bytes after
+      // it.
+      mark.repeat = mark.device < run_.nodes.size() && run_.nodes[mark.device].under_test;
       return;
     }
     if (seen.kind == Observation::Kind::kSerial || seen.kind == Observation::Kind::kLinkAck) {
@@ -383,6 +393,7 @@ class Identifier {
   SerialLines lines_;
   Identity out_;
   std::map<std::uint32_t, std::uint16_t> logged_sink_;  // User of a tap, by a log.
+  std::map<std::uint32_t, std::uint16_t> logged_host_;  // The base station at its other end.
   std::vector<std::uint16_t> device_of_stream_;
   std::vector<bool> starts_life_;
   std::array<std::uint32_t, kRecentFrames> recent_{};  // Observation + 1.

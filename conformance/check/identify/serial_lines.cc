@@ -9,12 +9,12 @@ constexpr std::int64_t kSerialRepeatUs = 1'500'000;  // TinyOS hosts wait 1000 m
 constexpr std::size_t kShownMax = 256;
 
 // Returns the island that serial_joined or the source of a passing message shows, never its
-// destination; 0 if neither does.
+// destination alone; 0 if neither does. A base station hands on what other islands' PCs sent.
 std::uint16_t island_of(const Observation& seen, const Net& net, std::uint16_t sink_am) {
   SerialJoined joined;
   if (!seen.to_mote && parse_serial_joined(net, joined)) return joined.address.pid;
   const bool own = seen.to_mote
-                       ? net.src.devid == machine::kNullDevid
+                       ? net.src == machine::Address{net.dest.pid, machine::kNullDevid}
                        : net.src.devid == sink_am ||
                              net.dest == machine::Address{net.src.pid, machine::kNullDevid};
   return own ? net.src.pid : std::uint16_t{0};

@@ -58,6 +58,7 @@ void Acks::surely(std::uint16_t node, const Net& net) {
     if (!same_message(arrived.net, net)) continue;
     if (arrived.must_ack && !arrived.sure && arrived.acks == 0) ++owed_[node];
     arrived.sure = true;
+    arrived.net = net;  // As it was given, perhaps without the bytes after its content.
     return;
   }
 }
@@ -85,6 +86,14 @@ void Acks::sent(std::uint16_t node, const Observation& seen, const Net& ack) {
   }
   if (best->must_ack && best->sure && best->acks == 0) --owed_[node];
   ++best->acks;
+  const std::int64_t took = now - best->whole_us;
+  // What is acked did arrive, perhaps later. showed_life() has judged what surely did at once.
+  if (best->must_ack && !best->sure && best->copies == 1 && took > context_.response_us()) {
+    context_.report("T2-ACK"_rule, Severity::kInconclusive, seen.place, node,
+                    {"The ack of " + name_of(best->net) + " comes after " + ms_text(took) + ".",
+                     "Within " + ms_text(context_.response_us()) + ".",
+                     {}});
+  }
   if (best->net.app_id != ack.app_id || ack.reliable != 0) {
     context_.report("T2-CONTENT"_rule, Severity::kFail, seen.place, node,
                     {"The ack of " + name_of(best->net) + " has APPID " + number(ack.app_id) +
@@ -93,7 +102,6 @@ void Acks::sent(std::uint16_t node, const Observation& seen, const Net& ack) {
                      {}});
     return;
   }
-  const std::int64_t took = now - best->place.time_us;
   if (took > context_.ack_timeout_us()) {
     context_.report("T2-PROMPT"_rule, Severity::kWeak, seen.place, node,
                     {"The ack of " + name_of(best->net) + " comes after " + ms_text(took) + ".",
@@ -229,7 +237,7 @@ void Acks::showed_life(std::uint16_t node, std::int64_t now_us) {
   for (std::size_t i = 0; i < ring.size(); ++i) {
     Arrived& arrived = ring.newest(i);
     if (!arrived.must_ack || !arrived.sure || arrived.acks > 0) continue;
-    if (now_us - arrived.whole_us <= context_.response_us()) continue;
+    if (now_us <= context_.due_us(node, arrived.whole_us)) continue;
     --owed_[node];
     arrived.must_ack = false;
     const Device& device = context_.device(node);

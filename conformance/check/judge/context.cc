@@ -23,15 +23,19 @@ std::vector<bool> find_lossy_taps(const Run& run, bool lossy_air) {
     bool confirmed = false;
     std::uint8_t damaged = 0;  // Frames since then; each may have been a packet or its ack.
     std::size_t numbers = 0;   // That followed, or confirmed.
+    bool heard = false;        // Anything.
   };
   std::vector<Line> lines(run.taps.size());
   std::vector<bool> out(run.taps.size());
   for (const Observation& seen : run.seen) {
     if (!seen.node.empty() || run.taps[seen.tap].link != machine::Link::kSerial) continue;
     Line& line = lines[seen.tap];
+    const bool first = !std::exchange(line.heard, true);
     if (seen.kind == Observation::Kind::kDamaged) {
       if (line.damaged < 127) ++line.damaged;
-    } else if (seen.kind == Observation::Kind::kLinkAck && !seen.to_mote && line.last != nullptr) {
+    } else if (seen.kind == Observation::Kind::kLinkAck && !seen.to_mote && line.last == nullptr) {
+      out[seen.tap] = out[seen.tap] || (!first && line.damaged == 0);  // Its packet is missing.
+    } else if (seen.kind == Observation::Kind::kLinkAck && !seen.to_mote) {
       const auto ahead = static_cast<std::int8_t>(seen.dsn - line.last->dsn);
       line.confirmed = line.confirmed || ahead == 0;
       ++line.numbers;
@@ -44,7 +48,7 @@ std::vector<bool> find_lossy_taps(const Run& run, bool lossy_air) {
         const bool unconfirmed = !line.confirmed && line.damaged == 0 && soon;
         if (ahead > 1 + line.damaged || unconfirmed) out[seen.tap] = true;
       }
-      line = {&seen, false, 0, line.numbers + 1};
+      line = {&seen, false, 0, line.numbers + 1, true};
     }
   }
   for (std::size_t tap = 0; tap < lines.size() && lossy_air; ++tap) {
@@ -208,6 +212,16 @@ std::int64_t Context::ack_timeout_us() const {
   // A profile without a timeout describes its nodes, not how long others wait (decision 110).
   const std::uint16_t own = profile().ack_timeout_ticks;
   return machine::us_of(own != 0 ? own : machine::Profile{}.ack_timeout_ticks);
+}
+
+std::int64_t Context::due_us(std::uint16_t node, std::int64_t whole_us) const {
+  std::int64_t due = whole_us + response_us();
+  if (node >= run.nodes.size()) return due;
+  for (const auto& [from, to] : run.nodes[node].busy_us) {
+    if (from > due || to < whole_us) continue;
+    due = to == INT64_MAX ? to : std::max(due, to + 2 * response_us());
+  }
+  return due;
 }
 
 bool Context::ack_timeout_stated() const {

@@ -73,6 +73,9 @@ struct Context {
   }
   std::int64_t ack_timeout_us() const;
   bool ack_timeout_stated() const;
+  /// Returns when an answer to what the node has whole at `whole_us` is overdue. What waited for a
+  /// line or an application that was busy, by the node's log, may take as long again behind others.
+  std::int64_t due_us(std::uint16_t node, std::int64_t whole_us) const;
   machine::JoinContext join_context(std::uint16_t id, std::uint16_t island,
                                     std::int64_t now_us) const {
     return {profile(), id, island, 0, machine::ticks_of(now_us)};

@@ -38,6 +38,10 @@ Forwarding::Forwarding(Context& context) : context_(context) {
   }
 }
 
+bool Forwarding::Line::changing(std::int64_t time_us) const {
+  return std::abs(time_us - island_changed_us) < kIslandSlackUs;
+}
+
 Forwarding::Line* Forwarding::find(std::uint16_t sink) {
   for (Line& line : lines_) {
     if (line.sink == sink) return &line;
@@ -45,11 +49,13 @@ Forwarding::Line* Forwarding::find(std::uint16_t sink) {
   return nullptr;
 }
 
-void Forwarding::set_island(std::uint16_t sink, std::uint16_t island, std::int64_t now_us) {
+void Forwarding::set_island(std::uint16_t sink, std::uint16_t island, std::int64_t now_us,
+                            bool sure) {
   Line* const line = find(sink);
   if (line == nullptr) return;
   if (line->island == island) return;
   line->island_changed_us = now_us;
+  line->island_sure = sure;
   line->last_island = line->island;
   line->island = island;
 }
@@ -186,8 +192,7 @@ bool Forwarding::out_of_order(const Passing& passing, std::uint64_t& last) {
 
 void Forwarding::pass_up(Line& line, Passing& passing, const Observation& seen) {
   if (passing.forbidden != ReqId::kNone) {
-    const bool changing = std::abs(passing.place.time_us - line.island_changed_us) < kIslandSlackUs;
-    if (changing) return;
+    if (line.changing(passing.place.time_us)) return;
     Said said;
     const Net& net = passing.net;
     const bool stale = line.last_island != 0 &&
@@ -206,6 +211,7 @@ void Forwarding::pass_up(Line& line, Passing& passing, const Observation& seen) 
     const bool format = passing.forbidden == "N11-NBYTES"_rule;
     Severity severity = passing.weak ? Severity::kWeak : Severity::kFail;
     if (!format) severity = context_.on_line(line.sink, severity);  // SET_ISLAND_ID may be missing.
+    if (!format && !line.island_sure) severity = std::min(severity, Severity::kInconclusive);
     context_.report(passing.forbidden, severity, seen.place, line.sink, std::move(said));
   } else {
     context_.findings.kept("N6-CONTENT"_rule);

@@ -45,7 +45,8 @@ class Forwarding {
   /// Judges a message on its serial line that is not the sink's own.
   void sent_on_serial(std::uint16_t sink, const Observation& seen, const Net& net);
   /// Judges a message by radio that is not the sink's own.
-  void sent_on_radio(std::uint16_t sink, const Observation& seen, const Net& net);
+  /// Returns false if its serial line is not known, so that nobody can say where it came from.
+  bool sent_on_radio(std::uint16_t sink, const Observation& seen, const Net& net);
   /// Notes that the sink's serial line is switched on or off; while off, the sink owes nothing
   /// there.
   void serial_set(std::uint16_t sink, bool on);
@@ -54,7 +55,7 @@ class Forwarding {
   /// Notes that one of the sinks, unknown which, sent this by radio.
   void somebody_sent(const Net& net);
   /// Sets the sink's island from now on.
-  void set_island(std::uint16_t sink, std::uint16_t island, std::int64_t now_us);
+  void set_island(std::uint16_t sink, std::uint16_t island, std::int64_t now_us, bool sure);
   void begin_life(std::uint16_t sink);
   void finish(std::int64_t end_us);
 
@@ -68,6 +69,9 @@ class Forwarding {
     std::uint16_t island = 0;
     std::uint16_t last_island = 0;  ///< Before SET_ISLAND_ID.
     std::int64_t island_changed_us = -1'000'000'000;
+    bool island_sure = true;  ///< That change surely arrived.
+    /// Returns whether its island changed about then.
+    bool changing(std::int64_t time_us) const;
     bool off = false;                 // Its serial line, by its application.
     bool serial = false;              ///< Its line is captured.
     Ring<Passing, kRoom> up;          ///< From the radio.

@@ -42,9 +42,9 @@ void Forwarding::pass_down(Line& line, Passing& passing, const Observation& seen
   }
 }
 
-void Forwarding::sent_on_radio(std::uint16_t sink, const Observation& seen, const Net& net) {
+bool Forwarding::sent_on_radio(std::uint16_t sink, const Observation& seen, const Net& net) {
   Line* const line = find(sink);
-  if (line == nullptr || !line->serial) return;
+  if (line == nullptr || !line->serial) return false;
   Passing* near = nullptr;
   for (std::size_t i = 0; i < line->down.size(); ++i) {
     Passing& passing = line->down.newest(i);
@@ -59,7 +59,7 @@ void Forwarding::sent_on_radio(std::uint16_t sink, const Observation& seen, cons
     if (passing.owed) --line->owed_down;
     passing.owed = false;
     pass_down(*line, passing, seen, net);
-    return;
+    return true;
   }
   // Sending on by radio what it heard for another mote of its island is legal, once (decision 115).
   for (std::size_t i = 0; i < line->up.size(); ++i) {
@@ -69,9 +69,26 @@ void Forwarding::sent_on_radio(std::uint16_t sink, const Observation& seen, cons
       continue;
     }
     ++passing.passed;
-    return;
+    return true;
   }
-  if (near != nullptr) refuse_down(*line, seen, net);
+  if (near != nullptr) {
+    refuse_down(*line, seen, net);
+    return true;
+  }
+  // Of other messages only a run that has everything can say that nobody gave them to the sink.
+  const std::int64_t now = seen.place.time_us;
+  const bool sure = context_.without_ever(kNobody, now) == Severity::kFail &&
+                    context_.on_line(sink, Severity::kFail) == Severity::kFail;
+  if (!sure || line->changing(now)) return true;
+  if (context_.half_heard(sink)) {
+    context_.needs_host(sink, seen.place);
+    return true;
+  }
+  context_.report("N7-CONTENT"_rule, Severity::kFail, seen.place, sink,
+                  {"The sink radiates " + name_of(net) + "; nobody sent it this.",
+                   "Its own messages, and those that came to it.",
+                   {}});
+  return true;
 }
 
 void Forwarding::showed_life(std::uint16_t sink, std::int64_t now_us) {

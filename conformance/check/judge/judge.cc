@@ -214,6 +214,12 @@ void Judge::called(const Observation& seen, std::uint16_t device) {
     if (set->link == machine::Link::kRadio) joins_.radio_set(device, set->on, seen.place.time_us);
     return;
   }
+  const machine::Call& call = *seen.call;
+  const bool other = std::holds_alternative<machine::Send>(call) ||
+                     std::holds_alternative<machine::GetInterface>(call) ||
+                     std::holds_alternative<machine::GetClock>(call) ||
+                     std::holds_alternative<machine::SetIslandId>(call);
+  if (other) return;  // The rest is for the channels.
   const Device& d = who_.devices[device];
   const machine::Address sinks_own{sinks_.island(device), d.am};
   const machine::Address motes_own = motes_.address(device).value_or(machine::Address{0, d.am});

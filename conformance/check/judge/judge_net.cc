@@ -48,7 +48,8 @@ void Judge::radio_net(std::uint32_t index, const Observation& seen, const Mark& 
       own_message(sender, seen, net, machine::Link::kRadio, net.src);
     } else {
       acks_.showed_life(sender, seen.place.time_us);
-      forwarding_.sent_on_radio(sender, seen, net);
+      const bool known = forwarding_.sent_on_radio(sender, seen, net);
+      if (!known && !net.sound) originals_.judge_content(sender, seen, net);
     }
   }
   if (sender == kNobody && seen.frame.src == context_.sink_am) forwarding_.somebody_sent(net);
@@ -149,19 +150,31 @@ void Judge::serial(std::uint32_t index, const Observation& seen, const Mark& mar
   if (const std::int32_t id = set_island_id(seen.frame); id >= 0 && seen.to_mote) {
     if (interfaces_.switched_off(sink, machine::Link::kSerial)) return;  // It hears nothing.
     const auto island = static_cast<std::uint16_t>(id);
-    sinks_.set_island(sink, island, seen.place);
-    forwarding_.set_island(sink, island, seen.place.time_us);
+    const bool sure = serial_acked(run_, index) || mark.receiver == sink;
+    sinks_.set_island(sink, island, seen.place, sure);
+    forwarding_.set_island(sink, island, seen.place.time_us, sure);
     return;
   }
   if (!seen.to_mote) sinks_.showed_life(mark.device, seen.place.time_us, true);
   Net net;
   if (seen.frame.type != am::kNet || !parse_net(seen.frame.payload, net)) return;
+  if (!seen.received) whole(seen, mark.device);
   if (seen.to_mote) {
     down_serial(index, seen, mark, sink, net);
   } else {
     up_serial(seen, sink, net);
   }
   if (net.is_ack()) ack_comes(net);
+}
+
+void Judge::whole(const Observation& seen, std::uint16_t sender) {
+  constexpr std::size_t kWhole = rubicon::NetMsgView::kMaxSizeBytes;
+  const std::size_t size = seen.frame.payload.size();
+  if (size >= kWhole || !cut_short_.insert(sender).second) return;
+  context_.report("N11-WHOLE"_rule, Severity::kWeak, seen.place, sender,
+                  {"A net_msg of " + number(size) + " bytes on the serial line.",
+                   number(kWhole) + " bytes; hosts of release 1.0 drop what is shorter.",
+                   {}});
 }
 
 void Judge::up_serial(const Observation& seen, std::uint16_t sink, const Net& net) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <set>
 
 #include "conformance/check/judge/acks.h"
 #include "conformance/check/judge/forward.h"
@@ -48,6 +49,8 @@ class Judge {
   // Counts an ack at the originator of the acked message.
   void ack_comes(const Net& ack);
   void serial(std::uint32_t index, const Observation& seen, const Mark& mark);
+  // Judges the length of a net_msg on a serial line, the first one that is cut short of a sender.
+  void whole(const Observation& seen, std::uint16_t sender);
   void up_serial(const Observation& seen, std::uint16_t sink, const Net& net);
   void base_station_hears(std::uint16_t sink, const Observation& seen, const Net& net);
   void down_serial(std::uint32_t index, const Observation& seen, const Mark& mark,
@@ -70,6 +73,7 @@ class Judge {
   SynapticWatch synaptic_;
   PeisWatch peis_;
   InterfaceWatch interfaces_;
+  std::set<std::uint16_t> cut_short_;  // Senders of net_msg under 114 bytes on a serial line.
   std::uint64_t frames_ = 0;
 };
 

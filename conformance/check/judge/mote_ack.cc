@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "conformance/check/judge/mote_join.h"
+#include "conformance/check/links.h"
 
 namespace rubric::check {
 
@@ -50,7 +51,8 @@ ReqId MoteJoins::why_not_ack(const MoteHypothesis& h, const Observation& seen,
   if (seen.frame.dest != context_.sink_am) return "J4-CONTENT"_rule;
   if (h.acks_seen == 0 || !seen.place.timed()) return ReqId::kNone;
   const std::int64_t last = std::max(h.last_request_us, h.accepted_us + context_.response_us());
-  if (seen.place.time_us > last + context_.join_period_us() + context_.early_us()) {
+  const std::int64_t whole_us = last + kAirMaxUs;  // The mote counts from the end of the frame.
+  if (seen.place.time_us > whole_us + context_.join_period_us() + context_.early_us()) {
     return "J4-REPEAT"_rule;
   }
   return h.acks_seen > kAckJoinsMax ? "J4-REPEAT"_rule : ReqId::kNone;

@@ -255,7 +255,9 @@ void MoteJoins::net_msg(std::uint16_t mote, const Observation& seen, const Net& 
     h.join.address = net.src;
     h.acks_seen = std::max<std::uint8_t>(h.acks_seen, 1);
     h.sent = true;
-    if (was_unknown) h.join.seq_num = 0;
+    if (!was_unknown) continue;
+    h.join.seq_num = 0;
+    h.accepted_us = now;  // At the latest.
   }
   if (!set.empty()) {
     set.resize(1);
@@ -293,6 +295,7 @@ void MoteJoins::net_msg(std::uint16_t mote, const Observation& seen, const Net& 
   next.join.address = net.src;
   next.acks_seen = 1;
   next.sent = true;
+  next.accepted_us = now;
   set.assign(1, next);
   if (member) set.push_back(h_before);  // Perhaps only this message was wrong.
 }

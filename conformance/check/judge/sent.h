@@ -38,13 +38,14 @@ class Originals {
   /// Judges receive_ack, by a log.
   void told(std::uint16_t node, const Observation& seen, const machine::AckReceived& ack);
   void finish(std::int64_t end_us);
+  /// Judges what a message of the node holds, whoever wrote it.
+  void judge_content(std::uint16_t node, const Observation& seen, const Net& net);
 
  private:
   static constexpr std::size_t kRoom = 32;
 
   /// Judges the end of a message that is forgotten now: was its application notified?
   void close(std::uint16_t node, std::size_t newest, std::int64_t now_us);
-  void judge_content(std::uint16_t node, const Observation& seen, const Net& net);
   void judge_address(std::uint16_t node, const Observation& seen, const Net& net,
                      machine::Link link, machine::Address own);
   void judge_synaptic(std::uint16_t node, const Observation& seen, const Net& net);

@@ -53,11 +53,12 @@ void SinkJoins::begin_life(std::uint16_t sink) {
   watch->reported_us = -1;
 }
 
-void SinkJoins::set_island(std::uint16_t sink, std::uint16_t island, const Place& at) {
+void SinkJoins::set_island(std::uint16_t sink, std::uint16_t island, const Place& at, bool sure) {
   SinkWatch* const watch = find(sink);
   if (watch == nullptr) return;
   const bool same = watch->island == island;
   watch->island_set = true;
+  watch->island_sure = sure;
   watch->island = island;
   if (same) return;
   if (listed(*watch) > 0) {
@@ -181,8 +182,9 @@ void SinkJoins::reply(std::uint16_t sink_device, const Observation& seen, const 
   if (sink->island == 0) sink->island = reply.island;
   if (reply.island != sink->island) {
     const ReqId rule = sink->island_set ? "N9-SET"_rule : "J3-ADDRESS"_rule;
-    // SET_ISLAND_ID may have escaped.
-    context_.report(rule, context_.on_line(sink_device, Severity::kFail), seen.place, sink_device,
+    // SET_ISLAND_ID may have escaped, or found the line switched off.
+    const Severity severity = sink->island_sure ? Severity::kFail : Severity::kInconclusive;
+    context_.report(rule, context_.on_line(sink_device, severity), seen.place, sink_device,
                     {"join_reply offers island " + number(reply.island) + ".",
                      "Island " + number(sink->island) + ", the sink's.",
                      {}});
@@ -195,6 +197,7 @@ void SinkJoins::reply(std::uint16_t sink_device, const Observation& seen, const 
   } else {
     context_.findings.kept("J3-ADDRESS"_rule);
   }
+  sink->island_sure = sink->island_sure || reply.island == sink->island;
   judge_clock(*sink, seen, reply);
   next_.clear();
   for (const SinkHypothesis& h : watch.set) {

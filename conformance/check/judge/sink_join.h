@@ -88,6 +88,7 @@ struct SinkWatch {
   std::uint16_t device = kNobody;
   std::uint16_t island = 0;
   bool island_set = false;                             ///< SET_ISLAND_ID was seen.
+  bool island_sure = true;                             ///< It surely arrived, if so.
   std::unordered_map<std::uint16_t, PairWatch> motes;  ///< By AM address.
   bool has_clock = false;                              ///< From the last reply:
   std::uint32_t clock_ms = 0;
@@ -103,7 +104,7 @@ class SinkJoins {
   explicit SinkJoins(Context& context);
 
   void begin_life(std::uint16_t sink);
-  void set_island(std::uint16_t sink, std::uint16_t island, const Place& at);
+  void set_island(std::uint16_t sink, std::uint16_t island, const Place& at, bool sure);
   void request(std::uint16_t mote_device, const Observation& seen, const Request& request,
                std::uint16_t surely_received_by);
   void reply(std::uint16_t sink, const Observation& seen, const Reply& reply);

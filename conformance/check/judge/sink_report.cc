@@ -91,8 +91,9 @@ void SinkJoins::announce(SinkWatch& sink, const Place& at, machine::Address addr
   const ReqId content = notice ? "J6-ADD"_rule : "J6-CONTENT"_rule;
   if (address.pid != sink.island) {
     const ReqId rule = sink.island_set ? "N9-SET"_rule : content;
-    // SET_ISLAND_ID may have escaped.
-    context_.report(rule, context_.on_line(sink.device, Severity::kFail), at, sink.device,
+    // SET_ISLAND_ID may have escaped, or found the line switched off.
+    const Severity severity = sink.island_sure ? Severity::kFail : Severity::kInconclusive;
+    context_.report(rule, context_.on_line(sink.device, severity), at, sink.device,
                     {"A new member " + text_of(address) + " is announced by the sink of island " +
                          number(sink.island) + ".",
                      "Its address in island " + number(sink.island) + ".",

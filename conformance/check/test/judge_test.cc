@@ -237,7 +237,7 @@ const Fault kFaults[] = {
      }},
     {"island_not_taken", "N9-SET N9-SET",
      [](Script& s) {
-       s.serial(400, true, am::kConfig, {10, 0, 21});
+       s.serial(400, true, am::kConfig, {10, 0, 21}).confirm();
        s.request(420, 4, 300);
        Payload p;
        for (const std::uint32_t v : {11U, 4U, 0U, 430U, 300U}) put16(p, v);

@@ -1,4 +1,4 @@
-// Notes of bytes that are no content.
+// Notes of bytes that are no content, and of serial messages without them.
 #include "conformance/check/judge/stale.h"
 
 #include <gtest/gtest.h>
@@ -17,6 +17,11 @@ NetFields update(std::uint16_t seq_num) {
   return net;
 }
 
+NetFields whole(NetFields net) {
+  net.size = machine::kAmPayloadMax;
+  return net;
+}
+
 Report report_of(const Script& script) {
   Options options;
   options.sniffer_complete = options.start_cold = true;
@@ -26,8 +31,20 @@ Report report_of(const Script& script) {
 TEST(Stale, ExactMessagesHaveNoNote) {
   Script script;
   script.join(0, 11, 2, 100);
-  script.net(200, 2, 1, update(1)).up(215, update(1));
+  script.net(200, 2, 1, update(1)).up(215, whole(update(1)));
   EXPECT_TRUE(report_of(script).findings.empty());
+}
+
+TEST(Stale, WhatIsCutShortOnASerialLineIsWeakOnceASender) {
+  Script script;
+  script.join(0, 11, 2, 100);
+  script.net(200, 2, 1, update(1)).up(215, update(1));
+  script.net(2000, 2, 1, update(2)).up(2015, update(2));
+  const Report report = report_of(script);
+  ASSERT_EQ(report.findings.size(), 1U);
+  EXPECT_EQ(report.findings[0].requirement, "N11-WHOLE"_rule);
+  EXPECT_EQ(report.findings[0].severity, Severity::kWeak);
+  EXPECT_EQ(report.verdict, Verdict::kWeak);
 }
 
 TEST(Stale, SerialLinesAreNotedOnce) {
@@ -53,7 +70,7 @@ TEST(Stale, FramesOnTheAirAreNotedOnce) {
   script.join(0, 11, 2, 100);
   NetFields net = update(1);
   net.size = 40;
-  script.net(200, 2, 1, net).up(215, update(1));
+  script.net(200, 2, 1, net).up(215, whole(update(1)));
   const Report report = report_of(script);
   ASSERT_EQ(report.findings.size(), 1U);
   EXPECT_EQ(report.findings[0].requirement, "WIRE-NET-PAYLOAD"_rule);

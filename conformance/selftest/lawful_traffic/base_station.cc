@@ -31,7 +31,7 @@ void BaseStation::raw(std::uint8_t am_type, const Octets& payload) {
 
 void BaseStation::send_to_sink(const NetMessage& message) {
   Octets bytes = encode(message);
-  bytes.resize(kNetMsgBytes);
+  if (!world_.traits().serial_cut) bytes.resize(kNetMsgBytes);
   line_->to_mote(kNet, bytes);
 }
 

@@ -61,6 +61,7 @@ struct Traits {
   std::size_t out_buffer = 64;
   // Sinks.
   bool serial_true_nbytes = false;
+  bool serial_cut = false;         ///< On the serial line a net_msg ends after its nbytes.
   bool relays_for_others = false;  ///< Sends a message for another mote on by radio.
   bool forwards_foreign_source = true;
   bool forgets_members = true;    ///< When its island id changes.

@@ -155,8 +155,9 @@ void Sink::on_serial_net(const NetMessage& message) {
 void Sink::by_radio(const NetMessage& message) { transmit_net(message, message.dest.devid); }
 
 void Sink::to_host(const NetMessage& message, bool own) {
-  // The serial line always carries a whole message; the bytes after the content are left over.
+  // The serial line mostly carries a whole message; the bytes after the content are left over.
   const Octets bytes = encode(message);
+  if (world().traits().serial_cut) return line_->to_host(kNetType, bytes);
   std::copy(bytes.begin(), bytes.end(), serial_memory_.begin());
   const bool lies = !own && !world().traits().serial_true_nbytes;
   if (lies) serial_memory_[kNetHeaderBytes - 1] = kMaxNbytes;

@@ -117,6 +117,7 @@ void three_islands(Plan& plan, Random& random) {
 }
 void serial_true(Plan& plan, Random&) { plan.traits.serial_true_nbytes = true; }
 void serial_whole(Plan& plan, Random&) { plan.traits.serial_true_nbytes = false; }
+void serial_cut(Plan& plan, Random&) { plan.traits.serial_cut = true; }
 void serial_dest_zero(Plan& plan, Random&) { plan.traits.serial_am_dest = 0; }
 void serial_resends(Plan& plan, Random&) {
   plan.chats = 25;
@@ -199,6 +200,12 @@ std::vector<Variant> network_variants() {
        serial_true,
        true},
       {"serial_whole", "forwarded messages have nbytes 102 and stale bytes", {}, serial_whole},
+      {"serial_cut",
+       "on the serial line messages end after their nbytes",
+       {140},
+       serial_cut,
+       false,
+       Worst::kWeak},
       {"serial_dest_zero",
        "serial frames from the host have AM destination 0",
        {},

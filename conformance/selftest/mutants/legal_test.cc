@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <random>
 #include <set>
 
 #include "conformance/generated/profiles.h"
@@ -67,6 +68,37 @@ TEST(Legal, BackOffFailsNoTrace) {
           << "seed " << seed << ": " << runner::explain(result, ref.file->file_name);
     }
   }
+}
+
+// One to all parameters, anywhere in their ranges.
+trace::Statement random_statement(std::minstd_rand& random) {
+  trace::Statement out;
+  const bool many = random() % 2 == 0;
+  for (const trace::Parameter& one : trace::parameters()) {
+    if (random() % (many ? 2 : 8) != 0) continue;
+    const std::int64_t most = std::min<std::int64_t>(one.max, one.min + 4000);
+    out.push_back({one.id, one.min + static_cast<std::int64_t>(random() % (most - one.min + 1))});
+  }
+  return out;
+}
+
+TEST(Legal, NothingThatIsStatedFailsATrace) {
+  const Golden golden("conformance/cases");
+  std::minstd_rand random(1);
+  std::size_t tried = 0;
+  for (int i = 0; i < 100; ++i) {
+    const trace::Statement stated = random_statement(random);
+    if (!events::contradiction(stated).empty()) continue;
+    ++tried;
+    for (const CaseRef& ref : golden.cases()) {
+      const auto result = run(
+          ref, [] { return std::make_unique<runner::Machine>(); }, stated);
+      EXPECT_TRUE(result.verdict == runner::CaseVerdict::kPass ||
+                  result.verdict == runner::CaseVerdict::kSkip)
+          << statement_text(stated) << ": " << runner::explain(result, ref.file->file_name);
+    }
+  }
+  EXPECT_GT(tried, 50U);
 }
 
 // The machine with parameters of its own, whatever its configuration says.

@@ -185,11 +185,25 @@ void other_order(Moment& moment) {
   for (const Action& action : rest) moment.keep(action);
 }
 
+// On the serial line, too, a net_msg ends after its payload.
+void cut_on_serial(Moment&, Transmit& frame) {
+  if (frame.link != Link::kSerial || !is_net(frame)) return;
+  frame.size_bytes = static_cast<std::uint8_t>(12 + frame.payload[net::kNbytes]);
+}
+
 void add_messages(Variants& out) {
   out.push_back({"acks_with_a_code", "Acks are learning_notifications, as in release 1.0 (108).",
                  with_profile(&machine::Profile::short_acks, false)});
   out.push_back({"stale_bytes_on_serial", "A sink hands up with nbytes 102 (N6-CONTENT).",
                  edit_sent(stale_on_serial)});
+  out.push_back({"cut_on_serial", "On the serial line messages end after their nbytes (140).",
+                 edit_sent(cut_on_serial), true});
+  out.push_back({"whole_on_serial_only", "What is cut short on the serial line is dropped (140).",
+                 hear_only([](const Moment&, const Frame& frame) {
+                   return frame.link != Link::kSerial || !is_net(frame) ||
+                          frame.payload.size() == machine::kAmPayloadMax;
+                 }),
+                 true});
   out.push_back({"delivers_copies_once", "A repeated message is acked, and delivered once (111).",
                  remembering<std::vector<std::vector<std::uint8_t>>>(delivers_once)});
   out.push_back({"acks_unknown_apps", "What is for an unknown APPID is acked (111).",

@@ -82,6 +82,98 @@ void trusts_nbytes(Moment& moment, Memory& memory) {
   moment.honest(machine::Heard{forged.frame});
 }
 
+// What a serial line carries may be longer than what nbytes says.
+void add_lengths(Mutants& out) {
+  add(out, "serial_cut_at_63",
+      "A message of less than 63 bytes is filled up to 63 on the serial line.", {"N11-WHOLE"_rule},
+      edit_sent([](Moment&, Transmit& frame) {
+        if (frame.link != Link::kSerial || !is_net(frame)) return;
+        const int used = 12 + frame.payload[net::kNbytes];
+        frame.size_bytes = static_cast<std::uint8_t>(std::max(used, 63));
+      }));
+  add(out, "short_on_serial_dropped", "A message that is cut short on the serial line is dropped.",
+      {"N11-SHORT"_rule}, hear_only([](const Moment&, const Frame& frame) {
+        return frame.link != Link::kSerial || !is_net(frame) ||
+               frame.payload.size() == machine::kAmPayloadMax;
+      }));
+  add(out, "whole_on_serial_dropped", "A message with bytes after its nbytes is dropped.",
+      {"N7-RADIO"_rule, "N8-DELIVER"_rule, "N7-DELIVER"_rule, "T2-ACK"_rule},
+      hear_only([](const Moment&, const Frame& frame) {
+        return frame.link != Link::kSerial || !is_net(frame) ||
+               frame.payload.size() == 12U + frame.payload[net::kNbytes];
+      }));
+}
+
+// The last whole frame of a type, in which a node finds what a shorter one lacks.
+template <std::uint8_t kType>
+void completes(Moment& moment, std::vector<std::uint8_t>& last) {
+  const Frame* const frame = moment.heard(kType);
+  if (frame == nullptr) return moment.honest();
+  const std::size_t size = frame->payload.size();
+  if (size >= last.size()) {
+    last.assign(frame->payload.begin(), frame->payload.end());
+    return moment.honest();
+  }
+  Forged& forged = moment.forge(*frame);
+  std::copy(last.begin() + static_cast<std::ptrdiff_t>(size), last.end(),
+            forged.bytes.begin() + static_cast<std::ptrdiff_t>(size));
+  forged.resize(last.size());
+  moment.honest(machine::Heard{forged.frame});
+}
+using Last = std::vector<std::uint8_t>;
+
+void add_cut(Mutants& out) {
+  add(out, "cut_reply_accepted",
+      "A reply that ends before its number is taken for the awaited one.", {"J4-SEQ"_rule},
+      edit_heard([](Moment& moment, Forged& forged) {
+        constexpr std::size_t kSize = rubicon::JoinReplyView::kMaxSizeBytes;
+        if (forged.frame.type != am::kJoinReply || forged.size() >= kSize) return;
+        forged.resize(kSize);
+        put(forged, join_reply::kMote, moment.state.config.id);
+        put(forged, join_reply::kSeqNum, moment.state.join.seq_num);
+      }));
+  add(out, "cut_request_completed", "A request that ends early is completed from the last one.",
+      {"J3-ONCE"_rule}, remembering<Last>(completes<am::kJoin>));
+  add(out, "cut_ack_join_completed", "An ack_join that ends early is completed from the last one.",
+      {"J6-SEQ"_rule}, remembering<Last>(completes<am::kAckJoin>));
+  add(out, "cut_config_completed", "A config that ends early is completed from the last one.",
+      {"N9-OTHER"_rule}, remembering<Last>(completes<am::kConfig>));
+  add(out, "bytes_after_nbytes_taken", "On the radio a message is as long as its frame.",
+      {"T1-DELIVER"_rule, "N6-CONTENT"_rule}, edit_heard([](Moment&, Forged& forged) {
+        if (forged.frame.link != Link::kRadio || !is_net(forged.frame)) return;
+        const std::size_t size = forged.size() - 12;
+        if (size <= 102) forged.bytes[net::kNbytes] = static_cast<std::uint8_t>(size);
+      }));
+}
+
+// Only the power switch itself; what a reboot keeps.
+void add_power(Mutants& out) {
+  add(out, "power_ignored", "A node goes on without power.", {"N10-OFF"_rule},
+      always([](Moment& moment) {
+        if (std::holds_alternative<machine::PowerOff>(moment.event)) return moment.nothing();
+        moment.honest();
+      }));
+  add(out, "members_outlive_the_power", "A sink that starts again knows its members.",
+      {"J3-REPLY"_rule},
+      remembering<machine::JoinSink>([](Moment& moment, machine::JoinSink& kept) {
+        if (!moment.state.off) kept = moment.state.sink;
+        moment.honest();
+        if (std::holds_alternative<machine::Reboot>(moment.event)) moment.state.sink = kept;
+      }));
+  add(out, "long_wait_forgotten", "What waits for the channel for two seconds is thrown away.",
+      {"N2-QUEUE"_rule, "J3-REPLY"_rule}, remembering<Ticks>([](Moment& moment, Ticks& since) {
+        const auto* const busy = std::get_if<machine::LinkBusy>(&moment.event);
+        if (busy != nullptr && busy->busy) since = moment.now;
+        const bool late = busy != nullptr && !busy->busy && moment.now - since > 2048;
+        while (late && !moment.state.radio.out.empty()) moment.state.radio.out.pop();
+        moment.honest();
+      }));
+  add(out, "clock_of_16_bits", "A sink's cur_time has 16 bits.", {"J3-DRIFT"_rule},
+      edit_sent(am::kJoinReply, [](Moment&, Transmit& frame) {
+        put(frame, join_reply::kTime, get(frame, join_reply::kTime) & 0xFFFF);
+      }));
+}
+
 void add_malformed(Mutants& out) {
   add(out, "nbytes_trusted", "A node reads as many bytes as nbytes promises.", {"N11-NBYTES"_rule},
       remembering<Memory>(trusts_nbytes));
@@ -173,6 +265,9 @@ void add_numbers(Mutants& out) {
 Mutants control_mutants() {
   Mutants out;
   add_switches(out);
+  add_lengths(out);
+  add_cut(out);
+  add_power(out);
   add_malformed(out);
   add_numbers(out);
   return out;

@@ -1,57 +1,250 @@
-// `rubric test` and `rubric check` agree: the log of a legal variant's run, which the suite passes,
-// is not blamed by the judge of logs.
+// `rubric test` and `rubric check` agree about every run, in both directions.
+//
+// Each run of the suite goes through the judge as a log and as a capture, once with nothing known
+// of the recorder and once with the truth: it began with the node and missed nothing.
+// - A run that the suite finds in order is not blamed: no legal variant, no shipped implementation;
+//   and a mutant only if the suite fails it in some case, since a case looks at what it is about.
+// - A frame that must not be on a link, by a line that fails, is before the eyes of both. The judge
+//   may blame the node for it, by whatever rule, or say what it cannot know; it may not call the
+//   rule of that line kept and leave the run in order.
+// A judge sees what comes from outside of a node alone if the node's own address is not borrowed:
+// of a run in which the case itself sends from that address only the log is judged.
+//
+// RUBRIC_ALL_RUNS tries each mutant in each case; else chance chooses some, by RUBRIC_SEED.
 #include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <optional>
+#include <random>
+#include <set>
+#include <string>
+#include <vector>
 
 #include "codec/reflect/requirements.h"
 #include "conformance/check/input/read.h"
 #include "conformance/check/judge/judge.h"
 #include "conformance/selftest/mutants/legal.h"
+#include "conformance/selftest/mutants/mutant.h"
 #include "conformance/test/report/case_files.h"
 #include "conformance/test/suite/cases.h"
 #include "conformance/test/suite/run.h"
 #include "conformance/test/suite/test/testing.h"
+#include "conformance/trace/headers.h"
 
 namespace rubric::mutants {
 namespace {
 
-std::size_t judged = 0;
+using check::Severity;
+using runner::CaseVerdict;
 
-void compare(const suite::Cases& cases, const LegalVariant& variant) {
-  suite::testing::FakeAttachment attached;
-  attached.who.stated = variant.stated;
-  attached.make = [&] { return std::make_unique<runner::SubjectTarget>(wrapped(variant.step)()); };
-  for (const suite::SuiteCase& one : cases.all()) {
-    const suite::CaseRun run = suite::run_one(one, attached, "", std::nullopt);
-    if (run.result.verdict > runner::CaseVerdict::kWeak) continue;
-    check::RunReader reader;
-    std::string error;
-    ASSERT_TRUE(reader.add_bytes(run.name, suite::case_rtr(run), error)) << error;
-    for (const check::Finding& finding : check::judge(reader.finish(), {}).findings) {
-      EXPECT_NE(finding.severity, check::Severity::kFail)
-          << variant.name << ", " << run.name << ": "
-          << reflect::requirement(finding.requirement).id << ' ' << finding.text;
+constexpr unsigned kEvery =
+    40;  // Of the cases that are not about a mutant's rules, one in so many.
+
+const suite::Cases& cases() {
+  static const suite::Cases own = suite::Cases::own();
+  return own;
+}
+
+std::string_view id_of(ReqId rule) { return reflect::requirement(rule).id; }
+
+/// One recording of a run, and what its user knows.
+struct Recording {
+  std::string name;
+  std::string bytes;
+  check::Options options;
+};
+
+// Returns the options for a capture; none if the case itself sends from an address under test.
+std::optional<check::Options> options_of(const suite::CaseRun& run,
+                                         const trace::Statement& stated) {
+  check::Options out;
+  out.deployed = run.profile == "deployed";
+  out.stated = stated;
+  trace::Scope scope;
+  scope.nodes = run.nodes;
+  scope.links = run.links;
+  std::set<std::uint16_t> own;
+  bool host = false;
+  for (const trace::NodeHeader& node : run.nodes) {
+    if (node.iut && node.id) own.insert(*node.id);
+    host = host || (node.iut && node.role == trace::Role::kBaseStation);
+  }
+  // On a serial line AM sources say nothing: at its other end is the host, or the sink.
+  if (!host) out.testers.push_back(0);
+  if (host && !own.contains(machine::Profile{}.sink_id)) {
+    out.testers.push_back(machine::Profile{}.sink_id);
+  }
+  for (const trace::Line* line : run.result.log.lines()) {
+    trace::AmFrame frame;
+    if (line->op == trace::Op::kEmits || !line->bytes) continue;
+    if (scope.link(line->link) != trace::LinkKind::kRadio) continue;
+    if (!trace::parse_packet(*line->bytes, frame)) continue;
+    if (own.contains(frame.src)) return std::nullopt;
+    out.testers.push_back(frame.src);
+  }
+  return out;
+}
+
+std::vector<Recording> recordings(const suite::CaseRun& run, const trace::Statement& stated) {
+  check::Options plain;
+  plain.deployed = run.profile == "deployed";
+  std::vector<Recording> out{{"log", suite::case_rtr(run), plain}};
+  if (const auto options = options_of(run, stated)) {
+    out.push_back({"capture", suite::case_pcapng(run), *options});
+    if (out.back().bytes.empty()) out.pop_back();
+  }
+  for (std::size_t i = 0, plain_ones = out.size(); i < plain_ones; ++i) {
+    out.push_back(out[i]);
+    out.back().name = "whole " + out[i].name;
+    out.back().options.sniffer_complete = out.back().options.start_cold = true;
+  }
+  return out;
+}
+
+// Returns nothing if the judge refuses the recording: a node used a link that it does not have.
+std::optional<check::Report> judged(const suite::CaseRun& run, const Recording& recording) {
+  check::RunReader reader;
+  std::string error;
+  if (!reader.add_bytes(run.name, recording.bytes, error)) return std::nullopt;
+  return check::judge(reader.finish(), recording.options);
+}
+
+// Returns the first failure of a report, as text; empty if there is none.
+std::string blame_in(const check::Report& report) {
+  for (const check::Finding& finding : report.findings) {
+    if (finding.severity != Severity::kFail) continue;
+    return std::string(id_of(finding.requirement)) + ' ' + finding.text;
+  }
+  return {};
+}
+
+bool in_order(const suite::CaseRun& run) {
+  return run.result.verdict == CaseVerdict::kPass || run.result.verdict == CaseVerdict::kWeak;
+}
+
+// Returns the rules of lines that forbid a frame which came on a link that a recorder hears.
+std::set<std::string> forbidden_frames(const suite::CaseRun& run) {
+  trace::Scope scope;
+  scope.nodes = run.nodes;
+  scope.links = run.links;
+  std::set<std::string> out;
+  for (const runner::Failure& failure : run.result.failures) {
+    if (!failure.forbidden || failure.weak || failure.implied || failure.crash) continue;
+    for (const trace::Line* line : run.result.log.lines()) {
+      const trace::LinkKind kind = scope.link(line->link).value_or(trace::LinkKind::kAny);
+      const bool heard = kind == trace::LinkKind::kRadio || kind == trace::LinkKind::kSerial;
+      const bool its = line->op == trace::Op::kEmits && line->node == failure.node &&
+                       line->time.from == failure.time;
+      if (its && heard && !failure.requirements.empty()) out.insert(failure.requirements.front());
     }
-    ++judged;
+  }
+  return out;
+}
+
+// Expects that the judge does not call these rules kept and the run in order.
+void expect_seen(const std::string& who, const suite::CaseRun& run, const Recording& recording,
+                 const check::Report& report) {
+  if (!blame_in(report).empty()) return;
+  for (const std::string& rule : forbidden_frames(run)) {
+    const auto its = [&](const auto& one) { return id_of(one.first) == rule; };
+    const bool kept = std::ranges::any_of(report.exercised, its);
+    const bool doubtful = std::ranges::any_of(report.findings, [](const check::Finding& finding) {
+      return finding.severity >= Severity::kWeak;
+    });
+    EXPECT_FALSE(kept && !doubtful) << who << ", " << run.name << " as " << recording.name
+                                    << ": the suite blames " << rule << ", the judge has it kept";
   }
 }
 
-TEST(TwoTools, NoLogOfALegalVariantIsBlamed) {
-  const suite::Cases cases = suite::Cases::own();
-  std::size_t variants = 0;
-  for (const auto& all : {legal_variants(), stated_variants()}) {
-    for (const LegalVariant& variant : all) compare(cases, variant);
-    variants += all.size();
+struct Opinions {
+  std::size_t runs = 0;
+  std::size_t failed = 0;  ///< Or weak.
+  std::string blamed;      ///< Where the judge alone blames.
+};
+
+void compare(const std::string& who, const suite::CaseRun& run, const trace::Statement& stated,
+             Opinions& out) {
+  const bool fails = run.result.verdict == CaseVerdict::kFail;
+  if (!fails && !in_order(run)) return;
+  ++out.runs;
+  out.failed += run.result.verdict == CaseVerdict::kPass ? 0 : 1;
+  for (const Recording& recording : recordings(run, stated)) {
+    const std::optional<check::Report> report = judged(run, recording);
+    const std::string blame = report ? blame_in(*report) : "it cannot be read";
+    if (fails) {
+      if (report && recording.options.start_cold) expect_seen(who, run, recording, *report);
+    } else if (!blame.empty() && out.blamed.empty()) {
+      out.blamed = who + ", " + run.name + " as " + recording.name + ": " + blame;
+    }
   }
-  EXPECT_GT(judged, variants * cases.all().size() * 9 / 10);
 }
 
-TEST(TwoTools, NoLogWithBackOffIsBlamed) {
-  const suite::Cases cases = suite::Cases::own();
+suite::testing::FakeAttachment attached(const StepMaker& step, const trace::Statement& stated) {
+  suite::testing::FakeAttachment out;
+  out.who.stated = stated;
+  out.make = [step] { return std::make_unique<runner::SubjectTarget>(wrapped(step)()); };
+  return out;
+}
+
+suite::CaseRun run_one(const suite::SuiteCase& one, targets::Attachment& attachment) {
+  return suite::run_one(one, attachment, "", std::nullopt);
+}
+
+void expect_conforms(const LegalVariant& variant) {
+  suite::testing::FakeAttachment attachment = attached(variant.step, variant.stated);
+  Opinions all;
+  for (const suite::SuiteCase& one : cases().all()) {
+    compare(variant.name, run_one(one, attachment), variant.stated, all);
+  }
+  EXPECT_EQ(all.blamed, "");
+  EXPECT_TRUE(all.failed == 0 || variant.weak) << variant.name;
+  EXPECT_GT(all.runs, cases().all().size() * 9 / 10);
+}
+
+TEST(TwoTools, NoRunOfALegalVariantIsBlamed) {
+  for (const auto& variants : {legal_variants(), stated_variants()}) {
+    for (const LegalVariant& variant : variants) expect_conforms(variant);
+  }
+}
+
+TEST(TwoTools, NoRunWithBackOffIsBlamed) {
   for (std::uint32_t seed = 0; seed < 10; ++seed) {
-    compare(
-        cases,
+    expect_conforms(
         {"back_off", "", backing_off(seed, 10), false, {{trace::ParameterId::kChannelAccess, 30}}});
   }
+}
+
+bool about(const suite::SuiteCase& one, const Mutant& mutant) {
+  return std::ranges::any_of(mutant.requirements, [&](ReqId rule) {
+    return std::ranges::find(one.rules, id_of(rule)) != one.rules.end();
+  });
+}
+
+TEST(TwoTools, NoRunOfAMutantIsJudgedOtherwise) {
+  const char* const seed = std::getenv("RUBRIC_SEED");
+  const bool all_runs = std::getenv("RUBRIC_ALL_RUNS") != nullptr;
+  std::minstd_rand random(static_cast<std::uint32_t>(seed ? std::atoi(seed) : 1));
+  std::size_t runs = 0;
+  std::size_t failed = 0;
+  for (const Mutant& mutant : named_mutants()) {
+    suite::testing::FakeAttachment attachment = attached(mutant.step, {});
+    Opinions all;
+    for (const suite::SuiteCase& one : cases().all()) {
+      const bool chosen = about(one, mutant) || random() % kEvery == 0;
+      if (chosen || all_runs) compare(mutant.name, run_one(one, attachment), {}, all);
+    }
+    for (const suite::SuiteCase& one : cases().all()) {
+      if (all.blamed.empty() || all.failed > 0) break;
+      const CaseVerdict verdict = run_one(one, attachment).result.verdict;
+      all.failed += verdict == CaseVerdict::kFail || verdict == CaseVerdict::kWeak ? 1 : 0;
+    }
+    EXPECT_TRUE(all.blamed.empty() || all.failed > 0) << all.blamed << "; no case fails it";
+    runs += all.runs;
+    failed += all.failed;
+  }
+  std::printf("runs of mutants: %zu, of which the suite fails %zu\n", runs, failed);
+  EXPECT_GT(failed, 1000U);
 }
 
 }  // namespace

@@ -213,8 +213,11 @@ class Lenient {
   bool is_whole(Line line) const {
     trace::AmFrame exact = trace::frame_of(line, {});
     line.bytes.reset();
-    const trace::AmFrame said = trace::frame_of(line, {});
-    if (said.payload.size() < exact.payload.size()) exact.payload.resize(said.payload.size());
+    trace::AmFrame said = trace::frame_of(line, {});
+    if (exact.payload.size() < said.payload.size()) return false;
+    const std::size_t content = trace::encode(line.message).payload.size();
+    exact.payload.resize(content);
+    said.payload.resize(content);
     return said == exact;
   }
 

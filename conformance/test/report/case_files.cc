@@ -1,6 +1,8 @@
 #include "conformance/test/report/case_files.h"
 
 #include <algorithm>
+#include <map>
+#include <utility>
 #include <vector>
 
 #include "codec/containers/link_record.h"
@@ -62,7 +64,9 @@ class Capture {
   }
 
   void add_radio(const Line& line, const trace::AmFrame& frame) {
-    const std::vector<std::uint8_t> bytes = radio_frame(frame, dsn_++);
+    // Each sender counts its own; of those that the case plays its address is known.
+    const std::string sender = line.op == Op::kEmits ? line.node : std::string();
+    const std::vector<std::uint8_t> bytes = radio_frame(frame, dsns_[{sender, frame.src}]++);
     Packet packet;
     packet.framing = Framing::kRadio;
     packet.link_type = kLinkRadioFcs;
@@ -97,7 +101,7 @@ class Capture {
   PcapngWriter writer_;
   std::string out_;
   std::size_t packets_ = 0;
-  std::uint8_t dsn_ = 0;
+  std::map<std::pair<std::string, std::uint16_t>, std::uint8_t> dsns_;
 };
 
 }  // namespace

@@ -334,11 +334,12 @@ TEST(Report, WhatIsNoReportIsRefusedWithItsPlace) {
 TEST(Report, ReplayCommandsAreQuotedForAShell) {
   SuiteRun run = every_kind();
   run.profile = "deployed";
+  run.stated = {{trace::ParameterId::kAckTimeout, 2000}, {trace::ParameterId::kResponse, 350}};
   run.traces = {"my cases"};
   run.implementations[0].cases[0].seed = 9;
   EXPECT_EQ(replay_command(run, run.implementations[0], run.implementations[0].cases[0]),
-            "rubric test --target './tiny it'\\''s' --cases a.pass --profile deployed --seed 9 "
-            "'my cases'");
+            "rubric test --target './tiny it'\\''s' --cases a.pass --state ack_timeout=2000 "
+            "--state response=350 --profile deployed --seed 9 'my cases'");
 }
 
 }  // namespace

@@ -25,6 +25,11 @@ Fit fit(std::string_view rule, const Evidence& evidence) {
   if (evidence.contains("missing")) {
     const bool of_content = std::find(std::begin(blame::kOfContent), std::end(blame::kOfContent),
                                       rule) != std::end(blame::kOfContent);
+    const bool well = std::any_of(
+        std::begin(blame::kShows), std::end(blame::kShows), [&](const blame::Sign& sign) {
+          return sign.rule == rule && sign.words == std::string_view("missing");
+        });
+    if (well) return kWell;
     return of_content ? kNo : kPerhaps;
   }
   const bool differs = evidence.contains("differs");

@@ -1,8 +1,6 @@
 #include "conformance/test/runner/dependence.h"
 
 #include <algorithm>
-#include <set>
-#include <string>
 
 namespace rubric::runner {
 namespace {
@@ -19,7 +17,12 @@ void add_names(const Value& value, Names& out) {
   for (const Value& item : value.items) add_names(item, out);
 }
 
-Names names_of(const Line& line) {
+// Returns whether later lines without another reference count their times from this one.
+bool is_counted_from(const Line& line) { return line.op != Op::kMustNot && line.op != Op::kMay; }
+
+}  // namespace
+
+std::set<std::string> names_of(const Line& line) {
   Names out;
   for (const trace::FieldValue& field : line.message.fields) add_names(field.value, out);
   if (line.am) {
@@ -28,11 +31,6 @@ Names names_of(const Line& line) {
   }
   return out;
 }
-
-// Returns whether later lines without another reference count their times from this one.
-bool is_counted_from(const Line& line) { return line.op != Op::kMustNot && line.op != Op::kMay; }
-
-}  // namespace
 
 bool is_needed_later(const trace::Case& one, const Line& line) {
   const Names names = names_of(line);

@@ -176,14 +176,14 @@ const Output* NodeLog::forbidden(const trace::Line& line, const Window& window,
   return nullptr;
 }
 
-NearestMiss NodeLog::nearest_miss(const trace::Line& line, const Window& window,
+NearestMiss NodeLog::nearest_miss(const trace::Line& line, const Window& window, Ticks latest,
                                   const trace::Bindings& bindings) const {
   const std::vector<Output>& outputs = target_->outputs();
   std::size_t best = std::numeric_limits<std::size_t>::max();
   NearestMiss miss{"it emitted nothing there", {"missing"}};
   for (std::size_t i = 0; i < seen_.size(); ++i) {
     const Seen& seen = seen_[i];
-    if (seen.taken || !is_for(line, seen.link)) continue;
+    if (seen.taken || !is_for(line, seen.link) || outputs[i].time > latest) continue;
     trace::Bindings copy = bindings;
     const trace::Match match = trace::match(line, seen.message, copy);
     const bool in_time = window.holds(outputs[i].time);

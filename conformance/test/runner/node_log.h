@@ -48,8 +48,8 @@ class NodeLog {
   /// Returns the first output that breaks a `!>` line, or null.
   const Output* forbidden(const trace::Line& line, const Window& window,
                           const trace::Bindings& bindings) const;
-  /// Explains why no output was taken.
-  NearestMiss nearest_miss(const trace::Line& line, const Window& window,
+  /// Explains why no output was taken, by those until `latest`.
+  NearestMiss nearest_miss(const trace::Line& line, const Window& window, Ticks latest,
                            const trace::Bindings& bindings) const;
   std::string text_of(const Output& output) const;
   Evidence evidence_of(const Output& output) const;

@@ -50,7 +50,7 @@ class Run {
       begun_ = true;
       for (const Line* line : case_.lines()) {
         place_ = line->place;
-        if (!work(*line, result)) break;
+        if (!work(*line)) break;
       }
       judge_forbidden(result);
       if ((!unseen_.empty() || unjudged_) && result.verdict < CaseVerdict::kInconclusive) {
@@ -95,6 +95,16 @@ class Run {
     const Line* line;
     Window window;  // By the trace, from the earliest time of what it counts from.
     Ticks slack;    // Of that moment.
+  };
+  // An output that did not come; the lines that depend on it cannot be judged.
+  struct Missing {
+    Timed timed;
+    Window wide;
+  };
+  struct Lost {
+    std::set<std::string, std::less<>> labels;
+    std::set<std::string> names;  // Of variables.
+    bool previous = false;
   };
   struct Stimulus {
     const NodeLog* node;
@@ -141,13 +151,21 @@ class Run {
     }
     const Window window{base.time + amount(line, line.time.from, line.time.from_terms),
                         base.time + amount(line, line.time.to, line.time.to_terms)};
-    if (window.to < window.from) {
+    if (is_empty(window) && (line.op != Op::kMustNot || !states_anything())) {
       throw trace::TraceError(
           line.place,
           fmt::format("{} is no time with what is stated: {} to {}", trace::print(line.time),
                       window.from - base.time, window.to - base.time));
     }
     return {&line, window, base.slack};
+  }
+
+  // A line forbids nothing where what is stated leaves no time between two frames.
+  static bool is_empty(const Window& window) { return window.to < window.from; }
+  bool states_anything() const {
+    return std::any_of(scope_.nodes.begin(), scope_.nodes.end(), [](const trace::NodeHeader& node) {
+      return node.iut && !node.stated.empty();
+    });
   }
 
   // Returns the ticks of a time, its parameters included, with the values of the line's node.
@@ -172,7 +190,33 @@ class Run {
 
   void matched(const Line& line, Moment moment) {
     previous_ = moment;
+    lost_.previous = false;
     if (!line.label.empty()) labels_[line.label] = moment;
+  }
+
+  // Counts what did not come, or was not looked for, as if it had come at the end of its window:
+  // stimuli go on from there.
+  void lose(const Line& line, Ticks end) {
+    matched(line, {end, 0});
+    lost_.previous = true;
+    if (!line.label.empty()) lost_.labels.insert(line.label);
+    for (const std::string& name : names_of(line)) {
+      if (!bindings_.find(name)) lost_.names.insert(name);
+    }
+  }
+
+  bool names_lost(const Line& line) const {
+    const std::set<std::string> names = names_of(line);
+    return std::any_of(names.begin(), names.end(),
+                       [&](const std::string& name) { return lost_.names.contains(name); });
+  }
+
+  // Returns whether a line counts its time from an output that did not come, or compares with it.
+  bool depends_on_lost(const Line& line) const {
+    using Base = trace::Time::Base;
+    return (line.time.base == Base::kPrevious && lost_.previous) ||
+           (line.time.base == Base::kLabel && lost_.labels.contains(line.time.label)) ||
+           names_lost(line);
   }
 
   // Lets time pass to `end`, or to the first instant at which a node may emit something. A node
@@ -199,7 +243,7 @@ class Run {
   }
 
   // Runs a line. Returns false if the case cannot go on.
-  bool work(const Line& line, CaseResult& result) {
+  bool work(const Line& line) {
     const Timed timed = this->timed(line);
     NodeLog* node = node_of(line);
     if (!node) {  // Faults of a link, and what nodes do that are not under test: for the reader.
@@ -217,10 +261,18 @@ class Run {
       }
       return pass_over(line);
     }
+    if (line.op == Op::kGiven && names_lost(line)) return false;
+    if (line.op != Op::kGiven && depends_on_lost(line)) {
+      if (line.op != Op::kMustNot) passed_over_.push_back(&line);
+      if (line.op == Op::kEmits) lose(line, timed.window.to);
+      return true;
+    }
     switch (line.op) {
       case Op::kGiven: give(*node, timed); return true;
-      case Op::kEmits: return expect(*node, timed, result);
-      case Op::kMustNot: forbidden_.push_back(timed); return true;
+      case Op::kEmits: return expect(*node, timed);
+      case Op::kMustNot:
+        if (!is_empty(timed.window)) forbidden_.push_back(timed);
+        return true;
       case Op::kMay: allowed_.push_back(timed); return true;
       default: return true;
     }
@@ -261,7 +313,8 @@ class Run {
     matched(*timed.line, {given.from, given.to - given.from});
   }
 
-  bool expect(NodeLog& node, const Timed& timed, CaseResult& result) {
+  // Returns false if the case ends here: what comes late is no failure where its line is weak.
+  bool expect(NodeLog& node, const Timed& timed) {
     const Line& line = *timed.line;
     while (true) {
       const Window wide = widened(node, timed);
@@ -272,11 +325,9 @@ class Run {
       if (now_ >= wide.to) break;
       pass(wide.to);
     }
-    const Window wide = widened(node, timed);
-    pass_all(wide.to + kLateTicks);
-    NearestMiss miss = node.nearest_miss(line, wide, bindings_);
-    fail(result, line, timed.window, wide.to, std::move(miss.text), miss.evidence);
-    return false;
+    missing_.push_back({timed, widened(node, timed)});
+    lose(line, timed.window.to);
+    return !is_weak(line);
   }
 
   // Times of a target whose clock is real are not exact. An output is seen some ticks late, never
@@ -332,6 +383,7 @@ class Run {
   void judge_forbidden(CaseResult& result) {
     Ticks end = now_;
     for (const Timed& one : forbidden_) end = std::max(end, one.window.to);
+    for (const Missing& one : missing_) end = std::max(end, one.wide.to + kLateTicks);
     pass_all(end);
     judge_outputs(result);
   }
@@ -346,7 +398,7 @@ class Run {
                            (line->time.base == trace::Time::Base::kLabel &&
                             labels_.find(line->time.label) != labels_.end());
         const Timed one = known ? timed(*line) : Timed{line, {0, now_}, 0};
-        if (known && line->op == Op::kMustNot) forbidden_.push_back(one);
+        if (known && line->op == Op::kMustNot && !is_empty(one.window)) forbidden_.push_back(one);
         if (line->op == Op::kEmits || line->op == Op::kMay) allowed_.push_back(one);
       }
       if (line->place.line == place_.line) reached = false;
@@ -355,6 +407,13 @@ class Run {
   }
 
   void judge_outputs(CaseResult& result) {
+    for (const Missing& one : missing_) {
+      const Line& line = *one.timed.line;
+      NearestMiss miss =
+          node_of(line)->nearest_miss(line, one.wide, one.wide.to + kLateTicks, bindings_);
+      fail(result, line, one.timed.window, one.wide.to, std::move(miss.text), miss.evidence);
+    }
+    for (const Line* line : passed_over_) allowed_.push_back({line, {0, now_}, 0});
     for (const Timed& one : allowed_) {
       NodeLog& node = *node_of(*one.line);
       node.allow(*one.line, widened(node, one), bindings_);
@@ -449,6 +508,9 @@ class Run {
   bool unjudged_ = false;  // A line's window was too short.
   std::vector<NodeLog> nodes_;
   std::vector<Stimulus> stimuli_;
+  std::vector<Missing> missing_;
+  Lost lost_;
+  std::vector<const Line*> passed_over_;  // What may come, since they depend on what is lost.
   std::vector<Timed> forbidden_;
   std::vector<Timed> allowed_;
   std::map<std::string, Moment, std::less<>> labels_;

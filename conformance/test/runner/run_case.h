@@ -5,6 +5,10 @@
 // first output of that node and link, after the one taken last, that matches in time. `?>` takes
 // one output more, if there is one, when the case is over; `!>` forbids outputs that no line took,
 // and is judged after that. Outputs that no line names are allowed.
+//
+// After a `>` line that found nothing the case goes on: stimuli are given as if the output had come
+// at the end of its window, and lines that count from it or use its variables are not judged. The
+// case ends at a stimulus that needs such a variable, or if the line is weak.
 #pragma once
 
 #include <cstdint>

@@ -400,6 +400,36 @@ TEST(RunCase, NoNodeIsResetBeforeAllAreThere) {  // In real time they would be o
   EXPECT_EQ(happened, "m2 m5 reset reset ");
 }
 
+TEST(RunCase, GoesOnAfterAMissingOutput) {
+  const auto lines_of = [](const CaseResult& result) {
+    std::vector<std::pair<std::uint32_t, bool>> out;  // Line, and whether it is implied.
+    for (const Failure& one : result.failures) out.emplace_back(one.place.line, one.implied);
+    return out;
+  };
+  using Failed = std::vector<std::pair<std::uint32_t, bool>>;
+  // The stimulus comes at the end of the missing output's window, and is judged for itself.
+  EXPECT_EQ(lines_of(run("a: 0..50 m5 > app clock(ms=1) [J4-SEQ]\nb: a+100 m5 < app get_clock()\n"
+                         "b+0..50 m5 > app clock(ms=160)\nb+0..90 m5 !> app clock(ms=170)\n"
+                         "b+0..90 m5 > app clock(ms=999)\n",
+                         {160, 170})),
+            (Failed{{5, false}, {8, true}, {9, true}}));
+  // Lines that count from it, or use its variable, are not judged, and take what may be theirs.
+  EXPECT_EQ(lines_of(run("a: 0..50 m5 > app clock(ms=$t)\na+0..50 m5 > app clock(ms=100)\n"
+                         "@0..900 m5 > app clock(ms=$t+1..$t+9)\na+0..900 m5 !> app clock(*)\n"
+                         "a+0..50 m5 ?> app clock(ms=300)\n@0..900 m5 !> app clock(ms=300)\n",
+                         {200, 300})),
+            (Failed{{5, false}}));
+  // A stimulus that needs its variable ends the case,
+  EXPECT_EQ(lines_of(run("a: 0..50 m5 > app clock(ms=$t)\n"
+                         "@90 m5 < app write_output(channel=5->1 pos=0 value=$t)\n"
+                         "@90..200 m5 > app clock(ms=150)\n",
+                         {})),
+            (Failed{{5, false}}));
+  // and so does a weak line: what comes late is not forbidden.
+  EXPECT_EQ(lines_of(run("0..50 m5 > app clock(*) [J1-SEQ]\n@0..90 m5 !> app clock(*)\n", {60})),
+            (Failed{{5, false}}));
+}
+
 TEST(RunCase, NothingUnderTestIsAnError) {
   const trace::Parsed parsed =
       trace::parse("%rtr 1\n%profile paper\n%node m5 mote id=5\ncase x\n", "x.rtr");

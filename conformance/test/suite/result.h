@@ -85,6 +85,7 @@ struct SuiteRun {
   std::uint64_t seed = 0;           ///< For cases that state none; each repeat adds one.
   std::string shard;                ///< "2/8", or empty.
   std::string app;                  ///< The command that shows applications, or empty.
+  trace::Statement stated = {};     ///< By the user, of every implementation.
   std::vector<std::string> traces;  ///< Files and folders of the user; none: the kit's own cases.
   std::vector<ImplementationRun> implementations;
   std::vector<StaleExpectation> stale;

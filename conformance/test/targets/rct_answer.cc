@@ -7,6 +7,7 @@
 
 #include "codec/reflect/requirements.h"
 #include "conformance/trace/events/app_events.h"
+#include "conformance/trace/events/parameters.h"
 #include "conformance/trace/value_text.h"
 
 namespace rubric::targets {
@@ -260,6 +261,8 @@ Identity read_hello(const std::string& line) {
     if (key == "links") wrong = read_links(value, out.shown);
     if (!wrong.empty()) throw broken(wrong);
   }
+  const std::string wrong = events::contradiction(out.stated);
+  if (!wrong.empty()) throw broken(wrong);
   if (out.roles.empty()) throw broken("it says no roles=");
   return out;
 }

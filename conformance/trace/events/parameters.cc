@@ -1,5 +1,6 @@
 #include "conformance/trace/events/parameters.h"
 
+#include <string>
 #include <type_traits>
 
 namespace rubric::events {
@@ -36,6 +37,18 @@ std::int64_t assumed(const machine::Profile& profile, ParameterId id) {
   if (id == ParameterId::kChannelAccess) return 0;
   const std::int64_t own = value_of(profile, id);
   return own == 0 && id == ParameterId::kAckTimeout ? value_of({}, id) : own;
+}
+
+std::string contradiction(const trace::Statement& statement) {
+  constexpr std::int64_t kShortest = 150;  // From the latest ack to the timeout, in golden traces.
+  machine::Profile profile;
+  state(profile, statement);
+  const std::int64_t timeout = assumed(profile, ParameterId::kAckTimeout);
+  const std::int64_t response = value_of(profile, ParameterId::kResponse);
+  if (timeout >= response + kShortest) return {};
+  return "ack_timeout=" + std::to_string(timeout) +
+         " leaves no time for an ack, which may take response=" + std::to_string(response) +
+         ": expected at least " + std::to_string(response + kShortest);
 }
 
 void state(machine::Profile& profile, const trace::Statement& statement) {

@@ -15,6 +15,9 @@ std::int64_t value_of(const machine::Profile& profile, trace::ParameterId id);
 /// has no timeout.
 std::int64_t assumed(const machine::Profile& profile, trace::ParameterId id);
 
+/// Returns how what is stated contradicts itself ("ack_timeout=198 leaves ..."), or nothing.
+std::string contradiction(const trace::Statement& statement);
+
 /// Sets what is stated.
 void state(machine::Profile& profile, const trace::Statement& statement);
 

@@ -202,8 +202,12 @@ Header any_header() {
     }
     case 5: header.what = SeedHeader{*inRange<std::uint64_t>(0, 1000000000000)}; break;
     case 6: {
-      ForHeader wanted{any_statement()};
-      if (wanted.values.empty()) wanted.values.push_back({ParameterId::kMembers, 20});
+      ForHeader wanted;
+      for (const Stated& stated : any_statement()) {
+        const std::int64_t most = coin() ? parameter(stated.id).max : stated.value;
+        wanted.values.push_back({stated.id, stated.value, most});
+      }
+      if (wanted.values.empty()) wanted.values.push_back({ParameterId::kMembers, 20, 20});
       header.what = wanted;
       break;
     }

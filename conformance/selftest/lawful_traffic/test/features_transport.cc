@@ -252,6 +252,13 @@ bool forwarded_with(const Frames& f, std::uint8_t nbytes) {
 }
 bool serial_true(const Traffic&, const Frames& f) { return forwarded_with(f, 16); }
 bool serial_whole(const Traffic&, const Frames& f) { return forwarded_with(f, 102); }
+bool serial_cut(const Traffic&, const Frames& f) {
+  const auto cut = [](const Seen& s) {
+    return !s.radio && s.is(AmType::kNet) && s.payload.size() < 114;
+  };
+  return any(f, [&](const Seen& s) { return cut(s) && s.inbound; }) &&
+         any(f, [&](const Seen& s) { return cut(s) && !s.inbound; });
+}
 bool dest_zero(const Traffic&, const Frames& f) {
   return any(f, in) && !any(f, [](const Seen& s) { return in(s) && s.am_dst != 0; });
 }
@@ -322,6 +329,7 @@ const std::vector<Feature>& transport_features() {
       {"three_islands", three_islands},
       {"serial_true", serial_true},
       {"serial_whole", serial_whole},
+      {"serial_cut", serial_cut},
       {"serial_dest_zero", dest_zero},
       {"serial_resends", serial_resends},
       {"serial_ack_lost", serial_ack_lost},

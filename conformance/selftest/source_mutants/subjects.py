@@ -1,0 +1,31 @@
+"""The implementations whose sources are mutated."""
+
+import dataclasses
+
+
+@dataclasses.dataclass(frozen=True)
+class Subject:
+    folder: str
+    files: tuple            # Patterns below the folder.
+    left_out: tuple = ()    # Names of files that no trace can see.
+    as_it_is: tuple = ()    # Names of files that are copied without mutants.
+    language: str = "c++"
+    scope: str = ""         # The namespace.
+    flags: tuple = ()       # Of the compiler.
+
+    def paths(self, project):
+        found = {path for pattern in self.files for path in (project / self.folder).glob(pattern)}
+        return sorted(str(path.relative_to(project)) for path in found
+                      if path.name not in self.left_out)
+
+
+SUBJECTS = {
+    # hash.cc tells the explorer's states apart; ticks.h converts times for captures.
+    "machine": Subject("conformance/machine", ("*.cc", "*.h"),
+                       ("hash.cc", "ticks.h", "machine_bench.cc"), scope="rubric::machine"),
+    # main.cc and words.h put the node behind rct/1.
+    "cpp": Subject("conformance/adapters/cpp", ("*.cc", "*.h"), ("main.cc", "words.h"),
+                   scope="rubric::cpp_node"),
+    "python": Subject("conformance/adapters/python", ("*.py",), as_it_is=("adapter.py", "words.py"),
+                      language="python"),
+}
