@@ -210,9 +210,12 @@ struct Requirement {
   std::string clause;
   std::string sentence;
   std::string source;
-  std::uint8_t roles = 0;  // Bits: 1 mote, 2 sink, 4 base station; 0 where it has none.
-  bool forbids = false;    // It says what must not happen.
-  std::string deployed;    // The difference of release 1.0; else empty.
+  std::uint8_t roles = 0;            // Bits: 1 mote, 2 sink, 4 base station; 0 where it has none.
+  bool forbids = false;              // It says what must not happen.
+  std::string deployed;              // The difference of release 1.0; else empty.
+  std::vector<std::string> shows;    // What a break looks like: words that are all seen.
+  std::vector<std::string> differs;  // What of a message that came is wrong.
+  bool content = false;              // No missing message breaks it.
   Place place;
 };
 

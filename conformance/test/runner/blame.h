@@ -1,9 +1,9 @@
 // Decides which rule a line that was not kept blames, by what the evidence shows.
 //
 // A line may name several rules. One of them is broken for sure, the others are suspected only.
-// Each rule of the table in blame.cc says what an output that breaks it looks like: an event is no
-// message that is sent again, an ack none that the application sent. The rule that fits best is
-// blamed; of several that fit alike the one that the line names first.
+// Rules of spec/requirements.yaml say what an output that breaks them looks like (shows, differs,
+// content): an event is no message that is sent again, an ack none that the application sent. The
+// rule that fits best is blamed; of several that fit alike the one that the line names first.
 //
 // After a node's first failure it is in another state than the case assumes, so that what it breaks
 // later in the case proves nothing: such failures are implied by the first.

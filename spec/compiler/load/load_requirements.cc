@@ -13,8 +13,9 @@
 namespace rubricc {
 namespace {
 
-constexpr std::array<std::string_view, 8> kKeys{"id",     "level", "clause",  "sentence",
-                                                "source", "roles", "forbids", "deployed"};
+constexpr std::array<std::string_view, 11> kKeys{"id",     "level",   "clause",  "sentence",
+                                                 "source", "roles",   "forbids", "deployed",
+                                                 "shows",  "differs", "content"};
 constexpr std::size_t kNeeded = 5;  // The first of them; the others may be absent.
 constexpr std::array<std::string_view, 3> kRoles{"mote", "sink", "base_station"};
 
@@ -50,6 +51,18 @@ std::uint8_t read_roles(const YamlInput& input, const YAML::Node& node) {
   return out;
 }
 
+/// Returns the texts of a list; none if the key is absent.
+std::vector<std::string> read_texts(const YamlInput& input, const YamlMap& map,
+                                    std::string_view key) {
+  std::vector<std::string> out;
+  const YamlEntry* entry = map.find(key);
+  if (entry == nullptr) return out;
+  for (const YAML::Node& item : yaml_items(input, entry->value, key)) {
+    if (const auto text = yaml_text(input, item, key)) out.push_back(one_line(*text));
+  }
+  return out;
+}
+
 Requirement read_requirement(const YamlInput& input, const YAML::Node& node) {
   const YamlMap map(input, node, "a requirement", kKeys);
   Requirement out;
@@ -74,6 +87,9 @@ Requirement read_requirement(const YamlInput& input, const YAML::Node& node) {
   if (const YamlEntry* roles = map.find("roles")) out.roles = read_roles(input, roles->value);
   out.forbids = map.boolean("forbids").value_or(false);
   out.deployed = one_line(map.text("deployed").value_or(""));
+  out.shows = read_texts(input, map, "shows");
+  out.differs = read_texts(input, map, "differs");
+  out.content = map.boolean("content").value_or(false);
   if (out.level != "MUST" && out.level != "SHOULD" && out.level != "MAY") {
     input.error(map.find("level")->value, "level is " + quote(out.level),
                 "MUST, SHOULD or MAY was expected");

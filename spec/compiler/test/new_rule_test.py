@@ -18,7 +18,8 @@ import tempfile
 MOST_SOURCES = 30
 CATALOGUE = "codec/generated/requirements_table.h"
 WIRESHARK = "tools/wireshark/generated/rubric.lua"  # Shows the texts of wire rules.
-OF_RULES = {CATALOGUE, "conformance/generated/cases.h", "conformance/generated/profiles.h"}
+OF_RULES = {CATALOGUE, "conformance/generated/blame.h", "conformance/generated/cases.h",
+            "conformance/generated/profiles.h"}
 NEW_RULE = """- id: {}
   level: MUST
   clause: wire

@@ -1,4 +1,4 @@
-// Emits requirements_table.h: names and texts of the rules.
+// Emits requirements_table.h: names and texts of the rules; and blame.h: what breaks of them show.
 #include "spec/compiler/emit/cpp_text.h"
 #include "spec/compiler/emit/emit.h"
 #include "spec/compiler/emit/template.h"
@@ -20,6 +20,33 @@ constexpr reflect::Requirement kRequirements[] = {
 };
 
 }  // namespace rubric
+)";
+
+constexpr std::string_view kBlame = R"(<<banner>>
+#pragma once
+
+namespace rubric::blame {
+
+/// A rule, and words that are all seen where it is broken.
+struct Sign {
+  const char* rule;
+  const char* words;
+};
+/// What a break shows.
+constexpr Sign kShows[] = {
+    <<shows?>>
+};
+/// What differs in a message that came.
+constexpr Sign kDiffers[] = {
+    <<differs?>>
+};
+/// Rules about what a message holds, where it goes, or that it is accepted, which no missing
+/// message breaks.
+constexpr const char* kOfContent[] = {
+    <<content?>>
+};
+
+}  // namespace rubric::blame
 )";
 
 std::string roles_text(const Requirement& one) {
@@ -54,12 +81,27 @@ std::string table_entry(const Requirement& one) {
 
 GeneratedFiles emit_requirements(const Model& model, const std::string& file) {
   std::string entries;
-  for (const Requirement& one : model.requirements) entries += table_entry(one);
+  std::string shows;
+  std::string differs;
+  std::string content;
+  const auto sign = [](const Requirement& one, const std::string& words) {
+    return "{" + cpp_string(one.id) + ", " + cpp_string(words) + "},\n";
+  };
+  for (const Requirement& one : model.requirements) {
+    entries += table_entry(one);
+    for (const std::string& words : one.shows) shows += sign(one, words);
+    for (const std::string& words : one.differs) differs += sign(one, words);
+    if (one.content) content += cpp_string(one.id) + ",\n";
+  }
   return {{"codec/generated/requirements_table.h",
            fill(kTable, {{"banner", banner("// ", file)},
                          {"file", file},
                          {"include", cpp_include("codec/reflect/schema.h")},
-                         {"entries", entries}})}};
+                         {"entries", entries}})},
+          {"conformance/generated/blame.h", fill(kBlame, {{"banner", banner("// ", "the rules")},
+                                                          {"shows", shows},
+                                                          {"differs", differs},
+                                                          {"content", content}})}};
 }
 
 }  // namespace rubricc
