@@ -141,6 +141,8 @@ std::set<std::string> forbidden_frames(const suite::CaseRun& run) {
     if (failure.requirements.empty() || failure.expected.find('$') != std::string::npos) continue;
     const std::string& rule = failure.requirements.front();
     const bool of_messages = std::string_view("NST").find(rule.front()) != std::string_view::npos;
+    std::size_t frames = 0;  // Any of those at that moment may be the forbidden one.
+    std::size_t messages = 0;
     for (const trace::Line* line : run.result.log.lines()) {
       const trace::LinkKind kind = scope.link(line->link).value_or(trace::LinkKind::kAny);
       const bool heard = kind == trace::LinkKind::kRadio || kind == trace::LinkKind::kSerial;
@@ -148,8 +150,10 @@ std::set<std::string> forbidden_frames(const suite::CaseRun& run) {
                        line->time.from == failure.time;
       trace::AmFrame frame;
       if (!its || !heard || !line->bytes || !trace::parse_packet(*line->bytes, frame)) continue;
-      if (frame.type == am::kNet || !of_messages) out.insert(rule);
+      ++frames;
+      messages += frame.type == am::kNet ? 1 : 0;
     }
+    if (frames > 0 && (frames == messages || !of_messages)) out.insert(rule);
   }
   return out;
 }
