@@ -37,7 +37,7 @@ TEST(Stated, TheResponseTimeIsTheProfilesUnlessStated) {
   EXPECT_EQ(failures_of(unreported(302 * kTickMs, options), "J6-REPORT"_rule), 1U);
   options.response_us = 300'000;
   EXPECT_EQ(failures_of(unreported(302 * kTickMs, options), "J6-REPORT"_rule), 0U);
-  // The ack_join takes more than 1 ms on the air, and the time begins with its end.
+  // Decision 125 counts from the moment when a node has the frame: its end, more than 1 ms later.
   EXPECT_EQ(failures_of(unreported(301, options), "J6-REPORT"_rule), 0U);
   EXPECT_EQ(failures_of(unreported(302, options), "J6-REPORT"_rule), 1U);
 }

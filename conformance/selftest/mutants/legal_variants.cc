@@ -35,7 +35,21 @@ void slow_acks(Moment& moment) {
   });
 }
 
+// Lets a sink or base station need its time after power on: frames of before leave then.
+void starts_slowly(Moment& moment) {
+  constexpr Ticks kReady = 250;
+  moment.honest();
+  if (moment.now >= kReady || moment.is(Role::kMote)) return;
+  moment.rewrite([&](const Action& action) {
+    const bool frame = action.what == Action::What::kTransmit;
+    return frame ? moment.hold(action, kReady - moment.now) : moment.keep(action);
+  });
+}
+
 void add_times(Variants& out) {
+  out.push_back({"starts_slowly",
+                 "Sinks and base stations send nothing in their first 250 ticks (125).",
+                 always(starts_slowly)});
   out.push_back({"slow_100", "Everything that follows from a frame takes 100 ticks (125).",
                  always(slow<100>), true});
   out.push_back({"slow_250", "Everything that follows from a frame takes 250 ticks (125).",
