@@ -17,7 +17,7 @@ struct CaseUse {
 };
 
 /// By file, then as they stand there; each case once for a rule and a sign.
-inline constexpr std::array<CaseUse, 1344> kCaseUses{{
+inline constexpr std::array<CaseUse, 1347> kCaseUses{{
     {"edges_j.late_join", "conformance/cases/edges_j.rtr", "J4-CLOCK"_rule, false},
     {"edges_j.first_reserved_island", "conformance/cases/edges_j.rtr", "J4-ACK"_rule, false},
     {"edges_j.first_reserved_island", "conformance/cases/edges_j.rtr", "J4-CONTENT"_rule, false},
@@ -154,6 +154,8 @@ inline constexpr std::array<CaseUse, 1344> kCaseUses{{
     {"edges_s.local_power_save", "conformance/cases/edges_s.rtr", "S3-OLD"_rule, false},
     {"edges_s.local_power_save", "conformance/cases/edges_s.rtr", "S3-OLD"_rule, true},
     {"edges_s.local_power_save", "conformance/cases/edges_s.rtr", "S4-LOCAL"_rule, true},
+    {"edges_s.input_not_started", "conformance/cases/edges_s.rtr", "S1-START"_rule, false},
+    {"edges_s.input_not_started", "conformance/cases/edges_s.rtr", "S6-STOPPED"_rule, true},
     {"edges_t.short_ack", "conformance/cases/edges_t.rtr", "T3-MATCH"_rule, true},
     {"edges_t.short_ack", "conformance/cases/edges_t.rtr", "T3-SUCCESS"_rule, false},
     {"edges_t.ack_of_an_unreliable_message",
@@ -163,6 +165,7 @@ inline constexpr std::array<CaseUse, 1344> kCaseUses{{
     {"edges_t.timeout_of_what_waited", "conformance/cases/edges_t.rtr", "T3-ONCE"_rule, true},
     {"edges_t.each_its_own_timeout", "conformance/cases/edges_t.rtr", "T3-TIMEOUT"_rule, false},
     {"edges_t.each_its_own_timeout", "conformance/cases/edges_t.rtr", "T4-SEVERAL"_rule, false},
+    {"edges_t.every_island_not_acked", "conformance/cases/edges_t.rtr", "T2-BROADCAST"_rule, true},
     {"j1.request", "conformance/cases/j1.rtr", "J1-REQUEST"_rule, false},
     {"j1.request", "conformance/cases/j1.rtr", "J1-DEST"_rule, true},
     {"j1.request", "conformance/cases/j1.rtr", "J1-REQUEST"_rule, true},
