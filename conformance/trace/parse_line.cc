@@ -22,8 +22,6 @@ std::int64_t ticks(Scanner& in, std::string_view text) {
   return number;
 }
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
 constexpr std::int64_t kFactorMax = 1000;
 
 // Reads `response` or `4*join_period`.
@@ -56,7 +54,7 @@ std::int64_t amount(Scanner& in, const std::string_view text, std::vector<Term>&
     const std::int64_t sign = at > 0 && text[at - 1] == '-' ? -1 : 1;
     const std::size_t end = std::min(text.find_first_of("+-", at), text.size());
     const std::string_view word = text.substr(at, end - at);
-    if (!std::all_of(word.begin(), word.end(), is_digit)) {
+    if (word.find_first_not_of("0123456789") != word.npos) {
       terms.push_back(term(in, word));
       terms.back().factor *= sign;
     } else if (numbered || word.empty() || (at > 0 && end < text.size())) {

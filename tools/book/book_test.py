@@ -131,7 +131,7 @@ class Book(unittest.TestCase):
     def test_a_trace_is_shown_unchanged(self):
         found = re.search(r'<details class="case" id="j4.wrong_seq".*?</details>', self.text, re.S)
         self.assertIn("%profile paper", found[0])
-        self.assertIn("b+2..99   m5 !&gt; rA  ack_join(*)", found[0])
+        self.assertIn("b+2..99            m5 !&gt; rA  ack_join(*)", found[0])
 
     def test_the_page_lets_nothing_else_in(self):
         for tag, kind in (("style", "style-src"), ("script", "script-src")):
