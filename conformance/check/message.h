@@ -152,8 +152,7 @@ inline std::int32_t set_island_id(const machine::Frame& frame) {
   const auto view = rubicon::ConfigView::parse(frame.payload);
   if (!view || view->type() != rubicon::CommandCode::kSetIslandId) return -1;
   const std::uint16_t island = view->value();
-  const bool usable = island != machine::kLocalPid && island != machine::kBroadcastPid;
-  return usable ? island : -1;
+  return machine::is_reserved(island) ? -1 : island;
 }
 
 }  // namespace rubric::check

@@ -190,7 +190,9 @@ void Judge::replied(std::uint32_t index, const Observation& seen, const Mark& ma
     if (who_.devices[mote].hearing ? !given : seen.received) return;
     const bool only =
         context_.mote_of_am[seen.frame.dest] == mote && context_.next_of_am[mote] == kNobody;
-    const bool sure = given || (only && link_acked(run_, index));
+    // The offer of a reserved island is to be ignored, as if it had not come (J4-ADDRESS).
+    const bool heard = given || (only && link_acked(run_, index));
+    const bool sure = heard && !machine::is_reserved(reply.island);
     motes_.reply(mote, seen, index, reply, sure);
     if (sure) joins_.surely_offered(mote, index, reply);
   });

@@ -58,11 +58,12 @@ def write_survivors(path, found):
         lines.setdefault(key[:3], []).append(key[3])
     comment = next(iter(path.read_text(encoding="utf-8").splitlines()), "")
     with path.open("w", encoding="utf-8") as out:
-        print(comment if comment.startswith("#") else "# ../README.md says how to read it.", file=out)
+        print(comment if comment.startswith("#") else "# See ../README.md.", file=out)
         for head in sorted(entries, key=lambda head: '"open"' in head):
             first = "- "
             for name, value in json.loads(head).items():
-                print(f"{first}{name}: {json.dumps(value) if name == 'reason' else value}", file=out)
+                text = json.dumps(value) if name == "reason" else value
+                print(f"{first}{name}: {text}", file=out)
                 first = "  "
             print("  mutants:", file=out)
             for line, news in entries[head].items():
