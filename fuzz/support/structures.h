@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "codec/codec_test/every_view.h"
 #include "codec/reflect/decode.h"
@@ -9,13 +10,23 @@
 
 namespace rubric::fuzz {
 
-/// Calls f(type, ViewTag).
-template <class F>
-void for_each_structure(F f) {
-  for_each_view_of_all([&f](const std::string& name, auto tag) {
+/// A structure, and the function that checks it with its view.
+template <class In>
+struct Structure {
+  const reflect::Type* type;
+  void (*check)(In bytes, const reflect::Type& type);
+};
+
+/// Returns all structures. `check_of(ViewTag)` returns what checks one.
+template <class In, class F>
+std::vector<Structure<In>> all_structures(F check_of) {
+  std::vector<Structure<In>> out;
+  for_each_view_of_all([&](const std::string& name, auto tag) {
     const std::size_t dot = name.find('.');
-    f(*reflect::find_type(*reflect::find_spec(name.substr(0, dot)), name.substr(dot + 1)), tag);
+    const reflect::Protocol& spec = *reflect::find_spec(name.substr(0, dot));
+    out.push_back({reflect::find_type(spec, name.substr(dot + 1)), check_of(tag)});
   });
+  return out;
 }
 
 }  // namespace rubric::fuzz

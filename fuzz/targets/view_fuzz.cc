@@ -44,23 +44,11 @@ void check(Bytes bytes, const reflect::Type& type) {
   written_again(*view);
 }
 
-struct Structure {
-  const reflect::Type* type;
-  void (*check)(Bytes bytes, const reflect::Type& type);
-};
-
-std::vector<Structure> all_structures() {
-  std::vector<Structure> out;
-  fuzz::for_each_structure([&out]<class View>(const reflect::Type& type, ViewTag<View>) {
-    out.push_back({&type, &check<View>});
-  });
-  return out;
-}
-
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const std::vector<Structure> structures = all_structures();
-  for (const Structure& one : structures) one.check(Bytes(data, size), *one.type);
+  static const auto structures =
+      fuzz::all_structures<Bytes>([]<class View>(ViewTag<View>) { return &check<View>; });
+  for (const auto& one : structures) one.check(Bytes(data, size), *one.type);
   return 0;
 }

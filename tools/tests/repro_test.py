@@ -1,6 +1,6 @@
 """rubric repro: from an input that breaks a flawed machine to a golden trace that finds the flaw.
 
-Usage: repro_test.py RUBRIC MACHINE_FUZZ_REPLAY SCRIPT_SEEDS
+Usage: repro_test.py RUBRIC MACHINE_FUZZ_REPLAY SCRIPT_SEEDS [CLASS]
 """
 
 import os
@@ -135,4 +135,4 @@ class Whole(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=[sys.argv[0]])
+    unittest.main(argv=[sys.argv[0], *sys.argv[4:]])

@@ -8,6 +8,7 @@ line (one of bugs.json) some have to, by its rule.
 Usage: forwarder_suite_test.py RUBRIC JAVAC JAVA
 """
 
+import concurrent.futures
 import json
 import pathlib
 import shutil
@@ -79,9 +80,17 @@ def main():
         folder = pathlib.Path(scratch)
         wrong = 0
         programs = {mistake: build(javac, folder, mistake) for mistake in ("", MISTAKE)}
-        for mistake, run, least in (("", run_at_line, 2), ("", run_with_application, 25),
-                                    (MISTAKE, run_at_line, 0)):
-            cases = run(rubric, java, programs[mistake], folder / "report.json")
+        # Both stations at the line wait most of the time, so they run at once.
+        with concurrent.futures.ThreadPoolExecutor() as both:
+            at_line = {mistake: both.submit(run_at_line, rubric, java, classes,
+                                            folder / f"line{mistake}.json")
+                       for mistake, classes in programs.items()}
+        with_application = run_with_application(rubric, java, programs[""],
+                                                folder / "report.json")
+        for mistake, run, cases, least in (
+                ("", run_at_line, at_line[""].result(), 2),
+                ("", run_with_application, with_application, 25),
+                (MISTAKE, run_at_line, at_line[MISTAKE].result(), 0)):
             count = {v: sum(c["verdict"] == v for c in cases) for v in
                      {c["verdict"] for c in cases}}
             rules = {r for c in cases for f in c["failures"]
