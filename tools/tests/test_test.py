@@ -403,6 +403,18 @@ class Failing(Folder):
         self.assertEqual(test(*again, "--write-expect", known)[0], 0)
         self.assertEqual(test(*again)[0], 0, "reasons are kept")
 
+    def test_a_written_list_is_read_again(self):
+        """Its comments are comments, however long a rule's sentence is."""
+        known = self.folder / "known.yaml"
+        run = ["--target", "machine:joined_on_link_ack", "--cases", "j4.*"]
+        self.assertEqual(test(*run, "--write-expect", known)[0], 1)
+        lines = known.read_text().splitlines()
+        self.assertTrue(all(re.match(r"#|- |  |$", line) for line in lines), lines)
+        self.assertTrue(any(a.startswith("# J4-") and b.startswith("# ")
+                            for a, b in zip(lines, lines[1:])), "no sentence was wrapped")
+        known.write_text(known.read_text().replace('reason: ""', "reason: It takes any reply."))
+        self.assertEqual(test(*run, "--expect", known)[0], 0)
+
     def test_a_recording_does_not_pass_with_another_seed(self):
         log = self.folder / "log"
         cases = ["--cases", "j4.*", "--cases", "seeded.mote"]

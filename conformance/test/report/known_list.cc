@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "codec/reflect/fault_text.h"
@@ -31,7 +32,12 @@ std::string yaml_text(std::string_view text) {
 }
 
 std::string comment(const std::string& text) {
-  return '\n' + report::wrapped("# ", text, kColumns);
+  std::string out = report::wrapped("\n", text, kColumns - 2, 0);
+  out.pop_back();
+  for (std::size_t at = 0; (at = out.find('\n', at)) != std::string::npos; at += 3) {
+    out.insert(at + 1, "# ");
+  }
+  return out + '\n';
 }
 
 // Returns words of a failure that do not change with its time or with the numbers that a seed
@@ -103,13 +109,17 @@ class KnownList {
       bool first = true;
       for (const auto& [entry, reason] : failures_) {
         if (entry.rule != rule.id) continue;
-        if (first) out += comment(fmt::format("{} ({}): {}", rule.id, rule.level, rule.sentence));
-        first = false;
+        if (std::exchange(first, false)) {
+          out += comment(fmt::format("{} ({}): {}", rule.id, rule.level, rule.sentence));
+        }
         out += failure_entry(entry, reason);
       }
     }
+    bool first = true;
     for (const auto& [entry, reason] : failures_) {
-      if (entry.rule == "none") out += comment("No rule") + failure_entry(entry, reason);
+      if (entry.rule != "none") continue;
+      if (std::exchange(first, false)) out += comment("No rule");
+      out += failure_entry(entry, reason);
     }
     for (const auto& [why, cases] : undecided_) {
       const auto& [said, reason, target] = why;
