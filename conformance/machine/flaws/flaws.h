@@ -28,10 +28,13 @@ struct Flaw {
   std::array<ReqId, 3> requirements;  ///< The rules that it breaks; kNone fills up.
   Seen seen;
   StepFunction step;
+  std::span<const machine::Role> roles = {};  ///< That the node plays; empty: every role.
 };
 
 std::span<const Flaw> all();
-/// Returns the flaw of that name, or null.
+/// Returns nodes that do all that is known of release 1.0; none of all().
+std::span<const Flaw> whole_releases();
+/// Returns the flaw or whole release of that name, or null.
 const Flaw* find(std::string_view name);
 
 }  // namespace rubric::flaws

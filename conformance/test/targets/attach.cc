@@ -37,6 +37,9 @@ class MachineAttachment : public Attachment {
   MachineAttachment(const flaws::Flaw* flaw, const Options& options) : flaw_(flaw) {
     identity_.stated = options.stated;
     if (flaw) identity_.version = flaw->name;
+    if (flaw && !flaw->roles.empty()) {
+      identity_.roles.assign(flaw->roles.begin(), flaw->roles.end());
+    }
   }
   const Identity& identity() override { return identity_; }
   std::unique_ptr<runner::Target> target() override {
@@ -58,6 +61,7 @@ std::unique_ptr<Attachment> flawed_machine(std::string_view name, const Options&
   if (flaw) return std::make_unique<MachineAttachment>(flaw, options);
   std::vector<std::string> names;
   for (const flaws::Flaw& one : flaws::all()) names.emplace_back(one.name);
+  for (const flaws::Flaw& one : flaws::whole_releases()) names.emplace_back(one.name);
   throw std::invalid_argument(
       fmt::format("the machine has no flaw '{}'; it knows {}", name, fmt::join(names, ", ")));
 }
