@@ -47,6 +47,14 @@ TEST(Blame, WhatIsMissingHasNoContent) {
   EXPECT_EQ(blamed(reply, {"missing"}), "J3-REPLY");
 }
 
+TEST(Blame, AnAckOfAnotherNumberAndWhatIsMissingOnItsOwn) {
+  EXPECT_EQ(blamed({"N3-LOCAL", "T3-SUCCESS"}, {"differs", "seq_num"}), "T3-SUCCESS");
+  EXPECT_EQ(blamed({"T4-SEVERAL", "T3-SUCCESS"}, {"missing"}), "T4-SEVERAL");
+  EXPECT_EQ(blamed({"S1-ALL", "S2-SIGNAL"}, {"missing"}), "S2-SIGNAL");
+  EXPECT_EQ(blamed({"T2-ACK", "N8-PEIS"}, {"missing"}), "N8-PEIS");
+  EXPECT_EQ(blamed({"S5-UNKNOWN", "S2-SIGNAL"}, {"differs", "status"}), "S5-UNKNOWN");
+}
+
 TEST(Blame, TheFirstOfThoseThatFitAlike) {
   EXPECT_EQ(blamed({"S6-OTHERS", "S6-STOPPED"}, {"radio", "net_msg", "new"}), "S6-OTHERS");
   Failure none;
