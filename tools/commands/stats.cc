@@ -8,8 +8,8 @@
 #include "tools/cli/input.h"
 #include "tools/cli/output.h"
 #include "tools/commands/commands.h"
-#include "tools/stats/counters.h"
-#include "tools/stats/report.h"
+#include "tools/commands/stats/counters.h"
+#include "tools/commands/stats/report.h"
 
 namespace rubric::tools {
 namespace {

@@ -1,4 +1,4 @@
-#include "tools/stats/counters.h"
+#include "tools/commands/stats/counters.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 
 #include "codec/generated/rubicon/tables.h"
 #include "codec/reflect/encode.h"
-#include "tools/stats/report.h"
+#include "tools/commands/stats/report.h"
 
 namespace rubric::stats {
 namespace {

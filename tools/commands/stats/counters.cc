@@ -1,4 +1,4 @@
-#include "tools/stats/counters.h"
+#include "tools/commands/stats/counters.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "tools/stats/report.h"
+#include "tools/commands/stats/report.h"
 
 #include <fmt/format.h>
 

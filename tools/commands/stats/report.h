@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "tools/stats/counters.h"
+#include "tools/commands/stats/counters.h"
 
 namespace rubric::stats {
 
