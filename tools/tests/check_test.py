@@ -300,14 +300,6 @@ class Expectations(Folder):
         self.assertEqual(code, 66)
         self.assertIn("none.yaml: No such file", err)
 
-    def test_release_1_0(self):
-        """The known failures of the captured firmware, and nothing else."""
-        for profile in ("paper", "deployed"):
-            for file in sorted(FIRMWARE.glob("*.pcapng")):
-                code, out, _ = check("--profile", profile, "--expect",
-                                     "conformance/cases/release_1_0.yaml", file)
-                self.assertEqual(code, 0, out)
-
 
 class Inputs(Folder):
     def rules(self, *args):

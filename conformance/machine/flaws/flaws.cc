@@ -364,7 +364,7 @@ void firmware(State& state, Ticks now, const Event& given, Actions& actions) {
   tell_data_at_once(state, event, actions);
 }
 
-// Takes everything from its sink as its own, whole and of 102 bytes; sends nothing to PEIS.
+// Takes everything from its sink as its own, if it has its full length; sends nothing to PEIS.
 void java_base_station(State& state, Ticks now, const Event& event, Actions& actions) {
   const Frame* const frame = net_msg(event);
   if (frame != nullptr && frame->link == Link::kSerial) {
@@ -373,7 +373,7 @@ void java_base_station(State& state, Ticks now, const Event& event, Actions& act
       return actions.ignored(ReqId::kNone);
     }
     Forged forged(*frame);
-    nbytes_of(forged.bytes()) = kNbytesMax;
+    believe_nbytes(forged, frame->payload.size());
     set_address<NetMsgLayout::DestAt>(forged.bytes(), machine::own_address(state));
     machine::step(state, now, forged.event(), actions);
   } else if (frame != nullptr && frame->link == Link::kPeis) {
