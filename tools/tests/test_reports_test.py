@@ -7,6 +7,7 @@ Usage: test_reports_test.py RUBRIC in the project's folder.
 import json
 import os
 import pty
+import re
 import subprocess
 import unittest
 import xml.etree.ElementTree
@@ -65,6 +66,38 @@ class Expectations(Folder):
         code, _, err = test("--target", "machine", "--expect", self.folder / "none.yaml")
         self.assertEqual(code, 66)
         self.assertIn("No such file or directory", err)
+
+
+class Charts(Folder):
+    def test_they_agree_with_the_text(self):
+        """What the text says of a failure is marked in its chart and in the page's, no more."""
+        target = ["--target", "machine:release_1_0_firmware"]
+        folder = self.folder / "report"
+        text = test(*target, "--verbose", "--report", folder)[1]
+        page = (folder / "index.html").read_text(encoding="utf-8")
+        data = json.loads(re.search(r'type="application/json" id="data">(.*?)</script>', page)[1])
+        blocks = dict(re.findall(r"(?ms)^FAIL (\S+)\n(.*?)(?=^FAIL|^SKIP|^WEAK|\Z)", text))
+        compared = 0
+        for case in data["cases"]:
+            failures = case["runs"][0]["failures"]
+            if case["runs"][0]["verdict"] != "fail":
+                continue
+            compared += 1
+            ticks = []
+            time = None     # A row has none where it is that of the row before.
+            for mark, row in re.findall(r'<g class="rc-row( rc-marked)?"(.*?)</g>',
+                                        data["charts"][case["runs"][0]["chart"]], re.S):
+                shown = re.search(r'class="rc-time"[^>]*>(\d+)<', row)
+                time = int(shown[1]) if shown else time
+                if mark:
+                    ticks.append(time)
+            self.assertEqual(set(ticks), {one["time_ticks"] for one in failures}, case["name"])
+            marked = re.findall(r"(?m)^ +(\d+) .*<<<$", blocks[case["name"]])
+            self.assertIn(failures[0]["time_ticks"], map(int, marked), case["name"])
+            self.assertLessEqual(set(map(int, marked)), set(ticks), case["name"])
+            said = " ".join(blocks[case["name"]].split())
+            self.assertIn(" ".join(failures[0]["text"].split()), said)
+        self.assertGreater(compared, 50)
 
 
 class Formats(Folder):

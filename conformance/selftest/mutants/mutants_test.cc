@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <regex>
 #include <set>
 #include <thread>
 
@@ -100,6 +101,31 @@ TEST(Mutants, TheRightRuleIsBlamed) {
       named_there.rules, named_there.right, blamed.rules, blamed.right, hit, killed);
   EXPECT_GT(blamed.right * named_there.rules, named_there.right * blamed.rules);
   EXPECT_GT(blamed.right * 100, blamed.rules * 85);
+}
+
+// What a failure shows as nearest is of the message that was expected, and lies in its window.
+TEST(Mutants, NearestHintsAreOfTheMessageAndInItsWindow) {
+  const std::regex nearest(R"(^nearest, at (\d+): \S+ (\w+)\()");
+  std::size_t hints = 0;
+  for (const Hunted* all : {&named(), &generated()}) {
+    for (std::size_t i = 0; i < all->mutants.size(); ++i) {
+      const auto ref =
+          std::find_if(golden().cases().begin(), golden().cases().end(),
+                       [&](const CaseRef& one) { return one.one->name == all->found[i].by; });
+      if (ref == golden().cases().end()) continue;
+      for (const runner::Failure& failure : run(*ref, all->mutants[i].factory()).failures) {
+        std::smatch hint;
+        if (!std::regex_search(failure.text, hint, nearest)) continue;
+        ++hints;
+        const std::uint64_t at = std::stoull(hint[1]);
+        EXPECT_TRUE(failure.from <= at && at <= failure.to)
+            << all->mutants[i].name << ": " << failure.text;
+        EXPECT_TRUE(std::regex_search(failure.expected, std::regex("\\b" + hint[2].str() + "\\(")))
+            << all->mutants[i].name << ": " << failure.expected << ", but " << failure.text;
+      }
+    }
+  }
+  EXPECT_GT(hints, 300U);
 }
 
 TEST(Mutants, NamesAreUnique) {

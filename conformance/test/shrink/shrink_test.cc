@@ -132,6 +132,38 @@ TEST(Shrink, FailuresOfMutants) {
   EXPECT_LT(after * 3, before * 2);
 }
 
+// Where a shorter trace could ask for more than the rules do: with two sinks, or with a full
+// buffer, what is left still holds the reference machine and all its legal variants harmless.
+TEST(Shrink, DoesNotDriftIntoWhatDecisionsAllow) {
+  for (const char* const name : {"two_sinks", "n2.mote_incoming_full", "n2.sink_incoming_full"}) {
+    const trace::File* file = nullptr;
+    const trace::Case* one = nullptr;
+    for (const trace::File* each : golden_files()) {
+      for (const trace::Case& at : each->cases) {
+        if (at.name == name) file = each, one = &at;
+      }
+    }
+    ASSERT_NE(one, nullptr) << name;
+    std::size_t shrunk = 0;
+    for (const mutants::Mutant& mutant : mutants::named_mutants()) {
+      const Player broken = player(mutant.factory());
+      const runner::CaseResult result = runner::run_case(*file, *one, broken.make);
+      if (result.verdict != CaseVerdict::kFail) continue;
+      const Shrunk out = shrink(*file, *one, fails_alike(result, broken, references()));
+      ASSERT_GT(out.lines_before, 0u) << mutant.name;
+      const runner::CaseResult again = play(out.file, broken);
+      ASSERT_FALSE(again.failures.empty()) << mutant.name;
+      EXPECT_EQ(again.failures[0].requirements, result.failures[0].requirements) << mutant.name;
+      for (const Player& reference : references()) {
+        EXPECT_LE(play(out.file, reference).verdict, CaseVerdict::kWeak) << mutant.name << '\n'
+                                                                         << trace::print(out.file);
+      }
+      if (++shrunk == 2) break;
+    }
+    EXPECT_GT(shrunk, 0u) << name;
+  }
+}
+
 TEST(Difference, OfAMutant) {
   const mutants::Mutant broken = mutants::mote_join_mutants().front();
   const DifferenceSearch search =
