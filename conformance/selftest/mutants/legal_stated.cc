@@ -43,7 +43,7 @@ StepMaker late_and_backing_off(Ticks ticks, Ticks most) {
         if (action.what == Action::What::kNotify && wait > 0) return moment.hold(action, wait);
         if (action.what != Action::What::kTransmit) return moment.keep(action);
         const bool radio = moment.sent(action).link == Link::kRadio;
-        moment.hold(action, wait + (radio ? random() % (most + 1) : 0));
+        moment.hold(action, wait + (radio ? static_cast<Ticks>(random() % (most + 1)) : 0));
       });
     };
   };
@@ -59,7 +59,7 @@ StepMaker backing_off(std::uint32_t seed, Ticks most) {
       moment.rewrite([&](const Action& action) {
         const bool radio =
             action.what == Action::What::kTransmit && moment.sent(action).link == Link::kRadio;
-        const Ticks wait = radio ? random() % (most + 1) : 0;
+        const Ticks wait = radio ? static_cast<Ticks>(random() % (most + 1)) : 0;
         return wait > 0 ? moment.hold(action, wait) : moment.keep(action);
       });
     };

@@ -77,7 +77,7 @@ trace::Statement random_statement(std::minstd_rand& random) {
   for (const trace::Parameter& one : trace::parameters()) {
     if (random() % (many ? 2 : 8) != 0) continue;
     const std::int64_t most = std::min<std::int64_t>(one.max, one.min + 4000);
-    out.push_back({one.id, one.min + static_cast<std::int64_t>(random() % (most - one.min + 1))});
+    out.push_back({one.id, one.min + static_cast<std::int64_t>(random()) % (most - one.min + 1)});
   }
   return out;
 }
