@@ -151,6 +151,7 @@ struct Run {
   /// Frames of files without stamps that are in order with others, by file and frame. A failure
   /// must be found in each order that these bounds allow.
   std::vector<LoosePlace> loose;
+  bool order_guessed = false;  ///< It is one of several orders that are tried.
   /// In order of time. What compares times before and after one is inconclusive.
   std::vector<ClockStep> steps;
 };

@@ -88,7 +88,7 @@ class EveryCase(unittest.TestCase):
                 self.assertTrue(row.find(SVG + "title").text.startswith(f"@{tick}"), case)
                 self.assertIn(node, row.find(SVG + "title").text)
                 label = "".join(label_of(row).itertext())
-                self.assertTrue(label.startswith(message) or label.startswith("ack of "),
+                self.assertTrue(label.startswith(message) or label.startswith("ack "),
                                 f"{case}: {label}")
 
     def test_text_has_a_line_for_each_row(self):

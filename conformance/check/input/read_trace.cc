@@ -1,6 +1,7 @@
 #include "conformance/check/input/read_trace.h"
 
 #include <map>
+#include <set>
 
 #include "conformance/check/storage.h"
 #include "conformance/trace/encode.h"
@@ -109,6 +110,7 @@ class LogReader {
     seen.node = run_.storage->keep(std::string_view(line.node));
     seen.received = line.op == Op::kGiven;
     const bool frames = *kind != LinkKind::kApp && *kind != LinkKind::kPower;
+    if (seen.received && *kind != LinkKind::kPower && without_power_.contains(line.node)) return;
     if (frames && !is_state(line)) {
       take_frame(line, *kind, seen);
     } else if (*kind == LinkKind::kApp || *kind == LinkKind::kPower) {
@@ -163,6 +165,8 @@ class LogReader {
     if (const auto state = events::to_state(*message, kind)) {
       const bool reboot = std::holds_alternative<machine::Reboot>(*state);
       if (!reboot && !std::holds_alternative<machine::PowerOff>(*state)) return;
+      if (reboot) without_power_.erase(line.node);
+      if (!reboot) without_power_.insert(line.node);
       seen.kind = Observation::Kind::kReboot;
       seen.received = false;
     } else if (const auto call = events::to_call(*message); call && seen.received) {
@@ -184,6 +188,7 @@ class LogReader {
   std::vector<const Line*> lines_;
   std::map<std::string, std::int64_t> labels_;
   std::map<std::string, std::uint32_t> taps_;
+  std::set<std::string> without_power_;
   std::int64_t last_ticks_ = 0;
   std::uint64_t frames_ = 0;
 };

@@ -75,9 +75,11 @@ bool Forwarding::sent_on_radio(std::uint16_t sink, const Observation& seen, cons
     refuse_down(*line, seen, net);
     return true;
   }
-  // Of other messages only a run that has everything can say that nobody gave them to the sink.
+  // Of other messages only a run that has everything, in its order, can say that nobody gave them
+  // to the sink.
   const std::int64_t now = seen.place.time_us;
-  const bool sure = context_.without_ever(kNobody, now) == Severity::kFail &&
+  const bool sure = !context_.run.order_guessed &&
+                    context_.without_ever(kNobody, now) == Severity::kFail &&
                     context_.on_line(sink, Severity::kFail) == Severity::kFail;
   if (!sure || line->changing(now)) return true;
   if (context_.half_heard(sink)) {

@@ -211,7 +211,10 @@ void Judge::called(const Observation& seen, std::uint16_t device) {
     return;
   }
   if (const auto* set = std::get_if<machine::SetInterface>(seen.call)) {
-    if (set->link == machine::Link::kSerial) forwarding_.serial_set(device, set->on);
+    if (set->link == machine::Link::kSerial) {
+      forwarding_.serial_set(device, set->on);
+      sinks_.serial_set(device, set->on);
+    }
     if (set->link == machine::Link::kRadio) synaptic_.able(device, set->on, seen.place.time_us);
     if (set->link == machine::Link::kRadio) joins_.radio_set(device, set->on, seen.place.time_us);
     return;

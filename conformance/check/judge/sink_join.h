@@ -94,7 +94,9 @@ struct SinkWatch {
   std::uint32_t clock_ms = 0;
   std::int64_t clock_us = 0;
   std::int64_t still_us = 0;      ///< Of the first reply with that cur_time.
+  std::int64_t behind_us = -1;    ///< Of the last reply whose clock fell behind: of a new life?
   std::uint32_t debts = 0;        ///< Pairs with something due.
+  bool serial_off = false;        ///< Its serial line, by its application.
   std::int64_t serial_us = -1;    ///< Its last frame on its serial line.
   std::int64_t reported_us = -1;  ///< The latest ack_join that it reported.
 };
@@ -115,6 +117,8 @@ class SinkJoins {
   void told(std::uint16_t sink, const Observation& seen, const machine::MoteJoined& joined);
   /// Notes that the sink sent something at this time, so whatever it still owes is overdue.
   void showed_life(std::uint16_t sink, std::int64_t now_us, bool on_serial);
+  /// Notes that the sink's serial line is switched on or off; while off, no report is due.
+  void serial_set(std::uint16_t sink, bool on);
   void finish(std::int64_t end_us);
   /// Notes that somebody else waits for the answer to the mote's last request.
   void settled(std::uint16_t mote_am) { unanswered_[mote_am].open = false; }

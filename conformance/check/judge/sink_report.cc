@@ -53,7 +53,7 @@ void SinkJoins::ack_join(std::uint16_t, const Observation& seen, const AckJoin& 
     watch.ack = seen.place;
     watch.ack_whole_us = seen.place.time_us + air_us(seen);
     watch.ignored_ack = admitted ? ReqId::kNone : ignored;
-    if (sure && all_admit && !watch.report_due && !device.taps.empty()) {
+    if (sure && all_admit && !watch.report_due && !device.taps.empty() && !sink.serial_off) {
       watch.report_due = true;
       ++sink.debts;
     }
@@ -196,6 +196,15 @@ void SinkJoins::showed_life(std::uint16_t sink_device, std::int64_t now_us, bool
   if (sink == nullptr || !on_serial || now_us < 0) return;
   sink->serial_us = now_us;
   if (sink->debts > 0) overdue_reports(*sink, false);
+}
+
+void SinkJoins::serial_set(std::uint16_t sink_device, bool on) {
+  SinkWatch* const sink = find(sink_device);
+  if (sink == nullptr) return;
+  sink->serial_off = !on;
+  if (on) return;
+  for (auto& [am, watch] : sink->motes) watch.report_due = false;
+  sink->debts = 0;
 }
 
 void SinkJoins::overdue_reports(SinkWatch& sink, bool end) {

@@ -98,7 +98,7 @@ GeneratedFiles emit_requirements(const Model& model, const std::string& file) {
                          {"file", file},
                          {"include", cpp_include("codec/reflect/schema.h")},
                          {"entries", entries}})},
-          {"conformance/generated/blame.h", fill(kBlame, {{"banner", banner("// ", "the rules")},
+          {"conformance/generated/blame.h", fill(kBlame, {{"banner", banner("// ", file)},
                                                           {"shows", shows},
                                                           {"differs", differs},
                                                           {"content", content}})}};
