@@ -98,10 +98,11 @@ GeneratedFiles emit_requirements(const Model& model, const std::string& file) {
                          {"file", file},
                          {"include", cpp_include("codec/reflect/schema.h")},
                          {"entries", entries}})},
-          {"conformance/generated/blame.h", fill(kBlame, {{"banner", banner("// ", file)},
-                                                          {"shows", shows},
-                                                          {"differs", differs},
-                                                          {"content", content}})}};
+          {"conformance/generated/blame.h",
+           fill(kBlame, {{"banner", banner("// ", "spec/requirements.yaml")},
+                         {"shows", shows},
+                         {"differs", differs},
+                         {"content", content}})}};
 }
 
 }  // namespace rubricc
