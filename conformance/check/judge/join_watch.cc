@@ -12,7 +12,6 @@ using Phase = machine::JoinMote::Phase;
 constexpr std::uint8_t kRequestsMin = 4;    // In a call that fails (decision 101).
 constexpr std::size_t kJoinCrowd = 6;       // Frames; then a buffer may have been full.
 constexpr std::int64_t kClockOffMs = 1000;  // (decision 119)
-constexpr std::uint16_t kReservedFrom = 0xFFFD;
 
 }  // namespace
 
@@ -58,7 +57,7 @@ void JoinWatch::asked(std::uint16_t mote, std::uint32_t index) {
 void JoinWatch::surely_asked(std::uint16_t sink, std::uint32_t index, std::uint16_t seq_num) {
   const Observation& seen = context_.run.seen[index];
   const std::uint16_t am = seen.frame.src;
-  if (sink == kNobody || !waits(sink) || am == context_.sink_am || am >= kReservedFrom) return;
+  if (sink == kNobody || !waits(sink) || am == context_.sink_am || machine::is_reserved(am)) return;
   Debt debt;
   debt.mote_am = am;
   debt.seq_num = seq_num;

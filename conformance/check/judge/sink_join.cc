@@ -77,7 +77,6 @@ void SinkJoins::set_island(std::uint16_t sink, std::uint16_t island, const Place
     pair.report_due = false;
   }
   watch->debts = 0;
-  watch->serial_off = false;
   watch->reported_us = -1;
 }
 

@@ -222,7 +222,7 @@ class Comparer {
     }
     constexpr auto kSet = static_cast<std::int64_t>(rubicon::CommandCode::kSetIslandId);
     const std::int64_t value = number_of(node_, {"value"});
-    const bool usable = value < 0xFFFD;  // Reserved from there on (decision 132).
+    const bool usable = !machine::is_reserved(static_cast<std::uint16_t>(value));
     ASSERT_EQ(island, number_of(node_, {"type"}) == kSet && usable ? value : -1) << shown();
   }
 
