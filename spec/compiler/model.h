@@ -214,7 +214,7 @@ struct Requirement {
   bool forbids = false;              // It says what must not happen.
   std::string deployed;              // The difference of release 1.0; else empty.
   std::vector<std::string> shows;    // What a break looks like: words that are all seen.
-  std::vector<std::string> differs;  // What of a message that came is wrong.
+  std::vector<std::string> differs;  // The wrong parts of a message that came.
   bool content = false;              // No missing message breaks it.
   Place place;
 };

@@ -75,8 +75,7 @@ bool Forwarding::sent_on_radio(std::uint16_t sink, const Observation& seen, cons
     refuse_down(*line, seen, net);
     return true;
   }
-  // Of other messages only a run that has everything, in its order, can say that nobody gave them
-  // to the sink.
+  // That nobody gave the sink this message, only a run shows that has everything in its order.
   const std::int64_t now = seen.place.time_us;
   const bool sure = !context_.run.order_guessed &&
                     context_.without_ever(kNobody, now) == Severity::kFail &&

@@ -101,7 +101,7 @@ TEST(Legal, NoAlarmComesBack) {
   for (const Alarm& one : kAlarms) judge_both(one.variant, one.seed, one.recorder, count);
 }
 
-// What is legal since it is stated fails where nothing is.
+// Traffic that is legal only by what its nodes state fails when they state nothing.
 TEST(Legal, UnstatedItFails) {
   for (const char* name : {"stated_join_timer", "stated_requests", "stated_busy_channel"}) {
     std::size_t fails = 0;

@@ -136,7 +136,7 @@ std::set<std::string> forbidden_frames(const suite::CaseRun& run) {
   scope.nodes = run.nodes;
   scope.links = run.links;
   std::set<std::string> out;
-  // What came in place of a frame that is missing may be wrong only by what the case expects.
+  // Where an expected frame is missing, what came instead may be wrong only for this case.
   if (std::ranges::any_of(run.result.failures, [](const auto& one) { return !one.forbidden; })) {
     return out;
   }
