@@ -110,6 +110,14 @@ function(rubric_test name)
   target_precompile_headers(${name} REUSE_FROM rubric_test_headers)
   add_test(NAME ${name} COMMAND ${name} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
   rubric_label_test(${name} "${arg_LABEL}" ${arg_FOREIGN} ${name})
+  if(rapidcheck IN_LIST arg_DEPS)
+    # A stated seed, so that a run says the same twice; only the long proofs take any seed.
+    set(runs "max_success=1000 max_size=200")
+    set_tests_properties(${name} PROPERTIES ENVIRONMENT "RC_PARAMS=seed=1 ${runs}")
+    add_test(NAME ${name}_any_seed COMMAND ${name} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+    rubric_label_test(${name}_any_seed long "" ${name})
+    set_tests_properties(${name}_any_seed PROPERTIES ENVIRONMENT "RC_PARAMS=${runs}")
+  endif()
 endfunction()
 
 # rubric_script_test(NAME [FOREIGN] [LABEL fast|slow|long] COMMAND word ...): a program or script
