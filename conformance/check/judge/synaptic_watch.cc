@@ -1,6 +1,7 @@
 #include "conformance/check/judge/synaptic_watch.h"
 
 #include <algorithm>
+#include <cstdlib>
 
 namespace rubric::check {
 namespace {
@@ -11,6 +12,9 @@ const machine::Channel* find(const machine::Synaptic& channels, machine::Channel
   }
   return nullptr;
 }
+
+constexpr std::size_t kTickCrowd = 2;  // So many other frames may have filled a buffer.
+constexpr std::size_t kBufferMax = 4;  // And so many channels (decision 122).
 
 }  // namespace
 
@@ -154,6 +158,237 @@ void SynapticWatch::sent(std::uint16_t device, const Observation& seen, const Ne
     context_.findings.kept("S3-UNCHANGED"_rule);
   }
   out->sent_us = now;
+}
+
+void SynapticWatch::Ticks::add(std::int64_t now_us) {
+  std::rotate(at_us.begin(), at_us.begin() + 1, at_us.end());
+  at_us.back() = now_us;
+  if (count < at_us.size()) ++count;
+}
+
+SynapticWatch::In* SynapticWatch::find_in(Node& node, machine::ChannelId id) {
+  for (In& in : node.ins) {
+    if (in.id == id) return &in;
+  }
+  return nullptr;
+}
+
+void SynapticWatch::member(std::uint16_t device, std::int64_t now_us) {
+  nodes_[device].member_us = now_us;
+}
+
+void SynapticWatch::able(std::uint16_t device, bool radio_on, std::int64_t now_us) {
+  settle(device, now_us);
+  nodes_[device].on_us = radio_on ? now_us : -1;
+}
+
+// Notes which inputs a call began or ended.
+void SynapticWatch::note_inputs(Node& node, const machine::Synaptic& before, std::int64_t now_us) {
+  const auto started = [](const machine::Synaptic& channels, machine::ChannelId id) {
+    for (const machine::Channel& channel : channels.in) {
+      if (channel.id == id) return channel.started;
+    }
+    return false;
+  };
+  for (const machine::Channel& channel : node.channels.in) {
+    In* in = find_in(node, channel.id);
+    if (in == nullptr && node.ins.size() < kChannelsMax) {
+      in = &node.ins.emplace_back();
+      in->id = channel.id;
+      in->ended_us = now_us;
+      in->local = channel.id >> 16 == (channel.id & 0xFFFF);
+    }
+  }
+  for (In& in : node.ins) {
+    const bool ran = started(before, in.id);
+    const bool runs = started(node.channels, in.id);
+    if (runs == ran) continue;
+    in.begun_us = in.waits_us = runs ? now_us : -1;
+    in.ended_us = runs ? -1 : now_us;
+    in.told_us = -1;
+    in.ticks = {};
+  }
+}
+
+// Returns since when the node can send at all; -1 if it cannot, or that is unknown.
+std::int64_t SynapticWatch::able_since(std::uint16_t device) const {
+  const Node& node = nodes_[device];
+  const bool sink = context_.device(device).role == machine::Role::kSink;
+  const bool busy = device < context_.run.nodes.size() && context_.run.nodes[device].busy;
+  if (!node.logged || !context_.run.has_time || node.on_us < 0 || busy) return -1;
+  if (!sink && node.member_us < 0) return -1;
+  return std::max(node.on_us, sink ? 0 : node.member_us);
+}
+
+// Returns how long a channel may be silent. Before its first tick a node's clock may be shifted.
+std::int64_t SynapticWatch::patience_us(std::uint16_t device, bool first) const {
+  const std::uint32_t shift = context_.profile().synaptic_phase_ticks *
+                              static_cast<std::uint32_t>(context_.device(device).am);
+  return machine::us_of(nodes_[device].channels.period_ticks + (first ? shift : 0)) +
+         context_.response_us() + context_.early_us();
+}
+
+void SynapticWatch::given(std::uint16_t device, const Observation& seen, const Net& net) {
+  Node& node = nodes_[device];
+  if (!node.logged || !net.sound || net.trans_id != component::kSynChannel) return;
+  In* const in = find_in(node, machine::channel_id(net.src.devid, net.dest.devid));
+  if (in == nullptr) return;
+  in->before = in->before || in->begun_us < 0;
+  if (in->begun_us < 0) return;
+  in->data_us[in->data_next++ % in->data_us.size()] = seen.place.time_us;
+}
+
+void SynapticWatch::told(std::uint16_t device, const Observation& seen,
+                         const machine::SynDataReceived& data) {
+  Node& node = nodes_[device];
+  In* const in = find_in(node, data.id);
+  if (in == nullptr || data.status == machine::DataStatus::kUnknownChannel) return;
+  const std::int64_t now = seen.place.time_us;
+  if (!context_.run.has_time) return;
+  if (in->ended_us >= 0) {
+    if (now - in->ended_us <= context_.early_us()) return;  // It was on its way.
+    context_.report("S6-STOPPED"_rule, Severity::kFail, seen.place, device,
+                    {"synData_received of a channel " + ms_text(now - in->ended_us) +
+                         " after it was stopped or disposed, or created and not started.",
+                     "Silence.",
+                     {}});
+    return;
+  }
+  settle(device, now);
+  const std::int64_t response = context_.response_us();
+  const bool fresh = data.status == machine::DataStatus::kNew;
+  const bool knows = context_.device(device).hearing && !in->local;
+  const std::int64_t since = std::max(in->told_us, in->begun_us);
+  // Data that came close to a tick may count for this one or the next.
+  const auto came = [&](std::int64_t from, std::int64_t to) {
+    return std::any_of(in->data_us.begin(), in->data_us.end(),
+                       [&](std::int64_t at) { return at >= 0 && at >= from && at <= to; });
+  };
+  // The first signal may be about data that came before the start.
+  const bool early = in->before && in->told_us < in->begun_us;
+  if (knows && fresh && !early && !came(since - response, now)) {
+    context_.report("S3-OLD"_rule, Severity::kFail, seen.place, device,
+                    {"synData_received has status new, though no data came for " +
+                         ms_text(now - since + response) + ".",
+                     "Status old without new data.",
+                     {}});
+  } else if (knows && !fresh && came(since + context_.early_us(), now - response)) {
+    context_.report(
+        "S2-SIGNAL"_rule, Severity::kFail, seen.place, device,
+        {"synData_received has status old, though data came since the last.", "Status new.", {}});
+  } else {
+    context_.findings.kept(fresh ? "S2-SIGNAL"_rule : "S3-OLD"_rule);
+  }
+  in->told_us = in->waits_us = now;
+  in->before = false;
+  in->ticks.add(now);
+  judge_grid(device, seen, in->ticks);
+}
+
+//= S6-CLOCK: Starting a channel again does not shift the clock of the others.
+void SynapticWatch::judge_grid(std::uint16_t device, const Observation& seen, const Ticks& ticks) {
+  Node& node = nodes_[device];
+  const std::int64_t period = machine::us_of(node.channels.period_ticks);
+  const auto& at = ticks.at_us;
+  if (node.restart_us < 0 || node.shifted || ticks.count < at.size() || period == 0) return;
+  if (at[1] > node.restart_us || at[2] <= node.restart_us || node.step_us > at[0]) return;
+  // Two ticks before and two after, each a period apart: two grids.
+  const std::int64_t off = context_.early_us();
+  const auto steady = [&](std::int64_t from, std::int64_t to) {
+    return std::abs(to - from - period) <= off / 2;
+  };
+  if (!steady(at[0], at[1]) || !steady(at[2], at[3])) return;
+  const std::int64_t rest = (at[2] - at[1]) % period;
+  const std::int64_t shift = std::min(rest, period - rest);
+  node.shifted = true;
+  if (shift <= off) return context_.findings.kept("S6-CLOCK"_rule);
+  context_.report("S6-CLOCK"_rule, Severity::kWeak, seen.place, device,
+                  {"Behind the start of another channel the ticks of this one lie " +
+                       ms_text(shift) + " off those before.",
+                   "The same clock as before.",
+                   {}});
+}
+
+// Returns whether other frames may have filled the outgoing buffer; then a tick's data are refused.
+bool SynapticWatch::crowded(std::uint16_t device, std::int64_t from_us, std::int64_t to_us) const {
+  const std::vector<Observation>& seen = context_.run.seen;
+  const auto from = std::lower_bound(
+      seen.begin(), seen.end(), from_us,
+      [](const Observation& a, std::int64_t time_us) { return a.place.time_us < time_us; });
+  std::size_t others = 0;
+  for (auto it = from; it != seen.end() && it->place.time_us <= to_us; ++it) {
+    const auto i = static_cast<std::size_t>(it - seen.begin());
+    if (it->kind != Observation::Kind::kRadio || it->received) continue;
+    Net net;
+    const bool data = it->frame.type == am::kNet && parse_net(it->frame.payload, net) &&
+                      net.sound && net.trans_id == component::kSynChannel;
+    if (context_.who.marks[i].device == device && !data) ++others;
+  }
+  return others > kTickCrowd || nodes_[device].outs.size() > kBufferMax;
+}
+
+void SynapticWatch::settle_outputs(std::uint16_t device, std::int64_t now_us,
+                                   std::int64_t able_us) {
+  Node& node = nodes_[device];
+  for (Out& out : node.outs) {
+    if (out.begun_us < 0 || out.id >> 16 == (out.id & 0xFFFF)) continue;
+    const auto channel = std::find_if(node.channels.out.begin(), node.channels.out.end(),
+                                      [&](const machine::Channel& c) { return c.id == out.id; });
+    if (channel == node.channels.out.end()) continue;
+    const bool saves = channel->mode == machine::Mode::kPowerSave;
+    const bool first = out.sent_us < out.begun_us;
+    if (saves && !first && out.wrote_us < 0) continue;
+    const std::int64_t cause = saves && !first ? out.wrote_us : out.waits_us;
+    const std::int64_t since = std::max({cause, able_us, node.step_us, out.begun_us});
+    if (now_us - since <= patience_us(device, first)) continue;
+    // A started channel that was never written is only expected to send (decision 120).
+    const bool expected = saves && first && out.wrote_us < 0;
+    const ReqId rule = expected ? "S3-FIRST"_rule : saves ? "S3-CHANGED"_rule : "S2-SEND"_rule;
+    Severity severity =
+        context_.device(device).hearing ? Severity::kFail : context_.without(device, since, now_us);
+    if (crowded(device, since, now_us)) severity = Severity::kInconclusive;
+    if (expected && severity == Severity::kFail) severity = Severity::kWeak;
+    Place at;
+    at.time_us = since;
+    context_.report(
+        rule, severity, at, device,
+        {"No data of the channel from " + number(out.id >> 16) + " to " + number(out.id & 0xFFFF) +
+             " for " + ms_text(now_us - since) +
+             (saves ? ", though its values are to be sent." : "."),
+         "Data at each tick, " + ms_text(machine::us_of(node.channels.period_ticks)) + " apart.",
+         {}});
+    out.waits_us = now_us;
+    out.wrote_us = -1;
+    if (saves) out.sent_us = now_us;  // Said once.
+  }
+}
+
+void SynapticWatch::settle(std::uint16_t device, std::int64_t now_us) {
+  const std::int64_t able_us = able_since(device);
+  if (able_us < 0) return;
+  settle_outputs(device, now_us, able_us);
+  Node& node = nodes_[device];
+  if (!context_.device(device).application) return;
+  for (In& in : node.ins) {
+    if (in.begun_us < 0) continue;
+    const std::int64_t since = std::max({in.waits_us, able_us, node.step_us});
+    if (now_us - since <= patience_us(device, in.told_us < 0)) continue;
+    Place at;
+    at.time_us = since;
+    context_.report(
+        "S2-SIGNAL"_rule, Severity::kFail, at, device,
+        {"No synData_received of the channel from " + number(in.id >> 16) + " to " +
+             number(in.id & 0xFFFF) + " for " + ms_text(now_us - since) + ".",
+         "One at each tick, " + ms_text(machine::us_of(node.channels.period_ticks)) + " apart.",
+         {}});
+    in.waits_us = now_us;
+  }
+}
+
+void SynapticWatch::finish(std::int64_t end_us) {
+  for (std::size_t device = 0; device < nodes_.size(); ++device) {
+    settle(static_cast<std::uint16_t>(device), end_us);
+  }
 }
 
 }  // namespace rubric::check
