@@ -208,23 +208,35 @@ bool has_bodies(const reflect::Type& type) {
   throw TraceError(place_of(message, error.path()), message.name + ": " + path + error.problem());
 }
 
+// `...` also stands for the bytes behind the content that a given nbytes counts: a sink of release
+// 1.0 forwards with nbytes 102, and what follows is left over from earlier frames.
+std::size_t left_over_max(const Message& message) {
+  const bool sized = std::any_of(message.fields.begin(), message.fields.end(),
+                                 [](const FieldValue& field) { return field.path == "nbytes"; });
+  return message.open && sized ? kPayloadMax : 0;
+}
+
 std::vector<std::uint8_t> encode_tree(const Message& message, const reflect::Type& type,
                                       Tree tree) {
   give_opaque(type, tree);
   std::vector<std::uint8_t> payload;
   std::optional<reflect::EncodeError> first;
-  Choices choices;
-  for (int attempt = 0; attempt < kAttemptsMax; ++attempt) {
-    Tree tried = tree;
-    if (message.open) fill(type, tried, choices);
-    payload.clear();
-    try {
-      reflect::encode(type, tried, {}, reflect::Tail::kStale, payload);
-      return payload;
-    } catch (const reflect::EncodeError& error) {
-      if (!first) first = error;
+  const std::vector<std::uint8_t> left_over(left_over_max(message), 0xA5);
+  for (std::size_t stale = 0; stale <= left_over.size(); ++stale) {
+    Choices choices;
+    for (int attempt = 0; attempt < kAttemptsMax; ++attempt) {
+      Tree tried = tree;
+      if (message.open) fill(type, tried, choices);
+      payload.clear();
+      try {
+        reflect::encode(type, tried, Bytes(left_over.data(), stale),
+                        stale > 0 ? reflect::Tail::kFault : reflect::Tail::kStale, payload);
+        return payload;
+      } catch (const reflect::EncodeError& error) {
+        if (!first) first = error;
+      }
+      if (!choices.next()) break;
     }
-    if (!choices.next()) break;
   }
   refuse(message, *first);
 }

@@ -77,6 +77,15 @@ TEST(Decode, NumbersAndPairsByPath) {
 
 // Encoding.
 
+TEST(Encode, BytesThatNbytesCountsBehindTheContentAreLeftOver) {
+  const std::string ack =
+      "net_msg(dest=11:5 src=11:2 reliable=0 seq_num=9 nbytes=8 payload.trans_id=rubicon_ack "
+      "payload.app_id=mockup payload.body.seq_num=258";
+  EXPECT_EQ(encoded(ack + " ...)"), "28 000b0005000b000200000908090517010200a5a5");
+  EXPECT_EQ(encoded(ack + " payload.body.ack=0)"),
+            "1: net_msg: payload.body: expected 6 bytes, given 4 bytes");
+}
+
 TEST(Encode, MessagesOfTheWire) {
   EXPECT_EQ(encoded("join_reply(island_addr=11 mote_addr=5 seq_num=0x102 ...)"),
             "15 000b0005000000000102");
