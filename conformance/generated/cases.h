@@ -17,7 +17,7 @@ struct CaseUse {
 };
 
 /// By file, then as they stand there; each case once for a rule and a sign.
-inline constexpr std::array<CaseUse, 1572> kCaseUses{{
+inline constexpr std::array<CaseUse, 1573> kCaseUses{{
     {"edges_j.late_join", "conformance/cases/edges_j.rtr", "J4-CLOCK"_rule, false},
     {"edges_j.first_reserved_island", "conformance/cases/edges_j.rtr", "J4-ACK"_rule, false},
     {"edges_j.first_reserved_island", "conformance/cases/edges_j.rtr", "J4-CONTENT"_rule, false},
@@ -162,6 +162,8 @@ inline constexpr std::array<CaseUse, 1572> kCaseUses{{
     {"edges_t.padded_ack_at_base_station",
      "conformance/cases/edges_t.rtr", "T3-SUCCESS"_rule, false},
     {"edges_t.malformed_ack_of_number_0", "conformance/cases/edges_t.rtr", "T3-MATCH"_rule, true},
+    {"edges_t.malformed_ack_of_number_0",
+     "conformance/cases/edges_t.rtr", "N6-DELIVER"_rule, true},
     {"edges_t.malformed_ack_of_number_0",
      "conformance/cases/edges_t.rtr", "T3-SUCCESS"_rule, false},
     {"edges_t.ack_of_an_unreliable_message",
