@@ -292,6 +292,9 @@ void run_explore(const ExploreOptions& options) {
                               flaw == nullptr ? machine::step : flaw->step},
                              options.format, options.out);
   }
+  if (!options.weakness_out.empty()) {
+    cli::keep_apart("--weakness-out", options.weakness_out, {options.out});
+  }
   if (options.format == "dot") usage("--format dot draws --transitions");
   const auto nodes = std::make_unique<explore::Nodes>(resolve(options));
   ProgressLine line(options.format == "text");
@@ -321,7 +324,7 @@ void run_explore(const ExploreOptions& options) {
   } else {
     good = cli::write_file("-", text_of(result, verdict)) && good;
   }
-  if (!good) cli::exit_with(cli::kVerdictBroken);
+  if (!good) cli::exit_with(cli::kExitOutput);
   if (verdict.exit_code != cli::kVerdictExpected) cli::exit_with(verdict.exit_code);
 }
 
