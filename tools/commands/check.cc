@@ -160,7 +160,13 @@ void add_options(cli::Command& command, CheckOptions& options) {
                   "(text, 802.15.4 without FCS)")
       .one_of({"auto", "hdlc", "sf", "pcap", "pcapng", "hex", "hex-radio"})
       .show_default();
-  command.add_flag("--verbose", options.verbose, "Print every finding in full; live, also notes");
+  command.add_flag("--verbose", options.verbose,
+                   "Print also further findings of a rule and node in full; live, also notes");
+  command
+      .add_option("--max-findings", options.findings_max,
+                  "Print at most this many findings of a rule in full, and count the others")
+      .check(cli::whole_number)
+      .show_default();
   command
       .add_option("--width", options.width,
                   "Wrap text at this many columns (default: the terminal's, else 100)")

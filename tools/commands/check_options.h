@@ -38,6 +38,7 @@ struct CheckOptions {
   std::optional<double> skew_ms;
   std::size_t width = 0;
   bool verbose = false;
+  std::size_t findings_max = 20;
   cli::WriteOptions write;  ///< A capture of what lines in use send.
 };
 
