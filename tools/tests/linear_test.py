@@ -42,7 +42,7 @@ def radio(number, dest, src, kind, payload):
 
 
 def request(number):
-    return struct.pack(">HBBB", number & 0xFFFF, 1, 0x43, 1)
+    return struct.pack(">HBHB", number & 0xFFFF, 1, 0x43, 1)
 
 
 SHAPES = {
