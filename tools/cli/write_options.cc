@@ -4,43 +4,14 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <optional>
 
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/output.h"
+#include "tools/cli/quantity.h"
 
 namespace rubric::cli {
-namespace {
-
-struct RotationUnit {
-  std::string_view name;
-  std::uint64_t bytes;
-  std::int64_t seconds;
-};
-constexpr RotationUnit kRotationUnits[] = {
-    {"k", 1ULL << 10, 0}, {"M", 1ULL << 20, 0}, {"G", 1ULL << 30, 0}, {"s", 0, 1},
-    {"min", 0, 60},       {"h", 0, 3'600},      {"d", 0, 86'400},
-};
-
-std::optional<lines::Rotation> parse_rotation(const std::string& text) {
-  constexpr std::uint64_t kMost = 1'000'000;
-  char* end = nullptr;
-  errno = 0;
-  const std::uint64_t number = std::strtoull(text.c_str(), &end, 10);
-  if (end == text.c_str() || text[0] == '-' || number == 0 || number > kMost) return std::nullopt;
-  for (const RotationUnit& unit : kRotationUnits) {
-    if (unit.name != end) continue;
-    return lines::Rotation{number * unit.bytes,
-                           std::chrono::seconds(static_cast<std::int64_t>(number) * unit.seconds)};
-  }
-  return std::nullopt;
-}
-
-}  // namespace
-
 void add_write_options(Command& command, WriteOptions& options, const std::string& description,
                        bool rotates) {
   const Option write = command.add_option("--write", options.path, description).check(given);
@@ -48,7 +19,7 @@ void add_write_options(Command& command, WriteOptions& options, const std::strin
       .needs(write);
   if (!rotates) return;
   const auto check = [](const std::string& text) {
-    return parse_rotation(text) ? "" : "expected a size or time as in 100M or 24h, given " + text;
+    return parse_quantity(text) ? "" : "expected a size or time as in 100M or 24h, given " + text;
   };
   command
       .add_option("--rotate", options.rotate,
@@ -58,7 +29,8 @@ void add_write_options(Command& command, WriteOptions& options, const std::strin
 }
 
 lines::Rotation rotation_of(const WriteOptions& options) {
-  return parse_rotation(options.rotate).value_or(lines::Rotation{});
+  const Quantity after = parse_quantity(options.rotate).value_or(Quantity{});
+  return {after.bytes, std::chrono::seconds(after.seconds)};
 }
 
 void check_write(const WriteOptions& options, const std::vector<std::string>& inputs, bool grows) {
