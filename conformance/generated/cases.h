@@ -17,12 +17,13 @@ struct CaseUse {
 };
 
 /// By file, then as they stand there; each case once for a rule and a sign.
-inline constexpr std::array<CaseUse, 1775> kCaseUses{{
+inline constexpr std::array<CaseUse, 1776> kCaseUses{{
     {"again_j.call_after_a_failure", "conformance/cases/again_j.rtr", "J8-FAIL"_rule, false},
     {"again_j.call_after_a_failure", "conformance/cases/again_j.rtr", "J1-REQUEST"_rule, false},
     {"again_j.call_after_a_failure", "conformance/cases/again_j.rtr", "J8-RETRY"_rule, false},
     {"again_j.call_after_a_failure", "conformance/cases/again_j.rtr", "J8-LIMIT"_rule, true},
     {"again_j.call_after_a_failure", "conformance/cases/again_j.rtr", "J5-ONCE"_rule, true},
+    {"again_j.success_after_a_failure", "conformance/cases/again_j.rtr", "J8-FAIL"_rule, false},
     {"again_j.success_after_a_failure", "conformance/cases/again_j.rtr", "J1-REQUEST"_rule, false},
     {"again_j.success_after_a_failure", "conformance/cases/again_j.rtr", "J4-ACK"_rule, false},
     {"again_j.success_after_a_failure", "conformance/cases/again_j.rtr", "J4-CONTENT"_rule, false},
