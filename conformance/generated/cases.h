@@ -17,7 +17,7 @@ struct CaseUse {
 };
 
 /// By file, then as they stand there; each case once for a rule and a sign.
-inline constexpr std::array<CaseUse, 1581> kCaseUses{{
+inline constexpr std::array<CaseUse, 1582> kCaseUses{{
     {"edges_j.late_join", "conformance/cases/edges_j.rtr", "J4-CLOCK"_rule, false},
     {"edges_j.first_reserved_island", "conformance/cases/edges_j.rtr", "J4-ACK"_rule, false},
     {"edges_j.first_reserved_island", "conformance/cases/edges_j.rtr", "J4-CONTENT"_rule, false},
@@ -157,6 +157,7 @@ inline constexpr std::array<CaseUse, 1581> kCaseUses{{
     {"edges_s.data_of_another_island", "conformance/cases/edges_s.rtr", "S5-UNKNOWN"_rule, false},
     {"edges_s.a_value_too_many", "conformance/cases/edges_s.rtr", "S1-ENLARGE"_rule, false},
     {"edges_s.a_value_too_many", "conformance/cases/edges_s.rtr", "S1-READ"_rule, false},
+    {"edges_s.a_value_too_many", "conformance/cases/edges_s.rtr", "S2-SIGNAL"_rule, false},
     {"edges_s.a_value_too_few", "conformance/cases/edges_s.rtr", "S1-READ"_rule, false},
     {"edges_s.start_one_of_two", "conformance/cases/edges_s.rtr", "S1-START"_rule, false},
     {"edges_s.start_one_of_two", "conformance/cases/edges_s.rtr", "S6-STOPPED"_rule, true},
