@@ -17,7 +17,7 @@ struct CaseUse {
 };
 
 /// By file, then as they stand there; each case once for a rule and a sign.
-inline constexpr std::array<CaseUse, 1582> kCaseUses{{
+inline constexpr std::array<CaseUse, 1586> kCaseUses{{
     {"edges_j.late_join", "conformance/cases/edges_j.rtr", "J4-CLOCK"_rule, false},
     {"edges_j.first_reserved_island", "conformance/cases/edges_j.rtr", "J4-ACK"_rule, false},
     {"edges_j.first_reserved_island", "conformance/cases/edges_j.rtr", "J4-CONTENT"_rule, false},
@@ -227,6 +227,10 @@ inline constexpr std::array<CaseUse, 1582> kCaseUses{{
     {"j3.full_list", "conformance/cases/j3_full.rtr", "J2-LISTED"_rule, true},
     {"j3.full_list", "conformance/cases/j3_full.rtr", "J3-FULL"_rule, true},
     {"j3.full_list", "conformance/cases/j3_full.rtr", "J3-OVERWRITE"_rule, true},
+    {"j3.full_list_as_stated", "conformance/cases/j3_full.rtr", "J3-REPLY"_rule, false},
+    {"j3.full_list_as_stated", "conformance/cases/j3_full.rtr", "J6-ADD"_rule, false},
+    {"j3.full_list_as_stated", "conformance/cases/j3_full.rtr", "J3-FULL"_rule, true},
+    {"j3.full_list_as_stated", "conformance/cases/j3_full.rtr", "J6-ADD"_rule, true},
     {"j4.accept", "conformance/cases/j4.rtr", "J1-REQUEST"_rule, false},
     {"j4.accept", "conformance/cases/j4.rtr", "J1-DEST"_rule, false},
     {"j4.accept", "conformance/cases/j4.rtr", "J4-ACK"_rule, false},
