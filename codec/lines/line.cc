@@ -106,7 +106,7 @@ void Line::answer(const Packet& packet) {
   if (mute_) return;
   std::uint8_t room[lines::kHostAnswerRoom];
   const std::size_t size = lines::host_answer(packet, MutableBytes(room, sizeof room));
-  if (size > 0) stream_.write(Bytes(room, size), steady_clock::now() + kAnswerTime);
+  if (size > 0) stream_.write_or_keep(Bytes(room, size), steady_clock::now() + kAnswerTime);
 }
 
 }  // namespace rubric::lines

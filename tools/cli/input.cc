@@ -145,11 +145,16 @@ class Run {
 
   void pump_line(lines::Line& line, Reader& reader) {
     std::int64_t now_ns = 0;
+    std::optional<lines::Broken> unanswered;  // Reported when all that had come was delivered.
     auto deliver = [&](const Packet& packet) {
       Packet stamped = packet;
       stamped.time_ns = now_ns;
-      line.answer(packet);
       give(stamped, reader.interfaces());
+      try {
+        if (!unanswered && !result_.stopped) line.answer(packet);
+      } catch (const lines::Broken& broken) {
+        unanswered = broken;
+      }
     };
     try {
       while (!lines::stop_requested() && !result_.stopped) {
@@ -157,6 +162,7 @@ class Run {
         now_ns = std::chrono::system_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
         if (size) reader.feed(Bytes(chunk_.get(), size), deliver);
         if (on_idle_) on_idle_();
+        if (size == 0 && unanswered) throw *unanswered;
       }
     } catch (const lines::Broken&) {
       reader.finish(deliver);  // With an unfinished frame.
