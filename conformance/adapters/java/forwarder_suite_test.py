@@ -48,12 +48,11 @@ def build(javac, folder, mistake):
     return tree / "classes"
 
 
-def run_at_line(rubric, java, classes, report, part):
-    """The cases of a part; the station connects as soon as somebody listens."""
+def run_at_line(rubric, java, classes, report, which):
+    """Those cases; the station connects as soon as somebody listens."""
     port = free_port()
     tested = subprocess.Popen([rubric, "test", "--target", f"sf-server:{port}", "--role",
-                               "base_station", "--shard", part, "--format", "json",
-                               "--out", str(report)])
+                               "base_station", "--format", "json", "--out", str(report), *which])
     station = [java, "-cp", str(classes), "rubric.basestation.ForwarderClient",
                f"127.0.0.1:{port}", "11"]
     while tested.poll() is None:
@@ -63,13 +62,12 @@ def run_at_line(rubric, java, classes, report, part):
     return cases_of(report)
 
 
-def run_with_application(rubric, java, classes, report, part):
+def run_with_application(rubric, java, classes, report, which):
     """The same; the station is the app's, which starts it anew for each case."""
     port = free_port()
     app = f"{java} -cp {classes} rubric.basestation.LiveAdapter 127.0.0.1:{port}"
     subprocess.run([rubric, "test", "--target", f"sf-server:{port}:restart", "--app", app,
-                    "--role", "base_station", "--shard", part, "--format", "json",
-                    "--out", str(report)])
+                    "--role", "base_station", "--format", "json", "--out", str(report), *which])
     return cases_of(report)
 
 
@@ -88,13 +86,20 @@ def main():
         with concurrent.futures.ThreadPoolExecutor(max_workers=3 * PARTS) as parts:
             def started(mistake, run):
                 return [parts.submit(run, rubric, java, programs[mistake],
-                                     folder / f"{mistake}{run.__name__}{i}.json", f"{i}/{PARTS}")
+                                     folder / f"{mistake}{run.__name__}{i}.json",
+                                     ["--shard", f"{i}/{PARTS}"])
                         for i in range(1, PARTS + 1)]
             runs = [("", run_at_line, 2, started("", run_at_line)),
                     ("", run_with_application, 25, started("", run_with_application)),
                     (MISTAKE, run_at_line, 0, started(MISTAKE, run_at_line))]
         for mistake, run, least, results in runs:
             cases = [case for result in results for case in result.result()]
+            bad = [case["name"] for case in cases if case["verdict"] in ("fail", "error")]
+            if bad and not mistake:
+                # A good station is late where others take its processor; twice it is not good.
+                print("once more:", *bad, flush=True)
+                again = run(rubric, java, programs[""], folder / "again.json", ["--cases", *bad])
+                cases = [case for case in cases if case["name"] not in bad] + again
             count = {v: sum(c["verdict"] == v for c in cases) for v in
                      {c["verdict"] for c in cases}}
             rules = {r for c in cases for f in c["failures"]
