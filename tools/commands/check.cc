@@ -97,7 +97,8 @@ void add_options(cli::Command& command, CheckOptions& options) {
   cli::add_live_options(command, options.input);
   command.get_option("FILE").description(
       "Captures and .rtr logs of one run; - is stdin. Or lines in use: serial@DEVICE:BAUD (or a "
-      "platform, as serial@/dev/ttyUSB0:telosb), network@HOST:PORT, sf@HOST:PORT; at a terminal "
+      "platform, as serial@/dev/ttyUSB0:telosb), network@HOST:PORT, sf@HOST:PORT, zep:PORT; at a "
+      "terminal "
       "$MOTECOM");
   command.add_option("--write", options.write, "Keep what lines in use send in this pcapng file")
       .check(cli::given);
