@@ -17,7 +17,7 @@ struct CaseUse {
 };
 
 /// By file, then as they stand there; each case once for a rule and a sign.
-inline constexpr std::array<CaseUse, 1573> kCaseUses{{
+inline constexpr std::array<CaseUse, 1581> kCaseUses{{
     {"edges_j.late_join", "conformance/cases/edges_j.rtr", "J4-CLOCK"_rule, false},
     {"edges_j.first_reserved_island", "conformance/cases/edges_j.rtr", "J4-ACK"_rule, false},
     {"edges_j.first_reserved_island", "conformance/cases/edges_j.rtr", "J4-CONTENT"_rule, false},
@@ -65,6 +65,13 @@ inline constexpr std::array<CaseUse, 1573> kCaseUses{{
      "conformance/cases/edges_j.rtr", "J3-DEST"_rule, false},
     {"edges_j.request_while_the_application_is_busy",
      "conformance/cases/edges_j.rtr", "J3-ONCE"_rule, true},
+    {"edges_j.ack_join_is_no_reply", "conformance/cases/edges_j.rtr", "J4-SEQ"_rule, true},
+    {"edges_j.ack_join_is_no_reply", "conformance/cases/edges_j.rtr", "J5-ACCEPT"_rule, true},
+    {"edges_j.ack_join_is_no_reply", "conformance/cases/edges_j.rtr", "J5-ACCEPT"_rule, false},
+    {"edges_j.join_over_while_radio_busy",
+     "conformance/cases/edges_j.rtr", "J1-REQUEST"_rule, false},
+    {"edges_j.join_over_while_radio_busy",
+     "conformance/cases/edges_j.rtr", "J5-SUCCESS"_rule, false},
     {"edges_n.mote_local_device", "conformance/cases/edges_n.rtr", "N4-SELF"_rule, false},
     {"edges_n.mote_local_device", "conformance/cases/edges_n.rtr", "N4-SELF"_rule, true},
     {"edges_n.sink_local_device", "conformance/cases/edges_n.rtr", "N4-SELF"_rule, false},
@@ -109,6 +116,9 @@ inline constexpr std::array<CaseUse, 1573> kCaseUses{{
     {"edges_n.mote_off_told_once", "conformance/cases/edges_n.rtr", "N10-OFF"_rule, true},
     {"edges_n.base_station_told_once", "conformance/cases/edges_n.rtr", "N9-SET"_rule, false},
     {"edges_n.base_station_told_once", "conformance/cases/edges_n.rtr", "N9-SET"_rule, true},
+    {"edges_n.mote_other_am_type", "conformance/cases/edges_n.rtr", "N5-DELIVER"_rule, true},
+    {"edges_n.mote_other_am_type", "conformance/cases/edges_n.rtr", "N5-DELIVER"_rule, false},
+    {"edges_n.mote_other_am_type", "conformance/cases/edges_n.rtr", "T1-DELIVER"_rule, false},
     {"edges_p.mote_without_power", "conformance/cases/edges_p.rtr", "N10-OFF"_rule, true},
     {"edges_p.mote_without_power", "conformance/cases/edges_p.rtr", "J11-HEAR"_rule, true},
     {"edges_p.mote_without_power", "conformance/cases/edges_p.rtr", "J1-REQUEST"_rule, false},

@@ -139,7 +139,7 @@ class Mote:
         while self.outgoing and not self.busy and self.is_on and self.interfaces[0]:
             packet = self.outgoing.popleft()
             if packet[7] == JOIN:
-                if packet[8:10] != struct.pack(">H", self.request or 0):
+                if self.request is None or packet[8:10] != struct.pack(">H", self.request):
                     continue                           # It waited too long: asked again, or over.
                 self.timer = self.now + JOIN_PERIOD    # From when it leaves (J8-PERIOD).
             self.world.tx("radio", packet)

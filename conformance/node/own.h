@@ -1,68 +1,100 @@
-#include "conformance/adapters/firmware/node/node.h"
+// Starts a node, and does what it does by itself: calls of its application, timers.
+#pragma once
 
-#include "conformance/adapters/firmware/node/wire.h"
+#include "codec/generated/rubicon/config.h"
+#include "conformance/node/node.h"
+#include "conformance/node/wire.h"
 
 namespace rubric {
-namespace firmware {
+namespace node {
 
-void Node::start(const Setup& setup) {
-  radio_ = LineState(Queue(radio_out_), Queue(radio_in_));
-  serial_ = LineState(Queue(serial_out_), Queue(serial_in_));
+inline Node::LineState Node::borrowed(const Buffers& buffers, Line line) {
+  Message* slots = buffers.messages;
+  uint8_t i = 0;
+  for (; i < static_cast<uint8_t>(line); ++i) slots += buffers.out[i] + buffers.in[i];
+  return {slots, {buffers.out[i], 0, 0}, {buffers.in[i], 0, 0}, true, false, false, false};
+}
+
+inline Node::Node(Driver& driver, Application& application, const Buffers& buffers)
+    : driver_(driver),
+      application_(application),
+      lines_{borrowed(buffers, Line::kRadio), borrowed(buffers, Line::kSerial),
+             borrowed(buffers, Line::kPeis)},
+      channels_(buffers.channels, buffers.channels_room),
+      awaiting_(buffers.awaited, buffers.awaited_room),
+      admissions_(buffers.admissions, buffers.members_max) {}
+
+inline void Node::start(const Setup& setup) {
+  for (LineState& line : lines_) {
+    line.out().clear();
+    line.in().clear();
+    line.on = true;
+    line.sending = line.busy = line.flushing = false;
+  }
   channels_.reset(setup.channels);
   awaiting_.reset(setup.last_seq_num);
   admissions_.clear();
   join_ = Join();
-  clock_offset_ms_ = 0;
+  now_ = setup.now;
+  clock_offset_ms_ = 0 - time_ms();
   id_ = setup.id;
   island_ = setup.island;
+  role_ = setup.role;
+  slack_ = setup.slack;
   application_busy_ = sending_ack_join_ = false;
-  radio_port_.set_on(true);
-  serial_port_.set_on(true);
 }
 
-uint32_t Node::uptime_ms() const {
-  const Ticks now = clock_.now();  // 1000 / 1024 is 125 / 128.
-  return (now >> 7) * 125 + (((now & 127) * 125) >> 7);
+inline uint32_t Node::time_ms() const {
+  return (now_ >> 7) * 125 + (((now_ & 127) * 125) >> 7);  // 1000 / 1024 is 125 / 128.
 }
 
-uint32_t Node::clock_ms() const { return uptime_ms() + clock_offset_ms_; }
-
-Address Node::address() const {
-  if (kIsSink) return {island_, id_};
+inline Address Node::address() const {
+  if (is_base_station()) return {island_, kNullDevid};
+  if (is_sink()) return {island_, id_};
   return {is_member() ? join_.island : uint16_t{0}, id_};
 }
 
-Ticks Node::phase() const {
+inline Ticks Node::phase() const {
   //= S2-PHASE: A mote's clock starts shifted by (devid - 1) * 30 ms.
-  if (kIsSink || id_ == 0) return 0;
+  if (role_ != Role::kMote || id_ == 0) return 0;
   return static_cast<Ticks>(id_ - 1) * kSynapticPhaseTicks;
 }
 
-uint16_t Node::send(Address dest, uint8_t app_id, bool reliable, Bytes data) {
+inline uint16_t Node::send(Address dest, uint8_t app_id, bool reliable, Bytes data) {
   //= N1-SIZE: send refuses more than 100 bytes of application data.
   if (data.size() > kAppDataMax) return kNoSeq;
   return send_own({dest, number(rubicon::Component::kConnless), app_id, reliable, data});
 }
 
-void Node::set_interface(Line line, bool on) {
-  line_of(line).on = on;
-  if (line == Line::kRadio) {
-    radio_port_.set_on(on);
-  } else {
-    serial_port_.set_on(on);
-  }
+inline bool Node::set_interface(Line line, bool on) {
+  if (line != Line::kRadio && line != Line::kSerial) return false;
+  at(line).on = on;
   //= N10-ON: An interface that is switched on again sends and receives.
   flush(line);
   report_members();
+  return true;
 }
 
-void Node::set_application_busy(bool busy) {
+inline bool Node::set_island(uint16_t island) {
+  if (!is_base_station() || is_reserved(island)) return false;
+  Message* const message = take_place(Line::kSerial);
+  if (message == nullptr) return false;
+  rubicon::Config config;
+  config.type = rubicon::CommandCode::kSetIslandId;
+  config.value = island;
+  rubicon::ConfigLayout::store(config, message->room());
+  send_message(Line::kSerial, *message, kSinkId, kAmConfig, rubicon::ConfigView::kMaxSizeBytes);
+  island_ = island;
+  return true;
+}
+
+inline void Node::set_application_busy(bool busy) {
   application_busy_ = busy;
   handle_waiting();
 }
 
 // Routes a message of this node's own; returns false if it is refused.
-bool Node::route_own(Address& dest, Route& route) const {
+inline bool Node::route_own(Address& dest, Route& route) const {
   //= J11-SEND: A mote that is not a member sends no net_msg.
   if (!is_member()) return false;
   const Address own = address();
@@ -71,13 +103,17 @@ bool Node::route_own(Address& dest, Route& route) const {
   if (dest.pid == kLocalIsland) dest.pid = own.pid;
   //= N4-SELF: A node refuses a message whose dest is the node itself.
   if (dest.pid == own.pid && (dest.devid == own.devid || dest.devid == kLocalMote)) return false;
+  if (is_base_station()) {
+    route = route_to_pc_lines(dest);
+    return route.onward;
+  }
   const bool here = (dest.pid == own.pid || dest.pid == kBroadcast) && dest.devid != kNullDevid;
   route.line = Line::kRadio;
   if (here) {
     //= N4-MOTE: On the radio a net_msg for a mote of the sender's own island is sent to that mote's
     //= AM address, a broadcast to AM address 0xFFFF.
     route.am_dest = dest.pid == kBroadcast ? kBroadcast : dest.devid;
-  } else if (kIsSink) {
+  } else if (is_sink()) {
     //= N6-OWN: What a sink itself sends to <its island, NULL> or to another island goes over
     //= serial.
     route.line = Line::kSerial;
@@ -90,7 +126,7 @@ bool Node::route_own(Address& dest, Route& route) const {
   return true;
 }
 
-uint16_t Node::send_own(const OwnMessage& own) {
+inline uint16_t Node::send_own(const OwnMessage& own) {
   Address dest = own.dest;
   Route route = Route();
   if (!route_own(dest, route)) return kNoSeq;
@@ -119,14 +155,15 @@ uint16_t Node::send_own(const OwnMessage& own) {
   return wire.seq_num;
 }
 
-void Node::run_timers() {
-  const Ticks now = clock_.now();
+inline bool Node::run(Ticks now, Ticks& due) {
+  now_ = now;
   if (join_.phase == Phase::kJoining && is_reached(join_.due, now)) join_timer_due();
   awaiting_.run(now, application_);
   if (channels_.tick(now)) tick();
+  return next_due(due);
 }
 
-bool Node::next_due(Ticks& due) const {
+inline bool Node::next_due(Ticks& due) const {
   bool any = join_.phase == Phase::kJoining;
   due = join_.due;
   Ticks other;
@@ -141,7 +178,7 @@ bool Node::next_due(Ticks& due) const {
   return any;
 }
 
-void Node::tick() {
+inline void Node::tick() {
   const Address own = address();
   for (uint8_t i = 0; i < channels_.out_count(); ++i) {
     Channel& channel = channels_.out(i);
@@ -156,7 +193,7 @@ void Node::tick() {
   }
 }
 
-void Node::send_values(Channel& channel) {
+inline void Node::send_values(Channel& channel) {
   //= S2-SEND: At each tick every started output channel in reliable mode, but for a channel to
   //= itself, sends its values to its destination.
   //= S2-CONTENT: Synaptic data has TRANSID SYN_CHANNEL, APPID LEARNING or ESN_DATA, and one
@@ -169,5 +206,5 @@ void Node::send_values(Channel& channel) {
   if (sent == kNoSeq) channel.fresh = true;
 }
 
-}  // namespace firmware
+}  // namespace node
 }  // namespace rubric

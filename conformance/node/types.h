@@ -8,7 +8,7 @@
 #include "codec/generated/rubicon/r_addr.h"
 
 namespace rubric {
-namespace firmware {
+namespace node {
 
 constexpr uint16_t kBroadcast = 0xFFFF;    ///< As pid, devid and AM address.
 constexpr uint16_t kLocalIsland = 0xFFFE;  ///< Replaced by the own island before sending.
@@ -43,7 +43,9 @@ inline Address address_of(rubicon::RAddrView view) {
 /// A mote's description of itself when it joins.
 using Descriptor = rubicon::MoteDesc;
 
-enum class Line : uint8_t { kRadio, kSerial };
+enum class Role : uint8_t { kMote, kSink, kBaseStation };
+/// PEIS is the line between base stations.
+enum class Line : uint8_t { kRadio, kSerial, kPeis };
 enum class Mode : uint8_t { kReliable, kPowerSave };
 enum class DataStatus : uint8_t { kNew, kOld, kUnknownChannel };
 
@@ -64,5 +66,5 @@ struct InputValue {
 using Ticks = uint32_t;
 constexpr bool is_reached(Ticks due, Ticks now) { return static_cast<int32_t>(now - due) >= 0; }
 
-}  // namespace firmware
+}  // namespace node
 }  // namespace rubric

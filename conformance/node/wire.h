@@ -5,7 +5,7 @@
 #include "codec/generated/rubicon/net_msg.h"
 
 namespace rubric {
-namespace firmware {
+namespace node {
 
 constexpr uint8_t number(rubicon::AmType type) { return static_cast<uint8_t>(type); }
 constexpr uint8_t number(rubicon::Component component) { return static_cast<uint8_t>(component); }
@@ -19,5 +19,5 @@ constexpr uint8_t kAmConfig = number(rubicon::AmType::kConfig);
 constexpr size_t kNetHeaderBytes = rubicon::NetMsgLayout::PayloadAt::kAt;
 constexpr size_t kAppHeaderBytes = rubicon::AppMsgLayout::PayloadAt::kAt;
 
-}  // namespace firmware
+}  // namespace node
 }  // namespace rubric

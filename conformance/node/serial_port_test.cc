@@ -1,12 +1,12 @@
 // The serial stack of a sink's firmware, byte by byte, as a UART's interrupts would call it.
-#include "conformance/adapters/firmware/node/serial_port.h"
+#include "conformance/node/serial_port.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <vector>
 
-namespace rubric::firmware {
+namespace rubric::node {
 namespace {
 
 using ByteVector = std::vector<std::uint8_t>;
@@ -29,14 +29,15 @@ class Port : public SerialPort {
   void start_sending() override { ++starts; }
 };
 
-class SilentRadio : public Radio {
+class PortDriver : public Driver {
  public:
-  void send(std::uint16_t, std::uint8_t, Bytes, bool) override {}
-  void set_on(bool) override {}
-};
-class StandingClock : public Clock {
- public:
-  Ticks now() const override { return 0; }
+  explicit PortDriver(SerialPort& port) : port_(port) {}
+  void transmit(Line line, Bytes packet, bool) override {
+    if (line == Line::kSerial) port_.send(packet);
+  }
+
+ private:
+  SerialPort& port_;
 };
 class Log : public Application {
  public:
@@ -52,7 +53,7 @@ class Log : public Application {
 
 class SerialPortTest : public testing::Test {
  protected:
-  void SetUp() override { node_.start({1, 11, 4, 0}); }
+  void SetUp() override { node_.start({Role::kSink, 1, 11, 4, 0, 0}); }
 
   // Returns a packet of the base station with application data for the sink.
   static ByteVector packet(const ByteVector& data) {
@@ -85,11 +86,10 @@ class SerialPortTest : public testing::Test {
     for (const std::uint8_t byte : bytes) port_.byte_received(byte);
   }
 
-  SilentRadio radio_;
   Port port_;
-  StandingClock clock_;
+  PortDriver driver_{port_};
   Log log_;
-  Node node_{radio_, port_, clock_, log_};
+  SizedNode<SinkSizes> node_{driver_, log_};
 };
 
 TEST_F(SerialPortTest, APacketIsConfirmedAndHandedOver) {
@@ -192,13 +192,15 @@ TEST_F(SerialPortTest, ALineThatIsHeldStopsAfterTheByte) {
 
 TEST_F(SerialPortTest, ALineThatIsOffConfirmsNothing) {
   node_.set_interface(Line::kSerial, false);
+  port_.poll(node_);
   hear(frame(1, packet({1})));
   EXPECT_THAT(port_.drain(), IsEmpty());
   EXPECT_EQ(port_.poll(node_), 0);
   node_.set_interface(Line::kSerial, true);
+  port_.poll(node_);
   hear(frame(2, packet({2})));
   EXPECT_EQ(port_.poll(node_), 1);
 }
 
 }  // namespace
-}  // namespace rubric::firmware
+}  // namespace rubric::node

@@ -1,20 +1,23 @@
 // The join protocol, a mote's side and a sink's. (paper: Component Management)
+#pragma once
+
 #include "codec/generated/rubicon/ack_join.h"
 #include "codec/generated/rubicon/config.h"
 #include "codec/generated/rubicon/join_reply.h"
 #include "codec/generated/rubicon/join_request.h"
 #include "codec/generated/rubicon/serial_joined.h"
-#include "conformance/adapters/firmware/node/node.h"
-#include "conformance/adapters/firmware/node/wire.h"
+#include "conformance/node/node.h"
+#include "conformance/node/wire.h"
 
 namespace rubric {
-namespace firmware {
+namespace node {
 
-void Node::join(const Descriptor& descriptor) {
+inline void Node::join(const Descriptor& descriptor) {
   //= J8-JOINED: joinIsland of a mote that is joined fails at once and sends nothing.
   //= J5-ONCE: Each joinIsland call ends in exactly one joined event, SUCCESS or FAIL.
   // A call while another runs ends here and does not disturb it.
-  if (kIsSink || join_.phase != Phase::kOutside) return application_.joined(address(), false);
+  const bool may = role_ == Role::kMote && join_.phase == Phase::kOutside;
+  if (!may) return application_.joined(address(), false);
   const uint16_t before = join_.seq_num;
   const bool again = join_.requests != 0;
   join_ = Join();
@@ -25,11 +28,11 @@ void Node::join(const Descriptor& descriptor) {
     join_.seq_num = awaiting_.next_seq_num();
   } while (again && join_.seq_num == before);
   join_.requests = 1;
-  join_.due = clock_.now() + kJoinPeriodTicks + 1;
+  join_.due = now_ + kJoinPeriodTicks + slack_;
   send_join_request();
 }
 
-void Node::send_join_request() {
+inline void Node::send_join_request() {
   // While the one before waits for the radio it covers this one, too.
   if (is_waiting(kAmJoin)) return;
   Message* const message = take_place(Line::kRadio);
@@ -43,11 +46,11 @@ void Node::send_join_request() {
   send_message(Line::kRadio, *message, kSinkId, kAmJoin, rubicon::JoinRequestView::kMaxSizeBytes);
 }
 
-void Node::join_timer_due() {
+inline void Node::join_timer_due() {
   //= J8-LIMIT: A joinIsland call sends at most five join_requests.
   if (join_.requests < kJoinRequestsMax) {
     ++join_.requests;
-    join_.due = clock_.now() + kJoinPeriodTicks + 1;
+    join_.due = now_ + kJoinPeriodTicks + slack_;
     //= J8-RETRY: When the join timer expires before success and requests remain, the mote sends the
     //= join_request again.
     return send_join_request();
@@ -57,9 +60,9 @@ void Node::join_timer_due() {
   application_.joined(address(), false);
 }
 
-void Node::hear_join_reply(uint16_t src, Bytes payload) {
+inline void Node::hear_join_reply(uint16_t src, Bytes payload) {
   //= J10-SINK: A sink ignores join_reply.
-  if (kIsSink) return;
+  if (role_ != Role::kMote) return;
   const auto reply = rubicon::JoinReplyView::parse(payload);
   //= J4-JOINED: A mote that is joined, or has no request outstanding, ignores a join_reply.
   if (!reply || join_.phase != Phase::kJoining) return;
@@ -73,16 +76,16 @@ void Node::hear_join_reply(uint16_t src, Bytes payload) {
   join_.island = reply->island_addr();
   join_.sink = src;
   join_.acks = 1;
-  join_.accepted = clock_.now();
+  join_.accepted = now_;
   //= J4-CLOCK: A mote that accepts a join_reply sets its clock to cur_time.
-  clock_offset_ms_ = reply->cur_time() - uptime_ms();
+  clock_offset_ms_ = reply->cur_time() - time_ms();
   //= J5-STOP: A mote that is joined sends no further join_request.
   forget_waiting(kAmJoin);
   send_ack_join();
   application_.joined(address(), true);
 }
 
-void Node::send_ack_join() {
+inline void Node::send_ack_join() {
   //= J4-CONTENT: ack_join has dest <island, sink> of the accepted reply, src the new address, the
   //= request's sequence number and the descriptor of the request, and goes to the sink's AM
   //= address.
@@ -92,11 +95,13 @@ void Node::send_ack_join() {
   ack.seq_num = join_.seq_num;
   ack.mote_desc = join_.descriptor;
   constexpr size_t kBytes = rubicon::AckJoinView::kMaxSizeBytes;
-  if (join_.acks > 1 && radio_.on && !radio_.busy) {  // A repeat goes before what came later.
-    uint8_t bytes[kBytes];
-    rubicon::AckJoinLayout::store(ack, bytes);
-    radio_.sending = sending_ack_join_ = true;
-    return radio_port_.send(join_.sink, kAmAckJoin, bytes, true);
+  if (join_.acks > 1 && at(Line::kRadio).on &&
+      !at(Line::kRadio).busy) {  // A repeat goes before what came later.
+    Message repeat;
+    rubicon::AckJoinLayout::store(ack, repeat.room());
+    repeat.set_header(join_.sink, id_, kAmAckJoin, kBytes);
+    at(Line::kRadio).sending = sending_ack_join_ = true;
+    return driver_.transmit(Line::kRadio, repeat.packet(), true);
   }
   Message* const message = take_place(Line::kRadio);
   if (message == nullptr) return;
@@ -104,9 +109,9 @@ void Node::send_ack_join() {
   send_message(Line::kRadio, *message, join_.sink, kAmAckJoin, kBytes);
 }
 
-bool Node::ack_join_is_late() const { return clock_.now() - join_.accepted >= kJoinPeriodTicks; }
+inline bool Node::ack_join_is_late() const { return now_ - join_.accepted >= kJoinPeriodTicks; }
 
-void Node::ack_join_left(bool acked) {
+inline void Node::ack_join_left(bool acked) {
   if (join_.phase != Phase::kMember || join_.acked) return;
   join_.acked = acked;
   //= J4-FEW: An ack_join is repeated at most five times.
@@ -117,9 +122,9 @@ void Node::ack_join_left(bool acked) {
   send_ack_join();
 }
 
-void Node::hear_join_request(uint16_t src, Bytes payload) {
+inline void Node::hear_join_request(uint16_t src, Bytes payload) {
   //= J10-MOTE: A mote ignores join_request and ack_join.
-  if (!kIsSink) return;
+  if (!is_sink()) return;
   const auto request = rubicon::JoinRequestView::parse(payload);
   // No mote has such a TinyOS id, so no reply could name it. (decision 132)
   if (!request || is_reserved(src) || src == id_) return;
@@ -139,8 +144,8 @@ void Node::hear_join_request(uint16_t src, Bytes payload) {
   send_message(Line::kRadio, *message, src, kAmJoinReply, rubicon::JoinReplyView::kMaxSizeBytes);
 }
 
-void Node::hear_ack_join(uint16_t src, Bytes payload) {
-  if (!kIsSink) return;
+inline void Node::hear_ack_join(uint16_t src, Bytes payload) {
+  if (!is_sink()) return;
   const auto ack = rubicon::AckJoinView::parse(payload);
   if (!ack) return;
   const Address from = address_of(ack->src());
@@ -155,8 +160,8 @@ void Node::hear_ack_join(uint16_t src, Bytes payload) {
   report_members();
 }
 
-void Node::report_members() {
-  if (!kIsSink) return;
+inline void Node::report_members() {
+  if (!is_sink()) return;
   //= J6-REPORT: A sink reports each new member to its base station with one serial_joined.
   // Nothing would repeat it, so it waits until the line has room.
   while (Admission* const member = admissions_.owed()) {
@@ -185,7 +190,7 @@ void Node::report_members() {
   }
 }
 
-void Node::hear_config(Bytes payload) {
+inline void Node::hear_config(Bytes payload) {
   const auto config = rubicon::ConfigView::parse(payload);
   //= N9-OTHER: A config message of another type, or with a reserved island id, changes nothing.
   if (!config || config->type() != rubicon::CommandCode::kSetIslandId) return;
@@ -198,5 +203,5 @@ void Node::hear_config(Bytes payload) {
   forget_waiting(kAmJoinReply);  // They offer the island that is no more.
 }
 
-}  // namespace firmware
+}  // namespace node
 }  // namespace rubric

@@ -5,10 +5,10 @@
 
 #include "codec/generated/tinyos/am_header.h"
 #include "codec/runtime/bytes.h"
-#include "conformance/adapters/firmware/node/limits.h"
+#include "conformance/node/sizes.h"
 
 namespace rubric {
-namespace firmware {
+namespace node {
 
 /// The packet as it travels on the serial line: dispatch byte, AM header, payload. Messages for the
 /// radio wait in the same form.
@@ -43,37 +43,41 @@ class Message {
 };
 static_assert(sizeof(Message) <= kPaperMessageBytes, "a message is larger than the paper's");
 
-/// A circular buffer of messages, oldest first; it borrows its slots, so that buffers of all sizes
-/// share this code.
+/// The state of a circular buffer.
+struct Ring {
+  uint8_t room;
+  uint8_t head;
+  uint8_t count;
+};
+
+/// A circular buffer of messages, oldest first. Slots and state belong to somebody else, so that
+/// buffers of all sizes share this code.
 class Queue {
  public:
-  template <uint8_t kRoom>
-  explicit Queue(Message (&slots)[kRoom]) : slots_(slots), room_(kRoom) {}
+  Queue(Message* slots, Ring& ring) : slots_(slots), ring_(ring) {}
 
-  bool empty() const { return count_ == 0; }
-  bool full() const { return count_ == room_; }
-  uint8_t size() const { return count_; }
-  Message& operator[](uint8_t i) { return slots_[(head_ + i) % room_]; }
-  Message& front() { return slots_[head_]; }
+  bool empty() const { return ring_.count == 0; }
+  bool full() const { return ring_.count == ring_.room; }
+  uint8_t size() const { return ring_.count; }
+  Message& operator[](uint8_t i) { return slots_[(ring_.head + i) % ring_.room]; }
+  Message& front() { return slots_[ring_.head]; }
   /// Returns a place after the last; not when full.
-  Message& push() { return (*this)[count_++]; }
+  Message& push() { return (*this)[ring_.count++]; }
   void pop() {
-    head_ = static_cast<uint8_t>((head_ + 1) % room_);
-    --count_;
+    ring_.head = static_cast<uint8_t>((ring_.head + 1) % ring_.room);
+    --ring_.count;
   }
   /// Removes the i-th oldest; the others keep their order.
   void erase(uint8_t i) {
-    for (uint8_t k = i; k + 1 < count_; ++k) (*this)[k] = (*this)[static_cast<uint8_t>(k + 1)];
-    --count_;
+    for (uint8_t k = i; k + 1 < size(); ++k) (*this)[k] = (*this)[static_cast<uint8_t>(k + 1)];
+    --ring_.count;
   }
-  void clear() { head_ = count_ = 0; }
+  void clear() { ring_.head = ring_.count = 0; }
 
  private:
   Message* slots_;
-  uint8_t room_;
-  uint8_t head_ = 0;
-  uint8_t count_ = 0;
+  Ring& ring_;
 };
 
-}  // namespace firmware
+}  // namespace node
 }  // namespace rubric
