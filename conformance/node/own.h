@@ -166,7 +166,7 @@ inline bool Node::run(Ticks now, Ticks& due) {
 inline bool Node::next_due(Ticks& due) const {
   bool any = join_.phase == Phase::kJoining;
   due = join_.due;
-  Ticks other;
+  Ticks other = 0;
   if (awaiting_.next_due(other) && (!any || is_reached(other, due))) {
     due = other;
     any = true;

@@ -10,7 +10,7 @@ set(include_dir ${CMAKE_INSTALL_INCLUDEDIR}/rubric)
 # The conformance library is what `rubric test`, `check` and `explore` are made of. The libraries
 # of codec and conformance belong to it, without those of tests, fuzzing, commands and compiler.
 get_property(libraries GLOBAL PROPERTY RUBRIC_LIBRARIES)
-list(FILTER libraries EXCLUDE REGEX "^firmware_|_mutator$|^rubric_(cpp_node|fuzz)|^rubric_(cli|\
+list(FILTER libraries EXCLUDE REGEX "^firmware_|_mutator$|^rubric_fuzz|^rubric_(cli|\
 command_line|commands|compiler|encode|format|forward|lawful_traffic|script)$")
 add_library(rubric_conformance INTERFACE)
 target_link_libraries(rubric_conformance INTERFACE ${libraries})

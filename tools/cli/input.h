@@ -31,6 +31,10 @@ void add_input_options(Command& app, InputOptions& options);
 /// use (live/line.h). Without FILE, at a terminal, $MOTECOM is taken.
 void add_live_options(Command& app, InputOptions& options);
 
+/// Returns whether the input goes on until somebody ends it: a line in use, a followed file, a
+/// pipe.
+bool goes_on(const InputOptions& options);
+
 /// Returns the protocol of --spec; throws UsageError with the nearest name if there is none.
 const reflect::Protocol& chosen_protocol(const InputOptions& options);
 /// Returns the message of --as, null if it is not given; throws UsageError as above.

@@ -199,8 +199,8 @@ void Adapter::call(const std::string& call) {
   const std::string name = call.substr(0, open);
   const Arguments with(words_of(call.substr(open + 1, call.size() - open - 2)));
   const auto result = [&](bool success) { up("op_result(" + text(success) + ")"); };
-  const auto made = [&](ChannelResult made) {
-    up("channel_result(" + text(made.id) + " " + text(made.success) + ")");
+  const auto made = [&](ChannelResult channel) {
+    up("channel_result(" + text(channel.id) + " " + text(channel.success) + ")");
   };
   const auto line = [&] { return static_cast<Line>(with.number("link")); };
   const auto mode = [&] { return static_cast<Mode>(with.number("mode")); };

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """`rubric decode` on lines in use: pseudo terminals, a serial forwarder's port, a growing file.
 
-Usage: live_test.py RUBRIC PROJECT_FOLDER. All of it on this host, bounded in time.
+Usage: decode_live_test.py RUBRIC PROJECT_FOLDER. All of it on this host, bounded in time.
 """
 
 import os
