@@ -94,12 +94,14 @@ bool decode_zep_datagram(Bytes datagram, Packet& packet) {
   packet.framing = Framing::kRadio;
   packet.kind = packet.serial_seq = packet.crc = packet.fcs = kAbsent;
   packet.dropped_bytes = 0;
+  packet.time_ns = kNoTime;
   const Result<ZepPacket> zep = parse_zep(datagram);
   if (!zep) {
     packet.bytes = datagram;
     packet.error = zep.error();
     return true;
   }
+  packet.time_ns = zep->time_ns;
   const Bytes frame = zep->frame;
   if (frame.empty()) return false;
   packet.offset_bytes += zep->frame_offset_bytes;

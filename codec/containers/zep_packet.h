@@ -33,8 +33,9 @@ Result<ZepPacket> parse_zep(Bytes datagram);
 void append_zep(const ZepPacket& zep, std::string& out);
 
 /// Reads the radio frame in a datagram into `packet`; offset_bytes moves from the datagram's first
-/// byte to the frame control field. Returns false for a sound packet without frame, such as an ack.
-/// A malformed datagram is a radio frame with an error and the bytes as they are.
+/// byte to the frame control field; time_ns is the sender's. Returns false for a sound packet
+/// without frame, such as an ack. A malformed datagram is a radio frame with an error and the bytes
+/// as they are.
 bool decode_zep_datagram(Bytes datagram, Packet& packet);
 
 }  // namespace rubric

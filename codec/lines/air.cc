@@ -98,6 +98,14 @@ void Air::relay(Bytes datagram, const SocketAddress* from) {
   }
 }
 
+std::int64_t air_time_ns(std::int64_t stamp_ns) {
+  constexpr std::int64_t kTrustNs = 10'000'000'000;
+  const std::int64_t now_ns =
+      std::chrono::system_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
+  // kNoTime is far below.
+  return stamp_ns > now_ns - kTrustNs && stamp_ns < now_ns + kTrustNs ? stamp_ns : now_ns;
+}
+
 Bytes Air::receive(SteadyTime deadline, int other_fd) {
   while (true) {
     SocketAddress from;

@@ -47,4 +47,8 @@ class Air {
   std::vector<std::uint8_t> room_;
 };
 
+/// Returns when a frame that comes now was sent, in nanoseconds since 1970: by the sender's stamp
+/// if that is at most ten seconds off, as of a process on this host, else now.
+std::int64_t air_time_ns(std::int64_t stamp_ns);
+
 }  // namespace rubric::lines

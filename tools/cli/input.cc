@@ -165,9 +165,10 @@ class Run {
       while (!lines::stop_requested() && !result_.stopped) {
         const Bytes datagram = air.receive(std::chrono::steady_clock::now() + kAirPatience);
         Packet packet;
-        packet.time_ns =
-            std::chrono::system_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
-        if (!datagram.empty() && decode_zep_datagram(datagram, packet)) give(packet, interfaces);
+        if (!datagram.empty() && decode_zep_datagram(datagram, packet)) {
+          packet.time_ns = lines::air_time_ns(packet.time_ns);
+          give(packet, interfaces);
+        }
         if (on_idle_) on_idle_();
       }
     } catch (const lines::Broken& broken) {
