@@ -29,7 +29,7 @@ struct ZepPacket {
 /// WIRE-ZEP: kTruncated, kUnexpected (preamble, version). Source: Wireshark, packet-zep.c.
 Result<ZepPacket> parse_zep(Bytes datagram);
 
-/// Appends a packet of version 2.
+/// Appends a packet of version 2; a time before 1970 is left out.
 void append_zep(const ZepPacket& zep, std::string& out);
 
 /// Reads the radio frame in a datagram into `packet`; offset_bytes moves from the datagram's first
