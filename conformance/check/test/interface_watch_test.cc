@@ -122,5 +122,20 @@ TEST(InterfaceWatch, NoApplicationGetsWhatNobodyKnows) {
   EXPECT_EQ(all(delivered("030c")), "T1-UNKNOWN");
 }
 
+TEST(InterfaceWatch, ARequestHasTheDescriptorOfItsCall) {
+  const std::string failed = at(100, "m3 < app join(type=1 transducers=1 actuators=1)") +
+                             at(101, "m3 > app joined(0:0 fail)");
+  const std::string again = at(200, "m3 < app join(type=1 transducers=2 actuators=1)");
+  const auto asked = [](int transducers) {
+    return at(201, "m3 > rA am=3->1 join_request(seq_num=9 mote_type=1 transducers=" +
+                       std::to_string(transducers) + " actuators=1)");
+  };
+  EXPECT_EQ(all(failed + again + asked(2)), "");
+  EXPECT_EQ(all(failed + again + asked(1)), "J1-REQUEST");
+  // It may have waited for the line since the call before.
+  const std::string busy = at(90, "m3 < rA busy");
+  EXPECT_EQ(all(busy + failed + again + at(201, "m3 < rA idle") + asked(1)), "");
+}
+
 }  // namespace
 }  // namespace rubric::check
