@@ -17,7 +17,7 @@ struct CaseUse {
 };
 
 /// By file, then as they stand there; each case once for a rule and a sign.
-inline constexpr std::array<CaseUse, 1586> kCaseUses{{
+inline constexpr std::array<CaseUse, 1592> kCaseUses{{
     {"edges_j.late_join", "conformance/cases/edges_j.rtr", "J4-CLOCK"_rule, false},
     {"edges_j.first_reserved_island", "conformance/cases/edges_j.rtr", "J4-ACK"_rule, false},
     {"edges_j.first_reserved_island", "conformance/cases/edges_j.rtr", "J4-CONTENT"_rule, false},
@@ -157,7 +157,8 @@ inline constexpr std::array<CaseUse, 1586> kCaseUses{{
     {"edges_s.data_of_another_island", "conformance/cases/edges_s.rtr", "S5-UNKNOWN"_rule, false},
     {"edges_s.a_value_too_many", "conformance/cases/edges_s.rtr", "S1-ENLARGE"_rule, false},
     {"edges_s.a_value_too_many", "conformance/cases/edges_s.rtr", "S1-READ"_rule, false},
-    {"edges_s.a_value_too_many", "conformance/cases/edges_s.rtr", "S2-SIGNAL"_rule, false},
+    {"edges_s.enlarged_after_data", "conformance/cases/edges_s.rtr", "S2-SIGNAL"_rule, false},
+    {"edges_s.enlarged_after_data", "conformance/cases/edges_s.rtr", "S1-ENLARGE"_rule, false},
     {"edges_s.a_value_too_few", "conformance/cases/edges_s.rtr", "S1-READ"_rule, false},
     {"edges_s.start_one_of_two", "conformance/cases/edges_s.rtr", "S1-START"_rule, false},
     {"edges_s.start_one_of_two", "conformance/cases/edges_s.rtr", "S6-STOPPED"_rule, true},
@@ -599,6 +600,10 @@ inline constexpr std::array<CaseUse, 1586> kCaseUses{{
      "conformance/cases/n11_base_station.rtr", "N11-NBYTES"_rule, true},
     {"n11.base_station_cut_body",
      "conformance/cases/n11_base_station.rtr", "N11-NEXT"_rule, false},
+    {"n11.base_station_cut_serial_joined",
+     "conformance/cases/n11_base_station.rtr", "N11-NBYTES"_rule, true},
+    {"n11.base_station_cut_serial_joined",
+     "conformance/cases/n11_base_station.rtr", "N11-NEXT"_rule, false},
     {"n11.base_station_cut_before_body",
      "conformance/cases/n11_base_station.rtr", "N11-NBYTES"_rule, true},
     {"n11.base_station_cut_before_body",
@@ -878,6 +883,8 @@ inline constexpr std::array<CaseUse, 1586> kCaseUses{{
     {"n8.announcement", "conformance/cases/n8.rtr", "T1-DELIVER"_rule, false},
     {"n8.announcement", "conformance/cases/n8.rtr", "N8-DELIVER"_rule, true},
     {"n8.announcement", "conformance/cases/n8.rtr", "T2-UNRELIABLE"_rule, true},
+    {"n8.while_it_starts", "conformance/cases/n8.rtr", "N8-DELIVER"_rule, false},
+    {"n8.while_it_starts", "conformance/cases/n8.rtr", "T2-ACK"_rule, false},
     {"n8.acked", "conformance/cases/n8.rtr", "T3-SUCCESS"_rule, false},
     {"n8.acked", "conformance/cases/n8.rtr", "N8-PEIS"_rule, false},
     {"n8.acked", "conformance/cases/n8.rtr", "T3-ONCE"_rule, true},
@@ -1658,6 +1665,7 @@ inline constexpr std::array<CaseUse, 1586> kCaseUses{{
     {"open_door", "conformance/cases/scenarios/open_door.rtr", "N6-FORWARD"_rule, false},
     {"open_door", "conformance/cases/scenarios/open_door.rtr", "N6-CONTENT"_rule, false},
     {"open_door", "conformance/cases/scenarios/open_door.rtr", "T2-ONCE"_rule, true},
+    {"open_door", "conformance/cases/scenarios/open_door.rtr", "T2-DELIVER"_rule, true},
     {"open_door", "conformance/cases/scenarios/open_door.rtr", "N6-ONCE"_rule, true},
     {"open_door", "conformance/cases/scenarios/open_door.rtr", "N7-CONTENT"_rule, true},
     {"open_door", "conformance/cases/scenarios/open_door.rtr", "T3-RESEND"_rule, true},
