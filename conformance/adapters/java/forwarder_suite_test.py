@@ -97,7 +97,8 @@ def main():
             if bad and not mistake:
                 # A good station is late where others take its processor; twice it is not good.
                 print("once more:", *bad, flush=True)
-                again = run(rubric, java, programs[""], folder / "again.json", ["--cases", *bad])
+                again = run(rubric, java, programs[""], folder / "again.json",
+                            [f"--cases={name}" for name in bad])
                 cases = [case for case in cases if case["name"] not in bad] + again
             count = {v: sum(c["verdict"] == v for c in cases) for v in
                      {c["verdict"] for c in cases}}
