@@ -128,9 +128,11 @@ class Sources(unittest.TestCase):
 
     def test_a_forwarder_of_itself(self):
         for more in ([], ["--bind", "0.0.0.0"]):
-            with socket.create_server(("127.0.0.1", 0)) as free:
-                port = str(free.getsockname()[1])
-            done = ended(f"sf@127.0.0.1:{port}", "--port", port, *more)
+            with socket.socket() as holder:  # Bound, so that nobody else gets the port.
+                holder.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+                holder.bind(("127.0.0.1", 0))
+                port = str(holder.getsockname()[1])
+                done = ended(f"sf@127.0.0.1:{port}", "--port", port, *more)
             self.assertEqual(done.returncode, 3)
             self.assertIn("this is where this forwarder itself listens", done.stderr)
 

@@ -74,11 +74,12 @@ class Input(Base):
         self.assertIn("$MOTECOM: 'telepathy': expected", err)
 
     def test_lines_that_cannot_be_had(self):
-        with socket.create_server(("127.0.0.1", 0)) as taken:
-            free = taken.getsockname()[1]
+        silent = socket.socket()
+        self.addCleanup(silent.close)
+        silent.bind(("127.0.0.1", 0))  # And nobody listens there.
         for to, what in (("serial@/dev/null:115200", "is not a serial line"),
                          ("serial@/no/such:57600", "cannot be opened"),
-                         (f"network@127.0.0.1:{free}", "cannot connect")):
+                         (f"network@127.0.0.1:{silent.getsockname()[1]}", "cannot connect")):
             code, out, err = send("--as", "config", "--to", to, text=line(1))
             self.assertEqual((code, out), (NOT_SENT, ""), to)
             self.assertIn(f"rubric: {to}: ", err)

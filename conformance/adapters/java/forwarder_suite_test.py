@@ -9,9 +9,9 @@ Usage: forwarder_suite_test.py RUBRIC JAVAC JAVA
 """
 
 import concurrent.futures
+import contextlib
 import json
 import pathlib
-import random
 import shutil
 import socket
 import subprocess
@@ -24,15 +24,13 @@ MISTAKE = "reads_numbers_backwards"
 PARTS = 6
 
 
-def free_port():
-    """A port that nobody listens at, below those that the system gives to others by itself."""
-    while True:
-        port = random.randrange(20000, 32000)
-        try:
-            with socket.create_server(("127.0.0.1", port)):
-                return port
-        except OSError:
-            pass
+@contextlib.contextmanager
+def held_port():
+    """A port of ours: bound, so that nobody else gets it, but a listener that reuses may listen."""
+    with socket.socket() as holder:
+        holder.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        holder.bind(("127.0.0.1", 0))
+        yield holder.getsockname()[1]
 
 
 def build(javac, folder, mistake):
@@ -50,24 +48,25 @@ def build(javac, folder, mistake):
 
 def run_at_line(rubric, java, classes, report, which):
     """Those cases; the station connects as soon as somebody listens."""
-    port = free_port()
-    tested = subprocess.Popen([rubric, "test", "--target", f"sf-server:{port}", "--role",
-                               "base_station", "--format", "json", "--out", str(report), *which])
-    station = [java, "-cp", str(classes), "rubric.basestation.ForwarderClient",
-               f"127.0.0.1:{port}", "11"]
-    while tested.poll() is None:
-        subprocess.run(station, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
-                       stderr=subprocess.DEVNULL)
-        time.sleep(0.1)
+    with held_port() as port:
+        tested = subprocess.Popen([rubric, "test", "--target", f"sf-server:{port}", "--role",
+                                   "base_station", "--format", "json", "--out", str(report),
+                                   *which])
+        station = [java, "-cp", str(classes), "rubric.basestation.ForwarderClient",
+                   f"127.0.0.1:{port}", "11"]
+        while tested.poll() is None:
+            subprocess.run(station, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                           stderr=subprocess.DEVNULL)
+            time.sleep(0.1)
     return cases_of(report)
 
 
 def run_with_application(rubric, java, classes, report, which):
     """The same; the station is the app's, which starts it anew for each case."""
-    port = free_port()
-    app = f"{java} -cp {classes} rubric.basestation.LiveAdapter 127.0.0.1:{port}"
-    subprocess.run([rubric, "test", "--target", f"sf-server:{port}:restart", "--app", app,
-                    "--role", "base_station", "--format", "json", "--out", str(report), *which])
+    with held_port() as port:
+        app = f"{java} -cp {classes} rubric.basestation.LiveAdapter 127.0.0.1:{port}"
+        subprocess.run([rubric, "test", "--target", f"sf-server:{port}:restart", "--app", app,
+                        "--role", "base_station", "--format", "json", "--out", str(report), *which])
     return cases_of(report)
 
 
@@ -98,7 +97,8 @@ def main():
             if bad and not mistake:
                 # A good station is late where others take its processor; twice it is not good.
                 print("once more:", *bad, flush=True)
-                again = run(rubric, java, programs[""], folder / "again.json", ["--cases", *bad])
+                again = run(rubric, java, programs[""], folder / "again.json",
+                            [f"--cases={name}" for name in bad])
                 cases = [case for case in cases if case["name"] not in bad] + again
             count = {v: sum(c["verdict"] == v for c in cases) for v in
                      {c["verdict"] for c in cases}}
