@@ -36,7 +36,7 @@ struct Script {
 constexpr std::size_t kStepsMax = 256;
 constexpr Ticks kLengthMax = 1U << 17;  ///< All delays together; about two minutes.
 constexpr Ticks kRestMax = 0xFFFF;
-constexpr std::size_t kSendBytesMax = 120;  ///< More than a node accepts (N1-SIZE).
+constexpr std::size_t kSendBytesMax = 255;  ///< More than a node accepts (N1-SIZE).
 
 /// A node's outputs, and when each step was given.
 struct Played {
