@@ -12,8 +12,8 @@
 // A judge sees what comes from outside of a node alone if the node's own address is not borrowed:
 // of a run in which the case itself sends from that address only the log is judged.
 //
-// RUBRIC_ALL_RUNS tries each mutant and each shipped implementation in each case; else chance
-// chooses some, by RUBRIC_SEED.
+// RUBRIC_ALL_RUNS tries each named mutant and each shipped implementation in each case; else, and
+// of generated mutants always, chance chooses some, by RUBRIC_SEED.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,6 +28,7 @@
 #include "conformance/check/input/read.h"
 #include "conformance/check/judge/judge.h"
 #include "conformance/selftest/mutants/fields.h"
+#include "conformance/selftest/mutants/generated.h"
 #include "conformance/selftest/mutants/legal.h"
 #include "conformance/selftest/mutants/mutant.h"
 #include "conformance/test/report/case_files.h"
@@ -47,6 +48,7 @@ using runner::CaseVerdict;
 // implementations that ship, which are slow.
 constexpr unsigned kEvery = 40;
 constexpr unsigned kEveryShipped = 2;
+constexpr unsigned kEveryGenerated = 25;  // Of the mutants.
 
 const suite::Cases& cases() {
   static const suite::Cases own = suite::Cases::own();
@@ -238,6 +240,7 @@ TEST(TwoTools, NoRunWithBackOffIsBlamed) {
 /// Chooses cases: one in so many, or all.
 class Chance {
  public:
+  explicit Chance(bool all = std::getenv("RUBRIC_ALL_RUNS") != nullptr) : all_(all) {}
   bool takes(unsigned every) { return all_ || random_() % every == 0; }
 
  private:
@@ -246,7 +249,7 @@ class Chance {
     return asked == nullptr ? 1 : static_cast<std::uint32_t>(std::strtoul(asked, nullptr, 10));
   }
 
-  const bool all_ = std::getenv("RUBRIC_ALL_RUNS") != nullptr;
+  const bool all_;
   std::minstd_rand random_{seed()};
 };
 
@@ -272,15 +275,15 @@ bool about(const suite::SuiteCase& one, const Mutant& mutant) {
   });
 }
 
-TEST(TwoTools, NoRunOfAMutantIsJudgedOtherwise) {
-  Chance chance;
+// Tries each of them in the cases that are about it, and in some others.
+void expect_same(const Mutants& mutants, Chance& chance, unsigned every, std::size_t at_least) {
   std::size_t runs = 0;
   std::size_t failed = 0;
-  for (const Mutant& mutant : named_mutants()) {
+  for (const Mutant& mutant : mutants) {
     suite::testing::FakeAttachment attachment = attached(mutant.step, {});
     Opinions all;
     for (const suite::SuiteCase& one : cases().all()) {
-      if (!about(one, mutant) && !chance.takes(kEvery)) continue;
+      if (!about(one, mutant) && !chance.takes(every)) continue;
       compare(mutant.name, run_one(one, attachment), {}, all);
     }
     for (const suite::SuiteCase& one : cases().all()) {
@@ -293,7 +296,19 @@ TEST(TwoTools, NoRunOfAMutantIsJudgedOtherwise) {
     failed += all.failed;
   }
   std::printf("runs of mutants: %zu, of which the suite fails %zu\n", runs, failed);
-  EXPECT_GT(failed, 1000U);
+  EXPECT_GT(failed, at_least);
+}
+
+TEST(TwoTools, NoRunOfAMutantIsJudgedOtherwise) {
+  Chance chance;
+  expect_same(named_mutants(), chance, kEvery, 1000);
+}
+
+TEST(TwoTools, NoRunOfAGeneratedMutantIsJudgedOtherwise) {
+  Chance chance(false);
+  Mutants some = generated_mutants(Golden("conformance/cases"));
+  std::erase_if(some, [&](const Mutant&) { return !chance.takes(kEveryGenerated); });
+  expect_same(some, chance, kEvery / 5, 10);
 }
 
 }  // namespace
