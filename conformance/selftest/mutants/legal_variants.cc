@@ -46,10 +46,27 @@ void starts_slowly(Moment& moment) {
   });
 }
 
+// Lets a mote need its time after power on: the first request leaves then, and its timer runs from
+// it.
+void mote_starts_slowly(Moment& moment) {
+  constexpr Ticks kReady = 250;
+  moment.honest();
+  if (moment.now >= kReady || !moment.is(Role::kMote)) return;
+  const Ticks wait = kReady - moment.now;
+  moment.rewrite([&](const Action& action) {
+    const bool request =
+        action.what == Action::What::kTransmit && moment.sent(action).type == am::kJoin;
+    if (request && moment.state.join.due > moment.now) moment.state.join.due += wait;
+    return request ? moment.hold(action, wait) : moment.keep(action);
+  });
+}
+
 void add_times(Variants& out) {
   out.push_back({"starts_slowly",
                  "Sinks and base stations send nothing in their first 250 ticks (125).",
                  always(starts_slowly)});
+  out.push_back({"mote_starts_slowly", "Motes ask for nothing in their first 250 ticks (125).",
+                 always(mote_starts_slowly)});
   out.push_back({"slow_100", "Everything that follows from a frame takes 100 ticks (125).",
                  always(slow<100>), true});
   out.push_back({"slow_250", "Everything that follows from a frame takes 250 ticks (125).",
