@@ -22,6 +22,7 @@
 #include "codec/reflect/fault_text.h"
 #include "codec/reflect/registry.h"
 #include "codec/reflect/suggest.h"
+#include "tools/cli/fcs.h"
 #include "tools/cli/input_file.h"
 #include "tools/cli/progress.h"
 
@@ -117,11 +118,15 @@ class Run {
   }
 
  private:
-  void complain(std::string_view what) {
-    result_.failed = true;
+  void remark(std::string_view what) {
     progress_.clear();
     const std::string_view name = source_.file == "-" ? "stdin" : source_.file;
     fmt::print(stderr, "rubric: {}: {}\n", name, what);
+  }
+
+  void complain(std::string_view what) {
+    result_.failed = true;
+    remark(what);
   }
 
   // Reads a line in use, until it ends or the user stops it.
@@ -214,7 +219,7 @@ class Run {
     const bool bare = !options_.as_message.empty();
     if (options_.format == "auto") {
       size = look(file, format);
-      if (size == 0) return;  // Nothing in it, nothing wrong with it.
+      if (size == 0) return remark("is empty");  // Nothing in it, nothing wrong with it.
       if (format == InputFormat::kUnknown && !bare) {
         return complain(
             "this begins like no serial line, forwarder stream, pcap, pcapng or hex "
@@ -236,7 +241,23 @@ class Run {
     if (bare) reader_options.hex_framing = Framing::kBare;
     std::unique_ptr<Reader> reader = make_reader(format, reader_options);
     source_.format = format_name(format);
+    if (size == 0) size = file.read(chunk_.get(), kChunkBytes);
+    choose_fcs(format, Bytes(chunk_.get(), size));
     pump(file, *reader, size);
+  }
+
+  // Decides what ends the radio frames of a file from its beginning.
+  void choose_fcs(InputFormat format, Bytes beginning) {
+    fcs_ = fcs_kind(options_.fcs);
+    if (options_.fcs != "auto") return;
+    FcsGuess guess;
+    auto look = [&](const Packet& packet) { guess.take(packet); };
+    if (format == InputFormat::kPcap || format == InputFormat::kPcapng) {
+      make_reader(format)->feed(beginning, look);
+    }
+    if (!guess.is_cc24xx()) return;
+    fcs_ = FcsKind::kCc24xx;
+    remark("its radio frames end with RSSI and link quality in place of the FCS (--fcs cc24xx)");
   }
 
   // Reads until the content shows its format.
@@ -255,7 +276,12 @@ class Run {
   }
 
   void pump(InputFile& file, Reader& reader, std::size_t size) {
-    auto deliver = [&](const Packet& packet) { give(packet, reader.interfaces()); };
+    auto deliver = [&](const Packet& packet) {
+      if (fcs_ == FcsKind::kCrc) return give(packet, reader.interfaces());
+      Packet reread = packet;
+      reread_fcs(fcs_, reread);
+      give(reread, reader.interfaces());
+    };
     while (true) {
       if (size) reader.feed(Bytes(chunk_.get(), size), deliver);
       progress_.advance(size);
@@ -305,6 +331,7 @@ class Run {
   Progress progress_;
   Source source_;
   InputResult result_;
+  FcsKind fcs_ = FcsKind::kCrc;
   bool lost_ = false;  // The line is gone, and that was said.
 };
 
@@ -323,6 +350,12 @@ void add_input_options(Command& app, InputOptions& options) {
                  "pcap, pcapng, hex (text, from the dispatch byte on), hex-radio (text, 802.15.4 "
                  "without FCS) or bare (one message, with --as)")
       .one_of({"auto", "hdlc", "sf", "pcap", "pcapng", "hex", kHexRadio, "bare"})
+      .show_default();
+  app.add_option("--fcs", options.fcs,
+                 "Read the last two bytes of radio frames with link type 195 as crc (their FCS), "
+                 "cc24xx (RSSI, link quality and CRC bit of TI's chips), none (data) or auto "
+                 "(decided from the beginning of the file)")
+      .one_of({"auto", "crc", "cc24xx", "none"})
       .show_default();
   app.add_option("--spec", options.spec, "Use this protocol above the AM layer").show_default();
   app.add_option(

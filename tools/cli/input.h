@@ -16,6 +16,7 @@ namespace rubric::cli {
 struct InputOptions {
   std::vector<std::string> files;  ///< In order; none or "-" is stdin.
   std::string format = "auto";     ///< As for --input-format.
+  std::string fcs = "auto";        ///< As for --fcs.
   std::string spec = "rubicon";    ///< A protocol's id.
   std::string as_message;          ///< Bytes are this message alone; empty: framed packets.
   bool progress = true;            ///< A bar on stderr for long files, where that is a terminal.
@@ -24,7 +25,7 @@ struct InputOptions {
   bool reconnect = false;          ///< A line that is gone is opened again.
 };
 
-/// Adds FILE..., --input-format, --spec and --as to a subcommand.
+/// Adds FILE..., --input-format, --fcs, --spec and --as to a subcommand.
 void add_input_options(Command& app, InputOptions& options);
 
 /// Adds --follow, --listen-only and --reconnect: for subcommands whose files may be lines in

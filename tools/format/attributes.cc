@@ -1,6 +1,7 @@
 #include "tools/format/attributes.h"
 
 #include "codec/reflect/fault_text.h"
+#include "codec/runtime/ieee802154_fcs.h"
 #include "tools/format/message_types.h"
 
 namespace rubric::format {
@@ -92,6 +93,19 @@ void fault_names(const Protocol&, Names& names) {
   }
 }
 
+// Returns whether the bytes in place of the FCS hold RSSI and link quality: a sound frame has
+// nothing else there that is not its check sum.
+bool has_rssi(const Packet& packet) {
+  return packet.framing == Framing::kRadio && packet.fcs != kAbsent &&
+         packet.error.fault == Fault::kNone && packet.fcs != rubric::fcs(packet.bytes);
+}
+bool rssi(const Record& r, Visitor visit) {
+  return !has_rssi(r.packet()) || integer(visit, static_cast<std::int8_t>(r.packet().fcs & 0xFF));
+}
+bool lqi(const Record& r, Visitor visit) {
+  return !has_rssi(r.packet()) || integer(visit, r.packet().fcs >> 8 & 0x7F);
+}
+
 template <auto kNumber>
 bool of_packet(const Record& r, Visitor visit) {
   return integer_or_absent(visit, r.packet().*kNumber);
@@ -143,6 +157,8 @@ constexpr Attribute kAttributes[] = {
     {"frame.network",
      [](const Record& r, Visitor v) { return integer_or_absent(v, network_of(*r.frame)); }},
     {"frame.fcs", of_packet<&Packet::fcs>},
+    {"frame.rssi", rssi},
+    {"frame.lqi", lqi},
     {"am.dest", of_am<&reflect::ActiveMessage::dest>},
     {"am.src", of_am<&reflect::ActiveMessage::src>},
     {"am.length", of_am<&reflect::ActiveMessage::length>},

@@ -356,6 +356,11 @@ class FilterParser {
       term.operand.text = name;
       return false;
     }
+    // A lone word beside something with named values is meant as such a name, not as a path.
+    if (!names.empty() && name.find('.') == std::string::npos) {
+      const std::string hint = reflect::did_you_mean(name, names);
+      fail(fmt::format("{} is never '{}'{}", left.text(), name, hint));
+    }
     try {
       Path right(name, protocol_);
       term.operand.kind = Operand::Kind::kPath;
@@ -363,9 +368,7 @@ class FilterParser {
       filter_.paths_.push_back(std::move(right));
       return true;
     } catch (const PathError& error) {
-      if (names.empty()) fail(error.what());
-      const std::string hint = reflect::did_you_mean(name, names);
-      fail(fmt::format("{} is never '{}'{}", left.text(), name, hint));
+      fail(error.what());
     }
   }
 

@@ -172,6 +172,7 @@ const BadCase kBad[] = {
     {"message==", 9, "expected a number, a name or a string"},
     {"message=updates", 7, "'=' is not a comparison, '==' is"},
     {"message==updates &&", 19, "expected a name here, the expression ends"},
+    {"message!=ack", 9, "message is never 'ack' (did you mean 'ack_join'?)"},
     {"message==updats", 9, "message is never 'updats' (did you mean 'updates'?)"},
     {"mesage==updates", 0, "unknown name 'mesage' (did you mean 'message'?)"},
     {"index>0 && src.devd==4", 11, "unknown name 'src.devd'"},

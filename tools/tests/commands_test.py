@@ -7,6 +7,7 @@ Usage: commands_test.py RUBRIC.
 import json
 import pathlib
 import re
+import struct
 import subprocess
 import sys
 import tempfile
@@ -36,6 +37,79 @@ class Folder(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
+
+
+class Fcs(Folder):
+    """Link type 195 with what TI's CC24xx chips write in place of the FCS."""
+
+    def radio_frames(self):
+        lines = rubric("decode", "--format", "jsonl", "--filter", "framing==radio", PCAPNG)[1]
+        frames = [json.loads(line) for line in lines.splitlines()]
+        self.assertGreater(len(frames), 50)
+        return [bytes.fromhex(frame["raw"]) for frame in frames]
+
+    def pcap(self, frames):
+        file = self.folder / "sniffed.pcap"
+        records = (struct.pack("<4I", i, 0, len(frame), len(frame)) + frame
+                   for i, frame in enumerate(frames))
+        header = struct.pack("<I2H4I", 0xA1B2C3D4, 2, 4, 0, 0, 65535, 195)
+        file.write_bytes(header + b"".join(records))
+        return file
+
+    def trailers(self, frames):
+        """RSSI from -60 on, correlation from 90 on, CRC bit set but for the fourth frame."""
+        return [frame + bytes((196 + i % 40, (0 if i == 3 else 0x80) + 90 + i % 20))
+                for i, frame in enumerate(frames)]
+
+    def test_trailers_are_recognised_and_said_once(self):
+        frames = self.radio_frames()
+        file = self.pcap(self.trailers(frames))
+        code, out, err = rubric("decode", "--format", "csv", "--fields",
+                                "raw,error,frame.rssi,frame.lqi", file)
+        self.assertEqual((code, err.count("\n")), (1, 1))
+        self.assertIn("RSSI", err)
+        rows = [line.split(",") for line in out.decode().split("\r\n")[1:-1]]
+        self.assertEqual([row[0] for row in rows], [frame.hex() for frame in frames])
+        self.assertEqual([i for i, row in enumerate(rows) if row[1]], [3])
+        for i, row in enumerate(rows):
+            expected = ["", ""] if i == 3 else [str(i % 40 - 60), str(90 + i % 20)]
+            self.assertEqual(row[2:], expected, i)
+        code, out, _ = rubric("decode", "--filter", "frame.rssi > -50", file)
+        self.assertEqual(len(out.splitlines()), sum(i % 40 > 10 for i in range(len(rows))))
+        self.assertEqual(rubric("stats", file)[2], err)
+
+    def test_a_conversion_keeps_them(self):
+        file = self.pcap(self.trailers(self.radio_frames()))
+        again = self.folder / "again.pcap"
+        rubric("convert", "--format", "pcap", "-o", again, file)
+        self.assertEqual(again.read_bytes()[24:], file.read_bytes()[24:])
+
+    def test_damaged_check_sums_are_not_taken_for_them(self):
+        frames = self.radio_frames()
+        few = self.trailers(frames)[4:11]
+        for name, ends in (("zeros", [frame + bytes(2) for frame in frames]),
+                           ("ones", [frame + b"\xff\xff" for frame in frames]),
+                           ("seven", few), ("the same one", few[:1] * 50),
+                           ("mixed", [frame + bytes((196, 0x80 * (i % 2) + 90))
+                                      for i, frame in enumerate(frames)])):
+            code, out, err = rubric("decode", "--format", "jsonl", self.pcap(ends))
+            faults = {json.loads(line)["error"]["fault"] for line in out.splitlines()}
+            self.assertEqual((code, faults, err), (1, {"fcs"}, ""), name)
+
+    def test_a_choice_is_obeyed(self):
+        frames = self.radio_frames()
+        file = self.pcap(self.trailers(frames)[4:8])
+        self.assertEqual(rubric("decode", "--fcs", "cc24xx", file)[0], 0)
+        self.assertEqual(rubric("decode", "--fcs", "crc", file)[0], 1)
+        code, out, _ = rubric("decode", "--fcs", "none", "--format", "jsonl", self.pcap(frames))
+        self.assertEqual([bytes.fromhex(json.loads(line)["raw"]) for line in out.splitlines()],
+                         frames)
+        self.assertEqual(code, 0)
+
+    def test_an_empty_file_is_named(self):
+        file = self.folder / "empty.pcap"
+        file.touch()
+        self.assertEqual(rubric("decode", file), (0, b"", f"rubric: {file}: is empty\n"))
 
 
 class Encode(Folder):

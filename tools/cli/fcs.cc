@@ -1,0 +1,62 @@
+#include "tools/cli/fcs.h"
+
+#include <algorithm>
+
+#include "codec/containers/link_record.h"
+
+namespace rubric::cli {
+namespace {
+
+constexpr std::int32_t kCrcBit = 0x8000;
+constexpr std::int32_t kCorrelationMin = 40;
+constexpr std::int32_t kCorrelationMax = 115;
+constexpr std::uint64_t kAlikeMin = 8;
+
+bool has_fcs(const Packet& packet) {
+  return packet.link_type == kLinkRadioFcs && packet.fcs != kAbsent &&
+         (packet.error.fault == Fault::kNone || packet.error.fault == Fault::kFcs);
+}
+
+}  // namespace
+
+FcsKind fcs_kind(std::string_view name) {
+  if (name == "cc24xx") return FcsKind::kCc24xx;
+  return name == "none" ? FcsKind::kNone : FcsKind::kCrc;
+}
+
+void FcsGuess::take(const Packet& packet) {
+  if (!has_fcs(packet)) return;
+  if (packet.error.fault == Fault::kNone) {
+    ++sound_;
+    return;
+  }
+  // A frame that is sent again shows nothing new.
+  const Bytes bytes = packet.bytes;
+  if (std::equal(bytes.begin(), bytes.end(), last_.begin(), last_.end())) return;
+  last_.assign(bytes.begin(), bytes.end());
+  const std::int32_t correlation = packet.fcs >> 8 & 0x7F;
+  const bool alike = (packet.fcs & kCrcBit) != 0 && correlation >= kCorrelationMin &&
+                     correlation <= kCorrelationMax;
+  ++(alike ? alike_ : other_);
+}
+
+bool FcsGuess::is_cc24xx() const {
+  return alike_ >= kAlikeMin && sound_ * 50 <= alike_ && other_ * 9 <= alike_;
+}
+
+void reread_fcs(FcsKind kind, Packet& packet) {
+  if (packet.link_type != kLinkRadioFcs || packet.error.fault == Fault::kCut) return;
+  if (kind == FcsKind::kCc24xx && has_fcs(packet)) {
+    const bool sound = (packet.fcs & kCrcBit) != 0;
+    packet.error = sound ? Error{Fault::kNone, 0, ReqId::kNone}
+                         : fail(Fault::kFcs, packet.bytes.size(), "WIRE-RADIO-FCS"_rule).error;
+  }
+  if (kind == FcsKind::kNone) {
+    const std::size_t after = packet.fcs == kAbsent ? 0 : 2;
+    packet.link_type = kLinkRadioNoFcs;
+    decode_radio_record(Bytes(packet.bytes.data(), packet.bytes.size() + after), kLinkRadioNoFcs,
+                        packet);
+  }
+}
+
+}  // namespace rubric::cli
