@@ -1,61 +1,105 @@
 #include "codec/lines/capture_file.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <system_error>
 
 namespace rubric::lines {
 namespace {
 
+using std::chrono::steady_clock;
+
 constexpr std::size_t kEnough = 64 * 1024;
+
+std::string numbered(const std::string& path, int number) {
+  if (number == 1) return path;
+  const std::filesystem::path first(path);
+  const std::string name =
+      fmt::format("{}.{}{}", first.stem().string(), number, first.extension().string());
+  return (first.parent_path() / name).string();
+}
 
 }  // namespace
 
-CaptureFile::CaptureFile(const std::string& path)
-    : path_(path), fd_(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
-  if (fd_ < 0) throw std::system_error(errno, std::generic_category(), path);
-  writer_.begin(waiting_);
-  flush();  // Readers of the growing file see what it is.
+CaptureFile::CaptureFile(const std::string& path, Mode mode, const Rotation& rotation)
+    : path_(path), first_path_(path), mode_(mode), rotation_(rotation) {}
+
+bool CaptureFile::open() {
+  if (is_started()) return error_ == 0;
+  while (!file_ && error_ == 0) {
+    path_ = numbered(first_path_, number_);
+    try {
+      file_ = std::make_unique<report::OutFile>(path_, mode_);
+    } catch (const std::system_error& error) {
+      // A long run goes on after the files of an earlier one.
+      if (number_ > 1 && error.code() == std::errc::file_exists) {
+        ++number_;
+      } else {
+        error_ = error.code().value();
+      }
+    }
+  }
+  if (error_ != 0) {
+    if (error_ != EINTR) complain();  // A pipe waited for its reader until Ctrl-C.
+    return false;
+  }
+  size_ = 0;
+  opened_at_ = steady_clock::now();
+  writer_.emplace();
+  writer_->begin(waiting_);
+  flush();
+  return error_ == 0;
 }
 
-CaptureFile::~CaptureFile() { ::close(fd_); }
+bool CaptureFile::is_full() const {
+  if (rotation_.bytes != 0 && size_ >= rotation_.bytes) return true;
+  return rotation_.time.count() != 0 && steady_clock::now() - opened_at_ >= rotation_.time;
+}
 
 void CaptureFile::write(const Packet& packet, std::string_view interface_name) {
-  writer_.write(packet, interface_name, waiting_);
-  if (waiting_.size() >= kEnough) flush();
+  if (file_ && is_full()) {
+    end_file();
+    ++number_;
+  }
+  if (!open()) return;
+  writer_->write(packet, interface_name, waiting_);
+  if (mode_ != Mode::kWhole || waiting_.size() >= kEnough) flush();
 }
 
 void CaptureFile::flush() {
-  std::size_t sent = 0;
-  while (error_ == 0 && sent < waiting_.size()) {
-    const ssize_t count = ::write(fd_, waiting_.data() + sent, waiting_.size() - sent);
-    if (count >= 0) {
-      sent += static_cast<std::size_t>(count);
-    } else if (errno != EINTR) {
-      error_ = errno;
-      if (error_ != EPIPE) complain();
-    }
+  if (error_ == 0) {
+    error_ = report::write_all(file_->fd(), waiting_);
+    if (error_ != 0 && error_ != EPIPE) complain();
   }
+  size_ += waiting_.size();
   waiting_.clear();
 }
 
 bool CaptureFile::reader_gone() const {
-  pollfd self{fd_, 0, 0};
+  if (!file_) return error_ == EPIPE;
+  pollfd self{file_->fd(), 0, 0};
   return error_ == EPIPE || (::poll(&self, 1, 0) == 1 && (self.revents & POLLERR) != 0);
 }
 
-bool CaptureFile::finish() {
-  writer_.finish(waiting_);
+void CaptureFile::end_file() {
+  writer_->finish(waiting_);
   flush();
-  if (error_ == 0) return true;
+  if (error_ == 0) {
+    error_ = file_->finish();
+    if (error_ != 0) complain();
+  }
+  file_.reset();
+}
+
+bool CaptureFile::finish() {
+  if (open()) end_file();
   if (error_ == EPIPE) complain();
-  return false;
+  return error_ == 0;
 }
 
 void CaptureFile::complain() const {

@@ -2,9 +2,12 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <filesystem>
+#include <system_error>
 
 namespace rubric::report {
 
@@ -23,12 +26,64 @@ int write_all(int fd, std::string_view rest) {
   return 0;
 }
 
-int write_file(const std::string& path, std::string_view text) {
-  const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (fd < 0) return errno;
-  const int error = write_all(fd, text);
+OutFile::OutFile(const std::string& path, Mode mode) : path_(path) {
+  struct stat old {};
+  const bool exists = path != "-" && ::stat(path.c_str(), &old) == 0;
+  if (path == "-") {
+    fd_ = STDOUT_FILENO;
+  } else if (exists && !S_ISREG(old.st_mode)) {
+    fd_ = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+  } else if (mode == Mode::kWhole) {
+    open_beside();
+    // Root keeps the owner of a user's file; others cannot, and need not.
+    if (fd_ >= 0 && exists && ::fchown(fd_, old.st_uid, old.st_gid) == 0) {
+      ::fchmod(fd_, old.st_mode & 0777);
+    }
+  } else {
+    const int what = mode == Mode::kGrow ? O_EXCL : O_TRUNC;
+    fd_ = ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | what, 0666);
+  }
+  if (fd_ < 0) throw std::system_error(errno, std::generic_category(), path);
+}
+
+// A link stays a link: what it leads to is replaced.
+void OutFile::open_beside() {
+  std::error_code error;
+  const std::filesystem::path real = std::filesystem::weakly_canonical(path_, error);
+  if (!error) path_ = real.string();
+  const std::filesystem::path path(path_);
+  const std::string stem = "." + path.filename().string() + "." + std::to_string(::getpid()) + ".";
+  for (int i = 0; fd_ < 0 && (i == 0 || errno == EEXIST); ++i) {
+    beside_ = (path.parent_path() / (stem + std::to_string(i))).string();
+    fd_ = ::open(beside_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  }
+}
+
+OutFile::~OutFile() {
+  if (fd_ > STDERR_FILENO) ::close(fd_);
+  if (!beside_.empty()) ::unlink(beside_.c_str());
+}
+
+int OutFile::finish() {
+  if (fd_ <= STDERR_FILENO) return 0;
   // A full disk may show only here.
-  return ::close(fd) != 0 && error == 0 ? errno : error;
+  int error = !beside_.empty() && ::fsync(fd_) != 0 ? errno : 0;
+  if (::close(fd_) != 0 && error == 0) error = errno;
+  fd_ = -1;
+  if (error != 0 || beside_.empty()) return error;
+  if (::rename(beside_.c_str(), path_.c_str()) != 0) return errno;
+  beside_.clear();
+  return 0;
+}
+
+int write_file(const std::string& path, std::string_view text) {
+  try {
+    OutFile file(path, OutFile::Mode::kWhole);
+    const int error = write_all(file.fd(), text);
+    return error != 0 ? error : file.finish();
+  } catch (const std::system_error& error) {
+    return error.code().value();
+  }
 }
 
 }  // namespace rubric::report

@@ -41,7 +41,8 @@ struct Options {
   std::uint8_t in_flight = 1;  ///< Copies of one frame on their way to one node.
   Mask properties = kAllProperties;
   unsigned threads = 1;
-  std::uint64_t states_max = 0;  ///< 0: no limit.
+  std::uint64_t states_max = 0;        ///< 0: no limit.
+  std::uint64_t memory_max_bytes = 0;  ///< Of the whole process; 0: no limit.
 };
 
 constexpr std::uint16_t kFirstIsland = 11;  ///< Sink k's island is this + k.

@@ -1,11 +1,13 @@
 #include "conformance/explore/search.h"
 
 #include <sys/mman.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <fstream>
 #include <limits>
 #include <memory>
 #include <new>
@@ -46,6 +48,7 @@ class Frontier {
     bytes_.insert(bytes_.end(), packed.data(), packed.data() + size);
   }
   std::size_t states() const { return states_; }
+  const std::vector<std::uint8_t>& bytes() const { return bytes_; }
   /// Appends its chunks, which stay valid while it is neither moved nor added to.
   void chunks(std::vector<Chunk>& out) const {
     for (std::size_t i = 0; i < marks_.size(); ++i) {
@@ -117,6 +120,7 @@ class Visited {
 };
 
 constexpr std::size_t kFullPercent = 60;
+constexpr const char* kNoMemory = "more memory than the system has";
 
 void Visited::Release::operator()(std::atomic<std::uint64_t>* slots) const {
   if (slots != nullptr) munmap(slots, bytes);
@@ -148,6 +152,21 @@ void Visited::reserve(std::size_t more) {
       if (fingerprint != 0) insert(fingerprint);
     }
   }
+}
+
+// Returns the memory that the process has in use, 0 if the system does not say.
+std::size_t process_bytes() {
+  std::ifstream statm("/proc/self/statm");
+  std::size_t size = 0;
+  std::size_t resident = 0;
+  if (!(statm >> size >> resident)) return 0;
+  return resident * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+}
+
+// Returns what a vector's next growth needs beside what it has; 0 while that is far.
+template <class T>
+std::size_t growth_bytes(const std::vector<T>& growing) {
+  return growing.size() > growing.capacity() / 4 * 3 ? 2 * growing.capacity() * sizeof(T) : 0;
 }
 
 using Clock = std::chrono::steady_clock;
@@ -266,8 +285,12 @@ class Search {
   }
 
   Result run() {
-    workers_[0]->start(workers_[0]->network.initial());
-    while (level()) ++depth_;
+    try {
+      workers_[0]->start(workers_[0]->network.initial());
+      while (level()) ++depth_;
+    } catch (const std::bad_alloc&) {
+      limit_ = kNoMemory;
+    }
     return finish();
   }
 
@@ -285,6 +308,7 @@ class Search {
     waiting_ = 0;
     for (const Chunk& chunk : chunks) waiting_ += chunk.states;
     for (std::size_t first = 0; first < chunks.size();) {
+      if (!find_room(chunks, first)) return false;
       const std::size_t count = batch_size(chunks, first);
       batch({chunks.begin() + static_cast<std::ptrdiff_t>(first),
              chunks.begin() + static_cast<std::ptrdiff_t>(first + count)});
@@ -294,13 +318,28 @@ class Search {
     return !found_violation();
   }
 
-  // Returns how many chunks surely find room for their successors.
-  std::size_t batch_size(const std::vector<Chunk>& chunks, std::size_t first) {
+  // Makes room for the successors of a batch. Returns false if --memory does not allow it.
+  bool find_room(const std::vector<Chunk>& chunks, std::size_t first) {
     std::size_t wanted = 0;
     for (std::size_t i = first; i < chunks.size() && wanted < kBatchMin; ++i) {
       wanted += chunks[i].states;
     }
-    if (visited_.room() < wanted * kWaysOnMax / 8) visited_.reserve(wanted * kWaysOnMax / 8);
+    wanted = wanted * kWaysOnMax / 8;
+    std::size_t more = visited_.room() < wanted ? 2 * visited_.memory_bytes() : 0;
+    for (const auto& worker : workers_) {
+      more += growth_bytes(worker->links) + growth_bytes(worker->next.bytes());
+    }
+    const std::uint64_t most = nodes_.options().memory_max_bytes;
+    if (most != 0 && process_bytes() + more > most) {
+      limit_ = "more memory than --memory allows";
+      return false;
+    }
+    if (visited_.room() < wanted) visited_.reserve(wanted);
+    return true;
+  }
+
+  // Returns how many chunks surely find room for their successors.
+  std::size_t batch_size(const std::vector<Chunk>& chunks, std::size_t first) const {
     std::size_t states = 0;
     std::size_t count = 0;
     while (first + count < chunks.size() &&
@@ -315,16 +354,25 @@ class Search {
     std::atomic<std::size_t> taken = 0;
     std::vector<std::thread> others;
     for (std::size_t i = 1; i < workers_.size() && i < chunks.size(); ++i) {
-      others.emplace_back([&, i] { workers_[i]->work(chunks, taken); });
+      others.emplace_back([&, i] { work(i, chunks, taken); });
     }
-    workers_[0]->work(chunks, taken);
+    work(0, chunks, taken);
     for (std::thread& other : others) other.join();
     for (auto& worker : workers_) visited_.add_to_size(std::exchange(worker->inserted, 0));
     for (const Chunk& chunk : chunks) waiting_ -= chunk.states;
     if (report_) report_(progress());
   }
 
+  void work(std::size_t worker, const std::vector<Chunk>& chunks, std::atomic<std::size_t>& taken) {
+    try {
+      workers_[worker]->work(chunks, taken);
+    } catch (const std::bad_alloc&) {
+      out_of_memory_ = true;
+    }
+  }
+
   bool may_go_on() {
+    if (out_of_memory_) limit_ = kNoMemory;
     const std::uint64_t most = nodes_.options().states_max;
     if (most != 0 && visited_.size() >= most) limit_ = "as many states as --max-states allows";
     if (nodes_.full()) limit_ = "more node states or frames than there are numbers for";
@@ -429,6 +477,7 @@ class Search {
   std::uint32_t depth_ = 0;
   std::uint64_t waiting_ = 0;
   const char* limit_ = "";
+  std::atomic<bool> out_of_memory_ = false;
 };
 
 }  // namespace

@@ -38,9 +38,9 @@
 //
 // Reading the answer: a violation is a path of the machine itself, or of the flaw around it.
 // `complete` means that every state within the bounds was expanded. A full table, an overflow of
-// the air or `states_max` clears it, and the verdict is then inconclusive. A complete search
-// without a violation still fails if a goal (expected_goals()) was never reached, since properties
-// of nothing are true.
+// the air, `states_max` or `memory_max_bytes` clears it, and the verdict is then inconclusive. A
+// complete search without a violation still fails if a goal (expected_goals()) was never reached,
+// since properties of nothing are true.
 #pragma once
 
 #include <cstdint>

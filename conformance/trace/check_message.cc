@@ -203,14 +203,16 @@ class MessageCheck {
   // Checks that a stimulus has single values.
   void single(const Value& value, Place place) {
     if (value.is(Value::Kind::kAny)) fail(place, "expected a value, given '*'");
-    if (value.is(Value::Kind::kRange)) fail(place, "expected a value, given a range");
+    const bool number = !value.text.empty() && value.number == value.max;
+    if (value.is(Value::Kind::kRange) && !number) fail(place, "expected a value, given a range");
     for (const Value& item : value.items) single(item, place);
   }
 
   void variables(const Value& value, Place place) {
     for (const Value& item : value.items) variables(item, place);
     const bool range = value.is(Value::Kind::kRange) && !value.text.empty();
-    if (range && !must_be_whole() && !bound_.contains(value.text)) {
+    const bool judged = !must_be_whole() || value.number == value.max;
+    if (range && judged && !bound_.contains(value.text)) {
       fail(place, "no line above binds $" + value.text);
     }
     if (!value.is(Value::Kind::kVariable) || bound_.contains(value.text)) return;

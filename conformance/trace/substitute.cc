@@ -42,6 +42,15 @@ Value substituted(const Value& value, const Bindings& bindings, Place place) {
   if (value.is(Value::Kind::kAny)) {
     throw TraceError(place, "expected a value, given '*'");
   }
+  if (value.is(Value::Kind::kRange) && !value.text.empty() && value.number == value.max) {
+    const Value* bound = bindings.find(value.text);
+    if (!bound || !bound->is(Value::Kind::kNumber)) {
+      throw TraceError(place, "nothing has bound $" + value.text + " to a number");
+    }
+    Value sum = Value::of((bound->number + value.number) & 0xFFFF);
+    sum.negated = value.negated;
+    return sum;
+  }
   if (value.is(Value::Kind::kRange)) {
     throw TraceError(place, "expected a value, given the range " + value_text(value));
   }

@@ -30,8 +30,8 @@ struct Value {
   enum class Kind : std::uint8_t {
     kAny,       ///< `*`
     kNumber,    ///< `7`, `-7`, `0x1f`
-    kRange,     ///< `5..9`: a number from `number` to `max`; `$t+5..$t+9`: `text` names t, and both
-                ///< are counted from what it is bound to
+    kRange,     ///< `5..9`: a number from `number` to `max`; `$t+5..$t+9`, `$t+5`: `text` names t,
+                ///< and both are counted from what it is bound to
     kReal,      ///< `0.5`, `nan`, `-inf`; `text` as it is written
     kNames,     ///< `temp`, `light|temp`; `text`: an enumerator, or bits of a mask
     kBytes,     ///< `x0a0b`; `text` holds the bytes themselves

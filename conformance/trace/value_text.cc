@@ -176,6 +176,12 @@ std::string read_plain(std::string_view text, Value& out) {
     return read_pair(text, at, 1, out);
   }
   if (text[0] == '$' && text.find("..") != std::string_view::npos) return read_shifted(text, out);
+  if (read_shift(text, out.text, out.number)) {
+    out.kind = Kind::kRange;
+    out.max = out.number;
+    return {};
+  }
+  out.text.clear();
   if (text[0] == '$') {
     out.kind = Kind::kVariable;
     out.text = text.substr(1);
@@ -351,6 +357,7 @@ void put_value(const Value& value, std::string& out) {
     case Value::Kind::kNumber: return put_integer(value.number, value.hex, out);
     case Value::Kind::kRange:
       put_bound(value.text, value.number, out);
+      if (!value.text.empty() && value.number == value.max) return;
       out += "..";
       return put_bound(value.text, value.max, out);
     case Value::Kind::kReal:

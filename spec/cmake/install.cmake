@@ -1,7 +1,7 @@
 # Files of `cmake --install`, and the Debian packages that `cpack` makes of them:
 #   tool  the programs rubric, rubricc and rubric-extcap, their manual pages, completions, the
 #         Wireshark dissector
-#   dev   headers and libraries, for find_package(rubric) and pkg-config
+#   dev   headers, libraries and examples, for find_package(rubric) and pkg-config
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/rubric)
@@ -10,14 +10,14 @@ set(include_dir ${CMAKE_INSTALL_INCLUDEDIR}/rubric)
 # The conformance library is what `rubric test`, `check` and `explore` are made of. The libraries
 # of codec and conformance belong to it, without those of tests, fuzzing, commands and compiler.
 get_property(libraries GLOBAL PROPERTY RUBRIC_LIBRARIES)
-list(FILTER libraries EXCLUDE REGEX "^firmware_|_mutator$|^rubric_(cpp_node|fuzz)|^rubric_(cli|\
+list(FILTER libraries EXCLUDE REGEX "^firmware_|_mutator$|^rubric_fuzz|^rubric_(cli|\
 command_line|commands|compiler|encode|format|forward|lawful_traffic|script)$")
 add_library(rubric_conformance INTERFACE)
 target_link_libraries(rubric_conformance INTERFACE ${libraries})
 set_target_properties(rubric_conformance PROPERTIES EXPORT_NAME conformance)
 
 install(TARGETS rubric rubricc rubric-extcap COMPONENT tool)
-install(TARGETS rubric_runtime EXPORT rubric_codec COMPONENT dev)
+install(TARGETS rubric_runtime rubric_node EXPORT rubric_codec COMPONENT dev)
 install(TARGETS ${libraries} rubric_conformance EXPORT rubric_conformance
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}/rubric COMPONENT dev)
 install(DIRECTORY codec conformance DESTINATION ${include_dir} COMPONENT dev
@@ -25,6 +25,8 @@ install(DIRECTORY codec conformance DESTINATION ${include_dir} COMPONENT dev
   PATTERN "codec_test" EXCLUDE PATTERN "codec_bench" EXCLUDE PATTERN "*fixture.h" EXCLUDE
   PATTERN "*testing*.h" EXCLUDE PATTERN "cases" EXCLUDE PATTERN "promela" EXCLUDE
   PATTERN "scripts" EXCLUDE)
+install(FILES conformance/node/examples/pc.cc conformance/node/examples/mote.cc
+  DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples COMPONENT dev)
 foreach(part codec conformance)
   install(EXPORT rubric_${part} NAMESPACE rubric:: DESTINATION ${config_dir} COMPONENT dev)
 endforeach()
@@ -45,7 +47,7 @@ foreach(library ${libraries})
     string(APPEND pc_libraries " -l${library}")
   endif()
 endforeach()
-foreach(part codec conformance)
+foreach(part codec node conformance)
   configure_file(spec/cmake/rubric-${part}.pc.in rubric-${part}.pc @ONLY)
   install(FILES ${PROJECT_BINARY_DIR}/rubric-${part}.pc
     DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT dev)
@@ -107,7 +109,8 @@ set(CPACK_DEBIAN_DEV_PACKAGE_NAME librubric-dev)
 set(CPACK_COMPONENT_TOOL_DESCRIPTION
   "Decodes captures of TinyOS active messages, judges them by the rules of the RUBICON
 Communication Layer, and tests implementations against a reference machine.")
-set(CPACK_COMPONENT_DEV_DESCRIPTION "The codec (headers only) and the conformance library.")
+set(CPACK_COMPONENT_DEV_DESCRIPTION
+  "The codec and the node (headers only), and the conformance library.")
 set(CPACK_DEBIAN_TOOL_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_TOOL_PACKAGE_SECTION net)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)

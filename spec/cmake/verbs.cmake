@@ -75,9 +75,10 @@ if(RUBRIC_TESTS)
     <fmt/format.h> <algorithm> <fstream> <map> <optional> <set> <string> <variant> <vector>)
 endif()
 
-# What tests are labelled: fast, of which all together take less than a minute; slow; or long,
-# a proof that `tools/test --all` alone runs. FOREIGN tests read bytes of other people, so that
-# tools/test runs them under sanitizers, too; the target foreign_tests builds them.
+# What tests are labelled: fast, of which all together take less than a minute; slow; waits, what
+# is slow as it waits for lines in real time, so that all of these run at once, after the others;
+# or long, a proof that `tools/test --all` alone runs. FOREIGN tests read bytes of other people, so
+# that tools/test runs them under sanitizers, too; the target foreign_tests builds them.
 if(RUBRIC_TESTS)
   add_custom_target(foreign_tests)
 endif()
@@ -95,7 +96,7 @@ function(rubric_label_test name label foreign targets)
   set_tests_properties(${name} PROPERTIES LABELS "${label}" TIMEOUT 900)
 endfunction()
 
-# rubric_test(NAME [FOREIGN] SOURCES a_test.cc ... [DEPS lib ...] [LABEL fast|slow|long]): one
+# rubric_test(NAME [FOREIGN] SOURCES a_test.cc ... [DEPS lib ...] [LABEL fast|slow|waits|long]): one
 # GoogleTest program, one ctest entry, run from the project's folder.
 function(rubric_test name)
   if(NOT RUBRIC_TESTS)
@@ -120,8 +121,8 @@ function(rubric_test name)
   endif()
 endfunction()
 
-# rubric_script_test(NAME [FOREIGN] [LABEL fast|slow|long] COMMAND word ...): a program or script
-# as a ctest entry.
+# rubric_script_test(NAME [FOREIGN] [LABEL fast|slow|waits|long] COMMAND word ...): a program or
+# script as a ctest entry.
 function(rubric_script_test name)
   if(NOT RUBRIC_TESTS)
     return()

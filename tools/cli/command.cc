@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <exception>
 #include <optional>
+#include <system_error>
 
 #include "codec/reflect/suggest.h"
 #include "tools/cli/exit_codes.h"
@@ -260,6 +261,10 @@ int Command::parse_and_run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app_->exit(error);  // --help, --version
     return innermost().complain(error.what());
+  } catch (const std::system_error& error) {  // By fmt::print(), if it is a closed pipe.
+    if (error.code() == std::errc::broken_pipe) return kExitOutput;
+    fmt::print(stderr, "{}: {}\n", name(), error.what());
+    return kExitInput;
   } catch (const std::exception& error) {
     fmt::print(stderr, "{}: {}\n", name(), error.what());
     return kExitInput;

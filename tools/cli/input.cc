@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
@@ -308,6 +309,16 @@ void add_live_options(Command& app, InputOptions& options) {
   app.add_flag("--listen-only", options.listen_only,
                "Confirm no frames of a serial line, so that nothing is written to it");
   app.add_flag("--reconnect", options.reconnect, "Open a line again when it comes back");
+}
+
+bool goes_on(const InputOptions& options) {
+  if (options.follow) return true;
+  const std::vector<std::string> names = names_of(options);
+  return std::any_of(names.begin(), names.end(), [](const std::string& name) {
+    struct stat status {};
+    const int got = name == "-" ? ::fstat(0, &status) : ::stat(name.c_str(), &status);
+    return got == 0 ? !S_ISREG(status.st_mode) : lines::parse_address(name).has_value();
+  });
 }
 
 const reflect::Protocol& chosen_protocol(const InputOptions& options) {

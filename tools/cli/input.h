@@ -34,6 +34,10 @@ void add_spec_option(Command& app, InputOptions& options, const std::string& nam
 /// use (live/line.h). Without FILE, at a terminal, $MOTECOM is taken.
 void add_live_options(Command& app, InputOptions& options);
 
+/// Returns whether the input goes on until somebody ends it: a line in use, a followed file, a
+/// pipe.
+bool goes_on(const InputOptions& options);
+
 /// Returns the protocol of --spec, as protocol_of() does.
 const reflect::Protocol& chosen_protocol(const InputOptions& options);
 /// Returns the message of --as, null if it is not given; throws UsageError as above.

@@ -1,39 +1,64 @@
 #include "tools/cli/output.h"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 
-#include "codec/text/files.h"
+#include "tools/cli/command.h"
 
 namespace rubric::cli {
-bool Output::flush() {
-  if (open()) {
-    const int error = report::write_all(fd_, buffer_.view());
-    closed_ = error == EPIPE;
-    if (!closed_) error_ = error;
+namespace {
+
+bool is_written(const std::string& name, int error) {
+  if (error != 0 && error != EPIPE) {
+    fmt::print(stderr, "rubric: cannot write {}: {}\n", name == "-" ? "stdout" : name,
+               std::strerror(error));
   }
+  return error == 0;
+}
+
+}  // namespace
+
+bool Output::flush() {
+  if (open()) error_ = report::write_all(fd_, buffer_.view());
   buffer_.clear();
   return open();
 }
 
-bool Output::failed(std::string* what) const {
-  if (error_ != 0 && what) *what = std::strerror(error_);
-  return error_ != 0;
+bool Output::finish() {
+  if (flush() && file_) error_ = file_->finish();
+  return is_written(name_, error_);
 }
 
 bool write_file(const std::string& path, std::string_view text) {
-  const bool to_stdout = path == "-";
-  if (to_stdout) std::fflush(stdout);  // Keeps the order with earlier output.
-  const int error =
-      to_stdout ? report::write_all(STDOUT_FILENO, text) : report::write_file(path, text);
-  if (error == 0 || error == EPIPE) return true;
-  fmt::print(stderr, "rubric: cannot write {}: {}\n", to_stdout ? "stdout" : path,
-             std::strerror(error));
-  return false;
+  if (path == "-") std::fflush(stdout);  // Keeps the order with earlier output.
+  return is_written(path, report::write_file(path, text));
+}
+
+int cannot_write(const std::system_error& error) {
+  fmt::print(stderr, "rubric: cannot write {}\n", error.what());
+  return kExitOutput;
+}
+
+void keep_apart(const std::string& option, const std::string& output,
+                const std::vector<std::string>& files) {
+  struct stat to {};
+  const bool is_file = !output.empty() && output != "-" && ::stat(output.c_str(), &to) == 0;
+  const auto is_output = [&](const std::string& file) {
+    if (!output.empty() && output != "-" && file == output) return true;  // Not there yet.
+    struct stat from {};
+    const int got = file == "-" ? ::fstat(0, &from) : ::stat(file.c_str(), &from);
+    if (!is_file || got != 0 || to.st_dev != from.st_dev || to.st_ino != from.st_ino) return false;
+    return S_ISREG(to.st_mode) || S_ISBLK(to.st_mode);
+  };
+  const bool clash =
+      files.empty() ? is_output("-") : std::any_of(files.begin(), files.end(), is_output);
+  if (clash) throw UsageError(option, output + " is also an input or another output");
 }
 
 }  // namespace rubric::cli

@@ -1,45 +1,65 @@
-// Standard output through one big buffer, and files written whole. A reader that closed the pipe is
-// no error.
+// Standard output and files, through one big buffer or written whole.
 #pragma once
 
+#include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
+#include <system_error>
+#include <vector>
 
+#include "codec/text/files.h"
 #include "tools/format/buffer.h"
 
 namespace rubric::cli {
 
-/// Collects in buffer() and writes to a file descriptor in large pieces.
+/// Collects in buffer() and writes in large pieces.
 class Output {
  public:
+  using Mode = report::OutFile::Mode;
+
   explicit Output(int fd = 1) : fd_(fd) {}
+  /// Writes to a file; "-" is stdout. Throws std::system_error. What was written to a kWhole file
+  /// is gone unless finish() is called.
+  Output(const std::string& path, Mode mode)
+      : file_(std::make_unique<report::OutFile>(path, mode)), name_(path), fd_(file_->fd()) {}
   ~Output() { flush(); }
   Output(const Output&) = delete;
   Output& operator=(const Output&) = delete;
 
   format::Buffer& buffer() { return buffer_; }
+  int fd() const { return fd_; }
 
-  /// Writes the buffer out once enough has gathered; returns false if the reader is gone.
+  /// Writes the buffer out once enough has gathered; returns false if writing has failed.
   bool drain() { return buffer_.size() < kEnough ? open() : flush(); }
-  /// Writes all of it; returns false if the reader is gone.
+  /// Writes all of it; returns false if writing has failed.
   bool flush();
 
-  bool open() const { return !closed_ && error_ == 0; }
-  /// Returns whether writing failed for another reason than a closed pipe; `what` becomes the
-  /// reason.
-  bool failed(std::string* what = nullptr) const;
+  bool open() const { return error_ == 0; }
+  /// Writes all of it and ends the file. Returns false if something could not be written, having
+  /// printed why on stderr, except that a closed pipe is no news.
+  bool finish();
 
  private:
   static constexpr std::size_t kEnough = 192 * 1024;
 
+  std::unique_ptr<report::OutFile> file_;  // Null: a descriptor of somebody else.
+  std::string name_ = "-";
   int fd_;
   int error_ = 0;
-  bool closed_ = false;
   format::Buffer buffer_;
 };
 
-/// Writes all of `text` to the file, or to stdout for "-". Returns false, having printed why on
-/// stderr, if that fails.
+/// Writes all of `text` to the file, or to stdout for "-". Returns false if that fails, having
+/// printed why on stderr, except that a closed pipe is no news.
 bool write_file(const std::string& path, std::string_view text);
+
+/// Prints which output cannot be opened, and why. Returns the exit code.
+int cannot_write(const std::system_error& error);
+
+/// Throws UsageError if writing to `output` would replace one of the `files`, by whatever name or
+/// link; none of them, or "-", is stdin. An `output` of "-" is stdout, an empty one nothing.
+void keep_apart(const std::string& option, const std::string& output,
+                const std::vector<std::string>& files);
 
 }  // namespace rubric::cli

@@ -122,6 +122,9 @@ std::string text_of(const suite::MachineRun& one, std::size_t width) {
 }
 
 void run_chart(const ChartOptions& options) {
+  const std::size_t suffix = options.what.rfind(".rtr");  // FILE.rtr:CASE
+  const std::size_t end = suffix == std::string::npos ? suffix : suffix + 4;
+  cli::keep_apart("--out", options.out, {options.what.substr(0, end)});
   suite::Cases cases;
   const std::vector<const suite::SuiteCase*> all = chosen(options.what, cases);
   const bool picture = options.format == "svg";
@@ -145,7 +148,7 @@ void run_chart(const ChartOptions& options) {
       out += (out.empty() ? "" : "\n") + text_of(worked, width);
     }
   }
-  if (!cli::write_file(options.out, out)) cli::exit_with(cli::kVerdictBroken);
+  if (!cli::write_file(options.out, out)) cli::exit_with(cli::kExitOutput);
   if (code != cli::kVerdictExpected) cli::exit_with(code);
 }
 

@@ -18,7 +18,6 @@
 #include "tools/commands/check_options.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/stated.h"
-#include "tools/encode/packet_output.h"
 
 namespace rubric::tools {
 namespace {
@@ -45,8 +44,9 @@ constexpr const char* kCheckFooter =
     "--format json or junit findings go to stderr as they come; jsonl has a line of each.\n"
     "Exit codes: 0 as expected (weak findings, strays, notes and what stays inconclusive beside\n"
     "decided things included), 1 an unexpected failure, or an expectation that is not true, 2 the\n"
-    "kit broke or could not write, 3 nothing but inconclusive: no rule was found kept or broken,\n"
-    "64 usage, 66 input cannot be read, or a source broke off and nothing failed.";
+    "kit broke, 3 nothing but inconclusive: no rule was found kept or broken,\n"
+    "64 usage, 66 input cannot be read, or a source broke off and nothing failed, 74\n"
+    "output cannot be written.";
 
 check::Run read_run(const CheckOptions& options) {
   check::RunReader reader(read_as(options));
@@ -64,12 +64,10 @@ int check_files(const CheckOptions& options) {
   const auto& files = options.input.files;
   check::Options judged = oracle_options(options);
   const std::vector<report::FrameRange> ranges = frame_ranges(options);
-  if (!options.write.empty()) {
+  if (!options.write.path.empty()) {
     throw cli::UsageError("--write", "none of the sources is a line in use");
   }
-  if (encode::overwrites(options.out, files)) {
-    throw cli::UsageError("--out", options.out + " is one of the files to read");
-  }
+  cli::keep_apart("--out", options.out, files);
   const report::KnownFailures expected = expectations(options);
   check::Run whole = read_run(options);
   check::Run part = ranges.empty() ? std::move(whole) : report::part_of(whole, ranges, judged);
@@ -81,7 +79,7 @@ int check_files(const CheckOptions& options) {
   const report::Story story{part, judged, found, expected, outcome};
   const int terminal = options.out == "-" ? STDOUT_FILENO : -1;
   const bool written = cli::write_file(options.out, report_text(options, story, terminal, files));
-  return written ? outcome.exit_code() : cli::kVerdictBroken;
+  return written ? outcome.exit_code() : cli::kExitOutput;
 }
 
 int run_check(CheckOptions options) {
@@ -99,8 +97,8 @@ void add_options(cli::Command& command, CheckOptions& options) {
       "Captures and .rtr logs of one run; - is stdin. Or lines in use: serial@DEVICE:BAUD (or a "
       "platform, as serial@/dev/ttyUSB0:telosb), network@HOST:PORT, sf@HOST:PORT; at a terminal "
       "$MOTECOM");
-  command.add_option("--write", options.write, "Keep what lines in use send in this pcapng file")
-      .check(cli::given);
+  cli::add_write_options(command, options.write, "Keep what lines in use send in this pcapng file",
+                         false);
   command
       .add_option("--profile", options.profile,
                   "Judge by the rules of the paper, or as release 1.0 has them")
@@ -162,7 +160,13 @@ void add_options(cli::Command& command, CheckOptions& options) {
                   "(text, 802.15.4 without FCS)")
       .one_of({"auto", "hdlc", "sf", "pcap", "pcapng", "hex", "hex-radio"})
       .show_default();
-  command.add_flag("--verbose", options.verbose, "Print every finding in full; live, also notes");
+  command.add_flag("--verbose", options.verbose,
+                   "Print also further findings of a rule and node in full; live, also notes");
+  command
+      .add_option("--max-findings", options.findings_max,
+                  "Print at most this many findings of a rule in full, and count the others")
+      .check(cli::whole_number)
+      .show_default();
   command
       .add_option("--width", options.width,
                   "Wrap text at this many columns (default: the terminal's, else 100)")

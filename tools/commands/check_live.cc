@@ -25,7 +25,6 @@
 #include "tools/cli/output.h"
 #include "tools/cli/verdict.h"
 #include "tools/commands/check_news.h"
-#include "tools/encode/packet_output.h"
 
 namespace rubric::tools {
 namespace {
@@ -79,7 +78,7 @@ class Session {
         watch_(kSettleUs + judged_.skew_us + judged_.response_us.value_or(kResponseUs)),
         news_(options) {
     name_files();
-    if (!options.write.empty()) kept_.emplace(options.write);
+    if (!options.write.path.empty()) kept_.emplace(options.write.path, options.write.growing());
   }
 
   int run() {
@@ -89,7 +88,6 @@ class Session {
     {
       cli::InputThreads input(options_.input);
       while (input.take(steady_clock::now() + kTick, [this](auto&&... it) { take(it...); })) {
-        if (kept_) kept_->flush();
         if (fresh_ && steady_clock::now() >= judge_next_) judge();
         tell();
         if (!news_.open()) lines::request_stop();
@@ -108,7 +106,7 @@ class Session {
       file_of_.push_back(line ? 0 : UINT32_MAX);
       if (line) lines += (lines.empty() ? "" : " and ") + name;
     }
-    if (!lines.empty()) names_.push_back(options_.write.empty() ? lines : options_.write);
+    if (!lines.empty()) names_.push_back(options_.write.path.empty() ? lines : options_.write.path);
     for (std::size_t i = 0; i < file_of_.size(); ++i) {
       if (file_of_[i] == 0) continue;
       file_of_[i] = static_cast<std::uint32_t>(names_.size());
@@ -159,15 +157,16 @@ class Session {
   }
 
   int finish(bool failed) {
-    bool written = !kept_ || kept_->finish();
+    // A source that cannot be had costs no file.
+    bool written = !kept_ || (failed && !kept_->is_started()) || kept_->finish();
     judge();
     if (!refused_.empty()) cli::unreadable(kCheckCommand, refused_);
     const report::Outcome outcome = report::compare(*run_, judged_, found_, expected_);
-    const bool again = !has_lines_ || !options_.write.empty();
+    const bool again = !has_lines_ || !options_.write.path.empty();
     written = news_.report({*run_, judged_, found_, expected_, outcome},
                            again ? names_ : std::vector<std::string>()) &&
               written;
-    if (!written) return cli::kVerdictBroken;
+    if (!written) return cli::kExitOutput;
     const int code = outcome.exit_code();
     return failed && code != cli::kVerdictFailed ? cli::kVerdictInput : code;
   }
@@ -219,18 +218,12 @@ int check_live(const CheckOptions& options) {
   if (!options.frames.empty()) {
     throw cli::UsageError("--frames", "which frames can be told when the run is over");
   }
-  if (!options.write.empty() && !lines) {
+  if (!options.write.path.empty() && !lines) {
     throw cli::UsageError("--write", "none of the sources is a line in use");
   }
-  if (!options.write.empty() && options.write == options.out) {
-    throw cli::UsageError("--write", "the report goes to " + options.out);
-  }
-  for (const std::string& path : {options.write, options.out}) {
-    if (encode::overwrites(path, files)) {
-      throw cli::UsageError(path == options.out ? "--out" : "--write",
-                            path + " is one of the files to read");
-    }
-  }
+  cli::keep_apart("--out", options.out, files);
+  if (!options.write.path.empty()) cli::keep_apart("--write", options.write.path, {options.out});
+  cli::check_write(options.write, files, true);
   return Session(options).run();
 }
 

@@ -1,15 +1,12 @@
 #include "tools/commands/check_news.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <cstring>
-#include <system_error>
 
 #include "codec/text/shell.h"
 #include "conformance/check/judge/judge.h"
@@ -65,13 +62,6 @@ int fd_of_news(const CheckOptions& options) {
   return document && options.out == "-" ? STDERR_FILENO : STDOUT_FILENO;
 }
 
-int file_of_news(const CheckOptions& options) {
-  if (options.format != "jsonl" || options.out == "-") return -1;
-  const int fd = ::open(options.out.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (fd < 0) throw std::system_error(errno, std::generic_category(), options.out);
-  return fd;
-}
-
 }  // namespace
 
 std::string report_text(const CheckOptions& options, const report::Story& story, int fd,
@@ -93,12 +83,13 @@ std::string report_text(const CheckOptions& options, const report::Story& story,
 CheckNews::CheckNews(const CheckOptions& options)
     : options_(options),
       fd_(fd_of_news(options)),
-      file_(file_of_news(options)),
-      output_(file_ >= 0 ? file_ : fd_) {}
+      in_file_(options.format == "jsonl" && options.out != "-") {
+  if (!in_file_) output_.emplace(fd_);
+}
 
-CheckNews::~CheckNews() {
-  output_.flush();
-  if (file_ >= 0) ::close(file_);
+cli::Output& CheckNews::output() {
+  if (!output_) output_.emplace(options_.out, options_.write.growing());
+  return *output_;
 }
 
 void CheckNews::begin() const {
@@ -116,9 +107,9 @@ void CheckNews::tell(const check::Run& run, const check::Options& judged, const 
   one.findings.push_back(change.finding);
   const report::Outcome outcome = report::compare(run, judged, one, expected);
   const report::Story story{run, judged, one, expected, outcome};
-  output_.buffer().append(options_.format == "jsonl" ? change_event(story, change)
-                                                     : text(story, change));
-  output_.drain();
+  output().buffer().append(options_.format == "jsonl" ? change_event(story, change)
+                                                      : text(story, change));
+  output().drain();
   told_ = true;
 }
 
@@ -142,22 +133,19 @@ std::string CheckNews::text(const report::Story& story, const Change& change) co
 }
 
 bool CheckNews::open() const {
-  pollfd self{file_ >= 0 ? file_ : fd_, 0, 0};
-  return output_.open() && !(::poll(&self, 1, 0) == 1 && (self.revents & POLLERR) != 0);
+  if (!output_) return true;
+  pollfd self{output_->fd(), 0, 0};
+  return output_->open() && !(::poll(&self, 1, 0) == 1 && (self.revents & POLLERR) != 0);
 }
 
 bool CheckNews::report(const report::Story& story, const std::vector<std::string>& files) {
   if (options_.format == "jsonl") {
-    output_.buffer().append(report_event(story, true));
-    output_.flush();
-    std::string why;
-    if (!output_.failed(&why)) return true;
-    fmt::print(stderr, "rubric check: cannot write {}: {}\n", options_.out, why);
-    return false;
+    output().buffer().append(report_event(story, true));
+    return output().finish();
   }
   const bool here = options_.out == "-" && fd_ == STDOUT_FILENO;
-  if (here && told_) output_.buffer().append("\n");
-  output_.flush();
+  if (here && told_) output().buffer().append("\n");
+  if (!output().finish()) return false;
   const int terminal = options_.out == "-" ? STDOUT_FILENO : -1;
   return cli::write_file(options_.out, report_text(options_, story, terminal, files));
 }

@@ -1,6 +1,7 @@
 // Output of `rubric check`: findings as they come, and the report.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,30 +20,32 @@ std::string report_text(const CheckOptions& options, const report::Story& story,
 /// report of another format, text goes to stderr.
 class CheckNews {
  public:
-  /// Throws std::system_error if a file cannot be written.
   explicit CheckNews(const CheckOptions& options);
-  ~CheckNews();
   CheckNews(const CheckNews&) = delete;
   CheckNews& operator=(const CheckNews&) = delete;
 
   /// Prints, at a terminal, that a wait begins.
   void begin() const;
+  /// Throws std::system_error if a file cannot be opened, as report() does.
   void tell(const check::Run& run, const check::Options& judged, const check::Change& change,
             const report::KnownFailures& expected);
   /// What was told can be read then.
-  void flush() { output_.flush(); }
+  void flush() {
+    if (output_) output_->flush();
+  }
   /// Returns whether anybody still reads it.
   bool open() const;
   /// Prints the end. Returns false, having printed why, if something could not be written.
   bool report(const report::Story& story, const std::vector<std::string>& files);
 
  private:
+  cli::Output& output();
   std::string text(const report::Story& story, const check::Change& change) const;
 
   const CheckOptions& options_;
   int fd_;
-  int file_ = -1;  // For jsonl that goes to a file.
-  cli::Output output_;
+  bool in_file_;                       // As jsonl, which grows.
+  std::optional<cli::Output> output_;  // A file is opened when there is something to say.
   bool told_ = false;
 };
 

@@ -194,6 +194,7 @@ report::TextOptions text_options(const CheckOptions& options, int fd) {
   text.width = cli::columns(options.width, fd);
   text.color = cli::use_color(options.color, fd);
   text.verbose = options.verbose;
+  text.findings_max = options.findings_max;
   return text;
 }
 

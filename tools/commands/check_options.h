@@ -12,6 +12,7 @@
 #include "conformance/check/report/text.h"
 #include "conformance/check/report/window.h"
 #include "tools/cli/input.h"
+#include "tools/cli/write_options.h"
 
 namespace rubric::tools {
 
@@ -37,7 +38,8 @@ struct CheckOptions {
   std::optional<double> skew_ms;
   std::size_t width = 0;
   bool verbose = false;
-  std::string write;  ///< A capture of what lines in use send; empty: none.
+  std::size_t findings_max = 20;
+  cli::WriteOptions write;  ///< A capture of what lines in use send.
 };
 
 /// Returns the judge's options. Throws cli::UsageError, as the next two do.

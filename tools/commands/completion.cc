@@ -189,7 +189,6 @@ void add_completion(cli::Command& app) {
     } else {
       print_fish(commands);
     }
-    if (std::fflush(stdout) != 0) cli::exit_with(cli::kExitInput);
   });
 }
 

@@ -25,7 +25,7 @@ constexpr const char* kConvertFooter =
     "What the target cannot hold is reported on stderr. pcap holds one link type, that of the "
     "first\n"
     "packet; --only chooses among serial and radio.\n"
-    "Exit codes: 0 converted, 2 usage, 3 input cannot be read or output cannot be written.";
+    "Exit codes: 0 converted, 2 usage, 3 input cannot be read, 74 output cannot be written.";
 
 struct Suffix {
   std::string_view suffix;
@@ -102,16 +102,14 @@ void settle_target(ConvertOptions& options) {
                                           "' has no suffix that says what to write (.pcapng, "
                                           ".pcap, .sf, .hex, .hdlc)");
   }
-  if (encode::overwrites(options.output, options.input.files)) {
-    throw cli::UsageError("OUT", "'" + options.output + "' is also the input");
-  }
+  cli::keep_apart("OUT", options.output, options.input.files);
 }
 
 int run_convert(const ConvertOptions& options) {
   Losses losses;
   const encode::Holds holds = encode::holds(options.format);
   cli::InputResult result;
-  std::string failure;
+  bool written = true;
   try {
     encode::PacketOutput output(options.format, options.output);
     const auto on_packet = [&](const Packet& packet, const cli::Source& source) {
@@ -135,13 +133,13 @@ int run_convert(const ConvertOptions& options) {
     };
     result = cli::read_packets(options.input, on_packet);
     // A mistyped name must not cost the file that would have been replaced.
-    if (!result.failed || losses.packets > 0) failure = output.finish();
+    if (!result.failed || losses.packets > 0) written = output.finish();
   } catch (const std::system_error& error) {
-    failure = error.code().message();
+    return cli::cannot_write(error);
   }
   report(losses, options.format);
-  if (!failure.empty()) fmt::print(stderr, "rubric: {}: {}\n", options.output, failure);
-  return failure.empty() && !result.failed ? cli::kExitClean : cli::kExitInput;
+  if (!written) return cli::kExitOutput;
+  return result.failed ? cli::kExitInput : cli::kExitClean;
 }
 
 }  // namespace

@@ -243,7 +243,7 @@ int run_coverage(const CoverageOptions& options) {
     return cli::kVerdictInput;
   }
   const std::string text = options.format == "json" ? json_of(coverage) : text_of(coverage);
-  if (!cli::write_file("-", text)) return cli::kVerdictBroken;
+  if (!cli::write_file("-", text)) return cli::kExitOutput;
   return coverage.problems.empty() ? cli::kVerdictExpected : cli::kVerdictFailed;
 }
 

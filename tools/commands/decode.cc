@@ -12,6 +12,7 @@
 #include "tools/cli/input.h"
 #include "tools/cli/output.h"
 #include "tools/cli/specs.h"
+#include "tools/cli/write_options.h"
 #include "tools/commands/commands.h"
 #include "tools/format/csv.h"
 #include "tools/format/filter.h"
@@ -34,7 +35,7 @@ struct DecodeOptions {
   bool hex = false;
   bool strict = false;
   bool units = false;
-  std::string write;  ///< A capture of what is read; empty: none.
+  cli::WriteOptions write;
 };
 
 std::vector<format::Path> chosen_fields(const DecodeOptions& options,
@@ -112,27 +113,26 @@ class Decode {
         clock_(options.time) {}
 
   int run() {
-    if (!options_.write.empty()) capture_.emplace(options_.write);
+    if (!options_.write.path.empty()) {
+      const bool grows = cli::goes_on(options_.input);
+      cli::check_write(options_.write, options_.input.files, grows);
+      capture_.emplace(options_.write.path,
+                       grows ? options_.write.growing() : lines::CaptureFile::Mode::kWhole,
+                       cli::rotation_of(options_.write));
+    }
     formatter_->begin(output_.buffer());
     const cli::InputResult result = cli::read_packets(
         options_.input,
         [this](const Packet& packet, const cli::Source& source) { return take(packet, source); },
-        [this] {
-          output_.flush();
-          if (capture_) capture_->flush();
-        });
-    output_.flush();
+        [this] { output_.flush(); });
+    const bool written = output_.finish();
     if (result.live) {
       fmt::print(stderr, "rubric: {} frames, {} malformed, {} shown\n", index_, malformed_count_,
                  printed_);
     }
-    if (capture_ && !capture_->finish()) return cli::kExitInput;
-    std::string reason;
-    if (output_.failed(&reason)) {
-      fmt::print(stderr, "rubric: cannot write: {}\n", reason);
-      return cli::kExitInput;
-    }
-    if (!output_.open()) return cli::kExitClean;  // A closed pipe ends the output.
+    // A source that cannot be had costs no file.
+    const bool kept = !capture_ || (result.failed && !capture_->is_started()) || capture_->finish();
+    if (!written || !kept) return cli::kExitOutput;
     if (result.failed) return cli::kExitInput;
     return malformed_ ? cli::kExitMalformed : cli::kExitClean;
   }
@@ -198,8 +198,8 @@ void add_decode(cli::Command& app) {
   command.add_flag("--hex", options->hex, "Print a hex dump below each line of text");
   command.add_flag("--strict", options->strict, "End with 1 for noted frames, too");
   command.add_flag("--units", options->units, "Show values in their units, such as degrees C");
-  command.add_option("--write", options->write, "Keep all frames in this pcapng file as well")
-      .check(cli::given);
+  cli::add_write_options(command, options->write, "Keep all frames in this pcapng file as well",
+                         true);
   cli::add_color_option(command, options->color);
   command.footer(
       "Examples:\n"
@@ -208,7 +208,8 @@ void add_decode(cli::Command& app) {
       "  rubric decode capture.pcapng --format csv --fields time,src.devid,updates.value\n"
       "  echo 0a000c | rubric decode --as config\n"
       "  rubric decode serial@/dev/ttyUSB0:telosb --write run.pcapng    # until Ctrl-C\n"
-      "Exit codes: 0 clean, 1 something malformed was read, 2 usage, 3 input cannot be read.");
+      "Exit codes: 0 clean, 1 something malformed was read, 2 usage, 3 input cannot be read,\n"
+      "74 output cannot be written.");
   command.exit_code_of([options] { return Decode(*options).run(); });
 }
 

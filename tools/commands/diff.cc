@@ -66,12 +66,13 @@ void compare(const DiffOptions& options) {
     if (found.different.empty()) return;
     throw runner::TargetBroken("they differ by chance only: not twice in the same case");
   }
+  if (!options.traces.empty()) cli::keep_apart("--out", options.shared.out, options.traces);
   const shrink::Difference& difference = *found.shortest;
   const std::string text =
       shrunk_text(difference.shrunk, difference.case_name + ".difference",
                   {fmt::format("A, {}: {}", players[0]->name(), outcome_text(difference.a)),
                    fmt::format("B, {}: {}", players[1]->name(), outcome_text(difference.b))});
-  if (!cli::write_file(options.shared.out, text)) cli::exit_with(cli::kVerdictBroken);
+  if (!cli::write_file(options.shared.out, text)) cli::exit_with(cli::kExitOutput);
   cli::exit_with(cli::kVerdictFailed);
 }
 

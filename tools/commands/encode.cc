@@ -26,7 +26,8 @@ constexpr const char* kEncodeFooter =
     "\"frame\", to encode changed fields. Sizes, counts and check sums that are missing are\n"
     "computed. A message alone:\n"
     "  echo '{\"type\":10,\"value\":12}' | rubric encode --as config\n"
-    "Exit codes: 0 all lines encoded, 2 usage, 3 some line or file could not be read or encoded.";
+    "Exit codes: 0 all lines encoded, 2 usage, 3 some line or file could not be read or encoded,\n"
+    "74 output cannot be written.";
 
 /// Returns the framing of a single message on its way to such an output.
 std::string_view serial_framing(const std::string& format) {
@@ -64,18 +65,10 @@ int run_encode(const EncodeOptions& options) {
     const bool good = write_all(options, encoder, output, any);
     // A mistyped name must not cost the file that would have been replaced.
     if (!good && !any) return cli::kExitInput;
-    const std::string failure = output.finish();
-    if (failure.empty()) return good ? cli::kExitClean : cli::kExitInput;
-    fmt::print(stderr, "rubric: {}: {}\n", options.output, failure);
+    if (!output.finish()) return cli::kExitOutput;
+    return good ? cli::kExitClean : cli::kExitInput;
   } catch (const std::system_error& error) {
-    fmt::print(stderr, "rubric: {}: {}\n", options.output, error.code().message());
-  }
-  return cli::kExitInput;
-}
-
-void check_target(const EncodeOptions& options) {
-  if (encode::overwrites(options.output, options.lines.input.files)) {
-    throw cli::UsageError("--output", "'" + options.output + "' is also the input");
+    return cli::cannot_write(error);
   }
 }
 
@@ -96,7 +89,7 @@ void add_encode(cli::Command& app) {
       .show_default();
   sub.exit_code_of([options] {
     encode::check_line_options(options->lines);
-    check_target(*options);
+    cli::keep_apart("--output", options->output, options->lines.input.files);
     return run_encode(*options);
   });
 }

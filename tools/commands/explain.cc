@@ -165,8 +165,7 @@ int run_explain(const ExplainOptions& options) {
   }
   cli::Output output;
   output.buffer().append(text);
-  output.flush();
-  return output.failed() ? cli::kExitInput : code;
+  return output.finish() ? code : cli::kExitOutput;
 }
 
 }  // namespace

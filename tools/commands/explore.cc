@@ -21,6 +21,7 @@
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/input.h"
 #include "tools/cli/output.h"
+#include "tools/cli/quantity.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/explore_transitions.h"
 
@@ -40,6 +41,7 @@ struct ExploreOptions {
   std::string scope = "join";
   std::string format = "text";
   std::string out;
+  std::string memory;
   std::string weakness_out;
   std::vector<std::string> properties;
   TransitionOptions transitions;
@@ -65,8 +67,8 @@ std::string explore_footer() {
          "  rubric explore --calls 2 --loss --flaw accepts_wrong_seq --out broken.rtr\n"
          "  rubric explore --transitions --part join --format dot | dot -Tsvg -o join.svg\n"
          "Exit codes: 0 all properties hold, 1 one is broken or something was never reached,\n"
-         "2 the trace cannot be written, 3 a limit was met first or the flaw never acted,\n"
-         "64 usage.";
+         "3 a limit was met first or the flaw never acted, 64 usage, 74 the trace cannot be "
+         "written.";
 }
 
 [[noreturn]] void usage(const std::string& what) { throw cli::UsageError(what); }
@@ -94,6 +96,7 @@ const flaws::Flaw* chosen_flaw(const ExploreOptions& options) {
 // Returns the meaning of the options' words.
 explore::Options resolve(const ExploreOptions& options) {
   explore::Options network = options.network;
+  network.memory_max_bytes = cli::parse_quantity(options.memory).value_or(cli::Quantity{}).bytes;
   network.profile = chosen_profile(options);
   if (options.requests != 0) {
     network.profile.join_requests_max = static_cast<std::uint8_t>(options.requests);
@@ -222,6 +225,9 @@ std::string text_of(const Result& result, const Verdict& verdict) {
     if ((broken & explore::bit(property.property)) == 0) continue;
     fmt::format_to(to, "broken       {}: {}\n", property.name, property.sentence);
   }
+  if (!result.complete && !result.violation) {
+    fmt::format_to(to, "proved       no property is broken in fewer than {} moves\n", p.depth);
+  }
   fmt::format_to(to, "verdict      {}{}{}\n", verdict.text, verdict.limit.empty() ? "" : ": ",
                  verdict.limit);
   return out;
@@ -292,6 +298,9 @@ void run_explore(const ExploreOptions& options) {
                               flaw == nullptr ? machine::step : flaw->step},
                              options.format, options.out);
   }
+  if (!options.weakness_out.empty()) {
+    cli::keep_apart("--weakness-out", options.weakness_out, {options.out});
+  }
   if (options.format == "dot") usage("--format dot draws --transitions");
   const auto nodes = std::make_unique<explore::Nodes>(resolve(options));
   ProgressLine line(options.format == "text");
@@ -321,7 +330,7 @@ void run_explore(const ExploreOptions& options) {
   } else {
     good = cli::write_file("-", text_of(result, verdict)) && good;
   }
-  if (!good) cli::exit_with(cli::kVerdictBroken);
+  if (!good) cli::exit_with(cli::kExitOutput);
   if (verdict.exit_code != cli::kVerdictExpected) cli::exit_with(verdict.exit_code);
 }
 
@@ -359,6 +368,13 @@ void add_bounds(cli::Command& sub, ExploreOptions& options) {
   sub.add_option("--max-states", n.states_max, "Stop, inconclusive, at this many states; 0: never")
       .check(cli::whole_number)
       .show_default();
+  const auto size = [](const std::string& text) {
+    const auto quantity = cli::parse_quantity(text);
+    return quantity && quantity->bytes != 0 ? "" : "expected a size as in 2G, given " + text;
+  };
+  sub.add_option("--memory", options.memory,
+                 "Stop, inconclusive, before the process takes more than this (k, M, G)")
+      .check(size, "SIZE");
   sub.add_flag("--exact", n.exact, "Keep apart states that differ in nothing that matters");
   n.threads = std::max(1U, std::thread::hardware_concurrency());
   sub.add_option("--threads", n.threads, "Run this many threads").between(1, 64).show_default();

@@ -41,7 +41,7 @@ void print_transitions(const TransitionOptions& options, const ExploredMachine& 
                                ? transitions_json(diagrams, machine.profile, machine.flaw)
                            : format == "dot" ? transitions_dot(diagrams)
                                              : transitions_text(diagrams);
-  if (!cli::write_file(out.empty() ? "-" : out, text)) cli::exit_with(cli::kVerdictBroken);
+  if (!cli::write_file(out.empty() ? "-" : out, text)) cli::exit_with(cli::kExitOutput);
   for (const explore::Diagram& diagram : diagrams) {
     if (!diagram.complete) cli::exit_with(cli::kVerdictInconclusive);
   }

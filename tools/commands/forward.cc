@@ -12,6 +12,7 @@
 #include "conformance/test/runner/target.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/input.h"
+#include "tools/cli/write_options.h"
 #include "tools/commands/commands.h"
 
 namespace rubric::tools {
@@ -24,6 +25,7 @@ struct ForwardOptions {
   std::uint32_t ack_wait_ms = 1000;
   int retries = 24;  ///< TinyOS's Java host has the same.
   forward::Options server;
+  cli::WriteOptions write;
 };
 
 lines::Address source_of(const std::string& given) {
@@ -59,7 +61,11 @@ void print_summary(const std::string& source, const forward::Counts& counts) {
 
 int run_forward(ForwardOptions& options) {
   options.server.source.address = source_of(options.source);
-  check_capture(options.server.write);
+  check_capture(options.write.path);
+  cli::check_write(options.write, {options.source}, true);
+  options.server.write = options.write.path;
+  options.server.write_mode = options.write.growing();
+  options.server.rotation = cli::rotation_of(options.write);
   options.server.source.link.ack_wait = lines::Milliseconds(options.ack_wait_ms);
   options.server.source.link.tries = 1 + options.retries;
   options.server.backlog_bytes = options.buffer_kib * 1024;
@@ -68,6 +74,7 @@ int run_forward(ForwardOptions& options) {
     forward::Server server(options.server);
     const bool whole = server.run();
     print_summary(options.server.source.address.name, server.counts());
+    if (server.capture_failed()) return cli::kExitOutput;
     return whole ? cli::kExitClean : cli::kExitInput;
   } catch (const runner::TargetBroken& broken) {
     fmt::print(stderr, "rubric: {}\n", broken.what());
@@ -131,10 +138,8 @@ void add_forward(cli::Command& app) {
       .show_default();
   add_client_options(command, *options);
   add_source_options(command, *options);
-  command
-      .add_option("--write", options->server.write,
-                  "Keep packets of both directions in this pcapng file, not a pipe")
-      .check(cli::given);
+  cli::add_write_options(command, options->write,
+                         "Keep packets of both directions in this pcapng file, not a pipe", true);
   command.add_flag("--verbose", options->server.verbose, "Say which clients come and leave");
   command.footer(
       "The first line on stdout says where it listens: 'listening on 127.0.0.1:9002'. Whoever\n"
@@ -143,8 +148,8 @@ void add_forward(cli::Command& app) {
       "  rubric forward serial@/dev/ttyUSB0:telosb             # until Ctrl-C\n"
       "  rubric decode sf@localhost:9002                       # one of many clients\n"
       "  rubric forward sf@lab:9002 --port 9003 --reconnect --write run.pcapng\n"
-      "Exit codes: 0 ended by Ctrl-C, 2 usage, 3 the source is gone, the port is taken or the\n"
-      "capture cannot be written.");
+      "Exit codes: 0 ended by Ctrl-C, 2 usage, 3 the source is gone or the port is taken,\n"
+      "74 the capture cannot be written.");
   command.exit_code_of([options] { return run_forward(*options); });
 }
 

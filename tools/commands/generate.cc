@@ -1,12 +1,7 @@
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -113,43 +108,20 @@ void add_routes(const reflect::RouteTable& table, bool of_link, const Framer& fr
 /// A file or stdout that counts its input.
 class CountedOutput {
  public:
-  explicit CountedOutput(const std::string& path) : path_(path) {
-    constexpr int kFlags = O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC;
-    if (path != "-") fd_ = ::open(path.c_str(), kFlags, 0666);
-    if (fd_ < 0) reason_ = std::strerror(errno);
-    output_ = std::make_unique<cli::Output>(fd_);
-  }
-  ~CountedOutput() {
-    if (fd_ < 0) output_->buffer().clear();
-    output_.reset();
-    if (fd_ > 1) ::close(fd_);
-  }
-  CountedOutput(const CountedOutput&) = delete;
-  CountedOutput& operator=(const CountedOutput&) = delete;
+  explicit CountedOutput(const std::string& path) : output_(path, cli::Output::Mode::kWhole) {}
 
   std::uint64_t size() const { return size_; }
   void append(std::string_view text) {
     size_ += text.size();
-    if (fd_ < 0) return;
-    output_->buffer().append(text);
-    output_->drain();
+    output_.buffer().append(text);
+    output_.drain();
   }
-  /// Returns whether the reader is still there.
-  bool open() const { return fd_ >= 0 && output_->open(); }
-  /// Ends the output. Returns false, having printed why, if writing failed.
-  bool finish() {
-    if (fd_ >= 0) output_->flush();
-    if (fd_ >= 0 && !output_->failed(&reason_)) return true;
-    fmt::print(stderr, "rubric: {}: {}\n", path_, reason_);
-    return false;
-  }
+  bool open() const { return output_.open(); }
+  bool finish() { return output_.finish(); }
 
  private:
-  std::string path_;
-  int fd_ = 1;
   std::uint64_t size_ = 0;
-  std::string reason_;
-  std::unique_ptr<cli::Output> output_;
+  cli::Output output_;
 };
 
 /// One run.
@@ -181,7 +153,7 @@ class Run {
     out.append(text_);
     const bool written = out.finish();
     const bool told = !expect || expect->finish();
-    return written && told ? cli::kExitClean : cli::kExitInput;
+    return written && told ? cli::kExitClean : cli::kExitOutput;
   }
 
  private:
@@ -295,14 +267,7 @@ void check_outputs(const GenerateOptions& options) {
   if (options.format == "jsonl") {
     throw cli::UsageError("--expect", "jsonl carries the expectations in line");
   }
-  struct stat one {};
-  struct stat other {};
-  const bool same_file = ::stat(options.output.c_str(), &one) == 0 && S_ISREG(one.st_mode) &&
-                         ::stat(options.expect.c_str(), &other) == 0 &&
-                         one.st_dev == other.st_dev && one.st_ino == other.st_ino;
-  if (options.expect == options.output || same_file) {
-    throw cli::UsageError("--expect", "'" + options.expect + "' is also the output");
-  }
+  cli::keep_apart("--expect", options.expect, {options.output});
 }
 
 }  // namespace
@@ -335,7 +300,11 @@ void add_generate(cli::Command& app) {
   sub.add_flag("--fields", options->fields, "Add each number of a valid frame to its expectation");
   sub.exit_code_of([options] {
     check_outputs(*options);
-    return Run(*options, cli::chosen_protocol(options->input)).run();
+    try {
+      return Run(*options, cli::chosen_protocol(options->input)).run();
+    } catch (const std::system_error& error) {
+      return cli::cannot_write(error);
+    }
   });
 }
 

@@ -122,7 +122,7 @@ class Place {
     if (!cli::write_file(beside_.string(), text)) {
       std::error_code error;
       fs::remove(beside_, error);
-      cli::exit_with(cli::kExitInput);
+      cli::exit_with(cli::kExitOutput);
     }
     replace();
     fmt::print("wrote {}\n", path_.string());

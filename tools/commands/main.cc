@@ -1,19 +1,21 @@
 // rubric: the command line. A subcommand is one file, which adds itself.
+#include <cerrno>
 #include <csignal>
+#include <cstdio>
 
 #include "tools/commands/commands.h"
 
 namespace {
 
 constexpr const char* kFooter =
-    "Exit codes: 0 clean, 1 something malformed was found, 2 usage, 3 input cannot be read or\n"
-    "output cannot be written, 4 not sent; check, test, chart, explore and coverage have others.\n"
+    "Exit codes: 0 clean, 1 something malformed was found, 2 usage, 3 input cannot be read, 4 not\n"
+    "sent, 74 output cannot be written; check, test, chart, explore and coverage have others.\n"
     "'rubric COMMAND --help' says more.";
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  // A closed pipe shows as a failed write, which ends the output quietly.
+  // A closed pipe shows as a failed write, which ends the output without a word.
   std::signal(SIGPIPE, SIG_IGN);
   rubric::cli::Command program{
       "rubric", "Codec and conformance test kit for the RUBICON Communication Layer."};
@@ -40,5 +42,9 @@ int main(int argc, char** argv) {
   rubric::tools::add_generate(program);
   rubric::tools::add_repro(program);
   rubric::tools::add_completion(program);
-  return program.parse_and_run(argc, argv);
+  const int code = program.parse_and_run(argc, argv);
+  errno = 0;
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+  if (errno != 0 && errno != EPIPE) std::perror("rubric: cannot write stdout");
+  return rubric::cli::kExitOutput;
 }

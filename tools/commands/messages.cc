@@ -121,8 +121,7 @@ void add_messages(cli::Command& app) {
     const Protocol& protocol = cli::chosen_protocol(options->input);
     cli::Output output;
     output.buffer().append(options->format == "json" ? json(protocol) : text(protocol));
-    output.flush();
-    if (output.failed()) cli::exit_with(cli::kExitInput);
+    if (!output.finish()) cli::exit_with(cli::kExitOutput);
   });
 }
 

@@ -73,7 +73,7 @@ void write_skeleton(const NewAdapterOptions& options) {
     }
   }
   for (const auto& [path, text] : files) {
-    if (!cli::write_file(path.string(), text)) cli::exit_with(cli::kExitInput);
+    if (!cli::write_file(path.string(), text)) cli::exit_with(cli::kExitOutput);
     fmt::print("wrote {}\n", path.lexically_normal().string());
   }
   fmt::print("Next:\n");

@@ -99,6 +99,7 @@ Repro repro_network(Bytes bytes, const ReproOptions& options) {
 }
 
 void run_repro(const ReproOptions& options) {
+  cli::keep_apart("--out", options.out, {options.input});
   std::string text;
   std::string error;
   if (!cli::read_file(options.input, text, error)) {
@@ -110,7 +111,7 @@ void run_repro(const ReproOptions& options) {
                       : options.fuzzer == "nodes" ? repro_nodes(bytes)
                                                   : repro_machine(bytes, options);
   if (!cli::write_file(options.out, trace::print(repro.file))) {
-    cli::exit_with(cli::kVerdictBroken);
+    cli::exit_with(cli::kExitOutput);
   }
   fmt::print(stderr, "{}\n", repro.found.empty() ? "nothing is broken" : "broken: " + repro.found);
   if (!repro.found.empty()) cli::exit_with(cli::kVerdictFailed);

@@ -120,12 +120,11 @@ class Send {
     } catch (const TargetBroken& error) {
       line_is_gone(error.what());
     }
-    output_.flush();
+    const bool written = output_.finish();
     summary();
-    std::string reason;
-    if (output_.failed(&reason)) fmt::print(stderr, "rubric: cannot write: {}\n", reason);
+    if (!written) return cli::kExitOutput;
     if (unsent_) return cli::kExitNotSent;
-    return good && !output_.failed() ? cli::kExitClean : cli::kExitInput;
+    return good ? cli::kExitClean : cli::kExitInput;
   }
 
  private:

@@ -88,6 +88,7 @@ void shrink_it(const ShrinkOptions& options) {
   }
   AttachedPlayer attached(options.target, options.shared, options.profile);
   const shrink::Player player = attached.player();
+  cli::keep_apart("--out", options.shared.out, {options.trace});
   const auto found = find_failing(cases, options, player);
   if (!found) {
     std::fputs("nothing fails: there is nothing to shrink\n", stderr);
@@ -106,7 +107,7 @@ void shrink_it(const ShrinkOptions& options) {
       shrunk, name + ".shrunk",
       {fmt::format("{} of the {} lines of {}.", shrunk.lines, shrunk.lines_before, name),
        fmt::format("On {}: {}", attached.name(), outcome_text(last))});
-  if (!cli::write_file(options.shared.out, text)) cli::exit_with(cli::kVerdictBroken);
+  if (!cli::write_file(options.shared.out, text)) cli::exit_with(cli::kExitOutput);
   fmt::print(stderr, "{}: {} lines shrank to {} in {} runs\n{}\n", name, shrunk.lines_before,
              shrunk.lines, shrunk.tried, outcome_text(last));
 }

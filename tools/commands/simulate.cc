@@ -63,6 +63,7 @@ std::string summary(const Statistics& s) {
 }
 
 void run_simulate(const SimulateOptions& options) {
+  cli::keep_apart("--out-pcapng", options.pcapng, {options.rtr});
   const Scenario& scenario = *simulate::find_scenario(options.scenario);
   const auto length_us =
       options.seconds == 0
@@ -81,7 +82,7 @@ void run_simulate(const SimulateOptions& options) {
   if (capture) good = cli::write_file(options.pcapng, capture->finish()) && good;
   const bool taken = options.rtr == "-" || options.pcapng == "-";
   fmt::print(taken ? stderr : stdout, "{}", summary(simulation.statistics()));
-  if (!good) cli::exit_with(cli::kExitInput);
+  if (!good) cli::exit_with(cli::kExitOutput);
 }
 
 std::vector<std::string> scenario_names() {

@@ -43,12 +43,7 @@ int run_stats(const StatsOptions& options) {
   cli::Output output;
   output.buffer().append(options.format == "json" ? stats::json_report(counters)
                                                   : stats::text_report(counters));
-  output.flush();
-  std::string reason;
-  if (output.failed(&reason)) {
-    fmt::print(stderr, "rubric: cannot write: {}\n", reason);
-    return cli::kExitInput;
-  }
+  if (!output.finish()) return cli::kExitOutput;
   if (result.failed) return cli::kExitInput;
   return counters.all().malformed ? cli::kExitMalformed : cli::kExitClean;
 }

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -61,7 +62,7 @@ constexpr const char* kTestFooter =
     "implementation or the kit broke (between cases, too), or was not honest, 3 incomplete: a "
     "case\n"
     "of a role that it plays was not decided, and --expect does not list it with a reason;\n"
-    "64 usage, 66 traces cannot be read.";
+    "64 usage, 66 traces cannot be read, 74 output cannot be written.";
 
 struct TestOptions {
   std::vector<std::string> traces;
@@ -160,7 +161,7 @@ int list(const TestOptions& options, const std::vector<suite::SuiteCase>& cases)
     throw cli::UsageError("--list", "prints text or json, no " + options.format);
   }
   const std::string text = options.format == "json" ? suite::json_list(cases) : list_text(cases);
-  return cli::write_file(options.out, text) ? cli::kVerdictExpected : cli::kVerdictBroken;
+  return cli::write_file(options.out, text) ? cli::kVerdictExpected : cli::kExitOutput;
 }
 
 void check_seeds(const TestOptions& options) {
@@ -196,11 +197,7 @@ class Text {
   bool finish(const TestOptions& options) {
     if (!wanted_) return true;
     if (!to_stdout_) return cli::write_file(options.out, whole_);
-    output_.flush();
-    std::string why;
-    if (!output_.failed(&why)) return true;
-    fmt::print(stderr, "rubric test: cannot write stdout: {}\n", why);
-    return false;
+    return output_.finish();
   }
 
  private:
@@ -253,19 +250,35 @@ suite::SuiteRun work(const TestOptions& options, const suite::Cases& cases, suit
 // Writes everything into one folder: the page with its files, and reports for programs.
 bool write_folder(const TestOptions& options, const suite::SuiteRun& run,
                   const std::optional<suite::EarlierRun>& earlier) {
-  suite::write_html_report(run, earlier ? &*earlier : nullptr, options.report);
-  const std::string folder = options.report + "/";
-  bool good = cli::write_file(folder + "report.json", suite::json_report(run));
-  good = cli::write_file(folder + "junit.xml", suite::junit_report(run)) && good;
-  return cli::write_file(folder + "report.tap", suite::tap_report(run)) && good;
+  try {
+    suite::ReportFolder folder(options.report);
+    suite::write_html_report(run, earlier ? &*earlier : nullptr, folder);
+    folder.write("report.json", suite::json_report(run));
+    folder.write("junit.xml", suite::junit_report(run));
+    folder.write("report.tap", suite::tap_report(run));
+    folder.finish();
+    return true;
+  } catch (const std::system_error& error) {
+    cli::cannot_write(error);
+    return false;
+  }
 }
 
 bool write_formats(const TestOptions& options, const suite::SuiteRun& run,
                    const std::optional<suite::EarlierRun>& earlier) {
   bool good = true;
-  if (options.format == "json") good = cli::write_file(options.out, suite::json_report(run));
-  if (options.format == "junit") good = cli::write_file(options.out, suite::junit_report(run));
-  if (options.format == "tap") good = cli::write_file(options.out, suite::tap_report(run));
+  // The report of a run that broke must not cost that of one that did not.
+  const bool keep = suite::exit_code(run) == cli::kVerdictBroken && options.out != "-" &&
+                    std::filesystem::is_regular_file(options.out);
+  if (keep && options.format != "text") {
+    fmt::print(stderr, "rubric test: the run broke; {} stays as it was\n", options.out);
+  } else if (options.format == "json") {
+    good = cli::write_file(options.out, suite::json_report(run));
+  } else if (options.format == "junit") {
+    good = cli::write_file(options.out, suite::junit_report(run));
+  } else if (options.format == "tap") {
+    good = cli::write_file(options.out, suite::tap_report(run));
+  }
   const char* actions = std::getenv("GITHUB_ACTIONS");
   if (actions && std::string_view(actions) == "true") {
     fmt::print(stderr, "{}", suite::github_annotations(run));
@@ -279,6 +292,16 @@ int run_test(const TestOptions& options) {
   plan.expected = read_expected(options);
   const std::optional<suite::EarlierRun> earlier = read_earlier(options);
   check_seeds(options);
+  for (const std::string& input : {options.expect, options.compare}) {
+    if (!input.empty()) cli::keep_apart("--out", options.out, {input});
+  }
+  if (!options.traces.empty()) {
+    cli::keep_apart("--out", options.out, options.traces);
+    cli::keep_apart("--write-expect", options.write_expect, options.traces);
+  }
+  if (!options.write_expect.empty()) {
+    cli::keep_apart("--write-expect", options.write_expect, {options.out});
+  }
   plan.cases = selected(options, cases);
   if (options.list) return list(options, plan.cases);
   if (options.targets.empty()) throw cli::UsageError("--target is required");
@@ -311,7 +334,7 @@ int run_test(const TestOptions& options) {
   const bool written = write_formats(options, all, earlier) &&
                        (options.write_expect.empty() ||
                         cli::write_file(options.write_expect, suite::known_list(all, expected)));
-  return written && told ? suite::exit_code(all) : cli::kVerdictBroken;
+  return written && told ? suite::exit_code(all) : cli::kExitOutput;
 }
 
 void add_selection(cli::Command& command, TestOptions& options) {

@@ -1,13 +1,6 @@
 #include "tools/encode/packet_output.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
-#include <algorithm>
-#include <cerrno>
-#include <system_error>
 
 #include "codec/containers/link_record.h"
 #include "codec/reflect/fault_text.h"
@@ -63,40 +56,8 @@ Holds holds(std::string_view container) {
   return {pcapng || container == kPcap, pcapng, pcapng, pcapng};
 }
 
-bool overwrites(const std::string& output, const std::vector<std::string>& inputs) {
-  struct stat to {};
-  if (output == "-" || ::stat(output.c_str(), &to) != 0 || !S_ISREG(to.st_mode)) return false;
-  const auto is_output = [&to](const std::string& input) {
-    struct stat from {};
-    const int got = input == "-" ? ::fstat(0, &from) : ::stat(input.c_str(), &from);
-    return got == 0 && to.st_dev == from.st_dev && to.st_ino == from.st_ino;
-  };
-  if (inputs.empty()) return is_output("-");
-  return std::any_of(inputs.begin(), inputs.end(), is_output);
-}
-
 PacketOutput::PacketOutput(std::string_view container, const std::string& path)
-    : container_(container) {
-  if (path != "-") open_file(path);
-  output_ = std::make_unique<cli::Output>(fd_);
-}
-
-PacketOutput::~PacketOutput() {
-  output_.reset();
-  if (fd_ > 1) ::close(fd_);
-  if (!created_.empty()) ::unlink(created_.c_str());
-}
-
-void PacketOutput::open_file(const std::string& path) {
-  constexpr int kFlags = O_WRONLY | O_CREAT | O_CLOEXEC;
-  fd_ = ::open(path.c_str(), kFlags | O_EXCL, 0666);
-  if (fd_ >= 0) {
-    created_ = path;
-  } else {
-    fd_ = ::open(path.c_str(), kFlags, 0666);
-  }
-  if (fd_ < 0) throw std::system_error(errno, std::generic_category());
-}
+    : container_(container), output_(path, cli::Output::Mode::kWhole) {}
 
 // Makes the writer. A pcap file takes the link type of its first packet.
 bool PacketOutput::make_writer(const Packet& first) {
@@ -109,12 +70,8 @@ bool PacketOutput::make_writer(const Packet& first) {
     if (link_type_ == 0) return false;
     writer_ = std::make_unique<PcapWriter>(link_type_);
   }
-  created_.clear();
-  struct stat status {};
-  const bool file = fd_ > 1 && ::fstat(fd_, &status) == 0 && S_ISREG(status.st_mode);
-  if (file && ::ftruncate(fd_, 0) != 0) throw std::system_error(errno, std::generic_category());
   writer_->begin(bytes_);
-  output_->buffer().append(bytes_);
+  output_.buffer().append(bytes_);
   return true;
 }
 
@@ -140,25 +97,23 @@ std::string PacketOutput::write(const Packet& packet, std::string_view interface
   if (is_stream && packet.error.fault == Fault::kCut) {
     cut_ = bytes_;
   } else {
-    output_->buffer().append(bytes_);
-    output_->drain();
+    output_.buffer().append(bytes_);
+    output_.drain();
   }
   return {};
 }
 
-std::string PacketOutput::finish() {
+bool PacketOutput::finish() {
   if (!writer_) {
     Packet none;
     none.framing = Framing::kHdlc;
     make_writer(none);
   }
-  output_->buffer().append(cut_);
+  output_.buffer().append(cut_);
   bytes_.clear();
   writer_->finish(bytes_);
-  output_->buffer().append(bytes_);
-  output_->flush();
-  std::string what;
-  return output_->failed(&what) ? what : std::string{};
+  output_.buffer().append(bytes_);
+  return output_.finish();
 }
 
 }  // namespace rubric::encode

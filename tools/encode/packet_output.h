@@ -23,19 +23,11 @@ struct Holds {
 };
 Holds holds(std::string_view container);
 
-/// Returns whether writing to `output` would overwrite a file that is read; none or "-" is stdin,
-/// an `output` of "-" stdout.
-bool overwrites(const std::string& output, const std::vector<std::string>& inputs);
-
-/// Writes packets. Writes the begin of a container even if no packet follows, but nothing before
-/// the first packet or the end: until then an existing file keeps its contents.
+/// Writes packets into a file that takes its name in finish(), even if no packet came.
 class PacketOutput {
  public:
   /// `path`: a file, "-" is stdout. Throws std::system_error.
   PacketOutput(std::string_view container, const std::string& path);
-  ~PacketOutput();
-  PacketOutput(const PacketOutput&) = delete;
-  PacketOutput& operator=(const PacketOutput&) = delete;
 
   /// Writes a packet. Returns an empty text if it was taken, else why it was not. In a stream only
   /// the last packet can be cut; a cut one is refused by `cut_refused` when another follows.
@@ -44,18 +36,15 @@ class PacketOutput {
   bool cut_refused() const { return cut_refused_; }
 
   /// Returns whether the reader still takes the output.
-  bool open() const { return output_->open(); }
-  /// Writes the end. Returns what failed, or an empty text; a closed pipe is no failure.
-  std::string finish();
+  bool open() const { return output_.open(); }
+  /// Writes the end. Returns false if something could not be written, as cli::Output does.
+  bool finish();
 
  private:
-  void open_file(const std::string& path);
   bool make_writer(const Packet& first);
 
   std::string container_;
-  std::string created_;  ///< The file's name as long as nothing was written to a new one.
-  int fd_ = 1;
-  std::unique_ptr<cli::Output> output_;
+  cli::Output output_;
   std::unique_ptr<Writer> writer_;
   std::uint16_t link_type_ = 0;
   std::string bytes_;

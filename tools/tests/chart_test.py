@@ -178,7 +178,7 @@ class Chart(unittest.TestCase):
             self.assertEqual(chart("j4.accept", "--format", "svg", "--out", str(out)).returncode,
                              0)
             xml.etree.ElementTree.parse(out)
-            self.assertEqual(chart("j4.accept", "--out", f"{folder}/none/x").returncode, 2)
+            self.assertEqual(chart("j4.accept", "--out", f"{folder}/none/x").returncode, 74)
 
     def test_what_does_not_exist(self):
         for words, code, text in [

@@ -234,7 +234,7 @@ class Formats(Folder):
         self.assertEqual((code, out, err), (1, "", ""))
         self.assertEqual(path.read_text(), check("--format", "json", WRONG_SEQ)[1])
         code, out, err = check("--out", self.folder / "no" / "report", WRONG_SEQ)
-        self.assertEqual((code, out), (2, ""))
+        self.assertEqual((code, out), (74, ""))
         self.assertIn("No such file or directory", err)
         copy = self.write("copy.pcapng", WRONG_SEQ.read_bytes())
         self.assertEqual(check("--out", copy, copy)[0], 64)
@@ -242,7 +242,7 @@ class Formats(Folder):
 
     def test_out_that_is_full(self):
         code, _, err = check("--out", "/dev/full", WRONG_SEQ)
-        self.assertEqual(code, 2)
+        self.assertEqual(code, 74)
         self.assertIn("cannot write /dev/full", err)
 
 

@@ -21,6 +21,7 @@ SERIAL = FIRMWARE / "a_join_data.serial.bin"
 BAD = FIRMWARE / "h10_hdlc_escape_and_bad_serial.serial_in.bin"
 PLAIN = FIRMWARE / "b_reliable.serial.bin"
 CLEAN, MALFORMED, USAGE, INPUT = range(4)
+OUTPUT = 74
 
 RUBRIC = None
 
@@ -100,11 +101,11 @@ class ExitCodes(unittest.TestCase):
         self.assertEqual(sf_jsonl.returncode, INPUT)
         self.assertIn("encode", sf_jsonl.stderr.decode())
 
-    def test_unwritable_is_3(self):
+    def test_unwritable_is_74(self):
         with open("/dev/full", "wb") as full:
             done = subprocess.run([RUBRIC, "decode", str(JOIN)], stdout=full,
                                   stderr=subprocess.PIPE, check=False)
-        self.assertEqual(done.returncode, INPUT)
+        self.assertEqual(done.returncode, OUTPUT)
         self.assertIn("cannot write", done.stderr.decode())
 
     def test_help_is_0(self):
@@ -271,7 +272,7 @@ class Terminals(unittest.TestCase):
                 json.loads(process.stdout.readline())
                 process.stdout.close()
                 self.assertEqual(process.stderr.read(), b"")
-                self.assertEqual(process.wait(), CLEAN)
+                self.assertEqual(process.wait(), OUTPUT)
 
     def test_what_comes_slowly_is_shown_at_once(self):
         with subprocess.Popen([RUBRIC, "decode", "--input-format", "hdlc"], stdin=subprocess.PIPE,

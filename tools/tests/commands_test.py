@@ -121,7 +121,7 @@ class Encode(Folder):
                 done = subprocess.run([RUBRIC, "encode", "--as", "config", *args, "-o", file],
                                       stdin=stdin, capture_output=True)
             self.assertEqual(done.returncode, 2, args)
-            self.assertIn(b"is also the input", done.stderr)
+            self.assertIn(b"is also an input", done.stderr)
             self.assertEqual(file.read_text(), CONFIG)
 
     def test_an_unreadable_input_leaves_the_target_alone(self):
@@ -134,7 +134,7 @@ class Encode(Folder):
 
     def test_files_that_are_not_there(self):
         self.assertEqual(rubric("encode", "/nonexistent")[0], 3)
-        self.assertEqual(rubric("encode", "-o", "/nonexistent/x", stdin="")[0], 3)
+        self.assertEqual(rubric("encode", "-o", "/nonexistent/x", stdin="")[0], 74)
 
 
 class Convert(Folder):
@@ -177,7 +177,7 @@ class Convert(Folder):
         copy.write_bytes(SERIAL.read_bytes())
         code, _, err = rubric("convert", copy, copy)
         self.assertEqual(code, 2)
-        self.assertIn("is also the input", err)
+        self.assertIn("is also an input", err)
         self.assertEqual(copy.read_bytes(), SERIAL.read_bytes())
         with open(copy, "rb") as stdin:
             done = subprocess.run([RUBRIC, "convert", "-o", copy], stdin=stdin, capture_output=True)
@@ -376,7 +376,7 @@ class Simulate(unittest.TestCase):
     def test_output_that_cannot_be_written(self):
         for target, why in (("/nonexistent/log.rtr", "No such file"), ("/dev/full", "No space")):
             code, _, err = rubric("simulate", "--seconds", "1", "--out-rtr", target)
-            self.assertEqual(code, 3)
+            self.assertEqual(code, 74)
             self.assertIn(f"rubric: cannot write {target}: {why}", err)
 
 

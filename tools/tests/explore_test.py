@@ -7,8 +7,10 @@ the difference.
 """
 
 import json
+import os
 import pathlib
 import re
+import resource
 import subprocess
 import sys
 import tempfile
@@ -63,7 +65,7 @@ class Explore(unittest.TestCase):
             self.assertIn("verdict      broken", done.stdout)
             self.assertIn("case explore.one_terminal", path.read_text())
         done = explore(*FAULTS, "--flaw", "no_fail", "--out", f"{folder}/none/x")
-        self.assertEqual(done.returncode, 2)
+        self.assertEqual(done.returncode, 74)
         self.assertIn("cannot write", done.stderr)
 
     def test_only_the_asked_properties_count(self):
@@ -73,13 +75,13 @@ class Explore(unittest.TestCase):
         done = explore(*words, "--property", "one_report", "--property", "queues_bounded")
         self.assertEqual(done.returncode, 0, done.stdout)
 
-    def test_who_closes_the_pipe_has_seen_enough(self):
+    def test_a_closed_pipe_ends_it_without_a_word(self):
         process = subprocess.Popen([RUBRIC, "explore", *FAULTS, "--flaw", "no_fail"],
                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         process.stdout.close()
         self.assertNotIn("cannot write", process.stderr.read())
         process.stderr.close()
-        self.assertEqual(process.wait(), 1)
+        self.assertEqual(process.wait(), 74)
 
     def test_the_known_weakness_is_reported_and_breaks_nothing(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -118,6 +120,27 @@ class Explore(unittest.TestCase):
         done = explore("--motes", "2", *FAULTS, "--max-states", "500")
         self.assertEqual(done.returncode, 3)
         self.assertIn("verdict      inconclusive: as many states", done.stdout)
+        depth = re.search(r"^depth +(\d+)$", done.stdout, re.M)[1]
+        self.assertIn(f"proved       no property is broken in fewer than {depth} moves",
+                      done.stdout)
+
+    def test_memory_is_a_limit(self):
+        network = ["--motes", "3", "--sinks", "2", *FAULTS, "--threads", "2"]
+        process = subprocess.Popen([RUBRIC, "explore", *network, "--memory", "60M"],
+                                   stdout=subprocess.PIPE, text=True)
+        out = process.stdout.read()
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        process.stdout.close()
+        self.assertEqual(process.returncode, 3)
+        self.assertIn("verdict      inconclusive: more memory than --memory allows", out)
+        self.assertIn("proved       no property is broken", out)
+        self.assertLess(usage.ru_maxrss, 60 << 10)
+        done = subprocess.run([RUBRIC, "explore", *network], capture_output=True, text=True,
+                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS,
+                                                                    (400 << 20, 400 << 20)))
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertIn("verdict      inconclusive: more memory than the system has", done.stdout)
 
     def test_usage(self):
         for words, text in [(["--flaw", "no_fial"], "did you mean 'no_fail'"),

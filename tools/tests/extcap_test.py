@@ -303,7 +303,7 @@ class Captures(Base):
     def test_pipes_that_cannot_be(self):
         process = self.capture("sf@127.0.0.1:1", fifo=self.folder / "no" / "fifo")
         code, err = self.ended(process)
-        self.assertEqual(code, 3)
+        self.assertEqual(code, 74)
         self.assertIn("No such file or directory", err)
         self.assertEqual(sorted(path.name for path in self.folder.iterdir()), ["fifo", "home"])
 

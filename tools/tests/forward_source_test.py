@@ -219,7 +219,7 @@ class Sources(unittest.TestCase):
             running.wait_for(f"^rubric: {kept}: File too large$")
             mote.say(from_mote(packet(2)))
             self.assertEqual(client.packets(101)[-1], packet(2))
-            self.assertEqual(running.end()[0], 3)
+            self.assertEqual(running.end()[0], 74)
             self.assertEqual(sum("File too large" in line for line in running.complaints), 1)
 
     def test_a_capture_is_a_regular_file(self):

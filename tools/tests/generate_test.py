@@ -194,11 +194,11 @@ class Generate(unittest.TestCase):
         self.assert_refused("did you mean 'oscilloscope'", "--protocol", "osciloscope")
         self.assert_refused("pcapng and jsonl do", "--format", "sf", "--message", "join_request")
         self.assert_refused("jsonl carries the expectations", "--expect", target)
-        self.assert_refused("is also the output", "--format", "hex", "-o", target, "--expect",
-                            target)
-        self.assert_refused("No such file", "-o", str(self.folder / "no" / "x"), code=3)
+        self.assert_refused("is also an input or another output", "--format", "hex",
+                            "-o", target, "--expect", target)
+        self.assert_refused("No such file", "-o", str(self.folder / "no" / "x"), code=74)
         self.assert_refused("No such file", "--format", "hex", "--expect",
-                            str(self.folder / "no" / "x"), code=3)
+                            str(self.folder / "no" / "x"), code=74)
 
 
 if __name__ == "__main__":

@@ -88,13 +88,18 @@ class Install(unittest.TestCase):
         run("cmake", "--build", folder / "build")
         return run(folder / "build/consumer")
 
+    def examples(self, prefix):
+        return next(prefix.glob("**/examples"))
+
+    def flags(self, prefix, module):
+        found = next(prefix.glob("**/pkgconfig"))
+        return run("pkg-config", "--cflags", "--libs", module,
+                   env={**os.environ, "PKG_CONFIG_PATH": str(found)}).split()
+
     def pkg_config(self, prefix, module, code, name):
         source = self.base / f"{name}.cc"
         source.write_text(code, encoding="utf-8")
-        found = next(prefix.glob("**/pkgconfig"))
-        flags = run("pkg-config", "--cflags", "--libs", module,
-                    env={**os.environ, "PKG_CONFIG_PATH": str(found)}).split()
-        run("c++", "-std=c++20", source, "-o", self.base / name, *flags)
+        run("c++", "-std=c++20", source, "-o", self.base / name, *self.flags(prefix, module))
         return run(self.base / name)
 
     def test_the_codec_needs_nothing_else(self):
@@ -102,6 +107,27 @@ class Install(unittest.TestCase):
                              "-DCMAKE_DISABLE_FIND_PACKAGE_fmt=ON",
                              "-DCMAKE_DISABLE_FIND_PACKAGE_yaml-cpp=ON")
         self.assertEqual(said, "10 bytes, island 11\n")
+
+    def test_the_node_on_a_pc(self):
+        code = (self.examples(self.prefix) / "pc.cc").read_text(encoding="utf-8")
+        said = self.consumer("node", "node", code, self.prefix,
+                             "-DCMAKE_DISABLE_FIND_PACKAGE_fmt=ON",
+                             "-DCMAKE_DISABLE_FIND_PACKAGE_yaml-cpp=ON",
+                             wanted="REQUIRED COMPONENTS node")
+        self.assertIn("sink: mote 5 is a member\n", said)
+        self.assertRegex(said, r"mote: message \d+ acked\n$")
+
+    @unittest.skipUnless(shutil.which("avr-g++"), "there is no avr-g++")
+    def test_the_node_on_a_mote(self):
+        elf = self.base / "mote.elf"
+        run("avr-g++", "-mmcu=atmega128", "-std=c++14", "-Os", "-Wall", "-Wextra", "-Werror",
+            "-ffreestanding", "-fno-exceptions", "-fno-rtti",
+            *self.flags(self.prefix, "rubric-node"), self.examples(self.prefix) / "mote.cc",
+            "-o", elf)
+        text, data, bss = map(int, run("avr-size", elf).splitlines()[1].split()[:3])
+        self.assertLess(data + bss, 3300)
+        self.assertLess(4000, text + data)
+        self.assertLess(text + data, 20000)
 
     def test_the_conformance_library(self):
         said = self.consumer("conformance", "conformance", CONFORMANCE, self.prefix,

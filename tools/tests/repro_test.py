@@ -131,7 +131,7 @@ class Whole(unittest.TestCase):
         for words, code in [(["machine", "nowhere"], 66), (["no_fuzzer", "x"], 64),
                             (["machine", SEEDS, "--target", "machine:none"], 64), ([], 64)]:
             self.assertEqual(run("repro", *words)[0], code, words)
-        self.assertEqual(run("repro", "machine", SEEDS, "--out", self.folder)[0], 2)
+        self.assertEqual(run("repro", "machine", SEEDS, "--out", self.folder)[0], 74)
 
 
 if __name__ == "__main__":

@@ -16,7 +16,8 @@ import time
 import unittest
 
 from live_testing import RUBRIC, Mote, lines_of
-from send_testing import CLEAN, LONG_MS, NOT_SENT, Base, config, confirms, line, send
+from send_testing import (CLEAN, LONG_MS, NOT_SENT, OUTPUT, Base, config, confirms, line,
+                          send)
 from serial_testing import ACK, PACKET_ACK, PACKET_NOACK, PATIENCE_S, Pty, hdlc
 
 DEMO = "spec/captures/basestation/s04_acks.from_sink.sfstream"
@@ -167,7 +168,7 @@ class Serial(Base):
         running.process.stdout.close()
         running.process.stdin.write("".join(line(value) for value in range(10)).encode())
         running.process.stdin.close()
-        self.assertEqual(running.process.wait(PATIENCE_S), CLEAN)
+        self.assertEqual(running.process.wait(PATIENCE_S), OUTPUT)
         done.set()
         mote.end()
         self.assertEqual(len(mote.packets), 10)

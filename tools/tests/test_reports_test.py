@@ -133,10 +133,10 @@ class Formats(Folder):
         xml.etree.ElementTree.parse(self.folder / "a" / "b" / "junit.xml")
         self.assertIn("j4.wrong_seq", (self.folder / "a" / "b" / "index.html").read_text())
         code, _, err = test(*target, "--out", "/dev/full")
-        self.assertEqual(code, 2)
+        self.assertEqual(code, 74)
         self.assertIn("/dev/full", err)
         code, _, err = test(*target, "--report", "/dev/null/x")
-        self.assertEqual(code, 2)
+        self.assertEqual(code, 74)
         self.assertNotEqual(err, "")
 
     def test_compare(self):

@@ -29,8 +29,9 @@ ALLOWED = {
     # Legal traffic is written from the rules: it shares nothing with what it is a test of.
     "conformance/selftest/lawful_traffic": ["codec", "conformance/selftest/lawful_traffic"],
     # Written from the rules as well, and tried by what the reference machine passes.
-    "conformance/adapters/cpp": ["codec/runtime", "codec/generated", "conformance/adapters/cpp"],
-    "conformance/adapters/firmware": ["codec/runtime", "codec/generated",
+    "conformance/node": ["codec/runtime", "codec/generated", "conformance/node"],
+    "conformance/adapters/cpp": ["codec/runtime", "conformance/node", "conformance/adapters/cpp"],
+    "conformance/adapters/firmware": ["codec/runtime", "codec/generated", "conformance/node",
                                       "conformance/adapters/firmware"],
     "conformance": ["codec", "conformance"],
     "fuzz": ["codec", "conformance", "spec/compiler", "fuzz", "tools"],

@@ -25,7 +25,6 @@ constexpr Milliseconds kReconnectEvery{1000};
 // Packets within this time go to a client in one piece. The first packet after a pause does not
 // wait.
 constexpr Milliseconds kGather{2};
-constexpr Milliseconds kKeepEvery{200};
 constexpr Milliseconds kDrainTime{1000};
 constexpr Milliseconds kNoRoomPause{1000};
 constexpr int kAcceptedAtOnce = 64;
@@ -62,16 +61,13 @@ Server::Server(const Options& options)
       backlog_(options.backlog_bytes) {
   options_.limits.packet_max = source_.packet_max();
   options_.clients_max = clients_possible(options.clients_max);
-  if (!options.write.empty()) capture_.emplace(options.write);
+  if (!options.write.empty()) capture_.emplace(options.write, options.write_mode, options.rotation);
 }
 
 Source::Handlers Server::handlers() {
   Source::Handlers out;
   if (!options_.write.empty()) {
-    out.on_frame = [this](const Packet& frame) {
-      capture_->write(frame, source_.name());
-      if (!capture_due_) capture_due_ = steady_clock::now() + kKeepEvery;
-    };
+    out.on_frame = [this](const Packet& frame) { capture_->write(frame, source_.name()); };
   }
   out.on_packet = [this](Bytes bytes) { on_packet(bytes); };
   out.on_malformed = [this] { ++counts_.malformed; };
@@ -139,6 +135,10 @@ void Server::connected() {
     }
   }
   if (!source_.is_up()) return;
+  if (capture_ && !capture_->is_started() && !capture_->open()) {
+    over_ = true;
+    return;
+  }
   announce();
   if (std::exchange(lost_, false)) fmt::print(stderr, "rubric: {}: again\n", source_.name());
 }
@@ -269,12 +269,6 @@ bool Server::write_due(Time now) const {
   return waiting > 0 && (now >= written_at_ + kGather || waiting > backlog_.size_bytes() / 4);
 }
 
-void Server::keep_capture(Time now) {
-  if (!capture_due_ || now < *capture_due_) return;
-  capture_->flush();
-  capture_due_.reset();
-}
-
 std::optional<Server::Time> Server::next() const {
   std::optional<Time> out;
   const auto at = [&out](std::optional<Time> time) {
@@ -282,7 +276,6 @@ std::optional<Server::Time> Server::next() const {
   };
   at(open_at_);
   at(accept_at_);
-  at(capture_due_);
   at(source_.next());
   if (backlog_.end() != written_end_) at(written_at_ + kGather);
   for (const auto& client : clients_) at(client->deadline());
@@ -326,7 +319,6 @@ void Server::turn() {
   give_packets(now);
   if (write_due(now)) write_clients(now);
   remove_clients();
-  keep_capture(now);
   if (over_) return;
   wait(next());
   now = steady_clock::now();
@@ -348,7 +340,9 @@ bool Server::run() {
   counts_.not_sent += source_.is_giving() ? 1 : 0;
   for (const auto& client : clients_) counts_.not_sent += client->packets_waiting();
   source_.close(steady_clock::now());
-  return (!capture_ || capture_->finish()) && !failed;
+  // A source that cannot be had costs no file.
+  capture_failed_ = capture_ && capture_->is_started() && !capture_->finish();
+  return !failed;
 }
 
 }  // namespace rubric::forward

@@ -28,6 +28,8 @@ struct Options {
   bool reconnect = false;
   bool verbose = false;
   std::string write;  ///< A capture of what goes by; empty: none.
+  lines::CaptureFile::Mode write_mode = lines::CaptureFile::Mode::kGrow;
+  lines::Rotation rotation;
 };
 
 /// Totals of the forwarded packets.
@@ -45,15 +47,15 @@ struct Counts {
 /// Runs in one thread, which waits only for everything at once.
 class Server {
  public:
-  /// Listens from now on. Throws lines::Broken if that fails, std::system_error if the
-  /// capture cannot be written.
+  /// Listens from now on. Throws lines::Broken if that fails.
   explicit Server(const Options& options);
 
   /// Runs until asked to stop, or until the source is gone and is not to be opened again. Prints on
   /// stdout where it listens, once the source is open, and events on stderr. Returns false if the
-  /// source is gone, or the capture could not be written. Throws std::system_error if it cannot
-  /// wait any more.
+  /// source is gone. Throws std::system_error if it cannot wait any more.
   bool run();
+  /// Returns whether the capture is not whole; stderr has the reason.
+  bool capture_failed() const { return capture_failed_; }
   const Counts& counts() const { return counts_; }
 
  private:
@@ -79,7 +81,6 @@ class Server {
 
   void turn();
   bool write_due(Time now) const;
-  void keep_capture(Time now);
   std::optional<Time> next() const;
   /// Fills polled_: the listener, the source, the clients.
   void wait(std::optional<Time> until);
@@ -87,7 +88,7 @@ class Server {
   Options options_;
   Counts counts_;
   std::optional<lines::CaptureFile> capture_;
-  std::optional<Time> capture_due_;
+  bool capture_failed_ = false;
   lines::Descriptor listener_;
   SocketAddress here_;
   Source source_;

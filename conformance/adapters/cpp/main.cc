@@ -3,29 +3,27 @@
 #include <cmath>
 #include <iostream>
 #include <map>
-#include <memory>
+#include <optional>
 
-#include "codec/generated/tinyos/am_header.h"
-#include "conformance/adapters/cpp/base_station.h"
-#include "conformance/adapters/cpp/mote.h"
-#include "conformance/adapters/cpp/sink.h"
 #include "conformance/adapters/cpp/words.h"
+#include "conformance/node/node.h"
 
 namespace rubric::cpp_node {
 namespace {
 
-const std::string kLines[] = {"radio", "serial", "peis"};
+using namespace node;
+using Time = std::uint64_t;
+
+const std::string kLineNames[] = {"radio", "serial", "peis"};
 
 Line line_of(const std::string& name) {
-  for (std::size_t i = 0; i < std::size(kLines); ++i) {
-    if (kLines[i] == name) return static_cast<Line>(i);
+  for (std::size_t i = 0; i < std::size(kLineNames); ++i) {
+    if (kLineNames[i] == name) return static_cast<Line>(i);
   }
   throw Unsupported("no line " + name);
 }
 
-std::string text(Address one) {
-  return std::to_string(one.island) + ":" + std::to_string(one.device);
-}
+std::string text(Address one) { return std::to_string(one.pid) + ":" + std::to_string(one.devid); }
 std::string text(ChannelId id) {
   return std::to_string(id >> 16) + "->" + std::to_string(id & 0xFFFF);
 }
@@ -38,39 +36,38 @@ std::string text(float value) {
   return out.str();
 }
 
-class Adapter : public World {
+class Adapter : public Driver, public Application {
  public:
   /// Answers one command; returns false after the last.
   bool answer(const std::string& line);
 
-  void transmit(Line line, const Frame& frame) override;
+  void transmit(Line line, Bytes packet, bool link_ack) override;
   void joined(Address own, bool success) override {
     up("joined(" + text(own) + " " + text(success) + ")");
   }
-  void mote_joined(Address mote, const MoteDesc& description) override {
+  void mote_joined(Address mote, const Descriptor& description) override {
     up("mote_joined(" + text(mote) + " " + std::to_string(int(description.mote_type)) + " " +
        std::to_string(description.transducers.raw()) + " " +
        std::to_string(description.actuators.raw()) + ")");
   }
-  void received(Address src, Component application, Bytes data) override {
-    up("received(" + text(src) + " " + std::to_string(int(application)) + " x" + hex_of(data) +
-       ")");
+  void received(Address src, std::uint8_t app_id, Bytes data) override {
+    up("received(" + text(src) + " " + std::to_string(app_id) + " x" + hex_of(data) + ")");
   }
-  void ack_received(Component application, std::uint16_t number, bool success) override {
-    up("ack_received(" + std::to_string(int(application)) + " " + std::to_string(number) + " " +
+  void ack_received(std::uint8_t app_id, std::uint16_t number, bool success) override {
+    up("ack_received(" + std::to_string(app_id) + " " + std::to_string(number) + " " +
        text(success) + ")");
   }
-  void syn_data(ChannelId channel, DataStatus status) override {
+  void syn_data_received(ChannelId channel, DataStatus status) override {
     up("syn_data(" + text(channel) + " " + std::to_string(int(status)) + ")");
   }
 
  private:
   std::string closing(const std::vector<std::string>& words);
-  std::string work(const std::vector<std::string>& words, Ticks time);
+  std::string work(const std::vector<std::string>& words, Time time);
   void reset(const std::vector<std::string>& words);
   void start();
-  void pass(Ticks time, bool stop_at_output);
-  void rx(const std::string& line, const std::string& hex);
+  void run();
+  void pass(Time time, bool stop_at_output);
   void call(const std::string& text);
   void power(const std::string& what);
   void up(const std::string& news) { write("up", news); }
@@ -80,10 +77,11 @@ class Adapter : public World {
   }
 
   std::string role_;
-  Settings settings_;
-  std::unique_ptr<Node> node_;  // None while the power is off.
+  Setup setup_{};
+  std::optional<SizedNode<AnySizes>> node_;  // None while the power is off.
+  std::optional<Time> due_;
   std::map<Line, bool> taken_;  // By somebody else, whether the node has power or not.
-  Ticks now_ = 0;
+  Time now_ = 0;
   bool wrote_ = false;
 };
 
@@ -111,7 +109,7 @@ std::string Adapter::closing(const std::vector<std::string>& words) {
 }
 
 // Runs a command with a time, which is its second word.
-std::string Adapter::work(const std::vector<std::string>& words, Ticks time) {
+std::string Adapter::work(const std::vector<std::string>& words, Time time) {
   const std::string& command = words[0];
   wrote_ = false;
   pass(time, command == "until");
@@ -122,9 +120,10 @@ std::string Adapter::work(const std::vector<std::string>& words, Ticks time) {
     for (std::size_t i = 3; i < words.size(); ++i) rest += " " + words[i];
     if (node_) call(rest);
   } else if (command == "rx" && words.size() == 4) {
-    if (node_) rx(words[2], words[3]);
+    const Data packet = bytes_of_hex(words[3]);
+    if (node_) node_->received(line_of(words[2]), Bytes(packet.data(), packet.size()));
   } else if (command == "linkack" && words.size() == 3) {
-    if (node_) node_->confirmed(words[2] == "1");
+    if (node_) node_->sent(Line::kRadio, words[2] == "1");
   } else if (command == "line" && words.size() == 4) {
     const bool busy = words[3] == "busy";
     if (node_ && words[2] == "app") node_->set_application_busy(busy);
@@ -133,76 +132,65 @@ std::string Adapter::work(const std::vector<std::string>& words, Ticks time) {
   } else if (command != "until") {
     throw Unsupported(command);
   }
-  const std::optional<Ticks> due = node_ ? node_->due() : std::nullopt;
-  std::cout << "next " << (due ? std::to_string(*due) : "-") << '\n';
+  run();
+  std::cout << "next " << (due_ ? std::to_string(*due_) : "-") << '\n';
   return "done " + std::to_string(now_);
 }
 
 void Adapter::reset(const std::vector<std::string>& words) {
   const Arguments arguments(words);
   role_ = words[1];
-  settings_ = {};
-  settings_.device = arguments.number("id");
-  settings_.island = arguments.number("island");
-  settings_.channels = arguments.number("channels");
+  setup_ = {};
+  if (role_ == "sink") setup_.role = Role::kSink;
+  if (role_ == "base_station") setup_.role = Role::kBaseStation;
+  if (role_ != "mote" && setup_.role == Role::kMote) throw Unsupported("role " + role_);
+  setup_.id = arguments.number("id");
+  setup_.island = arguments.number("island");
+  setup_.channels = arguments.number<std::uint8_t>("channels");
   const auto seed = arguments.number<std::uint64_t>("seed");
-  settings_.next_number = static_cast<std::uint16_t>(1000 + 257 * seed);
+  setup_.last_seq_num = static_cast<std::uint16_t>(999 + 257 * seed);
   now_ = 0;
   taken_.clear();
   start();
 }
 
 void Adapter::start() {
-  settings_.now = now_;
-  node_.reset();
-  if (role_ == "mote") node_ = std::make_unique<Mote>(settings_, *this);
-  if (role_ == "sink") node_ = std::make_unique<Sink>(settings_, *this);
-  if (role_ == "base_station") node_ = std::make_unique<BaseStation>(settings_, *this);
-  if (!node_) throw Unsupported("role " + role_);
+  setup_.now = static_cast<Ticks>(now_);
+  node_.emplace(*this, *this);
+  node_->start(setup_);
   for (const auto& [line, busy] : taken_) node_->set_busy(line, busy);
 }
 
+// Does what is due now.
+void Adapter::run() {
+  due_.reset();
+  if (!node_) return;
+  const auto now = static_cast<Ticks>(now_);
+  Ticks due = 0;
+  if (node_->run(now, due)) due_ = now_ + (due - now);
+}
+
 // Lets time pass to `time`, or to the first instant at which the node writes something.
-void Adapter::pass(Ticks time, bool stop_at_output) {
-  while (node_ && node_->due() && *node_->due() <= time && !(stop_at_output && wrote_)) {
-    now_ = std::max(now_, *node_->due());
-    node_->set_time(now_);
-    node_->run_due();
+void Adapter::pass(Time time, bool stop_at_output) {
+  while (due_ && *due_ <= time && !(stop_at_output && wrote_)) {
+    now_ = *due_;
+    run();
   }
   if (stop_at_output && wrote_) return;
-  now_ = std::max(now_, time);
-  if (node_) node_->set_time(now_);
+  now_ = time;
+  run();
 }
 
 void Adapter::power(const std::string& what) {
-  if (node_) settings_.next_number = node_->next_number();
+  if (node_) setup_.last_seq_num = node_->last_seq_num();
   node_.reset();
   if (what == "reboot") start();
 }
 
-void Adapter::rx(const std::string& line, const std::string& hex) {
-  const Data packet = bytes_of_hex(hex);
-  const auto header = tinyos::AmHeaderView::parse(Bytes(packet.data(), packet.size()));
-  if (!header) throw Unsupported("a frame without its header");
-  Frame frame;
-  frame.dest = header->dest();
-  frame.src = header->src();
-  frame.type = static_cast<AmType>(header->type());
-  frame.payload.assign(header->stale().begin(), header->stale().end());
-  node_->heard(line_of(line), frame);
-}
-
-void Adapter::transmit(Line line, const Frame& frame) {
-  tinyos::AmHeader header;
-  header.dest = frame.dest;
-  header.src = frame.src;
-  header.length = static_cast<std::uint8_t>(frame.payload.size());
-  header.type = static_cast<std::uint8_t>(frame.type);
-  Data packet(tinyos::AmHeaderView::kMaxSizeBytes);
-  tinyos::AmHeaderLayout::store(header, packet.data());
-  packet.insert(packet.end(), frame.payload.begin(), frame.payload.end());
-  write("tx", kLines[static_cast<std::size_t>(line)] + " " +
-                  hex_of(Bytes(packet.data(), packet.size())) + (frame.link_ack ? " linkack" : ""));
+void Adapter::transmit(Line line, Bytes packet, bool link_ack) {
+  write("tx", kLineNames[static_cast<std::size_t>(line)] + " " + hex_of(packet) +
+                  (link_ack ? " linkack" : ""));
+  if (!link_ack) node_->sent(line, false);  // It takes no time.
 }
 
 void Adapter::call(const std::string& call) {
@@ -211,54 +199,53 @@ void Adapter::call(const std::string& call) {
   const std::string name = call.substr(0, open);
   const Arguments with(words_of(call.substr(open + 1, call.size() - open - 2)));
   const auto result = [&](bool success) { up("op_result(" + text(success) + ")"); };
-  const auto made = [&](std::optional<ChannelId> id) {
-    up("channel_result(" + text(id.value_or(0)) + " " + text(id.has_value()) + ")");
+  const auto made = [&](ChannelResult channel) {
+    up("channel_result(" + text(channel.id) + " " + text(channel.success) + ")");
   };
-  Synaptic& synaptic = node_->synaptic();
+  const auto line = [&] { return static_cast<Line>(with.number("link")); };
+  const auto mode = [&] { return static_cast<Mode>(with.number("mode")); };
+  const auto channel = [&] { return with.channel("channel"); };
 
   if (name == "join") {
-    MoteDesc description;
+    Descriptor description;
     description.mote_type = static_cast<rubicon::MoteType>(with.number<std::uint8_t>("type"));
     description.transducers = rubicon::TransducerMask(with.number("transducers"));
     description.actuators = rubicon::ActuatorMask(with.number<std::uint8_t>("actuators"));
     node_->join(description);
   } else if (name == "send") {
     const Data data = with.bytes("data");
-    const auto application = static_cast<Component>(with.number<std::uint8_t>("app_id"));
-    const auto number = node_->send(with.address("dest"), application, with.number("reliable") == 1,
-                                    Bytes(data.data(), data.size()));
+    const auto number = node_->send(with.address("dest"), with.number<std::uint8_t>("app_id"),
+                                    with.number("reliable") == 1, Bytes(data.data(), data.size()));
     up("send_result(" + std::to_string(number) + ")");
   } else if (name == "interface") {
-    result(node_->set_interface(static_cast<Line>(with.number("link")), with.number("on") == 1));
+    result(node_->set_interface(line(), with.number("on") == 1));
   } else if (name == "get_interface") {
-    const auto on = node_->interface(static_cast<Line>(with.number("link")));
-    if (!on) return result(false);
-    up("interface_state(" + with.text("link") + " " + (*on ? "on" : "off") + ")");
+    if (line() == Line::kPeis) return result(false);
+    up("interface_state(" + with.text("link") + " " +
+       (node_->interface_is_on(line()) ? "on" : "off") + ")");
   } else if (name == "create_out") {
-    made(node_->create(Direction::kOut, with.address("dest"), with.number("size"),
-                       static_cast<Mode>(with.number("mode"))));
+    made(node_->create_out(with.address("dest"), with.number<std::uint8_t>("size"), mode()));
   } else if (name == "create_in") {
-    made(node_->create(Direction::kIn, with.address("src"), with.number("size"),
-                       static_cast<Mode>(with.number("mode"))));
+    made(node_->create_in(with.address("src"), with.number<std::uint8_t>("size"), mode()));
   } else if (name == "dispose") {
-    result(synaptic.dispose(with.channel("channel")));
+    result(node_->dispose(channel()));
   } else if (name == "start") {
-    result(node_->start_channel(with.channel("channel")));
+    result(node_->start_channel(channel()));
   } else if (name == "stop") {
-    result(synaptic.stop(with.channel("channel")));
+    result(node_->stop_channel(channel()));
   } else if (name == "start_all") {
-    node_->start_all_channels();
+    node_->start_all();
     result(true);
   } else if (name == "stop_all") {
-    synaptic.stop_all();
+    node_->stop_all();
     result(true);
   } else if (name == "write_output") {
-    result(synaptic.write(with.channel("channel"), with.number("pos"), with.real("value")));
+    result(node_->write_output(channel(), with.number<std::uint8_t>("pos"), with.real("value")));
   } else if (name == "read_input") {
-    const auto value = synaptic.read(with.channel("channel"), with.number("pos"));
-    up("input_value(" + text(value.value_or(0.0f)) + " " + text(value.has_value()) + ")");
+    const InputValue value = node_->read_input(channel(), with.number<std::uint8_t>("pos"));
+    up("input_value(" + text(value.value) + " " + text(value.success) + ")");
   } else if (name == "set_time_step") {
-    result(synaptic.set_period(with.number("clock")));
+    result(node_->set_time_step(with.number("clock")));
   } else if (name == "set_island_id") {
     result(node_->set_island(with.number("island")));
   } else if (name == "get_clock") {

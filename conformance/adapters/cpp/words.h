@@ -10,9 +10,12 @@
 #include <string>
 #include <vector>
 
-#include "conformance/adapters/cpp/frame.h"
+#include "codec/runtime/bytes.h"
+#include "conformance/node/types.h"
 
 namespace rubric::cpp_node {
+
+using Data = std::vector<std::uint8_t>;
 
 /// Closes a command with `unsupported WHY`.
 class Unsupported : public std::runtime_error {
@@ -77,7 +80,7 @@ class Arguments {
     return number_of<Number>(text(name));
   }
   /// Reads `11:5`.
-  Address address(const std::string& name) const {
+  node::Address address(const std::string& name) const {
     const auto [island, device] = two(name, ":");
     return {island, device};
   }

@@ -1,6 +1,6 @@
 #!/bin/sh
-# build_elf.sh PROJECT_FOLDER avr|arm OUT.elf [FLAG...]: the firmware in this script's folder, which
-# may be a copy of the project's.
+# build_elf.sh PROJECT_FOLDER avr|arm OUT.elf [FLAG...]: the firmware in this script's tree, which
+# may be a copy of the project's folder conformance.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 project=$1 port=$2 out=$3
@@ -12,13 +12,12 @@ case $port in
       -T $here/arm/lm3s6965.ld" ;;
   *) echo "usage: build_elf.sh PROJECT_FOLDER avr|arm OUT.elf [FLAG...]" >&2; exit 2 ;;
 esac
-# Headers of this folder before those of the project.
+# Headers of this tree before those of the project.
 includes=$(mktemp -d)
 trap 'rm -rf "$includes"' EXIT
-mkdir -p "$includes/conformance/adapters"
-ln -s "$here" "$includes/conformance/adapters/firmware"
+ln -s "$(dirname "$(dirname "$here")")" "$includes/conformance"
 # shellcheck disable=SC2086,SC2046
 "$compiler" $flags -std=c++14 -Os -DNDEBUG -ffreestanding -fno-exceptions -fno-rtti \
   -fno-threadsafe-statics -ffunction-sections -fdata-sections -Wl,--gc-sections \
   -Wall -Wextra -Wshadow -Werror "$@" -I "$includes" -I "$project" \
-  $(find "$here/node" "$here/bench" "$here/$port" -name '*.cc' ! -name '*_test.cc' | sort) -o "$out"
+  $(find "$here/bench" "$here/$port" -name '*.cc' ! -name '*_test.cc' | sort) -o "$out"

@@ -11,6 +11,7 @@ Usage: forwarder_suite_test.py RUBRIC JAVAC JAVA
 import concurrent.futures
 import json
 import pathlib
+import random
 import shutil
 import socket
 import subprocess
@@ -20,11 +21,18 @@ import time
 
 HERE = pathlib.Path(__file__).resolve().parent
 MISTAKE = "reads_numbers_backwards"
+PARTS = 6
 
 
 def free_port():
-    with socket.create_server(("127.0.0.1", 0)) as server:
-        return server.getsockname()[1]
+    """A port that nobody listens at, below those that the system gives to others by itself."""
+    while True:
+        port = random.randrange(20000, 32000)
+        try:
+            with socket.create_server(("127.0.0.1", port)):
+                return port
+        except OSError:
+            pass
 
 
 def build(javac, folder, mistake):
@@ -40,11 +48,11 @@ def build(javac, folder, mistake):
     return tree / "classes"
 
 
-def run_at_line(rubric, java, classes, report):
-    """The cases of the report; the station connects as soon as somebody listens."""
+def run_at_line(rubric, java, classes, report, which):
+    """Those cases; the station connects as soon as somebody listens."""
     port = free_port()
     tested = subprocess.Popen([rubric, "test", "--target", f"sf-server:{port}", "--role",
-                               "base_station", "--format", "json", "--out", str(report)])
+                               "base_station", "--format", "json", "--out", str(report), *which])
     station = [java, "-cp", str(classes), "rubric.basestation.ForwarderClient",
                f"127.0.0.1:{port}", "11"]
     while tested.poll() is None:
@@ -54,19 +62,13 @@ def run_at_line(rubric, java, classes, report):
     return cases_of(report)
 
 
-def run_with_application(rubric, java, classes, report):
-    """The same; the station is the app's, which starts it anew for each case. In four parts."""
-    parts = [report.with_suffix(f".{i}.json") for i in range(1, 5)]
-    tested = []
-    for i, part in enumerate(parts, 1):
-        port = free_port()
-        app = f"{java} -cp {classes} rubric.basestation.LiveAdapter 127.0.0.1:{port}"
-        tested.append(subprocess.Popen([
-            rubric, "test", "--target", f"sf-server:{port}:restart", "--app", app, "--role",
-            "base_station", "--shard", f"{i}/4", "--format", "json", "--out", str(part)]))
-    for one in tested:
-        one.wait()
-    return [case for part in parts for case in cases_of(part)]
+def run_with_application(rubric, java, classes, report, which):
+    """The same; the station is the app's, which starts it anew for each case."""
+    port = free_port()
+    app = f"{java} -cp {classes} rubric.basestation.LiveAdapter 127.0.0.1:{port}"
+    subprocess.run([rubric, "test", "--target", f"sf-server:{port}:restart", "--app", app,
+                    "--role", "base_station", "--format", "json", "--out", str(report), *which])
+    return cases_of(report)
 
 
 def cases_of(report):
@@ -80,17 +82,24 @@ def main():
         folder = pathlib.Path(scratch)
         wrong = 0
         programs = {mistake: build(javac, folder, mistake) for mistake in ("", MISTAKE)}
-        # Both stations at the line wait most of the time, so they run at once.
-        with concurrent.futures.ThreadPoolExecutor() as both:
-            at_line = {mistake: both.submit(run_at_line, rubric, java, classes,
-                                            folder / f"line{mistake}.json")
-                       for mistake, classes in programs.items()}
-        with_application = run_with_application(rubric, java, programs[""],
-                                                folder / "report.json")
-        for mistake, run, cases, least in (
-                ("", run_at_line, at_line[""].result(), 2),
-                ("", run_with_application, with_application, 25),
-                (MISTAKE, run_at_line, at_line[MISTAKE].result(), 0)):
+        # A station at a line waits most of the time, so all parts run at once.
+        with concurrent.futures.ThreadPoolExecutor(max_workers=3 * PARTS) as parts:
+            def started(mistake, run):
+                return [parts.submit(run, rubric, java, programs[mistake],
+                                     folder / f"{mistake}{run.__name__}{i}.json",
+                                     ["--shard", f"{i}/{PARTS}"])
+                        for i in range(1, PARTS + 1)]
+            runs = [("", run_at_line, 2, started("", run_at_line)),
+                    ("", run_with_application, 25, started("", run_with_application)),
+                    (MISTAKE, run_at_line, 0, started(MISTAKE, run_at_line))]
+        for mistake, run, least, results in runs:
+            cases = [case for result in results for case in result.result()]
+            bad = [case["name"] for case in cases if case["verdict"] in ("fail", "error")]
+            if bad and not mistake:
+                # A good station is late where others take its processor; twice it is not good.
+                print("once more:", *bad, flush=True)
+                again = run(rubric, java, programs[""], folder / "again.json", ["--cases", *bad])
+                cases = [case for case in cases if case["name"] not in bad] + again
             count = {v: sum(c["verdict"] == v for c in cases) for v in
                      {c["verdict"] for c in cases}}
             rules = {r for c in cases for f in c["failures"]
@@ -100,6 +109,9 @@ def main():
             good = found if mistake else count.keys() <= {"pass", "inconclusive", "skip"}
             wrong += not good or tried < 30 or count.get("pass", 0) < least
             print(mistake or "as it is", run.__name__, count, " ".join(sorted(rules)), flush=True)
+            for case in [] if mistake else cases:
+                if case["verdict"] not in ("pass", "inconclusive", "skip"):
+                    print(json.dumps(case, indent=1), flush=True)
     return 1 if wrong else 0
 
 

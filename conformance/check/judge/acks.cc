@@ -87,7 +87,7 @@ void Acks::sent(std::uint16_t node, const Observation& seen, const Net& ack) {
   if (best->must_ack && best->sure && best->acks == 0) --owed_[node];
   ++best->acks;
   const std::int64_t took = now - best->whole_us;
-  // What is acked did arrive, perhaps later. showed_life() has judged what surely did at once.
+  // What is acked did arrive, perhaps later. What surely came at once was acked late, which passes.
   if (best->must_ack && !best->sure && best->copies == 1 && took > context_.response_us()) {
     context_.report("T2-ACK"_rule, Severity::kInconclusive, seen.place, node,
                     {"The ack of " + name_of(best->net) + " comes after " + ms_text(took) + ".",

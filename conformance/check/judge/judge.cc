@@ -328,10 +328,10 @@ void Judge::radio_net(std::uint32_t index, const Observation& seen, const Mark& 
 // Takes a message of the node's own.
 void Judge::own_message(std::uint16_t node, const Observation& seen, const Net& net,
                         machine::Link link, machine::Address own) {
-  acks_.showed_life(node, seen.place.time_us);
   interfaces_.own_message(node, net.seq_num);
   originals_.sent(node, seen, net, link, own);
-  if (net.is_ack()) acks_.sent(node, seen, net);
+  if (net.is_ack()) acks_.sent(node, seen, net);  // Late, it is not missing (decision 125).
+  acks_.showed_life(node, seen.place.time_us);
   if (net.sound && net.trans_id == component::kSynChannel) synaptic_.sent(node, seen, net);
 }
 
@@ -430,11 +430,11 @@ void Judge::up_serial(const Observation& seen, std::uint16_t sink, const Net& ne
     sinks_.report(sink, seen, net, joined);
     return base_station_hears(sink, seen, net);
   }
-  acks_.showed_life(sink, seen.place.time_us);
   const std::uint16_t island = sinks_.island(sink);
   if (net.src == machine::Address{island, device.am}) {
     own_message(sink, seen, net, machine::Link::kSerial, net.src);
   } else {
+    acks_.showed_life(sink, seen.place.time_us);
     forwarding_.sent_on_serial(sink, seen, net);
   }
   base_station_hears(sink, seen, net);

@@ -104,6 +104,7 @@ Scene::Scene(const check::Run& run, const check::Options& options)
   std::uint16_t first_island = 0;
   for (const check::Device& device : who_.devices) {
     names_.push_back(short_name(device));
+    if (device.role == Role::kSink) sinks_.insert(device.am);
     const bool motes = device.role == Role::kMote || device.island == 0;
     if (!motes && (first_island == 0 || device.island < first_island)) first_island = device.island;
   }
@@ -183,10 +184,7 @@ std::vector<std::uint16_t> Scene::topic(std::size_t i) const {
   const check::Observation& seen = run_.seen[i];
   std::vector<std::uint16_t> out;
   const auto add = [&](std::uint16_t id) {
-    const bool sink = std::any_of(who_.devices.begin(), who_.devices.end(), [id](const auto& d) {
-      return d.role == Role::kSink && d.am == id;
-    });
-    if (!sink && id != machine::kNullDevid && id != 0xFFFF) out.push_back(id);
+    if (!sinks_.contains(id) && id != machine::kNullDevid && id != 0xFFFF) out.push_back(id);
   };
   if (seen.kind == Kind::kRadio) {
     add(seen.frame.src);

@@ -1,6 +1,7 @@
 // Describes in words who sent what to whom: the frames of a run as a report shows them.
 #pragma once
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -48,6 +49,7 @@ class Scene {
   check::Identity who_;
   std::vector<std::string> names_;
   std::vector<std::size_t> ranks_;
+  std::set<std::uint16_t> sinks_;  // Their AM addresses.
 };
 
 }  // namespace rubric::report

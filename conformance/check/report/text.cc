@@ -33,13 +33,14 @@ class TextReport {
     about_the_run();
     std::vector<std::size_t> lines;  // Findings that get a line each.
     std::set<std::pair<std::size_t, std::string>> told;
+    std::map<std::pair<std::size_t, Severity>, std::size_t> in_full_of;
     const auto& findings = story_.report.findings;
     for (std::size_t i = 0; i < findings.size(); ++i) {
       const bool failed = findings[i].severity == Severity::kFail && !is_expected(i);
-      const bool first = failed && told.emplace(reflect::requirement_index(findings[i].requirement),
-                                                findings[i].node)
-                                       .second;
-      if (first || options_.verbose) {
+      const std::size_t rule = reflect::requirement_index(findings[i].requirement);
+      const bool first = failed && told.emplace(rule, findings[i].node).second;
+      const bool wanted = first || options_.verbose;
+      if (wanted && in_full_of[{rule, findings[i].severity}]++ < options_.findings_max) {
         in_full(i);
       } else {
         lines.push_back(i);
@@ -177,10 +178,14 @@ class TextReport {
     std::vector<std::uint16_t> topic;
     if (at < story_.run.seen.size()) topic = scene_->topic(at);
     const auto chosen = [&](std::size_t i) {
-      if (scene_->is_echo(i) || (node != kNobody && !scene_->concerns(i, node))) return false;
-      const std::vector<std::uint16_t> other = scene_->topic(i);
-      return topic.empty() || std::find_first_of(topic.begin(), topic.end(), other.begin(),
-                                                 other.end()) != topic.end();
+      if (scene_->is_echo(i)) return false;
+      if (!topic.empty()) {  // First, as it costs less in a run of many nodes.
+        const std::vector<std::uint16_t> other = scene_->topic(i);
+        const auto same =
+            std::find_first_of(topic.begin(), topic.end(), other.begin(), other.end());
+        if (same == topic.end()) return false;
+      }
+      return node == kNobody || scene_->concerns(i, node);
     };
     std::vector<std::size_t> rows;
     for (std::size_t i = at; i > 0 && rows.size() < kFramesBefore; --i) {
@@ -255,8 +260,10 @@ class TextReport {
       for (std::size_t n = 0; n < group.size(); ++n) {
         const Finding& finding = story_.report.findings[group[n]];
         if (n >= kLinesOfRule && group.size() > kLinesOfRule + 1) {
-          out_ += fmt::format("{}and {} more of {} (--verbose lists them)\n", kIndent,
-                              group.size() - n, trace_id(finding.requirement));
+          const bool listed = !options_.verbose && group.size() <= options_.findings_max;
+          out_ += fmt::format("{}and {} more of {} ({})\n", kIndent, group.size() - n,
+                              trace_id(finding.requirement),
+                              listed ? "--verbose lists them" : "--max-findings N shows N in full");
           break;
         }
         in_line(group[n]);

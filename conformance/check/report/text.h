@@ -19,7 +19,9 @@ struct Story {
 };
 
 struct TextOptions : TextStyle {
-  bool verbose = false;  ///< Every finding in full.
+  bool verbose = false;  ///< Every finding in full, not only the first of a rule and node.
+  std::size_t findings_max =
+      20;  ///< So many of a rule and severity are in full; others are counted.
   /// The command that made this run, ready for a shell: program and options, and its files. Empty
   /// if the run cannot be repeated.
   std::string command = "rubric check";
@@ -30,7 +32,8 @@ struct TextOptions : TextStyle {
 };
 
 /// Returns the report: facts about the run, each failure in full (others of the same rule and node
-/// on one line), the rest on a line each, the results of expectations, and the sum.
+/// on one line, and those after findings_max), the rest on a line each, the results of
+/// expectations, and the sum.
 std::string text_report(const Story& story, const TextOptions& options);
 
 /// Returns one finding of a story: a line, wrapped to the width; in full with `verbose`.

@@ -42,9 +42,9 @@ TEST(Stated, TheResponseTimeIsTheProfilesUnlessStated) {
   EXPECT_EQ(failures_of(unreported(302, options), "J6-REPORT"_rule), 1U);
 }
 
-// A sink that surely got a reliable message at 1000 ms never acks it, and sends another frame
+// A sink that surely got a reliable message at 1000 ms sends its ack, or another frame and no ack,
 // `later_ms` after its start.
-Report unacked(double later_ms, const Options& options) {
+Report unacked(double later_ms, const Options& options, bool ack = false) {
   Script script;
   script.join(0, 11, 2, 100);
   NetFields net;
@@ -57,7 +57,7 @@ Report unacked(double later_ms, const Options& options) {
   other.dest = {11, 2};
   other.src = {11, 1};
   other.seq_num = 900;
-  script.net(1000 + later_ms, 1, 2, other, 11);
+  script.net(1000 + later_ms, 1, 2, ack ? net.ack(900) : other, 11);
   return judge(script.run, options);
 }
 
@@ -68,6 +68,13 @@ TEST(Stated, AResponseCountsFromTheEndOfItsCause) {
   constexpr double kAirMs = 35 * 0.032;  // 16 bytes, and 19 around them.
   EXPECT_EQ(failures_of(unacked(300 + kAirMs - 0.01, options), "T2-ACK"_rule), 0U);
   EXPECT_EQ(failures_of(unacked(300 + kAirMs + 0.01, options), "T2-ACK"_rule), 1U);
+}
+
+TEST(Stated, AnAckThatComesLateIsNotMissing) {
+  Options options;
+  options.sniffer_complete = options.start_cold = true;
+  EXPECT_EQ(failures_of(unacked(320, options), "T2-ACK"_rule), 1U);
+  EXPECT_EQ(failures_of(unacked(320, options, true), "T2-ACK"_rule), 0U);
 }
 
 // Judges a log in which a node is notified of a timeout `after_ms` after its message.

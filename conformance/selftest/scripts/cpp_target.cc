@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <utility>
 #include <vector>
 
-#include "conformance/adapters/cpp/base_station.h"
-#include "conformance/adapters/cpp/mote.h"
-#include "conformance/adapters/cpp/sink.h"
+#include "codec/generated/tinyos/am_header.h"
+#include "conformance/node/node.h"
 #include "conformance/test/runner/subject_target.h"
 
 namespace rubric::script {
@@ -19,24 +19,24 @@ using machine::Notice;
 using machine::Role;
 using runner::Output;
 using runner::Ticks;
-namespace node = cpp_node;
 
 constexpr int kRunsAtOnceMax = 1000;
 
 node::Line node_line(Link link) { return static_cast<node::Line>(link); }
 Link link_of(node::Line line) { return static_cast<Link>(line); }
-node::Address address_of(Address one) { return {one.pid, one.devid}; }
-Address address_of(node::Address one) { return {one.island, one.device}; }
+node::Address node_address(Address one) { return {one.pid, one.devid}; }
+Address address_of(node::Address one) { return {one.pid, one.devid}; }
 
-class CppTarget : public runner::Target, public node::World {
+class CppTarget : public runner::Target, public node::Driver, public node::Application {
  public:
   void reset(const machine::Config& config) override {
-    role_ = config.role;
-    settings_ = {};
-    settings_.device = config.id;
-    settings_.island = config.island;
-    settings_.channels = config.profile.channels_max;
-    settings_.next_number = config.first_seq;
+    setup_ = {};
+    if (config.role == Role::kSink) setup_.role = node::Role::kSink;
+    if (config.role == Role::kBaseStation) setup_.role = node::Role::kBaseStation;
+    setup_.id = config.id;
+    setup_.island = config.island;
+    setup_.channels = config.profile.channels_max;
+    setup_.last_seq_num = static_cast<std::uint16_t>(config.first_seq - 1);
     lines_ = {};
     outputs_.clear();
     now_ = 0;
@@ -47,7 +47,9 @@ class CppTarget : public runner::Target, public node::World {
     while (run_until(now) < now) {
     }
     pass(now);
+    run();
     std::visit([this](const auto& one) { happens(one); }, event);
+    run();
   }
 
   std::optional<Ticks> next() const override {
@@ -56,8 +58,7 @@ class CppTarget : public runner::Target, public node::World {
     for (const Line& line : lines_) {
       if (line.ends) take(*line.ends);
     }
-    if (!node_) return soonest;
-    if (const auto due = node_->due()) take(std::max(static_cast<Ticks>(*due), now_));
+    if (due_) take(*due_);
     return soonest;
   }
 
@@ -70,7 +71,8 @@ class CppTarget : public runner::Target, public node::World {
       at_once = *soonest == now_ ? at_once + 1 : 0;
       if (at_once > kRunsAtOnceMax) throw runner::TargetBroken("it is due for ever");
       pass(*soonest);
-      if (!end_one()) node_->run_due();
+      run();
+      if (end_one()) run();
     }
     if (outputs_.size() > before) return now_;
     pass(time);
@@ -84,32 +86,35 @@ class CppTarget : public runner::Target, public node::World {
   struct Line {
     bool taken = false;         // By another station,
     bool sending = false;       // or by the node's own frame,
-    bool unconfirmed = false;   // which asked for a link ack,
     std::optional<Ticks> ends;  // and ends by itself.
   };
   Line& at(Link link) { return lines_[static_cast<std::size_t>(link)]; }
 
-  void pass(Ticks time) {
-    now_ = std::max(now_, time);
-    if (node_) node_->set_time(now_);
+  void pass(Ticks time) { now_ = std::max(now_, time); }
+
+  // Does what is due now.
+  void run() {
+    const auto now = static_cast<node::Ticks>(now_);
+    node::Ticks due = 0;
+    due_.reset();
+    if (node_ && node_->run(now, due)) due_ = now_ + (due - now);
   }
 
   void start() {
-    settings_.now = now_;
-    node_.reset();
-    if (role_ == Role::kMote) node_ = std::make_unique<node::Mote>(settings_, *this);
-    if (role_ == Role::kSink) node_ = std::make_unique<node::Sink>(settings_, *this);
-    if (role_ == Role::kBaseStation) node_ = std::make_unique<node::BaseStation>(settings_, *this);
+    setup_.now = static_cast<node::Ticks>(now_);
+    node_.emplace(*this, *this);
+    node_->start(setup_);
     for (const Link link : {Link::kRadio, Link::kSerial}) tell_busy(link);
   }
   void stop() {
-    if (node_) settings_.next_number = node_->next_number();
+    if (node_) setup_.last_seq_num = node_->last_seq_num();
     node_.reset();
-    for (Line& line : lines_) line = {line.taken, false, false, {}};
+    for (Line& line : lines_) line = {line.taken, false, {}};
   }
 
   void tell_busy(Link link) {
-    if (node_) node_->set_busy(node_line(link), at(link).taken || at(link).sending);
+    const bool sending = at(link).sending && link != Link::kRadio;
+    if (node_) node_->set_busy(node_line(link), at(link).taken || sending);
   }
 
   // Ends one transmission that is due now; returns false if there is none.
@@ -123,23 +128,25 @@ class CppTarget : public runner::Target, public node::World {
   }
   void end(Link link, bool acked) {
     Line& line = at(link);
-    const bool unconfirmed = std::exchange(line.unconfirmed, false);
     line.sending = false;
     line.ends.reset();
-    tell_busy(link);  // It sends nothing before it knows how the frame ended.
-    if (unconfirmed && node_) node_->confirmed(acked);
+    if (link != Link::kRadio) return tell_busy(link);
+    if (node_) node_->sent(node_line(link), acked);
   }
 
   // Events.
   void happens(const machine::Heard& heard) {
     if (!node_) return;
     const machine::Frame& frame = heard.frame;
-    node::Frame given;
-    given.dest = frame.dest;
-    given.src = frame.src;
-    given.type = static_cast<node::AmType>(frame.type);
-    given.payload.assign(frame.payload.begin(), frame.payload.end());
-    node_->heard(node_line(frame.link), given);
+    tinyos::AmHeader header;
+    header.dest = frame.dest;
+    header.src = frame.src;
+    header.length = static_cast<std::uint8_t>(frame.payload.size());
+    header.type = frame.type;
+    std::vector<std::uint8_t> packet(tinyos::AmHeaderView::kMaxSizeBytes);
+    tinyos::AmHeaderLayout::store(header, packet.data());
+    packet.insert(packet.end(), frame.payload.begin(), frame.payload.end());
+    node_->received(node_line(frame.link), Bytes(packet.data(), packet.size()));
   }
   void happens(const machine::Called& called) {
     if (node_) std::visit([this](const auto& one) { call(one); }, called.call);
@@ -164,91 +171,93 @@ class CppTarget : public runner::Target, public node::World {
   // Calls.
   void result(bool success) { tell(machine::OperationResult{success}); }
   void call(const machine::JoinIsland& c) {
-    node::MoteDesc description;
+    node::Descriptor description;
     description.mote_type = static_cast<rubicon::MoteType>(c.descriptor.mote_type);
     description.transducers = rubicon::TransducerMask(c.descriptor.transducers);
     description.actuators = rubicon::ActuatorMask(c.descriptor.actuators);
     node_->join(description);
   }
   void call(const machine::Send& c) {
-    const auto application = static_cast<node::Component>(c.app_id);
-    tell(machine::SendResult{node_->send(address_of(c.dest), application, c.reliable, c.data)});
+    tell(machine::SendResult{node_->send(node_address(c.dest), c.app_id, c.reliable, c.data)});
   }
   void call(const machine::SetInterface& c) {
     result(node_->set_interface(node_line(c.link), c.on));
   }
   void call(const machine::GetInterface& c) {
-    const auto on = node_->interface(node_line(c.link));
-    if (!on) return result(false);
-    tell(machine::InterfaceState{c.link, *on});
+    if (c.link == Link::kPeis) return result(false);
+    tell(machine::InterfaceState{c.link, node_->interface_is_on(node_line(c.link))});
   }
   void call(const machine::CreateChannel& c) {
-    const auto id = node_->create(static_cast<node::Direction>(c.direction), address_of(c.peer),
-                                  c.size, static_cast<node::Mode>(c.mode));
-    tell(machine::ChannelResult{id.value_or(0), id.has_value()});
+    const bool out = c.direction == machine::Direction::kOut;
+    const auto mode = static_cast<node::Mode>(c.mode);
+    const node::Address peer = node_address(c.peer);
+    const auto made =
+        out ? node_->create_out(peer, c.size, mode) : node_->create_in(peer, c.size, mode);
+    tell(machine::ChannelResult{made.id, made.success});
   }
-  void call(const machine::DisposeChannel& c) { result(node_->synaptic().dispose(c.id)); }
+  void call(const machine::DisposeChannel& c) { result(node_->dispose(c.id)); }
   void call(const machine::StartChannel& c) { result(node_->start_channel(c.id)); }
-  void call(const machine::StopChannel& c) { result(node_->synaptic().stop(c.id)); }
+  void call(const machine::StopChannel& c) { result(node_->stop_channel(c.id)); }
   void call(const machine::StartAllChannels&) {
-    node_->start_all_channels();
+    node_->start_all();
     result(true);
   }
   void call(const machine::StopAllChannels&) {
-    node_->synaptic().stop_all();
+    node_->stop_all();
     result(true);
   }
-  void call(const machine::WriteOutput& c) {
-    result(node_->synaptic().write(c.id, c.pos, c.value));
-  }
+  void call(const machine::WriteOutput& c) { result(node_->write_output(c.id, c.pos, c.value)); }
   void call(const machine::ReadInput& c) {
-    const auto value = node_->synaptic().read(c.id, c.pos);
-    tell(machine::InputValue{value.value_or(0), value.has_value()});
+    const node::InputValue value = node_->read_input(c.id, c.pos);
+    tell(machine::InputValue{value.value, value.success});
   }
-  void call(const machine::SetTimeStep& c) { result(node_->synaptic().set_period(c.ticks)); }
+  void call(const machine::SetTimeStep& c) { result(node_->set_time_step(c.ticks)); }
   void call(const machine::SetIslandId& c) { result(node_->set_island(c.island)); }
   void call(const machine::GetClock&) { tell(machine::Clock{node_->clock_ms()}); }
 
-  // World.
-  void transmit(node::Line which, const node::Frame& frame) override {
+  // What the node does.
+  void transmit(node::Line which, Bytes packet, bool link_ack) override {
+    const auto header = tinyos::AmHeaderView::parse(packet);
     const Link link = link_of(which);
     Output output;
     output.time = now_;
     output.is_frame = true;
     machine::Transmit& out = output.frame;
     out.link = link;
-    out.link_ack = frame.link_ack;
-    out.type = static_cast<std::uint8_t>(frame.type);
-    out.dest = frame.dest;
-    out.src = frame.src;
-    const std::size_t size = std::min(frame.payload.size(), out.payload.size());
+    out.link_ack = link_ack;
+    out.type = header->type();
+    out.dest = header->dest();
+    out.src = header->src();
+    const Bytes payload = packet.from(tinyos::AmHeaderView::kMaxSizeBytes);
+    const std::size_t size = std::min(payload.size(), out.payload.size());
     out.size_bytes = static_cast<std::uint8_t>(size);
-    std::copy_n(frame.payload.begin(), size, out.payload.begin());
+    std::copy_n(payload.begin(), size, out.payload.begin());
     outputs_.push_back(output);
-    if (link == Link::kPeis) return;
+    if (link == Link::kPeis) return node_->sent(which, false);  // It takes no time.
     Line& line = at(link);
     line.sending = true;
-    line.unconfirmed = frame.link_ack;
-    const bool held = frame.link_ack && hold_link_acks_;
+    const bool held = link_ack && hold_link_acks_;
     if (!held) line.ends = now_ + runner::transmission_ticks(link, size);
-    tell_busy(link);
+    if (link == Link::kRadio) return;
+    tell_busy(link);  // The line has taken a copy, as the machine's do.
+    node_->sent(which, false);
   }
   void joined(node::Address own, bool success) override {
     tell(machine::Joined{address_of(own), success});
   }
-  void mote_joined(node::Address mote, const node::MoteDesc& description) override {
+  void mote_joined(node::Address mote, const node::Descriptor& description) override {
     tell(machine::MoteJoined{address_of(mote),
                              {static_cast<std::uint8_t>(description.mote_type),
                               description.actuators.raw(), description.transducers.raw()}});
   }
-  void received(node::Address src, node::Component application, Bytes data) override {
-    tell(machine::Received{address_of(src), static_cast<std::uint8_t>(application), {}});
+  void received(node::Address src, std::uint8_t app_id, Bytes data) override {
+    tell(machine::Received{address_of(src), app_id, {}});
     outputs_.back().data.assign(data.begin(), data.end());
   }
-  void ack_received(node::Component application, std::uint16_t number, bool success) override {
-    tell(machine::AckReceived{static_cast<std::uint8_t>(application), number, success});
+  void ack_received(std::uint8_t app_id, std::uint16_t number, bool success) override {
+    tell(machine::AckReceived{app_id, number, success});
   }
-  void syn_data(node::ChannelId channel, node::DataStatus status) override {
+  void syn_data_received(node::ChannelId channel, node::DataStatus status) override {
     tell(machine::SynDataReceived{channel, static_cast<machine::DataStatus>(status)});
   }
   void tell(const Notice& notice) {
@@ -258,9 +267,9 @@ class CppTarget : public runner::Target, public node::World {
     outputs_.push_back(std::move(output));
   }
 
-  Role role_ = Role::kMote;
-  node::Settings settings_;
-  std::unique_ptr<node::Node> node_;  // None while the power is off.
+  node::Setup setup_{};
+  std::optional<node::SizedNode<node::AnySizes>> node_;  // None while the power is off.
+  std::optional<Ticks> due_;
   std::array<Line, 3> lines_;
   std::vector<Output> outputs_;
   Ticks now_ = 0;

@@ -1,4 +1,4 @@
-// The independent C++ node of conformance/adapters/cpp in this process, on lines with the machine's
+// The independent C++ node of conformance/node in this process, on lines with the machine's
 // timing, so that two implementations differ only in their own behaviour.
 #pragma once
 

@@ -210,7 +210,7 @@ class Lenient {
 
   // Returns whether the fields of a frame's line cover all its bytes, except for left-over ones at
   // the end.
-  bool is_whole(Line line) const {
+  bool is_whole(Line line) const try {
     trace::AmFrame exact = trace::frame_of(line, {});
     line.bytes.reset();
     trace::AmFrame said = trace::frame_of(line, {});
@@ -219,6 +219,8 @@ class Lenient {
     exact.payload.resize(content);
     said.payload.resize(content);
     return said == exact;
+  } catch (const trace::TraceError&) {
+    return false;  // Its nbytes counts left-over bytes as well.
   }
 
   const Script& script_;

@@ -1,6 +1,7 @@
 """Mutants of C++ sources, found in clang's syntax tree."""
 
 import json
+import pathlib
 import re
 import shutil
 import subprocess
@@ -335,13 +336,17 @@ def wrap(inner, alternatives):
 
 def mutants(subject, project, texts):
     """The mutants of each file, as the translation units show them."""
-    command = [CLANG, "-std=c++20", f"-I{project}", *subject.flags]
+    command = [CLANG, "-x", "c++", "-std=c++20", f"-I{project}", *subject.flags]
     files = {str(project / file): (file, text) for file, text in texts.items()}
     by_file = {}
     for source in files:
-        if not source.endswith(".cc"):
+        if pathlib.Path(source).name == subject.unit:
+            unit = ["-include", source, "/dev/null"]
+        elif source.endswith(".cc"):
+            unit = [source]
+        else:
             continue
-        for mutant in Unit([*command, source], subject.scope, files).mutants:
+        for mutant in Unit([*command, *unit], subject.scope, files).mutants:
             by_file.setdefault(mutant.file, []).append(mutant)
     return {file: unique(mutants) for file, mutants in by_file.items()}
 

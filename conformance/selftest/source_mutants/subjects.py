@@ -12,6 +12,7 @@ class Subject:
     language: str = "c++"
     scope: str = ""         # The namespace.
     flags: tuple = ()       # Of the compiler.
+    unit: str = ""          # The header that includes all others, where there are no sources.
 
     def paths(self, project):
         found = {path for pattern in self.files for path in (project / self.folder).glob(pattern)}
@@ -23,9 +24,10 @@ SUBJECTS = {
     # hash.cc tells the explorer's states apart; ticks.h converts times for captures.
     "machine": Subject("conformance/machine", ("*.cc", "*.h"),
                        ("hash.cc", "ticks.h", "machine_bench.cc"), scope="rubric::machine"),
-    # main.cc and words.h put the node behind rct/1.
-    "cpp": Subject("conformance/adapters/cpp", ("*.cc", "*.h"), ("main.cc", "words.h"),
-                   scope="rubric::cpp_node"),
+    # serial_port.h is the serial stack of boards, below what rct/1 sees; the others are sizes.
+    "cpp": Subject("conformance/node", ("*.h",), ("serial_port.h", "memory.h", "sizes.h"),
+                   unit="node.h",
+                   scope="rubric::node"),
     "python": Subject("conformance/adapters/python", ("*.py",), as_it_is=("adapter.py", "words.py"),
                       language="python"),
 }

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdint>
-#include <cstring>
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <optional>
 #include <sstream>
-#include <stdexcept>
 #include <system_error>
 #include <utility>
 
@@ -45,23 +45,59 @@ bool is_inside(const fs::path& path) {
          });
 }
 
+[[noreturn]] void cannot_write(const fs::path& path, int error) {
+  throw std::system_error(error, std::generic_category(), path.string());
+}
+
 void make_folder(const fs::path& path) {
   std::error_code error;
   fs::create_directories(path, error);
-  if (error) throw std::runtime_error(path.string() + ": " + error.message());
+  if (error) cannot_write(path, error.value());
 }
 
 }  // namespace
 
-ReportFolder::ReportFolder(fs::path folder) : folder_(std::move(folder)) { make_folder(folder_); }
+ReportFolder::ReportFolder(fs::path folder) : folder_(std::move(folder)) {
+  make_folder(folder_);
+  std::string name = (folder_ / ".report.XXXXXX").string();
+  if (::mkdtemp(name.data()) == nullptr) cannot_write(folder_, errno);
+  staged_ = name;
+}
+
+ReportFolder::~ReportFolder() {
+  std::error_code ignored;
+  fs::remove_all(staged_, ignored);
+}
+
+void ReportFolder::stage(const std::string& path, std::string_view text) const {
+  const fs::path to = staged_ / path;
+  make_folder(to.parent_path());
+  report::OutFile file(to.string(), report::OutFile::Mode::kGrow);
+  int error = report::write_all(file.fd(), text);
+  if (error == 0) error = file.finish();
+  if (error != 0) cannot_write(folder_ / path, error);
+}
 
 void ReportFolder::write(const std::string& path, std::string_view text) {
+  std::error_code none;
+  fs::path at = folder_;
+  for (const fs::path& part : fs::path(path).parent_path()) {
+    at /= part;
+    if (fs::is_symlink(fs::symlink_status(at, none))) cannot_write(at, ELOOP);
+  }
+  if (fs::is_directory(fs::symlink_status(folder_ / path, none))) {
+    cannot_write(folder_ / path, EISDIR);
+  }
+  stage(path, text);
+  written_[path] = sum_of(text);
+}
+
+void ReportFolder::place(const std::string& path) const {
   const fs::path to = folder_ / path;
   make_folder(to.parent_path());
-  if (const int error = report::write_file(to.string(), text); error != 0) {
-    throw std::runtime_error(to.string() + ": cannot be written: " + std::strerror(error));
-  }
-  written_[path] = sum_of(text);
+  std::error_code error;
+  fs::rename(staged_ / path, to, error);
+  if (error) cannot_write(to, error.value());
 }
 
 ReportFolder::Account ReportFolder::read_account() const {
@@ -97,15 +133,15 @@ void ReportFolder::remove(const std::string& path, const std::string& sum) const
 }
 
 void ReportFolder::finish() {
-  for (const auto& [path, sum] : read_account()) {
-    if (!written_.contains(path)) remove(path, sum);
-  }
   std::string account = std::string(kTitle) + '\n';
   for (const auto& [path, sum] : written_) account += sum + ' ' + path + '\n';
-  const fs::path to = folder_ / kAccount;
-  if (const int error = report::write_file(to.string(), account); error != 0) {
-    throw std::runtime_error(to.string() + ": cannot be written: " + std::strerror(error));
+  stage(kAccount, account);
+  const Account old = read_account();
+  for (const auto& [path, sum] : written_) place(path);
+  for (const auto& [path, sum] : old) {
+    if (!written_.contains(path)) remove(path, sum);
   }
+  place(kAccount);
 }
 
 }  // namespace rubric::suite

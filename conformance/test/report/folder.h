@@ -9,18 +9,24 @@
 namespace rubric::suite {
 
 /// Writes files into a folder and lists them in its file `report.files`, so that the next report
-/// can remove those that it no longer has. Removes nothing else: no file that the list does not
-/// have, that somebody has changed since, or that a link leads to.
+/// can remove those that it no longer has. All files are written beside the old ones before the
+/// first of them is replaced, so that a full disk costs none. Writes through no link. Removes
+/// nothing else: no file that the list does not have, that somebody has changed since, or that a
+/// link leads to.
 class ReportFolder {
  public:
-  /// Makes the folder. Throws std::runtime_error with path and reason, as write() and finish() do.
+  /// Makes the folder. Throws std::system_error with the path, as write() and finish() do.
   explicit ReportFolder(std::filesystem::path folder);
+  /// Removes what was written, unless finish() was called.
+  ~ReportFolder();
+  ReportFolder(const ReportFolder&) = delete;
+  ReportFolder& operator=(const ReportFolder&) = delete;
 
   /// Writes a file and makes its folders. `path` has '/' between its parts, no "." or ".." among
   /// them, and no line end.
   void write(const std::string& path, std::string_view text);
-  /// Removes files of an earlier report that this one did not write, and folders that are empty
-  /// then, and writes the list.
+  /// Gives the files their places. Removes files of an earlier report that this one did not write,
+  /// and folders that are empty then.
   void finish();
 
  private:
@@ -29,7 +35,11 @@ class ReportFolder {
   Account read_account() const;
   void remove(const std::string& path, const std::string& sum) const;
 
+  void stage(const std::string& path, std::string_view text) const;
+  void place(const std::string& path) const;
+
   std::filesystem::path folder_;
+  std::filesystem::path staged_;  // A folder in it.
   Account written_;
 };
 

@@ -45,6 +45,12 @@ std::set<std::string> files_in(const fs::path& folder) {
   return out;
 }
 
+void report(const SuiteRun& run, const fs::path& path) {
+  ReportFolder folder(path);
+  write_html_report(run, nullptr, folder);
+  folder.finish();
+}
+
 TEST(ReportFolder, AUsedFolderLosesWhatAnEarlierReportLeftAndNothingElse) {
   Folder folder;
   const fs::path path = folder.path() / "used";
@@ -62,13 +68,13 @@ TEST(ReportFolder, AUsedFolderLosesWhatAnEarlierReportLeftAndNothingElse) {
   run.implementations[0].identity.version = "";
   run.implementations.push_back(run.implementations[0]);
   run.implementations[1].identity.name = "retired";
-  write_html_report(run, nullptr, path);
+  report(run, path);
   EXPECT_TRUE(fs::exists(path / "cases" / "retired" / "open_door.pcapng"));
   put(path / "cases" / "machine" / "open_door.rtr", "changed since");
 
   run.implementations.pop_back();
   run.implementations[0].cases.resize(1);
-  write_html_report(run, nullptr, path);
+  report(run, path);
   const std::set<std::string> kept = {"cases/machine/j4.accept.pcapng",
                                       "cases/machine/j4.accept.rtr",
                                       "cases/machine/mine.rtr",
@@ -78,7 +84,7 @@ TEST(ReportFolder, AUsedFolderLosesWhatAnEarlierReportLeftAndNothingElse) {
                                       "report.files"};
   EXPECT_EQ(files_in(path), kept);
   EXPECT_FALSE(fs::exists(path / "cases" / "retired"));
-  write_html_report(run, nullptr, path);
+  report(run, path);
   EXPECT_EQ(files_in(path), kept);
 }
 
@@ -97,10 +103,41 @@ TEST(ReportFolder, AnAccountThatLeadsElsewhereRemovesNothing) {
                                  " link/file.txt\n" + sum + " link.txt\n" + sum +
                                  " ./linked/file.txt\n" + sum + " linked/../linked/file.txt\n" +
                                  sum + " old.txt\nnonsense\n");
-  write_html_report(SuiteRun(), nullptr, path);
+  report(SuiteRun(), path);
   for (const std::string& other : others) EXPECT_TRUE(fs::exists(folder.path() / other)) << other;
   EXPECT_TRUE(fs::is_symlink(path / "link.txt"));
   EXPECT_FALSE(fs::exists(path / "old.txt"));  // It is what the account says.
+}
+
+TEST(ReportFolder, WritesThroughNoLink) {
+  Folder folder;
+  const fs::path path = folder.path() / "report";
+  put(folder.path() / "outside.html", "mine");
+  put(folder.path() / "outside" / "keep.txt", "mine");
+  fs::create_directories(path);
+  fs::create_symlink(folder.path() / "outside.html", path / "index.html");
+  report(SuiteRun(), path);
+  EXPECT_FALSE(fs::is_symlink(path / "index.html"));
+  EXPECT_EQ(fs::file_size(folder.path() / "outside.html"), 4U);
+
+  fs::create_directory_symlink(folder.path() / "outside", path / "cases");
+  ReportFolder linked(path);
+  EXPECT_THROW(linked.write("cases/machine/a.rtr", "x"), std::system_error);
+  EXPECT_EQ(files_in(folder.path() / "outside"), std::set<std::string>{"keep.txt"});
+}
+
+TEST(ReportFolder, KeepsTheOldReportUntilTheNewOneIsWhole) {
+  Folder folder;
+  const fs::path path = folder.path() / "report";
+  report(SuiteRun(), path);
+  const std::set<std::string> old = files_in(path);
+  {
+    ReportFolder broken(path);
+    broken.write("cases/machine/a.rtr", "x");
+    broken.write("index.html", "new");
+  }
+  EXPECT_EQ(files_in(path), old);
+  EXPECT_GT(fs::file_size(path / "index.html"), 3U);
 }
 
 TEST(ReportFolder, SaysWhyAFileCannotBeWritten) {

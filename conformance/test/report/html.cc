@@ -19,8 +19,6 @@
 namespace rubric::suite {
 namespace {
 
-namespace fs = std::filesystem;
-
 // Makes names of folders and files unique, even where capitals do not count.
 class Names {
  public:
@@ -90,8 +88,7 @@ std::string filled(std::string_view page, const std::vector<std::string_view>& v
 
 }  // namespace
 
-void write_html_report(const SuiteRun& run, const EarlierRun* earlier, const fs::path& path) {
-  ReportFolder folder(path);
+void write_html_report(const SuiteRun& run, const EarlierRun* earlier, ReportFolder& folder) {
   Names names;
   std::vector<std::vector<CaseLinks>> links;
   for (std::size_t i = 0; i < run.implementations.size(); ++i) {
@@ -102,7 +99,6 @@ void write_html_report(const SuiteRun& run, const EarlierRun* earlier, const fs:
   const std::string data = html_data(run, earlier, links);
   const std::string style = fmt::format("{}\n{}", report::kSequenceStyle, kStyle);
   folder.write("index.html", filled(kPage, {nonce, style, data, kScript}));
-  folder.finish();
 }
 
 }  // namespace rubric::suite

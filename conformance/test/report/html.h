@@ -2,18 +2,15 @@
 // and capture.
 #pragma once
 
-#include <filesystem>
-
+#include "conformance/test/report/folder.h"
 #include "conformance/test/report/json.h"
 #include "conformance/test/suite/result.h"
 
 namespace rubric::suite {
 
-/// Writes DIR/index.html and DIR/cases/IMPLEMENTATION/CASE.{rtr,pcapng}; makes the folders, and
-/// removes what an earlier report left of cases that no longer exist (ReportFolder). With `earlier`
-/// the page shows which verdicts changed since, which cases are new, and which are gone. Throws
-/// std::runtime_error with the path that could not be written.
-void write_html_report(const SuiteRun& run, const EarlierRun* earlier,
-                       const std::filesystem::path& path);
+/// Writes index.html and cases/IMPLEMENTATION/CASE.{rtr,pcapng} into the folder, and leaves it to
+/// the caller to finish it. With `earlier` the page shows which verdicts changed since, which cases
+/// are new, and which are gone. Throws as the folder does.
+void write_html_report(const SuiteRun& run, const EarlierRun* earlier, ReportFolder& folder);
 
 }  // namespace rubric::suite

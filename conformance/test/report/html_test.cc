@@ -77,6 +77,12 @@ class Folder {
   fs::path path_;
 };
 
+void report(const SuiteRun& run, const fs::path& path) {
+  ReportFolder folder(path);
+  write_html_report(run, nullptr, folder);
+  folder.finish();
+}
+
 TEST(FrameView, EachByteOfEachFrameHasItsField) {
   std::size_t frames = 0;
   for (const CaseRun& each : whole().implementations[0].cases) {
@@ -282,7 +288,7 @@ TEST(Html, DataStaysInItsPlace) {
       EXPECT_EQ(data["cases"][0]["runs"][1]["stderr"], word);
     }
     Folder folder;
-    write_html_report(run, nullptr, folder.path());
+    report(run, folder.path());
     const std::string page = folder.read("index.html");
     EXPECT_NE(page.find(text.substr(0, 60)), std::string::npos);
     std::size_t ends = 0;
@@ -293,7 +299,7 @@ TEST(Html, DataStaysInItsPlace) {
 
 TEST(Html, FilesInTheFolderHaveNamesOfTheirOwn) {
   Folder folder;
-  write_html_report(hostile("../../x"), nullptr, folder.path());
+  report(hostile("../../x"), folder.path());
   EXPECT_THAT(folder.files(),
               ElementsAre("cases/_.._.._x_~1/j4.accept.pcapng", "cases/_.._.._x_~1/j4.accept.rtr",
                           "cases/_.._.._x_~1/j4.accept~2.pcapng",
@@ -306,7 +312,7 @@ TEST(Html, APolicyWithANonceOfItsOwn) {
   std::set<std::string> nonces;
   for (int i = 0; i < 3; ++i) {
     Folder folder;
-    write_html_report(hostile("x"), nullptr, folder.path());
+    report(hostile("x"), folder.path());
     const std::string page = folder.read("index.html");
     const std::size_t at = page.find("script-src 'nonce-");
     ASSERT_NE(at, std::string::npos);
@@ -326,7 +332,7 @@ TEST(Html, SaysWhereItCannotWrite) {
   Folder folder;
   std::ofstream(folder.path() / "taken") << "a file";
   try {
-    write_html_report(hostile("x"), nullptr, folder.path() / "taken" / "report");
+    report(hostile("x"), folder.path() / "taken" / "report");
     FAIL();
   } catch (const std::runtime_error& error) {
     EXPECT_THAT(error.what(), HasSubstr("taken"));

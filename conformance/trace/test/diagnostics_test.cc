@@ -154,6 +154,7 @@ const Wrong kWrong[] = {
      "24: no line above binds $q"},
     {"ShiftedGiven", "3 m5 < rA join_request(seq_num=$q+1..$q+2 ...)",
      "24: expected a value, given a range"},
+    {"SumUnbound", "3 m5 < rA join_reply(seq_num=$q+256 ...)", "22: no line above binds $q"},
     {"LabelOfNothing", "b: 3 m5 !> rA *", "1: label 'b' at what does not happen"},
     {"WindowGiven", "0..5 m5 < app get_clock()",
      "1: a window where something is given at one time: 0..5"},

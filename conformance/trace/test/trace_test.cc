@@ -135,6 +135,8 @@ TEST(Encode, VariablesAndOtherValues) {
   bindings.set("b", Value::bytes("\x01"));
   EXPECT_EQ(encoded("join_reply(seq_num=$q ...)", bindings), "15 00000000000000000007");
   EXPECT_EQ(encoded("join_reply(seq_num=!$q ...)", bindings), "15 00000000000000000008");
+  EXPECT_EQ(encoded("join_reply(seq_num=$q+256 ...)", bindings), "15 00000000000000000107");
+  EXPECT_EQ(encoded("join_reply(seq_num=$q-8 ...)", bindings), "15 0000000000000000ffff");
   EXPECT_EQ(encoded("join_reply(seq_num=!65535 ...)"), "15 0000000000000000fffe");
   EXPECT_EQ(encoded("am(type=!join payload=!$b)", bindings), "15 00");
   EXPECT_EQ(encoded("ack_join(dest=$a src=!$a ...)", bindings), "29 000b0005000b0006000000000000");
@@ -145,6 +147,7 @@ TEST(Encode, RefusesWhatCannotBeEncoded) {
   EXPECT_EQ(encoded("join_reply(seq_num=* ...)"), "12: expected a value, given '*'");
   EXPECT_EQ(encoded("join_reply(seq_num=1..2 ...)"), "12: expected a value, given the range 1..2");
   EXPECT_EQ(encoded("join_reply(seq_num=$q ...)"), "12: nothing has bound $q");
+  EXPECT_EQ(encoded("join_reply(seq_num=$q+256 ...)"), "12: nothing has bound $q to a number");
   EXPECT_EQ(encoded("ack_join(dest=11:$q ...)"), "10: nothing has bound $q");
   EXPECT_EQ(encoded("join_reply(*)"), "1: 'join_reply' needs its fields");
   EXPECT_EQ(encoded("joined(11:5 success)"), "1: 'joined' is not a message of a frame");

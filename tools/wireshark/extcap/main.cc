@@ -5,7 +5,6 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <iterator>
 #include <map>
@@ -294,12 +293,11 @@ class Capture {
         input_,
         [this](const Packet& packet, const cli::Source& source) { return take(packet, source); },
         [this] {
-          file_.flush();
           if (file_.reader_gone()) lines::request_stop();
         });
     if (file_.reader_gone()) return cli::kExitClean;  // A reader that stops ends the capture.
-    if (!file_.finish() || result.failed) return cli::kExitInput;
-    return cli::kExitClean;
+    if (!file_.finish()) return cli::kExitOutput;
+    return result.failed ? cli::kExitInput : cli::kExitClean;
   }
 
  private:
@@ -334,7 +332,10 @@ int capture(const CaptureOptions& options) {
   lines::stop_on_signals();
   try {
     // Comes first: until the pipe is opened, Wireshark waits and shows nothing.
-    lines::CaptureFile file(options.fifo);
+    lines::CaptureFile file(options.fifo, lines::CaptureFile::Mode::kGrowOver);
+    if (!file.open()) {  // Stopped, if nobody opened the pipe.
+      return lines::stop_requested() ? cli::kExitClean : cli::kExitOutput;
+    }
     lines::required_address(options.source);
     return Capture(options, file).run();
   } catch (const format::FilterError& error) {
@@ -343,11 +344,6 @@ int capture(const CaptureOptions& options) {
     return usage(error.what());
   } catch (const std::invalid_argument& error) {
     return usage(fmt::format("source {}", error.what()));
-  } catch (const std::system_error& error) {
-    if (lines::stop_requested()) return cli::kExitClean;  // Nobody opened the pipe.
-    fmt::print(stderr, "rubric-extcap: {}: {}\n", options.fifo,
-               std::strerror(error.code().value()));
-    return cli::kExitInput;
   }
 }
 
@@ -366,7 +362,7 @@ std::string filter_error(const std::string& filter, const std::string& spec) {
 
 int answer(const std::string& text) {
   fmt::print("{}", text);
-  return std::fflush(stdout) == 0 ? cli::kExitClean : cli::kExitInput;
+  return std::fflush(stdout) == 0 ? cli::kExitClean : cli::kExitOutput;
 }
 
 int complain(const std::string& what) {

@@ -31,16 +31,18 @@ void Bench::begin(EventCode event, size_t argument_bytes) {
 void Bench::hello() {
   begin(FromBoard::kHello, 4);
   board_.put(kIsSink ? 1 : 0);
-  board_.put(kChannelsRoom);
-  put16(sizeof(Node));
+  board_.put(FirmwareSizes::kChannels);
+  put16(sizeof(FirmwareNode));
 }
 
 void Bench::handle(Bytes record) {
   const Bytes body = record.from(1);
+  Ticks due;
+  if (started_) node_.run(board_.now(), due);
   switch (static_cast<ToBoard>(record[0])) {
     case ToBoard::kSetup: setup(body.data()); break;
-    case ToBoard::kRadio: hear(body); break;
-    case ToBoard::kRadioSent: node_.radio_sent(body[0] != 0); break;
+    case ToBoard::kRadio: node_.received(Line::kRadio, body); break;
+    case ToBoard::kRadioSent: node_.sent(Line::kRadio, body[0] != 0); break;
     case ToBoard::kBusy: set_busy(body[0], body[1] != 0); break;
     case ToBoard::kCall: call(static_cast<CallCode>(body[0]), body.from(1)); break;
     case ToBoard::kRestart: board_.restart();
@@ -51,48 +53,43 @@ void Bench::handle(Bytes record) {
 
 void Bench::setup(const uint8_t* body) {
   Setup setup;
+  setup.role = kIsSink ? Role::kSink : Role::kMote;
   setup.id = load_be16(body);
   setup.island = load_be16(body + 2);
   setup.channels = body[4];
   // Numbers continue after a reset: a late reply must not fit the next request. (decision 117)
   setup.last_seq_num = body[7] != 0 ? board_.kept_seq_num() : load_be16(body + 5);
   board_.start_clock();
+  setup.now = board_.now();
+  setup.slack = 1;
   begin(FromBoard::kReady, 0);
   node_.start(setup);
   started_ = true;
 }
 
-void Bench::hear(Bytes packet) {
-  const auto header = tinyos::AmHeaderView::parse(packet);
-  if (!header) return;
-  const Bytes payload = packet.from(kAmHeaderBytes);
-  if (payload.size() < header->length()) return;
-  node_.radio_received(header->dest(), header->src(), header->type(),
-                       payload.first(header->length()));
-}
-
 void Bench::set_busy(uint8_t line, bool busy) {
   if (line == 2) return node_.set_application_busy(busy);
   if (line == 1) serial_.set_held(busy);
-  node_.set_line_busy(line == 0 ? Line::kRadio : Line::kSerial, busy);
+  node_.set_busy(line == 0 ? Line::kRadio : Line::kSerial, busy);
 }
 
 void Bench::run() {
   if (!started_) return;
+  Ticks due = 0;
+  if (serial_.has_news()) node_.run(board_.now(), due);
   const uint8_t packets = serial_.poll(node_);
   if (packets != 0) {
     packets_ = static_cast<uint8_t>(packets_ + packets);
     reported_ = false;
   }
-  node_.run_timers();
+  const bool timer_runs = node_.run(board_.now(), due);
   board_.kept_seq_num() = node_.last_seq_num();
-  report_idle();
+  report_idle(timer_runs, due);
 }
 
-void Bench::report_idle() {
-  Ticks due = 0;
+void Bench::report_idle(bool timer_runs, Ticks due) {
   uint8_t flags = 0;
-  if (node_.next_due(due)) flags |= kIdleTimerRuns;
+  if (timer_runs) flags |= kIdleTimerRuns;
   if (serial_.is_sending()) flags |= kIdleSerialSends;
   if (reported_ && flags == told_flags_ && due == told_due_) return;
   reported_ = true;
@@ -105,19 +102,11 @@ void Bench::report_idle() {
   put32(due);
 }
 
-void Bench::send(uint16_t dest, uint8_t am_type, Bytes payload, bool link_ack) {
-  begin(FromBoard::kRadio, 1 + kAmHeaderBytes + payload.size());
+void Bench::transmit(Line line, Bytes packet, bool link_ack) {
+  if (line == Line::kSerial) return serial_.send(packet);
+  begin(FromBoard::kRadio, 1 + packet.size());
   board_.put(link_ack ? 1 : 0);
-  tinyos::AmHeader header;
-  header.dispatch = tinyos::Dispatch::kActiveMessage;
-  header.dest = dest;
-  header.src = node_.address().devid;
-  header.length = static_cast<uint8_t>(payload.size());
-  header.type = am_type;
-  uint8_t bytes[kAmHeaderBytes];
-  tinyos::AmHeaderLayout::store(header, bytes);
-  for (const uint8_t byte : bytes) board_.put(byte);
-  for (const uint8_t byte : payload) board_.put(byte);
+  for (const uint8_t byte : packet) board_.put(byte);
 }
 
 void Bench::joined(Address address, bool success) {

@@ -2,15 +2,39 @@
 #pragma once
 
 #include "conformance/adapters/firmware/bench/records.h"
-#include "conformance/adapters/firmware/node/node.h"
-#include "conformance/adapters/firmware/node/serial_port.h"
+#include "conformance/node/node.h"
+#include "conformance/node/serial_port.h"
+
+#ifndef RUBRIC_FIRMWARE_SINK
+#define RUBRIC_FIRMWARE_SINK 0  // 1: firmware of a sink.
+#endif
+#ifndef RUBRIC_FIRMWARE_CHANNELS
+#define RUBRIC_FIRMWARE_CHANNELS 4  // Synaptic channels of each direction.
+#endif
 
 namespace rubric {
 namespace firmware {
 
+using namespace node;
+
+constexpr bool kIsSink = RUBRIC_FIRMWARE_SINK != 0;
+template <bool kSink>
+struct RoleSizes : MoteSizes {};
+template <>
+struct RoleSizes<true> : SinkSizes {};
+struct FirmwareSizes : RoleSizes<kIsSink> {
+  static constexpr uint8_t kChannels = RUBRIC_FIRMWARE_CHANNELS;
+};
+using FirmwareNode = SizedNode<FirmwareSizes>;
+// With the paper's number of channels it takes no more memory than the paper's.
+static_assert(FirmwareSizes::kChannels > 4 || sizeof(FirmwareNode) <= paper_bytes(12, 8),
+              "a node takes more memory than the paper's");
+
 /// The parts that differ from board to board.
-class Board : public Clock {
+class Board {
  public:
+  /// Returns the time, 1024 to the second, since start_clock().
+  virtual Ticks now() const = 0;
   /// Sends a byte to the bench; waits until there is room for it.
   virtual void put(uint8_t byte) = 0;
   virtual void start_clock() = 0;
@@ -22,10 +46,9 @@ class Board : public Clock {
   ~Board() = default;
 };
 
-class Bench : public Radio, public Application {
+class Bench : public Driver, public Application {
  public:
-  Bench(Board& board, SerialPort& serial)
-      : board_(board), serial_(serial), node_(*this, serial, board, *this) {}
+  Bench(Board& board, SerialPort& serial) : board_(board), serial_(serial), node_(*this, *this) {}
 
   /// Greets the bench after a reset.
   void hello();
@@ -34,8 +57,7 @@ class Bench : public Radio, public Application {
   /// Runs the node's own work; to be called after each interrupt.
   void run();
 
-  void send(uint16_t dest, uint8_t am_type, Bytes payload, bool link_ack) override;
-  void set_on(bool) override {}  // The bench goes on sending; the node does not listen.
+  void transmit(Line line, Bytes packet, bool link_ack) override;
 
   void joined(Address address, bool success) override;
   void mote_joined(Address address, const Descriptor& descriptor) override;
@@ -52,16 +74,15 @@ class Bench : public Radio, public Application {
   void result(bool success);
   void result(ChannelResult result);
   void setup(const uint8_t* body);
-  void hear(Bytes packet);
   void set_busy(uint8_t line, bool busy);
   void call(CallCode code, Bytes arguments);
   void call_on_lines(CallCode code, Bytes arguments);
   void call_on_channel(CallCode code, const uint8_t* arguments);
-  void report_idle();
+  void report_idle(bool timer_runs, Ticks due);
 
   Board& board_;
   SerialPort& serial_;
-  Node node_;
+  FirmwareNode node_;
   bool started_ = false;
   bool reported_ = true;
   uint8_t records_ = 0;

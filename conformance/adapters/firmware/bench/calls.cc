@@ -40,9 +40,9 @@ void Bench::call(CallCode code, Bytes arguments) {
     case CallCode::kInterface:
     case CallCode::kGetInterface: return call_on_lines(code, arguments);
     case CallCode::kStartAll: node_.start_all(); return result(true);
-    case CallCode::kStopAll: node_.channels().stop_all(); return result(true);
+    case CallCode::kStopAll: node_.stop_all(); return result(true);
     case CallCode::kSetTimeStep: return result(node_.set_time_step(load_be16(p)));
-    case CallCode::kSetIslandId: return result(false);  // A base station's.
+    case CallCode::kSetIslandId: return result(node_.set_island(load_be16(p)));
     case CallCode::kGetClock: begin(EventCode::kClock, 4); return put32(node_.clock_ms());
     default: return call_on_channel(code, p);
   }
@@ -50,15 +50,12 @@ void Bench::call(CallCode code, Bytes arguments) {
 
 void Bench::call_on_lines(CallCode code, Bytes arguments) {
   const uint8_t number = arguments[0];
-  const bool known = number <= 1;  // PEIS is for base stations.
-  const Line line = number == 0 ? Line::kRadio : Line::kSerial;
-  if (code == CallCode::kInterface) {
-    if (known) node_.set_interface(line, arguments[1] != 0);
-    return result(known);
-  }
+  if (number >= kLines) return result(false);
+  const Line line = static_cast<Line>(number);
+  if (code == CallCode::kInterface) return result(node_.set_interface(line, arguments[1] != 0));
   begin(EventCode::kInterfaceState, 2);
   board_.put(number);
-  board_.put(known && node_.interface_is_on(line));
+  board_.put(node_.interface_is_on(line));
 }
 
 void Bench::call_on_channel(CallCode code, const uint8_t* p) {
@@ -67,13 +64,13 @@ void Bench::call_on_channel(CallCode code, const uint8_t* p) {
   switch (code) {
     case CallCode::kCreateOut: return result(node_.create_out(address_at(p), p[4], mode));
     case CallCode::kCreateIn: return result(node_.create_in(address_at(p), p[4], mode));
-    case CallCode::kDispose: return result(node_.channels().dispose(id));
+    case CallCode::kDispose: return result(node_.dispose(id));
     case CallCode::kStart: return result(node_.start_channel(id));
-    case CallCode::kStop: return result(node_.channels().stop(id));
+    case CallCode::kStop: return result(node_.stop_channel(id));
     case CallCode::kWriteOutput:
-      return result(node_.channels().write(id, p[4], float_of_bits(load_be32(p + 5))));
+      return result(node_.write_output(id, p[4], float_of_bits(load_be32(p + 5))));
     case CallCode::kReadInput: {
-      const InputValue input = node_.channels().read(id, p[4]);
+      const InputValue input = node_.read_input(id, p[4]);
       begin(EventCode::kInputValue, 5);
       put32(bits_of_float(input.value));
       return board_.put(input.success);

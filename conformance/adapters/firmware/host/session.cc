@@ -65,9 +65,6 @@ class Session {
     const auto number = [&](std::string_view name, std::uint32_t otherwise, std::uint32_t max) {
       return settings.contains(name) ? number_of(settings[name], max) : otherwise;
     };
-    if (settings.contains("profile") && settings["profile"] != "paper") {
-      throw Unsupported("this firmware is built for the profile paper");
-    }
     const std::uint32_t channels = number("channels", 4, 0xFF);
     Bridge& bridge = station(words[1], channels);
     const std::uint32_t seed = number("seed", 0, 0xFFFFFFFF);

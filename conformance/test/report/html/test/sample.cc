@@ -109,7 +109,9 @@ int write(const std::string& folder) {
   for (ImplementationRun& one : all.implementations) repeat_all(one);
   all.implementations.push_back(hostile(all.implementations[0]));
   all.stale.push_back({"known.yaml:3", kMarkup});
-  write_html_report(all, &earlier, folder);
+  ReportFolder report(folder);
+  write_html_report(all, &earlier, report);
+  report.finish();
   return 0;
 }
 
