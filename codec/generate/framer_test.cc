@@ -112,6 +112,7 @@ constexpr const char* kNotCarried = "no carrier holds this message, so no frame 
 const std::map<ReqId, const char*, reflect::CatalogueOrder> kNotBroken = {
     {"WIRE-SF-HANDSHAKE"_rule, kOfTheStream},
     {"WIRE-RADIO-TAP"_rule, "no writer writes TAP headers"},
+    {"WIRE-ZEP"_rule, "it is a live source, not a format that is written"},
     {"WIRE-PCAP"_rule, kOfTheStream},
     {"WIRE-PCAPNG"_rule, kOfTheStream},
     {"WIRE-HEX"_rule, kOfTheStream},

@@ -88,6 +88,11 @@ constexpr reflect::Requirement kRequirements[] = {
      "fields.",
      "LINKTYPE_IEEE802_15_4_TAP",
      0, false, ""},
+    {"WIRE-ZEP", "MUST", "wire, radio",
+     "A ZEP packet begins with the letters EX and version 1 or 2; its length byte says how "
+     "many bytes of a radio frame follow its header.",
+     "Wireshark, packet-zep.c",
+     0, false, ""},
     {"WIRE-PCAP", "MUST", "wire, capture files",
      "A pcap file is a file header of 24 bytes and records of a 16-byte header and the "
      "captured bytes.",

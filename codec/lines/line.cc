@@ -47,9 +47,27 @@ Address network(Address::Kind kind, std::string_view text, std::string_view rest
   return out;
 }
 
+// A port 0 is any that is free.
+Address air(std::string_view text, std::string_view rest) {
+  Address out;
+  out.kind = Address::Kind::kAir;
+  out.name = text;
+  if (rest == "0") {
+    out.at = {"127.0.0.1", 0};
+    return out;
+  }
+  try {
+    out.at = lines::read_host_port(rest);
+  } catch (const std::invalid_argument&) {
+    throw std::invalid_argument(fmt::format("'{}': expected zep:PORT or zep:HOST:PORT", text));
+  }
+  return out;
+}
+
 }  // namespace
 
 std::optional<Address> parse_address(std::string_view text) {
+  if (text.starts_with("zep:")) return air(text, text.substr(4));
   const std::size_t at = text.find('@');
   if (at == text.npos) return std::nullopt;
   const std::string_view scheme = text.substr(0, at);
@@ -69,7 +87,8 @@ std::optional<Address> parse_address(std::string_view text) {
 }
 
 Address required_address(std::string_view text) {
-  if (const auto address = parse_address(text)) return *address;
+  const auto address = parse_address(text);
+  if (address && address->kind != Address::Kind::kAir) return *address;
   throw std::invalid_argument(
       fmt::format("'{}': expected serial@DEVICE:BAUD, network@HOST:PORT or "
                   "sf@HOST:PORT",
@@ -106,7 +125,7 @@ void Line::answer(const Packet& packet) {
   if (mute_) return;
   std::uint8_t room[lines::kHostAnswerRoom];
   const std::size_t size = lines::host_answer(packet, MutableBytes(room, sizeof room));
-  if (size > 0) stream_.write(Bytes(room, size), steady_clock::now() + kAnswerTime);
+  if (size > 0) stream_.write_or_keep(Bytes(room, size), steady_clock::now() + kAnswerTime);
 }
 
 }  // namespace rubric::lines

@@ -13,9 +13,10 @@
 namespace rubric::lines {
 
 /// An address in the form of TinyOS hosts: `serial@DEVICE:BAUD`, where BAUD may be a platform's
-/// name; `network@HOST:PORT`, a serial line through TCP; `sf@HOST:PORT`, a serial forwarder.
+/// name; `network@HOST:PORT`, a serial line through TCP; `sf@HOST:PORT`, a serial forwarder. Or a
+/// virtual air, which is no serial line: `zep:PORT` or `zep:HOST:PORT`.
 struct Address {
-  enum class Kind : std::uint8_t { kSerial, kNetwork, kForwarder };
+  enum class Kind : std::uint8_t { kSerial, kNetwork, kForwarder, kAir };
   Kind kind = Kind::kSerial;
   std::string name;  ///< As given.
   std::string device;
@@ -26,7 +27,7 @@ struct Address {
 /// Returns nothing if the text is no such name, so that it is a file's. Throws
 /// std::invalid_argument with what is wrong if it begins like one.
 std::optional<Address> parse_address(std::string_view text);
-/// Does the same if the text cannot be a file's: throws for any that is no such name.
+/// Does the same where only a serial line will do: throws for any other text.
 Address required_address(std::string_view text);
 
 /// Returns $MOTECOM, or sf@localhost:9002, as TinyOS hosts do.
@@ -34,8 +35,8 @@ std::string default_address();
 /// Returns whether a user who names no source wants that: at a terminal, with $MOTECOM set.
 bool asked_by_motecom();
 
-/// All functions throw Broken, with what is wrong, if the other end cannot be reached
-/// or is gone.
+/// The address is a serial line's. All functions throw Broken, with what is wrong, if the other end
+/// cannot be reached or is gone.
 class Line {
  public:
   /// `listen_only`: nothing is ever written to a serial line.

@@ -77,10 +77,17 @@ ByteStream::ByteStream(Descriptor descriptor) : descriptor_(std::move(descriptor
   ::fcntl(fd, F_SETFL, ::fcntl(fd, F_GETFL) | O_NONBLOCK);
 }
 
-void ByteStream::write(Bytes bytes, SteadyTime deadline) {
+void ByteStream::write(Bytes bytes, SteadyTime deadline) { write_all(bytes, deadline, false); }
+
+void ByteStream::write_or_keep(Bytes bytes, SteadyTime deadline) {
+  write_all(bytes, deadline, true);
+}
+
+void ByteStream::write_all(Bytes bytes, SteadyTime deadline, bool keep) {
   std::size_t sent = 0;
   while (sent < bytes.size()) {
-    const std::size_t count = write_some(Bytes(bytes.data() + sent, bytes.size() - sent));
+    const Bytes rest(bytes.data() + sent, bytes.size() - sent);
+    const std::size_t count = keep ? send_some(rest) : write_some(rest);
     sent += count;
     if (count == 0 && !wait_for(descriptor_.get(), POLLOUT, deadline)) {
       throw Broken("the line takes no more bytes");
@@ -89,15 +96,22 @@ void ByteStream::write(Bytes bytes, SteadyTime deadline) {
 }
 
 std::size_t ByteStream::write_some(Bytes bytes) {
+  try {
+    return send_some(bytes);
+  } catch (const Broken&) {
+    close();
+    throw;
+  }
+}
+
+std::size_t ByteStream::send_some(Bytes bytes) const {
   if (!is_open()) throw Broken("the line is closed");
   const int fd = descriptor_.get();
   ssize_t count = ::send(fd, bytes.data(), bytes.size(), MSG_NOSIGNAL);
   if (count < 0 && errno == ENOTSOCK) count = ::write(fd, bytes.data(), bytes.size());
   if (count >= 0) return static_cast<std::size_t>(count);
   if (would_block(errno)) return 0;
-  const int error = errno;
-  close();
-  throw Broken(fmt::format("the line broke: {}", std::strerror(error)));
+  throw Broken(fmt::format("the line broke: {}", std::strerror(errno)));
 }
 
 std::size_t ByteStream::read(MutableBytes out, SteadyTime deadline) {

@@ -38,6 +38,8 @@ class ByteStream {
   void write(Bytes bytes, SteadyTime deadline);
   /// Writes without waiting and returns how many bytes went; 0: none.
   std::size_t write_some(Bytes bytes);
+  /// As write(), but leaves the stream open if it fails, so that what came before can be read.
+  void write_or_keep(Bytes bytes, SteadyTime deadline);
   /// Reads the bytes at hand, at most out.size(), and returns their number; 0 if the time is over
   /// first.
   std::size_t read(MutableBytes out, SteadyTime deadline);
@@ -51,6 +53,9 @@ class ByteStream {
   void end_output();
 
  private:
+  void write_all(Bytes bytes, SteadyTime deadline, bool keep);
+  std::size_t send_some(Bytes bytes) const;
+
   Descriptor descriptor_;
 };
 

@@ -1,9 +1,10 @@
 // Property: a captured record of any radio link type is split like a plain reading of 802.15.4, FCS
-// and addresses included, and its output reads back as the same.
+// and addresses included, and its output reads back as the same; so does one in a ZEP datagram.
 #include <cstddef>
 #include <cstdint>
 
 #include "codec/containers/link_record.h"
+#include "codec/containers/zep_packet.h"
 #include "codec/reflect/frame.h"
 #include "codec/reflect/registry.h"
 #include "fuzz/support/input.h"
@@ -83,6 +84,35 @@ void check_append(const Kept& kept) {
   fuzz::require_same({fuzz::placeless(Kept(again))}, {wanted}, "a record reads back as the same");
 }
 
+// Any bytes as a datagram, and as the frame in a sound one.
+void check_zep(Bytes bytes) {
+  Packet packet;
+  if (decode_zep_datagram(bytes, packet)) {
+    require(packet.offset_bytes + packet.bytes.size() <= bytes.size(), "a frame in its datagram");
+  }
+  ZepPacket zep;
+  if (const auto foreign = parse_zep(bytes)) zep = *foreign;
+  if (zep.time_ns < 0) zep.time_ns = kNoTime;  // Before 1970; it is not written.
+  zep.has_fcs = true;
+  zep.type = ZepPacket::Type::kData;
+  zep.frame = bytes.first(bytes.size() < 255 ? bytes.size() : 255);
+  std::string datagram;
+  append_zep(zep, datagram);
+  const Bytes written = testing::view(datagram);
+  const auto again = parse_zep(written);
+  require(again && again->sequence == zep.sequence && again->device == zep.device &&
+              again->channel == zep.channel && again->time_ns == zep.time_ns,
+          "a ZEP packet reads back as the same");
+  Packet wrapped;
+  Packet plain;
+  require(decode_zep_datagram(written, wrapped) == !zep.frame.empty(), "a frame is found");
+  if (zep.frame.empty()) return;
+  decode_radio_record(zep.frame, kLinkRadioFcs, plain);
+  require(wrapped.error == plain.error && wrapped.fcs == plain.fcs &&
+              Kept(wrapped).bytes == Kept(plain).bytes,
+          "a frame in a ZEP packet is read as one in a capture");
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -92,6 +122,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   // Mostly a record is captured whole.
   const std::size_t missing = input.u8() % 8 == 7 ? 1 + input.u8() : 0;
   const Bytes record = input.rest();
+  check_zep(record);
   Packet packet;
   decode_record(record, record.size() + missing, link_type, "WIRE-PCAP"_rule, packet);
   require(packet.offset_bytes + packet.bytes.size() <= record.size(), "a frame lies in its record");

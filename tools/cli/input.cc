@@ -14,6 +14,8 @@
 #include <utility>
 
 #include "codec/containers/reader.h"
+#include "codec/containers/zep_packet.h"
+#include "codec/lines/air.h"
 #include "codec/lines/broken.h"
 #include "codec/lines/line.h"
 #include "codec/lines/stop.h"
@@ -33,6 +35,7 @@ constexpr std::size_t kDetectMost = 64 * 1024;
 constexpr std::size_t kBareMost = kDetectMost;
 
 constexpr std::chrono::milliseconds kReconnectEvery{1000};
+constexpr std::chrono::milliseconds kAirPatience{100};
 
 /// Hex text whose lines are 802.15.4 frames without FCS.
 constexpr const char* kHexRadio = "hex-radio";
@@ -95,7 +98,13 @@ class Run {
       source_.number = 0;
       try {
         const std::optional<lines::Address> address = lines::parse_address(files_[i]);
-        address ? line(*address) : one();
+        if (!address) {
+          one();
+        } else if (address->kind == lines::Address::Kind::kAir) {
+          air(*address);
+        } else {
+          line(*address);
+        }
       } catch (const std::system_error& error) {
         complain(std::strerror(error.code().value()));
       } catch (const FileChanged& changed) {
@@ -143,13 +152,42 @@ class Run {
     result_.failed = failed_before || lost_;
   }
 
+  // Listens to a virtual air until the user stops it.
+  void air(const lines::Address& address) {
+    lines::stop_on_signals();
+    result_.live = true;
+    source_.format = "zep";
+    const std::vector<Interface> interfaces = {{address.name, {}, 0, 1'000'000, 0}};
+    lines::Air air(address.at);
+    try {
+      air.open();
+      if (address.at.port == 0) fmt::print(stderr, "rubric: zep:{}\n", air.port());
+      while (!lines::stop_requested() && !result_.stopped) {
+        const Bytes datagram = air.receive(std::chrono::steady_clock::now() + kAirPatience);
+        Packet packet;
+        if (!datagram.empty() && decode_zep_datagram(datagram, packet)) {
+          packet.time_ns = lines::air_time_ns(packet.time_ns);
+          give(packet, interfaces);
+        }
+        if (on_idle_) on_idle_();
+      }
+    } catch (const lines::Broken& broken) {
+      complain(broken.what());
+    }
+  }
+
   void pump_line(lines::Line& line, Reader& reader) {
     std::int64_t now_ns = 0;
+    std::optional<lines::Broken> unanswered;  // Reported when all that had come was delivered.
     auto deliver = [&](const Packet& packet) {
       Packet stamped = packet;
       stamped.time_ns = now_ns;
-      line.answer(packet);
       give(stamped, reader.interfaces());
+      try {
+        if (!unanswered && !result_.stopped) line.answer(packet);
+      } catch (const lines::Broken& broken) {
+        unanswered = broken;
+      }
     };
     try {
       while (!lines::stop_requested() && !result_.stopped) {
@@ -157,6 +195,7 @@ class Run {
         now_ns = std::chrono::system_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
         if (size) reader.feed(Bytes(chunk_.get(), size), deliver);
         if (on_idle_) on_idle_();
+        if (size == 0 && unanswered) throw *unanswered;
       }
     } catch (const lines::Broken&) {
       reader.finish(deliver);  // With an unfinished frame.
@@ -304,7 +343,9 @@ void add_live_options(Command& app, InputOptions& options) {
   };
   app.get_option("FILE").check(check).description(
       "Captures, in order; none or - is stdin. Or lines in use: serial@DEVICE:BAUD (or a platform, "
-      "as serial@/dev/ttyUSB0:telosb), network@HOST:PORT, sf@HOST:PORT");
+      "as serial@/dev/ttyUSB0:telosb), network@HOST:PORT, sf@HOST:PORT; zep:PORT, radio frames "
+      "over "
+      "UDP");
   app.add_flag("--follow", options.follow, "Wait for more at the end of a file");
   app.add_flag("--listen-only", options.listen_only,
                "Confirm no frames of a serial line, so that nothing is written to it");

@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <system_error>
@@ -15,6 +16,7 @@
 namespace rubric::cli {
 namespace {
 
+constexpr std::size_t kTailBytes = 256;  // A frame, or most of one.
 constexpr int kDetectPatienceMs = 200;
 constexpr std::chrono::milliseconds kFollowEvery{100};
 
@@ -47,11 +49,25 @@ std::size_t InputFile::read(std::uint8_t* to, std::size_t size) {
   while (true) {
     if (!ready()) return 0;
     const ssize_t got = ::read(fd_, to, size);
-    if (got > 0) return static_cast<std::size_t>(got);
+    if (got > 0) {
+      const auto count = static_cast<std::size_t>(got);
+      if (!follow_ || !is_regular_) return count;
+      if (!still_has_tail(count)) throw FileChanged("it was overwritten");
+      tail_.assign(to + (count - std::min(count, kTailBytes)), to + count);
+      return count;
+    }
     if (got < 0 && errno != EINTR) throw std::system_error(errno, std::generic_category());
     if (lines::stop_requested() || (got == 0 && !follow_)) return 0;
     if (got == 0) wait();
   }
+}
+
+// Returns whether what was read before these `got` bytes is still in the file.
+bool InputFile::still_has_tail(std::size_t got) const {
+  std::vector<std::uint8_t> now(tail_.size());
+  const off_t at = ::lseek(fd_, 0, SEEK_CUR) - static_cast<off_t>(got + tail_.size());
+  return ::pread(fd_, now.data(), now.size(), at) == static_cast<ssize_t>(now.size()) &&
+         now == tail_;
 }
 
 bool InputFile::has_more_soon() const {

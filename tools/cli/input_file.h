@@ -8,6 +8,7 @@
 #include <functional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace rubric::cli {
 
@@ -30,7 +31,7 @@ class InputFile {
 
   /// Reads up to `size` bytes and returns their number, 0 at the end, which a followed file has
   /// only when the user asks to stop. Throws std::system_error, and, once all was read, FileChanged
-  /// if the file became shorter or its name belongs to another file or none.
+  /// if the file became shorter, was overwritten, or its name belongs to another file or none.
   std::size_t read(std::uint8_t* to, std::size_t size);
 
   /// Returns whether more bytes are there, or will be in a moment.
@@ -38,6 +39,7 @@ class InputFile {
 
  private:
   off_t left() const;
+  bool still_has_tail(std::size_t got) const;
   void wait();
   bool ready() const;
 
@@ -46,6 +48,7 @@ class InputFile {
   bool is_stdin_;
   bool is_regular_ = false;
   bool follow_;
+  std::vector<std::uint8_t> tail_;  // Of a followed file: the last bytes that were read.
   const std::function<void()>& on_idle_;
 };
 

@@ -95,7 +95,8 @@ void add_options(cli::Command& command, CheckOptions& options) {
   cli::add_live_options(command, options.input);
   command.get_option("FILE").description(
       "Captures and .rtr logs of one run; - is stdin. Or lines in use: serial@DEVICE:BAUD (or a "
-      "platform, as serial@/dev/ttyUSB0:telosb), network@HOST:PORT, sf@HOST:PORT; at a terminal "
+      "platform, as serial@/dev/ttyUSB0:telosb), network@HOST:PORT, sf@HOST:PORT, zep:PORT; at a "
+      "terminal "
       "$MOTECOM");
   cli::add_write_options(command, options.write, "Keep what lines in use send in this pcapng file",
                          false);

@@ -24,6 +24,7 @@ void add_new_adapter(cli::Command& program);
 void add_repro(cli::Command& program);
 void add_send(cli::Command& program);
 void add_shrink(cli::Command& program);
+void add_run(cli::Command& program);
 void add_simulate(cli::Command& program);
 void add_stats(cli::Command& program);
 void add_test(cli::Command& program);

@@ -7,6 +7,7 @@ Usage: decode_live_test.py RUBRIC PROJECT_FOLDER. All of it on this host, bounde
 import os
 import pty
 import signal
+import socket
 import subprocess
 import time
 import unittest
@@ -52,6 +53,34 @@ class Live(LiveTest):
             self.assertEqual(running.lines(1)[0]["message"], "config")
             self.assertEqual(line.read(0.5), answer)
             self.assertEqual(running.end()[0], 0)
+
+    def test_what_came_is_delivered_though_no_answer_can_be_sent(self):
+        count = 2000
+        frame = hdlc(b"\x44\x2a" + bytes.fromhex("00ffff000003002514000c"))
+        listener = socket.create_server(("127.0.0.1", 0))
+        self.addCleanup(listener.close)
+        running = self.started("decode", f"network@127.0.0.1:{listener.getsockname()[1]}",
+                               "--format", "jsonl")
+        connection, _ = listener.accept()
+        connection.sendall(frame * count)
+        connection.close()
+        self.assertEqual(len(running.lines(count)), count)
+        code, _, err = running.end(None)
+        self.assertEqual(code, 3)
+        self.assertIn("the line broke", err)
+
+    def test_a_file_that_is_overwritten(self):
+        path = self.folder / "growing.bin"
+        whole = (ROOT / SERIAL).read_bytes()
+        path.write_bytes(whole[:1000])
+        running = self.started("decode", "--follow", path, "--format", "jsonl")
+        shown = len(running.lines(2))
+        self.assertEqual(shown, 2)
+        with open(path, "r+b") as file:
+            file.write(whole[500:])
+        code, _, err = running.end(None)
+        self.assertEqual(code, 3)
+        self.assertIn("it was overwritten", err)
 
     def test_a_serial_forwarder_that_goes(self):
         server = Forwarder(self)

@@ -9,6 +9,7 @@ import socket
 import struct
 import subprocess
 import sys
+import time
 import unittest
 
 from forward_testing import RUBRIC, SANITIZED, Client, from_mote, packet, serving
@@ -138,9 +139,9 @@ class Clients(unittest.TestCase):
                           (b"U\x1f", "begins with 55 1f, not with 55 20"),
                           (b"U \x00", "sent a packet of no bytes"),
                           (b"U \xfd", "sent a packet of 253 bytes; the source takes 252$"),
-                          (b"U", "has sent no handshake for"),
-                          (b"", "has sent no handshake for"),
-                          (b"U \x05\x00\x01", "has sent no more of a packet for")):
+                          (b"U", "has not ended its handshake in"),
+                          (b"", "has not ended its handshake in"),
+                          (b"U \x05\x00\x01", "has not ended its packet in")):
             bad = Client(self, running, hello=sent)
             running.wait_for(f"client {bad.name} is cut off: it {why}")
             bad.wait_until_cut_off()
@@ -166,6 +167,22 @@ class Clients(unittest.TestCase):
             client.socket.close()
         found = sorted(mote.confirmed_packet() for _ in range(6))
         self.assertEqual(found, [packet(number) for number in (0, 1, 2, 10, 11, 12)])
+
+    def test_the_silent_give_way(self):
+        _, running = serving(self, "--clients", "1", "--patience", "1")
+        silent = Client(self, running)
+        deadline = time.monotonic() + PATIENCE_S
+        served = False
+        while not served and time.monotonic() < deadline:
+            with socket.create_connection((running.host, running.port), PATIENCE_S) as later:
+                later.sendall(b"U ")
+                try:
+                    served = later.recv(2) == b"U "
+                except ConnectionError:
+                    pass
+                time.sleep(0 if served else 0.5)
+        self.assertTrue(served)
+        running.wait_for(f"client {silent.name} gives way: it has sent nothing for")
 
     def test_too_many_clients(self):
         mote, running = serving(self, "--clients", "2", "--verbose")

@@ -27,6 +27,8 @@ CONVERSATION = [
     ("hello rct/1", ["hello rct/1 my_..."]),
     ("no_such_command 7", ["unsupported ..."]),
     ("reset nobody id=5 island=11 channels=4 seed=0 profile=paper", ["unsupported ..."]),
+    ("reset ROLE id=5 island=11 channels=4 seed=3 profile=paper members=2",
+     ["unsupported members"]),
     ("reset ROLE id=5 island=11 channels=4 seed=3 profile=paper", ["ready"]),
     ("call 0 get_clock()", ["up 0 clock(0)", "next -", "done 0"]),
     ("until 1024", ["next -", "done 1024"]),

@@ -30,6 +30,7 @@ Client::Client(lines::Descriptor socket, std::string name, std::uint64_t offset,
     : socket_(std::move(socket)),
       name_(std::move(name)),
       limits_(limits),
+      begun_(now),
       heard_(now),
       served_(now),
       offset_(offset) {
@@ -70,9 +71,13 @@ void Client::read(lines::SteadyTime now) {
       if (lost_ || count < 0) socket_.close();
       return look_behind_the_last();
     }
+    const bool begins = greeted_ && !is_cut_short();
+    const bool greeted = greeted_;
+    const std::size_t packets = packets_waiting();
     in_used_ += static_cast<std::size_t>(count);
     heard_ = now;
     look();
+    if (begins || greeted != greeted_ || packets != packets_waiting()) begun_ = now;
   }
 }
 
@@ -154,14 +159,14 @@ void Client::write(const Backlog& backlog, lines::SteadyTime now) {
 std::optional<lines::SteadyTime> Client::deadline() const {
   if (ended_ || lost_ || !fault_.empty()) return std::nullopt;
   if (greeted_ && !is_cut_short()) return std::nullopt;
-  return heard_ + limits_.patience;
+  return begun_ + limits_.patience;
 }
 
 void Client::tick(lines::SteadyTime now) {
   const std::optional<lines::SteadyTime> end = deadline();
   if (!end || now < *end) return;
-  fault_ = fmt::format("it has sent no {} for {:.1f} s",
-                       greeted_ ? "more of a packet" : "handshake", seconds(now - heard_));
+  fault_ = fmt::format("it has not ended its {} in {:.1f} s", greeted_ ? "packet" : "handshake",
+                       seconds(now - begun_));
 }
 
 }  // namespace rubric::forward

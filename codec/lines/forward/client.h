@@ -16,7 +16,7 @@ namespace rubric::forward {
 class Client {
  public:
   /// `packet_max`: the longest packet that the source takes, in bytes. `patience`: how long a
-  /// client may take to shake hands, and to end a packet that it has begun.
+  /// client may take to shake hands, and for a packet from its first byte to its last.
   struct Limits {
     std::size_t packet_max = 255;
     lines::Milliseconds patience{10'000};
@@ -31,6 +31,8 @@ class Client {
   int fd() const { return socket_.get(); }
   /// Returns why it has to be cut off; empty if it does not.
   const std::string& fault() const { return fault_; }
+  /// Returns when it last sent something, or came.
+  lines::SteadyTime heard() const { return heard_; }
   /// Returns whether it sends nothing more; its packets may be left.
   bool has_left() const { return ended_ || fd() < 0; }
   /// Returns whether it is gone, with nothing of it left.
@@ -74,6 +76,7 @@ class Client {
   std::string fault_;
   std::array<std::uint8_t, kRoom> in_{};
   std::size_t in_used_ = 0;
+  lines::SteadyTime begun_;   // Time of the first byte of a packet, or of its coming.
   lines::SteadyTime heard_;   // Time of its last input.
   lines::SteadyTime served_;  // Time of its last output.
   std::uint64_t offset_;      // Offset of the first byte that it lacks.

@@ -65,6 +65,29 @@ TEST_P(ClientTest, GetsLaterWhatTheSystemHasNoRoomForNow) {
   EXPECT_EQ(received(), (std::vector<std::uint8_t>{0x55, 0x20, 2, 0, 7}));
 }
 
+TEST_P(ClientTest, HasPatienceForAPacketNotForEachByte) {
+  const auto send_byte = [&](std::uint8_t byte, lines::Milliseconds at) {
+    EXPECT_EQ(::write(peer_.get(), &byte, 1), 1);
+    client_->turn(POLLIN, backlog_, now_ + at);
+    client_->tick(now_ + at);
+  };
+  using lines::Milliseconds;
+  send_byte('U', Milliseconds(5'000));
+  send_byte(' ', Milliseconds(9'000));
+  for (int i = 0; i < 3; ++i) {  // Whole packets in time, each with the first byte of the next.
+    const Milliseconds at(20'000 + 9'000 * i);
+    send_byte(1, at);
+    send_byte(7, at + Milliseconds(8'000));
+    client_->drop_packet();
+  }
+  EXPECT_EQ(client_->fault(), "");
+  send_byte(200, Milliseconds(60'000));
+  for (int i = 1; i < 10; ++i) send_byte(7, Milliseconds(60'000 + 1'000 * i));
+  EXPECT_EQ(client_->fault(), "");
+  send_byte(7, Milliseconds(70'000));
+  EXPECT_EQ(client_->fault(), "it has not ended its packet in 10.0 s");
+}
+
 INSTANTIATE_TEST_SUITE_P(Errors, ClientTest, ::testing::Values(EAGAIN, EINTR, ENOBUFS, ENOMEM));
 
 }  // namespace

@@ -21,6 +21,7 @@ namespace {
 using lines::Milliseconds;
 using std::chrono::steady_clock;
 
+constexpr int kSilentPatiences = 6;  // A client may be silent so long when places are rare.
 constexpr Milliseconds kReconnectEvery{1000};
 // Packets within this time go to a client in one piece. The first packet after a pause does not
 // wait.
@@ -199,7 +200,7 @@ void Server::accept_clients(Time now) {
 
 void Server::admit(lines::Descriptor socket, Time now) {
   const std::string name = address_of_peer(socket.get()).text();
-  if (clients_.size() >= options_.clients_max && !make_room()) {
+  if (clients_.size() >= options_.clients_max && !make_room(now)) {
     ++counts_.refused;
     if (!std::exchange(full_, true)) {
       fmt::print(stderr, "rubric: client {} is refused: there are {} already (--clients)\n", name,
@@ -213,15 +214,29 @@ void Server::admit(lines::Descriptor socket, Time now) {
       std::make_unique<Client>(std::move(socket), name, backlog_.end(), options_.limits, now));
 }
 
-// Makes room: clients that have left give way, even if the source has not taken their packets.
-bool Server::make_room() {
+// Makes room: clients that have left give way, even if the source has not taken their packets; then
+// the one that has been silent for longest, since many that only listen must not lock others out.
+bool Server::make_room(Time now) {
   const auto gone = std::find_if(clients_.begin(), clients_.end(),
                                  [](const auto& client) { return client->has_left(); });
-  if (gone == clients_.end()) return false;
+  if (gone == clients_.end()) return end_most_silent(now);
   counts_.not_sent += (*gone)->packets_waiting();
   fmt::print(stderr, "rubric: client {} has left; {} packets of it are given up\n", (*gone)->name(),
              (*gone)->packets_waiting());
   clients_.erase(gone);
+  return true;
+}
+
+bool Server::end_most_silent(Time now) {
+  const auto silent =
+      std::min_element(clients_.begin(), clients_.end(),
+                       [](const auto& a, const auto& b) { return a->heard() < b->heard(); });
+  const auto time = now - (*silent)->heard();
+  if (time < kSilentPatiences * options_.limits.patience) return false;
+  fmt::print(stderr, "rubric: client {} gives way: it has sent nothing for {:.0f} s\n",
+             (*silent)->name(), std::chrono::duration<double>(time).count());
+  ++counts_.cut_off;
+  clients_.erase(silent);
   return true;
 }
 

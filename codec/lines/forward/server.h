@@ -74,7 +74,8 @@ class Server {
 
   void accept_clients(Time now);
   void admit(lines::Descriptor socket, Time now);
-  bool make_room();
+  bool make_room(Time now);
+  bool end_most_silent(Time now);
   void write_clients(Time now);
   void remove_clients();
   void drain();

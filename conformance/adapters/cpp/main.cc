@@ -96,11 +96,18 @@ bool Adapter::answer(const std::string& line) {
   return true;
 }
 
+// What `reset` may set.
+const std::string kSettings = " id island channels seed profile ";
+
 std::string Adapter::closing(const std::vector<std::string>& words) {
   if (words.size() == 2 && words[0] == "hello") {
     return "hello rct/1 rubric_cpp_node 1.0 roles=mote,sink,base_station time=virtual";
   }
   if (words.size() > 2 && words[0] == "reset") {
+    for (std::size_t i = 2; i < words.size(); ++i) {
+      const std::string name = words[i].substr(0, words[i].find('='));
+      if (kSettings.find(' ' + name + ' ') == std::string::npos) throw Unsupported(name);
+    }
     reset(words);
     return "ready";
   }

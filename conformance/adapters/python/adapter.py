@@ -22,8 +22,11 @@ class Adapter:
         if command == "hello":
             return "hello rct/1 rubric_python_mote 1.0 roles=mote time=virtual"
         if command == "reset" and words[0] == "mote":
+            settings = dict(word.split("=") for word in words[1:])
+            if unknown := settings.keys() - {"id", "island", "channels", "seed", "profile"}:
+                return f"unsupported {' '.join(sorted(unknown))}"
             self.now = 0
-            self.mote = Mote(self, dict(word.split("=") for word in words[1:]))
+            self.mote = Mote(self, settings)
             return "ready"
         if not self.mote or command not in ("until", "rx", "call", "linkack", "line", "power"):
             return f"unsupported {command}"

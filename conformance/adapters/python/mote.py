@@ -305,7 +305,7 @@ class Mote:
             return None
         self.channels[key] = channel
         channel.values += [bytes(4)] * size
-        channel.fresh = is_output
+        channel.fresh |= is_output
         return key[0]
 
     def call_create_out(self, dest, size, mode):

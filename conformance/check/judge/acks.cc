@@ -208,6 +208,17 @@ void Acks::delivered(std::uint16_t node, const Observation& seen,
                      {}});
     return;
   }
+  const auto nobodys = [](std::uint8_t id) {
+    return id < component::kSynChannel || id > component::kEsnData;
+  };
+  if (best->net.sound && (nobodys(best->net.trans_id) || nobodys(best->net.app_id))) {
+    context_.report(
+        "T1-UNKNOWN"_rule, Severity::kFail, seen.place, node,
+        {"The application gets " + name_of(best->net) + ", whose TRANSID is " +
+             number(best->net.trans_id) + " and whose APPID is " + number(best->net.app_id) + ".",
+         "No delivery.",
+         {}});
+  }
   if (rank(*best) == 2) {
     ++best->delivered;
     const bool owed = best->must_ack && best->sure;

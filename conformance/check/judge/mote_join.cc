@@ -90,6 +90,19 @@ void MoteJoins::request(std::uint16_t mote, const Observation& seen, const Reque
     context_.report("J1-CALLED"_rule, Severity::kFail, seen.place, mote,
                     {"A join_request without a joinIsland call.", "Silence.", {}});
   }
+  // Only the last call is open; what an earlier one left in a buffer cannot have waited for the
+  // line.
+  if (watch.call && watch.joined_calls == 1 && !seen.node.empty() &&
+      context_.due_us(mote, watch.called_us) == watch.called_us + context_.response_us()) {
+    if (watch.call->descriptor == request.descriptor) {
+      context_.findings.kept("J1-REQUEST"_rule);
+    } else {
+      context_.report("J1-REQUEST"_rule, Severity::kFail, seen.place, mote,
+                      {"A join_request has another descriptor than the joinIsland call before it.",
+                       "The descriptor of the call.",
+                       {}});
+    }
+  }
   next_.clear();
   if (!seen.place.timed()) {  // Any number of periods may lie between two frames.
     MoteHypothesis asked;

@@ -106,5 +106,36 @@ TEST(AckJoinSender, IsTheMoteThatAsked) {
   EXPECT_EQ(all(admitted("am=3->1 ack_join(dest=11:1 src=12:3")), "J4-CONTENT J6-SENDER");
 }
 
+// A message from the sink to m2 with this TRANSID and APPID, and its delivery.
+std::string delivered(const std::string& ids) {
+  const std::string frame = "rA am=1->2 am(28 x000b0002000b000100007704" + ids + "beef)";
+  return at(100, "sA > " + frame) + m2(102, "< " + frame) +
+         m2(103, "> app received(src=11:1 app_id=" +
+                     std::to_string(std::stoi(ids.substr(2), nullptr, 16)) + " data=xbeef)");
+}
+
+TEST(InterfaceWatch, NoApplicationGetsWhatNobodyKnows) {
+  EXPECT_EQ(all(delivered("0305")), "");
+  EXPECT_EQ(all(delivered("0005")), "T1-UNKNOWN");
+  EXPECT_EQ(all(delivered("0300")), "T1-UNKNOWN");
+  EXPECT_EQ(all(delivered("0c05")), "T1-UNKNOWN");
+  EXPECT_EQ(all(delivered("030c")), "T1-UNKNOWN");
+}
+
+TEST(InterfaceWatch, ARequestHasTheDescriptorOfItsCall) {
+  const std::string failed = at(100, "m3 < app join(type=1 transducers=1 actuators=1)") +
+                             at(101, "m3 > app joined(0:0 fail)");
+  const std::string again = at(200, "m3 < app join(type=1 transducers=2 actuators=1)");
+  const auto asked = [](int transducers) {
+    return at(201, "m3 > rA am=3->1 join_request(seq_num=9 mote_type=1 transducers=" +
+                       std::to_string(transducers) + " actuators=1)");
+  };
+  EXPECT_EQ(all(failed + again + asked(2)), "");
+  EXPECT_EQ(all(failed + again + asked(1)), "J1-REQUEST");
+  // It may have waited for the line since the call before.
+  const std::string busy = at(90, "m3 < rA busy");
+  EXPECT_EQ(all(busy + failed + again + at(201, "m3 < rA idle") + asked(1)), "");
+}
+
 }  // namespace
 }  // namespace rubric::check

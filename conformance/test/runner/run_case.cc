@@ -64,6 +64,7 @@ class Run {
       if (result.verdict < CaseVerdict::kFail) {
         result.failures.clear();
         result.verdict = CaseVerdict::kSkip;
+        result.not_built = dynamic_cast<const NotBuilt*>(&error) != nullptr;
       }
       result.reason = error.what();
     } catch (const TargetBroken& error) {

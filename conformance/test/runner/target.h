@@ -32,6 +32,12 @@ class Unsupported : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// The target cannot be built with what the case states of its node.
+class NotBuilt : public Unsupported {
+ public:
+  using Unsupported::Unsupported;
+};
+
 /// The part of a node that a target lets the runner see and do. A node behind a serial line shows
 /// only that line.
 struct Reach {

@@ -133,6 +133,7 @@ CaseRun run_one(const SuiteCase& one, targets::Attachment& attachment, const std
     if (missing.empty()) {
       out.result = runner::run_case(head, itself,
                                     [&](const trace::NodeHeader&) { return attachment.target(); });
+      out.foreign = out.result.not_built;
       const bool failed = out.result.verdict == CaseVerdict::kFail;
       if (failed && out.profile != "paper") out.lines_of_profile = lines_of_profile(head, itself);
     } else {

@@ -10,9 +10,9 @@ runner::Reach AppChannel::shown() const {
   return client_->identity().shown.value_or(runner::Reach{false, false, false, true});
 }
 
-void AppChannel::reset(const machine::Config& config) {
+void AppChannel::reset(const machine::Config& config, const trace::Statement& own) {
   Asked asked;
-  asked.command = reset_command(config);
+  asked.command = reset_command(config, own);
   asked.closing = "ready";
   client_->ask(asked);
   now_ = 0;

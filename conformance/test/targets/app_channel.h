@@ -22,7 +22,8 @@ class AppChannel {
   /// Returns the links that it shows.
   runner::Reach shown() const;
   /// Starts the node, if the program can, and returns when it has said so.
-  void reset(const machine::Config& config);
+  /// `own` is what the node states.
+  void reset(const machine::Config& config, const trace::Statement& own);
   /// Gives an event and returns what the program says then.
   std::vector<Output> give(const machine::Event& event);
   /// Returns what has happened since.

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstdlib>
@@ -129,7 +130,7 @@ TEST_F(BrokenAdapters, FailTheirCaseAlone) {
     if (name == "exit_with_words") {
       EXPECT_EQ(words, "out of cheese\n");
     } else if (name == "endless_notes") {
-      EXPECT_TRUE(words.ends_with("note again\n") && words.size() <= 65536U);
+      EXPECT_TRUE(words.ends_with(" more notes)\n") && words.size() <= 65536U);
     } else {
       EXPECT_EQ(words, "");
     }
@@ -263,6 +264,34 @@ TEST_F(BrokenAdapters, RealTimeAdapterIsWaitedFor) {
       runner::run_case(silent.file, silent.file.cases.at(0),
                        [&](const trace::NodeHeader&) { return patient->target(); });
   EXPECT_EQ(result.verdict, CaseVerdict::kPass) << result.reason;
+}
+
+// One sink forgets how many members it was asked to have, one takes any parameter, one states it.
+TEST_F(BrokenAdapters, ASinkIsHeldToTheMembersThatItIsAskedFor) {
+  const std::string name = "j3.full_list_as_stated";
+  const auto files = runner::load_cases("conformance/cases");
+  const auto file = std::ranges::find_if(
+      files, [&](const trace::Parsed& one) { return one.file.find(name) != nullptr; });
+  ASSERT_NE(file, files.end());
+  const auto run = [&](const std::string& filter, const trace::Statement& stated) {
+    Options options;
+    options.stated = stated;
+    const auto sink =
+        attach(fmt::format("sed -u {} | {}", filter, RUBRIC_MACHINE_ADAPTER), options);
+    return runner::run_case(file->file, *file->file.find(name),
+                            [&](const trace::NodeHeader&) { return sink->target(); });
+  };
+  EXPECT_EQ(run("-n p", {}).verdict, CaseVerdict::kPass);
+  const CaseResult forgets = run("'s/ members=2$//'", {});
+  EXPECT_EQ(forgets.verdict, CaseVerdict::kFail);
+  ASSERT_FALSE(forgets.failures.empty());
+  EXPECT_EQ(forgets.failures.back().requirements, std::vector<std::string>{"J6-ADD"});
+  const CaseResult takes_all = run("'s/ members=.*//'", {});
+  EXPECT_EQ(takes_all.verdict, CaseVerdict::kSkip);
+  EXPECT_TRUE(takes_all.not_built);
+  EXPECT_NE(takes_all.reason.find("takes whatever it is told"), std::string::npos);
+  const CaseResult states = run("-n p", {{trace::ParameterId::kMembers, 2}});
+  EXPECT_EQ(states.verdict, CaseVerdict::kFail) << "It lists twenty.";
 }
 
 TEST_F(BrokenAdapters, RolesThatItDoesNotPlayAreSkipped) {

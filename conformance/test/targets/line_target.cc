@@ -79,8 +79,12 @@ void LineTarget::reset(const machine::Config& config) {
   if (role() == machine::Role::kSink && config.id != config.profile.sink_id) {
     throw Unsupported(fmt::format("the id of the sink cannot be set to {}", config.id));
   }
+  expect_built(config);
   std::future<void> started;  // An app that starts the node is ready when the node has connected.
-  if (app_) started = std::async(std::launch::async, [&] { app_->reset(config); });
+  if (app_) {
+    started =
+        std::async(std::launch::async, [&] { app_->reset(config, line_.node.identity.stated); });
+  }
   line_.open();
   if (app_) started.get();
   if (!is_mote()) {  // A mote's line shows nothing.
@@ -95,6 +99,18 @@ void LineTarget::reset(const machine::Config& config) {
   outputs_.clear();
   clock_.start();
   now_ = 0;
+}
+
+// Throws if the node would have to be another than it is.
+void LineTarget::expect_built(const machine::Config& config) const {
+  const trace::Statement& own = line_.node.identity.stated;
+  trace::Statement wanted = asked_for(config, own);
+  const trace::ParameterId id = trace::ParameterId::kChannels;
+  const std::int64_t* const channels = find(own, id);
+  const std::int64_t has = channels ? *channels : machine::Profile{}.channels_max;
+  if (config.profile.channels_max != has) wanted.push_back({id, config.profile.channels_max});
+  if (wanted.empty()) return;
+  throw runner::NotBuilt("the node at the line is not built with " + statement_text(wanted));
 }
 
 void LineTarget::await_life(const machine::Config& config) {

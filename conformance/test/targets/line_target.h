@@ -77,6 +77,7 @@ class LineTarget : public runner::Target {
   machine::Role role() const { return line_.node.identity.roles.front(); }
   bool is_mote() const { return role() == machine::Role::kMote; }
   void send(const machine::Frame& frame);
+  void expect_built(const machine::Config& config) const;
   void set_island(const machine::Config& config);
   void ask_for_ack(const machine::Config& config);
   void await_life(const machine::Config& config);

@@ -71,7 +71,12 @@ bool AnswerReader::take(std::string_view line) {
   Words words(line);
   const std::string_view word = words.next();
   if (word == "note") {
-    answer_.notes.emplace_back(words.rest());
+    if (answer_.notes_bytes + line.size() + 1 > kNotesBytesMax) {
+      ++answer_.notes_left_out;
+    } else {
+      answer_.notes_bytes += line.size() + 1;
+      answer_.notes.emplace_back(words.rest());
+    }
     return false;
   }
   if (word == "unsupported") {

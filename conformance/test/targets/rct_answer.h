@@ -1,6 +1,7 @@
 // Reads the answer to a command of rct/1, line by line, and trusts none of it.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -16,8 +17,13 @@ struct Answer {
   bool has_next = false;
   std::optional<Ticks> next;  ///< From a `next` line; nothing: never.
   Ticks done = 0;
-  std::vector<std::string> notes;
+  std::vector<std::string> notes;    ///< The first kNotesBytesMax bytes of them.
+  std::size_t notes_bytes = 0;       ///< Of those kept, with a line feed each.
+  std::uint64_t notes_left_out = 0;  ///< How many did not fit.
 };
+
+/// The bytes of notes that are kept of an answer, and of a case.
+constexpr std::size_t kNotesBytesMax = 65536;
 
 /// The answers that a command allows.
 struct Asked {

@@ -71,6 +71,15 @@ TEST(RctAnswer, IsRead) {
   EXPECT_EQ(answer.notes, std::vector<std::string>{"here it comes"});
 }
 
+TEST(RctAnswer, KeepsAFewNotesAndCountsTheRest) {
+  const Asked asked = until();
+  AnswerReader reader(asked);
+  const std::string note = "note " + std::string(1018, 'x');  // With its line feed 1 KiB.
+  for (int i = 0; i < 1000; ++i) EXPECT_FALSE(reader.take(note));
+  EXPECT_EQ(reader.answer().notes.size(), 64U);
+  EXPECT_EQ(reader.answer().notes_left_out, 936U);
+}
+
 TEST(RctAnswer, NothingHappens) {
   EXPECT_EQ(wrong_with(until(), {"next -", "done 300"}), "");
   EXPECT_EQ(wrong_with(until(), {"done 300"}), "");

@@ -12,7 +12,8 @@ const Identity& RctAttachment::identity() {
 std::unique_ptr<runner::Target> RctAttachment::target() {
   std::unique_ptr<RctClient> client = take();
   return std::make_unique<RctTarget>(
-      std::move(client), [this](std::unique_ptr<RctClient> used) { give_back(std::move(used)); });
+      std::move(client), identity_.stated,
+      [this](std::unique_ptr<RctClient> used) { give_back(std::move(used)); });
 }
 
 std::string RctAttachment::honesty() {

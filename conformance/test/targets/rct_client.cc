@@ -12,7 +12,6 @@ using std::chrono::steady_clock;
 
 constexpr lines::Milliseconds kGrace{500};  // From `bye` to the end, if nobody asks about it.
 constexpr lines::Milliseconds kAtOnce{0};
-constexpr std::size_t kNotesBytesMax = 65536;  // The last ones are kept.
 
 }  // namespace
 
@@ -89,7 +88,12 @@ std::string RctClient::end(lines::Milliseconds grace) {
   return process_->end(grace);
 }
 
-std::string RctClient::take_stderr() { return std::exchange(notes_, {}) + process_->take_stderr(); }
+std::string RctClient::take_stderr() {
+  std::string out = std::exchange(notes_, {});
+  const std::uint64_t left_out = std::exchange(notes_left_out_, 0);
+  if (left_out != 0) out += fmt::format("({} more notes)\n", left_out);
+  return out + process_->take_stderr();
+}
 
 AnswerReader RctClient::converse(const Asked& asked, lines::Milliseconds timeout) {
   if (broken_) throw TargetBroken("it broke before");
@@ -121,8 +125,15 @@ AnswerReader RctClient::converse(const Asked& asked, lines::Milliseconds timeout
 }
 
 void RctClient::keep_notes(const AnswerReader& reader) {
-  for (const std::string& note : reader.answer().notes) notes_ += "note " + note + '\n';
-  if (notes_.size() > kNotesBytesMax) notes_.erase(0, notes_.size() - kNotesBytesMax);
+  notes_left_out_ += reader.answer().notes_left_out;
+  for (const std::string& note : reader.answer().notes) {
+    const std::string line = "note " + note + '\n';
+    if (notes_.size() + line.size() > kNotesBytesMax) {
+      ++notes_left_out_;
+    } else {
+      notes_ += line;
+    }
+  }
 }
 
 }  // namespace rubric::targets

@@ -51,7 +51,8 @@ class RctClient {
   bool greeted_ = false;
   bool broken_ = false;
   bool said_bye_ = false;
-  std::string notes_;
+  std::string notes_;  // The first kNotesBytesMax bytes of a case.
+  std::uint64_t notes_left_out_ = 0;
 };
 
 }  // namespace rubric::targets

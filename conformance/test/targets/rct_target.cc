@@ -26,13 +26,13 @@ constexpr std::uint16_t seed_of(std::uint16_t first_seq) {
 }
 static_assert(seed_of(static_cast<std::uint16_t>(1000 + 257 * 12345)) == 12345);
 
-std::string_view profile_of(const machine::Profile& profile) {
+const machine::NamedProfile& profile_of(const machine::Profile& profile) {
   for (const machine::NamedProfile& named : machine::kProfiles) {
     machine::Profile same = named.profile;
     for (const trace::Parameter& one : trace::parameters()) {
       events::state(same, {{one.id, events::value_of(profile, one.id)}});
     }
-    if (same == profile) return named.name;
+    if (same == profile) return named;
   }
   throw Unsupported("the profile of the case has no name");
 }
@@ -76,10 +76,51 @@ std::string command_of(const machine::Event& event, Ticks now) {
   return std::visit(CommandOf{now}, event);
 }
 
-std::string reset_command(const machine::Config& config) {
-  return fmt::format("reset {} id={} island={} channels={} seed={} profile={}",
+trace::Statement asked_for(const machine::Config& config, const trace::Statement& own) {
+  const machine::Profile& usual = profile_of(config.profile).profile;
+  trace::Statement out;
+  for (const trace::Parameter& one : trace::parameters()) {
+    const std::int64_t value = events::value_of(config.profile, one.id);
+    const std::int64_t* const stated = find(own, one.id);
+    const bool as_it_is = value == (stated ? *stated : events::value_of(usual, one.id));
+    if (one.id != trace::ParameterId::kChannels && !as_it_is) out.push_back({one.id, value});
+  }
+  return out;
+}
+
+std::string reset_command(const machine::Config& config, const trace::Statement& own) {
+  const trace::Statement asked = asked_for(config, own);
+  return fmt::format("reset {} id={} island={} channels={} seed={} profile={}{}{}",
                      role_word(config.role), config.id, config.island, config.profile.channels_max,
-                     seed_of(config.first_seq), profile_of(config.profile));
+                     seed_of(config.first_seq), profile_of(config.profile).name,
+                     asked.empty() ? "" : " ", trace::statement_text(asked));
+}
+
+// An adapter that takes a parameter which does not exist does not know those that do.
+void RctTarget::start_node(const machine::Config& config) {
+  Asked asked;
+  asked.command = reset_command(config, own_);
+  asked.closing = "ready";
+  const trace::Statement wanted = asked_for(config, own_);
+  if (wanted.empty()) {
+    client_->ask(asked);
+    return;
+  }
+  const std::string text = trace::statement_text(wanted);
+  try {
+    Asked nonsense = asked;
+    nonsense.command += " no_such_parameter=1";
+    client_->ask(nonsense);
+  } catch (const Unsupported&) {
+    try {
+      client_->ask(asked);
+      return;
+    } catch (const Unsupported& error) {
+      throw runner::NotBuilt(fmt::format("it is not built with {}: {}", text, error.what()));
+    }
+  }
+  throw runner::NotBuilt(
+      fmt::format("it is not built with {}: `reset` takes whatever it is told", text));
 }
 
 void RctTarget::reset(const machine::Config& config) {
@@ -95,11 +136,8 @@ void RctTarget::reset(const machine::Config& config) {
   settled_ = knows_next_ = false;
   next_.reset();
   at_instant_ = 0;
-  Asked asked;
-  asked.command = reset_command(config);
-  asked.closing = "ready";
   clock_.start();
-  client_->ask(asked);
+  start_node(config);
 }
 
 void RctTarget::give(Ticks now, const machine::Event& event) {

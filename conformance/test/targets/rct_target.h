@@ -18,15 +18,20 @@ constexpr Ticks kUnknownNextTicks = 5;
 
 /// Returns the command that makes an event happen. Throws runner::Unsupported if there is none.
 std::string command_of(const machine::Event& event, Ticks now);
-/// Returns the command that starts a node. Throws runner::Unsupported.
-std::string reset_command(const machine::Config& config);
+/// Returns what a node is to be built with, besides its channels: the parameters that its profile
+/// has otherwise and that it does not state itself. Throws runner::Unsupported.
+trace::Statement asked_for(const machine::Config& config, const trace::Statement& own);
+/// Returns the command that starts a node, with what it does not state itself. Throws
+/// runner::Unsupported.
+std::string reset_command(const machine::Config& config, const trace::Statement& own);
 
 class RctTarget : public runner::Target {
  public:
   /// Gets the client when the target is destroyed.
   using GiveBack = std::function<void(std::unique_ptr<RctClient>)>;
-  RctTarget(std::unique_ptr<RctClient> client, GiveBack give_back)
-      : client_(std::move(client)), give_back_(std::move(give_back)) {
+  /// `own` is what the implementation states.
+  RctTarget(std::unique_ptr<RctClient> client, trace::Statement own, GiveBack give_back)
+      : client_(std::move(client)), own_(std::move(own)), give_back_(std::move(give_back)) {
     if (!client_->identity().real_time) return;
     tolerance_of_this_host();  // Measures now, not in the middle of a case.
     delays_.emplace();
@@ -54,7 +59,10 @@ class RctTarget : public runner::Target {
   Ticks let_pass(Ticks time);
   void compare_clocks(const std::string& command);
 
+  void start_node(const machine::Config& config);
+
   std::unique_ptr<RctClient> client_;
+  trace::Statement own_;
   std::optional<DelayWatch> delays_;  // In real time.
   GiveBack give_back_;
   RealClock clock_;  // Since reset; of what runs in real time.

@@ -10,6 +10,7 @@
 #include "conformance/generated/profiles.h"
 #include "conformance/test/targets/rct_text.h"
 #include "conformance/trace/events/app_events.h"
+#include "conformance/trace/events/parameters.h"
 
 namespace rubric::targets {
 namespace {
@@ -99,16 +100,13 @@ machine::Config read_config(Words words) {
   const auto known = role_of(role);
   if (!known) throw Unsupported(fmt::format("{} is not a role", role));
   config.role = *known;
-  std::optional<std::uint8_t> channels;
+  trace::Statement stated;
   while (!words.at_end()) {
     const std::string_view word = words.next();
     if (word.starts_with("id=")) {
       config.id = number_behind(word, "id=");
     } else if (word.starts_with("island=")) {
       config.island = number_behind(word, "island=");
-    } else if (word.starts_with("channels=")) {
-      channels = static_cast<std::uint8_t>(
-          std::min<std::uint16_t>(number_behind(word, "channels="), 0xFF));
     } else if (word.starts_with("seed=")) {
       const std::uint32_t seed = number_behind(word, "seed=");
       config.first_seq = static_cast<std::uint16_t>(1000 + 257 * seed);
@@ -116,15 +114,11 @@ machine::Config read_config(Words words) {
       const machine::NamedProfile* profile = machine::find_profile(word.substr(8));
       if (!profile) throw Unsupported(fmt::format("{} is not known", word));
       config.profile = profile->profile;
-    } else {
-      throw Unsupported(fmt::format("{} is not known", word));
+    } else if (std::string wrong = trace::add_stated(word, stated); !wrong.empty()) {
+      throw Unsupported(wrong);
     }
   }
-  if (channels) config.profile.channels_max = *channels;
-  if (config.profile.channels_max < 1 || config.profile.channels_max > machine::kChannelsRoom) {
-    throw Unsupported(
-        fmt::format("{} channels of 1 to {}", config.profile.channels_max, machine::kChannelsRoom));
-  }
+  events::state(config.profile, stated);
   return config;
 }
 

@@ -83,6 +83,11 @@ class Adapter : public World {
     std::string rest;
     std::getline(in, rest);
     settings_ = arguments_of(rest);
+    for (const auto& [name, value] : settings_) {
+      const bool known = name == "id" || name == "island" || name == "channels" || name == "seed" ||
+                         name == "profile";
+      if (!known) throw Unsupported(name);  // TODO: if you can be built with other parameters.
+    }
     number_ = static_cast<std::uint16_t>(1000 + 257 * std::stoull(settings_["seed"]));
     now_ = 0;
     start();

@@ -93,6 +93,11 @@ final class Adapter implements World {
         }
         role = words[1];
         settings = argumentsOf(words[2]);
+        for (String name : settings.keySet()) { // TODO: if you can be built with other parameters.
+            if (!Set.of("id", "island", "channels", "seed", "profile").contains(name)) {
+                throw new Unsupported(name);
+            }
+        }
         number = (int) ((1000 + 257 * Long.parseLong(settings.get("seed"))) & 0xFFFF);
         now = 0;
         start();

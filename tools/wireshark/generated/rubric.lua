@@ -420,6 +420,7 @@ rules["WIRE-RADIO-NETWORK"] = {level = "MUST", text = "In an I-frame the network
 rules["WIRE-RADIO-LENGTH"] = {level = "MUST", text = "A radio frame has at most 127 bytes, its FCS included."}
 rules["WIRE-RADIO-FCS"] = {level = "MUST", text = "The last two bytes of a radio frame are its FCS, the CRC-16 of ITU-T with reflected bits, low byte first."}
 rules["WIRE-RADIO-TAP"] = {level = "MUST", text = "The TAP header before a radio frame has version 0 and a length that covers its TLV fields."}
+rules["WIRE-ZEP"] = {level = "MUST", text = "A ZEP packet begins with the letters EX and version 1 or 2; its length byte says how many bytes of a radio frame follow its header."}
 rules["WIRE-PCAP"] = {level = "MUST", text = "A pcap file is a file header of 24 bytes and records of a 16-byte header and the captured bytes."}
 rules["WIRE-PCAPNG"] = {level = "MUST", text = "A pcapng file is a sequence of blocks whose two lengths agree and are multiples of four, a section header first."}
 rules["WIRE-HEX"] = {level = "MUST", text = "Hex text has two hex digits for each byte, a packet a line."}

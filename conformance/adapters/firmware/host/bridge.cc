@@ -169,7 +169,8 @@ Tick Bridge::run(Tick end) {
     return end;
   }
   while (lines_.empty() && board_.now() < until) run_until(until);
-  const Tick reached = lines_.empty() ? end : std::min(end, tick());
+  // The instruction that brought the line may have ended in the next tick.
+  const Tick reached = lines_.empty() ? end : std::min(end, last_tick_);
   const Instant behind = zero_ + (reached + 1) * kInstantsPerTick;
   while (board_.now() < behind) run_until(behind);  // All of that tick.
   last_tick_ = std::max(last_tick_, reached);

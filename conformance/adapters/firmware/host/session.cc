@@ -15,6 +15,8 @@ class Unsupported : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// What `reset` may set.
+constexpr std::string_view kSettings = " id island channels seed profile ";
 constexpr std::uint32_t kFirstSeqNum = 1000;
 constexpr std::uint32_t kSeqNumsPerSeed = 257;
 
@@ -65,6 +67,11 @@ class Session {
     const auto number = [&](std::string_view name, std::uint32_t otherwise, std::uint32_t max) {
       return settings.contains(name) ? number_of(settings[name], max) : otherwise;
     };
+    for (const auto& [name, value] : settings) {
+      if (kSettings.find(fmt::format(" {} ", name)) == std::string_view::npos) {
+        throw Unsupported(fmt::format("no parameter {}", name));
+      }
+    }
     const std::uint32_t channels = number("channels", 4, 0xFF);
     Bridge& bridge = station(words[1], channels);
     const std::uint32_t seed = number("seed", 0, 0xFFFFFFFF);

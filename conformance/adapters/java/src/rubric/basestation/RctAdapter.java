@@ -19,6 +19,9 @@ public class RctAdapter {
   private static final String HELLO =
       "hello rct/1 java_base_station 1.0 roles=base_station ";
 
+  private static final List<String> SETTINGS =
+      List.of("id", "island", "channels", "seed", "profile");
+
   protected final PrintStream out;
   private boolean started = false;
   private BaseStation station;
@@ -90,6 +93,9 @@ public class RctAdapter {
     for (final String word : (words.length > 2 ? words[2] : "").split(" ")) {
       final int equals = word.indexOf('=');
       if (equals > 0) options.put(word.substring(0, equals), word.substring(equals + 1));
+    }
+    for (final String name : options.keySet()) {
+      if (!SETTINGS.contains(name)) throw new IllegalArgumentException("parameter " + name);
     }
     final int island = Integer.parseInt(options.getOrDefault("island", "0"));
     if (island < 0 || island > 65535) throw new IllegalArgumentException("island " + island);

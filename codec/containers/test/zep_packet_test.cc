@@ -1,0 +1,134 @@
+// tshark_zep_test compares the same layout with Wireshark's dissector.
+#include "codec/containers/zep_packet.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "codec/containers/crc16_fast.h"
+
+namespace rubric {
+namespace {
+
+std::vector<std::uint8_t> frame_with_fcs() {
+  std::vector<std::uint8_t> out = {0x41, 0x88, 7, 0x22, 0, 0xFF, 0xFF, 2, 0, 0x3F, 3, 1};
+  const std::uint16_t fcs = fcs_fast(Bytes(out.data(), out.size()));
+  out.push_back(static_cast<std::uint8_t>(fcs));
+  out.push_back(static_cast<std::uint8_t>(fcs >> 8));
+  return out;
+}
+
+Bytes as_bytes(const std::string& text) {
+  return Bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
+}
+
+std::string sound_datagram(std::int64_t time_ns = 1'700'000'000'123'456'789) {
+  static const std::vector<std::uint8_t> frame = frame_with_fcs();
+  ZepPacket zep;
+  zep.channel = 17;
+  zep.device = 0x0102;
+  zep.lqi = 200;
+  zep.time_ns = time_ns;
+  zep.sequence = 0x01020304;
+  zep.frame = Bytes(frame.data(), frame.size());
+  std::string out;
+  append_zep(zep, out);
+  return out;
+}
+
+TEST(Zep, VersionTwoHasItsFieldsAtTheirPlaces) {
+  const std::string datagram = sound_datagram();
+  ASSERT_EQ(datagram.size(), 32 + 14);
+  EXPECT_EQ(datagram.substr(0, 9), std::string("EX\2\1\x11\1\2\1\xC8", 9));
+  EXPECT_EQ(datagram.substr(17, 4), "\1\2\3\4");
+  EXPECT_EQ(datagram[31], 14);
+  const auto zep = parse_zep(as_bytes(datagram));
+  ASSERT_TRUE(zep);
+  EXPECT_EQ(zep->channel, 17);
+  EXPECT_EQ(zep->device, 0x0102);
+  EXPECT_EQ(zep->lqi, 200);
+  EXPECT_EQ(zep->sequence, 0x01020304u);
+  EXPECT_EQ(zep->time_ns, 1'700'000'000'123'456'789);
+}
+
+TEST(Zep, TimesAreKeptToTheNanosecond) {
+  for (const std::int64_t time_ns :
+       {std::int64_t{0}, std::int64_t{1}, std::int64_t{1'999'999'999}, kNoTime,
+        std::int64_t{2'085'978'496'000'000'001}, std::int64_t{4'000'000'000'999'999'999}}) {
+    const std::string datagram = sound_datagram(time_ns);
+    EXPECT_EQ(parse_zep(as_bytes(datagram))->time_ns, time_ns);
+  }
+}
+
+TEST(Zep, EveryCutIsTruncated) {
+  const std::string datagram = sound_datagram();
+  for (std::size_t size = 0; size < datagram.size(); ++size) {
+    const auto zep = parse_zep(as_bytes(datagram).first(size));
+    EXPECT_EQ(zep.error().fault, Fault::kTruncated) << size;
+    EXPECT_EQ(zep.error().offset_bytes, size);
+  }
+}
+
+TEST(Zep, WhatIsNotZepIsRefused) {
+  for (const std::size_t at : {0u, 1u, 2u}) {
+    std::string datagram = sound_datagram();
+    datagram[at] = 9;
+    Packet packet;
+    ASSERT_TRUE(decode_zep_datagram(as_bytes(datagram), packet));
+    EXPECT_EQ(packet.error, fail(Fault::kUnexpected, at, "WIRE-ZEP"_rule).error);
+  }
+}
+
+TEST(Zep, AFrameIsReadWithItsFcs) {
+  std::string datagram = sound_datagram();
+  Packet packet;
+  ASSERT_TRUE(decode_zep_datagram(as_bytes(datagram), packet));
+  EXPECT_EQ(packet.error.fault, Fault::kNone);
+  EXPECT_EQ(packet.bytes.size(), 12u);
+  EXPECT_EQ(packet.offset_bytes, 32u);
+  datagram.back() ^= 1;
+  ASSERT_TRUE(decode_zep_datagram(as_bytes(datagram), packet));
+  EXPECT_EQ(packet.error.fault, Fault::kFcs);
+}
+
+// With CRC mode 0 the last bytes are RSSI, and the chip's verdict of the check sum.
+TEST(Zep, AChipsVerdictStandsForTheFcs) {
+  std::string datagram = sound_datagram();
+  datagram[7] = 0;
+  for (const bool ok : {true, false}) {
+    datagram.back() = static_cast<char>(ok ? 0xEB : 0x6B);
+    Packet packet;
+    ASSERT_TRUE(decode_zep_datagram(as_bytes(datagram), packet));
+    EXPECT_EQ(packet.error.fault, ok ? Fault::kNone : Fault::kFcs);
+    EXPECT_EQ(packet.fcs, kAbsent);
+    EXPECT_EQ(packet.bytes.size(), 12u);
+  }
+}
+
+TEST(Zep, VersionOneHasAShorterHeader) {
+  const std::string two = sound_datagram();
+  std::string one = "EX\1" + two.substr(4, 5) + std::string(7, '\0') + two.substr(31);
+  const auto zep = parse_zep(as_bytes(one));
+  ASSERT_TRUE(zep);
+  EXPECT_EQ(zep->channel, 17);
+  EXPECT_EQ(zep->device, 0x0102);
+  EXPECT_EQ(zep->frame_offset_bytes, 16u);
+  Packet packet;
+  ASSERT_TRUE(decode_zep_datagram(as_bytes(one), packet));
+  EXPECT_EQ(packet.error.fault, Fault::kNone);
+}
+
+TEST(Zep, AnAckCarriesNoFrame) {
+  ZepPacket ack;
+  ack.type = ZepPacket::Type::kAck;
+  ack.sequence = 77;
+  std::string datagram;
+  append_zep(ack, datagram);
+  EXPECT_EQ(datagram, std::string("EX\2\2\0\0\0\x4D", 8));
+  EXPECT_EQ(parse_zep(as_bytes(datagram))->sequence, 77u);
+  Packet packet;
+  EXPECT_FALSE(decode_zep_datagram(as_bytes(datagram), packet));
+}
+
+}  // namespace
+}  // namespace rubric

@@ -1,0 +1,41 @@
+// A packet of the ZigBee Encapsulation Protocol (ZEP): a radio frame in a UDP datagram.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "codec/containers/packet.h"
+
+namespace rubric {
+
+inline constexpr std::uint16_t kZepPort = 17754;
+
+struct ZepPacket {
+  enum class Type : std::uint8_t { kData = 1, kAck = 2 };
+  std::uint8_t version = 2;
+  Type type = Type::kData;  ///< Other values carry a frame, too.
+  std::uint8_t channel = 26;
+  std::uint16_t device = 0;
+  /// The frame ends with its FCS; else its last two bytes are what a CC24xx chip puts there.
+  bool has_fcs = true;
+  std::uint8_t lqi = 255;
+  std::int64_t time_ns = kNoTime;  ///< Since 1970; version 2 only.
+  std::uint32_t sequence = 0;      ///< Version 2 only.
+  Bytes frame;                     ///< With those two bytes.
+  std::size_t frame_offset_bytes = 0;
+};
+
+/// Parses a datagram of version 1 or 2. Ignores bytes after the frame, as Wireshark does. Faults by
+/// WIRE-ZEP: kTruncated, kUnexpected (preamble, version). Source: Wireshark, packet-zep.c.
+Result<ZepPacket> parse_zep(Bytes datagram);
+
+/// Appends a packet of version 2; a time before 1970 is left out.
+void append_zep(const ZepPacket& zep, std::string& out);
+
+/// Reads the radio frame in a datagram into `packet`; offset_bytes moves from the datagram's first
+/// byte to the frame control field; time_ns is the sender's. Returns false for a sound packet
+/// without frame, such as an ack. A malformed datagram is a radio frame with an error and the bytes
+/// as they are.
+bool decode_zep_datagram(Bytes datagram, Packet& packet);
+
+}  // namespace rubric

@@ -1,0 +1,54 @@
+// A virtual air: ZEP datagrams between all who take part at a UDP port. (decision 11)
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "codec/lines/address.h"
+#include "codec/lines/stream.h"
+#include "codec/lines/time.h"
+
+namespace rubric::lines {
+
+/// One participant. Whoever comes first binds the port and is the hub: it passes on what it hears
+/// to all others. Those who come later find the port taken, send to it, and take the hub's place
+/// when it has gone.
+class Air {
+ public:
+  explicit Air(HostPort at) : at_(std::move(at)) {}
+
+  /// Takes part. Port 0 always makes a hub. Throws Broken.
+  void open();
+  void close() { socket_.close(); }
+  bool is_hub() const { return is_hub_; }
+  /// Returns the port, also after port 0.
+  std::uint16_t port() const { return at_.port; }
+
+  /// Sends a datagram to all others; throws Broken.
+  void send(Bytes datagram);
+  /// Returns the next datagram, valid until the next call; nothing if the time is over first or
+  /// `other_fd` (-1: none) can be read. Throws Broken.
+  Bytes receive(SteadyTime deadline, int other_fd = -1);
+
+ private:
+  struct Peer {
+    SocketAddress address;
+    SteadyTime heard;
+  };
+  void greet();
+  void relay(Bytes datagram, const SocketAddress* from);
+  void note(const SocketAddress& from);
+
+  HostPort at_;
+  Descriptor socket_;
+  bool is_hub_ = false;
+  std::vector<Peer> peers_;  // Of a hub.
+  SteadyTime next_greeting_;
+  std::vector<std::uint8_t> room_;
+};
+
+/// Returns when a frame that comes now was sent, in nanoseconds since 1970: by the sender's stamp
+/// if that is at most ten seconds off, as of a process on this host, else now.
+std::int64_t air_time_ns(std::int64_t stamp_ns);
+
+}  // namespace rubric::lines

@@ -1,0 +1,106 @@
+#include "tools/commands/run/serial_end.h"
+
+#include <fmt/format.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "codec/lines/address.h"
+#include "codec/lines/broken.h"
+#include "codec/lines/forwarder.h"
+#include "codec/lines/serial.h"
+
+namespace rubric::run {
+namespace {
+
+using lines::Broken;
+using lines::ByteStream;
+using lines::Milliseconds;
+using lines::SteadyTime;
+using std::chrono::steady_clock;
+
+constexpr Milliseconds kFirstPause{250};
+constexpr Milliseconds kLongestPause{4000};
+constexpr Milliseconds kOpenTime{1000};
+constexpr Milliseconds kSendTime{3000};
+
+}  // namespace
+
+SerialEnd::SerialEnd(const lines::Address& to) : name_(to.name), pause_(kFirstPause) {
+  const lines::Address address = to;
+  switch (to.kind) {
+    case lines::Address::Kind::kSerial:
+      line_ = std::make_unique<lines::SerialLine>([address](SteadyTime) {
+        return lines::open_serial_device(address.device, address.baud);
+      });
+      break;
+    case lines::Address::Kind::kNetwork:
+      line_ = std::make_unique<lines::SerialLine>(
+          [address](SteadyTime deadline) { return lines::connect_tcp(address.at, deadline); });
+      break;
+    case lines::Address::Kind::kForwarder:
+    case lines::Address::Kind::kAir:
+      line_ = std::make_unique<lines::ForwarderLine>(
+          [address](SteadyTime deadline) { return lines::connect_tcp(address.at, deadline); });
+  }
+}
+
+SerialEnd::SerialEnd(std::uint16_t port) : waits_for_others_(true), pause_(kFirstPause) {
+  auto listener = std::make_shared<lines::Descriptor>(lines::listen_at("127.0.0.1", port));
+  name_ = fmt::format("sf-server:{}", lines::address_here(listener->get()).port());
+  fmt::print(stderr, "rubric: {}\n", name_);
+  line_ = std::make_unique<lines::ForwarderLine>([listener](SteadyTime) {
+    const int fd = ::accept4(listener->get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
+    if (fd < 0) throw Broken("nobody has connected");
+    return ByteStream(lines::Descriptor(fd));
+  });
+}
+
+bool SerialEnd::open() {
+  const SteadyTime now = steady_clock::now();
+  if (open_ || now < next_try_) return false;
+  try {
+    line_->open(now + kOpenTime);
+    open_ = true;
+    said_ = false;
+    pause_ = kFirstPause;
+    fmt::print(stderr, "rubric: {}: connected\n", name_);
+  } catch (const Broken& broken) {
+    if (!waits_for_others_) lost(broken.what());
+    next_try_ = steady_clock::now() + (waits_for_others_ ? kFirstPause / 5 : pause_);
+    pause_ = std::min(2 * pause_, kLongestPause);
+  }
+  return open_;
+}
+
+void SerialEnd::lost(const std::string& why) {
+  open_ = false;
+  if (!said_) fmt::print(stderr, "rubric: {}: {}\n", name_, why);
+  said_ = true;
+}
+
+bool SerialEnd::send(const std::vector<std::uint8_t>& packet) {
+  if (!open_) return false;
+  try {
+    line_->send(packet, steady_clock::now() + kSendTime);
+    return true;
+  } catch (const Broken& broken) {
+    lost(broken.what());
+    return false;
+  }
+}
+
+std::vector<std::uint8_t> SerialEnd::receive(SteadyTime deadline) {
+  if (!open_) return {};
+  try {
+    auto packet = line_->receive(deadline);
+    return packet ? std::move(packet->bytes) : std::vector<std::uint8_t>();
+  } catch (const Broken& broken) {
+    lost(broken.what());
+    return {};
+  }
+}
+
+}  // namespace rubric::run

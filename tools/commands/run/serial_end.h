@@ -1,0 +1,44 @@
+// One end of the serial line between a sink and its base station.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "codec/lines/line.h"
+#include "codec/lines/packet_line.h"
+
+namespace rubric::run {
+
+/// Opens its line again when it is gone, after pauses that double from a quarter of a second to
+/// four.
+class SerialEnd {
+ public:
+  /// A base station's: connects to a sink. Says on stderr when the line comes and goes.
+  explicit SerialEnd(const lines::Address& to);
+  /// A sink's: a serial forwarder at this port, for one program at a time. Says on stderr at which.
+  /// Throws Broken if the port is taken.
+  explicit SerialEnd(std::uint16_t port);
+
+  /// Opens the line if it is time to. Returns whether it has just been opened.
+  bool open();
+  bool is_open() const { return open_; }
+  /// Returns whether the line took the packet.
+  bool send(const std::vector<std::uint8_t>& packet);
+  /// Returns the next packet; empty if none comes before the deadline.
+  std::vector<std::uint8_t> receive(lines::SteadyTime deadline);
+
+ private:
+  void lost(const std::string& why);
+
+  std::string name_;
+  bool waits_for_others_ = false;
+  std::unique_ptr<lines::PacketLine> line_;
+  bool open_ = false;
+  bool said_ = false;
+  lines::SteadyTime next_try_{};
+  lines::Milliseconds pause_;
+};
+
+}  // namespace rubric::run

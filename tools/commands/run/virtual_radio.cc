@@ -1,0 +1,162 @@
+#include "tools/commands/run/virtual_radio.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "codec/containers/zep_packet.h"
+#include "codec/generated/rubicon/radio_i_frame.h"
+#include "codec/generated/tinyos/am_header.h"
+#include "codec/generated/tinyos/mac_ack.h"
+#include "codec/generated/tinyos/mac_header.h"
+#include "codec/reflect/am_frames.h"
+#include "codec/runtime/ieee802154_fcs.h"
+
+namespace rubric::run {
+namespace {
+
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+using std::chrono::steady_clock;
+using tinyos::FrameControl;
+using Mac = tinyos::MacHeaderLayout;
+
+// Random waits of TinyOS' CC2420 stack.
+constexpr int kBackoffMinUs = 305;
+constexpr int kBackoffMaxUs = 10'040;
+// Longer than on a real air, where a processor is never late; the stamps do not show it.
+constexpr milliseconds kAckWait{100};
+
+constexpr std::uint16_t kPan = 0x0022;
+constexpr std::uint16_t kAll = 0xFFFF;
+constexpr std::size_t kAckBytes = tinyos::MacAckView::kMaxSizeBytes;
+constexpr std::size_t kHeader = reflect::kRadioIHeaderBytes;
+constexpr std::int64_t kByteNs = 32'000;
+constexpr std::int64_t kTurnaroundNs = 192'000;
+constexpr std::size_t kPreambleAndFcs = 6 + 2;
+
+std::int64_t wall_ns() {
+  return std::chrono::system_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
+}
+
+}  // namespace
+
+VirtualRadio::VirtualRadio(const Settings& settings, lines::HostPort at, User user)
+    : settings_(settings),
+      air_(std::move(at)),
+      user_(std::move(user)),
+      random_(settings.seed),
+      dsn_(static_cast<std::uint8_t>(random_())) {}
+
+void VirtualRadio::send(Bytes packet, bool link_ack) {
+  const auto header = tinyos::AmHeaderView::parse(packet);
+  const auto control = link_ack ? FrameControl::kDataAckRequest : FrameControl::kData;
+  frame_ = reflect::radio_frame({.fcf = reflect::fcf_of(control),
+                                 .dsn = ++dsn_,
+                                 .destpan = kPan,
+                                 .dest = header->dest(),
+                                 .src = settings_.address},
+                                header->type(), header->stale());
+  link_ack_ = link_ack;
+  state_ = State::kWaiting;
+  std::uniform_int_distribution<int> wait_us(kBackoffMinUs, kBackoffMaxUs);
+  next_ = steady_clock::now() + microseconds(wait_us(random_));
+}
+
+void VirtualRadio::put(Bytes frame, std::int64_t time_ns) {
+  std::vector<std::uint8_t> whole(frame.begin(), frame.end());
+  const std::uint16_t sum = fcs(frame);
+  whole.push_back(static_cast<std::uint8_t>(sum));
+  whole.push_back(static_cast<std::uint8_t>(sum >> 8));
+  ZepPacket zep;
+  zep.device = settings_.address;
+  zep.time_ns = time_ns;
+  zep.sequence = ++sequence_;
+  zep.frame = Bytes(whole.data(), whole.size());
+  std::string datagram;
+  append_zep(zep, datagram);
+  Packet packet;
+  packet.framing = Framing::kRadio;
+  packet.bytes = frame;
+  packet.fcs = sum;
+  packet.time_ns = time_ns;
+  user_.on_air(packet);
+  air_.send(Bytes(reinterpret_cast<const std::uint8_t*>(datagram.data()), datagram.size()));
+}
+
+void VirtualRadio::begin() {
+  put(Bytes(frame_.data(), frame_.size()), wall_ns());
+  if (!link_ack_) return finish(false);
+  state_ = State::kAwaitingAck;
+  next_ = taken_ = steady_clock::now() + kAckWait;
+}
+
+void VirtualRadio::finish(bool acked) {
+  state_ = State::kIdle;
+  user_.sent(acked);
+}
+
+void VirtualRadio::handle(Bytes datagram) {
+  Packet packet;
+  if (!decode_zep_datagram(datagram, packet)) return;
+  packet.time_ns = lines::air_time_ns(packet.time_ns);
+  const std::vector<std::uint8_t> kept(packet.bytes.begin(), packet.bytes.end());
+  packet.bytes = Bytes(kept.data(), kept.size());
+  user_.on_air(packet);
+  if (packet.error.fault != Fault::kNone) return;
+  const bool lost = std::bernoulli_distribution(settings_.loss)(random_);
+  if (kept.size() < kAckBytes) return;
+  const std::uint16_t control = Mac::FcfAt::load(kept.data());
+  if (kept.size() == kAckBytes && control == reflect::fcf_of(FrameControl::kAck)) {
+    taken_ = {};
+    const bool ours = state_ == State::kAwaitingAck &&
+                      Mac::DsnAt::load(kept.data()) == Mac::DsnAt::load(frame_.data());
+    if (!lost && ours) finish(true);
+    return;
+  }
+  if (kept.size() < kHeader) return;
+  const bool asks = control == reflect::fcf_of(FrameControl::kDataAckRequest);
+  if (asks) taken_ = steady_clock::now() + kAckWait;
+  if (!asks && control != reflect::fcf_of(FrameControl::kData)) return;
+  const std::uint16_t src = Mac::SrcAt::load(kept.data());
+  const std::uint16_t dest = Mac::DestAt::load(kept.data());
+  if (src == settings_.address) user_.twin();
+  if (lost || !user_.listens() || (dest != settings_.address && dest != kAll)) return;
+  if (asks && dest != kAll) {
+    tinyos::MacAck ack;
+    ack.fcf = reflect::fcf_of(FrameControl::kAck);
+    ack.dsn = Mac::DsnAt::load(kept.data());
+    std::uint8_t room[kAckBytes];
+    tinyos::MacAckLayout::store(ack, room);
+    const auto bytes = static_cast<std::int64_t>(kept.size() + kPreambleAndFcs);
+    put(Bytes(room, sizeof room), packet.time_ns + bytes * kByteNs + kTurnaroundNs);
+    taken_ = {};
+  }
+  tinyos::AmHeader header;
+  header.dest = dest;
+  header.src = src;
+  header.group = static_cast<std::uint8_t>(kPan);
+  header.type = static_cast<std::uint8_t>(rubicon::RadioIFrameLayout::TypeAt::load(kept.data()));
+  header.length = static_cast<std::uint8_t>(kept.size() - kHeader);
+  std::vector<std::uint8_t> out(tinyos::AmHeaderView::kMaxSizeBytes);
+  tinyos::AmHeaderLayout::store(header, out.data());
+  out.insert(out.end(), kept.begin() + kHeader, kept.end());
+  user_.heard(Bytes(out.data(), out.size()));
+}
+
+void VirtualRadio::run(lines::SteadyTime deadline, int other_fd) {
+  const auto until = state_ == State::kIdle ? deadline : std::min(deadline, next_);
+  const Bytes datagram = air_.receive(until, other_fd);
+  if (!datagram.empty()) handle(datagram);
+  const auto now = steady_clock::now();
+  if (state_ == State::kIdle || now < next_) return;
+  if (state_ == State::kAwaitingAck) return finish(false);
+  if (now < taken_) {
+    std::uniform_int_distribution<int> wait_us(kBackoffMinUs, kBackoffMaxUs);
+    next_ = now + microseconds(wait_us(random_));
+    return;
+  }
+  begin();
+}
+
+}  // namespace rubric::run

@@ -1,0 +1,150 @@
+#!/usr/bin/env python3
+"""Radio frames over ZEP: `zep:PORT` as a line in use, and what Wireshark reads.
+
+Usage: zep_test.py RUBRIC PROJECT_FOLDER. All of it on this host's loopback, bounded in time.
+"""
+
+import json
+import re
+import select
+import shutil
+import socket
+import struct
+import subprocess
+import time
+import unittest
+
+from live_testing import RUBRIC, LiveTest, lines_of
+from serial_testing import PATIENCE_S
+
+RADIO = "spec/captures/firmware/g2_stray_reply_while_joining.pcapng"
+NTP_TO_1970 = 2_208_988_800
+
+
+def fcs(data):
+    """IEEE 802.15.4-2006, section 7.2.1.9, bit by bit."""
+    crc = 0
+    for byte in data:
+        for bit in range(8):
+            feedback = (crc ^ byte >> bit) & 1
+            crc = crc >> 1 ^ (0x8408 if feedback else 0)
+    return struct.pack("<H", crc)
+
+
+def zep(frame, number=1, device=2):
+    return b"EX\x02\x01" + struct.pack(">BHBBII", 26, device, 1, 255, NTP_TO_1970 + 1000, 1 << 31) \
+        + struct.pack(">I", number) + bytes(10) + bytes([len(frame)]) + frame
+
+
+def radio_frames():
+    records = [record for record in lines_of(RADIO, "--hex") if record["framing"] == "radio"]
+    return [bytes.fromhex(record["raw"]) for record in records], records
+
+
+class Station:
+    def __init__(self, test, port):
+        self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        test.addCleanup(self.socket.close)
+        self.socket.settimeout(PATIENCE_S)
+        self.socket.connect(("127.0.0.1", port))
+
+    def send(self, datagram):
+        try:
+            self.socket.send(datagram)
+        except ConnectionRefusedError:  # Nobody is there now.
+            pass
+
+
+class Zep(LiveTest):
+    def hub(self, *arguments):
+        running = self.started(*arguments)
+        said = b""
+        deadline = time.monotonic() + PATIENCE_S
+        while not said.endswith(b"\n"):
+            left = max(0, deadline - time.monotonic())
+            self.assertTrue(select.select([running.process.stderr], [], [], left)[0])
+            said += running.process.stderr.read1(1)
+        return running, int(re.fullmatch(rb"rubric: zep:(\d+)\n", said).group(1))
+
+    def test_frames_are_decoded_and_kept(self):
+        kept = self.folder / "kept.pcapng"
+        running, port = self.hub("decode", "zep:0", "--format", "jsonl", "--write", kept)
+        frames, wanted = radio_frames()
+        station = Station(self, port)
+        for number, frame in enumerate(frames):
+            station.send(zep(frame + fcs(frame), number))
+        records = running.lines(len(frames))
+        self.assertEqual([record["fields"] for record in records],
+                         [record["fields"] for record in wanted])
+        self.assertEqual({record["interface"] for record in records}, {"zep:0"})
+        self.assertLess(abs(records[0]["time"] - time.time()), PATIENCE_S)
+        station.send(zep(frames[0] + bytes(2)))
+        station.send(b"EX\x03\x01")
+        faults = [record["error"]["requirement"] for record in running.lines(2)]
+        self.assertEqual(faults, ["WIRE-RADIO-FCS", "WIRE-ZEP"])
+        self.assertEqual(running.end()[0], 1)
+        self.assertEqual(len(lines_of(kept)), len(frames) + 2)
+
+    def test_a_hub_passes_frames_on_and_another_takes_its_place(self):
+        hub, port = self.hub("decode", "zep:0", "--format", "jsonl")
+        listener = self.started("decode", f"zep:{port}", "--format", "jsonl")
+        frame = radio_frames()[0][0]
+        station = Station(self, port)
+        for end_hub in (True, False):
+            deadline = time.monotonic() + PATIENCE_S
+            # Until the listener is known to the hub, or is the hub.
+            while not select.select([listener.process.stdout], [], [], 0.05)[0]:
+                self.assertLess(time.monotonic(), deadline)
+                station.send(zep(frame + fcs(frame)))
+            record = listener.lines(1)[0]
+            self.assertEqual(record["message"], "join_request")
+            if end_hub:
+                self.assertEqual(hub.end()[0], 0)
+                while select.select([listener.process.stdout], [], [], 0.2)[0]:
+                    listener.lines(1)
+        self.assertEqual(listener.end()[0], 0)
+
+    def test_check_judges_them(self):
+        running, port = self.hub("check", "zep:0", "--format", "jsonl")
+        station = Station(self, port)
+        for frame in radio_frames()[0]:
+            station.send(zep(frame + fcs(frame)))
+        while "J4-SEQ" not in running.text_lines(1)[0]:
+            pass
+        self.assertEqual(running.end()[0], 1)
+
+    def test_a_serial_line_is_wanted_where_packets_are_sent(self):
+        for command in (("forward", "zep:17754"), ("send", "--to", "zep:17754")):
+            run = subprocess.run([RUBRIC, *command], input=b"", capture_output=True, check=False)
+            self.assertEqual(run.returncode, 2)
+            self.assertIn(b"expected serial@DEVICE:BAUD", run.stderr)
+        run = subprocess.run([RUBRIC, "decode", "zep:x"], capture_output=True, check=False)
+        self.assertEqual(run.returncode, 2)
+        self.assertIn(b"expected zep:PORT", run.stderr)
+
+    @unittest.skipUnless(shutil.which("tshark"), "no tshark")
+    def test_wireshark_reads_the_same(self):
+        frame = radio_frames()[0][0]
+        udp = zep(frame + fcs(frame), 0x01020304, 0x0102)
+        packet = struct.pack(">HHHH", 40000, 17754, 8 + len(udp), 0) + udp
+        packet = struct.pack(">BBHHHBBH4s4s", 0x45, 0, 20 + len(packet), 0, 0, 64, 17, 0,
+                             b"\x7f\0\0\1", b"\x7f\0\0\1") + packet
+        path = self.folder / "zep.pcap"
+        path.write_bytes(struct.pack("<IHHIIII", 0xA1B2C3D4, 2, 4, 0, 0, 65535, 101)
+                         + struct.pack("<IIII", 0, 0, len(packet), len(packet)) + packet)
+        run = subprocess.run(["tshark", "-r", path, "-T", "json", "-J", "zep wpan"],
+                             capture_output=True, check=True)
+        layers = json.loads(run.stdout)[0]["_source"]["layers"]
+        text = json.dumps(layers["zep"])
+        self.assertEqual(int(layers["zep"]["zep.version"]), 2, text)
+        self.assertEqual(int(layers["zep"]["zep.channel_id"]), 26)
+        self.assertEqual(int(layers["zep"]["zep.device_id"], 0), 0x0102)
+        self.assertEqual(int(layers["zep"]["zep.seqno"]), 0x01020304)
+        self.assertEqual(int(layers["zep"]["zep.length"]), len(frame) + 2)
+        self.assertIn("00:16:40.5", layers["zep"]["zep.time"])
+        self.assertEqual(layers["wpan"]["wpan.fcs_ok"], "1")
+        self.assertEqual(int(layers["wpan"]["wpan.src16"], 0), 2)
+
+
+if __name__ == "__main__":
+    unittest.main()
