@@ -20,11 +20,11 @@
 #include "codec/lines/line.h"
 #include "codec/lines/stop.h"
 #include "codec/reflect/fault_text.h"
-#include "codec/reflect/registry.h"
 #include "codec/reflect/suggest.h"
 #include "tools/cli/fcs.h"
 #include "tools/cli/input_file.h"
 #include "tools/cli/progress.h"
+#include "tools/cli/specs.h"
 
 namespace rubric::cli {
 namespace {
@@ -335,12 +335,6 @@ class Run {
   bool lost_ = false;  // The line is gone, and that was said.
 };
 
-std::vector<std::string> protocol_names() {
-  std::vector<std::string> names;
-  for (const reflect::Protocol* protocol : reflect::protocols()) names.emplace_back(protocol->id);
-  return names;
-}
-
 }  // namespace
 
 void add_input_options(Command& app, InputOptions& options) {
@@ -357,11 +351,18 @@ void add_input_options(Command& app, InputOptions& options) {
                  "(decided from the beginning of the file)")
       .one_of({"auto", "crc", "cc24xx", "none"})
       .show_default();
-  app.add_option("--spec", options.spec, "Use this protocol above the AM layer").show_default();
+  add_spec_option(app, options);
   app.add_option(
          "--as", options.as_message,
          "Read the input as this message alone: each line of hex text, or a binary file whole")
       .check(given);
+}
+
+void add_spec_option(Command& app, InputOptions& options, const std::string& names) {
+  app.add_option(names, options.spec,
+                 "Use this protocol above the AM layer: a name (list prints them; none shows bare "
+                 "messages), or a .ksy file")
+      .show_default();
 }
 
 void add_live_options(Command& app, InputOptions& options) {
@@ -395,10 +396,7 @@ bool goes_on(const InputOptions& options) {
 }
 
 const reflect::Protocol& chosen_protocol(const InputOptions& options) {
-  const reflect::Protocol* protocol = reflect::find_protocol(options.spec);
-  if (protocol) return *protocol;
-  throw UsageError("--spec", fmt::format("unknown protocol '{}'{}", options.spec,
-                                         reflect::did_you_mean(options.spec, protocol_names())));
+  return protocol_of(options.spec);
 }
 
 const reflect::Type* chosen_message(const InputOptions& options,

@@ -17,7 +17,7 @@ struct InputOptions {
   std::vector<std::string> files;  ///< In order; none or "-" is stdin.
   std::string format = "auto";     ///< As for --input-format.
   std::string fcs = "auto";        ///< As for --fcs.
-  std::string spec = "rubicon";    ///< A protocol's id.
+  std::string spec = "rubicon";    ///< A protocol's id, or a .ksy file.
   std::string as_message;          ///< Bytes are this message alone; empty: framed packets.
   bool progress = true;            ///< A bar on stderr for long files, where that is a terminal.
   bool follow = false;             ///< At a file's end wait for more of it.
@@ -28,6 +28,9 @@ struct InputOptions {
 /// Adds FILE..., --input-format, --fcs, --spec and --as to a subcommand.
 void add_input_options(Command& app, InputOptions& options);
 
+/// Adds --spec, under these names.
+void add_spec_option(Command& app, InputOptions& options, const std::string& names = "--spec");
+
 /// Adds --follow, --listen-only and --reconnect: for subcommands whose files may be lines in
 /// use (live/line.h). Without FILE, at a terminal, $MOTECOM is taken.
 void add_live_options(Command& app, InputOptions& options);
@@ -36,7 +39,7 @@ void add_live_options(Command& app, InputOptions& options);
 /// pipe.
 bool goes_on(const InputOptions& options);
 
-/// Returns the protocol of --spec; throws UsageError with the nearest name if there is none.
+/// Returns the protocol of --spec, as protocol_of() does.
 const reflect::Protocol& chosen_protocol(const InputOptions& options);
 /// Returns the message of --as, null if it is not given; throws UsageError as above.
 const reflect::Type* chosen_message(const InputOptions& options, const reflect::Protocol& protocol);

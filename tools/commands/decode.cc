@@ -11,6 +11,7 @@
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/input.h"
 #include "tools/cli/output.h"
+#include "tools/cli/specs.h"
 #include "tools/cli/write_options.h"
 #include "tools/commands/commands.h"
 #include "tools/format/csv.h"
@@ -106,6 +107,7 @@ class Decode {
       : options_(options),
         protocol_(cli::chosen_protocol(options.input)),
         decoder_(protocol_, cli::chosen_message(options.input, protocol_)),
+        others_(protocol_),
         formatter_(make_formatter(options, protocol_)),
         filter_(make_filter(options, protocol_)),
         clock_(options.time) {}
@@ -138,6 +140,7 @@ class Decode {
  private:
   bool take(const Packet& packet, const cli::Source& source) {
     decoder_.decode(packet, frame_);
+    others_.look(frame_);
     const bool noted = options_.strict && frame_.decoded.note_count() != 0;
     malformed_ = malformed_ || frame_.malformed() || noted;
     malformed_count_ += frame_.malformed();
@@ -157,6 +160,7 @@ class Decode {
   const DecodeOptions& options_;
   const reflect::Protocol& protocol_;
   reflect::FrameDecoder decoder_;
+  cli::OtherSpecs others_;
   std::unique_ptr<format::Formatter> formatter_;
   std::optional<format::Filter> filter_;
   Clock clock_;

@@ -14,6 +14,7 @@
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/input.h"
 #include "tools/cli/output.h"
+#include "tools/cli/specs.h"
 #include "tools/commands/commands.h"
 #include "tools/explain/explain_frame.h"
 #include "tools/explain/explain_rule.h"
@@ -136,6 +137,7 @@ int explain_bytes(const ExplainOptions& options, const Protocol& protocol,
   // Moving the bytes left them in their place, so the packet still points at them.
   reflect::Frame frame;
   reflect::FrameDecoder(protocol, message).decode(given->packet, frame);
+  cli::OtherSpecs(protocol).look(frame);
   out = fmt::format("Taken as {}, {} bytes.\n\n", given->what, given->bytes.size());
   out += explain::explain_frame(frame);
   return frame.malformed() ? cli::kExitMalformed : cli::kExitClean;
@@ -173,8 +175,7 @@ void add_explain(cli::Command& app) {
   cli::Command& sub = app.add_subcommand("explain", "Explain a message, a rule, a name or a frame");
   sub.footer(kExplainFooter);
   sub.add_option("X", options->words, "A name, or hex bytes in one word or several").required();
-  sub.add_option("--spec", options->input.spec, "Use this protocol above the AM layer")
-      .show_default();
+  cli::add_spec_option(sub, options->input);
   sub.add_option("--as", options->input.as_message, "Read the bytes as this message alone")
       .check(cli::given);
   sub.add_option("--framing", options->framing,

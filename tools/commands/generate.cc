@@ -16,6 +16,7 @@
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/input.h"
 #include "tools/cli/output.h"
+#include "tools/cli/specs.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/generate_lines.h"
 
@@ -84,6 +85,11 @@ struct Message {
   bool of_link = false;
 };
 
+const reflect::RouteTable& routes_of(const reflect::Protocol& protocol) {
+  const reflect::RouteTable* read = cli::read_routes_of(protocol);
+  return read ? *read : *generate::routes_of(protocol);
+}
+
 void add_routes(const reflect::RouteTable& table, bool of_link, const Framer& framer,
                 std::vector<Message>& messages) {
   for (int i = 0; i < table.count; ++i) {
@@ -124,7 +130,7 @@ class Run {
   Run(const GenerateOptions& options, const reflect::Protocol& protocol)
       : options_(options),
         format_(format_of(options.format)),
-        frames_(protocol, *generate::routes_of(protocol), options.seed),
+        frames_(protocol, routes_of(protocol), options.seed),
         acks_(tinyos::tables::kProtocol, generate::kLinkAckRoutes, options.seed ^ kAckSeed),
         framer_(format_, frames_.random()) {
     add_routes(frames_.routes(), false, framer_, messages_);
@@ -283,8 +289,7 @@ void add_generate(cli::Command& app) {
   sub.add_option("--format", options->format, "Write hdlc, sf, pcapng, hex or jsonl")
       .one_of(container_names())
       .show_default();
-  sub.add_option("--spec,--protocol", options->input.spec, "Use this protocol above the AM layer")
-      .show_default();
+  cli::add_spec_option(sub, options->input, "--spec,--protocol");
   sub.add_option("--message", options->messages, "Make only these messages").check(cli::given);
   sub.add_option("-o,--output", options->output, "Write to this file; - is stdout")
       .check(cli::given)

@@ -10,6 +10,7 @@
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/input.h"
 #include "tools/cli/output.h"
+#include "tools/cli/specs.h"
 #include "tools/cli/text_file.h"
 #include "tools/commands/commands.h"
 #include "tools/wireshark/folders.h"
@@ -43,6 +44,7 @@ struct InstallWiresharkOptions {
   bool dry_run = false;
   bool remove = false;
   bool force = false;
+  std::string spec;  ///< A .ksy file to dissect as well.
 };
 
 [[noreturn]] void refuse(const fs::path& path, const std::string& why) {
@@ -185,7 +187,8 @@ void install(const InstallWiresharkOptions& options) {
            "there is no such file: it belongs beside rubric, as 'cmake --install', the "
            "Debian package and the build folder have it");
   }
-  dissector.write(wireshark::dissector());
+  const std::string more = options.spec.empty() ? "" : cli::dissector_with(options.spec);
+  dissector.write(more.empty() ? wireshark::dissector() : more);
   extcap.link(program);
   if (options.dry_run) return;
   fmt::print(
@@ -202,6 +205,10 @@ void add_install_wireshark(cli::Command& app) {
   sub.footer(kInstallWiresharkFooter);
   sub.add_option("--dir", options->folder,
                  "Install into plugins and extcap of this folder, not the personal ones")
+      .check(cli::given);
+  sub.add_option("--spec", options->spec,
+                 "Dissect the protocol of this .ksy file as well; choose it in Wireshark's "
+                 "preferences of RUBRIC")
       .check(cli::given);
   sub.add_flag("--dry-run", options->dry_run, "Say what would be done, and do nothing");
   sub.add_flag("--remove", options->remove, "Remove both again");

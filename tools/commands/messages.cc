@@ -113,8 +113,7 @@ std::string json(const Protocol& protocol) {
 void add_messages(cli::Command& app) {
   auto options = std::make_shared<MessagesOptions>();
   cli::Command& sub = app.add_subcommand("messages", "List the messages of a protocol");
-  sub.add_option("--spec", options->input.spec, "Use this protocol above the AM layer")
-      .show_default();
+  cli::add_spec_option(sub, options->input);
   sub.add_option("--format", options->format, "Print text or json")
       .one_of({"text", "json"})
       .show_default();

@@ -7,6 +7,7 @@
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/input.h"
 #include "tools/cli/output.h"
+#include "tools/cli/specs.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/stats/counters.h"
 #include "tools/commands/stats/report.h"
@@ -28,12 +29,14 @@ constexpr const char* kStatsFooter =
 int run_stats(const StatsOptions& options) {
   const reflect::Protocol& protocol = cli::chosen_protocol(options.input);
   const reflect::FrameDecoder decoder(protocol, cli::chosen_message(options.input, protocol));
+  cli::OtherSpecs others(protocol);
   reflect::Frame frame;
   stats::Counters counters;
   std::uint64_t index = 0;
   const cli::InputResult result =
       cli::read_packets(options.input, [&](const Packet& packet, const cli::Source& source) {
         decoder.decode(packet, frame);
+        others.look(frame);
         counters.take(frame, {source.file, source.interface_name, index++, source.number});
         return true;
       });

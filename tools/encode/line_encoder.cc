@@ -159,8 +159,7 @@ void EncodedLines::one(Lines& lines) {
 
 void add_line_options(cli::Command& app, LineOptions& options) {
   app.add_option("FILE", options.input.files, "JSON lines; none or - is stdin");
-  app.add_option("--spec", options.input.spec, "Use this protocol above the AM layer")
-      .show_default();
+  cli::add_spec_option(app, options.input);
   app.add_option("--as", options.input.as_message,
                  "Read each line as the fields of this message, and put it into a frame")
       .check(cli::given);

@@ -5,13 +5,15 @@
 
 namespace rubricc {
 
-void check_model(Model& model, Diagnostics& diagnostics) {
-  Check check{model, diagnostics, {}};
+void check_model(Model& model, Diagnostics& diagnostics, CheckFor what) {
+  const bool for_code = what == CheckFor::kCode;
+  Check check{model, diagnostics, for_code, {}};
   check_names(check);
   check_order(check);
   check_layout(check);
   check_types(check);
-  if (diagnostics.empty()) check_cpp(check);  // It lays out what the passes before it completed.
+  if (for_code && diagnostics.empty())
+    check_cpp(check);  // It lays out what the passes before it completed.
 }
 
 }  // namespace rubricc

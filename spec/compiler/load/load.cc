@@ -14,6 +14,7 @@ namespace rubricc {
 namespace {
 
 constexpr std::size_t kSpecsMax = 100;
+const Library kNoLibrary;
 
 std::optional<std::string> read_file(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
@@ -28,9 +29,16 @@ std::string beside(const std::string& file, const std::string& name) {
   return (slash == file.npos ? "" : file.substr(0, slash + 1)) + name + ".ksy";
 }
 
+std::string shipped_file(const std::string& name) { return "<shipped>/" + name + ".ksy"; }
+
+bool is_plain(const std::string& name) {
+  return !name.empty() && name.size() < 100 && name.front() != '/' && name.find("..") == name.npos;
+}
+
 class Loader {
  public:
-  Loader(Model& model, Diagnostics& diagnostics) : model_(model), diagnostics_(diagnostics) {}
+  Loader(Model& model, Diagnostics& diagnostics, const Library& library)
+      : model_(model), diagnostics_(diagnostics), library_(library) {}
 
   void named(const std::string& file) {
     const auto text = read_file(file);
@@ -60,7 +68,12 @@ class Loader {
 
  private:
   void import(Spec& spec, const std::string& name, const Place& place) {
-    const std::string file = beside(spec.file, name);
+    std::string file = beside(spec.file, name);
+    auto text = is_plain(name) && open_.size() < kSpecsMax ? read_file(file) : std::nullopt;
+    if (const auto shipped = library_.find(name); !text && shipped != library_.end()) {
+      file = shipped_file(name);
+      text = shipped->second;
+    }
     const bool again = std::any_of(spec.imports.begin(), spec.imports.end(),
                                    [&](const Spec* one) { return one->file == file; });
     if (again) {
@@ -72,9 +85,6 @@ class Loader {
                          "imports must end");
       return;
     }
-    const bool plain =
-        !name.empty() && name.size() < 100 && name.front() != '/' && name.find("..") == name.npos;
-    const auto text = plain && open_.size() < kSpecsMax ? read_file(file) : std::nullopt;
     if (!text) {
       diagnostics_.error(place, fmt::format("import {} not found", quote(name)),
                          fmt::format("{} was expected", quote(file)));
@@ -94,20 +104,29 @@ class Loader {
 
   Model& model_;
   Diagnostics& diagnostics_;
+  const Library& library_;
   int budget_ = kNodeBudget;
   std::vector<std::string> open_;
 };
 
 }  // namespace
 
-void load_specs(const std::vector<std::string>& files, Model& model, Diagnostics& diagnostics) {
-  Loader loader(model, diagnostics);
+void load_specs(const std::vector<std::string>& files, Model& model, Diagnostics& diagnostics,
+                const Library& library) {
+  Loader loader(model, diagnostics, library);
   for (const std::string& file : files) loader.named(file);
+}
+
+void load_shipped_spec(const std::string& name, const Library& library, Model& model,
+                       Diagnostics& diagnostics) {
+  const std::string text(library.at(name));
+  Spec* spec = Loader(model, diagnostics, library).load(shipped_file(name), text);
+  if (spec) spec->named = true;
 }
 
 void load_spec_text(const std::string& file, const std::string& text, Model& model,
                     Diagnostics& diagnostics) {
-  if (Spec* spec = Loader(model, diagnostics).load(file, text)) spec->named = true;
+  if (Spec* spec = Loader(model, diagnostics, kNoLibrary).load(file, text)) spec->named = true;
 }
 
 }  // namespace rubricc

@@ -1,15 +1,25 @@
 // Loads files into a checked model.
 #pragma once
 
+#include <functional>
+#include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "spec/compiler/diagnostics.h"
 
 namespace rubricc {
 
+/// Texts of specs that imports find where no file of the name is beside the importing one.
+using Library = std::map<std::string, std::string_view, std::less<>>;
+
 /// Reads `files` and their imports (beside them, "name.ksy") into `model`, imports first.
-void load_specs(const std::vector<std::string>& files, Model& model, Diagnostics& diagnostics);
+void load_specs(const std::vector<std::string>& files, Model& model, Diagnostics& diagnostics,
+                const Library& library = {});
+/// Reads a spec of the library, as "<shipped>/name.ksy".
+void load_shipped_spec(const std::string& name, const Library& library, Model& model,
+                       Diagnostics& diagnostics);
 /// Reads the catalogue of requirements.
 void load_requirements(const std::string& file, Model& model, Diagnostics& diagnostics);
 /// Reads a profile, or all of a folder; the requirements come first.
@@ -31,7 +41,10 @@ void load_case_text(const std::string& file, const std::string& text, Model& mod
                     Diagnostics& diagnostics);
 
 /// Resolves names, expressions, sizes and offsets, and reports everything that breaks a rule of
-/// the profile. Emitters may run only when nothing was reported.
-void check_model(Model& model, Diagnostics& diagnostics);
+/// the profile. Emitters may run only when nothing was reported. kRunTime is for tables in memory:
+/// a type needs no requirement, one that is not in the catalogue counts as none, and names and
+/// sizes need not suit C++.
+enum class CheckFor { kCode, kRunTime };
+void check_model(Model& model, Diagnostics& diagnostics, CheckFor what = CheckFor::kCode);
 
 }  // namespace rubricc

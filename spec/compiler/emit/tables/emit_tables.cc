@@ -11,61 +11,20 @@
 #include "spec/compiler/diagnostics.h"
 #include "spec/compiler/emit/cpp_text.h"
 #include "spec/compiler/emit/emit.h"
+#include "spec/compiler/emit/tables/built_tables.h"
 #include "spec/compiler/emit/template.h"
 #include "spec/compiler/model.h"
 
 namespace rubricc {
 namespace {
 
-// Expressions as postfix steps, and the names of codec/reflect/schema.h.
-
-struct Step {
-  std::string op;  // "Op::kLoadBe16"
-  std::int64_t value = 0;
-};
-
-std::string load(const Field& field) {
-  if (field.width_bytes == 1) return "Op::kLoadU8";
-  const std::string order = field.little_endian ? "Le" : "Be";
-  return "Op::kLoad" + order + (field.width_bytes == 2 ? "16" : "32");
-}
-
-std::string op_name(ExprOp op) {
-  switch (op) {
-    case ExprOp::kInt:
-    case ExprOp::kEnumValue: return "Op::kConst";
-    case ExprOp::kAdd: return "Op::kAdd";
-    case ExprOp::kSub: return "Op::kSub";
-    case ExprOp::kMul: return "Op::kMul";
-    case ExprOp::kDiv: return "Op::kDiv";
-    case ExprOp::kMod: return "Op::kMod";
-    case ExprOp::kEq: return "Op::kEq";
-    case ExprOp::kNe: return "Op::kNe";
-    case ExprOp::kLt: return "Op::kLt";
-    case ExprOp::kLe: return "Op::kLe";
-    case ExprOp::kGt: return "Op::kGt";
-    case ExprOp::kGe: return "Op::kGe";
-    case ExprOp::kAnd: return "Op::kAnd";
-    case ExprOp::kOr: return "Op::kOr";
-    case ExprOp::kNot: return "Op::kNot";
-    case ExprOp::kField: break;
-  }
-  throw std::logic_error("op_name: a field has no operator");
-}
-
-void append(const Expr& expr, std::vector<Step>& out) {
-  for (const auto& operand : expr.operands) append(*operand, out);
-  if (expr.op == ExprOp::kField) {
-    out.push_back({load(*expr.field), expr.offset_bytes});
-  } else {
-    out.push_back({op_name(expr.op), expr.value});
-  }
-}
-
-std::vector<Step> postfix(const Expr& expr) {
-  std::vector<Step> out;
-  append(expr, out);
-  return out;
+/// Returns an operator's name in codec/reflect/schema.h.
+std::string_view op_name(rubric::reflect::Op op) {
+  constexpr std::string_view kNames[] = {
+      "kConst", "kLoadU8", "kLoadBe16", "kLoadLe16", "kLoadBe32", "kLoadLe32", "kAdd",
+      "kSub",   "kMul",    "kDiv",      "kMod",      "kEq",       "kNe",       "kLt",
+      "kLe",    "kGt",     "kGe",       "kAnd",      "kOr",       "kNot"};
+  return kNames[static_cast<std::size_t>(op)];
 }
 
 std::string kind_name(ValueKind kind) {
@@ -234,7 +193,9 @@ class TypeTables {
     if (!tree) return "{}";
     const auto steps = postfix(*tree);
     std::vector<std::string> words;
-    for (const Step& step : steps) words.push_back(fmt::format("{{{}, {}}}", step.op, step.value));
+    for (const auto& step : steps) {
+      words.push_back(fmt::format("{{Op::{}, {}}}", op_name(step.op), step.value));
+    }
     const std::string name = part(field, what);
     add_part(fmt::format("ExprStep {}[] = ", name), words);
     return fmt::format("{{{}, {}}}", name, steps.size());

@@ -1,0 +1,274 @@
+#include "spec/compiler/emit/tables/built_tables.h"
+
+#include <stdexcept>
+
+#include "spec/compiler/emit/tables/routes.h"
+
+namespace rubricc {
+namespace {
+
+namespace reflect = rubric::reflect;
+
+reflect::Op load(const Field& field) {
+  if (field.width_bytes == 1) return reflect::Op::kLoadU8;
+  if (field.width_bytes == 2) {
+    return field.little_endian ? reflect::Op::kLoadLe16 : reflect::Op::kLoadBe16;
+  }
+  return field.little_endian ? reflect::Op::kLoadLe32 : reflect::Op::kLoadBe32;
+}
+
+reflect::Op op_of(ExprOp op) {
+  switch (op) {
+    case ExprOp::kInt:
+    case ExprOp::kEnumValue: return reflect::Op::kConst;
+    case ExprOp::kAdd: return reflect::Op::kAdd;
+    case ExprOp::kSub: return reflect::Op::kSub;
+    case ExprOp::kMul: return reflect::Op::kMul;
+    case ExprOp::kDiv: return reflect::Op::kDiv;
+    case ExprOp::kMod: return reflect::Op::kMod;
+    case ExprOp::kEq: return reflect::Op::kEq;
+    case ExprOp::kNe: return reflect::Op::kNe;
+    case ExprOp::kLt: return reflect::Op::kLt;
+    case ExprOp::kLe: return reflect::Op::kLe;
+    case ExprOp::kGt: return reflect::Op::kGt;
+    case ExprOp::kGe: return reflect::Op::kGe;
+    case ExprOp::kAnd: return reflect::Op::kAnd;
+    case ExprOp::kOr: return reflect::Op::kOr;
+    case ExprOp::kNot: return reflect::Op::kNot;
+    case ExprOp::kField: break;
+  }
+  throw std::logic_error("op_of: a field has no operator");
+}
+
+void append(const Expr& expr, std::vector<reflect::ExprStep>& out) {
+  for (const auto& operand : expr.operands) append(*operand, out);
+  const bool is_field = expr.op == ExprOp::kField;
+  out.push_back({is_field ? load(*expr.field) : op_of(expr.op),
+                 static_cast<std::int32_t>(is_field ? expr.offset_bytes : expr.value)});
+}
+
+reflect::Kind kind_of(ValueKind kind) {
+  switch (kind) {
+    case ValueKind::kUint: return reflect::Kind::kUint;
+    case ValueKind::kSint: return reflect::Kind::kSint;
+    case ValueKind::kFloat: return reflect::Kind::kFloat;
+    case ValueKind::kMask: return reflect::Kind::kMask;
+    case ValueKind::kBytes: return reflect::Kind::kBytes;
+    case ValueKind::kStruct: return reflect::Kind::kStruct;
+  }
+  throw std::logic_error("kind_of");
+}
+
+reflect::Repeat repeat_of(RepeatKind repeat) {
+  switch (repeat) {
+    case RepeatKind::kOnce: return reflect::Repeat::kOnce;
+    case RepeatKind::kCount: return reflect::Repeat::kCount;
+    case RepeatKind::kToEnd: return reflect::Repeat::kToEnd;
+  }
+  throw std::logic_error("repeat_of");
+}
+
+reflect::Extent extent_of(ExtentKind extent) {
+  switch (extent) {
+    case ExtentKind::kOwn: return reflect::Extent::kOwn;
+    case ExtentKind::kSize: return reflect::Extent::kSize;
+    case ExtentKind::kToEnd: return reflect::Extent::kToEnd;
+  }
+  throw std::logic_error("extent_of");
+}
+
+rubric::ReqId rule_of(const std::string& id) {
+  return id.empty() ? rubric::ReqId::kNone : rubric::rule_number(id.c_str());
+}
+
+}  // namespace
+
+std::vector<reflect::ExprStep> postfix(const Expr& expr) {
+  std::vector<reflect::ExprStep> out;
+  append(expr, out);
+  return out;
+}
+
+class BuiltTables::Builder {
+ public:
+  explicit Builder(std::vector<std::shared_ptr<const void>>& kept) : kept_(kept) {}
+
+  BuiltSpec build(const Spec& spec) {
+    std::vector<const reflect::EnumTable*> enums;
+    std::vector<const reflect::MaskTable*> masks;
+    std::vector<const reflect::Type*> types;
+    std::vector<reflect::Carrier> carriers;
+    for (const auto& one : spec.enums) enums.push_back(enumeration(*one));
+    for (const auto& one : spec.types) {
+      if (one->is_mask) masks.push_back(masks_[one.get()] = mask(*one));
+    }
+    for (const Type* one : spec.dependency_order) {
+      if (!one->is_mask) types_[one] = type(*one);
+    }
+    for (const auto& one : spec.types) {
+      if (one->is_mask) continue;
+      types.push_back(types_.at(one.get()));
+      if (!one->carrier.empty()) carriers.push_back({text(one->carrier), types.back()});
+    }
+    const reflect::Protocol protocol{text(spec.id),  text(spec.title), list(types), count(types),
+                                     list(enums),    count(enums),     list(masks), count(masks),
+                                     list(carriers), count(carriers)};
+    return {single(protocol), routes(spec)};
+  }
+
+ private:
+  template <class T>
+  const T* list(const std::vector<T>& values) {
+    if (values.empty()) return nullptr;
+    const auto kept = std::make_shared<const std::vector<T>>(values);
+    kept_.push_back(kept);
+    return kept->data();
+  }
+  template <class T>
+  const T* single(const T& value) {
+    return list(std::vector<T>{value});
+  }
+  const char* text(const std::string& value) {
+    const auto kept = std::make_shared<const std::string>(value);
+    kept_.push_back(kept);
+    return kept->c_str();
+  }
+  template <class T>
+  static std::uint16_t count(const std::vector<T>& values) {
+    return static_cast<std::uint16_t>(values.size());
+  }
+  template <class T>
+  static std::uint8_t few(const std::vector<T>& values) {
+    return static_cast<std::uint8_t>(values.size());
+  }
+
+  const reflect::EnumTable* enumeration(const Enum& one) {
+    std::vector<reflect::EnumEntry> entries;
+    for (const EnumEntry& entry : one.entries) {
+      entries.push_back({static_cast<std::uint32_t>(entry.value), text(entry.name)});
+    }
+    return enums_[&one] = single<reflect::EnumTable>({text(one.id), list(entries), count(entries)});
+  }
+
+  const reflect::MaskTable* mask(const Type& one) {
+    std::vector<const char*> bits;
+    for (auto bit = one.bits.rbegin(); bit != one.bits.rend(); ++bit) {
+      bits.push_back(bit->unnamed ? nullptr : text(bit->name));
+    }
+    return single<reflect::MaskTable>({text(one.name), list(bits), few(bits)});
+  }
+
+  reflect::Expr expr(const ExprPtr& tree) {
+    if (!tree) return {};
+    const auto steps = postfix(*tree);
+    return {list(steps), few(steps)};
+  }
+
+  reflect::Valid valid(const Field& field) {
+    if (!field.valid) return {reflect::ValidKind::kAny, 0, 0, nullptr, 0};
+    const Valid& rule = *field.valid;
+    if (rule.one_of.empty()) {
+      return {reflect::ValidKind::kRange, *rule.min, *rule.max, nullptr, 0};
+    }
+    return {reflect::ValidKind::kOneOf, 0, 0, list(rule.one_of), few(rule.one_of)};
+  }
+
+  const reflect::Type* type_of(const Type* one) const {
+    return one == nullptr ? nullptr : types_.at(one);
+  }
+
+  const reflect::Switch* choice(const Field& field) {
+    if (!field.choice) return nullptr;
+    std::vector<reflect::SwitchCase> cases;
+    for (const SwitchCase& one : field.choice->cases) {
+      cases.push_back({one.key, type_of(one.type)});
+    }
+    const auto& otherwise = field.choice->otherwise;
+    return single<reflect::Switch>({expr(field.choice->key), list(cases), count(cases),
+                                    type_of(otherwise ? otherwise->type : nullptr)});
+  }
+
+  const reflect::Unit* unit(const Field& field) {
+    if (!field.unit) return nullptr;
+    return single<reflect::Unit>({text(field.unit->symbol), field.unit->scale, field.unit->offset});
+  }
+
+  reflect::Field field(const Field& one) {
+    const std::string key = "\"" + one.name + "\":";
+    const bool is_struct = one.kind == ValueKind::kStruct;
+    return {text(one.name),
+            text(key),
+            static_cast<std::uint8_t>(key.size()),
+            kind_of(one.kind),
+            static_cast<std::uint8_t>(one.width_bytes),
+            one.little_endian,
+            repeat_of(one.repeat),
+            extent_of(one.extent),
+            static_cast<std::int32_t>(one.fixed_offset),
+            valid(one),
+            one.expect.value_or(-1),
+            one.enumeration ? enums_.at(one.enumeration) : nullptr,
+            one.kind == ValueKind::kMask ? masks_.at(one.type) : nullptr,
+            is_struct ? type_of(one.type) : nullptr,
+            choice(one),
+            expr(one.size),
+            expr(one.count),
+            expr(one.condition),
+            rule_of(one.requirement),
+            unit(one),
+            text(one.doc)};
+  }
+
+  const reflect::Type* type(const Type& one) {
+    std::vector<reflect::Field> fields;
+    std::vector<reflect::Interpretation> interpretations;
+    for (const auto& each : one.fields) fields.push_back(field(*each));
+    for (const auto& each : one.instances) {
+      if (each->is_peek) continue;
+      interpretations.push_back({field(*each), static_cast<std::uint16_t>(each->overlays)});
+    }
+    const std::int64_t am_type = one.am_types.empty() ? -1 : one.am_types.front();
+    return single<reflect::Type>({text(one.id), text(one.name), list(fields), count(fields),
+                                  list(interpretations), count(interpretations), one.min_size,
+                                  one.max_size, static_cast<std::int32_t>(am_type),
+                                  rule_of(one.requirement), text(one.doc), text(one.doc_ref)});
+  }
+
+  const reflect::RouteTable* routes(const Spec& spec) {
+    std::vector<reflect::Route> out;
+    for (const Route& one : routes_of(spec)) {
+      std::vector<reflect::RouteChoice> choices;
+      std::vector<reflect::RouteLength> lengths;
+      for (const RouteNumber& number : one.choices) {
+        choices.push_back({static_cast<std::uint16_t>(number.offset),
+                           static_cast<std::uint8_t>(number.width_bytes), number.little_endian,
+                           static_cast<std::uint32_t>(number.value)});
+      }
+      for (const RouteNumber& number : one.lengths) {
+        lengths.push_back({static_cast<std::uint16_t>(number.offset),
+                           static_cast<std::uint8_t>(number.width_bytes), number.little_endian,
+                           static_cast<std::uint16_t>(number.value)});
+      }
+      out.push_back({text(one.carrier), types_.at(one.type), static_cast<std::uint16_t>(one.offset),
+                     one.room, list(choices), few(choices), list(lengths), few(lengths)});
+    }
+    return single<reflect::RouteTable>({list(out), count(out)});
+  }
+
+  std::vector<std::shared_ptr<const void>>& kept_;
+  std::map<const Enum*, const reflect::EnumTable*> enums_;
+  std::map<const Type*, const reflect::MaskTable*> masks_;
+  std::map<const Type*, const reflect::Type*> types_;
+};
+
+BuiltTables::BuiltTables(const Model& model) {
+  Builder builder(kept_);
+  for (const auto& spec : model.specs) specs_[spec->id] = builder.build(*spec);
+}
+
+BuiltSpec BuiltTables::of(const std::string& id) const {
+  const auto found = specs_.find(id);
+  return found == specs_.end() ? BuiltSpec{} : found->second;
+}
+
+}  // namespace rubricc

@@ -1,0 +1,154 @@
+#include "tools/cli/specs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iostream>
+#include <memory>
+
+#include "codec/reflect/registry.h"
+#include "codec/reflect/requirements.h"
+#include "codec/reflect/suggest.h"
+#include "spec/compiler/emit/emit.h"
+#include "spec/compiler/emit/tables/built_tables.h"
+#include "spec/compiler/load/load.h"
+#include "tools/cli/command.h"
+#include "tools/cli/exit_codes.h"
+
+namespace rubric::cli {
+namespace {
+
+constexpr std::string_view kNone = "none";
+
+/// A spec that was read; it is kept until the program ends.
+struct ReadSpec {
+  rubricc::Model model;
+  std::unique_ptr<rubricc::BuiltTables> tables;
+  rubricc::BuiltSpec built;
+};
+
+std::map<std::string, ReadSpec>& read_specs() {
+  static std::map<std::string, ReadSpec> specs;
+  return specs;
+}
+
+void add_requirements(rubricc::Model& model) {
+  for (const reflect::Requirement& one : reflect::requirements()) {
+    if (*one.id == '\0') continue;
+    rubricc::Requirement known;
+    known.id = one.id;
+    known.level = one.level;
+    known.clause = one.clause;
+    known.sentence = one.sentence;
+    known.source = one.source;
+    model.requirements.push_back(std::move(known));
+  }
+}
+
+void require_sound(rubricc::Model& model, rubricc::Diagnostics& diagnostics) {
+  rubricc::check_model(model, diagnostics, rubricc::CheckFor::kRunTime);
+  std::cerr << diagnostics.print();
+  if (!diagnostics.empty()) exit_with(kExitInput);
+}
+
+bool names_file(std::string_view spec) { return spec.ends_with(".ksy"); }
+
+/// Reads a shipped spec, or a file.
+const reflect::Protocol& read_spec(const std::string& spec) {
+  const auto [at, fresh] = read_specs().try_emplace(spec);
+  ReadSpec& read = at->second;
+  if (!fresh) return *read.built.protocol;
+  rubricc::Diagnostics diagnostics;
+  add_requirements(read.model);
+  if (names_file(spec)) {
+    rubricc::load_specs({spec}, read.model, diagnostics, shipped_specs());
+  } else {
+    rubricc::load_shipped_spec(spec, shipped_specs(), read.model, diagnostics);
+  }
+  require_sound(read.model, diagnostics);
+  read.tables = std::make_unique<rubricc::BuiltTables>(read.model);
+  read.built = read.tables->of(read.model.specs.back()->id);
+  return *read.built.protocol;
+}
+
+/// Prints the id and the title of each protocol.
+[[noreturn]] void list_specs() {
+  for (const std::string& name : protocol_names()) {
+    fmt::print("{:<16}{}\n", name, protocol_of(name).title);
+  }
+  exit_with(kExitClean);
+}
+
+bool claims(const reflect::Protocol& protocol, std::uint8_t am_type) {
+  for (int i = 0; i < protocol.carrier_count; ++i) {
+    const reflect::Switch* choice = reflect::payload_choice(protocol, protocol.carriers[i].name);
+    for (int j = 0; choice && j < choice->count; ++j) {
+      if (choice->cases[j].key == am_type) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+std::vector<std::string> protocol_names() {
+  std::vector<std::string> names;
+  for (const reflect::Protocol* protocol : reflect::protocols()) names.emplace_back(protocol->id);
+  for (const auto& [name, text] : shipped_specs()) {
+    if (!reflect::find_spec(name)) names.push_back(name);
+  }
+  return names;
+}
+
+const reflect::Protocol& protocol_of(const std::string& spec) {
+  if (spec == "list") list_specs();
+  if (const reflect::Protocol* built_in = reflect::find_protocol(spec)) return *built_in;
+  const std::vector<std::string> names = protocol_names();
+  const bool shipped = std::find(names.begin(), names.end(), spec) != names.end();
+  if (shipped || names_file(spec)) return read_spec(spec);
+  throw UsageError(
+      "--spec", fmt::format("unknown protocol '{}'{}", spec, reflect::did_you_mean(spec, names)));
+}
+
+const reflect::RouteTable* read_routes_of(const reflect::Protocol& protocol) {
+  for (const auto& [name, spec] : read_specs()) {
+    if (spec.built.protocol == &protocol) return spec.built.routes;
+  }
+  return nullptr;
+}
+
+std::string dissector_with(const std::string& file) {
+  rubricc::Model model;
+  rubricc::Diagnostics diagnostics;
+  add_requirements(model);
+  for (const auto& [name, text] : shipped_specs()) {
+    if (name != kNone) rubricc::load_shipped_spec(name, shipped_specs(), model, diagnostics);
+  }
+  rubricc::load_specs({file}, model, diagnostics, shipped_specs());
+  require_sound(model, diagnostics);
+  return rubricc::emit_lua(model).front().text;
+}
+
+OtherSpecs::OtherSpecs(const reflect::Protocol& chosen) : chosen_(chosen) {
+  said_.fill(kNone == chosen.id);
+}
+
+void OtherSpecs::look_closer(const reflect::Frame& frame) {
+  if (others_.empty()) {
+    for (const std::string& name : protocol_names()) {
+      if (name != kNone && name != chosen_.id) others_.emplace_back(protocol_of(name));
+    }
+  }
+  for (const reflect::FrameDecoder& other : others_) {
+    const std::string_view name = other.protocol().id;
+    if (!claims(other.protocol(), frame.am.type)) continue;
+    reflect::Frame tried;
+    other.decode(*frame.packet, tried);
+    if (tried.malformed() || tried.decoded.note_count() != 0) continue;
+    const std::string_view also = claims(chosen_, frame.am.type) ? "also fits" : "fits";
+    fmt::print(stderr, "rubric: AM {} {} {}: --spec {}\n", frame.am.type, also, name, name);
+    said_[frame.am.type] = true;
+  }
+}
+
+}  // namespace rubric::cli

@@ -1,0 +1,54 @@
+// The protocols that --spec names: built in, shipped as text, or a .ksy file of the user's.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "codec/reflect/frame.h"
+#include "codec/reflect/schema.h"
+
+namespace rubric::cli {
+
+/// Returns the texts of all wire specs that the program has, by id.
+const std::map<std::string, std::string_view, std::less<>>& shipped_specs();
+
+/// Returns the ids of the protocols that --spec takes by name, the built-in ones first.
+std::vector<std::string> protocol_names();
+
+/// Returns the protocol that --spec names. A name that ends in .ksy is a file, which is read now
+/// with its imports: its mistakes are printed as rubricc does, and end the subcommand. Throws
+/// UsageError with the nearest name if there is none. `list` prints the names, and ends it.
+const reflect::Protocol& protocol_of(const std::string& spec);
+
+/// Returns the routes to the messages of a protocol that was not built in; null if it was.
+const reflect::RouteTable* read_routes_of(const reflect::Protocol& protocol);
+
+/// Returns the dissector of the shipped specs and the one of this file.
+std::string dissector_with(const std::string& file);
+
+/// Says once for each AM type on stderr which other spec fits a message that the chosen one does
+/// not fit wholly.
+class OtherSpecs {
+ public:
+  explicit OtherSpecs(const reflect::Protocol& chosen);
+
+  void look(const reflect::Frame& frame) {
+    const bool fits = !frame.malformed() && frame.decoded.note_count() == 0;
+    if (fits || !frame.am.present || said_[frame.am.type]) return;
+    look_closer(frame);
+  }
+
+ private:
+  void look_closer(const reflect::Frame& frame);
+
+  const reflect::Protocol& chosen_;
+  std::vector<reflect::FrameDecoder> others_;  // Made when a first message does not fit.
+  std::array<bool, 256> said_{};
+};
+
+}  // namespace rubric::cli

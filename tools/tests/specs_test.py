@@ -1,0 +1,170 @@
+#!/usr/bin/env python3
+"""Tests `--spec`: shipped specs with their vectors, files, mistakes, and the word on other specs.
+
+Usage: specs_test.py RUBRIC; run in the project's folder.
+"""
+
+import json
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+RUBRIC = sys.argv.pop(1)
+BLINK = "00 FF FF 00 00 04 22 06 00 02 00 01"
+BEACON = "00 FF FF 00 00 01 22 06 07"
+PLAIN = """meta:
+  id: plain
+  endian: be
+types:
+  pair:
+    seq:
+      - id: a
+        type: u1
+      - id: b
+        type: u2
+"""
+
+
+def rubric(*args, stdin=""):
+    return subprocess.run([RUBRIC, *args], input=stdin, capture_output=True, text=True, check=False)
+
+
+def vectors():
+    """Returns the spec, bytes, message and fields of each vector."""
+    path = pathlib.Path("spec/vectors/run_time.jsonl")
+    return [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines()]
+
+
+class Shipped(unittest.TestCase):
+    def test_every_vector_decodes_and_encodes(self):
+        for one in vectors():
+            with self.subTest(**one):
+                done = rubric("decode", "--spec", one["spec"], "--format", "jsonl",
+                              stdin=one["hex"])
+                self.assertEqual((done.returncode, done.stderr), (0, ""))
+                frame = json.loads(done.stdout)
+                self.assertEqual((frame["message"], frame["fields"], frame["notes"]),
+                                 (one["message"], one["fields"], []))
+                again = rubric("encode", "--spec", one["spec"], "--format", "hex",
+                               stdin=done.stdout)
+                self.assertEqual(again.stdout.split(), one["hex"].upper().split(), again.stderr)
+
+    def test_every_message_has_a_vector(self):
+        listed = rubric("decode", "--spec", "list").stdout
+        names = [line.split()[0] for line in listed.splitlines()]
+        self.assertEqual(names[:2], ["oscilloscope", "rubicon"])
+        there = {(one["spec"], one["message"]) for one in vectors()}
+        for file in sorted(pathlib.Path("spec/wire/run_time").glob("*.ksy")):
+            self.assertIn(file.stem, names)
+            cases = re.search(r"cases: &messages\n((?:        .*\n)+)", file.read_text()).group(1)
+            for message in re.findall(r": (\w+)", cases):
+                self.assertIn((file.stem, message), there)
+
+    def test_generated_frames_decode_as_expected(self):
+        for spec in ("blink_to_radio", "ctp", "dissemination", "printf", "none"):
+            made = rubric("generate", "--spec", spec, "--count", "60", "--valid", "0.5",
+                          "--seed", "7", "--format", "hex")
+            said = rubric("generate", "--spec", spec, "--count", "60", "--valid", "0.5",
+                          "--seed", "7", "--format", "hex", "--expect", "/dev/stderr").stderr
+            expected = [json.loads(x)["verdict"] for x in said.splitlines() if x.startswith("{")]
+            done = rubric("decode", "--spec", spec, "--format", "jsonl", stdin=made.stdout)
+            found = ["malformed" if json.loads(x)["error"] else "valid"
+                     for x in done.stdout.splitlines()]
+            self.assertEqual(len(expected), 60)
+            self.assertEqual(found, expected, spec)
+
+
+class OtherSpecs(unittest.TestCase):
+    def said(self, line, *args, command="decode"):
+        return rubric(command, *args, stdin=line).stderr
+
+    def test_a_message_that_fits_another_spec_better_is_named_once(self):
+        hint = "rubric: AM 6 also fits blink_to_radio: --spec blink_to_radio\n"
+        self.assertEqual(self.said(f"{BLINK}\n{BLINK}\n"), hint)
+        self.assertEqual(self.said(BLINK, command="stats"), hint)
+        self.assertEqual(rubric("explain", *BLINK.split()).stderr, hint)
+        self.assertEqual(self.said(BLINK, "--spec", "ctp"), hint.replace("also ", ""))
+
+    def test_what_fits_or_fits_nothing_is_passed_over(self):
+        self.assertEqual(self.said(BLINK, "--spec", "blink_to_radio"), "")
+        self.assertEqual(self.said(BLINK, "--spec", "none"), "")
+        self.assertEqual(self.said(BEACON), "")
+        self.assertEqual(self.said(BLINK.replace("06", "FA")), "")
+
+
+class File(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def file(self, text, name="plain.ksy"):
+        path = self.folder / name
+        path.write_text(text, encoding="utf-8")
+        return str(path)
+
+    def test_a_file_decodes_like_the_built_in_spec(self):
+        for capture in sorted(pathlib.Path("spec/captures/firmware").glob("[gh]*.pcapng")):
+            for output in ("text", "jsonl", "csv"):
+                args = ["decode", str(capture), "--format", output]
+                built_in = rubric(*args)
+                read = rubric(*args, "--spec", "spec/wire/rubicon.ksy")
+                self.assertTrue(built_in.stdout)
+                self.assertEqual((read.returncode, read.stdout),
+                                 (built_in.returncode, built_in.stdout))
+
+    def test_a_spec_needs_no_rules(self):
+        mine = PLAIN.replace("    seq:", "    -requirement: WIRE-MINE\n    seq:")
+        for text in (PLAIN, mine):
+            self.assert_works(self.file(text))
+
+    def assert_works(self, file):
+        done = rubric("decode", "--spec", file, "--as", "pair", stdin="01 00 02\n01\n")
+        self.assertEqual(done.returncode, 1)
+        lines = done.stdout.splitlines()
+        self.assertIn("a=1 b=2", lines[0])
+        self.assertIn("truncated at 1", lines[1])
+        listed = rubric("messages", "--spec", file).stdout
+        self.assertIn("pair", listed)
+        self.assertIn("b", rubric("explain", "--spec", file, "pair").stdout)
+        line = rubric("encode", "--spec", file, "--as", "pair", "--carrier", "none",
+                      "--format", "hex", stdin='{"a":1,"b":2}')
+        self.assertEqual(line.stdout.split(), ["01", "00", "02"], line.stderr)
+
+    def test_imports_beside_the_file_win_over_shipped_ones(self):
+        shipped = pathlib.Path("spec/wire/run_time/blink_to_radio.ksy").read_text(encoding="utf-8")
+        file = self.file(shipped, "blink_to_radio.ksy")
+        self.assertIn("nodeid=2 counter=1", rubric("decode", "--spec", file, stdin=BLINK).stdout)
+        self.file("meta: {id: tinyos}\n", "tinyos.ksy")
+        self.assertIn(f"{file}:15:11: error: unknown type 'tinyos::am_header'; there is none here",
+                      rubric("decode", "--spec", file, stdin=BLINK).stderr)
+
+    def test_mistakes_are_shown_as_by_the_compiler(self):
+        file = self.file(PLAIN.replace("u2", "u9"))
+        done = rubric("decode", "--spec", file, stdin="")
+        self.assertEqual(done.returncode, 3)
+        self.assertEqual(done.stderr,
+                         f"{file}:10:15: error: unknown type 'u9'; did you mean 'u1'?\n"
+                         "            type: u9\n                  ^\n")
+        gone = rubric("decode", "--spec", "gone.ksy", stdin="")
+        self.assertEqual((gone.returncode, gone.stderr), (3, "gone.ksy: error: cannot be read\n"))
+        radio = self.file("meta: {id: bad}\ntypes:\n  frame:\n    -carrier: radio_t\n"
+                          "    seq: [{id: a, type: u1}]\n")
+        done = rubric("decode", "--spec", radio, stdin="")
+        self.assertIn("carrier radio_t does not end in a message", done.stderr)
+
+    def test_wireshark_gets_the_file_as_well(self):
+        file = self.file(pathlib.Path("spec/wire/run_time/blink_to_radio.ksy").read_text(
+            encoding="utf-8").replace("id: blink_to_radio\n", "id: my_blink\n"), "my_blink.ksy")
+        done = rubric("install-wireshark", "--dir", str(self.folder), "--spec", file)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        dissector = (self.folder / "plugins/rubric.lua").read_text(encoding="utf-8")
+        for name in ("rubicon", "oscilloscope", "blink_to_radio", "ctp", "my_blink"):
+            self.assertIn(f'name = "{name}"', dissector)
+
+
+if __name__ == "__main__":
+    unittest.main()
