@@ -17,7 +17,7 @@ struct CaseUse {
 };
 
 /// By file, then as they stand there; each case once for a rule and a sign.
-inline constexpr std::array<CaseUse, 1776> kCaseUses{{
+inline constexpr std::array<CaseUse, 1787> kCaseUses{{
     {"again_j.call_after_a_failure", "conformance/cases/again_j.rtr", "J8-FAIL"_rule, false},
     {"again_j.call_after_a_failure", "conformance/cases/again_j.rtr", "J1-REQUEST"_rule, false},
     {"again_j.call_after_a_failure", "conformance/cases/again_j.rtr", "J8-RETRY"_rule, false},
@@ -333,6 +333,8 @@ inline constexpr std::array<CaseUse, 1776> kCaseUses{{
     {"edges_s.data_of_another_island", "conformance/cases/edges_s.rtr", "S5-UNKNOWN"_rule, false},
     {"edges_s.a_value_too_many", "conformance/cases/edges_s.rtr", "S1-ENLARGE"_rule, false},
     {"edges_s.a_value_too_many", "conformance/cases/edges_s.rtr", "S1-READ"_rule, false},
+    {"edges_s.enlarged_after_data", "conformance/cases/edges_s.rtr", "S2-SIGNAL"_rule, false},
+    {"edges_s.enlarged_after_data", "conformance/cases/edges_s.rtr", "S1-ENLARGE"_rule, false},
     {"edges_s.a_value_too_few", "conformance/cases/edges_s.rtr", "S1-READ"_rule, false},
     {"edges_s.start_one_of_two", "conformance/cases/edges_s.rtr", "S1-START"_rule, false},
     {"edges_s.start_one_of_two", "conformance/cases/edges_s.rtr", "S6-STOPPED"_rule, true},
@@ -402,6 +404,10 @@ inline constexpr std::array<CaseUse, 1776> kCaseUses{{
     {"j3.full_list", "conformance/cases/j3_full.rtr", "J2-LISTED"_rule, true},
     {"j3.full_list", "conformance/cases/j3_full.rtr", "J3-FULL"_rule, true},
     {"j3.full_list", "conformance/cases/j3_full.rtr", "J3-OVERWRITE"_rule, true},
+    {"j3.full_list_as_stated", "conformance/cases/j3_full.rtr", "J3-REPLY"_rule, false},
+    {"j3.full_list_as_stated", "conformance/cases/j3_full.rtr", "J6-ADD"_rule, false},
+    {"j3.full_list_as_stated", "conformance/cases/j3_full.rtr", "J3-FULL"_rule, true},
+    {"j3.full_list_as_stated", "conformance/cases/j3_full.rtr", "J6-ADD"_rule, true},
     {"j4.accept", "conformance/cases/j4.rtr", "J1-REQUEST"_rule, false},
     {"j4.accept", "conformance/cases/j4.rtr", "J1-DEST"_rule, false},
     {"j4.accept", "conformance/cases/j4.rtr", "J4-ACK"_rule, false},
@@ -770,6 +776,10 @@ inline constexpr std::array<CaseUse, 1776> kCaseUses{{
      "conformance/cases/n11_base_station.rtr", "N11-NBYTES"_rule, true},
     {"n11.base_station_cut_body",
      "conformance/cases/n11_base_station.rtr", "N11-NEXT"_rule, false},
+    {"n11.base_station_cut_serial_joined",
+     "conformance/cases/n11_base_station.rtr", "N11-NBYTES"_rule, true},
+    {"n11.base_station_cut_serial_joined",
+     "conformance/cases/n11_base_station.rtr", "N11-NEXT"_rule, false},
     {"n11.base_station_cut_before_body",
      "conformance/cases/n11_base_station.rtr", "N11-NBYTES"_rule, true},
     {"n11.base_station_cut_before_body",
@@ -1049,6 +1059,8 @@ inline constexpr std::array<CaseUse, 1776> kCaseUses{{
     {"n8.announcement", "conformance/cases/n8.rtr", "T1-DELIVER"_rule, false},
     {"n8.announcement", "conformance/cases/n8.rtr", "N8-DELIVER"_rule, true},
     {"n8.announcement", "conformance/cases/n8.rtr", "T2-UNRELIABLE"_rule, true},
+    {"n8.while_it_starts", "conformance/cases/n8.rtr", "N8-DELIVER"_rule, false},
+    {"n8.while_it_starts", "conformance/cases/n8.rtr", "T2-ACK"_rule, false},
     {"n8.acked", "conformance/cases/n8.rtr", "T3-SUCCESS"_rule, false},
     {"n8.acked", "conformance/cases/n8.rtr", "N8-PEIS"_rule, false},
     {"n8.acked", "conformance/cases/n8.rtr", "T3-ONCE"_rule, true},
@@ -1829,6 +1841,7 @@ inline constexpr std::array<CaseUse, 1776> kCaseUses{{
     {"open_door", "conformance/cases/scenarios/open_door.rtr", "N6-FORWARD"_rule, false},
     {"open_door", "conformance/cases/scenarios/open_door.rtr", "N6-CONTENT"_rule, false},
     {"open_door", "conformance/cases/scenarios/open_door.rtr", "T2-ONCE"_rule, true},
+    {"open_door", "conformance/cases/scenarios/open_door.rtr", "T2-DELIVER"_rule, true},
     {"open_door", "conformance/cases/scenarios/open_door.rtr", "N6-ONCE"_rule, true},
     {"open_door", "conformance/cases/scenarios/open_door.rtr", "N7-CONTENT"_rule, true},
     {"open_door", "conformance/cases/scenarios/open_door.rtr", "T3-RESEND"_rule, true},
