@@ -249,8 +249,9 @@ class Failing(Folder):
                       "  Forbids:  b+2..99 m5 !> rA ack_join(*) [J4-SEQ]\n",
                       "of conformance/cases/j4.rtr, from tick 2 to 99 (2.0 ms to 96.7 ms)",
                       "  But:      at 2 it emitted rA ack_join(", "    > @2        m5 > rA am=5->1",
-                      "<<<\n", "  Broken: J4-SEQ\n  Suspected: J4-ACK J5-SUCCESS J5-ACCEPT\n",
-                      "  Then:     line 33 [J4-ACK]: ", "2 unexpected results."]:
+                      "<<<\n", "  Broken: J4-SEQ\n",
+                      "  Suspected: J4-ACK J4-CLOCK J5-SUCCESS J5-ACCEPT\n",
+                      "  Then:     line 33 [J4-ACK]: ", "3 unexpected results."]:
             self.assertIn(words, out)
 
     def test_missing_output_is_marked_where_it_should_be(self):

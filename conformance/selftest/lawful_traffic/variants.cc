@@ -20,6 +20,7 @@ constexpr WithoutVariant kWithout[] = {
     {136, "What a connection means to applications is not on the air."},
     {137, "All traffic has the bytes of release 1.0."},
     {138, "It makes no rule."},
+    {141, "The sizes of a node are no frames."},
 };
 
 void usual(Plan&, Random&) {}

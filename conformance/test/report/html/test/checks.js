@@ -40,7 +40,8 @@ async function search(page, go) {
   await go('#/cases');
   await page.getByLabel('Search').fill('J4-SEQ  J5-accept');
   assert.deepStrictEqual(await texts(page, '#matrix tbody th'),
-    ['edges_j.called_twice_in_vain', 'j4.wrong_seq', 'j4.wrong_seq.again']);
+    ['edges_j.ack_join_is_no_reply', 'j4.wrong_seq', 'edges_j.ack_join_is_no_reply.again',
+      'j4.wrong_seq.again']);
   await page.getByLabel('Search').fill('release 1.0 does');  // Words of a comment.
   assert.ok((await texts(page, '#matrix tbody th')).includes('j4.wrong_seq'));
   await page.getByLabel('Search').fill('there is no such case');
@@ -51,8 +52,10 @@ async function search(page, go) {
 async function compared(page, go) {
   await go('#/cases?verdict=changed');
   const names = await texts(page, '#matrix tbody th');
-  assert.deepStrictEqual(names, ['j4.wrong_seq', 'n10.mote_power_off_while_joining']);
-  assert.deepStrictEqual(await texts(page, '#matrix tbody .flag'), ['was pass', 'was pass']);
+  assert.deepStrictEqual(names, ['j4.wrong_seq', 'n10.mote_power_off_while_joining',
+    'wide.mote_reply_number']);
+  assert.deepStrictEqual(await texts(page, '#matrix tbody .flag'),
+    ['was pass', 'was pass', 'was pass']);
   await go('#/cases?text=j4.wrong_seq.again');
   assert.deepStrictEqual(await texts(page, '#matrix tbody .flag'), ['new', 'new']);
   await go('#/cases?verdict=new');
