@@ -285,7 +285,7 @@ class CheckLive(CheckTest):
         running = self.started(path, "--follow", "--format", "jsonl")
         self.grown(path, lambda: holds(running.process, path))
         code, report, err = running.report()
-        self.assertEqual((code, report["findings"], err), (3, [], ""))
+        self.assertEqual((code, report["findings"], err), (3, [], f"rubric: {path}: is empty\n"))
 
     def test_a_wish_that_comes_as_two_signals(self):
         running = self.started("-", "--follow", "--format", "jsonl", stdin=subprocess.PIPE)
