@@ -256,8 +256,17 @@ void JsonPlan::index_addresses() {
     first_address_ = std::min(first_address_, address(plan));
     last = std::max(last, address(plan));
   }
-  // The tables of a protocol are one object file's constants, so the distances are small.
-  slots_.resize((last - first_address_) / kStep + 1);
+  // The tables of a built-in protocol are one object file's constants, so the distances are small;
+  // those of a spec that is read at run time may lie anywhere.
+  constexpr std::uintptr_t kSlotsMax = 1U << 16;
+  const std::uintptr_t slots = (last - first_address_) / kStep + 1;
+  if (slots > kSlotsMax) {
+    for (std::size_t i = 0; i < plans_.size(); ++i) {
+      far_[plans_[i].field] = static_cast<std::uint16_t>(i);
+    }
+    return;
+  }
+  slots_.resize(slots);
   for (std::size_t i = 0; i < plans_.size(); ++i) {
     slots_[(address(plans_[i]) - first_address_) / kStep] = static_cast<std::uint16_t>(i);
   }

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include "codec/reflect/decode.h"
@@ -59,6 +60,7 @@ class JsonPlan {
 
   /// Returns the plan of a field of the protocol's types; no other has one.
   const FieldPlan& field(const reflect::Field* field) const {
+    if (slots_.empty()) return plans_[far_.at(field)];
     const auto slot = (reinterpret_cast<std::uintptr_t>(field) - first_address_) / kStep;
     assert(slot < slots_.size() && plans_[slots_[slot]].field == field);
     return plans_[slots_[slot]];
@@ -77,6 +79,7 @@ class JsonPlan {
   bool units_;
   std::vector<FieldPlan> plans_;
   std::vector<std::uint16_t> slots_;  ///< By distance from the first field in memory.
+  std::unordered_map<const reflect::Field*, std::uint16_t> far_;  ///< Where that is too long.
   std::uintptr_t first_address_ = 0;
   std::size_t max_member_chars_ = 0;
 };
