@@ -129,6 +129,7 @@ void SinkJoins::request(std::uint16_t mote_device, const Observation& seen, cons
         if (heard.owed == heard.owed_seq.size()) {
           std::copy(heard.owed_seq.begin() + 1, heard.owed_seq.end(), heard.owed_seq.begin());
           --heard.owed;
+          heard.owes_older = true;
         }
         heard.owed_seq[heard.owed++] = request.seq_num;
         next_.push_back(heard);
@@ -206,14 +207,19 @@ void SinkJoins::reply(std::uint16_t sink_device, const Observation& seen, const 
     if (h.unknown) {
       next.unknown = false;
       next.pending = Admission{am, reply.seq_num, {}};
+      next.owes_older = watch.asked && reply.seq_num != watch.request_seq;
       next_.push_back(next);
       continue;
     }
     const auto end = next.owed_seq.begin() + next.owed;
     const auto owed = std::find(next.owed_seq.begin(), end, reply.seq_num);
-    if (owed == end) continue;
-    std::copy(owed + 1, end, owed);
-    next.owed_seq[--next.owed] = 0;
+    if (owed != end) {
+      std::copy(owed + 1, end, owed);
+      next.owed_seq[--next.owed] = 0;
+      next.owes_older = next.owes_older && next.owed > 0;
+    } else if (!next.owes_older) {
+      continue;
+    }
     next_.push_back(next);
   }
   if (next_.empty()) {
@@ -318,6 +324,7 @@ void SinkJoins::refuse_reply(SinkWatch& sink, PairWatch& watch, const Observatio
   SinkHypothesis next = h;
   next.unknown = true;  // Its stored request is unknown now.
   next.owed = 0;
+  next.owes_older = false;
   watch.set.assign(1, next);
 }
 

@@ -25,8 +25,8 @@
 //
 // Tolerance: the response time for what is owed (decision 125). cur_time may be a second off and
 // may run in binary ms (decision 119). A sink with a full list may be silent (decision 107). Of
-// replies owed to one mote only the newest four are remembered; beyond kSetMax hypotheses the pair
-// is inconclusive.
+// replies owed to one mote only the newest four are remembered, and until these are sent any number
+// may be that of an older one; beyond kSetMax hypotheses the pair is inconclusive.
 //
 // Cannot know: what a sink stored before the capture began; which of several sinks of one address
 // sent a link ack; that a sink forgot a mote without a reboot or a new island that the run shows.
@@ -60,6 +60,7 @@ struct SinkHypothesis {
   std::optional<machine::Admission> pending;
   std::array<std::uint16_t, 4> owed_seq{};  ///< Replies, oldest first.
   std::uint8_t owed = 0;
+  bool owes_older = false;   ///< Perhaps also replies to requests before those.
   bool owes_report = false;  ///< serial_joined.
   bool owes_notice = false;  ///< moteJoined to its application.
   friend bool operator==(const SinkHypothesis&, const SinkHypothesis&) = default;

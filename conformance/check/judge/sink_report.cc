@@ -145,6 +145,13 @@ void SinkJoins::announce(SinkWatch& sink, const Place& at, machine::Address addr
     context_.findings.kept(notice ? "J6-ADD"_rule : "J6-REPORT"_rule);
   }
   keep(sink, watch, next_, at);
+  const std::size_t members = listed(sink);
+  if (members > context_.profile().members_max) {
+    context_.report("J3-FULL"_rule, Severity::kWeak, at, sink.device,
+                    {"Member " + number(members) + " of the sink is announced.",
+                     "At most " + number(context_.profile().members_max) + " members.",
+                     {}});
+  }
 }
 
 void SinkJoins::refuse_report(SinkWatch& sink, PairWatch& watch, const Place& at,

@@ -50,9 +50,6 @@ constexpr std::array kSurvivors{
     Survivor{"* tell N10-OFF send_result: seq_num", kWhileOff, kNotJudged},
     Survivor{"accept: S6-STOPPED mote channels started",
              "It keeps what comes for a stopped channel, but signals nothing: that is free."},
-    Survivor{"late_ack_takes_a_members_place",
-             "The list is as full as before, so the member that was pushed out gets no answer "
-             "either way; and a list may be longer than 20 (decision 107)."},
     Survivor{"double: send J4-ACK ack_join", kRepeats},
     Survivor{"drop: send J4-REPEAT ack_join", kRepeats},
     Survivor{"delay: tell J8-FAIL joined",
