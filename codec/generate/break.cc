@@ -117,7 +117,7 @@ class Breaker {
       });
     }
     // Bytes after the end of an inner part are stale; after that of the frame they are too many.
-    if (p.scope != 0) return false;
+    if (p.scope != 0 || draft_.bare) return false;
     return lie(measure, number, [&] { return fault(Fault::kTrailing, end, *p.field, text); });
   }
 
@@ -135,7 +135,7 @@ class Breaker {
 
   bool trailing() {
     const Type& carrier = *draft_.scopes[0].type;
-    if (carrier.field_count == 0 || size_ >= max_bytes_) return false;
+    if (carrier.field_count == 0 || size_ >= max_bytes_ || draft_.bare) return false;
     for (const Part& p : draft_.parts) {
       if (p.scope == 0 && p.open) return false;
     }

@@ -56,6 +56,7 @@ struct Draft {
   std::vector<const reflect::Type*> path;  ///< The messages from the outermost in.
   Body body;
   bool radio = false;
+  bool bare = false;  ///< The message alone: bytes after it are stale.
 
   /// Returns where a decoder of this frame stops the structure.
   std::uint32_t limit(std::uint32_t scope) const;

@@ -3,12 +3,24 @@
 #include <algorithm>
 #include <cstring>
 
+#include "codec/reflect/text_field.h"
+
 namespace rubric::reflect {
 
 namespace {
 
+__attribute__((noinline)) std::int64_t load_bits(const Field& field, const std::uint8_t* at) {
+  std::uint64_t raw = 0;
+  for (int i = 0; i < field.width_bytes; ++i) {
+    raw = raw << 8 | at[field.little_endian ? field.width_bytes - 1 - i : i];
+  }
+  raw >>= field.bit_shift;
+  return static_cast<std::int64_t>(raw & ((std::uint64_t{1} << field.bit_width) - 1));
+}
+
 // Declared here and not in a header: the decoder wants it inlined, others call load_number.
 RUBRIC_INLINE std::int64_t load(const Field& field, const std::uint8_t* at) {
+  if (field.kind == Kind::kBits) return load_bits(field, at);
   std::uint32_t raw = 0;
   if (field.width_bytes == 1) {
     raw = load_u8(at);
@@ -209,6 +221,7 @@ class Decoder {
     for (const Field* f = type.fields; good && f != fields_end; ++f) {
       if (f->condition.count && !evaluate(f->condition, from(base, limit))) continue;
       if (f->width_bytes != 0 && f->repeat == Repeat::kOnce) {
+        at -= f->kind == Kind::kBits ? f->shared_bytes() : 0;
         good = number(*f, at, limit);
       } else if (type.interpretation_count && f->kind == Kind::kBytes &&
                  interpret(type, static_cast<std::uint16_t>(f - type.fields), base, at, limit)) {
@@ -253,13 +266,30 @@ class Decoder {
       if (size < 0 || size > limit - at) return truncated(f, at, limit, size);
       end = at + static_cast<std::uint32_t>(size);
     }
+    if (f.extent == Extent::kTerminated) {
+      const std::uint8_t* const bytes = out_.bytes.data();
+      const std::uint8_t* const found = std::find(bytes + at, bytes + limit, f.text->terminator);
+      end = static_cast<std::uint32_t>(found - bytes) + (found != bytes + limit);
+      if (found == bytes + limit && !f.text->may_lack_its_end) {
+        return truncated(f, at, limit, std::int64_t{limit - at} + 1);
+      }
+    }
     if (f.repeat != Repeat::kOnce) return array(f, base, at, end);
     if (f.kind == Kind::kBytes) {
       push(NodeKind::kBytes, &f, at, end - at);
+      if (f.text) note_text(f, from(at, end), at);
       at = end;
       return true;
     }
     return nested(f, base, at, end, limit);
+  }
+
+  void note_text(const Field& f, Bytes all, std::uint32_t at) {
+    const Bytes content = text_content(f, all);
+    const std::size_t sound = sound_text(f, content);
+    if (sound == content.size()) return;
+    push_note(
+        {NoteKind::kNotText, at + static_cast<std::uint32_t>(sound), &f, nullptr, content[sound]});
   }
 
   // The available part of a field that is cut off stays visible.

@@ -45,8 +45,9 @@ void add_requirements(rubricc::Model& model) {
   }
 }
 
-void require_sound(rubricc::Model& model, rubricc::Diagnostics& diagnostics) {
-  rubricc::check_model(model, diagnostics, rubricc::CheckFor::kRunTime);
+void require_sound(rubricc::Model& model, rubricc::Diagnostics& diagnostics,
+                   rubricc::CheckFor what) {
+  rubricc::check_model(model, diagnostics, what);
   std::cerr << diagnostics.print();
   if (!diagnostics.empty()) exit_with(kExitInput);
 }
@@ -65,7 +66,7 @@ const reflect::Protocol& read_spec(const std::string& spec) {
   } else {
     rubricc::load_shipped_spec(spec, shipped_specs(), read.model, diagnostics);
   }
-  require_sound(read.model, diagnostics);
+  require_sound(read.model, diagnostics, rubricc::CheckFor::kRunTime);
   read.tables = std::make_unique<rubricc::BuiltTables>(read.model);
   read.built = read.tables->of(read.model.specs.back()->id);
   return *read.built.protocol;
@@ -125,7 +126,7 @@ std::string dissector_with(const std::string& file) {
     if (name != kNone) rubricc::load_shipped_spec(name, shipped_specs(), model, diagnostics);
   }
   rubricc::load_specs({file}, model, diagnostics, shipped_specs());
-  require_sound(model, diagnostics);
+  require_sound(model, diagnostics, rubricc::CheckFor::kDissector);
   return rubricc::emit_lua(model).front().text;
 }
 

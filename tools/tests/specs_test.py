@@ -28,6 +28,19 @@ types:
 """
 
 
+TEXTS = """meta: {id: texts, endian: be, encoding: UTF-8, file-extension: txt}
+seq:
+  - {id: version, type: b4}
+  - {id: flag, type: b1}
+  - {id: rest, type: b19}
+  - {id: name, type: str, size: 8, terminator: 0, encoding: ascii}
+  - {id: label, type: strz, -orig-id: Label}
+  - {id: opt, type: u2, if: flag}
+  - {id: kind, type: u1, if: version == 4}
+  - {id: tail, type: str, size-eos: true}
+"""
+
+
 def rubric(*args, stdin=""):
     return subprocess.run([RUBRIC, *args], input=stdin, capture_output=True, text=True, check=False)
 
@@ -133,6 +146,64 @@ class File(unittest.TestCase):
         line = rubric("encode", "--spec", file, "--as", "pair", "--carrier", "none",
                       "--format", "hex", stdin='{"a":1,"b":2}')
         self.assertEqual(line.stdout.split(), ["01", "00", "02"], line.stderr)
+
+    def test_text_and_bits_are_shown_and_written(self):
+        args = ["--spec", self.file(TEXTS, "texts.ksy"), "--as", "texts"]
+        line = "4ABCDE 6162000000000000 68C3A400 AABB 07 6869"
+        escape = "48BCDE 6162001B41000000 68FF00 1B5B 22"
+        shown = rubric("decode", *args, stdin=line).stdout
+        self.assertIn('version=4 flag=1 rest=179422 name="ab" label="hä" opt=43707 kind=7 '
+                      'tail="hi"', shown)
+        shown = rubric("decode", *args, "--filter", "name=='ab' && error", stdin=escape).stdout
+        self.assertNotIn("\x1b", shown)
+        self.assertEqual("", shown)
+        both = rubric("decode", *args, "--format", "jsonl", stdin=f"{line}\n{escape}").stdout
+        frames = [json.loads(x) for x in both.splitlines()]
+        self.assertEqual(frames[0]["fields"], {
+            "version": 4, "flag": 1, "rest": 179422, "name": "ab", "label": "hä", "opt": 43707,
+            "kind": 7, "tail": "hi"})
+        self.assertEqual(frames[1]["fields"]["name_hex"], "6162001b41000000")
+        self.assertEqual([x["note"] for x in frames[1]["notes"]], ["not_text"])
+        for frame in frames:
+            del frame["raw"]
+        made = rubric("encode", "--spec", args[1], "--format", "hex",
+                      stdin="".join(json.dumps(x) + "\n" for x in frames))
+        self.assertEqual([x.replace(" ", "") for x in made.stdout.splitlines()],
+                         [line.replace(" ", ""), escape.replace(" ", "")], made.stderr)
+        frames[1]["fields"]["name"] = "cd"
+        made = rubric("encode", "--spec", args[1], stdin=json.dumps(frames[1]))
+        self.assertIn("name_hex says", made.stderr)
+        columns = rubric("decode", *args, "--format", "csv", "--fields", "name,tail",
+                         stdin=line.replace("6869", "3D1B2C"))
+        self.assertEqual(columns.stdout.splitlines()[1], 'ab,"=\ufffd,"')
+        self.assertIn("Only if byte 0 % 16 / 8", rubric("explain", *args[:2], "texts").stdout)
+
+    def test_text_is_read_and_written_as_generated(self):
+        args = ["--spec", self.file(TEXTS, "texts.ksy")]
+        expect = self.folder / "expect"
+        made = rubric("generate", *args, "--count", "500", "--valid", "0.5", "--format", "hex",
+                      "--expect", str(expect)).stdout
+        done = rubric("decode", *args, "--as", "texts", "--format", "jsonl", stdin=made).stdout
+        wanted = [json.loads(x)["error"] for x in expect.read_text().splitlines()]
+        frames = [json.loads(x) for x in done.splitlines()]
+        self.assertEqual(len(frames), 500)
+        for error, frame in zip(wanted, frames):
+            found = frame["error"]
+            self.assertEqual(error and (error["fault"], error["offset"]),
+                             found and (found["fault"], found["offset"]))
+            del frame["raw"]
+        sound = [x for x in frames if not x["error"]]
+        self.assertGreater(len(sound), 100)
+        again = rubric("encode", *args, "--format", "hex",
+                       stdin="".join(json.dumps(x) + "\n" for x in sound)).stdout
+        bytes_of = [x for x, error in zip(made.splitlines(), wanted) if not error]
+        self.assertEqual(again.splitlines(), bytes_of)
+
+    def test_text_and_bits_are_refused_for_a_dissector(self):
+        done = rubric("install-wireshark", "--dir", str(self.folder), "--spec",
+                      self.file(TEXTS, "texts.ksy"))
+        self.assertEqual(done.returncode, 3)
+        self.assertIn("rubric --spec reads text", done.stderr)
 
     def test_imports_beside_the_file_win_over_shipped_ones(self):
         shipped = pathlib.Path("spec/wire/run_time/blink_to_radio.ksy").read_text(encoding="utf-8")

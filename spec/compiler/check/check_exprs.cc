@@ -23,6 +23,9 @@ struct Cost {
   int steps = 1;
 };
 Cost cost(const Expr& expr) {
+  if (expr.field != nullptr && expr.field->bit_width > 0) {
+    return {2, 4 * expr.field->width_bytes + 1};  // As append_bits of built_tables.cc has it.
+  }
   Cost out{0, 1};
   int held = 0;
   for (const auto& operand : expr.operands) {
@@ -177,6 +180,9 @@ class Resolver {
     expr.field = step;
     expr.offset_bytes = offset;
     expr.range = step->range;
+    if (step->bit_width == 1 && !expr.to_i && step->enumeration == nullptr) {
+      return {Shape::kBool, nullptr};
+    }
     const bool is_enum = step->enumeration != nullptr && !expr.to_i;
     return is_enum ? ExprShape{Shape::kEnum, step->enumeration} : ExprShape{Shape::kInt, nullptr};
   }

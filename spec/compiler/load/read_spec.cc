@@ -10,8 +10,9 @@ namespace rubricc {
 namespace {
 
 using Keys = std::span<const std::string_view>;
-constexpr std::array<std::string_view, 6> kMetaKeys{"id",      "title",   "endian",
-                                                    "license", "imports", "ks-version"};
+constexpr std::array<std::string_view, 12> kMetaKeys{
+    "id",         "title",    "endian",      "license",        "imports", "ks-version",
+    "bit-endian", "encoding", "application", "file-extension", "xref",    "tags"};
 constexpr std::array<std::string_view, 12> kTopKeys{
     "meta",      "doc",   "doc-ref", "seq",      "types",    "enums",
     "instances", "-name", "-size",   "-am-type", "-carrier", "-requirement"};
@@ -214,6 +215,14 @@ void read_meta(const YamlInput& input, const YAML::Node& root, const YamlMap& to
     spec.little_endian = *endian == "le";
     if (*endian != "le" && *endian != "be") {
       input.diagnostics.error(spec.places.at("endian"), "endian is " + quote(*endian),
+                              "be or le was expected");
+    }
+  }
+  spec.encoding = meta.text("encoding").value_or("");
+  if (const auto order = meta.text("bit-endian")) {
+    spec.lowest_bit_first = *order == "le";
+    if (*order != "le" && *order != "be") {
+      input.diagnostics.error(spec.places.at("bit-endian"), "bit-endian is " + quote(*order),
                               "be or le was expected");
     }
   }
