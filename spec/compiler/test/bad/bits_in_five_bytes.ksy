@@ -1,7 +1,7 @@
-# expect: 12:15: bits outside a mask; -mask: 8 or -mask: 16 was expected at the type; rubric --spec reads bits
-# expect: 13:13: the bits 'b' lie in five bytes; at most four are read as one number
-# expect: 14:15: bits outside a mask; -mask: 8 or -mask: 16 was expected at the type; rubric --spec reads bits
-# expect: 16:15: bits outside a mask; -mask: 8 or -mask: 16 was expected at the type; rubric --spec reads bits
+# expect: 13:15: bits outside a mask; -mask: 8 or -mask: 16 was expected at the type; rubric --spec reads bits
+# expect: 14:13: the bits 'b' lie in five bytes; at most four are read as one number
+# expect: 15:15: bits outside a mask; -mask: 8 or -mask: 16 was expected at the type; rubric --spec reads bits
+# expect: 17:15: bits outside a mask; -mask: 8 or -mask: 16 was expected at the type; rubric --spec reads bits
 meta:
   id: bad
   endian: be
