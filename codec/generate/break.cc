@@ -137,7 +137,7 @@ class Breaker {
     const Type& carrier = *draft_.scopes[0].type;
     if (carrier.field_count == 0 || size_ >= max_bytes_ || draft_.bare) return false;
     for (const Part& p : draft_.parts) {
-      if (p.scope == 0 && p.open) return false;
+      if (p.open && is_unbounded(p.scope)) return false;
     }
     const std::size_t bytes = 1 + random_.below(std::min<std::size_t>(max_bytes_ - size_, 12));
     for (std::size_t i = 0; i < bytes; ++i) out_.bytes.push_back(any_byte(random_));
@@ -146,6 +146,13 @@ class Breaker {
   }
 
  private:
+  // Returns whether nothing but the frame's end limits the structure.
+  bool is_unbounded(std::uint32_t scope) const {
+    while (draft_.scopes[scope].end == kNone && draft_.scopes[scope].parent != kNone) {
+      scope = draft_.scopes[scope].parent;
+    }
+    return draft_.scopes[scope].end == kNone;
+  }
   const Part& number_of(const Part& p) const { return draft_.parts[p.measure]; }
   std::string name(const Part& p) const {
     return std::string(draft_.scopes[p.scope].type->name) + "." + p.field->name;

@@ -242,7 +242,8 @@ bool FrameWriter::nested(const Field& f, const Place& place) {
   const Type* type = f.type;
   if (f.choice) {
     type = reflect::choose(*f.choice, reflect::evaluate(f.choice->key, from(place.base)));
-    if (!type) return draft_.bare && opaque(f, place);  // A route leads to a message.
+    // A route that chooses leads to a message.
+    if (!type) return route_.choice_count == 0 && opaque(f, place);
     draft_.path.push_back(type);
   }
   if (same_message(type, route_.type) && size() == route_.offset) reached_ = true;

@@ -73,7 +73,18 @@ std::string_view Diagnostics::source_from(const std::string& file, int line) con
 
 void Diagnostics::error(const Place& place, std::string what, std::string_view expected) {
   if (!expected.empty()) what.append("; ").append(expected);
-  found_.try_emplace(Key{place.file, place.line, place.column, what}, Diagnostic{place, what});
+  found_.try_emplace(Key{place.file, place.line, place.column, what},
+                     Diagnostic{place, what, false});
+}
+
+void Diagnostics::error_in_code(const Place& place, std::string what, std::string_view expected) {
+  if (!expected.empty()) what.append("; ").append(expected);
+  found_.try_emplace(Key{place.file, place.line, place.column, what},
+                     Diagnostic{place, what, true});
+}
+
+void Diagnostics::pardon_code() {
+  std::erase_if(found_, [](const auto& one) { return one.second.in_code; });
 }
 
 std::vector<Diagnostic> Diagnostics::sorted() const {

@@ -16,6 +16,7 @@ namespace rubricc {
 struct Diagnostic {
   Place place;
   std::string text;  // "what is wrong; what was expected"
+  bool in_code = false;
 };
 
 class Diagnostics {
@@ -28,6 +29,11 @@ class Diagnostics {
   /// Adds an error; `expected` may be empty. The same error at the same place is kept once: an
   /// aliased YAML node is read as often as it is used.
   void error(const Place& place, std::string what, std::string_view expected = {});
+
+  /// The same for what generated code cannot have, but tables in memory can.
+  void error_in_code(const Place& place, std::string what, std::string_view expected = {});
+  /// Forgets the errors of error_in_code.
+  void pardon_code();
 
   bool empty() const { return found_.empty(); }
   /// Returns the diagnostics by file, line and column.

@@ -287,11 +287,13 @@ class BuiltTables::Builder {
                      one.room, list(choices), few(choices), list(lengths), few(lengths)});
     }
     const auto has_carrier = [](const auto& type) { return !type->carrier.empty(); };
-    if (std::none_of(spec.types.begin(), spec.types.end(), has_carrier)) {
-      for (const auto& one : spec.types) {
-        if (one->is_mask) continue;
-        out.push_back({"bare", types_.at(one.get()), 0, one->max_size, nullptr, 0, nullptr, 0});
-      }
+    const bool bare = std::none_of(spec.types.begin(), spec.types.end(), has_carrier);
+    for (const auto& one : spec.types) {
+      // What nothing chooses comes as it is: a beacon, or all messages where there are no frames.
+      const bool link = one->carrier == "radio_beacon" || one->carrier == "radio_command";
+      if (one->is_mask || !(bare || link)) continue;
+      const char* carrier = bare ? "bare" : text(one->carrier);
+      out.push_back({carrier, types_.at(one.get()), 0, one->max_size, nullptr, 0, nullptr, 0});
     }
     return single<reflect::RouteTable>({list(out), count(out)});
   }
