@@ -107,6 +107,7 @@ class Breaker {
     const std::int64_t number = random_.chance(0.5) ? most : random_.between(least, most);
     if (!is_allowed(*measure.field, number)) return false;
     const auto end = static_cast<std::uint32_t>(p.at + number);
+    if (may_end(end)) return false;
     const std::uint32_t first = draft_.first_cut(end, part + 1, p.last_inside, {});
     const std::string text =
         name(measure) + " is " + to_string(number) + ", but " + name(p) + " has " + counted(p);
@@ -152,6 +153,9 @@ class Breaker {
       scope = draft_.scopes[scope].parent;
     }
     return draft_.scopes[scope].end == kNone;
+  }
+  bool may_end(std::uint32_t at) const {
+    return std::find(draft_.ends.begin(), draft_.ends.end(), at) != draft_.ends.end();
   }
   const Part& number_of(const Part& p) const { return draft_.parts[p.measure]; }
   std::string name(const Part& p) const {
@@ -283,6 +287,7 @@ class Breaker {
 
   bool cut_at(std::uint32_t at, const std::vector<std::uint32_t>& repaired,
               const std::string& more) {
+    if (may_end(at)) return false;
     if (at >= size_) return false;
     const auto parts = static_cast<std::uint32_t>(draft_.parts.size());
     const std::uint32_t first = draft_.first_cut(at, 0, parts, repaired);

@@ -25,6 +25,8 @@ using reflect::Op;
 using reflect::Repeat;
 using reflect::Type;
 
+constexpr std::int64_t kMostEmpty = 16;
+
 std::uint32_t index32(std::size_t n) { return static_cast<std::uint32_t>(n); }
 
 // Returns the offset of the one number that the expression is; -1 if it is more.
@@ -163,6 +165,7 @@ void FrameWriter::put(const Field& f, std::int64_t value) {
 
 bool FrameWriter::array(const Field& f, const Place& place) {
   const std::size_t width = element_bytes(f);
+  if (f.kind == Kind::kStruct && f.type->min_size != width) return varying(f, place);
   const std::uint32_t part = add_part(PartKind::kArray, f, place);
   draft_.parts[part].element_bytes = index32(width);
   std::size_t room = left(place);
@@ -197,6 +200,19 @@ bool FrameWriter::array(const Field& f, const Place& place) {
   }
   close_part(part);
   return true;
+}
+
+bool FrameWriter::varying(const Field& f, const Place& place) {
+  const bool counted = f.repeat == Repeat::kCount;
+  const std::int64_t count = counted ? reflect::evaluate(f.count, from(place.base))
+                                     : static_cast<std::int64_t>(random_.below(4));
+  for (std::int64_t i = 0; i < count; ++i) {
+    const std::size_t begin = size();
+    if (!counted) draft_.ends.push_back(index32(begin));
+    const bool good = structure(*f.type, place.scope, left(place), place.hard);
+    if (!good || (size() == begin && i > kMostEmpty)) return false;
+  }
+  return count >= 0;
 }
 
 void FrameWriter::noise(std::size_t bytes) {
@@ -243,7 +259,7 @@ bool FrameWriter::nested(const Field& f, const Place& place) {
   if (f.choice) {
     type = reflect::choose(*f.choice, reflect::evaluate(f.choice->key, from(place.base)));
     // A route that chooses leads to a message.
-    if (!type) return route_.choice_count == 0 && opaque(f, place);
+    if (!type) return route_.choice_count == 0 && (f.extent == Extent::kOwn || opaque(f, place));
     draft_.path.push_back(type);
   }
   if (same_message(type, route_.type) && size() == route_.offset) reached_ = true;

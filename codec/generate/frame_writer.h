@@ -51,6 +51,7 @@ class FrameWriter {
   bool measures_room(const Field& f, const Place& place) const;
   void put(const Field& f, std::int64_t value);
   bool array(const Field& f, const Place& place);
+  bool varying(const Field& f, const Place& place);
   bool opaque(const Field& f, const Place& place);
   void text(const Field& f, std::size_t bytes);
   bool nested(const Field& f, const Place& place);

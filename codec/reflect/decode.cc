@@ -138,6 +138,8 @@ std::size_t Decoded::child(std::size_t parent, std::string_view name) const {
   return 0;
 }
 
+constexpr std::int64_t kMostEmpty = 256;  // Elements of a list that take no byte.
+
 /// One decoding: a cursor over the tables that appends nodes.
 class Decoder {
  public:
@@ -304,6 +306,10 @@ class Decoder {
     if (f.choice) {
       const std::int64_t key = evaluate(f.choice->key, from(base, limit));
       type = choose(*f.choice, key);
+      if (!type && f.extent == Extent::kOwn) {
+        if (end > at) push_note({NoteKind::kUnknownMessage, at, &f, nullptr, key});
+        return true;
+      }
       if (!type) {
         if (more_ && base == 0 && radio_only(f, key, at, end)) return true;
         if (end > at) push_note({NoteKind::kUnknownMessage, at, &f, nullptr, key});
@@ -342,6 +348,9 @@ class Decoder {
 
   bool array(const Field& f, std::uint32_t base, std::uint32_t& at, std::uint32_t limit) {
     const std::uint32_t width = f.kind == Kind::kStruct ? f.type->max_size : f.width_bytes;
+    if (f.kind == Kind::kStruct && f.type->min_size != width) {
+      return varying(f, base, at, limit);
+    }
     std::int64_t count = 0;
     if (f.repeat == Repeat::kCount) {
       count = evaluate(f.count, from(base, limit));
@@ -364,6 +373,33 @@ class Decoder {
       good = structure(*f.type, &f, at, at + width);
     }
     nodes_[index].end = static_cast<std::uint32_t>(count_);
+    return good;
+  }
+
+  /// Decodes elements of varying size, one after the other.
+  bool varying(const Field& f, std::uint32_t base, std::uint32_t& at, std::uint32_t limit) {
+    const bool to_end = f.repeat == Repeat::kToEnd;
+    const std::int64_t count = to_end ? limit - at : evaluate(f.count, from(base, limit));
+    if (count < 0 || (!to_end && count * f.type->min_size > limit - at)) {
+      return truncated(f, at, limit, count * f.type->min_size);
+    }
+    const std::size_t index = count_;
+    push(NodeKind::kStructArray, &f, at, 0);
+    const std::uint32_t begin = at;
+    bool good = true;
+    std::uint32_t elements = 0;
+    // Elements without a byte would never come to the end.
+    for (std::int64_t i = 0; good && i < count && !(at == limit && (to_end || i > kMostEmpty));
+         ++i, ++elements) {
+      const std::size_t element = count_;
+      good = structure(*f.type, &f, at, limit);
+      at += nodes_[element].size;
+      if (to_end && nodes_[element].size == 0) break;
+    }
+    Node& node = nodes_[index];
+    node.size = at - begin;
+    node.count = elements;
+    node.end = static_cast<std::uint32_t>(count_);
     return good;
   }
 

@@ -245,9 +245,15 @@ class Encoder {
       }
       return (value ? 1 : 0) + (bytes ? 1 : 0);
     }
+    if (!value && f.choice && f.extent == Extent::kOwn && chooses_nothing(f, base)) return 0;
     if (!value) fail("is missing: expected an object", f.requirement);
     nested(f, *value, base, limit);
     return 1;
+  }
+
+  bool chooses_nothing(const Field& f, std::size_t base) {
+    require_given(f.choice->key, base);
+    return choose(*f.choice, evaluate(f.choice->key, from(base))) == nullptr;
   }
 
   [[noreturn]] void unknown_member(const Type& type, const Value& object, std::size_t base) {

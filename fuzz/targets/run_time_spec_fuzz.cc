@@ -35,8 +35,13 @@ seq:
   - {id: bytes, terminator: 10, eos-error: false}
   - {id: number, type: u2, if: flag}
   - {id: part, type: low_bits_first, if: version == 4}
+  - {id: chosen, type: {switch-on: version, cases: {1: low_bits_first, 2: items}}}
+  - {id: list, type: items, repeat: expr, repeat-expr: length % 4}
+  - {id: less, size: length - 3, if: version == 5}
   - {id: tail, type: str, size-eos: true}
 types:
+  items:
+    seq: [{id: count, type: u1}, {id: values, type: u2, repeat: expr, repeat-expr: count % 5}]
   low_bits_first:
     seq: [{id: a, type: b3}, {id: b, type: b13}, {id: c, type: b16}]
 )";
@@ -74,14 +79,32 @@ const std::vector<std::unique_ptr<Spec>>& specs() {
   return all;
 }
 
-void check_written(const Spec& spec, std::string_view line, Bytes bytes) {
-  reflect::Value value = encode::parse_json(line);
-  for (std::size_t i = 0; i < value.keys.size(); ++i) {
-    if (value.keys[i] == "raw") value.items[i] = reflect::Value();
-  }
+// Returns the line without the bytes that the last member but one repeats in hex.
+std::string without_raw(std::string_view line) {
+  const std::size_t raw = line.rfind(",\"raw\":");
+  return std::string(line.substr(0, raw)) + std::string(line.substr(line.rfind(",\"error\":")));
+}
+
+std::string_view print(Spec& spec, const reflect::Frame& frame, format::Record& record,
+                       format::Buffer& out) {
+  record.frame = &frame;
+  out = format::Buffer(64);  // Small: a writer that asks for too little room is found out.
+  spec.jsonl.print(record, out);
+  return out.view();
+}
+
+// Writes the message without its raw bytes. NaNs of any kind are written as one, so that what
+// counts is how the bytes read again.
+void check_written(Spec& spec, const reflect::Type& type, std::string_view line) {
   encode::OwnedPacket written;
-  encode::RecordReader(spec.protocol).read(value, written);  // Throws what is wrong with it.
-  require(equal(Bytes(written.bytes.data(), written.bytes.size()), bytes),
+  const std::string given = without_raw(line);
+  encode::RecordReader(spec.protocol).read(encode::parse_json(given), written);
+  const Packet packet = written.view();
+  reflect::Frame frame;
+  reflect::FrameDecoder(spec.protocol, &type).decode(packet, frame);
+  format::Record record;
+  format::Buffer out{64};
+  require(without_raw(print(spec, frame, record, out)) == given,
           "a sound message is made again from its fields");
 }
 
@@ -102,13 +125,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 
   format::Record record;
   record.frame = &frame;
-  format::Buffer out{64};  // Small: a writer that asks for too little room is found out.
+  format::Buffer out{64};
   spec.text.print(record, out);
   fuzz::check_text(out.view(), false);
-  out = format::Buffer(64);
-  spec.jsonl.print(record, out);
-  fuzz::check_json(out.view(), record);
+  const std::string line(print(spec, frame, record, out));
+  fuzz::check_json(line, record);
   const bool all_stale = frame.decoded.stale_count() < reflect::Decoded::kMaxStale;
-  if (!frame.malformed() && all_stale) check_written(spec, out.view(), packet.bytes);
+  if (!frame.malformed() && all_stale) check_written(spec, type, line);
   return 0;
 }

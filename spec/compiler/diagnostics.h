@@ -35,6 +35,11 @@ class Diagnostics {
   /// Forgets the errors of error_in_code.
   void pardon_code();
 
+  /// Keeps something that is accepted, but worth to be known.
+  void note(const Place& place, std::string what);
+  /// Returns the notes as print() does errors.
+  std::string print_notes() const;
+
   bool empty() const { return found_.empty(); }
   /// Returns the diagnostics by file, line and column.
   std::vector<Diagnostic> sorted() const;
@@ -48,7 +53,10 @@ class Diagnostics {
     std::vector<std::size_t> lines;  // Begins of lines.
   };
   std::map<std::string, Source> sources_;
+  std::string print(const std::map<Key, Diagnostic>& list, std::string_view kind) const;
+
   std::map<Key, Diagnostic> found_;
+  std::map<Key, Diagnostic> notes_;
 };
 
 /// Returns the text of a file; nothing, after an error, if it cannot be read.

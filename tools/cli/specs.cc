@@ -49,7 +49,7 @@ void add_requirements(rubricc::Model& model) {
 void require_sound(rubricc::Model& model, rubricc::Diagnostics& diagnostics,
                    rubricc::CheckFor what) {
   rubricc::check_model(model, diagnostics, what);
-  std::cerr << diagnostics.print();
+  std::cerr << diagnostics.print_notes() << diagnostics.print();
   if (!diagnostics.empty()) exit_with(kExitInput);
 }
 

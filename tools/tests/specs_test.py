@@ -39,6 +39,23 @@ seq:
   - {id: kind, type: u1, if: version == 4}
   - {id: tail, type: str, size-eos: true}
 """
+UNPROVED = """meta: {id: unproved, endian: be}
+seq:
+  - {id: length, type: u1}
+  - {id: kind, type: u1}
+  - {id: body, size: length - 2}
+  - {id: chosen, type: {switch-on: kind, cases: {1: pair, 2: list}}}
+  - {id: lists, type: list, repeat: eos}
+types:
+  pair:
+    seq: [{id: default, type: u1, enum: color}, {id: empty, type: nothing}]
+    types:
+      nothing: {}
+    enums:
+      color: {1: red}
+  list:
+    seq: [{id: count, type: u1}, {id: values, type: u2, repeat: expr, repeat-expr: count}]
+"""
 
 
 def rubric(*args, stdin=""):
@@ -229,6 +246,40 @@ class File(unittest.TestCase):
                        stdin="".join(json.dumps(x) + "\n" for x in sound)).stdout
         bytes_of = [x for x, error in zip(made.splitlines(), wanted) if not error]
         self.assertEqual(again.splitlines(), bytes_of)
+
+    def test_what_cannot_be_proved_is_noted_and_checked(self):
+        file = self.file(UNPROVED, "unproved.ksy")
+        lines = "04 01 AABB 01 02 0001 0002 00\n03 02 AA 01 0007\n02 09\n01 01 05\n09 01 05\n"
+        done = rubric("decode", "--spec", file, "--as", "unproved", "--format", "jsonl",
+                      stdin=lines)
+        self.assertIn(f"{file}:5:29: note: the size 'length - 2' can be negative; each frame is "
+                      "checked\n", done.stderr)
+        self.assertNotIn("error", done.stderr)
+        frames = [json.loads(x) for x in done.stdout.splitlines()]
+        self.assertEqual(frames[0]["fields"], {
+            "length": 4, "kind": 1, "body": "aabb",
+            "chosen": {"default": 1, "default_name": "red", "empty": {}},
+            "lists": [{"count": 2, "values": [1, 2]}, {"count": 0, "values": []}]})
+        self.assertEqual(frames[1]["fields"]["chosen"], {"count": 1, "values": [7]})
+        self.assertEqual(frames[2]["fields"], {"length": 2, "kind": 9, "body": "", "lists": []})
+        self.assertEqual([x["error"] and (x["error"]["fault"], x["error"]["offset"])
+                          for x in frames], [None, None, None, ("truncated", 3), ("truncated", 3)])
+        for frame in frames:
+            del frame["raw"]
+        again = rubric("encode", "--spec", file, "--format", "hex",
+                       stdin="".join(json.dumps(x) + "\n" for x in frames[:3]))
+        self.assertEqual([x.replace(" ", "") for x in again.stdout.splitlines()],
+                         [x.replace(" ", "") for x in lines.splitlines()[:3]], again.stderr)
+        made = rubric("generate", "--spec", file, "--message", "unproved", "--count", "200",
+                      "--format", "hex", "--expect", str(self.folder / "expect")).stdout
+        done = rubric("decode", "--spec", file, "--as", "unproved", "--format", "jsonl", stdin=made)
+        wanted = [json.loads(x)["verdict"] for x in
+                  (self.folder / "expect").read_text().splitlines()]
+        found = ["malformed" if json.loads(x)["error"] else "valid"
+                 for x in done.stdout.splitlines()]
+        self.assertEqual(found, wanted)
+        refused = rubric("install-wireshark", "--dir", str(self.folder), "--spec", file)
+        self.assertIn("5:29: error: the size 'length - 2' can be negative", refused.stderr)
 
     def test_text_and_bits_are_refused_for_a_dissector(self):
         done = rubric("install-wireshark", "--dir", str(self.folder), "--spec",

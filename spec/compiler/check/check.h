@@ -28,6 +28,20 @@ struct Check {
   void error(const Place& place, std::string what, std::string_view expected = {}) {
     diagnostics.error(place, std::move(what), expected);
   }
+  /// Reports what cannot be shown to be right: for tables in memory a note, as reading them checks
+  /// it. Returns whether that is the case.
+  bool unproved(const Place& place, std::string what, std::string_view expected) {
+    if (at_run_time) {
+      diagnostics.note(place, std::move(what) + "; each frame is checked");
+    } else {
+      error(place, std::move(what), expected);
+    }
+    return at_run_time;
+  }
+  /// Reports what tables in memory can hold, and nothing else.
+  void error_elsewhere(const Place& place, std::string what, std::string_view expected = {}) {
+    if (!at_run_time) error(place, std::move(what), expected);
+  }
   bool is_open(const void* thing) const { return open.contains(thing); }
 };
 

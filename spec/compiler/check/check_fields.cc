@@ -48,9 +48,10 @@ void check_extent(Check& check, Field& field) {
     check.open.insert(&field);
   }
   if (field.choice && !sized) {
-    check.error(field.choice->place, fmt::format("the switch of {} has no size", quote(field.id)),
-                "size or size-eos bounds the bytes of an unknown case");
-    check.open.insert(&field);
+    check.error_elsewhere(field.choice->place,
+                          fmt::format("the switch of {} has no size", quote(field.id)),
+                          "size or size-eos bounds the bytes of an unknown case");
+    if (!check.at_run_time) check.open.insert(&field);
   }
 }
 

@@ -127,16 +127,17 @@ class Layout {
       return false;
     }
     if (expr->range.min < 0) {
-      check_.error(expr->place,
-                   fmt::format("the {} {} can be negative", what, quote(to_text(*expr))),
-                   fmt::format("it is {} to {}; 'valid' can narrow what it is made of",
-                               expr->range.min, expr->range.max));
-      return false;
+      expr->range.max = std::max<std::int64_t>(expr->range.max, 0);
+      return check_.unproved(expr->place,
+                             fmt::format("the {} {} can be negative", what, quote(to_text(*expr))),
+                             fmt::format("it is {} to {}; 'valid' can narrow what it is made of",
+                                         expr->range.min, expr->range.max));
     }
     if (expr->range.max == 0) {
-      check_.error(expr->place, fmt::format("the {} {} is always 0", what, quote(to_text(*expr))),
-                   "a field has bytes");
-      return false;
+      check_.error_elsewhere(expr->place,
+                             fmt::format("the {} {} is always 0", what, quote(to_text(*expr))),
+                             "a field has bytes");
+      return check_.at_run_time;
     }
     return true;
   }
@@ -144,9 +145,9 @@ class Layout {
   void check_last(const Field& field, std::size_t index) {
     if (last(index)) return;
     if (field.extent == ExtentKind::kToEnd || field.repeat == RepeatKind::kToEnd) {
-      check_.error(field.place,
-                   fmt::format("field {} takes all bytes but is not the last", quote(field.id)),
-                   "nothing can follow it");
+      check_.error_elsewhere(
+          field.place, fmt::format("field {} takes all bytes but is not the last", quote(field.id)),
+          "nothing can follow it");
     }
   }
 
@@ -173,9 +174,10 @@ class Layout {
     const bool varies = size.min != size.max;
     if (field.kind == ValueKind::kStruct && varies && field.extent == ExtentKind::kOwn &&
         (field.repeat != RepeatKind::kOnce || !last(index))) {
-      check_.error(field.place, fmt::format("structure {} varies in size", quote(field.id)),
-                   "only the last field can, or one with a size");
-      is_open_ = true;
+      check_.error_elsewhere(field.place,
+                             fmt::format("structure {} varies in size", quote(field.id)),
+                             "only the last field can, or one with a size");
+      is_open_ |= !check_.at_run_time;
     }
     if (field.extent == ExtentKind::kSize) size = sized(field, size);
     if (field.extent == ExtentKind::kToEnd) size.max = kUnbounded;
@@ -183,7 +185,8 @@ class Layout {
       size = {field.text->may_lack_its_end ? 0U : 1U, kUnbounded};
     }
     if (field.repeat == RepeatKind::kCount) {
-      const Interval count = field.count->range;
+      const Interval count{std::max<std::int64_t>(field.count->range.min, 0),
+                           field.count->range.max};
       size = {times(size.min, count.min), times(size.max, count.max)};
     }
     if (field.repeat == RepeatKind::kToEnd) size = {0, kUnbounded};
@@ -197,7 +200,7 @@ class Layout {
   }
 
   Size sized(const Field& field, Size inner) {
-    const Interval range = field.size->range;
+    const Interval range{std::max<std::int64_t>(field.size->range.min, 0), field.size->range.max};
     const Size out{std::max(bounded(static_cast<std::uint64_t>(range.min)), inner.min),
                    bounded(static_cast<std::uint64_t>(range.max))};
     if (field.kind == ValueKind::kStruct && inner.min > out.max) {

@@ -83,7 +83,8 @@ std::string longest_constant_part(const std::string& format) {
 
 std::vector<std::string> texts_in(const std::string& source) {
   std::vector<std::string> out;
-  for (const std::string call : {"error(", "error_in_code(", "fail("}) {
+  for (const std::string call :
+       {"error(", "error_in_code(", "error_elsewhere(", "unproved(", "fail("}) {
     for (std::size_t at = source.find(call); at != source.npos; at = source.find(call, at + 1)) {
       const char before = at == 0 ? ' ' : source[at - 1];
       if (std::isalnum(static_cast<unsigned char>(before)) != 0 || before == '_') continue;
