@@ -57,6 +57,7 @@ struct Expr {
   std::int64_t value = 0;         // kInt; kEnumValue once resolved.
   std::vector<std::string> path;  // kField: {"src", "devid"}; kEnumValue: {"pid", "local"}.
   bool to_i = false;              // `.to_i`: an enum's number.
+  bool is_bool = false;           // kInt: true or false.
   std::vector<std::unique_ptr<Expr>> operands;
   // Resolved by the checker:
   const Field* field = nullptr;     // kField: the last field of the path.

@@ -61,7 +61,9 @@ class Resolver {
   }
 
  private:
-  ExprShape number(Expr& expr) { return constant(expr, {Shape::kInt, nullptr}); }
+  ExprShape number(Expr& expr) {
+    return constant(expr, {expr.is_bool ? Shape::kBool : Shape::kInt, nullptr});
+  }
 
   ExprShape constant(Expr& expr, ExprShape shape) {
     if (!scope_.wide && (expr.value < kConstants.min || expr.value > kConstants.max)) {
@@ -212,7 +214,9 @@ class Resolver {
     if (left.shape == Shape::kOpen || right.shape == Shape::kOpen) return open();
     const bool ordered = expr.op != ExprOp::kEq && expr.op != ExprOp::kNe;
     const bool same = left.shape == right.shape && left.enumeration == right.enumeration;
-    if (!same || left.shape == Shape::kBool || (ordered && left.shape == Shape::kEnum)) {
+    const bool told = expr.operands[0]->is_bool || expr.operands[1]->is_bool;
+    const bool conditions = left.shape == Shape::kBool && (ordered || !told);
+    if (!same || conditions || (ordered && left.shape == Shape::kEnum)) {
       check_.error(expr.place,
                    fmt::format("{} and {} cannot be compared", quote(to_text(*expr.operands[0])),
                                quote(to_text(*expr.operands[1]))),
@@ -268,6 +272,7 @@ std::optional<std::int64_t> resolve_constant(Check& check, Expr& expr, std::stri
                                              const Enum* enumeration, const Scope& scope) {
   const ExprShape found = resolve_expr(check, expr, {scope.type, 0, false, true});
   if (found.shape == Shape::kOpen) return std::nullopt;
+  if (expr.is_bool && enumeration == nullptr) return expr.value;
   const Shape wanted = enumeration == nullptr ? Shape::kInt : Shape::kEnum;
   if (found.shape == wanted && found.enumeration == enumeration) return expr.range.min;
   check.error(expr.place, fmt::format("{} does not fit {}", quote(to_text(expr)), quote(what)),

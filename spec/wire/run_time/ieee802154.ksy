@@ -76,18 +76,18 @@ types:
         doc: Kind of the frame.
       - id: security
         type: b1
-        valid: 0
+        valid: false
         doc: Whether the rest is secured; such frames stay opaque.
       - id: pending
         type: b1
         doc: The sender has more for the receiver.
       - id: ack_request
         type: b1
-        valid: 0
+        valid: false
         doc: Asks for a link ack.
       - id: one_pan
         type: b1
-        valid: 0
+        valid: false
         doc: The source's PAN is left out, as it is the receiver's.
       - id: reserved
         type: b3
@@ -98,11 +98,13 @@ types:
         doc: Address of the receiver, 0 none, 2 short, 3 extended.
       - id: version
         type: b2
-        valid: {max: 1}
+        valid:
+          max: 1
         doc: 0 for 2003, 1 for 2006.
       - id: src_mode
         type: b2
-        valid: {any-of: [2, 3]}
+        valid:
+          any-of: [2, 3]
         doc: Address of the sender, 0 none, 2 short, 3 extended.
       - id: bsn
         type: u1
@@ -234,7 +236,7 @@ types:
         doc: Kind of the frame.
       - id: security
         type: b1
-        valid: 0
+        valid: false
         doc: Whether the rest is secured; such frames stay opaque.
       - id: pending
         type: b1
@@ -250,15 +252,18 @@ types:
         doc: Nothing yet.
       - id: dest_mode
         type: b2
-        valid: {any-of: [0, 2, 3]}
+        valid:
+          any-of: [0, 2, 3]
         doc: Address of the receiver, 0 none, 2 short, 3 extended.
       - id: version
         type: b2
-        valid: {max: 1}
+        valid:
+          max: 1
         doc: 0 for 2003, 1 for 2006.
       - id: src_mode
         type: b2
-        valid: {any-of: [0, 2, 3]}
+        valid:
+          any-of: [0, 2, 3]
         doc: Address of the sender, 0 none, 2 short, 3 extended.
       - id: dsn
         type: u1
