@@ -20,7 +20,6 @@ __attribute__((noinline)) std::int64_t load_bits(const Field& field, const std::
 
 // Declared here and not in a header: the decoder wants it inlined, others call load_number.
 RUBRIC_INLINE std::int64_t load(const Field& field, const std::uint8_t* at) {
-  if (field.kind == Kind::kBits) return load_bits(field, at);
   std::uint32_t raw = 0;
   if (field.width_bytes == 1) {
     raw = load_u8(at);
@@ -36,7 +35,9 @@ RUBRIC_INLINE std::int64_t load(const Field& field, const std::uint8_t* at) {
 
 }  // namespace
 
-std::int64_t load_number(const Field& field, const std::uint8_t* at) { return load(field, at); }
+std::int64_t load_number(const Field& field, const std::uint8_t* at) {
+  return field.kind == Kind::kBits ? load_bits(field, at) : load(field, at);
+}
 
 namespace {
 
@@ -223,8 +224,8 @@ class Decoder {
     for (const Field* f = type.fields; good && f != fields_end; ++f) {
       if (f->condition.count && !evaluate(f->condition, from(base, limit))) continue;
       if (f->width_bytes != 0 && f->repeat == Repeat::kOnce) {
-        at -= f->kind == Kind::kBits ? f->shared_bytes() : 0;
-        good = number(*f, at, limit);
+        good = __builtin_expect(f->kind == Kind::kBits, 0) ? bits(*f, at, limit)
+                                                           : number(*f, at, limit);
       } else if (type.interpretation_count && f->kind == Kind::kBytes &&
                  interpret(type, static_cast<std::uint16_t>(f - type.fields), base, at, limit)) {
         at = limit;
@@ -240,13 +241,24 @@ class Decoder {
 
   RUBRIC_INLINE bool number(const Field& f, std::uint32_t& at, std::uint32_t limit) {
     if (limit - at < f.width_bytes) return set_error(Fault::kTruncated, limit, f, f.width_bytes);
-    const std::int64_t value = load(f, out_.bytes.data() + at);
+    return number(f, load(f, out_.bytes.data() + at), at);
+  }
+
+  RUBRIC_INLINE bool number(const Field& f, std::int64_t value, std::uint32_t& at) {
     if (f.valid.kind != ValidKind::kAny && !valid(f, value, at)) return false;
     push(NodeKind::kNumber, &f, at, f.width_bytes).value = value;
     if (f.expect >= 0 && value != f.expect) {
       push_note({NoteKind::kUnexpectedValue, at, &f, nullptr, value});
     }
     at += f.width_bytes;
+    return true;
+  }
+
+  __attribute__((noinline)) bool bits(const Field& f, std::uint32_t& at, std::uint32_t limit) {
+    std::uint32_t begin = at - f.shared_bytes();
+    if (limit - begin < f.width_bytes) return set_error(Fault::kTruncated, limit, f, f.width_bytes);
+    if (!number(f, load_bits(f, out_.bytes.data() + begin), begin)) return false;
+    at = begin;
     return true;
   }
 
@@ -268,30 +280,35 @@ class Decoder {
       if (size < 0 || size > limit - at) return truncated(f, at, limit, size);
       end = at + static_cast<std::uint32_t>(size);
     }
-    if (f.extent == Extent::kTerminated) {
-      const std::uint8_t* const bytes = out_.bytes.data();
-      const std::uint8_t* const found = std::find(bytes + at, bytes + limit, f.text->terminator);
-      end = static_cast<std::uint32_t>(found - bytes) + (found != bytes + limit);
-      if (found == bytes + limit && !f.text->may_lack_its_end) {
-        return truncated(f, at, limit, std::int64_t{limit - at} + 1);
-      }
-    }
+    if (__builtin_expect(f.text != nullptr, 0)) return text(f, at, end);
     if (f.repeat != Repeat::kOnce) return array(f, base, at, end);
     if (f.kind == Kind::kBytes) {
       push(NodeKind::kBytes, &f, at, end - at);
-      if (f.text) note_text(f, from(at, end), at);
       at = end;
       return true;
     }
     return nested(f, base, at, end, limit);
   }
 
-  void note_text(const Field& f, Bytes all, std::uint32_t at) {
-    const Bytes content = text_content(f, all);
+  /// Decodes bytes with characters or a terminator, which lie before `end`.
+  __attribute__((noinline)) bool text(const Field& f, std::uint32_t& at, std::uint32_t end) {
+    if (f.extent == Extent::kTerminated) {
+      const std::uint8_t* const bytes = out_.bytes.data();
+      const std::uint8_t* const found = std::find(bytes + at, bytes + end, f.text->terminator);
+      if (found == bytes + end && !f.text->may_lack_its_end) {
+        return truncated(f, at, end, std::int64_t{end - at} + 1);
+      }
+      end = static_cast<std::uint32_t>(found - bytes) + (found != bytes + end);
+    }
+    push(NodeKind::kBytes, &f, at, end - at);
+    const Bytes content = text_content(f, from(at, end));
     const std::size_t sound = sound_text(f, content);
-    if (sound == content.size()) return;
-    push_note(
-        {NoteKind::kNotText, at + static_cast<std::uint32_t>(sound), &f, nullptr, content[sound]});
+    if (sound != content.size()) {
+      push_note({NoteKind::kNotText, at + static_cast<std::uint32_t>(sound), &f, nullptr,
+                 content[sound]});
+    }
+    at = end;
+    return true;
   }
 
   // The available part of a field that is cut off stays visible.
