@@ -46,6 +46,8 @@ seq:
   - {id: body, size: length - 2}
   - {id: chosen, type: {switch-on: kind, cases: {1: pair, 2: list}}}
   - {id: lists, type: list, repeat: eos}
+instances:
+  twice: {value: length * 2}
 types:
   pair:
     seq: [{id: default, type: u1, enum: color}, {id: empty, type: nothing}]
@@ -254,6 +256,7 @@ class File(unittest.TestCase):
                       stdin=lines)
         self.assertIn(f"{file}:5:29: note: the size 'length - 2' can be negative; each frame is "
                       "checked\n", done.stderr)
+        self.assertIn("note: instance 'twice' is computed; it is not shown\n", done.stderr)
         self.assertNotIn("error", done.stderr)
         frames = [json.loads(x) for x in done.stdout.splitlines()]
         self.assertEqual(frames[0]["fields"], {

@@ -309,6 +309,17 @@ void read_docs(const YamlMap& map, Field& field) {
 
 }  // namespace
 
+bool is_computed(const YAML::Node& instance) {
+  if (!instance.IsMap()) return false;
+  for (const auto& pair : instance) {
+    if (!pair.first.IsScalar()) continue;
+    const std::string& key = pair.first.Scalar();
+    if (key == "value" || key == "io" || key == "size" || key == "repeat") return true;
+    if (key == "pos" && pair.second.IsScalar() && !parse_integer(pair.second.Scalar())) return true;
+  }
+  return false;
+}
+
 ExprPtr read_expr(const YamlInput& input, const YAML::Node& node, std::string_view what) {
   const auto text = yaml_text(input, node, what);
   if (!text) return nullptr;

@@ -104,6 +104,13 @@ void read_fields(const YamlInput& input, const YamlMap& map, const Spec& spec, T
   if (const YamlEntry* instances = map.find("instances")) {
     const YamlMap named(input, instances->value, "instances", Keys{});
     for (const YamlEntry& entry : named.entries()) {
+      if (is_computed(entry.value)) {
+        const Place place = input.place(entry.key_node);
+        const std::string what = fmt::format("instance {} is computed", quote(entry.key));
+        input.diagnostics.error_in_code(place, what, "a number or a type at pos was expected");
+        input.diagnostics.note(place, what + "; it is not shown");
+        continue;
+      }
       if (auto field = read_field(input, entry.value, FieldPlace::kInstance, spec, &entry)) {
         type.instances.push_back(std::move(field));
       }

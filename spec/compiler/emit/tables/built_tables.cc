@@ -258,7 +258,7 @@ class BuiltTables::Builder {
     std::vector<reflect::Interpretation> interpretations;
     for (const auto& each : one.fields) fields.push_back(field(*each));
     for (const auto& each : one.instances) {
-      if (each->is_peek) continue;
+      if (each->is_peek || each->overlays < 0) continue;
       interpretations.push_back({field(*each), static_cast<std::uint16_t>(each->overlays)});
     }
     const std::int64_t am_type = one.am_types.empty() ? -1 : one.am_types.front();
