@@ -126,8 +126,9 @@ class Encoder {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& problem, ReqId requirement) const {
-    throw EncodeError(path_, problem, requirement);
+  [[noreturn]] void fail(const std::string& problem, ReqId requirement,
+                         std::int64_t missing_bytes = 0) const {
+    throw EncodeError(path_, problem, requirement, missing_bytes);
   }
 
   Bytes from(std::size_t base) const { return Bytes(out_.data() + base, out_.size() - base); }
@@ -152,11 +153,14 @@ class Encoder {
     Measure* measure = measures_.of(expr, base);
     if (measure && measure->missing) return fill_in(*measure, expr, base, actual, what);
     const std::int64_t given = evaluate(expr, from(base));
-    if (given == static_cast<std::int64_t>(actual)) return;
+    const std::int64_t missing = given - static_cast<std::int64_t>(actual);
+    if (missing == 0) return;
     const std::string problem = "expected " + to_string(actual) + ", given " + to_string(given) +
                                 ": " + path_ + " has " + what;
-    if (!measure) fail("expected " + to_string(given) + ", given " + what, measured.requirement);
-    throw EncodeError(measure->path, problem, measured.requirement);
+    if (!measure) {
+      fail("expected " + to_string(given) + ", given " + what, measured.requirement, missing);
+    }
+    throw EncodeError(measure->path, problem, measured.requirement, missing);
   }
 
   void fill_in(Measure& measure, const Expr& expr, std::size_t base, std::size_t actual,
@@ -438,7 +442,8 @@ class Encoder {
     }
     if (f.extent == Extent::kSize) return settle(f.size, base, size, what, f);
     if (end && out_.size() != *end) {
-      fail("expected " + bytes_text(*end - std::min(at, *end)) + ", given " + what, f.requirement);
+      fail("expected " + bytes_text(*end - std::min(at, *end)) + ", given " + what, f.requirement,
+           static_cast<std::int64_t>(*end) - static_cast<std::int64_t>(out_.size()));
     }
   }
 

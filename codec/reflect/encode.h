@@ -19,11 +19,13 @@ namespace rubric::reflect {
 /// library does not hold the rules' texts.
 class EncodeError : public std::runtime_error {
  public:
-  EncodeError(std::string path, std::string problem, ReqId requirement)
+  EncodeError(std::string path, std::string problem, ReqId requirement,
+              std::int64_t missing_bytes = 0)
       : std::runtime_error(path + ": " + problem),
         path_(std::move(path)),
         problem_(std::move(problem)),
-        requirement_(requirement) {}
+        requirement_(requirement),
+        missing_bytes_(missing_bytes) {}
 
   /// Returns the field: "payload.updates[3].value"; empty for the outermost structure.
   const std::string& path() const { return path_; }
@@ -31,11 +33,14 @@ class EncodeError : public std::runtime_error {
   const std::string& problem() const { return problem_; }
   /// Returns the broken rule; ReqId::kNone if none is broken.
   ReqId requirement() const { return requirement_; }
+  /// Returns how many bytes a given size counts that no field is; at most 0 for other problems.
+  std::int64_t missing_bytes() const { return missing_bytes_; }
 
  private:
   std::string path_;
   std::string problem_;
   ReqId requirement_;
+  std::int64_t missing_bytes_;
 };
 
 /// Appends `fields`, an object, as `type` to `out`.

@@ -222,19 +222,28 @@ std::vector<std::uint8_t> encode_tree(const Message& message, const reflect::Typ
   std::vector<std::uint8_t> payload;
   std::optional<reflect::EncodeError> first;
   const std::vector<std::uint8_t> left_over(left_over_max(message), 0xA5);
-  for (std::size_t stale = 0; stale <= left_over.size(); ++stale) {
+  // Returns how many bytes the content lacks of those that nbytes counts: 0 if it is whole.
+  const auto missing_bytes = [&](const Tree& tried, std::size_t stale) -> std::int64_t {
+    payload.clear();
+    try {
+      reflect::encode(type, tried, Bytes(left_over.data(), stale),
+                      stale > 0 ? reflect::Tail::kFault : reflect::Tail::kStale, payload);
+      return 0;
+    } catch (const reflect::EncodeError& error) {
+      if (!first) first = error;
+      return error.missing_bytes() > 0 ? error.missing_bytes() : -1;
+    }
+  };
+  for (const bool padded : {false, true}) {
+    if (padded && left_over.empty()) break;
     Choices choices;
     for (int attempt = 0; attempt < kAttemptsMax; ++attempt) {
       Tree tried = tree;
       if (message.open) fill(type, tried, choices);
-      payload.clear();
-      try {
-        reflect::encode(type, tried, Bytes(left_over.data(), stale),
-                        stale > 0 ? reflect::Tail::kFault : reflect::Tail::kStale, payload);
-        return payload;
-      } catch (const reflect::EncodeError& error) {
-        if (!first) first = error;
-      }
+      const std::int64_t missing = missing_bytes(tried, 0);
+      if (missing == 0) return payload;
+      const auto stale = static_cast<std::size_t>(missing);
+      if (padded && stale <= left_over.size() && missing_bytes(tried, stale) == 0) return payload;
       if (!choices.next()) break;
     }
   }

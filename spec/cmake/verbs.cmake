@@ -64,6 +64,21 @@ function(rubric_program name)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
 endfunction()
 
+# rubric_embed_files(OUTPUT [STEMS] FROM place HEADER h NAMESPACE n TYPE t FUNCTION f FILES ...):
+# OUTPUT in the build folder defines n::f(), which h declares: a constant t of the name and content
+# of each file. Paths and names are the project's; with STEMS a name is that of the file alone.
+function(rubric_embed_files output)
+  cmake_parse_arguments(arg "STEMS" "FROM;HEADER;NAMESPACE;TYPE;FUNCTION" "FILES" ${ARGN})
+  list(TRANSFORM arg_FILES PREPEND ${PROJECT_SOURCE_DIR}/ OUTPUT_VARIABLE paths)
+  list(JOIN arg_FILES " " files)
+  set(script ${PROJECT_SOURCE_DIR}/spec/cmake/embed_files.cmake)
+  add_custom_command(OUTPUT ${output}
+    COMMAND ${CMAKE_COMMAND} -DROOT=${PROJECT_SOURCE_DIR} "-DFILES=${files}" -DSTEMS=${arg_STEMS}
+      -DFROM=${arg_FROM} -DHEADER=${arg_HEADER} -DNAMESPACE=${arg_NAMESPACE} "-DTYPE=${arg_TYPE}"
+      -DFUNCTION=${arg_FUNCTION} -DOUT=${CMAKE_CURRENT_BINARY_DIR}/${output} -P ${script}
+    DEPENDS ${paths} ${script} VERBATIM)
+endfunction()
+
 # What all tests include, compiled once.
 if(RUBRIC_TESTS)
   # A program, as precompiled headers fit code of their own kind alone.

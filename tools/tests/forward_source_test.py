@@ -16,7 +16,7 @@ import unittest
 
 from forward_testing import (RUBRIC, SANITIZED, Client, Mote, Running, ended, from_mote, packet,
                              serving)
-from serial_testing import PATIENCE_S, hdlc
+from serial_testing import PATIENCE_S, hdlc, held_port
 
 
 class Sources(unittest.TestCase):
@@ -128,11 +128,8 @@ class Sources(unittest.TestCase):
 
     def test_a_forwarder_of_itself(self):
         for more in ([], ["--bind", "0.0.0.0"]):
-            with socket.socket() as holder:  # Bound, so that nobody else gets the port.
-                holder.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-                holder.bind(("127.0.0.1", 0))
-                port = str(holder.getsockname()[1])
-                done = ended(f"sf@127.0.0.1:{port}", "--port", port, *more)
+            with held_port() as port:
+                done = ended(f"sf@127.0.0.1:{port}", "--port", str(port), *more)
             self.assertEqual(done.returncode, 3)
             self.assertIn("this is where this forwarder itself listens", done.stderr)
 

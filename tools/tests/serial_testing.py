@@ -1,14 +1,25 @@
-"""Helpers of the tests of serial lines: frames, the far end of a line, and patience."""
+"""Helpers of the tests of serial lines: frames, the far end of a line, ports, and patience."""
 
+import contextlib
 import os
 import pathlib
 import pty
 import select
+import socket
 import time
 import tty
 
 PATIENCE_S = 60
 ACK, PACKET_ACK, PACKET_NOACK, UNKNOWN = 0x43, 0x44, 0x45, 0xff
+
+
+@contextlib.contextmanager
+def held_port():
+    """A port of ours: bound, so that nobody else gets it, but a listener that reuses may listen."""
+    with socket.socket() as holder:
+        holder.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        holder.bind(("127.0.0.1", 0))
+        yield holder.getsockname()[1]
 
 
 def crc(data):

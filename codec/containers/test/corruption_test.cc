@@ -78,12 +78,12 @@ void corrupt(std::vector<Traced>& stream, std::mt19937& random) {
       }
       break;
     case 3: stream.insert(here, made()); break;
-    case 4:  // The line breaks down for the rest of a frame.
-      while (stream.size() > at && stream[at].frame == here->frame && stream[at].frame >= 0 &&
-             random() % 64 != 0) {
-        stream.erase(stream.begin() + static_cast<std::ptrdiff_t>(at));
-      }
+    case 4: {  // The line breaks down for a while.
+      auto end = here;
+      while (end != stream.end() && end->frame >= 0 && random() % 64 != 0) ++end;
+      stream.erase(here, end);
       break;
+    }
     case 5: *here = made(); break;
     default:
       here->byte = static_cast<std::uint8_t>(here->byte ^ 1u << random() % 8);

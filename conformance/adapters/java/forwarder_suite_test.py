@@ -9,28 +9,23 @@ Usage: forwarder_suite_test.py RUBRIC JAVAC JAVA
 """
 
 import concurrent.futures
-import contextlib
 import json
 import pathlib
 import shutil
-import socket
 import subprocess
 import sys
 import tempfile
 import time
 
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "tools/tests"))
+
+# pylint: disable-next=wrong-import-position
+from serial_testing import held_port
+
 HERE = pathlib.Path(__file__).resolve().parent
 MISTAKE = "reads_numbers_backwards"
 PARTS = 6
-
-
-@contextlib.contextmanager
-def held_port():
-    """A port of ours: bound, so that nobody else gets it, but a listener that reuses may listen."""
-    with socket.socket() as holder:
-        holder.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        holder.bind(("127.0.0.1", 0))
-        yield holder.getsockname()[1]
 
 
 def build(javac, folder, mistake):

@@ -72,7 +72,8 @@ trace::Parsed read_file(const std::filesystem::path& path) {
 Cases Cases::own() {
   Cases out;
   for (const EmbeddedFile& one : embedded_files()) {
-    trace::Parsed file = trace::parse(one.text, one.name);
+    // golden_cases_test checks names and values, which takes four times as long as reading.
+    trace::Parsed file = trace::parse_syntax(one.text, one.name);
     if (!file.ok()) throw std::logic_error(file.errors());
     out.add(std::move(file));
   }

@@ -9,6 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "codec/reflect/encode.h"
+#include "tools/format/put.h"
+
 namespace rubric::run {
 namespace {
 
@@ -65,13 +68,10 @@ class CallArguments {
   }
   std::vector<std::uint8_t> bytes(const char* name) const {
     const std::string hex = text(name);
-    std::vector<std::uint8_t> out(hex.size() / 2);
-    bool good = hex.size() % 2 == 0;
-    for (std::size_t i = 0; i < out.size() && good; ++i) {
-      const char* const first = hex.data() + 2 * i;
-      good = std::from_chars(first, first + 2, out[i], 16).ptr == first + 2;
-    }
-    if (!good) throw std::invalid_argument(fmt::format("{}: expected bytes in hex", name));
+    std::vector<std::uint8_t> out;
+    const bool spaced = hex.find(' ') != hex.npos;
+    if (spaced || !reflect::parse_hex(hex, out))
+      throw std::invalid_argument(fmt::format("{}: expected bytes in hex", name));
     return out;
   }
   std::string text(const char* name) const {
@@ -158,8 +158,8 @@ void JsonApplication::mote_joined(node::Address mote, const node::Descriptor& de
 }
 
 void JsonApplication::received(node::Address src, std::uint8_t app_id, Bytes data) {
-  std::string hex;
-  for (const std::uint8_t byte : data) hex += fmt::format("{:02x}", byte);
+  std::string hex(2 * data.size(), '0');
+  format::put_hex(hex.data(), data);
   print({{"event", "received"}, {"src", text_of(src)}, {"app_id", app_id}, {"data", hex}});
 }
 

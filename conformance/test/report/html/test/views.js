@@ -9,7 +9,7 @@ const unfold = async (page) => {
 
 const views = [
   ['cases', '#/cases'],
-  ['gone', '#/cases', unfold],
+  ['gone', '#/cases?verdict=fail', unfold],
   ['failures', '#/cases?verdict=fail'],
   ['nothing', '#/cases?text=there+is+no+such+case'],
   ['rules', '#/rules'],
