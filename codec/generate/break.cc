@@ -107,6 +107,7 @@ class Breaker {
     const std::int64_t number = random_.chance(0.5) ? most : random_.between(least, most);
     if (!is_allowed(*measure.field, number)) return false;
     const auto end = static_cast<std::uint32_t>(p.at + number);
+    if (may_end(end)) return false;
     const std::uint32_t first = draft_.first_cut(end, part + 1, p.last_inside, {});
     const std::string text =
         name(measure) + " is " + to_string(number) + ", but " + name(p) + " has " + counted(p);
@@ -117,7 +118,7 @@ class Breaker {
       });
     }
     // Bytes after the end of an inner part are stale; after that of the frame they are too many.
-    if (p.scope != 0) return false;
+    if (p.scope != 0 || draft_.bare) return false;
     return lie(measure, number, [&] { return fault(Fault::kTrailing, end, *p.field, text); });
   }
 
@@ -135,9 +136,9 @@ class Breaker {
 
   bool trailing() {
     const Type& carrier = *draft_.scopes[0].type;
-    if (carrier.field_count == 0 || size_ >= max_bytes_) return false;
+    if (carrier.field_count == 0 || size_ >= max_bytes_ || draft_.bare) return false;
     for (const Part& p : draft_.parts) {
-      if (p.scope == 0 && p.open) return false;
+      if (p.open && is_unbounded(p.scope)) return false;
     }
     const std::size_t bytes = 1 + random_.below(std::min<std::size_t>(max_bytes_ - size_, 12));
     for (std::size_t i = 0; i < bytes; ++i) out_.bytes.push_back(any_byte(random_));
@@ -146,6 +147,16 @@ class Breaker {
   }
 
  private:
+  // Returns whether nothing but the frame's end limits the structure.
+  bool is_unbounded(std::uint32_t scope) const {
+    while (draft_.scopes[scope].end == kNone && draft_.scopes[scope].parent != kNone) {
+      scope = draft_.scopes[scope].parent;
+    }
+    return draft_.scopes[scope].end == kNone;
+  }
+  bool may_end(std::uint32_t at) const {
+    return std::find(draft_.ends.begin(), draft_.ends.end(), at) != draft_.ends.end();
+  }
   const Part& number_of(const Part& p) const { return draft_.parts[p.measure]; }
   std::string name(const Part& p) const {
     return std::string(draft_.scopes[p.scope].type->name) + "." + p.field->name;
@@ -276,6 +287,7 @@ class Breaker {
 
   bool cut_at(std::uint32_t at, const std::vector<std::uint32_t>& repaired,
               const std::string& more) {
+    if (may_end(at)) return false;
     if (at >= size_) return false;
     const auto parts = static_cast<std::uint32_t>(draft_.parts.size());
     const std::uint32_t first = draft_.first_cut(at, 0, parts, repaired);

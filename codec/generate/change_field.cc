@@ -121,6 +121,7 @@ class FieldChange {
     const Field& f = *n.field;
     // A constant number of elements is always whole.
     if (f.repeat == Repeat::kCount && !lone_load(f.count).lone) return false;
+    if (f.kind == reflect::Kind::kStruct && f.type && f.type->min_size != width) return false;
     const std::size_t count = n.size / width;
     const bool more = count == 0 || random_.chance(0.5);
     if (more && bytes_.size() + width > max_size_) return false;

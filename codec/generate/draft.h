@@ -54,8 +54,10 @@ struct Draft {
   std::vector<Part> parts;
   std::vector<Scope> scopes;               ///< The first is the carrier's.
   std::vector<const reflect::Type*> path;  ///< The messages from the outermost in.
+  std::vector<std::uint32_t> ends;         ///< Where a list of elements that vary in size may end.
   Body body;
   bool radio = false;
+  bool bare = false;  ///< The message alone: bytes after it are stale.
 
   /// Returns where a decoder of this frame stops the structure.
   std::uint32_t limit(std::uint32_t scope) const;

@@ -20,6 +20,11 @@ constexpr std::size_t kSerialBytesMax = 252;
 
 std::size_t most_bytes(bool radio) { return radio ? kRadioFrameMax - kFcsBytes : kSerialBytesMax; }
 
+Framing framing_of(const reflect::Route& route) {
+  if (is_bare(route)) return Framing::kBare;
+  return is_radio(route) ? Framing::kRadio : Framing::kSf;
+}
+
 // Returns the numbers in `bytes`, which differ from the draft's at most in and after its body.
 std::vector<NumberAt> numbers_of(const Draft& draft, const std::vector<std::uint8_t>& bytes,
                                  bool with_body) {
@@ -55,8 +60,11 @@ bool is_radio(const reflect::Route& route) {
   return std::string_view(route.carrier).starts_with("radio");
 }
 
+bool is_bare(const reflect::Route& route) { return std::string_view(route.carrier) == "bare"; }
+
 Draft FrameGenerator::draft(const reflect::Route& route) {
-  const reflect::Type* carrier = reflect::find_carrier(protocol_, route.carrier);
+  const reflect::Type* carrier =
+      is_bare(route) ? route.type : reflect::find_carrier(protocol_, route.carrier);
   const bool radio = is_radio(route);
   for (int i = 0; carrier && i < kTries; ++i) {
     FrameWriter writer(route, radio, most_bytes(radio), random_);
@@ -69,7 +77,7 @@ Draft FrameGenerator::draft(const reflect::Route& route) {
 Generated FrameGenerator::valid(const reflect::Route& route) {
   Draft made = draft(route);
   Generated out;
-  out.framing = made.radio ? Framing::kRadio : Framing::kSf;
+  out.framing = framing_of(route);
   out.numbers = numbers_of(made, made.bytes, true);
   out.bytes = std::move(made.bytes);
   out.path = std::move(made.path);
@@ -89,7 +97,7 @@ Generated FrameGenerator::near_valid(const reflect::Route& route) {
       if (!break_body(made, most_bytes(radio), random_, broken)) continue;
       made.path.pop_back();
       Generated out;
-      out.framing = radio ? Framing::kRadio : Framing::kSf;
+      out.framing = framing_of(route);
       out.numbers = numbers_of(made, broken.bytes, false);
       out.bytes = std::move(broken.bytes);
       out.route = &route;
@@ -101,7 +109,7 @@ Generated FrameGenerator::near_valid(const reflect::Route& route) {
     }
     if (!break_somehow(made, most_bytes(radio), short_radio, random_, broken)) continue;
     Generated out;
-    out.framing = radio ? Framing::kRadio : Framing::kSf;
+    out.framing = framing_of(route);
     out.bytes = std::move(broken.bytes);
     out.route = &route;
     out.error = broken.error;

@@ -19,6 +19,9 @@ inline constexpr std::size_t kFcsBytes = 2;  ///< In a frame on the air. (IEEE 8
 /// Returns whether the route's frames go over the air, not along a serial line.
 bool is_radio(const reflect::Route& route);
 
+/// Returns whether the route's message comes alone, without a frame.
+bool is_bare(const reflect::Route& route);
+
 /// A number of a frame; elements of arrays of numbers do not count.
 struct NumberAt {
   const reflect::Type* message;  ///< The structure that it belongs to.

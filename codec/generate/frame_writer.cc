@@ -1,13 +1,17 @@
 #include "codec/generate/frame_writer.h"
 
 #include <algorithm>
+#include <optional>
+#include <string>
 
+#include "codec/generate/frame_generator.h"
 #include "codec/generate/interpret.h"
 #include "codec/generate/routes.h"
 #include "codec/generate/values.h"
 #include "codec/generated/tinyos/enums.h"
 #include "codec/reflect/decode.h"
 #include "codec/reflect/encode_number.h"
+#include "codec/reflect/text_field.h"
 
 namespace rubric::generate {
 namespace {
@@ -20,6 +24,8 @@ using reflect::Kind;
 using reflect::Op;
 using reflect::Repeat;
 using reflect::Type;
+
+constexpr std::int64_t kMostEmpty = 16;
 
 std::uint32_t index32(std::size_t n) { return static_cast<std::uint32_t>(n); }
 
@@ -39,6 +45,7 @@ FrameWriter::FrameWriter(const reflect::Route& route, bool radio, std::size_t ma
                          Random& random)
     : route_(route), max_bytes_(max_bytes), random_(random) {
   draft_.radio = radio;
+  draft_.bare = is_bare(route);
 }
 
 bool FrameWriter::write(const Type& carrier) {
@@ -93,15 +100,16 @@ bool FrameWriter::field(const Field& f, std::uint16_t index, const Place& place)
 // Numbers.
 
 bool FrameWriter::number(const Field& f, const Place& place) {
-  if (left(place) < f.width_bytes) return false;
+  if (left(place) + f.shared_bytes() < f.width_bytes) return false;
   std::int64_t value = 0;
-  const bool given = forced(f, size(), value);
+  const bool given = f.kind != Kind::kBits && forced(f, size(), value);
   if (given && !is_allowed(f, value)) return false;
   // The measure of a structure is corrected when the structure is written.
   if (!given)
     value =
         measures_room(f, place) ? allowed(f).min : allowed_value(f, most_for(f, place), random_);
   const std::uint32_t part = add_part(PartKind::kNumber, f, place);
+  draft_.parts[part].at -= f.shared_bytes();
   put(f, value);
   close_part(part);
   return true;
@@ -124,7 +132,7 @@ bool FrameWriter::forced(const Field& f, std::size_t at, std::int64_t& value) {
 // Returns the most that a number may be so that the array which it counts has room.
 std::int64_t FrameWriter::most_for(const Field& f, const Place& place) const {
   const auto at = static_cast<std::int32_t>(size() - place.base);
-  const std::size_t behind = left(place) - f.width_bytes;
+  const std::size_t behind = left(place) + f.shared_bytes() - f.width_bytes;
   for (const Field* g = &f + 1; g < place.type.fields + place.type.field_count; ++g) {
     if (g->repeat == Repeat::kCount && lone_load_offset(g->count) == at) {
       return static_cast<std::int64_t>(behind / element_bytes(*g));
@@ -148,7 +156,7 @@ bool FrameWriter::measures_room(const Field& f, const Place& place) const {
 }
 
 void FrameWriter::put(const Field& f, std::int64_t value) {
-  const std::size_t at = size();
+  const std::size_t at = size() - f.shared_bytes();
   draft_.bytes.resize(at + f.width_bytes);
   reflect::store_number(f, value, draft_.bytes.data() + at);
 }
@@ -157,6 +165,7 @@ void FrameWriter::put(const Field& f, std::int64_t value) {
 
 bool FrameWriter::array(const Field& f, const Place& place) {
   const std::size_t width = element_bytes(f);
+  if (f.kind == Kind::kStruct && f.type->min_size != width) return varying(f, place);
   const std::uint32_t part = add_part(PartKind::kArray, f, place);
   draft_.parts[part].element_bytes = index32(width);
   std::size_t room = left(place);
@@ -193,8 +202,34 @@ bool FrameWriter::array(const Field& f, const Place& place) {
   return true;
 }
 
+bool FrameWriter::varying(const Field& f, const Place& place) {
+  const bool counted = f.repeat == Repeat::kCount;
+  const std::int64_t count = counted ? reflect::evaluate(f.count, from(place.base))
+                                     : static_cast<std::int64_t>(random_.below(4));
+  for (std::int64_t i = 0; i < count; ++i) {
+    const std::size_t begin = size();
+    if (!counted) draft_.ends.push_back(index32(begin));
+    const bool good = structure(*f.type, place.scope, left(place), place.hard);
+    if (!good || (size() == begin && i > kMostEmpty)) return false;
+  }
+  return count >= 0;
+}
+
 void FrameWriter::noise(std::size_t bytes) {
   for (std::size_t i = 0; i < bytes; ++i) draft_.bytes.push_back(any_byte(random_));
+}
+
+// Writes characters in all the bytes, or fewer and their end.
+void FrameWriter::text(const Field& f, std::size_t bytes) {
+  const bool ends = f.extent == Extent::kTerminated;
+  std::string content;
+  for (std::size_t i = 0, most = bytes - ends - random_.below(bytes - ends + 1); i < most; ++i) {
+    const auto c = static_cast<char>(random_.between(' ', '~'));
+    if (c != f.text->terminator && c != f.text->padding) content += c;
+  }
+  const bool fills = f.text->terminator < 0 && f.text->padding < 0;
+  if (fills) content.resize(bytes, '.');
+  reflect::append_text(f, content, ends ? std::nullopt : std::optional(bytes), draft_.bytes);
 }
 
 bool FrameWriter::opaque(const Field& f, const Place& place) {
@@ -205,11 +240,14 @@ bool FrameWriter::opaque(const Field& f, const Place& place) {
     if (wanted < 0 || static_cast<std::size_t>(wanted) > left(place)) return false;
     bytes = static_cast<std::size_t>(wanted);
     draft_.parts[part].measure = measure_of(f.size, place);
+  } else if (f.extent == Extent::kTerminated) {
+    if (left(place) == 0) return false;
+    bytes = random_.below(std::min<std::size_t>(left(place), 24)) + 1;
   } else {
     draft_.parts[part].open = true;
     if (random_.chance(0.1)) bytes = left(place);
   }
-  noise(bytes);
+  f.text ? text(f, bytes) : noise(bytes);
   close_part(part);
   return true;
 }
@@ -220,7 +258,8 @@ bool FrameWriter::nested(const Field& f, const Place& place) {
   const Type* type = f.type;
   if (f.choice) {
     type = reflect::choose(*f.choice, reflect::evaluate(f.choice->key, from(place.base)));
-    if (!type) return false;  // A route leads to a message.
+    // A route that chooses leads to a message.
+    if (!type) return route_.choice_count == 0 && (f.extent == Extent::kOwn || opaque(f, place));
     draft_.path.push_back(type);
   }
   if (same_message(type, route_.type) && size() == route_.offset) reached_ = true;
@@ -236,7 +275,7 @@ bool FrameWriter::nested(const Field& f, const Place& place) {
 
 bool FrameWriter::sized(const Field& f, const Type& type, std::uint32_t part, const Place& place) {
   const std::uint32_t measure = measure_of(f.size, place);
-  if (measure == kNone) return false;
+  if (measure == kNone) return fixed(f, type, part, place);
   const Field& number = *draft_.parts[measure].field;
   const Span span = allowed(number);
   const std::size_t begin = size();
@@ -253,6 +292,19 @@ bool FrameWriter::sized(const Field& f, const Type& type, std::uint32_t part, co
   reflect::store_number(number, bytes, draft_.bytes.data() + draft_.parts[measure].at);
   draft_.scopes[scope].end = index32(size());
   draft_.parts[part].measure = measure;
+  close_part(part);
+  return true;
+}
+
+// Fills the bytes that something other than one number says the structure has.
+bool FrameWriter::fixed(const Field& f, const Type& type, std::uint32_t part, const Place& place) {
+  const std::int64_t bytes = reflect::evaluate(f.size, from(place.base));
+  if (bytes < 0 || static_cast<std::size_t>(bytes) > left(place)) return false;
+  const std::size_t end = size() + static_cast<std::size_t>(bytes);
+  const std::size_t scope = draft_.scopes.size();
+  if (!structure(type, place.scope, end - size(), place.hard)) return false;
+  noise(end - size());
+  draft_.scopes[scope].end = index32(size());
   close_part(part);
   return true;
 }

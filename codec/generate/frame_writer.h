@@ -51,9 +51,12 @@ class FrameWriter {
   bool measures_room(const Field& f, const Place& place) const;
   void put(const Field& f, std::int64_t value);
   bool array(const Field& f, const Place& place);
+  bool varying(const Field& f, const Place& place);
   bool opaque(const Field& f, const Place& place);
+  void text(const Field& f, std::size_t bytes);
   bool nested(const Field& f, const Place& place);
   bool sized(const Field& f, const Type& type, std::uint32_t part, const Place& place);
+  bool fixed(const Field& f, const Type& type, std::uint32_t part, const Place& place);
   bool takes_all(std::uint32_t first_part) const;
   void noise(std::size_t bytes);
   void stale(std::size_t room);

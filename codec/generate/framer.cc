@@ -64,6 +64,7 @@ void set_fault(Fault fault, std::size_t at, ReqId requirement, const char* what,
 }  // namespace
 
 bool Framer::holds(const reflect::Route& route) const {
+  if (is_bare(route)) return container_ == InputFormat::kHex || container_ == InputFormat::kJsonl;
   return !is_radio(route) || container_ == InputFormat::kPcapng ||
          container_ == InputFormat::kJsonl;
 }
@@ -84,6 +85,7 @@ void Framer::around_radio(Framed& out, bool fcs) {
 Framed Framer::sound(Generated made) {
   Framed out = taken(std::move(made));
   const bool capture = container_ == InputFormat::kPcapng;
+  if (out.packet.framing == Framing::kBare) return out;
   if (out.packet.framing == Framing::kRadio) {
     if (capture) around_radio(out, random_.chance(0.8));
   } else if (container_ == InputFormat::kHdlc || (capture && random_.chance(0.6))) {

@@ -51,7 +51,7 @@ std::uint8_t any_byte(Random& random) {
 }
 
 Span held(const Field& field) {
-  const int bits = 8 * field.width_bytes;
+  const int bits = field.kind == Kind::kBits ? field.bit_width : 8 * field.width_bytes;
   if (field.kind != Kind::kSint) return {0, (std::int64_t{1} << bits) - 1};
   return {-(std::int64_t{1} << (bits - 1)), (std::int64_t{1} << (bits - 1)) - 1};
 }

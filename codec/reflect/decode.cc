@@ -3,9 +3,20 @@
 #include <algorithm>
 #include <cstring>
 
+#include "codec/reflect/text_field.h"
+
 namespace rubric::reflect {
 
 namespace {
+
+__attribute__((noinline)) std::int64_t load_bits(const Field& field, const std::uint8_t* at) {
+  std::uint64_t raw = 0;
+  for (int i = 0; i < field.width_bytes; ++i) {
+    raw = raw << 8 | at[field.little_endian ? field.width_bytes - 1 - i : i];
+  }
+  raw >>= field.bit_shift;
+  return static_cast<std::int64_t>(raw & ((std::uint64_t{1} << field.bit_width) - 1));
+}
 
 // Declared here and not in a header: the decoder wants it inlined, others call load_number.
 RUBRIC_INLINE std::int64_t load(const Field& field, const std::uint8_t* at) {
@@ -24,7 +35,9 @@ RUBRIC_INLINE std::int64_t load(const Field& field, const std::uint8_t* at) {
 
 }  // namespace
 
-std::int64_t load_number(const Field& field, const std::uint8_t* at) { return load(field, at); }
+std::int64_t load_number(const Field& field, const std::uint8_t* at) {
+  return field.kind == Kind::kBits ? load_bits(field, at) : load(field, at);
+}
 
 namespace {
 
@@ -126,6 +139,8 @@ std::size_t Decoded::child(std::size_t parent, std::string_view name) const {
   return 0;
 }
 
+constexpr std::int64_t kMostEmpty = 256;  // Elements of a list that take no byte.
+
 /// One decoding: a cursor over the tables that appends nodes.
 class Decoder {
  public:
@@ -209,7 +224,8 @@ class Decoder {
     for (const Field* f = type.fields; good && f != fields_end; ++f) {
       if (f->condition.count && !evaluate(f->condition, from(base, limit))) continue;
       if (f->width_bytes != 0 && f->repeat == Repeat::kOnce) {
-        good = number(*f, at, limit);
+        good = __builtin_expect(f->kind == Kind::kBits, 0) ? bits(*f, at, limit)
+                                                           : number(*f, at, limit);
       } else if (type.interpretation_count && f->kind == Kind::kBytes &&
                  interpret(type, static_cast<std::uint16_t>(f - type.fields), base, at, limit)) {
         at = limit;
@@ -225,13 +241,24 @@ class Decoder {
 
   RUBRIC_INLINE bool number(const Field& f, std::uint32_t& at, std::uint32_t limit) {
     if (limit - at < f.width_bytes) return set_error(Fault::kTruncated, limit, f, f.width_bytes);
-    const std::int64_t value = load(f, out_.bytes.data() + at);
+    return number(f, load(f, out_.bytes.data() + at), at);
+  }
+
+  RUBRIC_INLINE bool number(const Field& f, std::int64_t value, std::uint32_t& at) {
     if (f.valid.kind != ValidKind::kAny && !valid(f, value, at)) return false;
     push(NodeKind::kNumber, &f, at, f.width_bytes).value = value;
     if (f.expect >= 0 && value != f.expect) {
       push_note({NoteKind::kUnexpectedValue, at, &f, nullptr, value});
     }
     at += f.width_bytes;
+    return true;
+  }
+
+  __attribute__((noinline)) bool bits(const Field& f, std::uint32_t& at, std::uint32_t limit) {
+    std::uint32_t begin = at - f.shared_bytes();
+    if (limit - begin < f.width_bytes) return set_error(Fault::kTruncated, limit, f, f.width_bytes);
+    if (!number(f, load_bits(f, out_.bytes.data() + begin), begin)) return false;
+    at = begin;
     return true;
   }
 
@@ -253,6 +280,7 @@ class Decoder {
       if (size < 0 || size > limit - at) return truncated(f, at, limit, size);
       end = at + static_cast<std::uint32_t>(size);
     }
+    if (__builtin_expect(f.text != nullptr, 0)) return text(f, at, end);
     if (f.repeat != Repeat::kOnce) return array(f, base, at, end);
     if (f.kind == Kind::kBytes) {
       push(NodeKind::kBytes, &f, at, end - at);
@@ -260,6 +288,27 @@ class Decoder {
       return true;
     }
     return nested(f, base, at, end, limit);
+  }
+
+  /// Decodes bytes with characters or a terminator, which lie before `end`.
+  __attribute__((noinline)) bool text(const Field& f, std::uint32_t& at, std::uint32_t end) {
+    if (f.extent == Extent::kTerminated) {
+      const std::uint8_t* const bytes = out_.bytes.data();
+      const std::uint8_t* const found = std::find(bytes + at, bytes + end, f.text->terminator);
+      if (found == bytes + end && !f.text->may_lack_its_end) {
+        return truncated(f, at, end, std::int64_t{end - at} + 1);
+      }
+      end = static_cast<std::uint32_t>(found - bytes) + (found != bytes + end);
+    }
+    push(NodeKind::kBytes, &f, at, end - at);
+    const Bytes content = text_content(f, from(at, end));
+    const std::size_t sound = sound_text(f, content);
+    if (sound != content.size()) {
+      push_note({NoteKind::kNotText, at + static_cast<std::uint32_t>(sound), &f, nullptr,
+                 content[sound]});
+    }
+    at = end;
+    return true;
   }
 
   // The available part of a field that is cut off stays visible.
@@ -274,6 +323,10 @@ class Decoder {
     if (f.choice) {
       const std::int64_t key = evaluate(f.choice->key, from(base, limit));
       type = choose(*f.choice, key);
+      if (!type && f.extent == Extent::kOwn) {
+        if (end > at) push_note({NoteKind::kUnknownMessage, at, &f, nullptr, key});
+        return true;
+      }
       if (!type) {
         if (more_ && base == 0 && radio_only(f, key, at, end)) return true;
         if (end > at) push_note({NoteKind::kUnknownMessage, at, &f, nullptr, key});
@@ -312,6 +365,9 @@ class Decoder {
 
   bool array(const Field& f, std::uint32_t base, std::uint32_t& at, std::uint32_t limit) {
     const std::uint32_t width = f.kind == Kind::kStruct ? f.type->max_size : f.width_bytes;
+    if (f.kind == Kind::kStruct && f.type->min_size != width) {
+      return varying(f, base, at, limit);
+    }
     std::int64_t count = 0;
     if (f.repeat == Repeat::kCount) {
       count = evaluate(f.count, from(base, limit));
@@ -334,6 +390,33 @@ class Decoder {
       good = structure(*f.type, &f, at, at + width);
     }
     nodes_[index].end = static_cast<std::uint32_t>(count_);
+    return good;
+  }
+
+  /// Decodes elements of varying size, one after the other.
+  bool varying(const Field& f, std::uint32_t base, std::uint32_t& at, std::uint32_t limit) {
+    const bool to_end = f.repeat == Repeat::kToEnd;
+    const std::int64_t count = to_end ? limit - at : evaluate(f.count, from(base, limit));
+    if (count < 0 || (!to_end && count * f.type->min_size > limit - at)) {
+      return truncated(f, at, limit, count * f.type->min_size);
+    }
+    const std::size_t index = count_;
+    push(NodeKind::kStructArray, &f, at, 0);
+    const std::uint32_t begin = at;
+    bool good = true;
+    std::uint32_t elements = 0;
+    // Elements without a byte would never come to the end.
+    for (std::int64_t i = 0; good && i < count && !(at == limit && (to_end || i > kMostEmpty));
+         ++i, ++elements) {
+      const std::size_t element = count_;
+      good = structure(*f.type, &f, at, limit);
+      at += nodes_[element].size;
+      if (to_end && nodes_[element].size == 0) break;
+    }
+    Node& node = nodes_[index];
+    node.size = at - begin;
+    node.count = elements;
+    node.end = static_cast<std::uint32_t>(count_);
     return good;
   }
 

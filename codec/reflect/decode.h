@@ -39,6 +39,7 @@ enum class NoteKind : std::uint8_t {
   kDoesNotFit,       ///< The bytes do not fit the message that their key names; they stay opaque.
   kUnexpectedValue,  ///< A field's value is not the expected one.
   kNotDecoded,       ///< The frame is of a kind that carries no message known here.
+  kNotText,          ///< A byte, `value`, does not belong to the text's encoding.
   kRadioOnly,        ///< A serial packet holds a message that travels on the radio only.
 };
 struct Note {

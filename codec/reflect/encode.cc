@@ -8,6 +8,7 @@
 
 #include "codec/reflect/encode_number.h"
 #include "codec/reflect/schema.h"
+#include "codec/reflect/text_field.h"
 
 namespace rubric::reflect {
 namespace {
@@ -91,6 +92,8 @@ class Measures {
 };
 
 using std::to_string;
+
+constexpr std::int64_t kMostPadding = 1 << 16;
 
 /// The end of a part of the output; no limit while its measure is missing.
 using Limit = std::optional<std::size_t>;
@@ -238,12 +241,23 @@ class Encoder {
       return 1 + (f.enumeration && object.find(std::string(f.name) + "_name"));
     }
     if (f.kind == Kind::kBytes) {
-      opaque(f, value, base, limit);
-      return value ? 1 : 0;
+      const Value* bytes = f.text ? object.find(std::string(f.name) + "_hex") : nullptr;
+      if (!f.text || f.text->encoding == Encoding::kNone) {
+        opaque(f, value, base, limit);
+      } else {
+        text(f, value, bytes, base, limit);
+      }
+      return (value ? 1 : 0) + (bytes ? 1 : 0);
     }
+    if (!value && f.choice && f.extent == Extent::kOwn && chooses_nothing(f, base)) return 0;
     if (!value) fail("is missing: expected an object", f.requirement);
     nested(f, *value, base, limit);
     return 1;
+  }
+
+  bool chooses_nothing(const Field& f, std::size_t base) {
+    require_given(f.choice->key, base);
+    return choose(*f.choice, evaluate(f.choice->key, from(base))) == nullptr;
   }
 
   [[noreturn]] void unknown_member(const Type& type, const Value& object, std::size_t base) {
@@ -270,6 +284,7 @@ class Encoder {
       if (f.condition.count && !evaluate(f.condition, from(base))) continue;
       if (key == f.name || (f.enumeration && key == std::string(f.name) + "_name") ||
           (f.mask && key == std::string(f.name) + "_bits") ||
+          (f.text && key == std::string(f.name) + "_hex") ||
           (f.unit && key == std::string(f.name) + '_' + f.unit->symbol)) {
         return true;
       }
@@ -282,10 +297,11 @@ class Encoder {
   std::size_t number(const Field& f, const Value& object, const Value* value) {
     const NumberResult result = number_of(f, object, value);
     if (!result.problem.empty()) fail(result.problem, f.requirement);
-    const std::size_t at = out_.size();
+    const std::size_t at = out_.size() - f.shared_bytes();
     out_.resize(at + f.width_bytes);
     if (result.present) store_number(f, result.value, out_.data() + at);
-    Measure* measure = measures_.find(at);
+    // Bits are given: others of the same byte would be filled in with them.
+    Measure* measure = f.kind == Kind::kBits ? nullptr : measures_.find(at);
     if (measure) {
       measure->field = &f;
       measure->path = path_;
@@ -301,7 +317,55 @@ class Encoder {
     if (value && (!value->is(Value::Kind::kString) || !parse_hex(value->text, out_))) {
       fail("expected hex digits, given " + value_text(*value), f.requirement);
     }
+    finish_bytes(f, at, base, limit);
+  }
+
+  /// Encodes text, as `value` says, or as the bytes in hex beside it.
+  void text(const Field& f, const Value* value, const Value* bytes, std::size_t base, Limit limit) {
+    const std::size_t at = out_.size();
+    if (value && !value->is(Value::Kind::kString)) {
+      fail("expected text, given " + value_text(*value), f.requirement);
+    }
+    if (bytes) {
+      if (!bytes->is(Value::Kind::kString) || !parse_hex(bytes->text, out_)) {
+        fail("expected hex digits in " + std::string(f.name) + "_hex, given " + value_text(*bytes),
+             f.requirement);
+      }
+      const std::string shown = shown_text(f, from(at));
+      if (value && value->text != shown) {
+        fail("given " + value_text(*value) + ", but " + f.name + "_hex says \"" + shown +
+                 "\"; delete it if the text is meant",
+             f.requirement);
+      }
+    } else {
+      const std::string problem =
+          append_text(f, value ? value->text : "", room(f, base, limit), out_);
+      if (!problem.empty()) fail(problem, f.requirement);
+    }
+    finish_bytes(f, at, base, limit);
+  }
+
+  /// Returns the bytes that a field has to fill; none where its content says how many they are.
+  std::optional<std::size_t> room(const Field& f, std::size_t base, Limit limit) {
+    if (f.extent == Extent::kSize && !measures_.missing_in(f.size, base)) {
+      const std::int64_t size = evaluate(f.size, from(base));
+      if (size >= 0 && size <= kMostPadding) return static_cast<std::size_t>(size);
+    }
+    if (f.extent == Extent::kToEnd && limit) return *limit - std::min(*limit, out_.size());
+    return std::nullopt;
+  }
+
+  void finish_bytes(const Field& f, std::size_t at, std::size_t base, Limit limit) {
     const std::size_t size = out_.size() - at;
+    if (f.extent == Extent::kTerminated) {
+      // What comes after a terminator would be read as the next field.
+      const auto begin = out_.begin() + static_cast<std::ptrdiff_t>(at);
+      const auto end = std::find(begin, out_.end(), f.text->terminator);
+      if (end + (end != out_.end()) == out_.end() &&
+          (f.text->may_lack_its_end || end != out_.end()))
+        return;
+      fail("expected one byte " + to_string(f.text->terminator) + ", at the end", f.requirement);
+    }
     if (f.extent == Extent::kSize) return settle(f.size, base, size, bytes_text(size), f);
     if (limit && out_.size() != *limit) {
       fail("expected " + bytes_text(*limit - std::min(at, *limit)) + ", given " + to_string(size),

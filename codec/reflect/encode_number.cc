@@ -21,7 +21,7 @@ struct Bounds {
 };
 
 Bounds bounds(const Field& f) {
-  const int bits = 8 * f.width_bytes;
+  const int bits = f.kind == Kind::kBits ? f.bit_width : 8 * f.width_bytes;
   if (f.valid.kind == ValidKind::kRange) return {f.valid.min, f.valid.max};
   if (f.kind != Kind::kSint) return {0, (std::int64_t{1} << bits) - 1};
   return {-(std::int64_t{1} << (bits - 1)), (std::int64_t{1} << (bits - 1)) - 1};
@@ -190,7 +190,22 @@ std::string expectation(const Field& f) {
   return text;
 }
 
+namespace {
+
+/// Leaves the bits beside the field's as they are.
+void store_bits(const Field& f, std::uint64_t value, std::uint8_t* at) {
+  for (int bit = 0; bit < f.bit_width; ++bit) {
+    const int place = bit + f.bit_shift;
+    const int byte = f.little_endian ? place / 8 : f.width_bytes - 1 - place / 8;
+    const auto one = static_cast<std::uint8_t>(1U << place % 8);
+    at[byte] = static_cast<std::uint8_t>(value >> bit & 1 ? at[byte] | one : at[byte] & ~one);
+  }
+}
+
+}  // namespace
+
 void store_number(const Field& f, std::int64_t value, std::uint8_t* at) {
+  if (f.kind == Kind::kBits) return store_bits(f, static_cast<std::uint64_t>(value), at);
   const auto raw = static_cast<std::uint32_t>(value);
   switch (f.width_bytes) {
     case 1: return store_u8(at, static_cast<std::uint8_t>(raw));

@@ -137,6 +137,7 @@ std::string_view note_name(NoteKind kind) {
     case NoteKind::kDoesNotFit: return "does_not_fit";
     case NoteKind::kNotDecoded: return "not_decoded";
     case NoteKind::kRadioOnly: return "radio_only";
+    case NoteKind::kNotText: return "not_text";
     case NoteKind::kUnexpectedValue: break;
   }
   return "unexpected_value";
@@ -158,6 +159,10 @@ std::string note_text(const Note& note) {
       std::snprintf(hex, sizeof(hex), "%#llx", static_cast<unsigned long long>(note.value));
       return std::string("frames of kind ") + hex + " carry no message known here";
     }
+    case NoteKind::kNotText:
+      return name + " is not " +
+             (note.field && note.field->text->encoding == Encoding::kAscii ? "ASCII" : "UTF-8") +
+             ", it has the byte " + key;
     case NoteKind::kUnexpectedValue: break;
   }
   if (!note.field) return "value " + key + " is not the expected one";

@@ -73,6 +73,8 @@ FrameDecoder::FrameDecoder(const Protocol& protocol, const Type* bare)
       radio_i_(find_carrier(protocol, "radio_i")),
       radio_t_(find_carrier(protocol, "radio_t")),
       radio_ack_(find_carrier(tinyos::tables::kProtocol, "radio_ack")),
+      radio_beacon_(find_carrier(protocol, "radio_beacon")),
+      radio_command_(find_carrier(protocol, "radio_command")),
       radio_choice_(payload_choice(protocol, "radio_i")) {}
 
 void FrameDecoder::decode(const Packet& packet, Frame& out) const {
@@ -90,6 +92,10 @@ void FrameDecoder::decode(const Packet& packet, Frame& out) const {
     case Envelope::Kind::kMessage:
       decode_carrier(*envelope.carrier, packet.bytes, out.decoded);
       find_payload(out);
+      break;
+    case Envelope::Kind::kLink:
+      reflect::decode(*envelope.carrier, packet.bytes, Tail::kFault, true, out.decoded);
+      out.has_payload = true;
       break;
     case Envelope::Kind::kBare:
       if (bare_) {
@@ -131,6 +137,19 @@ void FrameDecoder::serial_headers(Bytes bytes, Envelope& out) const {
   out.kind = serial_ ? Envelope::Kind::kMessage : Envelope::Kind::kOpaque;
 }
 
+/// Returns the carrier of beacons or commands, if frames with this frame control are laid out as
+/// the versions of 2003 and 2006 have it, and are not secured.
+const Type* FrameDecoder::link_carrier(std::uint16_t fcf) const {
+  constexpr int kBeacon = 0, kCommand = 3;                         // IEEE 802.15.4-2006, 7.2.1.1.1.
+  constexpr int kNewOrSecured = 0x2008;                            // 7.2.1.1.2, 7.2.1.1.7.
+  constexpr int kAckRequest = 0x20, kOnePan = 0x40;                // 7.2.1.1.4, 7.2.1.1.5.
+  const int to = fcf >> 10 & 3, from = fcf >> 14, type = fcf & 7;  // Addressing modes, 1 is none.
+  if ((fcf & kNewOrSecured) != 0 || to == 1 || from == 1) return nullptr;
+  if (type == kCommand) return radio_command_;
+  const bool announces = to == 0 && from != 0 && (fcf & (kAckRequest | kOnePan)) == 0;
+  return type == kBeacon && announces ? radio_beacon_ : nullptr;
+}
+
 void FrameDecoder::radio_headers(Bytes bytes, Envelope& out) const {
   const auto part = [](std::uint16_t fcf, FrameControlPart mask) {
     return fcf & static_cast<std::uint16_t>(mask);
@@ -151,7 +170,11 @@ void FrameDecoder::radio_headers(Bytes bytes, Envelope& out) const {
   }
   out.kind = Envelope::Kind::kOpaque;
   out.key = fcf;
-  if (part(fcf, FrameControlPart::kShape) != kData) return;
+  if (part(fcf, FrameControlPart::kShape) != kData) {
+    out.carrier = link_carrier(fcf);
+    if (out.carrier) out.kind = Envelope::Kind::kLink;
+    return;
+  }
   if (bytes.size() >= kMacHeaderBytes) {
     out.mac.has_addresses = true;
     out.mac.destpan = Mac::DestpanAt::load(p);
@@ -202,7 +225,9 @@ Envelope FrameDecoder::open(const Packet& packet) const {
   if (out.error.fault != Fault::kNone || !out.carrier) return out;
   const Bytes bytes = packet.bytes;
   bool sound = false;
-  if (out.kind == Envelope::Kind::kLinkAck) {
+  if (out.kind == Envelope::Kind::kLink) {
+    sound = false;  // Nothing less than decoding it says.
+  } else if (out.kind == Envelope::Kind::kLinkAck) {
     sound = bytes.size() == tinyos::MacAckView::kMaxSizeBytes;
   } else if (out.carrier == serial_) {
     sound = out.am.present && Am::LengthAt::allows(out.am.length) &&

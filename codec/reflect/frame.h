@@ -40,13 +40,14 @@ struct Envelope {
     kOpaque,   ///< Of a kind that carries no message known here, such as a secured radio frame.
     kLinkAck,  ///< An acknowledgement of the serial line or of 802.15.4.
     kMessage,  ///< A frame of `carrier`.
+    kLink,     ///< Another frame of 802.15.4: a beacon or a command.
     kBare,     ///< The message alone.
   };
   Kind kind = Kind::kNothing;
   std::int64_t key = 0;  ///< kOpaque: the kind of the packet, or the frame control field.
   ActiveMessage am;
   MacHeader mac;
-  const Type* carrier = nullptr;  ///< kMessage and acknowledgements of 802.15.4.
+  const Type* carrier = nullptr;  ///< kMessage, kLink, acknowledgements of 802.15.4.
   Bytes payload;                  ///< kMessage without an error: that of the active message.
   /// Of the framing, else of the headers; those of the message are not known yet.
   Error error{Fault::kNone, 0, ReqId::kNone};
@@ -98,6 +99,7 @@ class FrameDecoder {
   void serial_headers(Bytes bytes, Envelope& out) const;
   void radio_headers(Bytes bytes, Envelope& out) const;
   void decode_carrier(const Type& carrier, Bytes bytes, Decoded& out) const;
+  const Type* link_carrier(std::uint16_t fcf) const;
   Error fault_of(const Type& carrier, Bytes bytes) const;
 
   const Protocol& protocol_;
@@ -106,6 +108,8 @@ class FrameDecoder {
   RadioCarrier radio_i_;
   RadioCarrier radio_t_;
   const Type* radio_ack_;
+  const Type* radio_beacon_;
+  const Type* radio_command_;
   const Switch* radio_choice_;
 };
 

@@ -99,15 +99,26 @@ enum class Kind : uint8_t {
   kUint,    ///< width_bytes 1, 2 or 4.
   kSint,    ///< width_bytes 1, 2 or 4.
   kFloat,   ///< IEEE 754 binary32.
+  kBits,    ///< bit_width bits of a number of width_bytes bytes, 1 to 4.
   kMask,    ///< width_bytes 1 or 2, with a MaskTable.
   kBytes,   ///< Opaque bytes.
   kStruct,  ///< `type`, or what `choice` chooses.
 };
 enum class Repeat : uint8_t { kOnce, kCount, kToEnd };
 enum class Extent : uint8_t {
-  kOwn,    ///< The size of its kind.
-  kSize,   ///< `size` bytes.
-  kToEnd,  ///< All bytes that the enclosing structure has left.
+  kOwn,         ///< The size of its kind.
+  kSize,        ///< `size` bytes.
+  kToEnd,       ///< All bytes that the enclosing structure has left.
+  kTerminated,  ///< Bytes up to its text's terminator, which is the last of them.
+};
+
+enum class Encoding : uint8_t { kNone, kAscii, kUtf8 };
+/// How the bytes of a field are to be read (codec/reflect/text_field.h). kNone: as bytes.
+struct Text {
+  Encoding encoding;
+  int16_t terminator;  ///< A byte that ends the content; -1 if there is none.
+  int16_t padding;     ///< A byte that fills the field after the content; -1 if none is stripped.
+  bool may_lack_its_end;  ///< kTerminated: the bytes may end without a terminator.
 };
 
 struct Field {
@@ -135,6 +146,16 @@ struct Field {
   ReqId requirement;
   const Unit* unit;
   const char* doc;
+  // Only in specs that are read at run time:
+  const Text* text = nullptr;  ///< kBytes with characters or a terminator.
+  uint8_t bit_width = 0;       ///< kBits.
+  uint8_t bit_shift = 0;       ///< kBits: number of the lowest bit within the number.
+
+  /// Returns how many of its bytes the field before it has too: 1 for bits that begin within one.
+  constexpr uint8_t shared_bytes() const {
+    return kind == Kind::kBits &&
+           (little_endian ? bit_shift : 8 * width_bytes - bit_shift - bit_width) != 0;
+  }
 };
 
 /// An interpretation of bytes that a sequence field leaves opaque: tried in order, the first whose
@@ -196,7 +217,7 @@ struct RouteLength {
 /// How a frame reaches a message (codec/generated/*/messages.h), for the structure-aware fuzzer and
 /// other builders of frames; the message's own contents are in its Type.
 struct Route {
-  const char* carrier;  ///< Carrier of the frames: "serial", "radio_i", ...
+  const char* carrier;  ///< Carrier of the frames: "serial", "radio_i", ...; "bare": none.
   const Type* type;     ///< The message.
   uint16_t offset;      ///< Offset of its begin.
   uint32_t room;        ///< The most bytes that it can have there; UINT32_MAX if unbounded.

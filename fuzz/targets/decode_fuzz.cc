@@ -8,9 +8,9 @@
 
 #include "codec/containers/reader.h"
 #include "codec/reflect/registry.h"
+#include "fuzz/support/decode_checks.h"
 #include "fuzz/support/decode_input.h"
 #include "fuzz/support/require.h"
-#include "tools/encode/json.h"
 #include "tools/format/csv.h"
 #include "tools/format/jsonl.h"
 #include "tools/format/text.h"
@@ -18,37 +18,10 @@
 namespace {
 
 using namespace rubric;
+using fuzz::check_json;
+using fuzz::check_nodes;
+using fuzz::check_text;
 using fuzz::require;
-
-void check_nodes(const reflect::Decoded& decoded) {
-  for (std::size_t i = 0; i < decoded.node_count(); ++i) {
-    const reflect::Node& node = decoded[i];
-    require(node.offset + node.size <= decoded.bytes.size(), "a field lies within the packet");
-    require(node.end > i && node.end <= decoded.node_count(), "nodes are nested");
-  }
-  for (std::size_t i = 0; i < decoded.stale_count(); ++i) {
-    require(decoded.stale()[i].offset + decoded.stale()[i].size <= decoded.bytes.size(),
-            "stale bytes lie within the packet");
-  }
-}
-
-void check_json(std::string_view text, const format::Record& record) {
-  require(!text.empty() && text.find('\n') == text.size() - 1, "a frame is one line of JSON");
-  const reflect::Value line = encode::parse_json(text);  // Throws where it is not JSON in UTF-8.
-  const auto member = [&](std::string_view key) {
-    const reflect::Value* const found = line.find(key);
-    return found ? *found : reflect::Value::of_array({});
-  };
-  require(member("schema").text == "rubric.decode/1", "a line says what it is");
-  require(member("error").is(reflect::Value::Kind::kNull) == !record.frame->malformed(),
-          "a line says what is malformed");
-  std::string hex;
-  for (const std::uint8_t byte : record.packet().bytes) {
-    hex += "0123456789abcdef"[byte >> 4];
-    hex += "0123456789abcdef"[byte & 15];
-  }
-  require(member("raw").text == hex, "a line holds the packet's bytes");
-}
 
 // RFC 4180: cells that are quoted may hold commas, line breaks and doubled quotes.
 std::size_t count_cells(std::string_view row) {
@@ -61,19 +34,6 @@ std::size_t count_cells(std::string_view row) {
   }
   require(!quoted, "quotes are closed");
   return cells;
-}
-
-void check_text(std::string_view text, bool color) {
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const auto c = static_cast<unsigned char>(text[i]);
-    if (color && c == 0x1B) {
-      require(text.substr(i, 2) == "\x1b[", "an escape begins a colour");
-      i = std::min(text.find('m', i), text.size() - 1);
-      continue;
-    }
-    require((c >= ' ' && c != 0x7F) || c == '\n', "text holds no control characters");
-  }
-  require(text.ends_with('\n'), "text ends with its line");
 }
 
 /// Everything that prints, each once for every way to ask for it.

@@ -73,7 +73,18 @@ std::string_view Diagnostics::source_from(const std::string& file, int line) con
 
 void Diagnostics::error(const Place& place, std::string what, std::string_view expected) {
   if (!expected.empty()) what.append("; ").append(expected);
-  found_.try_emplace(Key{place.file, place.line, place.column, what}, Diagnostic{place, what});
+  found_.try_emplace(Key{place.file, place.line, place.column, what},
+                     Diagnostic{place, what, false});
+}
+
+void Diagnostics::error_in_code(const Place& place, std::string what, std::string_view expected) {
+  if (!expected.empty()) what.append("; ").append(expected);
+  found_.try_emplace(Key{place.file, place.line, place.column, what},
+                     Diagnostic{place, what, true});
+}
+
+void Diagnostics::pardon_code() {
+  std::erase_if(found_, [](const auto& one) { return one.second.in_code; });
 }
 
 std::vector<Diagnostic> Diagnostics::sorted() const {
@@ -82,21 +93,30 @@ std::vector<Diagnostic> Diagnostics::sorted() const {
   return out;
 }
 
-std::string Diagnostics::print() const {
+void Diagnostics::note(const Place& place, std::string what) {
+  notes_.try_emplace(Key{place.file, place.line, place.column, what},
+                     Diagnostic{place, what, false});
+}
+
+std::string Diagnostics::print() const { return print(found_, "error"); }
+std::string Diagnostics::print_notes() const { return print(notes_, "note"); }
+
+std::string Diagnostics::print(const std::map<Key, Diagnostic>& list, std::string_view kind) const {
   std::string out;
   std::size_t shown = 0;
-  for (const auto& [key, found] : found_) {
+  for (const auto& [key, found] : list) {
     if (shown == kShownMax) {
-      out += fmt::format("{} more errors\n", found_.size() - shown);
+      out += fmt::format("{} more {}s\n", list.size() - shown, kind);
       break;
     }
     ++shown;
     const Place& place = found.place;
     if (place.line == 0) {
-      out += fmt::format("{}: error: {}\n", place.file, found.text);
+      out += fmt::format("{}: {}: {}\n", place.file, kind, found.text);
       continue;
     }
-    out += fmt::format("{}:{}:{}: error: {}\n", place.file, place.line, place.column, found.text);
+    out +=
+        fmt::format("{}:{}:{}: {}: {}\n", place.file, place.line, place.column, kind, found.text);
     if (!sources_.contains(place.file)) continue;
     const std::string_view line =
         first_line(source_from(place.file, place.line)).substr(0, kSourceLineMax);

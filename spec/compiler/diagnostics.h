@@ -16,6 +16,7 @@ namespace rubricc {
 struct Diagnostic {
   Place place;
   std::string text;  // "what is wrong; what was expected"
+  bool in_code = false;
 };
 
 class Diagnostics {
@@ -28,6 +29,16 @@ class Diagnostics {
   /// Adds an error; `expected` may be empty. The same error at the same place is kept once: an
   /// aliased YAML node is read as often as it is used.
   void error(const Place& place, std::string what, std::string_view expected = {});
+
+  /// The same for what generated code cannot have, but tables in memory can.
+  void error_in_code(const Place& place, std::string what, std::string_view expected = {});
+  /// Forgets the errors of error_in_code.
+  void pardon_code();
+
+  /// Keeps something that is accepted, but worth to be known.
+  void note(const Place& place, std::string what);
+  /// Returns the notes as print() does errors.
+  std::string print_notes() const;
 
   bool empty() const { return found_.empty(); }
   /// Returns the diagnostics by file, line and column.
@@ -42,7 +53,10 @@ class Diagnostics {
     std::vector<std::size_t> lines;  // Begins of lines.
   };
   std::map<std::string, Source> sources_;
+  std::string print(const std::map<Key, Diagnostic>& list, std::string_view kind) const;
+
   std::map<Key, Diagnostic> found_;
+  std::map<Key, Diagnostic> notes_;
 };
 
 /// Returns the text of a file; nothing, after an error, if it cannot be read.

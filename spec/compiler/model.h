@@ -57,6 +57,7 @@ struct Expr {
   std::int64_t value = 0;         // kInt; kEnumValue once resolved.
   std::vector<std::string> path;  // kField: {"src", "devid"}; kEnumValue: {"pid", "local"}.
   bool to_i = false;              // `.to_i`: an enum's number.
+  bool is_bool = false;           // kInt: true or false.
   std::vector<std::unique_ptr<Expr>> operands;
   // Resolved by the checker:
   const Field* field = nullptr;     // kField: the last field of the path.
@@ -68,7 +69,8 @@ using ExprPtr = std::unique_ptr<Expr>;
 
 enum class ValueKind { kUint, kSint, kFloat, kBytes, kStruct, kMask };
 enum class RepeatKind { kOnce, kCount, kToEnd };
-enum class ExtentKind { kOwn, kSize, kToEnd };
+enum class ExtentKind { kOwn, kSize, kToEnd, kTerminated };
+enum class Encoding { kNone, kAscii, kUtf8 };
 
 struct Valid {
   Place place;
@@ -104,6 +106,14 @@ struct Unit {
   double offset = 0;
 };
 
+/// Characters, or a terminator of bytes.
+struct Text {
+  Encoding encoding = Encoding::kNone;
+  int terminator = -1;
+  int padding = -1;
+  bool may_lack_its_end = false;
+};
+
 struct Field {
   std::string id;
   std::string name;  // `-name`, else id.
@@ -130,6 +140,9 @@ struct Field {
   ExprPtr expect_expr;  // `-expect`
   std::optional<std::int64_t> expect;
   std::optional<Unit> unit;
+  std::optional<Text> text;
+  int bit_width = 0;  // A number of so many bits; 0 for whole bytes.
+  int bit_shift = 0;  // Number of the lowest one within width_bytes bytes; laid out by the checker.
   // Instances only.
   bool is_instance = false;
   std::int64_t position = -1;
@@ -194,6 +207,8 @@ struct Spec {
   std::string doc_ref;
   std::string file;  // As given on the command line: "spec/wire/rubicon.ksy".
   bool little_endian = false;
+  bool lowest_bit_first = false;  // `bit-endian: le`
+  std::string encoding;           // Of its text where a field has none.
   KeyPlaces places;
   bool named = false;  // On the command line; else only imported, not emitted.
   std::vector<std::string> import_names;

@@ -139,12 +139,12 @@ void check_id(Diagnostics& diagnostics, const Place& place, std::string_view id,
     diagnostics.error(place, fmt::format("name {}", quote(id)),
                       fmt::format("at most {} characters", kIdMax));
   } else if (!what.empty() && std::binary_search(kReserved.begin(), kReserved.end(), id)) {
-    diagnostics.error(place, fmt::format("{} cannot be the name of {}", quote(id), what),
-                      "it is a word of C++ or of the profile");
+    diagnostics.error_in_code(place, fmt::format("{} cannot be the name of {}", quote(id), what),
+                              "it is a word of C++ or of the profile");
   } else if (what == "a spec" &&
              std::binary_search(kReservedSpecs.begin(), kReservedSpecs.end(), id)) {
-    diagnostics.error(place, fmt::format("{} cannot be the name of {}", quote(id), what),
-                      "the generated code has a namespace of that name");
+    diagnostics.error_in_code(place, fmt::format("{} cannot be the name of {}", quote(id), what),
+                              "the generated code has a namespace of that name");
   }
 }
 

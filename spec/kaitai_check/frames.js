@@ -156,4 +156,4 @@ function makeFrames(carrier, folder, count, seed) {
   return frames;
 }
 
-module.exports = {makeFrames};
+module.exports = {makeFrames, seeded};

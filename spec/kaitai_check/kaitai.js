@@ -9,8 +9,15 @@ const compiler = require('kaitai-struct-compiler');
 let positionsTold = false;
 const wireFolder = path.join(__dirname, '..', 'wire');
 
+/// Returns where the spec is: with those that code is made from, or that are read at run time, or
+/// here.
+function fileOf(name) {
+  return [wireFolder, path.join(wireFolder, 'run_time'), __dirname]
+      .map((folder) => path.join(folder, `${name}.ksy`)).find((file) => fs.existsSync(file));
+}
+
 function readSpec(name) {
-  return yaml.load(fs.readFileSync(path.join(wireFolder, `${name}.ksy`), 'utf8'));
+  return yaml.load(fs.readFileSync(fileOf(name), 'utf8'));
 }
 
 /// Makes errors of Kaitai Struct's runtime report their place, which it knows: with `io` and, for a
@@ -43,7 +50,8 @@ async function load(name) {
   for (const [file, text] of Object.entries(files)) {
     fs.writeFileSync(path.join(folder, file), text);
   }
-  const className = name[0].toUpperCase() + name.slice(1);
+  const className = name[0].toUpperCase() +
+      name.slice(1).replace(/_(\w)/g, (_, c) => c.toUpperCase());
   const parser = require(path.join(folder, `${className}.js`))[className];
   const Stream = require('kaitai-struct/KaitaiStream');
   if (!positionsTold) tellPositions(Stream);
@@ -52,4 +60,4 @@ async function load(name) {
   return {parser, spec, Stream};
 }
 
-module.exports = {load};
+module.exports = {fileOf, load};

@@ -19,6 +19,7 @@ namespace rubric::cli {
 namespace {
 
 constexpr std::string_view kNone = "none";
+constexpr std::string_view kLinkFrames = "ieee802154";
 
 /// A spec that was read; it is kept until the program ends.
 struct ReadSpec {
@@ -45,9 +46,10 @@ void add_requirements(rubricc::Model& model) {
   }
 }
 
-void require_sound(rubricc::Model& model, rubricc::Diagnostics& diagnostics) {
-  rubricc::check_model(model, diagnostics, rubricc::CheckFor::kRunTime);
-  std::cerr << diagnostics.print();
+void require_sound(rubricc::Model& model, rubricc::Diagnostics& diagnostics,
+                   rubricc::CheckFor what) {
+  rubricc::check_model(model, diagnostics, what);
+  std::cerr << diagnostics.print_notes() << diagnostics.print();
   if (!diagnostics.empty()) exit_with(kExitInput);
 }
 
@@ -65,7 +67,7 @@ const reflect::Protocol& read_spec(const std::string& spec) {
   } else {
     rubricc::load_shipped_spec(spec, shipped_specs(), read.model, diagnostics);
   }
-  require_sound(read.model, diagnostics);
+  require_sound(read.model, diagnostics, rubricc::CheckFor::kRunTime);
   read.tables = std::make_unique<rubricc::BuiltTables>(read.model);
   read.built = read.tables->of(read.model.specs.back()->id);
   return *read.built.protocol;
@@ -122,15 +124,18 @@ std::string dissector_with(const std::string& file) {
   rubricc::Diagnostics diagnostics;
   add_requirements(model);
   for (const auto& [name, text] : shipped_specs()) {
-    if (name != kNone) rubricc::load_shipped_spec(name, shipped_specs(), model, diagnostics);
+    // Wireshark has beacons and commands of its own.
+    if (name != kNone && name != kLinkFrames)
+      rubricc::load_shipped_spec(name, shipped_specs(), model, diagnostics);
   }
   rubricc::load_specs({file}, model, diagnostics, shipped_specs());
-  require_sound(model, diagnostics);
+  require_sound(model, diagnostics, rubricc::CheckFor::kDissector);
   return rubricc::emit_lua(model).front().text;
 }
 
 OtherSpecs::OtherSpecs(const reflect::Protocol& chosen) : chosen_(chosen) {
   said_.fill(kNone == chosen.id);
+  said_of_links_ = kNone == chosen.id;
 }
 
 void OtherSpecs::look_closer(const reflect::Frame& frame) {
@@ -141,10 +146,16 @@ void OtherSpecs::look_closer(const reflect::Frame& frame) {
   }
   for (const reflect::FrameDecoder& other : others_) {
     const std::string_view name = other.protocol().id;
-    if (!claims(other.protocol(), frame.am.type)) continue;
+    if (frame.am.present && !claims(other.protocol(), frame.am.type)) continue;
     reflect::Frame tried;
     other.decode(*frame.packet, tried);
     if (tried.malformed() || tried.decoded.note_count() != 0) continue;
+    if (!frame.am.present) {
+      const char* message = tried.decoded.message() ? tried.decoded.message()->name : "frame";
+      fmt::print(stderr, "rubric: a {} fits {}: --spec {}\n", message, name, name);
+      said_of_links_ = true;
+      return;
+    }
     const std::string_view also = claims(chosen_, frame.am.type) ? "also fits" : "fits";
     fmt::print(stderr, "rubric: AM {} {} {}: --spec {}\n", frame.am.type, also, name, name);
     said_[frame.am.type] = true;

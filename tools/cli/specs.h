@@ -31,16 +31,17 @@ const reflect::RouteTable* read_routes_of(const reflect::Protocol& protocol);
 /// Returns the dissector of the shipped specs and the one of this file.
 std::string dissector_with(const std::string& file);
 
-/// Says once for each AM type on stderr which other spec fits a message that the chosen one does
-/// not fit wholly.
+/// Says once for each AM type, and once for beacons and commands, on stderr which other spec fits a
+/// message that the chosen one does not fit wholly.
 class OtherSpecs {
  public:
   explicit OtherSpecs(const reflect::Protocol& chosen);
 
   void look(const reflect::Frame& frame) {
     const bool fits = !frame.malformed() && frame.decoded.note_count() == 0;
-    if (fits || !frame.am.present || said_[frame.am.type]) return;
-    look_closer(frame);
+    if (fits) return;
+    const bool link = frame.packet->framing == Framing::kRadio;
+    if (frame.am.present ? !said_[frame.am.type] : link && !said_of_links_) look_closer(frame);
   }
 
  private:
@@ -49,6 +50,7 @@ class OtherSpecs {
   const reflect::Protocol& chosen_;
   std::vector<reflect::FrameDecoder> others_;  // Made when a first message does not fit.
   std::array<bool, 256> said_{};
+  bool said_of_links_ = false;  // Of frames without an active message.
 };
 
 }  // namespace rubric::cli

@@ -134,7 +134,13 @@ class Run {
         acks_(tinyos::tables::kProtocol, generate::kLinkAckRoutes, options.seed ^ kAckSeed),
         framer_(format_, frames_.random()) {
     add_routes(frames_.routes(), false, framer_, messages_);
-    add_routes(acks_.routes(), true, framer_, messages_);
+    if (protocol.carrier_count != 0) {
+      add_routes(acks_.routes(), true, framer_, messages_);
+    } else if (format_ != InputFormat::kHex && format_ != InputFormat::kJsonl) {
+      throw cli::UsageError("--format", fmt::format("{} holds frames, and {} has messages alone; "
+                                                    "hex and jsonl do",
+                                                    options.format, protocol.id));
+    }
     choose_messages();
   }
 

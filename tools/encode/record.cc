@@ -309,6 +309,10 @@ RecordReader::Plan RecordReader::plan_radio(const Value& line, const Value& am) 
     return {reflect::find_carrier(tinyos::tables::kProtocol, "radio_ack"), std::move(values),
             nullptr};
   }
+  for (const char* carrier : {"radio_beacon", "radio_command"}) {
+    const Type* type = reflect::find_carrier(protocol_, carrier);
+    if (type && fields && type == bare_type(line)) return {type, *fields, nullptr};
+  }
   const bool has_network = !frame.find("network") || given(frame, "network");
   const Type* type = reflect::find_carrier(protocol_, has_network ? "radio_i" : "radio_t");
   const Value payload = fields ? *fields : Value{};

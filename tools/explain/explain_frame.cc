@@ -5,10 +5,12 @@
 #include <algorithm>
 
 #include "codec/reflect/fault_text.h"
+#include "codec/reflect/text_field.h"
 #include "tools/encode/carriers.h"
 #include "tools/explain/table.h"
 #include "tools/explain/type_text.h"
 #include "tools/format/json_nodes.h"
+#include "tools/format/plain_value.h"
 #include "tools/format/record.h"
 
 namespace rubric::explain {
@@ -131,6 +133,11 @@ class Rows {
         return add(at, bytes, indent_ + path, values, first_sentence(node.field->doc));
       }
       case NodeKind::kBytes:
+        if (format::is_text(node.field)) {
+          return add(at, bytes, indent_ + path,
+                     format::quoted(reflect::shown_text(*node.field, bytes)),
+                     first_sentence(node.field->doc));
+        }
         return add(at, bytes, indent_ + path, count_text(bytes.size()),
                    "Opaque. " + first_sentence(node.field->doc));
       case NodeKind::kStructArray:

@@ -24,7 +24,7 @@ std::string path_at(const Type& type, std::int32_t offset, const Field** field) 
   for (int i = 0; i < type.field_count; ++i) {
     const Field& f = type.fields[i];
     if (f.fixed_offset < 0 || f.fixed_offset > offset || f.repeat != Repeat::kOnce) continue;
-    if (f.fixed_offset == offset && f.kind <= Kind::kMask) {
+    if (f.fixed_offset == offset && f.kind <= Kind::kMask && f.kind != Kind::kBits) {
       *field = &f;
       return f.name;
     }
@@ -112,6 +112,15 @@ std::string expr_text(const Expr& expr, const Type& type) {
   return stack.empty() ? std::string{} : stack.back().text;
 }
 
+namespace {
+
+std::string bytes_name(const Field& f) {
+  if (!f.text || f.text->encoding == reflect::Encoding::kNone) return "bytes";
+  return f.text->encoding == reflect::Encoding::kAscii ? "ASCII" : "UTF-8";
+}
+
+}  // namespace
+
 std::string type_text(const Field& f, const Type& owner) {
   std::string text;
   const char* order = f.width_bytes > 1 && f.little_endian ? "le" : "";
@@ -119,8 +128,9 @@ std::string type_text(const Field& f, const Type& owner) {
     case Kind::kUint: text = fmt::format("u{}{}", 8 * f.width_bytes, order); break;
     case Kind::kSint: text = fmt::format("s{}{}", 8 * f.width_bytes, order); break;
     case Kind::kFloat: text = fmt::format("f{}{}", 8 * f.width_bytes, order); break;
+    case Kind::kBits: return fmt::format("b{}{}", f.bit_width, f.little_endian ? "le" : "");
     case Kind::kMask: text = fmt::format("mask{}{}", 8 * f.width_bytes, order); break;
-    case Kind::kBytes: text = "bytes"; break;
+    case Kind::kBytes: text = bytes_name(f); break;
     case Kind::kStruct: text = f.type ? f.type->id : "by " + expr_text(f.choice->key, owner); break;
   }
   if (f.repeat == Repeat::kCount) return fmt::format("{}[{}]", text, expr_text(f.count, owner));
@@ -130,6 +140,7 @@ std::string type_text(const Field& f, const Type& owner) {
 
 std::string size_text(const Field& f, const Type& owner) {
   if (f.extent == Extent::kSize) return expr_text(f.size, owner);
+  if (f.extent == Extent::kTerminated) return fmt::format("to {:#04x}", f.text->terminator);
   if (f.extent == Extent::kToEnd || f.repeat == Repeat::kToEnd) return "rest";
   std::uint32_t each = f.width_bytes;
   if (f.kind == Kind::kStruct && f.type) {

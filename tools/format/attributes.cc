@@ -83,7 +83,7 @@ void note_names(const Protocol&, Names& names) {
   for (const reflect::NoteKind kind :
        {reflect::NoteKind::kUnknownMessage, reflect::NoteKind::kDoesNotFit,
         reflect::NoteKind::kUnexpectedValue, reflect::NoteKind::kNotDecoded,
-        reflect::NoteKind::kRadioOnly}) {
+        reflect::NoteKind::kRadioOnly, reflect::NoteKind::kNotText}) {
     names.emplace_back(reflect::note_name(kind));
   }
 }

@@ -16,6 +16,7 @@
 #include "codec/generated/rubicon/rubicon.h"
 #include "codec/reflect/frame.h"
 #include "codec/reflect/registry.h"
+#include "tools/cli/specs.h"
 #include "tools/format/filter.h"
 #include "tools/format/jsonl.h"
 #include "tools/format/text.h"
@@ -124,8 +125,12 @@ void deframe_validate(benchmark::State& state) {
   benchmark::DoNotOptimize(valid);
 }
 
-void deframe_decode(benchmark::State& state) {
-  const reflect::FrameDecoder decoder(*reflect::find_protocol("rubicon"));
+const reflect::Protocol& built_in() { return *reflect::find_protocol("rubicon"); }
+// The same, as `--spec FILE` has it.
+const reflect::Protocol& run_time() { return cli::protocol_of("spec/wire/rubicon.ksy"); }
+
+void decode_by(const reflect::Protocol& protocol, benchmark::State& state) {
+  const reflect::FrameDecoder decoder(protocol);
   reflect::Frame frame;
   std::uint64_t nodes = 0;
   run(state, [&](const Packet& packet) {
@@ -135,9 +140,11 @@ void deframe_decode(benchmark::State& state) {
   benchmark::DoNotOptimize(nodes);
 }
 
+void deframe_decode(benchmark::State& state) { decode_by(built_in(), state); }
+void run_time_decode(benchmark::State& state) { decode_by(run_time(), state); }
+
 template <class MakeFormatter>
-void print(benchmark::State& state, MakeFormatter make) {
-  const reflect::Protocol& protocol = *reflect::find_protocol("rubicon");
+void print(const reflect::Protocol& protocol, benchmark::State& state, MakeFormatter make) {
   const reflect::FrameDecoder decoder(protocol);
   auto formatter = make(protocol);
   reflect::Frame frame;
@@ -157,17 +164,22 @@ void print(benchmark::State& state, MakeFormatter make) {
   benchmark::DoNotOptimize(written);
 }
 
-void jsonl(benchmark::State& state) {
-  print(state, [](const reflect::Protocol& p) { return format::JsonlFormatter(p, false); });
+void jsonl_by(const reflect::Protocol& protocol, benchmark::State& state) {
+  print(protocol, state,
+        [](const reflect::Protocol& p) { return format::JsonlFormatter(p, false); });
 }
-
-void text(benchmark::State& state) {
-  print(state,
+void text_by(const reflect::Protocol& protocol, benchmark::State& state) {
+  print(protocol, state,
         [](const reflect::Protocol& p) { return format::TextFormatter(p, format::TextOptions{}); });
 }
 
+void jsonl(benchmark::State& state) { jsonl_by(built_in(), state); }
+void run_time_jsonl(benchmark::State& state) { jsonl_by(run_time(), state); }
+void text(benchmark::State& state) { text_by(built_in(), state); }
+void run_time_text(benchmark::State& state) { text_by(run_time(), state); }
+
 void filter(benchmark::State& state) {
-  const reflect::Protocol& protocol = *reflect::find_protocol("rubicon");
+  const reflect::Protocol& protocol = built_in();
   const reflect::FrameDecoder decoder(protocol);
   const format::Filter expression("message==updates && src.devid==4", protocol);
   reflect::Frame frame;
@@ -186,6 +198,9 @@ BENCHMARK(deframe_validate);
 BENCHMARK(deframe_decode);
 BENCHMARK(jsonl);
 BENCHMARK(text);
+BENCHMARK(run_time_decode);
+BENCHMARK(run_time_jsonl);
+BENCHMARK(run_time_text);
 BENCHMARK(filter);
 
 }  // namespace

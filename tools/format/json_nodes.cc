@@ -7,6 +7,8 @@
 #include <cmath>
 
 #include "codec/reflect/decode.h"
+#include "codec/reflect/text_field.h"
+#include "codec/text/text.h"
 #include "tools/format/message_types.h"
 #include "tools/format/put.h"
 
@@ -37,12 +39,23 @@ char* put_bits(char* at, const FieldPlan& plan, std::int64_t value) {
   return at;
 }
 
+char* put_quoted_hex(char* at, Bytes bytes) {
+  *at++ = '"';
+  at = put_hex(at, bytes);
+  *at++ = '"';
+  return at;
+}
+
 char* put_raw(char* at, const Field& field, std::int64_t value) {
   if (field.kind == Kind::kFloat) return put_float(at, static_cast<std::uint32_t>(value));
   return put_int(at, value);
 }
 
 }  // namespace
+
+bool is_text(const Field* field) {
+  return field && field->text && field->text->encoding != reflect::Encoding::kNone;
+}
 
 double converted(const Field& field, std::int64_t raw) {
   const double number = field.kind == Kind::kFloat
@@ -64,10 +77,9 @@ char* JsonNodes::value(char* at, const Decoded& decoded, std::size_t node) const
     case NodeKind::kNumber: return put_raw(at, *n.field, n.value);
     case NodeKind::kBytes: break;
   }
-  *at++ = '"';
-  at = put_hex(at, decoded.bytes.sub(n.offset, n.size));
-  *at++ = '"';
-  return at;
+  const Bytes bytes = decoded.bytes.sub(n.offset, n.size);
+  if (is_text(n.field)) return report::put_json_string(at, reflect::shown_text(*n.field, bytes));
+  return put_quoted_hex(at, bytes);
 }
 
 char* JsonNodes::object(char* at, const Decoded& decoded, std::size_t node) const {
@@ -90,6 +102,12 @@ char* JsonNodes::members(char* at, const Decoded& decoded, std::size_t from,
       continue;
     }
     at = value(put_key(at, plan), decoded, i);
+    if (node.kind == NodeKind::kBytes && is_text(node.field)) {
+      const Bytes bytes = decoded.bytes.sub(node.offset, node.size);
+      if (!reflect::says_all(*node.field, bytes)) {
+        at = put_quoted_hex(put(at, std::string_view(plan.hex_key)), bytes);
+      }
+    }
     if (plan_.units() && node.kind == NodeKind::kNumberArray && !plan.unit_key.empty()) {
       at = put(at, std::string_view(plan.unit_key));
       char* const open = at;
@@ -230,6 +248,10 @@ void JsonPlan::add(const Field& field) {
   plan.name_key = fmt::format(",\"{}_name\":", field.name);
   plan.bits_key = fmt::format(",\"{}_bits\":", field.name);
   std::size_t chars = plan.long_key.size() + kMaxFloatChars + 2;
+  if (field.text) {
+    plan.hex_key = fmt::format(",\"{}_hex\":", field.name);
+    chars += plan.hex_key.size() + 4;
+  }
   const bool unit = units_ && field.unit && field.kind != Kind::kFloat;
   if (unit) {
     plan.unit_key = fmt::format(",\"{}_{}\":", field.name, field.unit->symbol);

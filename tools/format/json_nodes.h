@@ -42,6 +42,7 @@ struct FieldPlan {
   std::string long_key;  ///< The same where it does not fit in `key`.
   std::string name_key;  ///< `,"type_name":`
   std::string bits_key;  ///< `,"transducers_bits":`
+  std::string hex_key;   ///< `,"text_hex":`
   std::string unit_key;  ///< `,"temp_degC":`
   /// For enums with close values: the member and its name for each value from first_value on,
   /// `,"type":35,"type_name":"updates"`; size 0 for a value without a name.
@@ -83,6 +84,9 @@ class JsonPlan {
   std::uintptr_t first_address_ = 0;
   std::size_t max_member_chars_ = 0;
 };
+
+/// Returns whether the field's bytes are shown as characters.
+bool is_text(const reflect::Field* field);
 
 /// Writes nodes by a protocol's plan, unchecked, into room that its caller made.
 class JsonNodes {

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "codec/reflect/suggest.h"
+#include "codec/reflect/text_field.h"
 #include "tools/format/json_nodes.h"
 #include "tools/format/message_types.h"
 
@@ -169,6 +170,11 @@ bool Path::give_node(const Target& target, const Decoded& decoded, std::size_t i
     }
     return true;
   }
+  if (is_text(node.field)) {
+    const std::string text =
+        reflect::shown_text(*node.field, decoded.bytes.sub(node.offset, node.size));
+    return visit(Value::of_text(text));
+  }
   Value value = Value::of_bytes(decoded.bytes.sub(node.offset, node.size));
   value.field = node.field;
   value.node = index;
@@ -258,7 +264,7 @@ bool Path::is_free_text() const {
 bool Path::is_bytes() const {
   if (attribute_) return attribute_->name == "raw" || attribute_->name == "stale";
   return std::all_of(targets_.begin(), targets_.end(), [](const Target& target) {
-    return target.field && target.field->kind == Kind::kBytes;
+    return target.field && target.field->kind == Kind::kBytes && !is_text(target.field);
   });
 }
 

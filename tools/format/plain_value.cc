@@ -18,6 +18,18 @@ void append_real(double value, bool binary32, Buffer& out) {
                       : put_double(at, value));
 }
 
+/// Returns whether a terminal obeys this character, instead of showing it: those that control it,
+/// U+0080 to U+009F among them, and those that turn the direction of writing.
+bool obeyed(std::string_view character) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(character[i]); };
+  if (character.size() == 1) return byte(0) < 0x20 || byte(0) == 0x7f;
+  if (character.size() == 2) return byte(0) == 0xc2 && byte(1) < 0xa0;
+  if (character.size() != 3 || byte(0) != 0xe2) return false;
+  if (byte(1) == 0x80)
+    return byte(2) == 0x8e || byte(2) == 0x8f || (byte(2) >= 0xa8 && byte(2) <= 0xae);
+  return byte(1) == 0x81 && byte(2) >= 0xa6 && byte(2) <= 0xa9;
+}
+
 }  // namespace
 
 void append_bits(const reflect::MaskTable& mask, std::int64_t value, Buffer& out) {
@@ -38,18 +50,25 @@ void append_bits(const reflect::MaskTable& mask, std::int64_t value, Buffer& out
 
 void append_harmless(std::string_view text, Buffer& out) {
   while (!text.empty()) {
-    const auto c = static_cast<unsigned char>(text[0]);
     const std::size_t length = report::utf8_length(text);
-    // U+0080 to U+009F are control characters too.
-    const bool control = c < 0x20 || c == 0x7f ||
-                         (length == 2 && c == 0xc2 && static_cast<unsigned char>(text[1]) < 0xa0);
-    if (length == 0 || control) {
+    if (length == 0 || obeyed(text.substr(0, length))) {
       out.append("\xef\xbf\xbd");
     } else {
       out.append(text.substr(0, length));
     }
     text.remove_prefix(length ? length : 1);
   }
+}
+
+std::string quoted(std::string_view text) {
+  Buffer harmless;
+  append_harmless(text, harmless);
+  std::string out = "\"";
+  for (const char c : harmless.view()) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + '"';
 }
 
 void append_plain_value(const Value& value, const Record& record, const JsonNodes& nodes,

@@ -22,4 +22,7 @@ void append_bits(const reflect::MaskTable& mask, std::int64_t value, Buffer& out
 /// U+FFFD.
 void append_harmless(std::string_view text, Buffer& out);
 
+/// Returns the same in quotes, with those within it escaped.
+std::string quoted(std::string_view text);
+
 }  // namespace rubric::format

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "codec/reflect/fault_text.h"
+#include "codec/reflect/text_field.h"
 #include "tools/format/json_nodes.h"
 #include "tools/format/plain_value.h"
 #include "tools/format/put.h"
@@ -233,6 +234,7 @@ class FieldPrinter {
       case NodeKind::kNumberArray: leaf([&] { numbers(node); }); break;
       case NodeKind::kBytes:
         leaf([&] {
+          if (is_text(node.field)) return text(node);
           append_hex_short(decoded_.bytes.sub(node.offset, node.size), kMaxHexBytes, out_);
         });
         break;
@@ -284,6 +286,16 @@ class FieldPrinter {
     } else {
       out_.commit(put_int(out_.reserve(kMaxIntChars), value));
     }
+  }
+
+  // Appends the text in quotes, and its bytes if it does not say them all.
+  void text(const Node& node) {
+    const Bytes bytes = decoded_.bytes.sub(node.offset, node.size);
+    out_.append(quoted(reflect::shown_text(*node.field, bytes)));
+    if (reflect::says_all(*node.field, bytes)) return;
+    out_.append(" (");
+    append_hex_short(bytes, kMaxHexBytes, out_);
+    out_.append(')');
   }
 
   void numbers(const Node& node) {

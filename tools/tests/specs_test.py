@@ -28,6 +28,38 @@ types:
 """
 
 
+TEXTS = """meta: {id: texts, endian: be, encoding: UTF-8, file-extension: txt}
+seq:
+  - {id: version, type: b4}
+  - {id: flag, type: b1}
+  - {id: rest, type: b19}
+  - {id: name, type: str, size: 8, terminator: 0, encoding: ascii}
+  - {id: label, type: strz, -orig-id: Label}
+  - {id: opt, type: u2, if: flag}
+  - {id: kind, type: u1, if: version == 4}
+  - {id: tail, type: str, size-eos: true}
+"""
+UNPROVED = """meta: {id: unproved, endian: be}
+seq:
+  - {id: length, type: u1}
+  - {id: kind, type: u1}
+  - {id: body, size: length - 2}
+  - {id: chosen, type: {switch-on: kind, cases: {1: pair, 2: list}}}
+  - {id: lists, type: list, repeat: eos}
+instances:
+  twice: {value: length * 2}
+types:
+  pair:
+    seq: [{id: default, type: u1, enum: color}, {id: empty, type: nothing}]
+    types:
+      nothing: {}
+    enums:
+      color: {1: red}
+  list:
+    seq: [{id: count, type: u1}, {id: values, type: u2, repeat: expr, repeat-expr: count}]
+"""
+
+
 def rubric(*args, stdin=""):
     return subprocess.run([RUBRIC, *args], input=stdin, capture_output=True, text=True, check=False)
 
@@ -42,15 +74,22 @@ class Shipped(unittest.TestCase):
     def test_every_vector_decodes_and_encodes(self):
         for one in vectors():
             with self.subTest(**one):
+                way = one.get("as", "hex")
                 done = rubric("decode", "--spec", one["spec"], "--format", "jsonl",
-                              stdin=one["hex"])
+                              "--input-format", way, stdin=one["hex"])
                 self.assertEqual((done.returncode, done.stderr), (0, ""))
                 frame = json.loads(done.stdout)
                 self.assertEqual((frame["message"], frame["fields"], frame["notes"]),
                                  (one["message"], one["fields"], []))
-                again = rubric("encode", "--spec", one["spec"], "--format", "hex",
-                               stdin=done.stdout)
-                self.assertEqual(again.stdout.split(), one["hex"].upper().split(), again.stderr)
+                del frame["raw"]
+                with tempfile.NamedTemporaryFile(suffix=".pcapng") as capture:
+                    again = rubric("encode", "--spec", one["spec"], "--format", "pcapng", "-o",
+                                   capture.name, stdin=json.dumps(frame))
+                    self.assertEqual(again.returncode, 0, again.stderr)
+                    back = rubric("decode", "--spec", one["spec"], "--format", "jsonl",
+                                  capture.name)
+                self.assertEqual(json.loads(back.stdout)["raw"],
+                                 one["hex"].replace(" ", "").lower())
 
     def test_every_message_has_a_vector(self):
         listed = rubric("decode", "--spec", "list").stdout
@@ -64,7 +103,7 @@ class Shipped(unittest.TestCase):
                 self.assertIn((file.stem, message), there)
 
     def test_generated_frames_decode_as_expected(self):
-        for spec in ("blink_to_radio", "ctp", "dissemination", "printf", "none"):
+        for spec in ("blink_to_radio", "ctp", "dissemination", "ftsp", "printf", "none"):
             made = rubric("generate", "--spec", spec, "--count", "60", "--valid", "0.5",
                           "--seed", "7", "--format", "hex")
             said = rubric("generate", "--spec", spec, "--count", "60", "--valid", "0.5",
@@ -75,6 +114,23 @@ class Shipped(unittest.TestCase):
                      for x in done.stdout.splitlines()]
             self.assertEqual(len(expected), 60)
             self.assertEqual(found, expected, spec)
+
+    def test_generated_beacons_and_commands_decode_as_expected(self):
+        made = rubric("generate", "--spec", "ieee802154", "--message", "beacon", "--message",
+                      "command", "--count", "400", "--valid", "0.6").stdout
+        made = [json.loads(x) for x in made.splitlines()]
+        self.assertEqual({x["carrier"] for x in made}, {"radio_beacon", "radio_command"})
+        done = rubric("decode", "--spec", "ieee802154", "--input-format", "hex-radio", "--format",
+                      "jsonl", stdin="".join(x["raw"] + "\n" for x in made)).stdout
+        found = [json.loads(x) for x in done.splitlines()]
+        for one, frame in zip(made, found, strict=True):
+            with self.subTest(**one):
+                wanted, got = one["error"], frame["error"]
+                if got is None:
+                    self.assertEqual((one["verdict"], one["path"]), ("valid", frame["path"]))
+                else:
+                    self.assertEqual((wanted["fault"], wanted["offset"]),
+                                     (got["fault"], got["offset"]))
 
 
 class OtherSpecs(unittest.TestCase):
@@ -87,6 +143,13 @@ class OtherSpecs(unittest.TestCase):
         self.assertEqual(self.said(BLINK, command="stats"), hint)
         self.assertEqual(rubric("explain", *BLINK.split()).stderr, hint)
         self.assertEqual(self.said(BLINK, "--spec", "ctp"), hint.replace("also ", ""))
+
+    def test_beacons_and_commands_are_named_once(self):
+        beacon = "00 80 07 AA 1A 01 00 FF CF 00 00\n"
+        hint = "rubric: a beacon fits ieee802154: --spec ieee802154\n"
+        self.assertEqual(self.said(2 * beacon, "--input-format", "hex-radio"), hint)
+        self.assertEqual(self.said("08 80 07 AA 1A 01 00 FF CF 00 00",  # Secured.
+                                   "--input-format", "hex-radio"), "")
 
     def test_what_fits_or_fits_nothing_is_passed_over(self):
         self.assertEqual(self.said(BLINK, "--spec", "blink_to_radio"), "")
@@ -133,6 +196,99 @@ class File(unittest.TestCase):
         line = rubric("encode", "--spec", file, "--as", "pair", "--carrier", "none",
                       "--format", "hex", stdin='{"a":1,"b":2}')
         self.assertEqual(line.stdout.split(), ["01", "00", "02"], line.stderr)
+
+    def test_text_and_bits_are_shown_and_written(self):
+        args = ["--spec", self.file(TEXTS, "texts.ksy"), "--as", "texts"]
+        line = "4ABCDE 6162000000000000 68C3A400 AABB 07 6869"
+        escape = "48BCDE 6162001B41000000 68FF00 1B5B 22"
+        shown = rubric("decode", *args, stdin=line).stdout
+        self.assertIn('version=4 flag=1 rest=179422 name="ab" label="hä" opt=43707 kind=7 '
+                      'tail="hi"', shown)
+        shown = rubric("decode", *args, "--filter", "name=='ab' && error", stdin=escape).stdout
+        self.assertNotIn("\x1b", shown)
+        self.assertEqual("", shown)
+        both = rubric("decode", *args, "--format", "jsonl", stdin=f"{line}\n{escape}").stdout
+        frames = [json.loads(x) for x in both.splitlines()]
+        self.assertEqual(frames[0]["fields"], {
+            "version": 4, "flag": 1, "rest": 179422, "name": "ab", "label": "hä", "opt": 43707,
+            "kind": 7, "tail": "hi"})
+        self.assertEqual(frames[1]["fields"]["name_hex"], "6162001b41000000")
+        self.assertEqual([x["note"] for x in frames[1]["notes"]], ["not_text"])
+        for frame in frames:
+            del frame["raw"]
+        made = rubric("encode", "--spec", args[1], "--format", "hex",
+                      stdin="".join(json.dumps(x) + "\n" for x in frames))
+        self.assertEqual([x.replace(" ", "") for x in made.stdout.splitlines()],
+                         [line.replace(" ", ""), escape.replace(" ", "")], made.stderr)
+        frames[1]["fields"]["name"] = "cd"
+        made = rubric("encode", "--spec", args[1], stdin=json.dumps(frames[1]))
+        self.assertIn("name_hex says", made.stderr)
+        columns = rubric("decode", *args, "--format", "csv", "--fields", "name,tail",
+                         stdin=line.replace("6869", "3D1B2C"))
+        self.assertEqual(columns.stdout.splitlines()[1], 'ab,"=\ufffd,"')
+        self.assertIn("Only if byte 0 % 16 / 8", rubric("explain", *args[:2], "texts").stdout)
+
+    def test_text_is_read_and_written_as_generated(self):
+        args = ["--spec", self.file(TEXTS, "texts.ksy")]
+        expect = self.folder / "expect"
+        made = rubric("generate", *args, "--count", "500", "--valid", "0.5", "--format", "hex",
+                      "--expect", str(expect)).stdout
+        done = rubric("decode", *args, "--as", "texts", "--format", "jsonl", stdin=made).stdout
+        wanted = [json.loads(x)["error"] for x in expect.read_text().splitlines()]
+        frames = [json.loads(x) for x in done.splitlines()]
+        self.assertEqual(len(frames), 500)
+        for error, frame in zip(wanted, frames):
+            found = frame["error"]
+            self.assertEqual(error and (error["fault"], error["offset"]),
+                             found and (found["fault"], found["offset"]))
+            del frame["raw"]
+        sound = [x for x in frames if not x["error"]]
+        self.assertGreater(len(sound), 100)
+        again = rubric("encode", *args, "--format", "hex",
+                       stdin="".join(json.dumps(x) + "\n" for x in sound)).stdout
+        bytes_of = [x for x, error in zip(made.splitlines(), wanted) if not error]
+        self.assertEqual(again.splitlines(), bytes_of)
+
+    def test_what_cannot_be_proved_is_noted_and_checked(self):
+        file = self.file(UNPROVED, "unproved.ksy")
+        lines = "04 01 AABB 01 02 0001 0002 00\n03 02 AA 01 0007\n02 09\n01 01 05\n09 01 05\n"
+        done = rubric("decode", "--spec", file, "--as", "unproved", "--format", "jsonl",
+                      stdin=lines)
+        self.assertIn(f"{file}:5:29: note: the size 'length - 2' can be negative; each frame is "
+                      "checked\n", done.stderr)
+        self.assertIn("note: instance 'twice' is computed; it is not shown\n", done.stderr)
+        self.assertNotIn("error", done.stderr)
+        frames = [json.loads(x) for x in done.stdout.splitlines()]
+        self.assertEqual(frames[0]["fields"], {
+            "length": 4, "kind": 1, "body": "aabb",
+            "chosen": {"default": 1, "default_name": "red", "empty": {}},
+            "lists": [{"count": 2, "values": [1, 2]}, {"count": 0, "values": []}]})
+        self.assertEqual(frames[1]["fields"]["chosen"], {"count": 1, "values": [7]})
+        self.assertEqual(frames[2]["fields"], {"length": 2, "kind": 9, "body": "", "lists": []})
+        self.assertEqual([x["error"] and (x["error"]["fault"], x["error"]["offset"])
+                          for x in frames], [None, None, None, ("truncated", 3), ("truncated", 3)])
+        for frame in frames:
+            del frame["raw"]
+        again = rubric("encode", "--spec", file, "--format", "hex",
+                       stdin="".join(json.dumps(x) + "\n" for x in frames[:3]))
+        self.assertEqual([x.replace(" ", "") for x in again.stdout.splitlines()],
+                         [x.replace(" ", "") for x in lines.splitlines()[:3]], again.stderr)
+        made = rubric("generate", "--spec", file, "--message", "unproved", "--count", "200",
+                      "--format", "hex", "--expect", str(self.folder / "expect")).stdout
+        done = rubric("decode", "--spec", file, "--as", "unproved", "--format", "jsonl", stdin=made)
+        wanted = [json.loads(x)["verdict"] for x in
+                  (self.folder / "expect").read_text().splitlines()]
+        found = ["malformed" if json.loads(x)["error"] else "valid"
+                 for x in done.stdout.splitlines()]
+        self.assertEqual(found, wanted)
+        refused = rubric("install-wireshark", "--dir", str(self.folder), "--spec", file)
+        self.assertIn("5:29: error: the size 'length - 2' can be negative", refused.stderr)
+
+    def test_text_and_bits_are_refused_for_a_dissector(self):
+        done = rubric("install-wireshark", "--dir", str(self.folder), "--spec",
+                      self.file(TEXTS, "texts.ksy"))
+        self.assertEqual(done.returncode, 3)
+        self.assertIn("rubric --spec reads text", done.stderr)
 
     def test_imports_beside_the_file_win_over_shipped_ones(self):
         shipped = pathlib.Path("spec/wire/run_time/blink_to_radio.ksy").read_text(encoding="utf-8")

@@ -20,12 +20,27 @@ constexpr std::uint32_t kUnbounded = std::numeric_limits<std::uint32_t>::max();
 struct Check {
   Model& model;
   Diagnostics& diagnostics;
-  bool for_code;                  // Else for tables in memory.
+  bool for_code;                  // Else names and rules are free.
+  bool at_run_time;               // For tables in memory: what these alone can hold.
   std::set<const void*> open;     // Fields and types whose size is not known.
   std::vector<Type*> order = {};  // All types, what a type contains before it.
 
   void error(const Place& place, std::string what, std::string_view expected = {}) {
     diagnostics.error(place, std::move(what), expected);
+  }
+  /// Reports what cannot be shown to be right: for tables in memory a note, as reading them checks
+  /// it. Returns whether that is the case.
+  bool unproved(const Place& place, std::string what, std::string_view expected) {
+    if (at_run_time) {
+      diagnostics.note(place, std::move(what) + "; each frame is checked");
+    } else {
+      error(place, std::move(what), expected);
+    }
+    return at_run_time;
+  }
+  /// Reports what tables in memory can hold, and nothing else.
+  void error_elsewhere(const Place& place, std::string what, std::string_view expected = {}) {
+    if (!at_run_time) error(place, std::move(what), expected);
   }
   bool is_open(const void* thing) const { return open.contains(thing); }
 };

@@ -23,6 +23,9 @@ struct Cost {
   int steps = 1;
 };
 Cost cost(const Expr& expr) {
+  if (expr.field != nullptr && expr.field->bit_width > 0) {
+    return {2, 4 * expr.field->width_bytes + 1};  // As append_bits of built_tables.cc has it.
+  }
   Cost out{0, 1};
   int held = 0;
   for (const auto& operand : expr.operands) {
@@ -58,7 +61,9 @@ class Resolver {
   }
 
  private:
-  ExprShape number(Expr& expr) { return constant(expr, {Shape::kInt, nullptr}); }
+  ExprShape number(Expr& expr) {
+    return constant(expr, {expr.is_bool ? Shape::kBool : Shape::kInt, nullptr});
+  }
 
   ExprShape constant(Expr& expr, ExprShape shape) {
     if (!scope_.wide && (expr.value < kConstants.min || expr.value > kConstants.max)) {
@@ -177,6 +182,9 @@ class Resolver {
     expr.field = step;
     expr.offset_bytes = offset;
     expr.range = step->range;
+    if (step->bit_width == 1 && !expr.to_i && step->enumeration == nullptr) {
+      return {Shape::kBool, nullptr};
+    }
     const bool is_enum = step->enumeration != nullptr && !expr.to_i;
     return is_enum ? ExprShape{Shape::kEnum, step->enumeration} : ExprShape{Shape::kInt, nullptr};
   }
@@ -206,7 +214,9 @@ class Resolver {
     if (left.shape == Shape::kOpen || right.shape == Shape::kOpen) return open();
     const bool ordered = expr.op != ExprOp::kEq && expr.op != ExprOp::kNe;
     const bool same = left.shape == right.shape && left.enumeration == right.enumeration;
-    if (!same || left.shape == Shape::kBool || (ordered && left.shape == Shape::kEnum)) {
+    const bool told = expr.operands[0]->is_bool || expr.operands[1]->is_bool;
+    const bool conditions = left.shape == Shape::kBool && (ordered || !told);
+    if (!same || conditions || (ordered && left.shape == Shape::kEnum)) {
       check_.error(expr.place,
                    fmt::format("{} and {} cannot be compared", quote(to_text(*expr.operands[0])),
                                quote(to_text(*expr.operands[1]))),
@@ -262,6 +272,7 @@ std::optional<std::int64_t> resolve_constant(Check& check, Expr& expr, std::stri
                                              const Enum* enumeration, const Scope& scope) {
   const ExprShape found = resolve_expr(check, expr, {scope.type, 0, false, true});
   if (found.shape == Shape::kOpen) return std::nullopt;
+  if (expr.is_bool && enumeration == nullptr) return expr.value;
   const Shape wanted = enumeration == nullptr ? Shape::kInt : Shape::kEnum;
   if (found.shape == wanted && found.enumeration == enumeration) return expr.range.min;
   check.error(expr.place, fmt::format("{} does not fit {}", quote(to_text(expr)), quote(what)),

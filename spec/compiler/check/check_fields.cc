@@ -17,6 +17,28 @@ void check_bytes(Check& check, Field& field) {
               "type, size, size-eos or contents was expected");
 }
 
+/// Text and bits are read at run time alone.
+void check_plain(Check& check, const Field& field) {
+  if (check.at_run_time) return;
+  const Place& place = place_of(field.places, "type", field.place);
+  if (field.text) {
+    check.error(place, fmt::format("text or a terminator in {}", quote(field.id)),
+                "bytes were expected; rubric --spec reads text");
+  }
+  if (field.bit_width > 0) {
+    check.error(place, "bits outside a mask",
+                "-mask: 8 or -mask: 16 was expected at the type; rubric --spec reads bits");
+  }
+}
+
+void check_bits(Check& check, const Field& field) {
+  if (field.bit_width == 0) return;
+  if (field.repeat != RepeatKind::kOnce || field.condition) {
+    check.error(field.place, fmt::format("the bits {} repeat or may be absent", quote(field.id)),
+                "bits that are always there, once, were expected");
+  }
+}
+
 void check_extent(Check& check, Field& field) {
   const bool sized = field.extent != ExtentKind::kOwn;
   const char* key = field.extent == ExtentKind::kSize ? "size" : "size-eos";
@@ -26,9 +48,10 @@ void check_extent(Check& check, Field& field) {
     check.open.insert(&field);
   }
   if (field.choice && !sized) {
-    check.error(field.choice->place, fmt::format("the switch of {} has no size", quote(field.id)),
-                "size or size-eos bounds the bytes of an unknown case");
-    check.open.insert(&field);
+    check.error_elsewhere(field.choice->place,
+                          fmt::format("the switch of {} has no size", quote(field.id)),
+                          "size or size-eos bounds the bytes of an unknown case");
+    if (!check.at_run_time) check.open.insert(&field);
   }
 }
 
@@ -69,6 +92,8 @@ void check_number_keys(Check& check, Field& field) {
 }  // namespace
 
 void check_field_shape(Check& check, Field& field) {
+  check_plain(check, field);
+  check_bits(check, field);
   check_bytes(check, field);
   check_extent(check, field);
   check_repeat(check, field);

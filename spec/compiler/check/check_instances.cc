@@ -21,8 +21,9 @@ void check_peek(Check& check, const Type& type, Field& peek) {
   peek.fixed_offset = peek.position;
   peek.min_size = peek.max_size = static_cast<std::uint32_t>(peek.width_bytes);
   if (peek.kind != ValueKind::kUint) {
-    check.error(peek.place, fmt::format("peek {} is not an unsigned number", quote(peek.id)),
-                "an instance is a number at pos, or a type over size-eos bytes at pos");
+    check.error_elsewhere(peek.place,
+                          fmt::format("peek {} is not an unsigned number", quote(peek.id)),
+                          "an instance is a number at pos, or a type over size-eos bytes at pos");
     check.open.insert(&peek);
   }
   if (peek.condition) {
@@ -30,7 +31,7 @@ void check_peek(Check& check, const Type& type, Field& peek) {
                 "conditions belong to interpretations");
   }
   const auto end = static_cast<std::uint64_t>(peek.position + peek.width_bytes);
-  if (!check.is_open(&type) && end > type.max_size) {
+  if (!check.at_run_time && !check.is_open(&type) && end > type.max_size) {
     check.error(peek.place,
                 fmt::format("peek {} lies after the end of {}", quote(peek.id), quote(type.id)),
                 fmt::format("{} has at most {}", quote(type.id), bytes_text(type.max_size)));
@@ -47,16 +48,17 @@ void check_overlay(Check& check, const Type& type, Field& instance) {
     }
   }
   if (check.is_open(&type)) return;
-  check.error(
+  check.error_elsewhere(
       instance.place, fmt::format("interpretation {} overlays nothing", quote(instance.id)),
       fmt::format("a size-eos field without type at offset {} was expected", instance.position));
 }
 
 void check_interpretation(Check& check, const Type& type, Field& instance) {
   if (instance.kind != ValueKind::kStruct || instance.extent != ExtentKind::kToEnd) {
-    check.error(instance.place,
-                fmt::format("instance {} is neither peek nor interpretation", quote(instance.id)),
-                "a number at pos, or a type over size-eos bytes at pos was expected");
+    check.error_elsewhere(
+        instance.place,
+        fmt::format("instance {} is neither peek nor interpretation", quote(instance.id)),
+        "a number at pos, or a type over size-eos bytes at pos was expected");
     return;
   }
   const Scope scope{type, type.fields.size(), true};

@@ -28,7 +28,16 @@ class Layout {
   Layout(Check& check, Type& type) : check_(check), type_(type) {}
 
   void run() {
-    for (std::size_t i = 0; i < type_.fields.size(); ++i) place(*type_.fields[i], i);
+    for (std::size_t i = 0; i < type_.fields.size(); ++i) {
+      Field& field = *type_.fields[i];
+      if (field.bit_width > 0) {
+        lay_bits(field);
+      } else {
+        end_bits(i);
+      }
+      place(field, i);
+    }
+    end_bits(type_.fields.size());
     if (is_open_) check_.open.insert(&type_);
     if (!is_open_) check_declared();
   }
@@ -36,13 +45,44 @@ class Layout {
  private:
   bool last(std::size_t index) const { return index + 1 == type_.fields.size(); }
 
+  /// Finds the bytes that a field of bits lies in, and its place within them.
+  void lay_bits(Field& field) {
+    const int begin = bits_ % 8;
+    field.width_bytes = (begin + field.bit_width + 7) / 8;
+    field.bit_shift = field.little_endian ? begin : 8 * field.width_bytes - begin - field.bit_width;
+    bits_ += field.bit_width;
+    if (field.width_bytes <= 4) return;
+    check_.error(field.place, fmt::format("the bits {} lie in five bytes", quote(field.id)),
+                 "at most four are read as one number");
+    field.width_bytes = 4;
+  }
+
+  /// Checks that the bits before field `index` fill their bytes.
+  void end_bits(std::size_t index) {
+    if (bits_ % 8 != 0) {
+      const Field& last = *type_.fields[index - 1];
+      check_.error(last.place, fmt::format("the bits {} end within a byte", quote(last.id)),
+                   fmt::format("{} more were expected", 8 - bits_ % 8));
+    }
+    bits_ = 0;
+  }
+
+  /// Returns how many bytes of a field the one before it has too.
+  static std::uint32_t shared_bytes(const Field& field) {
+    if (field.bit_width == 0) return 0;
+    const int begin = field.little_endian
+                          ? field.bit_shift
+                          : 8 * field.width_bytes - field.bit_shift - field.bit_width;
+    return begin != 0 ? 1 : 0;
+  }
+
   void place(Field& field, std::size_t index) {
     const Scope scope{type_, index};
     if (is_open_) check_.open.insert(&field);
     check_field_shape(check_, field);
     check_values(check_, field, scope);
     const bool conditional = resolve_condition(field, scope);
-    field.fixed_offset = offset_;
+    field.fixed_offset = offset_ < 0 ? -1 : offset_ - shared_bytes(field);
     if (field.choice) check_switch(check_, *field.choice, field, scope);
     const bool extent_ok = resolve_number(field, field.size, scope, "size");
     const bool count_ok = resolve_number(field, field.count, scope, "count");
@@ -87,16 +127,17 @@ class Layout {
       return false;
     }
     if (expr->range.min < 0) {
-      check_.error(expr->place,
-                   fmt::format("the {} {} can be negative", what, quote(to_text(*expr))),
-                   fmt::format("it is {} to {}; 'valid' can narrow what it is made of",
-                               expr->range.min, expr->range.max));
-      return false;
+      expr->range.max = std::max<std::int64_t>(expr->range.max, 0);
+      return check_.unproved(expr->place,
+                             fmt::format("the {} {} can be negative", what, quote(to_text(*expr))),
+                             fmt::format("it is {} to {}; 'valid' can narrow what it is made of",
+                                         expr->range.min, expr->range.max));
     }
     if (expr->range.max == 0) {
-      check_.error(expr->place, fmt::format("the {} {} is always 0", what, quote(to_text(*expr))),
-                   "a field has bytes");
-      return false;
+      check_.error_elsewhere(expr->place,
+                             fmt::format("the {} {} is always 0", what, quote(to_text(*expr))),
+                             "a field has bytes");
+      return check_.at_run_time;
     }
     return true;
   }
@@ -104,9 +145,9 @@ class Layout {
   void check_last(const Field& field, std::size_t index) {
     if (last(index)) return;
     if (field.extent == ExtentKind::kToEnd || field.repeat == RepeatKind::kToEnd) {
-      check_.error(field.place,
-                   fmt::format("field {} takes all bytes but is not the last", quote(field.id)),
-                   "nothing can follow it");
+      check_.error_elsewhere(
+          field.place, fmt::format("field {} takes all bytes but is not the last", quote(field.id)),
+          "nothing can follow it");
     }
   }
 
@@ -116,7 +157,7 @@ class Layout {
       case ValueKind::kBytes: return {0, kUnbounded};
       case ValueKind::kStruct: break;
       default: {
-        const auto width = static_cast<std::uint32_t>(field.width_bytes);
+        const auto width = static_cast<std::uint32_t>(field.width_bytes) - shared_bytes(field);
         return {width, width};
       }
     }
@@ -133,14 +174,19 @@ class Layout {
     const bool varies = size.min != size.max;
     if (field.kind == ValueKind::kStruct && varies && field.extent == ExtentKind::kOwn &&
         (field.repeat != RepeatKind::kOnce || !last(index))) {
-      check_.error(field.place, fmt::format("structure {} varies in size", quote(field.id)),
-                   "only the last field can, or one with a size");
-      is_open_ = true;
+      check_.error_elsewhere(field.place,
+                             fmt::format("structure {} varies in size", quote(field.id)),
+                             "only the last field can, or one with a size");
+      is_open_ |= !check_.at_run_time;
     }
     if (field.extent == ExtentKind::kSize) size = sized(field, size);
     if (field.extent == ExtentKind::kToEnd) size.max = kUnbounded;
+    if (field.extent == ExtentKind::kTerminated) {
+      size = {field.text->may_lack_its_end ? 0U : 1U, kUnbounded};
+    }
     if (field.repeat == RepeatKind::kCount) {
-      const Interval count = field.count->range;
+      const Interval count{std::max<std::int64_t>(field.count->range.min, 0),
+                           field.count->range.max};
       size = {times(size.min, count.min), times(size.max, count.max)};
     }
     if (field.repeat == RepeatKind::kToEnd) size = {0, kUnbounded};
@@ -154,7 +200,7 @@ class Layout {
   }
 
   Size sized(const Field& field, Size inner) {
-    const Interval range = field.size->range;
+    const Interval range{std::max<std::int64_t>(field.size->range.min, 0), field.size->range.max};
     const Size out{std::max(bounded(static_cast<std::uint64_t>(range.min)), inner.min),
                    bounded(static_cast<std::uint64_t>(range.max))};
     if (field.kind == ValueKind::kStruct && inner.min > out.max) {
@@ -187,6 +233,7 @@ class Layout {
   Check& check_;
   Type& type_;
   std::int64_t offset_ = 0;
+  int bits_ = 0;  // Of the fields of bits right before.
   bool is_open_ = false;
 };
 

@@ -45,6 +45,13 @@ const Spec* import_named(const Spec& spec, std::string_view id) {
   return nullptr;
 }
 
+const Type* find_type(const Spec& spec, std::string_view id) {
+  for (const auto& type : spec.types) {
+    if (type->id == id) return type.get();
+  }
+  return nullptr;
+}
+
 /// The spec in which "spec::name" or "name" is looked up (null after an error), and the bare name.
 struct Lookup {
   const Spec* spec;
@@ -55,6 +62,9 @@ Lookup split(Check& check, const Spec& spec, const std::string& name, const Plac
   if (colons == name.npos) return {&spec, name};
   const std::string id = name.substr(0, colons);
   const Spec* import = import_named(spec, id);
+  if (import == nullptr && find_type(spec, id) != nullptr) {  // A type within a type.
+    return split(check, spec, name.substr(colons + 2), place);
+  }
   if (import == nullptr) {
     // An import that could not be read was reported already.
     const bool failed = spec.imports.size() != spec.import_names.size();
@@ -69,9 +79,9 @@ Lookup split(Check& check, const Spec& spec, const std::string& name, const Plac
 const Type* find_type(Check& check, const Spec& spec, const std::string& name, const Place& place) {
   const auto [where, id] = split(check, spec, name, place);
   if (where == nullptr) return nullptr;
-  for (const auto& type : where->types) {
-    if (type->id == id) return type.get();
-  }
+  if (const Type* type = find_type(*where, id)) return type;
+  const Spec* import = check.at_run_time ? import_named(spec, id) : nullptr;
+  if (const Type* whole = import == nullptr ? nullptr : find_type(*import, id)) return whole;
   std::vector<std::string> known = ids_of(where->types);
   if (where == &spec) known.insert(known.end(), kNumberTypes.begin(), kNumberTypes.end());
   check.error(place, fmt::format("unknown type {}", quote(name)), suggestion(id, known));
@@ -151,6 +161,7 @@ const Enum* find_enum(const Spec& spec, const std::string& name) {
 const Enum* find_enum(const Spec& spec, const std::vector<std::string>& path) {
   if (path.size() == 2) return find_enum(spec, path[0]);
   const Spec* import = import_named(spec, path[0]);
+  if (import == nullptr && find_type(spec, path[0]) != nullptr) return find_enum(spec, path[1]);
   return import == nullptr ? nullptr : find_enum(*import, path[1]);
 }
 

@@ -43,8 +43,8 @@ void check_complete(Check& check, const Switch& choice, const Enum* enumeration)
     missing += name_of(enumeration, value);
   }
   if (!missing.empty()) {
-    check.error(choice.place, "missing cases: " + missing,
-                "'valid' allows them; '_' would take the rest");
+    check.error_elsewhere(choice.place, "missing cases: " + missing,
+                          "'valid' allows them; '_' would take the rest");
   }
 }
 
@@ -80,7 +80,7 @@ void check_switch(Check& check, Switch& choice, const Field& field, const Scope&
       check.error(one.place, fmt::format("duplicate case {}", name_of(key.enumeration, *value)),
                   fmt::format("line {} has it already", first->second));
     } else if (!is_possible(choice, *value)) {
-      check.error(
+      check.error_elsewhere(
           one.place, fmt::format("case {} can never be", name_of(key.enumeration, *value)),
           fmt::format("the switch takes {} to {}", choice.key->range.min, choice.key->range.max));
     }

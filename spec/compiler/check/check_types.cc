@@ -8,7 +8,8 @@
 namespace rubricc {
 namespace {
 
-constexpr std::array<std::string_view, 4> kCarriers{"serial", "radio_i", "radio_t", "radio_ack"};
+constexpr std::array<std::string_view, 6> kCarriers{"serial",    "radio_i",      "radio_t",
+                                                    "radio_ack", "radio_beacon", "radio_command"};
 
 class Requirements {
  public:

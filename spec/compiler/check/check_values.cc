@@ -85,7 +85,9 @@ bool is_valid(const Field& field, std::int64_t value) {
 
 void check_values(Check& check, Field& field, const Scope& scope) {
   if (field.kind != ValueKind::kUint && field.kind != ValueKind::kSint) return;
-  const Interval width = width_range(field.width_bytes, field.kind == ValueKind::kSint);
+  const Interval width = field.bit_width > 0
+                             ? Interval{0, (std::int64_t{1} << field.bit_width) - 1}
+                             : width_range(field.width_bytes, field.kind == ValueKind::kSint);
   field.range = width;
   if (field.valid) resolve_valid(check, field, scope);
   if (!field.expect_expr) return;

@@ -219,6 +219,12 @@ class Parser {
            "fields of the same structure can be read");
     }
     out->path.push_back(word());
+    if (out->path[0] == "true" || out->path[0] == "false") {
+      out->op = ExprOp::kInt;
+      out->is_bool = true;
+      out->value = out->path[0] == "true" ? 1 : 0;
+      return out;
+    }
     while (token_ == "::") {
       out->op = ExprOp::kEnumValue;
       next();
@@ -272,7 +278,7 @@ std::string text_at(const Expr& expr, int level) {
   std::string out;
   const int own = level_of(expr.op);
   switch (expr.op) {
-    case ExprOp::kInt: return std::to_string(expr.value);
+    case ExprOp::kInt: return expr.is_bool ? expr.path[0] : std::to_string(expr.value);
     case ExprOp::kField: return joined(expr.path, ".") + (expr.to_i ? ".to_i" : "");
     case ExprOp::kEnumValue: return joined(expr.path, "::") + (expr.to_i ? ".to_i" : "");
     case ExprOp::kNot: out = "not " + text_at(*expr.operands[0], own); break;

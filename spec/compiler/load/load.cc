@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <optional>
@@ -14,6 +15,7 @@ namespace rubricc {
 namespace {
 
 constexpr std::size_t kSpecsMax = 100;
+constexpr int kFoldersAround = 8;
 const Library kNoLibrary;
 
 std::optional<std::string> read_file(const std::string& path) {
@@ -32,7 +34,20 @@ std::string beside(const std::string& file, const std::string& name) {
 std::string shipped_file(const std::string& name) { return "<shipped>/" + name + ".ksy"; }
 
 bool is_plain(const std::string& name) {
-  return !name.empty() && name.size() < 100 && name.front() != '/' && name.find("..") == name.npos;
+  return !name.empty() && name.size() < 100 && name.find("..") == name.npos;
+}
+
+/// Returns the file that an import means: one beside the importing file, or for "/name" below it or
+/// one of the folders around it.
+std::string file_of(const std::string& importing, const std::string& name) {
+  if (!name.starts_with('/')) return beside(importing, name);
+  std::filesystem::path folder = std::filesystem::path(importing).parent_path();
+  std::string file = beside(importing, name.substr(1));
+  for (int i = 0; i < kFoldersAround && !std::filesystem::exists(file); ++i) {
+    folder = folder.empty() ? ".." : folder / "..";
+    file = (folder / (name.substr(1) + ".ksy")).lexically_normal().string();
+  }
+  return file;
 }
 
 class Loader {
@@ -68,7 +83,7 @@ class Loader {
 
  private:
   void import(Spec& spec, const std::string& name, const Place& place) {
-    std::string file = beside(spec.file, name);
+    std::string file = file_of(spec.file, name);
     auto text = is_plain(name) && open_.size() < kSpecsMax ? read_file(file) : std::nullopt;
     if (const auto shipped = library_.find(name); !text && shipped != library_.end()) {
       file = shipped_file(name);

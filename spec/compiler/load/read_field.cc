@@ -11,14 +11,16 @@
 namespace rubricc {
 namespace {
 
-constexpr std::array<std::string_view, 16> kSeqKeys{
-    "id",    "type",     "enum", "size",    "size-eos", "repeat",       "repeat-expr", "if",
-    "valid", "contents", "doc",  "doc-ref", "-name",    "-requirement", "-unit",       "-expect"};
+constexpr std::array<std::string_view, 20> kSeqKeys{
+    "id",       "type",       "enum",      "size",      "size-eos", "repeat", "repeat-expr",
+    "if",       "valid",      "contents",  "doc",       "doc-ref",  "-name",  "-requirement",
+    "encoding", "terminator", "eos-error", "pad-right", "-unit",    "-expect"};
 constexpr std::array<std::string_view, 9> kInstanceKeys{
     "pos", "type", "enum", "size-eos", "if", "doc", "doc-ref", "-name", "-requirement"};
 constexpr std::array<std::string_view, 4> kBitKeys{"id", "type", "doc", "-unnamed"};
 constexpr std::array<std::string_view, 5> kValidKeys{"eq", "min", "max", "any-of", "in-enum"};
 constexpr std::array<std::string_view, 3> kUnitKeys{"symbol", "scale", "offset"};
+constexpr int kBitsMax = 32;
 constexpr std::array<std::string_view, 2> kSwitchKeys{"switch-on", "cases"};
 
 /// Sets "u2le" and similar types; returns false for every other word.
@@ -46,6 +48,68 @@ bool set_number(const YamlInput& input, const YAML::Node& node, std::string_view
                 "meta: endian, or the suffix be or le was expected");
   }
   return true;
+}
+
+Encoding encoding_of(const YamlInput& input, const YamlMap& map, const Spec& spec) {
+  const auto own = map.text("encoding");
+  std::string word = own.value_or(spec.encoding);
+  std::transform(word.begin(), word.end(), word.begin(),
+                 [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 32) : c; });
+  if (word == "UTF-8") return Encoding::kUtf8;
+  if (word == "ASCII") return Encoding::kAscii;
+  const std::string what = word.empty() ? "text without encoding" : "the encoding " + quote(word);
+  input.error(own ? map.find("encoding")->value : map.find("type")->value, what,
+              "known are ASCII and UTF-8");
+  return Encoding::kAscii;
+}
+
+/// Sets "b12" and similar types; returns false for every other word.
+bool set_bits(const YamlInput& input, const YAML::Node& node, std::string_view word,
+              const Spec& spec, Field& field) {
+  if (word.size() < 2 || word[0] != 'b') return false;
+  const auto width = parse_integer(word.substr(1));
+  if (!width) return false;
+  field.kind = ValueKind::kUint;
+  field.little_endian = spec.lowest_bit_first;
+  field.bit_width = static_cast<int>(std::clamp<std::int64_t>(*width, 1, kBitsMax));
+  if (field.bit_width != *width) {
+    input.error(node, fmt::format("a number of {} bits", *width),
+                fmt::format("1 to {} were expected", kBitsMax));
+  }
+  return true;
+}
+
+/// Reads what "str", "strz" and a terminator of bytes have.
+void read_text(const YamlInput& input, const YamlMap& map, const Spec& spec, Field& field) {
+  const auto type =
+      map.has("type") && !map.find("type")->value.IsMap() ? map.text("type") : std::nullopt;
+  const bool is_text = type == "str" || type == "strz";
+  if (!is_text) {
+    for (const char* key : {"encoding", "terminator", "eos-error", "pad-right"}) {
+      const bool bytes = key != std::string_view("encoding") && !map.has("type");
+      if (!map.has(key) || bytes) continue;
+      input.error(map.find(key)->key_node, fmt::format("{} of a number or structure", quote(key)),
+                  "text or bytes was expected");
+    }
+    if (map.has("type") || !(map.has("terminator") || map.has("pad-right"))) return;
+  }
+  Text text;
+  if (is_text) text.encoding = encoding_of(input, map, spec);
+  const auto byte = [&](const char* key, int otherwise) {
+    const auto value = map.integer(key);
+    if (!value) return otherwise;
+    if (*value >= 0 && *value <= 255) return static_cast<int>(*value);
+    input.error(map.find(key)->value, fmt::format("{} is {}", quote(key), *value),
+                "a byte was expected");
+    return otherwise;
+  };
+  text.terminator = byte("terminator", type == "strz" ? 0 : -1);
+  text.padding = byte("pad-right", -1);
+  text.may_lack_its_end = !map.boolean("eos-error").value_or(true);
+  field.text = text;
+  if (text.terminator >= 0 && field.extent == ExtentKind::kOwn) {
+    field.extent = ExtentKind::kTerminated;
+  }
 }
 
 std::unique_ptr<Switch> read_switch(const YamlInput& input, const YAML::Node& node) {
@@ -91,13 +155,8 @@ void read_type_of(const YamlInput& input, const YamlMap& map, const Spec& spec, 
   }
   const auto word = yaml_text(input, entry->value, "type");
   if (!word || set_number(input, entry->value, *word, spec, field)) return;
-  if (*word == "b1") {
-    input.error(entry->value, "b1 outside a mask",
-                "-mask: 8 or -mask: 16 was expected at the type");
-    field.kind = ValueKind::kUint;
-    field.width_bytes = 1;
+  if (*word == "str" || *word == "strz" || set_bits(input, entry->value, *word, spec, field))
     return;
-  }
   field.kind = ValueKind::kStruct;
   field.type_name = *word;
 }
@@ -250,6 +309,17 @@ void read_docs(const YamlMap& map, Field& field) {
 
 }  // namespace
 
+bool is_computed(const YAML::Node& instance) {
+  if (!instance.IsMap()) return false;
+  for (const auto& pair : instance) {
+    if (!pair.first.IsScalar()) continue;
+    const std::string& key = pair.first.Scalar();
+    if (key == "value" || key == "io" || key == "size" || key == "repeat") return true;
+    if (key == "pos" && pair.second.IsScalar() && !parse_integer(pair.second.Scalar())) return true;
+  }
+  return false;
+}
+
 ExprPtr read_expr(const YamlInput& input, const YAML::Node& node, std::string_view what) {
   const auto text = yaml_text(input, node, what);
   if (!text) return nullptr;
@@ -298,6 +368,7 @@ std::unique_ptr<Field> read_field(const YamlInput& input, const YAML::Node& node
   read_docs(map, *field);
   read_type_of(input, map, spec, *field);
   read_extent(input, map, *field);
+  if (in_seq) read_text(input, map, spec, *field);
   read_repeat(input, map, *field);
   read_valid(input, map, *field);
   read_contents(input, map, *field);

@@ -10,16 +10,18 @@ namespace rubricc {
 namespace {
 
 using Keys = std::span<const std::string_view>;
-constexpr std::array<std::string_view, 6> kMetaKeys{"id",      "title",   "endian",
-                                                    "license", "imports", "ks-version"};
+constexpr std::array<std::string_view, 12> kMetaKeys{
+    "id",         "title",    "endian",      "license",        "imports", "ks-version",
+    "bit-endian", "encoding", "application", "file-extension", "xref",    "tags"};
 constexpr std::array<std::string_view, 12> kTopKeys{
     "meta",      "doc",   "doc-ref", "seq",      "types",    "enums",
     "instances", "-name", "-size",   "-am-type", "-carrier", "-requirement"};
-constexpr std::array<std::string_view, 12> kTypeKeys{
-    "doc",   "doc-ref", "seq",      "instances", "-name",    "-size",
-    "-mask", "-crc",    "-am-type", "-carrier",  "-framing", "-requirement"};
+constexpr std::array<std::string_view, 14> kTypeKeys{
+    "doc",   "doc-ref", "seq",  "instances", "types",    "enums",    "-name",
+    "-size", "-mask",   "-crc", "-am-type",  "-carrier", "-framing", "-requirement"};
 constexpr std::array<std::string_view, 3> kCrcKeys{"polynomial", "initial", "order"};
 constexpr std::array<std::string_view, 2> kEnumValueKeys{"id", "doc"};
+constexpr int kTypesDeep = 20;
 constexpr std::int64_t kEnumValueMax = 0xFFFFFFFF;
 
 std::string doc_ref(const YamlInput& input, const YamlMap& map) {
@@ -102,6 +104,13 @@ void read_fields(const YamlInput& input, const YamlMap& map, const Spec& spec, T
   if (const YamlEntry* instances = map.find("instances")) {
     const YamlMap named(input, instances->value, "instances", Keys{});
     for (const YamlEntry& entry : named.entries()) {
+      if (is_computed(entry.value)) {
+        const Place place = input.place(entry.key_node);
+        const std::string what = fmt::format("instance {} is computed", quote(entry.key));
+        input.diagnostics.error_in_code(place, what, "a number or a type at pos was expected");
+        input.diagnostics.note(place, what + "; it is not shown");
+        continue;
+      }
       if (auto field = read_field(input, entry.value, FieldPlace::kInstance, spec, &entry)) {
         type.instances.push_back(std::move(field));
       }
@@ -115,8 +124,8 @@ void check_seq(const YamlInput& input, const YamlMap& map, const Type& type) {
   const bool empty =
       seq == nullptr ? !map.refused_keys() : seq->value.IsSequence() && seq->value.size() == 0;
   if (!empty) return;
-  input.diagnostics.error(type.place, fmt::format("type {} without fields", quote(type.id)),
-                          "seq: with a field was expected");
+  input.diagnostics.error_in_code(type.place, fmt::format("type {} without fields", quote(type.id)),
+                                  "seq: with a field was expected");
 }
 
 void read_type(const YamlInput& input, const YamlMap& map, const Spec& spec, Type& type) {
@@ -217,7 +226,40 @@ void read_meta(const YamlInput& input, const YAML::Node& root, const YamlMap& to
                               "be or le was expected");
     }
   }
+  spec.encoding = meta.text("encoding").value_or("");
+  if (const auto order = meta.text("bit-endian")) {
+    spec.lowest_bit_first = *order == "le";
+    if (*order != "le" && *order != "be") {
+      input.diagnostics.error(spec.places.at("bit-endian"), "bit-endian is " + quote(*order),
+                              "be or le was expected");
+    }
+  }
   read_imports(input, meta, spec);
+}
+
+/// Reads types, and those within them as if they stood beside them.
+void read_types(const YamlInput& input, const YamlEntry& types, Spec& spec, int depth) {
+  const YamlMap map(input, types.value, "types", Keys{});
+  for (const YamlEntry& entry : map.entries()) {
+    auto type = std::make_unique<Type>();
+    type->id = entry.key;
+    type->spec = &spec;
+    type->place = input.place(entry.key_node);
+    check_id(input.diagnostics, type->place, type->id, "a type");
+    const YamlMap keys(input, entry.value, "a type", kTypeKeys);
+    read_type(input, keys, spec, *type);
+    spec.types.push_back(std::move(type));
+    const YamlEntry* inner = keys.find("types");
+    const YamlEntry* enums = keys.find("enums");
+    for (const YamlEntry* one : {inner, enums}) {
+      if (one == nullptr) continue;
+      input.diagnostics.error_in_code(input.place(one->key_node),
+                                      fmt::format("{} within a type", one->key),
+                                      "beside the others was expected");
+    }
+    if (enums != nullptr) read_enums(input, *enums, spec);
+    if (inner != nullptr && depth < kTypesDeep) read_types(input, *inner, spec, depth + 1);
+  }
 }
 
 }  // namespace
@@ -245,18 +287,7 @@ std::unique_ptr<Spec> read_spec(const std::string& file, const std::string& text
     read_type(input, top, *spec, *type);
     spec->types.push_back(std::move(type));
   }
-  if (const YamlEntry* types = top.find("types")) {
-    const YamlMap map(input, types->value, "types", Keys{});
-    for (const YamlEntry& entry : map.entries()) {
-      auto type = std::make_unique<Type>();
-      type->id = entry.key;
-      type->spec = spec.get();
-      type->place = input.place(entry.key_node);
-      check_id(diagnostics, type->place, type->id, "a type");
-      read_type(input, YamlMap(input, entry.value, "a type", kTypeKeys), *spec, *type);
-      spec->types.push_back(std::move(type));
-    }
-  }
+  if (const YamlEntry* types = top.find("types")) read_types(input, *types, *spec, 0);
   if (const YamlEntry* enums = top.find("enums")) read_enums(input, *enums, *spec);
   return spec;
 }

@@ -19,6 +19,9 @@ enum class FieldPlace { kSeq, kInstance, kMask };
 std::unique_ptr<Field> read_field(const YamlInput& input, const YAML::Node& node, FieldPlace where,
                                   const Spec& spec, const YamlEntry* instance);
 
+/// Returns whether an instance is more than a number or a type at a constant position.
+bool is_computed(const YAML::Node& instance);
+
 /// Reads `-unnamed` of a mask's bit.
 MaskBit read_mask_bit(const YamlInput& input, const YAML::Node& node);
 

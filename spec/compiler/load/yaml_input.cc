@@ -108,7 +108,9 @@ YamlMap::YamlMap(const YamlInput& input, const YAML::Node& node, std::string_vie
                   fmt::format("it is already in line {}", input.place(first->key_node).line));
       continue;
     }
-    if (!allowed.empty() && std::find(allowed.begin(), allowed.end(), key) == allowed.end()) {
+    const bool of_another_tool = key.starts_with("-orig-") || key.starts_with("-webide-");
+    if (!allowed.empty() && !of_another_tool &&
+        std::find(allowed.begin(), allowed.end(), key) == allowed.end()) {
       input.error(pair.first, fmt::format("unknown key {} of {}", quote(key), what),
                   suggestion(key, allowed));
       refused_keys_ = true;

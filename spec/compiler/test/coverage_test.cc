@@ -83,11 +83,12 @@ std::string longest_constant_part(const std::string& format) {
 
 std::vector<std::string> texts_in(const std::string& source) {
   std::vector<std::string> out;
-  for (const std::string call : {"error(", "fail("}) {
+  for (const std::string call :
+       {"error(", "error_in_code(", "error_elsewhere(", "unproved(", "fail("}) {
     for (std::size_t at = source.find(call); at != source.npos; at = source.find(call, at + 1)) {
       const char before = at == 0 ? ' ' : source[at - 1];
       if (std::isalnum(static_cast<unsigned char>(before)) != 0 || before == '_') continue;
-      for (const auto& text : literals_of_call(source, at + call.size(), call == "error(")) {
+      for (const auto& text : literals_of_call(source, at + call.size(), call != "fail(")) {
         out.push_back(text);
       }
     }

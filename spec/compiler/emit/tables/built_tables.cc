@@ -1,5 +1,6 @@
 #include "spec/compiler/emit/tables/built_tables.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "spec/compiler/emit/tables/routes.h"
@@ -40,7 +41,26 @@ reflect::Op op_of(ExprOp op) {
   throw std::logic_error("op_of: a field has no operator");
 }
 
+/// Appends a number of bits: its bytes joined, without the bits above it and below it.
+void append_bits(const Expr& expr, std::vector<reflect::ExprStep>& out) {
+  const Field& field = *expr.field;
+  const auto constant = [&](std::int64_t value, reflect::Op op) {
+    out.push_back({reflect::Op::kConst, static_cast<std::int32_t>(value)});
+    out.push_back({op, 0});
+  };
+  for (int i = 0; i < field.width_bytes; ++i) {
+    const int byte = field.little_endian ? field.width_bytes - 1 - i : i;
+    if (i > 0) constant(256, reflect::Op::kMul);
+    out.push_back({reflect::Op::kLoadU8, static_cast<std::int32_t>(expr.offset_bytes + byte)});
+    const int bits = field.bit_width + field.bit_shift - 8 * (field.width_bytes - 1);
+    if (i == 0 && bits < 8) constant(std::int64_t{1} << bits, reflect::Op::kMod);
+    if (i > 0) out.push_back({reflect::Op::kAdd, 0});
+  }
+  constant(std::int64_t{1} << field.bit_shift, reflect::Op::kDiv);
+}
+
 void append(const Expr& expr, std::vector<reflect::ExprStep>& out) {
+  if (expr.op == ExprOp::kField && expr.field->bit_width > 0) return append_bits(expr, out);
   for (const auto& operand : expr.operands) append(*operand, out);
   const bool is_field = expr.op == ExprOp::kField;
   out.push_back({is_field ? load(*expr.field) : op_of(expr.op),
@@ -73,6 +93,7 @@ reflect::Extent extent_of(ExtentKind extent) {
     case ExtentKind::kOwn: return reflect::Extent::kOwn;
     case ExtentKind::kSize: return reflect::Extent::kSize;
     case ExtentKind::kToEnd: return reflect::Extent::kToEnd;
+    case ExtentKind::kTerminated: return reflect::Extent::kTerminated;
   }
   throw std::logic_error("extent_of");
 }
@@ -193,13 +214,23 @@ class BuiltTables::Builder {
     return single<reflect::Unit>({text(field.unit->symbol), field.unit->scale, field.unit->offset});
   }
 
+  const reflect::Text* characters(const Field& field) {
+    if (!field.text) return nullptr;
+    const Text& from = *field.text;
+    reflect::Encoding encoding = reflect::Encoding::kNone;
+    if (from.encoding == Encoding::kAscii) encoding = reflect::Encoding::kAscii;
+    if (from.encoding == Encoding::kUtf8) encoding = reflect::Encoding::kUtf8;
+    return single<reflect::Text>({encoding, static_cast<std::int16_t>(from.terminator),
+                                  static_cast<std::int16_t>(from.padding), from.may_lack_its_end});
+  }
+
   reflect::Field field(const Field& one) {
     const std::string key = "\"" + one.name + "\":";
     const bool is_struct = one.kind == ValueKind::kStruct;
     return {text(one.name),
             text(key),
             static_cast<std::uint8_t>(key.size()),
-            kind_of(one.kind),
+            one.bit_width > 0 ? reflect::Kind::kBits : kind_of(one.kind),
             static_cast<std::uint8_t>(one.width_bytes),
             one.little_endian,
             repeat_of(one.repeat),
@@ -216,7 +247,10 @@ class BuiltTables::Builder {
             expr(one.condition),
             rule_of(one.requirement),
             unit(one),
-            text(one.doc)};
+            text(one.doc),
+            characters(one),
+            static_cast<std::uint8_t>(one.bit_width),
+            static_cast<std::uint8_t>(one.bit_shift)};
   }
 
   const reflect::Type* type(const Type& one) {
@@ -224,7 +258,7 @@ class BuiltTables::Builder {
     std::vector<reflect::Interpretation> interpretations;
     for (const auto& each : one.fields) fields.push_back(field(*each));
     for (const auto& each : one.instances) {
-      if (each->is_peek) continue;
+      if (each->is_peek || each->overlays < 0) continue;
       interpretations.push_back({field(*each), static_cast<std::uint16_t>(each->overlays)});
     }
     const std::int64_t am_type = one.am_types.empty() ? -1 : one.am_types.front();
@@ -251,6 +285,15 @@ class BuiltTables::Builder {
       }
       out.push_back({text(one.carrier), types_.at(one.type), static_cast<std::uint16_t>(one.offset),
                      one.room, list(choices), few(choices), list(lengths), few(lengths)});
+    }
+    const auto has_carrier = [](const auto& type) { return !type->carrier.empty(); };
+    const bool bare = std::none_of(spec.types.begin(), spec.types.end(), has_carrier);
+    for (const auto& one : spec.types) {
+      // What nothing chooses comes as it is: a beacon, or all messages where there are no frames.
+      const bool link = one->carrier == "radio_beacon" || one->carrier == "radio_command";
+      if (one->is_mask || !(bare || link)) continue;
+      const char* carrier = bare ? "bare" : text(one->carrier);
+      out.push_back({carrier, types_.at(one.get()), 0, one->max_size, nullptr, 0, nullptr, 0});
     }
     return single<reflect::RouteTable>({list(out), count(out)});
   }

@@ -53,6 +53,7 @@ std::string extent_name(ExtentKind extent) {
     case ExtentKind::kOwn: return "Extent::kOwn";
     case ExtentKind::kSize: return "Extent::kSize";
     case ExtentKind::kToEnd: return "Extent::kToEnd";
+    case ExtentKind::kTerminated: break;  // Refused in code.
   }
   throw std::logic_error("extent_name");
 }

@@ -164,7 +164,7 @@ std::optional<Numbers> solve(const Expr& expr, std::int64_t value, std::int64_t 
     case ExprOp::kInt:
     case ExprOp::kEnumValue: return expr.value == value ? std::optional(Numbers{}) : std::nullopt;
     case ExprOp::kField:
-      if (!can_be(*expr.field, value)) return std::nullopt;
+      if (expr.field->bit_width > 0 || !can_be(*expr.field, value)) return std::nullopt;
       return Numbers{
           {start + expr.offset_bytes, expr.field->width_bytes, expr.field->little_endian, value}};
     case ExprOp::kAdd: return solve_sum(expr, value, start);

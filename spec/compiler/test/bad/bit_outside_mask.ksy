@@ -1,4 +1,4 @@
-# expect: 10:15: b1 outside a mask; -mask: 8 or -mask: 16 was expected at the type
+# expect: 10:15: bits outside a mask; -mask: 8 or -mask: 16 was expected at the type; rubric --spec reads bits
 meta:
   id: bad
   endian: be
@@ -7,4 +7,4 @@ types:
     -requirement: WIRE-DATA
     seq:
       - id: a
-        type: b1
+        type: b8

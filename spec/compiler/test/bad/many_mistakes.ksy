@@ -1,5 +1,5 @@
 # expect: 20:5: '-requirement' twice in a type; it is already in line 19
-# expect: 21:15: unknown carrier 'usb'; known are serial, radio_i, radio_t, radio_ack
+# expect: 21:15: unknown carrier 'usb'; known are serial, radio_i, radio_t, radio_ack, radio_beacon, radio_command
 # expect: 23:13: name 'Length'; lower snake case was expected
 # expect: 27:15: unknown enum 'colour'; did you mean 'color'?
 # expect: 28:16: the minimum 3 is above the maximum 2; no value would be valid

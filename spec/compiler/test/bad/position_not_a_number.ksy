@@ -1,4 +1,4 @@
-# expect: 13:14: 'pos' is 'abc'; a decimal or 0x number was expected
+# expect: 12:7: instance 'peek' is computed; a number or a type at pos was expected
 meta:
   id: bad
   endian: be
