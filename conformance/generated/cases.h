@@ -17,7 +17,7 @@ struct CaseUse {
 };
 
 /// By file, then as they stand there; each case once for a rule and a sign.
-inline constexpr std::array<CaseUse, 1818> kCaseUses{{
+inline constexpr std::array<CaseUse, 1833> kCaseUses{{
     {"again_j.call_after_a_failure", "conformance/cases/again_j.rtr", "J8-FAIL"_rule, false},
     {"again_j.call_after_a_failure", "conformance/cases/again_j.rtr", "J1-REQUEST"_rule, false},
     {"again_j.call_after_a_failure", "conformance/cases/again_j.rtr", "J8-RETRY"_rule, false},
@@ -1967,6 +1967,23 @@ inline constexpr std::array<CaseUse, 1818> kCaseUses{{
     {"n11.sink_line_short", "conformance/cases/serial_line.rtr", "N11-SHORT"_rule, false},
     {"n11.base_station_line_whole", "conformance/cases/serial_line.rtr", "N11-WHOLE"_rule, true},
     {"n11.base_station_line_short", "conformance/cases/serial_line.rtr", "N11-SHORT"_rule, false},
+    {"n11.sink_line_runt", "conformance/cases/serial_line.rtr", "N11-NEXT"_rule, false},
+    {"n11.sink_line_cut_head", "conformance/cases/serial_line.rtr", "N11-NEXT"_rule, false},
+    {"n11.sink_line_dispatch", "conformance/cases/serial_line.rtr", "N11-NEXT"_rule, false},
+    {"n11.sink_line_length", "conformance/cases/serial_line.rtr", "N11-NEXT"_rule, false},
+    {"n11.base_station_line_runt", "conformance/cases/serial_line.rtr", "N11-NEXT"_rule, false},
+    {"n11.base_station_line_cut_head",
+     "conformance/cases/serial_line.rtr", "N11-NEXT"_rule, false},
+    {"n11.base_station_line_dispatch",
+     "conformance/cases/serial_line.rtr", "N11-NEXT"_rule, false},
+    {"n11.base_station_line_length", "conformance/cases/serial_line.rtr", "N11-NEXT"_rule, false},
+    {"n2.sink_line_flood", "conformance/cases/serial_line.rtr", "T2-ACK"_rule, false},
+    {"n2.sink_line_flood", "conformance/cases/serial_line.rtr", "N2-IN-FULL"_rule, false},
+    {"n2.sink_line_flood", "conformance/cases/serial_line.rtr", "T2-ONCE"_rule, true},
+    {"n2.base_station_line_flood", "conformance/cases/serial_line.rtr", "T2-ACK"_rule, false},
+    {"n2.base_station_line_flood", "conformance/cases/serial_line.rtr", "T2-ONCE"_rule, true},
+    {"t2.sink_line_start", "conformance/cases/serial_line.rtr", "T2-ACK"_rule, false},
+    {"t2.base_station_line_start", "conformance/cases/serial_line.rtr", "T2-ACK"_rule, false},
     {"side_by_side.sink_joins", "conformance/cases/side_by_side.rtr", "J9-INTERLEAVE"_rule, false},
     {"side_by_side.sink_joins", "conformance/cases/side_by_side.rtr", "J6-ADD"_rule, false},
     {"side_by_side.one_mote_asks_often",

@@ -22,6 +22,7 @@ struct Frame {
   std::uint16_t src = 0;
   std::uint8_t type = 0;
   Bytes payload;
+  Bytes packet = {};  ///< A serial packet that is no active message: all its bytes, for the rest.
 };
 
 enum class Mode : std::uint8_t { kReliable, kPowerSave };

@@ -153,6 +153,8 @@ void handle_first(Node& node, Interface<kRoom>& line, Link link) {
 }  // namespace
 
 void hear(Node& node, const Frame& frame) {
+  //= N11-NEXT: After a malformed message the next good one is handled as always.
+  if (!frame.packet.empty()) return node.actions.ignored("N11-NEXT"_rule);
   if (!is_for_us(node, frame)) return;
   if (!is_known_type(node.config().role, frame.link, frame.type)) {
     return node.actions.ignored(ReqId::kNone);

@@ -218,6 +218,12 @@ std::optional<std::pair<std::uint16_t, std::uint16_t>> Concrete::pair(std::strin
 }
 
 Concrete decode(const AmFrame& frame, LinkKind link) {
+  if (!frame.packet.empty()) {
+    Concrete none;
+    none.name = "*";
+    none.frame = frame;
+    return none;
+  }
   const reflect::Type* type = Schema::get().payload_type(link, frame.type);
   Concrete out;
   if (!type || !decode_as(*type, frame, out)) return decode_raw(frame);
@@ -345,7 +351,7 @@ Line frame_line(std::int64_t ticks, std::string_view node, Op op, std::string_vi
   line.node = node;
   line.op = op;
   line.link = link;
-  line.am = AmAddresses{am(frame.src), am(frame.dest)};
+  if (frame.packet.empty()) line.am = AmAddresses{am(frame.src), am(frame.dest)};
   line.message = std::move(seen.message);
   line.bytes = std::string(text_of({packet.data(), packet.size()}));
   return line;

@@ -357,9 +357,11 @@ std::uint16_t source(const Line& line, const Scope& scope, const AmFrame& frame)
 AmFrame frame_of(const Line& line, const Scope& scope, const Bindings& bindings) {
   AmFrame frame;
   if (line.bytes) {
-    if (!parse_packet(*line.bytes, frame)) {
+    if (parse_packet(*line.bytes, frame)) return frame;
+    if (line.message.name != "*") {
       throw TraceError(line.place, "the bytes are no packet of an active message");
     }
+    frame.packet.assign(line.bytes->begin(), line.bytes->end());
     return frame;
   }
   frame = encode(line.message, bindings);

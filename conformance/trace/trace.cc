@@ -131,6 +131,7 @@ const Value* Message::find(std::string_view path) const {
 }
 
 std::vector<std::uint8_t> packet_of(const AmFrame& frame) {
+  if (!frame.packet.empty()) return frame.packet;
   return reflect::serial_packet(
       {.dest = frame.dest, .src = frame.src, .group = frame.group, .type = frame.type},
       Bytes(frame.payload.data(), frame.payload.size()));
@@ -151,6 +152,7 @@ bool parse_packet(std::string_view bytes, AmFrame& out) {
   out.group = Am::GroupAt::load(p);
   out.type = Am::TypeAt::load(p);
   out.payload.assign(payload.begin(), payload.end());
+  out.packet.clear();
   return true;
 }
 

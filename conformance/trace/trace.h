@@ -121,6 +121,8 @@ struct AmFrame {
   std::uint8_t group = 0;
   std::uint8_t type = 0;
   std::vector<std::uint8_t> payload;
+  /// A serial packet that is no active message: all its bytes, in place of the rest.
+  std::vector<std::uint8_t> packet = {};
   friend bool operator==(const AmFrame&, const AmFrame&) = default;
 };
 constexpr std::uint16_t kAmAll = 0xFFFF;

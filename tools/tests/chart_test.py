@@ -69,7 +69,7 @@ class EveryCase(unittest.TestCase):
                 text = path.read_text()
                 case = re.search(r"^case (\S+)", text, re.M)[1]
                 cls.logs[case] = re.findall(r"^\s*@(\d+)\s+(\S+)\s+([<>])\s+(\S+)\s+(?:am=\S+ )?"
-                                            r"([a-z_]+)", text, re.M)
+                                            r"([a-z_]+|\*)", text, re.M)
         with concurrent.futures.ThreadPoolExecutor(4) as pool:
             cls.pictures = dict(zip(cls.cases, pool.map(picture, cls.cases)))
             cls.texts = dict(zip(cls.cases, pool.map(chart, cls.cases)))

@@ -131,6 +131,7 @@ class LogReader {
 
   void take_frame(const Line& line, LinkKind kind, Observation& seen) {
     const trace::AmFrame frame = trace::frame_of(line, scope_);
+    if (!frame.packet.empty()) return;  // No active message, so that no rule is about it.
     const bool radio = kind == LinkKind::kRadio;
     seen.frame.link = events::to_link(kind).value_or(machine::Link::kSerial);
     const bool peis = kind == LinkKind::kPeis;

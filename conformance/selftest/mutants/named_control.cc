@@ -202,6 +202,12 @@ void add_malformed(Mutants& out) {
                  (action.what == Action::What::kIgnored && action.requirement == "N11-NBYTES"_rule);
         }
       }));
+  add(out, "runt_kills", "After a packet that is no active message a node hears no more.",
+      {"N11-NEXT"_rule}, remembering<bool>([](Moment& moment, bool& dead) {
+        if (dead && moment.heard() != nullptr) return moment.nothing();
+        moment.honest();
+        dead = dead || (moment.heard() != nullptr && !moment.heard()->packet.empty());
+      }));
   add(out, "malformed_eats_the_next", "The message after a malformed one is lost.",
       {"N11-NEXT"_rule}, remembering<bool>([](Moment& moment, bool& skip) {
         const Frame* const frame = moment.heard(am::kNet);

@@ -9,6 +9,7 @@
 #include "codec/generated/tinyos/am_header.h"
 #include "conformance/node/node.h"
 #include "conformance/test/runner/subject_target.h"
+#include "conformance/trace/events/lines.h"
 
 namespace rubric::script {
 namespace {
@@ -137,16 +138,8 @@ class CppTarget : public runner::Target, public node::Driver, public node::Appli
   // Events.
   void happens(const machine::Heard& heard) {
     if (!node_) return;
-    const machine::Frame& frame = heard.frame;
-    tinyos::AmHeader header;
-    header.dest = frame.dest;
-    header.src = frame.src;
-    header.length = static_cast<std::uint8_t>(frame.payload.size());
-    header.type = frame.type;
-    std::vector<std::uint8_t> packet(tinyos::AmHeaderView::kMaxSizeBytes);
-    tinyos::AmHeaderLayout::store(header, packet.data());
-    packet.insert(packet.end(), frame.payload.begin(), frame.payload.end());
-    node_->received(node_line(frame.link), Bytes(packet.data(), packet.size()));
+    const std::vector<std::uint8_t> packet = events::packet_of(heard.frame);
+    node_->received(node_line(heard.frame.link), Bytes(packet.data(), packet.size()));
   }
   void happens(const machine::Called& called) {
     if (node_) std::visit([this](const auto& one) { call(one); }, called.call);

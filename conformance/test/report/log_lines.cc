@@ -85,6 +85,7 @@ std::vector<std::size_t> peers_of(const std::vector<NodeHeader>& nodes, const Li
 
 std::string short_text(const trace::Message& message) {
   const std::string& name = message.name;
+  if (name == "*") return "no active message";
   const Value* kind = message.find("payload.trans_id");
   if (kind && kind->text == "rubicon_ack") {
     const Value* number = message.find("payload.body.seq_num");

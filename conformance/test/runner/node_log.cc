@@ -113,8 +113,12 @@ Window NodeLog::give(const trace::Line& line, Ticks now, const trace::Scope& sco
   if (!is_state && link) {
     const trace::AmFrame frame = trace::frame_of(line, scope, bindings);
     log_.push_back({now, trace::frame_line(now, name_, trace::Op::kGiven, line.link, kind, frame)});
-    const machine::Frame heard{*link, frame.dest, frame.src, frame.type,
-                               Bytes(frame.payload.data(), frame.payload.size())};
+    const machine::Frame heard{*link,
+                               frame.dest,
+                               frame.src,
+                               frame.type,
+                               Bytes(frame.payload.data(), frame.payload.size()),
+                               Bytes(frame.packet.data(), frame.packet.size())};
     return give(now, machine::Heard{heard});
   }
   const trace::Concrete message = trace::concrete(line.message, bindings);

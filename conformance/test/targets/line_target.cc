@@ -15,7 +15,7 @@
 #include "conformance/machine/messages.h"
 #include "conformance/test/targets/process.h"
 #include "conformance/test/targets/rct_text.h"
-#include "conformance/trace/trace.h"
+#include "conformance/trace/events/lines.h"
 
 namespace rubric::targets {
 namespace {
@@ -193,10 +193,7 @@ void LineTarget::give(Ticks now, const machine::Event& event) {
 }
 
 void LineTarget::send(const machine::Frame& frame) {
-  line_.line->send(
-      trace::packet_of(
-          {frame.dest, frame.src, 0, frame.type, {frame.payload.begin(), frame.payload.end()}}),
-      step_deadline());
+  line_.line->send(events::packet_of(frame), step_deadline());
 }
 
 std::optional<Ticks> LineTarget::next() const { return now_ + kStepTicks; }

@@ -6,6 +6,7 @@
 #include <charconv>
 
 #include "conformance/trace/events/app_events.h"
+#include "conformance/trace/events/lines.h"
 #include "conformance/trace/parse.h"
 #include "conformance/trace/schema.h"
 #include "conformance/trace/value_text.h"
@@ -97,8 +98,7 @@ std::string unprintable(std::string_view line) {
 }
 
 std::string hex_of(const machine::Frame& frame) {
-  const std::vector<std::uint8_t> packet = trace::packet_of(
-      {frame.dest, frame.src, 0, frame.type, {frame.payload.begin(), frame.payload.end()}});
+  const std::vector<std::uint8_t> packet = events::packet_of(frame);
   std::string out;
   trace::put_hex({reinterpret_cast<const char*>(packet.data()), packet.size()}, out);
   return out;

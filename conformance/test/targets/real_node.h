@@ -17,7 +17,7 @@
 #include "codec/runtime/hdlc.h"
 #include "conformance/test/runner/subject_target.h"
 #include "conformance/test/targets/clock.h"
-#include "conformance/trace/trace.h"
+#include "conformance/trace/events/lines.h"
 
 namespace rubric::targets {
 
@@ -180,11 +180,8 @@ class RealNode {
       others_.push_back(output);
       return;
     }
-    const machine::Frame frame = output.frame.frame();
-    line_->send(
-        trace::packet_of(
-            {frame.dest, frame.src, 0, frame.type, {frame.payload.begin(), frame.payload.end()}}),
-        std::chrono::steady_clock::now() + lines::Milliseconds(1000));
+    line_->send(events::packet_of(output.frame.frame()),
+                std::chrono::steady_clock::now() + lines::Milliseconds(1000));
   }
 
   std::unique_ptr<lines::PacketLine> line_;

@@ -51,8 +51,15 @@ struct Told {
 void read_frame(Words words, Told& out) {
   machine::Frame frame;
   frame.link = line_of(words.next());
-  if (std::string wrong = frame_of(words.next(), frame, out.bytes); !wrong.empty()) {
-    throw Unsupported(wrong);
+  const std::string_view hex = words.next();
+  if (std::string wrong = frame_of(hex, frame, out.bytes); !wrong.empty()) {
+    std::string packet;
+    if (frame.link != machine::Link::kSerial || hex.empty() ||
+        !trace::read_hex_bytes(hex, packet)) {
+      throw Unsupported(wrong);
+    }
+    out.bytes.assign(packet.begin(), packet.end());  // No active message.
+    frame.packet = Bytes(out.bytes.data(), out.bytes.size());
   }
   expect_end(words);
   out.event = machine::Heard{frame};

@@ -37,7 +37,16 @@ trace::LinkKind kind_of(Link link) {
 
 trace::AmFrame frame_of(const NodeNames& names, const machine::Frame& frame) {
   const std::uint8_t group = frame.link == Link::kRadio ? names.radio_group : std::uint8_t{0};
-  return {frame.dest, frame.src, group, frame.type, {frame.payload.begin(), frame.payload.end()}};
+  return {frame.dest,
+          frame.src,
+          group,
+          frame.type,
+          {frame.payload.begin(), frame.payload.end()},
+          {frame.packet.begin(), frame.packet.end()}};
+}
+
+std::vector<std::uint8_t> packet_of(const machine::Frame& frame) {
+  return trace::packet_of(frame_of({}, frame));
 }
 
 std::optional<Line> given_line(std::int64_t now, const NodeNames& names,

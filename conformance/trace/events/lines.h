@@ -24,6 +24,8 @@ struct NodeNames {
 
 trace::LinkKind kind_of(machine::Link link);
 trace::AmFrame frame_of(const NodeNames& names, const machine::Frame& frame);
+/// Returns the packet that stands for the frame in rct/1 and on serial lines.
+std::vector<std::uint8_t> packet_of(const machine::Frame& frame);
 
 /// Nothing for timers, which no line shows.
 std::optional<trace::Line> given_line(std::int64_t now, const NodeNames& names,

@@ -172,6 +172,10 @@ const Wrong kWrong[] = {
     {"UnknownMessage", "0 m5 > rA join_reqest(*)",
      "11: unknown message 'join_reqest' (did you mean 'join_request'?)"},
     {"AnyGiven", "0 m5 < rA *", "11: expected what to give to the node, given '*'"},
+    {"BytesGivenByRadio", "0 m5 < rA * | 00", "11: expected what to give to the node, given '*'"},
+    {"BytesSent", "0 sA > serA * | 00",
+     "1: the bytes are no packet: 00, AM destination, source, length, group, type, and as many "
+     "bytes as length says"},
     {"AnyWithFields", "0 m5 > rA *(a=1)", "11: '*' is any message and has no fields"},
     {"AmOnApp", "0 m5 > app am=1->2 joined(*)", "1: there are no AM addresses on 'app'"},
     {"AmRange", "0 m5 > rA am=70000->2 *",
