@@ -219,9 +219,11 @@ void Judge::called(const Observation& seen, std::uint16_t device) {
     if (set->link == machine::Link::kRadio) joins_.radio_set(device, set->on, seen.place.time_us);
     return;
   }
+  if (const auto* send = std::get_if<machine::Send>(seen.call)) {
+    return originals_.called(device, *send);
+  }
   const machine::Call& call = *seen.call;
-  const bool other = std::holds_alternative<machine::Send>(call) ||
-                     std::holds_alternative<machine::GetInterface>(call) ||
+  const bool other = std::holds_alternative<machine::GetInterface>(call) ||
                      std::holds_alternative<machine::GetClock>(call) ||
                      std::holds_alternative<machine::SetIslandId>(call);
   if (other) return;  // The rest is for the channels.
@@ -242,6 +244,8 @@ void Judge::told(const Observation& seen, std::uint16_t device) {
     acks_.delivered(device, seen, *received);
   } else if (const auto* ack = std::get_if<machine::AckReceived>(seen.notice)) {
     originals_.told(device, seen, *ack);
+  } else if (const auto* result = std::get_if<machine::SendResult>(seen.notice)) {
+    originals_.told(device, seen, *result);
   } else if (const auto* data = std::get_if<machine::SynDataReceived>(seen.notice)) {
     synaptic_.told(device, seen, *data);
   } else if (const auto* clock = std::get_if<machine::Clock>(seen.notice)) {
@@ -408,9 +412,12 @@ void Judge::serial(std::uint32_t index, const Observation& seen, const Mark& mar
   if (seen.to_mote) {
     down_serial(index, seen, mark, sink, net);
   } else {
-    up_serial(seen, sink, net);
+    up_serial(seen, mark, sink, net);
   }
   if (net.is_ack()) ack_comes(net);
+  if (net.is_ack() && mark.receiver != kNobody) {
+    originals_.ack_given(mark.receiver, net, seen.place.time_us);
+  }
 }
 
 void Judge::whole(const Observation& seen, std::uint16_t sender) {
@@ -423,12 +430,13 @@ void Judge::whole(const Observation& seen, std::uint16_t sender) {
                    {}});
 }
 
-void Judge::up_serial(const Observation& seen, std::uint16_t sink, const Net& net) {
+void Judge::up_serial(const Observation& seen, const Mark& mark, std::uint16_t sink,
+                      const Net& net) {
   const Device& device = who_.devices[sink];
   SerialJoined joined;
   if (parse_serial_joined(net, joined)) {
     sinks_.report(sink, seen, net, joined);
-    return base_station_hears(sink, seen, net);
+    return base_station_hears(sink, seen, mark, net);
   }
   const std::uint16_t island = sinks_.island(sink);
   if (net.src == machine::Address{island, device.am}) {
@@ -437,16 +445,18 @@ void Judge::up_serial(const Observation& seen, std::uint16_t sink, const Net& ne
     acks_.showed_life(sink, seen.place.time_us);
     forwarding_.sent_on_serial(sink, seen, net);
   }
-  base_station_hears(sink, seen, net);
+  base_station_hears(sink, seen, mark, net);
 }
 
-void Judge::base_station_hears(std::uint16_t sink, const Observation& seen, const Net& net) {
+// A base station is given a message for sure where its own log says so.
+void Judge::base_station_hears(std::uint16_t sink, const Observation& seen, const Mark& mark,
+                               const Net& net) {
   const std::uint16_t base = who_.devices[sink].partner;
   if (base == kNobody) return;
   peis_.came_up(base, sinks_.island(sink), seen, net, seen.received);
   hears(base,
         {Role::kBaseStation, {sinks_.island(sink), machine::kNullDevid}, true, context_.sink_am},
-        machine::Link::kSerial, seen, sink, net, false);
+        machine::Link::kSerial, seen, sink, net, mark.receiver == base);
 }
 
 void Judge::down_serial(std::uint32_t index, const Observation& seen, const Mark& mark,

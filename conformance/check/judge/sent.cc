@@ -24,17 +24,88 @@ bool known_trans(std::uint8_t trans_id) {
 }  // namespace
 
 Originals::Originals(Context& context, std::size_t devices)
-    : context_(context), sent_(devices), orders_(devices, 0), stale_(devices), acks_(devices) {}
+    : context_(context),
+      sent_(devices),
+      orders_(devices, 0),
+      stale_(devices),
+      acks_(devices),
+      calls_(devices),
+      begun_(devices) {}
 
 void Originals::begin_life(std::uint16_t node) {
   sent_[node].clear();
   acks_[node].clear();
+  calls_[node].clear();
+  begun_[node] = true;
+}
+
+void Originals::called(std::uint16_t node, const machine::Send& call) {
+  calls_[node].push({&call, {}, {}});
+}
+
+void Originals::told(std::uint16_t node, const Observation& seen,
+                     const machine::SendResult& result) {
+  if (calls_[node].size() == 0) return;
+  Call& call = calls_[node].newest(0);
+  call.result = result.seq_num;
+  if (call.left) judge_result(node, seen, call);
+}
+
+// Judges the number of a message that left and the one that send returned for it.
+void Originals::judge_result(std::uint16_t node, const Observation& seen, const Call& call) {
+  if (*call.left == *call.result) return context_.findings.kept("N1-SEQ"_rule);
+  context_.report("N1-SEQ"_rule, Severity::kFail, seen.place, node,
+                  {"send returned " + number(*call.result) + " for the message to " +
+                       text_of(call.send->dest) + " with number " + number(*call.left) + ".",
+                   "The number of the message.",
+                   {}});
+}
+
+// Judges what a message wraps by the calls of its application, which a log shows.
+void Originals::judge_wrap(std::uint16_t node, const Observation& seen, const Net& net, Link link) {
+  if (!net.sound || net.is_ack() || net.trans_id == component::kSynChannel) return;
+  // Up its line a sink may send old bytes behind the data, and count them, as release 1.0 does.
+  const bool more = link == Link::kSerial && context_.device(node).role == Role::kSink;
+  auto& calls = calls_[node];
+  bool asked = false;
+  Call* same = nullptr;  // The last that says so, of another number or of this.
+  for (std::size_t i = 0; i < calls.size(); ++i) {
+    Call& one = calls.newest(i);
+    const machine::Send& call = *one.send;
+    const bool at_home = call.dest.pid == machine::kLocalPid;
+    const machine::Address dest{at_home ? net.dest.pid : call.dest.pid, call.dest.devid};
+    if (dest != net.dest || call.reliable != (net.reliable == 1)) continue;
+    asked = true;
+    const std::size_t size = more ? std::min(call.data.size(), net.body().size()) : SIZE_MAX;
+    if (net.trans_id != component::kConnless || call.app_id != net.app_id ||
+        !equal(call.data, net.body().first(std::min(size, net.body().size())))) {
+      continue;
+    }
+    if (!one.result || *one.result == net.seq_num || same == nullptr) same = &one;
+    if (one.result == net.seq_num) break;
+  }
+  if (same != nullptr) {
+    same->left = net.seq_num;
+    if (same->result && !calls.full()) judge_result(node, seen, *same);
+    return;
+  }
+  if (!asked || calls.full()) return;
+  // What was sent before the log began may have waited.
+  const bool whole = context_.options.start_cold || begun_[node];
+  context_.report("T1-WRAP"_rule, whole ? Severity::kFail : Severity::kInconclusive, seen.place,
+                  node,
+                  {"TRANSID " + number(net.trans_id) + ", APPID " + number(net.app_id) + " and " +
+                       number(net.body().size()) + " bytes of data in " + name_of(net) +
+                       ": no call of its application says so.",
+                   "TRANSID CONNLESS, and the APPID and the data of the call of send.",
+                   {}});
 }
 
 void Originals::sent(std::uint16_t node, const Observation& seen, const Net& net, Link link,
                      machine::Address own) {
   ++orders_[node];
   judge_content(node, seen, net);
+  judge_wrap(node, seen, net, link);
   judge_address(node, seen, net, link, own);
   judge_number(node, seen, net);
   if (net.sound && net.trans_id == component::kSynChannel) judge_synaptic(node, seen, net);

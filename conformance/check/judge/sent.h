@@ -26,6 +26,9 @@ class Originals {
   Originals(Context& context, std::size_t devices);
 
   void begin_life(std::uint16_t node);
+  /// Notes a call of send, by a log, and judges what it returned.
+  void called(std::uint16_t node, const machine::Send& call);
+  void told(std::uint16_t node, const Observation& seen, const machine::SendResult& result);
   /// Judges a message of its own that `node`, whose address is `own`, sends over `link`.
   void sent(std::uint16_t node, const Observation& seen, const Net& net, machine::Link link,
             machine::Address own);
@@ -44,11 +47,19 @@ class Originals {
  private:
   static constexpr std::size_t kRoom = 32;
 
+  struct Call {
+    const machine::Send* send = nullptr;
+    std::optional<std::uint16_t> result;  ///< The number that it returned.
+    std::optional<std::uint16_t> left;    ///< That of the message.
+  };
+
   /// Judges the end of a message that is forgotten now: was its application notified?
   void close(std::uint16_t node, std::size_t newest, std::int64_t now_us);
   void judge_address(std::uint16_t node, const Observation& seen, const Net& net,
                      machine::Link link, machine::Address own);
   void judge_synaptic(std::uint16_t node, const Observation& seen, const Net& net);
+  void judge_result(std::uint16_t node, const Observation& seen, const Call& call);
+  void judge_wrap(std::uint16_t node, const Observation& seen, const Net& net, machine::Link link);
   bool rightly_acked(std::uint16_t node, const Net& message);
   void judge_number(std::uint16_t node, const Observation& seen, const Net& net);
 
@@ -61,6 +72,8 @@ class Originals {
     std::uint16_t number = 0;
   };
   std::vector<Ring<Ack, kRoom>> acks_;
+  std::vector<Ring<Call, kRoom>> calls_;
+  std::vector<bool> begun_;  ///< Its start is in the log, so that it has no older calls.
 };
 
 }  // namespace rubric::check

@@ -51,6 +51,10 @@ void SynapticWatch::called(std::uint16_t device, const Observation& seen, machin
   machine::call_synaptic(node.channels, config, own, machine::ticks_of(seen.place.time_us),
                          *seen.call, context_.actions);
   note(node, before, seen.place.time_us);
+  if (const auto* write = std::get_if<machine::WriteOutput>(seen.call)) {
+    Out* const out = find(node, write->id);
+    if (out != nullptr && write->pos < machine::kConnectionsMax) out->written |= 1U << write->pos;
+  }
   note_inputs(node, before, seen.place.time_us);
 }
 
@@ -92,6 +96,7 @@ void SynapticWatch::note(Node& node, const machine::Synaptic& before, std::int64
       out->silent_us = now_us;
       out->begun_us = out->wrote_us = -1;
       out->disposed = true;
+      out->written = 0;
     }
   }
 }
@@ -109,10 +114,13 @@ void SynapticWatch::sent(std::uint16_t device, const Observation& seen, const Ne
   const machine::Channel* const channel = check::find(node.channels, out->id);
   // A write just before the data may have missed its tick; then they have the values before it.
   bool current = true;
+  bool as_written = true;  // A value that nobody wrote is free.
   using Values = rubicon::SynapticDataLayout::ValuesAt;
   for (std::size_t i = 0; channel != nullptr && i < channel->size; ++i) {
-    current = current && (i + 1) * Values::kUnitBytes <= net.body().size() &&
-              bits_of_float(Values::load(net.body().data(), i)) == channel->value_bits[i];
+    const bool same = (i + 1) * Values::kUnitBytes <= net.body().size() &&
+                      bits_of_float(Values::load(net.body().data(), i)) == channel->value_bits[i];
+    current = current && same;
+    as_written = as_written && (same || (out->written >> i & 1) == 0);
   }
   if (current || out->wrote_us < now - context_.response_us()) out->wrote_us = -1;
   // Data in the outgoing buffer may still leave.
@@ -132,6 +140,13 @@ void SynapticWatch::sent(std::uint16_t device, const Observation& seen, const Ne
                     {"Data of " + number(net.body().size() / 4) + " values for a channel of " +
                          number(channel->size) + ".",
                      "One value for each connection.",
+                     {}});
+  } else if (!as_written && now > context_.due_us(device, out->written_us)) {
+    context_.report("S2-CONTENT"_rule, Severity::kFail, seen.place, device,
+                    {"Data of the channel to " + text_of(net.dest) +
+                         " whose values are not those that were written, the last of them " +
+                         ms_text(now - out->written_us) + " before.",
+                     "The value of each connection, in order.",
                      {}});
   }
   const std::int64_t least = machine::us_of(node.channels.period_ticks) - context_.early_us();

@@ -46,6 +46,7 @@ class SynapticWatch {
     Ticks ticks;
     std::int64_t sent_us = -1;     ///< The last data; -1: none since it was started.
     std::int64_t written_us = -1;  ///< The last write that changed something.
+    std::uint32_t written = 0;     ///< Bit i: connection i was written.
     std::int64_t silent_us = -1;   ///< When it was stopped or disposed; -1: it runs.
     bool disposed = false;
   };

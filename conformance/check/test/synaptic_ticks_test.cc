@@ -66,6 +66,20 @@ TEST(SynapticTicks, EachTickSends) {
   EXPECT_EQ(all(out("reliable") + data(640, 1) + data(1620, 2) + end(1700)), "S2-SEND");
 }
 
+TEST(SynapticTicks, DataAreWhatWasWritten) {
+  const auto wrote = [](const std::string& pos) {
+    return m2(120, "< app write_output(channel=2->1 pos=" + pos + " value=1)");
+  };
+  EXPECT_EQ(all(out("reliable") + wrote("0") + data(640, 1)), "");
+  const std::string two = "> rA am=2->1 am(28 x000b0001000b00020000010a010b";
+  const std::string both = m2(100, "< app create_out(dest=11:1 size=2 mode=reliable)") +
+                           m2(110, "< app start(channel=2->1)");
+  EXPECT_EQ(all(both + wrote("1") + m2(640, two + "000080400000803f)")), "")
+      << "The other is free.";
+  EXPECT_EQ(all(both + wrote("1") + m2(640, two + "0000803f00000000)")), "S2-CONTENT");
+  EXPECT_EQ(all(both + wrote("1") + m2(130, two + "0000803f00000000)")), "") << "Before its tick.";
+}
+
 TEST(SynapticTicks, WhatCannotSendDoesNot) {
   const std::string three = out("reliable") + data(640, 1) + data(1130, 2);
   EXPECT_EQ(all(three + m2(1200, "< app stop(channel=2->1)") + end(2700)), "");

@@ -4,6 +4,8 @@
 // of the recorder and once with the truth: it began with the node and missed nothing.
 // - A run that the suite finds in order is not blamed: no legal variant, no shipped implementation;
 //   and a mutant only if the suite fails it in some case, since a case looks at what it is about.
+// - What an application asked for and what left in its place is before the eyes of both in a log:
+//   such a run is not in order for the judge either (T1-WRAP, S2-CONTENT).
 // - A frame that must not be on a link, by a line that fails, is before the eyes of both. The judge
 //   may blame the node for it, by whatever rule, or say what it cannot know; it may not call the
 //   rule of that line kept and leave the run in order.
@@ -179,10 +181,19 @@ void expect_seen(const std::string& who, const suite::CaseRun& run, const Record
   }
 }
 
+// Returns whether the suite misses a frame as an application asked for it, which another came for.
+bool lacks_what_was_asked(const suite::CaseRun& run) {
+  const runner::Failure& first = run.result.failures.front();
+  const bool named = !first.requirements.empty() && (first.requirements.front() == "T1-WRAP" ||
+                                                     first.requirements.front() == "S2-CONTENT");
+  return named && !first.forbidden && !first.weak && !first.crash;
+}
+
 struct Opinions {
   std::size_t runs = 0;
   std::size_t failed = 0;  ///< Or weak.
   std::string blamed;      ///< Where the judge alone blames.
+  std::size_t asked = 0;   ///< Lack what an application asked for.
 };
 
 void compare(const std::string& who, const suite::CaseRun& run, const trace::Statement& stated,
@@ -196,6 +207,10 @@ void compare(const std::string& who, const suite::CaseRun& run, const trace::Sta
     const std::string blame = report ? blame_in(*report) : "it cannot be read";
     if (fails) {
       if (report && recording.options.start_cold) expect_seen(who, run, recording, *report);
+      if (recording.name == "whole log" && lacks_what_was_asked(run)) {
+        EXPECT_NE(blame, "") << who << ", " << run.name;
+        ++out.asked;
+      }
     } else if (!blame.empty() && out.blamed.empty()) {
       out.blamed = who + ", " + run.name + " as " + recording.name + ": " + blame;
     }
@@ -279,6 +294,7 @@ bool about(const suite::SuiteCase& one, const Mutant& mutant) {
 void expect_same(const Mutants& mutants, Chance& chance, unsigned every, std::size_t at_least) {
   std::size_t runs = 0;
   std::size_t failed = 0;
+  std::size_t asked = 0;
   for (const Mutant& mutant : mutants) {
     suite::testing::FakeAttachment attachment = attached(mutant.step, {});
     Opinions all;
@@ -294,8 +310,10 @@ void expect_same(const Mutants& mutants, Chance& chance, unsigned every, std::si
     EXPECT_TRUE(all.blamed.empty() || all.failed > 0) << all.blamed << "; no case fails it";
     runs += all.runs;
     failed += all.failed;
+    asked += all.asked;
   }
-  std::printf("runs of mutants: %zu, of which the suite fails %zu\n", runs, failed);
+  std::printf("runs of mutants: %zu, of which the suite fails %zu, %zu for what was asked for\n",
+              runs, failed, asked);
   EXPECT_GT(failed, at_least);
 }
 
