@@ -2,7 +2,6 @@
 // Tests the page in a real Chromium, from file://: what it shows, what it does, that everybody can
 // use it, and that no text of a report can break out of its place. Usage: node browser_test.js
 // SAMPLE [SHOTS]: SAMPLE writes a report into a folder; pictures of the views go into SHOTS.
-const assert = require('node:assert');
 const { execFileSync } = require('node:child_process');
 const fs = require('node:fs');
 const os = require('node:os');
@@ -12,7 +11,6 @@ const { accessible, launch, open } = require('./browser.js');
 const { views } = require('./views.js');
 const { checks } = require('./checks.js');
 
-const kLoadMsMax = 3000;
 const kCasesMin = 500;
 
 async function go(page, hash) {
@@ -20,15 +18,12 @@ async function go(page, hash) {
   await page.evaluate(() => new Promise((done) => requestAnimationFrame(done)));
 }
 
-async function loadTime(page) {
-  const started = process.hrtime.bigint();
+async function allCases(page) {
   await page.goto(page.home);
   await page.waitForFunction((least) =>
     document.querySelectorAll('#matrix tbody tr').length >= least, kCasesMin);
-  const ms = Number(process.hrtime.bigint() - started) / 1e6;
   const rows = await page.locator('#matrix tbody tr').count();
-  console.log(`ok   ${rows} cases are there after ${ms.toFixed(0)} ms`);
-  assert.ok(ms < kLoadMsMax, `it took ${ms.toFixed(0)} ms to load`);
+  console.log(`ok   ${rows} cases are there`);
 }
 
 // Expects every view, in both colours, to be accessible and no wider than the window.
@@ -58,10 +53,10 @@ async function main() {
     execFileSync(sample, [folder], { stdio: 'inherit' });
     const home = url.pathToFileURL(path.join(folder, 'index.html')).href;
     const whole = [
-      ['loads in time', async () => {
+      ['all cases', async () => {
         const page = await open(browser, 'light');
         page.home = home;
-        await loadTime(page);
+        await allCases(page);
         await page.clean();
       }],
       ['every view', () => everyView(browser, home, shots)],
