@@ -12,6 +12,7 @@
 #include "codec/generated/rubicon/tables.h"
 #include "codec/reflect/compare_view.h"
 #include "codec/reflect/test_frames.h"
+#include "tools/tests/made_inputs.h"
 #include "tools/tests/readme/number.h"
 
 namespace rubric::reflect {
@@ -245,9 +246,9 @@ TEST(Dispatch, ViewsChooseWhatTheTablesChoose_Captures) {
 
 TEST(Dispatch, ViewsChooseWhatTheTablesChoose_MadeFrames) {
   Tally tally;
-  const std::size_t made = readme_number("# made-up frames");
+  const int made = made_inputs(static_cast<int>(readme_number("# made-up frames")));
   FrameMaker maker(captured_frames("spec/captures"), tables::kProtocol, 20);
-  for (std::size_t i = 0; i < made && !::testing::Test::HasFailure(); ++i) {
+  for (int i = 0; i < made && !::testing::Test::HasFailure(); ++i) {
     hold(maker.make(), tally);
   }
   print("made", tally);
@@ -258,11 +259,11 @@ TEST(Dispatch, ViewsChooseWhatTheTablesChoose_MadeFrames) {
   }
   std::printf("%zu paths that the tables have\n", paths.size());
   EXPECT_EQ(paths.size(), readme_number("# ways to a message"));
-  const auto least = static_cast<long>(readme_number("taken at least # times"));
+  const int least = made_inputs(static_cast<int>(readme_number("taken at least # times")));
   for (const std::string& path : paths) EXPECT_GE(reached(tally, path), least) << path;
-  EXPECT_EQ(std::lround(static_cast<double>(tally.numbers) / 1e6),
+  EXPECT_EQ(std::lround(static_cast<double>(tally.numbers) / made_inputs(1'000'000)),
             static_cast<long>(readme_number("# million numbers")));
-  EXPECT_GE(tally.refused, static_cast<long>(made / 10));
+  EXPECT_GE(tally.refused, made / 10);
 }
 
 }  // namespace

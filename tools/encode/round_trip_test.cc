@@ -18,6 +18,7 @@
 #include "tools/encode/packet_output.h"
 #include "tools/encode/record.h"
 #include "tools/format/jsonl.h"
+#include "tools/tests/made_inputs.h"
 #include "tools/tests/readme/number.h"
 
 namespace rubric::encode {
@@ -230,7 +231,7 @@ TEST_P(RoundTrip, DamagedCapture) {
   ASSERT_NE(format, InputFormat::kUnknown);
   std::mt19937 random(20240607);
   Tally tally;
-  for (int i = 0; i < kDamagedCopies; ++i) {
+  for (int i = 0; i < made_inputs(kDamagedCopies); ++i) {
     const std::string bad = format == InputFormat::kPcapng ? damaged_frames(input, format, random)
                                                            : damaged(input, random);
     ASSERT_NO_FATAL_FAILURE(round_trip(bad, format, tally)) << "round " << i;

@@ -11,6 +11,7 @@
 #include "codec/containers/serial_frame.h"
 #include "codec/containers/test/testing.h"
 #include "codec/runtime/hdlc.h"
+#include "tools/tests/made_inputs.h"
 #include "tools/tests/readme/number.h"
 
 namespace rubric {
@@ -113,6 +114,8 @@ std::map<std::uint64_t, int> intact_frames(const std::vector<Traced>& stream,
 
 using Deframe = std::function<std::vector<Kept>(Bytes)>;
 
+constexpr int kRounds = made_inputs(300);
+
 struct Tally {
   std::size_t corruptions = 0;
   std::size_t frames = 0;
@@ -121,9 +124,9 @@ struct Tally {
   std::size_t sound = 0;  // Packets without fault.
 };
 
-void run_round(const std::vector<std::string>& frames, unsigned seed, const Deframe& deframe,
+void run_round(const std::vector<std::string>& frames, int seed, const Deframe& deframe,
                Tally& tally) {
-  std::mt19937 random(seed);
+  std::mt19937 random(static_cast<unsigned>(seed));
   std::vector<Traced> stream = trace(frames);
   const std::size_t corruptions = 1 + random() % 200;
   for (std::size_t i = 0; i < corruptions; ++i) corrupt(stream, random);
@@ -150,8 +153,8 @@ TEST(WireHdlcFlag, IntactFramesAreFoundAmongCorruptedOnes) {
   const std::vector<std::string> frames = captured_frames();
   ASSERT_GT(frames.size(), 200u);
   Tally tally;
-  for (unsigned seed = 1; seed <= 300; ++seed) {
-    std::mt19937 random(seed);
+  for (int seed = 1; seed <= kRounds; ++seed) {
+    std::mt19937 random(static_cast<unsigned>(seed));
     const CpuPath path = static_cast<CpuPath>(seed % 3);
     HdlcReader reader({}, cpu_has(path) ? path : CpuPath::kPortable);
     const std::size_t piece_max = seed % 2 == 0 ? 1'000'000 : 200;
@@ -162,7 +165,9 @@ TEST(WireHdlcFlag, IntactFramesAreFoundAmongCorruptedOnes) {
   std::cout << tally.corruptions << " corruptions in " << tally.frames << " frames; "
             << tally.intact << " left intact, " << tally.missed << " of them missed; "
             << tally.sound << " packets without fault\n";
-  EXPECT_EQ(tally.corruptions, readme_number("# seeded corruptions"));
+  if (!kSanitized) {
+    EXPECT_EQ(tally.corruptions, readme_number("# seeded corruptions"));
+  }
   EXPECT_EQ(tally.missed, 0u);
   EXPECT_GT(tally.intact, tally.frames / 4);
   EXPECT_LT(tally.intact, tally.frames);
@@ -217,7 +222,7 @@ TEST(WireHdlcFlag, TheMotesDeframerFindsTheSameFrames) {
   const std::vector<std::string> frames = captured_frames();
   Tally tally;
   std::size_t compared = 0;
-  for (unsigned seed = 1; seed <= 300; ++seed) {
+  for (int seed = 1; seed <= kRounds; ++seed) {
     run_round(
         frames, seed,
         [&](Bytes bytes) {
@@ -232,7 +237,9 @@ TEST(WireHdlcFlag, TheMotesDeframerFindsTheSameFrames) {
   std::cout << tally.corruptions << " corruptions in " << tally.frames << " frames; "
             << tally.intact << " left intact, " << tally.missed << " of them missed by the mote's; "
             << compared << " frames the same from both, " << tally.sound << " without fault\n";
-  EXPECT_EQ(tally.corruptions, readme_number("# seeded corruptions"));
+  if (!kSanitized) {
+    EXPECT_EQ(tally.corruptions, readme_number("# seeded corruptions"));
+  }
   EXPECT_EQ(tally.missed, 0u);
   EXPECT_GT(tally.intact, tally.frames / 4);
   EXPECT_GT(compared, tally.sound);
@@ -261,7 +268,7 @@ std::vector<Kept> deframe_by_turns(Bytes stream) {
 
 TEST(WireHdlcFlag, TheCheckAboveSeesADeframerThatLosesFrames) {
   Tally tally;
-  for (unsigned seed = 1; seed <= 5; ++seed) {
+  for (int seed = 1; seed <= 5; ++seed) {
     run_round(captured_frames(), seed, deframe_by_turns, tally);
   }
   EXPECT_GT(tally.missed, 0u);

@@ -12,11 +12,12 @@
 #include "spec/compiler/emit/emit.h"
 #include "spec/compiler/load/load.h"
 #include "spec/compiler/wire_specs.h"
+#include "tools/tests/made_inputs.h"
 
 namespace rubricc {
 namespace {
 
-constexpr int kRounds = 300;
+constexpr int kRounds = rubric::made_inputs(300);
 
 std::string read(const std::string& file) {
   std::ifstream in(file, std::ios::binary);
