@@ -34,9 +34,9 @@ constexpr std::array<std::string_view, 30> kClasses{
 static_assert(std::is_sorted(kClasses.begin(), kClasses.end()));
 
 /// The generated names of one class or namespace, with the line of the spec of each.
-class Names {
+class ScopeNames {
  public:
-  Names(Check& check, std::string where) : check_(check), where_(std::move(where)) {}
+  ScopeNames(Check& check, std::string where) : check_(check), where_(std::move(where)) {}
 
   void claim(const std::string& name, const Place& place) {
     const auto [found, fresh] = lines_.try_emplace(name, place.line);
@@ -52,7 +52,7 @@ class Names {
 };
 
 void check_classes(Check& check, const Spec& spec) {
-  Names names(check, quote(spec.id));
+  ScopeNames names(check, quote(spec.id));
   const auto claim = [&](const std::string& name, const Place& place) {
     names.claim(name, place);
     if (!std::binary_search(kClasses.begin(), kClasses.end(), name)) return;
@@ -121,7 +121,7 @@ class Structure {
 
   void check_members() {
     const cpp::Layout layout = cpp::lay_out(type_);
-    Names view(check_, quote(type_.id)), builder(check_, quote(type_.id));
+    ScopeNames view(check_, quote(type_.id)), builder(check_, quote(type_.id));
     for (const auto& field : type_.fields) {
       const Place& place = field->place;
       const bool structure = field->kind == ValueKind::kStruct && !field->choice;
@@ -152,7 +152,7 @@ class Structure {
 };
 
 /// Counts the numbers and bytes of a structure, those of nested structures too.
-class Numbers {
+class NumberCount {
  public:
   std::uint64_t of(const Type& type) {
     std::uint64_t out = 0;
@@ -186,7 +186,7 @@ bool holds(const Type& type, const std::set<const Type*>& refused) {
 
 void check_cpp(Check& check) {
   for (const auto& spec : check.model.specs) check_classes(check, *spec);
-  Numbers numbers;
+  NumberCount numbers;
   std::set<const Type*> refused;  // Nothing can be laid out that holds one of them.
   for (const Type* type : check.order) {
     if (type->is_mask) continue;

@@ -13,10 +13,10 @@ constexpr std::array<std::string_view, 16> kNumberTypes{
     "u1",   "u2",   "u4",   "s1",   "s2",   "s4",   "f4",   "u2be",
     "u2le", "u4be", "u4le", "s2be", "s2le", "s4be", "s4le", "f4le"};
 
-/// Names that must differ, even in Pascal case.
-class Names {
+/// DistinctNames that must differ, even in Pascal case.
+class DistinctNames {
  public:
-  Names(Check& check, std::string what) : check_(check), what_(std::move(what)) {}
+  DistinctNames(Check& check, std::string what) : check_(check), what_(std::move(what)) {}
 
   void add(const std::string& name, const Place& place) {
     const auto [found, fresh] = seen_.try_emplace(pascal(name), std::pair(name, place.line));
@@ -126,7 +126,7 @@ void resolve_field(Check& check, const Spec& spec, Field& field) {
 }
 
 void check_enum(Check& check, Enum& one) {
-  Names names(check, "enum value");
+  DistinctNames names(check, "enum value");
   std::map<std::int64_t, int> lines;
   for (const EnumEntry& entry : one.entries) {
     names.add(entry.name, entry.place);
@@ -142,10 +142,10 @@ void check_enum(Check& check, Enum& one) {
 }
 
 void check_type_names(Check& check, const Type& type) {
-  Names fields(check, "field");
+  DistinctNames fields(check, "field");
   for (const auto& field : type.fields) fields.add(field->id, field->place);
   for (const auto& field : type.instances) fields.add(field->id, field->place);
-  Names bits(check, "bit");
+  DistinctNames bits(check, "bit");
   for (const MaskBit& bit : type.bits) bits.add(bit.name, type.place);
 }
 
@@ -167,7 +167,7 @@ const Enum* find_enum(const Spec& spec, const std::vector<std::string>& path) {
 
 void check_names(Check& check) {
   for (const auto& spec : check.model.specs) {
-    Names types(check, "type"), enums(check, "enum");
+    DistinctNames types(check, "type"), enums(check, "enum");
     for (const auto& type : spec->types) types.add(type->id, type->place);
     for (const auto& one : spec->enums) {
       enums.add(one->id, one->place);

@@ -31,7 +31,7 @@ constexpr std::array kFields{
     ProfileField{"response_ticks", 1, kU16, false},
     ProfileField{"early_ticks", 0, kU8, false},
 };
-constexpr std::array<std::string_view, 4> kKeys{"doc", "constants", "switches", "accepted"};
+constexpr std::array<std::string_view, 4> kProfileKeys{"doc", "constants", "switches", "accepted"};
 
 std::vector<std::string_view> names_of(bool switches) {
   std::vector<std::string_view> out;
@@ -47,9 +47,9 @@ class Reader {
       : input_(input), model_(model), out_(out) {}
 
   void read(const YAML::Node& root) {
-    const YamlMap map(input_, root, "a profile", kKeys);
+    const YamlMap map(input_, root, "a profile", kProfileKeys);
     if (!map.is_map()) return;
-    for (const std::string_view key : kKeys) {
+    for (const std::string_view key : kProfileKeys) {
       if (!map.has(key)) {
         input_.error(root, fmt::format("a profile without {}", key),
                      "doc, constants, switches and accepted were expected");

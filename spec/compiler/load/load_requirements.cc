@@ -13,9 +13,9 @@
 namespace rubricc {
 namespace {
 
-constexpr std::array<std::string_view, 11> kKeys{"id",     "level",   "clause",  "sentence",
-                                                 "source", "roles",   "forbids", "deployed",
-                                                 "shows",  "differs", "content"};
+constexpr std::array<std::string_view, 11> kRequirementKeys{
+    "id",      "level",    "clause", "sentence", "source", "roles",
+    "forbids", "deployed", "shows",  "differs",  "content"};
 constexpr std::size_t kNeeded = 5;  // The first of them; the others may be absent.
 constexpr std::array<std::string_view, 3> kRoles{"mote", "sink", "base_station"};
 
@@ -64,11 +64,11 @@ std::vector<std::string> read_texts(const YamlInput& input, const YamlMap& map,
 }
 
 Requirement read_requirement(const YamlInput& input, const YAML::Node& node) {
-  const YamlMap map(input, node, "a requirement", kKeys);
+  const YamlMap map(input, node, "a requirement", kRequirementKeys);
   Requirement out;
   out.place = input.place(node);
   if (!node.IsMap()) return out;
-  for (const std::string_view key : std::span(kKeys).first(kNeeded)) {
+  for (const std::string_view key : std::span(kRequirementKeys).first(kNeeded)) {
     if (map.has(key)) continue;
     input.error(node, fmt::format("a requirement without {}", key),
                 "id, level, clause, sentence and source were expected");

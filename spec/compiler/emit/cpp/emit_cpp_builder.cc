@@ -82,8 +82,6 @@ const char kElement[] = R"(/// Element `i`, which must be there.
   return detail::Access::builder<<builder_in_angles>>(<<range>>);
 })";
 
-std::string angles(const std::string& text) { return "<" + text + ">"; }
-
 struct Context {
   const Layout& layout;
   const Spec& spec;

@@ -166,6 +166,8 @@ const Field* plain_field(const Expr* expr) {
   return plain ? expr->field : nullptr;
 }
 
+std::string angles(const std::string& text) { return "<" + text + ">"; }
+
 std::string guard(const std::string& condition, const std::string& statement, bool unlikely) {
   const std::string head =
       unlikely ? "if (RUBRIC_UNLIKELY(" + condition + "))" : "if (" + condition + ")";

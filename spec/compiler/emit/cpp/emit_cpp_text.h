@@ -51,6 +51,9 @@ std::string print_size(const Expr& expr, const Leaf& leaf, std::uint32_t unit = 
 /// Returns the structure's field that is the whole expression; null if it is anything else.
 const Field* plain_field(const Expr* expr);
 
+/// Returns `text` as a template argument, whose brackets no template of ours can hold.
+std::string angles(const std::string& text);
+
 /// Prints `if (cond) ret` in one line or three; marks unlikely conditions.
 std::string guard(const std::string& condition, const std::string& statement, bool unlikely = true);
 /// Joins with an operator, in lines of at most 90 columns.

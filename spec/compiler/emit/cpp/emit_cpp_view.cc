@@ -78,8 +78,6 @@ constexpr <<class>>View <<name>>_as_<<id>>() const {
   return detail::Access::view<<view_in_angles>>(<<range>>);
 })";
 
-std::string angles(const std::string& text) { return "<" + text + ">"; }
-
 // Prints a view's own getters: they read well, and cost as much as a load.
 Leaf from_getters() {
   return [](const Expr& expr) {

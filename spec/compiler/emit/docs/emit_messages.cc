@@ -11,7 +11,7 @@
 namespace rubricc {
 namespace {
 
-constexpr std::string_view kFile = R"(<<banner>>
+constexpr std::string_view kRoutesFile = R"(<<banner>>
 #pragma once
 
 <<include>>
@@ -34,7 +34,7 @@ constexpr RouteTable kRoutes{<<table>>};
 )";
 
 /// Equal lists are declared once.
-class Lists {
+class RouteLists {
  public:
   std::string name_of(std::string_view type, std::string_view prefix,
                       const std::vector<RouteNumber>& numbers) {
@@ -65,7 +65,7 @@ std::string type_name(const Spec& spec, const Type& type) {
 }  // namespace
 
 GeneratedFiles emit_messages(const Spec& spec) {
-  Lists lists;
+  RouteLists lists;
   std::string routes;
   const std::vector<Route> found = routes_of(spec);
   for (const Route& one : found) {
@@ -82,11 +82,11 @@ GeneratedFiles emit_messages(const Spec& spec) {
   const std::string table =
       found.empty() ? "nullptr, 0" : fmt::format("kRouteList, {}", found.size());
   return {{fmt::format("codec/generated/{}/messages.h", spec.id),
-           fill(kFile, {{"banner", banner("// ", spec.file)},
-                        {"spec", spec.id},
-                        {"include", cpp_include("codec/generated/" + spec.id + "/tables.h")},
-                        {"parts", parts},
-                        {"table", table}})}};
+           fill(kRoutesFile, {{"banner", banner("// ", spec.file)},
+                              {"spec", spec.id},
+                              {"include", cpp_include("codec/generated/" + spec.id + "/tables.h")},
+                              {"parts", parts},
+                              {"table", table}})}};
 }
 
 }  // namespace rubricc

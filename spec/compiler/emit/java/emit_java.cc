@@ -8,10 +8,8 @@
 #include "spec/compiler/emit/java/emit_java_text.h"
 #include "spec/compiler/emit/template.h"
 
-namespace rubricc {
+namespace rubricc::java {
 namespace {
-
-using namespace java;
 
 const char kFile[] = R"(<<banner>>
 package <<package>>;
@@ -157,7 +155,7 @@ GeneratedFile structure(const Type& type, const Spec& spec) {
                     {"most", layout.clamps ? "MAX_SIZE_BYTES" : "Integer.MAX_VALUE"},
                     {"max", unbounded ? "Integer.MAX_VALUE" : std::to_string(type.max_size)},
                     {"parse_doc", parse_doc(layout)},
-                    {"check", emit_check(layout, spec)},
+                    {"check", java::emit_check(layout, spec)},
                     {"getters", emit_getters(layout, spec)},
                     {"writer", emit_writer(layout, spec)}});
   return file(spec, class_name(type.id), body);
@@ -201,16 +199,20 @@ GeneratedFile enumeration(const Enum& e, const Spec& spec) {
 }
 
 }  // namespace
+}  // namespace rubricc::java
+
+namespace rubricc {
 
 GeneratedFiles emit_java(const Spec& spec) {
+  using namespace java;
   GeneratedFiles out;
   std::string entries;
   for (const auto& e : spec.enums) out.push_back(enumeration(*e, spec));
   for (const auto& type : spec.types) {
     out.push_back(type->is_mask ? mask(*type, spec) : structure(*type, spec));
     if (type->is_mask) continue;
-    entries += (entries.empty() ? "" : ",\n") + std::string("Map.entry(") + quote(type->id) + ", " +
-               class_name(type->id) + "::parse)";
+    entries += (entries.empty() ? "" : ",\n") + std::string("Map.entry(") + java::quote(type->id) +
+               ", " + class_name(type->id) + "::parse)";
   }
   if (!entries.empty()) {
     out.push_back(file(spec, "Messages", fill(kMessages, {{"entries", entries}})));

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "spec/compiler/emit/cpp_text.h"
+#include "spec/compiler/emit/template.h"
 
 namespace rubricc::java {
 namespace {
@@ -190,6 +191,10 @@ Leaf loads_from(const std::string& bytes, const std::string& base) {
     }
     return "Wire." + wire_name(f) + "(" + bytes + ", " + at + ")";
   };
+}
+
+std::string in_if(const std::string& condition, const std::string& statements) {
+  return fill("if (<<if>>) {\n  <<then>>\n}\n", {{"if", condition}, {"then", statements}});
 }
 
 std::string field_text(const Layout& layout, std::size_t i) {

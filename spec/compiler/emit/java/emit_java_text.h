@@ -52,6 +52,9 @@ std::string print_size(const Expr& expr, const Leaf& leaf, std::uint32_t unit = 
 /// Prints fields of a structure whose bytes are the buffer `bytes` from `base` on.
 Leaf loads_from(const std::string& bytes, const std::string& base = "");
 
+/// Returns `statements` as the body of an `if`.
+std::string in_if(const std::string& condition, const std::string& statements);
+
 /// Describes a field, where its bytes are, and its rules, for a comment.
 std::string field_text(const Layout& layout, std::size_t i);
 

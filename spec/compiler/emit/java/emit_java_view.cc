@@ -29,11 +29,6 @@ const char kSwitch[] = R"(switch (<<key>>) {
 }
 )";
 
-const char kIf[] = R"(if (<<if>>) {
-  <<then>>
-}
-)";
-
 const char kInterpretations[] = R"(final ByteBuffer held = <<overlaid>>();
 WireView view = null;
 <<tries>>
@@ -253,7 +248,7 @@ std::string interpretation(const Field& f, const Spec& spec, bool first) {
       !f.choice ? view_as(f.type) : switch_on(*f.choice, key_of(f, leaf), [&](const Type* type) {
         return (type == nullptr ? "" : "  " + view_as(type)) + "  break;\n";
       });
-  return condition.empty() ? then : fill(kIf, {{"if", condition}, {"then", then}});
+  return condition.empty() ? then : in_if(condition, then);
 }
 
 std::string group_getter(const Group& group, const Spec& spec) {
@@ -289,11 +284,8 @@ std::string emit_check(const Layout& layout, const Spec& spec) {
   std::string out;
   for (const FieldLayout& l : layout.fields) {
     const std::string one = check_field(l, spec);
-    const bool optional = l.field->condition != nullptr;
-    out +=
-        !optional
-            ? one
-            : fill(kIf, {{"if", print(*l.field->condition, loads_from("bytes"))}, {"then", one}});
+    const auto& condition = l.field->condition;
+    out += condition ? in_if(print(*condition, loads_from("bytes")), one) : one;
   }
   if (out.find("(bytes, ") != out.npos) out = "final ByteBuffer bytes = in.bytes();\n" + out;
   if (layout.clamps) out = "in.atMost(MAX_SIZE_BYTES);\n" + out;

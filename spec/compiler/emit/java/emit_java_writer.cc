@@ -37,11 +37,6 @@ public Writer <<name>>(<<type>> value) {
 }
 )";
 
-const char kIf[] = R"(if (<<if>>) {
-  <<then>>
-}
-)";
-
 // Returns the member, in methods that have locals of their own.
 std::string own(const Field& f) {
   const std::string name = member(f.id);
@@ -169,7 +164,7 @@ std::string emit_writer(const Layout& layout, const Spec& spec) {
     const Field& f = *l.field;
     const std::string one = step(layout, l, spec);
     const Leaf leaf = loads_from("out.bytes()", "start");
-    steps += f.condition ? fill(kIf, {{"if", print(*f.condition, leaf)}, {"then", one}}) : one;
+    steps += f.condition ? in_if(print(*f.condition, leaf), one) : one;
     if (l.derived_from) {
       lengths += " " + f.id + " is the size of " + l.derived_from->id + ".";
       continue;

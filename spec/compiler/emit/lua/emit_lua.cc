@@ -9,7 +9,7 @@
 #include "spec/compiler/emit/template.h"
 #include "spec/compiler/lua_code.h"
 
-namespace rubricc {
+namespace rubricc::lua {
 namespace {
 
 constexpr std::string_view kFile = R"(<<banner>>
@@ -261,8 +261,12 @@ std::string serial_frame_of(const Model& model) {
 }
 
 }  // namespace
+}  // namespace rubricc::lua
+
+namespace rubricc {
 
 GeneratedFiles emit_lua(const Model& model) {
+  using namespace lua;
   const std::vector<const Spec*> protocols = protocols_of(model);
   if (protocols.empty()) return {};
   std::string tables, carriers, choices, files;
@@ -270,7 +274,7 @@ GeneratedFiles emit_lua(const Model& model) {
   for (std::size_t i = 0; i < protocols.size(); ++i) {
     const Spec& spec = *protocols[i];
     carriers += protocol_text(spec) + "\n";
-    choices += fmt::format("  {{{}, {}, {}}},\n", i + 1, quote(spec.title), i + 1);
+    choices += fmt::format("  {{{}, {}, {}}},\n", i + 1, lua::quote(spec.title), i + 1);
     files += (i == 0 ? "" : " ") + spec.file;
   }
   const auto lines = [](std::string text) {

@@ -8,7 +8,7 @@
 namespace rubricc {
 namespace {
 
-constexpr std::string_view kFile = R"(<<banner>>
+constexpr std::string_view kCasesFile = R"(<<banner>>
 #pragma once
 
 #include <array>
@@ -43,10 +43,10 @@ GeneratedFiles emit_cases(const Model& model, const std::string& folder) {
     uses += fmt::format("    {{{},{}{}", name, fits ? " " : "\n     ", rest);
   }
   return {{"conformance/generated/cases.h",
-           fill(kFile, {{"banner", banner("// ", folder)},
-                        {"include", cpp_include("codec/runtime/rule.h")},
-                        {"count", std::to_string(model.case_uses.size())},
-                        {"uses", uses.empty() ? "{}" : "{{\n" + uses + "}}"}})}};
+           fill(kCasesFile, {{"banner", banner("// ", folder)},
+                             {"include", cpp_include("codec/runtime/rule.h")},
+                             {"count", std::to_string(model.case_uses.size())},
+                             {"uses", uses.empty() ? "{}" : "{{\n" + uses + "}}"}})}};
 }
 
 }  // namespace rubricc

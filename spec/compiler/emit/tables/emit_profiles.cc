@@ -9,7 +9,7 @@
 namespace rubricc {
 namespace {
 
-constexpr std::string_view kFile = R"(<<banner>>
+constexpr std::string_view kProfilesFile = R"(<<banner>>
 #pragma once
 
 #include <array>
@@ -98,12 +98,12 @@ GeneratedFiles emit_profiles(const Model& model) {
   }
   if (model.profiles.empty()) return {};
   return {{"conformance/generated/profiles.h",
-           fill(kFile, {{"banner", banner("// ", inputs)},
-                        {"includes", cpp_include("codec/runtime/rule.h") + "\n" +
-                                         cpp_include("conformance/machine/profile.h")},
-                        {"profiles", profiles},
-                        {"count", std::to_string(model.profiles.size())},
-                        {"entries", entries}})}};
+           fill(kProfilesFile, {{"banner", banner("// ", inputs)},
+                                {"includes", cpp_include("codec/runtime/rule.h") + "\n" +
+                                                 cpp_include("conformance/machine/profile.h")},
+                                {"profiles", profiles},
+                                {"count", std::to_string(model.profiles.size())},
+                                {"entries", entries}})}};
 }
 
 }  // namespace rubricc

@@ -58,7 +58,7 @@ std::string extent_name(ExtentKind extent) {
   throw std::logic_error("extent_name");
 }
 
-constexpr std::string_view kFile = R"(<<banner>>
+constexpr std::string_view kTablesFile = R"(<<banner>>
 #pragma once
 
 <<includes>>
@@ -342,7 +342,7 @@ std::string mask_table(const Type& type) {
 }
 
 /// The lists that kProtocol points to, and its values.
-struct Lists {
+struct SpecLists {
   std::string text;
   std::vector<std::string> values;
 
@@ -356,7 +356,7 @@ struct Lists {
   }
 };
 
-Lists lists_of(const Spec& spec) {
+SpecLists lists_of(const Spec& spec) {
   std::vector<std::string> types, enums, masks, carriers;
   for (const auto& type : spec.types) {
     if (type->is_mask) {
@@ -369,7 +369,7 @@ Lists lists_of(const Spec& spec) {
         fmt::format("{{{}, &types::{}}}", cpp_string(type->carrier), cpp_constant(type->id)));
   }
   for (const auto& one : spec.enums) enums.push_back("&enums::" + cpp_constant(one->id));
-  Lists out;
+  SpecLists out;
   out.values = {cpp_string(spec.id), cpp_string(spec.title)};
   out.add("const Type*", "kTypes", types);
   out.add("const EnumTable*", "kEnums", enums);
@@ -395,13 +395,14 @@ GeneratedFiles emit_tables(const Spec& spec) {
     if (!type->is_mask) blocks.push_back(TypeTables(spec, *type).text());
   }
   if (blocks.empty()) blocks.push_back("// Nothing is described.");
-  const Lists lists = lists_of(spec);
-  const std::string text = fill(kFile, {{"banner", banner("// ", spec.file)},
-                                        {"includes", includes},
-                                        {"spec", spec.id},
-                                        {"blocks", fmt::format("{}", fmt::join(blocks, "\n"))},
-                                        {"lists", lists.text},
-                                        {"protocol", wrap(lists.values, 4)}});
+  const SpecLists lists = lists_of(spec);
+  const std::string text =
+      fill(kTablesFile, {{"banner", banner("// ", spec.file)},
+                         {"includes", includes},
+                         {"spec", spec.id},
+                         {"blocks", fmt::format("{}", fmt::join(blocks, "\n"))},
+                         {"lists", lists.text},
+                         {"protocol", wrap(lists.values, 4)}});
   return {{fmt::format("codec/generated/{}/tables.h", spec.id), text}};
 }
 
