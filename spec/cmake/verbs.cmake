@@ -109,6 +109,9 @@ function(rubric_label_test name label foreign targets)
     endif()
   endif()
   set_tests_properties(${name} PROPERTIES LABELS "${label}" TIMEOUT 900)
+  if(NOT "fast" IN_LIST label)
+    set_tests_properties(${name} PROPERTIES COST 10)  # Long ones first, so that no core idles last.
+  endif()
 endfunction()
 
 # rubric_test(NAME [FOREIGN] SOURCES a_test.cc ... [DEPS lib ...] [LABEL fast|slow|waits|long]): one
