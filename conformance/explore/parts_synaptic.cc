@@ -2,7 +2,7 @@
 // and the data of one channel.
 #include "conformance/explore/parts.h"
 #include "conformance/machine/synaptic.h"
-#include "conformance/trace/events/app_events.h"
+#include "conformance/trace/events/lines.h"
 
 namespace rubric::explore {
 namespace {

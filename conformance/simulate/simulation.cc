@@ -1,7 +1,6 @@
 #include "conformance/simulate/simulation.h"
 
 #include <algorithm>
-#include <cassert>
 #include <optional>
 #include <utility>
 #include <variant>

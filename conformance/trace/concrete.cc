@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "codec/reflect/decode.h"
-#include "conformance/trace/substitute.h"
+#include "conformance/trace/match.h"
 
 namespace rubric::trace {
 namespace {

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <string_view>
 #include <type_traits>
-#include <vector>
 
 #include "fuzz/support/input.h"
 #include "fuzz/support/require.h"

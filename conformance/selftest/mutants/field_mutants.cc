@@ -1,5 +1,4 @@
 // Mutants that change one field of a frame or notice.
-#include <algorithm>
 #include <memory>
 #include <set>
 
@@ -7,9 +6,9 @@
 #include "codec/reflect/am_frames.h"
 #include "codec/reflect/frame.h"
 #include "conformance/selftest/mutants/fields.h"
-#include "conformance/selftest/mutants/generated.h"
+#include "conformance/selftest/mutants/mutant.h"
 #include "conformance/trace/concrete.h"
-#include "conformance/trace/events/app_events.h"
+#include "conformance/trace/events/lines.h"
 
 namespace rubric::mutants {
 namespace {

@@ -1,6 +1,4 @@
 // No golden trace fails on a legal variant of the machine.
-#include "conformance/selftest/mutants/legal.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,7 +7,8 @@
 
 #include "conformance/generated/profiles.h"
 #include "conformance/selftest/mutants/hunt.h"
-#include "conformance/trace/events/parameters.h"
+#include "conformance/selftest/mutants/mutant.h"
+#include "conformance/trace/events/lines.h"
 #include "tools/tests/readme/number.h"
 
 namespace rubric::mutants {

@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "codec/reflect/requirements.h"
-#include "conformance/selftest/mutants/generated.h"
+#include "conformance/selftest/mutants/mutant.h"
 #include "tools/tests/readme/number.h"
 
 namespace rubric::mutants {

@@ -30,8 +30,6 @@
 #include "conformance/check/input/read.h"
 #include "conformance/check/judge/judge.h"
 #include "conformance/selftest/mutants/fields.h"
-#include "conformance/selftest/mutants/generated.h"
-#include "conformance/selftest/mutants/legal.h"
 #include "conformance/selftest/mutants/mutant.h"
 #include "conformance/test/report/case_files.h"
 #include "conformance/test/suite/cases.h"

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "conformance/report/sequence_style.h"
+#include "conformance/report/sequence_svg.h"
 #include "conformance/test/report/case_files.h"
 #include "conformance/test/report/folder.h"
 #include "conformance/test/report/html_assets.h"

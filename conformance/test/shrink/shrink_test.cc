@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "conformance/selftest/mutants/legal.h"
 #include "conformance/selftest/mutants/mutant.h"
 #include "conformance/test/runner/case_files.h"
 #include "conformance/test/runner/subject_target.h"

@@ -5,7 +5,6 @@
 #include <array>
 #include <charconv>
 
-#include "spec/compiler/load/expr_parser.h"
 #include "spec/compiler/load/read_spec.h"
 
 namespace rubricc {
