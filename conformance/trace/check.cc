@@ -338,7 +338,7 @@ class FileCheck {
   };
 
   void once(bool& said, const Header& header, const char* what) {
-    if (std::exchange(said, true)) report_(header.place, std::string(what) + " is said twice");
+    if (std::exchange(said, true)) report_(header.place, std::string(what) + " is given twice");
   }
 
   void head() {
@@ -365,13 +365,13 @@ class FileCheck {
     if (std::holds_alternative<ForHeader>(header.what)) once(said.values, header, "%for");
     if (const auto* node = std::get_if<NodeHeader>(&header.what)) {
       if (!said.nodes.insert(node->name).second) {
-        report_(header.place, "node " + quoted(node->name) + " is said twice");
+        report_(header.place, "node " + quoted(node->name) + " is given twice");
       }
       check_node(*node, header.place);
     }
     if (const auto* link = std::get_if<LinkHeader>(&header.what)) {
       if (!said.links.insert(link->name).second) {
-        report_(header.place, "link " + quoted(link->name) + " is said twice");
+        report_(header.place, "link " + quoted(link->name) + " is given twice");
       }
       if (link->name == "app" || link->name == "power") {
         report_(header.place, quoted(link->name) + " is not a name for a link between nodes");

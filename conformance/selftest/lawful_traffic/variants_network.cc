@@ -147,7 +147,7 @@ void host_loops_radiated(Plan& plan, Random& random) {
 std::vector<Variant> network_variants() {
   return {
       {"broadcast", "mote, sink and PC broadcast in their island", {114}, broadcast, true},
-      {"broadcast_reliable", "reliable broadcasts; nobody acks", {114}, broadcast_reliable},
+      {"broadcast_reliable", "reliable broadcasts; no node acks", {114}, broadcast_reliable},
       {"broadcast_acked",
        "reliable broadcasts; everybody acks",
        {114},

@@ -56,7 +56,7 @@ TEST(Legal, EachDiffersFromTheMachine) {
   }
 }
 
-// With a back-off of 0.3 to 10 ms before each frame, in many ways.
+// Adds a back-off of 0.3 to 10 ms before each frame, in many ways.
 TEST(Legal, BackOffFailsNoTrace) {
   const Golden golden("conformance/cases");
   for (std::uint32_t seed = 0; seed < 40; ++seed) {

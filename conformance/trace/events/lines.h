@@ -20,7 +20,7 @@ struct NodeNames {
   std::string radio;
   std::string serial;
   std::string peis = "peis";
-  std::uint8_t radio_group = 0;  ///< Of the AM packets that stand for its radio frames.
+  std::uint8_t radio_group = 0;  ///< Group of the AM packets that stand for its radio frames.
 
   const std::string& link(machine::Link link) const;
 };
