@@ -33,7 +33,7 @@ class Application {
   virtual void booted(Host&) {}
   virtual void woken(Host&, std::uint32_t /*token*/) {}
   /// Called with a notice; its bytes live until this returns.
-  virtual void told(Host&, const machine::Notice&) {}
+  virtual void notified(Host&, const machine::Notice&) {}
 };
 
 /// A message, once or repeatedly. Times count from when the node is ready: for a mote when it has
@@ -79,7 +79,7 @@ class ScriptedApplication final : public Application {
 
   void booted(Host& host) override;
   void woken(Host& host, std::uint32_t token) override;
-  void told(Host& host, const machine::Notice& notice) override;
+  void notified(Host& host, const machine::Notice& notice) override;
 
  private:
   void ready(Host& host);

@@ -126,7 +126,7 @@ bool EncodedLines::all() {
     file_ = name == "-" ? "stdin" : name;
     try {
       Lines lines(name, before_read_);
-      one(lines);
+      encode_next(lines);
     } catch (const std::system_error& error) {
       complain(file_, error.code().message());
     }
@@ -139,7 +139,7 @@ void EncodedLines::complain(const std::string& place, std::string_view what) {
   good_ = false;
 }
 
-void EncodedLines::one(Lines& lines) {
+void EncodedLines::encode_next(Lines& lines) {
   std::string_view line;
   while (!ended_ && lines.next(line)) {
     if (line.find_first_not_of(" \t") == std::string_view::npos) continue;

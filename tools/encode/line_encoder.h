@@ -118,7 +118,7 @@ class EncodedLines {
   void complain(const std::string& place, std::string_view what);
 
  private:
-  void one(Lines& lines);
+  void encode_next(Lines& lines);
 
   LineEncoder& encoder_;
   OnPacket on_packet_;

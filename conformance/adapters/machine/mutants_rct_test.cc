@@ -4,7 +4,7 @@
 
 #include <cstdio>
 
-#include "conformance/selftest/mutants/mutant.h"
+#include "conformance/selftest/mutants/hunt.h"
 #include "conformance/test/runner/subject_target.h"
 #include "conformance/test/targets/rct_attachment.h"
 #include "conformance/test/targets/serve.h"

@@ -22,8 +22,8 @@ OwnFrame on_peis(std::uint16_t island, const NetFields& fields) {
 TEST(Send, N1_MoteToMote) {
   Device mote = member(5);
   mote.call(Send{{kLocalPid, 6}, 10, false, kOpenDoor});
-  EXPECT_EQ(mote.labels(),
-            (std::vector{followed("N3-LOCAL"_rule), sent("N4-MOTE"_rule), told("N1-SEQ"_rule)}));
+  EXPECT_EQ(mote.labels(), (std::vector{followed("N3-LOCAL"_rule), sent("N4-MOTE"_rule),
+                                        notified("N1-SEQ"_rule)}));
   EXPECT_EQ(mote.only_frame().dest, 6);
   EXPECT_EQ(mote.only_frame().src, 5);
   EXPECT_EQ(mote.only_payload(),
@@ -54,7 +54,7 @@ TEST(Send, LargestGoesAndLargerIsRefused) {
   mote.call(Send{{kIsland, 6}, 10, false, {data.data(), 101}});
   EXPECT_TRUE(mote.actions.transmits().empty());
   EXPECT_EQ(mote.notice<SendResult>().seq_num, kNoSeq);
-  EXPECT_EQ(mote.labels(), (std::vector{told("N1-SIZE"_rule)}));
+  EXPECT_EQ(mote.labels(), (std::vector{notified("N1-SIZE"_rule)}));
   mote.call(Send{{kIsland, 6}, 10, false, {data.data(), 100}});
   EXPECT_EQ(mote.only_payload().size(), 114U);
 }
@@ -66,7 +66,7 @@ TEST(Send, N4Self_IsRefusedByEveryRole) {
     for (const std::uint16_t pid : {kIsland, kLocalPid}) {
       for (const std::uint16_t devid : {own, kLocalDevid}) {
         node.call(Send{{pid, devid}, 10, true, kOpenDoor});
-        EXPECT_EQ(node.labels(), (std::vector{told("N4-SELF"_rule)}));
+        EXPECT_EQ(node.labels(), (std::vector{notified("N4-SELF"_rule)}));
         EXPECT_EQ(node.notice<SendResult>().seq_num, kNoSeq);
         EXPECT_EQ(node.state, before);
       }
@@ -79,11 +79,11 @@ TEST(Send, N4Self_IsRefusedByEveryRole) {
 TEST(Send, J11_NoMemberNoMessage) {
   Device mote(mote_config(5));
   mote.call(Send{{kIsland, 6}, 10, false, {}});
-  EXPECT_EQ(mote.labels(), (std::vector{told("J11-SEND"_rule)}));
+  EXPECT_EQ(mote.labels(), (std::vector{notified("J11-SEND"_rule)}));
   EXPECT_EQ(mote.notice<SendResult>().seq_num, kNoSeq);
   mote.call(JoinIsland{kDescriptor}).done();
   EXPECT_EQ(mote.call(Send{{kIsland, 6}, 10, false, {}}).labels(),
-            (std::vector{told("J11-SEND"_rule)}));
+            (std::vector{notified("J11-SEND"_rule)}));
 }
 
 TEST(Send, T4_EightAwaitedAndTheNinthRefused) {
@@ -352,7 +352,7 @@ TEST(IslandId, N9Other_ReservedIslandsAreNotTaken) {
     EXPECT_EQ(sink.state, before);
     Device base(base_config());
     base.call(SetIslandId{island});
-    EXPECT_EQ(base.labels(), (std::vector{told("N9-OTHER"_rule)}));
+    EXPECT_EQ(base.labels(), (std::vector{notified("N9-OTHER"_rule)}));
     EXPECT_FALSE(base.notice<OperationResult>().success);
     EXPECT_EQ(base.state.island, kIsland);
   }

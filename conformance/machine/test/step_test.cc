@@ -56,8 +56,8 @@ TEST(JoinStep, MoteAcceptsSetsItsClockAndAcks) {
   mote.call(JoinIsland{kDescriptor}).done();
   mote.now = 512;
   mote.hear(join_reply(5, {kIsland, 5}, 700000, mote.state.join.seq_num));
-  EXPECT_EQ(mote.labels(),
-            (std::vector{told("J5-SUCCESS"_rule), followed("J4-CLOCK"_rule), sent("J4-ACK"_rule)}));
+  EXPECT_EQ(mote.labels(), (std::vector{notified("J5-SUCCESS"_rule), followed("J4-CLOCK"_rule),
+                                        sent("J4-ACK"_rule)}));
   const Transmit& ack = mote.only_frame();
   EXPECT_TRUE(ack.link_ack);
   EXPECT_EQ(ack.dest, 1);
@@ -115,7 +115,7 @@ TEST(JoinStep, J8_WholeCallWithoutAnswer) {
     mote.done();
   }
   mote.join_timer();
-  EXPECT_EQ(mote.labels(), (std::vector{told("J8-FAIL"_rule)}));
+  EXPECT_EQ(mote.labels(), (std::vector{notified("J8-FAIL"_rule)}));
   EXPECT_EQ(mote.now, 2500U);
   EXPECT_TRUE(timers(mote.state).empty());
   mote.call(JoinIsland{kDescriptor});
@@ -172,7 +172,7 @@ TEST(JoinStep, SinkListsAnnouncesAndReports) {
   Device sink(sink_config());
   sink.hear(join_request(5, 100, kDescriptor)).done();
   sink.hear(ack_join({kIsland, 1}, {kIsland, 5}, 100, kDescriptor));
-  EXPECT_EQ(sink.labels(), (std::vector{told("J6-ADD"_rule), sent("J6-REPORT"_rule)}));
+  EXPECT_EQ(sink.labels(), (std::vector{notified("J6-ADD"_rule), sent("J6-REPORT"_rule)}));
   const Transmit& report = sink.only_frame();
   EXPECT_EQ(report.link, Link::kSerial);
   EXPECT_EQ(report.dest, kAmBroadcast);
@@ -190,7 +190,7 @@ TEST(JoinStep, DeployedSinkReportsEachJoinOfAListedMote) {
   list_member(sink, 5, 100);
   sink.hear(join_request(5, 101, kDescriptor)).done();
   sink.hear(ack_join({kIsland, 1}, {kIsland, 5}, 101, kDescriptor));
-  EXPECT_EQ(sink.labels(), (std::vector{told("J6-ADD"_rule), sent("J6-REPORT"_rule)}));
+  EXPECT_EQ(sink.labels(), (std::vector{notified("J6-ADD"_rule), sent("J6-REPORT"_rule)}));
 }
 
 TEST(JoinStep, J3Address_NobodyHasAReservedIdOrTheSinks) {
@@ -239,7 +239,7 @@ TEST(JoinStep, SinkAndBaseStationCannotJoin) {
   for (const Config& config : {sink_config(), base_config()}) {
     Device node(config);
     node.call(JoinIsland{kDescriptor});
-    EXPECT_EQ(node.labels(), (std::vector{told("J8-JOINED"_rule)}));
+    EXPECT_EQ(node.labels(), (std::vector{notified("J8-JOINED"_rule)}));
     EXPECT_FALSE(node.notice<Joined>().success);
   }
 }
@@ -283,7 +283,7 @@ TEST(Timers, AreThoseThatAreSet) {
   EXPECT_EQ(timers(mote.state)[1].due, 1020U);
   EXPECT_EQ(timers(mote.state)[1].timer, (Timer{TimerKind::kAck, 1}));
   mote.step(TimerDue{{TimerKind::kAck, 1}});
-  EXPECT_EQ(mote.labels(), (std::vector{told("T3-TIMEOUT"_rule)}));
+  EXPECT_EQ(mote.labels(), (std::vector{notified("T3-TIMEOUT"_rule)}));
   EXPECT_EQ(timers(mote.state).size(), 1U);
 }
 

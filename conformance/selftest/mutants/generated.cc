@@ -3,7 +3,7 @@
 #include <set>
 
 #include "conformance/selftest/mutants/fields.h"
-#include "conformance/selftest/mutants/mutant.h"
+#include "conformance/selftest/mutants/hunt.h"
 #include "conformance/test/runner/subject_target.h"
 #include "conformance/trace/events/lines.h"
 #include "conformance/trace/trace.h"

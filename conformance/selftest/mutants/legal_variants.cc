@@ -111,7 +111,7 @@ void joined_on_confirmation(Moment& moment, bool& told) {
   if (!is_member(moment)) told = false;
   moment.rewrite([&](const Action& action) {
     if (action.what == Action::What::kNotify) {
-      const auto* joined = std::get_if<Joined>(&moment.told(action));
+      const auto* joined = std::get_if<Joined>(&moment.notice_of(action));
       if (joined != nullptr && joined->success) return;
     }
     moment.keep(action);
@@ -161,7 +161,7 @@ void delivers_once(Moment& moment, std::vector<std::vector<std::uint8_t>>& seen)
   if (!copy) return;
   moment.rewrite([&](const Action& action) {
     const bool told = action.what == Action::What::kNotify;
-    if (!told || !std::holds_alternative<Received>(moment.told(action))) moment.keep(action);
+    if (!told || !std::holds_alternative<Received>(moment.notice_of(action))) moment.keep(action);
   });
 }
 

@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "codec/reflect/requirements.h"
-#include "conformance/selftest/mutants/mutant.h"
+#include "conformance/selftest/mutants/hunt.h"
 #include "tools/tests/readme/number.h"
 
 namespace rubric::mutants {

@@ -243,7 +243,7 @@ void renumber(Moment& moment, std::uint16_t number) {
       return moment.keep(action, frame);
     }
     if (action.what != Action::What::kNotify) return moment.keep(action);
-    Notice notice = moment.told(action);
+    Notice notice = moment.notice_of(action);
     auto* const result = std::get_if<SendResult>(&notice);
     if (result != nullptr && result->seq_num != machine::kNoSeq) result->seq_num = number;
     moment.keep(action, notice);

@@ -30,7 +30,7 @@
 #include "conformance/check/input/read.h"
 #include "conformance/check/judge/judge.h"
 #include "conformance/selftest/mutants/fields.h"
-#include "conformance/selftest/mutants/mutant.h"
+#include "conformance/selftest/mutants/hunt.h"
 #include "conformance/test/report/case_files.h"
 #include "conformance/test/suite/cases.h"
 #include "conformance/test/suite/run.h"
