@@ -183,7 +183,7 @@ void check_mote_writer(Bytes content) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const Bytes stream(data, size);
-  const std::vector<Kept> wanted = fuzz::plain_deframe(stream);
+  const std::vector<Kept> wanted = plain_deframe(stream);
   for (const CpuPath path : {CpuPath::kPortable, CpuPath::kVector, CpuPath::kWide}) {
     if (!cpu_has(path)) continue;
     const auto make = [path] { return std::make_unique<HdlcReader>(ReaderOptions{}, path); };
