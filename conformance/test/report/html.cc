@@ -13,7 +13,6 @@
 #include "conformance/test/report/case_files.h"
 #include "conformance/test/report/folder.h"
 #include "conformance/test/report/html_assets.h"
-#include "conformance/test/report/html_data.h"
 #include "conformance/test/report/words.h"
 
 namespace rubric::suite {

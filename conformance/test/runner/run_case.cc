@@ -11,7 +11,6 @@
 #include <stdexcept>
 
 #include "conformance/test/runner/blame.h"
-#include "conformance/test/runner/dependence.h"
 #include "conformance/test/runner/expectation.h"
 #include "conformance/test/runner/node_log.h"
 #include "conformance/trace/encode.h"
