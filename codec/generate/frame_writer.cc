@@ -382,9 +382,9 @@ bool FrameWriter::stays_opaque(std::uint16_t index, std::size_t at, const Place&
 
 std::uint32_t Draft::limit(std::uint32_t scope) const {
   const Scope& s = scopes[scope];
-  const std::uint32_t end = s.end != kNone      ? s.end
-                            : s.parent == kNone ? static_cast<std::uint32_t>(bytes.size())
-                                                : limit(s.parent);
+  std::uint32_t end = s.end;
+  if (end == kNone && s.parent == kNone) end = static_cast<std::uint32_t>(bytes.size());
+  if (end == kNone) end = limit(s.parent);
   return end - s.base > s.type->max_size ? s.base + s.type->max_size : end;
 }
 

@@ -256,10 +256,12 @@ void print_transitions(const TransitionOptions& options, const ExploredMachine& 
         std::find(options.parts.begin(), options.parts.end(), name) != options.parts.end();
     if (wanted) diagrams.push_back(explore::transitions_of(name, machine.values, machine.step));
   }
-  const std::string text = format == "json"
-                               ? transitions_json(diagrams, machine.profile, machine.flaw)
-                           : format == "dot" ? transitions_dot(diagrams)
-                                             : transitions_text(diagrams);
+  std::string text;
+  if (format == "json") {
+    text = transitions_json(diagrams, machine.profile, machine.flaw);
+  } else {
+    text = format == "dot" ? transitions_dot(diagrams) : transitions_text(diagrams);
+  }
   if (!cli::write_file(out.empty() ? "-" : out, text)) cli::exit_with(cli::kExitOutput);
   for (const explore::Diagram& diagram : diagrams) {
     if (!diagram.complete) cli::exit_with(cli::kVerdictInconclusive);
