@@ -1,8 +1,6 @@
 // Builders make frames in place, and refuse what does not fit.
 #include <gtest/gtest.h>
 
-#include <cstring>
-
 #include "codec/generated/rubicon/all.h"
 #include "codec/generated/tinyos/all.h"
 

@@ -22,7 +22,7 @@ enum class PartKind : std::uint8_t {
   kNumber,
   kBytes,  ///< Opaque bytes, perhaps with an interpretation.
   kArray,  ///< Elements; those that are structures follow as scopes.
-  kRoom,   ///< The place of a structure whose size is said elsewhere, or that takes what is left.
+  kRoom,   ///< The place of a structure whose size is given elsewhere, or that takes what is left.
 };
 
 /// A field of the frame, in the order in which a decoder reaches it.

@@ -38,8 +38,8 @@ struct Generated {
   /// For a valid frame: its messages, from the outermost in. Messages that the route's message
   /// always holds follow it.
   std::vector<const reflect::Type*> path;
-  /// By construction, without asking a decoder: Fault::kNone if the frame is valid. The offset
-  /// counts from bytes[0].
+  /// The fault by construction, without asking a decoder: Fault::kNone if the frame is valid. The
+  /// offset counts from bytes[0].
   Error error{Fault::kNone, 0, ReqId::kNone};
   /// For a valid frame: its numbers, in ascending order of offset.
   std::vector<NumberAt> numbers;

@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
+#include "codec/generate/draft.h"
 #include "codec/generate/frame_generator.h"
-#include "codec/generate/interpret.h"
 #include "codec/generate/routes.h"
 #include "codec/generate/values.h"
 #include "codec/generated/tinyos/enums.h"
@@ -378,6 +378,26 @@ bool FrameWriter::inside(std::uint16_t index, const Place& place) {
 
 bool FrameWriter::stays_opaque(std::uint16_t index, std::size_t at, const Place& place) const {
   return !may_fit_another(place.type, index, from(place.base), size() - at, nullptr, false);
+}
+
+std::uint32_t Draft::limit(std::uint32_t scope) const {
+  const Scope& s = scopes[scope];
+  std::uint32_t end = s.end;
+  if (end == kNone && s.parent == kNone) end = static_cast<std::uint32_t>(bytes.size());
+  if (end == kNone) end = limit(s.parent);
+  return end - s.base > s.type->max_size ? s.base + s.type->max_size : end;
+}
+
+std::uint32_t Draft::first_cut(std::uint32_t limit, std::uint32_t from, std::uint32_t to,
+                               const std::vector<std::uint32_t>& passed, bool hard) const {
+  for (std::uint32_t i = from; i < to; ++i) {
+    const Part& part = parts[i];
+    if ((hard && !part.hard) || part.at + part.size <= limit) continue;
+    if (std::find(passed.begin(), passed.end(), i) != passed.end()) continue;
+    // The rest of an open array must still be whole elements.
+    if (!part.open || (limit - part.at) % part.element_bytes != 0) return i;
+  }
+  return kNone;
 }
 
 }  // namespace rubric::generate

@@ -1,7 +1,6 @@
 #include "codec/generate/framer.h"
 
 #include <algorithm>
-#include <string_view>
 
 #include "codec/containers/crc16_fast.h"
 #include "codec/containers/link_record.h"

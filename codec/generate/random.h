@@ -25,7 +25,8 @@ class Random {
     const std::uint64_t more = span == 0 ? next() : next() % span;
     return static_cast<std::int64_t>(static_cast<std::uint64_t>(min) + more);
   }
-  /// Returns true with that probability.
+  /// Returns true with that probability. Draws even for 0 and 1, so that a fault which is switched
+  /// on leaves the rest of a run unchanged for as long as it can.
   bool chance(double probability) {
     return static_cast<double>(next() >> 11) * 0x1p-53 < probability;
   }

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "codec/lines/stream_line.h"
+#include "codec/lines/stream.h"
 
 namespace rubric::lines {
 

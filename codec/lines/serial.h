@@ -7,7 +7,7 @@
 #include <string>
 
 #include "codec/lines/host_link.h"
-#include "codec/lines/stream_line.h"
+#include "codec/lines/stream.h"
 
 namespace rubric::lines {
 

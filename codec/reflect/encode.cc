@@ -479,9 +479,8 @@ class Encoder {
       if (f.condition.count && !evaluate(f.condition, from(base))) continue;
       const int count = f.choice ? f.choice->count + 1 : 1;
       for (int c = 0; c < count; ++c) {
-        const Type* tried = !f.choice       ? f.type
-                            : c < count - 1 ? f.choice->cases[c].type
-                                            : f.choice->otherwise;
+        const Type* tried = f.type;
+        if (f.choice) tried = c < count - 1 ? f.choice->cases[c].type : f.choice->otherwise;
         if (!tried) continue;
         bool chosen = false;
         const Mark before = mark();

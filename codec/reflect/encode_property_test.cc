@@ -3,7 +3,6 @@
 #include <rapidcheck/gtest.h>
 
 #include <map>
-#include <optional>
 #include <string>
 
 #include "codec/reflect/encode.h"

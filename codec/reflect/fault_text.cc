@@ -1,7 +1,5 @@
 #include "codec/reflect/fault_text.h"
 
-#include <algorithm>
-#include <cctype>
 #include <cstdio>
 #include <iterator>
 

@@ -15,9 +15,9 @@ const std::vector<const Protocol*>& protocols();
 /// Returns the protocol of this id; null if there is none.
 const Protocol* find_protocol(std::string_view id);
 
-/// The tables of all specs: of the protocols, and of what they stand on.
+/// Returns the tables of all specs: of the protocols, and of the layers below them.
 std::span<const Protocol* const> specs();
-/// By id; null if there is none.
+/// Returns the tables of the spec with this id; null if there is none.
 const Protocol* find_spec(std::string_view id);
 
 }  // namespace rubric::reflect

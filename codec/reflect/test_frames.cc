@@ -62,9 +62,11 @@ FrameMaker::FrameMaker(std::vector<TestFrame> real, const Protocol& protocol, st
 TestFrame FrameMaker::make() {
   const Shape& shape = shapes_[below(shapes_.size())];
   const std::size_t kind = below(10);
-  TestFrame frame = kind < 2   ? real_[below(real_.size())]
-                    : kind < 7 ? carried(shape, kNetMsgType, net_msg())
-                               : other_type(shape);
+  const auto sound = [&] {
+    if (kind < 2) return real_[below(real_.size())];
+    return kind < 7 ? carried(shape, kNetMsgType, net_msg()) : other_type(shape);
+  };
+  TestFrame frame = sound();
   for (std::size_t n = below(3); n > 0; --n) mutate(frame, shape.head_bytes);
   return frame;
 }

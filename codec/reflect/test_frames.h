@@ -11,7 +11,7 @@
 
 namespace rubric::reflect {
 
-/// From the dispatch byte or the frame control field on.
+/// The bytes from the dispatch byte or the frame control field on.
 struct TestFrame {
   bool radio = false;
   std::vector<std::uint8_t> bytes;

@@ -7,7 +7,7 @@
 
 #include "conformance/check/input/read.h"
 #include "conformance/check/judge/judge.h"
-#include "conformance/simulate/capture_recorder.h"
+#include "conformance/simulate/recorder.h"
 #include "conformance/simulate/scenarios.h"
 #include "conformance/simulate/simulation.h"
 

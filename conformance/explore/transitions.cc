@@ -10,7 +10,7 @@
 
 #include "conformance/explore/network.h"
 #include "conformance/explore/parts.h"
-#include "conformance/trace/events/app_events.h"
+#include "conformance/trace/events/lines.h"
 #include "conformance/trace/print.h"
 
 namespace rubric::explore {

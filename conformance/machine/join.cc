@@ -1,7 +1,5 @@
 #include "conformance/machine/join.h"
 
-#include <algorithm>
-
 namespace rubric::machine {
 namespace {
 

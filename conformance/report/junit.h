@@ -16,9 +16,9 @@ struct JunitCase {
   std::string file{};  ///< Empty: none is named.
   std::string seconds = "0";
   Outcome outcome = Outcome::kPassed;
-  std::string type{};     ///< Of a failure or an error.
-  std::string message{};  ///< Of all but a pass, in one line.
-  std::string body{};     ///< Of a failure or an error, in full.
+  std::string type{};     ///< The type of a failure or an error.
+  std::string message{};  ///< One line for all but a pass.
+  std::string body{};     ///< The whole text of a failure or an error.
   std::string output{};   ///< Further text; empty: none.
 };
 

@@ -33,7 +33,7 @@ struct KnownFailures {
 
 enum class KnownTo : std::uint8_t { kCheck, kTest };
 
-/// Returns whether the words, numbers and signs of `message` stand in `text`, in this order and
+/// Returns whether the words, numbers and signs of `message` occur in `text`, in this order and
 /// with nothing else between them. Blanks between them do not count.
 bool has_tokens(std::string_view text, std::string_view message);
 

@@ -21,7 +21,7 @@ struct SequenceRow {
   std::vector<std::size_t> to;  ///< Columns.
   bool sent = false;            ///< Somebody may take it, though no column does.
   bool marked = false;          ///< "<<<" follows it, and its arrow is doubled.
-  std::string note;             ///< Stands behind the row: "ignored: J4-SEQ".
+  std::string note;             ///< Printed after the row: "ignored: J4-SEQ".
 
   // For pictures.
   enum class Way : std::uint8_t { kRadio, kSerial, kPeis, kCall, kState };

@@ -5,10 +5,8 @@
 
 #include <algorithm>
 #include <charconv>
-#include <iterator>
 
 #include "codec/text/text.h"
-#include "conformance/report/sequence_style.h"
 
 namespace rubric::report {
 namespace {

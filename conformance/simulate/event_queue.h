@@ -7,9 +7,19 @@
 #include <utility>
 #include <vector>
 
-#include "conformance/simulate/time.h"
+#include "codec/generate/random.h"
+#include "conformance/machine/ticks.h"
 
 namespace rubric::simulate {
+
+// The machine's units of time: the simulator counts microseconds since the start of the run, its
+// nodes ticks.
+
+using generate::Random;
+using machine::kUsPerSecond;
+using machine::Micros;
+using machine::ticks_of;
+using machine::us_of;
 
 class EventQueue {
  public:

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "conformance/machine/state.h"
-#include "conformance/simulate/time.h"
+#include "conformance/simulate/event_queue.h"
 
 namespace rubric::simulate {
 

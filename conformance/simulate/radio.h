@@ -10,7 +10,6 @@
 #include "conformance/machine/actions.h"
 #include "conformance/simulate/event_queue.h"
 #include "conformance/simulate/network.h"
-#include "conformance/simulate/random.h"
 #include "conformance/simulate/recorder.h"
 
 namespace rubric::simulate {

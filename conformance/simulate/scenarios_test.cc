@@ -12,9 +12,8 @@
 #include "codec/containers/reader.h"
 #include "codec/generated/rubicon/tables.h"
 #include "codec/reflect/frame.h"
-#include "conformance/simulate/capture_recorder.h"
+#include "conformance/simulate/recorder.h"
 #include "conformance/simulate/simulation.h"
-#include "conformance/simulate/trace_recorder.h"
 #include "conformance/trace/parse.h"
 #include "conformance/trace/print.h"
 

@@ -55,7 +55,7 @@ void ScriptedApplication::woken(Host& host, std::uint32_t token) {
   send(host, token - kSends);
 }
 
-void ScriptedApplication::told(Host& host, const machine::Notice& notice) {
+void ScriptedApplication::notified(Host& host, const machine::Notice& notice) {
   if (const auto* joined = std::get_if<machine::Joined>(&notice)) {
     if (joined->success) return ready(host);
     host.wake_after(script_.rejoin_us, kJoin);

@@ -12,7 +12,6 @@
 #include "conformance/machine/event.h"
 #include "conformance/simulate/event_queue.h"
 #include "conformance/simulate/network.h"
-#include "conformance/simulate/random.h"
 #include "conformance/simulate/recorder.h"
 
 namespace rubric::simulate {

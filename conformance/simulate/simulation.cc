@@ -1,7 +1,6 @@
 #include "conformance/simulate/simulation.h"
 
 #include <algorithm>
-#include <cassert>
 #include <optional>
 #include <utility>
 #include <variant>
@@ -145,7 +144,8 @@ void Simulation::step(NodeId id, const machine::Event& event) {
   did(queue_.now(), id, actions_);
   for (const machine::Transmit& frame : actions_.transmits()) transmit(id, frame);
   if (node.application() != nullptr) {  // Its calls happen after this: see Host::call.
-    for (const machine::Notice& notice : actions_.notices()) node.application()->told(node, notice);
+    for (const machine::Notice& notice : actions_.notices())
+      node.application()->notified(node, notice);
   }
   set_timer(id);
 }

@@ -8,12 +8,11 @@
 #include <vector>
 
 #include "conformance/machine/step.h"
-#include "conformance/simulate/application.h"
 #include "conformance/simulate/event_queue.h"
 #include "conformance/simulate/network.h"
 #include "conformance/simulate/radio.h"
-#include "conformance/simulate/random.h"
 #include "conformance/simulate/recorder.h"
+#include "conformance/simulate/script.h"
 #include "conformance/simulate/serial.h"
 
 namespace rubric::simulate {

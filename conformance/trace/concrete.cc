@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "codec/reflect/decode.h"
-#include "conformance/trace/substitute.h"
+#include "conformance/trace/match.h"
 
 namespace rubric::trace {
 namespace {
@@ -324,11 +324,14 @@ Concrete concrete(const Message& message, const Bindings& bindings) {
     }
     const bool pair = field.kind == AppKind::kAddress || field.kind == AppKind::kChannel;
     const Place place = given == fields.end() ? message.place : given->place;
-    Value value = given != fields.end()             ? substituted(given->value, bindings, place)
-                  : field.kind == AppKind::kAddress ? Value::address(0, 0)
-                  : pair                            ? Value::channel(0)
-                  : field.kind == AppKind::kBytes   ? Value::bytes("")
-                                                    : Value::of(0);
+    Value value = Value::of(0);
+    if (given != fields.end()) {
+      value = substituted(given->value, bindings, place);
+    } else if (pair) {
+      value = field.kind == AppKind::kAddress ? Value::address(0, 0) : Value::channel(0);
+    } else if (field.kind == AppKind::kBytes) {
+      value = Value::bytes("");
+    }
     if (pair) {
       put_pair(field, value, place, out);
     } else {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <limits>
 
 #include "codec/reflect/decode.h"
 #include "codec/reflect/encode.h"

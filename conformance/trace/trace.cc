@@ -1,6 +1,5 @@
 #include "conformance/trace/trace.h"
 
-#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <iterator>

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Holds somebody's decoder against frames of which is known what a decoder must say.
+"""Compares somebody's decoder with frames whose correct decoding is known.
 
 Usage: compare.py [--rubric FILE] [--count N] [--seed S] [--valid 0.7] [--spec rubicon]
                   [--carrier NAME ...] -- COMMAND...

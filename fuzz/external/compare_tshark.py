@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Holds Wireshark's dissector against frames of which is known what a decoder must say.
+"""Compares Wireshark's dissector with frames whose correct decoding is known.
 
 Usage: compare_tshark.py [--rubric FILE] [--dissector FILE.lua] [--count N] [--seed S]
 

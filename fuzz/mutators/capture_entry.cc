@@ -23,7 +23,7 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
   if (is_log(data, size)) return fuzz::mutate_lines(data, size, max_size, seed);
   const Bytes input(data, size);
   const auto made = fuzz::seeded_mutator(seed).mutate(format_of(input), input, max_size);
-  return fuzz::give(made, 0, data, max_size);
+  return fuzz::copy_out(made, 0, data, max_size);
 }
 
 extern "C" std::size_t LLVMFuzzerCustomCrossOver(const std::uint8_t* one, std::size_t one_size,
@@ -35,6 +35,6 @@ extern "C" std::size_t LLVMFuzzerCustomCrossOver(const std::uint8_t* one, std::s
   const Bytes second(other, other_size);
   const InputFormat format = format_of(first);
   if (format != format_of(second)) return 0;
-  return fuzz::give(fuzz::seeded_mutator(seed).cross_over(format, first, second, max_size), 0, out,
-                    max_size);
+  return fuzz::copy_out(fuzz::seeded_mutator(seed).cross_over(format, first, second, max_size), 0,
+                        out, max_size);
 }

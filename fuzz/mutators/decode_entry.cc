@@ -29,8 +29,8 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
     return size;
   }
   const Bytes input(data + kHead, size - kHead);
-  return fuzz::give(mutator.mutate(format_of(data, size), input, max_size - kHead), kHead, data,
-                    max_size);
+  return fuzz::copy_out(mutator.mutate(format_of(data, size), input, max_size - kHead), kHead, data,
+                        max_size);
 }
 
 extern "C" std::size_t LLVMFuzzerCustomCrossOver(const std::uint8_t* one, std::size_t one_size,
@@ -45,5 +45,5 @@ extern "C" std::size_t LLVMFuzzerCustomCrossOver(const std::uint8_t* one, std::s
   const auto made = fuzz::seeded_mutator(seed).cross_over(
       format, Bytes(one + kHead, one_size - kHead), Bytes(other + kHead, other_size - kHead),
       max_size - kHead);
-  return fuzz::give(made, kHead, out, max_size);
+  return fuzz::copy_out(made, kHead, out, max_size);
 }

@@ -25,8 +25,8 @@ inline PacketMutator& seeded_mutator(unsigned seed) {
 inline constexpr unsigned kCrossOversAsked = 4;
 
 /// Copies `out` to the engine, after the head that `data` already has.
-inline std::size_t give(const std::vector<std::uint8_t>& out, std::size_t head_bytes,
-                        std::uint8_t* data, std::size_t max_size) {
+inline std::size_t copy_out(const std::vector<std::uint8_t>& out, std::size_t head_bytes,
+                            std::uint8_t* data, std::size_t max_size) {
   const std::size_t size = std::min(out.size(), max_size - head_bytes);
   if (size != 0) std::memcpy(data + head_bytes, out.data(), size);
   return head_bytes + size;

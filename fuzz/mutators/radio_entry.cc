@@ -32,5 +32,5 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
   append_record(stream.packets.back().view(), record);
   data[0] = has_fcs ? 0 : 1;
   data[1] = 0;
-  return fuzz::give({record.begin(), record.end()}, kHead, data, max_size);
+  return fuzz::copy_out({record.begin(), record.end()}, kHead, data, max_size);
 }

@@ -18,7 +18,7 @@ fuzz::ScriptMutator& seeded_mutator(unsigned seed) {
 }
 
 // Writes whole steps, as many as there is room for.
-std::size_t give(script::Script script, std::uint8_t* data, std::size_t max_size) {
+std::size_t copy_out(script::Script script, std::uint8_t* data, std::size_t max_size) {
   const std::vector<std::size_t> offsets = script::step_offsets(script);
   std::size_t steps = script.steps.size();
   while (steps > 0 && offsets[steps] > max_size) --steps;
@@ -37,14 +37,14 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
   if (seed % kPlain == 0) return fuzz::mutate_bytes(data, size, max_size, seed);
   script::Script script = script::decode(Bytes(data, size));
   seeded_mutator(seed).mutate(script);
-  return give(std::move(script), data, max_size);
+  return copy_out(std::move(script), data, max_size);
 }
 
 extern "C" std::size_t LLVMFuzzerCustomCrossOver(const std::uint8_t* one, std::size_t one_size,
                                                  const std::uint8_t* other, std::size_t other_size,
                                                  std::uint8_t* out, std::size_t max_size,
                                                  unsigned seed) {
-  return give(seeded_mutator(seed).cross_over(script::decode(Bytes(one, one_size)),
-                                              script::decode(Bytes(other, other_size))),
-              out, max_size);
+  return copy_out(seeded_mutator(seed).cross_over(script::decode(Bytes(one, one_size)),
+                                                  script::decode(Bytes(other, other_size))),
+                  out, max_size);
 }

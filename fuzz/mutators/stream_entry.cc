@@ -11,7 +11,7 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
                                                std::size_t max_size, unsigned seed) {
   using namespace rubric::fuzz;
   const auto out = seeded_mutator(seed).mutate(kFormat, rubric::Bytes(data, size), max_size);
-  return give(out, 0, data, max_size);
+  return copy_out(out, 0, data, max_size);
 }
 
 extern "C" std::size_t LLVMFuzzerCustomCrossOver(const std::uint8_t* one, std::size_t one_size,
@@ -22,5 +22,5 @@ extern "C" std::size_t LLVMFuzzerCustomCrossOver(const std::uint8_t* one, std::s
   if (seed % kCrossOversAsked != 0) return 0;
   const auto made = seeded_mutator(seed).cross_over(kFormat, rubric::Bytes(one, one_size),
                                                     rubric::Bytes(other, other_size), max_size);
-  return give(made, 0, out, max_size);
+  return copy_out(made, 0, out, max_size);
 }

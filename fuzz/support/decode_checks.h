@@ -8,7 +8,7 @@
 
 #include "codec/reflect/decode.h"
 #include "fuzz/support/require.h"
-#include "tools/encode/json.h"
+#include "tools/encode/members.h"
 #include "tools/format/record.h"
 
 namespace rubric::fuzz {

@@ -6,11 +6,23 @@
 #include <string_view>
 #include <vector>
 
-#include "fuzz/support/lines.h"
 #include "fuzz/support/require.h"
 #include "spec/compiler/diagnostics.h"
 
 namespace rubric::fuzz {
+
+/// Returns sizes in bytes of the lines of a text, without their ends; at least one.
+inline std::vector<std::size_t> line_sizes(std::string_view text) {
+  std::vector<std::size_t> out(1);
+  for (const char c : text) {
+    if (c == '\n') {
+      out.push_back(0);
+    } else {
+      ++out.back();
+    }
+  }
+  return out;
+}
 
 /// Checks the mistakes in `file`: line 0 is the file as a whole, column 0 the line.
 inline void places_are_within(const rubricc::Diagnostics& diagnostics, const std::string& file,

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <string_view>
 #include <type_traits>
-#include <vector>
 
 #include "fuzz/support/input.h"
 #include "fuzz/support/require.h"
@@ -40,9 +39,11 @@ class Fill {
     } else if constexpr (requires { field.raw(); }) {
       field = T(static_cast<decltype(field.raw())>(input_.u16()));
     } else if constexpr (std::is_enum_v<T> || std::is_integral_v<T>) {
-      field = static_cast<T>(sizeof(T) == 1   ? input_.u8()
-                             : sizeof(T) == 2 ? input_.u16()
-                                              : input_.u32());
+      if (sizeof(T) == 1) {
+        field = static_cast<T>(input_.u8());
+      } else {
+        field = static_cast<T>(sizeof(T) == 2 ? input_.u16() : input_.u32());
+      }
     } else {
       visit_fields(field, *this);
     }

@@ -15,7 +15,7 @@
 #include "conformance/check/report/junit.h"
 #include "conformance/check/report/text.h"
 #include "fuzz/support/require.h"
-#include "tools/encode/json.h"
+#include "tools/encode/members.h"
 
 namespace {
 

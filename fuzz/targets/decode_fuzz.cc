@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <string>
 
 #include "codec/containers/reader.h"
 #include "codec/reflect/registry.h"

@@ -8,7 +8,7 @@
 
 #include "codec/reflect/registry.h"
 #include "fuzz/support/require.h"
-#include "tools/encode/json.h"
+#include "tools/encode/members.h"
 #include "tools/encode/record.h"
 #include "tools/format/jsonl.h"
 

@@ -10,7 +10,7 @@
 #include "codec/reflect/fault_text.h"
 #include "conformance/check/report/expect.h"
 #include "conformance/test/suite/expected.h"
-#include "fuzz/support/lines.h"
+#include "fuzz/support/places.h"
 #include "fuzz/support/require.h"
 
 namespace {

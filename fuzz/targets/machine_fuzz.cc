@@ -3,7 +3,6 @@
 //
 // RUBRIC_FLAW names a flaw of conformance/machine/flaws that replaces the machine: this must be
 // found.
-#include <cstdio>
 #include <cstdlib>
 
 #include "conformance/selftest/scripts/bytes.h"

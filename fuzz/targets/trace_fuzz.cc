@@ -11,7 +11,7 @@
 #include "conformance/trace/match.h"
 #include "conformance/trace/parse.h"
 #include "conformance/trace/print.h"
-#include "fuzz/support/lines.h"
+#include "fuzz/support/places.h"
 #include "fuzz/support/require.h"
 
 namespace {

@@ -20,7 +20,7 @@ const std::vector<std::string> kEmitters{"cpp",        "tables",   "requirements
                                          "dictionary", "messages", "profiles",     "cases",
                                          "java",       "lua",      "json"};
 
-struct Options {
+struct CompilerOptions {
   std::string requirements = "spec/requirements.yaml";
   std::string profiles = "spec/profiles";
   std::string cases = "conformance/cases";
@@ -30,7 +30,7 @@ struct Options {
   std::vector<std::string> files;
 };
 
-bool wants(const Options& options, std::string_view emitter) {
+bool wants(const CompilerOptions& options, std::string_view emitter) {
   return std::find(options.emit.begin(), options.emit.end(), emitter) != options.emit.end();
 }
 
@@ -38,7 +38,7 @@ void append(rubricc::GeneratedFiles& all, rubricc::GeneratedFiles more) {
   std::move(more.begin(), more.end(), std::back_inserter(all));
 }
 
-rubricc::GeneratedFiles emit(const Options& options, const rubricc::Model& model) {
+rubricc::GeneratedFiles emit(const CompilerOptions& options, const rubricc::Model& model) {
   rubricc::GeneratedFiles out;
   for (const auto& spec : model.specs) {
     if (!spec->named) continue;
@@ -75,7 +75,7 @@ bool write(const std::filesystem::path& folder, const rubricc::GeneratedFile& fi
   return false;
 }
 
-int run(const Options& options) {
+int run(const CompilerOptions& options) {
   std::vector<std::string> inputs = options.files;
   inputs.push_back(options.requirements);
   for (const std::string& input : inputs) {
@@ -113,7 +113,7 @@ int run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  Options options;
+  CompilerOptions options;
   rubric::cli::Command program(
       "rubricc",
       "Check wire specs (a strict profile of Kaitai Struct) and generate code from them.");

@@ -6,7 +6,9 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace rubricc {
@@ -261,5 +263,15 @@ struct Model {
   std::vector<Profile> profiles;
   std::vector<CaseUse> case_uses;
 };
+
+struct ProfileField {
+  std::string_view name;
+  std::int64_t min;  // For a constant.
+  std::int64_t max;
+  bool is_switch;
+};
+
+/// Returns the fields in the order of the struct.
+std::span<const ProfileField> profile_fields();
 
 }  // namespace rubricc

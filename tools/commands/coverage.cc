@@ -15,7 +15,7 @@
 #include "codec/reflect/requirements.h"
 #include "codec/text/json.h"
 #include "conformance/explore/search.h"
-#include "conformance/selftest/mutants/generated.h"
+#include "conformance/selftest/mutants/hunt.h"
 #include "tools/cli/command.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/output.h"

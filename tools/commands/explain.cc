@@ -18,8 +18,7 @@
 #include "tools/commands/commands.h"
 #include "tools/explain/explain_frame.h"
 #include "tools/explain/explain_rule.h"
-#include "tools/explain/explain_type.h"
-#include "tools/explain/frame_guess.h"
+#include "tools/explain/type_text.h"
 
 namespace rubric::tools {
 namespace {

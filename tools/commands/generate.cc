@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
+#include <iterator>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -10,15 +12,18 @@
 #include "codec/containers/pcapng_format.h"
 #include "codec/containers/writer.h"
 #include "codec/generate/framer.h"
-#include "codec/generate/link_ack.h"
+#include "codec/generate/known_protocols.h"
 #include "codec/generate/routes.h"
+#include "codec/reflect/fault_text.h"
 #include "codec/reflect/suggest.h"
+#include "codec/text/json.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/input.h"
 #include "tools/cli/output.h"
 #include "tools/cli/specs.h"
 #include "tools/commands/commands.h"
-#include "tools/commands/generate_lines.h"
+#include "tools/format/put.h"
+#include "tools/format/record.h"
 
 namespace rubric::tools {
 namespace {
@@ -27,6 +32,68 @@ using generate::Framed;
 using generate::FrameGenerator;
 using generate::Framer;
 using reflect::Route;
+using report::Json;
+
+Json error_json(const Error& error, const Json::Members& more = {}) {
+  if (error.fault == Fault::kNone) return Json::raw("");
+  Json::Members out = {{"fault", reflect::fault_name(error.fault)},
+                       {"offset", error.offset_bytes},
+                       {"requirement", reflect::requirement(error.requirement).id}};
+  out.insert(out.end(), more.begin(), more.end());
+  return Json::object(out);
+}
+
+Json number_json(const generate::NumberAt& number) {
+  const std::string field = fmt::format("{}.{}", number.message->name, number.field->name);
+  return Json::object({{"field", field}, {"offset", number.offset_bytes}, {"value", number.value}});
+}
+
+/// Joins the words with `between`.
+std::string joined(const std::vector<std::string>& words, std::string_view between) {
+  std::string text;
+  for (const std::string& word : words) {
+    if (!text.empty()) text += between;
+    text += word;
+  }
+  return text;
+}
+
+/// Returns the JSON line of a frame, schema rubric.generate/1, without its end. `offset`: where it
+/// begins in its file, or null.
+std::string expectation(std::uint64_t number, const std::string& offset, const Framed& framed,
+                        bool with_fields) {
+  const Json null = Json::raw("");
+  const bool valid = framed.valid();
+  std::string raw(2 * framed.bytes.size(), '0');
+  format::put_hex(raw.data(), framed.view().bytes);
+  Json::Members out = {
+      {"schema", "rubric.generate/1"},
+      {"number", number},
+      {"offset", Json::raw(offset)},
+      {"carrier", framed.route->carrier},
+      {"framing", format::framing_name(framed.packet.framing)},
+      {"message", framed.route->type->name},
+      {"verdict", valid ? "valid" : "malformed"},
+      {"path", valid ? Json::array(framed.path, &reflect::Type::name) : null},
+      {"error", error_json(framed.error)},
+      {"unfit", framed.unfit_message
+                    ? error_json(framed.unfit, {{"message", framed.unfit_message->name}})
+                    : null},
+      {"what", framed.what}};
+  if (with_fields) {
+    out.emplace_back("fields", valid ? Json::array(framed.numbers, number_json) : null);
+  }
+  out.emplace_back("raw", raw);
+  return Json::object(out).text();
+}
+
+/// Returns one line for people about the packet.
+std::string comment(const Framed& framed) {
+  if (framed.valid()) return "valid: " + framed.what;
+  return fmt::format("malformed: {} at {} ({}): {}", reflect::fault_name(framed.error.fault),
+                     framed.error.offset_bytes, reflect::requirement(framed.error.requirement).id,
+                     framed.what);
+}
 
 constexpr double kFramingShare = 0.15;  // Share of the broken frames, if a format has framing.
 constexpr std::int64_t kBetweenFramesNs = 1'000'000;

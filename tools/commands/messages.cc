@@ -9,7 +9,6 @@
 #include "tools/cli/input.h"
 #include "tools/cli/output.h"
 #include "tools/commands/commands.h"
-#include "tools/explain/reach.h"
 #include "tools/explain/table.h"
 #include "tools/explain/type_text.h"
 

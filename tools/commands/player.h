@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "conformance/test/shrink/predicates.h"
+#include "conformance/test/shrink/shrink.h"
 #include "conformance/test/targets/attachment.h"
 #include "tools/cli/command.h"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "conformance/selftest/mutants/legal.h"
+#include "conformance/selftest/mutants/mutant.h"
 #include "conformance/test/runner/subject_target.h"
 #include "conformance/test/suite/cases.h"
 #include "tools/cli/exit_codes.h"

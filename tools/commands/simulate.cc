@@ -7,10 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "conformance/simulate/capture_recorder.h"
+#include "conformance/simulate/recorder.h"
 #include "conformance/simulate/scenarios.h"
 #include "conformance/simulate/simulation.h"
-#include "conformance/simulate/trace_recorder.h"
 #include "conformance/trace/print.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/input.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "conformance/trace/events/parameters.h"
+#include "conformance/trace/events/lines.h"
 #include "conformance/trace/parameters.h"
 #include "tools/cli/command.h"
 

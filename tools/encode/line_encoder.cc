@@ -1,7 +1,10 @@
 #include "tools/encode/line_encoder.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <cstdio>
 #include <system_error>
 #include <utility>
@@ -10,7 +13,7 @@
 #include "codec/reflect/encode_number.h"
 #include "codec/reflect/registry.h"
 #include "tools/encode/carriers.h"
-#include "tools/encode/json.h"
+#include "tools/encode/members.h"
 
 namespace rubric::encode {
 
@@ -22,6 +25,8 @@ namespace {
 constexpr int kBroadcast = 0xffff;
 constexpr int kSerialGroup = 0;
 constexpr int kRadioGroup = 0x22;  // TinyOS's default.
+
+constexpr std::size_t kChunkBytes = 256 * 1024;
 
 }  // namespace
 
@@ -121,7 +126,7 @@ bool EncodedLines::all() {
     file_ = name == "-" ? "stdin" : name;
     try {
       Lines lines(name, before_read_);
-      one(lines);
+      encode_next(lines);
     } catch (const std::system_error& error) {
       complain(file_, error.code().message());
     }
@@ -134,7 +139,7 @@ void EncodedLines::complain(const std::string& place, std::string_view what) {
   good_ = false;
 }
 
-void EncodedLines::one(Lines& lines) {
+void EncodedLines::encode_next(Lines& lines) {
   std::string_view line;
   while (!ended_ && lines.next(line)) {
     if (line.find_first_not_of(" \t") == std::string_view::npos) continue;
@@ -192,6 +197,52 @@ void check_line_options(const LineOptions& options) {
                                           : "--carrier, --am-type, --dest, --src, --group",
                           "go with --as MESSAGE; a line of rubric decode has its own frame");
   }
+}
+
+Lines::Lines(const std::string& name, BeforeRead before_read)
+    : fd_(name == "-" ? 0 : ::open(name.c_str(), O_RDONLY | O_CLOEXEC)),
+      before_read_(std::move(before_read)),
+      chunk_(std::make_unique_for_overwrite<char[]>(kChunkBytes)) {
+  if (fd_ < 0) throw std::system_error(errno, std::generic_category());
+}
+
+Lines::~Lines() {
+  if (fd_ > 0) ::close(fd_);
+}
+
+bool Lines::fill() {
+  while (true) {
+    if (before_read_ && !before_read_(fd_)) return false;
+    const ssize_t got = ::read(fd_, chunk_.get(), kChunkBytes);
+    if (got >= 0) {
+      rest_ = {chunk_.get(), static_cast<std::size_t>(got)};
+      return got > 0;
+    }
+    if (errno != EINTR) throw std::system_error(errno, std::generic_category());
+  }
+}
+
+bool Lines::next(std::string_view& line) {
+  line_.clear();
+  too_long_ = false;
+  if (rest_.empty() && !fill()) return false;
+  ++number_;
+  while (true) {
+    const std::size_t end = rest_.find('\n');
+    const std::string_view piece = rest_.substr(0, end);
+    const bool whole = end != std::string_view::npos;
+    rest_.remove_prefix(whole ? end + 1 : rest_.size());
+    if (whole && line_.empty()) {
+      line = piece;
+    } else {
+      too_long_ = too_long_ || piece.size() > kMaxBytes - line_.size();
+      if (!too_long_) line_ += piece;
+      line = line_;
+    }
+    if (whole || (rest_.empty() && !fill())) break;
+  }
+  if (line.ends_with('\r')) line.remove_suffix(1);
+  return true;
 }
 
 }  // namespace rubric::encode

@@ -1,8 +1,10 @@
-// Members of a line around a message: checks them and turns them into a packet's.
+// Members of a line around a message: checks them and turns them into a packet's. Parses the JSON
+// that they come in.
 #pragma once
 
 #include <cstdint>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 
@@ -33,5 +35,20 @@ Fault fault_of(const reflect::Value& line);
 
 /// Returns whether a fault is one of the framing, not of the content.
 bool is_framing_fault(Fault fault);
+
+/// Text that is not JSON. what() has the expected syntax; the column counts from 1.
+class JsonError : public std::runtime_error {
+ public:
+  JsonError(const std::string& problem, std::size_t column)
+      : std::runtime_error(problem), column_(column) {}
+  std::size_t column() const { return column_; }
+
+ private:
+  std::size_t column_;
+};
+
+/// Parses one JSON text. Numbers keep their spelling if an int64 cannot hold them, and an object
+/// may contain a key only once. Throws JsonError.
+reflect::Value parse_json(std::string_view text);
 
 }  // namespace rubric::encode

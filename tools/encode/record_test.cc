@@ -6,7 +6,6 @@
 #include <string>
 
 #include "codec/generated/rubicon/tables.h"
-#include "tools/encode/json.h"
 #include "tools/encode/members.h"
 
 namespace rubric::encode {

@@ -14,7 +14,7 @@
 #include "codec/containers/writer.h"
 #include "codec/generated/rubicon/tables.h"
 #include "codec/reflect/frame.h"
-#include "tools/encode/json.h"
+#include "tools/encode/members.h"
 #include "tools/encode/packet_output.h"
 #include "tools/encode/record.h"
 #include "tools/format/jsonl.h"

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "codec/reflect/fault_text.h"
-#include "tools/explain/explain_type.h"
 #include "tools/explain/table.h"
+#include "tools/explain/type_text.h"
 
 namespace rubric::explain {
 namespace {

@@ -10,9 +10,6 @@
 #include "codec/reflect/registry.h"
 #include "tools/explain/explain_frame.h"
 #include "tools/explain/explain_rule.h"
-#include "tools/explain/explain_type.h"
-#include "tools/explain/frame_guess.h"
-#include "tools/explain/reach.h"
 #include "tools/explain/table.h"
 #include "tools/explain/type_text.h"
 

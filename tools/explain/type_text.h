@@ -1,8 +1,11 @@
-// Describes the tables in words: types, sizes, bounds, expressions.
+// Describes the tables in words: types, sizes, bounds, expressions, and how a message is reached.
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "codec/reflect/schema.h"
 
@@ -39,5 +42,49 @@ std::string bits_text(const reflect::MaskTable& mask, std::int64_t value);
 
 /// Returns the first sentence of a doc.
 std::string first_sentence(const char* doc);
+
+/// Returns a message's layout: its fields with offsets, sizes, types, bounds, units and rules, the
+/// values of its enums and masks, its own rule, and its routes.
+std::string explain_type(const reflect::Protocol& protocol, const reflect::Type& type);
+
+/// Returns "Used by rubicon: net_msg.nbytes, ...": the fields that `has` finds, a line for each
+/// protocol that has one.
+std::string used_by(const std::vector<const reflect::Protocol*>& protocols,
+                    const std::function<bool(const reflect::Field&)>& has);
+
+std::string explain_enum(const reflect::Protocol& protocol, const reflect::EnumTable& table);
+std::string explain_mask(const reflect::Protocol& protocol, const reflect::MaskTable& table);
+
+/// One route to a message.
+struct Reach {
+  /// "serial" or "radio" for the frames' own payload, else empty.
+  std::string carrier;
+  const reflect::Type* parent = nullptr;      ///< The structure around it.
+  const reflect::Field* field = nullptr;      ///< Its field there.
+  std::string condition;                      ///< Condition for trying it; empty for none.
+  std::string key;                            ///< The key that chooses it; empty if there is none.
+  const reflect::Field* key_field = nullptr;  ///< The field that this is, if it is one.
+  std::vector<std::int64_t> values;           ///< For the key.
+  bool otherwise = false;                     ///< Any value that chooses no other.
+};
+
+/// Returns all routes to `message`, those of carriers first.
+std::vector<Reach> reaches(const reflect::Protocol& protocol, const reflect::Type& message);
+
+/// Returns "AM 28 on serial", "body of app_msg if trans_id == connless, byte 2 being 35".
+std::string reach_text(const Reach& reach);
+
+/// Returns texts for all of them, one for the routes that differ only in which of several types of
+/// the same shown name is around the message.
+std::vector<std::string> reach_texts(const std::vector<Reach>& reaches);
+
+/// Returns the AM types under which carriers hold it, in ascending order.
+std::vector<std::int64_t> am_types(const std::vector<Reach>& reaches);
+
+/// Returns whether it is a carrier's structure rather than a message.
+bool is_carrier(const reflect::Protocol& protocol, const reflect::Type& type);
+
+/// Returns whether it is reached through fields of its type alone: part of a message.
+bool is_part(const std::vector<Reach>& reaches);
 
 }  // namespace rubric::explain

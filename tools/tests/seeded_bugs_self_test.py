@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The test of seeded bugs itself: it accepts no list with mistakes, and sees bugs not found.
 
-A stand-in for rubric says that an implementation breaks the rules that stand in its file `broken`;
+A stand-in for rubric reports that an implementation breaks the rules listed in its file `broken`;
 SHOULD-... is one that it should keep.
 """
 
@@ -74,8 +74,8 @@ class SeededBugs(unittest.TestCase):
                 ([{"name": "a"}], "\n", "has not just"),
                 ([{**GOOD, "verdict": "pass"}], "\n", "neither fail nor weak"),
                 ([GOOD, GOOD], "\n", "more than one bug is called a"),
-                ([{**GOOD, "old": "absent"}], "\n", "stands 0 times"),
-                ([GOOD], "\n\n", "stands 2 times"),
+                ([{**GOOD, "old": "absent"}], "\n", "occurs 0 times"),
+                ([GOOD], "\n\n", "occurs 2 times"),
                 ([{**GOOD, "new": "\n"}], "\n", "changes nothing"),
                 ([{**GOOD, "file": "gone"}], "\n", "there is no gone"),
                 ([GOOD], "J1-DEST\n", "without a bug rubric test ended with 1")):

@@ -4,11 +4,11 @@
 Usage: seeded_bugs_test.py --bugs BUGS.json --rubric RUBRIC --target COMMAND [--build COMMAND]
                            [--tree FOLDER] [-- option of rubric test ...]
 
-BUGS.json is a list of {"name", "file", "old", "new", "requirement"}: `old`, which stands exactly
+BUGS.json is a list of {"name", "file", "old", "new", "requirement"}: `old`, which occurs exactly
 once in `file`, is replaced by `new`, and then a case has to fail at a line that names
 `requirement`. Where only SHOULD rules are broken an entry says "verdict": "weak" as well: then a
 case has to be weak there, none may fail, and the run ends with 0. `file` is relative to FOLDER, the
-implementation's tree: where BUGS.json stands if not said. Each bug gets a copy of the tree of its
+implementation's tree: the folder of BUGS.json if not given. Each bug gets a copy of the tree of its
 own; {dir} in the commands stands for it, and they run there. First the copy is tried without a bug:
 it has to pass.
 """
@@ -54,7 +54,7 @@ def plant(bug, tree):
     text = path.read_text(encoding="utf-8")
     found = text.count(bug["old"])
     if found != 1:
-        raise Mistake(f"{bug['name']}: in {bug['file']} the old text stands {found} times, "
+        raise Mistake(f"{bug['name']}: in {bug['file']} the old text occurs {found} times, "
                       "not once")
     if bug["new"] == bug["old"]:
         raise Mistake(f"{bug['name']}: changes nothing")

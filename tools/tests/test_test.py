@@ -127,7 +127,7 @@ class Running(Folder):
         states = (self.folder / "mote/adapter.py")
         states.write_text(states.read_text().replace("virtual", "virtual join_period=1024"))
         self.assertEqual(test("--target", slow, *some)[0], 0)
-        # What is said here counts more than hello, and nobody may state what he does not keep.
+        # These words count more than hello, and an implementation must keep what it states.
         code, out, _ = test("--target", slow, "--state", "join_period=500", *some)
         self.assertEqual(code, 1)
         code, out, _ = test("--target", HONEST, "--state", "ack_timeout=2000", "--cases",

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Wireshark's tshark reads what `rubric convert` wrote: an independent reader of our writers.
 
-Usage: tshark_test.py RUBRIC. What tshark says of a written file is held against what it says of
+Usage: tshark_test.py RUBRIC. Compares what tshark says of a written file with what it says of
 the source, and against the records beside the captures, which no reader of ours has touched.
 """
 

@@ -96,7 +96,7 @@ bool Adapter::answer(const std::string& line) {
   return true;
 }
 
-// What `reset` may set.
+// The parameters that `reset` may set.
 const std::string kSettings = " id island channels seed profile ";
 
 std::string Adapter::closing(const std::vector<std::string>& words) {

@@ -6,8 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "conformance/selftest/mutants/generated.h"
-#include "conformance/selftest/mutants/legal.h"
+#include "conformance/selftest/mutants/hunt.h"
 #include "conformance/test/runner/subject_target.h"
 #include "conformance/test/targets/serve.h"
 #include "tools/cli/command.h"

@@ -2,11 +2,9 @@
 // process of its own, and talks over pipes.
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <cstdio>
 
-#include "conformance/selftest/mutants/generated.h"
-#include "conformance/selftest/mutants/legal.h"
+#include "conformance/selftest/mutants/hunt.h"
 #include "conformance/test/runner/subject_target.h"
 #include "conformance/test/targets/rct_attachment.h"
 #include "conformance/test/targets/serve.h"

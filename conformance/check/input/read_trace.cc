@@ -5,7 +5,7 @@
 
 #include "conformance/check/storage.h"
 #include "conformance/trace/encode.h"
-#include "conformance/trace/events/app_events.h"
+#include "conformance/trace/events/lines.h"
 #include "conformance/trace/parse.h"
 #include "conformance/trace/print.h"
 

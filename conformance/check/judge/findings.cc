@@ -5,7 +5,7 @@
 #include <tuple>
 
 #include "conformance/generated/profiles.h"
-#include "conformance/trace/events/parameters.h"
+#include "conformance/trace/events/lines.h"
 
 namespace rubric::check {
 namespace {

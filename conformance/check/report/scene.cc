@@ -7,7 +7,7 @@
 
 #include "conformance/check/message.h"
 #include "conformance/trace/concrete.h"
-#include "conformance/trace/events/app_events.h"
+#include "conformance/trace/events/lines.h"
 #include "conformance/trace/print.h"
 
 namespace rubric::report {

@@ -5,7 +5,7 @@
 
 #include "conformance/check/input/duplicates.h"
 #include "conformance/check/test/align_testing.h"
-#include "conformance/simulate/capture_recorder.h"
+#include "conformance/simulate/recorder.h"
 #include "conformance/simulate/scenarios.h"
 #include "conformance/simulate/simulation.h"
 

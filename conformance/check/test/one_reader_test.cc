@@ -17,7 +17,7 @@
 #include "codec/containers/test/testing.h"
 #include "codec/generate/frame_generator.h"
 #include "codec/generate/framer.h"
-#include "codec/generate/link_ack.h"
+#include "codec/generate/known_protocols.h"
 #include "codec/generated/rubicon/messages.h"
 #include "codec/generated/rubicon/tables.h"
 #include "codec/generated/tinyos/am_header.h"

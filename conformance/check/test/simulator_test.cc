@@ -12,10 +12,9 @@
 #include "conformance/check/judge/judge.h"
 #include "conformance/check/judge/watch.h"
 #include "conformance/check/test/frames_testing.h"
-#include "conformance/simulate/capture_recorder.h"
+#include "conformance/simulate/recorder.h"
 #include "conformance/simulate/scenarios.h"
 #include "conformance/simulate/simulation.h"
-#include "conformance/simulate/trace_recorder.h"
 #include "conformance/trace/print.h"
 #include "tools/tests/readme/number.h"
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Holds spin's verdicts on join.pml against those of `rubric explore`: without a flaw and with
+"""Compares spin's verdicts on join.pml with those of `rubric explore`: without a flaw and with
 each, property by property, the two must agree.
 
 Usage: spin_test.py RUBRIC [PROPERTY...]. Needs Debian's spin and gcc. Prints the table: `.` holds

@@ -20,7 +20,6 @@ using machine::Action;
 using machine::Actions;
 using machine::Event;
 using machine::Frame;
-using machine::JoinMote;
 using machine::Link;
 using machine::Role;
 using machine::State;

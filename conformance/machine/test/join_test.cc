@@ -33,7 +33,7 @@ class MoteJoin : public testing::Test {
   }
   ReqId ignored_by() const { return rule(Action::What::kIgnored); }
   ReqId told_by() const { return rule(Action::What::kNotify); }
-  Joined told() const { return std::get<Joined>(actions_.notices()[0]); }
+  Joined notified() const { return std::get<Joined>(actions_.notices()[0]); }
   void clear() { actions_.clear(); }
 
   Profile profile_;
@@ -79,7 +79,7 @@ TEST_F(MoteJoin, J5Once_CallWhileJoiningEndsAtOnceAndDisturbsNothing) {
   const JoinMote before = join_;
   EXPECT_EQ(call(101), JoinSend::kNone);
   EXPECT_EQ(told_by(), "J5-ONCE"_rule);
-  EXPECT_FALSE(told().success);
+  EXPECT_FALSE(notified().success);
   EXPECT_EQ(join_, before);
 }
 

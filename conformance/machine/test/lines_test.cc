@@ -36,7 +36,7 @@ TEST(Outgoing, N2_WaitsWhileSendingAndLeavesInOrder) {
   mote.call(message(1));
   for (std::uint8_t mark = 2; mark <= 5; ++mark) {
     mote.call(message(mark));
-    EXPECT_EQ(mote.labels(), (std::vector{followed("N2-QUEUE"_rule), told("N1-SEQ"_rule)}));
+    EXPECT_EQ(mote.labels(), (std::vector{followed("N2-QUEUE"_rule), notified("N1-SEQ"_rule)}));
   }
   for (std::uint8_t mark = 2; mark <= 5; ++mark) {
     mote.done();
@@ -51,7 +51,7 @@ TEST(Outgoing, N1Full_FifthThatWaitsIsRefused) {
   for (std::uint8_t mark = 1; mark <= 5; ++mark) mote.call(message(mark));
   const State before = mote.state;
   mote.call(message(6));
-  EXPECT_EQ(mote.labels(), (std::vector{told("N1-FULL"_rule)}));
+  EXPECT_EQ(mote.labels(), (std::vector{notified("N1-FULL"_rule)}));
   EXPECT_EQ(mote.notice<SendResult>().seq_num, kNoSeq);
   EXPECT_EQ(mote.state, before);
   mote.done();
@@ -67,7 +67,7 @@ TEST(Outgoing, SerialHoldsTwo) {
     EXPECT_NE(base.call(message(1)).notice<SendResult>().seq_num, kNoSeq);
   }
   EXPECT_EQ(base.call(message(1)).notice<SendResult>().seq_num, kNoSeq);
-  EXPECT_EQ(base.labels(), (std::vector{told("N1-FULL"_rule)}));
+  EXPECT_EQ(base.labels(), (std::vector{notified("N1-FULL"_rule)}));
   EXPECT_FALSE(base.call(SetIslandId{12}).notice<OperationResult>().success);
   EXPECT_EQ(base.state.island, kIsland);
 }
@@ -87,7 +87,7 @@ TEST(Outgoing, J6Report_WaitsUntilTheLineIsOn) {
   sink.call(SetInterface{Link::kSerial, false});
   sink.hear(join_request(5, 100, kDescriptor)).done();
   sink.hear(ack_join({kIsland, 1}, {kIsland, 5}, 100, kDescriptor));
-  EXPECT_EQ(sink.labels(), (std::vector{told("J6-ADD"_rule), followed("J6-REPORT"_rule)}));
+  EXPECT_EQ(sink.labels(), (std::vector{notified("J6-ADD"_rule), followed("J6-REPORT"_rule)}));
   EXPECT_NE(find_member(sink.state.sink, 5), nullptr);
   sink.call(SetInterface{Link::kSerial, true});
   EXPECT_EQ(sink.only_frame().type, am::kNet);
@@ -103,7 +103,7 @@ TEST(Outgoing, J6Report_WaitsForRoomAndIsMadeOnce) {
   for (const std::uint16_t devid : kMotes) {
     sink.hear(join_request(devid, 100, kDescriptor)).done();
     sink.hear(ack_join({kIsland, 1}, {kIsland, devid}, 100, kDescriptor));
-    EXPECT_EQ(sink.labels(), (std::vector{told("J6-ADD"_rule), followed("J6-REPORT"_rule)}));
+    EXPECT_EQ(sink.labels(), (std::vector{notified("J6-ADD"_rule), followed("J6-REPORT"_rule)}));
     sink.hear(ack_join({kIsland, 1}, {kIsland, devid}, 100, kDescriptor));
     EXPECT_EQ(sink.labels(), (std::vector{ignored("J6-REPEAT"_rule)}));
   }
@@ -227,11 +227,11 @@ TEST(Control, N10_OffSendsAndHearsNothing) {
   EXPECT_TRUE(mote.call(SetInterface{Link::kRadio, false}).notice<OperationResult>().success);
   EXPECT_FALSE(mote.call(GetInterface{Link::kRadio}).notice<InterfaceState>().on);
   EXPECT_TRUE(mote.call(GetInterface{Link::kSerial}).notice<InterfaceState>().on);
-  EXPECT_EQ(mote.call(message(1)).labels(), (std::vector{told("N10-OFF"_rule)}));
+  EXPECT_EQ(mote.call(message(1)).labels(), (std::vector{notified("N10-OFF"_rule)}));
   EXPECT_EQ(mote.notice<SendResult>().seq_num, kNoSeq);
   EXPECT_EQ(mote.hear(heard(1)).labels(), (std::vector{ignored("N10-OFF"_rule)}));
   mote.call(SetInterface{Link::kRadio, true});
-  EXPECT_EQ(mote.labels(), (std::vector{told("N10-ON"_rule)}));
+  EXPECT_EQ(mote.labels(), (std::vector{notified("N10-ON"_rule)}));
   EXPECT_EQ(received(mote.hear(heard(2))), (std::vector<std::uint8_t>{2}));
   EXPECT_EQ(mark_of(mote.call(message(3)).only_frame()), 3);
 }

@@ -102,7 +102,7 @@ inline void PrintTo(const Label& label, std::ostream* out) {
   *out << kNames[static_cast<int>(label.what)] << ' ' << static_cast<int>(label.requirement);
 }
 inline Label sent(ReqId requirement) { return {Action::What::kTransmit, requirement}; }
-inline Label told(ReqId requirement) { return {Action::What::kNotify, requirement}; }
+inline Label notified(ReqId requirement) { return {Action::What::kNotify, requirement}; }
 inline Label followed(ReqId requirement) { return {Action::What::kFollowed, requirement}; }
 inline Label ignored(ReqId requirement) { return {Action::What::kIgnored, requirement}; }
 

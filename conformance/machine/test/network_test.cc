@@ -1,10 +1,12 @@
 // The network level and the dispatcher in whole nodes: send, receive, forward, ack.
+
 #include "conformance/machine/test/machine_fixture.h"
 
 namespace rubric::machine {
 namespace {
 
 using Payload = std::vector<std::uint8_t>;
+
 constexpr std::uint8_t kOpenDoor[] = {0x0D, 0x0E};
 
 OwnFrame on_radio(std::uint16_t am_dest, const NetFields& fields) {
@@ -20,8 +22,8 @@ OwnFrame on_peis(std::uint16_t island, const NetFields& fields) {
 TEST(Send, N1_MoteToMote) {
   Device mote = member(5);
   mote.call(Send{{kLocalPid, 6}, 10, false, kOpenDoor});
-  EXPECT_EQ(mote.labels(),
-            (std::vector{followed("N3-LOCAL"_rule), sent("N4-MOTE"_rule), told("N1-SEQ"_rule)}));
+  EXPECT_EQ(mote.labels(), (std::vector{followed("N3-LOCAL"_rule), sent("N4-MOTE"_rule),
+                                        notified("N1-SEQ"_rule)}));
   EXPECT_EQ(mote.only_frame().dest, 6);
   EXPECT_EQ(mote.only_frame().src, 5);
   EXPECT_EQ(mote.only_payload(),
@@ -52,7 +54,7 @@ TEST(Send, LargestGoesAndLargerIsRefused) {
   mote.call(Send{{kIsland, 6}, 10, false, {data.data(), 101}});
   EXPECT_TRUE(mote.actions.transmits().empty());
   EXPECT_EQ(mote.notice<SendResult>().seq_num, kNoSeq);
-  EXPECT_EQ(mote.labels(), (std::vector{told("N1-SIZE"_rule)}));
+  EXPECT_EQ(mote.labels(), (std::vector{notified("N1-SIZE"_rule)}));
   mote.call(Send{{kIsland, 6}, 10, false, {data.data(), 100}});
   EXPECT_EQ(mote.only_payload().size(), 114U);
 }
@@ -64,7 +66,7 @@ TEST(Send, N4Self_IsRefusedByEveryRole) {
     for (const std::uint16_t pid : {kIsland, kLocalPid}) {
       for (const std::uint16_t devid : {own, kLocalDevid}) {
         node.call(Send{{pid, devid}, 10, true, kOpenDoor});
-        EXPECT_EQ(node.labels(), (std::vector{told("N4-SELF"_rule)}));
+        EXPECT_EQ(node.labels(), (std::vector{notified("N4-SELF"_rule)}));
         EXPECT_EQ(node.notice<SendResult>().seq_num, kNoSeq);
         EXPECT_EQ(node.state, before);
       }
@@ -77,11 +79,11 @@ TEST(Send, N4Self_IsRefusedByEveryRole) {
 TEST(Send, J11_NoMemberNoMessage) {
   Device mote(mote_config(5));
   mote.call(Send{{kIsland, 6}, 10, false, {}});
-  EXPECT_EQ(mote.labels(), (std::vector{told("J11-SEND"_rule)}));
+  EXPECT_EQ(mote.labels(), (std::vector{notified("J11-SEND"_rule)}));
   EXPECT_EQ(mote.notice<SendResult>().seq_num, kNoSeq);
   mote.call(JoinIsland{kDescriptor}).done();
   EXPECT_EQ(mote.call(Send{{kIsland, 6}, 10, false, {}}).labels(),
-            (std::vector{told("J11-SEND"_rule)}));
+            (std::vector{notified("J11-SEND"_rule)}));
 }
 
 TEST(Send, T4_EightAwaitedAndTheNinthRefused) {
@@ -318,5 +320,68 @@ TEST(Synaptic, BaseStationHasNone) {
   EXPECT_EQ(base.labels(), (std::vector{followed("N8-DELIVER"_rule), ignored("T1-UNKNOWN"_rule)}));
 }
 
+TEST(IslandId, SameIslandKeepsMembers) {
+  Device sink(sink_config());
+  list_member(sink, 5);
+  EXPECT_EQ(sink.hear(set_island_id(kIsland)).labels(), (std::vector{followed("N9-SET"_rule)}));
+  EXPECT_NE(find_member(sink.state.sink, 5), nullptr);
+}
+
+TEST(IslandId, N9Other_OtherConfigChangesNothing) {
+  Device sink(sink_config());
+  list_member(sink, 5);
+  const State before = sink.state;
+  for (int code = 0; code < 256; ++code) {
+    if (code == 10) continue;
+    sink.hear(config(static_cast<std::uint8_t>(code), kOther));
+    EXPECT_EQ(sink.labels(), (std::vector{ignored("N9-OTHER"_rule)}));
+  }
+  OwnFrame cut = set_island_id(kOther);
+  cut.payload.pop_back();
+  EXPECT_EQ(sink.hear(cut).labels(), (std::vector{ignored("WIRE-CONFIG"_rule)}));
+  EXPECT_EQ(sink.state, before);
+}
+
+TEST(IslandId, N9Other_ReservedIslandsAreNotTaken) {
+  constexpr std::uint16_t kReserved[] = {0xFFFD, 0xFFFE, 0xFFFF};
+  for (const std::uint16_t island : kReserved) {
+    Device sink(sink_config());
+    list_member(sink, 5);
+    const State before = sink.state;
+    EXPECT_EQ(sink.hear(set_island_id(island)).labels(), (std::vector{ignored("N9-OTHER"_rule)}));
+    EXPECT_EQ(sink.state, before);
+    Device base(base_config());
+    base.call(SetIslandId{island});
+    EXPECT_EQ(base.labels(), (std::vector{notified("N9-OTHER"_rule)}));
+    EXPECT_FALSE(base.notice<OperationResult>().success);
+    EXPECT_EQ(base.state.island, kIsland);
+  }
+  Device sink(sink_config());
+  EXPECT_EQ(sink.hear(set_island_id(0xFFFC)).labels()[0], followed("N9-SET"_rule));
+}
+
+TEST(IslandId, BaseStationTellsItsSink) {
+  Device base(base_config());
+  base.call(SetIslandId{12});
+  const Transmit& frame = base.only_frame();
+  EXPECT_EQ(frame.link, Link::kSerial);
+  EXPECT_EQ(frame.dest, 1);
+  EXPECT_EQ(frame.src, 0);
+  EXPECT_EQ(frame.type, 37);
+  EXPECT_EQ(base.only_payload(), (Payload{0x0A, 0x00, 0x0C}));  // The original sends it so.
+  EXPECT_TRUE(base.notice<OperationResult>().success);
+  EXPECT_EQ(own_address(base.state), (Address{12, kNullDevid}));
+}
+
+TEST(IslandId, NobodyElseMayTell) {
+  for (const Config& config : {sink_config(), mote_config(5)}) {
+    Device node(config);
+    node.call(SetIslandId{kOther});
+    EXPECT_FALSE(node.notice<OperationResult>().success);
+    EXPECT_NE(own_address(node.state).pid, kOther);
+  }
+}
+
 }  // namespace
+
 }  // namespace rubric::machine

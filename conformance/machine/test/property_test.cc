@@ -1,6 +1,5 @@
 // Whatever happens to a node, in any order and with any content: it stays within its bounds, keeps
 // the promises of the join protocol, and repeats itself when the same happens again.
-#include <cstring>
 #include <random>
 
 #include "conformance/machine/test/machine_fixture.h"

@@ -4,9 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
-#include <set>
 #include <string>
-#include <tuple>
 
 namespace rubric::machine {
 

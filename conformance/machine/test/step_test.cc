@@ -1,7 +1,14 @@
 // Whole nodes: joining, calls, and what a frame causes from one end to the other.
+
 #include "conformance/machine/step.h"
 
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "conformance/machine/profile.h"
 #include "conformance/machine/test/machine_fixture.h"
+#include "conformance/machine/ticks.h"
 
 namespace rubric::machine {
 namespace {
@@ -49,8 +56,8 @@ TEST(JoinStep, MoteAcceptsSetsItsClockAndAcks) {
   mote.call(JoinIsland{kDescriptor}).done();
   mote.now = 512;
   mote.hear(join_reply(5, {kIsland, 5}, 700000, mote.state.join.seq_num));
-  EXPECT_EQ(mote.labels(),
-            (std::vector{told("J5-SUCCESS"_rule), followed("J4-CLOCK"_rule), sent("J4-ACK"_rule)}));
+  EXPECT_EQ(mote.labels(), (std::vector{notified("J5-SUCCESS"_rule), followed("J4-CLOCK"_rule),
+                                        sent("J4-ACK"_rule)}));
   const Transmit& ack = mote.only_frame();
   EXPECT_TRUE(ack.link_ack);
   EXPECT_EQ(ack.dest, 1);
@@ -108,7 +115,7 @@ TEST(JoinStep, J8_WholeCallWithoutAnswer) {
     mote.done();
   }
   mote.join_timer();
-  EXPECT_EQ(mote.labels(), (std::vector{told("J8-FAIL"_rule)}));
+  EXPECT_EQ(mote.labels(), (std::vector{notified("J8-FAIL"_rule)}));
   EXPECT_EQ(mote.now, 2500U);
   EXPECT_TRUE(timers(mote.state).empty());
   mote.call(JoinIsland{kDescriptor});
@@ -165,7 +172,7 @@ TEST(JoinStep, SinkListsAnnouncesAndReports) {
   Device sink(sink_config());
   sink.hear(join_request(5, 100, kDescriptor)).done();
   sink.hear(ack_join({kIsland, 1}, {kIsland, 5}, 100, kDescriptor));
-  EXPECT_EQ(sink.labels(), (std::vector{told("J6-ADD"_rule), sent("J6-REPORT"_rule)}));
+  EXPECT_EQ(sink.labels(), (std::vector{notified("J6-ADD"_rule), sent("J6-REPORT"_rule)}));
   const Transmit& report = sink.only_frame();
   EXPECT_EQ(report.link, Link::kSerial);
   EXPECT_EQ(report.dest, kAmBroadcast);
@@ -183,7 +190,7 @@ TEST(JoinStep, DeployedSinkReportsEachJoinOfAListedMote) {
   list_member(sink, 5, 100);
   sink.hear(join_request(5, 101, kDescriptor)).done();
   sink.hear(ack_join({kIsland, 1}, {kIsland, 5}, 101, kDescriptor));
-  EXPECT_EQ(sink.labels(), (std::vector{told("J6-ADD"_rule), sent("J6-REPORT"_rule)}));
+  EXPECT_EQ(sink.labels(), (std::vector{notified("J6-ADD"_rule), sent("J6-REPORT"_rule)}));
 }
 
 TEST(JoinStep, J3Address_NobodyHasAReservedIdOrTheSinks) {
@@ -232,7 +239,7 @@ TEST(JoinStep, SinkAndBaseStationCannotJoin) {
   for (const Config& config : {sink_config(), base_config()}) {
     Device node(config);
     node.call(JoinIsland{kDescriptor});
-    EXPECT_EQ(node.labels(), (std::vector{told("J8-JOINED"_rule)}));
+    EXPECT_EQ(node.labels(), (std::vector{notified("J8-JOINED"_rule)}));
     EXPECT_FALSE(node.notice<Joined>().success);
   }
 }
@@ -276,7 +283,7 @@ TEST(Timers, AreThoseThatAreSet) {
   EXPECT_EQ(timers(mote.state)[1].due, 1020U);
   EXPECT_EQ(timers(mote.state)[1].timer, (Timer{TimerKind::kAck, 1}));
   mote.step(TimerDue{{TimerKind::kAck, 1}});
-  EXPECT_EQ(mote.labels(), (std::vector{told("T3-TIMEOUT"_rule)}));
+  EXPECT_EQ(mote.labels(), (std::vector{notified("T3-TIMEOUT"_rule)}));
   EXPECT_EQ(timers(mote.state).size(), 1U);
 }
 
@@ -293,5 +300,46 @@ TEST(Timers, OneThatIsNotSetChangesNothing) {
   }
 }
 
+constexpr Ticks kLast = std::numeric_limits<Ticks>::max();
+
+TEST(Ticks, ASecondIs1024OfThem) {
+  EXPECT_EQ(ticks_of(1'000'000), 1024U);
+  EXPECT_EQ(us_of(1024), 1'000'000);
+  EXPECT_EQ(Profile{}.ticks_per_second, kTicksPerSecond);
+}
+
+TEST(Ticks, ATickHasBegunFromItsFirstMicrosecondOn) {
+  EXPECT_EQ(ticks_of(976), 0U);  // A tick lasts 976.5625 microseconds.
+  EXPECT_EQ(ticks_of(977), 1U);
+  EXPECT_EQ(us_of(1), 977);
+  EXPECT_EQ(us_of(500), 488'282);  // 488281.25
+  EXPECT_EQ(us_of(512), 500'000);
+}
+
+TEST(Ticks, ThereAndBackIsTheSameTickUntilTheLast) {
+  const auto same = [](Ticks ticks) {
+    return ticks_of(us_of(ticks)) == ticks && (ticks == 0 || ticks_of(us_of(ticks) - 1) < ticks);
+  };
+  for (Ticks ticks = 0; ticks < 100'000; ++ticks) ASSERT_TRUE(same(ticks)) << ticks;
+  for (Ticks ticks = kLast; ticks > kLast - 1000; --ticks) ASSERT_TRUE(same(ticks)) << ticks;
+}
+
+TEST(Ticks, OtherUnitsAreCutOffToo) {
+  EXPECT_EQ(ticks_of(1000, 1000), 1024U);
+  EXPECT_EQ(ticks_of(1, 1000), 1U);    // 1.024
+  EXPECT_EQ(ticks_of(41, 1000), 41U);  // 41.984
+  EXPECT_EQ(ticks_of(42, 1000), 43U);  // 43.008
+  EXPECT_EQ(ticks_of(777, 1024), 777U);
+}
+
+TEST(Ticks, WhatHoldsATimeIsRoundedUp) {
+  EXPECT_EQ(ticks_to_hold(0), 0U);
+  EXPECT_EQ(ticks_to_hold(1), 1U);
+  EXPECT_EQ(ticks_to_hold(976), 1U);
+  EXPECT_EQ(ticks_to_hold(977), 2U);
+  EXPECT_EQ(ticks_to_hold(1'000'000), 1024U);
+}
+
 }  // namespace
+
 }  // namespace rubric::machine

@@ -1,8 +1,7 @@
 // A base station.
-#include "conformance/selftest/lawful_traffic/base_station.h"
-
 #include <algorithm>
 
+#include "conformance/selftest/lawful_traffic/node.h"
 #include "conformance/selftest/lawful_traffic/serial_line.h"
 #include "conformance/selftest/lawful_traffic/world.h"
 

@@ -47,7 +47,7 @@ bool write_traffic(const std::filesystem::path& folder, const Traffic& traffic) 
          write_file(folder / (name + ".app.jsonl"), to_app_jsonl(traffic));
 }
 
-struct Options {
+struct LawfulOptions {
   std::string variant = "all";
   std::string recorder = "exact";
   std::string folder;
@@ -66,7 +66,7 @@ std::vector<std::string> chosen(const std::string& variant) {
   return names;
 }
 
-int run(const Options& options) {
+int run(const LawfulOptions& options) {
   if (options.list) {
     list();
     return 0;
@@ -96,7 +96,7 @@ int main(int argc, char** argv) {
   rubric::cli::Command program(
       "rubric_lawful",
       "Write captures of legal RUBICON networks, to test checkers for false alarms.");
-  Options options;
+  LawfulOptions options;
   program.add_option("--variant", options.variant, "Write this variant, all (each once) or mixed")
       .show_default();
   program.add_option("--recorder", options.recorder, "Record the traffic in this way")

@@ -1,10 +1,9 @@
 // A mote.
-#include "conformance/selftest/lawful_traffic/mote.h"
-
 #include <fmt/format.h>
 
 #include <utility>
 
+#include "conformance/selftest/lawful_traffic/node.h"
 #include "conformance/selftest/lawful_traffic/world.h"
 
 namespace rubric::lawful {

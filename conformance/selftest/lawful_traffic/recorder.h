@@ -1,4 +1,5 @@
-// What a recorder makes of legal traffic: wrong stamps, missing packets. The nodes stay honest.
+// Records legal traffic as real recorders do: with wrong stamps and missing packets. The
+// nodes stay honest.
 #pragma once
 
 #include <cstdint>

@@ -3,12 +3,10 @@
 
 #include <algorithm>
 #include <cassert>
-#include <utility>
 
 #include "codec/generated/tinyos/all.h"
 #include "codec/runtime/crc16.h"
-#include "conformance/selftest/lawful_traffic/base_station.h"
-#include "conformance/selftest/lawful_traffic/sink.h"
+#include "conformance/selftest/lawful_traffic/node.h"
 #include "conformance/selftest/lawful_traffic/world.h"
 
 namespace rubric::lawful {

@@ -1,11 +1,10 @@
 // A sink.
-#include "conformance/selftest/lawful_traffic/sink.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <utility>
 
+#include "conformance/selftest/lawful_traffic/node.h"
 #include "conformance/selftest/lawful_traffic/serial_line.h"
 #include "conformance/selftest/lawful_traffic/world.h"
 

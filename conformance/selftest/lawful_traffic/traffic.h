@@ -56,7 +56,7 @@ enum class Worst : std::uint8_t { kPass, kWeak };
 struct Traffic {
   std::string variant;                ///< As requested.
   std::vector<std::string> variants;  ///< Contained variants; several for `mixed`.
-  std::string stated;                 ///< What its nodes state, as `join_period=300`; else empty.
+  std::string stated;                 ///< Parameters, as `join_period=300`; else empty.
   std::vector<int> decisions;         ///< Decisions of spec/decisions that it shows readings of.
   std::uint64_t seed = 0;
   Worst worst = Worst::kPass;

@@ -18,7 +18,7 @@ struct Variant {
   void (*configure)(Plan& plan, Random& random);
   bool mixes = false;  ///< May be part of `mixed`.
   Worst worst = Worst::kPass;
-  /// What the nodes state of themselves, as `rubric check --state` takes it; legal only so.
+  /// The parameters that the nodes state, as `rubric check --state` takes it; legal only so.
   std::string_view stated = {};
 };
 

@@ -69,7 +69,7 @@ std::vector<Variant> capture_variants() {
        true},
       {"rssi_beacons", "five RSSI anchors", {}, rssi_beacons, true},
       {"corrupt_frames",
-       "collisions: frames with a wrong FCS, which nobody takes",
+       "collisions: frames with a wrong FCS, which no node takes",
        {},
        corrupt_frames,
        true},

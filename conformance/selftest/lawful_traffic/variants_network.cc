@@ -16,9 +16,8 @@ void everybody_sends(Plan& plan, std::uint16_t pid, std::uint16_t devid, bool re
       plan.script.push_back(
           {time, [pid, devid, reliable, who](World& world) {
              if (who == 0 && !world.mote(0).joined()) return;
-             Endpoint& from = who == 0   ? static_cast<Endpoint&>(world.mote(0))
-                              : who == 1 ? static_cast<Endpoint&>(world.sink(0))
-                                         : static_cast<Endpoint&>(world.base(0));
+             Endpoint* const senders[] = {&world.mote(0), &world.sink(0), &world.base(0)};
+             Endpoint& from = *senders[who];
              const Address dest{pid == 0 ? from.address().pid : pid, devid};
              from.send(dest, kMockupType, {0xB0, static_cast<std::uint8_t>(who)}, reliable);
            }});
@@ -147,7 +146,7 @@ void host_loops_radiated(Plan& plan, Random& random) {
 std::vector<Variant> network_variants() {
   return {
       {"broadcast", "mote, sink and PC broadcast in their island", {114}, broadcast, true},
-      {"broadcast_reliable", "reliable broadcasts; nobody acks", {114}, broadcast_reliable},
+      {"broadcast_reliable", "reliable broadcasts; no node acks", {114}, broadcast_reliable},
       {"broadcast_acked",
        "reliable broadcasts; everybody acks",
        {114},

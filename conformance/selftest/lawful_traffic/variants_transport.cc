@@ -1,5 +1,4 @@
 // Variants of acks, timeouts, sequence numbers and buffers.
-#include <algorithm>
 
 #include "conformance/selftest/lawful_traffic/air.h"
 #include "conformance/selftest/lawful_traffic/variants.h"

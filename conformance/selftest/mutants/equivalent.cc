@@ -16,7 +16,7 @@ constexpr const char* kFailAddress = "No rule says which address joined(FAIL) ha
 constexpr const char* kRefusedId = "No rule says which id a refused creation returns.";
 constexpr const char* kWhileOff =
     "Whether send refuses or queues while the interface is off is free, and a trace has no "
-    "alternatives: it cannot hold what send then told against what it did.";
+    "alternatives: it cannot compare what send then reported with what it did.";
 constexpr const char* kRepeats =
     "Whether and how often ack_join is repeated is free, up to a bound (decision 102).";
 constexpr const char* kOrigin =
@@ -63,7 +63,7 @@ constexpr std::array kSurvivors{
     Survivor{"plus one: N8-INCOMING net_msg rubicon_ack by serial: nbytes", kSerialNbytes},
     Survivor{"* tell J11-SEND send_result: seq_num",
              "A mote may keep what is sent before it joins, and tell its number (decision 118). No "
-             "trace holds the number against what it then sends.",
+             "trace compares the number with what it then sends.",
              kNotJudged},
 };
 

@@ -1,5 +1,4 @@
 // Mutants that change one field of a frame or notice.
-#include <algorithm>
 #include <memory>
 #include <set>
 
@@ -7,9 +6,9 @@
 #include "codec/reflect/am_frames.h"
 #include "codec/reflect/frame.h"
 #include "conformance/selftest/mutants/fields.h"
-#include "conformance/selftest/mutants/generated.h"
+#include "conformance/selftest/mutants/hunt.h"
 #include "conformance/trace/concrete.h"
-#include "conformance/trace/events/app_events.h"
+#include "conformance/trace/events/lines.h"
 
 namespace rubric::mutants {
 namespace {
@@ -22,7 +21,7 @@ enum class Change : std::uint8_t { kPlusOne, kHighBit };
 
 // Collects the places below node `i`, whose name is `path`; for arrays the first element.
 void collect(const reflect::Decoded& decoded, std::size_t i, const std::string& path,
-             std::size_t header, std::vector<Place>& out) {
+             std::size_t header, std::vector<FieldPlace>& out) {
   const reflect::Node& node = decoded[i];
   if (node.kind == reflect::NodeKind::kStruct || node.kind == reflect::NodeKind::kStructArray) {
     for (std::size_t k = i + 1; k < node.end; k = decoded[k].end) {
@@ -34,7 +33,7 @@ void collect(const reflect::Decoded& decoded, std::size_t i, const std::string& 
     return;
   }
   if (node.size == 0 || node.offset < header) return;
-  Place place{path, node.offset - header, node.size, node.field->little_endian};
+  FieldPlace place{path, node.offset - header, node.size, node.field->little_endian};
   if (node.kind == reflect::NodeKind::kNumberArray) place.size_bytes = node.size / node.count;
   if (node.kind == reflect::NodeKind::kBytes) place.size_bytes = 1;
   out.push_back(std::move(place));
@@ -49,14 +48,14 @@ std::vector<std::uint8_t> packet_of(const Transmit& frame) {
   return reflect::radio_frame({.fcf = fcf}, frame.type, frame.bytes());
 }
 
-void add_one(Transmit& frame, const Place& place) {
+void add_one(Transmit& frame, const FieldPlace& place) {
   for (std::size_t i = 0; i < place.size_bytes; ++i) {
     const std::size_t at = place.little_endian ? i : place.size_bytes - 1 - i;
     if (++frame.payload[place.offset_bytes + at] != 0) return;  // Else it carries.
   }
 }
 
-void change(Transmit& frame, const Place& place, Change how) {
+void change(Transmit& frame, const FieldPlace& place, Change how) {
   const bool plus = how == Change::kPlusOne;
   const auto other = [&](std::uint16_t value) {
     return static_cast<std::uint16_t>(plus ? value + 1 : value ^ 0x8000);
@@ -87,7 +86,7 @@ StepMaker changed_frame(const std::string& kind, const std::string& path, Change
   return on_sent([=](Moment&, const Action& action, Transmit& frame) {
     const Anatomy parts = anatomy(frame);
     if (sent_kind(action, frame, parts) != kind) return Fate::kKeep;
-    for (const Place& place : parts.places) {
+    for (const FieldPlace& place : parts.places) {
       if (place.path == path) change(frame, place, how);
     }
     return Fate::kKeep;
@@ -180,7 +179,7 @@ Mutants field_mutants(const Golden& golden) {
         const Transmit& frame = actions.transmit_of(action);
         const Anatomy parts = anatomy(frame);
         const std::string kind = sent_kind(action, frame, parts);
-        for (const Place& place : parts.places) sent.insert({kind, place.path});
+        for (const FieldPlace& place : parts.places) sent.insert({kind, place.path});
       } else if (action.what == Action::What::kNotify) {
         const auto concrete = trace::concrete(events::from_notice(actions.notice_of(action)));
         for (const auto& leaf : concrete.leaves) {

@@ -35,7 +35,7 @@ constexpr Within<Net::PayloadAt, App::TransIdAt> kTransId;
 constexpr Within<Net::PayloadAt, App::AppIdAt> kAppId;
 constexpr BodyAt kBody;
 constexpr Within<BodyAt, rubicon::RubiconAckLayout::SeqNumAt> kAckedSeq;
-/// In the paper's form of an ack.
+/// The fields of an ack in the paper's form.
 constexpr Within<BodyAt, rubicon::RubiconAckSeqOnlyLayout::SeqNumAt> kPaperSeq;
 constexpr Within<BodyAt, rubicon::SerialJoinedLayout::MoteAddrAt> kReportedMote;
 constexpr Within<BodyAt, rubicon::SerialJoinedLayout::TransducersAt> kReportedTransducers;

@@ -1,12 +1,11 @@
-#include "conformance/selftest/mutants/generated.h"
-
 #include <map>
 #include <memory>
 #include <set>
 
 #include "conformance/selftest/mutants/fields.h"
+#include "conformance/selftest/mutants/hunt.h"
 #include "conformance/test/runner/subject_target.h"
-#include "conformance/trace/events/app_events.h"
+#include "conformance/trace/events/lines.h"
 #include "conformance/trace/trace.h"
 
 namespace rubric::mutants {

@@ -1,6 +1,4 @@
 // No golden trace fails on a legal variant of the machine.
-#include "conformance/selftest/mutants/legal.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,7 +7,8 @@
 
 #include "conformance/generated/profiles.h"
 #include "conformance/selftest/mutants/hunt.h"
-#include "conformance/trace/events/parameters.h"
+#include "conformance/selftest/mutants/mutant.h"
+#include "conformance/trace/events/lines.h"
 #include "tools/tests/readme/number.h"
 
 namespace rubric::mutants {
@@ -57,7 +56,7 @@ TEST(Legal, EachDiffersFromTheMachine) {
   }
 }
 
-// With a back-off of 0.3 to 10 ms before each frame, in many ways.
+// Adds a back-off of 0.3 to 10 ms before each frame, in many ways.
 TEST(Legal, BackOffFailsNoTrace) {
   const Golden golden("conformance/cases");
   for (std::uint32_t seed = 0; seed < 40; ++seed) {

@@ -1,17 +1,17 @@
 #include <algorithm>
+#include <random>
 
 #include "conformance/machine/transport.h"
 #include "conformance/selftest/mutants/fields.h"
-#include "conformance/selftest/mutants/legal.h"
+#include "conformance/selftest/mutants/mutant.h"
 
 namespace rubric::mutants {
 namespace {
 
-using machine::Joined;
-using machine::JoinIsland;
-using machine::Received;
-using machine::TimerKind;
 using Variants = std::vector<LegalVariant>;
+using machine::Joined;
+using machine::Received;
+using trace::ParameterId;
 
 // Delays all answers to received frames by the same time, so that their order stays.
 template <Ticks kTicks>
@@ -111,7 +111,7 @@ void joined_on_confirmation(Moment& moment, bool& told) {
   if (!is_member(moment)) told = false;
   moment.rewrite([&](const Action& action) {
     if (action.what == Action::What::kNotify) {
-      const auto* joined = std::get_if<Joined>(&moment.told(action));
+      const auto* joined = std::get_if<Joined>(&moment.notice_of(action));
       if (joined != nullptr && joined->success) return;
     }
     moment.keep(action);
@@ -161,7 +161,7 @@ void delivers_once(Moment& moment, std::vector<std::vector<std::uint8_t>>& seen)
   if (!copy) return;
   moment.rewrite([&](const Action& action) {
     const bool told = action.what == Action::What::kNotify;
-    if (!told || !std::holds_alternative<Received>(moment.told(action))) moment.keep(action);
+    if (!told || !std::holds_alternative<Received>(moment.notice_of(action))) moment.keep(action);
   });
 }
 
@@ -260,6 +260,46 @@ void add_messages(Variants& out) {
                  })});
 }
 
+// The machine keeps what its configuration states.
+void as_stated(Moment& moment) { moment.honest(); }
+
+// Holds back what follows from the frames that `waits` chooses.
+template <class Waits>
+StepMaker late(Ticks ticks, Waits waits) {
+  return [=]() -> Step {
+    return [=](Moment& moment) {
+      moment.honest();
+      if (moment.heard() == nullptr || !waits(*moment.heard())) return;
+      moment.rewrite([&](const Action& action) {
+        const bool visible =
+            action.what == Action::What::kTransmit || action.what == Action::What::kNotify;
+        return visible ? moment.hold(action, ticks) : moment.keep(action);
+      });
+    };
+  };
+}
+
+StepMaker late(Ticks ticks) {
+  return late(ticks, [](const Frame&) { return true; });
+}
+
+// Two wrappers, the frames of the first held back by the second.
+StepMaker late_and_backing_off(Ticks ticks, Ticks most) {
+  return [=]() -> Step {
+    std::minstd_rand random(static_cast<std::uint32_t>(ticks));
+    return [=](Moment& moment) mutable {
+      moment.honest();
+      const Ticks wait = moment.heard() == nullptr ? 0 : ticks;
+      moment.rewrite([&](const Action& action) {
+        if (action.what == Action::What::kNotify && wait > 0) return moment.hold(action, wait);
+        if (action.what != Action::What::kTransmit) return moment.keep(action);
+        const bool radio = moment.sent(action).link == Link::kRadio;
+        moment.hold(action, wait + (radio ? static_cast<Ticks>(random() % (most + 1)) : 0));
+      });
+    };
+  };
+}
+
 }  // namespace
 
 std::vector<LegalVariant> legal_variants() {
@@ -272,6 +312,92 @@ std::vector<LegalVariant> legal_variants() {
          moment.state.sequence.random = true;
          moment.state.config.random_seq = true;
        })});
+  return out;
+}
+
+StepMaker backing_off(std::uint32_t seed, Ticks most) {
+  return [=]() -> Step {
+    std::minstd_rand random(seed + 1);
+    return [=](Moment& moment) mutable {
+      moment.honest();
+      moment.rewrite([&](const Action& action) {
+        const bool radio =
+            action.what == Action::What::kTransmit && moment.sent(action).link == Link::kRadio;
+        const Ticks wait = radio ? static_cast<Ticks>(random() % (most + 1)) : 0;
+        return wait > 0 ? moment.hold(action, wait) : moment.keep(action);
+      });
+    };
+  };
+}
+
+std::vector<LegalVariant> stated_variants() {
+  const auto is_reply = [](const Frame& frame) { return frame.type == am::kJoinReply; };
+  std::vector<LegalVariant> out;
+  out.push_back({"ack_timeout_2000",
+                 "The ack timeout takes 2000 ticks (110).",
+                 always(as_stated),
+                 false,
+                 {{ParameterId::kAckTimeout, 2000}}});
+  out.push_back({"ack_timeout_700",
+                 "The ack timeout takes 700 ticks (110).",
+                 always(as_stated),
+                 false,
+                 {{ParameterId::kAckTimeout, 700}}});
+  out.push_back({"join_period_1024",
+                 "A second from one join_request to the next (133).",
+                 always(as_stated),
+                 false,
+                 {{ParameterId::kJoinPeriod, 1024}}});
+  out.push_back({"join_period_400",
+                 "A shorter join timer (133).",
+                 always(as_stated),
+                 false,
+                 {{ParameterId::kJoinPeriod, 400}}});
+  out.push_back({"chooses_for_350",
+                 "Chooses among offers for 350 ticks (125).",
+                 late(350, is_reply),
+                 false,
+                 {{ParameterId::kResponse, 350}}});
+  out.push_back({"response_450",
+                 "All answers take 440 ticks (125).",
+                 late(440),
+                 true,
+                 {{ParameterId::kResponse, 450}}});
+  out.push_back({"response_100",
+                 "All answers take 90 ticks (125).",
+                 late(90),
+                 true,
+                 {{ParameterId::kResponse, 100}}});
+  out.push_back({"synaptic_period_1000",
+                 "A synaptic clock of a second (133).",
+                 always(as_stated),
+                 false,
+                 {{ParameterId::kSynapticPeriod, 1000}}});
+  out.push_back({"synaptic_period_400",
+                 "A faster synaptic clock (133).",
+                 always(as_stated),
+                 false,
+                 {{ParameterId::kSynapticPeriod, 400}}});
+  out.push_back({"synaptic_phase_150",
+                 "Motes tick further apart (121).",
+                 always(as_stated),
+                 false,
+                 {{ParameterId::kSynapticPhase, 150}}});
+  out.push_back({"backs_off",
+                 "TinyOS's random back-off of up to 10 ms before a frame (128).",
+                 backing_off(1, 10),
+                 false,
+                 {{ParameterId::kChannelAccess, 30}}});
+  out.push_back({"all_stated",
+                 "Everything at once (110, 121, 125, 128, 133).",
+                 late_and_backing_off(330, 20),
+                 true,
+                 {{ParameterId::kResponse, 350},
+                  {ParameterId::kJoinPeriod, 1024},
+                  {ParameterId::kAckTimeout, 2500},
+                  {ParameterId::kChannelAccess, 60},
+                  {ParameterId::kSynapticPeriod, 800},
+                  {ParameterId::kSynapticPhase, 40}}});
   return out;
 }
 

@@ -7,7 +7,7 @@
 
 #include "conformance/machine/join.h"
 #include "conformance/selftest/mutants/fields.h"
-#include "conformance/selftest/mutants/generated.h"
+#include "conformance/selftest/mutants/hunt.h"
 
 namespace rubric::mutants {
 namespace {

@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "codec/reflect/requirements.h"
-#include "conformance/selftest/mutants/generated.h"
+#include "conformance/selftest/mutants/hunt.h"
 #include "tools/tests/readme/number.h"
 
 namespace rubric::mutants {
@@ -103,7 +103,7 @@ TEST(Mutants, TheRightRuleIsBlamed) {
   EXPECT_GT(blamed.right * 100, blamed.rules * 85);
 }
 
-// What a failure shows as nearest is of the message that was expected, and lies in its window.
+// The nearest miss of a failure has the message that was expected, and is in its window.
 TEST(Mutants, NearestHintsAreOfTheMessageAndInItsWindow) {
   const std::regex nearest(R"(^nearest, at (\d+): \S+ (\w+)\()");
   std::size_t hints = 0;

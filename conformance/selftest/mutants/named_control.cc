@@ -82,7 +82,7 @@ void trusts_nbytes(Moment& moment, Memory& memory) {
   moment.honest(machine::Heard{forged.frame});
 }
 
-// What a serial line carries may be longer than what nbytes says.
+// A frame on a serial line may be longer than nbytes says.
 void add_lengths(Mutants& out) {
   add(out, "serial_cut_at_63",
       "A message of less than 63 bytes is filled up to 63 on the serial line.", {"N11-WHOLE"_rule},
@@ -243,7 +243,7 @@ void renumber(Moment& moment, std::uint16_t number) {
       return moment.keep(action, frame);
     }
     if (action.what != Action::What::kNotify) return moment.keep(action);
-    Notice notice = moment.told(action);
+    Notice notice = moment.notice_of(action);
     auto* const result = std::get_if<SendResult>(&notice);
     if (result != nullptr && result->seq_num != machine::kNoSeq) result->seq_num = number;
     moment.keep(action, notice);

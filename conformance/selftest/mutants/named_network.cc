@@ -8,7 +8,6 @@
 namespace rubric::mutants {
 namespace {
 
-using machine::Received;
 using machine::Send;
 using machine::SendResult;
 

@@ -1,5 +1,4 @@
 // Mistakes of sinks in joining.
-#include <algorithm>
 
 #include "conformance/machine/join.h"
 #include "conformance/selftest/mutants/fields.h"

@@ -64,7 +64,7 @@ void Moment::keep(const Action& action) {
   if (!has_room(actions, action)) return;
   switch (action.what) {
     case Action::What::kTransmit: actions.transmit(action.requirement) = sent(action); break;
-    case Action::What::kNotify: actions.notify(told(action), action.requirement); break;
+    case Action::What::kNotify: actions.notify(notice_of(action), action.requirement); break;
     case Action::What::kFollowed: actions.followed(action.requirement); break;
     case Action::What::kIgnored: actions.ignored(action.requirement); break;
   }
@@ -84,7 +84,7 @@ void Moment::hold(const Action& action, Ticks ticks) {
   held.action = action;
   if (action.what == Action::What::kTransmit) held.transmit = sent(action);
   if (action.what != Action::What::kNotify) return;
-  held.notice = told(action);
+  held.notice = notice_of(action);
   if (const auto* received = std::get_if<machine::Received>(&held.notice)) {
     held.data.assign(received->data.begin(), received->data.end());
   }
@@ -197,7 +197,7 @@ StepMaker on_told(ToldEdit edit) {
       moment.honest();
       moment.rewrite([&](const Action& action) {
         if (action.what != Action::What::kNotify) return moment.keep(action);
-        Notice changed = moment.told(action);
+        Notice changed = moment.notice_of(action);
         const Fate fate = edit(moment, action, changed);
         if (fate == Fate::kDrop) return;
         moment.keep(action, changed);

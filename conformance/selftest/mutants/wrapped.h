@@ -92,7 +92,7 @@ class Moment {
   Forged& forge(const Frame& frame);
 
   /// Calls `edit(action)` for each action of this step; drops those for which it does not call
-  /// keep(). sent(action) and told(action) may be used inside.
+  /// keep(). sent(action) and notice_of(action) may be used inside.
   template <class Edit>
   void rewrite(Edit edit) {
     honest_ = actions;
@@ -100,7 +100,7 @@ class Moment {
     for (const Action& action : honest_.all()) edit(action);
   }
   const Transmit& sent(const Action& action) const { return honest_.transmit_of(action); }
-  const Notice& told(const Action& action) const { return honest_.notice_of(action); }
+  const Notice& notice_of(const Action& action) const { return honest_.notice_of(action); }
   void keep(const Action& action);
   void keep(const Action& action, const Transmit& changed);
   void keep(const Action& action, const Notice& changed);

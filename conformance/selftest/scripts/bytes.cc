@@ -1,6 +1,5 @@
 #include "conformance/selftest/scripts/bytes.h"
 
-#include <algorithm>
 #include <bit>
 #include <cassert>
 #include <utility>

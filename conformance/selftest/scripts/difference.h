@@ -2,12 +2,14 @@
 // rules leave a choice. README.md lists these choices.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "conformance/machine/flaws/flaws.h"
 #include "conformance/selftest/scripts/rtr.h"
 #include "conformance/selftest/scripts/script.h"
+#include "conformance/test/runner/target.h"
 #include "conformance/trace/trace.h"
 
 namespace rubric::script {
@@ -35,5 +37,10 @@ Script without_guesses(Script script, flaws::StepFunction step = machine::step);
 /// Returns the machine's run of a script as a trace that requires no more than the rules do,
 /// whatever numbers a node begins with; `script` comes from without_guesses().
 trace::File lenient_file(const Script& script, const Played& played, const Title& title);
+
+// The independent C++ node of conformance/node in this process, on lines with the machine's
+// timing, so that two implementations differ only in their own behaviour.
+
+std::unique_ptr<runner::Target> cpp_target();
 
 }  // namespace rubric::script

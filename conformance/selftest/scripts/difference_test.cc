@@ -7,7 +7,6 @@
 #include <random>
 
 #include "conformance/selftest/scripts/bytes.h"
-#include "conformance/selftest/scripts/cpp_target.h"
 #include "conformance/selftest/scripts/rtr.h"
 #include "conformance/test/runner/case_files.h"
 #include "conformance/test/runner/subject_target.h"

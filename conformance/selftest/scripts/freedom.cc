@@ -297,7 +297,7 @@ Script without_undecided(const Script& script) {
   bool app_busy = false;
   Ticks owed = 0;  // For the steps that are left out.
   for (const Step& step : script.steps) {
-    const machine::Event event = step.whole();
+    const machine::Event event = step.event_with_bytes();
     bool decided = true;
     if (const auto* app = std::get_if<machine::AppBusy>(&event)) app_busy = app->busy;
     const bool lost = std::holds_alternative<machine::Reboot>(event) ||

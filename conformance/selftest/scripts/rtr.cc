@@ -138,7 +138,7 @@ trace::Line line_of(const Output& output, const std::string& node) {
 }
 
 trace::Line line_of(const Step& step, Ticks now, const std::string& node) {
-  return events::given_line(now, names_of(node), step.whole()).value();
+  return events::given_line(now, names_of(node), step.event_with_bytes()).value();
 }
 
 trace::Line nothing_else(Ticks end, const std::string& node, const std::vector<ReqId>& rules) {

@@ -11,7 +11,7 @@ bool is_link_ack(const Step& step) { return std::holds_alternative<machine::Send
 
 }  // namespace
 
-machine::Event Step::whole() const {
+machine::Event Step::event_with_bytes() const {
   machine::Event out = event;
   const Bytes own(bytes.data(), bytes.size());
   if (auto* heard = std::get_if<machine::Heard>(&out)) {
@@ -43,7 +43,7 @@ Played play(const Script& script, runner::Target& target) {
     pass(step.delay);
     if (is_link_ack(step)) target.hold_link_acks(--link_acks > 0);
     run.before.push_back(target.outputs().size());
-    target.give(now, step.whole());
+    target.give(now, step.event_with_bytes());
   }
   pass(script.rest);
   run.outputs = target.outputs();

@@ -21,7 +21,7 @@ struct Step {
   std::vector<std::uint8_t> bytes;  ///< Payload of a frame, data of a send.
 
   /// Returns the event with its bytes, which are those of this step.
-  machine::Event whole() const;
+  machine::Event event_with_bytes() const;
 };
 
 struct Script {

@@ -9,7 +9,7 @@
 #include "conformance/test/runner/case_files.h"
 #include "conformance/test/runner/subject_target.h"
 #include "conformance/trace/check.h"
-#include "conformance/trace/events/app_events.h"
+#include "conformance/trace/events/lines.h"
 #include "conformance/trace/print.h"
 
 namespace rubric::script {

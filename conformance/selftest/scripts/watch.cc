@@ -12,7 +12,6 @@
 #include "conformance/test/runner/subject_target.h"
 #include "conformance/trace/app_messages.h"
 #include "conformance/trace/concrete.h"
-#include "conformance/trace/events/app_events.h"
 #include "conformance/trace/events/lines.h"
 #include "conformance/trace/print.h"
 #include "conformance/trace/trace.h"

@@ -116,7 +116,7 @@ class Unit:
         if kind == "FunctionTemplateDecl":      # The others are instances of the first.
             others = [child for child in inner if child["kind"] in FUNCTIONS][1:]
             inner = [child for child in inner if child not in others]
-        if kind == "CXXForRangeStmt":           # Between them stands what the compiler adds.
+        if kind == "CXXForRangeStmt":           # Between them is what the compiler adds.
             inner = [inner[-1]]
         if kind == "LambdaExpr":                # Its body is there twice.
             inner = inner[:1] if inner and inner[0]["kind"] == "CXXRecordDecl" else inner

@@ -49,7 +49,7 @@ class Walk(ast.NodeVisitor):
         self.add(node, "False")
 
     def between(self, left, right, operators):
-        """Replaces the operator that stands between two expressions."""
+        """Replaces the operator between two expressions."""
         begin, end = self.at(left)[1], self.at(right)[0]
         return [self.text(left) + self.text_of_file[begin:end].replace(*pair, 1) + self.text(right)
                 for pair in operators]

@@ -1,4 +1,4 @@
-// What the tool's own test mutates.
+// The program that the tool's own test mutates.
 #include <cstdio>
 
 namespace sample {

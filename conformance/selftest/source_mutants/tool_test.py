@@ -20,7 +20,7 @@ from subjects import Subject
 HERE = pathlib.Path(__file__).resolve().parent
 FOLDER = "conformance/selftest/source_mutants"
 TIMEOUT_S = 10
-# What must be among the mutants, by language: what lines become.
+# Mutants that must be there, by language: what lines become.
 WANTED = {
     "sample.cc": [
         "bool is_inside(int x) { return x >= 2 && x <= kMost; }",

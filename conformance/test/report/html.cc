@@ -9,11 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "conformance/report/sequence_style.h"
+#include "conformance/report/sequence_svg.h"
 #include "conformance/test/report/case_files.h"
 #include "conformance/test/report/folder.h"
 #include "conformance/test/report/html_assets.h"
-#include "conformance/test/report/html_data.h"
 #include "conformance/test/report/words.h"
 
 namespace rubric::suite {

@@ -1,5 +1,3 @@
-#include "conformance/test/report/html_data.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,6 +14,7 @@
 #include "conformance/test/report/case_source.h"
 #include "conformance/test/report/chart.h"
 #include "conformance/test/report/frame_view.h"
+#include "conformance/test/report/html.h"
 #include "conformance/test/report/log_lines.h"
 #include "conformance/test/report/words.h"
 #include "conformance/trace/print.h"

@@ -16,7 +16,6 @@
 #include "conformance/test/report/case_files.h"
 #include "conformance/test/report/case_source.h"
 #include "conformance/test/report/frame_view.h"
-#include "conformance/test/report/html_data.h"
 #include "conformance/test/report/log_lines.h"
 #include "conformance/test/suite/run.h"
 #include "conformance/test/suite/test/testing.h"

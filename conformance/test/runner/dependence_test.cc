@@ -1,10 +1,9 @@
 // A target that shows only a serial line: whatever that line can decide is judged, and nothing
 // else.
-#include "conformance/test/runner/dependence.h"
-
 #include <gtest/gtest.h>
 
 #include "conformance/test/runner/case_files.h"
+#include "conformance/test/runner/expectation.h"
 #include "conformance/test/runner/run_case.h"
 #include "conformance/test/runner/subject_target.h"
 

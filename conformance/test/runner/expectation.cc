@@ -6,6 +6,24 @@
 #include "codec/reflect/fault_text.h"
 
 namespace rubric::runner {
+namespace {
+
+using Names = std::set<std::string>;
+using trace::Line;
+using trace::Op;
+using trace::Time;
+using trace::Value;
+
+void add_names(const Value& value, Names& out) {
+  const bool of_variable = value.is(Value::Kind::kVariable) || value.is(Value::Kind::kRange);
+  if (of_variable && !value.text.empty()) out.insert(value.text);
+  for (const Value& item : value.items) add_names(item, out);
+}
+
+// Returns whether later lines without another reference count their times from this one.
+bool is_counted_from(const Line& line) { return line.op != Op::kMustNot && line.op != Op::kMay; }
+
+}  // namespace
 
 Ticks ticks_of(trace::Tick unit, std::int64_t time) {
   return machine::ticks_of(time, trace::ticks_per_second(unit));
@@ -18,6 +36,35 @@ bool is_weak(const trace::Line& line) {
            return id != ReqId::kNone &&
                   std::string_view(reflect::requirement(id).level) == "SHOULD";
          });
+}
+
+std::set<std::string> names_of(const Line& line) {
+  Names out;
+  for (const trace::FieldValue& field : line.message.fields) add_names(field.value, out);
+  if (line.am) {
+    add_names(line.am->source, out);
+    add_names(line.am->dest, out);
+  }
+  return out;
+}
+
+bool is_needed_later(const trace::Case& one, const Line& line) {
+  const Names names = names_of(line);
+  const std::vector<const Line*> lines = one.lines();
+  bool is_previous = is_counted_from(line);
+  for (auto at = std::find(lines.begin(), lines.end(), &line) + 1; at != lines.end(); ++at) {
+    const Line& later = **at;
+    if (is_previous && later.time.base == Time::Base::kPrevious) return true;
+    is_previous = is_previous && !is_counted_from(later);
+    const bool same_label = later.time.base == Time::Base::kLabel && later.time.label == line.label;
+    if (same_label) return true;
+    const Names others = names_of(later);
+    if (std::any_of(names.begin(), names.end(),
+                    [&](const std::string& name) { return others.contains(name); })) {
+      return true;
+    }
+  }
+  return false;
 }
 
 }  // namespace rubric::runner

@@ -8,8 +8,7 @@
 #include "conformance/generated/profiles.h"
 #include "conformance/test/runner/run_case.h"
 #include "conformance/trace/encode.h"
-#include "conformance/trace/events/app_events.h"
-#include "conformance/trace/events/parameters.h"
+#include "conformance/trace/events/lines.h"
 #include "conformance/trace/match.h"
 #include "conformance/trace/print.h"
 

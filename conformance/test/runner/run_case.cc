@@ -11,11 +11,10 @@
 #include <stdexcept>
 
 #include "conformance/test/runner/blame.h"
-#include "conformance/test/runner/dependence.h"
 #include "conformance/test/runner/expectation.h"
 #include "conformance/test/runner/node_log.h"
 #include "conformance/trace/encode.h"
-#include "conformance/trace/events/parameters.h"
+#include "conformance/trace/events/lines.h"
 #include "conformance/trace/match.h"
 #include "conformance/trace/print.h"
 

@@ -4,11 +4,9 @@
 
 #include <algorithm>
 
-#include "conformance/selftest/mutants/legal.h"
 #include "conformance/selftest/mutants/mutant.h"
 #include "conformance/test/runner/case_files.h"
 #include "conformance/test/runner/subject_target.h"
-#include "conformance/test/shrink/predicates.h"
 #include "conformance/trace/check.h"
 #include "conformance/trace/parse.h"
 #include "conformance/trace/print.h"

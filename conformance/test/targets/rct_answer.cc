@@ -6,8 +6,7 @@
 #include <set>
 
 #include "codec/reflect/requirements.h"
-#include "conformance/trace/events/app_events.h"
-#include "conformance/trace/events/parameters.h"
+#include "conformance/trace/events/lines.h"
 #include "conformance/trace/value_text.h"
 
 namespace rubric::targets {

@@ -6,8 +6,7 @@
 
 #include "conformance/generated/profiles.h"
 #include "conformance/test/runner/subject_target.h"
-#include "conformance/trace/events/app_events.h"
-#include "conformance/trace/events/parameters.h"
+#include "conformance/trace/events/lines.h"
 #include "conformance/trace/trace.h"
 
 namespace rubric::targets {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <charconv>
 
-#include "conformance/trace/events/app_events.h"
 #include "conformance/trace/events/lines.h"
 #include "conformance/trace/parse.h"
 #include "conformance/trace/schema.h"

@@ -9,8 +9,8 @@
 
 #include "conformance/generated/profiles.h"
 #include "conformance/test/targets/rct_text.h"
-#include "conformance/trace/events/app_events.h"
-#include "conformance/trace/events/parameters.h"
+#include "conformance/trace/events/lines.h"
+#include "conformance/trace/value_text.h"
 
 namespace rubric::targets {
 namespace {

@@ -1,8 +1,7 @@
 // Calls and news survive the conversion to a trace's words and back.
-#include "conformance/trace/events/app_events.h"
-
 #include <gtest/gtest.h>
 
+#include "conformance/trace/events/lines.h"
 #include "conformance/trace/parse.h"
 #include "conformance/trace/print.h"
 

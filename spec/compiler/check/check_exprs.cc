@@ -1,12 +1,11 @@
 // Resolves expressions: their names, their result types, and their ranges.
 #include <algorithm>
-#include <array>
 #include <optional>
 #include <span>
 
 #include "spec/compiler/check/check.h"
 #include "spec/compiler/check/intervals.h"
-#include "spec/compiler/load/expr_parser.h"
+#include "spec/compiler/load/read_spec.h"
 
 namespace rubricc {
 namespace {

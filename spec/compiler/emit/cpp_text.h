@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace rubricc {
@@ -31,5 +32,13 @@ std::string cpp_include(std::string_view path);
 
 /// Returns the two lines that begin every generated file, each after `comment`.
 std::string banner(std::string_view comment, std::string_view inputs);
+
+using Holes = std::vector<std::pair<std::string_view, std::string>>;
+
+/// Replaces each `<<name>>` of `text` by its value. A value with line breaks is indented like the
+/// hole if the hole is alone on its line; a hole alone on its line whose value is empty takes the
+/// line with it, but only `<<name?>>` can be empty. Throws std::logic_error for a hole without a
+/// value, a value without a hole, and an empty value of a hole without `?`.
+std::string fill(std::string_view text, const Holes& holes);
 
 }  // namespace rubricc

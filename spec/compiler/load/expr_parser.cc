@@ -1,11 +1,9 @@
 // Parses expressions by precedence, and prints them again.
-#include "spec/compiler/load/expr_parser.h"
-
 #include <fmt/core.h>
 
 #include <array>
-#include <optional>
 
+#include "spec/compiler/load/read_spec.h"
 #include "spec/compiler/load/yaml_input.h"
 
 namespace rubricc {

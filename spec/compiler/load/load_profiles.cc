@@ -7,7 +7,7 @@
 
 #include "spec/compiler/load/load.h"
 #include "spec/compiler/load/read_spec.h"
-#include "spec/compiler/profile_fields.h"
+#include "spec/compiler/model.h"
 
 namespace rubricc {
 namespace {

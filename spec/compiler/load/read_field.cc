@@ -5,7 +5,6 @@
 #include <array>
 #include <charconv>
 
-#include "spec/compiler/load/expr_parser.h"
 #include "spec/compiler/load/read_spec.h"
 
 namespace rubricc {
@@ -32,9 +31,8 @@ bool set_number(const YamlInput& input, const YAML::Node& node, std::string_view
   if (base[1] != '1' && base[1] != '2' && base[1] != '4') return false;
   if (base[0] == 'f' && base[1] != '4') return false;
   if (!suffix.empty() && suffix != "be" && suffix != "le") return false;
-  field.kind = base[0] == 'u'   ? ValueKind::kUint
-               : base[0] == 's' ? ValueKind::kSint
-                                : ValueKind::kFloat;
+  field.kind = base[0] == 'u' ? ValueKind::kUint : ValueKind::kSint;
+  if (base[0] == 'f') field.kind = ValueKind::kFloat;
   field.width_bytes = base[1] - '0';
   if (field.width_bytes == 1) {
     if (!suffix.empty()) {

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <memory>
+#include <string_view>
 
+#include "spec/compiler/diagnostics.h"
 #include "spec/compiler/load/yaml_input.h"
 
 namespace rubricc {
@@ -39,5 +41,11 @@ void check_id(Diagnostics& diagnostics, const Place& place, std::string_view id,
 
 /// Joins documentation: line ends become spaces, paragraphs go together.
 std::string one_line(std::string_view text);
+
+/// Returns null after an error. `place` is where the text begins.
+ExprPtr parse_expr(std::string_view text, const Place& place, Diagnostics& diagnostics);
+
+/// Returns the tree as text, bracketed only where needed: for diagnostics and the documentation.
+std::string to_text(const Expr& expr);
 
 }  // namespace rubricc

@@ -1,10 +1,11 @@
 // The output of the emitters, and the routes in it.
+
 #include "spec/compiler/emit/emit.h"
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <sstream>
+#include <stdexcept>
 
 #include "spec/compiler/emit/cpp_text.h"
 #include "spec/compiler/emit/tables/routes.h"
@@ -202,5 +203,27 @@ TEST(CppText, NamesAndStrings) {
   EXPECT_EQ(pieces, (std::vector<std::string>{"\"one two \"", "\"three \"", "\"four\""}));
 }
 
+TEST(Template, FillsHolesWithinALine) {
+  EXPECT_EQ(fill("a <<x>> b <<x>><<y>>", {{"x", "1"}, {"y", "2"}}), "a 1 b 12");
+}
+
+TEST(Template, IndentsAValueThatStandsAlone) {
+  EXPECT_EQ(fill("{\n  <<x>>\n}\n", {{"x", "a\n\nb\n"}}), "{\n  a\n\n  b\n}\n");
+}
+
+TEST(Template, AnOptionalHoleTakesItsLineWithIt) {
+  EXPECT_EQ(fill("{\n  <<x?>>\n}\n", {{"x", ""}}), "{\n}\n");
+  EXPECT_EQ(fill("(<<x?>>)", {{"x", ""}}), "()");
+}
+
+TEST(Template, ValuesAreNotReadAgain) { EXPECT_EQ(fill("<<x>>", {{"x", "<<y>>"}}), "<<y>>"); }
+
+TEST(Template, MistakesOfTheEmitterThrow) {
+  EXPECT_THROW(fill("<<x>>", {}), std::logic_error);
+  EXPECT_THROW(fill("x", {{"x", "1"}}), std::logic_error);
+  EXPECT_THROW(fill("<<x>>", {{"x", ""}}), std::logic_error);
+}
+
 }  // namespace
+
 }  // namespace rubricc

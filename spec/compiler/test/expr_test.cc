@@ -5,7 +5,7 @@
 #include <random>
 
 #include "spec/compiler/check/intervals.h"
-#include "spec/compiler/load/expr_parser.h"
+#include "spec/compiler/load/read_spec.h"
 #include "spec/compiler/load/yaml_input.h"
 
 namespace rubricc {

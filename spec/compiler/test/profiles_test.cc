@@ -12,7 +12,7 @@
 #include "spec/compiler/emit/cpp_text.h"
 #include "spec/compiler/emit/emit.h"
 #include "spec/compiler/load/load.h"
-#include "spec/compiler/profile_fields.h"
+#include "spec/compiler/model.h"
 
 namespace rubricc {
 namespace {

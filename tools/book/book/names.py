@@ -63,7 +63,7 @@ class Names:
         return link(rule, escape(rule)) if rule in self.anchors["rules"] else escape(rule)
 
     def rich(self, text):
-        """Plain text as HTML, in which rules, decisions and what stands between backticks are what
+        """Plain text as HTML, in which rules, decisions and what is between backticks are what
         they are in a chapter."""
         out = []
         for i, part in enumerate(_TICKED.split(text)):

@@ -164,7 +164,7 @@ class Wire:
                   self._choice(each["choice"]) if "choice" in each
                   else self.names.type_link(each["type"]), self.names.rich(each.get("doc", ""))]
                  for each in one["interpretations"]],
-                f"What stands in the opaque bytes of {one['id']}: the first that fits"))
+                f"The opaque bytes of {one['id']}: the first that fits"))
         return f'<section class="message" data-find="{one["id"]} message">' + \
             "\n".join(parts) + "</section>"
 

@@ -9,7 +9,7 @@
 namespace rubric {
 namespace firmware {
 
-/// From the bench to the board.
+/// Tags of records from the bench to the board.
 enum class ToBoard : uint8_t {
   kSetup = 1,  ///< id u16, island u16, channels u8, last sequence number u16, keep it u8.
   kRadio,      ///< A packet (dispatch byte, AM header, payload) that the radio hears.
@@ -19,7 +19,7 @@ enum class ToBoard : uint8_t {
   kRestart,    ///< Reset the processor; unanswered but by kHello.
 };
 
-/// From the board to the bench.
+/// Tags of records from the board to the bench.
 enum class FromBoard : uint8_t {
   kHello = 1,  ///< After a reset: sink u8, channels u8, bytes of a node u16.
   kReady,      ///< The clock has started.

@@ -16,7 +16,7 @@
 #include <string>
 
 #include "conformance/adapters/firmware/host/bridge.h"
-#include "conformance/adapters/firmware/host/loopback.h"
+#include "conformance/adapters/firmware/host/qemu_board.h"
 
 namespace rubric::firmware {
 namespace {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <iostream>
 #include <map>
 
@@ -15,7 +14,7 @@ class Unsupported : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// What `reset` may set.
+// The parameters that `reset` may set.
 constexpr std::string_view kSettings = " id island channels seed profile ";
 constexpr std::uint32_t kFirstSeqNum = 1000;
 constexpr std::uint32_t kSeqNumsPerSeed = 257;

@@ -1,7 +1,6 @@
 // The generator: determinism, well-formed output, and the features of each variant.
 #include <gmock/gmock.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <map>

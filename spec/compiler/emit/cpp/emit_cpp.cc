@@ -4,8 +4,8 @@
 
 #include "spec/compiler/emit/cpp/emit_cpp_parts.h"
 #include "spec/compiler/emit/cpp/emit_cpp_text.h"
+#include "spec/compiler/emit/cpp_text.h"
 #include "spec/compiler/emit/emit.h"
-#include "spec/compiler/emit/template.h"
 
 namespace rubricc::cpp {
 namespace {

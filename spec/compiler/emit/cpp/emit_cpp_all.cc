@@ -1,7 +1,7 @@
 // all.h: every message of a spec by name, and every field of a value, for tests and tools.
 #include "spec/compiler/emit/cpp/emit_cpp_parts.h"
 #include "spec/compiler/emit/cpp/emit_cpp_text.h"
-#include "spec/compiler/emit/template.h"
+#include "spec/compiler/emit/cpp_text.h"
 
 namespace rubricc::cpp {
 namespace {

@@ -1,9 +1,8 @@
 // Emits TView::check: the rules that bytes can break, in field order.
-#include <stdexcept>
 
 #include "spec/compiler/emit/cpp/emit_cpp_parts.h"
 #include "spec/compiler/emit/cpp/emit_cpp_text.h"
-#include "spec/compiler/emit/template.h"
+#include "spec/compiler/emit/cpp_text.h"
 
 namespace rubricc::cpp {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "spec/compiler/emit/cpp/emit_cpp_parts.h"
 #include "spec/compiler/emit/cpp/emit_cpp_text.h"
-#include "spec/compiler/emit/template.h"
+#include "spec/compiler/emit/cpp_text.h"
 
 namespace rubricc::cpp {
 namespace {

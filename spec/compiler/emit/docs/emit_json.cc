@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "spec/compiler/emit/emit.h"
-#include "spec/compiler/load/expr_parser.h"
-#include "spec/compiler/profile_fields.h"
+#include "spec/compiler/load/read_spec.h"
+#include "spec/compiler/model.h"
 
 namespace rubricc {
 namespace {

@@ -6,7 +6,6 @@
 #include "spec/compiler/emit/cpp_text.h"
 #include "spec/compiler/emit/emit.h"
 #include "spec/compiler/emit/tables/routes.h"
-#include "spec/compiler/emit/template.h"
 
 namespace rubricc {
 namespace {

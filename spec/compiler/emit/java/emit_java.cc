@@ -6,7 +6,6 @@
 #include "spec/compiler/emit/cpp_text.h"
 #include "spec/compiler/emit/emit.h"
 #include "spec/compiler/emit/java/emit_java_text.h"
-#include "spec/compiler/emit/template.h"
 
 namespace rubricc::java {
 namespace {

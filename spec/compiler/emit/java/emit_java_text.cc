@@ -6,7 +6,6 @@
 #include <stdexcept>
 
 #include "spec/compiler/emit/cpp_text.h"
-#include "spec/compiler/emit/template.h"
 
 namespace rubricc::java {
 namespace {

@@ -1,6 +1,6 @@
 // Emits the reading half of a class: the rules that bytes can break, and the getters.
+#include "spec/compiler/emit/cpp_text.h"
 #include "spec/compiler/emit/java/emit_java_text.h"
-#include "spec/compiler/emit/template.h"
 
 namespace rubricc::java {
 namespace {

@@ -1,6 +1,6 @@
 // Emits the writing half of a class: values, and the steps that store them.
+#include "spec/compiler/emit/cpp_text.h"
 #include "spec/compiler/emit/java/emit_java_text.h"
-#include "spec/compiler/emit/template.h"
 
 namespace rubricc::java {
 namespace {

@@ -1,12 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
 #include <stdexcept>
 
 #include "spec/compiler/emit/cpp_text.h"
 #include "spec/compiler/emit/emit.h"
-#include "spec/compiler/emit/template.h"
 #include "spec/compiler/lua_code.h"
 
 namespace rubricc::lua {
@@ -281,14 +279,15 @@ GeneratedFiles emit_lua(const Model& model) {
     while (text.ends_with('\n')) text.pop_back();
     return text;
   };
-  const std::string text = fill(kFile, {{"banner", banner("-- ", files)},
-                                        {"tables", lines(tables + rule_tables(model))},
-                                        {"serial_frame", serial_frame_of(model)},
-                                        {"protocols", lines(carriers)},
-                                        {"choices", lines(choices)},
-                                        {"decode", lines(std::string(kLuaDecode))},
-                                        {"crc16", lines(std::string(kLuaCrc16))},
-                                        {"wireshark", lines(std::string(kLuaWireshark))}});
+  const std::string text =
+      fill(kFile, {{"banner", banner("-- ", files)},
+                   {"tables", lines(tables + rule_tables(model))},
+                   {"serial_frame", serial_frame_of(model)},
+                   {"protocols", lines(carriers)},
+                   {"choices", lines(choices)},
+                   {"decode", lines(std::string(lua_code().at("decode")))},
+                   {"crc16", lines(std::string(lua_code().at("crc16")))},
+                   {"wireshark", lines(std::string(lua_code().at("wireshark")))}});
   return {{"tools/wireshark/generated/rubric.lua", text}};
 }
 

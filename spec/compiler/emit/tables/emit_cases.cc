@@ -3,7 +3,6 @@
 
 #include "spec/compiler/emit/cpp_text.h"
 #include "spec/compiler/emit/emit.h"
-#include "spec/compiler/emit/template.h"
 
 namespace rubricc {
 namespace {

@@ -5,7 +5,6 @@
 
 #include "spec/compiler/emit/cpp_text.h"
 #include "spec/compiler/emit/emit.h"
-#include "spec/compiler/emit/template.h"
 
 namespace rubricc {
 namespace {
@@ -23,7 +22,7 @@ constexpr const Protocol* kProtocols[] = {
     <<protocols>>
 };
 
-/// Of all specs: also of those that the protocols stand on.
+/// All specs, also those of the layers below the protocols.
 constexpr const Protocol* kSpecs[] = {
     <<specs>>
 };

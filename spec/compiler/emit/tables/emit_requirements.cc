@@ -1,7 +1,6 @@
 // Emits requirements_table.h: names and texts of the rules; and blame.h: what breaks of them show.
 #include "spec/compiler/emit/cpp_text.h"
 #include "spec/compiler/emit/emit.h"
-#include "spec/compiler/emit/template.h"
 
 namespace rubricc {
 namespace {

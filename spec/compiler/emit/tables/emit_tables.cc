@@ -12,7 +12,6 @@
 #include "spec/compiler/emit/cpp_text.h"
 #include "spec/compiler/emit/emit.h"
 #include "spec/compiler/emit/tables/built_tables.h"
-#include "spec/compiler/emit/template.h"
 #include "spec/compiler/model.h"
 
 namespace rubricc {
