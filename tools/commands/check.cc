@@ -52,9 +52,11 @@ check::Run read_run(const CheckOptions& options) {
   check::RunReader reader(read_as(options));
   std::string error;
   for (const std::string& file : options.input.files) {
-    const bool good = file == "-"
-                          ? reader.add_bytes("stdin", cli::text_of_file(kCheckCommand, file), error)
-                          : reader.add_file(file, error);
+    const bool at_once = file == "-" || cli::is_packed(file);
+    const std::string name = file == "-" ? "stdin" : file;
+    const bool good =
+        at_once ? reader.add_bytes(name, cli::text_of_file(kCheckCommand, file), error)
+                : reader.add_file(file, error);
     if (!good) cli::unreadable(kCheckCommand, error);
   }
   return reader.finish();

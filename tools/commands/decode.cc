@@ -9,6 +9,7 @@
 #include "codec/reflect/frame.h"
 #include "tools/cli/color.h"
 #include "tools/cli/exit_codes.h"
+#include "tools/cli/frame_filter.h"
 #include "tools/cli/input.h"
 #include "tools/cli/output.h"
 #include "tools/cli/specs.h"
@@ -44,7 +45,15 @@ std::vector<format::Path> chosen_fields(const DecodeOptions& options,
   try {
     return format::parse_paths(options.fields, protocol);
   } catch (const format::PathError& error) {
-    throw cli::UsageError("--fields", error.what());
+    const auto works = [&](const reflect::Protocol& other) {
+      try {
+        format::parse_paths(options.fields, other);
+        return true;
+      } catch (const format::PathError&) {
+        return false;
+      }
+    };
+    throw cli::UsageError("--fields", error.what() + cli::spec_with(protocol, works));
   }
 }
 
@@ -68,11 +77,7 @@ std::unique_ptr<format::Formatter> make_formatter(const DecodeOptions& options,
 std::optional<format::Filter> make_filter(const DecodeOptions& options,
                                           const reflect::Protocol& protocol) {
   if (options.filter.empty()) return std::nullopt;
-  try {
-    return format::Filter(options.filter, protocol);
-  } catch (const format::FilterError& error) {
-    throw cli::UsageError("--filter", error.explain(options.filter));
-  }
+  return cli::filter_of(options.filter, protocol);
 }
 
 /// Times in the form of --time.

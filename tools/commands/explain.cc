@@ -113,9 +113,9 @@ std::string rules_like(const std::string& name) {
   if (hint.empty()) hint = reflect::did_you_mean(in_case(name, std::tolower), names);
   if (hint.empty()) hint = reflect::did_you_mean(in_case(name, std::toupper), names);
   throw cli::UsageError(
-      "X", fmt::format("nothing is called '{}'{}{}; 'rubric messages' lists the messages, "
+      "X", fmt::format("nothing is called '{}'{}{}{}; 'rubric messages' lists the messages, "
                        "'rubric coverage' the rules of behaviour",
-                       name, hint, rules_like(name)));
+                       name, hint, rules_like(name), cli::spec_with_message(protocol, name)));
 }
 
 bool parse_frame(const std::vector<std::string>& words, std::vector<std::uint8_t>& bytes) {

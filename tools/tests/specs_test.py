@@ -139,8 +139,8 @@ class OtherSpecs(unittest.TestCase):
 
     def test_a_message_that_fits_another_spec_better_is_named_once(self):
         hint = "rubric: AM 6 also fits blink_to_radio: --spec blink_to_radio\n"
-        self.assertEqual(self.said(f"{BLINK}\n{BLINK}\n"), hint)
-        self.assertEqual(self.said(BLINK, command="stats"), hint)
+        self.assertEqual(self.said(f"{BLINK}\n{BLINK}\n", "--spec", "rubicon"), hint)
+        self.assertEqual(self.said(BLINK, "--spec", "rubicon", command="stats"), hint)
         self.assertEqual(rubric("explain", *BLINK.split()).stderr, hint)
         self.assertEqual(self.said(BLINK, "--spec", "ctp"), hint.replace("also ", ""))
 

@@ -70,7 +70,7 @@ struct Kept {
            p.time_ns == q.time_ns && p.interface_id == q.interface_id &&
            p.link_type == q.link_type && p.kind == q.kind && p.serial_seq == q.serial_seq &&
            p.crc == q.crc && p.fcs == q.fcs && p.error == q.error &&
-           p.dropped_bytes == q.dropped_bytes;
+           p.dropped_bytes == q.dropped_bytes && p.radio == q.radio;
   }
   friend std::ostream& operator<<(std::ostream& out, const Kept& k) {
     const Packet& p = k.packet;
