@@ -28,7 +28,7 @@ constexpr const char* kConvertFooter =
     "What the target cannot hold is reported on stderr. pcap holds one link type, that of the "
     "first\n"
     "packet; --only chooses among serial and radio.\n"
-    "Exit codes: 0 converted, 2 usage, 3 input cannot be read, 74 output cannot be written.";
+    "Exit codes: 0 converted, 64 usage, 66 input cannot be read, 74 output cannot be written.";
 
 struct Suffix {
   std::string_view suffix;

@@ -240,11 +240,11 @@ int run_coverage(const CoverageOptions& options) {
     coverage = measure(options);
   } catch (const std::exception& error) {
     fmt::print(stderr, "rubric: {}\n", error.what());
-    return cli::kVerdictInput;
+    return cli::kExitInput;
   }
   const std::string text = options.format == "json" ? json_of(coverage) : text_of(coverage);
   if (!cli::write_file("-", text)) return cli::kExitOutput;
-  return coverage.problems.empty() ? cli::kVerdictExpected : cli::kVerdictFailed;
+  return coverage.problems.empty() ? cli::kExitClean : cli::kExitFindings;
 }
 
 }  // namespace
@@ -259,12 +259,11 @@ void add_coverage(cli::Command& app) {
       "break it; and says whether the explorer meets it in small networks.\n"
       "Exit codes: 0 covered, 1 a MUST without a case, a forbidding rule that no case attempts, "
       "or\n"
-      "a case that is wrong, 2 output cannot be written, 64 usage, 66 the cases cannot be read.");
+      "a case that is wrong, 64 usage, 66 the cases cannot be read, 74 output cannot be written.");
   sub.add_option("--cases", options->cases, "Read golden traces from this folder").show_default();
   sub.add_option("--format", options->format, "Print text or json")
       .one_of({"text", "json"})
       .show_default();
-  sub.set_usage_exit_code(cli::kVerdictUsage);
   sub.exit_code_of([options] { return run_coverage(*options); });
 }
 

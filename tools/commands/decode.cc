@@ -139,7 +139,7 @@ class Decode {
     const bool kept = !capture_ || (result.failed && !capture_->is_started()) || capture_->finish();
     if (!written || !kept) return cli::kExitOutput;
     if (result.failed) return cli::kExitInput;
-    return malformed_ ? cli::kExitMalformed : cli::kExitClean;
+    return malformed_ ? cli::kExitFindings : cli::kExitClean;
   }
 
  private:
@@ -213,7 +213,7 @@ void add_decode(cli::Command& app) {
       "  rubric decode capture.pcapng --format csv --fields time,src.devid,updates.value\n"
       "  echo 0a000c | rubric decode --as config\n"
       "  rubric decode serial@/dev/ttyUSB0:telosb --write run.pcapng    # until Ctrl-C\n"
-      "Exit codes: 0 clean, 1 something malformed was read, 2 usage, 3 input cannot be read,\n"
+      "Exit codes: 0 clean, 1 something malformed was read, 64 usage, 66 input cannot be read,\n"
       "74 output cannot be written.");
   command.exit_code_of([options] { return Decode(*options).run(); });
 }

@@ -37,7 +37,8 @@ constexpr const char* kExplainFooter =
     "X is a message, a rule (WIRE-NET-NBYTES) or a group of them (J4), an enum or a mask, or the\n"
     "hex bytes of a frame: a serial packet as Listen prints it, a serial frame with its kind\n"
     "byte, an 802.15.4 frame.\n"
-    "Exit codes: 0 explained, 1 the frame is malformed, 2 usage or nothing of that name.";
+    "Exit codes: 0 explained, 1 the frame is malformed, 64 usage or nothing of that\n"
+    "name.";
 
 // Returns the protocol above and the frames below, in which names are looked up.
 std::vector<const Protocol*> layers(const Protocol& protocol) {
@@ -140,7 +141,7 @@ int explain_bytes(const ExplainOptions& options, const Protocol& protocol,
   cli::OtherSpecs(protocol).look(frame);
   out = fmt::format("Taken as {}, {} bytes.\n\n", given->what, given->bytes.size());
   out += explain::explain_frame(frame);
-  return frame.malformed() ? cli::kExitMalformed : cli::kExitClean;
+  return frame.malformed() ? cli::kExitFindings : cli::kExitClean;
 }
 
 int run_explain(const ExplainOptions& options) {

@@ -167,7 +167,7 @@ void add_forward(cli::Command& app) {
       "  rubric forward serial@/dev/ttyUSB0:telosb             # until Ctrl-C\n"
       "  rubric decode sf@localhost:9002                       # one of many clients\n"
       "  rubric forward sf@lab:9002 --port 9003 --reconnect --write run.pcapng\n"
-      "Exit codes: 0 ended by Ctrl-C, 2 usage, 3 the source is gone or the port is taken,\n"
+      "Exit codes: 0 ended by Ctrl-C, 64 usage, 66 the source is gone or the port is taken,\n"
       "74 the capture cannot be written.");
   command.exit_code_of([options] { return run_forward(*options); });
 }

@@ -37,7 +37,8 @@ constexpr const char* kInstallWiresharkFooter =
     "  rubric install-wireshark --dry-run\n"
     "  sudo rubric install-wireshark --dir /usr/lib/x86_64-linux-gnu/wireshark   # for all users\n"
     "  rubric install-wireshark --remove\n"
-    "Exit codes: 0 done, 2 usage, 3 something is in the way, missing, or cannot be written.";
+    "Exit codes: 0 done, 64 usage, 66 something is in the way or missing,\n"
+    "74 a file cannot be written.";
 
 struct InstallWiresharkOptions {
   std::string folder;  ///< With plugins/ and extcap/ in it; empty: the personal ones.

@@ -24,7 +24,8 @@ constexpr const char* kNewAdapterFooter =
     "where your implementation goes; known.yaml lists the cases that it cannot decide yet.\n"
     "conformance/PORTING.md says how to go on.\n"
     "Files that exist are never overwritten.\n"
-    "Exit codes: 0 written, 2 usage, 3 something could not be written, and then nothing was.";
+    "Exit codes: 0 written, 64 usage, 66 something is in the way, 74 something could not be\n"
+    "written.";
 
 constexpr const char* kKnown = "known.yaml";
 

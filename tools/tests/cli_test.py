@@ -20,7 +20,7 @@ JOIN = FIRMWARE / "a_join_data.pcapng"
 SERIAL = FIRMWARE / "a_join_data.serial.bin"
 BAD = FIRMWARE / "h10_hdlc_escape_and_bad_serial.serial_in.bin"
 PLAIN = FIRMWARE / "b_reliable.serial.bin"
-CLEAN, MALFORMED, USAGE, INPUT = range(4)
+CLEAN, MALFORMED, USAGE, INPUT = 0, 1, 64, 66
 OUTPUT = 74
 
 RUBRIC = None

@@ -376,7 +376,7 @@ class Specs(unittest.TestCase):
         self.assertEqual((code, out), (0, wanted))
 
 
-BAD_USAGE, NO_INPUT = 2, 3
+BAD_USAGE, NO_INPUT = 64, 66
 
 if __name__ == "__main__":
     unittest.main()
