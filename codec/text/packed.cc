@@ -152,11 +152,13 @@ class ZstdPacker final : public Packer {
 }  // namespace
 
 Packing packing_of(Bytes first_bytes) {
-  constexpr std::uint32_t kZstdMagic = 0xFD2FB528;
-  if (first_bytes.size() >= 4 && load_le32(first_bytes.data()) == kZstdMagic) return Packing::kZstd;
-  const bool gzip = first_bytes.size() >= 3 && first_bytes[0] == 0x1F && first_bytes[1] == 0x8B &&
-                    first_bytes[2] == Z_DEFLATED;
-  return gzip ? Packing::kGzip : Packing::kNone;
+  constexpr std::uint8_t kGzipMagic[] = {0x1F, 0x8B, Z_DEFLATED};
+  constexpr std::uint8_t kZstdMagic[] = {0x28, 0xB5, 0x2F, 0xFD};
+  const auto begins_with = [&](Bytes magic) {
+    return first_bytes.size() >= magic.size() && equal(first_bytes.first(magic.size()), magic);
+  };
+  if (begins_with(kGzipMagic)) return Packing::kGzip;
+  return begins_with(kZstdMagic) ? Packing::kZstd : Packing::kNone;
 }
 
 Packing packing_of_name(std::string_view name) {

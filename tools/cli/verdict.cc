@@ -13,7 +13,6 @@
 namespace rubric::cli {
 
 void set_verdict(Command& command, std::function<int()> run) {
-  command.set_usage_exit_code(kExitUsage);
   command.exit_code_of([name = command.name(), run = std::move(run)] {
     try {
       return run();

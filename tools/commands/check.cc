@@ -12,6 +12,7 @@
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/output.h"
 #include "tools/cli/terminal.h"
+#include "tools/cli/text_file.h"
 #include "tools/cli/verdict.h"
 #include "tools/commands/check_live.h"
 #include "tools/commands/check_news.h"
@@ -54,9 +55,9 @@ check::Run read_run(const CheckOptions& options) {
   for (const std::string& file : options.input.files) {
     const bool at_once = file == "-" || cli::is_packed(file);
     const std::string name = file == "-" ? "stdin" : file;
-    const bool good =
-        at_once ? reader.add_bytes(name, cli::text_of_file(kCheckCommand, file), error)
-                : reader.add_file(file, error);
+    const bool good = at_once
+                          ? reader.add_bytes(name, cli::text_of_file(kCheckCommand, file), error)
+                          : reader.add_file(file, error);
     if (!good) cli::unreadable(kCheckCommand, error);
   }
   return reader.finish();

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <cstdint>
+#include <ctime>
 #include <memory>
 #include <optional>
 #include <string>
@@ -30,7 +31,7 @@ struct DecodeOptions {
   std::string format = "text";
   std::string filter;
   std::string fields;
-  std::string time = "abs";
+  std::string time = "epoch";
   std::string color = "auto";
   std::uint64_t count = 0;  ///< 0: all.
   bool hex = false;
@@ -84,12 +85,16 @@ std::optional<format::Filter> make_filter(const DecodeOptions& options,
 class Clock {
  public:
   explicit Clock(const std::string& mode)
-      : none_(mode == "none"), zero_(mode == "zero"), delta_(mode == "delta") {}
+      : none_(mode == "none"),
+        relative_(mode == "relative"),
+        delta_(mode == "delta"),
+        utc_(mode == "utc"),
+        local_(mode == "local") {}
 
   /// Returns the time to show for a frame.
   std::int64_t shown(std::int64_t time_ns) {
     if (none_ || time_ns == kNoTime) return kNoTime;
-    if (!zero_ && !delta_) return time_ns;
+    if (!relative_ && !delta_) return time_ns;
     if (reference_ns_ == kNoPrevious) reference_ns_ = time_ns;
     // Wraps instead of overflowing: damaged stamps can be anything.
     const auto difference = static_cast<std::int64_t>(static_cast<std::uint64_t>(time_ns) -
@@ -98,10 +103,33 @@ class Clock {
     return difference;
   }
 
+  /// Returns the date and time of day, as ISO 8601 writes them; empty if they are not asked for.
+  std::string_view text_of(std::int64_t time_ns) {
+    if ((!utc_ && !local_) || time_ns == kNoTime) return {};
+    constexpr std::int64_t kSecondNs = 1'000'000'000;
+    const std::int64_t rest = time_ns % kSecondNs;
+    const std::int64_t part = rest < 0 ? rest + kSecondNs : rest;
+    const std::time_t seconds = time_ns / kSecondNs - (rest < 0);
+    std::tm day{};
+    const bool known =
+        (utc_ ? ::gmtime_r(&seconds, &day) : ::localtime_r(&seconds, &day)) != nullptr;
+    if (!known) return {};
+    char date[32];
+    char zone[8] = "Z";
+    std::strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%S", &day);
+    if (local_) std::strftime(zone, sizeof zone, "%z", &day);
+    text_ = part % 1000 ? fmt::format("{}.{:09}{}", date, part, zone)
+                        : fmt::format("{}.{:06}{}", date, part / 1000, zone);
+    return text_;
+  }
+
  private:
   bool none_;
-  bool zero_;
+  bool relative_;
   bool delta_;
+  bool utc_;
+  bool local_;
+  std::string text_;
   std::int64_t reference_ns_ = kNoPrevious;
 };
 
@@ -157,6 +185,7 @@ class Decode {
     record_.time_ns = packet.time_ns;
     if (filter_ && !filter_->matches(record_)) return true;
     record_.time_ns = clock_.shown(packet.time_ns);
+    record_.time_text = clock_.text_of(packet.time_ns);
     formatter_->print(record_, output_.buffer());
     ++printed_;
     return output_.drain() && printed_ != options_.count;
@@ -194,9 +223,9 @@ void add_decode(cli::Command& app) {
   command.add_option("--fields", options->fields, "Print only these fields, as in a.b,c");
   command
       .add_option("--time", options->time,
-                  "Print times as abs (as captured), delta (since the line before), zero (since "
-                  "the first line) or none")
-      .one_of({"abs", "delta", "zero", "none"})
+                  "Print times as epoch (seconds, as captured), utc or local (dates), relative "
+                  "(since the first line), delta (since the line before) or none")
+      .one_of({"epoch", "utc", "local", "relative", "delta", "none"})
       .show_default();
   command.add_option("--count", options->count, "Stop after this many lines")
       .check(cli::at_least_one);

@@ -128,7 +128,10 @@ constexpr Attribute kAttributes[] = {
      [](const Record& r, Visitor v) {
        return integer(v, static_cast<std::int64_t>(r.packet().offset_bytes));
      }},
-    {"time", [](const Record& r, Visitor v) { return time(v, r.time_ns); }},
+    {"time",
+     [](const Record& r, Visitor v) {
+       return r.time_text.empty() ? time(v, r.time_ns) : text(v, r.time_text);
+     }},
     {"interface", [](const Record& r, Visitor v) { return text(v, r.interface_name); }, nullptr,
      true},
     {"direction",

@@ -196,7 +196,11 @@ void JsonlFormatter::print(const Record& record, Buffer& out) {
   at = put_uint(put(at, "{\"schema\":\"rubric.decode/1\",\"index\":"), record.index);
   at = put_uint(put(at, ",\"offset\":"), packet.offset_bytes);
   at = put(at, ",\"time\":");
-  at = record.time_ns == kNoTime ? put(at, "null") : put_time(at, record.time_ns);
+  if (!record.time_text.empty()) {
+    at = report::put_json_string(at, record.time_text);
+  } else {
+    at = record.time_ns == kNoTime ? put(at, "null") : put_time(at, record.time_ns);
+  }
   at = put(at, ",\"interface\":");
   at = record.interface_name.empty() ? put(at, "null")
                                      : report::put_json_string(at, record.interface_name);

@@ -486,7 +486,12 @@ void TextFormatter::print(const Record& record, Buffer& out) {
   const bool malformed = frame.malformed();
   styled.put(malformed ? Style::kError : Style::kDim,
              fmt::format("{}{:>5} ", malformed ? '!' : ' ', record.number));
-  if (record.time_ns != kNoTime) append_time(record.time_ns, out);
+  if (!record.time_text.empty()) {
+    out.append(record.time_text);
+    out.append(' ');
+  } else if (record.time_ns != kNoTime) {
+    append_time(record.time_ns, out);
+  }
   if (options_.fields.empty()) {
     append_origin(record, out);
     append_framing(record.packet(), out);

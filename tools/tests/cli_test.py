@@ -5,6 +5,7 @@ Usage: cli_test.py RUBRIC.
 """
 
 import csv
+import datetime
 import io
 import json
 import os
@@ -214,7 +215,10 @@ class Output(unittest.TestCase):
             return [json.loads(line)["time"] for line in lines(done)]
         absolute = times()
         self.assertEqual(times("--time", "none"), [None] * 3)
-        self.assertEqual(times("--time", "zero"),
+        days = [datetime.datetime.fromisoformat(t.rstrip("Z") + "+00:00").timestamp()
+                for t in times("--time", "utc")]
+        self.assertEqual([round(d, 6) for d in days], [round(t, 6) for t in absolute])
+        self.assertEqual(times("--time", "relative"),
                          [round(t - absolute[0], 9) for t in absolute])
         self.assertEqual(times("--time", "delta"),
                          [0] + [round(b - a, 9) for a, b in zip(absolute, absolute[1:])])

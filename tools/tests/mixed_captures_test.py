@@ -58,8 +58,8 @@ def tlv(kind, value):
 
 def tap(number):
     facts = tlv(0, b"\1") + tlv(1, struct.pack("<f", -50.5 - number % 30)) + \
-        tlv(3, struct.pack("<HB", 11 + number % 16, 0)) + tlv(7, struct.pack("<Q", 10**6 + number)) + \
-        tlv(10, bytes([255 - number % 100]))
+        tlv(3, struct.pack("<HB", 11 + number % 16, 0)) + \
+        tlv(7, struct.pack("<Q", 10**6 + number)) + tlv(10, bytes([255 - number % 100]))
     return struct.pack("<BBH", 0, 0, 4 + len(facts)) + facts + with_fcs(number)
 
 
@@ -138,7 +138,8 @@ CAPTURES = {
     "big_endian_ns.pcap": pcap(230, some(frame), ">", True),
     "phy.pcap": pcap(215, some(phy)),
     "tap.pcapng": pcapng([283], [(0, record) for record in some(tap)]),
-    "any_zep.pcap": pcap(113, some(lambda n: sll(ipv4(udp(zep(n), 53 if n % 5 == 4 else ZEP_PORT))))),
+    "any_zep.pcap": pcap(113, some(lambda n: sll(ipv4(udp(zep(n), 53 if n % 5 == 4
+                                                          else ZEP_PORT))))),
     "vlan_zep1.pcap": pcap(1, some(lambda n: ethernet(ipv4(udp(zep(n, 1)))))),
     "raw_ipv6_zep.pcap": pcap(101, some(lambda n: ipv6(udp(zep(n))))),
     "short.pcap": pcap(195, some(with_fcs), snaplen=12),

@@ -13,7 +13,7 @@ constexpr std::int64_t kWidthMost = INT64_MAX / 8;
 
 std::size_t bucket_of(std::uint64_t value) {
   if (value < kExact) return value;
-  const int shift = std::bit_width(value) - kKeptBits;
+  const int shift = static_cast<int>(std::bit_width(value)) - kKeptBits;
   return static_cast<std::size_t>(shift) * (kExact / 2) + (value >> shift);
 }
 
