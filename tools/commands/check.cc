@@ -160,9 +160,9 @@ void add_options(cli::Command& command, CheckOptions& options) {
   command
       .add_option("--input-format", options.input.format,
                   "Read captures as auto, hdlc (bytes of a serial line), sf (serial "
-                  "forwarder), pcap, pcapng, hex (text, from the dispatch byte on) or hex-radio "
-                  "(text, 802.15.4 without FCS)")
-      .one_of({"auto", "hdlc", "sf", "pcap", "pcapng", "hex", "hex-radio"})
+                  "forwarder), pcap, pcapng, hex (text, from the dispatch byte on), log (the same "
+                  "among other lines) or hex-radio (text, 802.15.4 without FCS)")
+      .one_of({"auto", "hdlc", "sf", "pcap", "pcapng", "hex", "log", "hex-radio"})
       .show_default();
   command.add_flag("--verbose", options.verbose,
                    "Print also further findings of a rule and node in full; live, also notes");
