@@ -97,10 +97,10 @@ class Calls(Base):
         ask = ["--extcap-interface", "rubric", "--extcap-capture-filter"]
         self.assertEqual(self.said(*ask, "message==updates && src.devid==4", *UNKNOWN), "")
         self.assertEqual(self.said(*ask, ""), "")
-        self.assertRegex(self.said(*ask, "mesage==updates", code=2),
+        self.assertRegex(self.said(*ask, "mesage==updates", code=64),
                          r"^unknown name 'mesage' \(did you mean 'message'\?\)\n$")
-        self.assertEqual(self.said(*ask, "reading.nreadings==1", "--spec", "oscilloscope", code=2),
-                         self.said(*ask, "reading.nreadings==1", code=2))
+        self.assertEqual(self.said(*ask, "reading.nreadings==1", "--spec", "oscilloscope", code=64),
+                         self.said(*ask, "reading.nreadings==1", code=64))
 
     def test_bad_calls(self):
         for words, what in (([], "nothing to do"), (UNKNOWN, "nothing to do"),
@@ -285,7 +285,7 @@ class Captures(Base):
         fd = self.reader()
         found, err = self.ended(process)
         os.close(fd)
-        self.assertEqual(found, 2)
+        self.assertEqual(found, 64)
         self.assertIn("capture filter: ", err)
 
     def test_a_peer_that_goes(self):

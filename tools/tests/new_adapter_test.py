@@ -90,7 +90,7 @@ class NewAdapter(unittest.TestCase):
             self.assertEqual(done.stderr, "")
             return done.returncode, done.stdout
         code, out = tried()
-        self.assertEqual(code, 66, out)
+        self.assertEqual(code, 3, out)
         self.assertGreater(len(re.findall(r"^not ok .*: ", out, re.M)), 100)
         code, out = tried("--expect", "known.yaml")
         self.assertEqual(code, 0, out)
@@ -102,7 +102,7 @@ class NewAdapter(unittest.TestCase):
         known = pathlib.Path(folder) / "known.yaml"
         known.write_text(known.read_text().replace("    - j1.request\n", "", 1))
         code, out = tried("--expect", "known.yaml")
-        self.assertEqual(code, 66)
+        self.assertEqual(code, 3)
         self.assertEqual(out.count("not ok"), 1)
 
     def test_overwrites_nothing(self):
@@ -110,7 +110,7 @@ class NewAdapter(unittest.TestCase):
             mine = pathlib.Path(folder) / "my_node.h"
             mine.write_text("mine")
             written = self.write("cpp", folder)
-            self.assertEqual(written.returncode, 66)
+            self.assertEqual(written.returncode, 74)
             self.assertIn("my_node.h: it exists", written.stderr)
             self.assertEqual(mine.read_text(), "mine")
             self.assertEqual([mine], list(pathlib.Path(folder).iterdir()))
@@ -120,7 +120,7 @@ class NewAdapter(unittest.TestCase):
         self.assertFalse(pathlib.Path("x").exists())
         with tempfile.NamedTemporaryFile() as file:
             written = self.write("python", file.name + "/deep")
-            self.assertEqual(written.returncode, 66)
+            self.assertEqual(written.returncode, 74)
             self.assertIn("cannot write", written.stderr)
 
 
