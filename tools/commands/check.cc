@@ -82,7 +82,8 @@ int check_files(const CheckOptions& options) {
   const report::Story story{part, judged, found, expected, outcome};
   const int terminal = options.out == "-" ? STDOUT_FILENO : -1;
   const bool written = cli::write_file(options.out, report_text(options, story, terminal, files));
-  return written ? outcome.exit_code() : cli::kExitOutput;
+  const bool kept = write_report_folder(options, story);
+  return written && kept ? outcome.exit_code() : cli::kExitOutput;
 }
 
 int run_check(CheckOptions options) {
@@ -120,6 +121,10 @@ void add_options(cli::Command& command, CheckOptions& options) {
   command.add_option("--out", options.out, "Write to this file; - is stdout")
       .check(cli::given)
       .show_default();
+  command
+      .add_option("--report", options.report,
+                  "Write index.html, report.json and junit.xml into this folder")
+      .check(cli::given);
   command.add_option("--node", options.nodes,
                      "Name a node's role as ID=ROLE: 2=mote; mote, sink or base-station");
   command.add_option("--sink", options.sinks, "Name a sink's island as ID=ISLAND: 1=11");
