@@ -71,7 +71,7 @@ struct Frame {
   bool has_error() const { return error.fault != Fault::kNone; }
   /// Returns whether the error is the sender's or the channel's: what a capture's snap length cuts
   /// off says nothing of the frame.
-  bool malformed() const { return has_error() && !packet->cut_by_capture(); }
+  bool malformed() const { return has_error() && !(packet && packet->cut_by_capture()); }
 };
 
 /// Decodes packets by one protocol's tables.

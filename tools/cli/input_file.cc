@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
+#include <cstdio>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -54,6 +55,10 @@ InputFile::InputFile(const std::string& name, bool follow, const std::function<v
       is_stdin_(name == "-"),
       follow_(follow),
       on_idle_(on_idle) {
+  static bool said = false;
+  if (is_stdin_ && ::isatty(fd_) != 0 && !std::exchange(said, true)) {
+    std::fputs("rubric: reads what is typed here; Ctrl-D on a line of its own ends it\n", stderr);
+  }
   if (fd_ < 0) throw std::system_error(errno, std::generic_category());
   struct stat status {};
   if (::fstat(fd_, &status) == 0) is_regular_ = S_ISREG(status.st_mode);

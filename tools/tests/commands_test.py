@@ -72,8 +72,7 @@ class Fcs(Folder):
         self.assertEqual([row[0] for row in rows], [frame.hex() for frame in frames])
         self.assertEqual([i for i, row in enumerate(rows) if row[1]], [3])
         for i, row in enumerate(rows):
-            expected = ["", ""] if i == 3 else [str(i % 40 - 60), str(90 + i % 20)]
-            self.assertEqual(row[2:], expected, i)
+            self.assertEqual(row[2:], [str(i % 40 - 60), str(90 + i % 20)], i)
         code, out, _ = rubric("decode", "--filter", "frame.rssi > -50", file)
         self.assertEqual(len(out.splitlines()), sum(i % 40 > 10 for i in range(len(rows))))
         self.assertEqual(rubric("stats", file)[2], err)
@@ -170,7 +169,7 @@ class Encode(Folder):
         # Cut when it was captured: on a serial line its last bytes would read as a CRC.
         cut = {"schema": "rubric.decode/1", "framing": "hdlc", "raw": "00ffff00000300250a000c",
                "frame": {"kind": 69, "dropped": 4}, "error": {"fault": "cut"}}
-        for container, expected in [("pcapng", 0), ("hdlc", 3)]:
+        for container, expected in [("pcapng", 0), ("hdlc", 66)]:
             code, _, err = rubric("encode", "--format", container, stdin=json.dumps(cut))
             self.assertEqual(code, expected, err)
         self.assertIn("4 bytes of this frame were dropped", err)

@@ -273,6 +273,15 @@ class Mixed(unittest.TestCase):
         self.assertEqual(magic, bytes.fromhex("28b52ffd"))
         self.assertEqual(gzip.decompress((self.path / "out.pcap.gz").read_bytes())[:2], b"\x4d\x3c")
 
+    def test_facts_pass_through_json(self):
+        lines = rubric("decode", "--format", "jsonl", self.path / "tap.pcapng")[1]
+        again = rubric("encode", "--spec", "blink_to_radio", "--format", "pcapng", "-o", self.path / "again.pcapng",
+                       stdin=lines.encode())
+        self.assertEqual(again[0], 0, again[2])
+        frames = [one["frame"] for one in map(json.loads, lines.splitlines())]
+        self.assertIn("slot", frames[0])
+        self.assertEqual([one["frame"] for one in self.frames("again.pcapng")[0]], frames)
+
     def test_facts_are_filtered_and_counted(self):
         frames, _ = self.frames("tap.pcapng", "--filter", "frame.channel==12 && frame.rssi < -51")
         self.assertEqual([one["frame"]["channel"] for one in frames], [12] * 4)
@@ -303,7 +312,7 @@ class Mixed(unittest.TestCase):
 class Text(unittest.TestCase):
     BLINK = "00 FF FF 00 00 04 22 06 00 02 00 01"
     # Flags around, the CRC's bytes as a mote sends them.
-    SERIAL = "7E 45 00 FF FF 00 00 04 22 06 00 02 00 01 B7 68 7E"
+    SERIAL = "7E 45 00 FF FF 00 00 04 22 06 00 02 00 01 5B 02 7E"
 
     def decoded(self, text, *args, command="decode"):
         return rubric(command, "--spec", "blink_to_radio", *args, stdin=text.encode())
