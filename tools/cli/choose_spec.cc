@@ -28,6 +28,7 @@ struct Sample {
 
 /// What a spec makes of a sample.
 struct Fit {
+  std::size_t messages = 0;
   std::size_t wholly = 0;
   std::size_t partly = 0;
   std::size_t points() const { return 2 * wholly + partly; }
@@ -82,6 +83,7 @@ Fit fit_of(const reflect::Protocol& protocol, const Sample& sample) {
   for (const Packet& packet : sample.packets) {
     decoder.decode(packet, frame);
     const reflect::Decoded& decoded = frame.decoded;
+    fit.messages += frame.am.present;
     const bool fits = frame.am.present && !frame.has_error() && decoded.note_count() == 0;
     if (!fits) continue;
     ++(decoded.stale_count() == 0 ? fit.wholly : fit.partly);
@@ -105,7 +107,7 @@ const reflect::Protocol& choose_spec(const InputOptions& options) {
   }
   const Sample sample = sample_of(options, view(beginning));
   const Fit usual_fit = fit_of(usual, sample);
-  if (usual_fit.wholly == sample.packets.size()) return usual;
+  if (2 * usual_fit.wholly >= usual_fit.messages) return usual;
   const reflect::Protocol* best = &usual;
   Fit best_fit = usual_fit;
   for (const std::string& name : protocol_names()) {
@@ -118,9 +120,9 @@ const reflect::Protocol& choose_spec(const InputOptions& options) {
   }
   if (best != &usual) {
     fmt::print(stderr,
-               "rubric: {}: read by the spec {}, which fits {} of its first {} packets wholly, {} "
+               "rubric: {}: read by the spec {}, which fits {} of its first {} messages wholly, {} "
                "{} (--spec decides)\n",
-               file == "-" ? "stdin" : file, best->id, best_fit.wholly, sample.packets.size(),
+               file == "-" ? "stdin" : file, best->id, best_fit.wholly, usual_fit.messages,
                usual.id, usual_fit.wholly);
   }
   return *best;

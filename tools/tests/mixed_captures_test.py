@@ -361,7 +361,7 @@ class Specs(unittest.TestCase):
         text = Text.BLINK.encode()
         code, out, err = rubric("decode", "--format", "jsonl", stdin=text)
         self.assertEqual((code, json.loads(out)["message"]), (0, "blink_to_radio_msg"))
-        self.assertIn("stdin: read by the spec blink_to_radio, which fits 1 of its first 1 packets "
+        self.assertIn("stdin: read by the spec blink_to_radio, which fits 1 of its first 1 messages "
                       "wholly, rubicon 0", err)
         code, out, err = rubric("decode", "--format", "jsonl", "--spec", "rubicon", stdin=text)
         self.assertEqual(json.loads(out)["message"], "rssi_beacon")
