@@ -271,12 +271,13 @@ class Mixed(unittest.TestCase):
             self.assertIn("hex holds no RSSI, link quality, channel or time slot", err)
         magic = (self.path / "out.pcapng.zst").read_bytes()[:4]
         self.assertEqual(magic, bytes.fromhex("28b52ffd"))
-        self.assertEqual(gzip.decompress((self.path / "out.pcap.gz").read_bytes())[:2], b"\x4d\x3c")
+        packed = (self.path / "out.pcap.gz").read_bytes()
+        self.assertEqual(gzip.decompress(packed)[:2], b"\x4d\x3c")
 
     def test_facts_pass_through_json(self):
         lines = rubric("decode", "--format", "jsonl", self.path / "tap.pcapng")[1]
-        again = rubric("encode", "--spec", "blink_to_radio", "--format", "pcapng", "-o", self.path / "again.pcapng",
-                       stdin=lines.encode())
+        again = rubric("encode", "--spec", "blink_to_radio", "--format", "pcapng", "-o",
+                       self.path / "again.pcapng", stdin=lines.encode())
         self.assertEqual(again[0], 0, again[2])
         frames = [one["frame"] for one in map(json.loads, lines.splitlines())]
         self.assertIn("slot", frames[0])
@@ -361,8 +362,8 @@ class Specs(unittest.TestCase):
         text = Text.BLINK.encode()
         code, out, err = rubric("decode", "--format", "jsonl", stdin=text)
         self.assertEqual((code, json.loads(out)["message"]), (0, "blink_to_radio_msg"))
-        self.assertIn("stdin: read by the spec blink_to_radio, which fits 1 of its first 1 messages "
-                      "wholly, rubicon 0", err)
+        self.assertIn("stdin: read by the spec blink_to_radio, which fits 1 of its first 1 "
+                      "messages wholly, rubicon 0", err)
         code, out, err = rubric("decode", "--format", "jsonl", "--spec", "rubicon", stdin=text)
         self.assertEqual(json.loads(out)["message"], "rssi_beacon")
         self.assertIn("AM 6 also fits blink_to_radio: --spec blink_to_radio", err)
