@@ -103,9 +103,9 @@ std::unique_ptr<Writer> make_writer(InputFormat format, std::uint16_t link_type)
     case InputFormat::kSf: return std::make_unique<SfWriter>();
     case InputFormat::kPcap: return std::make_unique<PcapWriter>(link_type);
     case InputFormat::kPcapng: return std::make_unique<PcapngWriter>();
-    case InputFormat::kHex: return std::make_unique<HexWriter>();
+    case InputFormat::kHex:
+    case InputFormat::kLog: return std::make_unique<HexWriter>();
     case InputFormat::kUnknown:
-    case InputFormat::kLog:
     case InputFormat::kJsonl: break;
   }
   return nullptr;
