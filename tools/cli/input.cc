@@ -296,7 +296,8 @@ class Run {
         return complain("this is JSON; 'rubric encode' reads it");
       }
     }
-    if (bare && format != InputFormat::kHex) return whole(file, size);
+    const bool text = format == InputFormat::kHex || format == InputFormat::kLog;
+    if (bare && !text) return whole(file, size);
     ReaderOptions reader_options = cli::reader_options(options_);
     if (bare) reader_options.hex_framing = Framing::kBare;
     std::unique_ptr<Reader> reader = make_reader(format, reader_options);
