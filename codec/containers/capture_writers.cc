@@ -54,15 +54,26 @@ void close_block(std::size_t begin, std::string& out) {
   out.replace(begin + 4, length.size(), length);
 }
 
+bool has_fcs(const Packet& packet) {
+  return packet.fcs != kAbsent || packet.error.fault == Fault::kTooShort;
+}
+
+// Returns whether a radio frame is written with what its sniffer states. A CC24xx trailer says it
+// itself.
+bool has_tap_header(const Packet& packet) {
+  const bool trailer = packet.link_type == kLinkRadioFcs && packet.fcs != kAbsent;
+  return packet.framing == Framing::kRadio && packet.radio.any() && !trailer;
+}
+
 std::uint16_t radio_link_type(const Packet& packet) {
   const Fault fault = packet.error.fault;
+  if (has_tap_header(packet)) return kLinkRadioTap;
   // A TAP header that was understood is gone, one that was not is all there is.
   const bool header_gone =
       packet.link_type == kLinkRadioTap && packet.error.requirement != "WIRE-RADIO-TAP"_rule;
   // A malformed frame keeps the type under which it was found malformed.
   if (fault != Fault::kNone && packet.link_type != 0 && !header_gone) return packet.link_type;
-  const bool has_fcs = packet.fcs != kAbsent || fault == Fault::kTooShort;
-  return has_fcs ? kLinkRadioFcs : kLinkRadioNoFcs;
+  return has_fcs(packet) ? kLinkRadioFcs : kLinkRadioNoFcs;
 }
 
 std::string_view option_text(std::string_view text) {
@@ -83,6 +94,7 @@ std::uint16_t link_type_of(const Packet& packet) {
 
 void append_record(const Packet& packet, std::string& out) {
   if (packet.framing == Framing::kHdlc) return append_serial_content(packet, out);
+  if (has_tap_header(packet)) append_tap_header(packet.radio, has_fcs(packet), out);
   out.append(reinterpret_cast<const char*>(packet.bytes.data()), packet.bytes.size());
   if (packet.framing == Framing::kRadio && packet.fcs != kAbsent) {
     put16(static_cast<std::uint64_t>(packet.fcs), out);

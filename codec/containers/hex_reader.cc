@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "codec/containers/link_record.h"
+#include "codec/runtime/hdlc.h"
 
 namespace rubric {
 namespace {
@@ -59,7 +60,17 @@ Error decode_hex_line(Bytes text, std::vector<std::uint8_t>& bytes) {
   return Error{Fault::kNone, 0, ReqId::kNone};
 }
 
-HexReader::HexReader(const ReaderOptions& options) : options_(options) {
+bool is_noise(Bytes line) {
+  const auto* begin = std::find_if_not(line.begin(), line.end(), is_space);
+  const auto* const end = std::find_if(begin, line.end(), is_space);
+  if (begin == end || hex_digit(*begin) == kNoDigit) return true;
+  if (end - begin > 2 && *begin == '0' && (begin[1] | 0x20) == 'x') begin += 2;
+  const auto is_digit = [](std::uint8_t c) { return hex_digit(c) != kNoDigit; };
+  return end - begin > 2 && !std::all_of(begin, end, is_digit);
+}
+
+HexReader::HexReader(const ReaderOptions& options, bool is_log)
+    : options_(options), is_log_(is_log) {
   Interface stream;
   stream.name = options.interface_name;
   interfaces_.push_back(stream);
@@ -96,13 +107,41 @@ void HexReader::deliver_held(PacketSink sink) {
   dropped_ = 0;
 }
 
+bool HexReader::is_serial_bytes(Bytes bytes) const {
+  if (options_.hex_framing != Framing::kSf) return false;
+  return bytes[0] == kHdlcFlag || in_frame_;
+}
+
+void HexReader::serial_bytes(Bytes bytes, PacketSink sink) {
+  auto here = [&](const Packet& packet) {
+    Packet placed = packet;
+    placed.offset_bytes = line_offset_;
+    placed.line = line_number_;
+    sink(placed);
+  };
+  if (!serial_) serial_ = std::make_unique<HdlcReader>(options_);
+  if (bytes.empty()) {
+    serial_->finish(here);
+    in_frame_ = false;
+    return;
+  }
+  serial_->feed(bytes, here);
+  in_frame_ = bytes[bytes.size() - 1] != kHdlcFlag;
+}
+
 void HexReader::line(Bytes text, PacketSink sink) {
+  ++line_number_;
   Packet packet;
+  packet.line = line_number_;
   packet.framing = options_.hex_framing;
   packet.direction = options_.direction;
   packet.offset_bytes = line_offset_;
   packet.error = decode_hex_line(text, bytes_);
   if (dropped_ != 0) packet.error = fail(Fault::kTooLong, text.size(), "WIRE-HEX"_rule).error;
+  if (is_log_ && packet.error.fault == Fault::kUnexpected && is_noise(text)) {
+    if (noise_.lines++ == 0) noise_.first = line_number_;
+    return;
+  }
   if (packet.error.fault != Fault::kNone) {
     packet.framing = Framing::kBare;
     packet.bytes = text;
@@ -111,18 +150,21 @@ void HexReader::line(Bytes text, PacketSink sink) {
   }
   if (bytes_.empty()) return;
   const Bytes bytes(bytes_.data(), bytes_.size());
+  if (is_serial_bytes(bytes)) return serial_bytes(bytes, sink);
   if (options_.hex_framing == Framing::kBare) {
     packet.bytes = bytes;
   } else {
     decode_record(bytes, bytes.size(), link_type_of(options_), "WIRE-HEX"_rule, packet);
-    packet.link_type = 0;
+    if (packet.framing != Framing::kRadio) packet.link_type = 0;
   }
   sink(packet);
 }
 
 void HexReader::finish(PacketSink sink) {
   if (!held_.empty()) deliver_held(sink);
+  if (in_frame_) serial_bytes(Bytes(), sink);
   line_offset_ = 0;
+  line_number_ = 0;
 }
 
 }  // namespace rubric

@@ -1,8 +1,10 @@
 // Packets as lines of hex text, as TinyOS's Listen prints them.
 #pragma once
 
+#include <memory>
 #include <vector>
 
+#include "codec/containers/hdlc_reader.h"
 #include "codec/containers/reader.h"
 
 namespace rubric {
@@ -12,7 +14,11 @@ inline constexpr std::size_t kHexLineMax = 64 * 1024;
 
 /// Reads a packet a line: two hex digits of either case for each byte, with or without white space
 /// between bytes, each byte or run of bytes optionally led by 0x. Skips empty lines and everything
-/// after a '#'. An option gives the framing of the lines (hex_framing).
+/// after a '#'. An option gives the framing of the lines (hex_framing). Where that is kSf, a line
+/// that begins with 7E has the bytes of a serial line, flags and escapes included; a frame goes on
+/// in the next lines until its closing flag.
+///
+/// In a log the lines that is_noise() knows are passed over and counted.
 ///
 /// Faults: kUnexpected (a line that is no hex text: the line itself is delivered, the offset counts
 /// its characters), kTooLong (a line beyond kHexLineMax), kCut never: the last line needs no end;
@@ -20,22 +26,34 @@ inline constexpr std::size_t kHexLineMax = 64 * 1024;
 /// Source: TinyOS Listen tool.
 class HexReader final : public Reader {
  public:
-  explicit HexReader(const ReaderOptions& options = {});
+  explicit HexReader(const ReaderOptions& options = {}, bool is_log = false);
 
   void feed(Bytes chunk, PacketSink sink) override;
   void finish(PacketSink sink) override;
+  Noise noise() const override { return noise_; }
 
  private:
+  bool is_serial_bytes(Bytes bytes) const;
+  void serial_bytes(Bytes bytes, PacketSink sink);
   void hold(Bytes text);
   void line(Bytes text, PacketSink sink);
   void deliver_held(PacketSink sink);
 
   ReaderOptions options_;
+  bool is_log_;
+  Noise noise_;
+  std::uint64_t line_number_ = 0;
+  std::unique_ptr<HdlcReader> serial_;  // Made for the first line of a serial line's bytes.
+  bool in_frame_ = false;               // The last byte of such a line was no flag.
   std::uint64_t line_offset_ = 0;
   std::uint64_t dropped_ = 0;
   std::vector<std::uint8_t> held_;   // The beginning of a line that spans chunks.
   std::vector<std::uint8_t> bytes_;  // The present line, decoded.
 };
+
+/// Returns whether a line that is no hex text is of another kind altogether, such as a program's
+/// greeting, rather than hex text with a mistake: whether its first word is no hex digits.
+bool is_noise(Bytes line);
 
 /// Decodes one line into `bytes`, which is cleared first. The error's offset counts characters.
 Error decode_hex_line(Bytes text, std::vector<std::uint8_t>& bytes);

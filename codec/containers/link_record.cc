@@ -1,10 +1,13 @@
 #include "codec/containers/link_record.h"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 
 #include "codec/containers/crc16_fast.h"
 #include "codec/containers/serial_frame.h"
 #include "codec/containers/sf_reader.h"
+#include "codec/containers/zep_packet.h"
 
 namespace rubric {
 namespace {
@@ -16,13 +19,35 @@ enum class FcsType : std::uint8_t { kNone, kCrc16, kCrc32 };
 
 constexpr std::size_t kTapHeaderBytes = 4;
 constexpr std::uint16_t kTapFcsType = 0;
+constexpr std::uint16_t kTapRss = 1;
+constexpr std::uint16_t kTapChannel = 3;
+constexpr std::uint16_t kTapSlot = 7;
+constexpr std::uint16_t kTapLqi = 10;
 
 Error tap_error(Fault fault, std::size_t at) {
   return fail(fault, at, "WIRE-RADIO-TAP"_rule).error;
 }
 
-// Reads a TAP header: its size and its FCS type. An absent FCS type means no FCS.
-Error read_tap(Bytes record, std::size_t* size, FcsType* fcs_type) {
+// Reads a fact of a TAP header; one that is shorter than it must be, or no number, is left out.
+void read_tap_fact(std::size_t type, Bytes value, RadioFacts& facts) {
+  const std::uint8_t* const at = value.data();
+  if (type == kTapRss && value.size() >= 4) {
+    const auto rssi = std::bit_cast<float>(load_le32(at));
+    if (std::isfinite(rssi)) facts.rssi = rssi;
+  } else if (type == kTapChannel && value.size() >= 2) {
+    facts.channel = load_le16(at);
+    facts.page = value.size() >= 3 ? at[2] : 0;
+  } else if (type == kTapSlot && value.size() >= 8 && at[7] < 0x80) {
+    facts.slot = static_cast<std::int64_t>(std::uint64_t{load_le32(at + 4)} << 32 | load_le32(at));
+  } else if (type == kTapLqi && !value.empty()) {
+    facts.lqi = at[0];
+  } else if (type != kTapFcsType) {
+    facts.more = true;
+  }
+}
+
+// Reads a TAP header: its size, its FCS type and its facts. An absent FCS type means no FCS.
+Error read_tap(Bytes record, std::size_t* size, FcsType* fcs_type, RadioFacts& facts) {
   *fcs_type = FcsType::kNone;
   if (record.size() < kTapHeaderBytes) return tap_error(Fault::kTruncated, record.size());
   if (record[0] != 0) return tap_error(Fault::kUnexpected, 0);
@@ -40,6 +65,7 @@ Error read_tap(Bytes record, std::size_t* size, FcsType* fcs_type) {
       if (value == 2) return tap_error(Fault::kUnsupported, at + 4);
       *fcs_type = static_cast<FcsType>(value);
     }
+    read_tap_fact(type, record.sub(at + 4, value_size), facts);
     // Values are padded to four bytes; some writers leave the last one's padding out.
     at = std::min(*size, at + 4 + (value_size + 3) / 4 * 4);
   }
@@ -72,8 +98,12 @@ void decode_radio(Bytes record, std::uint16_t link_type, bool cut, Packet& packe
     std::size_t header = 0;
     FcsType fcs_type = FcsType::kNone;
     packet.bytes = record;
-    packet.error = read_tap(record, &header, &fcs_type);
-    if (packet.error.fault != Fault::kNone) return;
+    packet.radio = RadioFacts{};
+    packet.error = read_tap(record, &header, &fcs_type, packet.radio);
+    if (packet.error.fault != Fault::kNone) {
+      packet.radio = RadioFacts{};
+      return;
+    }
     packet.offset_bytes += header;
     record = record.from(header);
     has_fcs = fcs_type == FcsType::kCrc16;
@@ -82,7 +112,64 @@ void decode_radio(Bytes record, std::uint16_t link_type, bool cut, Packet& packe
   packet.error = split_radio_frame(record, has_fcs && !cut, packet);
 }
 
+// Takes off the preamble, the start of frame and the length byte of a frame as the radio sends it.
+bool take_phy_header(Bytes& record, bool cut, ReqId container, Packet& packet) {
+  constexpr std::size_t kPreambleBytes = 4;
+  constexpr std::size_t kHeaderBytes = kPreambleBytes + 2;
+  constexpr std::uint8_t kStartOfFrame = 0xA7;
+  packet.framing = Framing::kRadio;
+  for (std::size_t i = 0; i <= kPreambleBytes && i < record.size(); ++i) {
+    if (record[i] == (i < kPreambleBytes ? 0 : kStartOfFrame)) continue;
+    packet.error = fail(Fault::kUnexpected, i, container).error;
+    return false;
+  }
+  const bool has_length = record.size() >= kHeaderBytes;
+  const std::size_t size = has_length ? record[kHeaderBytes - 1] & 0x7F : 0;
+  if (!has_length || (!cut && record.size() - kHeaderBytes < size)) {
+    packet.error =
+        fail(cut ? Fault::kCut : Fault::kTruncated, record.size(), cut ? ReqId::kNone : container)
+            .error;
+    return false;
+  }
+  packet.offset_bytes += kHeaderBytes;
+  record = record.from(kHeaderBytes);
+  record = record.first(std::min(record.size(), size));
+  return true;
+}
+
+bool ends_with_fcs(Bytes record) {
+  if (record.size() < kFcsBytes) return false;
+  const Bytes frame = record.first(record.size() - kFcsBytes);
+  return fcs_fast(frame) == load_le16(frame.end());
+}
+
+void put_tap_fact(std::uint16_t type, std::uint64_t value, std::size_t size, std::string& out) {
+  std::uint8_t fact[12] = {};
+  store_le16(fact, type);
+  store_le16(fact + 2, static_cast<std::uint16_t>(size));
+  for (std::size_t i = 0; i < size; ++i) fact[4 + i] = static_cast<std::uint8_t>(value >> 8 * i);
+  out.append(reinterpret_cast<const char*>(fact), 4 + (size + 3) / 4 * 4);
+}
+
 }  // namespace
+
+void append_tap_header(const RadioFacts& facts, bool has_fcs, std::string& out) {
+  const std::size_t begin = out.size();
+  out.append(kTapHeaderBytes, '\0');
+  put_tap_fact(kTapFcsType, static_cast<std::uint64_t>(has_fcs), 1, out);
+  if (facts.rssi) put_tap_fact(kTapRss, std::bit_cast<std::uint32_t>(*facts.rssi), 4, out);
+  if (facts.channel != kAbsent) {
+    const auto channel = static_cast<std::uint64_t>(facts.channel & 0xFFFF);
+    put_tap_fact(kTapChannel, std::uint64_t{facts.page} << 16 | channel, 3, out);
+  }
+  if (facts.slot != kAbsent) {
+    put_tap_fact(kTapSlot, static_cast<std::uint64_t>(facts.slot), 8, out);
+  }
+  if (facts.lqi != kAbsent) {
+    put_tap_fact(kTapLqi, static_cast<std::uint64_t>(facts.lqi), 1, out);
+  }
+  out[begin + 2] = static_cast<char>(out.size() - begin);
+}
 
 void decode_radio_record(Bytes record, std::uint16_t link_type, Packet& packet) {
   decode_radio(record, link_type, false, packet);
@@ -91,6 +178,9 @@ void decode_radio_record(Bytes record, std::uint16_t link_type, Packet& packet) 
 void decode_record(Bytes record, std::uint64_t original_bytes, std::uint16_t link_type,
                    ReqId container, Packet& packet) {
   const bool cut = original_bytes > record.size();
+  if (is_network_link(link_type)) {
+    if (decode_udp_record(record, original_bytes, link_type, packet)) return;
+  }
   packet.link_type = link_type;
   packet.kind = packet.serial_seq = packet.crc = packet.fcs = kAbsent;
   packet.dropped_bytes = cut ? original_bytes - record.size() : 0;
@@ -105,6 +195,15 @@ void decode_record(Bytes record, std::uint64_t original_bytes, std::uint16_t lin
         packet.error = fail(Fault::kTooLong, kSfPacketMax, "WIRE-SF-LENGTH"_rule).error;
       }
       break;
+    case kLinkRadioPhy:
+      if (!take_phy_header(record, cut, container, packet)) return;
+      packet.link_type = kLinkRadioFcs;
+      decode_radio(record, kLinkRadioFcs, cut, packet);
+      break;
+    case kLinkRadioLinux:
+      packet.link_type = !cut && ends_with_fcs(record) ? kLinkRadioFcs : kLinkRadioNoFcs;
+      decode_radio(record, packet.link_type, cut, packet);
+      break;
     case kLinkRadioFcs:
     case kLinkRadioNoFcs:
     case kLinkRadioTap: decode_radio(record, link_type, cut, packet); break;
@@ -115,7 +214,7 @@ void decode_record(Bytes record, std::uint64_t original_bytes, std::uint16_t lin
   }
   // A serial frame's error counts from the kind byte, which precedes `bytes`.
   const std::size_t end = link_type == kLinkSerial ? record.size() : packet.bytes.size();
-  if (cut) packet.error = fail(Fault::kCut, end, container).error;
+  if (cut) packet.error = fail(Fault::kCut, end, ReqId::kNone).error;
 }
 
 }  // namespace rubric

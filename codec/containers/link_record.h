@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "codec/containers/packet.h"
 
@@ -13,6 +14,20 @@ inline constexpr std::uint16_t kLinkSf = 148;        ///< Serial forwarder packe
 inline constexpr std::uint16_t kLinkRadioFcs = 195;  ///< IEEE802_15_4_WITHFCS.
 inline constexpr std::uint16_t kLinkRadioNoFcs = 230;  ///< IEEE802_15_4_NOFCS.
 inline constexpr std::uint16_t kLinkRadioTap = 283;    ///< IEEE802_15_4_TAP.
+inline constexpr std::uint16_t kLinkRadioLinux = 191;  ///< IEEE802_15_4_LINUX.
+inline constexpr std::uint16_t kLinkRadioPhy = 215;    ///< IEEE802_15_4_NONASK_PHY.
+// Of networks that carry ZEP packets.
+inline constexpr std::uint16_t kLinkEthernet = 1;
+inline constexpr std::uint16_t kLinkRawIp = 101;
+inline constexpr std::uint16_t kLinkSll = 113;  ///< LINUX_SLL.
+inline constexpr std::uint16_t kLinkIpv4 = 228;
+inline constexpr std::uint16_t kLinkIpv6 = 229;
+inline constexpr std::uint16_t kLinkSll2 = 276;  ///< LINUX_SLL2.
+
+/// The first and the last of the link types that everybody gives a meaning of their own, USER0 to
+/// USER15.
+inline constexpr std::uint16_t kLinkUserFirst = 147;
+inline constexpr std::uint16_t kLinkUserLast = 162;
 
 inline constexpr std::size_t kRadioFrameMax = 127;  ///< FCS included.
 
@@ -24,10 +39,16 @@ inline constexpr std::size_t kRadioFrameMax = 127;  ///< FCS included.
 /// sections 6.4.1 and 7.2.1; LINKTYPE_IEEE802_15_4_TAP.
 void decode_radio_record(Bytes record, std::uint16_t link_type, Packet& packet);
 
+/// Appends a TAP header with the packet's facts before a frame that has an FCS or none.
+void append_tap_header(const RadioFacts& facts, bool has_fcs, std::string& out);
+
 /// Reads a record of any link type; `record` is the captured part and `original_bytes` the original
-/// size. `packet` comes with offset_bytes of the record's first byte. Faults: those of the link
-/// type, kCut (not captured whole; by rule `container`), kUnsupported (another link type: kBare and
-/// the bytes as they are).
+/// size. `packet` comes with offset_bytes of the record's first byte. Of link type 191 nothing says
+/// whether frames have their FCS: one that fits is it. Of a network's packet the ZEP packet in it
+/// is read. Faults: those of the link type, kCut (not captured whole, which breaks no rule),
+/// kUnexpected and kTruncated by rule `container` (215: the preamble is not as it must be),
+/// kUnsupported (another link type, or a network's packet without ZEP: kBare and the bytes as they
+/// are).
 void decode_record(Bytes record, std::uint64_t original_bytes, std::uint16_t link_type,
                    ReqId container, Packet& packet);
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string_view>
 #include <type_traits>
 
@@ -23,6 +24,20 @@ enum class Direction : std::uint8_t { kUnknown, kInbound, kOutbound };
 inline constexpr std::int64_t kNoTime = INT64_MIN;
 inline constexpr std::int32_t kAbsent = -1;
 
+/// Facts about a radio frame that its sniffer states beside the bytes.
+struct RadioFacts {
+  std::optional<float> rssi;    ///< dBm in a TAP header; as the chip reads it in a CC24xx trailer.
+  std::int64_t slot = kAbsent;  ///< Absolute slot number.
+  std::int32_t channel = kAbsent;
+  std::int16_t lqi = kAbsent;
+  std::uint8_t page = 0;  ///< Of the channel.
+  bool more = false;      ///< There are facts that are not kept here, such as the bit rate.
+
+  /// Returns whether there is one that is kept.
+  bool any() const { return rssi || slot != kAbsent || channel != kAbsent || lqi != kAbsent; }
+  bool operator==(const RadioFacts&) const = default;
+};
+
 /// One packet. `bytes` belong to the reader and live until the callback returns.
 struct Packet {
   Framing framing = Framing::kBare;
@@ -33,14 +48,18 @@ struct Packet {
   std::uint64_t offset_bytes = 0;
   std::int64_t time_ns = kNoTime;  ///< Since the epoch of the input, or kNoTime.
   std::uint32_t interface_id = 0;  ///< Index into the reader's interfaces().
-  std::uint16_t link_type = 0;     ///< LINKTYPE_ of a capture file, 0 elsewhere.
+  /// LINKTYPE_ of a capture file, 0 elsewhere. That of the radio frame alone where something else
+  /// was taken off before it (a UDP datagram, a preamble).
+  std::uint16_t link_type = 0;
   // Serial line (kHdlc): the parts around `bytes`; kAbsent if the frame was too short for one.
   std::int32_t kind = kAbsent;        ///< Packet kind.
   std::int32_t serial_seq = kAbsent;  ///< Sequence number; only kinds ACK and PACKET_ACK have one.
   std::int32_t crc = kAbsent;         ///< As received.
   // Radio (kRadio).
   std::int32_t fcs = kAbsent;  ///< As received; kAbsent where the capture has none.
-  std::string_view comment;    ///< The capture file's; lives as long as `bytes`.
+  RadioFacts radio;
+  std::uint64_t line = 0;    ///< Of hex text, from 1; 0 elsewhere.
+  std::string_view comment;  ///< The capture file's; lives as long as `bytes`.
   /// The fault of the framing itself; kNone if it is sound. Its offset counts from the first byte
   /// of the frame (kind byte, length byte or frame control field).
   Error error{Fault::kNone, 0, ReqId::kNone};
@@ -48,6 +67,9 @@ struct Packet {
   /// (Fault::kTooLong), the capture kept only its beginning (Fault::kCut), or they could not be
   /// read at all (Fault::kContainer).
   std::uint64_t dropped_bytes = 0;
+
+  /// Returns whether only the capture's snap length is to blame for the error.
+  bool cut_by_capture() const { return error.fault == Fault::kCut && link_type != 0; }
 };
 
 /// A callback for packets: a plain pair, so that calling it costs no more than a function pointer.

@@ -49,7 +49,8 @@ UnitReader::Step PcapReader::file_header(Bytes input) {
   }
   interface.ticks_per_second = magic == kMagicNano ? 1'000'000'000 : 1'000'000;
   // The upper half of the field is the length of an Ethernet FCS, which is ignored.
-  interface.link_type = static_cast<std::uint16_t>(load32(input.data() + 20));
+  interface.link_type =
+      link_read_as(static_cast<std::uint16_t>(load32(input.data() + 20)), options_);
   interfaces_.assign(1, interface);
   has_header_ = true;
   return used(kFileHeaderBytes);

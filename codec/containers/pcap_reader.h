@@ -15,6 +15,9 @@ inline constexpr std::size_t kCaptureRecordMax = 256 * 1024;
 /// ends within its header or a record), and those of link_record.h. Offsets of the first two count
 /// from the header at fault. Source: draft-ietf-opsawg-pcap.
 class PcapReader final : public UnitReader {
+ public:
+  explicit PcapReader(const ReaderOptions& options = {}) : options_(options) {}
+
  protected:
   Step step(Bytes input, PacketSink sink) override;
   void end(Bytes rest, PacketSink sink) override;
@@ -26,6 +29,7 @@ class PcapReader final : public UnitReader {
     return big_endian_ ? load_be32(p) : load_le32(p);
   }
 
+  ReaderOptions options_;
   bool big_endian_ = false;
   bool has_header_ = false;
   Packet damage_;  // Delivered at the end of the input, when its extent is known.

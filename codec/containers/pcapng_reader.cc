@@ -96,7 +96,7 @@ void PcapngReader::interface_description(Bytes bytes, PacketSink sink) {
     return deliver_bad_block(bytes, Fault::kContainer, 4, sink);
   }
   Interface interface;
-  interface.link_type = load16(bytes.data() + 8);
+  interface.link_type = link_read_as(load16(bytes.data() + 8), options_);
   Bytes options = bytes.sub(16, content_end(bytes) - 16);
   Option option;
   bool sound = true;

@@ -22,6 +22,9 @@ inline constexpr std::size_t kPcapngBlockMax = 16 * 1024 * 1024;
 /// ends within a block; its part is delivered). Packets may have those of link_record.h. Source:
 /// draft-ietf-opsawg-pcapng.
 class PcapngReader final : public UnitReader {
+ public:
+  explicit PcapngReader(const ReaderOptions& options = {}) : options_(options) {}
+
  protected:
   Step step(Bytes input, PacketSink sink) override;
   void end(Bytes rest, PacketSink sink) override;
@@ -60,6 +63,7 @@ class PcapngReader final : public UnitReader {
     return big_endian_ ? load_be32(p) : load_le32(p);
   }
 
+  ReaderOptions options_;
   bool big_endian_ = false;
   bool in_section_ = false;
   bool supported_ = true;                    // The section's major version is known.

@@ -1,6 +1,7 @@
 // One interface for all sources of packets.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -33,6 +34,13 @@ class Reader {
   /// stays until then.
   virtual void finish(PacketSink sink) = 0;
 
+  /// Lines of text that are no packets and no mistakes either.
+  struct Noise {
+    std::uint64_t lines = 0;
+    std::uint64_t first = 0;  ///< Its number, from 1.
+  };
+  virtual Noise noise() const { return {}; }
+
   /// Returns the interfaces met so far; a Packet's interface_id is an index into them.
   const std::vector<Interface>& interfaces() const { return interfaces_; }
 
@@ -47,6 +55,7 @@ enum class InputFormat : std::uint8_t {
   kPcap,
   kPcapng,
   kHex,    ///< Text, a packet a line.
+  kLog,    ///< The same among other lines, as tools log it.
   kJsonl,  ///< JSON lines; no reader here.
 };
 
@@ -56,7 +65,12 @@ struct ReaderOptions {
   std::string interface_name;                 ///< For a stream or hex text.
   Framing hex_framing = Framing::kSf;         ///< Framing of the lines of hex text.
   bool hex_has_fcs = false;                   ///< Lines of kRadio end with an FCS.
+  /// Link types in whose place USER0 to USER15 (147 to 162) are read; 0: as they are.
+  std::array<std::uint16_t, 16> user_links{};
 };
+
+/// Returns the link type in whose place `link_type` is read.
+std::uint16_t link_read_as(std::uint16_t link_type, const ReaderOptions& options);
 
 /// Returns a reader of that format; null for kUnknown and kJsonl.
 std::unique_ptr<Reader> make_reader(InputFormat format, const ReaderOptions& options = {});

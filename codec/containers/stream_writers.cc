@@ -84,6 +84,9 @@ bool SfWriter::write(const Packet& packet, std::string_view, std::string& out) {
 
 bool HexWriter::write(const Packet& packet, std::string_view, std::string& out) {
   if (packet.error.fault != Fault::kNone || packet.bytes.empty()) return false;
+  // A line that begins with a flag has the bytes of a serial line.
+  const bool packets = packet.framing == Framing::kHdlc || packet.framing == Framing::kSf;
+  if (packets && packet.bytes[0] == kHdlcFlag) return false;
   const char* const digits = upper_case_ ? "0123456789ABCDEF" : "0123456789abcdef";
   for (const std::uint8_t byte : packet.bytes) {
     out += digits[byte >> 4];
@@ -100,7 +103,8 @@ std::unique_ptr<Writer> make_writer(InputFormat format, std::uint16_t link_type)
     case InputFormat::kSf: return std::make_unique<SfWriter>();
     case InputFormat::kPcap: return std::make_unique<PcapWriter>(link_type);
     case InputFormat::kPcapng: return std::make_unique<PcapngWriter>();
-    case InputFormat::kHex: return std::make_unique<HexWriter>();
+    case InputFormat::kHex:
+    case InputFormat::kLog: return std::make_unique<HexWriter>();
     case InputFormat::kUnknown:
     case InputFormat::kJsonl: break;
   }

@@ -1,5 +1,8 @@
 #include "codec/containers/zep_packet.h"
 
+#include <algorithm>
+#include <optional>
+
 #include "codec/containers/link_record.h"
 
 namespace rubric {
@@ -31,6 +34,119 @@ void store_ntp(std::int64_t time_ns, std::uint8_t* at) {
   store_be32(at, static_cast<std::uint32_t>(time_ns / kSecondNs + kNtpTo1970Seconds));
   // Rounded up, so that reading it gives the same nanosecond.
   store_be32(at + 4, static_cast<std::uint32_t>(((rest_ns << 32) + kSecondNs - 1) / kSecondNs));
+}
+
+// Reads a datagram of which a capture has only the beginning and lacks `missing` bytes.
+void decode_cut_zep_datagram(Bytes datagram, std::uint64_t missing, Packet& packet) {
+  const bool v2 = datagram.size() > 2 && datagram[2] == 2;
+  const std::size_t header = std::min(datagram.size(), v2 ? kZepHeaderV2 : kZepHeaderV1);
+  packet.framing = Framing::kRadio;
+  packet.kind = packet.serial_seq = packet.crc = packet.fcs = kAbsent;
+  packet.bytes = datagram.from(header);
+  packet.offset_bytes += header;
+  packet.dropped_bytes = missing;
+  packet.error = fail(Fault::kCut, packet.bytes.size(), ReqId::kNone).error;
+}
+
+constexpr std::uint16_t kEtherIpv4 = 0x0800;
+constexpr std::uint16_t kEtherIpv6 = 0x86DD;
+constexpr std::uint16_t kEtherVlan = 0x8100;
+constexpr std::uint16_t kEtherServiceVlan = 0x88A8;
+constexpr std::uint8_t kProtocolUdp = 17;
+constexpr std::size_t kIpv4HeaderMin = 20;
+constexpr std::size_t kIpv6HeaderBytes = 40;
+constexpr std::size_t kUdpHeaderBytes = 8;
+
+/// What is left of a record: the captured part, and how long it would be whole.
+struct Rest {
+  Bytes bytes;
+  std::uint64_t size;
+
+  bool drop(std::size_t count) {
+    if (bytes.size() < count) return false;
+    bytes = bytes.from(count);
+    size -= count;
+    return true;
+  }
+  void keep(std::uint64_t count) {
+    size = std::min(size, count);
+    bytes = bytes.first(std::min<std::uint64_t>(bytes.size(), size));
+  }
+};
+
+bool take_ethernet(Rest& rest, std::uint16_t& type) {
+  if (rest.bytes.size() < 14) return false;
+  type = load_be16(rest.bytes.data() + 12);
+  rest.drop(14);
+  while (type == kEtherVlan || type == kEtherServiceVlan) {
+    if (rest.bytes.size() < 4) return false;
+    type = load_be16(rest.bytes.data() + 2);
+    rest.drop(4);
+  }
+  return true;
+}
+
+bool take_link_header(Rest& rest, std::uint16_t link_type, std::uint16_t& type) {
+  switch (link_type) {
+    case kLinkEthernet: return take_ethernet(rest, type);
+    case kLinkSll:
+      if (rest.bytes.size() < 16) return false;
+      type = load_be16(rest.bytes.data() + 14);
+      return rest.drop(16);
+    case kLinkSll2:
+      if (rest.bytes.size() < 20) return false;
+      type = load_be16(rest.bytes.data());
+      return rest.drop(20);
+    default:
+      if (rest.bytes.empty()) return false;
+      type = rest.bytes[0] >> 4 == 6 ? kEtherIpv6 : kEtherIpv4;
+      return true;
+  }
+}
+
+bool take_ipv4(Rest& rest) {
+  if (rest.bytes.size() < kIpv4HeaderMin || rest.bytes[0] >> 4 != 4) return false;
+  const std::uint8_t* const ip = rest.bytes.data();
+  constexpr std::uint16_t kMoreOrOffset = 0x3FFF;
+  if (ip[9] != kProtocolUdp || (load_be16(ip + 6) & kMoreOrOffset) != 0) return false;
+  const std::size_t header = std::size_t{ip[0] & 0xFU} * 4;
+  const std::size_t total = load_be16(ip + 2);
+  if (header < kIpv4HeaderMin || (total != 0 && total < header)) return false;
+  if (total != 0) rest.keep(total);  // Ethernet pads; 0 where the network card cuts packets up.
+  return rest.drop(header);
+}
+
+bool take_ipv6(Rest& rest) {
+  if (rest.bytes.size() < kIpv6HeaderBytes || rest.bytes[0] >> 4 != 6) return false;
+  std::uint8_t next = rest.bytes[6];
+  const std::size_t size = load_be16(rest.bytes.data() + 4);
+  rest.drop(kIpv6HeaderBytes);
+  if (size != 0) rest.keep(size);
+  const auto is_extension = [](std::uint8_t header) {
+    return header == 0 || header == 43 || header == 60;  // Hop by hop, routing, destination.
+  };
+  while (is_extension(next)) {
+    if (rest.bytes.size() < 2) return false;
+    next = rest.bytes[0];
+    if (!rest.drop(8 + std::size_t{rest.bytes[1]} * 8)) return false;
+  }
+  return next == kProtocolUdp;
+}
+
+/// Returns the content of a datagram from or to ZEP's port.
+std::optional<Rest> zep_datagram(Rest rest, std::uint16_t link_type) {
+  std::uint16_t type = 0;
+  if (!take_link_header(rest, link_type, type)) return std::nullopt;
+  const bool known =
+      (type == kEtherIpv4 && take_ipv4(rest)) || (type == kEtherIpv6 && take_ipv6(rest));
+  if (!known || rest.bytes.size() < kUdpHeaderBytes) return std::nullopt;
+  const std::uint8_t* const udp = rest.bytes.data();
+  if (load_be16(udp) != kZepPort && load_be16(udp + 2) != kZepPort) return std::nullopt;
+  const std::size_t length = load_be16(udp + 4);
+  if (length != 0 && length < kUdpHeaderBytes) return std::nullopt;
+  if (length != 0) rest.keep(length);
+  rest.drop(kUdpHeaderBytes);
+  return rest;
 }
 
 }  // namespace
@@ -95,6 +211,7 @@ bool decode_zep_datagram(Bytes datagram, Packet& packet) {
   packet.kind = packet.serial_seq = packet.crc = packet.fcs = kAbsent;
   packet.dropped_bytes = 0;
   packet.time_ns = kNoTime;
+  packet.radio = RadioFacts{};
   const Result<ZepPacket> zep = parse_zep(datagram);
   if (!zep) {
     packet.bytes = datagram;
@@ -105,15 +222,53 @@ bool decode_zep_datagram(Bytes datagram, Packet& packet) {
   const Bytes frame = zep->frame;
   if (frame.empty()) return false;
   packet.offset_bytes += zep->frame_offset_bytes;
+  packet.radio.channel = zep->channel;
+  constexpr std::uint8_t kLqiUnknown = 255;
+  if (zep->lqi != 0 && zep->lqi != kLqiUnknown) packet.radio.lqi = zep->lqi;
   if (zep->has_fcs || frame.size() < kChipBytes) {
     decode_radio_record(frame, kLinkRadioFcs, packet);
     return true;
   }
+  packet.radio.rssi = static_cast<std::int8_t>(frame[frame.size() - 2]);
+  packet.radio.lqi = frame[frame.size() - 1] & 0x7F;
   decode_radio_record(frame.first(frame.size() - kChipBytes), kLinkRadioNoFcs, packet);
   if (packet.error.fault == Fault::kNone && (frame[frame.size() - 1] & kChipCrcOk) == 0) {
     packet.error = fail(Fault::kFcs, packet.bytes.size(), "WIRE-RADIO-FCS"_rule).error;
   }
   return true;
+}
+
+bool is_network_link(std::uint16_t link_type) {
+  switch (link_type) {
+    case kLinkEthernet:
+    case kLinkRawIp:
+    case kLinkSll:
+    case kLinkIpv4:
+    case kLinkIpv6:
+    case kLinkSll2: return true;
+    default: return false;
+  }
+}
+
+bool decode_udp_record(Bytes record, std::uint64_t original_bytes, std::uint16_t link_type,
+                       Packet& packet) {
+  const std::optional<Rest> datagram = zep_datagram({record, original_bytes}, link_type);
+  if (!datagram) return false;
+  const std::int64_t time_ns = packet.time_ns;
+  const std::uint64_t begin = packet.offset_bytes;
+  const auto before = static_cast<std::size_t>(datagram->bytes.data() - record.data());
+  packet.offset_bytes += before;
+  const std::uint64_t missing = datagram->size - datagram->bytes.size();
+  bool frame = true;
+  if (missing == 0) {
+    frame = decode_zep_datagram(datagram->bytes, packet);
+  } else {
+    decode_cut_zep_datagram(datagram->bytes, missing, packet);
+  }
+  packet.time_ns = time_ns;
+  packet.link_type = packet.error.requirement == "WIRE-ZEP"_rule ? 0 : kLinkRadioTap;
+  if (!frame) packet.offset_bytes = begin;
+  return frame;
 }
 
 }  // namespace rubric

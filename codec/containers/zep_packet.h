@@ -1,4 +1,5 @@
-// A packet of the ZigBee Encapsulation Protocol (ZEP): a radio frame in a UDP datagram.
+// A packet of the ZigBee Encapsulation Protocol (ZEP): a radio frame in a UDP datagram, and the
+// datagram in a record of a network.
 #pragma once
 
 #include <cstdint>
@@ -37,5 +38,18 @@ void append_zep(const ZepPacket& zep, std::string& out);
 /// without frame, such as an ack. A malformed datagram is a radio frame with an error and the bytes
 /// as they are.
 bool decode_zep_datagram(Bytes datagram, Packet& packet);
+
+/// Returns whether records of this link type are packets of a network: Ethernet, IP of either
+/// version, and what Linux captures on its pseudo-interface "any".
+bool is_network_link(std::uint16_t link_type);
+
+/// Reads the radio frame in a UDP datagram from or to ZEP's port. `record` is the captured part of
+/// `original_bytes`; `packet` comes with offset_bytes of the record's first byte, and keeps the
+/// capture's time. It leaves with the link type TAP, as ZEP states facts of the same kind. Returns
+/// false, and changes nothing, where there is no frame: another protocol, a fragment, a ZEP ack.
+/// Faults: those of decode_zep_datagram(), kCut. Sources: RFC 791, RFC 8200, RFC 768;
+/// LINKTYPE_ETHERNET, _LINUX_SLL, _LINUX_SLL2, _RAW.
+bool decode_udp_record(Bytes record, std::uint64_t original_bytes, std::uint16_t link_type,
+                       Packet& packet);
 
 }  // namespace rubric

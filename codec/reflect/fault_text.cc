@@ -65,8 +65,24 @@ std::string allowed(const Field& field) {
   return text;
 }
 
+std::string cut_text(const Packet& packet) {
+  const std::uint64_t head = std::uint64_t{packet.kind != kAbsent} + (packet.serial_seq != kAbsent);
+  const std::uint64_t kept = head + packet.bytes.size();
+  return "cut by the capture (" + std::to_string(kept) + " of " +
+         std::to_string(kept + packet.dropped_bytes) + " bytes)";
+}
+
+std::string hex_error_text(const Frame& frame) {
+  const std::string line = "line " + std::to_string(frame.packet->line);
+  if (frame.error.fault == Fault::kTooLong) return line + " is too long";
+  return line + ", character " + std::to_string(frame.error.offset_bytes + 1) +
+         ": expected two hex digits a byte";
+}
+
 std::string framing_error_text(const Frame& frame) {
   const Packet& packet = *frame.packet;
+  if (packet.cut_by_capture()) return cut_text(packet);
+  if (packet.line != 0 && frame.error.requirement == "WIRE-HEX"_rule) return hex_error_text(frame);
   std::string text(fault_sentence(frame.error.fault));
   if (frame.error.fault == Fault::kCrc && packet.crc != kAbsent) {
     text += ": it is " + hex16(packet.crc) + ", the bytes give " + hex16(serial_crc(packet));

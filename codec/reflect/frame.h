@@ -68,7 +68,10 @@ struct Frame {
   /// The fault of the framing, else of the content. The offset counts from the first byte of
   /// packet->bytes; a fault of the frame's check sum is right after them.
   Error error{Fault::kNone, 0, ReqId::kNone};
-  bool malformed() const { return error.fault != Fault::kNone; }
+  bool has_error() const { return error.fault != Fault::kNone; }
+  /// Returns whether the error is the sender's or the channel's: what a capture's snap length cuts
+  /// off says nothing of the frame.
+  bool malformed() const { return has_error() && !(packet && packet->cut_by_capture()); }
 };
 
 /// Decodes packets by one protocol's tables.

@@ -33,7 +33,7 @@ inline void check_json(std::string_view text, const format::Record& record) {
     return found ? *found : reflect::Value::of_array({});
   };
   require(member("schema").text == "rubric.decode/1", "a line says what it is");
-  require(member("error").is(reflect::Value::Kind::kNull) == !record.frame->malformed(),
+  require(member("error").is(reflect::Value::Kind::kNull) == !record.frame->has_error(),
           "a line says what is malformed");
   std::string hex;
   for (const std::uint8_t byte : record.packet().bytes) {

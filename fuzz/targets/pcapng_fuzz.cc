@@ -7,6 +7,7 @@
 
 #include "codec/containers/link_record.h"
 #include "codec/containers/pcapng_reader.h"
+#include "codec/containers/zep_packet.h"
 #include "fuzz/support/readers.h"
 #include "fuzz/support/require.h"
 
@@ -34,12 +35,19 @@ File with_names(const Reader& reader, std::vector<Kept> packets) {
 struct Walked {
   std::size_t data_at;
   std::size_t interface;
+  std::uint16_t link_type;
 };
+
+// Returns whether something before the frame is taken off: a header, a preamble, a datagram.
+bool has_head(std::uint16_t link_type) {
+  return link_type == kLinkRadioTap || link_type == kLinkRadioPhy || is_network_link(link_type);
+}
 
 // Returns the enhanced packets of a little-endian file of whole blocks of the usual kinds only;
 // nothing for any other file.
 std::vector<Walked> plain_walk(Bytes file) {
   std::vector<Walked> packets;
+  std::vector<std::uint16_t> links;
   std::size_t first = 0;  // Interface of the present section.
   std::size_t next = 0;
   for (std::size_t at = 0; at < file.size();) {
@@ -55,12 +63,13 @@ std::vector<Walked> plain_walk(Bytes file) {
       first = next;
     } else if (type == 1) {
       if (size != 20) return {};  // No options.
+      links.push_back(load_le16(rest.data() + 8));
       ++next;
     } else if (type == 6) {
       if (size < 32) return {};
       const std::size_t interface = load_le32(rest.data() + 8);
       if (interface >= next - first || load_le32(rest.data() + 20) > size - 32) return {};
-      packets.push_back({at + 28, first + interface});
+      packets.push_back({at + 28, first + interface, links[first + interface]});
     } else {
       return {};
     }
@@ -77,8 +86,7 @@ void check_walk(const std::vector<Kept>& packets, Bytes file) {
   for (std::size_t i = 0; i < walked.size(); ++i) {
     require(packets[i].packet.interface_id == walked[i].interface,
             "interfaces count on over the sections");
-    const bool tap = packets[i].packet.link_type == kLinkRadioTap;  // It has a header of its own.
-    require(tap || packets[i].packet.offset_bytes == walked[i].data_at,
+    require(has_head(walked[i].link_type) || packets[i].packet.offset_bytes == walked[i].data_at,
             "a packet begins where its data do");
   }
 }
@@ -90,9 +98,10 @@ Kept as_written(const Kept& kept, std::int64_t* last_ns) {
   if (kept.packet.time_ns != kNoTime) *last_ns = std::max<std::int64_t>(kept.packet.time_ns, 0);
   wanted.packet.time_ns = *last_ns;
   wanted.packet.link_type = link_type_of(kept.get());
-  require(
-      wanted.packet.link_type == kept.packet.link_type || kept.packet.link_type == kLinkRadioTap,
-      "a packet stays under its link type");
+  const bool malformed_zep = kept.packet.link_type == 0;
+  require(wanted.packet.link_type == kept.packet.link_type || malformed_zep ||
+              kept.packet.link_type == kLinkRadioTap,
+          "a packet stays under its link type");
   return wanted;
 }
 

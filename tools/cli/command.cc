@@ -229,7 +229,7 @@ const Command& Command::innermost() const {
 int Command::complain(const std::string& what) const {
   const std::string full = parent_ ? parent_->name() + " " + name() : name();
   fmt::print(stderr, "{}: {}\nTry '{} --help'.\n", full, what, full);
-  return usage_exit_code_;
+  return kExitUsage;
 }
 
 int Command::complain_about_extras() const {
@@ -267,7 +267,7 @@ int Command::parse_and_run(int argc, char** argv) {
     return kExitInput;
   } catch (const std::exception& error) {
     fmt::print(stderr, "{}: {}\n", name(), error.what());
-    return kExitInput;
+    return kExitBroken;
   }
   return kExitClean;
 }

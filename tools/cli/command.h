@@ -112,8 +112,6 @@ class Command {
   void callback(std::function<void()> run);
   /// Does the same as callback(); the program ends with the code that `run` returns.
   void exit_code_of(std::function<int()> run);
-  /// Sets the exit code of a bad command line; 2 by default.
-  void set_usage_exit_code(int code) { usage_exit_code_ = code; }
 
   std::string name() const;
   std::string description() const;
@@ -135,7 +133,6 @@ class Command {
   CLI::App* app_;
   const Command* parent_ = nullptr;
   std::deque<Command> subcommands_;
-  int usage_exit_code_ = kExitUsage;
 };
 
 }  // namespace rubric::cli

@@ -47,6 +47,8 @@ bool FcsGuess::is_cc24xx() const {
 void reread_fcs(FcsKind kind, Packet& packet) {
   if (packet.link_type != kLinkRadioFcs || packet.error.fault == Fault::kCut) return;
   if (kind == FcsKind::kCc24xx && has_fcs(packet)) {
+    packet.radio.rssi = static_cast<std::int8_t>(packet.fcs & 0xFF);
+    packet.radio.lqi = static_cast<std::int16_t>(packet.fcs >> 8 & 0x7F);
     const bool sound = (packet.fcs & kCrcBit) != 0;
     packet.error = sound ? Error{Fault::kNone, 0, ReqId::kNone}
                          : fail(Fault::kFcs, packet.bytes.size(), "WIRE-RADIO-FCS"_rule).error;

@@ -36,7 +36,8 @@ class FcsGuess {
 };
 
 /// Reads the end of a packet of link type 195 anew; leaves others, and cut ones, as they are. A
-/// CC24xx trailer stays in `fcs`; the fault is kFcs if its CRC bit is clear.
+/// CC24xx trailer stays in `fcs`, RSSI and link quality go into `radio`; the fault is kFcs if its
+/// CRC bit is clear.
 void reread_fcs(FcsKind kind, Packet& packet);
 
 }  // namespace rubric::cli

@@ -7,12 +7,14 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <map>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 #include <thread>
 #include <utility>
 
+#include "codec/containers/link_record.h"
 #include "codec/containers/reader.h"
 #include "codec/containers/zep_packet.h"
 #include "codec/lines/air.h"
@@ -21,6 +23,7 @@
 #include "codec/lines/stop.h"
 #include "codec/reflect/fault_text.h"
 #include "codec/reflect/suggest.h"
+#include "tools/cli/choose_spec.h"
 #include "tools/cli/fcs.h"
 #include "tools/cli/input_file.h"
 #include "tools/cli/progress.h"
@@ -48,7 +51,62 @@ struct FormatName {
 constexpr FormatName kFormats[] = {
     {"hdlc", InputFormat::kHdlc},     {"sf", InputFormat::kSf},   {"pcap", InputFormat::kPcap},
     {"pcapng", InputFormat::kPcapng}, {"hex", InputFormat::kHex}, {kHexRadio, InputFormat::kHex},
+    {"log", InputFormat::kLog},
 };
+
+/// The names of link types in --link-type.
+struct LinkName {
+  const char* name;
+  std::uint16_t link_type;
+};
+constexpr LinkName kLinks[] = {
+    {"serial", kLinkSerial},      {"sf", kLinkSf},
+    {"radio", kLinkRadioNoFcs},   {"radio-fcs", kLinkRadioFcs},
+    {"radio-phy", kLinkRadioPhy}, {"radio-tap", kLinkRadioTap},
+    {"ethernet", kLinkEthernet},
+};
+
+struct UserLink {
+  std::uint16_t from;
+  std::uint16_t to;
+};
+
+// Parses 149=radio-fcs.
+std::optional<UserLink> parse_user_link(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  const bool digits = equals == 3 && text.find_first_not_of("0123456789") == equals;
+  const int from = digits ? std::stoi(text) : 0;
+  if (from < kLinkUserFirst || from > kLinkUserLast) return std::nullopt;
+  for (const LinkName& known : kLinks) {
+    if (text.substr(equals + 1) != known.name) continue;
+    return UserLink{static_cast<std::uint16_t>(from), known.link_type};
+  }
+  return std::nullopt;
+}
+
+std::string check_user_link(const std::string& text) {
+  return parse_user_link(text) ? ""
+                               : "expected a link type from 147 to 162 and what it is, as in "
+                                 "149=radio-fcs; given '" +
+                                     text + "'";
+}
+
+/// Returns what a link type holds that is not read here; empty where nobody meets it with motes.
+std::string_view foreign_link_name(std::uint16_t link_type) {
+  switch (link_type) {
+    case 0: return " (loopback of BSD)";
+    case 105: return " (802.11)";
+    case 127: return " (802.11 with radiotap header)";
+    case 189:
+    case 220: return " (USB)";
+    case 249: return " (USBPcap)";
+    case 187:
+    case 201: return " (Bluetooth HCI)";
+    case 251:
+    case 256: return " (Bluetooth Low Energy)";
+    default: return "";
+  }
+}
 
 std::string_view format_name(InputFormat format) {
   for (const FormatName& known : kFormats) {
@@ -110,6 +168,8 @@ class Run {
         complain(std::strerror(error.code().value()));
       } catch (const FileChanged& changed) {
         complain(changed.what());
+      } catch (const report::PackedDamage& damage) {
+        complain(damage.what());
       } catch (const std::invalid_argument& error) {
         complain(error.what());
       }
@@ -213,6 +273,7 @@ class Run {
       lines::stop_on_signals();
       result_.live = true;
     }
+    passed_over_.clear();
     InputFile file(files_[source_.file_index], options_.follow, on_idle_);
     std::size_t size = 0;
     InputFormat format = find_format(options_.format);
@@ -235,25 +296,56 @@ class Run {
         return complain("this is JSON; 'rubric encode' reads it");
       }
     }
-    if (bare && format != InputFormat::kHex) return whole(file, size);
-    ReaderOptions reader_options;
-    if (options_.format == kHexRadio) reader_options.hex_framing = Framing::kRadio;
+    const bool text = format == InputFormat::kHex || format == InputFormat::kLog;
+    if (bare && !text) return whole(file, size);
+    ReaderOptions reader_options = cli::reader_options(options_);
     if (bare) reader_options.hex_framing = Framing::kBare;
     std::unique_ptr<Reader> reader = make_reader(format, reader_options);
     source_.format = format_name(format);
     if (size == 0) size = file.read(chunk_.get(), kChunkBytes);
-    choose_fcs(format, Bytes(chunk_.get(), size));
+    choose_fcs(format, reader_options, Bytes(chunk_.get(), size));
     pump(file, *reader, size);
+    say_what_is_left_out(*reader);
+  }
+
+  // Says once for a file what in it is nothing for us.
+  void say_what_is_left_out(const Reader& reader) {
+    const Reader::Noise noise = reader.noise();
+    if (noise.lines != 0) {
+      remark(fmt::format("{} of its lines hold no packet; the first is line {}", noise.lines,
+                         noise.first));
+    }
+    for (const auto& [link_type, count] : passed_over_) {
+      if (is_network_link(link_type)) {
+        remark(fmt::format("{} of {} packets are no ZEP packets (UDP port {})", count,
+                           source_.number, kZepPort));
+        continue;
+      }
+      const bool user = link_type >= kLinkUserFirst && link_type <= kLinkUserLast;
+      const std::string hint =
+          user ? fmt::format("; --link-type {}=radio-fcs reads it as 802.15.4, for one", link_type)
+               : "";
+      const std::string what =
+          fmt::format("link type {}{} is not read: {} of {} packets are left out{}", link_type,
+                      foreign_link_name(link_type), count, source_.number, hint);
+      count == source_.number ? complain(what) : remark(what);
+    }
+  }
+
+  // Returns whether a packet is of a link type that is not read.
+  static bool is_foreign(const Packet& packet) {
+    return packet.error.fault == Fault::kUnsupported && packet.framing == Framing::kBare &&
+           packet.link_type != 0;
   }
 
   // Decides what ends the radio frames of a file from its beginning.
-  void choose_fcs(InputFormat format, Bytes beginning) {
+  void choose_fcs(InputFormat format, const ReaderOptions& reader_options, Bytes beginning) {
     fcs_ = fcs_kind(options_.fcs);
     if (options_.fcs != "auto") return;
     FcsGuess guess;
     auto look = [&](const Packet& packet) { guess.take(packet); };
     if (format == InputFormat::kPcap || format == InputFormat::kPcapng) {
-      make_reader(format)->feed(beginning, look);
+      make_reader(format, reader_options)->feed(beginning, look);
     }
     if (!guess.is_cc24xx()) return;
     fcs_ = FcsKind::kCc24xx;
@@ -320,6 +412,10 @@ class Run {
                            reflect::fault_sentence(packet.error.fault)));
     }
     ++source_.number;
+    if (is_foreign(packet)) {
+      ++passed_over_[packet.link_type];
+      return;
+    }
     if (!on_packet_(packet, source_)) result_.stopped = true;
   }
 
@@ -332,25 +428,18 @@ class Run {
   Source source_;
   InputResult result_;
   FcsKind fcs_ = FcsKind::kCrc;
+  std::map<std::uint16_t, std::uint64_t>
+      passed_over_;    // Packets of the present file, by link type.
   bool lost_ = false;  // The line is gone, and that was said.
 };
 
 }  // namespace
 
 void add_input_options(Command& app, InputOptions& options) {
-  app.add_option("FILE", options.files, "Captures, in order; none or - is stdin");
-  app.add_option("--input-format", options.format,
-                 "Read the input as auto, hdlc (bytes of a serial line), sf (serial forwarder), "
-                 "pcap, pcapng, hex (text, from the dispatch byte on), hex-radio (text, 802.15.4 "
-                 "without FCS) or bare (one message, with --as)")
-      .one_of({"auto", "hdlc", "sf", "pcap", "pcapng", "hex", kHexRadio, "bare"})
-      .show_default();
-  app.add_option("--fcs", options.fcs,
-                 "Read the last two bytes of radio frames with link type 195 as crc (their FCS), "
-                 "cc24xx (RSSI, link quality and CRC bit of TI's chips), none (data) or auto "
-                 "(decided from the beginning of the file)")
-      .one_of({"auto", "crc", "cc24xx", "none"})
-      .show_default();
+  app.add_option("FILE", options.files,
+                 "Captures, in order, compressed by gzip or zstd or not; none or - is stdin");
+  add_capture_options(app, options);
+  options.spec = kAutoSpec;
   add_spec_option(app, options);
   app.add_option(
          "--as", options.as_message,
@@ -358,10 +447,35 @@ void add_input_options(Command& app, InputOptions& options) {
       .check(given);
 }
 
+void add_capture_options(Command& app, InputOptions& options) {
+  app.add_option("--input-format", options.format,
+                 "Read the input as auto, hdlc (bytes of a serial line), sf (serial forwarder), "
+                 "pcap, pcapng, hex (text, from the dispatch byte on, or from a flag 7E), log (the "
+                 "same among other lines), hex-radio (text, 802.15.4; with FCS if --fcs is given) "
+                 "or bare (one message, with --as)")
+      .one_of({"auto", "hdlc", "sf", "pcap", "pcapng", "hex", "log", kHexRadio, "bare"})
+      .show_default();
+  app.add_option("--fcs", options.fcs,
+                 "Read the last two bytes of radio frames with link type 195 as crc (their FCS), "
+                 "cc24xx (RSSI, link quality and CRC bit of TI's chips), none (data) or auto "
+                 "(decided from the beginning of the file)")
+      .one_of({"auto", "crc", "cc24xx", "none"})
+      .show_default();
+  app.add_option("--link-type", options.links,
+                 "Read a link type from 147 to 162, to which everybody gives a meaning of their "
+                 "own, as serial, sf, radio, radio-fcs, radio-phy, radio-tap or ethernet: "
+                 "149=radio-fcs")
+      .check(check_user_link)
+      .repeatable();
+}
+
 void add_spec_option(Command& app, InputOptions& options, const std::string& names) {
+  const std::string by_content =
+      options.spec == kAutoSpec ? "; auto is rubicon, unless another fits what is read better" : "";
   app.add_option(names, options.spec,
                  "Use this protocol above the AM layer: a name (list prints them; none shows bare "
-                 "messages), or a .ksy file")
+                 "messages), or a .ksy file" +
+                     by_content)
       .show_default();
 }
 
@@ -385,6 +499,23 @@ void add_live_options(Command& app, InputOptions& options) {
   app.add_flag("--reconnect", options.reconnect, "Open a line again when it comes back");
 }
 
+InputFormat format_of(const InputOptions& options, Bytes beginning) {
+  return options.format == "auto" ? detect(beginning) : find_format(options.format);
+}
+
+ReaderOptions reader_options(const InputOptions& options) {
+  ReaderOptions out;
+  if (options.format == kHexRadio) {
+    out.hex_framing = Framing::kRadio;
+    out.hex_has_fcs = options.fcs == "crc" || options.fcs == "cc24xx";
+  }
+  for (const std::string& text : options.links) {
+    const std::optional<UserLink> link = parse_user_link(text);
+    if (link) out.user_links[link->from - kLinkUserFirst] = link->to;
+  }
+  return out;
+}
+
 bool goes_on(const InputOptions& options) {
   if (options.follow) return true;
   const std::vector<std::string> names = names_of(options);
@@ -396,7 +527,7 @@ bool goes_on(const InputOptions& options) {
 }
 
 const reflect::Protocol& chosen_protocol(const InputOptions& options) {
-  return protocol_of(options.spec);
+  return options.spec == kAutoSpec ? choose_spec(options) : protocol_of(options.spec);
 }
 
 const reflect::Type* chosen_message(const InputOptions& options,
@@ -405,15 +536,17 @@ const reflect::Type* chosen_message(const InputOptions& options,
     if (options.format != "bare") return nullptr;
     throw UsageError("--input-format", "bare needs --as MESSAGE");
   }
-  if (options.format != "auto" && options.format != "hex" && options.format != "bare") {
+  const std::string& format = options.format;
+  if (format != "auto" && format != "hex" && format != "bare") {
     throw UsageError("--as", "takes hex text or a binary file, not " + options.format);
   }
   const reflect::Type* type = reflect::find_type(protocol, options.as_message);
   if (type) return type;
   std::vector<std::string> names;
   for (int i = 0; i < protocol.type_count; ++i) names.emplace_back(protocol.types[i]->name);
-  throw UsageError("--as", fmt::format("unknown message '{}'{}", options.as_message,
-                                       reflect::did_you_mean(options.as_message, names)));
+  throw UsageError("--as", fmt::format("unknown message '{}'{}{}", options.as_message,
+                                       reflect::did_you_mean(options.as_message, names),
+                                       spec_with_message(protocol, options.as_message)));
 }
 
 InputResult read_packets(const InputOptions& options, const OnPacket& on_packet,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "codec/containers/packet.h"
+#include "codec/containers/reader.h"
 #include "codec/reflect/schema.h"
 #include "tools/cli/command.h"
 
@@ -17,6 +18,7 @@ struct InputOptions {
   std::vector<std::string> files;  ///< In order; none or "-" is stdin.
   std::string format = "auto";     ///< As for --input-format.
   std::string fcs = "auto";        ///< As for --fcs.
+  std::vector<std::string> links;  ///< As for --link-type: 149=radio-fcs.
   std::string spec = "rubicon";    ///< A protocol's id, or a .ksy file.
   std::string as_message;          ///< Bytes are this message alone; empty: framed packets.
   bool progress = true;            ///< A bar on stderr for long files, where that is a terminal.
@@ -25,8 +27,11 @@ struct InputOptions {
   bool reconnect = false;          ///< A line that is gone is opened again.
 };
 
-/// Adds FILE..., --input-format, --fcs, --spec and --as to a subcommand.
+/// Adds FILE..., --spec, --as and those of add_capture_options() to a subcommand.
 void add_input_options(Command& app, InputOptions& options);
+
+/// Adds --input-format, --fcs and --link-type.
+void add_capture_options(Command& app, InputOptions& options);
 
 /// Adds --spec, under these names.
 void add_spec_option(Command& app, InputOptions& options, const std::string& names = "--spec");
@@ -35,11 +40,18 @@ void add_spec_option(Command& app, InputOptions& options, const std::string& nam
 /// use (live/line.h). Without FILE, at a terminal, $MOTECOM is taken.
 void add_live_options(Command& app, InputOptions& options);
 
+/// Returns the format of an input that begins with these bytes: that of --input-format, else by
+/// content.
+InputFormat format_of(const InputOptions& options, Bytes beginning);
+
+/// Returns what --input-format, --fcs and --link-type say to a reader.
+ReaderOptions reader_options(const InputOptions& options);
+
 /// Returns whether the input goes on until somebody ends it: a line in use, a followed file, a
 /// pipe.
 bool goes_on(const InputOptions& options);
 
-/// Returns the protocol of --spec, as protocol_of() does.
+/// Returns the protocol of --spec, as protocol_of() does; of "auto" that of choose_spec().
 const reflect::Protocol& chosen_protocol(const InputOptions& options);
 /// Returns the message of --as, null if it is not given; throws UsageError as above.
 const reflect::Type* chosen_message(const InputOptions& options, const reflect::Protocol& protocol);

@@ -8,14 +8,17 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
+#include <cstdio>
 #include <system_error>
 #include <thread>
+#include <utility>
 
 #include "codec/lines/stop.h"
 
 namespace rubric::cli {
 namespace {
 
+constexpr std::size_t kPackedBytes = 64 * 1024;
 constexpr std::size_t kTailBytes = 256;  // A frame, or most of one.
 constexpr int kDetectPatienceMs = 200;
 constexpr std::chrono::milliseconds kFollowEvery{100};
@@ -28,7 +31,23 @@ int open_at_once(const std::string& name) {
   return fd;
 }
 
+// What beginning_of() has read from stdin, until an InputFile takes it.
+std::vector<std::uint8_t>& stdin_ahead() {
+  static std::vector<std::uint8_t> bytes;
+  return bytes;
+}
+
 }  // namespace
+
+std::vector<std::uint8_t> beginning_of(const std::string& name) {
+  const std::function<void()> no_idling;
+  InputFile file(name, false, no_idling);
+  if (name != "-" && !file.is_regular()) return {};
+  std::vector<std::uint8_t> bytes(kBeginningMost);
+  bytes.resize(file.read_plain(bytes.data(), bytes.size()));
+  if (name == "-") stdin_ahead() = bytes;
+  return bytes;
+}
 
 InputFile::InputFile(const std::string& name, bool follow, const std::function<void()>& on_idle)
     : name_(name),
@@ -36,6 +55,10 @@ InputFile::InputFile(const std::string& name, bool follow, const std::function<v
       is_stdin_(name == "-"),
       follow_(follow),
       on_idle_(on_idle) {
+  static bool said = false;
+  if (is_stdin_ && ::isatty(fd_) != 0 && !std::exchange(said, true)) {
+    std::fputs("rubric: reads what is typed here; Ctrl-D on a line of its own ends it\n", stderr);
+  }
   if (fd_ < 0) throw std::system_error(errno, std::generic_category());
   struct stat status {};
   if (::fstat(fd_, &status) == 0) is_regular_ = S_ISREG(status.st_mode);
@@ -46,6 +69,40 @@ InputFile::~InputFile() {
 }
 
 std::size_t InputFile::read(std::uint8_t* to, std::size_t size) {
+  if (unpacker_) return read_packed(to, size);
+  const std::size_t got = read_plain(to, size);
+  if (std::exchange(begun_, true)) return got;
+  unpacker_ = report::make_unpacker(report::packing_of(Bytes(to, got)));
+  if (!unpacker_) return got;
+  if (follow_) throw FileChanged("it is compressed, so that nothing can follow");
+  packed_.assign(to, to + got);
+  return read_packed(to, size);
+}
+
+std::size_t InputFile::read_packed(std::uint8_t* to, std::size_t size) {
+  for (;;) {
+    const Bytes all(packed_.data(), packed_.size());
+    Bytes rest = all.from(packed_at_);
+    const std::size_t got = unpacker_->unpack(rest, {to, size});
+    packed_at_ = all.size() - rest.size();
+    if (got != 0) return got;
+    packed_.resize(kPackedBytes);
+    packed_.resize(read_plain(packed_.data(), packed_.size()));
+    packed_at_ = 0;
+    if (!packed_.empty()) continue;
+    if (!unpacker_->may_end()) throw report::PackedDamage("its compressed data end too soon");
+    return 0;
+  }
+}
+
+std::size_t InputFile::read_plain(std::uint8_t* to, std::size_t size) {
+  std::vector<std::uint8_t>& ahead = stdin_ahead();
+  if (is_stdin_ && !ahead.empty()) {
+    const std::size_t got = std::min(size, ahead.size());
+    std::copy_n(ahead.begin(), got, to);
+    ahead.erase(ahead.begin(), ahead.begin() + static_cast<std::ptrdiff_t>(got));
+    return got;
+  }
   while (true) {
     if (!ready()) return 0;
     const ssize_t got = ::read(fd_, to, size);
@@ -71,6 +128,8 @@ bool InputFile::still_has_tail(std::size_t got) const {
 }
 
 bool InputFile::has_more_soon() const {
+  if (is_stdin_ && !stdin_ahead().empty()) return true;
+  if (unpacker_ && packed_at_ < packed_.size()) return true;
   if (is_regular_) return !follow_ || left() > 0;
   pollfd wait{fd_, POLLIN, 0};
   return ::poll(&wait, 1, kDetectPatienceMs) > 0 && (wait.revents & POLLIN) != 0;

@@ -6,9 +6,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "codec/text/packed.h"
 
 namespace rubric::cli {
 
@@ -17,6 +20,13 @@ class FileChanged : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
+
+/// The most bytes that beginning_of() returns.
+inline constexpr std::size_t kBeginningMost = 256 * 1024;
+
+/// Returns what a file begins with, or what comes first on stdin, where the next InputFile still
+/// finds it. Of other pipes and devices nothing is taken. Throws std::system_error.
+std::vector<std::uint8_t> beginning_of(const std::string& name);
 
 class InputFile {
  public:
@@ -30,14 +40,19 @@ class InputFile {
   bool is_regular() const { return is_regular_; }
 
   /// Reads up to `size` bytes and returns their number, 0 at the end, which a followed file has
-  /// only when the user asks to stop. Throws std::system_error, and, once all was read, FileChanged
-  /// if the file became shorter, was overwritten, or its name belongs to another file or none.
+  /// only when the user asks to stop. Unpacks what begins as gzip or zstd data. Throws
+  /// std::system_error, report::PackedDamage, and, once all was read, FileChanged if the file
+  /// became shorter, was overwritten, or its name belongs to another file or none.
   std::size_t read(std::uint8_t* to, std::size_t size);
 
   /// Returns whether more bytes are there, or will be in a moment.
   bool has_more_soon() const;
 
+  /// Does the same without unpacking.
+  std::size_t read_plain(std::uint8_t* to, std::size_t size);
+
  private:
+  std::size_t read_packed(std::uint8_t* to, std::size_t size);
   off_t left() const;
   bool still_has_tail(std::size_t got) const;
   void wait();
@@ -48,6 +63,10 @@ class InputFile {
   bool is_stdin_;
   bool is_regular_ = false;
   bool follow_;
+  bool begun_ = false;
+  std::unique_ptr<report::Unpacker> unpacker_;  // Null: the bytes are as they are.
+  std::vector<std::uint8_t> packed_;            // Read, and from packed_at_ on not unpacked.
+  std::size_t packed_at_ = 0;
   std::vector<std::uint8_t> tail_;  // Of a followed file: the last bytes that were read.
   const std::function<void()>& on_idle_;
 };

@@ -24,14 +24,31 @@ bool is_written(const std::string& name, int error) {
 
 }  // namespace
 
+Output::Output(const std::string& path, Mode mode)
+    : file_(std::make_unique<report::OutFile>(path, mode)),
+      name_(path),
+      fd_(file_->fd()),
+      packer_(report::make_packer(report::packing_of_name(path))) {}
+
 bool Output::flush() {
-  if (open()) error_ = report::write_all(fd_, buffer_.view());
+  if (packer_) {
+    packer_->pack(buffer_.view(), packed_);
+    if (open()) error_ = report::write_all(fd_, packed_);
+    packed_.clear();
+  } else if (open()) {
+    error_ = report::write_all(fd_, buffer_.view());
+  }
   buffer_.clear();
   return open();
 }
 
 bool Output::finish() {
-  if (flush() && file_) error_ = file_->finish();
+  if (flush() && packer_) {
+    packer_->finish(packed_);
+    error_ = report::write_all(fd_, packed_);
+    packed_.clear();
+  }
+  if (open() && file_) error_ = file_->finish();
   return is_written(name_, error_);
 }
 

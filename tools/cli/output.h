@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "codec/text/files.h"
+#include "codec/text/packed.h"
 #include "tools/format/buffer.h"
 
 namespace rubric::cli {
@@ -19,10 +20,9 @@ class Output {
   using Mode = report::OutFile::Mode;
 
   explicit Output(int fd = 1) : fd_(fd) {}
-  /// Writes to a file; "-" is stdout. Throws std::system_error. What was written to a kWhole file
-  /// is gone unless finish() is called.
-  Output(const std::string& path, Mode mode)
-      : file_(std::make_unique<report::OutFile>(path, mode)), name_(path), fd_(file_->fd()) {}
+  /// Writes to a file, packed if its name ends in .gz or .zst; "-" is stdout. Throws
+  /// std::system_error. What was written to a kWhole file is gone unless finish() is called.
+  Output(const std::string& path, Mode mode);
   ~Output() { flush(); }
   Output(const Output&) = delete;
   Output& operator=(const Output&) = delete;
@@ -47,6 +47,8 @@ class Output {
   std::string name_ = "-";
   int fd_;
   int error_ = 0;
+  std::unique_ptr<report::Packer> packer_;
+  std::string packed_;
   format::Buffer buffer_;
 };
 

@@ -112,6 +112,24 @@ const reflect::Protocol& protocol_of(const std::string& spec) {
       "--spec", fmt::format("unknown protocol '{}'{}", spec, reflect::did_you_mean(spec, names)));
 }
 
+bool chosen_by_content(std::string_view name) { return name != kNone && name != kLinkFrames; }
+
+std::string spec_with(const reflect::Protocol& chosen,
+                      const std::function<bool(const reflect::Protocol&)>& works) {
+  for (const std::string& name : protocol_names()) {
+    const reflect::Protocol& other = protocol_of(name);
+    if (&other == &chosen || !works(other)) continue;
+    return fmt::format("; {} has it: --spec {}", name, name);
+  }
+  return {};
+}
+
+std::string spec_with_message(const reflect::Protocol& chosen, std::string_view name) {
+  return spec_with(chosen, [&](const reflect::Protocol& other) {
+    return reflect::find_type(other, std::string(name)) != nullptr;
+  });
+}
+
 const reflect::RouteTable* read_routes_of(const reflect::Protocol& protocol) {
   for (const auto& [name, spec] : read_specs()) {
     if (spec.built.protocol == &protocol) return spec.built.routes;

@@ -25,6 +25,18 @@ std::vector<std::string> protocol_names();
 /// UsageError with the nearest name if there is none. `list` prints the names, and ends it.
 const reflect::Protocol& protocol_of(const std::string& spec);
 
+/// Returns whether a protocol may be chosen by what a capture holds: none and ieee802154 fit too
+/// much.
+bool chosen_by_content(std::string_view name);
+
+/// Returns a hint at the first other protocol for which `works` holds: "; ctp has it: --spec ctp".
+/// Empty if there is none.
+std::string spec_with(const reflect::Protocol& chosen,
+                      const std::function<bool(const reflect::Protocol&)>& works);
+
+/// Does the same for a protocol with a message of this name.
+std::string spec_with_message(const reflect::Protocol& chosen, std::string_view name);
+
 /// Returns the routes to the messages of a protocol that was not built in; null if it was.
 const reflect::RouteTable* read_routes_of(const reflect::Protocol& protocol);
 

@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <cstring>
 
+#include "codec/text/packed.h"
+
 namespace rubric::cli {
 
 bool read_file(const std::string& path, std::string& text, std::string& error) {
@@ -20,7 +22,26 @@ bool read_file(const std::string& path, std::string& text, std::string& error) {
   const bool broken = std::ferror(file) != 0;
   if (broken) error = path + ": " + std::strerror(errno);
   if (file != stdin) std::fclose(file);
-  return !broken;
+  if (broken) return false;
+  const Bytes all(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
+  const report::Packing packing = report::packing_of(all);
+  if (packing == report::Packing::kNone) return true;
+  try {
+    text = report::unpacked(packing, text);
+  } catch (const report::PackedDamage& damage) {
+    error = path + ": " + damage.what();
+    return false;
+  }
+  return true;
+}
+
+bool is_packed(const std::string& path) {
+  std::uint8_t first[4] = {};
+  std::FILE* const file = std::fopen(path.c_str(), "rb");
+  if (!file) return false;
+  const std::size_t size = std::fread(first, 1, sizeof first, file);
+  std::fclose(file);
+  return report::packing_of(Bytes(first, size)) != report::Packing::kNone;
 }
 
 }  // namespace rubric::cli

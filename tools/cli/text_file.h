@@ -5,7 +5,14 @@
 
 namespace rubric::cli {
 
-/// Reads a whole file, or stdin for "-". Returns false, with "path: why" in `error`, if that fails.
+/// Reads a whole file, or stdin for "-", and unpacks it if it is packed. Returns false, with "path:
+/// why" in `error`, if that fails.
 bool read_file(const std::string& path, std::string& text, std::string& error);
+
+/// Returns whether the file begins as gzip or zstd data.
+bool is_packed(const std::string& path);
+
+/// Returns whether the file begins as gzip or zstd data.
+bool is_packed(const std::string& path);
 
 }  // namespace rubric::cli

@@ -13,7 +13,6 @@
 namespace rubric::cli {
 
 void set_verdict(Command& command, std::function<int()> run) {
-  command.set_usage_exit_code(kVerdictUsage);
   command.exit_code_of([name = command.name(), run = std::move(run)] {
     try {
       return run();
@@ -21,7 +20,7 @@ void set_verdict(Command& command, std::function<int()> run) {
       throw;
     } catch (const std::exception& error) {
       fmt::print(stderr, "rubric {}: {}\n", name, error.what());
-      return int{kVerdictBroken};
+      return int{kExitBroken};
     }
   });
 }
@@ -29,7 +28,7 @@ void set_verdict(Command& command, std::function<int()> run) {
 void unreadable(const char* command, std::string what) {
   while (what.ends_with('\n')) what.pop_back();
   fmt::print(stderr, "rubric {}: {}\n", command, what);
-  exit_with(kVerdictInput);
+  exit_with(kExitInput);
 }
 
 std::string text_of_file(const char* command, const std::string& path) {

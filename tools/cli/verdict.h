@@ -8,7 +8,7 @@
 
 namespace rubric::cli {
 
-/// Makes the subcommand end with the result of `run`, one of VerdictCode. An exception other than
+/// Makes the subcommand end with the result of `run`, an ExitCode. An exception other than
 /// Ending is printed, and means that the kit broke.
 void set_verdict(Command& command, std::function<int()> run);
 

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <filesystem>
 
+#include "codec/text/packed.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/output.h"
 #include "tools/cli/quantity.h"
@@ -36,6 +37,11 @@ lines::Rotation rotation_of(const WriteOptions& options) {
 void check_write(const WriteOptions& options, const std::vector<std::string>& inputs, bool grows) {
   if (options.path.empty()) return;
   keep_apart("--write", options.path, inputs);
+  if (report::packing_of_name(options.path) != report::Packing::kNone) {
+    throw UsageError("--write", options.path +
+                                    ": captures that grow are not compressed; 'rubric "
+                                    "convert' does it afterwards");
+  }
   std::error_code none;
   const std::filesystem::path path(options.path);
   if (grows && !options.force && std::filesystem::is_regular_file(path, none)) {

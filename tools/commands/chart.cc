@@ -35,8 +35,8 @@ constexpr const char* kChartFooter =
     "  rubric chart j4.wrong_seq\n"
     "  rubric chart open_door.lost --format svg --out open_door.svg\n"
     "  rubric chart my_traces.rtr:mine --target ./my_adapter\n"
-    "Exit codes: 0 drawn, 1 drawn, but the trace was not kept, 2 the trace cannot be run or\n"
-    "the output not be written, 64 usage, 66 the file cannot be read.";
+    "Exit codes: 0 drawn, 1 drawn, but the trace was not kept, 2 the trace cannot be\n"
+    "run, 64 usage, 66 the file cannot be read, 74 output cannot be written.";
 
 struct ChartOptions {
   std::string what;
@@ -48,7 +48,7 @@ struct ChartOptions {
 
 [[noreturn]] void input_error(const std::string& what) {
   fmt::print(stderr, "{}\n", what);
-  cli::exit_with(cli::kVerdictInput);
+  cli::exit_with(cli::kExitInput);
 }
 
 // Returns the cases that the user means; they point into `cases`.
@@ -99,19 +99,19 @@ int judged(const suite::CaseRun& run) {
   using runner::CaseVerdict;
   switch (run.result.verdict) {
     case CaseVerdict::kPass:
-    case CaseVerdict::kWeak: return cli::kVerdictExpected;
+    case CaseVerdict::kWeak: return cli::kExitClean;
     case CaseVerdict::kFail:
       for (const runner::Failure& failure : run.result.failures) {
         fmt::print(stderr, "{}:{}: not kept at tick {}: {}\n", run.file, failure.place.line,
                    failure.time, failure.text);
       }
-      return cli::kVerdictFailed;
+      return cli::kExitFindings;
     case CaseVerdict::kInconclusive:
     case CaseVerdict::kError:
     case CaseVerdict::kSkip: break;
   }
   fmt::print(stderr, "{}: {}\n", run.name, run.result.reason);
-  return run.result.verdict == CaseVerdict::kError ? cli::kVerdictBroken : cli::kVerdictExpected;
+  return run.result.verdict == CaseVerdict::kError ? cli::kExitBroken : cli::kExitClean;
 }
 
 std::string text_of(const suite::MachineRun& one, std::size_t width) {
@@ -134,7 +134,7 @@ void run_chart(const ChartOptions& options) {
   }
   const std::size_t width = cli::columns(options.width, 1);
   std::string out;
-  int code = cli::kVerdictExpected;
+  int code = cli::kExitClean;
   for (const suite::SuiteCase* one : all) {
     const suite::MachineRun worked = work(*one, options.target);
     code = std::max(code, judged(worked.run));
@@ -149,7 +149,7 @@ void run_chart(const ChartOptions& options) {
     }
   }
   if (!cli::write_file(options.out, out)) cli::exit_with(cli::kExitOutput);
-  if (code != cli::kVerdictExpected) cli::exit_with(code);
+  if (code != cli::kExitClean) cli::exit_with(code);
 }
 
 }  // namespace
@@ -158,7 +158,6 @@ void add_chart(cli::Command& app) {
   auto options = std::make_shared<ChartOptions>();
   cli::Command& sub = app.add_subcommand("chart", "Draw a golden trace as a sequence chart");
   sub.footer(kChartFooter);
-  sub.set_usage_exit_code(cli::kVerdictUsage);
   sub.add_option("case", options->what, "A case's name, FILE.rtr or FILE.rtr:CASE")
       .required()
       .check(cli::given);

@@ -12,6 +12,7 @@
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/output.h"
 #include "tools/cli/terminal.h"
+#include "tools/cli/text_file.h"
 #include "tools/cli/verdict.h"
 #include "tools/commands/check_live.h"
 #include "tools/commands/check_news.h"
@@ -52,8 +53,10 @@ check::Run read_run(const CheckOptions& options) {
   check::RunReader reader(read_as(options));
   std::string error;
   for (const std::string& file : options.input.files) {
-    const bool good = file == "-"
-                          ? reader.add_bytes("stdin", cli::text_of_file(kCheckCommand, file), error)
+    const bool at_once = file == "-" || cli::is_packed(file);
+    const std::string name = file == "-" ? "stdin" : file;
+    const bool good = at_once
+                          ? reader.add_bytes(name, cli::text_of_file(kCheckCommand, file), error)
                           : reader.add_file(file, error);
     if (!good) cli::unreadable(kCheckCommand, error);
   }
@@ -79,7 +82,8 @@ int check_files(const CheckOptions& options) {
   const report::Story story{part, judged, found, expected, outcome};
   const int terminal = options.out == "-" ? STDOUT_FILENO : -1;
   const bool written = cli::write_file(options.out, report_text(options, story, terminal, files));
-  return written ? outcome.exit_code() : cli::kExitOutput;
+  const bool kept = write_report_folder(options, story);
+  return written && kept ? outcome.exit_code() : cli::kExitOutput;
 }
 
 int run_check(CheckOptions options) {
@@ -117,6 +121,10 @@ void add_options(cli::Command& command, CheckOptions& options) {
   command.add_option("--out", options.out, "Write to this file; - is stdout")
       .check(cli::given)
       .show_default();
+  command
+      .add_option("--report", options.report,
+                  "Write index.html, report.json and junit.xml into this folder")
+      .check(cli::given);
   command.add_option("--node", options.nodes,
                      "Name a node's role as ID=ROLE: 2=mote; mote, sink or base-station");
   command.add_option("--sink", options.sinks, "Name a sink's island as ID=ISLAND: 1=11");
@@ -157,9 +165,9 @@ void add_options(cli::Command& command, CheckOptions& options) {
   command
       .add_option("--input-format", options.input.format,
                   "Read captures as auto, hdlc (bytes of a serial line), sf (serial "
-                  "forwarder), pcap, pcapng, hex (text, from the dispatch byte on) or hex-radio "
-                  "(text, 802.15.4 without FCS)")
-      .one_of({"auto", "hdlc", "sf", "pcap", "pcapng", "hex", "hex-radio"})
+                  "forwarder), pcap, pcapng, hex (text, from the dispatch byte on), log (the same "
+                  "among other lines) or hex-radio (text, 802.15.4 without FCS)")
+      .one_of({"auto", "hdlc", "sf", "pcap", "pcapng", "hex", "log", "hex-radio"})
       .show_default();
   command.add_flag("--verbose", options.verbose,
                    "Print also further findings of a rule and node in full; live, also notes");

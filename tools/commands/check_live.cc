@@ -168,7 +168,7 @@ class Session {
               written;
     if (!written) return cli::kExitOutput;
     const int code = outcome.exit_code();
-    return failed && code != cli::kVerdictFailed ? cli::kVerdictInput : code;
+    return failed && code != cli::kExitFindings ? cli::kExitInput : code;
   }
 
   const CheckOptions& options_;

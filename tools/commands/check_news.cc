@@ -10,9 +10,12 @@
 
 #include "codec/text/shell.h"
 #include "conformance/check/judge/judge.h"
+#include "conformance/check/report/html.h"
 #include "conformance/check/report/json.h"
 #include "conformance/check/report/junit.h"
 #include "conformance/check/report/words.h"
+#include "conformance/test/report/folder.h"
+#include "conformance/test/report/html_assets.h"
 
 namespace rubric::tools {
 namespace {
@@ -80,6 +83,25 @@ std::string report_text(const CheckOptions& options, const report::Story& story,
   return report::text_report(story, text);
 }
 
+bool write_report_folder(const CheckOptions& options, const report::Story& story) {
+  if (options.report.empty()) return true;
+  report::TextOptions text = text_options(options, -1);
+  text.color = false;
+  text.verbose = true;
+  text.command.clear();
+  try {
+    suite::ReportFolder folder(options.report);
+    folder.write("index.html", report::html_report(story, text, suite::kStyle));
+    folder.write("report.json", report::json_report(story).text() + '\n');
+    folder.write("junit.xml", report::junit_report(story));
+    folder.finish();
+    return true;
+  } catch (const std::system_error& error) {
+    cli::cannot_write(error);
+    return false;
+  }
+}
+
 CheckNews::CheckNews(const CheckOptions& options)
     : options_(options),
       fd_(fd_of_news(options)),
@@ -140,6 +162,7 @@ bool CheckNews::open() const {
 
 bool CheckNews::report(const report::Story& story, const std::vector<std::string>& files) {
   if (options_.format == "jsonl") {
+    if (!write_report_folder(options_, story)) return false;
     output().buffer().append(report_event(story, true));
     return output().finish();
   }
@@ -147,6 +170,7 @@ bool CheckNews::report(const report::Story& story, const std::vector<std::string
   if (here && told_) output().buffer().append("\n");
   if (!output().finish()) return false;
   const int terminal = options_.out == "-" ? STDOUT_FILENO : -1;
+  if (!write_report_folder(options_, story)) return false;
   return cli::write_file(options_.out, report_text(options_, story, terminal, files));
 }
 

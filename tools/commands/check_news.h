@@ -16,6 +16,10 @@ namespace rubric::tools {
 std::string report_text(const CheckOptions& options, const report::Story& story, int fd,
                         const std::vector<std::string>& files);
 
+/// Writes the folder of --report, if it is asked for: index.html, report.json and junit.xml.
+/// Returns false, having printed why, if that fails.
+bool write_report_folder(const CheckOptions& options, const report::Story& story);
+
 /// Prints news of a growing run: text on stdout, jsonl where the report goes. If stdout is for a
 /// report of another format, text goes to stderr.
 class CheckNews {

@@ -147,6 +147,7 @@ check::ReadAs read_as(const CheckOptions& options) {
   if (format == "pcap") out.format = InputFormat::kPcap;
   if (format == "pcapng") out.format = InputFormat::kPcapng;
   if (format == "hex" || format == "hex-radio") out.format = InputFormat::kHex;
+  if (format == "log") out.format = InputFormat::kLog;
   if (format == "hex-radio") out.hex_framing = Framing::kRadio;
   out.align.enabled = options.align == "auto";
   out.align.skew_us = microseconds(options.skew_ms).value_or(out.align.skew_us);

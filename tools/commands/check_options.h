@@ -24,6 +24,7 @@ struct CheckOptions {
   std::string format = "text";
   std::string expect;
   std::string out = "-";
+  std::string report;  ///< A folder; empty: none.
   std::string color = "auto";
   std::string sniffer = "unknown";
   std::string start = "unknown";

@@ -3,12 +3,19 @@
 #include <algorithm>
 #include <cstdio>
 #include <memory>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "codec/reflect/registry.h"
+#include "codec/reflect/requirements.h"
+#include "conformance/generated/cases.h"
 #include "tools/cli/exit_codes.h"
+#include "tools/cli/specs.h"
 #include "tools/commands/commands.h"
+#include "tools/format/message_types.h"
+#include "tools/format/path.h"
 
 namespace rubric::tools {
 namespace {
@@ -17,7 +24,47 @@ struct NamedCommand {
   std::string name;
   std::string description;
   std::vector<cli::OptionInfo> flags;
+  std::vector<std::string> words;  ///< Of its arguments; empty: files.
 };
+
+constexpr std::string_view kSpec = "spec";
+
+std::vector<std::string> rule_names() {
+  std::vector<std::string> names;
+  for (const reflect::Requirement& rule : reflect::requirements()) {
+    if (*rule.id != '\0') names.emplace_back(rule.id);
+  }
+  return names;
+}
+
+std::vector<std::string> message_names() {
+  std::vector<std::string> names;
+  for (const reflect::Type* type : format::message_types(*reflect::find_protocol("rubicon"))) {
+    names.emplace_back(type->name);
+  }
+  return names;
+}
+
+std::vector<std::string> case_names() {
+  std::set<std::string> names;
+  for (const cases::CaseUse& use : cases::kCaseUses) names.insert(use.name);
+  return {names.begin(), names.end()};
+}
+
+/// Returns the names that an option's value can be where it may be something else, too: a file, a
+/// pattern, a longer expression.
+std::vector<std::string> usual_values(const std::string& command, const cli::OptionInfo& flag) {
+  const std::string name = flag.long_names.empty() ? "" : flag.long_names.front();
+  if (!flag.takes_value || !flag.choices.empty()) return flag.choices;
+  if (name == kSpec) return cli::protocol_names();
+  if (name == "as" || name == "message") return message_names();
+  if (name == "requirement") return rule_names();
+  if (name == "case" || (name == "cases" && command != "coverage")) return case_names();
+  if (name == "fields" || name == "filter") {
+    return format::known_names(*reflect::find_protocol("rubicon"));
+  }
+  return {};
+}
 
 /// Returns the first sentence of a description, on one line.
 std::string brief(const std::string& text) { return text.substr(0, text.find_first_of(";\n")); }
@@ -25,8 +72,14 @@ std::string brief(const std::string& text) { return text.substr(0, text.find_fir
 std::vector<NamedCommand> commands_of(const cli::Command& program) {
   std::vector<NamedCommand> out;
   for (const cli::Command& command : program.subcommands()) {
-    out.push_back({command.name(), brief(command.description()), command.options()});
-    for (cli::OptionInfo& flag : out.back().flags) flag.description = brief(flag.description);
+    out.push_back({command.name(), brief(command.description()), command.options(), {}});
+    for (cli::OptionInfo& flag : out.back().flags) {
+      flag.description = brief(flag.description);
+      flag.choices = usual_values(command.name(), flag);
+    }
+    if (command.name() != "explain") continue;
+    out.back().words = message_names();
+    for (std::string& rule : rule_names()) out.back().words.push_back(std::move(rule));
   }
   return out;
 }
@@ -95,9 +148,20 @@ _rubric() {{
     fmt::print("      {}) words='{}' ;;\n", command.name, spaced(names));
   }
   fmt::print(R"(    esac
+  elif [[ -z $words ]]; then
+    case ${{COMP_WORDS[1]}} in
+)");
+  for (const NamedCommand& command : commands) {
+    if (command.words.empty()) continue;
+    fmt::print("      {}) words='{}' ;;\n", command.name, spaced(command.words));
+  }
+  fmt::print(R"(    esac
   fi
   if [[ -n $words ]]; then
-    mapfile -t COMPREPLY < <(compgen -W "$words" -- "$word")
+    mapfile -t COMPREPLY < <(
+      compgen -W "$words" -- "$word"
+      if [[ $before == --spec ]]; then compgen -f -X '!*.ksy' -- "$word"; fi
+    )
   else
     compopt -o filenames
     mapfile -t COMPREPLY < <(compgen -f -- "$word")
@@ -107,14 +171,24 @@ complete -F _rubric rubric
 )");
 }
 
+bool is_spec(const cli::OptionInfo& flag) {
+  return !flag.long_names.empty() && flag.long_names.front() == kSpec;
+}
+
 /// Returns '(-o --output)'{-o,--output}'[what it is]:value:(a b)'.
 std::string zsh_argument(const cli::OptionInfo& flag) {
   const std::vector<std::string> names = dashed(flag);
   const std::string help = shell_quoted("[" + flag.description + "]");
   std::string tail;
   if (flag.takes_value) {
-    tail = ":value:" +
-           (flag.choices.empty() ? std::string("_files") : "(" + spaced(flag.choices) + ")");
+    const std::string values = spaced(flag.choices);
+    if (flag.choices.empty()) {
+      tail = ":value:_files";
+    } else if (is_spec(flag)) {
+      tail = ":value:{compadd -- " + values + "; _files -g \"*.ksy\"}";
+    } else {
+      tail = ":value:(" + values + ")";
+    }
   }
   // The brackets around the description are special; those within it were replaced.
   std::string body = "'[" + help.substr(2, help.size() - 4) + "]" + tail + "'";
@@ -145,7 +219,8 @@ _rubric() {{
     fmt::print("    {})\n      _arguments", command.name);
     for (const cli::OptionInfo& flag : command.flags)
       fmt::print(" \\\n        {}", zsh_argument(flag));
-    fmt::print(" \\\n        '*:file:_files' ;;\n");
+    const std::string words = command.words.empty() ? "_files" : "(" + spaced(command.words) + ")";
+    fmt::print(" \\\n        '*:word:{}' ;;\n", words);
   }
   fmt::print("  esac\n}}\n_rubric \"$@\"\n");
 }
@@ -160,12 +235,15 @@ void print_fish(const std::vector<NamedCommand>& commands) {
       for (const std::string& name : flag.short_names) fmt::print(" -s {}", name);
       for (const std::string& name : flag.long_names) fmt::print(" -l {}", name);
       if (!flag.choices.empty()) {
-        fmt::print(" -x -a '{}'", spaced(flag.choices));
+        fmt::print(" {} -a '{}'", is_spec(flag) ? "-r -F" : "-x", spaced(flag.choices));
       } else if (flag.takes_value) {
         fmt::print(" -r");
       }
       fmt::print(" -d {}\n", shell_quoted(flag.description));
     }
+    if (command.words.empty()) continue;
+    fmt::print("complete -c rubric -n '__fish_seen_subcommand_from {}' -f -a '{}'\n", command.name,
+               spaced(command.words));
   }
 }
 

@@ -5,7 +5,9 @@
 #include <memory>
 #include <system_error>
 
+#include "codec/text/packed.h"
 #include "tools/cli/exit_codes.h"
+#include "tools/cli/frame_filter.h"
 #include "tools/cli/input.h"
 #include "tools/commands/commands.h"
 #include "tools/encode/packet_output.h"
@@ -19,13 +21,14 @@ struct ConvertOptions {
   std::string format;
   std::string output;
   std::string only;
+  std::string filter;
 };
 
 constexpr const char* kConvertFooter =
     "What the target cannot hold is reported on stderr. pcap holds one link type, that of the "
     "first\n"
     "packet; --only chooses among serial and radio.\n"
-    "Exit codes: 0 converted, 2 usage, 3 input cannot be read, 74 output cannot be written.";
+    "Exit codes: 0 converted, 64 usage, 66 input cannot be read, 74 output cannot be written.";
 
 struct Suffix {
   std::string_view suffix;
@@ -38,6 +41,7 @@ constexpr Suffix kSuffixes[] = {
 };
 
 std::string container_of(std::string_view file) {
+  file = report::name_unpacked(file);
   for (const Suffix& known : kSuffixes) {
     if (file.ends_with(known.suffix)) return known.container;
   }
@@ -53,6 +57,8 @@ struct Losses {
   std::uint64_t interfaces = 0;
   std::uint64_t comments = 0;
   std::uint64_t sequence_numbers = 0;            // From the serial line.
+  std::uint64_t radio_facts = 0;                 // RSSI and its like.
+  std::uint64_t more_facts = 0;                  // Those that no container here holds.
   std::uint64_t radio = 0;                       // Among those written.
   std::map<std::string, std::uint64_t> refused;  // By reason: a handful.
 };
@@ -62,6 +68,8 @@ void count_details(const Packet& packet, std::string_view interface_name,
   const bool bare_packets = container == "sf" || container == "hex";
   losses.sequence_numbers += bare_packets && packet.serial_seq != kAbsent;
   losses.radio += packet.framing == Framing::kRadio;
+  losses.radio_facts += container == "hex" && packet.radio.any();
+  losses.more_facts += packet.radio.more;
   losses.times += !holds.times && packet.time_ns != kNoTime;
   losses.directions += !holds.directions && packet.direction != Direction::kUnknown;
   losses.interfaces += !holds.interfaces && !interface_name.empty();
@@ -82,6 +90,13 @@ void report(const Losses& losses, const std::string& container) {
   lost(losses.interfaces, "interface names");
   lost(losses.comments, "comments");
   lost(losses.sequence_numbers, "serial sequence numbers");
+  lost(losses.radio_facts, "RSSI, link quality, channel or time slot");
+  if (losses.more_facts) {
+    fmt::print(stderr,
+               "rubric: of {} packets RSSI, link quality, channel and time slot are kept, other "
+               "facts of their TAP headers are not\n",
+               losses.more_facts);
+  }
   if (container == "hex" && losses.radio && losses.radio != losses.written) {
     fmt::print(stderr,
                "rubric: hex does not say which lines are radio frames; --only keeps one "
@@ -106,6 +121,7 @@ void settle_target(ConvertOptions& options) {
 }
 
 int run_convert(const ConvertOptions& options) {
+  cli::FrameFilter filter(options.filter, cli::chosen_protocol(options.input));
   Losses losses;
   const encode::Holds holds = encode::holds(options.format);
   cli::InputResult result;
@@ -117,6 +133,7 @@ int run_convert(const ConvertOptions& options) {
         return true;
       }
       if (cli::is_damage(packet)) return true;  // Said already, and no packet.
+      if (!filter.takes(packet, source.interface_name, source.number)) return true;
       ++losses.packets;
       const std::string refused = output.write(packet, source.interface_name);
       if (output.cut_refused()) {
@@ -149,19 +166,21 @@ void add_convert(cli::Command& app) {
   cli::Command& sub =
       app.add_subcommand("convert", "Convert packets from one container into another");
   sub.footer(kConvertFooter);
-  sub.add_option("FILE", options->input.files,
-                 "Captures, and last the target unless -o names it; - is stdin or stdout");
+  sub.add_option(
+      "FILE", options->input.files,
+      "Captures, and last the target unless -o names it; - is stdin or stdout. Names that "
+      "end in .gz or .zst are written compressed");
   sub.add_option("-o,--output", options->output, "Write to this file; - is stdout")
       .check(cli::given);
   sub.add_option("--format", options->format,
                  "Write hex, hdlc, sf, pcap or pcapng (default: by the target's suffix)")
       .one_of(encode::container_names());
-  sub.add_option("--input-format", options->input.format,
-                 "Read the input as auto, hdlc, sf, pcap, pcapng or hex")
-      .one_of({"auto", "hdlc", "sf", "pcap", "pcapng", "hex"})
-      .show_default();
+  cli::add_capture_options(sub, options->input);
   sub.add_option("--only", options->only, "Keep only packets of this framing: hdlc, sf or radio")
       .one_of({"hdlc", "sf", "radio"});
+  sub.add_option("--filter", options->filter,
+                 "Keep only packets for which this holds, as in 'rubric decode'");
+  cli::add_spec_option(sub, options->input);
   sub.exit_code_of([options] {
     settle_target(*options);
     return run_convert(*options);

@@ -10,12 +10,14 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "codec/reflect/requirements.h"
 #include "codec/text/json.h"
 #include "conformance/explore/search.h"
 #include "conformance/selftest/mutants/hunt.h"
+#include "conformance/test/suite/cases.h"
 #include "tools/cli/command.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/output.h"
@@ -29,7 +31,7 @@ using report::Json;
 const std::size_t kRules = reflect::requirements().size();
 
 struct CoverageOptions {
-  std::string cases = "conformance/cases";
+  std::string cases;  ///< Empty: the kit's own.
   std::string format = "text";
 };
 
@@ -129,9 +131,18 @@ void judge(Coverage& coverage) {
   }
 }
 
+mutants::Golden golden_of(const CoverageOptions& options) {
+  if (!options.cases.empty()) return mutants::Golden(options.cases);
+  std::vector<trace::Parsed> files;
+  for (const suite::EmbeddedFile& one : suite::embedded_files()) {
+    files.push_back(trace::parse(one.text, one.name));
+  }
+  return mutants::Golden(std::move(files));
+}
+
 Coverage measure(const CoverageOptions& options) {
   Coverage coverage;
-  const mutants::Golden golden(options.cases);
+  const mutants::Golden golden = golden_of(options);
   read_cases(golden, coverage);
   run_cases(golden, coverage);
   explore(coverage);
@@ -240,11 +251,11 @@ int run_coverage(const CoverageOptions& options) {
     coverage = measure(options);
   } catch (const std::exception& error) {
     fmt::print(stderr, "rubric: {}\n", error.what());
-    return cli::kVerdictInput;
+    return cli::kExitInput;
   }
   const std::string text = options.format == "json" ? json_of(coverage) : text_of(coverage);
   if (!cli::write_file("-", text)) return cli::kExitOutput;
-  return coverage.problems.empty() ? cli::kVerdictExpected : cli::kVerdictFailed;
+  return coverage.problems.empty() ? cli::kExitClean : cli::kExitFindings;
 }
 
 }  // namespace
@@ -259,12 +270,13 @@ void add_coverage(cli::Command& app) {
       "break it; and says whether the explorer meets it in small networks.\n"
       "Exit codes: 0 covered, 1 a MUST without a case, a forbidding rule that no case attempts, "
       "or\n"
-      "a case that is wrong, 2 output cannot be written, 64 usage, 66 the cases cannot be read.");
-  sub.add_option("--cases", options->cases, "Read golden traces from this folder").show_default();
+      "a case that is wrong, 64 usage, 66 the cases cannot be read, 74 output cannot be written.");
+  sub.add_option("--cases", options->cases,
+                 "Read golden traces from this folder, in place of the kit's own")
+      .check(cli::given);
   sub.add_option("--format", options->format, "Print text or json")
       .one_of({"text", "json"})
       .show_default();
-  sub.set_usage_exit_code(cli::kVerdictUsage);
   sub.exit_code_of([options] { return run_coverage(*options); });
 }
 

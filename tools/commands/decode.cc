@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <cstdint>
+#include <ctime>
 #include <memory>
 #include <optional>
 #include <string>
@@ -9,6 +10,7 @@
 #include "codec/reflect/frame.h"
 #include "tools/cli/color.h"
 #include "tools/cli/exit_codes.h"
+#include "tools/cli/frame_filter.h"
 #include "tools/cli/input.h"
 #include "tools/cli/output.h"
 #include "tools/cli/specs.h"
@@ -29,7 +31,7 @@ struct DecodeOptions {
   std::string format = "text";
   std::string filter;
   std::string fields;
-  std::string time = "abs";
+  std::string time = "epoch";
   std::string color = "auto";
   std::uint64_t count = 0;  ///< 0: all.
   bool hex = false;
@@ -44,7 +46,15 @@ std::vector<format::Path> chosen_fields(const DecodeOptions& options,
   try {
     return format::parse_paths(options.fields, protocol);
   } catch (const format::PathError& error) {
-    throw cli::UsageError("--fields", error.what());
+    const auto works = [&](const reflect::Protocol& other) {
+      try {
+        format::parse_paths(options.fields, other);
+        return true;
+      } catch (const format::PathError&) {
+        return false;
+      }
+    };
+    throw cli::UsageError("--fields", error.what() + cli::spec_with(protocol, works));
   }
 }
 
@@ -68,23 +78,23 @@ std::unique_ptr<format::Formatter> make_formatter(const DecodeOptions& options,
 std::optional<format::Filter> make_filter(const DecodeOptions& options,
                                           const reflect::Protocol& protocol) {
   if (options.filter.empty()) return std::nullopt;
-  try {
-    return format::Filter(options.filter, protocol);
-  } catch (const format::FilterError& error) {
-    throw cli::UsageError("--filter", error.explain(options.filter));
-  }
+  return cli::filter_of(options.filter, protocol);
 }
 
 /// Times in the form of --time.
 class Clock {
  public:
   explicit Clock(const std::string& mode)
-      : none_(mode == "none"), zero_(mode == "zero"), delta_(mode == "delta") {}
+      : none_(mode == "none"),
+        relative_(mode == "relative"),
+        delta_(mode == "delta"),
+        utc_(mode == "utc"),
+        local_(mode == "local") {}
 
   /// Returns the time to show for a frame.
   std::int64_t shown(std::int64_t time_ns) {
     if (none_ || time_ns == kNoTime) return kNoTime;
-    if (!zero_ && !delta_) return time_ns;
+    if (!relative_ && !delta_) return time_ns;
     if (reference_ns_ == kNoPrevious) reference_ns_ = time_ns;
     // Wraps instead of overflowing: damaged stamps can be anything.
     const auto difference = static_cast<std::int64_t>(static_cast<std::uint64_t>(time_ns) -
@@ -93,10 +103,33 @@ class Clock {
     return difference;
   }
 
+  /// Returns the date and time of day, as ISO 8601 writes them; empty if they are not asked for.
+  std::string_view text_of(std::int64_t time_ns) {
+    if ((!utc_ && !local_) || time_ns == kNoTime) return {};
+    constexpr std::int64_t kSecondNs = 1'000'000'000;
+    const std::int64_t rest = time_ns % kSecondNs;
+    const std::int64_t part = rest < 0 ? rest + kSecondNs : rest;
+    const std::time_t seconds = time_ns / kSecondNs - (rest < 0);
+    std::tm day{};
+    const bool known =
+        (utc_ ? ::gmtime_r(&seconds, &day) : ::localtime_r(&seconds, &day)) != nullptr;
+    if (!known) return {};
+    char date[32];
+    char zone[8] = "Z";
+    std::strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%S", &day);
+    if (local_) std::strftime(zone, sizeof zone, "%z", &day);
+    text_ = part % 1000 ? fmt::format("{}.{:09}{}", date, part, zone)
+                        : fmt::format("{}.{:06}{}", date, part / 1000, zone);
+    return text_;
+  }
+
  private:
   bool none_;
-  bool zero_;
+  bool relative_;
   bool delta_;
+  bool utc_;
+  bool local_;
+  std::string text_;
   std::int64_t reference_ns_ = kNoPrevious;
 };
 
@@ -134,7 +167,7 @@ class Decode {
     const bool kept = !capture_ || (result.failed && !capture_->is_started()) || capture_->finish();
     if (!written || !kept) return cli::kExitOutput;
     if (result.failed) return cli::kExitInput;
-    return malformed_ ? cli::kExitMalformed : cli::kExitClean;
+    return malformed_ ? cli::kExitFindings : cli::kExitClean;
   }
 
  private:
@@ -152,6 +185,7 @@ class Decode {
     record_.time_ns = packet.time_ns;
     if (filter_ && !filter_->matches(record_)) return true;
     record_.time_ns = clock_.shown(packet.time_ns);
+    record_.time_text = clock_.text_of(packet.time_ns);
     formatter_->print(record_, output_.buffer());
     ++printed_;
     return output_.drain() && printed_ != options_.count;
@@ -189,9 +223,9 @@ void add_decode(cli::Command& app) {
   command.add_option("--fields", options->fields, "Print only these fields, as in a.b,c");
   command
       .add_option("--time", options->time,
-                  "Print times as abs (as captured), delta (since the line before), zero (since "
-                  "the first line) or none")
-      .one_of({"abs", "delta", "zero", "none"})
+                  "Print times as epoch (seconds, as captured), utc or local (dates), relative "
+                  "(since the first line), delta (since the line before) or none")
+      .one_of({"epoch", "utc", "local", "relative", "delta", "none"})
       .show_default();
   command.add_option("--count", options->count, "Stop after this many lines")
       .check(cli::at_least_one);
@@ -208,7 +242,7 @@ void add_decode(cli::Command& app) {
       "  rubric decode capture.pcapng --format csv --fields time,src.devid,updates.value\n"
       "  echo 0a000c | rubric decode --as config\n"
       "  rubric decode serial@/dev/ttyUSB0:telosb --write run.pcapng    # until Ctrl-C\n"
-      "Exit codes: 0 clean, 1 something malformed was read, 2 usage, 3 input cannot be read,\n"
+      "Exit codes: 0 clean, 1 something malformed was read, 64 usage, 66 input cannot be read,\n"
       "74 output cannot be written.");
   command.exit_code_of([options] { return Decode(*options).run(); });
 }

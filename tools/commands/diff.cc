@@ -57,7 +57,7 @@ void compare(const DiffOptions& options) {
       shrink::find_difference(pointers, players[0]->player(), players[1]->player());
   if (found.compared == 0) {
     std::fputs("no case could be run on both\n", stderr);
-    cli::exit_with(cli::kVerdictInconclusive);
+    cli::exit_with(cli::kExitIncomplete);
   }
   fmt::print(stderr, "{} cases compared, {} differ, {} that one of them cannot play\n",
              found.compared, found.different.size(), found.skipped);
@@ -73,7 +73,7 @@ void compare(const DiffOptions& options) {
                   {fmt::format("A, {}: {}", players[0]->name(), outcome_text(difference.a)),
                    fmt::format("B, {}: {}", players[1]->name(), outcome_text(difference.b))});
   if (!cli::write_file(options.shared.out, text)) cli::exit_with(cli::kExitOutput);
-  cli::exit_with(cli::kVerdictFailed);
+  cli::exit_with(cli::kExitFindings);
 }
 
 }  // namespace

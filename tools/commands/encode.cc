@@ -26,7 +26,8 @@ constexpr const char* kEncodeFooter =
     "\"frame\", to encode changed fields. Sizes, counts and check sums that are missing are\n"
     "computed. A message alone:\n"
     "  echo '{\"type\":10,\"value\":12}' | rubric encode --as config\n"
-    "Exit codes: 0 all lines encoded, 2 usage, 3 some line or file could not be read or encoded,\n"
+    "Exit codes: 0 all lines encoded, 64 usage, 66 some line or file could not be read or "
+    "encoded,\n"
     "74 output cannot be written.";
 
 /// Returns the framing of a single message on its way to such an output.

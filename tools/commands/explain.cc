@@ -36,7 +36,8 @@ constexpr const char* kExplainFooter =
     "X is a message, a rule (WIRE-NET-NBYTES) or a group of them (J4), an enum or a mask, or the\n"
     "hex bytes of a frame: a serial packet as Listen prints it, a serial frame with its kind\n"
     "byte, an 802.15.4 frame.\n"
-    "Exit codes: 0 explained, 1 the frame is malformed, 2 usage or nothing of that name.";
+    "Exit codes: 0 explained, 1 the frame is malformed, 64 usage or nothing of that\n"
+    "name.";
 
 // Returns the protocol above and the frames below, in which names are looked up.
 std::vector<const Protocol*> layers(const Protocol& protocol) {
@@ -112,9 +113,9 @@ std::string rules_like(const std::string& name) {
   if (hint.empty()) hint = reflect::did_you_mean(in_case(name, std::tolower), names);
   if (hint.empty()) hint = reflect::did_you_mean(in_case(name, std::toupper), names);
   throw cli::UsageError(
-      "X", fmt::format("nothing is called '{}'{}{}; 'rubric messages' lists the messages, "
+      "X", fmt::format("nothing is called '{}'{}{}{}; 'rubric messages' lists the messages, "
                        "'rubric coverage' the rules of behaviour",
-                       name, hint, rules_like(name)));
+                       name, hint, rules_like(name), cli::spec_with_message(protocol, name)));
 }
 
 bool parse_frame(const std::vector<std::string>& words, std::vector<std::uint8_t>& bytes) {
@@ -139,7 +140,7 @@ int explain_bytes(const ExplainOptions& options, const Protocol& protocol,
   cli::OtherSpecs(protocol).look(frame);
   out = fmt::format("Taken as {}, {} bytes.\n\n", given->what, given->bytes.size());
   out += explain::explain_frame(frame);
-  return frame.malformed() ? cli::kExitMalformed : cli::kExitClean;
+  return frame.malformed() ? cli::kExitFindings : cli::kExitClean;
 }
 
 int run_explain(const ExplainOptions& options) {

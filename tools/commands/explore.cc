@@ -146,7 +146,7 @@ std::vector<std::string> goal_names(Mask mask) {
 
 struct Verdict {
   const char* text = "";
-  int exit_code = cli::kVerdictExpected;
+  int exit_code = cli::kExitClean;
   Mask never = 0;     ///< Goals that should have been reached.
   std::string limit;  ///< Why nothing was decided.
 };
@@ -170,16 +170,16 @@ std::string ways_to_widen(const explore::Options& network) {
 
 Verdict judge(const ExploreOptions& options, const explore::Options& network,
               const Result& result) {
-  if (result.violation) return {"broken", cli::kVerdictFailed, 0, {}};
-  if (!result.complete) return {"inconclusive", cli::kVerdictInconclusive, 0, result.limit};
+  if (result.violation) return {"broken", cli::kExitFindings, 0, {}};
+  if (!result.complete) return {"inconclusive", cli::kExitIncomplete, 0, result.limit};
   if (!options.flaw.empty() && !result.step_acted) {
-    return {"inconclusive", cli::kVerdictInconclusive, 0,
+    return {"inconclusive", cli::kExitIncomplete, 0,
             fmt::format("flaw {} never acted in this network; widen it by some of: {}",
                         options.flaw, ways_to_widen(network))};
   }
   const Mask never = explore::expected_goals(network) & ~result.goals;
-  if (never != 0) return {"vacuous", cli::kVerdictFailed, never, {}};
-  return {"holds", cli::kVerdictExpected, 0, {}};
+  if (never != 0) return {"vacuous", cli::kExitFindings, never, {}};
+  return {"holds", cli::kExitClean, 0, {}};
 }
 
 // Returns a bound for the probability that two states share a fingerprint, so that one is left out.
@@ -331,7 +331,7 @@ void run_explore(const ExploreOptions& options) {
     good = cli::write_file("-", text_of(result, verdict)) && good;
   }
   if (!good) cli::exit_with(cli::kExitOutput);
-  if (verdict.exit_code != cli::kVerdictExpected) cli::exit_with(verdict.exit_code);
+  if (verdict.exit_code != cli::kExitClean) cli::exit_with(verdict.exit_code);
 }
 
 void add_faults(cli::Command& sub, ExploreOptions& options) {
@@ -387,7 +387,6 @@ void add_explore(cli::Command& app) {
   cli::Command& sub =
       app.add_subcommand("explore", "Try everything that can happen in a small network");
   sub.footer(explore_footer());
-  sub.set_usage_exit_code(cli::kVerdictUsage);
   sub.add_option("--motes", options->network.motes, "Explore this many motes")
       .between(1, int{explore::kMotesMax})
       .show_default();

@@ -264,7 +264,7 @@ void print_transitions(const TransitionOptions& options, const ExploredMachine& 
   }
   if (!cli::write_file(out.empty() ? "-" : out, text)) cli::exit_with(cli::kExitOutput);
   for (const explore::Diagram& diagram : diagrams) {
-    if (!diagram.complete) cli::exit_with(cli::kVerdictInconclusive);
+    if (!diagram.complete) cli::exit_with(cli::kExitIncomplete);
   }
 }
 

@@ -11,6 +11,7 @@
 #include "codec/lines/line.h"
 #include "conformance/test/runner/target.h"
 #include "tools/cli/exit_codes.h"
+#include "tools/cli/frame_filter.h"
 #include "tools/cli/input.h"
 #include "tools/cli/write_options.h"
 #include "tools/commands/commands.h"
@@ -26,6 +27,8 @@ struct ForwardOptions {
   int retries = 24;  ///< TinyOS's Java host has the same.
   forward::Options server;
   cli::WriteOptions write;
+  cli::InputOptions input;  ///< Its --spec alone.
+  std::string filter;
 };
 
 lines::Address source_of(const std::string& given) {
@@ -52,6 +55,7 @@ void check_capture(const std::string& path) {
 void print_summary(const std::string& source, const forward::Counts& counts) {
   fmt::print(stderr, "rubric: {}: {} packets from it ({} malformed frames), {} to it", source,
              counts.from_source, counts.malformed, counts.to_source);
+  if (counts.withheld) fmt::print(stderr, ", {} not passed on", counts.withheld);
   if (counts.unconfirmed) fmt::print(stderr, ", {} not confirmed", counts.unconfirmed);
   if (counts.not_sent) fmt::print(stderr, ", {} not sent", counts.not_sent);
   fmt::print(stderr, "; {} clients, {} cut off", counts.served, counts.cut_off);
@@ -69,6 +73,17 @@ int run_forward(ForwardOptions& options) {
   options.server.source.link.ack_wait = lines::Milliseconds(options.ack_wait_ms);
   options.server.source.link.tries = 1 + options.retries;
   options.server.backlog_bytes = options.buffer_kib * 1024;
+  cli::FrameFilter filter(options.filter, cli::chosen_protocol(options.input));
+  std::uint64_t number = 0;
+  if (!options.filter.empty()) {
+    options.server.passes = [&](Bytes bytes) {
+      Packet packet;
+      packet.framing = Framing::kSf;
+      packet.direction = Direction::kOutbound;
+      packet.bytes = bytes;
+      return filter.takes(packet, options.server.source.address.name, ++number);
+    };
+  }
   options.server.limits.patience = std::chrono::seconds(options.patience_s);
   try {
     forward::Server server(options.server);
@@ -140,6 +155,10 @@ void add_forward(cli::Command& app) {
   add_source_options(command, *options);
   cli::add_write_options(command, options->write,
                          "Keep packets of both directions in this pcapng file, not a pipe", true);
+  command.add_option("--filter", options->filter,
+                     "Give clients only packets for which this holds, as in 'rubric decode'; "
+                     "--write keeps all");
+  cli::add_spec_option(command, options->input);
   command.add_flag("--verbose", options->server.verbose, "Say which clients come and leave");
   command.footer(
       "The first line on stdout says where it listens: 'listening on 127.0.0.1:9002'. Whoever\n"
@@ -148,7 +167,7 @@ void add_forward(cli::Command& app) {
       "  rubric forward serial@/dev/ttyUSB0:telosb             # until Ctrl-C\n"
       "  rubric decode sf@localhost:9002                       # one of many clients\n"
       "  rubric forward sf@lab:9002 --port 9003 --reconnect --write run.pcapng\n"
-      "Exit codes: 0 ended by Ctrl-C, 2 usage, 3 the source is gone or the port is taken,\n"
+      "Exit codes: 0 ended by Ctrl-C, 64 usage, 66 the source is gone or the port is taken,\n"
       "74 the capture cannot be written.");
   command.exit_code_of([options] { return run_forward(*options); });
 }

@@ -121,7 +121,7 @@ constexpr const char* kGenerateFooter =
     "  rubric generate --count 10000 --format hdlc -o frames.hdlc --expect frames.jsonl\n"
     "  rubric generate --valid 0 --message net_msg --format pcapng -o bad.pcapng\n"
     "  rubric generate --count 5 | jq -r '.verdict + \" \" + .what'\n"
-    "Exit codes: 0 written, 2 usage, 3 output cannot be written.";
+    "Exit codes: 0 written, 64 usage, 74 output cannot be written.";
 
 struct Container {
   const char* name;

@@ -37,7 +37,8 @@ constexpr const char* kInstallWiresharkFooter =
     "  rubric install-wireshark --dry-run\n"
     "  sudo rubric install-wireshark --dir /usr/lib/x86_64-linux-gnu/wireshark   # for all users\n"
     "  rubric install-wireshark --remove\n"
-    "Exit codes: 0 done, 2 usage, 3 something is in the way, missing, or cannot be written.";
+    "Exit codes: 0 done, 64 usage, 66 something is missing, 74 something is in the\n"
+    "way or cannot be written.";
 
 struct InstallWiresharkOptions {
   std::string folder;  ///< With plugins/ and extcap/ in it; empty: the personal ones.
@@ -47,9 +48,10 @@ struct InstallWiresharkOptions {
   std::string spec;  ///< A .ksy file to dissect as well.
 };
 
-[[noreturn]] void refuse(const fs::path& path, const std::string& why) {
+[[noreturn]] void refuse(const fs::path& path, const std::string& why,
+                         int code = cli::kExitOutput) {
   fmt::print(stderr, "rubric install-wireshark: {}: {}\n", path.string(), why);
-  cli::exit_with(cli::kExitInput);
+  cli::exit_with(code);
 }
 
 bool is_there(const fs::path& path) {
@@ -78,7 +80,7 @@ bool is_ours(const fs::path& path) {
 fs::path our_extcap() {
   std::error_code error;
   const fs::path self = fs::read_symlink("/proc/self/exe", error);
-  if (error) refuse("/proc/self/exe", error.message());
+  if (error) refuse("/proc/self/exe", error.message(), cli::kExitInput);
   return self.parent_path() / kExtcap;
 }
 
@@ -185,7 +187,8 @@ void install(const InstallWiresharkOptions& options) {
   if (!fs::exists(program)) {
     refuse(program,
            "there is no such file: it belongs beside rubric, as 'cmake --install', the "
-           "Debian package and the build folder have it");
+           "Debian package and the build folder have it",
+           cli::kExitInput);
   }
   const std::string more = options.spec.empty() ? "" : cli::dissector_with(options.spec);
   dissector.write(more.empty() ? wireshark::dissector() : more);

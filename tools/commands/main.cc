@@ -8,8 +8,9 @@
 namespace {
 
 constexpr const char* kFooter =
-    "Exit codes: 0 clean, 1 something malformed was found, 2 usage, 3 input cannot be read, 4 not\n"
-    "sent, 74 output cannot be written; check, test, chart, explore and coverage have others.\n"
+    "Exit codes: 0 clean, 1 something was found, 2 the kit or an implementation broke, 3 nothing "
+    "was\n"
+    "decided or not all was done, 64 usage, 66 input cannot be read, 74 output cannot be written.\n"
     "'rubric COMMAND --help' says more.";
 
 }  // namespace

@@ -24,7 +24,7 @@ constexpr const char* kNewAdapterFooter =
     "where your implementation goes; known.yaml lists the cases that it cannot decide yet.\n"
     "conformance/PORTING.md says how to go on.\n"
     "Files that exist are never overwritten.\n"
-    "Exit codes: 0 written, 2 usage, 3 something could not be written, and then nothing was.";
+    "Exit codes: 0 written, 64 usage, 74 something is in the way or could not be written.";
 
 constexpr const char* kKnown = "known.yaml";
 
@@ -53,7 +53,7 @@ const Language& language_of(const std::string& name) {
 
 [[noreturn]] void refuse(const std::string& path, const std::string& why) {
   fmt::print(stderr, "rubric new-adapter: cannot write {}: {}\n", path, why);
-  cli::exit_with(cli::kExitInput);
+  cli::exit_with(cli::kExitOutput);
 }
 
 void write_skeleton(const NewAdapterOptions& options) {

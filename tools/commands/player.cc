@@ -31,7 +31,6 @@ void add_player_options(cli::Command& app, PlayerOptions& options) {
   app.add_option("--seed", options.seed, "Seed what is random in nodes, where a trace has no seed")
       .check(cli::whole_number)
       .between(std::uint64_t{0}, suite::kSeedMax);
-  app.set_usage_exit_code(cli::kVerdictUsage);
 }
 
 void run_player_command(const cli::Command& app, const std::function<void()>& work) {
@@ -44,10 +43,10 @@ void run_player_command(const cli::Command& app, const std::function<void()>& wo
     throw cli::UsageError(error.what());
   } catch (const runner::TargetBroken& error) {
     fmt::print(stderr, "rubric {}: {}\n", app.name(), error.what());
-    cli::exit_with(cli::kVerdictBroken);
+    cli::exit_with(cli::kExitBroken);
   } catch (const std::runtime_error& error) {
     fmt::print(stderr, "rubric {}: {}\n", app.name(), error.what());
-    cli::exit_with(cli::kVerdictInput);
+    cli::exit_with(cli::kExitInput);
   }
 }
 

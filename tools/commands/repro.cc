@@ -40,7 +40,7 @@ constexpr const char* kReproFooter =
     "  rubric repro machine crash-22ab --target machine:no_fail --out no_fail.rtr\n"
     "  rubric test --target machine:no_fail no_fail.rtr\n"
     "  rubric repro network crash-07d1 --out network.rtr\n"
-    "Exit codes: 0 nothing is broken, 1 something is, 2 the trace cannot be written, 64 usage,\n"
+    "Exit codes: 0 nothing is broken, 1 something is, 64 usage, 74 the trace cannot be written,\n"
     "66 the input cannot be read.";
 
 // The output, with the broken promise or nothing.
@@ -104,7 +104,7 @@ void run_repro(const ReproOptions& options) {
   std::string error;
   if (!cli::read_file(options.input, text, error)) {
     fmt::print(stderr, "{}\n", error);
-    cli::exit_with(cli::kVerdictInput);
+    cli::exit_with(cli::kExitInput);
   }
   const Bytes bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
   const Repro repro = options.fuzzer == "network" ? repro_network(bytes, options)
@@ -114,7 +114,7 @@ void run_repro(const ReproOptions& options) {
     cli::exit_with(cli::kExitOutput);
   }
   fmt::print(stderr, "{}\n", repro.found.empty() ? "nothing is broken" : "broken: " + repro.found);
-  if (!repro.found.empty()) cli::exit_with(cli::kVerdictFailed);
+  if (!repro.found.empty()) cli::exit_with(cli::kExitFindings);
 }
 
 }  // namespace
@@ -133,7 +133,6 @@ void add_repro(cli::Command& app) {
                "Ask for the machine's own numbers and bytes, not for what the rules ask for");
   sub.add_option("-o,--out", options->out, "Write the trace to this file; - is stdout")
       .show_default();
-  sub.set_usage_exit_code(cli::kVerdictUsage);
   sub.callback([options] { run_repro(*options); });
 }
 

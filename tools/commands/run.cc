@@ -60,7 +60,7 @@ constexpr const char* kRunFooter =
     "  rubric run sink --island 11 --serial sf-server:9002\n"
     "  rubric run base-station --island 11 --sink sf@localhost:9002\n"
     "  rubric run mote --id 5\n"
-    "Exit codes: 0 Ctrl-C or stdin ended it, 2 usage, 3 a port is taken, or the capture could\n"
+    "Exit codes: 0 Ctrl-C or stdin ended it, 64 usage, 66 a port is taken, or the capture could\n"
     "not be written.";
 
 constexpr milliseconds kMoment{5};        // While there are two lines to look at.

@@ -56,8 +56,8 @@ constexpr const char* kSendFooter =
     "    rubric send --as config --to serial@/dev/ttyUSB0:telosb\n"
     "  rubric send commands.jsonl --to sf@localhost:9002 --listen 2   # and what is answered\n"
     "  rubric decode run.pcapng --filter 'direction==inbound' --format jsonl | rubric send\n"
-    "Exit codes: 0 all packets confirmed (or given to the forwarder), 2 usage, 3 some line or\n"
-    "file could not be read or encoded, and was not sent, 4 a packet was not confirmed, or the\n"
+    "Exit codes: 0 all packets confirmed (or given to the forwarder), 64 usage, 66 some line or\n"
+    "file could not be read or encoded, and was not sent, 3 a packet was not confirmed, or the\n"
     "line cannot be had or is gone.";
 
 lines::Address address_of(const SendOptions& options) {
@@ -123,7 +123,7 @@ class Send {
     const bool written = output_.finish();
     summary();
     if (!written) return cli::kExitOutput;
-    if (unsent_) return cli::kExitNotSent;
+    if (unsent_) return cli::kExitIncomplete;
     return good ? cli::kExitClean : cli::kExitInput;
   }
 

@@ -92,7 +92,7 @@ void shrink_it(const ShrinkOptions& options) {
   const auto found = find_failing(cases, options, player);
   if (!found) {
     std::fputs("nothing fails: there is nothing to shrink\n", stderr);
-    cli::exit_with(cli::kVerdictInconclusive);
+    cli::exit_with(cli::kExitIncomplete);
   }
   const trace::Case& one = found->file.cases.at(0);
   const auto shows =

@@ -43,7 +43,7 @@ std::string simulate_footer() {
          "Examples:\n"
          "  rubric simulate --scenario timeline --out-pcapng run.pcapng --out-rtr run.rtr\n"
          "  rubric simulate --motes 12 --sinks 2 --loss 0.1 --seed 7 --seconds 60 --out-rtr -\n"
-         "Exit codes: 0 done, 2 usage, 3 output cannot be written.";
+         "Exit codes: 0 done, 64 usage, 74 output cannot be written.";
 }
 
 std::string summary(const Statistics& s) {

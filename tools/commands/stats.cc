@@ -24,7 +24,7 @@ constexpr const char* kStatsFooter =
     "A gap is the time between neighbouring frames of one file. A frame counts as repeated if the\n"
     "one before it with the same addresses, message and interface had the same seq_num.\n"
     "A line in use, and with --follow a file that grows, is counted until Ctrl-C.\n"
-    "Exit codes: 0 clean, 1 malformed frames were seen, 2 usage, 3 input cannot be read.";
+    "Exit codes: 0 clean, 1 malformed frames were seen, 64 usage, 66 input cannot be read.";
 
 int run_stats(const StatsOptions& options) {
   const reflect::Protocol& protocol = cli::chosen_protocol(options.input);
@@ -45,7 +45,7 @@ int run_stats(const StatsOptions& options) {
                                                   : stats::text_report(counters));
   if (!output.finish()) return cli::kExitOutput;
   if (result.failed) return cli::kExitInput;
-  return counters.all().malformed ? cli::kExitMalformed : cli::kExitClean;
+  return counters.all().malformed ? cli::kExitFindings : cli::kExitClean;
 }
 
 }  // namespace

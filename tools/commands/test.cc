@@ -161,7 +161,7 @@ int list(const TestOptions& options, const std::vector<suite::SuiteCase>& cases)
     throw cli::UsageError("--list", "prints text or json, no " + options.format);
   }
   const std::string text = options.format == "json" ? suite::json_list(cases) : list_text(cases);
-  return cli::write_file(options.out, text) ? cli::kVerdictExpected : cli::kExitOutput;
+  return cli::write_file(options.out, text) ? cli::kExitClean : cli::kExitOutput;
 }
 
 void check_seeds(const TestOptions& options) {
@@ -268,7 +268,7 @@ bool write_formats(const TestOptions& options, const suite::SuiteRun& run,
                    const std::optional<suite::EarlierRun>& earlier) {
   bool good = true;
   // The report of a run that broke must not cost that of one that did not.
-  const bool keep = suite::exit_code(run) == cli::kVerdictBroken && options.out != "-" &&
+  const bool keep = suite::exit_code(run) == cli::kExitBroken && options.out != "-" &&
                     std::filesystem::is_regular_file(options.out);
   if (keep && options.format != "text") {
     fmt::print(stderr, "rubric test: the run broke; {} stays as it was\n", options.out);

@@ -1,6 +1,7 @@
 #include "tools/encode/record.h"
 
 #include <cmath>
+#include <cstdlib>
 #include <optional>
 #include <string>
 
@@ -210,6 +211,15 @@ std::uint16_t link_type_for(Fault fault, ReqId rule, const Packet& packet) {
   return fault == Fault::kTooLong && packet.fcs == kAbsent ? kLinkRadioNoFcs : kLinkRadioFcs;
 }
 
+void read_facts(const Value& frame, RadioFacts& facts) {
+  const Value* const rssi = given(frame, "rssi");
+  if (rssi && rssi->is(Value::Kind::kInteger)) facts.rssi = static_cast<float>(rssi->integer);
+  if (rssi && rssi->is(Value::Kind::kReal)) facts.rssi = std::strtof(rssi->text.c_str(), nullptr);
+  facts.lqi = static_cast<std::int16_t>(narrow(integer_of(frame, "frame", "lqi", 0xff)));
+  facts.channel = narrow(integer_of(frame, "frame", "channel", 0xffff));
+  facts.slot = integer_of(frame, "frame", "slot", INT64_MAX).value_or(kAbsent);
+}
+
 void read_around(const Value& line, OwnedPacket& out) {
   Packet& packet = out.packet;
   packet = Packet{};
@@ -230,6 +240,7 @@ void read_around(const Value& line, OwnedPacket& out) {
     (packet.framing == Framing::kHdlc ? packet.crc : packet.fcs) =
         narrow(integer_of(frame, "frame", key, 0xffff));
   }
+  if (packet.framing == Framing::kRadio) read_facts(frame, packet.radio);
   if (is_framing_fault(fault)) {
     const ReqId rule = reflect::find_requirement(text_of(object_of(line, "error"), "requirement"));
     packet.error = Error{fault, 0, rule};

@@ -1,7 +1,6 @@
 #include "tools/format/attributes.h"
 
 #include "codec/reflect/fault_text.h"
-#include "codec/runtime/ieee802154_fcs.h"
 #include "tools/format/message_types.h"
 
 namespace rubric::format {
@@ -59,7 +58,7 @@ bool notes(const Record& r, Visitor visit) {
 }
 
 bool fault(const Record& r, Visitor visit) {
-  return !r.frame->malformed() || text(visit, reflect::fault_name(r.frame->error.fault));
+  return !r.frame->has_error() || text(visit, reflect::fault_name(r.frame->error.fault));
 }
 
 void message_names(const Protocol& protocol, Names& names) {
@@ -93,17 +92,14 @@ void fault_names(const Protocol&, Names& names) {
   }
 }
 
-// Returns whether the bytes in place of the FCS hold RSSI and link quality: a sound frame has
-// nothing else there that is not its check sum.
-bool has_rssi(const Packet& packet) {
-  return packet.framing == Framing::kRadio && packet.fcs != kAbsent &&
-         packet.error.fault == Fault::kNone && packet.fcs != rubric::fcs(packet.bytes);
-}
 bool rssi(const Record& r, Visitor visit) {
-  return !has_rssi(r.packet()) || integer(visit, static_cast<std::int8_t>(r.packet().fcs & 0xFF));
+  const std::optional<float> rssi = r.packet().radio.rssi;
+  return !rssi || visit(Value::of_real(*rssi));
 }
-bool lqi(const Record& r, Visitor visit) {
-  return !has_rssi(r.packet()) || integer(visit, r.packet().fcs >> 8 & 0x7F);
+template <auto kFact>
+bool of_radio(const Record& r, Visitor visit) {
+  const auto fact = r.packet().radio.*kFact;
+  return fact == kAbsent || integer(visit, fact);
 }
 
 template <auto kNumber>
@@ -132,7 +128,10 @@ constexpr Attribute kAttributes[] = {
      [](const Record& r, Visitor v) {
        return integer(v, static_cast<std::int64_t>(r.packet().offset_bytes));
      }},
-    {"time", [](const Record& r, Visitor v) { return time(v, r.time_ns); }},
+    {"time",
+     [](const Record& r, Visitor v) {
+       return r.time_text.empty() ? time(v, r.time_ns) : text(v, r.time_text);
+     }},
     {"interface", [](const Record& r, Visitor v) { return text(v, r.interface_name); }, nullptr,
      true},
     {"direction",
@@ -158,7 +157,9 @@ constexpr Attribute kAttributes[] = {
      [](const Record& r, Visitor v) { return integer_or_absent(v, network_of(*r.frame)); }},
     {"frame.fcs", of_packet<&Packet::fcs>},
     {"frame.rssi", rssi},
-    {"frame.lqi", lqi},
+    {"frame.lqi", of_radio<&RadioFacts::lqi>},
+    {"frame.channel", of_radio<&RadioFacts::channel>},
+    {"frame.slot", of_radio<&RadioFacts::slot>},
     {"am.dest", of_am<&reflect::ActiveMessage::dest>},
     {"am.src", of_am<&reflect::ActiveMessage::src>},
     {"am.length", of_am<&reflect::ActiveMessage::length>},
@@ -180,16 +181,16 @@ constexpr Attribute kAttributes[] = {
     {"error.fault", fault, fault_names},
     {"error.offset",
      [](const Record& r, Visitor v) {
-       return !r.frame->malformed() || integer(v, r.frame->error.offset_bytes);
+       return !r.frame->has_error() || integer(v, r.frame->error.offset_bytes);
      }},
     {"error.requirement",
      [](const Record& r, Visitor v) {
-       return !r.frame->malformed() || text(v, reflect::requirement(r.frame->error.requirement).id);
+       return !r.frame->has_error() || text(v, reflect::requirement(r.frame->error.requirement).id);
      },
      nullptr, true},
     {"error.text",
      [](const Record& r, Visitor v) {
-       return !r.frame->malformed() || text(v, reflect::error_text(*r.frame));
+       return !r.frame->has_error() || text(v, reflect::error_text(*r.frame));
      },
      nullptr, true},
 };

@@ -46,6 +46,17 @@ char* put_hdlc(char* at, const Packet& packet) {
   return at;
 }
 
+char* put_facts(char* at, const RadioFacts& facts) {
+  if (facts.rssi) at = put_double(put(at, ",\"rssi\":"), *facts.rssi);
+  const auto number = [&](const char* key, std::int64_t value) {
+    if (value != kAbsent) at = put_int(put(at, std::string_view(key)), value);
+  };
+  number(",\"lqi\":", facts.lqi);
+  number(",\"channel\":", facts.channel);
+  number(",\"slot\":", facts.slot);
+  return at;
+}
+
 char* put_radio(char* at, const Frame& frame) {
   const reflect::MacHeader& mac = frame.mac;
   const bool far = mac.has_addresses;
@@ -55,7 +66,8 @@ char* put_radio(char* at, const Frame& frame) {
   at = put_or_null(put(at, ",\"dest\":"), far ? mac.dest : kAbsent);
   at = put_or_null(put(at, ",\"src\":"), far ? mac.src : kAbsent);
   at = put_or_null(put(at, ",\"network\":"), network_of(frame));
-  return put_or_null(put(at, ",\"fcs\":"), frame.packet->fcs);
+  at = put_or_null(put(at, ",\"fcs\":"), frame.packet->fcs);
+  return frame.packet->radio.any() ? put_facts(at, frame.packet->radio) : at;
 }
 
 char* put_framing(char* at, const Frame& frame) {
@@ -184,7 +196,11 @@ void JsonlFormatter::print(const Record& record, Buffer& out) {
   at = put_uint(put(at, "{\"schema\":\"rubric.decode/1\",\"index\":"), record.index);
   at = put_uint(put(at, ",\"offset\":"), packet.offset_bytes);
   at = put(at, ",\"time\":");
-  at = record.time_ns == kNoTime ? put(at, "null") : put_time(at, record.time_ns);
+  if (!record.time_text.empty()) {
+    at = report::put_json_string(at, record.time_text);
+  } else {
+    at = record.time_ns == kNoTime ? put(at, "null") : put_time(at, record.time_ns);
+  }
   at = put(at, ",\"interface\":");
   at = record.interface_name.empty() ? put(at, "null")
                                      : report::put_json_string(at, record.interface_name);
@@ -207,7 +223,7 @@ void JsonlFormatter::print(const Record& record, Buffer& out) {
     at = put(at, ",\"notes\":[]");
   }
   at = put_stale_and_raw(at, decoded);
-  if (!frame.malformed()) {
+  if (!frame.has_error()) {
     out.commit(put(at, ",\"error\":null}\n"));
     return;
   }

@@ -15,6 +15,7 @@ struct Record {
   std::uint64_t number = 1;         ///< The frame in its file, from 1, as in `rubric check`.
   std::string_view interface_name;  ///< Empty: the input names none.
   std::int64_t time_ns = kNoTime;   ///< In the form of --time; kNoTime: not shown.
+  std::string_view time_text;       ///< In place of time_ns, where --time asks for a date.
   const reflect::Frame* frame = nullptr;
 
   const Packet& packet() const { return *frame->packet; }

@@ -90,7 +90,7 @@ class Dump {
 
  private:
   bool is_fault(std::size_t i) const {
-    return record_.frame->malformed() && record_.frame->error.offset_bytes == i;
+    return record_.frame->has_error() && record_.frame->error.offset_bytes == i;
   }
 
   void bytes(std::size_t row, std::size_t end) {
@@ -440,9 +440,21 @@ void append_notes(const Record& record, Styled& styled) {
   }
 }
 
+// Appends what the sniffer states, where it states anything.
+void append_facts(const RadioFacts& facts, Styled& styled) {
+  if (!facts.any()) return;
+  std::string text;
+  if (facts.rssi) text += fmt::format("rssi={} ", *facts.rssi);
+  if (facts.lqi != kAbsent) text += fmt::format("lqi={} ", facts.lqi);
+  if (facts.channel != kAbsent) text += fmt::format("channel={} ", facts.channel);
+  if (facts.slot != kAbsent) text += fmt::format("slot={} ", facts.slot);
+  styled.put(Style::kDim, text);
+}
+
 void append_error(const Record& record, Styled& styled) {
   const Frame& frame = *record.frame;
-  if (!frame.malformed()) return;
+  if (!frame.has_error()) return;
+  if (!frame.malformed()) return styled.put(Style::kNote, "* " + reflect::error_text(frame));
   styled.put(Style::kError, fmt::format("!! {} at {}: {} ", reflect::fault_name(frame.error.fault),
                                         frame.error.offset_bytes, reflect::error_text(frame)));
 }
@@ -474,7 +486,12 @@ void TextFormatter::print(const Record& record, Buffer& out) {
   const bool malformed = frame.malformed();
   styled.put(malformed ? Style::kError : Style::kDim,
              fmt::format("{}{:>5} ", malformed ? '!' : ' ', record.number));
-  if (record.time_ns != kNoTime) append_time(record.time_ns, out);
+  if (!record.time_text.empty()) {
+    out.append(record.time_text);
+    out.append(' ');
+  } else if (record.time_ns != kNoTime) {
+    append_time(record.time_ns, out);
+  }
   if (options_.fields.empty()) {
     append_origin(record, out);
     append_framing(record.packet(), out);
@@ -488,6 +505,7 @@ void TextFormatter::print(const Record& record, Buffer& out) {
       append_opaque(record, styled);
     }
     append_stale(record, styled);
+    append_facts(record.packet().radio, styled);
     append_notes(record, styled);
   } else {
     for (const Path& path : options_.fields) {

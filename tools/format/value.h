@@ -28,6 +28,12 @@ struct Value {
     v.text = name;
     return v;
   }
+  static Value of_real(double value) {
+    Value v;
+    v.kind = Kind::kReal;
+    v.real = value;
+    return v;
+  }
   static Value of_text(std::string_view value) {
     Value v;
     v.kind = Kind::kText;

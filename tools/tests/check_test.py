@@ -246,6 +246,31 @@ class Formats(Folder):
         self.assertIn("cannot write /dev/full", err)
 
 
+    def test_a_folder_of_reports(self):
+        capture = self.folder / "<b>&.pcapng"
+        capture.write_bytes(WRONG_SEQ.read_bytes())
+        folder = self.folder / "report"
+        code, out, _ = check(capture, "--report", folder)
+        self.assertEqual((code, out), check(capture)[:2])
+        page = (folder / "index.html").read_text(encoding="utf-8")
+        self.assertIn("<h2>Verdict: fail, not as expected</h2>", page)
+        self.assertIn("&lt;b&gt;&amp;.pcapng", page)
+        self.assertNotIn("<b>&", page)
+        self.assertNotRegex(page, "<script|https?://")
+        report = as_json(capture)
+        for finding in report["findings"]:
+            self.assertIn(f"<code>{finding['requirement'] or 'no rule'}</code>", page)
+        order = re.findall(r'<b class="(\w+)">', page)
+        ranks = ["fail", "inconclusive", "stray", "weak", "note"]
+        self.assertEqual(order, sorted(order, key=ranks.index))
+        self.assertEqual(len(order), len(report["findings"]))
+        self.assertEqual(page.count("<details open>"), len(failures(report)))
+        self.assertEqual(json.loads((folder / "report.json").read_bytes()), report)
+        self.assertIn("<testsuite", (folder / "junit.xml").read_text(encoding="utf-8"))
+        (self.folder / "file").touch()
+        self.assertEqual(check(capture, "--report", self.folder / "file")[0], 74)
+
+
 class Expectations(Folder):
     KNOWN = "- requirement: J4-SEQ\n  message: %s\n  reason: Release 1.0 accepts any reply.\n"
 

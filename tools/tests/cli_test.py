@@ -5,6 +5,7 @@ Usage: cli_test.py RUBRIC.
 """
 
 import csv
+import datetime
 import io
 import json
 import os
@@ -20,7 +21,7 @@ JOIN = FIRMWARE / "a_join_data.pcapng"
 SERIAL = FIRMWARE / "a_join_data.serial.bin"
 BAD = FIRMWARE / "h10_hdlc_escape_and_bad_serial.serial_in.bin"
 PLAIN = FIRMWARE / "b_reliable.serial.bin"
-CLEAN, MALFORMED, USAGE, INPUT = range(4)
+CLEAN, MALFORMED, USAGE, INPUT = 0, 1, 64, 66
 OUTPUT = 74
 
 RUBRIC = None
@@ -214,7 +215,10 @@ class Output(unittest.TestCase):
             return [json.loads(line)["time"] for line in lines(done)]
         absolute = times()
         self.assertEqual(times("--time", "none"), [None] * 3)
-        self.assertEqual(times("--time", "zero"),
+        days = [datetime.datetime.fromisoformat(t.rstrip("Z") + "+00:00").timestamp()
+                for t in times("--time", "utc")]
+        self.assertEqual([round(d, 6) for d in days], [round(t, 6) for t in absolute])
+        self.assertEqual(times("--time", "relative"),
                          [round(t - absolute[0], 9) for t in absolute])
         self.assertEqual(times("--time", "delta"),
                          [0] + [round(b - a, 9) for a, b in zip(absolute, absolute[1:])])
@@ -250,6 +254,15 @@ class Terminals(unittest.TestCase):
         self.assertNotIn(b"\033", self.on_terminal({"TERM": "xterm", "NO_COLOR": "1"}))
         self.assertNotIn(b"\033", self.on_terminal({"TERM": "dumb"}))
         self.assertNotIn(b"\033", self.on_terminal({"TERM": "xterm"}, "--color", "never"))
+
+    def test_it_says_that_it_reads_what_is_typed(self):
+        leader, follower = pty.openpty()
+        os.write(leader, b"00 FF FF 00 00 03 00 25 0A 00 0C\n\x04")
+        environment = {k: v for k, v in os.environ.items() if k != "MOTECOM"}
+        done = subprocess.run([RUBRIC, "decode"], stdin=follower, capture_output=True, timeout=60,
+                              env=environment, check=True)
+        self.assertEqual(done.stderr.count(b"Ctrl-D on a line of its own ends it"), 1)
+        self.assertIn(b"config", done.stdout)
 
     def on_terminal(self, env, *words):
         leader, follower = pty.openpty()

@@ -69,6 +69,18 @@ class Completion(unittest.TestCase):
         self.assertEqual(bash("rubric", "decode", "--format", ""), ["text", "jsonl", "csv"])
         self.assertEqual(bash("rubric", "check", "--profile", "d"), ["deployed"])
 
+    def test_names_of_the_protocol_and_the_kit(self):
+        self.assertEqual(bash("rubric", "explain", "J4-SE"), ["J4-SEQ"])
+        self.assertEqual(bash("rubric", "explain", "join_rep"), ["join_reply"])
+        self.assertEqual(bash("rubric", "decode", "--spec", "blink"), ["blink_to_radio"])
+        self.assertEqual(bash("rubric", "decode", "--as", "join_rep"), ["join_reply"])
+        self.assertEqual(bash("rubric", "decode", "--fields", "frame.rs"), ["frame.rssi"])
+        self.assertEqual(bash("rubric", "test", "--requirement", "J4-SE"), ["J4-SEQ"])
+        self.assertIn("j4.wrong_seq", bash("rubric", "test", "--cases", "j4.w"))
+        self.assertEqual(fish("rubric explain J4-SE", self.folder.name), ["J4-SEQ"])
+        self.assertIn("J4-SEQ", zsh("rubric explain J4-SE", self.folder.name))
+        self.assertIn("blink_to_radio", zsh("rubric decode --spec bli", self.folder.name))
+
     def test_bash_completes_files(self):
         (pathlib.Path(self.folder.name) / "run 1.pcapng").touch()
         before = os.getcwd()

@@ -36,6 +36,10 @@ class Coverage(unittest.TestCase):
 
     def test_every_must_has_a_case(self):
         done = coverage(CASES)
+        with tempfile.TemporaryDirectory() as empty:  # Without a checkout.
+            own = subprocess.run([pathlib.Path(RUBRIC).resolve(), "coverage"], cwd=empty,
+                                 capture_output=True, text=True, check=False)
+        self.assertEqual((own.returncode, own.stdout), (done.returncode, done.stdout))
         problems = [line for line in done.stdout.splitlines() if line.startswith("problem")]
         self.assertEqual((done.returncode, problems), (0, []), done.stderr)
 

@@ -66,7 +66,7 @@ class Live(LiveTest):
         connection.close()
         self.assertEqual(len(running.lines(count)), count)
         code, _, err = running.end(None)
-        self.assertEqual(code, 3)
+        self.assertEqual(code, 66)
         self.assertIn("the line broke", err)
 
     def test_a_file_that_is_overwritten(self):
@@ -79,7 +79,7 @@ class Live(LiveTest):
         with open(path, "r+b") as file:
             file.write(whole[500:])
         code, _, err = running.end(None)
-        self.assertEqual(code, 3)
+        self.assertEqual(code, 66)
         self.assertIn("it was overwritten", err)
 
     def test_a_serial_forwarder_that_goes(self):
@@ -90,7 +90,7 @@ class Live(LiveTest):
         self.assertEqual(meaning(running.lines(len(wanted))), meaning(wanted))
         connection.close()
         code, _, err = running.end(None)
-        self.assertEqual(code, 3)
+        self.assertEqual(code, 66)
         self.assertIn(f"sf@127.0.0.1:{server.port}: the line broke: the other end closed it", err)
 
     def test_a_serial_forwarder_that_comes_back(self):
@@ -120,7 +120,7 @@ class Live(LiveTest):
         running.lines(len(wanted))
         code, _, err = running.end()
         connection.close()
-        self.assertEqual((code, err.count("cannot connect"), err.count("again")), (3, 1, 0))
+        self.assertEqual((code, err.count("cannot connect"), err.count("again")), (66, 1, 0))
 
     def test_a_file_that_grows(self):
         path = self.folder / "growing.pcapng"
@@ -137,7 +137,7 @@ class Live(LiveTest):
         self.assertEqual(found, wanted)
         path.write_bytes(whole[:100])
         code, _, err = running.end(None)
-        self.assertEqual(code, 3)
+        self.assertEqual(code, 66)
         self.assertIn("it has become shorter", err)
 
     def test_motecom(self):
@@ -158,14 +158,14 @@ class Live(LiveTest):
                            ("sf@nowhere", "expected HOST:PORT")):
             done = subprocess.run([RUBRIC, "decode", name], capture_output=True, text=True,
                                   check=False)
-            self.assertEqual((done.returncode, done.stdout), (2, ""), name)
+            self.assertEqual((done.returncode, done.stdout), (64, ""), name)
             self.assertIn(what, done.stderr)
         for name, what in (("serial@/dev/null:115200", "is not a serial line"),
                            ("serial@/no/such:57600", "cannot be opened"),
                            ("sf@127.0.0.1:1", "cannot connect")):
             done = subprocess.run([RUBRIC, "decode", name], capture_output=True, text=True,
                                   check=False)
-            self.assertEqual(done.returncode, 3, name)
+            self.assertEqual(done.returncode, 66, name)
             self.assertIn(what, done.stderr)
 
 

@@ -97,10 +97,10 @@ class Calls(Base):
         ask = ["--extcap-interface", "rubric", "--extcap-capture-filter"]
         self.assertEqual(self.said(*ask, "message==updates && src.devid==4", *UNKNOWN), "")
         self.assertEqual(self.said(*ask, ""), "")
-        self.assertRegex(self.said(*ask, "mesage==updates", code=2),
+        self.assertRegex(self.said(*ask, "mesage==updates", code=64),
                          r"^unknown name 'mesage' \(did you mean 'message'\?\)\n$")
-        self.assertEqual(self.said(*ask, "reading.nreadings==1", "--spec", "oscilloscope", code=2),
-                         self.said(*ask, "reading.nreadings==1", code=2))
+        self.assertEqual(self.said(*ask, "reading.nreadings==1", "--spec", "oscilloscope", code=64),
+                         self.said(*ask, "reading.nreadings==1", code=64))
 
     def test_bad_calls(self):
         for words, what in (([], "nothing to do"), (UNKNOWN, "nothing to do"),
@@ -108,7 +108,7 @@ class Calls(Base):
                             (["--capture", "--extcap-interface", "rubric"], "needs --fifo"),
                             (["--capture", "--fifo"], "--fifo needs a value")):
             done = run(Given.extcap, *words, env=self.environment)
-            self.assertEqual((done.returncode, done.stdout), (2, ""), words)
+            self.assertEqual((done.returncode, done.stdout), (64, ""), words)
             self.assertIn(what, done.stderr)
 
     def test_help_and_version(self):
@@ -265,13 +265,13 @@ class Captures(Base):
 
     def test_sources_that_cannot_be(self):
         for source, code, what in (
-                ("serial@/no/such:57600", 3, "/no/such: cannot be opened"),
-                ("serial@/no such/mote:57600", 3, "/no such/mote: cannot be opened"),
-                ("serial@/dev/null:115200", 3, "is not a serial line"),
-                ("sf@127.0.0.1:1", 3, "cannot connect"),
-                ("serial@/dev/ttyUSB0", 2, "expected serial@DEVICE:BAUD"),
-                ("sf@nowhere", 2, "expected HOST:PORT"),
-                (Given.root / SERIAL, 2, "expected serial@DEVICE:BAUD, network@HOST:PORT or sf@")):
+                ("serial@/no/such:57600", 66, "/no/such: cannot be opened"),
+                ("serial@/no such/mote:57600", 66, "/no such/mote: cannot be opened"),
+                ("serial@/dev/null:115200", 66, "is not a serial line"),
+                ("sf@127.0.0.1:1", 66, "cannot connect"),
+                ("serial@/dev/ttyUSB0", 64, "expected serial@DEVICE:BAUD"),
+                ("sf@nowhere", 64, "expected HOST:PORT"),
+                (Given.root / SERIAL, 64, "expected serial@DEVICE:BAUD, network@HOST:PORT or sf@")):
             process = self.capture(source)
             fd = self.reader()  # It is opened before anything fails: Wireshark waits for that.
             self.got = b""
@@ -285,7 +285,7 @@ class Captures(Base):
         fd = self.reader()
         found, err = self.ended(process)
         os.close(fd)
-        self.assertEqual(found, 2)
+        self.assertEqual(found, 64)
         self.assertIn("capture filter: ", err)
 
     def test_a_peer_that_goes(self):
@@ -296,7 +296,7 @@ class Captures(Base):
         server.forward(self, (Given.root / FORWARDER).read_bytes()).close()
         self.read(fd, lambda _: False)
         code, err = self.ended(process)
-        self.assertEqual(code, 3)
+        self.assertEqual(code, 66)
         self.assertIn("the other end closed it", err)
         self.assertEqual(meaning(self.records()), meaning(decoded(Given.root / FORWARDER)))
 

@@ -31,7 +31,7 @@ class Sources(unittest.TestCase):
         self.assertEqual(client.packets(200), wanted)
         client.wait_until_cut_off()
         code, summary = running.end(None)
-        self.assertEqual(code, 3)
+        self.assertEqual(code, 66)
         self.assertIn("200 packets from it", summary)
         running.wait_for(f"^rubric: {mote.source}: the line broke: the other end closed it$")
 
@@ -44,7 +44,7 @@ class Sources(unittest.TestCase):
         with socket.socket() as late:
             late.settimeout(PATIENCE_S)
             late.connect_ex((running.host, running.port))
-            self.assertEqual(running.end(None)[0], 3)
+            self.assertEqual(running.end(None)[0], 66)
         self.assertLess(running.cpu_seconds, 0.3)
 
     def test_a_source_that_comes_back(self):
@@ -88,16 +88,16 @@ class Sources(unittest.TestCase):
             self.assertEqual(running.end()[0], 0)
 
     def test_sources_that_cannot_be(self):
-        for source, code, what in (("serial@/no/such:57600", 3, "cannot be opened"),
-                                   ("sf@127.0.0.1:1", 3, "cannot connect"),
-                                   ("serial@/dev/ttyUSB0", 2, "expected serial@DEVICE:BAUD"),
-                                   ("capture.pcapng", 2, "expected serial@DEVICE:BAUD, network")):
+        for source, code, what in (("serial@/no/such:57600", 66, "cannot be opened"),
+                                   ("sf@127.0.0.1:1", 66, "cannot connect"),
+                                   ("serial@/dev/ttyUSB0", 64, "expected serial@DEVICE:BAUD"),
+                                   ("capture.pcapng", 64, "expected serial@DEVICE:BAUD, network")):
             done = ended(source, "--port", "0")
             self.assertEqual((done.returncode, done.stdout), (code, ""), source)
             self.assertIn(what, done.stderr)
         environment = {key: value for key, value in os.environ.items() if key != "MOTECOM"}
         done = ended("--port", "0", env=environment)
-        self.assertEqual(done.returncode, 2)
+        self.assertEqual(done.returncode, 64)
         self.assertIn("SOURCE", done.stderr)
 
     def test_a_source_that_is_no_forwarder(self):
@@ -108,7 +108,7 @@ class Sources(unittest.TestCase):
         mote.accept()
         mote.say(b"SSH-2.0")
         out, err = running.communicate(timeout=PATIENCE_S)
-        self.assertEqual((running.returncode, out), (3, ""))
+        self.assertEqual((running.returncode, out), (66, ""))
         self.assertIn("the other end is not a serial forwarder: it does not begin with 55 20", err)
 
     def test_a_forwarder_of_a_forwarder(self):
@@ -124,13 +124,13 @@ class Sources(unittest.TestCase):
         near.give(packet(2))
         self.assertEqual(sorted(mote.confirmed_packet() for _ in range(2)), [packet(1), packet(2)])
         self.assertEqual(first.end()[0], 0)
-        self.assertEqual(second.end(None)[0], 3)
+        self.assertEqual(second.end(None)[0], 66)
 
     def test_a_forwarder_of_itself(self):
         for more in ([], ["--bind", "0.0.0.0"]):
             with held_port() as port:
                 done = ended(f"sf@127.0.0.1:{port}", "--port", str(port), *more)
-            self.assertEqual(done.returncode, 3)
+            self.assertEqual(done.returncode, 66)
             self.assertIn("this is where this forwarder itself listens", done.stderr)
 
     def test_the_same_port_of_another_address_is_another_forwarder(self):
@@ -148,13 +148,13 @@ class Sources(unittest.TestCase):
         done = subprocess.run(["sh", "-c", 'ulimit -n 4; exec "$@"', "sh",  # Three, and it listens.
                                RUBRIC, "forward", mote.source, "--port", "0"],
                               capture_output=True, text=True, check=False, timeout=PATIENCE_S)
-        self.assertEqual(done.returncode, 3)
+        self.assertEqual(done.returncode, 66)
         self.assertIn("cannot connect: Too many open files", done.stderr)
 
     def test_a_port_that_is_taken(self):
         mote, running = serving(self, terminal=True)
         done = ended(mote.source, "--port", str(running.port))
-        self.assertEqual(done.returncode, 3)
+        self.assertEqual(done.returncode, 66)
         self.assertIn(f"cannot listen at 127.0.0.1, port {running.port}: Address already in use",
                       done.stderr)
 
@@ -228,7 +228,7 @@ class Sources(unittest.TestCase):
             reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
             self.addCleanup(os.close, reader)
             done = ended("sf@127.0.0.1:1", "--port", "0", "--write", pipe)
-        self.assertEqual(done.returncode, 2)
+        self.assertEqual(done.returncode, 64)
         self.assertIn(f"--write: {pipe} is not a regular file", done.stderr)
 
 

@@ -245,7 +245,7 @@ class Clients(unittest.TestCase):
         mote.say(from_mote(packet(1)))
         clients[0].wait_until_cut_off()
         self.assertEqual(running.end(None),
-                         (3, "rubric: cannot wait for source and clients: Invalid argument"))
+                         (66, "rubric: cannot wait for source and clients: Invalid argument"))
 
     def test_what_is_cut_short_after_whole_packets(self):
         mote, running = serving(self, "--timeout", str(1000 * PATIENCE_S))

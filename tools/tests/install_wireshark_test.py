@@ -216,7 +216,7 @@ class Install(Base):
     def test_a_folder_of_choice(self):
         self.install("--dir", self.home / "w")
         self.assertEqual(self.tree(), ["w/extcap/rubric-extcap", "w/plugins/rubric.lua"])
-        self.install("--dir", "", code=2)
+        self.install("--dir", "", code=64)
 
     def test_files_of_others_stay(self):
         self.install("--dir", self.home)
@@ -225,19 +225,19 @@ class Install(Base):
             for words in ([], ["--remove"], ["--dry-run"]):
                 path.unlink()
                 path.write_text("mine", encoding="utf-8")
-                said = self.install("--dir", self.home, *words, code=3)
+                said = self.install("--dir", self.home, *words, code=74)
                 self.assertIn(f"{path}: this is not ours", said)
                 self.assertEqual(path.read_text(encoding="utf-8"), "mine")
             other = self.folder / "other"
             other.write_text("theirs", encoding="utf-8")
             path.unlink()
             path.symlink_to(other)
-            self.install("--dir", self.home, code=3)
+            self.install("--dir", self.home, code=74)
             self.install("--dir", self.home, "--force")
             self.assertEqual(other.read_text(encoding="utf-8"), "theirs")
         (self.home / "extcap/rubric-extcap").unlink()
         (self.home / "extcap/rubric-extcap").mkdir()
-        self.assertIn("folder", self.install("--dir", self.home, "--force", code=3))
+        self.assertIn("folder", self.install("--dir", self.home, "--force", code=74))
 
     def test_what_an_older_one_left_is_renewed(self):
         program = self.home / "extcap/rubric-extcap"
@@ -254,7 +254,7 @@ class Install(Base):
         alone = self.folder / "alone"
         alone.mkdir()
         shutil.copy(Given.rubric, alone / "rubric")
-        said = self.install("--dir", self.home, code=3, program=alone / "rubric")
+        said = self.install("--dir", self.home, code=66, program=alone / "rubric")
         self.assertIn(f"{alone}/rubric-extcap: there is no such file", said)
         self.assertEqual(self.tree(), [])
 
@@ -266,7 +266,7 @@ class Install(Base):
             shutil.copy(path, folder / name)
         whole = pathlib.Path(Given.extcap).read_bytes()
         for words in ([], ["--force"], ["--dry-run"], ["--remove"]):
-            said = self.install("--dir", self.home, *words, code=3, program=folder / "rubric")
+            said = self.install("--dir", self.home, *words, code=74, program=folder / "rubric")
             self.assertIn(f"{folder}/rubric-extcap: this is the program itself", said)
         self.assertEqual(self.tree(), ["extcap/rubric", "extcap/rubric-extcap"])
         self.assertEqual((folder / "rubric-extcap").read_bytes(), whole)
@@ -274,7 +274,7 @@ class Install(Base):
         beside.mkdir()
         shutil.copy(Given.rubric, beside / "rubric")
         (beside / "rubric-extcap").symlink_to(folder / "rubric-extcap")
-        said = self.install("--dir", self.home, code=3, program=beside / "rubric")
+        said = self.install("--dir", self.home, code=74, program=beside / "rubric")
         self.assertIn("this is the program itself", said)
         self.assertEqual((folder / "rubric-extcap").read_bytes(), whole)
 
@@ -301,7 +301,7 @@ class Install(Base):
         tools.mkdir()
         self.environment["PATH"] = str(tools)
         del self.environment["HOME"]
-        self.assertIn("$HOME is not set", self.install(code=3))
+        self.assertIn("$HOME is not set", self.install(code=66))
 
 
 if __name__ == "__main__":

@@ -110,17 +110,17 @@ class NewAdapter(unittest.TestCase):
             mine = pathlib.Path(folder) / "my_node.h"
             mine.write_text("mine")
             written = self.write("cpp", folder)
-            self.assertEqual(written.returncode, 3)
+            self.assertEqual(written.returncode, 74)
             self.assertIn("my_node.h: it exists", written.stderr)
             self.assertEqual(mine.read_text(), "mine")
             self.assertEqual([mine], list(pathlib.Path(folder).iterdir()))
 
     def test_mistakes(self):
-        self.assertEqual(self.write("cobol", "x").returncode, 2)
+        self.assertEqual(self.write("cobol", "x").returncode, 64)
         self.assertFalse(pathlib.Path("x").exists())
         with tempfile.NamedTemporaryFile() as file:
             written = self.write("python", file.name + "/deep")
-            self.assertEqual(written.returncode, 3)
+            self.assertEqual(written.returncode, 74)
             self.assertIn("cannot write", written.stderr)
 
 

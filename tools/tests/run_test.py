@@ -124,7 +124,7 @@ class Run(LiveTest):
                 (("sink", "--island", "11", "--serial", "9002"), "expected sf-server:PORT")):
             run = subprocess.run([RUBRIC, "run", *arguments], capture_output=True, check=False,
                                  text=True, stdin=subprocess.DEVNULL)
-            self.assertEqual(run.returncode, 2, run.stderr)
+            self.assertEqual(run.returncode, 64, run.stderr)
             self.assertIn(text, run.stderr)
         taken = socket.create_server(("127.0.0.1", 0))
         port = taken.getsockname()[1]
@@ -132,7 +132,7 @@ class Run(LiveTest):
                               "--serial", f"sf-server:{port}"], capture_output=True, check=False,
                              text=True)
         taken.close()
-        self.assertEqual(run.returncode, 3)
+        self.assertEqual(run.returncode, 66)
         self.assertIn(f"port {port}: Address already in use", run.stderr)
 
     def test_two_motes_of_one_id_and_a_wrong_call(self):

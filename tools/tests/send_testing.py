@@ -10,7 +10,7 @@ import threading
 from live_testing import RUBRIC, Forwarder, LiveTest, Mote
 from serial_testing import ACK, PATIENCE_S, Pty, hdlc
 
-CLEAN, USAGE, INPUT, NOT_SENT, OUTPUT = 0, 2, 3, 4, 74
+CLEAN, USAGE, INPUT, NOT_SENT, OUTPUT = 0, 64, 66, 3, 74
 LONG_MS = 60_000  # Never over while somebody answers.
 
 

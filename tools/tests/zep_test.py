@@ -116,10 +116,10 @@ class Zep(LiveTest):
     def test_a_serial_line_is_wanted_where_packets_are_sent(self):
         for command in (("forward", "zep:17754"), ("send", "--to", "zep:17754")):
             run = subprocess.run([RUBRIC, *command], input=b"", capture_output=True, check=False)
-            self.assertEqual(run.returncode, 2)
+            self.assertEqual(run.returncode, 64)
             self.assertIn(b"expected serial@DEVICE:BAUD", run.stderr)
         run = subprocess.run([RUBRIC, "decode", "zep:x"], capture_output=True, check=False)
-        self.assertEqual(run.returncode, 2)
+        self.assertEqual(run.returncode, 64)
         self.assertIn(b"expected zep:PORT", run.stderr)
 
     @unittest.skipUnless(shutil.which("tshark"), "no tshark")

@@ -141,11 +141,11 @@ TEST(WirePcapng, RecordsCapturedInPart) {
   file.packet(1, 0, kRadioAck, {}, 1);
   const std::vector<Kept> got = read(InputFormat::kPcapng, file.out);
   ASSERT_EQ(got.size(), 2u);
-  EXPECT_EQ(got[0].packet.error, (Error{Fault::kCut, 4, "WIRE-PCAPNG"_rule}));
+  EXPECT_EQ(got[0].packet.error, (Error{Fault::kCut, 4, ReqId::kNone}));
   EXPECT_EQ(got[0].packet.crc, kAbsent);
   EXPECT_EQ(got[0].packet.dropped_bytes, 3u);
   EXPECT_EQ(to_hex(view(got[0].bytes)), "be48");
-  EXPECT_EQ(got[1].packet.error, (Error{Fault::kCut, 5, "WIRE-PCAPNG"_rule}));
+  EXPECT_EQ(got[1].packet.error, (Error{Fault::kCut, 5, ReqId::kNone}));
   EXPECT_EQ(got[1].packet.fcs, kAbsent);
 }
 
@@ -279,7 +279,7 @@ TEST(WirePcap, BothOrdersAndResolutions) {
       EXPECT_EQ(got[0].packet.time_ns, 3'000'000'000 + (magic == 0xA1B23C4D ? 5 : 5000));
       EXPECT_EQ(got[0].packet.error, kSound);
       EXPECT_EQ(got[0].packet.offset_bytes, 40u);
-      EXPECT_EQ(got[1].packet.error, (Error{Fault::kCut, 5, "WIRE-PCAP"_rule}));
+      EXPECT_EQ(got[1].packet.error, (Error{Fault::kCut, 5, ReqId::kNone}));
       EXPECT_EQ(got[1].packet.dropped_bytes, 2u);
       EXPECT_EQ(interfaces.at(0).link_type, 195);
     }

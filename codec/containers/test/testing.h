@@ -49,6 +49,12 @@ inline std::string read_file(const std::string& path) {
 }
 
 /// A packet that outlives its callback, comparable in every field.
+/// Returns the facts that a writer keeps.
+inline RadioFacts kept_facts(RadioFacts facts) {
+  facts.more = false;
+  return facts;
+}
+
 struct Kept {
   Packet packet;  // Its bytes and comment point into the strings below.
   std::string bytes;
@@ -70,7 +76,7 @@ struct Kept {
            p.time_ns == q.time_ns && p.interface_id == q.interface_id &&
            p.link_type == q.link_type && p.kind == q.kind && p.serial_seq == q.serial_seq &&
            p.crc == q.crc && p.fcs == q.fcs && p.error == q.error &&
-           p.dropped_bytes == q.dropped_bytes;
+           p.dropped_bytes == q.dropped_bytes && kept_facts(p.radio) == kept_facts(q.radio);
   }
   friend std::ostream& operator<<(std::ostream& out, const Kept& k) {
     const Packet& p = k.packet;

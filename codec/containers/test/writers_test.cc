@@ -36,7 +36,7 @@ const TapCase kTapCases[] = {
     {"WrongFcs", "02 00 01 ff ff", 0, {Fault::kFcs, 3, "WIRE-RADIO-FCS"_rule}, kLinkRadioFcs},
     {"NoRoomForTheFcs", "02", 0, {Fault::kTooShort, 1, "WIRE-RADIO-FCS"_rule}, kLinkRadioFcs},
     {"Empty", "", 0, {Fault::kEmpty, 0, "WIRE-RADIO-HEADER"_rule}, kLinkRadioNoFcs},
-    {"Cut", "02 00 01", 2, {Fault::kCut, 3, "WIRE-PCAP"_rule}, kLinkRadioNoFcs},
+    {"Cut", "02 00 01", 2, {Fault::kCut, 3, ReqId::kNone}, kLinkRadioNoFcs},
 };
 
 // The header is gone once it was understood, so that a record without it must not claim one.
@@ -54,6 +54,89 @@ TEST(WireRadioTap, FramesAreWrittenWithoutTheHeader) {
     EXPECT_TRUE(equal(again.bytes, packet.bytes)) << row.name;
     EXPECT_EQ(again.fcs, packet.fcs) << row.name;
   }
+}
+
+// Facts as a sniffer for TSCH states them; the bit rate is not kept.
+const std::string kFacts = from_hex(
+    "0000 3000 0000 0100 01000000 0100 0400 00008fc2 0300 0300 1a000000 0700 0800 15cd5b0700000000"
+    "0a00 0100 80000000");
+
+TEST(WireRadioTap, FactsAreKept) {
+  for (const TapCase& row : kTapCases) {
+    Packet packet = of_record(kFacts + from_hex(row.frame), kLinkRadioTap, row.missing);
+    EXPECT_EQ(packet.error, row.error) << row.name;
+    EXPECT_EQ(packet.radio.rssi, -71.5F);
+    EXPECT_EQ(packet.radio.channel, 26);
+    EXPECT_EQ(packet.radio.slot, 123456789);
+    EXPECT_EQ(packet.radio.lqi, 128);
+    EXPECT_FALSE(packet.radio.more);
+    EXPECT_EQ(link_type_of(packet), kLinkRadioTap) << row.name;
+    std::string written;
+    append_record(packet, written);
+    const Packet again = of_record(written, kLinkRadioTap, row.missing);
+    EXPECT_EQ(again.error, packet.error) << row.name;
+    EXPECT_TRUE(equal(again.bytes, packet.bytes)) << row.name;
+    EXPECT_EQ(again.fcs, packet.fcs) << row.name;
+    EXPECT_EQ(again.radio, packet.radio) << row.name;
+  }
+  const std::string rate = from_hex("0000 0c00 0200 0400 90d00300");
+  const Packet packet = of_record(rate + from_hex("02 00 01"), kLinkRadioTap);
+  EXPECT_TRUE(packet.radio.more);
+  EXPECT_FALSE(packet.radio.any());
+}
+
+TEST(WireRadioTap, FactsThatAreNoneAreLeftOut) {
+  for (const char* fact : {"0100 0400 0000c07f", "0100 0200 00000000", "0300 0100 1a000000",
+                           "0a00 0000", "0700 0800 0000000000000080"}) {
+    const std::string body = from_hex(fact);
+    std::string header = from_hex("00000000") + body;
+    header[2] = static_cast<char>(header.size());
+    const Packet packet = of_record(header + from_hex("02 00 01"), kLinkRadioTap);
+    EXPECT_EQ(packet.error, kSound) << fact;
+    EXPECT_FALSE(packet.radio.any()) << fact;
+  }
+}
+
+// The chip's trailer in place of the FCS says the same as a header would.
+TEST(WireRadioTap, ATrailerStaysATrailer) {
+  Packet packet = of_record(from_hex("02 00 01 d0 eb"), kLinkRadioFcs);
+  packet.error = kSound;
+  packet.radio.rssi = -48.0F;
+  EXPECT_EQ(link_type_of(packet), kLinkRadioFcs);
+  std::string written;
+  append_record(packet, written);
+  EXPECT_EQ(written, from_hex("02 00 01 d0 eb"));
+}
+
+TEST(WireRadioPhy, ThePreambleIsTakenOff) {
+  const std::string phy = from_hex("00000000 a7 05 02 00 01 31 a4");
+  Packet packet = of_record(phy, kLinkRadioPhy);
+  EXPECT_EQ(packet.error, kSound);
+  EXPECT_EQ(packet.link_type, kLinkRadioFcs);
+  EXPECT_EQ(packet.offset_bytes, 6u);
+  EXPECT_EQ(packet.fcs, 0xa431);
+  EXPECT_EQ(of_record(phy + "x", kLinkRadioPhy).error, kSound);
+  packet = of_record(phy.substr(0, 9), kLinkRadioPhy, 2);
+  EXPECT_EQ(packet.error, (Error{Fault::kCut, 3, ReqId::kNone}));
+  EXPECT_EQ(of_record(phy.substr(0, 3), kLinkRadioPhy, 8).error.fault, Fault::kCut);
+  EXPECT_EQ(of_record(phy.substr(0, 9), kLinkRadioPhy).error,
+            (Error{Fault::kTruncated, 9, "WIRE-PCAP"_rule}));
+  packet = of_record(from_hex("00000000 a6 05 02 00 01 31 a4"), kLinkRadioPhy);
+  EXPECT_EQ(packet.error, (Error{Fault::kUnexpected, 4, "WIRE-PCAP"_rule}));
+  std::string written;
+  append_record(packet, written);
+  EXPECT_EQ(written, from_hex("00000000 a6 05 02 00 01 31 a4"));
+  EXPECT_EQ(link_type_of(packet), kLinkRadioPhy);
+}
+
+TEST(WireRadioLinux, AnFcsThatFitsIsOne) {
+  Packet packet = of_record(from_hex("02 00 01 31 a4"), kLinkRadioLinux);
+  EXPECT_EQ(packet.fcs, 0xa431);
+  EXPECT_EQ(packet.link_type, kLinkRadioFcs);
+  packet = of_record(from_hex("02 00 01"), kLinkRadioLinux);
+  EXPECT_EQ(packet.fcs, kAbsent);
+  EXPECT_EQ(packet.error, kSound);
+  EXPECT_EQ(packet.link_type, kLinkRadioNoFcs);
 }
 
 TEST(WireRadioTap, AHeaderThatIsWrongIsWrittenAsItIs) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "codec/containers/crc16_fast.h"
+#include "codec/containers/link_record.h"
 
 namespace rubric {
 namespace {
@@ -128,6 +129,82 @@ TEST(Zep, AnAckCarriesNoFrame) {
   EXPECT_EQ(parse_zep(as_bytes(datagram))->sequence, 77u);
   Packet packet;
   EXPECT_FALSE(decode_zep_datagram(as_bytes(datagram), packet));
+}
+
+std::string big16(std::size_t value) {
+  return {static_cast<char>(value >> 8), static_cast<char>(value)};
+}
+
+std::string udp(const std::string& datagram, std::uint16_t port = kZepPort) {
+  return big16(40000) + big16(port) + big16(8 + datagram.size()) + big16(0) + datagram;
+}
+
+std::string ipv4(const std::string& payload, std::uint16_t fragment = 0) {
+  return std::string("\x45\0", 2) + big16(20 + payload.size()) + big16(1) + big16(fragment) +
+         "\x40\x11" + big16(0) + "\x7f\1\1\1\x7f\1\1\1" + payload;
+}
+
+std::string ipv6(const std::string& payload, bool option) {
+  const std::string hop = option ? std::string("\x11\0\1\4\0\0\0\0", 8) : "";
+  return std::string("\x60\0\0\0", 4) + big16(hop.size() + payload.size()) +
+         std::string(1, option ? '\0' : '\x11') + "\x40" + std::string(32, '\1') + hop + payload;
+}
+
+TEST(ZepOverUdp, IsFoundBehindEveryLinkHeader) {
+  const std::string v4 = ipv4(udp(sound_datagram()));
+  const std::string macs(12, '\2');
+  const struct {
+    std::uint16_t link_type;
+    std::string record;
+  } kRecords[] = {
+      {kLinkRawIp, v4},
+      {kLinkIpv4, v4},
+      {kLinkIpv6, ipv6(udp(sound_datagram()), false)},
+      {kLinkRawIp, ipv6(udp(sound_datagram()), true)},
+      {kLinkEthernet, macs + "\x08" + std::string(1, '\0') + v4 + "padding"},
+      {kLinkEthernet, macs + "\x81" + std::string("\0\0\5\x08\0", 5) + v4},
+      {kLinkSll, std::string(14, '\0') + std::string("\x08\0", 2) + v4},
+      {kLinkSll2, std::string("\x08\0", 2) + std::string(18, '\0') + v4},
+  };
+  for (const auto& row : kRecords) {
+    Packet packet;
+    packet.time_ns = 5;
+    decode_record(as_bytes(row.record), row.record.size(), row.link_type, "WIRE-PCAP"_rule, packet);
+    EXPECT_EQ(packet.error.fault, Fault::kNone) << row.link_type;
+    EXPECT_EQ(packet.framing, Framing::kRadio);
+    EXPECT_EQ(packet.bytes.size(), 12u);
+    EXPECT_EQ(packet.time_ns, 5);
+    EXPECT_EQ(packet.radio.channel, 17);
+    EXPECT_EQ(packet.radio.lqi, 200);
+    EXPECT_EQ(packet.link_type, kLinkRadioTap);
+    EXPECT_EQ(row.record[packet.offset_bytes], 0x41);
+    // However much of it was captured: cut, or nothing for us.
+    for (std::size_t size = 0; size < row.record.size(); ++size) {
+      Packet part;
+      decode_record(as_bytes(row.record).first(size), row.record.size(), row.link_type,
+                    "WIRE-PCAP"_rule, part);
+      const bool whole = row.record.ends_with("padding") && size + 7 >= row.record.size();
+      const Fault fault = part.error.fault;
+      EXPECT_EQ(fault == Fault::kNone, whole) << row.link_type << ' ' << size;
+      EXPECT_TRUE(whole || fault == Fault::kCut || fault == Fault::kUnsupported);
+      EXPECT_LE(part.offset_bytes + part.bytes.size(), size);
+    }
+  }
+}
+
+TEST(ZepOverUdp, WhatIsNoneIsLeftAlone) {
+  const std::string datagram = sound_datagram();
+  std::string tcp = ipv4(udp(datagram));
+  tcp[9] = 6;
+  for (const std::string& record :
+       {ipv4(udp(datagram, 53)), ipv4(udp(datagram), 0x2000), ipv4(udp(datagram), 3), tcp,
+        std::string("\x45"), std::string()}) {
+    Packet packet;
+    decode_record(as_bytes(record), record.size(), kLinkRawIp, "WIRE-PCAP"_rule, packet);
+    EXPECT_EQ(packet.error, fail(Fault::kUnsupported, 0, "WIRE-PCAP"_rule).error);
+    EXPECT_EQ(packet.link_type, kLinkRawIp);
+    EXPECT_EQ(packet.offset_bytes, 0u);
+  }
 }
 
 }  // namespace

@@ -77,6 +77,10 @@ Source::Handlers Server::handlers() {
 }
 
 void Server::on_packet(Bytes bytes) {
+  if (options_.passes && !options_.passes(bytes)) {
+    ++counts_.withheld;
+    return;
+  }
   const auto size = static_cast<std::uint8_t>(bytes.size());
   backlog_.append(Bytes(&size, 1));
   backlog_.append(bytes);

@@ -5,6 +5,7 @@
 #include <poll.h>
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -30,12 +31,14 @@ struct Options {
   std::string write;  ///< A capture of what goes by; empty: none.
   lines::CaptureFile::Mode write_mode = lines::CaptureFile::Mode::kGrow;
   lines::Rotation rotation;
+  std::function<bool(Bytes)> passes;  ///< Says which packets clients get; null: all.
 };
 
 /// Totals of the forwarded packets.
 struct Counts {
   std::uint64_t from_source = 0;
   std::uint64_t malformed = 0;
+  std::uint64_t withheld = 0;  ///< From the source, and not passed on.
   std::uint64_t to_source = 0;
   std::uint64_t unconfirmed = 0;
   std::uint64_t not_sent = 0;  ///< Taken from clients and never written.

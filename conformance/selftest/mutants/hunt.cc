@@ -65,7 +65,9 @@ bool judge(const CaseRef& ref, const Mutant& mutant, Found& found) {
 
 }  // namespace
 
-Golden::Golden(const std::string& folder) : files_(runner::load_cases(folder)) {
+Golden::Golden(const std::string& folder) : Golden(runner::load_cases(folder)) {}
+
+Golden::Golden(std::vector<trace::Parsed> files) : files_(std::move(files)) {
   for (const trace::Parsed& file : files_) {
     for (const trace::Case& one : file.file.cases) {
       const CaseRef ref{&file, &one};

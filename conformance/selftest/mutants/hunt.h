@@ -24,6 +24,7 @@ class Golden {
  public:
   /// Reads all .rtr files below the folder. Throws std::runtime_error.
   explicit Golden(const std::string& folder);
+  explicit Golden(std::vector<trace::Parsed> files);
 
   /// Returns the traces that the machine passes: no other can tell a mutant from it.
   const std::vector<CaseRef>& cases() const { return cases_; }

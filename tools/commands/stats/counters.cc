@@ -19,34 +19,52 @@ namespace {
 constexpr double kNsPerSecond = 1e9;
 constexpr int kBroadcast = 0xffff;
 
-void note_time(Flow& flow, const Place& place) {
-  const Place& last = flow.last;
-  const bool comparable = flow.frames > 0 && last.file == place.file && last.time_ns != kNoTime &&
-                          place.time_ns != kNoTime;
-  if (comparable && place.time_ns < last.time_ns) ++flow.backward;
-  if (comparable && place.time_ns >= last.time_ns) {
-    // Damaged stamps can be anything, so their difference may not fit.
-    const auto gap =
-        static_cast<std::uint64_t>(place.time_ns) - static_cast<std::uint64_t>(last.time_ns);
-    const auto gap_ns = static_cast<std::int64_t>(
-        std::min<std::uint64_t>(gap, static_cast<std::uint64_t>(INT64_MAX)));
-    ++flow.intervals;
-    flow.seconds += static_cast<double>(gap_ns) / kNsPerSecond;
-    if (gap_ns > flow.gap_ns) {
-      flow.gap_ns = gap_ns;
-      flow.gap_from = last;
-      flow.gap_to = place;
-    }
-  }
+// Damaged stamps can be anything, so their difference may not fit.
+std::int64_t difference(std::int64_t later, std::int64_t earlier) {
+  const auto gap = static_cast<std::uint64_t>(later) - static_cast<std::uint64_t>(earlier);
+  return static_cast<std::int64_t>(
+      std::min<std::uint64_t>(gap, static_cast<std::uint64_t>(INT64_MAX)));
 }
 
-void add(Flow& flow, const Frame& frame, const Place& place, bool repeated) {
-  note_time(flow, place);
+double length_of_file(const Flow& flow) {
+  return flow.first_ns == kNoTime
+             ? 0
+             : static_cast<double>(difference(flow.last_ns, flow.first_ns)) / kNsPerSecond;
+}
+
+// Returns the time since the frame before; -1 if that is unknown, or this one is older.
+std::int64_t note_time(Flow& flow, const Place& place) {
+  const Place& last = flow.last;
+  if (flow.frames > 0 && last.file != place.file) {
+    flow.seconds_before += length_of_file(flow);
+    flow.first_ns = flow.last_ns = kNoTime;
+  }
+  if (place.time_ns == kNoTime) return -1;
+  ++flow.timed;
+  flow.first_ns = flow.first_ns == kNoTime ? place.time_ns : std::min(flow.first_ns, place.time_ns);
+  flow.last_ns = std::max(flow.last_ns, place.time_ns);  // kNoTime is below all.
+  if (flow.frames == 0 || last.file != place.file || last.time_ns == kNoTime) return -1;
+  if (place.time_ns < last.time_ns) {
+    ++flow.backward;
+    return -1;
+  }
+  const std::int64_t gap_ns = difference(place.time_ns, last.time_ns);
+  if (gap_ns > flow.gap_ns) {
+    flow.gap_ns = gap_ns;
+    flow.gap_from = last;
+    flow.gap_to = place;
+  }
+  return gap_ns;
+}
+
+std::int64_t add(Flow& flow, const Frame& frame, const Place& place, bool repeated) {
+  const std::int64_t gap_ns = note_time(flow, place);
   ++flow.frames;
   flow.bytes += frame.packet->bytes.size();
   flow.malformed += frame.malformed();
   flow.repeated += repeated;
   flow.last = place;
+  return gap_ns;
 }
 
 void append_number(const Node& node, std::string& out) {
@@ -79,6 +97,17 @@ void append_am_address(std::uint16_t address, std::string& out) {
 }
 
 }  // namespace
+
+double Flow::seconds() const { return seconds_before + length_of_file(*this); }
+
+double Flow::rate() const { return seconds() > 0 ? static_cast<double>(timed) / seconds() : 0; }
+
+void Signal::Range::take(double value) {
+  min = count == 0 ? value : std::min(min, value);
+  max = count == 0 ? value : std::max(max, value);
+  sum += value;
+  ++count;
+}
 
 std::string message_label(const Frame& frame) {
   if (frame.decoded.message()) return frame.decoded.message()->name;
@@ -132,6 +161,19 @@ bool Counters::is_repeated(const Frame& frame, const Origin& origin) {
   return repeated && !is_new;
 }
 
+void Counters::take_signal(const Frame& frame) {
+  const RadioFacts& facts = frame.packet->radio;
+  if (facts.channel != kAbsent) ++channels_[facts.channel];
+  const bool stated = facts.rssi || facts.lqi != kAbsent;
+  if (!stated || !frame.mac.has_addresses || links_.size() >= kMaxPairs) return;
+  std::string link = std::to_string(frame.mac.src) + '>';
+  link += frame.mac.dest == kBroadcast ? "broadcast" : std::to_string(frame.mac.dest);
+  Signal& signal = links_[link];
+  ++signal.frames;
+  if (facts.rssi) signal.rssi.take(*facts.rssi);
+  if (facts.lqi != kAbsent) signal.lqi.take(facts.lqi);
+}
+
 void Counters::take(const Frame& frame, const Origin& origin) {
   const Packet& packet = *frame.packet;
   const Place place{std::string(origin.file), origin.index, origin.number, packet.offset_bytes,
@@ -139,13 +181,18 @@ void Counters::take(const Frame& frame, const Origin& origin) {
   if (place.file != all_.last.file) last_sequence_.clear();
   pair_ = pair_label(frame);
   const bool repeated = is_repeated(frame, origin);
-  add(all_, frame, place, repeated);
+  const std::int64_t gap_ns = add(all_, frame, place, repeated);
+  if (gap_ns >= 0) gaps_.take(gap_ns);
+  if (packet.time_ns != kNoTime) time_line_.take(packet.time_ns);
+  if (packet.radio.any()) take_signal(frame);
   add(messages_[message_label(frame)], frame, place, repeated);
   if (!pair_.empty()) {
     if (pairs_.size() >= kMaxPairs && !pairs_.contains(pair_)) pair_ = kOtherPairs;
     add(pairs_[pair_], frame, place, repeated);
+    const std::string source = pair_.substr(0, pair_.find('>'));
+    add(sources_[source], frame, place, repeated);
   }
-  if (frame.malformed()) {
+  if (frame.has_error()) {
     FaultCount& fault = faults_[{frame.error.fault, frame.error.requirement}];
     if (fault.frames++ == 0) fault.first = place;
   }

@@ -10,6 +10,7 @@
 
 #include "codec/reflect/frame.h"
 #include "codec/reflect/requirements.h"
+#include "tools/commands/stats/distribution.h"
 
 namespace rubric::stats {
 
@@ -27,17 +28,37 @@ struct Flow {
   std::uint64_t frames = 0;
   std::uint64_t bytes = 0;
   std::uint64_t malformed = 0;
-  std::uint64_t repeated = 0;   ///< Frames with the sequence number of the one before.
-  std::uint64_t backward = 0;   ///< Frames that are older than the one before.
-  std::uint64_t intervals = 0;  ///< Pairs of neighbours whose times are known.
-  double seconds = 0;           ///< Their sum.
-  std::int64_t gap_ns = -1;     ///< The longest of them; -1 if there is none.
+  std::uint64_t repeated = 0;       ///< Frames with the sequence number of the one before.
+  std::uint64_t backward = 0;       ///< Frames that are older than the one before.
+  std::uint64_t timed = 0;          ///< Frames with a time.
+  double seconds_before = 0;        ///< The lengths of the files before the present one.
+  std::int64_t first_ns = kNoTime;  ///< The earliest in the present file,
+  std::int64_t last_ns = kNoTime;   ///< and the latest, in whatever order they are.
+  std::int64_t gap_ns = -1;         ///< The longest of them; -1 if there is none.
   Place gap_from;
   Place gap_to;
   Place last;
 
-  /// Returns frames in a second; 0 if times are unknown.
-  double rate() const { return seconds > 0 ? static_cast<double>(intervals) / seconds : 0; }
+  /// Returns the time from the earliest to the latest frame, summed over the files.
+  double seconds() const;
+  /// Returns frames in a second, as capinfos does: all of them by that time; 0 if times are
+  /// unknown.
+  double rate() const;
+};
+
+/// What sniffers state about the frames of a link.
+struct Signal {
+  struct Range {
+    std::uint64_t count = 0;
+    double min = 0;
+    double max = 0;
+    double sum = 0;
+    void take(double value);
+    double mean() const { return count ? sum / static_cast<double>(count) : 0; }
+  };
+  std::uint64_t frames = 0;
+  Range rssi;
+  Range lqi;
 };
 
 struct FaultCount {
@@ -72,7 +93,15 @@ class Counters {
   void take(const reflect::Frame& frame, const Origin& origin);
 
   const Flow& all() const { return all_; }
+  /// Between neighbouring frames of a file.
+  const Gaps& gaps() const { return gaps_; }
+  const TimeLine& time_line() const { return time_line_; }
   const Flows& messages() const { return messages_; }
+  /// By the source of the pairs.
+  const Flows& sources() const { return sources_; }
+  /// By the addresses of the radio frame, "2>1".
+  const std::map<std::string, Signal>& links() const { return links_; }
+  const std::map<std::int32_t, std::uint64_t>& channels() const { return channels_; }
   const Flows& pairs() const { return pairs_; }
   /// By fault and rule.
   const FaultCounts& faults() const { return faults_; }
@@ -84,7 +113,14 @@ class Counters {
  private:
   bool is_repeated(const reflect::Frame& frame, const Origin& origin);
 
+  void take_signal(const reflect::Frame& frame);
+
   Flow all_;
+  Gaps gaps_;
+  TimeLine time_line_;
+  Flows sources_;
+  std::map<std::string, Signal> links_;
+  std::map<std::int32_t, std::uint64_t> channels_;
   Flows messages_;
   Flows pairs_;
   FaultCounts faults_;

@@ -57,8 +57,10 @@ TEST(Counters, MessagesAndPairs) {
   EXPECT_EQ(c.messages().at("config").frames, 1u);
   EXPECT_EQ(c.pairs().at("11:2>11:null").frames, 2u);
   EXPECT_EQ(c.pairs().at("AM 0>1").frames, 1u);
-  EXPECT_DOUBLE_EQ(c.all().rate(), 2.0 / 3.0);
-  EXPECT_DOUBLE_EQ(c.messages().at("app_msg").rate(), 1);
+  EXPECT_DOUBLE_EQ(c.all().rate(), 1);
+  EXPECT_DOUBLE_EQ(c.messages().at("app_msg").rate(), 2);
+  EXPECT_EQ(c.sources().at("11:2").frames, 2u);
+  EXPECT_EQ(c.sources().at("AM 0").frames, 1u);
 }
 
 TEST(Counters, LargestGapWithItsNeighbours) {
@@ -87,7 +89,48 @@ TEST(Counters, TimeThatRunsBackwards) {
   feed.packet(kEight, 0);
   feed.packet(kConfig, kNoTime);
   EXPECT_EQ(feed.counters.all().backward, 1u);
-  EXPECT_EQ(feed.counters.all().intervals, 0u);
+  EXPECT_EQ(feed.counters.gaps().count(), 0u);
+  EXPECT_DOUBLE_EQ(feed.counters.all().seconds(), 1);
+  EXPECT_DOUBLE_EQ(feed.counters.all().rate(), 2);
+}
+
+// The length of a file does not depend on the order of its frames.
+TEST(Counters, LengthsOfFilesAreSummed) {
+  Feed feed;
+  for (const std::int64_t time : {5, 2, 9, 3}) feed.packet(kSeven, time * kSecond, "a");
+  for (const std::int64_t time : {100, 101}) feed.packet(kSeven, time * kSecond, "b");
+  EXPECT_DOUBLE_EQ(feed.counters.all().seconds(), 8);
+  EXPECT_DOUBLE_EQ(feed.counters.all().rate(), 6.0 / 8);
+  EXPECT_EQ(feed.counters.all().backward, 2u);
+}
+
+TEST(Distribution, PercentilesAreWithinTheirError) {
+  Gaps gaps;
+  EXPECT_EQ(gaps.percentile(50), -1);
+  for (std::int64_t i = 1; i <= 1000; ++i) gaps.take(i * 1'000'000);
+  for (const double percent : {1.0, 50.0, 90.0, 99.0, 100.0}) {
+    const double wanted = percent * 10'000'000;
+    EXPECT_NEAR(static_cast<double>(gaps.percentile(percent)), wanted, wanted * 0.016) << percent;
+  }
+  Gaps small;
+  for (const std::int64_t gap : {0, 1, 63, 64, 65}) small.take(gap);
+  EXPECT_EQ(small.percentile(20), 0);
+  EXPECT_EQ(small.percentile(60), 63);
+  Gaps extreme;
+  extreme.take(INT64_MAX);
+  EXPECT_GT(extreme.percentile(50), INT64_MAX / 100 * 98);
+}
+
+TEST(Distribution, BinsGrowAndKeepAllFrames) {
+  TimeLine line;
+  for (int i = 0; i < 10'000; ++i) line.take((i * 7919 % 10'000 - 3000) * 50'000'000LL);
+  EXPECT_EQ(line.width_ns(), 10'000'000'000);
+  EXPECT_EQ(line.bins().begin()->first, -15);
+  EXPECT_EQ(line.bins().rbegin()->first, 34);
+  for (const auto& [bin, frames] : line.bins()) EXPECT_EQ(frames, 200u) << bin;
+  TimeLine far;
+  for (const std::int64_t time : {INT64_MIN + 1, std::int64_t{0}, INT64_MAX}) far.take(time);
+  EXPECT_LE(far.bins().size(), 3u);
 }
 
 TEST(Counters, ExtremeTimes) {

@@ -38,6 +38,10 @@ std::string short_seconds(std::int64_t ns) {
   return ns < 0 ? std::string{} : fmt::format("{:.3f}", static_cast<double>(ns) / 1e9);
 }
 
+std::string short_gap(std::int64_t ns) {
+  return fmt::format("{:.3g}", static_cast<double>(ns) / 1e9);
+}
+
 std::string place_text(const Place& place) {
   return fmt::format("frame {} at {} s, byte {} of {}", place.number, seconds(place.time_ns),
                      place.offset, place.file);
@@ -96,6 +100,7 @@ void add(const Flow& flow, Json::Members& out) {
               {"malformed", flow.malformed},
               {"repeated", flow.repeated},
               {"backward", flow.backward},
+              {"seconds", Json::raw(flow.timed ? fmt::format("{:.9g}", flow.seconds()) : "")},
               {"frames_per_second", Json::raw(rate > 0 ? fmt::format("{:.6g}", rate) : "")},
               {"largest_gap", flow.gap_ns < 0 ? Json::raw("") : gap()}});
 }
@@ -111,6 +116,111 @@ Json json(const char* name_key, const Counters::Flows& flows) {
       "\n");
 }
 
+struct Percent {
+  const char* key;
+  double percent;
+};
+constexpr Percent kPercents[] = {{"p50", 50}, {"p90", 90}, {"p95", 95}, {"p99", 99}};
+constexpr std::size_t kTalkersMost = 10;
+constexpr std::size_t kBarChars = 50;
+
+std::string gaps_text(const Gaps& gaps) {
+  if (gaps.count() == 0) return {};
+  std::string out = "between frames:";
+  for (const auto& [key, percent] : kPercents) {
+    out += fmt::format(" {:.0f} % within {} s,", percent, short_gap(gaps.percentile(percent)));
+  }
+  out.back() = '\n';
+  return out;
+}
+
+std::string time_line_text(const TimeLine& line) {
+  if (line.bins().size() < 2) return {};
+  std::uint64_t most = 1;
+  for (const auto& [bin, frames] : line.bins()) most = std::max(most, frames);
+  std::string out = fmt::format("\nframes over time, each line {:g} s\n",
+                                static_cast<double>(line.width_ns()) / 1e9);
+  for (std::int64_t bin = line.bins().begin()->first; bin <= line.bins().rbegin()->first; ++bin) {
+    const auto found = line.bins().find(bin);
+    const std::uint64_t frames = found == line.bins().end() ? 0 : found->second;
+    const std::size_t bar = static_cast<std::size_t>((frames * kBarChars + most - 1) / most);
+    const double begin = static_cast<double>(bin) * static_cast<double>(line.width_ns()) / 1e9;
+    out += fmt::format("  {:>14.3f} {:>8}{}{:#<{}}\n", begin, frames, bar ? " " : "", "", bar);
+  }
+  return out;
+}
+
+std::string talkers_text(const Counters& counters) {
+  explain::Table table({"source", "frames", "share", "bytes", "frames/s"});
+  for (std::size_t column = 1; column < 5; ++column) table.align_right(column);
+  const std::vector<NamedFlow> all = sorted(counters.sources());
+  for (std::size_t i = 0; i < all.size() && i < kTalkersMost; ++i) {
+    const Flow& flow = *all[i].second;
+    const double share =
+        100 * static_cast<double>(flow.frames) / static_cast<double>(counters.all().frames);
+    table.add({all[i].first, std::to_string(flow.frames), fmt::format("{:.1f} %", share),
+               std::to_string(flow.bytes),
+               flow.rate() > 0 ? fmt::format("{:.2f}", flow.rate()) : ""});
+  }
+  return table.empty() ? std::string{} : '\n' + table.text();
+}
+
+std::string range_text(const Signal::Range& range) {
+  if (range.count == 0) return {};
+  return fmt::format("{:g} to {:g}, mean {:.1f}", range.min, range.max, range.mean());
+}
+
+std::string signal_text(const Counters& counters) {
+  std::string out;
+  explain::Table links({"link", "frames", "RSSI", "link quality"});
+  links.align_right(1);
+  for (const auto& [link, signal] : counters.links()) {
+    links.add(
+        {link, std::to_string(signal.frames), range_text(signal.rssi), range_text(signal.lqi)});
+  }
+  if (!links.empty()) out += '\n' + links.text();
+  explain::Table channels({"channel", "frames"});
+  channels.align_right(1);
+  for (const auto& [channel, frames] : counters.channels()) {
+    channels.add({std::to_string(channel), std::to_string(frames)});
+  }
+  return channels.empty() ? out : out + '\n' + channels.text();
+}
+
+Json json(const Signal::Range& range) {
+  if (range.count == 0) return Json::raw("");
+  const auto number = [](double value) { return Json::raw(fmt::format("{:.6g}", value)); };
+  return Json::object(
+      {{"min", number(range.min)}, {"max", number(range.max)}, {"mean", number(range.mean())}});
+}
+
+void add_distributions(const Counters& counters, Json::Members& out) {
+  Json::Members gaps;
+  for (const auto& [key, percent] : kPercents) {
+    const std::int64_t gap_ns = counters.gaps().percentile(percent);
+    gaps.emplace_back(key, Json::raw(gap_ns < 0 ? "" : seconds(gap_ns)));
+  }
+  out.emplace_back("gaps", Json::object(gaps));
+  const std::int64_t width_ns = counters.time_line().width_ns();
+  const auto bins = Json::array(counters.time_line().bins(), [&](const auto& bin) {
+    const double begin = static_cast<double>(bin.first) * static_cast<double>(width_ns) / 1e9;
+    return Json::object(
+        {{"time", Json::raw(fmt::format("{:.3f}", begin))}, {"frames", bin.second}});
+  });
+  out.emplace_back("over_time",
+                   Json::object({{"seconds", Json::raw(seconds(width_ns))}, {"bins", bins}}));
+  out.emplace_back("links", Json::array(counters.links(), [](const auto& link) {
+                     return Json::object({{"link", link.first},
+                                          {"frames", link.second.frames},
+                                          {"rssi", json(link.second.rssi)},
+                                          {"lqi", json(link.second.lqi)}});
+                   }));
+  out.emplace_back("channels", Json::array(counters.channels(), [](const auto& channel) {
+                     return Json::object({{"channel", static_cast<std::uint64_t>(channel.first)},
+                                          {"frames", channel.second}});
+                   }));
+}
+
 }  // namespace
 
 std::string text_report(const Counters& counters) {
@@ -118,7 +228,7 @@ std::string text_report(const Counters& counters) {
   std::string out =
       fmt::format("{} frames, {} bytes, {} malformed", all.frames, all.bytes, all.malformed);
   if (all.rate() > 0) {
-    out += fmt::format(", {:.2f} frames/s over {:.3f} s", all.rate(), all.seconds);
+    out += fmt::format(", {:.2f} frames/s over {:.3f} s", all.rate(), all.seconds());
   }
   if (all.repeated) out += fmt::format(", {} with a repeated sequence number", all.repeated);
   if (all.backward) out += fmt::format(", {} older than the frame before", all.backward);
@@ -127,7 +237,9 @@ std::string text_report(const Counters& counters) {
     out += fmt::format("largest gap: {} s\n  from {}\n  to   {}\n", seconds(all.gap_ns),
                        place_text(all.gap_from), place_text(all.gap_to));
   }
+  out += gaps_text(counters.gaps());
   out += flows_text("message", counters.messages());
+  out += talkers_text(counters);
   out += flows_text("source>destination", counters.pairs());
   if (counters.interfaces().size() > 1) {
     explain::Table table({"interface", "frames"});
@@ -137,6 +249,8 @@ std::string text_report(const Counters& counters) {
     }
     out += '\n' + table.text();
   }
+  out += signal_text(counters);
+  out += time_line_text(counters.time_line());
   out += faults_text(counters);
   for (const auto& [kind, count] : counters.notes()) {
     out += fmt::format("\nnoted {} times: {}", count, reflect::note_name(kind));
@@ -147,6 +261,8 @@ std::string text_report(const Counters& counters) {
 std::string json_report(const Counters& counters) {
   Json::Members out = {{"schema", "rubric.stats/1"}};
   add(counters.all(), out);
+  add_distributions(counters, out);
+  out.emplace_back("sources", json("source", counters.sources()));
   out.emplace_back("messages", json("message", counters.messages()));
   out.emplace_back("pairs", json("pair", counters.pairs()));
   out.emplace_back(

@@ -151,7 +151,7 @@ std::string help_text() {
          "  tshark -i rubric -o extcap.rubric.source:sf@localhost:9002 -f 'message==updates'\n"
          "  rubric-extcap --capture --extcap-interface rubric --fifo run.pcapng"
          " --source sf@localhost:9002\n"
-         "Exit codes: 0 captured or printed, 2 usage, 3 the source cannot be had or is gone, or\n"
+         "Exit codes: 0 captured or printed, 64 usage, 66 the source cannot be had or is gone, or\n"
          "FILE cannot be written.\n";
 }
 

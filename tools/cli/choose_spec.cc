@@ -1,0 +1,131 @@
+#include "tools/cli/choose_spec.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <system_error>
+#include <vector>
+
+#include "codec/containers/reader.h"
+#include "codec/lines/address.h"
+#include "codec/lines/line.h"
+#include "codec/reflect/frame.h"
+#include "codec/text/packed.h"
+#include "tools/cli/input_file.h"
+#include "tools/cli/specs.h"
+
+namespace rubric::cli {
+namespace {
+
+constexpr const char* kUsual = "rubicon";
+constexpr std::size_t kPacketsMost = 1000;
+
+/// Packets with an active message from the beginning of a file.
+struct Sample {
+  std::vector<Packet> packets;
+  std::vector<std::vector<std::uint8_t>> bytes;
+};
+
+/// What a spec makes of a sample.
+struct Fit {
+  std::size_t messages = 0;
+  std::size_t wholly = 0;
+  std::size_t partly = 0;
+  std::size_t points() const { return 2 * wholly + partly; }
+};
+
+Bytes view(const std::vector<std::uint8_t>& bytes) { return {bytes.data(), bytes.size()}; }
+
+std::vector<std::uint8_t> plain_beginning(const std::vector<std::uint8_t>& bytes) {
+  const auto unpacker = report::make_unpacker(report::packing_of(view(bytes)));
+  if (!unpacker) return bytes;
+  std::vector<std::uint8_t> out(kBeginningMost);
+  Bytes rest = view(bytes);
+  std::size_t size = 0;
+  try {
+    while (size < out.size()) {
+      const std::size_t got = unpacker->unpack(rest, {out.data() + size, out.size() - size});
+      if (got == 0) break;
+      size += got;
+    }
+  } catch (const report::PackedDamage&) {
+    // Who reads the file says so.
+  }
+  out.resize(size);
+  return out;
+}
+
+Sample sample_of(const InputOptions& options, Bytes beginning) {
+  Sample sample;
+  const InputFormat format = format_of(options, beginning);
+  const std::unique_ptr<Reader> reader = make_reader(format, reader_options(options));
+  if (!reader) return sample;
+  auto take = [&](const Packet& packet) {
+    const bool sound = packet.error.fault == Fault::kNone;
+    if (!sound || packet.bytes.empty() || sample.packets.size() == kPacketsMost) return;
+    sample.packets.push_back(packet);
+    sample.bytes.emplace_back(packet.bytes.begin(), packet.bytes.end());
+  };
+  reader->feed(beginning, take);
+  // Text needs no end of line; of other formats the rest is a cut frame.
+  if (format == InputFormat::kHex || format == InputFormat::kLog) reader->finish(take);
+  for (std::size_t i = 0; i < sample.packets.size(); ++i) {
+    sample.packets[i].bytes = view(sample.bytes[i]);
+    sample.packets[i].comment = {};
+  }
+  return sample;
+}
+
+Fit fit_of(const reflect::Protocol& protocol, const Sample& sample) {
+  const reflect::FrameDecoder decoder(protocol);
+  reflect::Frame frame;
+  Fit fit;
+  for (const Packet& packet : sample.packets) {
+    decoder.decode(packet, frame);
+    const reflect::Decoded& decoded = frame.decoded;
+    fit.messages += frame.am.present;
+    const bool fits = frame.am.present && !frame.has_error() && decoded.note_count() == 0;
+    if (!fits) continue;
+    ++(decoded.stale_count() == 0 ? fit.wholly : fit.partly);
+  }
+  return fit;
+}
+
+}  // namespace
+
+const reflect::Protocol& choose_spec(const InputOptions& options) {
+  const reflect::Protocol& usual = protocol_of(kUsual);
+  if (options.follow || !options.as_message.empty()) return usual;
+  const std::string file = options.files.empty() ? "-" : options.files.front();
+  if (options.files.empty() && lines::asked_by_motecom()) return usual;
+  std::vector<std::uint8_t> beginning;
+  try {
+    if (lines::parse_address(file)) return usual;
+    beginning = plain_beginning(beginning_of(file));
+  } catch (const std::exception&) {
+    return usual;  // Who reads the file says what is wrong.
+  }
+  const Sample sample = sample_of(options, view(beginning));
+  const Fit usual_fit = fit_of(usual, sample);
+  if (2 * usual_fit.wholly >= usual_fit.messages) return usual;
+  const reflect::Protocol* best = &usual;
+  Fit best_fit = usual_fit;
+  for (const std::string& name : protocol_names()) {
+    if (!chosen_by_content(name)) continue;
+    const reflect::Protocol& other = protocol_of(name);
+    const Fit fit = fit_of(other, sample);
+    if (fit.points() <= best_fit.points()) continue;
+    best = &other;
+    best_fit = fit;
+  }
+  if (best != &usual) {
+    fmt::print(stderr,
+               "rubric: {}: read by the spec {}, which fits {} of its first {} messages wholly, {} "
+               "{} (--spec decides)\n",
+               file == "-" ? "stdin" : file, best->id, best_fit.wholly, usual_fit.messages,
+               usual.id, usual_fit.wholly);
+  }
+  return *best;
+}
+
+}  // namespace rubric::cli

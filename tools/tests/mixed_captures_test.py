@@ -1,0 +1,393 @@
+#!/usr/bin/env python3
+"""Captures as sniffers of many makes write them: read as tshark and capinfos read them.
+
+Usage: mixed_captures_test.py RUBRIC.
+"""
+
+import gzip
+import json
+import pathlib
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+
+RUBRIC = sys.argv.pop(1)
+ZEP_PORT = 17754
+NTP_TO_1970 = 2_208_988_800
+
+
+def rubric(*args, stdin=b""):
+    done = subprocess.run([RUBRIC, *map(str, args)], input=stdin, capture_output=True, check=False)
+    return done.returncode, done.stdout.decode(), done.stderr.decode()
+
+
+def fcs(data):
+    """IEEE 802.15.4-2006, section 7.2.1.9, bit by bit."""
+    crc = 0
+    for byte in data:
+        for bit in range(8):
+            feedback = (crc ^ byte >> bit) & 1
+            crc = crc >> 1 ^ (0x8408 if feedback else 0)
+    return struct.pack("<H", crc)
+
+
+def frame(number):
+    """Returns a frame of BlinkToRadio from mote 1 or 2, I-frame format, without FCS."""
+    header = struct.pack("<HBHHHBB", 0x8841, number & 0xFF, 0x22, 0xFFFF, 1 + number % 2, 0x3F, 6)
+    return header + struct.pack(">HH", 1 + number % 2, number)
+
+
+def with_fcs(number):
+    return frame(number) + fcs(frame(number))
+
+
+def trailer(number):
+    return frame(number) + bytes([(-40 - number % 50) & 0xFF, 0x80 | (100 + number % 8)])
+
+
+def phy(number):
+    return bytes(4) + b"\xa7" + bytes([len(frame(number)) + 2]) + with_fcs(number)
+
+
+def tlv(kind, value):
+    return struct.pack("<HH", kind, len(value)) + value + bytes(-len(value) % 4)
+
+
+def tap(number):
+    facts = tlv(0, b"\1") + tlv(1, struct.pack("<f", -50.5 - number % 30)) + \
+        tlv(3, struct.pack("<HB", 11 + number % 16, 0)) + \
+        tlv(7, struct.pack("<Q", 10**6 + number)) + tlv(10, bytes([255 - number % 100]))
+    return struct.pack("<BBH", 0, 0, 4 + len(facts)) + facts + with_fcs(number)
+
+
+def zep(number, version=2):
+    radio = struct.pack(">BHBB", 15, 7, 1 if version == 1 else 0, 90)
+    body = with_fcs(number) if version == 1 else trailer(number)
+    if version == 1:
+        return b"EX\x01" + radio + bytes(7) + bytes([len(body)]) + body
+    return b"EX\x02\x01" + radio + struct.pack(">III", NTP_TO_1970 + 5, 0, number) + bytes(10) + \
+        bytes([len(body)]) + body
+
+
+def udp(payload, port=ZEP_PORT):
+    return struct.pack(">HHHH", 40000, port, 8 + len(payload), 0) + payload
+
+
+def ipv4(payload):
+    return struct.pack(">BBHHHBBH4s4s", 0x45, 0, 20 + len(payload), 0, 0, 64, 17, 0,
+                       b"\x7f\0\0\1", b"\x7f\0\0\1") + payload
+
+
+def ipv6(payload):
+    return struct.pack(">IHBB", 6 << 28, len(payload), 17, 64) + bytes(15) + b"\1" + bytes(15) + \
+        b"\1" + payload
+
+
+def ethernet(payload):
+    return bytes(12) + b"\x81\0\0\5\x08\0" + payload
+
+
+def sll(payload):
+    return struct.pack(">HHH8sH", 0, 772, 6, bytes(8), 0x0800) + payload
+
+
+def time_of(number):
+    """Microseconds. Some stamps go backwards, as those of a busy USB dongle do."""
+    return 1_600_000_000_000_000 + number * 31_250 - (90_000 if number % 17 == 3 else 0)
+
+
+def pcap(link_type, records, order="<", nano=False, snaplen=65535):
+    magic = 0xA1B23C4D if nano else 0xA1B2C3D4
+    out = struct.pack(order + "IHHIIII", magic, 2, 4, 0, 0, snaplen, link_type)
+    for number, record in enumerate(records):
+        seconds, part = divmod(time_of(number), 1_000_000)
+        kept = record[:snaplen]
+        out += struct.pack(order + "IIII", seconds, part * (1000 if nano else 1), len(kept),
+                           len(record)) + kept
+    return out
+
+
+def block(kind, body):
+    size = 12 + len(body) + -len(body) % 4
+    return struct.pack("<II", kind, size) + body + bytes(-len(body) % 4) + struct.pack("<I", size)
+
+
+def pcapng(interfaces, records):
+    """`records` are pairs of an interface's index and its bytes."""
+    out = block(0x0A0D0D0A, struct.pack("<IHHq", 0x1A2B3C4D, 1, 0, -1))
+    for link_type in interfaces:
+        out += block(1, struct.pack("<HHI", link_type, 0, 0))
+    for number, (interface, record) in enumerate(records):
+        time = time_of(number)
+        out += block(6, struct.pack("<IIIII", interface, time >> 32, time & 0xFFFFFFFF,
+                                    len(record), len(record)) + record)
+    return out
+
+
+def some(make, count=60):
+    return [make(number) for number in range(count)]
+
+
+WIFI = bytes.fromhex("00000800 00000000 d4000000 020202020202")
+CAPTURES = {
+    "dongle.pcap": pcap(195, some(with_fcs)),
+    "cc24xx.pcap": pcap(195, some(trailer)),
+    "big_endian_ns.pcap": pcap(230, some(frame), ">", True),
+    "phy.pcap": pcap(215, some(phy)),
+    "tap.pcapng": pcapng([283], [(0, record) for record in some(tap)]),
+    "any_zep.pcap": pcap(113, some(lambda n: sll(ipv4(udp(zep(n), 53 if n % 5 == 4
+                                                          else ZEP_PORT))))),
+    "vlan_zep1.pcap": pcap(1, some(lambda n: ethernet(ipv4(udp(zep(n, 1)))))),
+    "raw_ipv6_zep.pcap": pcap(101, some(lambda n: ipv6(udp(zep(n))))),
+    "short.pcap": pcap(195, some(with_fcs), snaplen=12),
+    "with_wifi.pcapng": pcapng([230, 127], [(n % 2, WIFI if n % 2 else frame(n))
+                                            for n in range(60)]),
+    "packed.pcap.gz": gzip.compress(pcap(195, some(with_fcs))),
+}
+FIELDS = ("wpan.src16", "wpan.seq_no", "wpan.rssi", "wpan.correlation", "wpan-tap.rss",
+          "wpan-tap.ch_num", "wpan-tap.asn", "wpan-tap.lqi", "zep.channel_id")
+
+
+class Mixed(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.folder.cleanup)
+        cls.path = pathlib.Path(cls.folder.name)
+        for name, content in CAPTURES.items():
+            (cls.path / name).write_bytes(content)
+
+    def frames(self, name, *args):
+        code, out, err = rubric("decode", "--format", "jsonl", *args, self.path / name)
+        self.assertEqual(code, 0, (name, err))
+        return [json.loads(line) for line in out.splitlines()], err
+
+    def tshark(self, name):
+        kind = "TI CC24xx metadata" if name.startswith("cc24xx") else "ITU-T CRC-16"
+        args = [word for field in FIELDS for word in ("-e", field)]
+        done = subprocess.run(["tshark", "-r", self.path / name, "-o", f"wpan.fcs_format:{kind}",
+                               "-Y", "wpan", "-T", "fields", "-e", "frame.number", *args],
+                              capture_output=True, check=True, text=True)
+        return [dict(zip(("number", *FIELDS), line.split("\t")))
+                for line in done.stdout.splitlines()]
+
+    @unittest.skipUnless(shutil.which("tshark"), "no tshark")
+    def test_tshark_reads_the_same(self):
+        for name in CAPTURES:
+            with self.subTest(name):
+                mine, _ = self.frames(name, "--fields",
+                                      "number,frame.src,frame.dsn,frame.rssi,frame.lqi,"
+                                      "frame.channel,frame.slot")
+                theirs = self.tshark(name)
+                self.assertEqual(len(mine), len(theirs))
+                self.assertGreaterEqual(len(mine), 30)
+                for one, other in zip(mine, theirs):
+                    self.assertEqual(one["number"], int(other["number"]))
+                    self.assertEqual(one["frame.dsn"], int(other["wpan.seq_no"]))
+                    if one["frame.src"] is not None:
+                        self.assertEqual(one["frame.src"], int(other["wpan.src16"], 0))
+                    chip = float(other["wpan.rssi"].split()[0]) if other["wpan.rssi"] else None
+                    header = float(other["wpan-tap.rss"]) if other["wpan-tap.rss"] else None
+                    self.assertEqual(one["frame.rssi"], chip if header is None else header)
+                    channel = other["wpan-tap.ch_num"] or other["zep.channel_id"]
+                    self.assertEqual(one["frame.channel"], int(channel) if channel else None)
+                    lqi = other["wpan-tap.lqi"] or other["wpan.correlation"]
+                    if name != "vlan_zep1.pcap":  # ZEP's own, which tshark names otherwise.
+                        self.assertEqual(one["frame.lqi"], int(lqi) if lqi else None)
+                    slot = other["wpan-tap.asn"]
+                    self.assertEqual(one["frame.slot"], int(slot) if slot else None)
+
+    @unittest.skipUnless(shutil.which("capinfos"), "no capinfos")
+    def test_capinfos_measures_the_same(self):
+        for name in CAPTURES:
+            if "zep" in name or "wifi" in name:  # Not all of their packets are frames.
+                continue
+            done = subprocess.run(["capinfos", "-T", "-M", "-r", "-c", "-u", "-x",
+                                   self.path / name], capture_output=True, check=True, text=True)
+            _, count, seconds, rate = done.stdout.strip().split("\t")[:4]
+            code, out, _ = rubric("stats", "--format", "json", self.path / name)
+            self.assertEqual(code, 0)
+            stats = json.loads(out)
+            self.assertEqual(stats["frames"], int(count), name)
+            self.assertAlmostEqual(stats["seconds"], float(seconds), 5)
+            self.assertAlmostEqual(stats["frames_per_second"], float(rate), 1)
+            self.assertEqual(stats["backward"], 4)
+            self.assertEqual(sum(one["frames"] for one in stats["over_time"]["bins"]), 60)
+
+    def test_what_is_left_out_is_said_once(self):
+        err = self.frames("any_zep.pcap")[1]
+        self.assertEqual(err.count("12 of 60 packets are no ZEP packets (UDP port 17754)"), 1)
+        err = self.frames("with_wifi.pcapng")[1]
+        self.assertEqual(err.count("link type 127 (802.11 with radiotap header) is not read: 30 of "
+                                   "60 packets are left out"), 1)
+        alien = self.path / "alien.pcap"
+        alien.write_bytes(pcap(127, [WIFI] * 2000))
+        code, out, err = rubric("decode", alien)
+        self.assertEqual((code, out, err.count("\n")), (NO_INPUT, "", 1))
+        self.assertIn("2000 of 2000 packets", err)
+
+    def test_link_types_by_option(self):
+        user = self.path / "user.pcap"
+        user.write_bytes(pcap(150, some(with_fcs)))
+        code, _, err = rubric("decode", user)
+        self.assertEqual(code, NO_INPUT)
+        self.assertIn("--link-type 150=radio-fcs", err)
+        code, out, _ = rubric("decode", user, "--link-type", "150=radio-fcs", "--format", "jsonl")
+        self.assertEqual((code, len(out.splitlines())), (0, 60))
+        linux = self.path / "linux.pcap"
+        linux.write_bytes(pcap(191, some(with_fcs, 30) + some(frame, 30)))
+        self.assertEqual(len(self.frames("linux.pcap")[0]), 60)
+        for wrong in ("150", "150=", "150=wifi", "146=radio", "15x=radio"):
+            code, _, err = rubric("decode", user, "--link-type", wrong)
+            self.assertEqual(code, BAD_USAGE)
+            self.assertIn("expected a link type from 147 to 162", err)
+
+    def test_a_snap_length_is_no_fault_of_the_sender(self):
+        frames, _ = self.frames("short.pcap")
+        self.assertEqual({one["error"]["text"] for one in frames},
+                         {"cut by the capture (12 of 17 bytes)"})
+        self.assertEqual({one["error"]["requirement"] for one in frames}, {None})
+        text = rubric("decode", self.path / "short.pcap")[1]
+        self.assertIn("* cut by the capture (12 of 17 bytes)", text)
+        self.assertNotIn("!", text)
+        stats = json.loads(rubric("stats", "--format", "json", self.path / "short.pcap")[1])
+        self.assertEqual((stats["malformed"], stats["faults"][0]["fault"]), (0, "cut"))
+
+    def test_convert_keeps_facts_or_says_so(self):
+        facts = "frame.rssi,frame.lqi,frame.channel,frame.slot,frame.src"
+        for name in ("tap.pcapng", "cc24xx.pcap", "any_zep.pcap"):
+            wanted = [{**one, "index": 0} for one in self.frames(name, "--fields", facts)[0]]
+            for suffix in (".pcapng", ".pcap", ".pcap.gz", ".pcapng.zst"):
+                out = self.path / f"out{suffix}"
+                code, _, err = rubric("convert", self.path / name, out)
+                self.assertEqual(code, 0)
+                self.assertNotIn("RSSI, link quality, channel or", err)
+                got = self.frames(out, "--fields", facts)[0]
+                self.assertEqual([{**one, "index": 0} for one in got], wanted, (name, suffix))
+            _, _, err = rubric("convert", self.path / name, self.path / "out.hex")
+            self.assertIn("hex holds no RSSI, link quality, channel or time slot", err)
+        magic = (self.path / "out.pcapng.zst").read_bytes()[:4]
+        self.assertEqual(magic, bytes.fromhex("28b52ffd"))
+        packed = (self.path / "out.pcap.gz").read_bytes()
+        self.assertEqual(gzip.decompress(packed)[:2], b"\x4d\x3c")
+
+    def test_facts_pass_through_json(self):
+        lines = rubric("decode", "--format", "jsonl", self.path / "tap.pcapng")[1]
+        again = rubric("encode", "--spec", "blink_to_radio", "--format", "pcapng", "-o",
+                       self.path / "again.pcapng", stdin=lines.encode())
+        self.assertEqual(again[0], 0, again[2])
+        frames = [one["frame"] for one in map(json.loads, lines.splitlines())]
+        self.assertIn("slot", frames[0])
+        self.assertEqual([one["frame"] for one in self.frames("again.pcapng")[0]], frames)
+
+    def test_facts_are_filtered_and_counted(self):
+        frames, _ = self.frames("tap.pcapng", "--filter", "frame.channel==12 && frame.rssi < -51")
+        self.assertEqual([one["frame"]["channel"] for one in frames], [12] * 4)
+        text = rubric("stats", self.path / "tap.pcapng")[1]
+        self.assertIn("1>broadcast", text)
+        stats = json.loads(rubric("stats", "--format", "json", self.path / "tap.pcapng")[1])
+        self.assertEqual([link["rssi"]["max"] for link in stats["links"]], [-50.5, -51.5])
+        self.assertEqual(len(stats["channels"]), 16)
+        self.assertEqual(stats["sources"][0]["frames"], 30)
+        self.assertAlmostEqual(stats["gaps"]["p50"], 0.03125, 3)
+
+    def test_compressed_input_by_its_content(self):
+        plain = CAPTURES["dongle.pcap"]
+        wanted = rubric("decode", self.path / "dongle.pcap")[1]
+        self.assertEqual(rubric("decode", stdin=gzip.compress(plain))[1], wanted)
+        half = gzip.compress(plain)[:-600]
+        code, out, err = rubric("decode", stdin=half)
+        self.assertEqual(code, NO_INPUT)
+        self.assertIn("its compressed data end too soon", err)
+        self.assertTrue(wanted.startswith(out))
+        code, _, err = rubric("decode", "--follow", self.path / "packed.pcap.gz")
+        self.assertEqual(code, NO_INPUT)
+        self.assertIn("it is compressed", err)
+        self.assertEqual(rubric("check", self.path / "packed.pcap.gz")[0],
+                         rubric("check", self.path / "dongle.pcap")[0])
+
+
+class Text(unittest.TestCase):
+    BLINK = "00 FF FF 00 00 04 22 06 00 02 00 01"
+    # Flags around, the CRC's bytes as a mote sends them.
+    SERIAL = "7E 45 00 FF FF 00 00 04 22 06 00 02 00 01 5B 02 7E"
+
+    def decoded(self, text, *args, command="decode"):
+        return rubric(command, "--spec", "blink_to_radio", *args, stdin=text.encode())
+
+    def test_logs_of_listen(self):
+        log = ("Thread[Thread-1,5,main]serial@/dev/ttyUSB0:115200: resynchronising\n"
+               f"{self.BLINK} \nCounter: 7\n\n{self.BLINK}\n")
+        code, out, err = self.decoded(log, "--format", "jsonl")
+        self.assertEqual((code, len(out.splitlines())), (0, 2), err)
+        self.assertIn("2 of its lines hold no packet; the first is line 1", err)
+
+    def test_mistakes_name_their_line(self):
+        for text, where in ((f"{self.BLINK}\n# so far\n00 FF F\n", "line 3, character 8"),
+                            (f"hello\n{self.BLINK}\n00 FF 0g\n", "line 3, character 8")):
+            code, out, _ = self.decoded(text, "--input-format", "log")
+            self.assertEqual(code, 1)
+            self.assertIn(where, out)
+
+    def test_bytes_of_a_serial_line_as_text(self):
+        halves = self.SERIAL[:20] + "\n" + self.SERIAL[20:]
+        for text in (self.SERIAL, halves, f"{self.SERIAL}\n{self.SERIAL}\n"):
+            code, out, err = self.decoded(text, "--format", "jsonl")
+            self.assertEqual(code, 0, (out, err))
+            for line in out.splitlines():
+                one = json.loads(line)
+                self.assertEqual((one["framing"], one["message"]), ("hdlc", "blink_to_radio_msg"))
+        code, out, _ = self.decoded(self.SERIAL[:-8], "--format", "jsonl")
+        self.assertEqual((code, json.loads(out)["error"]["fault"]), (1, "cut"))
+        self.assertIn("1 frames", self.decoded(self.SERIAL, command="stats")[1])
+        self.assertEqual(self.decoded(self.SERIAL, "--format", "hex", command="convert")[1].strip(),
+                         self.BLINK)
+        self.assertEqual(rubric("check", "-", stdin=self.SERIAL.encode())[0],
+                         rubric("check", "-", stdin=self.BLINK.encode())[0])
+
+    def test_radio_frames_as_text(self):
+        for kind, make in (("crc", with_fcs), ("cc24xx", trailer)):
+            text = "\n".join(make(number).hex() for number in range(9))
+            code, out, err = self.decoded(text, "--input-format", "hex-radio", "--fcs", kind,
+                                          "--format", "jsonl")
+            self.assertEqual((code, len(out.splitlines())), (0, 9), err)
+            self.assertEqual("rssi" in json.loads(out.splitlines()[0])["frame"], kind == "cc24xx")
+
+
+class Specs(unittest.TestCase):
+    def test_the_spec_that_fits_is_chosen(self):
+        text = Text.BLINK.encode()
+        code, out, err = rubric("decode", "--format", "jsonl", stdin=text)
+        self.assertEqual((code, json.loads(out)["message"]), (0, "blink_to_radio_msg"))
+        self.assertIn("stdin: read by the spec blink_to_radio, which fits 1 of its first 1 "
+                      "messages wholly, rubicon 0", err)
+        code, out, err = rubric("decode", "--format", "jsonl", "--spec", "rubicon", stdin=text)
+        self.assertEqual(json.loads(out)["message"], "rssi_beacon")
+        self.assertIn("AM 6 also fits blink_to_radio: --spec blink_to_radio", err)
+
+    def test_a_capture_of_rubicon_stays_one(self):
+        for capture in sorted(pathlib.Path("spec/captures/firmware").glob("*.pcapng")):
+            self.assertNotIn("read by the spec", rubric("stats", capture)[2], capture)
+
+    def test_the_spec_that_knows_a_name_is_said(self):
+        for args in (("--as", "ctp_data"), ("--filter", "message==ctp_data"),
+                     ("--fields", "ctp_data.origin")):
+            code, _, err = rubric("decode", *args, stdin=b"")
+            self.assertEqual(code, BAD_USAGE)
+            self.assertIn("; ctp has it: --spec ctp", err, args)
+
+    def test_convert_chooses_packets(self):
+        text = (Text.BLINK + "\n" + "00 FF FF 00 00 03 00 25 0A 00 0C\n").encode()
+        wanted = Text.BLINK + "\n"
+        code, out, _ = rubric("convert", "--format", "hex", "--spec", "blink_to_radio", "--filter",
+                              "counter==1", stdin=text)
+        self.assertEqual((code, out), (0, wanted))
+
+
+BAD_USAGE, NO_INPUT = 64, 66
+
+if __name__ == "__main__":
+    unittest.main()
