@@ -22,15 +22,6 @@ using Rules = std::set<std::string>;
 
 const Options kPatient{lines::Milliseconds(5000), lines::Milliseconds(20000)};
 
-constexpr const char* kSinkUnknown = R"(%rtr 1
-%profile paper
-
-case t1.sink_line
-%node sA sink id=1 island=11 iut
-a: 100 sA < serA am=0->1 net_msg(dest=11:1 src=11:null payload.trans_id=99 payload.app_id=3 ...)
-   a+0..700 sA !> serA * [T1-UNKNOWN]
-)";
-
 struct NamedPace {
   const char* name;
   Pace pace;
@@ -51,11 +42,7 @@ const NamedPace kOverackingPaces[] = {
 };
 
 const std::vector<trace::Parsed>& case_files() {
-  static const std::vector<trace::Parsed> files = [] {
-    std::vector<trace::Parsed> out = runner::load_cases("conformance/cases");
-    out.push_back(trace::parse(kSinkUnknown, "sink_unknown.rtr"));
-    return out;
-  }();
+  static const std::vector<trace::Parsed> files = runner::load_cases("conformance/cases");
   return files;
 }
 
