@@ -194,11 +194,22 @@ void no_ack_timeout(State& state, Ticks now, const Event& event, Actions& action
   machine::step(state, now, event, actions);
 }
 
+template <class At>
+machine::Address address_at(const std::uint8_t* net_msg) {
+  using Layout = rubicon::RAddrLayout;
+  const std::uint8_t* const at = net_msg + At::kAt;
+  return {static_cast<std::uint16_t>(Layout::PidAt::load(at)),
+          static_cast<std::uint16_t>(Layout::DevidAt::load(at))};
+}
+
 void misread_acks(State& state, Ticks now, const Event& event, Actions& actions) {
   const Frame* const frame = heard(event, am::kNet);
   const bool ack = frame != nullptr && frame->payload.size() >= ShortAckAt::kEnd &&
                    TransIdAt::load(frame->payload.data()) == rubicon::Component::kRubiconAck;
-  if (!ack) return machine::step(state, now, event, actions);
+  // What it hands on it does not read.
+  const bool own =
+      ack && address_at<NetMsgLayout::DestAt>(frame->payload.data()) == machine::own_address(state);
+  if (!own) return machine::step(state, now, event, actions);
   const std::uint8_t* const bytes = frame->payload.data();
   const bool coded = frame->payload.size() >= AckAt::kEnd &&
                      AckTypeAt::load(bytes) == rubicon::AmType::kLearningNotification;
@@ -229,14 +240,6 @@ const Frame* net_msg(const Event& event) {
   const bool fits = frame != nullptr && frame->payload.size() >= NetMsgLayout::PayloadAt::kAt &&
                     frame->payload.size() <= machine::kAmPayloadMax;
   return fits ? frame : nullptr;
-}
-
-template <class At>
-machine::Address address_at(const std::uint8_t* net_msg) {
-  using Layout = rubicon::RAddrLayout;
-  const std::uint8_t* const at = net_msg + At::kAt;
-  return {static_cast<std::uint16_t>(Layout::PidAt::load(at)),
-          static_cast<std::uint16_t>(Layout::DevidAt::load(at))};
 }
 
 template <class At>

@@ -21,7 +21,7 @@ constexpr Ticks kClockSlackTicks = 50;
 
 // 257 has an inverse: returns the seed that makes this first number, as runner::config_of takes it.
 constexpr std::uint16_t seed_of(std::uint16_t first_seq) {
-  return static_cast<std::uint16_t>((first_seq - 1000) * 65281);
+  return static_cast<std::uint16_t>((first_seq - 1000U) * 65281U);
 }
 static_assert(seed_of(static_cast<std::uint16_t>(1000 + 257 * 12345)) == 12345);
 
