@@ -1,16 +1,16 @@
 #!/bin/sh
-# must_not_compile.sh COMPILER SOURCE INCLUDE_FOLDER REGEX: compiling SOURCE must fail with a message
-# that matches, and must succeed with -DRUBRIC_CONTROL, so that it fails for no other reason.
+# must_not_compile.sh COMPILER SOURCE INCLUDE_FOLDER DEFINE REGEX: compiling SOURCE with -DDEFINE must
+# fail with a message that matches, and must succeed without, so that it fails for no other reason.
 set -u
-compiler=$1 source=$2 include=$3 expected=$4
+compiler=$1 source=$2 include=$3 define=$4 expected=$5
 flags="-std=c++20 -c -o /dev/null -I $include"
 
-if ! output=$("$compiler" $flags -DRUBRIC_CONTROL "$source" 2>&1); then
+if ! output=$("$compiler" $flags "$source" 2>&1); then
   printf 'The control build of %s fails:\n%s\n' "$source" "$output"
   exit 1
 fi
-if output=$("$compiler" $flags "$source" 2>&1); then
-  echo "$source compiles, and must not."
+if output=$("$compiler" $flags "-D$define" "$source" 2>&1); then
+  echo "$source compiles with -D$define, and must not."
   exit 1
 fi
 if ! printf '%s\n' "$output" | grep -Eq -- "$expected"; then

@@ -6,6 +6,16 @@ const path = require('path');
 const yaml = require('js-yaml');
 const compiler = require('kaitai-struct-compiler');
 
+/// rubric's names of the errors of Kaitai Struct's runtime.
+const faultOfError = {
+  EOFError: 'truncated',
+  ValidationNotEqualError: 'unexpected',
+  ValidationNotAnyOfError: 'unexpected',
+  ValidationNotInEnumError: 'unexpected',
+  ValidationLessThanError: 'out_of_range',
+  ValidationGreaterThanError: 'out_of_range',
+};
+
 let positionsTold = false;
 const wireFolder = path.join(__dirname, '..', 'wire');
 
@@ -60,4 +70,4 @@ async function load(name) {
   return {parser, spec, Stream};
 }
 
-module.exports = {fileOf, load};
+module.exports = {faultOfError, fileOf, load};

@@ -9,20 +9,12 @@ const os = require('os');
 const path = require('path');
 const readline = require('readline');
 const {spawn} = require('child_process');
-const {load} = require('./kaitai.js');
+const {faultOfError, load} = require('./kaitai.js');
 const {makeFrames} = require('./frames.js');
 const {Comparer, Disagreement} = require('./compare.js');
 const {readmeNumber} = require('../../tools/tests/readme/number.js');
 
 const captures = path.join(__dirname, '..', 'captures');
-const faultOfError = {
-  EOFError: 'truncated',
-  ValidationNotEqualError: 'unexpected',
-  ValidationNotAnyOfError: 'unexpected',
-  ValidationNotInEnumError: 'unexpected',
-  ValidationLessThanError: 'out_of_range',
-  ValidationGreaterThanError: 'out_of_range',
-};
 // The runs, and their share of COUNT.
 const suites = [
   {carrier: 'serial', spec: 'rubicon', share: 0.7},

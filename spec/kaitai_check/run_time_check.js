@@ -7,18 +7,11 @@ const fs = require('fs');
 const os = require('os');
 const path = require('path');
 const {spawnSync} = require('child_process');
-const {load, fileOf} = require('./kaitai.js');
+const {faultOfError, load, fileOf} = require('./kaitai.js');
 const {seeded} = require('./frames.js');
 
 const camel = (name) => name.replace(/_(\w)/g, (_, c) => c.toUpperCase());
 const pascal = (name) => name[0].toUpperCase() + camel(name).slice(1);
-const faultOfError = {
-  EOFError: 'truncated',
-  ValidationNotEqualError: 'unexpected',
-  ValidationNotAnyOfError: 'unexpected',
-  ValidationLessThanError: 'out_of_range',
-  ValidationGreaterThanError: 'out_of_range',
-};
 
 class Disagreement extends Error {}
 

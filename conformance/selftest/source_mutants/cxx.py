@@ -23,8 +23,6 @@ NOT_ENTERED = {"ConstantExpr", "StaticAssertDecl", "TemplateArgument", "UserDefi
                "ImplicitValueInitExpr", "UnaryExprOrTypeTraitExpr", "ParmVarDecl"}
 FUNCTIONS = {"FunctionDecl", "CXXMethodDecl", "CXXConstructorDecl", "CXXConversionDecl",
              "CXXDestructorDecl"}
-TRANSPARENT = {"ImplicitCastExpr", "ExprWithCleanups", "MaterializeTemporaryExpr",
-               "CXXBindTemporaryExpr", "ConstantExpr"}
 
 
 def documents(text):
