@@ -14,6 +14,7 @@
 
 #include "codec/reflect/requirements.h"
 #include "codec/text/json.h"
+#include "codec/text/text.h"
 #include "conformance/explore/search.h"
 #include "conformance/selftest/mutants/generated.h"
 #include "tools/cli/command.h"
@@ -239,7 +240,7 @@ int run_coverage(const CoverageOptions& options) {
   try {
     coverage = measure(options);
   } catch (const std::exception& error) {
-    fmt::print(stderr, "rubric: {}\n", error.what());
+    report::print(stderr, "rubric: {}\n", error.what());
     return cli::kVerdictInput;
   }
   const std::string text = options.format == "json" ? json_of(coverage) : text_of(coverage);

@@ -9,6 +9,7 @@
 #include "codec/generated/tinyos/enums.h"
 #include "codec/reflect/encode_number.h"
 #include "codec/reflect/registry.h"
+#include "codec/text/text.h"
 #include "tools/encode/carriers.h"
 #include "tools/encode/json.h"
 
@@ -130,7 +131,7 @@ bool EncodedLines::all() {
 }
 
 void EncodedLines::complain(const std::string& place, std::string_view what) {
-  fmt::print(stderr, "rubric: {}: {}\n", place, what);
+  report::print(stderr, "rubric: {}: {}\n", place, what);
   good_ = false;
 }
 
