@@ -15,6 +15,8 @@ enum ExitCode : int {
 /// Output could not be written: a full disk, a closed pipe, a folder that is gone. EX_IOERR of
 /// sysexits.h, the same for all subcommands.
 constexpr int kExitOutput = 74;
+/// There was not even memory to read the command line. EX_OSERR.
+constexpr int kExitSystem = 71;
 
 /// Exit codes of the subcommands that give verdicts: check, explore, coverage.
 enum VerdictCode : int {
@@ -25,6 +27,10 @@ enum VerdictCode : int {
   kVerdictUsage = 64,        ///< The command line or the expectation file makes no sense.
   kVerdictInput = 66,        ///< Input cannot be read.
 };
+
+class Ending;
+/// Returns the code that exit_with() ended a subcommand with; -1 for another ending.
+int code_of(const Ending& ending);
 
 /// Ends the subcommand, from within its callback, with this code.
 [[noreturn]] void exit_with(int code);

@@ -39,6 +39,10 @@ void add_live_options(Command& app, InputOptions& options);
 /// pipe.
 bool goes_on(const InputOptions& options);
 
+/// Returns all files that are read, "-" for stdin, and the one of --spec: no output may be one of
+/// them.
+std::vector<std::string> all_inputs(const InputOptions& options);
+
 /// Returns the protocol of --spec, as protocol_of() does.
 const reflect::Protocol& chosen_protocol(const InputOptions& options);
 /// Returns the message of --as, null if it is not given; throws UsageError as above.
