@@ -9,6 +9,7 @@
 
 #include "codec/reflect/fault_text.h"
 #include "codec/reflect/text_field.h"
+#include "codec/text/text.h"
 #include "tools/format/json_nodes.h"
 #include "tools/format/plain_value.h"
 #include "tools/format/put.h"
