@@ -9,6 +9,8 @@
 #include <filesystem>
 #include <system_error>
 
+#include "codec/text/text.h"
+
 namespace rubric::lines {
 namespace {
 
@@ -103,7 +105,7 @@ bool CaptureFile::finish() {
 }
 
 void CaptureFile::complain() const {
-  fmt::print(stderr, "rubric: {}: {}\n", path_, std::strerror(error_));
+  report::print(stderr, "rubric: {}: {}\n", path_, std::strerror(error_));
 }
 
 }  // namespace rubric::lines

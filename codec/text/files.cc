@@ -49,7 +49,12 @@ OutFile::OutFile(const std::string& path, Mode mode) : path_(path) {
 // A link stays a link: what it leads to is replaced.
 void OutFile::open_beside() {
   std::error_code error;
-  const std::filesystem::path real = std::filesystem::weakly_canonical(path_, error);
+  std::filesystem::path real = std::filesystem::weakly_canonical(path_, error);
+  constexpr int kLinksMax = 40;  // As many as the kernel follows.
+  for (int i = 0; i < kLinksMax && !error && std::filesystem::is_symlink(real); ++i) {
+    const std::filesystem::path to = std::filesystem::read_symlink(real, error);  // To nothing yet.
+    if (!error) real = std::filesystem::weakly_canonical(real.parent_path() / to, error);
+  }
   if (!error) path_ = real.string();
   const std::filesystem::path path(path_);
   const std::string stem = "." + path.filename().string() + "." + std::to_string(::getpid()) + ".";

@@ -19,6 +19,19 @@ bool continues(std::string_view text, std::size_t i) {
   return (static_cast<std::uint8_t>(text[i]) & 0xc0) == 0x80;
 }
 
+// Returns whether a terminal obeys this character instead of showing it: those that control it,
+// U+0080 to U+009F among them, and those that turn the direction of writing.
+bool obeyed(std::string_view character) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(character[i]); };
+  if (character.size() == 1) return byte(0) < 0x20 || byte(0) == 0x7f;
+  if (character.size() == 2) return byte(0) == 0xc2 && byte(1) < 0xa0;
+  if (character.size() != 3 || byte(0) != 0xe2) return false;
+  if (byte(1) == 0x80) {
+    return byte(2) == 0x8e || byte(2) == 0x8f || (byte(2) >= 0xa8 && byte(2) <= 0xae);
+  }
+  return byte(1) == 0x81 && byte(2) >= 0xa6 && byte(2) <= 0xa9;
+}
+
 char* put_escape(char* at, std::uint8_t c) {
   switch (c) {
     case '"': return put(at, "\\\"");
@@ -49,6 +62,11 @@ std::string counted(std::uint64_t number, std::string_view singular, std::string
 
 std::string wrapped(std::string_view first, std::string_view text, std::size_t width,
                     std::size_t hang) {
+  return broken_at_blanks(harmless(first), harmless(text, Keep::kLines), width, hang);
+}
+
+std::string broken_at_blanks(std::string_view first, std::string_view text, std::size_t width,
+                             std::size_t hang) {
   std::string out(first);
   std::size_t column = first.size();
   bool fresh = true;  // The line is empty yet.
@@ -160,6 +178,23 @@ std::string xml_text(std::string_view text) {
     }
   }
   return out;
+}
+
+std::string harmless(std::string_view text, Keep keep) {
+  std::string out;
+  out.reserve(text.size());
+  while (!text.empty()) {
+    const std::size_t length = utf8_length(text);
+    const std::string_view character = text.substr(0, length);
+    const bool kept = keep == Keep::kLines && (character == "\n" || character == "\t");
+    out += kept || (length != 0 && !obeyed(character)) ? character : kReplacement;
+    text.remove_prefix(length != 0 ? length : 1);
+  }
+  return out;
+}
+
+void print_harmless(std::FILE* file, std::string_view text) {
+  fmt::print(file, "{}", harmless(text, Keep::kLines));
 }
 
 }  // namespace rubric::report

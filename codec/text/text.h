@@ -1,9 +1,13 @@
 // Text for people and for programs, in every form of a report: broken into lines, quoted, counted.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <cstdint>
+#include <cstdio>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace rubric::report {
 
@@ -13,9 +17,13 @@ std::string seconds_text(std::int64_t time_us);
 std::string counted(std::uint64_t number, std::string_view singular, std::string_view plural = {});
 
 /// Returns lines of at most `width` characters, broken at blanks, each with its end: the first
-/// after `first`, the others after `hang` blanks. A longer word has a line of its own.
+/// after `first`, the others after `hang` blanks. A longer word has a line of its own. Both texts
+/// are made harmless.
 std::string wrapped(std::string_view first, std::string_view text, std::size_t width,
                     std::size_t hang);
+/// Returns the same of texts that are harmless already.
+std::string broken_at_blanks(std::string_view first, std::string_view text, std::size_t width,
+                             std::size_t hang);
 /// Returns the same with as many blanks as `first` has characters.
 inline std::string wrapped(std::string_view first, std::string_view text, std::size_t width) {
   return wrapped(first, text, width, first.size());
@@ -48,5 +56,21 @@ char* put_json_string(char* at, std::string_view text);
 /// Returns text for attributes and content of XML 1.0 alike; characters that it cannot hold become
 /// U+FFFD.
 std::string xml_text(std::string_view text);
+
+/// Which characters of control a text keeps that people read.
+enum class Keep : std::uint8_t { kNone, kLines };
+
+/// Returns `text` with everything that a terminal would obey, and bytes that are not UTF-8,
+/// replaced by U+FFFD; kLines keeps line feeds and tabs. What comes from outside and is shown to
+/// people goes through this: names of files, cases and interfaces, source lines, texts of
+/// expectations, notes.
+std::string harmless(std::string_view text, Keep keep = Keep::kNone);
+
+/// Prints text for people to a file, harmless; see fmt::print().
+void print_harmless(std::FILE* file, std::string_view text);
+template <class... Args>
+void print(std::FILE* file, fmt::format_string<Args...> format, Args&&... args) {
+  print_harmless(file, fmt::format(format, std::forward<Args>(args)...));
+}
 
 }  // namespace rubric::report

@@ -122,6 +122,21 @@ inline bool stepped(const std::vector<ClockStep>& steps, std::int64_t from_us, s
   });
 }
 
+/// What a run that is followed for long no longer holds (judge/follow.h). Its frames up to
+/// `until_us` were judged and are gone, but for some that begin the run: those that show who the
+/// nodes are and what they joined.
+struct Past {
+  std::int64_t until_us = -1;            ///< -1: the run is whole.
+  std::uint64_t frames = 0;              ///< That are gone.
+  std::vector<std::uint16_t> senders;    ///< By observation kept from then: a number of its sender.
+  std::vector<std::uint64_t> frames_of;  ///< By that number: the frames that are gone.
+  std::vector<bool> lossy_taps;          ///< Serial lines that were seen to miss frames.
+  std::vector<std::int64_t> settled_us;  ///< No episode goes on across these times.
+
+  /// Returns whether an observation was kept from then.
+  bool holds(std::size_t index) const { return index < senders.size(); }
+};
+
 /// Holds the objects that observations point to.
 struct RunStorage;
 
@@ -136,6 +151,7 @@ struct Run {
   std::vector<Tap> taps;
   std::vector<std::string> facts;  ///< Results of the reading, a sentence each.
   std::vector<Observation> seen;   ///< In order of cause: see merge() in read.h.
+  std::int64_t begin_us = -1;      ///< The stamp from which times count; -1: there is none.
   std::int64_t start_us = 0;       ///< The first stamp.
   std::int64_t end_us = 0;
   /// Everything has a stamp. Raw bytes carry none: no rule about their times is judged, and beside
@@ -154,6 +170,7 @@ struct Run {
   bool order_guessed = false;  ///< It is one of several orders that are tried.
   /// In order of time. What compares times before and after one is inconclusive.
   std::vector<ClockStep> steps;
+  Past past;
 };
 
 /// The whole answer.

@@ -344,7 +344,7 @@ class FileCheck {
   void head() {
     Said said;
     for (const Item& item : file_.head) {
-      const auto* header = std::get_if<Header>(&item);
+      const auto* header = item.as<Header>();
       if (!header) continue;
       const bool version = std::holds_alternative<VersionHeader>(header->what);
       if (!said.version && !version && !first_) {
@@ -395,7 +395,7 @@ class FileCheck {
 
   void link_nodes(const std::vector<Item>& items, const Scope& scope) {
     for (const Item& item : items) {
-      const auto* header = std::get_if<Header>(&item);
+      const auto* header = item.as<Header>();
       const auto* link = header ? std::get_if<LinkHeader>(&header->what) : nullptr;
       if (!link) continue;
       for (const std::string& node : link->nodes) {
@@ -415,9 +415,9 @@ class FileCheck {
     bool lines = false;
     std::int64_t latest = 0;
     for (const Item& item : one.items) {
-      if (const auto* header = std::get_if<Header>(&item)) {
+      if (const auto* header = item.as<Header>()) {
         case_header(*header, lines, said);
-      } else if (const auto* line = std::get_if<Line>(&item)) {
+      } else if (const auto* line = item.as<Line>()) {
         lines = true;
         check_time(*line, labels, latest);
         check_line(*line, scope, bound);

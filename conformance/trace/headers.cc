@@ -57,7 +57,7 @@ std::string state(File& file, Case& one, const Statement& statement) {
   std::string wrong;
   for (const std::vector<Item>* items : {&file.head, &one.items}) {
     for (const Item& item : *items) {
-      const auto* const header = std::get_if<Header>(&item);
+      const auto* const header = item.as<Header>();
       const auto* const wanted = header ? std::get_if<ForHeader>(&header->what) : nullptr;
       if (!wanted) continue;
       for (const StatedRange& range : wanted->values) {
@@ -68,7 +68,7 @@ std::string state(File& file, Case& one, const Statement& statement) {
     }
   }
   for (Item& item : states<NodeHeader>(one.items) ? one.items : file.head) {
-    auto* const header = std::get_if<Header>(&item);
+    auto* const header = item.as<Header>();
     auto* const node = header ? std::get_if<NodeHeader>(&header->what) : nullptr;
     if (!node || !node->iut) continue;
     for (const Stated& each : statement) {

@@ -15,7 +15,7 @@ namespace rubric::trace {
 template <class Kind>
 bool states(const std::vector<Item>& items) {
   return std::any_of(items.begin(), items.end(), [](const Item& item) {
-    const auto* header = std::get_if<Header>(&item);
+    const auto* header = item.as<Header>();
     return header && std::holds_alternative<Kind>(header->what);
   });
 }
@@ -24,7 +24,7 @@ bool states(const std::vector<Item>& items) {
 template <class Kind>
 bool replace_header(std::vector<Item>& items, const Kind& what) {
   for (Item& item : items) {
-    auto* header = std::get_if<Header>(&item);
+    auto* header = item.as<Header>();
     if (header && std::holds_alternative<Kind>(header->what)) header->what = what;
   }
   return states<Kind>(items);

@@ -450,7 +450,7 @@ std::size_t find_foreign(std::string_view text) {
       ++i;
     } else if (c == '\t') {
       ++i;
-    } else if (c >= 0xC2 && c <= 0xDF && follows(i + 1)) {
+    } else if (c >= 0xC2 && c <= 0xDF && follows(i + 1) && !(c == 0xC2 && byte(i + 1) < 0xA0)) {
       i += 2;
     } else if (c >= 0xE0 && c <= 0xEF && follows(i + 1) && follows(i + 2) &&
                !(c == 0xE0 && byte(i + 1) < 0xA0) && !(c == 0xED && byte(i + 1) > 0x9F)) {
@@ -471,17 +471,44 @@ class Parser {
 
   void run(std::string_view text) {
     if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+    std::size_t cases = 0;
+    out_.file.head.reserve(items_until_case(text));
+    for (std::string_view rest = text; !rest.empty();) cases += is_case(take_line(rest));
+    out_.file.cases.reserve(cases);
     std::uint32_t number = 0;
-    while (!text.empty()) {
-      const std::size_t end = text.find('\n');
-      std::string_view line = text.substr(0, end);
-      text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+    for (rest_ = text; !rest_.empty();) {
+      std::string_view line = take_line(rest_);
       if (line.ends_with('\r')) line.remove_suffix(1);
       one(line, ++number);
     }
   }
 
  private:
+  static std::string_view take_line(std::string_view& text) {
+    const std::size_t end = text.find('\n');
+    const std::string_view line = text.substr(0, end);
+    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+    return line;
+  }
+
+  static bool is_case(std::string_view line) {
+    line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
+    return line.starts_with("case") &&
+           (line.size() == 4 || line[4] == ' ' || line[4] == '\t' || line[4] == '\r');
+  }
+
+  // Returns how many lines that are not blank come before the next case: so much is needed, where
+  // what a growing vector has to spare may be more than the text.
+  static std::size_t items_until_case(std::string_view text) {
+    std::size_t count = 0;
+    while (!text.empty()) {
+      const std::string_view line = take_line(text);
+      if (is_case(line)) break;
+      count += line.find_first_not_of(" \t\r") == std::string_view::npos ? 0 : 1;
+    }
+    return count;
+  }
+
   void fail(Place place, std::string text) { add_diagnostic(out_, place, std::move(text)); }
 
   void one(std::string_view line, std::uint32_t number) {
@@ -515,7 +542,12 @@ class Parser {
     std::vector<Item>& items =
         out_.file.cases.empty() ? out_.file.head : out_.file.cases.back().items;
     if (in.at_end()) {
-      items.emplace_back(Blank{});
+      Blank* const before = items.empty() ? nullptr : items.back().as<Blank>();
+      if (before != nullptr) {
+        ++before->lines;
+      } else {
+        items.emplace_back(Blank{});
+      }
     } else if (in.peek() == '#' || in.peek() == ';') {
       Comment comment;
       comment.marker = in.peek();
@@ -530,6 +562,7 @@ class Parser {
                in.rest() == "case") {
       in.advance(4);
       out_.file.cases.push_back(parse_case(in));
+      out_.file.cases.back().items.reserve(items_until_case(rest_));
     } else {
       Line parsed = parse_line(in);
       if (out_.file.cases.empty()) {
@@ -540,6 +573,7 @@ class Parser {
   }
 
   Parsed& out_;
+  std::string_view rest_;  // After the line that is read.
 };
 
 }  // namespace

@@ -74,15 +74,16 @@ struct HeaderText {
 };
 
 void put_item(const Item& item, std::string& out) {
-  if (const auto* line = std::get_if<Line>(&item)) {
+  if (const auto* line = item.as<Line>()) {
     put_line(*line, out);
-  } else if (const auto* header = std::get_if<Header>(&item)) {
+  } else if (const auto* header = item.as<Header>()) {
     put_header(*header, out);
-  } else if (const auto* comment = std::get_if<Comment>(&item)) {
+  } else if (const auto* comment = item.as<Comment>()) {
     if (comment->indented) out += "  ";
     out += comment->marker + comment->text;
   }
-  out += '\n';
+  const auto* const blank = item.as<Blank>();
+  out.append(blank == nullptr ? 1 : blank->lines, '\n');
 }
 
 }  // namespace

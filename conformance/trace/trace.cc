@@ -204,7 +204,7 @@ std::uint32_t ticks_per_second(Tick tick) {
 std::vector<const Line*> Case::lines() const {
   std::vector<const Line*> found;
   for (const Item& item : items) {
-    if (const auto* line = std::get_if<Line>(&item)) found.push_back(line);
+    if (const auto* line = item.as<Line>()) found.push_back(line);
   }
   return found;
 }
@@ -238,7 +238,7 @@ void apply(const std::vector<Item>& items, Scope& scope) {
   bool nodes = false;
   bool links = false;
   for (const Item& item : items) {
-    const auto* header = std::get_if<Header>(&item);
+    const auto* header = item.as<Header>();
     if (!header) continue;
     if (const auto* profile = std::get_if<ProfileHeader>(&header->what)) {
       scope.profile = profile->name;

@@ -2,10 +2,13 @@
 // counterexample. Grammar and meaning: spec/trace/README.md.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -256,8 +259,10 @@ struct Header {
 
 // The file.
 
+/// Lines with nothing in them.
 struct Blank {
-  friend bool operator==(const Blank&, const Blank&) { return true; }
+  std::size_t lines = 1;
+  friend bool operator==(const Blank&, const Blank&) = default;
 };
 /// A line that is only a comment.
 struct Comment {
@@ -266,7 +271,54 @@ struct Comment {
   std::string text;  ///< After the marker.
   friend bool operator==(const Comment&, const Comment&) = default;
 };
-using Item = std::variant<Blank, Comment, Header, Line>;
+
+/// A value that is held apart, and copied with what holds it.
+template <class T>
+class Boxed {
+ public:
+  explicit Boxed(T value) : value_(std::make_unique<T>(std::move(value))) {}
+  Boxed(const Boxed& other) : value_(std::make_unique<T>(*other.value_)) {}
+  Boxed(Boxed&&) noexcept = default;
+  Boxed& operator=(Boxed other) noexcept {
+    value_.swap(other.value_);
+    return *this;
+  }
+  ~Boxed() = default;
+  T& operator*() const { return *value_; }
+  friend bool operator==(const Boxed& a, const Boxed& b) { return *a == *b; }
+
+ private:
+  std::unique_ptr<T> value_;
+};
+
+/// A line of a file, or several blank ones. Most kinds are far larger than a blank or a comment, of
+/// which a file may have any number, so they are held apart.
+class Item {
+ public:
+  Item(Blank what) : what_(what) {}
+  Item(Comment what) : what_(std::move(what)) {}
+  Item(Header what) : what_(Boxed(std::move(what))) {}
+  Item(Line what) : what_(Boxed(std::move(what))) {}
+  friend bool operator==(const Item&, const Item&) = default;
+
+  /// Returns it as the kind T; null if it is another.
+  template <class T>
+  const T* as() const {
+    if constexpr (std::is_same_v<T, Header> || std::is_same_v<T, Line>) {
+      const auto* const boxed = std::get_if<Boxed<T>>(&what_);
+      return boxed == nullptr ? nullptr : &**boxed;
+    } else {
+      return std::get_if<T>(&what_);
+    }
+  }
+  template <class T>
+  T* as() {
+    return const_cast<T*>(std::as_const(*this).template as<T>());
+  }
+
+ private:
+  std::variant<Blank, Comment, Boxed<Header>, Boxed<Line>> what_;
+};
 
 struct Case {
   std::string name;  ///< Stable: words of letters, digits, `_` and `-`, joined by dots.

@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "codec/reflect/suggest.h"
+#include "codec/text/text.h"
 #include "tools/cli/exit_codes.h"
 
 namespace rubric::cli {
@@ -53,6 +54,11 @@ std::vector<std::string> option_names(const CLI::App& app) {
 }  // namespace
 
 void exit_with(int code) { throw Exit(code); }
+
+int code_of(const Ending& ending) {
+  const auto* const exit = dynamic_cast<const Exit*>(&ending);
+  return exit == nullptr ? -1 : exit->code;
+}
 
 std::string given(const std::string& text) { return text.empty() ? "is empty" : ""; }
 
@@ -228,7 +234,7 @@ const Command& Command::innermost() const {
 
 int Command::complain(const std::string& what) const {
   const std::string full = parent_ ? parent_->name() + " " + name() : name();
-  fmt::print(stderr, "{}: {}\nTry '{} --help'.\n", full, what, full);
+  report::print(stderr, "{}: {}\nTry '{} --help'.\n", full, what, full);
   return kExitUsage;
 }
 
@@ -263,10 +269,10 @@ int Command::parse_and_run(int argc, char** argv) {
     return innermost().complain(error.what());
   } catch (const std::system_error& error) {  // By fmt::print(), if it is a closed pipe.
     if (error.code() == std::errc::broken_pipe) return kExitOutput;
-    fmt::print(stderr, "{}: {}\n", name(), error.what());
+    report::print(stderr, "{}: {}\n", name(), error.what());
     return kExitInput;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "{}: {}\n", name(), error.what());
+    report::print(stderr, "{}: {}\n", name(), error.what());
     return kExitBroken;
   }
   return kExitClean;

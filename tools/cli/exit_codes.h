@@ -13,6 +13,10 @@ enum ExitCode : int {
   kExitOutput = 74,     ///< Output cannot be written: a full disk, a closed pipe; EX_IOERR.
 };
 
+class Ending;
+/// Returns the code that exit_with() ended a subcommand with; -1 for another ending.
+int code_of(const Ending& ending);
+
 /// Ends the subcommand, from within its callback, with this code.
 [[noreturn]] void exit_with(int code);
 

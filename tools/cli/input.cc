@@ -23,6 +23,7 @@
 #include "codec/lines/stop.h"
 #include "codec/reflect/fault_text.h"
 #include "codec/reflect/suggest.h"
+#include "codec/text/text.h"
 #include "tools/cli/choose_spec.h"
 #include "tools/cli/fcs.h"
 #include "tools/cli/input_file.h"
@@ -181,7 +182,7 @@ class Run {
   void remark(std::string_view what) {
     progress_.clear();
     const std::string_view name = source_.file == "-" ? "stdin" : source_.file;
-    fmt::print(stderr, "rubric: {}: {}\n", name, what);
+    report::print(stderr, "rubric: {}: {}\n", name, what);
   }
 
   void complain(std::string_view what) {
@@ -204,7 +205,7 @@ class Run {
       const std::unique_ptr<Reader> reader = make_reader(line.format(), reader_options);
       try {
         line.open(std::chrono::steady_clock::now() + kReconnectEvery);
-        if (std::exchange(lost_, false)) fmt::print(stderr, "rubric: {}: again\n", address.name);
+        if (std::exchange(lost_, false)) report::print(stderr, "rubric: {}: again\n", address.name);
         pump_line(line, *reader);
       } catch (const lines::Broken& broken) {
         if (!lost_) complain(broken.what());
@@ -226,7 +227,7 @@ class Run {
     lines::Air air(address.at);
     try {
       air.open();
-      if (address.at.port == 0) fmt::print(stderr, "rubric: zep:{}\n", air.port());
+      if (address.at.port == 0) report::print(stderr, "rubric: zep:{}\n", air.port());
       while (!lines::stop_requested() && !result_.stopped) {
         const Bytes datagram = air.receive(std::chrono::steady_clock::now() + kAirPatience);
         Packet packet;
@@ -524,6 +525,13 @@ bool goes_on(const InputOptions& options) {
     const int got = name == "-" ? ::fstat(0, &status) : ::stat(name.c_str(), &status);
     return got == 0 ? !S_ISREG(status.st_mode) : lines::parse_address(name).has_value();
   });
+}
+
+std::vector<std::string> all_inputs(const InputOptions& options) {
+  std::vector<std::string> out = options.files;
+  if (out.empty()) out.emplace_back("-");
+  if (options.spec.ends_with(".ksy")) out.push_back(options.spec);
+  return out;
 }
 
 const reflect::Protocol& chosen_protocol(const InputOptions& options) {

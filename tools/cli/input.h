@@ -51,6 +51,10 @@ ReaderOptions reader_options(const InputOptions& options);
 /// pipe.
 bool goes_on(const InputOptions& options);
 
+/// Returns all files that are read, "-" for stdin, and the one of --spec: no output may be one of
+/// them.
+std::vector<std::string> all_inputs(const InputOptions& options);
+
 /// Returns the protocol of --spec, as protocol_of() does; of "auto" that of choose_spec().
 const reflect::Protocol& chosen_protocol(const InputOptions& options);
 /// Returns the message of --as, null if it is not given; throws UsageError as above.

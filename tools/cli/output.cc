@@ -1,6 +1,5 @@
 #include "tools/cli/output.h"
 
-#include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -9,6 +8,7 @@
 #include <cstdio>
 #include <cstring>
 
+#include "codec/text/text.h"
 #include "tools/cli/command.h"
 
 namespace rubric::cli {
@@ -16,8 +16,8 @@ namespace {
 
 bool is_written(const std::string& name, int error) {
   if (error != 0 && error != EPIPE) {
-    fmt::print(stderr, "rubric: cannot write {}: {}\n", name == "-" ? "stdout" : name,
-               std::strerror(error));
+    report::print(stderr, "rubric: cannot write {}: {}\n", name == "-" ? "stdout" : name,
+                  std::strerror(error));
   }
   return error == 0;
 }
@@ -58,7 +58,7 @@ bool write_file(const std::string& path, std::string_view text) {
 }
 
 int cannot_write(const std::system_error& error) {
-  fmt::print(stderr, "rubric: cannot write {}\n", error.what());
+  report::print(stderr, "rubric: cannot write {}\n", error.what());
   return kExitOutput;
 }
 

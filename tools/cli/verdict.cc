@@ -1,11 +1,10 @@
 #include "tools/cli/verdict.h"
 
-#include <fmt/format.h>
-
 #include <cstdio>
 #include <exception>
 #include <utility>
 
+#include "codec/text/text.h"
 #include "tools/cli/command.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/text_file.h"
@@ -19,7 +18,7 @@ void set_verdict(Command& command, std::function<int()> run) {
     } catch (const Ending&) {
       throw;
     } catch (const std::exception& error) {
-      fmt::print(stderr, "rubric {}: {}\n", name, error.what());
+      report::print(stderr, "rubric {}: {}\n", name, error.what());
       return int{kExitBroken};
     }
   });
@@ -27,7 +26,7 @@ void set_verdict(Command& command, std::function<int()> run) {
 
 void unreadable(const char* command, std::string what) {
   while (what.ends_with('\n')) what.pop_back();
-  fmt::print(stderr, "rubric {}: {}\n", command, what);
+  report::print(stderr, "rubric {}: {}\n", command, what);
   exit_with(kExitInput);
 }
 

@@ -1,6 +1,5 @@
 #include "tools/cli/write_options.h"
 
-#include <fmt/format.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -8,6 +7,7 @@
 #include <filesystem>
 
 #include "codec/text/packed.h"
+#include "codec/text/text.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/output.h"
 #include "tools/cli/quantity.h"
@@ -49,7 +49,7 @@ void check_write(const WriteOptions& options, const std::vector<std::string>& in
   }
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
   if (!std::filesystem::exists(path, none) && ::access(folder.c_str(), W_OK | X_OK) != 0) {
-    fmt::print(stderr, "rubric: cannot write {}: {}\n", options.path, std::strerror(errno));
+    report::print(stderr, "rubric: cannot write {}: {}\n", options.path, std::strerror(errno));
     exit_with(kExitOutput);
   }
 }

@@ -47,7 +47,7 @@ struct ChartOptions {
 };
 
 [[noreturn]] void input_error(const std::string& what) {
-  fmt::print(stderr, "{}\n", what);
+  report::print(stderr, "{}\n", what);
   cli::exit_with(cli::kExitInput);
 }
 
@@ -102,15 +102,15 @@ int judged(const suite::CaseRun& run) {
     case CaseVerdict::kWeak: return cli::kExitClean;
     case CaseVerdict::kFail:
       for (const runner::Failure& failure : run.result.failures) {
-        fmt::print(stderr, "{}:{}: not kept at tick {}: {}\n", run.file, failure.place.line,
-                   failure.time, failure.text);
+        report::print(stderr, "{}:{}: not kept at tick {}: {}\n", run.file, failure.place.line,
+                      failure.time, failure.text);
       }
       return cli::kExitFindings;
     case CaseVerdict::kInconclusive:
     case CaseVerdict::kError:
     case CaseVerdict::kSkip: break;
   }
-  fmt::print(stderr, "{}: {}\n", run.name, run.result.reason);
+  report::print(stderr, "{}: {}\n", run.name, run.result.reason);
   return run.result.verdict == CaseVerdict::kError ? cli::kExitBroken : cli::kExitClean;
 }
 
@@ -147,6 +147,9 @@ void run_chart(const ChartOptions& options) {
     } else {
       out += (out.empty() ? "" : "\n") + text_of(worked, width);
     }
+  }
+  if (code == cli::kExitBroken && options.out != "-") {  // An old file is better than half a one.
+    cli::exit_with(code);
   }
   if (!cli::write_file(options.out, out)) cli::exit_with(cli::kExitOutput);
   if (code != cli::kExitClean) cli::exit_with(code);

@@ -1,13 +1,18 @@
 #include <unistd.h>
 
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "codec/lines/line.h"
+#include "codec/reflect/requirements.h"
+#include "codec/text/json.h"
+#include "codec/text/text.h"
 #include "conformance/check/input/duplicates.h"
 #include "conformance/check/judge/judge.h"
+#include "conformance/check/report/words.h"
 #include "tools/cli/color.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/output.h"
@@ -32,6 +37,7 @@ constexpr const char* kCheckFooter =
     "  rubric check capture.pcapng --expect known.yaml\n"
     "  rubric check serial@/dev/ttyUSB0:telosb sniffer.pcapng --follow --write line.pcapng\n"
     "  rubric check sf@localhost:9002 --format jsonl | jq -r .finding.text\n"
+    "  rubric check --each captures/ --resume done.jsonl --out results.jsonl\n"
     "What two files both have of one air or line is judged once; files of one air or line that\n"
     "disagree are refused (66). Beside a capture a log has application lines.\n"
     "A node that --node or --sink names is never an unknown sender, and what they say wins over\n"
@@ -41,8 +47,10 @@ constexpr const char* kCheckFooter =
     "time. A finding is reported when 1 s more than nodes may take has passed, and withdrawn when\n"
     "later frames explain it. Ctrl-C, or the end of all sources, ends with the report;\n"
     "'rubric check' of the capture that --write keeps says the same. Sniffers should write packet\n"
-    "by packet, as dumpcap and tcpdump -U do. Memory: about 0.4 kB a frame, all of them. With\n"
-    "--format json or junit findings go to stderr as they come; jsonl has a line of each.\n"
+    "by packet, as dumpcap and tcpdump -U do. Of a growing run, frames are held for some minutes\n"
+    "(--keep); older ones are let go, but for those that show who the nodes are and what they\n"
+    "joined. Findings stay; what a frame that is gone would decide is inconclusive. With --format\n"
+    "json or junit findings go to stderr as they come; jsonl has a line of each.\n"
     "Exit codes: 0 as expected (weak findings, strays, notes and what stays inconclusive beside\n"
     "decided things included), 1 an unexpected failure, or an expectation that is not true, 2 the\n"
     "kit broke, 3 nothing but inconclusive: no rule was found kept or broken,\n"
@@ -70,7 +78,10 @@ int check_files(const CheckOptions& options) {
   if (!options.write.path.empty()) {
     throw cli::UsageError("--write", "none of the sources is a line in use");
   }
-  cli::keep_apart("--out", options.out, files);
+  if (options.keep_minutes) {
+    throw cli::UsageError("--keep", "no source grows, so all frames are held");
+  }
+  keep_outputs_apart(options);
   const report::KnownFailures expected = expectations(options);
   check::Run whole = read_run(options);
   check::Run part = ranges.empty() ? std::move(whole) : report::part_of(whole, ranges, judged);
@@ -86,7 +97,60 @@ int check_files(const CheckOptions& options) {
   return written && kept ? outcome.exit_code() : cli::kExitOutput;
 }
 
+// Returns what a line of --each says of a run.
+std::string line_members(const report::Story& story) {
+  using report::Json;
+  std::map<std::string, std::uint64_t> failures;
+  for (std::size_t i = 0; i < story.report.findings.size(); ++i) {
+    const check::Finding& finding = story.report.findings[i];
+    const bool known = story.outcome.expected_by[i] != report::kUnexpected;
+    if (finding.severity != check::Severity::kFail || known) continue;
+    ++failures[reflect::requirement(finding.requirement).id];
+  }
+  const auto failure = [](const auto& one) {
+    return Json::object({{"requirement", one.first}, {"findings", one.second}});
+  };
+  const Json whole = Json::object({{"verdict", report::verdict_name(story.outcome.verdict)},
+                                   {"frames", story.report.frames},
+                                   {"begin", Json::raw(report::seconds_text(story.run.begin_us))},
+                                   {"seconds", Json::raw(report::seconds_text(story.run.end_us))},
+                                   {"failures", Json::array(failures, failure)}});
+  return whole.text().substr(1, whole.text().size() - 2);
+}
+
+// Checks each file as a run of its own.
+int check_each_run(const CheckOptions& options) {
+  if (is_live(options)) throw cli::UsageError("--each", "is for runs that are over");
+  if (!options.frames.empty()) throw cli::UsageError("--frames", "of which run? --each has many");
+  if (!options.write.path.empty()) throw cli::UsageError("--write", "no source is a line in use");
+  if (options.keep_minutes) throw cli::UsageError("--keep", "no source grows");
+  const check::Options judged = oracle_options(options);
+  const report::KnownFailures expected = expectations(options);
+  const std::string known =
+      options.expect.empty() ? "" : cli::text_of_file(kCheckCommand, options.expect);
+  const cli::EachJob job{kCheckCommand,
+                         command_of(options) + "\n" + known,
+                         {0, cli::kExitIncomplete, cli::kExitFindings, cli::kExitInput,
+                          cli::kExitUsage, cli::kExitOutput, cli::kExitBroken},
+                         cli::kExitBroken};
+  keep_outputs_apart(options);
+  if (!options.each.resume.empty()) cli::keep_apart("--out", options.out, {options.each.resume});
+  return cli::each(options.each, job, options.input.files, options.out,
+                   [&](const std::string& file, std::string& members) {
+                     CheckOptions one = options;
+                     one.input.files = {file};
+                     check::Run run = read_run(one);
+                     check::Options its = judged;
+                     const check::Report found = check::judge(run, its);
+                     const report::Outcome outcome = report::compare(run, its, found, expected);
+                     members = line_members({run, its, found, expected, outcome});
+                     return outcome.exit_code();
+                   });
+}
+
 int run_check(CheckOptions options) {
+  cli::check_each(options.each);
+  if (options.each.each && !options.input.files.empty()) return check_each_run(options);
   if (options.input.files.empty()) {
     if (!lines::asked_by_motecom()) throw cli::UsageError("FILE is required");
     options.input.files.push_back(lines::default_address());
@@ -102,6 +166,7 @@ void add_options(cli::Command& command, CheckOptions& options) {
       "platform, as serial@/dev/ttyUSB0:telosb), network@HOST:PORT, sf@HOST:PORT, zep:PORT; at a "
       "terminal "
       "$MOTECOM");
+  cli::add_each_options(command, options.each);
   cli::add_write_options(command, options.write, "Keep what lines in use send in this pcapng file",
                          false);
   command
@@ -160,6 +225,12 @@ void add_options(cli::Command& command, CheckOptions& options) {
                   "auto; off takes stamps as they are")
       .one_of({"auto", "off"})
       .show_default();
+  command
+      .add_option(
+          "--keep", options.keep_minutes,
+          "Hold frames of a growing run for at least this many minutes (default: as long as "
+          "the stated times ask for, at least 1)")
+      .between(0.0, 1e6);
   command.add_option("--frames", options.frames,
                      "Judge only frames A..B; N:A..B those of the Nth file, N:none none of it");
   command

@@ -1,7 +1,5 @@
 #include "tools/commands/check_live.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <chrono>
 #include <memory>
@@ -16,8 +14,8 @@
 #include "codec/lines/capture_file.h"
 #include "codec/lines/line.h"
 #include "codec/lines/stop.h"
-#include "conformance/check/input/duplicates.h"
-#include "conformance/check/input/read.h"
+#include "codec/text/text.h"
+#include "conformance/check/judge/follow.h"
 #include "conformance/check/judge/judge.h"
 #include "conformance/check/judge/watch.h"
 #include "tools/cli/exit_codes.h"
@@ -43,6 +41,12 @@ constexpr std::int64_t kResponseUs = 292'969;  // 300 ticks, unless stated other
 
 std::int64_t now_us() {
   return steady_clock::now().time_since_epoch() / std::chrono::microseconds(1);
+}
+
+// Returns how long frames are held: as long as rules may need them, and as the user says.
+std::int64_t horizon_of(const CheckOptions& options, const check::Options& judged) {
+  const double asked_us = options.keep_minutes.value_or(0) * 60e6;
+  return std::max(check::horizon_us(judged), static_cast<std::int64_t>(asked_us));
 }
 
 // Writes the frames of lines in use as one capture, so that they have the numbers, offsets and
@@ -74,7 +78,7 @@ class Session {
       : options_(options),
         judged_(oracle_options(options)),
         expected_(expectations(options)),
-        reader_(read_as(options)),
+        follow_(read_as(options), judged_, horizon_of(options, judged_)),
         watch_(kSettleUs + judged_.skew_us + judged_.response_us.value_or(kResponseUs)),
         news_(options) {
     name_files();
@@ -113,45 +117,42 @@ class Session {
       names_.push_back(options_.input.files[i]);
     }
     has_lines_ = !lines.empty();
-    for (const std::string& name : names_) reader_.open(name == "-" ? "stdin" : name);
+    for (const std::string& name : names_) follow_.open(name == "-" ? "stdin" : name);
   }
 
   void take(const Packet& packet, std::size_t source, std::string_view interface_name) {
     fresh_ = true;
     const std::uint32_t file = file_of_[source];
-    if (!has_lines_ || file != 0) return reader_.take(file, packet, interface_name);
+    if (!has_lines_ || file != 0) return follow_.take(file, packet, interface_name);
     if (kept_) kept_->write(packet, interface_name);
     lines_.add(packet, interface_name, [this](const Packet& again, std::string_view name) {
-      reader_.take(0, again, name);
+      follow_.take(0, again, name);
     });
   }
 
   void judge() {
     const steady_clock::time_point before = steady_clock::now();
-    run_.reset();  // Two copies of a long run are enough.
-    run_.emplace(reader_.snapshot());
     fresh_ = false;
-    if (check::drop_duplicates(*run_, judged_, refused_)) {
-      refused_.clear();
-      found_ = check::judge(*run_, judged_);
-    }
+    judged_once_ = true;
+    refused_.clear();
+    if (!follow_.judge()) refused_ = follow_.why();
     const steady_clock::time_point after = steady_clock::now();
     judge_next_ =
         after + std::max<steady_clock::duration>(kJudgeEvery, kJudgeShare * (after - before));
   }
 
   void tell() {
-    if (!run_) return;
+    if (!judged_once_) return;
     if (refused_.empty()) {
       refused_us_ = 0;
     } else if (refused_us_ == 0) {
       refused_us_ = now_us();
     } else if (!refused_told_ && now_us() - refused_us_ > kRefusedUs) {
-      fmt::print(stderr, "rubric check: {}\n", refused_);
+      report::print(stderr, "rubric check: {}\n", refused_);
       refused_told_ = true;
     }
-    for (const check::Change& change : watch_.update(found_, now_us())) {
-      news_.tell(*run_, judged_, change, expected_);
+    for (const check::Change& change : watch_.update(follow_.report(), now_us())) {
+      news_.tell(follow_.run(), judged_, change, expected_);
     }
     news_.flush();
   }
@@ -161,9 +162,10 @@ class Session {
     bool written = !kept_ || (failed && !kept_->is_started()) || kept_->finish();
     judge();
     if (!refused_.empty()) cli::unreadable(kCheckCommand, refused_);
-    const report::Outcome outcome = report::compare(*run_, judged_, found_, expected_);
+    const report::Outcome outcome =
+        report::compare(follow_.run(), judged_, follow_.report(), expected_);
     const bool again = !has_lines_ || !options_.write.path.empty();
-    written = news_.report({*run_, judged_, found_, expected_, outcome},
+    written = news_.report({follow_.run(), judged_, follow_.report(), expected_, outcome},
                            again ? names_ : std::vector<std::string>()) &&
               written;
     if (!written) return cli::kExitOutput;
@@ -174,7 +176,7 @@ class Session {
   const CheckOptions& options_;
   const check::Options judged_;
   const report::KnownFailures expected_;
-  check::RunReader reader_;
+  check::Follow follow_;
   check::Watch watch_;
   CheckNews news_;
   std::vector<std::uint32_t> file_of_;  // By source: its file of the run.
@@ -184,8 +186,7 @@ class Session {
   std::optional<lines::CaptureFile> kept_;
   bool fresh_ = false;  // Something came since the run was judged.
   steady_clock::time_point judge_next_{};
-  std::optional<check::Run> run_;
-  check::Report found_;
+  bool judged_once_ = false;
   std::string refused_;          // Why the files are no run; empty: they are.
   std::int64_t refused_us_ = 0;  // Since when.
   bool refused_told_ = false;
@@ -221,7 +222,7 @@ int check_live(const CheckOptions& options) {
   if (!options.write.path.empty() && !lines) {
     throw cli::UsageError("--write", "none of the sources is a line in use");
   }
-  cli::keep_apart("--out", options.out, files);
+  keep_outputs_apart(options);
   if (!options.write.path.empty()) cli::keep_apart("--write", options.write.path, {options.out});
   cli::check_write(options.write, files, true);
   return Session(options).run();

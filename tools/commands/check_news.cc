@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "codec/text/shell.h"
+#include "codec/text/text.h"
 #include "conformance/check/judge/judge.h"
 #include "conformance/check/report/html.h"
 #include "conformance/check/report/json.h"
@@ -116,7 +117,7 @@ cli::Output& CheckNews::output() {
 
 void CheckNews::begin() const {
   if (::isatty(STDERR_FILENO) == 0) return;
-  fmt::print(stderr, "rubric check: findings as they come; Ctrl-C ends with the report\n");
+  report::print(stderr, "rubric check: findings as they come; Ctrl-C ends with the report\n");
 }
 
 void CheckNews::tell(const check::Run& run, const check::Options& judged, const Change& change,

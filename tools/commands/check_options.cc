@@ -101,6 +101,13 @@ check::Options oracle_options(const CheckOptions& options) {
   return out;
 }
 
+void keep_outputs_apart(const CheckOptions& options) {
+  std::vector<std::string> inputs = options.input.files;
+  if (!options.expect.empty()) inputs.push_back(options.expect);
+  cli::keep_apart("--out", options.out, inputs);
+  cli::keep_apart("--write", options.write.path, inputs);
+}
+
 std::vector<report::FrameRange> frame_ranges(const CheckOptions& options) {
   std::vector<report::FrameRange> out;
   for (const std::string& text : options.frames) {

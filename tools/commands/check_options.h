@@ -11,6 +11,7 @@
 #include "conformance/check/report/expect.h"
 #include "conformance/check/report/text.h"
 #include "conformance/check/report/window.h"
+#include "tools/cli/each.h"
 #include "tools/cli/input.h"
 #include "tools/cli/write_options.h"
 
@@ -37,9 +38,11 @@ struct CheckOptions {
   std::optional<double> response_ms;
   std::optional<double> ack_timeout_ms;
   std::optional<double> skew_ms;
+  std::optional<double> keep_minutes;
   std::size_t width = 0;
   bool verbose = false;
   std::size_t findings_max = 20;
+  cli::EachOptions each;
   cli::WriteOptions write;  ///< A capture of what lines in use send.
 };
 
@@ -48,6 +51,9 @@ check::Options oracle_options(const CheckOptions& options);
 std::vector<report::FrameRange> frame_ranges(const CheckOptions& options);
 /// What the file --expect names says; nothing without it.
 report::KnownFailures expectations(const CheckOptions& options);
+
+/// Throws cli::UsageError if an output is one of the files that are read.
+void keep_outputs_apart(const CheckOptions& options);
 
 /// Returns the format of captures by --input-format.
 check::ReadAs read_as(const CheckOptions& options);

@@ -1,11 +1,10 @@
-#include <fmt/format.h>
-
 #include <cstdio>
 #include <map>
 #include <memory>
 #include <system_error>
 
 #include "codec/text/packed.h"
+#include "codec/text/text.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/frame_filter.h"
 #include "tools/cli/input.h"
@@ -78,12 +77,12 @@ void count_details(const Packet& packet, std::string_view interface_name,
 
 void report(const Losses& losses, const std::string& container) {
   for (const auto& [why, count] : losses.refused) {
-    fmt::print(stderr, "rubric: left out {} of {} packets: {}\n", count, losses.packets, why);
+    report::print(stderr, "rubric: left out {} of {} packets: {}\n", count, losses.packets, why);
   }
   const auto lost = [&](std::uint64_t count, const char* what) {
     if (count == 0) return;
-    fmt::print(stderr, "rubric: {} holds no {}: {} of {} packets lost theirs\n", container, what,
-               count, losses.written);
+    report::print(stderr, "rubric: {} holds no {}: {} of {} packets lost theirs\n", container, what,
+                  count, losses.written);
   };
   lost(losses.times, "times");
   lost(losses.directions, "directions");
@@ -98,9 +97,9 @@ void report(const Losses& losses, const std::string& container) {
                losses.more_facts);
   }
   if (container == "hex" && losses.radio && losses.radio != losses.written) {
-    fmt::print(stderr,
-               "rubric: hex does not say which lines are radio frames; --only keeps one "
-               "framing\n");
+    report::print(stderr,
+                  "rubric: hex does not say which lines are radio frames; --only keeps one "
+                  "framing\n");
   }
 }
 

@@ -15,6 +15,7 @@
 
 #include "codec/reflect/requirements.h"
 #include "codec/text/json.h"
+#include "codec/text/text.h"
 #include "conformance/explore/search.h"
 #include "conformance/selftest/mutants/hunt.h"
 #include "conformance/test/suite/cases.h"
@@ -250,7 +251,7 @@ int run_coverage(const CoverageOptions& options) {
   try {
     coverage = measure(options);
   } catch (const std::exception& error) {
-    fmt::print(stderr, "rubric: {}\n", error.what());
+    report::print(stderr, "rubric: {}\n", error.what());
     return cli::kExitInput;
   }
   const std::string text = options.format == "json" ? json_of(coverage) : text_of(coverage);

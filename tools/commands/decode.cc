@@ -7,8 +7,11 @@
 #include <string>
 
 #include "codec/lines/capture_file.h"
+#include "codec/lines/line.h"
 #include "codec/reflect/frame.h"
+#include "codec/text/text.h"
 #include "tools/cli/color.h"
+#include "tools/cli/each.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/frame_filter.h"
 #include "tools/cli/input.h"
@@ -37,6 +40,7 @@ struct DecodeOptions {
   bool hex = false;
   bool strict = false;
   bool units = false;
+  cli::EachOptions each;
   cli::WriteOptions write;
 };
 
@@ -148,7 +152,7 @@ class Decode {
   int run() {
     if (!options_.write.path.empty()) {
       const bool grows = cli::goes_on(options_.input);
-      cli::check_write(options_.write, options_.input.files, grows);
+      cli::check_write(options_.write, cli::all_inputs(options_.input), grows);
       capture_.emplace(options_.write.path,
                        grows ? options_.write.growing() : lines::CaptureFile::Mode::kWhole,
                        cli::rotation_of(options_.write));
@@ -160,14 +164,20 @@ class Decode {
         [this] { output_.flush(); });
     const bool written = output_.finish();
     if (result.live) {
-      fmt::print(stderr, "rubric: {} frames, {} malformed, {} shown\n", index_, malformed_count_,
-                 printed_);
+      report::print(stderr, "rubric: {} frames, {} malformed, {} shown\n", index_, malformed_count_,
+                    printed_);
     }
     // A source that cannot be had costs no file.
     const bool kept = !capture_ || (result.failed && !capture_->is_started()) || capture_->finish();
     if (!written || !kept) return cli::kExitOutput;
     if (result.failed) return cli::kExitInput;
     return malformed_ ? cli::kExitFindings : cli::kExitClean;
+  }
+
+  // Returns the counts of what was read, as members of a JSON object.
+  std::string counts() const {
+    return fmt::format(R"("frames":{},"malformed":{},"shown":{})", index_, malformed_count_,
+                       printed_);
   }
 
  private:
@@ -208,6 +218,43 @@ class Decode {
   std::optional<lines::CaptureFile> capture_;
 };
 
+// Decodes each file as a run of its own, and shows what was read of it.
+int decode_each(const DecodeOptions& options) {
+  for (const std::string& file : options.input.files) {
+    if (options.input.follow || lines::parse_address(file)) {
+      throw cli::UsageError("--each", "is for runs that are over");
+    }
+  }
+  if (!options.write.path.empty())
+    throw cli::UsageError("--write", "of which run? --each has many");
+  Decode{options};  // Finds what makes no sense before the first run.
+  const cli::InputOptions& in = options.input;
+  const std::string settings =
+      fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}", in.format, in.fcs, in.spec, in.as_message,
+                  options.filter, options.count, options.strict);
+  const cli::EachJob job{
+      "decode",
+      settings,
+      {0, cli::kExitFindings, cli::kExitInput, cli::kExitUsage, cli::kExitOutput},
+      cli::kExitInput};
+  return cli::each(options.each, job, in.files, "-",
+                   [&](const std::string& file, std::string& members) {
+                     DecodeOptions one = options;
+                     one.input.files = {file};
+                     one.input.progress = false;
+                     Decode decode(one);
+                     const int code = decode.run();
+                     if (code <= cli::kExitFindings) members = decode.counts();
+                     return code;
+                   });
+}
+
+int run_decode(const DecodeOptions& options) {
+  cli::check_each(options.each);
+  const bool each = options.each.each && !options.input.files.empty();
+  return each ? decode_each(options) : Decode(options).run();
+}
+
 }  // namespace
 
 void add_decode(cli::Command& app) {
@@ -234,6 +281,7 @@ void add_decode(cli::Command& app) {
   command.add_flag("--units", options->units, "Show values in their units, such as degrees C");
   cli::add_write_options(command, options->write, "Keep all frames in this pcapng file as well",
                          true);
+  cli::add_each_options(command, options->each);
   cli::add_color_option(command, options->color);
   command.footer(
       "Examples:\n"
@@ -241,10 +289,11 @@ void add_decode(cli::Command& app) {
       "  rubric decode mote.serial.bin --format jsonl | jq .message\n"
       "  rubric decode capture.pcapng --format csv --fields time,src.devid,updates.value\n"
       "  echo 0a000c | rubric decode --as config\n"
+      "  rubric decode --each 'captures/*.pcapng' --shard 1/4    # counts, a line of JSON a run\n"
       "  rubric decode serial@/dev/ttyUSB0:telosb --write run.pcapng    # until Ctrl-C\n"
       "Exit codes: 0 clean, 1 something malformed was read, 64 usage, 66 input cannot be read,\n"
       "74 output cannot be written.");
-  command.exit_code_of([options] { return Decode(*options).run(); });
+  command.exit_code_of([options] { return run_decode(*options); });
 }
 
 }  // namespace rubric::tools

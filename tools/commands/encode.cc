@@ -90,7 +90,7 @@ void add_encode(cli::Command& app) {
       .show_default();
   sub.exit_code_of([options] {
     encode::check_line_options(options->lines);
-    cli::keep_apart("--output", options->output, options->lines.input.files);
+    cli::keep_apart("--output", options->output, cli::all_inputs(options->lines.input));
     return run_encode(*options);
   });
 }

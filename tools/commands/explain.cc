@@ -11,6 +11,7 @@
 #include "codec/reflect/fault_text.h"
 #include "codec/reflect/registry.h"
 #include "codec/reflect/suggest.h"
+#include "codec/text/text.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/input.h"
 #include "tools/cli/output.h"
@@ -164,7 +165,7 @@ int run_explain(const ExplainOptions& options) {
     nothing_of(options.words.front(), protocol);
   }
   cli::Output output;
-  output.buffer().append(text);
+  output.buffer().append(report::harmless(text, report::Keep::kLines));
   return output.finish() ? code : cli::kExitOutput;
 }
 

@@ -12,6 +12,7 @@
 
 #include "codec/reflect/suggest.h"
 #include "codec/text/json.h"
+#include "codec/text/text.h"
 #include "conformance/explore/counterexample.h"
 #include "conformance/explore/search.h"
 #include "conformance/generated/profiles.h"
@@ -325,7 +326,7 @@ void run_explore(const ExploreOptions& options) {
   if (options.format == "json") {
     good = cli::write_file("-", json_of(options, result, verdict, text)) && good;
   } else if (trace_alone) {
-    fmt::print(stderr, "{}", text_of(result, verdict));
+    report::print(stderr, "{}", text_of(result, verdict));
     good = cli::write_file("-", text) && good;
   } else {
     good = cli::write_file("-", text_of(result, verdict)) && good;

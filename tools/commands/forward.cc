@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
@@ -9,6 +7,7 @@
 
 #include "codec/lines/forward/server.h"
 #include "codec/lines/line.h"
+#include "codec/text/text.h"
 #include "conformance/test/runner/target.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/frame_filter.h"
@@ -53,14 +52,14 @@ void check_capture(const std::string& path) {
 }
 
 void print_summary(const std::string& source, const forward::Counts& counts) {
-  fmt::print(stderr, "rubric: {}: {} packets from it ({} malformed frames), {} to it", source,
-             counts.from_source, counts.malformed, counts.to_source);
-  if (counts.withheld) fmt::print(stderr, ", {} not passed on", counts.withheld);
-  if (counts.unconfirmed) fmt::print(stderr, ", {} not confirmed", counts.unconfirmed);
-  if (counts.not_sent) fmt::print(stderr, ", {} not sent", counts.not_sent);
-  fmt::print(stderr, "; {} clients, {} cut off", counts.served, counts.cut_off);
-  if (counts.refused) fmt::print(stderr, ", {} refused", counts.refused);
-  fmt::print(stderr, "\n");
+  report::print(stderr, "rubric: {}: {} packets from it ({} malformed frames), {} to it", source,
+                counts.from_source, counts.malformed, counts.to_source);
+  if (counts.withheld) report::print(stderr, ", {} not passed on", counts.withheld);
+  if (counts.unconfirmed) report::print(stderr, ", {} not confirmed", counts.unconfirmed);
+  if (counts.not_sent) report::print(stderr, ", {} not sent", counts.not_sent);
+  report::print(stderr, "; {} clients, {} cut off", counts.served, counts.cut_off);
+  if (counts.refused) report::print(stderr, ", {} refused", counts.refused);
+  report::print(stderr, "\n");
 }
 
 int run_forward(ForwardOptions& options) {
@@ -92,9 +91,9 @@ int run_forward(ForwardOptions& options) {
     if (server.capture_failed()) return cli::kExitOutput;
     return whole ? cli::kExitClean : cli::kExitInput;
   } catch (const runner::TargetBroken& broken) {
-    fmt::print(stderr, "rubric: {}\n", broken.what());
+    report::print(stderr, "rubric: {}\n", broken.what());
   } catch (const std::system_error& error) {
-    fmt::print(stderr, "rubric: {}\n", error.what());
+    report::print(stderr, "rubric: {}\n", error.what());
   }
   return cli::kExitInput;
 }

@@ -17,6 +17,7 @@
 #include "codec/reflect/fault_text.h"
 #include "codec/reflect/suggest.h"
 #include "codec/text/json.h"
+#include "codec/text/text.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/input.h"
 #include "tools/cli/output.h"
@@ -250,12 +251,12 @@ class Run {
       return true;
     });
     if (!left_out.empty()) {
-      fmt::print(stderr, "rubric: {} holds no radio frames: left out {}\n", options_.format,
-                 joined(left_out, ", "));
+      report::print(stderr, "rubric: {} holds no radio frames: left out {}\n", options_.format,
+                    joined(left_out, ", "));
     }
     if (options_.count < messages_.size()) {
-      fmt::print(stderr, "rubric: {} of {} messages do not come up; --count {} has them all\n",
-                 messages_.size() - options_.count, messages_.size(), messages_.size());
+      report::print(stderr, "rubric: {} of {} messages do not come up; --count {} has them all\n",
+                    messages_.size() - options_.count, messages_.size(), messages_.size());
     }
     for (std::size_t i = messages_.size(); i > 1; --i) {
       std::swap(messages_[i - 1], messages_[frames_.random().below(i)]);
@@ -336,6 +337,10 @@ std::string share(const std::string& text) {
 }
 
 void check_outputs(const GenerateOptions& options) {
+  if (options.input.spec.ends_with(".ksy")) {
+    cli::keep_apart("--output", options.output, {options.input.spec});
+    cli::keep_apart("--expect", options.expect, {options.input.spec});
+  }
   if (options.expect.empty()) return;
   if (options.format == "jsonl") {
     throw cli::UsageError("--expect", "jsonl carries the expectations in line");

@@ -1,7 +1,14 @@
 // rubric: the command line. A subcommand is one file, which adds itself.
+#include <unistd.h>
+
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <new>
+#include <string_view>
 
 #include "tools/commands/commands.h"
 
@@ -13,11 +20,22 @@ constexpr const char* kFooter =
     "decided or not all was done, 64 usage, 66 input cannot be read, 74 output cannot be written.\n"
     "'rubric COMMAND --help' says more.";
 
-}  // namespace
+std::atomic<bool> without_memory = false;
 
-int main(int argc, char** argv) {
-  // A closed pipe shows as a failed write, which ends the output without a word.
-  std::signal(SIGPIPE, SIG_IGN);
+[[noreturn]] void note_no_memory() {
+  without_memory = true;
+  throw std::bad_alloc();
+}
+
+// Called where an exception may not leave a function, as in the library of the command line.
+[[noreturn]] void give_up() {
+  if (!without_memory) std::abort();
+  constexpr std::string_view kWhy = "rubric: out of memory\n";
+  const ssize_t written = ::write(STDERR_FILENO, kWhy.data(), kWhy.size());
+  ::_exit(written < 0 ? rubric::cli::kExitOutput : rubric::cli::kExitBroken);
+}
+
+int run(int argc, char** argv) {
   rubric::cli::Command program{
       "rubric", "Codec and conformance test kit for the RUBICON Communication Layer."};
   program.version(RUBRIC_VERSION);
@@ -49,4 +67,19 @@ int main(int argc, char** argv) {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
   if (errno != 0 && errno != EPIPE) std::perror("rubric: cannot write stdout");
   return rubric::cli::kExitOutput;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  // A closed pipe shows as a failed write, which ends the output without a word.
+  std::signal(SIGPIPE, SIG_IGN);
+  std::set_new_handler(note_no_memory);
+  std::set_terminate(give_up);
+  try {
+    return run(argc, argv);
+  } catch (const std::exception& error) {  // There is no memory even for the options.
+    std::fprintf(stderr, "rubric: %s\n", error.what());
+    return rubric::cli::kExitBroken;
+  }
 }

@@ -119,7 +119,9 @@ void add_messages(cli::Command& app) {
   sub.callback([options] {
     const Protocol& protocol = cli::chosen_protocol(options->input);
     cli::Output output;
-    output.buffer().append(options->format == "json" ? json(protocol) : text(protocol));
+    output.buffer().append(options->format == "json"
+                               ? json(protocol)
+                               : report::harmless(text(protocol), report::Keep::kLines));
     if (!output.finish()) cli::exit_with(cli::kExitOutput);
   });
 }

@@ -1,7 +1,5 @@
 #include "tools/commands/new_adapter.h"
 
-#include <fmt/format.h>
-
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -9,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "codec/text/text.h"
 #include "conformance/test/report/known_list.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/output.h"
@@ -52,7 +51,7 @@ const Language& language_of(const std::string& name) {
 }
 
 [[noreturn]] void refuse(const std::string& path, const std::string& why) {
-  fmt::print(stderr, "rubric new-adapter: cannot write {}: {}\n", path, why);
+  report::print(stderr, "rubric new-adapter: cannot write {}: {}\n", path, why);
   cli::exit_with(cli::kExitOutput);
 }
 
@@ -74,12 +73,12 @@ void write_skeleton(const NewAdapterOptions& options) {
   }
   for (const auto& [path, text] : files) {
     if (!cli::write_file(path.string(), text)) cli::exit_with(cli::kExitOutput);
-    fmt::print("wrote {}\n", path.lexically_normal().string());
+    report::print(stdout, "wrote {}\n", path.lexically_normal().string());
   }
-  fmt::print("Next:\n");
-  if (options.out != ".") fmt::print("  cd {}\n", options.out);
-  if (*language.build) fmt::print("  {}\n", language.build);
-  fmt::print("  rubric test --target '{}' --expect {}\n", language.target, kKnown);
+  report::print(stdout, "Next:\n");
+  if (options.out != ".") report::print(stdout, "  cd {}\n", options.out);
+  if (*language.build) report::print(stdout, "  {}\n", language.build);
+  report::print(stdout, "  rubric test --target '{}' --expect {}\n", language.target, kKnown);
 }
 
 }  // namespace

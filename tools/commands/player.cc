@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "codec/text/text.h"
 #include "conformance/test/suite/canary.h"
 #include "conformance/test/suite/run.h"
 #include "conformance/test/targets/groups.h"
@@ -42,10 +43,10 @@ void run_player_command(const cli::Command& app, const std::function<void()>& wo
   } catch (const std::invalid_argument& error) {
     throw cli::UsageError(error.what());
   } catch (const runner::TargetBroken& error) {
-    fmt::print(stderr, "rubric {}: {}\n", app.name(), error.what());
+    report::print(stderr, "rubric {}: {}\n", app.name(), error.what());
     cli::exit_with(cli::kExitBroken);
   } catch (const std::runtime_error& error) {
-    fmt::print(stderr, "rubric {}: {}\n", app.name(), error.what());
+    report::print(stderr, "rubric {}: {}\n", app.name(), error.what());
     cli::exit_with(cli::kExitInput);
   }
 }

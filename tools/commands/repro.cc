@@ -1,11 +1,10 @@
-#include <fmt/format.h>
-
 #include <cstdio>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "codec/text/text.h"
 #include "conformance/explore/counterexample.h"
 #include "conformance/selftest/scripts/bytes.h"
 #include "conformance/selftest/scripts/difference.h"
@@ -103,7 +102,7 @@ void run_repro(const ReproOptions& options) {
   std::string text;
   std::string error;
   if (!cli::read_file(options.input, text, error)) {
-    fmt::print(stderr, "{}\n", error);
+    report::print(stderr, "{}\n", error);
     cli::exit_with(cli::kExitInput);
   }
   const Bytes bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
@@ -113,7 +112,8 @@ void run_repro(const ReproOptions& options) {
   if (!cli::write_file(options.out, trace::print(repro.file))) {
     cli::exit_with(cli::kExitOutput);
   }
-  fmt::print(stderr, "{}\n", repro.found.empty() ? "nothing is broken" : "broken: " + repro.found);
+  report::print(stderr, "{}\n",
+                repro.found.empty() ? "nothing is broken" : "broken: " + repro.found);
   if (!repro.found.empty()) cli::exit_with(cli::kExitFindings);
 }
 

@@ -1,4 +1,3 @@
-#include <fmt/format.h>
 #include <poll.h>
 #include <unistd.h>
 
@@ -18,6 +17,7 @@
 #include "codec/lines/capture_file.h"
 #include "codec/lines/line.h"
 #include "codec/lines/stop.h"
+#include "codec/text/text.h"
 #include "conformance/node/node.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/write_options.h"
@@ -134,14 +134,14 @@ class RunningNode : public node::Driver {
     };
     user.twin = [this] {
       if (!is_mote() || warned_) return;  // All sinks have the same id.
-      fmt::print(stderr, "rubric: another mote on this air has the id {}, too\n", setup_.id);
+      report::print(stderr, "rubric: another mote on this air has the id {}, too\n", setup_.id);
       warned_ = true;
     };
     const lines::Address air = *lines::parse_address(options_.radio);
     radio_.emplace(run::VirtualRadio::Settings{setup_.id, options_.loss_percent / 100.0, seed},
                    air.at, std::move(user));
     radio_->open();
-    if (air.at.port == 0) fmt::print(stderr, "rubric: zep:{}\n", radio_->port());
+    if (air.at.port == 0) report::print(stderr, "rubric: zep:{}\n", radio_->port());
   }
 
   void open_serial() {
@@ -276,9 +276,9 @@ int run_node(const RunOptions& options) {
   try {
     return RunningNode(options).run();
   } catch (const lines::Broken& broken) {
-    fmt::print(stderr, "rubric: {}\n", broken.what());
+    report::print(stderr, "rubric: {}\n", broken.what());
   } catch (const std::system_error& error) {
-    fmt::print(stderr, "rubric: {}\n", error.what());
+    report::print(stderr, "rubric: {}\n", error.what());
   }
   return cli::kExitInput;
 }

@@ -12,6 +12,7 @@
 #include "codec/lines/stop.h"
 #include "codec/reflect/fault_text.h"
 #include "codec/reflect/frame.h"
+#include "codec/text/text.h"
 #include "conformance/test/runner/target.h"
 #include "tools/cli/color.h"
 #include "tools/cli/exit_codes.h"
@@ -174,7 +175,7 @@ class Send {
     }
     if (packets_ > 0) sender_.hear(steady_clock::now() + Milliseconds{options_.interval_ms});
     if (lines::stop_requested()) {
-      fmt::print(stderr, "rubric: {}: stopped before this was sent\n", place);
+      report::print(stderr, "rubric: {}: stopped before this was sent\n", place);
       unsent_ = true;
       return false;
     }
@@ -184,9 +185,9 @@ class Send {
     if (result.done) return true;
     unsent_ = true;
     if (options_.keep_going && !lines::stop_requested()) return true;
-    fmt::print(stderr, "rubric: {}: {}; nothing after it is sent{}\n", place,
-               lines::stop_requested() ? "stopped" : "not confirmed",
-               lines::stop_requested() ? "" : " (--keep-going would)");
+    report::print(stderr, "rubric: {}: {}; nothing after it is sent{}\n", place,
+                  lines::stop_requested() ? "stopped" : "not confirmed",
+                  lines::stop_requested() ? "" : " (--keep-going would)");
     return false;
   }
 
@@ -214,7 +215,7 @@ class Send {
     }
     text += '\n';
     if (options_.format == "jsonl") {  // Its lines are the frames that come alone.
-      fmt::print(stderr, "{}", text);
+      report::print(stderr, "{}", text);
       return;
     }
     output_.buffer().append(text);
@@ -239,7 +240,7 @@ class Send {
   }
 
   void line_is_gone(const char* what) {
-    fmt::print(stderr, "rubric: {}: {}\n", name_, what);
+    report::print(stderr, "rubric: {}: {}\n", name_, what);
     unsent_ = true;
   }
 
@@ -255,7 +256,7 @@ class Send {
       text += ", " + counted(left_out_, "frame", "frames") + " without a packet left out";
     }
     if (options_.listen_s) text += ", " + fmt::format("{} came", frames_);
-    fmt::print(stderr, "rubric: {}\n", text);
+    report::print(stderr, "rubric: {}\n", text);
   }
 
   const SendOptions& options_;

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "codec/text/text.h"
 #include "conformance/simulate/recorder.h"
 #include "conformance/simulate/scenarios.h"
 #include "conformance/simulate/simulation.h"
@@ -80,7 +81,7 @@ void run_simulate(const SimulateOptions& options) {
   if (log) good = cli::write_file(options.rtr, trace::print(log->file()));
   if (capture) good = cli::write_file(options.pcapng, capture->finish()) && good;
   const bool taken = options.rtr == "-" || options.pcapng == "-";
-  fmt::print(taken ? stderr : stdout, "{}", summary(simulation.statistics()));
+  report::print(taken ? stderr : stdout, "{}", summary(simulation.statistics()));
   if (!good) cli::exit_with(cli::kExitOutput);
 }
 

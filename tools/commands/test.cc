@@ -13,6 +13,7 @@
 #include <thread>
 #include <vector>
 
+#include "codec/text/text.h"
 #include "conformance/test/report/github.h"
 #include "conformance/test/report/html.h"
 #include "conformance/test/report/json.h"
@@ -271,7 +272,7 @@ bool write_formats(const TestOptions& options, const suite::SuiteRun& run,
   const bool keep = suite::exit_code(run) == cli::kExitBroken && options.out != "-" &&
                     std::filesystem::is_regular_file(options.out);
   if (keep && options.format != "text") {
-    fmt::print(stderr, "rubric test: the run broke; {} stays as it was\n", options.out);
+    report::print(stderr, "rubric test: the run broke; {} stays as it was\n", options.out);
   } else if (options.format == "json") {
     good = cli::write_file(options.out, suite::json_report(run));
   } else if (options.format == "junit") {
@@ -281,7 +282,7 @@ bool write_formats(const TestOptions& options, const suite::SuiteRun& run,
   }
   const char* actions = std::getenv("GITHUB_ACTIONS");
   if (actions && std::string_view(actions) == "true") {
-    fmt::print(stderr, "{}", suite::github_annotations(run));
+    report::print(stderr, "{}", suite::github_annotations(run));
   }
   return (options.report.empty() || write_folder(options, run, earlier)) && good;
 }

@@ -12,6 +12,7 @@
 #include "codec/generated/tinyos/enums.h"
 #include "codec/reflect/encode_number.h"
 #include "codec/reflect/registry.h"
+#include "codec/text/text.h"
 #include "tools/encode/carriers.h"
 #include "tools/encode/members.h"
 
@@ -135,7 +136,7 @@ bool EncodedLines::all() {
 }
 
 void EncodedLines::complain(const std::string& place, std::string_view what) {
-  fmt::print(stderr, "rubric: {}: {}\n", place, what);
+  report::print(stderr, "rubric: {}: {}\n", place, what);
   good_ = false;
 }
 

@@ -15,7 +15,8 @@ class Table {
   /// Aligns the cells of a column at the right: numbers.
   void align_right(std::size_t column) { right_.push_back(column); }
 
-  void add(std::vector<std::string> cells) { rows_.push_back(std::move(cells)); }
+  /// Adds a row; what is in the cells need not be harmless to terminals.
+  void add(std::vector<std::string> cells);
   bool empty() const { return rows_.empty(); }
 
   /// Returns all lines, each with its end, after `indent` blanks.

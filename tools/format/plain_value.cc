@@ -18,18 +18,6 @@ void append_real(double value, bool binary32, Buffer& out) {
                       : put_double(at, value));
 }
 
-/// Returns whether a terminal obeys this character, instead of showing it: those that control it,
-/// U+0080 to U+009F among them, and those that turn the direction of writing.
-bool obeyed(std::string_view character) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(character[i]); };
-  if (character.size() == 1) return byte(0) < 0x20 || byte(0) == 0x7f;
-  if (character.size() == 2) return byte(0) == 0xc2 && byte(1) < 0xa0;
-  if (character.size() != 3 || byte(0) != 0xe2) return false;
-  if (byte(1) == 0x80)
-    return byte(2) == 0x8e || byte(2) == 0x8f || (byte(2) >= 0xa8 && byte(2) <= 0xae);
-  return byte(1) == 0x81 && byte(2) >= 0xa6 && byte(2) <= 0xa9;
-}
-
 }  // namespace
 
 void append_bits(const reflect::MaskTable& mask, std::int64_t value, Buffer& out) {
@@ -48,23 +36,9 @@ void append_bits(const reflect::MaskTable& mask, std::int64_t value, Buffer& out
   if (first) out.append('0');
 }
 
-void append_harmless(std::string_view text, Buffer& out) {
-  while (!text.empty()) {
-    const std::size_t length = report::utf8_length(text);
-    if (length == 0 || obeyed(text.substr(0, length))) {
-      out.append("\xef\xbf\xbd");
-    } else {
-      out.append(text.substr(0, length));
-    }
-    text.remove_prefix(length ? length : 1);
-  }
-}
-
 std::string quoted(std::string_view text) {
-  Buffer harmless;
-  append_harmless(text, harmless);
   std::string out = "\"";
-  for (const char c : harmless.view()) {
+  for (const char c : report::harmless(text)) {
     if (c == '"' || c == '\\') out += '\\';
     out += c;
   }
@@ -80,7 +54,7 @@ void append_plain_value(const Value& value, const Record& record, const JsonNode
       break;
     case Value::Kind::kReal: append_real(value.real, value.field != nullptr, out); break;
     case Value::Kind::kTime: out.commit(put_time(out.reserve(kMaxTimeChars), value.integer)); break;
-    case Value::Kind::kText: append_harmless(value.text, out); break;
+    case Value::Kind::kText: out.append(report::harmless(value.text)); break;
     case Value::Kind::kBits: append_bits(*value.field->mask, value.integer, out); break;
     case Value::Kind::kBytes:
       out.commit(put_hex(out.reserve(2 * value.bytes.size()), value.bytes));

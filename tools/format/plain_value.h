@@ -18,11 +18,7 @@ void append_plain_values(const Path& path, const Record& record, const JsonNodes
 /// for none.
 void append_bits(const reflect::MaskTable& mask, std::int64_t value, Buffer& out);
 
-/// Appends `text`; everything that a terminal would obey, and bytes that are not UTF-8, become
-/// U+FFFD.
-void append_harmless(std::string_view text, Buffer& out);
-
-/// Returns the same in quotes, with those within it escaped.
+/// Returns report::harmless() of the text in quotes, with those within it escaped.
 std::string quoted(std::string_view text);
 
 }  // namespace rubric::format

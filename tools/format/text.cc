@@ -9,6 +9,7 @@
 
 #include "codec/reflect/fault_text.h"
 #include "codec/reflect/text_field.h"
+#include "codec/text/text.h"
 #include "tools/format/json_nodes.h"
 #include "tools/format/plain_value.h"
 #include "tools/format/put.h"
@@ -349,7 +350,7 @@ void append_origin(const Record& record, Buffer& out) {
   const bool named = !record.interface_name.empty();
   if (named) {
     const std::size_t start = out.size();
-    append_harmless(record.interface_name, out);
+    out.append(report::harmless(record.interface_name));
     pad(out, start, 8);
   }
   switch (packet.direction) {

@@ -85,6 +85,18 @@ class Files(unittest.TestCase):
             self.assertEqual(self.old.stat().st_mode & 0o777, 0o640, words)
             self.old.write_bytes(OLD)
 
+    def test_a_link_stays_a_link(self):
+        (self.folder / "to_old").symlink_to("old.pcapng")
+        (self.folder / "to_nothing").symlink_to("nothing")
+        (self.folder / "to_link").symlink_to("to_nothing")
+        for name, real in (("to_old", "old.pcapng"), ("to_link", "nothing")):
+            done = run("decode", CAPTURE, "--write", self.folder / name)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertTrue((self.folder / name).is_symlink())
+            self.assertFalse((self.folder / real).is_symlink())
+            self.assertEqual(run("stats", self.folder / real).returncode, 0)
+        self.assertTrue((self.folder / "to_nothing").is_symlink())
+
     def test_a_full_disk(self):
         for words in WRITERS:
             for size in (0, 100):
@@ -145,6 +157,23 @@ class Files(unittest.TestCase):
                 self.assertEqual(done.returncode, USAGE, (words, done.stderr))
                 self.assertIn(b"is also an input", done.stderr, words)
                 self.assertEqual(capture.read_bytes(), CAPTURE.read_bytes(), words)
+        known = self.folder / "known.yaml"
+        known.write_text("- requirement: J3-TIME\n  message: cur_time\n  reason: known\n")
+        spec = self.folder / "x.ksy"
+        shutil.copy(FIRMWARE.parents[1] / "wire/rubicon.ksy", spec)
+        for read, words in ((known, ("check", CAPTURE, "--expect", known, "--out", known)),
+                            (known, ("check", CAPTURE, "--follow", "--expect", known, "--out",
+                                     known)),
+                            (known, ("check", "--each", CAPTURE, "--expect", known, "--out",
+                                     known)),
+                            (known, ("check", "--each", CAPTURE, "--resume", known, "--out",
+                                     known)),
+                            (spec, ("decode", CAPTURE, "--spec", spec, "--write", spec)),
+                            (spec, ("encode", "--spec", spec, "--output", spec)),
+                            (spec, ("generate", "--spec", spec, "-o", spec, "--count", "3"))):
+            before = read.read_bytes()
+            self.assertIn(b"is also an input", run(*words).stderr, words)
+            self.assertEqual(read.read_bytes(), before, words)
         trace.write_text(CASE)
         for words in (("test", trace, "--target", "machine", "--out", trace),
                       ("test", trace, "--target", "machine", "--write-expect", trace),

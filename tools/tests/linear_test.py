@@ -61,36 +61,90 @@ SHAPES = {
 }
 COMMANDS = (("check",), ("check", "--verbose"), ("check", "--format", "json"),
             ("check", "--format", "junit"), ("decode",), ("decode", "--format", "jsonl"),
+            ("decode", "--format", "csv", "--fields", "time,message"), ("decode", "--hex"),
             ("stats",), ("convert", "--format", "hex"))
 
 
-def measure(command, path):
-    """Returns the bytes that it writes and the CPU seconds that it takes."""
+HEAD = "%rtr 1\n%node m5 mote id=5\n%node sA sink id=1 island=11 iut\n"
+REQUEST = "sA < rA am=5->1 join_request(seq_num={} mote_type=telosb_demo ...)"
+# Logs and cases as text. What is last is what a file of so many lines may look like at worst.
+TEXTS = {
+    "comments": lambda n: HEAD + "; c\n" * 10 * n,
+    "comments of nothing": lambda n: HEAD + ";\n" * 10 * n,
+    "blank lines": lambda n: HEAD + "\n" * 20 * n,
+    "blank lines between comments": lambda n: HEAD + ";\n\n" * 5 * n,
+    "cases of nothing": lambda n: HEAD + "".join(f"case c{i}\n" for i in range(n)),
+    "lines that are wrong": lambda n: HEAD + "case c\n" + "x\n" * 5 * n,
+    "a log of requests":
+        lambda n: HEAD + "case c\n" + "".join(
+            f"{i * 1000} {REQUEST.format(i & 0xFFFF)}\n" for i in range(n)),
+    "a log of little": lambda n: HEAD + "case c\n" + "".join(
+        f"{i} sA < rA ack_join(*)\n" for i in range(n)),
+    "rules by the line":
+        lambda n: HEAD + "case c\n" + "".join(
+            f"{i * 1000} {REQUEST.format(1)} [{'J3-REPLY ' * 8}J4-SEQ]\n" for i in range(n)),
+}
+TEXT_COMMANDS = (("check",), ("test", "--target", "machine"), ("chart",))
+MEMORY_MOST = 20  # Times the file's size.
+MEMORY_FLOOR = 2 << 20
+
+
+def measure(command, path, codes=(0, 1, 3)):
+    """Returns bytes written, CPU seconds and the most memory."""
     with tempfile.TemporaryFile() as out:
         child = subprocess.Popen([RUBRIC, *command, path], stdout=out, stderr=subprocess.DEVNULL)
         _, status, usage = os.wait4(child.pid, 0)
         child.returncode = os.waitstatus_to_exitcode(status)
-        assert child.returncode in (0, 1, 3), (command, child.returncode)
-        return out.seek(0, os.SEEK_END), usage.ru_utime + usage.ru_stime
+        assert child.returncode in codes, (command, child.returncode)
+        return (out.seek(0, os.SEEK_END), usage.ru_utime + usage.ru_stime,
+                usage.ru_maxrss * 1024)
 
 
 class Linear(unittest.TestCase):
-    def test_commands(self):
-        with tempfile.TemporaryDirectory(prefix="rubric-linear-") as folder:
-            path = pathlib.Path(folder) / "x.pcapng"
-            for name, shape in SHAPES.items():
-                inputs = [shape(PARTS * STEP ** power) for power in range(3)]
-                for command in COMMANDS:
-                    before = None
-                    for data in inputs:
-                        path.write_bytes(data)
-                        size, cpu = measure(command, path)
-                        if before:
-                            self.assertLessEqual(size, BYTES_MOST * before[0] + 2000,
-                                                 (name, command))
-                            self.assertLessEqual(cpu, CPU_MOST * max(before[1], CPU_FLOOR_S),
-                                                 (name, command))
-                        before = size, cpu
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory(prefix="rubric-linear-")
+        self.addCleanup(self.folder.cleanup)
+
+    def grows(self, name, command, inputs, path, codes=(0, 1, 3)):
+        """Returns the memory for each of the inputs."""
+        before = None
+        memory = []
+        for data in inputs:
+            path.write_bytes(data)
+            size, cpu, most = measure(command, path, codes)
+            if before:
+                self.assertLessEqual(size, BYTES_MOST * before[0] + 2000, (name, command))
+                self.assertLessEqual(cpu, CPU_MOST * max(before[1], CPU_FLOOR_S), (name, command))
+            before = size, cpu
+            memory.append(most)
+        return memory
+
+    def test_captures(self):
+        path = pathlib.Path(self.folder.name) / "x.pcapng"
+        for name, shape in SHAPES.items():
+            inputs = [shape(PARTS * STEP ** power) for power in range(3)]
+            for command in COMMANDS:
+                self.grows(name, command, inputs, path)
+
+    def test_texts(self):
+        path = pathlib.Path(self.folder.name) / "x.rtr"
+        for name, shape in TEXTS.items():
+            inputs = [shape(PARTS * STEP ** power).encode() for power in range(3)]
+            for command in TEXT_COMMANDS:
+                memory = self.grows(name, command, inputs, path, (0, 1, 2, 3, 64, 66))
+                if command == ("check",):  # It only reads.
+                    self.assertLessEqual(memory[2] - memory[0],
+                                         MEMORY_MOST * len(inputs[2]) + MEMORY_FLOOR, name)
+
+    def test_lines(self):
+        """What encodes, and what is encoded."""
+        path = pathlib.Path(self.folder.name) / "x.jsonl"
+        good = b'{"message":"join_reply","fields":{"island_addr":11,"mote_addr":5}}\n'
+        for name, line in (("messages", good), ("nothing", b"\n"), ("no JSON", b"{{{{\n"),
+                           ("deep", b"[" * 40 + b"]" * 40 + b"\n")):
+            inputs = [line * (PARTS * STEP ** power) for power in range(3)]
+            self.grows(name, ("encode", "--format", "hex"), inputs, path, (0, 1, 2, 3))
+            self.grows(name, ("decode", "--input-format", "hex"), inputs, path, (0, 1, 3))
 
 
 if __name__ == "__main__":

@@ -72,6 +72,14 @@ WIRE_BY_HAND = [
     (re.compile(r"\b(?:rubicon|tinyos)::(?!\w+(?:View|Layout|Builder)\b)[A-Z]\w+(?: \w+)?"
                 r"\{\s*[^}\s]|Layout::store\(\{"), "the fields of a structure by their order"),
 ]
+# What people read is printed by report::print(), which makes it harmless for terminals. These print
+# for programs, or draw over a line of their own; node and adapters share nothing with the tools.
+PRINTED = re.compile(r"\bfmt::print\((?!f)|\bstd::c(?:err|out)\b|\bf?puts\(.*\bstd(?:err|out)\b")
+PRINTERS = ("codec/text/text.cc", "tools/cli/progress.cc", "tools/commands/completion.cc",
+            "tools/commands/explore.cc", "tools/commands/main.cc",
+            "tools/commands/run/json_application.cc", "tools/wireshark/extcap/main.cc")
+PRINTING = ("tools/cli", "tools/commands", "tools/encode", "tools/explain", "tools/format",
+            "tools/wireshark", "codec/lines", "conformance/check", "conformance/test")
 # Where bytes are read by hand for a reason, besides tests, which state what they expect.
 HAND_MADE = {
     "codec/runtime/": "the loads and stores themselves, and the framing of serial lines",
@@ -174,6 +182,18 @@ def wire_breaches(path, lines):
                 yield f"{path}:{number}: {what}; spec/wire and what is generated from it say that"
 
 
+def print_breaches(path, lines):
+    """Lines that print for people without making it harmless."""
+    name = str(path)
+    test = "test" in path.stem or "bench" in path.stem or "test" in path.parts[2:-1]
+    if path.suffix not in {".cc", ".h"} or test or name in PRINTERS \
+            or not name.startswith(PRINTING):
+        return
+    for number, line in enumerate(lines, 1):
+        if PRINTED.search(line.split("//")[0]):
+            yield f"{path}:{number}: prints what may not be harmless; report::print() does"
+
+
 def folder_breaches(files):
     sources = {}
     for path in files:
@@ -195,6 +215,7 @@ def breaches(root, path, sentences):
     lines = (root / path).read_text(encoding="utf-8").splitlines()
     yield from include_breaches(path, lines)
     yield from wire_breaches(path, lines)
+    yield from print_breaches(path, lines)
     quoting = path.suffix in {".cc", ".h", ".java"}
     yield from quote_breaches(path, lines if quoting else [], sentences)
     yield from name_breaches(path, lines if quoting else [], sentences)

@@ -31,6 +31,7 @@ class Identifier {
   Identity run() {
     out_.marks.resize(run_.seen.size());
     out_.facts = run_.facts;
+    out_.gone_us = run_.past.until_us;
     for (const LoggedNode& node : run_.nodes) add_logged(node);
     for (std::uint32_t i = 0; i < run_.seen.size(); ++i) look(i);
     resolve_streams();

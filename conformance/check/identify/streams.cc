@@ -23,6 +23,15 @@ constexpr int kSrcIsland = 1;
 constexpr int kMoteIsland = 4;
 constexpr std::uint16_t kBothLines = 0xFFFF;
 
+// Notes that frames between the stream's last one and that time were missed.
+void add_hole(Stream& stream, std::int64_t until_us) {
+  if (stream.holes.size() < kHolesMax) {
+    stream.holes.emplace_back(stream.last_us, until_us);
+  } else {
+    stream.holes.back().second = until_us;
+  }
+}
+
 }  // namespace
 
 Streams::Streams(const Run& run, const Options& options)
@@ -87,6 +96,7 @@ std::uint16_t Streams::assign(std::uint32_t index, bool& repeat) {
   const Observation& seen = run_.seen[index];
   const std::int64_t now = seen.place.time_us;
   const IslandHint hint = hint_of(seen.frame);
+  if (run_.past.holds(index)) return assign_past(index, hint);
   std::uint16_t best = kLast;
   int best_score = kNoMatch;
   bool even = false;
@@ -121,22 +131,37 @@ std::uint16_t Streams::assign(std::uint32_t index, bool& repeat) {
   }
   if (best == kLast) return open(index, hint);
   Stream& stream = streams_[best];
-  if (static_cast<std::uint8_t>(seen.dsn - stream.dsn) != 1) {
-    if (stream.holes.size() < kHolesMax) {
-      stream.holes.emplace_back(stream.last_us, now);
-    } else {
-      stream.holes.back().second = now;
-    }
-  }
+  if (static_cast<std::uint8_t>(seen.dsn - stream.dsn) != 1) add_hole(stream, now);
+  ++stream.frames;
+  go_on(stream, index, hint);
+  return best;
+}
+
+// Takes what the next frame of a stream shows.
+void Streams::go_on(Stream& stream, std::uint32_t index, const IslandHint& hint) {
+  const Observation& seen = run_.seen[index];
   stream.dsn = seen.dsn;
   stream.last = index;
-  stream.last_us = now;
-  ++stream.frames;
+  stream.last_us = seen.place.time_us;
   if (seen.frame.type == am::kJoin) stream.asked = true;
   if (!stream.sink && hint.mote != 0) stream.island = hint.mote;
   if (seen.frame.type == am::kJoinReply && !stream.asked) stream.sink = true;
   if (stream.sink) guess_island(stream, index, hint);
-  return best;
+}
+
+std::uint16_t Streams::assign_past(std::uint32_t index, const IslandHint& hint) {
+  const std::uint16_t sender = run_.past.senders[index];
+  if (sender == kNobody) return kNobody;
+  if (of_sender_.size() <= sender) of_sender_.resize(sender + std::size_t{1}, kNobody);
+  std::uint16_t& its = of_sender_[sender];
+  if (its == kNobody) {
+    its = open(index, hint);
+    if (its != kNobody) streams_[its].frames = run_.past.frames_of[sender];
+  } else {
+    add_hole(streams_[its], run_.seen[index].place.time_us);
+    go_on(streams_[its], index, hint);
+  }
+  return its;
 }
 
 // Sets the stream's island. A frame's plain statement ranks above the user's, and that above a

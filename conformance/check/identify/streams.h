@@ -60,6 +60,9 @@ class Streams {
   void guess_island(Stream& stream, std::uint32_t index, const IslandHint& hint) const;
   int score(const Stream& stream, const Observation& seen, const IslandHint& hint) const;
   std::uint16_t open(std::uint32_t index, const IslandHint& hint);
+  void go_on(Stream& stream, std::uint32_t index, const IslandHint& hint);
+  // Assigns a frame of Run::past, whose sender is known.
+  std::uint16_t assign_past(std::uint32_t index, const IslandHint& hint);
 
   struct Down {
     std::uint64_t addresses = 0;
@@ -74,8 +77,9 @@ class Streams {
   const Given given_;
   std::uint16_t sink_am_;
   std::vector<Stream> streams_;
-  std::vector<std::uint16_t> next_;      // Links streams of the same address.
-  std::vector<std::uint16_t> first_of_;  // By AM address.
+  std::vector<std::uint16_t> next_;       // Links streams of the same address.
+  std::vector<std::uint16_t> first_of_;   // By AM address.
+  std::vector<std::uint16_t> of_sender_;  // By number in Run::past.
 };
 
 }  // namespace rubric::check

@@ -51,6 +51,7 @@ struct ReadSource {
   std::uint32_t file = 0;
   std::vector<std::uint32_t> taps;  // For its interfaces.
   std::uint64_t frames = 0;
+  std::int64_t later_us = 0;  // Its clock was put right by this, by frames that are forgotten.
 };
 
 std::uint32_t tap_of(const Packet& packet, std::string_view interface_name, ReadSource& source,
@@ -80,7 +81,8 @@ void observe(const Packet& packet, std::string_view interface_name, ReadSource& 
   seen.place.file = source.file;
   seen.place.frame = source.frames;
   seen.place.offset_bytes = packet.offset_bytes;
-  seen.place.time_us = packet.time_ns == kNoTime ? kNoStamp : packet.time_ns / kNsPerUs;
+  seen.place.time_us =
+      packet.time_ns == kNoTime ? kNoStamp : packet.time_ns / kNsPerUs + source.later_us;
   if (seen.kind == Observation::Kind::kSerial) {
     seen.to_mote = packet.direction == Direction::kUnknown
                        ? looks_towards_sink(seen.frame)
@@ -91,8 +93,8 @@ void observe(const Packet& packet, std::string_view interface_name, ReadSource& 
   run.seen.push_back(seen);
 }
 
-// Makes times count from the first one, and orders what several taps saw.
-Run in_one_order(Run run, const AlignOptions& options) {
+// Makes times count from `begin_us`, else from the first one, and orders what several taps saw.
+Run in_one_order(Run run, const AlignOptions& options, std::optional<std::int64_t>& begin_us) {
   const auto by_file = [](const Observation& a, const Observation& b) {
     return a.place.file < b.place.file;
   };
@@ -122,8 +124,13 @@ Run in_one_order(Run run, const AlignOptions& options) {
       if (seen.place.time_us != kNoStamp) first_us = std::min(first_us, seen.place.time_us);
     }
   }
+  if (begin_us) first_us = *begin_us;
+  if (first_us != kNone) run.begin_us = *(begin_us = first_us);
   for (Observation& seen : run.seen) {
-    seen.place.time_us = seen.place.time_us == kNoStamp ? -1 : seen.place.time_us - first_us;
+    // What comes late, and has an earlier stamp than the first one had, is at the begin.
+    seen.place.time_us = seen.place.time_us == kNoStamp
+                             ? -1
+                             : std::max<std::int64_t>(0, seen.place.time_us - first_us);
   }
   place_steps(run);
   for (LoosePlace& place : run.loose) {
@@ -145,7 +152,8 @@ Run in_one_order(Run run, const AlignOptions& options) {
 struct RunReader::State {
   ReadAs as;
   Run run;
-  std::vector<ReadSource> growing;  // By file; others are unused.
+  std::vector<ReadSource> growing;       // By file; others are unused.
+  std::optional<std::int64_t> begin_us;  // The first stamp, if it is forgotten.
   // One file that is read whole.
   std::unique_ptr<Reader> reader;
   ReadSource source;
@@ -185,7 +193,64 @@ void RunReader::take(std::uint32_t file, const Packet& packet, std::string_view 
   observe(packet, interface_name, state_->growing[file], state_->run);
 }
 
-Run RunReader::snapshot() const { return in_one_order(state_->run, state_->as.align); }
+Run RunReader::snapshot() const {
+  std::optional<std::int64_t> begin_us = state_->begin_us;
+  return in_one_order(state_->run, state_->as.align, begin_us);
+}
+
+void RunReader::forget(const Run& known, std::size_t end) {
+  Run& run = state_->run;
+  if (!state_->begin_us) in_one_order(run, state_->as.align, state_->begin_us);
+  if (!state_->begin_us) return;
+  // By tap: the last frame to forget. Taps that count for nothing, as another has the same, are
+  // forgotten by their stamps.
+  std::vector<std::uint64_t> last(run.taps.size());
+  std::vector<bool> counts(run.taps.size());
+  struct Known {
+    std::uint64_t frame = 0;
+    std::int64_t time_us = 0;
+  };
+  std::vector<Known> newest(run.files.size());
+  for (std::size_t i = known.past.senders.size(); i < known.seen.size(); ++i) {
+    const Place& place = known.seen[i].place;
+    counts[known.seen[i].tap] = true;
+    if (i < end) last[known.seen[i].tap] = std::max(last[known.seen[i].tap], place.frame);
+    if (newest[place.file].frame < place.frame) newest[place.file] = {place.frame, place.time_us};
+  }
+  std::vector<std::int64_t> later_us(run.files.size());
+  for (const Observation& seen : run.seen) {
+    const Known& its = newest[seen.place.file];
+    if (its.frame != seen.place.frame || seen.place.time_us == kNoStamp) continue;
+    later_us[seen.place.file] = its.time_us + *state_->begin_us - seen.place.time_us;
+  }
+  const std::int64_t until_us = end < known.seen.size() ? known.seen[end].place.time_us : INT64_MAX;
+  auto storage = std::make_shared<RunStorage>();
+  std::vector<Observation> kept;
+  for (Observation& seen : run.seen) {
+    seen.place.time_us += seen.place.time_us == kNoStamp ? 0 : later_us[seen.place.file];
+    const bool gone = counts[seen.tap] ? seen.place.frame <= last[seen.tap]
+                                       : seen.place.time_us - *state_->begin_us < until_us;
+    if (gone) continue;
+    seen.frame.payload = storage->keep(seen.frame.payload);
+    seen.frame.packet = storage->keep(seen.frame.packet);
+    kept.push_back(seen);
+  }
+  run.seen = std::move(kept);
+  run.storage = std::move(storage);
+  for (std::size_t file = 0; file < state_->growing.size(); ++file) {
+    state_->growing[file].later_us += later_us[file];
+  }
+}
+
+std::size_t RunReader::held() const { return state_->run.seen.size(); }
+
+std::int64_t RunReader::span_us() const {
+  const auto& seen = state_->run.seen;
+  if (seen.empty()) return 0;
+  const std::int64_t first = seen.front().place.time_us;
+  const std::int64_t last = seen.back().place.time_us;
+  return first == kNoStamp || last == kNoStamp ? 0 : last - first;
+}
 
 bool RunReader::add_bytes(const std::string& name, std::string_view bytes, std::string& error) {
   const Bytes all(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
@@ -243,7 +308,8 @@ Run RunReader::finish() {
   state_ = std::make_unique<State>();
   state_->as = as;
   state_->run.storage = std::make_shared<RunStorage>();
-  return in_one_order(std::move(run), as.align);
+  std::optional<std::int64_t> begin_us;
+  return in_one_order(std::move(run), as.align, begin_us);
 }
 
 std::optional<Run> read(const std::vector<std::string>& files, std::string& error) {

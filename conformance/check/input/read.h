@@ -41,6 +41,13 @@ class RunReader {
   /// Returns what finish() would return now; more may be added afterwards. The bytes of frames are
   /// shared.
   Run snapshot() const;
+  /// Forgets frames that snapshot() returned, as `known` has them: the first ones up to `end`,
+  /// without those of Run::past. Times go on as they are there.
+  void forget(const Run& known, std::size_t end);
+  /// Returns how many observations are held.
+  std::size_t held() const;
+  /// Returns between which stamps they are; 0 without any.
+  std::int64_t span_us() const;
 
   /// Returns everything that was added, in one order (see merge()), and empties the reader.
   Run finish();

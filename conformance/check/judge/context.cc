@@ -27,7 +27,8 @@ std::vector<bool> find_lossy_taps(const Run& run, bool lossy_air) {
   };
   std::vector<Line> lines(run.taps.size());
   std::vector<bool> out(run.taps.size());
-  for (const Observation& seen : run.seen) {
+  for (std::size_t i = run.past.senders.size(); i < run.seen.size(); ++i) {
+    const Observation& seen = run.seen[i];
     if (!seen.node.empty() || run.taps[seen.tap].link != machine::Link::kSerial) continue;
     Line& line = lines[seen.tap];
     const bool first = !std::exchange(line.heard, true);
@@ -55,6 +56,9 @@ std::vector<bool> find_lossy_taps(const Run& run, bool lossy_air) {
     const bool serial = run.taps[tap].link == machine::Link::kSerial;
     if (serial && lines[tap].numbers < kNumbersMin) out[tap] = true;
   }
+  for (std::size_t tap = 0; tap < run.past.lossy_taps.size(); ++tap) {
+    if (run.past.lossy_taps[tap]) out[tap] = true;
+  }
   return out;
 }
 
@@ -63,6 +67,17 @@ bool is_of(ReqId requirement, std::string_view group) {
 }
 
 }  // namespace
+
+std::vector<bool> find_lossy_taps(const Run& run, const Identity& who, const Options& options) {
+  std::size_t holes = 0;
+  std::uint64_t frames = 0;
+  for (const Device& device : who.devices) {
+    holes += device.holes.size();
+    frames += device.frames;
+  }
+  const bool lossy_air = !options.sniffer_complete && kHoleShare * holes >= frames;
+  return find_lossy_taps(run, lossy_air);
+}
 
 void Context::look_up() {
   down_taps.resize(run.taps.size());
@@ -104,14 +119,7 @@ void Context::look_up() {
   for (const Tap& tap : run.taps) {
     hears_radio = hears_radio || tap.link == machine::Link::kRadio;
   }
-  std::size_t holes = 0;
-  std::uint64_t frames = 0;
-  for (const Device& device : who.devices) {
-    holes += device.holes.size();
-    frames += device.frames;
-  }
-  const bool lossy_air = !options.sniffer_complete && kHoleShare * holes >= frames;
-  lossy_taps = find_lossy_taps(run, lossy_air);
+  lossy_taps = find_lossy_taps(run, who, options);
   untimed_taps = run.unordered_taps;
   untimed_taps.resize(run.taps.size());
   unordered = std::find(untimed_taps.begin(), untimed_taps.end(), true) != untimed_taps.end();

@@ -119,6 +119,9 @@ struct Context {
   std::map<std::uint16_t, Gathered> unseen_;  // By sink, about what hosts send down its line.
 };
 
+/// Returns, by tap, whether frames of a serial line are missing from its capture, or may be.
+std::vector<bool> find_lossy_taps(const Run& run, const Identity& who, const Options& options);
+
 // Texts for findings.
 std::string text_of(machine::Address address);
 std::string name_of(const Net& net);  ///< "the message <..> to <..> with number 7"

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <tuple>
+#include <utility>
 
 #include "conformance/generated/profiles.h"
 #include "conformance/trace/events/lines.h"
@@ -20,9 +21,10 @@ const machine::NamedProfile& named(bool deployed) {
 }  // namespace
 
 Findings::Findings(bool deployed, const std::vector<ClockStep>& steps,
-                   const trace::Statement& stated)
+                   const trace::Statement& stated, std::vector<std::int64_t> settled_us)
     : profile_(named(deployed).profile),
       steps_(steps),
+      settled_us_(std::move(settled_us)),
       deployed_(deployed),
       kept_(reflect::requirements().size()) {
   events::state(profile_, stated);
@@ -33,6 +35,12 @@ bool Findings::accepted(ReqId requirement) const {
     if (difference.requirement == requirement) return true;
   }
   return false;
+}
+
+bool Findings::settled(std::int64_t before_us, std::int64_t now_us) const {
+  return std::any_of(settled_us_.begin(), settled_us_.end(), [&](std::int64_t time_us) {
+    return before_us < time_us && time_us <= now_us;
+  });
 }
 
 void Findings::add(Finding finding) {
@@ -48,7 +56,8 @@ void Findings::add(Finding finding) {
     if (before.requirement != finding.requirement || before.severity != finding.severity ||
         before.node != finding.node || before.place.file != finding.place.file ||
         finding.place.time_us - before.last.time_us > kEpisodeUs ||
-        stepped(steps_, before.last.time_us, finding.place.time_us)) {
+        stepped(steps_, before.last.time_us, finding.place.time_us) ||
+        settled(before.last.time_us, finding.place.time_us)) {
       continue;
     }
     ++before.count;

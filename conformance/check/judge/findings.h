@@ -15,8 +15,9 @@ namespace rubric::check {
 
 class Findings {
  public:
-  /// No episode goes on across one of `steps`.
-  Findings(bool deployed, const std::vector<ClockStep>& steps, const trace::Statement& stated = {});
+  /// No episode goes on across one of `steps`, or one of the times `settled_us`.
+  Findings(bool deployed, const std::vector<ClockStep>& steps, const trace::Statement& stated = {},
+           std::vector<std::int64_t> settled_us = {});
 
   /// Adds a finding. Repeats of a rule by a node within 600 ms of the last one are one episode. A
   /// difference that the profile accepts becomes a note.
@@ -30,16 +31,20 @@ class Findings {
   std::uint64_t dropped() const { return dropped_; }
   std::vector<std::pair<ReqId, std::uint64_t>> exercised() const;
 
- private:
   static constexpr std::int64_t kEpisodeUs = 600'000;
-  static constexpr std::int64_t kOpenUs = 5'000'000;  ///< Absences are found late.
   static constexpr std::size_t kFindingsMax = 20'000;
+
+ private:
+  static constexpr std::int64_t kOpenUs = 5'000'000;  ///< Absences are found late.
   static constexpr std::size_t kOpenMax = 64;
 
   bool accepted(ReqId requirement) const;
+  // Returns whether what came before is settled by then.
+  bool settled(std::int64_t before_us, std::int64_t now_us) const;
 
   machine::Profile profile_;
   const std::vector<ClockStep>& steps_;
+  std::vector<std::int64_t> settled_us_;
   bool deployed_ = false;
   std::vector<Finding> all_;
   std::vector<std::size_t> open_;  // Episodes that may go on, in all_.

@@ -14,7 +14,8 @@ using Kind = Observation::Kind;
 Judge::Judge(const Run& run, const Options& options)
     : run_(run),
       who_(identify(run, options)),
-      findings_(options.deployed, run.steps, trace::joined(options.stated, run.stated)),
+      findings_(options.deployed, run.steps, trace::joined(options.stated, run.stated),
+                run.past.settled_us),
       context_(run, options, who_, findings_),
       motes_((context_.look_up(), context_), who_.devices.size()),
       sinks_(context_),
@@ -39,7 +40,7 @@ Report Judge::judge() {
   peis_.finish(run_.end_us);
   interfaces_.finish(run_.end_us);
   context_.finish();
-  report.frames = frames_;
+  report.frames = frames_ + run_.past.frames;
   report.facts = who_.facts;
   if (findings_.dropped() > 0) {
     report.facts.push_back(number(findings_.dropped()) + " more findings are not listed.");

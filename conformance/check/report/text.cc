@@ -78,8 +78,8 @@ class TextReport {
   void about_the_run() {
     for (std::size_t f = 0; f < story_.run.files.size(); ++f) {
       const bool several = story_.run.files.size() > 1;
-      out_ += several ? fmt::format("{}. {}\n", f + 1, story_.run.files[f])
-                      : story_.run.files[f] + "\n";
+      const std::string name = harmless(story_.run.files[f]);
+      out_ += several ? fmt::format("{}. {}\n", f + 1, name) : name + "\n";
     }
     const check::Options& o = story_.options;
     out_ += wrapped(
@@ -204,21 +204,22 @@ class TextReport {
     if (!scene_) scene_.emplace(story_.run, story_.options);
     const std::size_t all = story_.run.seen.size();
     const std::size_t at = finding.place.frame == 0 ? all : index_of(story_.run, finding.place);
+    if (finding.place.frame != 0 && at == all) return;  // The run no longer holds it.
     std::uint16_t node = scene_->node_named(finding.node);
     if (node == kNobody && at < all) node = scene_->sender(at);
     const std::vector<std::size_t> rows = window(at, node);
     if (rows.empty()) return;
-    out_ +=
-        fmt::format("{}Frames{}:\n", kIndent, node == kNobody ? "" : " of " + scene_->name(node));
+    out_ += fmt::format("{}Frames{}:\n", kIndent,
+                        node == kNobody ? "" : " of " + harmless(scene_->name(node)));
     for (const std::size_t i : rows) {
       const check::Place& place = story_.run.seen[i].place;
       std::string where = fmt::format("{} {:>5}", i == at ? '>' : ' ', place.frame);
       if (story_.run.files.size() > 1) where += fmt::format(" of {}", place.file + 1);
       where += fmt::format("  offset {}", place.offset_bytes);
       if (place.time_us >= 0) where += fmt::format(", {} s", seconds_text(place.time_us));
-      out_ += fmt::format("{}{}, {}\n", kIndent, where, scene_->route(i));
+      out_ += fmt::format("{}{}, {}\n", kIndent, where, harmless(scene_->route(i)));
       constexpr std::string_view kDeep = "             ";
-      const std::string message = scene_->message(i);
+      const std::string message = harmless(scene_->message(i));
       // Shows the frame in question in full, the others on one line each.
       if (i == at || kDeep.size() + message.size() <= options_.width) {
         out_ += wrapped(kDeep, message, options_.width, kDeep.size() + 2);

@@ -57,6 +57,7 @@ std::string range_text(const FrameRange& range, std::size_t files) {
 check::Run part_of(const check::Run& run, const std::vector<FrameRange>& ranges,
                    check::Options& options) {
   check::Run out = run;
+  out.past = {};
   out.seen.clear();
   bool begins_later = false;
   bool ends_earlier = false;
@@ -114,7 +115,7 @@ bool Windows::shows(std::size_t begin, std::size_t end, const check::Finding& fi
 std::vector<FrameRange> Windows::around(const check::Finding& finding) {
   const std::size_t all = run_.seen.size();
   const std::size_t at = finding.place.frame == 0 ? all : index_of(run_, finding.place);
-  if (at == all) return {};
+  if (at == all || run_.past.until_us >= 0) return {};
   const auto affordable = [&] { return judged_ + 2 * all < kBudget; };
   // Extends the part after the finding first, then before it, each time as little as needed.
   std::size_t end = all;

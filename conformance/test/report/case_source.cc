@@ -41,7 +41,7 @@ const CaseSources::Source& CaseSources::read(const std::string& name, bool own) 
   }
   const trace::Parsed parsed = trace::parse_syntax(text, name);
   for (const trace::Item& item : parsed.file.head) {
-    const auto* header = std::get_if<trace::Header>(&item);
+    const auto* header = item.as<trace::Header>();
     if (header && header->place.line > 0) source.head.push_back(header->place.line);
   }
   for (const trace::Case& one : parsed.file.cases) source.cases[one.name] = one.place.line;

@@ -42,7 +42,7 @@ TEST(GoldenCases, LogsHoldAgain) {
       trace::File again = file.file;
       trace::Case log = first.log;
       for (const trace::Item& item : one.items) {
-        if (std::holds_alternative<trace::Header>(item)) log.items.insert(log.items.begin(), item);
+        if (item.as<trace::Header>()) log.items.insert(log.items.begin(), item);
       }
       again.cases = {log};
       const CaseResult second = run_case(again, log, machine_target);

@@ -23,13 +23,13 @@ trace::File alone(const trace::File& file, const trace::Case& one) {
   trace::File out;
   const auto has_own = [&](std::size_t kind) {
     return std::any_of(one.items.begin(), one.items.end(), [&](const Item& item) {
-      const Header* header = std::get_if<Header>(&item);
+      const Header* header = item.as<Header>();
       return header && header->what.index() == kind;
     });
   };
   const auto take = [&](const std::vector<Item>& items, bool of_file) {
     for (const Item& item : items) {
-      const Header* header = std::get_if<Header>(&item);
+      const Header* header = item.as<Header>();
       if (!header || std::holds_alternative<trace::NoteHeader>(header->what)) continue;
       if (of_file && has_own(header->what.index())) continue;
       out.head.push_back(Header{header->what, "", header->place});
@@ -121,7 +121,7 @@ class Shrinker {
       const std::string label = line(i).label;
       trace::File candidate = without(i, i + 1);
       for (Item& item : candidate.cases[0].items) {
-        trace::Time& time = std::get<Line>(item).time;
+        trace::Time& time = (*item.as<Line>()).time;
         if (time.base != trace::Time::Base::kLabel || time.label != label) continue;
         time.base = trace::Time::Base::kPrevious;
         time.label.clear();
@@ -133,12 +133,12 @@ class Shrinker {
   template <class Edit>
   bool try_edit(std::size_t i, Edit edit) {
     trace::File candidate = file_;
-    Line& line = std::get<Line>(candidate.cases[0].items[i]);
+    Line& line = (*candidate.cases[0].items[i].as<Line>());
     const Line before = line;
     edit(line);
     return !(line == before) && try_it(std::move(candidate));
   }
-  const Line& line(std::size_t i) const { return std::get<Line>(file_.cases[0].items[i]); }
+  const Line& line(std::size_t i) const { return (*file_.cases[0].items[i].as<Line>()); }
 
   void simplify_lines() {
     for (std::size_t i = 0; i < size(); ++i) {
@@ -186,7 +186,7 @@ class Shrinker {
 
   void drop_headers() {
     for (std::size_t i = file_.head.size(); i-- > 0;) {
-      const auto& what = std::get<Header>(file_.head[i]).what;
+      const auto& what = (*file_.head[i].as<Header>()).what;
       if (std::holds_alternative<trace::VersionHeader>(what) ||
           std::holds_alternative<trace::ProfileHeader>(what)) {
         continue;

@@ -23,7 +23,7 @@ void add_once(std::vector<T>& all, const T& one) {
 std::string comment_of(const trace::Case& one) {
   std::string out = one.comment;
   for (const trace::Item& item : one.items) {
-    const auto* comment = std::get_if<trace::Comment>(&item);
+    const auto* comment = item.as<trace::Comment>();
     if (!comment) break;
     std::string_view text = comment->text;
     text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));

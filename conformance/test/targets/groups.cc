@@ -6,6 +6,7 @@
 #include <atomic>
 
 #include "conformance/test/runner/target.h"
+#include "conformance/test/targets/orphans.h"
 
 namespace rubric::targets {
 namespace {
@@ -45,6 +46,7 @@ extern "C" void end_groups(int signal) {
     sleep_ms(kTermWaitMs);
     send_to_all(SIGKILL);
   }
+  end_all_children();  // What left their sessions, too.
   struct sigaction usual {};
   usual.sa_handler = SIG_DFL;
   ::sigaction(signal, &usual, nullptr);
@@ -112,6 +114,17 @@ void GroupStart::in_child() {
   for (std::atomic<pid_t>& group : groups) group = kFree;
   starting = 0;
   ::pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+}
+
+GroupsNow groups_now(pid_t pid) {
+  GroupsNow out;
+  for (const std::atomic<pid_t>& group : groups) {
+    const pid_t id = group;
+    out.is_one = out.is_one || id == pid;
+    out.any = out.any || id != kFree;
+    out.starting = out.starting || id == kTaken;
+  }
+  return out;
 }
 
 void forget_group(std::size_t place) {

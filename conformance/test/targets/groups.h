@@ -35,6 +35,14 @@ class GroupStart {
   bool started_ = false;
 };
 
+/// What is known of groups at a moment.
+struct GroupsNow {
+  bool is_one = false;    ///< The process leads one.
+  bool any = false;       ///< There are some.
+  bool starting = false;  ///< A child is about to start: it may be any process.
+};
+GroupsNow groups_now(pid_t pid);
+
 /// Notes that the group was killed; its number may belong to another one after this returns.
 void forget_group(std::size_t place);
 

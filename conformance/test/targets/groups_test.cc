@@ -97,6 +97,20 @@ TEST(Groups, EndWithEachSignal) {
   }
 }
 
+TEST(Groups, WhatLeftItsSessionEndsToo) {
+  Program program([](const Program::Say& say) {
+    end_groups_on_signals();
+    const auto child = Process::run("setsid sh -c 'echo $$; exec sleep 1000'");
+    say(child->read_line(soon()));
+    child->read_line(soon());  // It hangs.
+  });
+  const pid_t left = program.number();
+  ASSERT_GT(left, 0);
+  program.send(SIGTERM);
+  EXPECT_EQ(program.ending_signal(), SIGTERM);
+  EXPECT_TRUE(comes([&] { return is_dead(left); }));
+}
+
 TEST(Groups, IgnoredSignalsStayIgnored) {
   Program program([](const Program::Say& say) {
     ::signal(SIGHUP, SIG_IGN);  // nohup does the same.

@@ -17,8 +17,7 @@
 
 #include "conformance/test/runner/target.h"
 #include "conformance/test/targets/groups.h"
-
-extern char** environ;
+#include "conformance/test/targets/orphans.h"
 
 namespace rubric::targets {
 namespace {
@@ -118,15 +117,18 @@ std::unique_ptr<Process> Process::run(const std::string& command) {
   std::string option = "-c";
   std::string text = command;
   char* const words[] = {shell.data(), option.data(), text.data(), nullptr};
+  MarkedEnvironment environment;
   pid_t pid = -1;
-  const int error = ::posix_spawn(&pid, "/bin/sh", &files, &how, words, environ);
+  const int error = ::posix_spawn(&pid, "/bin/sh", &files, &how, words, environment.get());
   ::posix_spawn_file_actions_destroy(&files);
   ::posix_spawnattr_destroy(&how);
   if (error != 0) {
     close_pipes(pipes);
     cannot_start(error);
   }
-  return std::unique_ptr<Process>(new Process(pid, start.started(pid), pipes));
+  std::unique_ptr<Process> out(new Process(pid, start.started(pid), pipes));
+  out->mark_ = environment.mark();
+  return out;
 }
 
 std::unique_ptr<Process> Process::copy(const std::function<int(int, int)>& body) {
@@ -312,6 +314,7 @@ void Process::kill() {
     while (::waitpid(pid_, &status_, 0) < 0 && errno == EINTR) {
     }
     pid_ = -1;
+    if (!mark_.empty()) end_orphans(mark_);
     drain_stderr();
   }
   close_fd(out_fd_);

@@ -32,7 +32,7 @@ class Process {
 
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
-  /// Kills its whole group, if it still runs.
+  /// Kills its whole group, if it still runs, and what left the group or its session.
   ~Process();
 
   /// Writes all of `text`.
@@ -72,6 +72,7 @@ class Process {
   [[noreturn]] void ended_early();
 
   pid_t pid_ = -1;     // -1: gone, and waited for.
+  std::string mark_;   // Of its environment; empty: it has none.
   std::size_t place_;  // Place of its group, while it is not gone.
   int status_ = 0;     // Once it is gone.
   int in_fd_ = -1;     // Its standard input, written here; -1: closed.

@@ -4,7 +4,9 @@
 #include <sys/time.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
+#include <vector>
 
 #include "conformance/test/runner/target.h"
 #include "conformance/test/targets/process_testing.h"
@@ -69,6 +71,25 @@ TEST(Process, WholeGroupIsKilled) {
   EXPECT_FALSE(is_dead(child));
   parent->kill();
   EXPECT_TRUE(comes([&] { return is_dead(child); }));
+}
+
+// Children that leave the session, by the way of daemons or without an environment, end as well.
+TEST(Process, WhatLeavesTheSessionIsKilled) {
+  const auto parent = Process::run(
+      "setsid sh -c 'echo $$; exec sleep 1000' & wait_for=$!;"
+      "setsid sh -c 'setsid sh -c \"trap : TERM; echo \\$\\$; sleep 1000; sleep 1000\" &' &"
+      "env -i /usr/bin/setsid sh -c 'echo $$; exec sleep 1000' & cat");
+  const auto other = Process::run("setsid sh -c 'echo $$; exec sleep 1000' & cat");
+  const int others = std::stoi(other->read_line(in(5000)));
+  std::vector<int> left;
+  for (int i = 0; i < 3; ++i) left.push_back(std::stoi(parent->read_line(in(5000))));
+  parent->kill();
+  const auto dead = [&] { return std::count_if(left.begin(), left.end(), is_dead); };
+  EXPECT_GE(dead(), 2);  // Whose the one without an environment is nobody knows, so far.
+  EXPECT_FALSE(is_dead(others));
+  other->kill();
+  EXPECT_TRUE(is_dead(others));
+  EXPECT_EQ(dead(), 3);
 }
 
 TEST(Process, EndSaysHowItEnded) {

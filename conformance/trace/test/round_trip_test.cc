@@ -221,7 +221,7 @@ Header any_header() {
 
 Item any_item(bool in_case) {
   switch (*inRange(0, in_case ? 8 : 4)) {
-    case 0: return Blank{};
+    case 0: return Blank{static_cast<std::size_t>(*inRange(1, 4))};
     case 1: {
       Comment comment{coin() ? '#' : ';', coin(), ""};
       comment.text = pick({"", " ", "  "}) + words();
@@ -237,13 +237,18 @@ Item any_item(bool in_case) {
 File any_file() {
   File file;
   const int head = *inRange(0, 6);
-  for (int i = 0; i < head; ++i) file.head.push_back(any_item(false));
+  // Blank lines in a row are one item.
+  const auto add = [](std::vector<Item>& items, Item item) {
+    const bool blanks = !items.empty() && items.back().as<Blank>() && item.as<Blank>();
+    if (!blanks) items.push_back(std::move(item));
+  };
+  for (int i = 0; i < head; ++i) add(file.head, any_item(false));
   const int cases = *inRange(0, 4);
   for (int i = 0; i < cases; ++i) {
     Case one(pick({"a", "join.ok", "9-lives", "x_y.z"}));
     one.comment = words();
     const int items = *inRange(0, 8);
-    for (int k = 0; k < items; ++k) one.items.push_back(any_item(true));
+    for (int k = 0; k < items; ++k) add(one.items, any_item(true));
     file.cases.push_back(one);
   }
   return file;

@@ -11,6 +11,7 @@
 #include "codec/lines/broken.h"
 #include "codec/lines/forwarder.h"
 #include "codec/lines/serial.h"
+#include "codec/text/text.h"
 
 namespace rubric::run {
 namespace {
@@ -50,7 +51,7 @@ SerialEnd::SerialEnd(const lines::Address& to) : name_(to.name), pause_(kFirstPa
 SerialEnd::SerialEnd(std::uint16_t port) : waits_for_others_(true), pause_(kFirstPause) {
   auto listener = std::make_shared<lines::Descriptor>(lines::listen_at("127.0.0.1", port));
   name_ = fmt::format("sf-server:{}", lines::address_here(listener->get()).port());
-  fmt::print(stderr, "rubric: {}\n", name_);
+  report::print(stderr, "rubric: {}\n", name_);
   line_ = std::make_unique<lines::ForwarderLine>([listener](SteadyTime) {
     const int fd = ::accept4(listener->get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
     if (fd < 0) throw Broken("nobody has connected");
@@ -66,7 +67,7 @@ bool SerialEnd::open() {
     open_ = true;
     said_ = false;
     pause_ = kFirstPause;
-    fmt::print(stderr, "rubric: {}: connected\n", name_);
+    report::print(stderr, "rubric: {}: connected\n", name_);
   } catch (const Broken& broken) {
     if (!waits_for_others_) lost(broken.what());
     next_try_ = steady_clock::now() + (waits_for_others_ ? kFirstPause / 5 : pause_);
@@ -77,7 +78,7 @@ bool SerialEnd::open() {
 
 void SerialEnd::lost(const std::string& why) {
   open_ = false;
-  if (!said_) fmt::print(stderr, "rubric: {}: {}\n", name_, why);
+  if (!said_) report::print(stderr, "rubric: {}: {}\n", name_, why);
   said_ = true;
 }
 

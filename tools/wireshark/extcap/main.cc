@@ -21,6 +21,7 @@
 #include "codec/lines/stop.h"
 #include "codec/reflect/frame.h"
 #include "codec/reflect/registry.h"
+#include "codec/text/text.h"
 #include "tools/cli/command.h"
 #include "tools/cli/exit_codes.h"
 #include "tools/cli/input.h"
@@ -273,7 +274,7 @@ cli::InputOptions input_of(const CaptureOptions& options) {
 }
 
 int usage(const std::string& what) {
-  fmt::print(stderr, "rubric-extcap: {}\n", what);
+  report::print(stderr, "rubric-extcap: {}\n", what);
   return cli::kExitUsage;
 }
 
@@ -366,7 +367,7 @@ int answer(const std::string& text) {
 }
 
 int complain(const std::string& what) {
-  fmt::print(stderr, "rubric-extcap: {}\nTry 'rubric-extcap --help'.\n", what);
+  report::print(stderr, "rubric-extcap: {}\nTry 'rubric-extcap --help'.\n", what);
   return cli::kExitUsage;
 }
 

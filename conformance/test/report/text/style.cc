@@ -44,9 +44,7 @@ std::string error_text(const std::string& text, const TextOptions& options) {
       "{}Its standard error{}:\n", kIndent,
       first > 0 ? fmt::format(", last {} of {} lines", kErrorLines, all) : std::string());
   for (std::size_t i = first; i < all; ++i) {
-    std::string shown;  // Controls could change the terminal.
-    for (const char c : lines[i]) shown += c == '\t' || (c >= ' ' && c != 127) || c < 0 ? c : '?';
-    out += fmt::format("{}  | {}\n", kIndent, shown);
+    out += fmt::format("{}  | {}\n", kIndent, report::harmless(lines[i], report::Keep::kLines));
   }
   return out;
 }

@@ -339,9 +339,9 @@ std::string case_text(const CaseRun& one, const TextOptions& options) {
   } else if (one.expectation == Expectation::kUnexpectedPass) {
     rest = "was expected to fail";
   } else if (one.result.verdict != CaseVerdict::kPass) {
-    rest = headline(one);
+    rest = report::harmless(headline(one));
   }
-  const std::string name = case_name(one);
+  const std::string name = report::harmless(case_name(one));
   std::string out = fmt::format("{:<12} {}", verdict, name);
   if (!rest.empty()) {
     out = fmt::format("{:<12} {:<{}} {}", verdict, name, kNameColumns, rest);

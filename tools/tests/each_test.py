@@ -1,0 +1,193 @@
+#!/usr/bin/env python3
+"""Many runs with one command: in order, in parts, and never twice.
+
+Usage: each_test.py RUBRIC
+"""
+import json
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+RUBRIC = sys.argv[1]
+FIRMWARE = pathlib.Path(__file__).resolve().parents[2] / "spec/captures/firmware"
+CAPTURES = sorted(FIRMWARE.glob("*.pcapng"))
+PATIENCE_S = 60
+FAILED, INCONCLUSIVE, BROKEN, USAGE, UNREADABLE, OUTPUT = 1, 3, 2, 64, 66, 74
+
+
+def run(*words, **how):
+    return subprocess.run([RUBRIC, *map(str, words)], stdin=subprocess.DEVNULL, check=False,
+                          capture_output=True, text=True, timeout=PATIENCE_S, **how)
+
+
+def lines(text):
+    return [json.loads(line) for line in text.splitlines()]
+
+
+class Each(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="rubric-each-"))
+        self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
+        self.runs = self.folder / "runs"
+        (self.runs / "deep").mkdir(parents=True)
+        for i, capture in enumerate(CAPTURES):
+            shutil.copy(capture, self.runs / ("deep" if i % 3 == 0 else ".") / capture.name)
+        (self.runs / "notes.txt").write_text("no capture")
+
+    def test_each_is_as_alone(self):
+        for jobs in (1, 2, 5):
+            done = run("check", "--each", self.runs, "--jobs", jobs)
+            found = lines(done.stdout)
+            names = [line["file"] for line in found]
+            self.assertEqual(names, sorted(str(p) for p in self.runs.rglob("*.pcapng")))
+            self.assertEqual(done.returncode, FAILED)
+            self.assertIn(f"{len(CAPTURES)} runs", done.stderr)
+        for line in found:
+            alone = run("check", line["file"], "--format", "json")
+            report = json.loads(alone.stdout)
+            self.assertEqual(line["schema"], "rubric.each/1")
+            self.assertEqual(line["exit_code"], alone.returncode)
+            self.assertEqual(line["verdict"], report["verdict"])
+            self.assertEqual(line["frames"], report["counts"]["frames"])
+            fails = [f for f in report["findings"] if f["severity"] == "fail"]
+            self.assertEqual(sum(f["findings"] for f in line["failures"]), len(fails))
+            self.assertEqual({f["requirement"] for f in line["failures"]},
+                             {f["requirement"] for f in fails})
+            self.assertGreaterEqual(line["begin"], 0)
+
+    def test_the_gravest_decides(self):
+        good = run("check", "--each", CAPTURES[0], "--profile", "deployed")
+        self.assertEqual(good.returncode, run("check", CAPTURES[0], "--profile",
+                                              "deployed").returncode)
+        (self.runs / "broken.pcapng").write_bytes(b"nothing")
+        done = run("check", "--each", self.runs, self.folder / "gone.pcapng")
+        self.assertEqual(done.returncode, UNREADABLE)
+        found = {pathlib.Path(line["file"]).name: line for line in lines(done.stdout)}
+        for name in ("broken.pcapng", "gone.pcapng"):
+            self.assertEqual(found[name]["exit_code"], UNREADABLE)
+            self.assertIn(name, found[name]["error"])
+        self.assertEqual(len(found), len(CAPTURES) + 2)
+
+    def test_patterns(self):
+        done = run("check", "--each", self.runs / "*_join*.pcapng", self.runs / "deep")
+        wanted = set(self.runs.glob("*_join*.pcapng")) | set((self.runs / "deep").iterdir())
+        self.assertEqual([line["file"] for line in lines(done.stdout)],
+                         sorted(map(str, wanted)))
+        none = run("check", "--each", self.runs / "none*")
+        self.assertEqual(none.returncode, USAGE)
+        self.assertIn("holds no runs", none.stderr)
+
+    def test_shards(self):
+        for shards in (1, 2, 3, 7):
+            parts = [[line["file"] for line in lines(
+                run("check", "--each", self.runs, "--shard", f"{k + 1}/{shards}").stdout)]
+                for k in range(shards)]
+            self.assertEqual(sorted(sum(parts, [])),
+                             sorted(str(p) for p in self.runs.rglob("*.pcapng")))
+        self.assertGreater(sum(1 for part in parts if part), 1)
+        moved = self.folder / "moved"
+        shutil.copytree(self.runs, moved)
+        (moved / "a_new_one.pcapng").write_bytes(CAPTURES[0].read_bytes())
+        for k, part in enumerate(parts):
+            again = [line["file"].replace(str(moved), str(self.runs)) for line in lines(
+                run("check", "--each", moved, "--shard", f"{k + 1}/{shards}").stdout)
+                if "a_new_one" not in line["file"]]
+            self.assertEqual(again, part)
+        for text in ("0/2", "3/2", "1", "1/0", "a/b", "1/2x", "/"):
+            self.assertEqual(run("check", "--each", self.runs, "--shard", text).returncode, USAGE)
+
+    def test_resume(self):
+        state = self.folder / "state"
+        first = run("check", "--each", self.runs, "--resume", state)
+        kept = state.read_bytes()
+        again = run("check", "--each", self.runs, "--resume", state)
+        self.assertEqual(again.stdout, first.stdout)
+        self.assertEqual(again.returncode, first.returncode)
+        self.assertIn(f"({len(CAPTURES)} known by --resume)", again.stderr)
+        self.assertEqual(state.read_bytes(), kept)
+        other = run("check", "--each", self.runs, "--resume", state, "--profile", "deployed")
+        self.assertNotIn("known", other.stderr)
+        touched = next(self.runs.glob("*.pcapng"))
+        os.utime(touched, (1, 1))
+        self.assertIn(f"({len(CAPTURES) - 1} known",
+                      run("check", "--each", self.runs, "--resume", state).stderr)
+        # Of what a kill cut short, only that line is done again.
+        cut = kept.split(b"\n")
+        state.write_bytes(b"\n".join(cut[:-2]) + b"\n" + cut[-2][:40])
+        os.utime(touched)
+        again = run("check", "--each", self.runs, "--resume", state)
+        self.assertEqual([line["file"] for line in lines(again.stdout)],
+                         [line["file"] for line in lines(first.stdout)])
+        third = run("check", "--each", self.runs, "--resume", state)
+        self.assertIn(f"({len(CAPTURES)} known", third.stderr)
+        state.write_bytes(b"something of mine\n")
+        self.assertEqual(run("check", "--each", self.runs, "--resume", state).returncode, USAGE)
+        self.assertEqual(state.read_bytes(), b"something of mine\n")
+        self.assertEqual(run("check", "--each", touched, "--resume", touched).returncode, USAGE)
+
+    def test_killed_at_any_point(self):
+        state = self.folder / "state"
+        whole = run("check", "--each", self.runs).stdout
+        for delay in (0.02, 0.05, 0.1, 0.15):
+            child = subprocess.Popen([RUBRIC, "check", "--each", str(self.runs), "--resume",
+                                      str(state), "--jobs", "2"], stdout=subprocess.DEVNULL,
+                                     stderr=subprocess.DEVNULL, start_new_session=True)
+            time.sleep(delay)
+            os.killpg(child.pid, signal.SIGKILL)
+            child.wait()
+        done = run("check", "--each", self.runs, "--resume", state)
+        self.assertEqual(done.stdout, whole)
+
+    def test_a_run_that_kills_its_process(self):
+        limit = ("ulimit -v 400000; exec \"$0\" \"$@\"",)
+        huge = self.runs / "huge.rtr"
+        huge.write_bytes(b"%rtr 1\n" + b"x" * 200_000_000)
+        done = subprocess.run(["sh", "-c", *limit, RUBRIC, "check", "--each", str(self.runs),
+                               "--jobs", "2"], capture_output=True, check=False, text=True,
+                              timeout=PATIENCE_S)
+        found = {pathlib.Path(line["file"]).name: line for line in lines(done.stdout)}
+        self.assertEqual(len(found), len(CAPTURES) + 1)
+        self.assertNotIn(found["huge.rtr"]["exit_code"], (0,))
+        self.assertEqual(sum(line["exit_code"] in (0, 1, 3) for line in found.values()),
+                         len(CAPTURES))
+
+    def test_decode(self):
+        done = run("decode", "--each", self.runs, "--jobs", "2")
+        for line in lines(done.stdout):
+            shown = run("decode", line["file"], "--format", "jsonl")
+            self.assertEqual(line["exit_code"], shown.returncode)
+            self.assertEqual(line["frames"], len(shown.stdout.splitlines()))
+        self.assertEqual(done.returncode, max(line["exit_code"] for line in lines(done.stdout)))
+        filtered = lines(run("decode", "--each", self.runs, "--filter", "message==updates").stdout)
+        self.assertGreater(sum(line["shown"] for line in filtered), 0)
+        wrong = run("decode", "--each", self.runs, "--filter", "message==nothing")
+        self.assertEqual((wrong.returncode, wrong.stdout), (2, ""))
+
+    def test_output_that_breaks(self):
+        self.assertEqual(run("check", "--each", self.runs, "--out", "/dev/full").returncode, OUTPUT)
+        out = self.folder / "out.jsonl"
+        done = run("check", "--each", self.runs, "--out", out)
+        self.assertEqual(len(lines(out.read_text())), len(CAPTURES))
+        self.assertEqual(done.stdout, "")
+        read, write = os.pipe()
+        os.close(read)
+        broken = subprocess.run([RUBRIC, "check", "--each", self.runs], stdout=write,
+                                stderr=subprocess.PIPE, check=False, timeout=PATIENCE_S)
+        os.close(write)
+        self.assertEqual(broken.returncode, OUTPUT)
+
+    def test_what_makes_no_sense(self):
+        for words in (("--jobs", "2"), ("--resume", "x"), ("--shard", "1/2"),
+                      ("--each", "--follow"), ("--each", "--frames", "1..2"),
+                      ("--each", "--jobs", "0")):
+            self.assertEqual(run("check", CAPTURES[0], *words).returncode, USAGE, words)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])

@@ -1,0 +1,166 @@
+#!/usr/bin/env python3
+"""Each call that can fail fails once, at each place of what a command does.
+
+No command may hang or crash, end with 0 without having done all, or lose a file or what it
+confirmed.
+Usage: faults_test.py RUBRIC FAILING_CALLS
+"""
+import errno
+import os
+import pathlib
+import re
+import shutil
+import socket
+import subprocess
+import sys
+import tempfile
+import threading
+import unittest
+
+RUBRIC, SHIM = sys.argv[1:3]
+FIRMWARE = pathlib.Path(__file__).resolve().parents[2] / "spec/captures/firmware"
+CAPTURE = FIRMWARE / "a_join_data.pcapng"
+OLD = b"an old file\n" * 100
+PATIENCE_S = 30
+PLACES = 40  # Of malloc: spread over all of them.
+# Every session writes @, which is there before.
+SESSIONS = (
+    ("convert", CAPTURE, "-o", "@", "--format", "pcapng"),
+    ("decode", CAPTURE, "--write", "@"),
+    ("check", CAPTURE, "--format", "json", "--out", "@"),
+    ("check", "--each", FIRMWARE, "--shard", "1/4", "--jobs", "1", "--out", "@"),
+    ("generate", "--count", "20", "-o", "@"),
+    ("simulate", "--seconds", "1", "--out-pcapng", "@"),
+    ("test", "--target", "machine", "--cases", "j2.*", "--format", "junit", "--out", "@"),
+    ("test", "--target", "machine:answers_members", "--cases", "j2.*", "--write-expect", "@"),
+    ("chart", "j4.accept", "--out", "@"),
+)
+FAILURES = {"open": errno.EMFILE, "write": errno.ENOSPC, "rename": errno.EIO, "fsync": errno.EIO,
+            "malloc": errno.ENOMEM}
+
+
+class Forwarder:
+    """Greets every client, sends it some packets, waits for its end or leaves."""
+
+    PACKETS = [bytes([0, 0xFF, 0xFF, 0, 0, 4, 0, 6, 0, 1, 2, n]) for n in range(5)]
+
+    def __init__(self, test, leaves):
+        self.leaves = leaves
+        self.socket = socket.create_server(("127.0.0.1", 0))
+        test.addCleanup(self.socket.close)
+        self.name = "sf@127.0.0.1:{}".format(self.socket.getsockname()[1])
+        threading.Thread(target=self.serve, daemon=True).start()
+
+    def serve(self):
+        while True:
+            try:
+                client, _ = self.socket.accept()
+            except OSError:
+                return
+            threading.Thread(target=self.talk, args=(client,), daemon=True).start()
+
+    def talk(self, client):
+        with client:
+            try:
+                client.sendall(b"U ")
+                client.recv(2, socket.MSG_WAITALL)
+                for packet in self.PACKETS:
+                    client.sendall(bytes([len(packet)]) + packet)
+                while not self.leaves and client.recv(4096):
+                    pass
+            except OSError:
+                pass
+
+
+class Faults(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="rubric-faults-"))
+        self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
+        self.old = self.folder / "old"
+        self.count = self.folder / "count"
+
+    def failing(self, call, at, failure):
+        return dict(os.environ, LD_PRELOAD=SHIM, FAIL_CALL=call, FAIL_AT=str(at),
+                    FAIL_ERRNO=str(failure), FAIL_COUNT=str(self.count))
+
+    def run_with(self, words, call, at, failure=errno.EIO):
+        env = self.failing(call, at, failure)
+        words = [str(self.old) if word == "@" else str(word) for word in words]
+        return subprocess.run([RUBRIC, *words], env=env, stdin=subprocess.DEVNULL, check=False,
+                              capture_output=True, timeout=PATIENCE_S)
+
+    def places(self, words, call):
+        """Returns the numbers of the calls that fail in turn, and what a good run does."""
+        self.old.write_bytes(OLD)
+        good = self.run_with(words, call, 0)
+        self.assertIn(good.returncode, (0, 1, 3), (words, good.stderr))
+        all_of_them = int(self.count.read_text())
+        step = max(1, all_of_them // PLACES) if call == "malloc" else 1
+        return range(1, all_of_them + 1, step), good, self.old.read_bytes()
+
+    def test_files(self):
+        tried = {}
+        for words in SESSIONS:
+            for call, failure in FAILURES.items():
+                numbers, good, whole = self.places(words, call)
+                for number in numbers:
+                    what = (words[:2], call, number)
+                    self.old.write_bytes(OLD)
+                    done = self.run_with(words, call, number, failure)
+                    tried[call] = tried.get(call, 0) + 1
+                    self.assertGreaterEqual(done.returncode, 0, (what, done.stderr))
+                    now = self.old.read_bytes()
+                    if done.returncode == good.returncode:
+                        # What failed was not needed, or was done in another way.
+                        self.assertEqual(done.stdout, good.stdout, what)
+                        if words[0] != "check" or now != whole:
+                            self.assertEqual(len(now), len(whole), (what, done.stderr))
+                    else:
+                        self.assertNotEqual(done.returncode, 0, what)
+                        if "--each" in words and now != OLD:  # It tells of each run what broke.
+                            self.assertEqual(now.count(b"\n"), whole.count(b"\n"), what)
+                        else:
+                            self.assertIn(now, (OLD, whole), (what, done.stderr))
+                        self.assertTrue(done.stderr or call == "malloc", what)
+                    left = sorted(path.name for path in self.folder.iterdir())
+                    self.assertEqual(left, ["count", "old"], what)
+        for call in FAILURES:
+            self.assertGreater(tried[call], 5, call)
+
+    def test_what_a_line_sends(self):
+        words = ("decode", Forwarder(self, True).name, "--format", "jsonl", "--time", "none",
+                 "--count", len(Forwarder.PACKETS), "--write", self.folder / "kept", "--force")
+        for call, failure in {**FAILURES, "connect": errno.ECONNREFUSED}.items():
+            numbers, good, _ = self.places(words, call)
+            self.assertEqual(len(good.stdout.splitlines()), len(Forwarder.PACKETS), good.stderr)
+            for number in numbers:
+                done = self.run_with(words, call, number, failure)
+                what = (call, number, done.stderr)
+                self.assertGreaterEqual(done.returncode, 0, what)
+                self.assertTrue(good.stdout.startswith(done.stdout), what)
+                if done.returncode == good.returncode:
+                    self.assertEqual(done.stdout, good.stdout, what)
+                else:
+                    self.assertNotEqual(done.returncode, 0, what)
+                    self.assertTrue(done.stderr, what)
+
+    def test_who_comes_is_served(self):
+        source = Forwarder(self, False)
+        for failure in (errno.EMFILE, errno.ECONNABORTED):
+            child = subprocess.Popen([RUBRIC, "forward", source.name, "--port", "0"],
+                                     env=self.failing("accept", 1, failure), text=True,
+                                     stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+            try:
+                port = int(re.search(r":(\d+)$", child.stdout.readline())[1])
+                with socket.create_connection(("127.0.0.1", port), PATIENCE_S) as client:
+                    client.sendall(b"U ")
+                    self.assertEqual(client.recv(2, socket.MSG_WAITALL), b"U ")
+            finally:
+                child.terminate()
+                child.wait(PATIENCE_S)
+                child.stdout.close()
+            self.assertEqual(int(self.count.read_text()) > 1, True)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])

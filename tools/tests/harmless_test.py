@@ -1,0 +1,144 @@
+#!/usr/bin/env python3
+"""Nothing that comes from outside commands a terminal: names of files, cases and interfaces, texts
+of expectations, source lines, options, and what adapters write.
+
+Usage: harmless_test.py RUBRIC
+"""
+import pathlib
+import re
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+
+RUBRIC = sys.argv[1]
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+CAPTURE = ROOT / "spec/captures/firmware/b_reliable.pcapng"
+CASES = ROOT / "conformance/cases/j2.rtr"
+# Colour, a title, a bell, C1 controls in UTF-8 and as bytes, and text that turns round.
+EVIL = b"\x1b[31mX\x1b]0;t\x07\xc2\x9b5m\x9b1m\xe2\x80\xae\x7f"
+OBEYED = re.compile(rb"[\x00-\x08\x0b-\x1f\x7f]|\xc2[\x80-\x9f]|\xe2\x80[\xaa-\xae]")
+COLOURS = re.compile(rb"\x1b\[[0-9;]*m")
+
+
+def block(kind, body):
+    body += bytes(-len(body) % 4)
+    size = len(body) + 12
+    return struct.pack("<II", kind, size) + body + struct.pack("<I", size)
+
+
+def option(code, value):
+    return struct.pack("<HH", code, len(value)) + value + bytes(-len(value) % 4)
+
+
+def capture():
+    """Returns one with an evil name of its interface, and frames that break rules."""
+    out = block(0x0A0D0D0A, struct.pack("<IHHq", 0x1A2B3C4D, 1, 0, -1))
+    out += block(1, struct.pack("<HHI", 230, 0, 0) + option(2, EVIL) + option(0, b""))
+    for i in range(9):
+        frame = struct.pack("<HBHHHBB", 0x8841, i, 0x22, 0xFFFF, 2, 0x3F, 14)
+        frame += struct.pack(">HBHB", i, 1, 0x43, 1)
+        out += block(6, struct.pack("<IIIII", 0, 0, i * 1000, len(frame), len(frame)) + frame)
+    return out
+
+
+class Harmless(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.mkdtemp(prefix="rubric-harmless-").encode()
+        self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
+
+    def write(self, name, data):
+        path = self.folder + b"/" + name
+        with open(path, "wb") as file:
+            file.write(data)
+        return path
+
+    def shown(self, *words):
+        """Returns all output of a command; with colours, without these."""
+        text = b""
+        for color in ("never", "always"):
+            words_now = [*words, "--color", color] if words[0] in (
+                "check", "decode", "test") else words
+            done = subprocess.run([RUBRIC, *words_now], stdin=subprocess.DEVNULL, check=False,
+                                  capture_output=True, timeout=60)
+            self.assertGreaterEqual(done.returncode, 0, words)
+            out = done.stdout + done.stderr
+            text += COLOURS.sub(b"", out.replace(EVIL, b"EVIL")) if color == "always" else out
+        return text
+
+    def assert_harmless(self, *words, says=b"X"):
+        text = self.shown(*words)
+        found = OBEYED.search(text)
+        self.assertIsNone(found, (words, found and text[max(0, found.start() - 80):found.end()]))
+        self.assertNotIn(b"EVIL", text, words)
+        self.assertIn(says, text, words)
+
+    def test_names_of_files(self):
+        there = self.write(EVIL + b".pcapng", CAPTURE.read_bytes())
+        gone = self.folder + b"/gone" + EVIL
+        for path in (there, gone):
+            for words in (("check", path), ("decode", path, "--format", "text"),
+                          ("check", path, path), ("stats", path),
+                          ("convert", path, "--format", "hex"),
+                          ("check", path, "--verbose")):
+                self.assert_harmless(*words, says=b"")
+        for words in (("check", gone), ("decode", gone), ("stats", gone),
+                      ("decode", "--spec", gone, CAPTURE), ("check", CAPTURE, "--expect", gone),
+                      ("check", CAPTURE, "--out", gone + b"/x"),
+                      ("convert", CAPTURE, "--format", "pcapng", "-o", gone + b"/x"),
+                      ("test", "--target", "machine", gone), ("chart", gone),
+                      ("shrink", gone, "--target", "machine"), ("repro", "machine", gone),
+                      ("encode", gone), ("check", "--each", gone, there)):
+            self.assert_harmless(*words)
+
+    def test_words_of_the_command_line(self):
+        for words in ((EVIL,), ("check", b"--" + EVIL), ("check", CAPTURE, "--format", EVIL),
+                      ("decode", CAPTURE, "--filter", EVIL + b"=="),
+                      ("decode", CAPTURE, "--fields", EVIL), ("explain", EVIL),
+                      ("test", "--target", "machine", "--cases", EVIL),
+                      ("generate", "--message", EVIL), ("forward", EVIL),
+                      ("decode", b"serial@/" + EVIL + b":9600"), ("decode", b"sf@" + EVIL + b":1")):
+            self.assert_harmless(*words)
+
+    def test_interfaces_of_a_capture(self):
+        path = self.write(b"x.pcapng", capture())
+        for words in (("decode", path), ("decode", path, "--hex")):
+            self.assert_harmless(*words)
+        for words in (("stats", path), ("check", path), ("check", path, "--verbose"),
+                      ("check", path, path)):
+            self.assert_harmless(*words, says=b"")
+
+    def test_source_lines(self):
+        for text in (b"%rtr 1\n" + EVIL + b"\n", b"%rtr 1\n# \xc2\x9b5m X\n", EVIL,
+                     CASES.read_bytes() + b"\n0 m2 > " + EVIL + b"\n"):
+            trace = self.write(b"x.rtr", text)
+            for words in (("check", trace), ("test", trace, "--target", "machine"),
+                          ("chart", trace)):
+                self.assert_harmless(*words, says=b"")
+        spec = self.write(b"x.ksy", b"meta:\n  id: a\n  title: \"\\e[31mX\"\nseq:\n  - id: \"" +
+                          EVIL + b"\"\n    type: nothing\n")
+        self.assert_harmless("decode", "--spec", spec, CAPTURE, says=b"")
+
+    def test_expectations(self):
+        found = subprocess.run([RUBRIC, "check", CAPTURE, "--format", "json"], check=False,
+                               capture_output=True).stdout
+        self.assertIn(b'"findings"', found)
+        for text in ("J2-NAMES", "J4-SEQ"):
+            path = self.write(b"x.yaml", b'- requirement: ' + text.encode() +
+                              b'\n  message: "\\e[31mX\\x9b"\n  reason: "\\e]0;t\\aX"\n')
+            for words in (("check", CAPTURE, "--expect", path),
+                          ("test", "--target", "machine", "--cases", "j2.*", "--expect", path)):
+                self.assert_harmless(*words, says=b"")
+
+    def test_adapters(self):
+        loud = self.write(b"loud.sh", b"printf '\\033[31mX\\a\\302\\233' >&2\n"
+                          b"printf 'rct \\033]0;tX\\a\\n'\n")
+        self.assert_harmless("test", "--target", b"sh " + loud, "--cases", "j2.listed")
+        self.assert_harmless("test", "--target", b"sh -c 'exit 1' " + EVIL, "--cases",
+                             "j2.listed")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
