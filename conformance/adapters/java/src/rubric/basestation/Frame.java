@@ -4,12 +4,11 @@ import java.nio.ByteBuffer;
 import java.util.Arrays;
 import rubric.wire.Wire;
 import rubric.wire.WireException;
+import rubric.wire.WireException.Fault;
 import rubric.wire.tinyos.AmHeader;
 
 /**
  * An active message on a line. Over PEIS dest and src are islands.
- *
- * @param payload what arrived, which may be less than the header promised
  */
 public record Frame(Link link, int dest, int src, int type, byte[] payload) {
   /** The packet of the serial forwarder: dispatch byte, header, payload. */
@@ -25,12 +24,14 @@ public record Frame(Link link, int dest, int src, int type, byte[] payload) {
     return out.put(payload).array();
   }
 
-  /** Returns a packet from `link` without the bytes after its length. */
+  /** Returns a packet from `link` without the bytes after its length; one that is shorter is none. */
   public static Frame parse(Link link, byte[] packet) throws WireException {
     final AmHeader header = AmHeader.parse(ByteBuffer.wrap(packet));
     final byte[] behind = Wire.copy(header.stale());
-    final int size = Math.min(header.length(), behind.length);
+    if (behind.length < header.length()) {
+      throw new WireException(Fault.TRUNCATED, packet.length, "WIRE-AM-LENGTH");
+    }
     return new Frame(link, header.dest(), header.src(), header.type(),
-        Arrays.copyOf(behind, size));
+        Arrays.copyOf(behind, header.length()));
   }
 }
