@@ -255,15 +255,6 @@ class Terminals(unittest.TestCase):
         self.assertNotIn(b"\033", self.on_terminal({"TERM": "dumb"}))
         self.assertNotIn(b"\033", self.on_terminal({"TERM": "xterm"}, "--color", "never"))
 
-    def test_it_says_that_it_reads_what_is_typed(self):
-        leader, follower = pty.openpty()
-        os.write(leader, b"00 FF FF 00 00 03 00 25 0A 00 0C\n\x04")
-        environment = {k: v for k, v in os.environ.items() if k != "MOTECOM"}
-        done = subprocess.run([RUBRIC, "decode"], stdin=follower, capture_output=True, timeout=60,
-                              env=environment, check=True)
-        self.assertEqual(done.stderr.count(b"Ctrl-D on a line of its own ends it"), 1)
-        self.assertIn(b"config", done.stdout)
-
     def on_terminal(self, env, *words):
         leader, follower = pty.openpty()
         environment = {k: v for k, v in os.environ.items() if k != "NO_COLOR"} | env

@@ -179,7 +179,7 @@ class Generate(unittest.TestCase):
         said = run("generate", "--count", "3").stderr.decode()
         self.assertIn("messages do not come up", said)
 
-    def assert_refused(self, text, *arguments, code=2):
+    def assert_refused(self, text, *arguments, code=64):
         said = run("generate", *arguments, code=code).stderr.decode()
         self.assertIn(text, said)
 
