@@ -136,14 +136,15 @@ ScriptedSend reliable(Address dest, std::string_view text, Micros first_us, Micr
   return send;
 }
 
-// Paper: Fig. "Timeline of join and data acquisition".
+// Paper: Fig. "Timeline of join and data acquisition", whose times are milliseconds; a period of
+// 500 is one of TinyOS timers, in ticks.
 Network timeline(const ScenarioOptions& options) {
   Builder builder(options);
   const std::size_t air = builder.radio("rA");
   builder.island('A', kIsland, air);
   builder.mote(2, air, sensor(0));
-  builder.mote(4, air, sensor(us_of(3842)));
-  builder.mote(3, air, sensor(us_of(6940)));
+  builder.mote(4, air, sensor(3'842'000));
+  builder.mote(3, air, sensor(6'940'000));
   return builder.done();
 }
 

@@ -143,10 +143,10 @@ TEST(Timeline, JoinsInOrderThenReportsEveryPeriod) {
   const std::vector<std::pair<std::string, std::int64_t>> motes = {
       {"m2", 0}, {"m4", 3842}, {"m3", 6940}};
   std::uint64_t reports = 0;
-  for (const auto& [mote, join_ticks] : motes) {
+  for (const auto& [mote, join_ms] : motes) {
     const auto requests = lines(once, mote, trace::Op::kEmits, "join_request");
     ASSERT_EQ(requests.size(), 1U);
-    EXPECT_EQ(requests[0]->time.from, join_ticks);
+    EXPECT_EQ(requests[0]->time.from, ticks_of(join_ms * 1000));
     EXPECT_EQ(lines(once, mote, trace::Op::kEmits, "joined").size(), 1U);
     const auto sends = lines(once, mote, trace::Op::kGiven, "send");
     for (std::size_t i = 1; i < sends.size(); ++i) {

@@ -11,7 +11,7 @@ set(include_dir ${CMAKE_INSTALL_INCLUDEDIR}/rubric)
 # of codec and conformance belong to it, without those of tests, fuzzing, commands and compiler.
 get_property(libraries GLOBAL PROPERTY RUBRIC_LIBRARIES)
 list(FILTER libraries EXCLUDE REGEX "^firmware_|_mutator$|^rubric_fuzz|^rubric_(cli|\
-command_line|commands|emitters|encode|format|forward|lawful_traffic|packed|script|specs)$")
+command_line|commands|emitters|encode|format|forward|lawful_traffic|packed|script|space|specs)$")
 add_library(rubric_conformance INTERFACE)
 target_link_libraries(rubric_conformance INTERFACE ${libraries})
 set_target_properties(rubric_conformance PROPERTIES EXPORT_NAME conformance)

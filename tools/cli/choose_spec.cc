@@ -11,6 +11,7 @@
 #include "codec/lines/line.h"
 #include "codec/reflect/frame.h"
 #include "codec/text/packed.h"
+#include "codec/text/text.h"
 #include "tools/cli/input_file.h"
 #include "tools/cli/specs.h"
 
@@ -119,11 +120,12 @@ const reflect::Protocol& choose_spec(const InputOptions& options) {
     best_fit = fit;
   }
   if (best != &usual) {
-    fmt::print(stderr,
-               "rubric: {}: read by the spec {}, which fits {} of its first {} messages wholly, {} "
-               "{} (--spec decides)\n",
-               file == "-" ? "stdin" : file, best->id, best_fit.wholly, usual_fit.messages,
-               usual.id, usual_fit.wholly);
+    report::print(
+        stderr,
+        "rubric: {}: read by the spec {}, which fits {} of its first {} messages wholly, {} "
+        "{} (--spec decides)\n",
+        file == "-" ? "stdin" : file, best->id, best_fit.wholly, usual_fit.messages, usual.id,
+        usual_fit.wholly);
   }
   return *best;
 }

@@ -91,10 +91,10 @@ void report(const Losses& losses, const std::string& container) {
   lost(losses.sequence_numbers, "serial sequence numbers");
   lost(losses.radio_facts, "RSSI, link quality, channel or time slot");
   if (losses.more_facts) {
-    fmt::print(stderr,
-               "rubric: of {} packets RSSI, link quality, channel and time slot are kept, other "
-               "facts of their TAP headers are not\n",
-               losses.more_facts);
+    report::print(stderr,
+                  "rubric: of {} packets RSSI, link quality, channel and time slot are kept, other "
+                  "facts of their TAP headers are not\n",
+                  losses.more_facts);
   }
   if (container == "hex" && losses.radio && losses.radio != losses.written) {
     report::print(stderr,

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""`rubric run`: a sink, its base station and two motes on a virtual air, and what check says of it.
+"""`rubric run`: nodes on a virtual air, whole islands, and what check says of what they kept.
 
-Usage: run_test.py RUBRIC PROJECT_FOLDER. All of it on this host's loopback. Each step waits for
-what it needs, and only a bound of patience ends it otherwise.
+Usage: run_test.py RUBRIC PROJECT_FOLDER [Minute]. All of it on this host's loopback. Each step
+waits for what it needs, and only a bound of patience ends it otherwise; Minute alone runs for a
+minute.
 """
 
 import json
@@ -14,15 +15,32 @@ import subprocess
 import time
 import unittest
 
-from live_testing import RUBRIC, LiveTest, Running, lines_of
+from live_testing import RUBRIC, ROOT, LiveTest, Running, lines_of
 from serial_testing import PATIENCE_S
+
+# The PC of an island knocks at the door of another until it is open.
+KNOCK = """
+import json, sys, time
+def knock():
+    print(json.dumps({"call": "send", "dest": "11:5", "app_id": 10, "reliable": True,
+                      "data": b"OPEN_DOOR".hex()}), flush=True)
+time.sleep(0.5)
+knock()
+for line in sys.stdin:
+    event = json.loads(line)
+    if event["event"] in ("ack_received", "send_result") and not event["success"]:
+        time.sleep(0.2)
+        knock()
+    if event["event"] == "ack_received" and event["success"] and len(sys.argv) > 1:
+        knock()
+"""
 
 
 class Node(Running):
     """A running node: what it says, and its calls."""
 
-    def __init__(self, *arguments):
-        super().__init__("run", *arguments, stdin=subprocess.PIPE)
+    def __init__(self, *arguments, **more):
+        super().__init__("run", *arguments, stdin=subprocess.PIPE, **more)
         self.said = b""
 
     def waits_for(self, pattern):
@@ -96,6 +114,104 @@ class Run(LiveTest):
         self.assertEqual(checked.returncode, 0, checked.stdout)
         self.assertIn("mote 3", checked.stdout)
 
+    def judged(self, *files):
+        checked = subprocess.run([RUBRIC, "check", *files, "--format", "json"],
+                                 capture_output=True, check=False, text=True)
+        report = json.loads(checked.stdout)
+        bad = [one["text"] for one in report["findings"]
+               if one["severity"] in ("fail", "weak", "stray")]
+        self.assertEqual((bad, checked.returncode), ([], 0), files)
+        return report
+
+    def islands(self, more="", knock="", loss=5):
+        """Two islands with loss; the PC of island 12 opens the door of island 11."""
+        (self.folder / "knock.py").write_text(KNOCK, encoding="utf-8")
+        door = ROOT / "conformance/node/examples/door.py"
+        plan = self.folder / "islands.yaml"
+        plan.write_text(f"""
+loss: {loss}
+seed: 5
+islands:
+  - island: 11
+    radio: zep:0
+    motes:
+      - {{id: 5, app: python3 {door}}}
+      - {{id: 2, transducers: [light, temp], app: demo}}
+{more}
+  - island: 12
+    radio: zep:0
+    app: python3 {self.folder / "knock.py"} {knock}
+    motes:
+      - {{id: 7, app: demo}}
+""", encoding="utf-8")
+        return self.started(plan, "--write", self.folder / "run.pcapng", "--log",
+                            self.folder / "run.rtr")
+
+    def test_two_islands_with_loss(self):
+        run = self.islands()
+        waited = {("pc12", "11:5"): b"DOOR_IS_OPEN".hex(), ("mote11_5", "12:65533"): None,
+                  ("pc11", "11:2"): None, ("pc12", "12:7"): None}
+        while waited:
+            event = run.event("received")
+            at = (event["node"], event["src"])
+            if waited.get(at) in (None, event["data"]):
+                waited.pop(at, None)
+        code, _, err = run.end()
+        self.assertEqual(code, 0, err)
+        self.judged(self.folder / "run.pcapng")
+        report = self.judged(self.folder / "run.rtr")
+        exercised = {one["requirement"] for one in report["exercised"]}
+        self.assertLessEqual({"N8-PEIS", "N8-INCOMING", "T3-SUCCESS", "J4-CONTENT"}, exercised)
+
+    def test_a_log_of_one_node(self):
+        kept = self.folder / "run.rtr"
+        sink = self.started("sink", "--island", "11", "--radio", "zep:0", "--log", kept)
+        air = "zep:" + sink.waits_for(rb"zep:(\d+)\n")
+        mote = self.started("mote", "--id", "4", "--radio", air, "--app", "demo",
+                            "--transducers", "light,temp", "--log", self.folder / "mote.rtr")
+        mote.event("joined", success=True)
+        time.sleep(2.2)
+        for node in (mote, sink):
+            self.assertEqual(node.end()[0], 0)
+        self.judged(kept)
+        self.judged(self.folder / "mote.rtr")
+
+    def test_a_pty_is_a_serial_device(self):
+        sink = self.started("sink", "--island", "11", "--radio", "zep:0", "--serial", "pty")
+        device = sink.waits_for(rb"(serial@/dev/\S+)")
+        base = self.started("base-station", "--island", "12", "--sink", device, "--app", "-")
+        base.waits_for(rb"(connected)")
+        self.assertEqual(sink.waits_for(rb"made this island (\d+), which was 11"), "12")
+        base.call("send", dest="12:1", app_id=10, reliable=True, data="0a")
+        number = base.event("send_result", success=True)["seq_num"]
+        sink.event("received", src="12:65533", data="0a")
+        base.event("ack_received", seq_num=number, success=True)
+        for node in (base, sink):
+            self.assertEqual(node.end()[0], 0)
+
+    def test_mistakes_of_a_file_have_their_line(self):
+        island = "islands:\n  - island: 11\n"
+        for text, line, what in (
+                ("loss: 5\nislans: []\n", 2, "unknown key 'islans'"),
+                ("loss: 101\n" + island, 1, "from 0 to 100"),
+                (island + "  - island: 11\n", 3, "there is an island 11 already"),
+                (island + "    radio: sf@x:1\n", 3, "expected zep:PORT"),
+                (island + "    serial: tty\n", 3, "sf-server:PORT or pty"),
+                (island + "    motes:\n      - id: 1\n", 4, "from 2 to 65532"),
+                (island + "    motes:\n      - {id: 2}\n      - {id: 2}\n", 5, "a mote 2 already"),
+                (island + "    motes:\n      - {id: 2, transducers: [lite]}\n", 4,
+                 "'lite' is none of: light temp"),
+                (island + "    serial: pty\n    app: x\n", 4, "the program at 'serial'"),
+                ("space: peis\n" + island, 1, "memory or mqtt://"),
+                ("islands: [\n", 2, "end of")):
+            plan = self.folder / "islands.yaml"
+            plan.write_text(text, encoding="utf-8")
+            run = subprocess.run([RUBRIC, "run", plan], capture_output=True, check=False,
+                                 text=True, stdin=subprocess.DEVNULL)
+            self.assertEqual(run.returncode, 2, run.stderr)
+            self.assertIn(f"{plan}:{line}: ", run.stderr)
+            self.assertIn(what, run.stderr)
+
     def test_a_base_station_comes_back_to_its_sink(self):
         place = socket.create_server(("127.0.0.1", 0))
         port = place.getsockname()[1]
@@ -121,7 +237,15 @@ class Run(LiveTest):
                 (("sink",), "--island: is needed by a sink"),
                 (("sink", "--island", "65535"), "--island"),
                 (("mote", "--id", "2", "--radio", "sf@x:1"), "expected zep:PORT"),
-                (("sink", "--island", "11", "--serial", "9002"), "expected sf-server:PORT")):
+                (("sink", "--island", "11", "--serial", "9002"), "expected sf-server:PORT"),
+                (("sink", "--island", "11", "--app", "demo"), "the demo is a mote's"),
+                (("mote", "--id", "2", "--actuators", "hand"), "'hand' is none of: led open"),
+                (("mote", "--id", "2", "--type", "z1"), "none of: telosb_demo"),
+                (("sink", "--island", "11", "--space", "mqtt://x"), "is a base station's"),
+                (("base-station", "--island", "11", "--space", "http://x"), "mqtt://HOST"),
+                (("base-station", "--island", "11", "--space", "mqtt://me:secret@x"),
+                 "into a file or the environment"),
+                (("robot",), "expected mote, sink, base-station or FILE.yaml")):
             run = subprocess.run([RUBRIC, "run", *arguments], capture_output=True, check=False,
                                  text=True, stdin=subprocess.DEVNULL)
             self.assertEqual(run.returncode, 64, run.stderr)
@@ -147,6 +271,37 @@ class Run(LiveTest):
             self.assertEqual(one.lines(1)[0]["event"], "error")
         one.process.stdin.close()
         self.assertEqual(one.end(None)[0], 0)
+
+
+class Minute(Run):
+    """A minute of two islands, which a live check follows."""
+
+    def test_a_minute_is_in_order(self):
+        more = "\n".join(f"      - {{id: {id}, app: demo}}" for id in range(20, 24))
+        run = self.islands(more, "on")
+        air = run.waits_for(rb"island 11: (zep:\d+)")
+        watch = Running("check", air)
+        self.addCleanup(watch.process.kill)
+        end = time.monotonic() + 60
+        seen = {}
+        while time.monotonic() < end:
+            event = run.lines(1)[0]
+            kind = (event["node"], event["event"])
+            seen[kind] = seen.get(kind, 0) + 1
+        watched = watch.end()
+        self.assertEqual(watched[0], 0, watched)
+        code, _, err = run.end()
+        self.assertEqual(code, 0, err)
+        self.assertGreater(seen["pc11", "received"], 200)
+        self.assertGreater(seen["mote11_5", "received"], 20)
+        self.judged(self.folder / "run.pcapng")
+        self.judged(self.folder / "run.rtr")
+
+
+def load_tests(loader, _tests, _pattern):
+    """Minute's own test alone is in Minute."""
+    suite = unittest.TestSuite(loader.loadTestsFromTestCase(Run))
+    return suite
 
 
 if __name__ == "__main__":

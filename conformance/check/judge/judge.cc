@@ -346,12 +346,15 @@ void Judge::mote_hears(std::uint16_t mote, const Observation& seen, const Mark& 
   const std::optional<machine::Address> own = motes_.address(mote);
   // If its island is uncertain, anything for its devid may be for it.
   const machine::Address presumed = own.value_or(machine::Address{net.dest.pid, am});
+  // One that has not joined may ignore it (J11-HEAR); a log of all that it heard shows that.
+  const bool outside = !own && context_.device(mote).hearing;
   hears(mote, {Role::kMote, presumed, true, context_.sink_am}, machine::Link::kRadio, seen,
-        mark.device, net, mark.receiver == mote);
+        mark.device, net, mark.receiver == mote, outside);
 }
 
 void Judge::hears(std::uint16_t node, const machine::Router& router, machine::Link from,
-                  const Observation& seen, std::uint16_t sender, const Net& net, bool sure) {
+                  const Observation& seen, std::uint16_t sender, const Net& net, bool sure,
+                  bool ignorable) {
   if (router.own.pid == 0) return;  // A sink of which no island is known.
   const machine::Route route = machine::route_received(router, from, net.dest, net.src);
   if (!route.deliver && route.onward != machine::Route::Onward::kNowhere) return;
@@ -366,7 +369,7 @@ void Judge::hears(std::uint16_t node, const machine::Router& router, machine::Li
                         (radio && net.src.pid != net.dest.pid && !is(sender, Role::kSink));
   acks_.arrived(node, seen, sender, net,
                 {forbidden, forbidden == "N6-OTHER"_rule,
-                 sure && !interfaces_.switched_off(node, from), straight});
+                 sure && !interfaces_.switched_off(node, from), straight || ignorable});
   if (sure && !off && route.deliver) synaptic_.given(node, seen, net);
 }
 

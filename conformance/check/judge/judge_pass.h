@@ -45,7 +45,8 @@ class Judge {
                    machine::Address own);
   void mote_hears(std::uint16_t mote, const Observation& seen, const Mark& mark, const Net& net);
   void hears(std::uint16_t node, const machine::Router& router, machine::Link from,
-             const Observation& seen, std::uint16_t sender, const Net& net, bool sure);
+             const Observation& seen, std::uint16_t sender, const Net& net, bool sure,
+             bool ignorable = false);
   // Counts an ack at the originator of the acked message.
   void ack_comes(const Net& ack);
   void serial(std::uint32_t index, const Observation& seen, const Mark& mark);

@@ -124,6 +124,21 @@ Script asks(bool link_ack) {
   return script;
 }
 
+TEST(JoinWatch, AMoteThatHasNotJoinedOwesNoAck) {
+  const auto message = [](int ms) {
+    const std::string what =
+        " am=1->2 net_msg(dest=11:2 src=11:1 reliable=1 seq_num=5 nbytes=3 "
+        "payload.trans_id=connless payload.app_id=control_layer payload.payload=x01)";
+    return at(ms, "sA > rA" + what) + at(ms + 2, "m2 < rA" + what);
+  };
+  const std::string life =
+      at(2000,
+         "m2 > rA am=2->1 net_msg(dest=11:1 src=11:2 reliable=0 seq_num=9 nbytes=3 "
+         "payload.trans_id=connless payload.app_id=control_layer payload.payload=x01)");
+  EXPECT_EQ(fails(call() + request(1, true) + message(4) + reply(8, true) + ack(12) + life), "");
+  EXPECT_EQ(fails(call() + joined(1) + message(30) + life), "T2-ACK");
+}
+
 TEST(JoinWatch, InACaptureALinkAckProvesReception) {
   const auto life = [](Script script) {
     return script.request(700, 4, 300).reply(710, 11, 4, 300, 710);

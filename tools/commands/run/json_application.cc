@@ -1,7 +1,10 @@
 #include "tools/commands/run/json_application.h"
 
 #include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <charconv>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -10,6 +13,7 @@
 #include <vector>
 
 #include "codec/reflect/encode.h"
+#include "codec/text/files.h"
 #include "tools/format/put.h"
 
 namespace rubric::run {
@@ -17,12 +21,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string text_of(node::Address one) { return fmt::format("{}:{}", one.pid, one.devid); }
-std::string text_of(node::ChannelId id) { return fmt::format("{}->{}", id >> 16, id & 0xFFFF); }
-
-void print(const Json& json) {
-  fmt::print("{}\n", json.dump(-1, ' ', false, Json::error_handler_t::replace));
-  std::fflush(stdout);
+std::string text_of(machine::Address one) { return fmt::format("{}:{}", one.pid, one.devid); }
+std::string channel_text(machine::ChannelId id) {
+  return fmt::format("{}->{}", id >> 16, id & 0xFFFF);
 }
 
 std::uint16_t number_in(std::string_view text) {
@@ -58,13 +59,13 @@ class CallArguments {
     if (!value.is_number()) throw std::invalid_argument(fmt::format("{}: a number", name));
     return value.get<float>();
   }
-  node::Address address(const char* name) const {
+  machine::Address address(const char* name) const {
     const auto [pid, devid] = two(name, ":");
     return {pid, devid};
   }
-  node::ChannelId channel() const {
+  machine::ChannelId channel() const {
     const auto [from, to] = two("channel", "->");
-    return node::ChannelId{from} << 16 | to;
+    return machine::ChannelId{from} << 16 | to;
   }
   std::vector<std::uint8_t> bytes(const char* name) const {
     const std::string hex = text(name);
@@ -97,98 +98,164 @@ class CallArguments {
   const Json& json_;
 };
 
-Json result(bool success) { return {{"event", "op_result"}, {"success", success}}; }
-Json result(node::ChannelResult made) {
-  return {{"event", "channel_result"}, {"channel", text_of(made.id)}, {"success", made.success}};
-}
-
-// Makes a call; returns its result, null if it has none.
-Json made(const std::string& name, const CallArguments& with, node::Node& node) {
-  if (name == "join") {
-    node::Descriptor descriptor;
-    descriptor.mote_type = static_cast<rubicon::MoteType>(with.number<std::uint8_t>("type"));
-    descriptor.transducers = rubicon::TransducerMask(with.number("transducers"));
-    descriptor.actuators = rubicon::ActuatorMask(with.number<std::uint8_t>("actuators"));
-    node.join(descriptor);
-    return nullptr;
-  }
-  if (name == "send") {
-    const std::vector<std::uint8_t> data = with.bytes("data");
-    const auto app_id = with.number<std::uint8_t>("app_id");
-    const std::uint16_t number = node.send(with.address("dest"), app_id, with.flag("reliable"),
-                                           Bytes(data.data(), data.size()));
-    return {{"event", "send_result"}, {"seq_num", number}, {"success", number != node::kNoSeq}};
-  }
+machine::Call call_of(const std::string& name, const CallArguments& with,
+                      std::vector<std::uint8_t>& data) {
   const auto mode = [&] {
-    return with.flag("power_save") ? node::Mode::kPowerSave : node::Mode::kReliable;
+    return with.flag("power_save") ? machine::Mode::kPowerSave : machine::Mode::kReliable;
+  };
+  const auto link = [&] {
+    const std::string text = with.text("link");
+    if (text == "radio") return machine::Link::kRadio;
+    if (text == "serial") return machine::Link::kSerial;
+    throw std::invalid_argument("link: radio or serial");
   };
   const auto size = [&] { return with.number<std::uint8_t>("size"); };
   const auto pos = [&] { return with.number<std::uint8_t>("pos"); };
-  if (name == "create_out") return result(node.create_out(with.address("dest"), size(), mode()));
-  if (name == "create_in") return result(node.create_in(with.address("src"), size(), mode()));
-  if (name == "dispose") return result(node.dispose(with.channel()));
-  if (name == "start") return result(node.start_channel(with.channel()));
-  if (name == "stop") return result(node.stop_channel(with.channel()));
+  if (name == "join") {
+    machine::Descriptor descriptor;
+    descriptor.mote_type = with.number<std::uint8_t>("type");
+    descriptor.transducers = with.number("transducers");
+    descriptor.actuators = with.number<std::uint8_t>("actuators");
+    return machine::JoinIsland{descriptor};
+  }
+  if (name == "send") {
+    data = with.bytes("data");
+    return machine::Send{with.address("dest"), with.number<std::uint8_t>("app_id"),
+                         with.flag("reliable"), Bytes(data.data(), data.size())};
+  }
+  if (name == "interface") return machine::SetInterface{link(), with.flag("on")};
+  if (name == "get_interface") return machine::GetInterface{link()};
+  if (name == "create_out") {
+    return machine::CreateChannel{machine::Direction::kOut, with.address("dest"), size(), mode()};
+  }
+  if (name == "create_in") {
+    return machine::CreateChannel{machine::Direction::kIn, with.address("src"), size(), mode()};
+  }
+  if (name == "dispose") return machine::DisposeChannel{with.channel()};
+  if (name == "start") return machine::StartChannel{with.channel()};
+  if (name == "stop") return machine::StopChannel{with.channel()};
+  if (name == "start_all") return machine::StartAllChannels{};
+  if (name == "stop_all") return machine::StopAllChannels{};
   if (name == "write_output") {
-    return result(node.write_output(with.channel(), pos(), with.real("value")));
+    return machine::WriteOutput{with.channel(), pos(), with.real("value")};
   }
-  if (name == "read_input") {
-    const node::InputValue value = node.read_input(with.channel(), pos());
-    return {{"event", "input_value"}, {"value", value.value}, {"success", value.success}};
-  }
-  if (name == "set_time_step") return result(node.set_time_step(with.number("clock")));
-  if (name == "set_island_id") return result(node.set_island(with.number("island")));
-  if (name == "get_clock") return {{"event", "clock"}, {"ms", node.clock_ms()}};
+  if (name == "read_input") return machine::ReadInput{with.channel(), pos()};
+  if (name == "set_time_step") return machine::SetTimeStep{with.number("clock")};
+  if (name == "set_island_id") return machine::SetIslandId{with.number("island")};
+  if (name == "get_clock") return machine::GetClock{};
   throw std::invalid_argument(fmt::format("unknown call '{}'", name));
+}
+
+// An event of each kind, by overloading.
+struct EventOf {
+  Json operator()(const machine::Joined& it) const {
+    return {{"event", "joined"}, {"own", text_of(it.address)}, {"success", it.success}};
+  }
+  Json operator()(const machine::MoteJoined& it) const {
+    return {{"event", "mote_joined"},
+            {"mote", text_of(it.address)},
+            {"type", it.descriptor.mote_type},
+            {"transducers", it.descriptor.transducers},
+            {"actuators", it.descriptor.actuators}};
+  }
+  Json operator()(const machine::SendResult& it) const {
+    return {{"event", "send_result"},
+            {"seq_num", it.seq_num},
+            {"success", it.seq_num != machine::kNoSeq}};
+  }
+  Json operator()(const machine::Received& it) const {
+    std::string hex(2 * it.data.size(), '0');
+    format::put_hex(hex.data(), it.data);
+    return {{"event", "received"}, {"src", text_of(it.src)}, {"app_id", it.app_id}, {"data", hex}};
+  }
+  Json operator()(const machine::AckReceived& it) const {
+    return {{"event", "ack_received"},
+            {"app_id", it.app_id},
+            {"seq_num", it.seq_num},
+            {"success", it.success}};
+  }
+  Json operator()(const machine::SynDataReceived& it) const {
+    const char* const names[] = {"new", "old", "unknown_channel"};
+    return {{"event", "syn_data"},
+            {"channel", channel_text(it.id)},
+            {"status", names[static_cast<std::size_t>(it.status)]}};
+  }
+  Json operator()(const machine::ChannelResult& it) const {
+    return {{"event", "channel_result"}, {"channel", channel_text(it.id)}, {"success", it.success}};
+  }
+  Json operator()(const machine::OperationResult& it) const {
+    return {{"event", "op_result"}, {"success", it.success}};
+  }
+  Json operator()(const machine::InputValue& it) const {
+    return {{"event", "input_value"}, {"value", it.value}, {"success", it.success}};
+  }
+  Json operator()(const machine::InterfaceState& it) const {
+    return {{"event", "interface_state"},
+            {"link", it.link == machine::Link::kRadio ? "radio" : "serial"},
+            {"on", it.on}};
+  }
+  Json operator()(const machine::Clock& it) const { return {{"event", "clock"}, {"ms", it.ms}}; }
+};
+
+std::string line_of(const Json& event, const std::string& node) {
+  Json json;
+  if (!node.empty()) json["node"] = node;
+  json.update(event);
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 }  // namespace
 
-void JsonApplication::joined(node::Address own, bool success) {
-  refused_ = !success;
-  print({{"event", "joined"}, {"own", text_of(own)}, {"success", success}});
+std::string json_line(const machine::Notice& notice, const std::string& node) {
+  return line_of(std::visit(EventOf(), notice), node);
 }
 
-void JsonApplication::mote_joined(node::Address mote, const node::Descriptor& descriptor) {
-  print({{"event", "mote_joined"},
-         {"mote", text_of(mote)},
-         {"type", static_cast<int>(descriptor.mote_type)},
-         {"transducers", descriptor.transducers.raw()},
-         {"actuators", descriptor.actuators.raw()}});
+void JsonApplication::print(std::string line) {
+  line += '\n';
+  // One write, so that lines of several nodes stay whole.
+  if (!ended_ && report::write_all(ends_.out, line) != 0) ended_ = true;
 }
 
-void JsonApplication::received(node::Address src, std::uint8_t app_id, Bytes data) {
-  std::string hex(2 * data.size(), '0');
-  format::put_hex(hex.data(), data);
-  print({{"event", "received"}, {"src", text_of(src)}, {"app_id", app_id}, {"data", hex}});
+void JsonApplication::happened(const machine::Notice& notice, Caller&) {
+  print(json_line(notice, ends_.node));
 }
 
-void JsonApplication::ack_received(std::uint8_t app_id, std::uint16_t seq_num, bool success) {
-  print(
-      {{"event", "ack_received"}, {"app_id", app_id}, {"seq_num", seq_num}, {"success", success}});
+lines::SteadyTime JsonApplication::run(Caller& caller) {
+  pollfd input{fd(), POLLIN, 0};
+  if (fd() >= 0 && ::poll(&input, 1, 0) > 0) read(caller);
+  return lines::SteadyTime::max();
 }
 
-void JsonApplication::syn_data_received(node::ChannelId channel, node::DataStatus status) {
-  const char* const names[] = {"new", "old", "unknown_channel"};
-  print({{"event", "syn_data"},
-         {"channel", text_of(channel)},
-         {"status", names[static_cast<std::size_t>(status)]}});
+void JsonApplication::read(Caller& caller) {
+  char room[4096];
+  const ssize_t size = ::read(ends_.in, room, sizeof room);
+  if (size <= 0) {
+    ended_ = ended_ || size == 0 || errno != EINTR;
+    return;
+  }
+  input_.append(room, static_cast<std::size_t>(size));
+  std::size_t begin = 0;
+  for (std::size_t end = 0; (end = input_.find('\n', begin)) != input_.npos; begin = end + 1) {
+    call(input_.substr(begin, end - begin), caller);
+  }
+  input_.erase(0, begin);
+  constexpr std::size_t kLineMax = 65'536;
+  if (input_.size() > kLineMax) input_.clear();
 }
 
-void JsonApplication::call(const std::string& line, node::Node& node) {
+void JsonApplication::call(const std::string& line, Caller& caller) {
   try {
     const Json json = Json::parse(line);
     if (!json.is_object()) throw std::invalid_argument("expected an object with \"call\"");
     const CallArguments with(json);
-    const Json answer = made(with.text("call"), with, node);
-    if (!answer.is_null()) print(answer);
+    std::vector<std::uint8_t> data;
+    const auto answer = caller.call(call_of(with.text("call"), with, data));
+    if (answer) print(json_line(*answer, ends_.node));
   } catch (const std::invalid_argument& error) {
-    print({{"event", "error"}, {"text", error.what()}});
+    print(line_of({{"event", "error"}, {"text", error.what()}}, ends_.node));
   } catch (const Json::exception& error) {
-    print({{"event", "error"}, {"text", error.what()}});
+    print(line_of({{"event", "error"}, {"text", error.what()}}, ends_.node));
   }
 }
-
-bool JsonApplication::take_refusal() { return std::exchange(refused_, false); }
 
 }  // namespace rubric::run

@@ -1,33 +1,41 @@
-// An application as JSON lines: calls of the node come in, its events go out, by the names of .rtr.
+// An application as JSON lines: calls come in, events go out, by the names of .rtr.
 #pragma once
 
-#include <cstdio>
 #include <string>
 
-#include "conformance/node/node.h"
+#include "tools/commands/run/application.h"
 
 namespace rubric::run {
 
-/// Writes events to stdout, each at once.
-class JsonApplication final : public node::Application {
+/// Returns an event or a call's result as a line of JSON, without its end. `node`, unless it is
+/// empty, comes first.
+std::string json_line(const machine::Notice& notice, const std::string& node);
+
+/// Writes events to a descriptor, each at once, and makes the calls that it reads from another,
+/// such as {"call":"send","dest":"11:1","app_id":10,"reliable":true,"data":"0102"}. Of a line that
+/// makes no sense it writes why.
+class JsonApplication final : public Application {
  public:
-  void joined(node::Address own, bool success) override;
-  void mote_joined(node::Address mote, const node::Descriptor& descriptor) override;
-  void received(node::Address src, std::uint8_t app_id, Bytes data) override;
-  void ack_received(std::uint8_t app_id, std::uint16_t seq_num, bool success) override;
-  void syn_data_received(node::ChannelId channel, node::DataStatus status) override;
+  struct Ends {
+    int in = -1;  ///< -1: no calls come. Its end ends the node.
+    int out = 1;
+    std::string node;  ///< Written with each event; empty: it is not.
+  };
+  explicit JsonApplication(Ends ends) : ends_(std::move(ends)) {}
 
-  /// Makes the call of a line, such as {"call":"send","dest":"11:1","app_id":10,"reliable":true,
-  /// "data":"0102"}, and writes its result; of a line that makes no sense, why.
-  void call(const std::string& line, node::Node& node);
-
-  /// Returns whether the last joined event was a refusal, once.
-  bool take_refusal();
-  /// Returns whether stdout has a reader.
-  bool has_reader() const { return std::ferror(stdout) == 0; }
+  void happened(const machine::Notice& notice, Caller& caller) override;
+  lines::SteadyTime run(Caller& caller) override;
+  int fd() const override { return ended_ ? -1 : ends_.in; }
+  bool ended() const override { return ended_; }
 
  private:
-  bool refused_ = false;
+  void read(Caller& caller);
+  void call(const std::string& line, Caller& caller);
+  void print(std::string line);
+
+  Ends ends_;
+  std::string input_;  // Not yet a whole line.
+  bool ended_ = false;
 };
 
 }  // namespace rubric::run

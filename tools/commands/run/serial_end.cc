@@ -12,6 +12,7 @@
 #include "codec/lines/forwarder.h"
 #include "codec/lines/serial.h"
 #include "codec/text/text.h"
+#include "tools/commands/run/pty_line.h"
 
 namespace rubric::run {
 namespace {
@@ -48,10 +49,20 @@ SerialEnd::SerialEnd(const lines::Address& to) : name_(to.name), pause_(kFirstPa
   }
 }
 
-SerialEnd::SerialEnd(std::uint16_t port) : waits_for_others_(true), pause_(kFirstPause) {
+SerialEnd::SerialEnd(const std::string& offered) : waits_for_others_(true), pause_(kFirstPause) {
+  if (offered == "pty") {
+    auto pty = std::make_unique<PtyLine>();
+    name_ = fmt::format("serial@{}:115200", pty->device());
+    other_end_ = name_;
+    line_ = std::move(pty);
+    open_ = line_->open({});
+    return;
+  }
+  const auto port = static_cast<std::uint16_t>(std::stoul(offered.substr(offered.find(':') + 1)));
   auto listener = std::make_shared<lines::Descriptor>(lines::listen_at("127.0.0.1", port));
-  name_ = fmt::format("sf-server:{}", lines::address_here(listener->get()).port());
-  report::print(stderr, "rubric: {}\n", name_);
+  const std::uint16_t taken = lines::address_here(listener->get()).port();
+  name_ = fmt::format("sf-server:{}", taken);
+  other_end_ = fmt::format("sf@127.0.0.1:{}", taken);
   line_ = std::make_unique<lines::ForwarderLine>([listener](SteadyTime) {
     const int fd = ::accept4(listener->get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
     if (fd < 0) throw Broken("nobody has connected");

@@ -1,7 +1,6 @@
 // One end of the serial line between a sink and its base station.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -17,10 +16,12 @@ class SerialEnd {
  public:
   /// A base station's: connects to a sink. Says on stderr when the line comes and goes.
   explicit SerialEnd(const lines::Address& to);
-  /// A sink's: a serial forwarder at this port, for one program at a time. Says on stderr at which.
-  /// Throws Broken if the port is taken.
-  explicit SerialEnd(std::uint16_t port);
+  /// A sink's: "sf-server:PORT", a serial forwarder for one program at a time, or "pty", a serial
+  /// device. Throws Broken if that cannot be had.
+  explicit SerialEnd(const std::string& offered);
 
+  /// Returns the line's name for the other end, such as sf@localhost:9002.
+  const std::string& other_end() const { return other_end_; }
   /// Opens the line if it is time to. Returns whether it has just been opened.
   bool open();
   bool is_open() const { return open_; }
@@ -33,6 +34,7 @@ class SerialEnd {
   void lost(const std::string& why);
 
   std::string name_;
+  std::string other_end_;
   bool waits_for_others_ = false;
   std::unique_ptr<lines::PacketLine> line_;
   bool open_ = false;

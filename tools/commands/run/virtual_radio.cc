@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <thread>
 #include <utility>
 
 #include "codec/containers/zep_packet.h"
@@ -11,6 +12,7 @@
 #include "codec/generated/tinyos/mac_header.h"
 #include "codec/reflect/am_frames.h"
 #include "codec/runtime/ieee802154_fcs.h"
+#include "tools/commands/run/wall_clock.h"
 
 namespace rubric::run {
 namespace {
@@ -27,17 +29,13 @@ constexpr int kBackoffMaxUs = 10'040;
 // Longer than on a real air, where a processor is never late; the stamps do not show it.
 constexpr milliseconds kAckWait{100};
 
-constexpr std::uint16_t kPan = 0x0022;
 constexpr std::uint16_t kAll = 0xFFFF;
 constexpr std::size_t kAckBytes = tinyos::MacAckView::kMaxSizeBytes;
 constexpr std::size_t kHeader = reflect::kRadioIHeaderBytes;
 constexpr std::int64_t kByteNs = 32'000;
 constexpr std::int64_t kTurnaroundNs = 192'000;
 constexpr std::size_t kPreambleAndFcs = 6 + 2;
-
-std::int64_t wall_ns() {
-  return std::chrono::system_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
-}
+constexpr std::int64_t kLongestFrameNs = 133 * kByteNs;
 
 }  // namespace
 
@@ -122,15 +120,21 @@ void VirtualRadio::handle(Bytes datagram) {
   const std::uint16_t dest = Mac::DestAt::load(kept.data());
   if (src == settings_.address) user_.twin();
   if (lost || !user_.listens() || (dest != settings_.address && dest != kAll)) return;
+  // A frame is heard at its end, which is also the earliest time of what it causes.
+  const std::int64_t end_ns =
+      packet.time_ns + static_cast<std::int64_t>(kept.size() + kPreambleAndFcs) * kByteNs;
   if (asks && dest != kAll) {
     tinyos::MacAck ack;
     ack.fcf = reflect::fcf_of(FrameControl::kAck);
     ack.dsn = Mac::DsnAt::load(kept.data());
     std::uint8_t room[kAckBytes];
     tinyos::MacAckLayout::store(ack, room);
-    const auto bytes = static_cast<std::int64_t>(kept.size() + kPreambleAndFcs);
-    put(Bytes(room, sizeof room), packet.time_ns + bytes * kByteNs + kTurnaroundNs);
+    put(Bytes(room, sizeof room), end_ns + kTurnaroundNs);
     taken_ = {};
+  }
+  const std::int64_t early_ns = end_ns - wall_ns();
+  if (early_ns > 0 && early_ns < kLongestFrameNs) {
+    std::this_thread::sleep_for(std::chrono::nanoseconds(early_ns));
   }
   tinyos::AmHeader header;
   header.dest = dest;

@@ -12,6 +12,8 @@
 
 namespace rubric::run {
 
+constexpr std::uint8_t kPan = 0x22;  ///< TinyOS' default, and the group of AM.
+
 /// Sends IEEE 802.15.4 frames as ZEP packets. A frame is stamped when it begins, by the system's
 /// clock; a link ack 192 us after the end of its frame, as a radio sends it, however late the
 /// process that plays the receiver gets to run.

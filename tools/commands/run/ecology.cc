@@ -1,0 +1,216 @@
+#include "tools/commands/run/ecology.h"
+
+#include <fmt/format.h>
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <set>
+#include <stdexcept>
+#include <utility>
+
+#include "codec/lines/line.h"
+#include "conformance/node/sizes.h"
+#include "tools/commands/run/names.h"
+
+namespace rubric::run {
+namespace {
+
+constexpr std::uint16_t kFirstPort = 17754;
+constexpr std::uint64_t kIdMax = 0xFFFC;
+
+struct Mistake {
+  int line;
+  std::string text;
+};
+
+int line_of(const YAML::Node& node) { return node.Mark().line + 1; }
+
+std::string text_of(const YAML::Node& node, const std::string& key) {
+  if (!node.IsScalar()) throw Mistake{line_of(node), key + ": expected a text"};
+  return node.Scalar();
+}
+
+std::uint64_t number_of(const YAML::Node& node, const std::string& key, std::uint64_t min,
+                        std::uint64_t max) {
+  const std::string text = text_of(node, key);
+  std::uint64_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || value < min || value > max) {
+    throw Mistake{line_of(node), fmt::format("{}: expected a number from {} to {}, given '{}'", key,
+                                             min, max, text)};
+  }
+  return value;
+}
+
+// A name, or a list of names, as names with commas between them.
+std::string list_of(const YAML::Node& node, const std::string& key) {
+  if (!node.IsSequence()) return text_of(node, key);
+  std::string out;
+  for (const YAML::Node& each : node) out += (out.empty() ? "" : ",") + text_of(each, key);
+  return out;
+}
+
+// Returns the values of a map by their keys, all of which must be known.
+std::map<std::string, YAML::Node> values_of(const YAML::Node& node, const std::string& what,
+                                            const std::vector<std::string>& known) {
+  if (!node.IsMap()) throw Mistake{line_of(node), what + ": expected keys and values"};
+  std::map<std::string, YAML::Node> out;
+  for (const auto& pair : node) {
+    const std::string key = text_of(pair.first, "key");
+    if (std::find(known.begin(), known.end(), key) == known.end()) {
+      throw Mistake{line_of(pair.first),
+                    fmt::format("unknown key '{}'; {} has {}", key, what, fmt::join(known, ", "))};
+    }
+    if (!out.emplace(key, pair.second).second) {
+      throw Mistake{line_of(pair.first), key + " is given twice"};
+    }
+  }
+  return out;
+}
+
+// Calls a parser of names whose mistakes lack their place.
+template <class Parse>
+auto named(const YAML::Node& node, const std::string& key, Parse parse) {
+  try {
+    return parse(list_of(node, key));
+  } catch (const std::invalid_argument& error) {
+    throw Mistake{line_of(node), fmt::format("{}: {}", key, error.what())};
+  }
+}
+
+EcologyMote mote_of(const YAML::Node& node) {
+  auto values = values_of(node, "a mote", {"id", "type", "transducers", "actuators", "app"});
+  if (!values.contains("id")) throw Mistake{line_of(node), "a mote needs an id"};
+  EcologyMote mote;
+  mote.id = static_cast<std::uint16_t>(number_of(values["id"], "id", node::kSinkId + 1, kIdMax));
+  mote.descriptor = {1, actuators_of("led"), transducers_of("light")};
+  if (const auto at = values.find("type"); at != values.end()) {
+    mote.descriptor.mote_type = named(at->second, "type", mote_type_of);
+  }
+  if (const auto at = values.find("transducers"); at != values.end()) {
+    mote.descriptor.transducers = named(at->second, "transducers", transducers_of);
+  }
+  if (const auto at = values.find("actuators"); at != values.end()) {
+    mote.descriptor.actuators = named(at->second, "actuators", actuators_of);
+  }
+  if (const auto at = values.find("app"); at != values.end()) {
+    mote.app = text_of(at->second, "app");
+  }
+  return mote;
+}
+
+std::string radio_of(const YAML::Node& node) {
+  const std::string text = text_of(node, "radio");
+  try {
+    const auto address = lines::parse_address(text);
+    if (address && address->kind == lines::Address::Kind::kAir) return text;
+  } catch (const std::invalid_argument&) {
+  }
+  throw Mistake{line_of(node), fmt::format("radio: '{}': expected zep:PORT", text)};
+}
+
+std::string serial_of(const YAML::Node& node) {
+  const std::string text = text_of(node, "serial");
+  const std::string server = "sf-server:";
+  if (text == "pty") return text;
+  if (text.starts_with(server)) {
+    std::uint16_t port = 0;
+    const char* const end = text.data() + text.size();
+    const auto [at, error] = std::from_chars(text.data() + server.size(), end, port);
+    if (error == std::errc() && at == end) return text;
+  }
+  throw Mistake{line_of(node), fmt::format("serial: '{}': expected sf-server:PORT or pty", text)};
+}
+
+EcologyIsland island_of(const YAML::Node& node, std::size_t index) {
+  auto values = values_of(node, "an island", {"island", "radio", "serial", "app", "motes"});
+  if (!values.contains("island")) throw Mistake{line_of(node), "an island needs its number"};
+  EcologyIsland island;
+  island.island = static_cast<std::uint16_t>(number_of(values["island"], "island", 1, kIdMax));
+  island.radio = values.contains("radio") ? radio_of(values["radio"])
+                                          : fmt::format("zep:{}", kFirstPort + index);
+  if (values.contains("serial")) island.serial = serial_of(values["serial"]);
+  if (values.contains("app")) island.app = text_of(values["app"], "app");
+  if (!island.serial.empty() && !island.app.empty()) {
+    throw Mistake{line_of(values["app"]),
+                  "app is the base station's, which is the program at 'serial'"};
+  }
+  if (!values.contains("motes")) return island;
+  if (!values["motes"].IsSequence()) {
+    throw Mistake{line_of(values["motes"]), "motes: expected a list"};
+  }
+  std::set<std::uint16_t> ids;
+  for (const YAML::Node& each : values["motes"]) {
+    island.motes.push_back(mote_of(each));
+    if (!ids.insert(island.motes.back().id).second) {
+      throw Mistake{line_of(each), fmt::format("island {} has a mote {} already", island.island,
+                                               island.motes.back().id)};
+    }
+  }
+  return island;
+}
+
+// Says which two islands cannot have what each of them asks for.
+void check_island(const YAML::Node& node, const EcologyIsland& island, const Ecology& others) {
+  for (const EcologyIsland& other : others.islands) {
+    if (other.island == island.island) {
+      throw Mistake{line_of(node), fmt::format("there is an island {} already", island.island)};
+    }
+    const bool server = island.serial.starts_with("sf-server:") && island.serial != "sf-server:0";
+    if (server && other.serial == island.serial) {
+      throw Mistake{line_of(node["serial"]),
+                    fmt::format("{} is island {}'s", island.serial, other.island)};
+    }
+    if (other.radio != island.radio || island.radio == "zep:0") continue;
+    for (const EcologyMote& mote : island.motes) {
+      for (const EcologyMote& twin : other.motes) {
+        if (mote.id != twin.id) continue;
+        throw Mistake{line_of(node),
+                      fmt::format("island {} on the same air, {}, has a mote {}, too", other.island,
+                                  island.radio, mote.id)};
+      }
+    }
+  }
+}
+
+Ecology ecology_of(const YAML::Node& node) {
+  auto values = values_of(node, "the file", {"loss", "seed", "space", "islands"});
+  Ecology out;
+  if (values.contains("loss")) {
+    out.loss_percent = static_cast<std::uint32_t>(number_of(values["loss"], "loss", 0, 100));
+  }
+  if (values.contains("seed")) out.seed = number_of(values["seed"], "seed", 0, UINT32_MAX);
+  if (values.contains("space")) {
+    out.space = text_of(values["space"], "space");
+    if (out.space == "memory") out.space.clear();
+    if (!out.space.empty() && !out.space.starts_with("mqtt")) {
+      throw Mistake{line_of(values["space"]), "space: expected memory or mqtt://HOST:PORT/ROOT"};
+    }
+  }
+  if (!values.contains("islands") || !values["islands"].IsSequence()) {
+    throw Mistake{line_of(node), "islands: expected a list"};
+  }
+  for (const YAML::Node& each : values["islands"]) {
+    EcologyIsland island = island_of(each, out.islands.size());
+    check_island(each, island, out);
+    out.islands.push_back(std::move(island));
+  }
+  if (out.islands.empty()) throw Mistake{line_of(values["islands"]), "there is no island"};
+  return out;
+}
+
+}  // namespace
+
+Ecology parse_ecology(const std::string& text, const std::string& name) {
+  try {
+    return ecology_of(YAML::Load(text));
+  } catch (const Mistake& mistake) {
+    throw std::runtime_error(fmt::format("{}:{}: {}", name, mistake.line, mistake.text));
+  } catch (const YAML::Exception& broken) {
+    throw std::runtime_error(fmt::format("{}:{}: {}", name, broken.mark.line + 1, broken.msg));
+  }
+}
+
+}  // namespace rubric::run

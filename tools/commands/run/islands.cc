@@ -1,0 +1,197 @@
+#include "tools/commands/run/islands.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <deque>
+#include <map>
+#include <memory>
+#include <thread>
+#include <utility>
+
+#include "codec/lines/broken.h"
+#include "codec/lines/stop.h"
+#include "codec/text/text.h"
+#include "tools/commands/run/child.h"
+#include "tools/commands/run/json_application.h"
+#include "tools/commands/run/mote_application.h"
+#include "tools/commands/run/station.h"
+#include "tools/commands/space/gateway.h"
+#include "tools/commands/space/memory_space.h"
+#include "tools/commands/space/space_url.h"
+
+namespace rubric::run {
+namespace {
+
+// One node with what belongs to it. Members end in the order of their need for each other.
+struct Inhabitant {
+  std::unique_ptr<Child> child;
+  std::deque<std::unique_ptr<Application>> applications;
+  std::unique_ptr<space::Gateway> gateway;
+  std::unique_ptr<Station> station;
+};
+
+// The setups of an ecology, island by island: sink, base station, motes.
+class Plan {
+ public:
+  explicit Plan(const Ecology& ecology) : ecology_(ecology) {}
+
+  StationSetup sink(const EcologyIsland& island) {
+    StationSetup setup = on_air(island, node::Role::kSink, node::kSinkId);
+    setup.name = fmt::format("sink{}", island.island);
+    setup.offered = island.serial.empty() ? "sf-server:0" : island.serial;
+    return setup;
+  }
+  StationSetup base_station(const EcologyIsland& island) {
+    StationSetup setup;
+    setup.role = node::Role::kBaseStation;
+    setup.name = fmt::format("pc{}", island.island);
+    setup.island = island.island;
+    setup.seed = next_seed();
+    setup.keeps = false;  // Its sink keeps the line's frames.
+    return setup;
+  }
+  StationSetup mote(const EcologyIsland& island, const EcologyMote& mote) {
+    StationSetup setup = on_air(island, node::Role::kMote, mote.id);
+    setup.name = fmt::format("mote{}_{}", island.island, mote.id);
+    setup.keeps = false;
+    return setup;
+  }
+
+ private:
+  StationSetup on_air(const EcologyIsland& island, node::Role role, std::uint16_t id) {
+    StationSetup setup;
+    setup.role = role;
+    setup.id = id;
+    setup.island = role == node::Role::kSink ? island.island : std::uint16_t{0};
+    setup.air = lines::parse_address(island.radio)->at;
+    setup.loss = ecology_.loss_percent / 100.0;
+    setup.seed = next_seed();
+    // A free port makes an air of its own.
+    const bool own = setup.air.port == 0;
+    const std::string key = own ? fmt::format("island {}", island.island) : island.radio;
+    const bool first = !airs_.contains(key);
+    if (first) airs_[key] = airs_.size() + 1;
+    setup.air_name = fmt::format("r{}", airs_[key]);
+    setup.keeps = first;
+    return setup;
+  }
+  std::uint32_t next_seed() { return static_cast<std::uint32_t>(ecology_.seed * 1000 + ++count_); }
+
+  const Ecology& ecology_;
+  std::map<std::string, std::size_t> airs_;
+  std::uint32_t count_ = 0;
+};
+
+class Islands {
+ public:
+  Islands(const Ecology& ecology, const std::string& credentials, Keeper& keeper)
+      : ecology_(ecology), credentials_(credentials), keeper_(keeper) {
+    Plan plan(ecology);
+    for (const EcologyIsland& island : ecology.islands) settle(island, plan);
+  }
+
+  void run() {
+    std::deque<std::thread> threads;
+    for (auto& inhabitant : inhabitants_) {
+      threads.emplace_back([this, station = inhabitant->station.get()] { run(*station); });
+    }
+    for (std::thread& thread : threads) thread.join();
+    // Motes first, then what they talk to.
+    while (!inhabitants_.empty()) inhabitants_.pop_back();
+    if (!fault_.empty()) throw lines::Broken(fault_);
+  }
+
+ private:
+  void settle(const EcologyIsland& island, Plan& plan) {
+    Inhabitant& sink = add(plan.sink(island), "", nullptr);
+    const std::uint16_t air = sink.station->air_port();
+    report::print(stderr, "rubric: island {}: zep:{}, {}\n", island.island, air,
+                  sink.station->serial_address());
+    if (island.serial.empty()) {
+      StationSetup setup = plan.base_station(island);
+      setup.to = lines::required_address(sink.station->serial_address());
+      Inhabitant& base = add(std::move(setup), island.app, nullptr);
+      base.gateway = gateway_of(island.island);
+      base.station->add(*base.gateway);
+      base.station->join_peers(*base.gateway);
+    }
+    for (const EcologyMote& mote : island.motes) {
+      StationSetup setup = plan.mote(island, mote);
+      setup.air.port = air;
+      add(std::move(setup), mote.app, &mote);
+    }
+  }
+
+  Inhabitant& add(StationSetup setup, const std::string& app, const EcologyMote* mote) {
+    Inhabitant& one = *inhabitants_.emplace_back(std::make_unique<Inhabitant>());
+    const std::string name = setup.name;
+    one.station = std::make_unique<Station>(std::move(setup), keeper_);
+    one.applications.push_back(
+        std::make_unique<JsonApplication>(JsonApplication::Ends{-1, STDOUT_FILENO, name}));
+    if (!app.empty() && app != "demo") {
+      one.child = std::make_unique<Child>(app);
+      one.applications.push_back(std::make_unique<JsonApplication>(
+          JsonApplication::Ends{one.child->out(), one.child->in(), ""}));
+    } else if (mote != nullptr) {
+      one.applications.push_back(
+          std::make_unique<MoteApplication>(mote->descriptor, app == "demo"));
+    }
+    for (const auto& application : one.applications) one.station->add(*application);
+    return one;
+  }
+
+  std::unique_ptr<space::Gateway> gateway_of(std::uint16_t island) {
+    const std::string creator = fmt::format("{}:null", island);
+    std::unique_ptr<space::Space> space;
+    if (ecology_.space.empty()) {
+      space = std::make_unique<space::MemorySpace>(board_, creator);
+    } else {
+      space = space::open_mqtt(ecology_.space, credentials_, island);
+    }
+    return std::make_unique<space::Gateway>(space::Gateway::Settings{island, {}}, std::move(space));
+  }
+
+  void run(Station& station) {
+    try {
+      station.run(lines::stop_requested);
+    } catch (const lines::Broken& broken) {
+      const std::lock_guard lock(mutex_);
+      fault_ = fmt::format("{}: {}", station.setup().name, broken.what());
+      lines::request_stop();
+    }
+    if (lines::stop_requested()) return;
+    report::print(stderr, "rubric: the application of {} has ended, so it has\n",
+                  station.setup().name);
+    if (++ended_ == inhabitants_.size()) lines::request_stop();
+  }
+
+  const Ecology& ecology_;
+  const std::string& credentials_;
+  Keeper& keeper_;
+  std::shared_ptr<space::MemoryBoard> board_ = std::make_shared<space::MemoryBoard>();
+  std::deque<std::unique_ptr<Inhabitant>> inhabitants_;
+  std::mutex mutex_;
+  std::string fault_;
+  std::atomic<std::size_t> ended_ = 0;
+};
+
+}  // namespace
+
+std::vector<trace::NodeHeader> nodes_of(const Ecology& ecology) {
+  std::vector<trace::NodeHeader> out;
+  Plan plan(ecology);
+  for (const EcologyIsland& island : ecology.islands) {
+    out.push_back(header_of(plan.sink(island)));
+    if (island.serial.empty()) out.push_back(header_of(plan.base_station(island)));
+    for (const EcologyMote& mote : island.motes) out.push_back(header_of(plan.mote(island, mote)));
+  }
+  return out;
+}
+
+void run_ecology(const Ecology& ecology, const std::string& credentials, Keeper& keeper) {
+  Islands(ecology, credentials, keeper).run();
+}
+
+}  // namespace rubric::run

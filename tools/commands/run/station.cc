@@ -1,0 +1,253 @@
+#include "tools/commands/run/station.h"
+
+#include <fmt/format.h>
+#include <poll.h>
+
+#include <algorithm>
+#include <chrono>
+#include <random>
+#include <utility>
+
+#include "codec/generated/tinyos/am_header.h"
+#include "codec/text/text.h"
+#include "tools/commands/run/calls.h"
+#include "tools/commands/run/wall_clock.h"
+
+namespace rubric::run {
+namespace {
+
+using node::Line;
+using std::chrono::milliseconds;
+using std::chrono::steady_clock;
+
+constexpr milliseconds kMoment{5};     // While there are lines to look at.
+constexpr milliseconds kLongest{100};  // Until a stop is seen.
+
+machine::Link link_of(Line line) { return static_cast<machine::Link>(line); }
+
+// A packet as the machine's frame, which a log shows.
+machine::Frame frame_of(Line line, Bytes packet) {
+  machine::Frame frame;
+  frame.link = link_of(line);
+  const auto header = tinyos::AmHeaderView::parse(packet);
+  if (!header) {
+    frame.packet = packet;
+    return frame;
+  }
+  frame.dest = header->dest();
+  frame.src = header->src();
+  frame.type = header->type();
+  frame.payload = header->stale();
+  return frame;
+}
+
+}  // namespace
+
+trace::NodeHeader header_of(const StationSetup& setup) {
+  trace::NodeHeader header;
+  header.name = setup.name;
+  const bool mote = setup.role == node::Role::kMote;
+  const bool base = setup.role == node::Role::kBaseStation;
+  header.role = mote ? trace::Role::kMote : base ? trace::Role::kBaseStation : trace::Role::kSink;
+  if (!base) header.id = setup.id;
+  if (!mote) header.island = setup.island;
+  header.iut = true;
+  header.stated = {{trace::ParameterId::kResponse, kResponseTicks}};
+  if (!base) header.stated.push_back({trace::ParameterId::kChannels, node::AnySizes::kChannels});
+  return header;
+}
+
+Station::Station(StationSetup setup, Keeper& keeper)
+    : setup_(std::move(setup)),
+      keeper_(keeper),
+      node_(*this, *this),
+      started_(steady_clock::now()),
+      island_(setup_.island) {
+  names_.node = setup_.name;
+  names_.radio = setup_.air_name;
+  names_.serial = fmt::format("ser{}", setup_.island);
+  names_.radio_group = kPan;
+  if (!is_base_station()) open_radio();
+  if (setup_.to) serial_.emplace(*setup_.to);
+  if (!setup_.offered.empty()) serial_.emplace(setup_.offered);
+}
+
+void Station::open_radio() {
+  VirtualRadio::User user;
+  user.listens = [this] { return node_.interface_is_on(Line::kRadio); };
+  user.heard = [this](Bytes packet) { heard(Line::kRadio, packet); };
+  user.sent = [this](bool acked) {
+    catch_up();
+    if (awaits_link_ack_) {
+      keeper_.given(names_, machine::SendDone{machine::Link::kRadio, acked});
+    }
+    awaits_link_ack_ = false;
+    node_.sent(Line::kRadio, acked);
+  };
+  user.on_air = [this](const Packet& packet) {
+    if (setup_.keeps) keeper_.frame(packet, setup_.air_name == "rA" ? "radio" : setup_.air_name);
+  };
+  user.twin = [this] {
+    if (!is_mote() || warned_) return;  // All sinks have the same id.
+    report::print(stderr, "rubric: another mote on this air has the id {}, too\n", setup_.id);
+    warned_ = true;
+  };
+  radio_.emplace(VirtualRadio::Settings{setup_.id, setup_.loss, setup_.seed}, setup_.air,
+                 std::move(user));
+  radio_->open();
+}
+
+node::Ticks Station::ticks() const {
+  const auto us = (steady_clock::now() - started_) / std::chrono::microseconds(1);
+  return static_cast<node::Ticks>(us * 1024 / 1'000'000);
+}
+
+// Lets the node do what is due; returns when it wants to run next. Does nothing within a callback,
+// which happens at the time of what it comes from.
+lines::SteadyTime Station::catch_up() {
+  const lines::SteadyTime latest = steady_clock::now() + kLongest;
+  if (depth_ > 0) return latest;
+  const node::Ticks now = ticks();
+  node::Ticks due = 0;
+  ++depth_;
+  const bool runs = node_.run(now, due);
+  --depth_;
+  if (!runs) return latest;
+  const std::int64_t left_ticks = static_cast<std::int32_t>(due - now);
+  const milliseconds left(std::max<std::int64_t>(0, left_ticks) * 1000 / 1024 + 1);
+  return std::min(latest, steady_clock::now() + left);
+}
+
+void Station::heard(Line line, Bytes packet) {
+  catch_up();
+  keeper_.given(names_, machine::Heard{frame_of(line, packet)});
+  ++depth_;
+  node_.received(line, packet);
+  --depth_;
+}
+
+void Station::transmit(Line line, Bytes packet, bool link_ack) {
+  keeper_.did(names_, frame_of(line, packet));
+  if (line == Line::kRadio && radio_) {
+    awaits_link_ack_ = link_ack;
+    return radio_->send(packet, link_ack);
+  }
+  if (line == Line::kSerial && serial_) {
+    const std::vector<std::uint8_t> bytes(packet.begin(), packet.end());
+    keep_serial(bytes, !is_sink());
+    serial_->send(bytes);
+  }
+  if (line == Line::kPeis && peers_ != nullptr) peers_->send(packet);
+  node_.sent(line, false);
+}
+
+std::optional<machine::Notice> Station::call(const machine::Call& call) {
+  catch_up();
+  keeper_.given(names_, machine::Called{call});
+  ++depth_;
+  const std::optional<machine::Notice> result = perform(call, node_);
+  --depth_;
+  if (result) keeper_.did(names_, *result);
+  return result;
+}
+
+void Station::happened(const machine::Notice& notice) {
+  keeper_.did(names_, notice);
+  for (run::Application* application : applications_) application->happened(notice, *this);
+}
+
+void Station::joined(node::Address own, bool success) {
+  happened(machine::Joined{address_of(own), success});
+}
+
+void Station::mote_joined(node::Address mote, const node::Descriptor& descriptor) {
+  happened(machine::MoteJoined{address_of(mote), descriptor_of(descriptor)});
+}
+
+void Station::received(node::Address src, std::uint8_t app_id, Bytes data) {
+  happened(machine::Received{address_of(src), app_id, data});
+}
+
+void Station::ack_received(std::uint8_t app_id, std::uint16_t seq_num, bool success) {
+  happened(machine::AckReceived{app_id, seq_num, success});
+}
+
+void Station::syn_data_received(node::ChannelId channel, node::DataStatus status) {
+  happened(machine::SynDataReceived{channel, static_cast<machine::DataStatus>(status)});
+}
+
+void Station::keep_serial(const std::vector<std::uint8_t>& bytes, bool inbound) {
+  if (!is_sink() && !setup_.keeps) return;
+  Packet packet;
+  packet.framing = Framing::kSf;
+  packet.direction = inbound ? Direction::kInbound : Direction::kOutbound;
+  packet.bytes = Bytes(bytes.data(), bytes.size());
+  packet.time_ns = wall_ns();
+  const bool several = setup_.air_name != "rA";
+  keeper_.frame(packet, fmt::format("serial:{}", several ? setup_.island : 1));
+}
+
+void Station::run(const std::function<bool()>& stop) {
+  node::Setup setup{};
+  setup.role = setup_.role;
+  setup.id = setup_.id;
+  setup.island = setup_.island;
+  setup.channels = node::AnySizes::kChannels;
+  setup.last_seq_num = static_cast<std::uint16_t>(std::mt19937(setup_.seed)() % 60'000);
+  setup.slack = 1;
+  setup.now = ticks();
+  node_.start(setup);
+  for (run::Application* application : applications_) application->start(*this);
+  while (!stop() && !has_ended()) step();
+  for (run::Application* application : applications_) application->stop(*this);
+}
+
+bool Station::has_ended() const {
+  return std::any_of(applications_.begin(), applications_.end(),
+                     [](const run::Application* one) { return one->ended(); });
+}
+
+void Station::step() {
+  lines::SteadyTime until = catch_up();
+  int calls = -1;
+  for (run::Application* application : applications_) {
+    until = std::min(until, application->run(*this));
+    if (calls < 0) calls = application->fd();
+  }
+  if (serial_) {
+    if (serial_->open() && is_base_station()) call(machine::SetIslandId{setup_.island});
+    until = std::min(until, steady_clock::now() + kMoment);
+  }
+  if (peers_ != nullptr) {
+    peers_->receive([this](Bytes packet) { heard(Line::kPeis, packet); });
+  }
+  if (radio_) {
+    radio_->run(until, calls);
+  } else {
+    pollfd input{calls, POLLIN, 0};
+    ::poll(&input, 1, static_cast<int>(kMoment.count()));
+  }
+  hear_serial();
+  keeper_.settle();
+}
+
+void Station::hear_serial() {
+  while (serial_ && serial_->is_open()) {
+    const std::vector<std::uint8_t> packet = serial_->receive(steady_clock::now());
+    if (packet.empty()) return;
+    keep_serial(packet, is_sink());
+    heard(Line::kSerial, Bytes(packet.data(), packet.size()));
+    look_at_island();
+  }
+}
+
+// Says that the host at a sink's serial line has another island in mind.
+void Station::look_at_island() {
+  const std::uint16_t island = node_.address().pid;
+  if (!is_sink() || island == island_) return;
+  report::print(stderr, "rubric: the host at the serial line made this island {}, which was {}\n",
+                island, island_);
+  island_ = island;
+}
+
+}  // namespace rubric::run

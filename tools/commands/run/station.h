@@ -1,0 +1,109 @@
+// A node of `rubric run` with its lines and applications.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "conformance/node/node.h"
+#include "conformance/trace/trace.h"
+#include "tools/commands/run/application.h"
+#include "tools/commands/run/keeper.h"
+#include "tools/commands/run/serial_end.h"
+#include "tools/commands/run/virtual_radio.h"
+
+namespace rubric::run {
+
+struct StationSetup {
+  std::string name;  ///< In the log.
+  node::Role role = node::Role::kMote;
+  std::uint16_t id = node::kSinkId;  ///< Of a mote or sink.
+  std::uint16_t island = 0;          ///< Of a sink or base station.
+  lines::HostPort air;               ///< Of a mote or sink.
+  std::string air_name = "rA";       ///< In log and capture.
+  double loss = 0;                   ///< Share of the frames that are not received.
+  std::uint32_t seed = 0;
+  std::string offered;               ///< A sink's serial line: pty, sf-server:PORT; empty: none.
+  std::optional<lines::Address> to;  ///< A base station's line to its sink.
+  bool keeps = true;  ///< Whether it keeps the frames of its lines; not if another node there does.
+};
+
+/// What a PC promises: a process may be late. (decision 125)
+constexpr int kResponseTicks = 1000;
+
+/// Returns the node as a log names it.
+trace::NodeHeader header_of(const StationSetup& setup);
+
+/// The line between base stations: takes what a node sends to other islands.
+class Peers {
+ public:
+  /// Takes a packet from its dispatch byte on.
+  virtual void send(Bytes packet) = 0;
+  /// Passes on what has come.
+  virtual void receive(const std::function<void(Bytes packet)>& take) = 0;
+
+ protected:
+  ~Peers() = default;
+};
+
+/// Runs in one thread.
+class Station : private node::Driver, private node::Application, public Caller {
+ public:
+  /// Opens its lines. Throws Broken if one cannot be had.
+  Station(StationSetup setup, Keeper& keeper);
+
+  /// Applications in the order in which they hear of events; all before run().
+  void add(run::Application& application) { applications_.push_back(&application); }
+  void join_peers(Peers& peers) { peers_ = &peers; }
+  const StationSetup& setup() const { return setup_; }
+  std::uint16_t air_port() const { return radio_->port(); }
+  /// Returns the sink's serial line as a base station names it.
+  const std::string& serial_address() const { return serial_->other_end(); }
+
+  /// Runs until stop() holds or an application ends it. Throws Broken.
+  void run(const std::function<bool()>& stop);
+
+  std::optional<machine::Notice> call(const machine::Call& call) override;
+
+ private:
+  // node::Driver
+  void transmit(node::Line line, Bytes packet, bool link_ack) override;
+  // node::Application
+  void joined(node::Address own, bool success) override;
+  void mote_joined(node::Address mote, const node::Descriptor& descriptor) override;
+  void received(node::Address src, std::uint8_t app_id, Bytes data) override;
+  void ack_received(std::uint8_t app_id, std::uint16_t seq_num, bool success) override;
+  void syn_data_received(node::ChannelId channel, node::DataStatus status) override;
+
+  bool is_mote() const { return setup_.role == node::Role::kMote; }
+  bool is_sink() const { return setup_.role == node::Role::kSink; }
+  bool is_base_station() const { return setup_.role == node::Role::kBaseStation; }
+  node::Ticks ticks() const;
+  void open_radio();
+  void keep_serial(const std::vector<std::uint8_t>& bytes, bool inbound);
+  lines::SteadyTime catch_up();
+  void heard(node::Line line, Bytes packet);
+  void happened(const machine::Notice& notice);
+  void step();
+  void hear_serial();
+  void look_at_island();
+  bool has_ended() const;
+
+  StationSetup setup_;
+  Keeper& keeper_;
+  events::NodeNames names_;
+  node::SizedNode<node::AnySizes> node_;
+  lines::SteadyTime started_;
+  std::vector<run::Application*> applications_;
+  Peers* peers_ = nullptr;
+  std::optional<VirtualRadio> radio_;
+  std::optional<SerialEnd> serial_;
+  bool awaits_link_ack_ = false;
+  int depth_ = 0;  // Of calls into the node: a callback may call.
+  bool warned_ = false;
+  std::uint16_t island_ = 0;
+};
+
+}  // namespace rubric::run

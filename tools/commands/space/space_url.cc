@@ -1,0 +1,20 @@
+#include "tools/commands/space/space_url.h"
+
+#include <fmt/format.h>
+
+#include "tools/commands/space/layout.h"
+#include "tools/commands/space/mqtt_space.h"
+
+namespace rubric::space {
+
+std::unique_ptr<Space> open_mqtt(const std::string& url, const std::string& credentials,
+                                 std::uint16_t island) {
+  MqttSettings settings = parse_mqtt(url);
+  add_credentials(credentials, settings);
+  Tuple will;
+  will.key = island_availability_key(island);
+  will.data = availability_data(false);
+  return std::make_unique<MqttSpace>(settings, fmt::format("{}:null", island), will);
+}
+
+}  // namespace rubric::space
