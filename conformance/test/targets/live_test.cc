@@ -7,7 +7,6 @@
 #include <set>
 #include <thread>
 
-#include "codec/generated/rubicon/enums.h"
 #include "conformance/test/runner/case_files.h"
 #include "conformance/test/runner/run_case.h"
 #include "conformance/test/targets/attachment.h"
@@ -208,50 +207,6 @@ TEST(Live, AdaptersInRealTime) {
                           }});
     }
   }
-  try_all(std::move(attempts));
-}
-
-// Nobody else's node is silent: its application says something whenever something comes.
-class Talkative : public runner::Machine {
- public:
-  void step(machine::Ticks now, const machine::Event& event, machine::Actions& actions) override {
-    static constexpr std::uint8_t kBody[] = {'h', 'i'};
-    const bool is_sink = state().config.role == machine::Role::kSink;
-    const machine::Address peer{state().island,
-                                static_cast<std::uint16_t>(is_sink ? machine::kNullDevid : 7)};
-    machine::Actions own;
-    if (std::holds_alternative<machine::Heard>(event)) {
-      const machine::Send send{peer, static_cast<std::uint8_t>(rubicon::Component::kMockup), false,
-                               Bytes(kBody, sizeof kBody)};
-      Machine::step(now, machine::Called{send}, own);
-    }
-    Machine::step(now, event, actions);
-    for (const machine::Action& action : own.all()) {
-      if (action.what != machine::Action::What::kTransmit) continue;
-      actions.transmit(action.requirement) = own.transmit_of(action);
-    }
-  }
-};
-
-// What a node says besides is no answer, and nobody's fault.
-TEST(Live, NodesThatTalkByThemselves) {
-  std::vector<Attempt> attempts;
-  attempts.push_back({"sf, talks", line_cases("sink", false), [](const auto& cases) {
-                        const std::uint16_t port = free_port();
-                        const RealNode sink(forwarder_at(port), config_of(machine::Role::kSink, 3),
-                                            std::make_unique<Talkative>());
-                        const auto attachment =
-                            attach(fmt::format("sf:127.0.0.1:{}", port), kPatient);
-                        return run_all(*attachment, cases);
-                      }});
-  attempts.push_back({"sf-server, talks", line_cases("base_station", false), [](const auto& cases) {
-                        const std::uint16_t port = free_port();
-                        const auto attachment = attach(fmt::format("sf-server:{}", port), kPatient);
-                        const RealNode station(forwarder_to(port),
-                                               config_of(machine::Role::kBaseStation, 11),
-                                               std::make_unique<Talkative>());
-                        return run_all(*attachment, cases);
-                      }});
   try_all(std::move(attempts));
 }
 
