@@ -15,7 +15,7 @@ constexpr const Protocol* kProtocols[] = {
     &rubicon::tables::kProtocol,
 };
 
-/// Of all specs: also of those that the protocols stand on.
+/// All specs, also those of the layers below the protocols.
 constexpr const Protocol* kSpecs[] = {
     &tinyos::tables::kProtocol,
     &oscilloscope::tables::kProtocol,
