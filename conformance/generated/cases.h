@@ -17,7 +17,7 @@ struct CaseUse {
 };
 
 /// By file, then as they stand there; each case once for a rule and a sign.
-inline constexpr std::array<CaseUse, 1833> kCaseUses{{
+inline constexpr std::array<CaseUse, 1838> kCaseUses{{
     {"again_j.call_after_a_failure", "conformance/cases/again_j.rtr", "J8-FAIL"_rule, false},
     {"again_j.call_after_a_failure", "conformance/cases/again_j.rtr", "J1-REQUEST"_rule, false},
     {"again_j.call_after_a_failure", "conformance/cases/again_j.rtr", "J8-RETRY"_rule, false},
@@ -250,6 +250,9 @@ inline constexpr std::array<CaseUse, 1833> kCaseUses{{
      "conformance/cases/edges_j.rtr", "J1-REQUEST"_rule, false},
     {"edges_j.join_over_while_radio_busy",
      "conformance/cases/edges_j.rtr", "J5-SUCCESS"_rule, false},
+    {"edges_j.channel_before", "conformance/cases/edges_j.rtr", "S1-ID"_rule, false},
+    {"edges_j.channel_before", "conformance/cases/edges_j.rtr", "J1-REQUEST"_rule, false},
+    {"edges_j.channel_before", "conformance/cases/edges_j.rtr", "J4-ACK"_rule, false},
     {"edges_n.mote_local_device", "conformance/cases/edges_n.rtr", "N4-SELF"_rule, false},
     {"edges_n.mote_local_device", "conformance/cases/edges_n.rtr", "N4-SELF"_rule, true},
     {"edges_n.sink_local_device", "conformance/cases/edges_n.rtr", "N4-SELF"_rule, false},
@@ -297,6 +300,8 @@ inline constexpr std::array<CaseUse, 1833> kCaseUses{{
     {"edges_n.mote_other_am_type", "conformance/cases/edges_n.rtr", "N5-DELIVER"_rule, true},
     {"edges_n.mote_other_am_type", "conformance/cases/edges_n.rtr", "N5-DELIVER"_rule, false},
     {"edges_n.mote_other_am_type", "conformance/cases/edges_n.rtr", "T1-DELIVER"_rule, false},
+    {"edges_n.idle_application", "conformance/cases/edges_n.rtr", "N2-BUSY"_rule, true},
+    {"edges_n.idle_application", "conformance/cases/edges_n.rtr", "N2-QUEUE"_rule, false},
     {"edges_p.mote_without_power", "conformance/cases/edges_p.rtr", "N10-OFF"_rule, true},
     {"edges_p.mote_without_power", "conformance/cases/edges_p.rtr", "J11-HEAR"_rule, true},
     {"edges_p.mote_without_power", "conformance/cases/edges_p.rtr", "J1-REQUEST"_rule, false},
@@ -416,7 +421,7 @@ inline constexpr std::array<CaseUse, 1833> kCaseUses{{
     {"j4.accept", "conformance/cases/j4.rtr", "J4-CONTENT"_rule, false},
     {"j4.accept", "conformance/cases/j4.rtr", "J5-SUCCESS"_rule, false},
     {"j4.accept", "conformance/cases/j4.rtr", "J4-CONTENT"_rule, true},
-    {"j4.accept", "conformance/cases/j4.rtr", "J4-CLOCK"_rule, false},
+    {"j4.clock", "conformance/cases/j4.rtr", "J4-CLOCK"_rule, false},
     {"j4.wrong_seq", "conformance/cases/j4.rtr", "J4-SEQ"_rule, true},
     {"j4.wrong_seq", "conformance/cases/j4.rtr", "J5-ACCEPT"_rule, true},
     {"j4.wrong_seq", "conformance/cases/j4.rtr", "J4-ACK"_rule, false},
