@@ -80,12 +80,14 @@ struct LoggedNode {
   std::string name;
   machine::Role role = machine::Role::kMote;
   std::uint16_t id = 0;
-  std::uint16_t island = 0;  ///< 0: not said.
-  bool under_test = true;    ///< If a log marks some nodes as under test, the others are not.
-  bool application = false;  ///< The log has its application's calls and events.
-  bool hearing = false;      ///< The log has what its radio was given.
-  bool peis = false;         ///< The log has its lines of PEIS.
-  bool busy = false;         ///< A line of it, or its application, was busy for some time.
+  std::uint16_t island = 0;   ///< 0: not said.
+  bool under_test = true;     ///< If a log marks some nodes as under test, the others are not.
+  bool application = false;   ///< The log has its application's calls and events.
+  bool hearing = false;       ///< The log has what its radio was given; a base station's lines.
+  bool logged = false;        ///< The log has lines of it; else only a header names it.
+  std::uint8_t channels = 0;  ///< Synaptic channels of each direction; 0: not said.
+  bool peis = false;          ///< The log has its lines of PEIS.
+  bool busy = false;          ///< A line of it, or its application, was busy for some time.
   std::vector<std::pair<std::int64_t, std::int64_t>> busy_us;  ///< From when to when.
 };
 

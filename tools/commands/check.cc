@@ -42,7 +42,7 @@ constexpr const char* kCheckFooter =
     "disagree are refused (66). Beside a capture a log has application lines.\n"
     "A node that --node or --sink names is never an unknown sender, and what they say wins over\n"
     "guesses. What the run plainly shows wins over them, and is reported as inconclusive.\n"
-    "Frames count from 1, times from the first one. PEIS messages of a log are not read.\n"
+    "Frames count from 1, times from the first one.\n"
     "Lines in use, and with --follow files that grow, are judged as frames come, several at a\n"
     "time. A finding is reported when 1 s more than nodes may take has passed, and withdrawn when\n"
     "later frames explain it. Ctrl-C, or the end of all sources, ends with the report;\n"

@@ -32,6 +32,8 @@ class Identifier {
     out_.marks.resize(run_.seen.size());
     out_.facts = run_.facts;
     out_.gone_us = run_.past.until_us;
+    captured_ = !run_.marked || std::any_of(run_.seen.begin(), run_.seen.end(),
+                                            [](const auto& seen) { return seen.node.empty(); });
     for (const LoggedNode& node : run_.nodes) add_logged(node);
     for (std::uint32_t i = 0; i < run_.seen.size(); ++i) look(i);
     resolve_streams();
@@ -53,7 +55,8 @@ class Identifier {
     device.am = node.id;
     device.role = node.role;
     device.island = node.island;
-    device.judged = node.under_test;
+    // Of one that only a header names as under test the log shows nothing; a capture may.
+    device.judged = node.under_test && (node.logged || captured_);
     device.application = node.application;
     device.hearing = node.hearing;
     device.name = node.name;
@@ -133,7 +136,7 @@ class Identifier {
     for (std::size_t i = 0; i < run_.nodes.size(); ++i) {
       const LoggedNode& node = run_.nodes[i];
       if (node.role == Role::kBaseStation || node.id != frame.src || i == receiver) continue;
-      if (run_.marked && node.under_test) continue;
+      if (run_.marked && node.under_test && node.logged) continue;
       if (found != kNobody) return kNobody;
       found = static_cast<std::uint16_t>(i);
     }
@@ -370,7 +373,8 @@ class Identifier {
       mark.device = out_.devices[mark.receiver].partner;
       // A log has all that its nodes under test sent: it is one of these, with other bytes after
       // it.
-      mark.repeat = mark.device < run_.nodes.size() && run_.nodes[mark.device].under_test;
+      mark.repeat = mark.device < run_.nodes.size() && run_.nodes[mark.device].under_test &&
+                    run_.nodes[mark.device].logged;
       return;
     }
     if (seen.kind == Observation::Kind::kSerial || seen.kind == Observation::Kind::kLinkAck) {
@@ -388,6 +392,7 @@ class Identifier {
 
   const Run& run_;
   const Options& options_;
+  bool captured_ = false;  // Something but a log that marks its nodes.
   const Given given_;
   GivenRoles roles_{given_};
   Streams streams_;

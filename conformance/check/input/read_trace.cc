@@ -42,12 +42,16 @@ class LogReader {
       node.id = header.id.value_or(0);
       node.island = header.island.value_or(0);
       node.under_test = !marked || header.iut;
+      if (const std::int64_t* const said = find(header.stated, trace::ParameterId::kChannels)) {
+        node.channels = static_cast<std::uint8_t>(*said);
+      }
       for (const Line* line : lines_) {
         if (line->node != header.name) continue;
         const std::optional<LinkKind> link = scope_.link(line->link);
+        node.logged = true;
         node.application = node.application || link == LinkKind::kApp;
         node.hearing = node.hearing ||
-                       (link == LinkKind::kRadio && line->op == Op::kGiven && !is_state(*line));
+                       (hears_by(node.role, link) && line->op == Op::kGiven && !is_state(*line));
         node.busy = node.busy || line->message.name == "busy";
         node.peis = node.peis || link == LinkKind::kPeis;
       }
@@ -82,6 +86,11 @@ class LogReader {
   static bool is_state(const Line& line) {
     const std::string& name = line.message.name;
     return name == "linkack" || name == "busy" || name == "idle";
+  }
+
+  static bool hears_by(machine::Role role, std::optional<LinkKind> link) {
+    if (role != machine::Role::kBaseStation) return link == LinkKind::kRadio;
+    return link == LinkKind::kSerial || link == LinkKind::kPeis;
   }
 
   std::int64_t time_of(const Line& line) {

@@ -35,9 +35,17 @@ void Acks::arrived(std::uint16_t node, const Observation& seen, std::uint16_t se
   arrived.ackable = arrived.forbidden == ReqId::kNone &&
                     machine::must_ack(net.reliable == 1, net.dest, net.trans_id, net.app_id);
   arrived.must_ack = arrived.ackable && !arrival.free;
+  const bool known = net.sound && net.reliable <= 1 && net.trans_id == component::kConnless &&
+                     machine::is_known_app(net.app_id);
+  if (known && !arrival.free && arrived.forbidden == ReqId::kNone) {
+    arrived.delivers = arrival.delivers;
+  }
   arrived.sure = arrival.sure;
   if (arrived.must_ack && arrived.sure) ++owed_[node];
-  if (ring.full()) close(node, ring.oldest(0));
+  if (ring.full()) {
+    missing_delivery(node, ring.oldest(0), seen.place.time_us);
+    close(node, ring.oldest(0));
+  }
   ring.push(arrived);
 }
 
@@ -248,29 +256,86 @@ void Acks::showed_life(std::uint16_t node, std::int64_t now_us) {
   for (std::size_t i = 0; i < ring.size(); ++i) {
     Arrived& arrived = ring.newest(i);
     if (!arrived.must_ack || !arrived.sure || arrived.acks > 0) continue;
-    if (now_us <= context_.due_us(node, arrived.whole_us)) continue;
-    --owed_[node];
-    arrived.must_ack = false;
-    const Device& device = context_.device(node);
-    // A radio frame of the node may have escaped; a serial line is seen whole.
-    const bool by_radio =
-        device.role == machine::Role::kMote ||
-        (device.role == machine::Role::kSink && arrived.net.src.devid != machine::kNullDevid);
-    std::size_t around = 0;  // Many at once may have found a buffer full (decision 122).
-    for (std::size_t k = 0; k < ring.size(); ++k) {
-      const std::int64_t apart = ring.oldest(k).place.time_us - arrived.place.time_us;
-      if (apart > -kAroundUs && apart < kAroundUs) ++around;
+    missing_ack(node, arrived, now_us, true);
+  }
+}
+
+// Returns whether so many came around that time that they may have found a buffer full (decision
+// 122).
+bool Acks::crowded(std::uint16_t node, const Arrived& arrived) {
+  Ring<Arrived, kRoom>& ring = arrived_[node];
+  std::size_t around = 0;
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const std::int64_t apart = ring.oldest(i).place.time_us - arrived.place.time_us;
+    if (apart > -kAroundUs && apart < kAroundUs) ++around;
+  }
+  return around > kCrowd;
+}
+
+// Reports an ack that surely is owed and, by `now_us`, overdue.
+void Acks::missing_ack(std::uint16_t node, Arrived& arrived, std::int64_t now_us, bool lives) {
+  if (now_us <= context_.due_us(node, arrived.whole_us)) return;
+  --owed_[node];
+  arrived.must_ack = false;
+  const Device& device = context_.device(node);
+  // A radio frame of the node may have escaped; a serial line is seen whole.
+  const bool by_radio =
+      device.role == machine::Role::kMote ||
+      (device.role == machine::Role::kSink && arrived.net.src.devid != machine::kNullDevid);
+  Severity severity = Severity::kFail;
+  if (crowded(node, arrived) || context_.who.damaged(arrived.place.time_us, now_us)) {
+    severity = Severity::kInconclusive;
+  } else if (by_radio) {
+    severity = context_.without(node, arrived.place.time_us, now_us);
+  }
+  context_.report(
+      "T2-ACK"_rule, context_.on_line(node, severity), arrived.place, node,
+      {"It surely received " + name_of(arrived.net) + ", reliable, and sent no ack within " +
+           ms_text(context_.response_us()) + (lives ? ", though it sent other frames later." : "."),
+       "An ack.",
+       {}});
+}
+
+// Returns whether a copy of the message was delivered before it (decision 111).
+bool Acks::delivered_before(std::uint16_t node, const Arrived& arrived) {
+  Ring<Arrived, kRoom>& ring = arrived_[node];
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const Arrived& other = ring.oldest(i);
+    if (other.delivered > 0 && other.place.time_us <= arrived.place.time_us &&
+        same_message(other.net, arrived.net) && same_payload(other.net, arrived.net)) {
+      return true;
     }
-    const Severity severity = around > kCrowd || context_.who.damaged(arrived.place.time_us, now_us)
-                                  ? Severity::kInconclusive
-                              : by_radio ? context_.without(node, arrived.place.time_us, now_us)
-                                         : Severity::kFail;
-    context_.report(
-        "T2-ACK"_rule, context_.on_line(node, severity), arrived.place, node,
-        {"It surely received " + name_of(arrived.net) + ", reliable, and sent no ack within " +
-             ms_text(context_.response_us()) + ", though it sent other frames later.",
-         "An ack.",
-         {}});
+  }
+  return false;
+}
+
+// Reports what by the node's log came for its application, which never got it.
+void Acks::missing_delivery(std::uint16_t node, Arrived& arrived, std::int64_t now_us) {
+  const Device& device = context_.device(node);
+  if (arrived.delivers == ReqId::kNone || !arrived.sure || arrived.delivered > 0) return;
+  if (!device.application || !device.hearing || !context_.run.has_time) return;
+  // A busy application, or what waits for it, may have filled the buffer.
+  if (context_.due_us(node, arrived.whole_us) != arrived.whole_us + context_.response_us()) return;
+  if (now_us <= arrived.whole_us + context_.response_us()) return;
+  if (delivered_before(node, arrived)) return;
+  context_.report(
+      arrived.delivers, crowded(node, arrived) ? Severity::kInconclusive : Severity::kFail,
+      arrived.place, node,
+      {"The node was given " + name_of(arrived.net) +
+           ", and its application did not get it within " + ms_text(context_.response_us()) + ".",
+       "A delivery.",
+       {}});
+  arrived.delivers = ReqId::kNone;
+}
+
+void Acks::interrupted(std::uint16_t node, std::int64_t now_us) {
+  Ring<Arrived, kRoom>& ring = arrived_[node];
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    Arrived& arrived = ring.newest(i);
+    if (now_us > context_.due_us(node, arrived.whole_us)) continue;
+    if (arrived.must_ack && arrived.sure && arrived.acks == 0) --owed_[node];
+    arrived.must_ack = false;
+    arrived.delivers = ReqId::kNone;
   }
 }
 
@@ -285,11 +350,17 @@ void Acks::close(std::uint16_t node, Arrived& arrived) {
                    {}});
 }
 
-void Acks::finish() {
-  for (std::size_t node = 0; node < arrived_.size(); ++node) {
+void Acks::finish(std::int64_t end_us) {
+  for (std::size_t i = 0; i < arrived_.size(); ++i) {
+    const auto node = static_cast<std::uint16_t>(i);
     Ring<Arrived, kRoom>& ring = arrived_[node];
-    for (std::size_t i = 0; i < ring.size(); ++i) {
-      close(static_cast<std::uint16_t>(node), ring.oldest(i));
+    for (std::size_t k = 0; k < ring.size(); ++k) {
+      Arrived& arrived = ring.oldest(k);
+      // At its end a log of what the node was given needs no sign of life.
+      const bool owes = arrived.must_ack && arrived.sure && arrived.acks == 0;
+      if (owes && context_.device(node).hearing) missing_ack(node, arrived, end_us, false);
+      missing_delivery(node, arrived, end_us);
+      close(node, arrived);
     }
   }
 }

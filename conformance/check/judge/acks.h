@@ -52,7 +52,9 @@ struct Arrived {
   bool weak = false;
   bool must_ack = false;
   bool ackable = false;  ///< Apart from `free`: reliable, and so on.
-  bool sure = false;     ///< It surely arrived.
+  ReqId delivers =
+      ReqId::kNone;   ///< Why the application gets it, if it arrived; kNone: it need not.
+  bool sure = false;  ///< It surely arrived.
   std::uint8_t copies = 1;
   std::uint8_t acks = 0;
   std::uint8_t delivered = 0;
@@ -64,6 +66,7 @@ struct Arrival {
   bool weak = false;               ///< And that rule is a SHOULD.
   bool sure = false;               ///< The node surely received it.
   bool free = false;               ///< The node may ignore it.
+  ReqId delivers = ReqId::kNone;   ///< Why the application gets it; kNone: it need not.
 };
 
 class Acks {
@@ -83,12 +86,19 @@ class Acks {
   void delivered(std::uint16_t node, const Observation& seen, const machine::Received& received);
   /// Notes that the node sent something at this time, so whatever it still owes is overdue.
   void showed_life(std::uint16_t node, std::int64_t now_us);
-  void finish();
+  /// Notes that an interface was switched off or the island changed: what is not yet overdue may
+  /// never be handled.
+  void interrupted(std::uint16_t node, std::int64_t now_us);
+  void finish(std::int64_t end_us);
 
  private:
   static constexpr std::size_t kRoom = 64;
 
   void close(std::uint16_t node, Arrived& arrived);
+  void missing_ack(std::uint16_t node, Arrived& arrived, std::int64_t now_us, bool lives);
+  void missing_delivery(std::uint16_t node, Arrived& arrived, std::int64_t now_us);
+  bool crowded(std::uint16_t node, const Arrived& arrived);
+  bool delivered_before(std::uint16_t node, const Arrived& arrived);
   void refuse(std::uint16_t node, const Observation& seen, const Net& ack, std::int32_t acked,
               Arrived* best);
 

@@ -54,7 +54,7 @@ std::vector<bool> find_lossy_taps(const Run& run, bool lossy_air) {
   }
   for (std::size_t tap = 0; tap < lines.size() && lossy_air; ++tap) {
     const bool serial = run.taps[tap].link == machine::Link::kSerial;
-    if (serial && lines[tap].numbers < kNumbersMin) out[tap] = true;
+    if (serial && lines[tap].heard && lines[tap].numbers < kNumbersMin) out[tap] = true;
   }
   for (std::size_t tap = 0; tap < run.past.lossy_taps.size(); ++tap) {
     if (run.past.lossy_taps[tap]) out[tap] = true;

@@ -54,6 +54,9 @@ void Forwarding::set_island(std::uint16_t sink, std::uint16_t island, std::int64
   Line* const line = find(sink);
   if (line == nullptr) return;
   if (line->island == island) return;
+  // What it has not passed on yet, it may pass on as the sink of either island.
+  forget_owed(line->up, line->owed_up);
+  forget_owed(line->down, line->owed_down);
   line->island_changed_us = now_us;
   line->island_sure = sure;
   line->last_island = line->island;
@@ -66,16 +69,26 @@ void Forwarding::begin_life(std::uint16_t sink) {
   line->up.clear();
   line->down.clear();
   line->owed_up = line->owed_down = 0;
-  line->off = false;
+  line->off = line->deaf = false;
 }
 
 void Forwarding::serial_set(std::uint16_t sink, bool on) {
   Line* const line = find(sink);
   if (line == nullptr) return;
   line->off = !on;
-  if (on) return;
-  for (std::size_t i = 0; i < line->up.size(); ++i) line->up.newest(i).owed = false;
-  line->owed_up = 0;
+  if (!on) forget_owed(line->up, line->owed_up);
+}
+
+void Forwarding::forget_owed(Ring<Passing, kRoom>& ring, std::uint32_t& owed) {
+  for (std::size_t i = 0; i < ring.size(); ++i) ring.newest(i).owed = false;
+  owed = 0;
+}
+
+void Forwarding::radio_set(std::uint16_t sink, bool on) {
+  Line* const line = find(sink);
+  if (line == nullptr) return;
+  line->deaf = !on;
+  if (!on) forget_owed(line->down, line->owed_down);
 }
 
 void Forwarding::store(Ring<Passing, kRoom>& ring, const Passing& passing, std::uint32_t& owed) {
@@ -114,8 +127,8 @@ void Forwarding::heard_on_radio(const Observation& seen, std::uint16_t sender, c
       passing.forbidden = route.requirement;
       passing.weak = route.requirement == "N6-OTHER"_rule;
     }
-    passing.owed =
-        onward && !line.off && net.sound && net.reliable <= 1 && net.src.pid == line.island && sure;
+    passing.owed = onward && !line.off && !line.deaf && net.sound && net.reliable <= 1 &&
+                   net.src.pid == line.island && sure;
     // The message may be on the serial line already, if the two taps' clocks differ.
     bool early = false;
     for (std::size_t i = 0; i < line.early.size(); ++i) {
@@ -323,6 +336,9 @@ void Forwarding::unheard(Line& line, const Passing& early) {
 
 void Forwarding::finish(std::int64_t end_us) {
   for (Line& line : lines_) {
+    // At its end a log of what the sink was given needs no sign of life.
+    if (context_.device(line.sink).hearing && line.owed_up > 0) overdue_up(line, end_us);
+    if (context_.device(line.sink).hearing && line.owed_down > 0) overdue_down(line, end_us);
     expire_early(line, end_us + context_.options.skew_us + 1);
     note_stale(context_, line.sink, "N6-CONTENT"_rule, line.stale,
                "On the serial line nbytes says ");

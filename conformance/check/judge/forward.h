@@ -50,6 +50,9 @@ class Forwarding {
   /// Notes that the sink's serial line is switched on or off; while off, the sink owes nothing
   /// there.
   void serial_set(std::uint16_t sink, bool on);
+  /// Notes that its radio is switched on or off; while off, it owes nothing of what it hears there,
+  /// or should send.
+  void radio_set(std::uint16_t sink, bool on);
   /// Notes that the sink sent something by radio, so what it should have radiated is overdue.
   void showed_life(std::uint16_t sink, std::int64_t now_us);
   /// Notes that one of the sinks, unknown which, sent this by radio.
@@ -73,6 +76,7 @@ class Forwarding {
     /// Returns whether its island changed about then.
     bool changing(std::int64_t time_us) const;
     bool off = false;                 // Its serial line, by its application.
+    bool deaf = false;                // Its radio, by its application.
     bool serial = false;              ///< Its line is captured.
     Ring<Passing, kRoom> up;          ///< From the radio.
     Ring<Passing, kRoom> down;        ///< From serial.
@@ -87,6 +91,7 @@ class Forwarding {
 
   Line* find(std::uint16_t sink);
   void store(Ring<Passing, kRoom>& ring, const Passing& passing, std::uint32_t& owed);
+  static void forget_owed(Ring<Passing, kRoom>& ring, std::uint32_t& owed);
   void pass_up(Line& line, Passing& passing, const Observation& seen);
   void pass_down(Line& line, Passing& passing, const Observation& seen, const Net& net);
   void refuse_up(Line& line, const Observation& seen, const Net& net);

@@ -199,9 +199,9 @@ void Forwarding::overdue_up(Line& line, std::int64_t now_us) {
             ? Severity::kInconclusive
             : context_.on_line(line.sink, Severity::kFail),
         passing.place, line.sink,
-        {"The sink received " + name_of(passing.net) +
-             " (the link acknowledged it) and did not put it on its serial line, "
-             "though it sent other frames later.",
+        {"The sink received " + name_of(passing.net) + " (" +
+             (context_.device(line.sink).hearing ? "by its log" : "the link acknowledged it") +
+             ") and did not put it on its serial line, though more came later.",
          "A forward within " + ms_text(context_.response_us()) + ".",
          {}});
   }

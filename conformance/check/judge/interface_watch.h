@@ -25,6 +25,8 @@ class InterfaceWatch {
   bool off(std::uint16_t node, machine::Link link, std::int64_t now_us) const;
   /// Returns whether it is switched off; frames that were just on their way may still have come.
   bool switched_off(std::uint16_t node, machine::Link link) const;
+  /// Returns the number of the message that shows whether the radio sends again; none otherwise.
+  std::optional<std::uint16_t> awaits(std::uint16_t node) const { return nodes_[node].awaited; }
   void finish(std::int64_t end_us);
 
  private:

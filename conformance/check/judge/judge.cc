@@ -33,9 +33,9 @@ Report Judge::judge() {
   motes_.finish(run_.end_us);
   sinks_.finish(run_.end_us);
   joins_.finish(run_.end_us);
-  originals_.finish(run_.end_us);
+  originals_.finish(run_.end_us, interfaces_);
   forwarding_.finish(run_.end_us);
-  acks_.finish();
+  acks_.finish(run_.end_us);
   synaptic_.finish(run_.end_us);
   peis_.finish(run_.end_us);
   interfaces_.finish(run_.end_us);
@@ -216,12 +216,17 @@ void Judge::called(const Observation& seen, std::uint16_t device) {
       forwarding_.serial_set(device, set->on);
       sinks_.serial_set(device, set->on);
     }
+    if (set->link == machine::Link::kRadio) forwarding_.radio_set(device, set->on);
+    if (!set->on) acks_.interrupted(device, seen.place.time_us);
+    if (!set->on) originals_.interrupted(device);
     if (set->link == machine::Link::kRadio) synaptic_.able(device, set->on, seen.place.time_us);
     if (set->link == machine::Link::kRadio) joins_.radio_set(device, set->on, seen.place.time_us);
     return;
   }
   if (const auto* send = std::get_if<machine::Send>(seen.call)) {
-    return originals_.called(device, *send);
+    const bool off = interfaces_.switched_off(device, machine::Link::kRadio) ||
+                     interfaces_.switched_off(device, machine::Link::kSerial);
+    return originals_.called(device, seen, *send, off ? machine::Address{} : address_of(device));
   }
   const machine::Call& call = *seen.call;
   const bool other = std::holds_alternative<machine::GetInterface>(call) ||
@@ -252,6 +257,15 @@ void Judge::told(const Observation& seen, std::uint16_t device) {
   } else if (const auto* clock = std::get_if<machine::Clock>(seen.notice)) {
     if (is(device, Role::kMote)) joins_.clock_told(device, seen, clock->ms);
   }
+}
+
+// Returns a node's own address; the island is 0 if it has none, or that is not known.
+machine::Address Judge::address_of(std::uint16_t node) const {
+  const Device& device = who_.devices[node];
+  if (device.role == Role::kMote) return motes_.address(node).value_or(machine::Address{});
+  if (device.role == Role::kSink) return {sinks_.island(node), device.am};
+  const bool alone = device.partner == kNobody;
+  return {alone ? device.island : sinks_.island(device.partner), machine::kNullDevid};
 }
 
 Report judge(const Run& run, const Options& options) {
@@ -288,6 +302,7 @@ void Judge::surely(const Observation& seen, const Mark& mark, const Net& net) {
 void Judge::radio_net(std::uint32_t index, const Observation& seen, const Mark& mark,
                       const Net& net) {
   const std::uint16_t sender = mark.device;
+  if (sender != kNobody) originals_.used(sender, net.seq_num);
   if (is(sender, Role::kMote)) {
     motes_.net_msg(sender, seen, net);
     own_message(sender, seen, net, machine::Link::kRadio, motes_.address(sender).value_or(net.src));
@@ -346,30 +361,48 @@ void Judge::mote_hears(std::uint16_t mote, const Observation& seen, const Mark& 
   const std::optional<machine::Address> own = motes_.address(mote);
   // If its island is uncertain, anything for its devid may be for it.
   const machine::Address presumed = own.value_or(machine::Address{net.dest.pid, am});
-  // One that has not joined may ignore it (J11-HEAR); a log of all that it heard shows that.
-  const bool outside = !own && context_.device(mote).hearing;
   hears(mote, {Role::kMote, presumed, true, context_.sink_am}, machine::Link::kRadio, seen,
-        mark.device, net, mark.receiver == mote, outside);
+        mark.device, net, mark.receiver == mote);
+}
+
+// Returns what a mote by its own log is to the messages that it hears.
+Judge::Standing Judge::standing(std::uint16_t node) const {
+  const Device& device = who_.devices[node];
+  if (!is(node, Role::kMote) || !device.hearing) return Standing::kMember;
+  const std::vector<MoteHypothesis>& set = motes_.set(node);
+  if (std::any_of(set.begin(), set.end(), [](const auto& h) { return h.unknown; })) {
+    return Standing::kMember;  // Since before the log, presumably.
+  }
+  if (motes_.is_outside(node)) return Standing::kOutside;
+  // It need not see itself as a member before joined(SUCCESS) (decisions 102, 118).
+  const bool sure = motes_.address(node) && (!device.application || motes_.surely_member(node));
+  return sure ? Standing::kMember : Standing::kPerhaps;
 }
 
 void Judge::hears(std::uint16_t node, const machine::Router& router, machine::Link from,
-                  const Observation& seen, std::uint16_t sender, const Net& net, bool sure,
-                  bool ignorable) {
+                  const Observation& seen, std::uint16_t sender, const Net& net, bool sure) {
   if (router.own.pid == 0) return;  // A sink of which no island is known.
   const machine::Route route = machine::route_received(router, from, net.dest, net.src);
   if (!route.deliver && route.onward != machine::Route::Onward::kNowhere) return;
   // A message to every island may be taken or ignored (decision 114).
   const bool free = route.deliver || net.dest.pid == machine::kBroadcastPid;
   const bool off = interfaces_.off(node, from, seen.place.time_us);
-  const ReqId forbidden = off ? "N10-OFF"_rule : free ? ReqId::kNone : route.requirement;
+  const Standing standing = this->standing(node);
+  ReqId forbidden = free ? ReqId::kNone : route.requirement;
+  if (standing == Standing::kOutside) forbidden = "J11-HEAR"_rule;
+  if (off) forbidden = "N10-OFF"_rule;
   // So may one straight from a foreign mote (decision 116), and one for another island that a base
   // station sends down to its sink (decision 126).
   const bool radio = from == machine::Link::kRadio;
   const bool straight = net.dest.pid != router.own.pid ||
-                        (radio && net.src.pid != net.dest.pid && !is(sender, Role::kSink));
-  acks_.arrived(node, seen, sender, net,
-                {forbidden, forbidden == "N6-OTHER"_rule,
-                 sure && !interfaces_.switched_off(node, from), straight || ignorable});
+                        (radio && net.src.pid != net.dest.pid && !is(sender, Role::kSink) &&
+                         seen.frame.src != context_.sink_am) ||
+                        standing == Standing::kPerhaps;
+  acks_.arrived(
+      node, seen, sender, net,
+      {forbidden, forbidden == "N6-OTHER"_rule, sure && !interfaces_.switched_off(node, from),
+       straight,
+       is(node, Role::kMote) && !motes_.surely_member(node) ? ReqId::kNone : route.delivered});
   if (sure && !off && route.deliver) synaptic_.given(node, seen, net);
 }
 
@@ -405,6 +438,7 @@ void Judge::serial(std::uint32_t index, const Observation& seen, const Mark& mar
     if (interfaces_.switched_off(sink, machine::Link::kSerial)) return;  // It hears nothing.
     const auto island = static_cast<std::uint16_t>(id);
     const bool sure = serial_acked(run_, index) || mark.receiver == sink;
+    acks_.interrupted(sink, seen.place.time_us);
     sinks_.set_island(sink, island, seen.place, sure);
     forwarding_.set_island(sink, island, seen.place.time_us, sure);
     return;
@@ -413,6 +447,7 @@ void Judge::serial(std::uint32_t index, const Observation& seen, const Mark& mar
   Net net;
   if (seen.frame.type != am::kNet || !parse_net(seen.frame.payload, net)) return;
   if (!seen.received) whole(seen, mark.device);
+  if (!seen.received) originals_.used(mark.device, net.seq_num);
   if (seen.to_mote) {
     down_serial(index, seen, mark, sink, net);
   } else {
@@ -484,11 +519,9 @@ void Judge::peis(const Observation& seen, std::uint16_t base) {
   Net net;
   if (!is(base, Role::kBaseStation) || seen.frame.type != am::kNet) return;
   if (!parse_net(seen.frame.payload, net)) return;
-  const Device& device = who_.devices[base];
-  const std::uint16_t island =
-      device.partner == kNobody ? device.island : sinks_.island(device.partner);
-  const machine::Address own{island, machine::kNullDevid};
+  const machine::Address own = address_of(base);
   if (!seen.received) {
+    originals_.used(base, net.seq_num);
     const bool at_home = peis_.sent(base, seen, net, own);
     if (at_home && net.src == own) own_message(base, seen, net, machine::Link::kPeis, own);
     return;

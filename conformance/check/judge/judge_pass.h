@@ -24,6 +24,7 @@ class Judge {
 
  private:
   bool is(std::uint16_t device, machine::Role role) const;
+  machine::Address address_of(std::uint16_t node) const;
   void look(std::uint32_t index);
   void begin_life(std::uint16_t device);
   // Takes the link's own repetition, or a log's line that shows who received a frame.
@@ -43,10 +44,11 @@ class Judge {
   // Takes a message of the node's own.
   void own_message(std::uint16_t node, const Observation& seen, const Net& net, machine::Link link,
                    machine::Address own);
+  enum class Standing : std::uint8_t { kOutside, kPerhaps, kMember };
+  Standing standing(std::uint16_t node) const;
   void mote_hears(std::uint16_t mote, const Observation& seen, const Mark& mark, const Net& net);
   void hears(std::uint16_t node, const machine::Router& router, machine::Link from,
-             const Observation& seen, std::uint16_t sender, const Net& net, bool sure,
-             bool ignorable = false);
+             const Observation& seen, std::uint16_t sender, const Net& net, bool sure);
   // Counts an ack at the originator of the acked message.
   void ack_comes(const Net& ack);
   void serial(std::uint32_t index, const Observation& seen, const Mark& mark);

@@ -75,6 +75,7 @@ void MoteJoins::ack_join(std::uint16_t mote, const Observation& seen, const AckJ
       next.unknown = false;
     }
     if (next.acks_seen < 255) ++next.acks_seen;
+    next.acked_us = seen.place.time_us;
     next.confirmed = next.confirmed || confirmed;
     next_.push_back(next);
   }
@@ -167,8 +168,14 @@ void MoteJoins::refuse_ack(std::uint16_t mote, const Observation& seen, const Ac
 void MoteJoins::called(std::uint16_t mote, const Observation& seen,
                        const machine::JoinIsland& call) {
   MoteWatch& watch = motes_[mote];
+  // A member, and one whose earlier call is open, refuses at once.
+  watch.refusable = watch.joined_calls > 0 ||
+                    std::any_of(watch.set.begin(), watch.set.end(), [](const MoteHypothesis& h) {
+                      return h.unknown || h.join.phase != Phase::kOutside;
+                    });
   ++watch.joined_calls;
   watch.call = call;
+  watch.called = seen.place;
   watch.called_us = seen.place.time_us;
 }
 
@@ -215,7 +222,8 @@ void MoteJoins::told(std::uint16_t mote, const Observation& seen, const machine:
     return;
   }
   // FAIL at once is right for a call while joined (J8-JOINED) or while another call runs.
-  const bool refused = watch.call && now - watch.called_us <= context_.response_us();
+  const bool refused =
+      watch.call && watch.refusable && now - watch.called_us <= context_.response_us();
   const auto fits = [&](const MoteHypothesis& h) {
     return h.unknown || h.join.phase == Phase::kOutside || may_have_failed(h, now);
   };
@@ -234,6 +242,28 @@ void MoteJoins::told(std::uint16_t mote, const Observation& seen, const machine:
   context_.report("J8-FAIL"_rule, Severity::kFail, seen.place, mote, std::move(said));
 }
 
+// Judges a call of joinIsland that by a log is still open at its end, of a mote that is a member.
+void MoteJoins::judge_unsaid(std::uint16_t mote, const MoteWatch& watch, std::int64_t end_us) {
+  const MoteHypothesis& h = watch.set[0];
+  if (!watch.call || watch.joined_calls == 0 || !context_.run.has_time) return;
+  if (!context_.device(mote).hearing) return;  // A log of the application alone may end before.
+  const bool again = watch.called_us > h.accepted_us;  // While it was a member.
+  // Unconfirmed, the call may wait for the end of all its requests, and fail (decision 102).
+  const std::int64_t expiries = context_.profile().join_requests_max * context_.join_period_us();
+  const std::int64_t from =
+      again ? watch.called_us : std::max(h.first_request_us + expiries, h.acked_us);
+  if (end_us <= context_.due_us(mote, from)) return;
+  const ReqId rule = again ? "J8-JOINED"_rule : "J5-SUCCESS"_rule;
+  Place at = watch.called;
+  context_.report(
+      rule, Severity::kFail, at, mote,
+      {again ? std::string("joinIsland of a mote that is joined ended without an event.")
+             : "The mote accepted the address " + text_of(h.join.address) +
+                   " and its application is told nothing.",
+       again ? "joined(FAIL), at once." : "joined(" + text_of(h.join.address) + ", SUCCESS).",
+       {}});
+}
+
 void MoteJoins::finish(std::int64_t end_us) {
   for (std::size_t i = 0; i < motes_.size(); ++i) {
     const MoteWatch& watch = motes_[i];
@@ -244,6 +274,9 @@ void MoteJoins::finish(std::int64_t end_us) {
     const MoteHypothesis& h = watch.set[0];
     const std::int64_t expiries = context_.profile().join_requests_max * context_.join_period_us();
     const std::int64_t last = h.first_request_us + expiries + context_.response_us();
+    if (!h.unknown && h.join.phase == Phase::kMember) {
+      judge_unsaid(static_cast<std::uint16_t>(i), watch, end_us);
+    }
     if (h.unknown || h.join.phase != Phase::kJoining || end_us <= last) continue;
     if (h.first_request_us < 0) continue;                         // The begin is unknown.
     if (watch.calls_logged && watch.joined_calls == 0) continue;  // It had its event.

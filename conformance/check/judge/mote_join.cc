@@ -319,6 +319,18 @@ std::optional<machine::Address> MoteJoins::address(std::uint16_t mote) const {
   return set[0].join.address;
 }
 
+bool MoteJoins::is_outside(std::uint16_t mote) const {
+  const auto& set = motes_[mote].set;
+  return !set.empty() && std::all_of(set.begin(), set.end(), [](const MoteHypothesis& h) {
+    return !h.unknown && h.join.phase != Phase::kMember;
+  });
+}
+
+bool MoteJoins::surely_member(std::uint16_t mote) const {
+  const auto& set = motes_[mote].set;
+  return address(mote) && (set[0].told || set[0].sent);
+}
+
 std::string MoteJoins::sentence(const MoteHypothesis& h) const {
   if (h.unknown) return "It ran before the capture began.";
   switch (h.join.phase) {

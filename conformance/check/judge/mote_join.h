@@ -65,6 +65,7 @@ struct MoteHypothesis {
   bool renumbered = false;       ///< Requests of this call had several numbers.
   std::uint8_t acks_seen = 0;    ///< ack_join on the air.
   bool confirmed = false;        ///< The link acknowledged its ack_join; it may have heard that.
+  std::int64_t acked_us = 0;     ///< The last ack_join.
   bool unaccepted = false;       ///< It acked what it could not accept.
   bool told = false;             ///< Its application got joined(SUCCESS).
   bool sent = false;             ///< It sent a net_msg, so in its own view it is a member.
@@ -78,6 +79,8 @@ struct MoteWatch {
   std::int64_t joined_calls = 0;  ///< Calls that have not ended, by a log.
   bool calls_logged = false;
   std::optional<machine::JoinIsland> call;  ///< The last, by a log.
+  bool refusable = true;                    ///< That call may fail at once.
+  Place called;
   std::int64_t called_us = 0;
 };
 
@@ -97,6 +100,11 @@ class MoteJoins {
 
   const std::vector<MoteHypothesis>& set(std::uint16_t mote) const { return motes_[mote].set; }
 
+  /// Returns whether every hypothesis has it outside: what it hears is not for it (J11-HEAR).
+  bool is_outside(std::uint16_t mote) const;
+  /// Returns whether it surely takes itself for a member (decisions 102, 118).
+  bool surely_member(std::uint16_t mote) const;
+
   /// Returns the own address if every hypothesis agrees on it.
   std::optional<machine::Address> address(std::uint16_t mote) const;
 
@@ -114,6 +122,7 @@ class MoteJoins {
   void refuse_ack(std::uint16_t mote, const Observation& seen, const AckJoin& ack);
   std::string sentence(const MoteHypothesis& h) const;
   std::string allows(const MoteHypothesis& h) const;
+  void judge_unsaid(std::uint16_t mote, const MoteWatch& watch, std::int64_t end_us);
   void keep(MoteWatch& watch, std::vector<MoteHypothesis>& next, std::uint16_t mote,
             const Observation& seen);
 

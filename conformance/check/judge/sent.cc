@@ -39,8 +39,52 @@ void Originals::begin_life(std::uint16_t node) {
   begun_[node] = true;
 }
 
-void Originals::called(std::uint16_t node, const machine::Send& call) {
-  calls_[node].push({&call, {}, {}});
+void Originals::called(std::uint16_t node, const Observation& seen, const machine::Send& call,
+                       machine::Address own) {
+  const Device& device = context_.device(node);
+  const bool here = call.dest.pid == machine::kLocalPid || call.dest.pid == own.pid;
+  // What goes to every island, or to the node itself, may stay (decisions 114, 131).
+  const bool free = own.pid == 0 || call.dest.pid == machine::kBroadcastPid ||
+                    (here && call.dest.devid == own.devid);
+  const bool base = device.role == Role::kBaseStation;
+  const std::uint16_t sink = base ? device.partner : node;
+  const bool line = sink != kNobody && !context_.device(sink).taps.empty();
+  bool shown = device.role == Role::kMote || line;
+  if (base && !here) shown = logs_peis(context_.run, node);
+  calls_[node].push({&call, {}, {}, seen.place, free || !shown});
+}
+
+void Originals::used(std::uint16_t node, std::uint16_t number) {
+  auto& calls = calls_[node];
+  for (std::size_t i = 0; i < calls.size(); ++i) {
+    Call& one = calls.newest(i);
+    if (one.result == number || !one.result) one.free = true;
+    if (one.result == number) return;
+  }
+}
+
+void Originals::interrupted(std::uint16_t node) {
+  for (std::size_t i = 0; i < calls_[node].size(); ++i) calls_[node].newest(i).free = true;
+}
+
+// Reports messages that send accepted, by a log that has all that the node sends, and that never
+// left.
+void Originals::judge_unsent(std::uint16_t node, std::int64_t end_us,
+                             const InterfaceWatch& interfaces) {
+  const Device& device = context_.device(node);
+  if (!device.hearing || !context_.run.has_time) return;
+  auto& calls = calls_[node];
+  for (std::size_t i = 0; i < calls.size(); ++i) {
+    const Call& one = calls.oldest(i);
+    if (one.free || one.left || !one.result || one.result == machine::kNoSeq) continue;
+    if (end_us <= context_.due_us(node, one.place.time_us)) continue;
+    if (interfaces.awaits(node) == one.result) continue;  // Said by N10-ON.
+    context_.report("N2-ONCE"_rule, Severity::kFail, one.place, node,
+                    {"send accepted the message to " + text_of(one.send->dest) + " with number " +
+                         number(*one.result) + ", and it never left.",
+                     "That message, once.",
+                     {}});
+  }
 }
 
 void Originals::told(std::uint16_t node, const Observation& seen,
@@ -68,12 +112,15 @@ void Originals::judge_wrap(std::uint16_t node, const Observation& seen, const Ne
   const bool more = link == Link::kSerial && context_.device(node).role == Role::kSink;
   auto& calls = calls_[node];
   bool asked = false;
-  Call* same = nullptr;  // The last that says so, of another number or of this.
+  ReqId rule = "N2-ONCE"_rule;  // If no call asked for it.
+  Call* same = nullptr;         // The last that says so, of another number or of this.
   for (std::size_t i = 0; i < calls.size(); ++i) {
     Call& one = calls.newest(i);
     const machine::Send& call = *one.send;
     const bool at_home = call.dest.pid == machine::kLocalPid;
-    const machine::Address dest{at_home ? net.dest.pid : call.dest.pid, call.dest.devid};
+    const machine::Address dest{at_home ? net.src.pid : call.dest.pid, call.dest.devid};
+    const bool elsewhere = at_home && dest.pid != net.dest.pid && dest.devid == net.dest.devid;
+    if (elsewhere && call.reliable == (net.reliable == 1)) rule = "N3-LOCAL"_rule;
     if (dest != net.dest || call.reliable != (net.reliable == 1)) continue;
     asked = true;
     const std::size_t size = more ? std::min(call.data.size(), net.body().size()) : SIZE_MAX;
@@ -89,9 +136,17 @@ void Originals::judge_wrap(std::uint16_t node, const Observation& seen, const Ne
     if (same->result && !calls.full()) judge_result(node, seen, *same);
     return;
   }
-  if (!asked || calls.full()) return;
+  if (calls.size() == 0 || calls.full()) return;
   // What was sent before the log began may have waited.
   const bool whole = context_.options.start_cold || begun_[node];
+  if (!asked) {
+    context_.report(rule, whole ? Severity::kFail : Severity::kInconclusive, seen.place, node,
+                    {"No call of its application asked for " + name_of(net) + ", reliable " +
+                         number(net.reliable) + ".",
+                     "What send was given, unchanged.",
+                     {}});
+    return;
+  }
   context_.report("T1-WRAP"_rule, whole ? Severity::kFail : Severity::kInconclusive, seen.place,
                   node,
                   {"TRANSID " + number(net.trans_id) + ", APPID " + number(net.app_id) + " and " +
@@ -305,8 +360,9 @@ void Originals::close(std::uint16_t node, std::size_t newest, std::int64_t now_u
                    {}});
 }
 
-void Originals::finish(std::int64_t end_us) {
+void Originals::finish(std::int64_t end_us, const InterfaceWatch& interfaces) {
   for (std::size_t node = 0; node < sent_.size(); ++node) {
+    judge_unsent(static_cast<std::uint16_t>(node), end_us, interfaces);
     for (std::size_t i = sent_[node].size(); i-- > 0;) {
       close(static_cast<std::uint16_t>(node), i, end_us);
     }
@@ -354,6 +410,14 @@ void Originals::told(std::uint16_t node, const Observation& seen, const machine:
   if (match->told++ > 0) {
     context_.report("T3-ONCE"_rule, Severity::kFail, seen.place, node,
                     {what + " again.", "One receive_ack for each message.", {}});
+    return;
+  }
+  if (match->net.sound && ack.app_id != match->net.app_id) {
+    context_.report("T3-SUCCESS"_rule, Severity::kFail, seen.place, node,
+                    {what + " for APPID " + number(ack.app_id) + "; the message had " +
+                         number(match->net.app_id) + ".",
+                     "receive_ack to the application that sent it.",
+                     {}});
     return;
   }
   const std::int64_t waited = now - match->place.time_us;

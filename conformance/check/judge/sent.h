@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "conformance/check/judge/context.h"
+#include "conformance/check/judge/interface_watch.h"
 #include "conformance/check/judge/stale.h"
 #include "conformance/check/ring.h"
 
@@ -26,8 +27,14 @@ class Originals {
   Originals(Context& context, std::size_t devices);
 
   void begin_life(std::uint16_t node);
-  /// Notes a call of send, by a log, and judges what it returned.
-  void called(std::uint16_t node, const machine::Send& call);
+  /// Notes a call of send, by a log. Nothing need leave of one that has no address, or an interface
+  /// off: then the island of `own` is 0.
+  void called(std::uint16_t node, const Observation& seen, const machine::Send& call,
+              machine::Address own);
+  /// Notes that a frame of the node has that number, whoever's message it is.
+  void used(std::uint16_t node, std::uint16_t number);
+  /// Notes that an interface was switched off, so that what waits may be lost.
+  void interrupted(std::uint16_t node);
   void told(std::uint16_t node, const Observation& seen, const machine::SendResult& result);
   /// Judges a message of its own that `node`, whose address is `own`, sends over `link`.
   void sent(std::uint16_t node, const Observation& seen, const Net& net, machine::Link link,
@@ -40,7 +47,7 @@ class Originals {
   void ack_given(std::uint16_t node, const Net& ack, std::int64_t now_us);
   /// Judges receive_ack, by a log.
   void told(std::uint16_t node, const Observation& seen, const machine::AckReceived& ack);
-  void finish(std::int64_t end_us);
+  void finish(std::int64_t end_us, const InterfaceWatch& interfaces);
   /// Judges what a message of the node holds, whoever wrote it.
   void judge_content(std::uint16_t node, const Observation& seen, const Net& net);
 
@@ -51,6 +58,8 @@ class Originals {
     const machine::Send* send = nullptr;
     std::optional<std::uint16_t> result;  ///< The number that it returned.
     std::optional<std::uint16_t> left;    ///< That of the message.
+    Place place;
+    bool free = false;  ///< It need not leave, or that is not seen.
   };
 
   /// Judges the end of a message that is forgotten now: was its application notified?
@@ -58,6 +67,7 @@ class Originals {
   void judge_address(std::uint16_t node, const Observation& seen, const Net& net,
                      machine::Link link, machine::Address own);
   void judge_synaptic(std::uint16_t node, const Observation& seen, const Net& net);
+  void judge_unsent(std::uint16_t node, std::int64_t end_us, const InterfaceWatch& interfaces);
   void judge_result(std::uint16_t node, const Observation& seen, const Call& call);
   void judge_wrap(std::uint16_t node, const Observation& seen, const Net& net, machine::Link link);
   bool rightly_acked(std::uint16_t node, const Net& message);

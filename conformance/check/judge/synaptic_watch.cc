@@ -45,6 +45,9 @@ void SynapticWatch::called(std::uint16_t device, const Observation& seen, machin
   config.role = context_.device(device).role;
   config.id = context_.device(device).am;
   config.profile = context_.profile();
+  if (device < context_.run.nodes.size() && context_.run.nodes[device].channels != 0) {
+    config.profile.channels_max = context_.run.nodes[device].channels;
+  }
   settle(device, seen.place.time_us);
   const machine::Synaptic before = node.channels;
   context_.actions.clear();
@@ -53,9 +56,24 @@ void SynapticWatch::called(std::uint16_t device, const Observation& seen, machin
   note(node, before, seen.place.time_us);
   if (const auto* write = std::get_if<machine::WriteOutput>(seen.call)) {
     Out* const out = find(node, write->id);
-    if (out != nullptr && write->pos < machine::kConnectionsMax) out->written |= 1U << write->pos;
+    if (out != nullptr && write->pos < machine::kConnectionsMax) {
+      note_old(*out, before, write->pos, seen.place.time_us);
+      out->written |= 1U << write->pos;
+    }
   }
   note_inputs(node, before, seen.place.time_us);
+}
+
+// Keeps the value before a write, which data that missed their tick may still have.
+void SynapticWatch::note_old(Out& out, const machine::Synaptic& before, std::size_t pos,
+                             std::int64_t now_us) {
+  const machine::Channel* const channel = check::find(before, out.id);
+  if (channel == nullptr || pos >= channel->size) return;
+  if (out.olds.size() == kOldsMax) {
+    out.forgot_us = out.olds.front().until_us;
+    out.olds.erase(out.olds.begin());
+  }
+  out.olds.push_back({now_us, pos, channel->value_bits[pos], (out.written >> pos & 1) == 0});
 }
 
 // Notes what a call changed: channels that began, ended, or got another value.
@@ -117,10 +135,16 @@ void SynapticWatch::sent(std::uint16_t device, const Observation& seen, const Ne
   bool as_written = true;  // A value that nobody wrote is free.
   using Values = rubicon::SynapticDataLayout::ValuesAt;
   for (std::size_t i = 0; channel != nullptr && i < channel->size; ++i) {
-    const bool same = (i + 1) * Values::kUnitBytes <= net.body().size() &&
-                      bits_of_float(Values::load(net.body().data(), i)) == channel->value_bits[i];
+    const bool holds = (i + 1) * Values::kUnitBytes <= net.body().size();
+    const std::uint32_t bits =
+        holds ? bits_of_float(Values::load(net.body().data(), i)) : std::uint32_t{0};
+    const bool same = holds && bits == channel->value_bits[i];
     current = current && same;
-    as_written = as_written && (same || (out->written >> i & 1) == 0);
+    const bool before = std::any_of(out->olds.begin(), out->olds.end(), [&](const Out::Old& old) {
+      return old.pos == i && now <= context_.due_us(device, old.until_us) &&
+             (old.unwritten || old.bits == bits);
+    });
+    as_written = as_written && (same || before || (out->written >> i & 1) == 0);
   }
   if (current || out->wrote_us < now - context_.response_us()) out->wrote_us = -1;
   // Data in the outgoing buffer may still leave.
@@ -141,7 +165,7 @@ void SynapticWatch::sent(std::uint16_t device, const Observation& seen, const Ne
                          number(channel->size) + ".",
                      "One value for each connection.",
                      {}});
-  } else if (!as_written && now > context_.due_us(device, out->written_us)) {
+  } else if (!as_written && now > context_.due_us(device, out->forgot_us)) {
     context_.report("S2-CONTENT"_rule, Severity::kFail, seen.place, device,
                     {"Data of the channel to " + text_of(net.dest) +
                          " whose values are not those that were written, the last of them " +
@@ -293,6 +317,17 @@ void SynapticWatch::told(std::uint16_t device, const Observation& seen,
         {"synData_received has status old, though data came since the last.", "Status new.", {}});
   } else {
     context_.findings.kept(fresh ? "S2-SIGNAL"_rule : "S3-OLD"_rule);
+  }
+  // One tick may be late and the next one prompt (decision 125).
+  const std::int64_t least =
+      machine::us_of(node.channels.period_ticks) - response - context_.early_us();
+  const bool steady = in->told_us >= in->begun_us && node.step_us < in->told_us;
+  if (in->told_us >= 0 && steady && now - in->told_us < least) {
+    context_.report(
+        "S2-SIGNAL"_rule, Severity::kFail, seen.place, device,
+        {"synData_received of one channel " + ms_text(now - in->told_us) + " apart.",
+         "One at each tick, " + ms_text(machine::us_of(node.channels.period_ticks)) + " apart.",
+         {}});
   }
   in->told_us = in->waits_us = now;
   in->before = false;

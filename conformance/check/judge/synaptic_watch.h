@@ -31,6 +31,7 @@ class SynapticWatch {
 
  private:
   static constexpr std::size_t kChannelsMax = 16;
+  static constexpr std::size_t kOldsMax = 64;
 
   /// Times at which a channel did something, newest last; shows the grid of the clock's ticks.
   struct Ticks {
@@ -49,6 +50,14 @@ class SynapticWatch {
     std::uint32_t written = 0;     ///< Bit i: connection i was written.
     std::int64_t silent_us = -1;   ///< When it was stopped or disposed; -1: it runs.
     bool disposed = false;
+    struct Old {
+      std::int64_t until_us = 0;
+      std::size_t pos = 0;
+      std::uint32_t bits = 0;
+      bool unwritten = false;  ///< Free: nobody had written it.
+    };
+    std::vector<Old> olds;                    ///< Values before those that were written last.
+    std::int64_t forgot_us = -1'000'000'000;  ///< Older ones are not kept.
   };
   struct In {
     machine::ChannelId id = 0;
@@ -84,6 +93,8 @@ class SynapticWatch {
   bool crowded(std::uint16_t device, std::int64_t from_us, std::int64_t to_us) const;
   void judge_grid(std::uint16_t device, const Observation& seen, const Ticks& ticks);
   void note(Node& node, const machine::Synaptic& before, std::int64_t now_us);
+  static void note_old(Out& out, const machine::Synaptic& before, std::size_t pos,
+                       std::int64_t now_us);
 
   Context& context_;
   std::vector<Node> nodes_;

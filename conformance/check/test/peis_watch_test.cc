@@ -84,7 +84,8 @@ TEST(PeisWatch, AMessageLeavesAsItCame) {
 }
 
 TEST(PeisWatch, WhatTheSinkSendsGoesToPeis) {
-  EXPECT_EQ(found_by_end(peis(500, kToPc) + up(1000, kToPc) + peis(1025, kToPc)), "N8-PEIS");
+  const std::string got = at(510, "bB > app received(src=11:2 app_id=5 data=xbeef)");
+  EXPECT_EQ(found_by_end(peis(500, kToPc) + got + up(1000, kToPc) + peis(1025, kToPc)), "N8-PEIS");
   const std::string some = up(900, kOther) + peis(925, kOther);
   const std::string handed = at(935, "bB > serB am=0->1 " + kOther);
   EXPECT_EQ(found_by_end(some + handed + up(1000, kToPc)), "N8-PEIS");

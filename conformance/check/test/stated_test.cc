@@ -93,6 +93,7 @@ Report told_early(double after_ms, const Options& options) {
   script.net(1000, 2, 3, net);
   script.run.seen.back().node = "m2";
   machine::AckReceived told;
+  told.app_id = net.app_id;
   told.seq_num = 5;
   told.success = false;
   Observation seen = script.run.seen.back();

@@ -1,0 +1,137 @@
+// What a node's own log shows that it owes and never gives: deliveries, acks, messages of its
+// own and events. Logs with what the node was given and with its application.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "conformance/check/test/testing_log.h"
+
+namespace rubric::check {
+namespace {
+
+constexpr const char* kMote = R"(%rtr 1  %profile paper  %tick ms
+%node m5 mote id=5 iut
+%node sA sink id=1 island=11
+case log
+)";
+std::string mote(int ms, const std::string& rest) { return at(ms, "m5 " + rest); }
+
+// A message of island 11, for APPID MOCKUP.
+std::string net(const std::string& dest, const std::string& src, bool reliable = false) {
+  return "am(28 x000b" + dest + "000b" + src + (reliable ? "01" : "00") + "0064040305beef)";
+}
+
+const std::string kAsks =
+    mote(0, "< app join(2 light led)") +
+    mote(0, "> rA am=5->1 join_request(seq_num=7 mote_type=2 transducers=light actuators=led)") +
+    mote(9, "< rA am=1->5 join_reply(island_addr=11 mote_addr=5 cur_time=0 seq_num=7)");
+const std::string kAcks = mote(10,
+                               "> rA am=5->1 ack_join(dest=11:1 src=11:5 seq_num=7 mote_type=2 "
+                               "transducers=light actuators=led)");
+const std::string kJoins = kAsks + kAcks + mote(10, "> app joined(11:5 success)");
+std::string to_mote(bool reliable = false) {
+  return mote(1000, "< rA am=2->5 " + net("0005", "0002", reliable));
+}
+const std::string kDelivers = mote(1010, "> app received(11:2 mockup xbeef)");
+
+// With a mote's log that goes on for long enough.
+std::string of_mote(const std::string& log) {
+  const std::string later = mote(2000, "< app get_interface(radio)");
+  return found(kMote + log + later, Severity::kWeak);
+}
+
+TEST(Owed, ADeliveryToTheApplication) {
+  EXPECT_EQ(of_mote(kJoins + to_mote() + kDelivers), "");
+  EXPECT_EQ(of_mote(kJoins + to_mote()), "N5-DELIVER");
+  // Nobody said that it is a member: not yet, perhaps (decision 118).
+  EXPECT_EQ(of_mote(kAsks + kAcks + to_mote() + mote(1500, "> app joined(11:5 success)")), "");
+  EXPECT_EQ(found(kMote + kJoins + to_mote(), Severity::kWeak), "") << "The log ends before.";
+}
+
+TEST(Owed, ACopyNeedNotBeDeliveredAgain) {
+  const std::string again = mote(1400, "< rA am=2->5 " + net("0005", "0002"));
+  EXPECT_EQ(of_mote(kJoins + to_mote() + kDelivers + again), "");
+}
+
+TEST(Owed, ABusyApplicationGetsItLater) {
+  EXPECT_EQ(of_mote(kJoins + mote(900, "< app busy") + to_mote()), "");
+}
+
+TEST(Owed, WhatIsSwitchedOffOwesNothing) {
+  EXPECT_EQ(of_mote(kJoins + to_mote() + mote(1050, "< app interface(radio off)") +
+                    mote(1050, "> app op_result(success)")),
+            "");
+}
+
+TEST(Owed, AnAckAtTheEndOfALog) {
+  EXPECT_EQ(of_mote(kJoins + to_mote(true) + kDelivers), "T2-ACK");
+}
+
+TEST(Owed, OutsideNothingIsHeard) {
+  const std::string early = mote(1000, "> app received(11:2 mockup xbeef)");
+  EXPECT_EQ(of_mote(to_mote() + early), "J11-HEAR");
+}
+
+TEST(Owed, TheMessageThatSendAccepted) {
+  const std::string call = mote(1000, "< app send(11:2 mockup 0 xbeef)");
+  const std::string accepted = mote(1000, "> app send_result(100)");
+  const std::string leaves = mote(1010, "> rA am=5->2 " + net("0002", "0005"));
+  EXPECT_EQ(of_mote(kJoins + call + accepted + leaves), "");
+  EXPECT_EQ(of_mote(kJoins + call + accepted), "N2-ONCE");
+  EXPECT_EQ(of_mote(kJoins + call + mote(1000, "> app send_result(65535)")), "");
+  EXPECT_EQ(of_mote(kJoins + mote(990, "< rA busy") + call + accepted), "");
+  EXPECT_EQ(of_mote(kJoins + call + accepted + mote(1010, "< power reboot")), "");
+}
+
+TEST(Owed, TheLocalIslandIsTheOwn) {
+  const std::string call = mote(1000, "< app send(local:2 mockup 0 xbeef)");
+  const std::string accepted = mote(1000, "> app send_result(100)");
+  EXPECT_EQ(of_mote(kJoins + call + accepted + mote(1010, "> rA am=5->2 " + net("0002", "0005"))),
+            "");
+  const std::string away = "am(28 x000c0002000b0005000064040305beef)";
+  EXPECT_EQ(of_mote(kJoins + call + accepted + mote(1010, "> rA am=5->1 " + away)), "N3-LOCAL");
+}
+
+TEST(Owed, AMessageThatNobodyAskedFor) {
+  const std::string call = mote(1000, "< app send(11:2 mockup 0 xbeef)");
+  const std::string refused = mote(1000, "> app send_result(65535)");
+  EXPECT_EQ(of_mote(kJoins + call + refused + mote(1010, "> rA am=5->3 " + net("0003", "0005"))),
+            "N2-ONCE");
+}
+
+TEST(Owed, TheJoinedEvent) {
+  EXPECT_EQ(found(kMote + kAsks + kAcks + mote(5000, "< app get_clock()"), Severity::kWeak),
+            "J5-SUCCESS");
+  EXPECT_EQ(of_mote(kAsks + kAcks), "") << "Its call may still fail.";
+  EXPECT_EQ(of_mote(kJoins + mote(1000, "< app join(2 light led)")), "J8-JOINED");
+  EXPECT_EQ(of_mote(kJoins + mote(1000, "< app join(2 light led)") +
+                    mote(1000, "> app joined(11:5 fail)")),
+            "");
+}
+
+TEST(Owed, AFirstCallDoesNotFailAtOnce) {
+  EXPECT_EQ(of_mote(kAsks + kAcks + mote(10, "> app joined(11:5 fail)")), "J8-FAIL");
+}
+
+// A log of one node may name others in its headers as under test; it shows nothing of these.
+TEST(Owed, WhatAHeaderAloneNamesSentNothing) {
+  const std::string head = R"(%rtr 1  %profile paper  %tick ms
+%node sA sink id=1 island=11 iut
+%node bA base_station island=11 iut
+%link serA serial sA bA
+case log
+)";
+  const std::string came =
+      at(100,
+         "bA < serA am=0->all net_msg(dest=12:3 src=11:2 reliable=0 seq_num=9 "
+         "payload.trans_id=connless payload.app_id=mockup payload.payload=\"hello\")");
+  const std::string goes =
+      at(110,
+         "bA > peis am=11->12 net_msg(dest=12:3 src=11:2 reliable=0 seq_num=9 "
+         "payload.trans_id=connless payload.app_id=mockup payload.payload=\"hello\")");
+  EXPECT_EQ(found(head + came + goes, Severity::kWeak), "");
+  EXPECT_EQ(found(head + goes, Severity::kWeak), "N8-PEIS");
+}
+
+}  // namespace
+}  // namespace rubric::check
