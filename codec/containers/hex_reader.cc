@@ -31,6 +31,12 @@ std::uint16_t link_type_of(const ReaderOptions& options) {
 
 }  // namespace
 
+bool begins_serial_frame(Bytes bytes) {
+  if (bytes[0] != kHdlcFlag) return false;
+  return bytes.size() == 1 || bytes[1] == kHdlcFlag || bytes[1] == kSerialUnknown ||
+         (bytes[1] >= kSerialAck && bytes[1] <= kSerialPacketNoAck);
+}
+
 Error decode_hex_line(Bytes text, std::vector<std::uint8_t>& bytes) {
   bytes.clear();
   bool at_token = true;  // Where a 0x may begin.
@@ -109,7 +115,7 @@ void HexReader::deliver_held(PacketSink sink) {
 
 bool HexReader::is_serial_bytes(Bytes bytes) const {
   if (options_.hex_framing != Framing::kSf) return false;
-  return bytes[0] == kHdlcFlag || in_frame_;
+  return in_frame_ || begins_serial_frame(bytes);
 }
 
 void HexReader::serial_bytes(Bytes bytes, PacketSink sink) {

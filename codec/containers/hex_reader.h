@@ -15,8 +15,8 @@ inline constexpr std::size_t kHexLineMax = 64 * 1024;
 /// Reads a packet a line: two hex digits of either case for each byte, with or without white space
 /// between bytes, each byte or run of bytes optionally led by 0x. Skips empty lines and everything
 /// after a '#'. An option gives the framing of the lines (hex_framing). Where that is kSf, a line
-/// that begins with 7E has the bytes of a serial line, flags and escapes included; a frame goes on
-/// in the next lines until its closing flag.
+/// that begins_serial_frame() has the bytes of a serial line, flags and escapes included; a frame
+/// goes on in the next lines until its closing flag.
 ///
 /// In a log the lines that is_noise() knows are passed over and counted.
 ///
@@ -54,6 +54,11 @@ class HexReader final : public Reader {
 /// Returns whether a line that is no hex text is of another kind altogether, such as a program's
 /// greeting, rather than hex text with a mistake: whether its first word is no hex digits.
 bool is_noise(Bytes line);
+
+/// Returns whether a line of these bytes, one at least, is taken for those of a serial line: a
+/// flag, and a second flag or a packet kind of TEP 113 if more follows. A packet may begin with 7E,
+/// too.
+bool begins_serial_frame(Bytes bytes);
 
 /// Decodes one line into `bytes`, which is cleared first. The error's offset counts characters.
 Error decode_hex_line(Bytes text, std::vector<std::uint8_t>& bytes);

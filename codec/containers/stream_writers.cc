@@ -1,6 +1,7 @@
 // Writers of streams and text.
 #include "codec/containers/byte_search.h"
 #include "codec/containers/crc16_fast.h"
+#include "codec/containers/hex_reader.h"
 #include "codec/containers/serial_frame.h"
 #include "codec/containers/sf_reader.h"
 #include "codec/containers/writer.h"
@@ -84,9 +85,9 @@ bool SfWriter::write(const Packet& packet, std::string_view, std::string& out) {
 
 bool HexWriter::write(const Packet& packet, std::string_view, std::string& out) {
   if (packet.error.fault != Fault::kNone || packet.bytes.empty()) return false;
-  // A line that begins with a flag has the bytes of a serial line.
+  // Such a line would read as the bytes of a serial line.
   const bool packets = packet.framing == Framing::kHdlc || packet.framing == Framing::kSf;
-  if (packets && packet.bytes[0] == kHdlcFlag) return false;
+  if (packets && begins_serial_frame(packet.bytes)) return false;
   const char* const digits = upper_case_ ? "0123456789ABCDEF" : "0123456789abcdef";
   for (const std::uint8_t byte : packet.bytes) {
     out += digits[byte >> 4];

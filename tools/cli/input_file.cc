@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "codec/lines/stop.h"
+#include "codec/text/text.h"
 
 namespace rubric::cli {
 namespace {
@@ -57,7 +58,8 @@ InputFile::InputFile(const std::string& name, bool follow, const std::function<v
       on_idle_(on_idle) {
   static bool said = false;
   if (is_stdin_ && ::isatty(fd_) != 0 && !std::exchange(said, true)) {
-    std::fputs("rubric: reads what is typed here; Ctrl-D on a line of its own ends it\n", stderr);
+    report::print(stderr,
+                  "rubric: reads what is typed here; Ctrl-D on a line of its own ends it\n");
   }
   if (fd_ < 0) throw std::system_error(errno, std::generic_category());
   struct stat status {};

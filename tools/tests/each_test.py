@@ -167,7 +167,7 @@ class Each(unittest.TestCase):
         filtered = lines(run("decode", "--each", self.runs, "--filter", "message==updates").stdout)
         self.assertGreater(sum(line["shown"] for line in filtered), 0)
         wrong = run("decode", "--each", self.runs, "--filter", "message==nothing")
-        self.assertEqual((wrong.returncode, wrong.stdout), (2, ""))
+        self.assertEqual((wrong.returncode, wrong.stdout), (USAGE, ""))
 
     def test_output_that_breaks(self):
         self.assertEqual(run("check", "--each", self.runs, "--out", "/dev/full").returncode, OUTPUT)

@@ -143,7 +143,7 @@ class Linear(unittest.TestCase):
         for name, line in (("messages", good), ("nothing", b"\n"), ("no JSON", b"{{{{\n"),
                            ("deep", b"[" * 40 + b"]" * 40 + b"\n")):
             inputs = [line * (PARTS * STEP ** power) for power in range(3)]
-            self.grows(name, ("encode", "--format", "hex"), inputs, path, (0, 1, 2, 3))
+            self.grows(name, ("encode", "--format", "hex"), inputs, path, (0, 1, 3, 66))
             self.grows(name, ("decode", "--input-format", "hex"), inputs, path, (0, 1, 3))
 
 

@@ -208,7 +208,7 @@ islands:
             plan.write_text(text, encoding="utf-8")
             run = subprocess.run([RUBRIC, "run", plan], capture_output=True, check=False,
                                  text=True, stdin=subprocess.DEVNULL)
-            self.assertEqual(run.returncode, 2, run.stderr)
+            self.assertEqual(run.returncode, 64, run.stderr)
             self.assertIn(f"{plan}:{line}: ", run.stderr)
             self.assertIn(what, run.stderr)
 

@@ -293,7 +293,7 @@ class Failing(Folder):
         self.assertEqual((code, err), (1, ""))
         self.assertIn("\nFAIL j1.request\n", out)
         self.assertIn("(MUST J1-REQUEST; ", " ".join(out.split()))
-        self.assertIn("    | out of memory ?[31m at 0x1234\n", out)
+        self.assertIn("    | out of memory \ufffd[31m at 0x1234\n", out)
         self.assertRegex(out, r"Broke: +.*signal 6")
         self.assertRegex(out, r"fake: \d+ pass, \d+ fail\.")
         self.assertIn("Verdict: not as expected: ", out)

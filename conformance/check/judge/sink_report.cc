@@ -217,7 +217,7 @@ void SinkJoins::serial_set(std::uint16_t sink_device, bool on) {
 void SinkJoins::overdue_reports(SinkWatch& sink, bool end) {
   std::vector<std::uint16_t> due;
   for (const auto& [am, watch] : sink.motes) {
-    const std::int64_t due_us = watch.ack_whole_us + context_.response_us();
+    const std::int64_t due_us = context_.due_us(sink.device, watch.ack_whole_us);
     if (watch.report_due && sink.serial_us > due_us) due.push_back(am);
   }
   std::sort(due.begin(), due.end(), [&](std::uint16_t a, std::uint16_t b) {

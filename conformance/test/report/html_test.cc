@@ -250,7 +250,7 @@ TEST(CaseSource, IsTheCaseWithItsHeaders) {
   EXPECT_EQ(lines[0].text, "%rtr 1");
   EXPECT_EQ(lines[5].text, "case j4.accept");
   EXPECT_EQ(lines[5].number, 8u);
-  EXPECT_THAT(lines.back().text, HasSubstr("[J4-CLOCK]"));
+  EXPECT_THAT(lines.back().text, HasSubstr("[J4-CONTENT]"));
   SuiteRun users = whole();
   users.traces = {"conformance/cases/j4.rtr"};
   EXPECT_EQ(sources.of(users, one("j4.accept")).size(), lines.size());

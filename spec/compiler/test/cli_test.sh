@@ -43,11 +43,11 @@ grep -q 'profiles/not_a_switch.yaml:17:24: error: ' "$out/stderr" ||
 expect 1 --check --cases spec/compiler/test/bad/cases $good
 grep -q 'cases/no_name.rtr:4:1: error: ' "$out/stderr" ||
   { echo "cases are not checked"; failures=1; }
-expect 2
-expect 2 $good
-expect 2 --emit tables $good
-expect 2 --emit poetry --out "$out" $good
-expect 2 --check --emit tables --out "$out" $good
+expect 64
+expect 64 $good
+expect 64 --emit tables $good
+expect 64 --emit poetry --out "$out" $good
+expect 64 --check --emit tables --out "$out" $good
 expect 3 --check spec/wire/nothing.ksy
 expect 3 --check --requirements nothing.yaml $good
 expect 3 --emit profiles --profiles nothing --out "$out" $good

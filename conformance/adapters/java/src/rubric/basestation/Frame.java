@@ -24,7 +24,7 @@ public record Frame(Link link, int dest, int src, int type, byte[] payload) {
     return out.put(payload).array();
   }
 
-  /** Returns a packet from `link` without the bytes after its length; one that is shorter is none. */
+  /** Returns a packet from `link` without the bytes after its length; throws if it is shorter. */
   public static Frame parse(Link link, byte[] packet) throws WireException {
     final AmHeader header = AmHeader.parse(ByteBuffer.wrap(packet));
     final byte[] behind = Wire.copy(header.stale());
