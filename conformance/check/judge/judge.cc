@@ -398,12 +398,15 @@ void Judge::hears(std::uint16_t node, const machine::Router& router, machine::Li
                         (radio && net.src.pid != net.dest.pid && !is(sender, Role::kSink) &&
                          seen.frame.src != context_.sink_am) ||
                         standing == Standing::kPerhaps;
-  acks_.arrived(
-      node, seen, sender, net,
-      {forbidden, forbidden == "N6-OTHER"_rule, sure && !interfaces_.switched_off(node, from),
-       straight,
-       is(node, Role::kMote) && !motes_.surely_member(node) ? ReqId::kNone : route.delivered});
-  if (sure && !off && route.deliver) synaptic_.given(node, seen, net);
+  // A base station need not deliver what is for all of its island (N8-DELIVER).
+  const bool owed = is(node, Role::kMote) ? motes_.surely_member(node)
+                                          : !is(node, Role::kBaseStation) ||
+                                                net.dest.devid != machine::kBroadcastDevid;
+  const bool on = !interfaces_.switched_off(node, from);
+  acks_.arrived(node, seen, sender, net,
+                {forbidden, forbidden == "N6-OTHER"_rule, sure && on, straight,
+                 owed ? route.delivered : ReqId::kNone});
+  if (sure && !off && route.deliver) synaptic_.given(node, seen, net, on);
 }
 
 // Counts an ack at the originator of the acked message.

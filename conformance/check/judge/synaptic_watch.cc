@@ -267,14 +267,17 @@ std::int64_t SynapticWatch::patience_us(std::uint16_t device, bool first) const 
          context_.response_us() + context_.early_us();
 }
 
-void SynapticWatch::given(std::uint16_t device, const Observation& seen, const Net& net) {
+void SynapticWatch::given(std::uint16_t device, const Observation& seen, const Net& net,
+                          bool sure) {
   Node& node = nodes_[device];
   if (!node.logged || !net.sound || net.trans_id != component::kSynChannel) return;
   In* const in = find_in(node, machine::channel_id(net.src.devid, net.dest.devid));
   if (in == nullptr) return;
   in->before = in->before || in->begun_us < 0;
   if (in->begun_us < 0) return;
-  in->data_us[in->data_next++ % in->data_us.size()] = seen.place.time_us;
+  const std::size_t at = in->data_next++ % in->data_us.size();
+  in->data_us[at] = seen.place.time_us;
+  in->data_sure[at] = sure;
 }
 
 void SynapticWatch::told(std::uint16_t device, const Observation& seen,
@@ -300,8 +303,11 @@ void SynapticWatch::told(std::uint16_t device, const Observation& seen,
   const std::int64_t since = std::max(in->told_us, in->begun_us);
   // Data that came close to a tick may count for this one or the next.
   const auto came = [&](std::int64_t from, std::int64_t to) {
-    return std::any_of(in->data_us.begin(), in->data_us.end(),
-                       [&](std::int64_t at) { return at >= 0 && at >= from && at <= to; });
+    for (std::size_t i = 0; i < in->data_us.size(); ++i) {
+      const std::int64_t at = in->data_us[i];
+      if (at >= 0 && at >= from && at <= to && (fresh || in->data_sure[i])) return true;
+    }
+    return false;
   };
   // The first signal may be about data that came before the start.
   const bool early = in->before && in->told_us < in->begun_us;

@@ -21,8 +21,8 @@ class SynapticWatch {
   void member(std::uint16_t node, std::int64_t now_us);
   /// Notes that its radio is switched on or off.
   void able(std::uint16_t node, bool radio_on, std::int64_t now_us);
-  /// Notes that by a log it was given a message for itself.
-  void given(std::uint16_t node, const Observation& seen, const Net& net);
+  /// Notes that by a log it was given a message for itself; not `sure`: as its radio went off.
+  void given(std::uint16_t node, const Observation& seen, const Net& net, bool sure = true);
   /// Judges synData_received.
   void told(std::uint16_t node, const Observation& seen, const machine::SynDataReceived& data);
   void finish(std::int64_t end_us);
@@ -67,6 +67,7 @@ class SynapticWatch {
     std::int64_t told_us = -1;   ///< The last synData_received.
     std::int64_t waits_us = -1;  ///< Silence counts from here.
     std::array<std::int64_t, 4> data_us{-1, -1, -1, -1};  ///< The last data that it was given.
+    std::array<bool, 4> data_sure{};                      ///< Whether they surely came in.
     std::uint8_t data_next = 0;
     bool before = false;  ///< Data came while it did not run; it may count, or not.
     Ticks ticks;
