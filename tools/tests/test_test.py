@@ -251,7 +251,7 @@ class Failing(Folder):
                       "  But:      at 2 it emitted rA ack_join(", "    > @2        m5 > rA am=5->1",
                       "<<<\n", "  Broken: J4-SEQ\n",
                       "  Suspected: J4-ACK J4-CLOCK J5-SUCCESS J5-ACCEPT\n",
-                      "  Then:     line 40 [J4-ACK]: ", "3 unexpected results."]:
+                      "  Then:     line 40 [J4-ACK]: ", "4 unexpected results."]:
             self.assertIn(words, out)
 
     def test_missing_output_is_marked_where_it_should_be(self):
