@@ -321,7 +321,7 @@ islands:
         wrong.write_text("user=gate\npasswort=sesame\n", encoding="utf-8")
         run = subprocess.run([RUBRIC, "run", *sink, "--credentials", wrong], capture_output=True,
                              check=False, text=True)
-        self.assertEqual(run.returncode, 2)
+        self.assertEqual(run.returncode, 64)
         self.assertIn(f"{wrong}:2: expected user=, password=", run.stderr)
         self.assertNotIn("sesame", run.stderr)
 
