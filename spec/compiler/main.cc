@@ -11,10 +11,9 @@
 #include "spec/compiler/emit/emit.h"
 #include "spec/compiler/load/load.h"
 #include "tools/cli/command.h"
+#include "tools/cli/exit_codes.h"
 
 namespace {
-
-enum Exit { kOk = 0, kDiagnostics = 1, kUsage = 2, kCannotReadOrWrite = 3 };
 
 const std::vector<std::string> kEmitters{"cpp",        "tables",   "requirements", "protocols",
                                          "dictionary", "messages", "profiles",     "cases",
@@ -81,12 +80,12 @@ int run(const CompilerOptions& options) {
   for (const std::string& input : inputs) {
     if (std::ifstream(input).good() && !std::filesystem::is_directory(input)) continue;
     std::cerr << "rubricc: cannot read " << input << '\n';
-    return kCannotReadOrWrite;
+    return rubric::cli::kExitInput;
   }
   const bool has_profiles = std::filesystem::is_directory(options.profiles);
   if (!has_profiles && wants(options, "profiles")) {
     std::cerr << "rubricc: cannot read " << options.profiles << '\n';
-    return kCannotReadOrWrite;
+    return rubric::cli::kExitInput;
   }
   rubricc::Model model;
   rubricc::Diagnostics diagnostics;
@@ -98,16 +97,16 @@ int run(const CompilerOptions& options) {
   rubricc::load_specs(options.files, model, diagnostics);
   rubricc::check_model(model, diagnostics);
   std::cerr << diagnostics.print();
-  if (!diagnostics.empty()) return kDiagnostics;
+  if (!diagnostics.empty()) return rubric::cli::kExitFindings;
   try {
     for (const auto& file : emit(options, model)) {
-      if (!write(options.out, file)) return kCannotReadOrWrite;
+      if (!write(options.out, file)) return rubric::cli::kExitOutput;
     }
   } catch (const std::logic_error& e) {  // A check let pass what an emitter cannot print.
     std::cerr << "rubricc: a bug of the compiler: " << e.what() << '\n';
-    return kDiagnostics;
+    return rubric::cli::kExitBroken;
   }
-  return kOk;
+  return rubric::cli::kExitClean;
 }
 
 }  // namespace

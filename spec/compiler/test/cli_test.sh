@@ -48,8 +48,8 @@ expect 64 $good
 expect 64 --emit tables $good
 expect 64 --emit poetry --out "$out" $good
 expect 64 --check --emit tables --out "$out" $good
-expect 3 --check spec/wire/nothing.ksy
-expect 3 --check --requirements nothing.yaml $good
-expect 3 --emit profiles --profiles nothing --out "$out" $good
-expect 3 --emit tables --out /dev/null/nowhere $good
+expect 66 --check spec/wire/nothing.ksy
+expect 66 --check --requirements nothing.yaml $good
+expect 66 --emit profiles --profiles nothing --out "$out" $good
+expect 74 --emit tables --out /dev/null/nowhere $good
 exit "$failures"
