@@ -49,7 +49,7 @@ class Peers {
 };
 
 /// Runs in one thread.
-class Station : private node::Driver, private node::Application, public Caller {
+class Station final : private node::Driver, private node::Application, public Caller {
  public:
   /// Opens its lines. Throws Broken if one cannot be had.
   Station(StationSetup setup, Keeper& keeper);
