@@ -63,7 +63,8 @@ const std::string kFacts = from_hex(
 
 TEST(WireRadioTap, FactsAreKept) {
   for (const TapCase& row : kTapCases) {
-    Packet packet = of_record(kFacts + from_hex(row.frame), kLinkRadioTap, row.missing);
+    const std::string record = kFacts + from_hex(row.frame);
+    const Packet packet = of_record(record, kLinkRadioTap, row.missing);
     EXPECT_EQ(packet.error, row.error) << row.name;
     EXPECT_EQ(packet.radio.rssi, -71.5F);
     EXPECT_EQ(packet.radio.channel, 26);
@@ -79,8 +80,8 @@ TEST(WireRadioTap, FactsAreKept) {
     EXPECT_EQ(again.fcs, packet.fcs) << row.name;
     EXPECT_EQ(again.radio, packet.radio) << row.name;
   }
-  const std::string rate = from_hex("0000 0c00 0200 0400 90d00300");
-  const Packet packet = of_record(rate + from_hex("02 00 01"), kLinkRadioTap);
+  const std::string rate = from_hex("0000 0c00 0200 0400 90d00300 02 00 01");
+  const Packet packet = of_record(rate, kLinkRadioTap);
   EXPECT_TRUE(packet.radio.more);
   EXPECT_FALSE(packet.radio.any());
 }
