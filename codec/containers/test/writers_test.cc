@@ -1,6 +1,9 @@
 // Writers and difficult packets: damaged ones, and times beyond a format.
 #include <gtest/gtest.h>
 
+#include <deque>
+#include <string>
+
 #include "codec/containers/hdlc_reader.h"
 #include "codec/containers/link_record.h"
 #include "codec/containers/pcap_reader.h"
@@ -18,7 +21,10 @@ using testing::view;
 constexpr Error kSound{Fault::kNone, 0, ReqId::kNone};
 const std::string kTap = from_hex("0000 0c00 0000 0100 01000000");  // 16-bit FCS.
 
-Packet of_record(const std::string& record, std::uint16_t link_type, std::size_t missing = 0) {
+// Keeps all records, as packets refer to their bytes.
+Packet of_record(const std::string& text, std::uint16_t link_type, std::size_t missing = 0) {
+  static std::deque<std::string> records;
+  const std::string& record = records.emplace_back(text);
   Packet packet;
   decode_record(view(record), record.size() + missing, link_type, "WIRE-PCAP"_rule, packet);
   return packet;
