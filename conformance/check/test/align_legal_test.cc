@@ -6,6 +6,7 @@
 
 #include "conformance/check/test/align_testing.h"
 #include "conformance/check/test/frames_testing.h"
+#include "conformance/check/test/lawful_testing.h"
 #include "conformance/selftest/lawful_traffic/generate.h"
 #include "conformance/selftest/lawful_traffic/variants.h"
 
@@ -26,14 +27,7 @@ struct Count {
 void judge_apart(const std::string& variant, std::uint64_t seed, Count& count) {
   const lawful::Traffic traffic = lawful::generate(variant, seed);
   if (!traffic.has_radio || !traffic.has_serial) return;
-  Options options;
-  options.stated = stated_by(traffic.stated);
-  for (const lawful::NodeInfo& node : traffic.nodes) {
-    if (node.role == lawful::Role::kTester) options.testers.push_back(node.id);
-  }
-  if (!traffic.all_well_formed) options.testers.push_back(0);
-  options.sniffer_complete = traffic.sniffer_complete;
-  options.start_cold = traffic.cold_start;
+  const Options options = options_of_whole(traffic);
   const std::string bytes = lawful::to_pcapng(traffic);
   for (const double ahead_s : kAhead_s) {
     for (const bool stamps : {true, false}) {

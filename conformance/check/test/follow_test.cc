@@ -20,6 +20,7 @@
 #include "codec/reflect/requirements.h"
 #include "conformance/check/judge/judge.h"
 #include "conformance/check/test/frames_testing.h"
+#include "conformance/check/test/lawful_testing.h"
 #include "conformance/selftest/lawful_traffic/generate.h"
 #include "conformance/selftest/lawful_traffic/variants.h"
 #include "conformance/simulate/recorder.h"
@@ -187,15 +188,8 @@ TEST(Follow, LawfulTraffic) {
   for (const lawful::Variant& variant : lawful::variants()) {
     for (std::uint64_t seed = 1; seed <= 2; ++seed) {
       const lawful::Traffic traffic = lawful::generate(std::string(variant.name), seed);
-      Options options;
-      options.stated = stated_by(traffic.stated);
-      for (const lawful::NodeInfo& node : traffic.nodes) {
-        if (node.role == lawful::Role::kTester) options.testers.push_back(node.id);
-      }
-      if (!traffic.all_well_formed) options.testers.push_back(0);
-      options.sniffer_complete = traffic.sniffer_complete;
-      options.start_cold = traffic.cold_start;
-      compare(traffic.variant, lawful::to_pcapng(traffic), 0, seed, options, 2 * kSecondUs, sum);
+      compare(traffic.variant, lawful::to_pcapng(traffic), 0, seed, options_of_whole(traffic),
+              2 * kSecondUs, sum);
     }
   }
   print("lawful", sum);

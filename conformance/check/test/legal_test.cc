@@ -10,6 +10,7 @@
 #include "conformance/check/input/read.h"
 #include "conformance/check/judge/judge.h"
 #include "conformance/check/test/frames_testing.h"
+#include "conformance/check/test/lawful_testing.h"
 #include "conformance/selftest/lawful_traffic/generate.h"
 #include "conformance/selftest/lawful_traffic/recorder.h"
 #include "conformance/selftest/lawful_traffic/variants.h"
@@ -50,17 +51,8 @@ void judge_both(const std::string& variant, std::uint64_t seed, const std::strin
                 Count& count) {
   lawful::Traffic traffic = lawful::generate(variant, seed);
   lawful::record(traffic, recorder, seed);
-  Options options;
-  options.stated = stated_by(traffic.stated);
-  for (const lawful::NodeInfo& node : traffic.nodes) {
-    if (node.role == lawful::Role::kTester) options.testers.push_back(node.id);
-  }
-  // A host that sends malformed messages on purpose is the tester.
-  if (!traffic.all_well_formed) options.testers.push_back(0);
-  judge_one(traffic, recorder, options, count);
-  options.sniffer_complete = traffic.sniffer_complete;
-  options.start_cold = traffic.cold_start;
-  judge_one(traffic, recorder, options, count);
+  judge_one(traffic, recorder, options_of(traffic), count);
+  judge_one(traffic, recorder, options_of_whole(traffic), count);
 }
 
 TEST(Legal, NothingFails) {
