@@ -15,6 +15,7 @@
 #include <csignal>
 #include <cstring>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <set>
 #include <string_view>
@@ -29,6 +30,10 @@ namespace rubric::cli {
 namespace {
 
 namespace fs = std::filesystem;
+
+// The exit codes of runs, the least grave first.
+constexpr int kGraver[] = {kExitClean, kExitIncomplete, kExitFindings, kExitInput,
+                           kExitUsage, kExitOutput,     kExitBroken};
 
 constexpr std::size_t kAheadMax = 4096;  // Results that wait for an earlier one.
 // What is taken of a folder.
@@ -335,7 +340,7 @@ class Runs {
     std::string ends;
     int gravest = 0;
     const auto rank = [&](int code) {
-      return std::find(job_.graver.begin(), job_.graver.end(), code) - job_.graver.begin();
+      return std::find(std::begin(kGraver), std::end(kGraver), code) - std::begin(kGraver);
     };
     for (const auto& [code, count] : counts_) {
       ends += fmt::format("{} {} with {}", ends.empty() ? ":" : ",", count, code);

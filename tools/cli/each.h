@@ -26,9 +26,8 @@ void check_each(const EachOptions& options);
 
 struct EachJob {
   const char* command = "";
-  std::string settings;     ///< All that a result depends on besides the file.
-  std::vector<int> graver;  ///< Exit codes, the least grave first.
-  int broken = 0;           ///< The exit code of a run whose process was killed.
+  std::string settings;  ///< All that a result depends on besides the file.
+  int broken = 0;        ///< The exit code of a run whose process was killed.
 };
 
 /// Does one run: puts what its line says into `members`, as members of a JSON object, and returns

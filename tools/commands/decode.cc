@@ -232,11 +232,7 @@ int decode_each(const DecodeOptions& options) {
   const std::string settings =
       fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}", in.format, in.fcs, in.spec, in.as_message,
                   options.filter, options.count, options.strict);
-  const cli::EachJob job{
-      "decode",
-      settings,
-      {0, cli::kExitFindings, cli::kExitInput, cli::kExitUsage, cli::kExitOutput},
-      cli::kExitInput};
+  const cli::EachJob job{"decode", settings, cli::kExitInput};
   return cli::each(options.each, job, in.files, "-",
                    [&](const std::string& file, std::string& members) {
                      DecodeOptions one = options;
