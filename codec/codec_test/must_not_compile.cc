@@ -9,7 +9,7 @@
 using namespace rubric;
 using namespace rubric::rubicon;
 
-// A view comes from parse only: bytes that nobody checked have none.
+// Only parse makes a view, so bytes that were not checked have none.
 Result<JoinReplyView> view_of(Bytes bytes) {
 #ifdef VIEW_WITHOUT_PARSE
   return JoinReplyView(bytes);

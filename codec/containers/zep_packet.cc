@@ -36,7 +36,7 @@ void store_ntp(std::int64_t time_ns, std::uint8_t* at) {
   store_be32(at + 4, static_cast<std::uint32_t>(((rest_ns << 32) + kSecondNs - 1) / kSecondNs));
 }
 
-// Reads a datagram of which a capture has only the beginning and lacks `missing` bytes.
+// Reads a datagram that the capture cut: `missing` bytes after it are not there.
 void decode_cut_zep_datagram(Bytes datagram, std::uint64_t missing, Packet& packet) {
   const bool v2 = datagram.size() > 2 && datagram[2] == 2;
   const std::size_t header = std::min(datagram.size(), v2 ? kZepHeaderV2 : kZepHeaderV1);
@@ -57,7 +57,7 @@ constexpr std::size_t kIpv4HeaderMin = 20;
 constexpr std::size_t kIpv6HeaderBytes = 40;
 constexpr std::size_t kUdpHeaderBytes = 8;
 
-/// What is left of a record: the captured part, and how long it would be whole.
+/// Holds the captured rest of a record, and the number of bytes that this rest has when whole.
 struct Rest {
   Bytes bytes;
   std::uint64_t size;

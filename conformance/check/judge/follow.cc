@@ -36,7 +36,7 @@ class Keeper {
     if (seen.kind == Observation::Kind::kSerial) return wants_serial(seen);
     if (seen.kind != Observation::Kind::kRadio || mark.device == kNobody) return false;
     if (!who_.devices[mark.device].known || closed_[mark.device]) return false;
-    closed_[mark.device] = mark.new_life;  // What was before is forgotten by the node, too.
+    closed_[mark.device] = mark.new_life;  // The node forgot all before, too.
     const machine::Frame& frame = seen.frame;
     const bool last = first_ones({Kind::kSender, mark.device, 0}, kLastFramesMax);
     if (frame.type == am::kJoin || frame.type == am::kAckJoin) {

@@ -8,10 +8,10 @@
 // and line the last ones, and what set an island. They begin the run that is judged (Run::past).
 //
 // Judged is what is held, again and again. A finding is settled once it is older than the horizon:
-// it stays as it is from then on, and is told by the report at the end. Frames go when they are
+// it stays as it is from then on, and the report at the end has it. Frames go when they are
 // older than two horizons, so that each frame is judged with a horizon before it and one after it.
 //
-// A missing cause that may lie among the frames that are gone blames nobody, just as if the sniffer
+// Where a missing cause may lie among frames that are gone, no node is blamed, as if the sniffer
 // had missed them (Identity::damaged()). So a run that is followed fails where `rubric check` of
 // the whole does; what needs a cause or an effect beyond the horizon becomes inconclusive, or is
 // not found.

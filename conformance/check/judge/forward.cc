@@ -54,7 +54,7 @@ void Forwarding::set_island(std::uint16_t sink, std::uint16_t island, std::int64
   Line* const line = find(sink);
   if (line == nullptr) return;
   if (line->island == island) return;
-  // What it has not passed on yet, it may pass on as the sink of either island.
+  // It may pass on as the sink of either island what still waits.
   forget_owed(line->up, line->owed_up);
   forget_owed(line->down, line->owed_down);
   line->island_changed_us = now_us;

@@ -54,7 +54,7 @@ class SynapticWatch {
       std::int64_t until_us = 0;
       std::size_t pos = 0;
       std::uint32_t bits = 0;
-      bool unwritten = false;  ///< Free: nobody had written it.
+      bool unwritten = false;  ///< No application had written it: it is free.
     };
     std::vector<Old> olds;                    ///< Values before those that were written last.
     std::int64_t forgot_us = -1'000'000'000;  ///< Older ones are not kept.
