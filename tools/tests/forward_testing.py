@@ -98,6 +98,8 @@ class Client:
             self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, receive_bytes)
         self.socket.settimeout(PATIENCE_S)
         self.socket.connect((running.host, running.port))
+        # Otherwise a small packet stays here until the one before it is confirmed.
+        self.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self.read = b""
         self.name = "{}:{}".format(*self.socket.getsockname()[:2])
         if hello is not None:
