@@ -85,7 +85,7 @@ if(RUBRIC_TESTS)
   file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/test_headers.cc CONTENT "int main() {}\n")
   add_executable(rubric_test_headers ${PROJECT_BINARY_DIR}/test_headers.cc)
   target_link_libraries(rubric_test_headers PRIVATE rubric_options GTest::gmock fmt::fmt)
-  target_compile_options(rubric_test_headers PRIVATE ${RUBRIC_COLD})
+  target_compile_options(rubric_test_headers PRIVATE -O0)
   target_precompile_headers(rubric_test_headers PRIVATE <gmock/gmock.h> <gtest/gtest.h>
     <fmt/format.h> <algorithm> <fstream> <map> <optional> <set> <string> <variant> <vector>)
 endif()
@@ -122,10 +122,9 @@ function(rubric_test name)
   endif()
   cmake_parse_arguments(arg "FOREIGN" "LABEL" "SOURCES;DEPS" ${ARGN})
   add_executable(${name} ${arg_SOURCES})
-  set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
   target_link_libraries(${name} PRIVATE rubric_options ${arg_DEPS} GTest::gmock GTest::gtest_main
     fmt::fmt)
-  target_compile_options(${name} PRIVATE ${RUBRIC_COLD})
+  target_compile_options(${name} PRIVATE -O0)
   target_precompile_headers(${name} REUSE_FROM rubric_test_headers)
   add_test(NAME ${name} COMMAND ${name} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
   rubric_label_test(${name} "${arg_LABEL}" ${arg_FOREIGN} ${name})
@@ -200,8 +199,8 @@ endfunction()
 
 # rubric_fuzzer(NAME [MUTATOR lib] [DICT protocol] [MAX_LEN bytes] [SMOKE_RUNS n] [TIMEOUT seconds]
 #   [REPRO] [SEEDS folder ...] [DEPS lib ...]): the fuzz target targets/NAME_fuzz.cc. With
-# RUBRIC_FUZZ a program for the engine. With tests, built by any compiler, a replay of the corpus:
-# corpora/NAME, if it is there, and SEEDS, folders of the project. REPRO says that `rubric repro`
+# RUBRIC_FUZZ a program for the engine. With tests, a program built by any compiler that replays the
+# corpus: corpora/NAME, if it is there, and SEEDS, folders of the project; with sanitizers it is a test. REPRO says that `rubric repro`
 # writes this target's inputs as traces. What the scripts in fuzz/ must know goes to the build
 # folder's fuzz_targets.tsv: name, dictionary or -, max_len, smoke runs, folders of the corpus,
 # seconds that an input may take, repro or -.
@@ -234,6 +233,10 @@ function(rubric_fuzzer name)
   if(RUBRIC_TESTS)
     add_executable(${target}_replay targets/${target}.cc support/replay_main.cc)
     target_link_libraries(${target}_replay PRIVATE ${libraries})
-    rubric_script_test(${target}_replay FOREIGN COMMAND ${target}_replay ${corpus})
+    if(RUBRIC_SANITIZE)
+      rubric_script_test(${target}_replay FOREIGN COMMAND ${target}_replay ${corpus})
+    else()
+      set_target_properties(${target}_replay PROPERTIES EXCLUDE_FROM_ALL ON)
+    endif()
   endif()
 endfunction()

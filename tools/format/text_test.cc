@@ -14,7 +14,7 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
 
-std::string print(const Sample& sample, TextOptions options = {}) {
+std::string printed(const Sample& sample, TextOptions options = {}) {
   TextFormatter formatter(rubicon(), std::move(options));
   return sample.print(formatter);
 }
@@ -26,7 +26,7 @@ TEST(Text, is_a_line_a_frame) {
   sample.record.time_ns = 526'298'000;
   sample.record.interface_name = "serial:1";
   sample.packet.direction = Direction::kOutbound;
-  EXPECT_EQ(print(sample),
+  EXPECT_EQ(printed(sample),
             "     6    0.526298 serial:1 -> hdlc     0>bcast net_msg/app_msg/updates "
             "dest=11:null src=11:2 reliable=0 seq_num=45267 nbytes=18 | trans_id=connless "
             "app_id=control_layer | type=updates output_size=3 "
@@ -34,19 +34,19 @@ TEST(Text, is_a_line_a_frame) {
 }
 
 TEST(Text, shows_structures_masks_and_units) {
-  const std::string join = print(Sample(kJoinRequest, Framing::kBare, "join_request"));
+  const std::string join = printed(Sample(kJoinRequest, Framing::kBare, "join_request"));
   EXPECT_EQ(join,
             "     1 bare   join_request            seq_num=50421 mote_desc{mote_type=telosb_demo "
             "transducers=light|temp|humid|bit13 actuators=led}\n");
   TextOptions units;
   units.units = true;
-  EXPECT_THAT(print(Sample("0001 18c4 04b2 012e 0003", Framing::kBare, "data"), units),
+  EXPECT_THAT(printed(Sample("0001 18c4 04b2 012e 0003", Framing::kBare, "data"), units),
               HasSubstr(" temp=23.4degC "));
 }
 
 TEST(Text, marks_what_is_malformed) {
   const Sample sample("00 ffff 0000 0e 00 1c 000b fffd 000b 0002 02 0001 02 030a");
-  EXPECT_EQ(print(sample),
+  EXPECT_EQ(printed(sample),
             "!    1 sf   0>bcast net_msg                 dest=11:null src=11:2 "
             "!! out_of_range at 16: reliable is 2, allowed are 0 to 1\n"
             "        WIRE-NET-RELIABLE MUST: The reliable field of a network message is 0 or 1.\n");
@@ -54,24 +54,24 @@ TEST(Text, marks_what_is_malformed) {
 
 TEST(Text, marks_notes_and_opaque_bytes) {
   const Sample noted("00 ffff 0000 12 00 1c 000b fffd 000b 0002 00 0001 06 0305 22aabbcc");
-  EXPECT_THAT(print(noted), EndsWith("payload=22aabbcc * does_not_fit at 22: body has the key 34 "
-                                     "and does not fit demo_data\n"));
+  EXPECT_THAT(printed(noted), EndsWith("payload=22aabbcc * does_not_fit at 22: body has the key 34 "
+                                       "and does not fit demo_data\n"));
   const Sample unknown("00 ffff 0000 02 00 23 beef");
-  EXPECT_THAT(print(unknown), HasSubstr("am 35                   beef * unknown_message at 8"));
-  EXPECT_THAT(print(Sample("", Framing::kSf)), HasSubstr("bytes"));
+  EXPECT_THAT(printed(unknown), HasSubstr("am 35                   beef * unknown_message at 8"));
+  EXPECT_THAT(printed(Sample("", Framing::kSf)), HasSubstr("bytes"));
 }
 
 TEST(Text, selects_fields) {
   TextOptions options;
   options.fields = parse_paths("src.devid,updates.value,cur_time", rubicon());
-  EXPECT_EQ(print(Sample(kUpdates), std::move(options)),
+  EXPECT_EQ(printed(Sample(kUpdates), std::move(options)),
             "     1 src.devid=2 updates.value=302 6402 1202 cur_time=\n");
 }
 
 TEST(Text, colours_and_keeps_the_words) {
   TextOptions options;
   options.color = true;
-  const std::string line = print(Sample(kUpdates), options);
+  const std::string line = printed(Sample(kUpdates), options);
   EXPECT_THAT(line, HasSubstr("\033[1;36mupdates\033[0m"));
   std::string plain;
   for (std::size_t i = 0; i < line.size(); ++i) {
@@ -82,20 +82,20 @@ TEST(Text, colours_and_keeps_the_words) {
     }
   }
   while (plain.ends_with(" \n")) plain.erase(plain.size() - 2, 1);
-  EXPECT_EQ(plain, print(Sample(kUpdates)));
+  EXPECT_EQ(plain, printed(Sample(kUpdates)));
 }
 
 TEST(Text, obeys_no_control_characters_of_its_input) {
   Sample sample(kUpdates);
   sample.record.interface_name = "\033]0;evil\007\x9b";
-  EXPECT_THAT(print(sample), Not(HasSubstr("\033")));
+  EXPECT_THAT(printed(sample), Not(HasSubstr("\033")));
 }
 
 TEST(Hexdump, names_the_owner_of_each_byte) {
   TextOptions options;
   options.hex = true;
   const Sample sample("00 ffff 0000 0e 00 1c 000b fffd 000b 0002 00 0001 02 030a beef");
-  const std::string text = print(sample, options);
+  const std::string text = printed(sample, options);
   EXPECT_THAT(
       text,
       HasSubstr("        0000  00 ff ff 00 00 0e 00 1c  00 0b ff fd 00 0b 00 02  ................\n"
@@ -108,11 +108,11 @@ TEST(Hexdump, marks_faults_and_stale_bytes_and_colours_fields) {
   TextOptions options;
   options.hex = true;
   const Sample bad("00 ffff 0000 0e 00 1c 000b fffd 000b 0002 02 0001 02 030a");
-  EXPECT_THAT(print(bad, options), HasSubstr("        0010  02 00 01 02 03 0a"));
-  EXPECT_THAT(print(bad, options), HasSubstr("\n               !\n"));
-  EXPECT_THAT(print(Sample(kUpdates), options), HasSubstr(" ~  ~\n"));
+  EXPECT_THAT(printed(bad, options), HasSubstr("        0010  02 00 01 02 03 0a"));
+  EXPECT_THAT(printed(bad, options), HasSubstr("\n               !\n"));
+  EXPECT_THAT(printed(Sample(kUpdates), options), HasSubstr(" ~  ~\n"));
   options.color = true;
-  const std::string text = print(Sample(kUpdates), options);
+  const std::string text = printed(Sample(kUpdates), options);
   // dest.pid is the seventh leaf: the same colour in the line and in the dump.
   EXPECT_THAT(text, HasSubstr("\033[36m11\033[0m:"));
   EXPECT_THAT(text, HasSubstr("\033[36m00\033[0m \033[36m0b\033[0m"));

@@ -11,13 +11,12 @@ namespace {
 
 using testing::from_hex;
 using testing::Kept;
+using testing::kSound;
 using testing::read_all;
 using testing::read_file;
 using testing::read_split;
 using testing::to_hex;
 using testing::view;
-
-constexpr Error kSound{Fault::kNone, 0, ReqId::kNone};
 
 // Builds files by hand, in either byte order.
 struct File {

@@ -6,13 +6,14 @@
 #include <random>
 #include <vector>
 
+#include "codec/containers/test/testing.h"
 #include "codec/runtime/crc16.h"
 #include "codec/runtime/ieee802154_fcs.h"
 
 namespace rubric {
 namespace {
 
-const CpuPath kPaths[] = {CpuPath::kPortable, CpuPath::kVector, CpuPath::kWide};
+using testing::kPaths;
 
 TEST(WireSerialCrc, EveryPathAtEveryLengthAndAlignment) {
   std::mt19937 random(31);

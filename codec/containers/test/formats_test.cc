@@ -13,12 +13,11 @@ namespace {
 
 using testing::from_hex;
 using testing::Kept;
+using testing::kSound;
 using testing::read_all;
 using testing::read_split;
 using testing::to_hex;
 using testing::view;
-
-constexpr Error kSound{Fault::kNone, 0, ReqId::kNone};
 
 struct Row {
   std::uint64_t offset;

@@ -12,13 +12,12 @@ namespace {
 
 using testing::from_hex;
 using testing::Kept;
+using testing::kPaths;
+using testing::kSound;
 using testing::read_all;
 using testing::read_split;
 using testing::to_hex;
 using testing::view;
-
-const CpuPath kPaths[] = {CpuPath::kPortable, CpuPath::kVector, CpuPath::kWide};
-constexpr Error kSound{Fault::kNone, 0, ReqId::kNone};
 
 struct Expected {
   std::uint64_t offset;

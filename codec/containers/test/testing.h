@@ -11,10 +11,14 @@
 #include <string_view>
 #include <vector>
 
+#include "codec/containers/crc16_fast.h"
 #include "codec/containers/reader.h"
 #include "codec/containers/writer.h"
 
 namespace rubric::testing {
+
+inline constexpr Error kSound{Fault::kNone, 0, ReqId::kNone};
+inline constexpr CpuPath kPaths[] = {CpuPath::kPortable, CpuPath::kVector, CpuPath::kWide};
 
 inline Bytes view(const std::string& text) {
   return Bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());

@@ -15,10 +15,10 @@ namespace {
 
 using testing::from_hex;
 using testing::Kept;
+using testing::kSound;
 using testing::read_all;
 using testing::view;
 
-constexpr Error kSound{Fault::kNone, 0, ReqId::kNone};
 const std::string kTap = from_hex("0000 0c00 0000 0100 01000000");  // 16-bit FCS.
 
 // Keeps all records, as packets refer to their bytes.

@@ -26,6 +26,8 @@ from serial_testing import held_port
 HERE = pathlib.Path(__file__).resolve().parent
 MISTAKE = "reads_numbers_backwards"
 PARTS = 6
+# A station lives for a second or two: code that runs once is not worth an optimising compiler.
+SHORT_LIVED = ["-XX:TieredStopAtLevel=1", "-XX:+UseSerialGC", "-Xshare:auto"]
 
 
 def build(javac, folder, mistake):
@@ -47,7 +49,7 @@ def run_at_line(rubric, java, classes, report, which):
         tested = subprocess.Popen([rubric, "test", "--target", f"sf-server:{port}", "--role",
                                    "base_station", "--format", "json", "--out", str(report),
                                    *which])
-        station = [java, "-cp", str(classes), "rubric.basestation.ForwarderClient",
+        station = [java, *SHORT_LIVED, "-cp", str(classes), "rubric.basestation.ForwarderClient",
                    f"127.0.0.1:{port}", "11"]
         while tested.poll() is None:
             subprocess.run(station, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
@@ -59,7 +61,8 @@ def run_at_line(rubric, java, classes, report, which):
 def run_with_application(rubric, java, classes, report, which):
     """The same; the station is the app's, which starts it anew for each case."""
     with held_port() as port:
-        app = f"{java} -cp {classes} rubric.basestation.LiveAdapter 127.0.0.1:{port}"
+        app = " ".join([java, *SHORT_LIVED, "-cp", str(classes), "rubric.basestation.LiveAdapter",
+                        f"127.0.0.1:{port}"])
         subprocess.run([rubric, "test", "--target", f"sf-server:{port}:restart", "--app", app,
                         "--role", "base_station", "--format", "json", "--out", str(report), *which])
     return cases_of(report)

@@ -9,7 +9,7 @@
 #include "conformance/check/input/duplicates.h"
 #include "conformance/check/test/align_testing.h"
 
-namespace rubric::check {
+namespace rubric::check::align_twice_test {
 namespace {
 
 // Each lasts longer than the clocks of two sniffers may differ; else the two share no time.
@@ -193,4 +193,4 @@ TEST(AlignTwice, OneLineTwice) {
 }
 
 }  // namespace
-}  // namespace rubric::check
+}  // namespace rubric::check::align_twice_test

@@ -6,7 +6,7 @@
 #include "conformance/check/test/testing.h"
 #include "conformance/check/test/testing_log.h"
 
-namespace rubric::check {
+namespace rubric::check::join_watch_test {
 namespace {
 
 constexpr const char* kBegin = R"(%rtr 1  %profile paper  %tick ms
@@ -150,4 +150,4 @@ TEST(JoinWatch, InACaptureALinkAckProvesReception) {
 }
 
 }  // namespace
-}  // namespace rubric::check
+}  // namespace rubric::check::join_watch_test

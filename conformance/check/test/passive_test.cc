@@ -10,7 +10,7 @@
 #include "conformance/check/judge/judge.h"
 #include "conformance/check/test/testing.h"
 
-namespace rubric::check {
+namespace rubric::check::passive_test {
 namespace {
 
 using machine::kNullDevid;
@@ -213,4 +213,4 @@ TEST(Passive, AReceiverThatDiedIsOneFinding) {
 }
 
 }  // namespace
-}  // namespace rubric::check
+}  // namespace rubric::check::passive_test

@@ -6,7 +6,7 @@
 
 #include "conformance/check/test/testing_log.h"
 
-namespace rubric::check {
+namespace rubric::check::peis_watch_test {
 namespace {
 
 constexpr const char* kBegin = R"(%rtr 1  %profile paper  %tick ms
@@ -123,4 +123,4 @@ TEST(PeisWatch, AcksOfBaseStationsAreKnown) {
 }
 
 }  // namespace
-}  // namespace rubric::check
+}  // namespace rubric::check::peis_watch_test

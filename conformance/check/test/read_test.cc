@@ -13,7 +13,7 @@
 #include "conformance/check/judge/judge.h"
 #include "conformance/check/message.h"
 
-namespace rubric::check {
+namespace rubric::check::read_test {
 namespace {
 
 constexpr const char* kFirmware = "spec/captures/firmware/";
@@ -173,4 +173,4 @@ case log
 }
 
 }  // namespace
-}  // namespace rubric::check
+}  // namespace rubric::check::read_test

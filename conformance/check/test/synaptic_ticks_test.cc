@@ -7,7 +7,7 @@
 
 #include "conformance/check/test/testing_log.h"
 
-namespace rubric::check {
+namespace rubric::check::synaptic_ticks_test {
 namespace {
 
 constexpr const char* kBegin = R"(%rtr 1  %profile paper  %tick ms
@@ -147,4 +147,4 @@ TEST(SynapticTicks, AStartShiftsNoOtherChannel) {
 }
 
 }  // namespace
-}  // namespace rubric::check
+}  // namespace rubric::check::synaptic_ticks_test

@@ -7,7 +7,7 @@
 #include "conformance/check/input/read.h"
 #include "conformance/check/judge/judge.h"
 
-namespace rubric::check {
+namespace rubric::check::synaptic_watch_test {
 namespace {
 
 constexpr const char* kBegin = R"(%rtr 1  %profile paper  %tick ms
@@ -91,4 +91,4 @@ TEST(SynapticWatch, OneValueForEachConnection) {
 }
 
 }  // namespace
-}  // namespace rubric::check
+}  // namespace rubric::check::synaptic_watch_test

@@ -8,7 +8,7 @@
 #include "conformance/check/test/failures.h"
 #include "conformance/check/test/testing.h"
 
-namespace rubric::check {
+namespace rubric::check::times_test {
 namespace {
 
 constexpr const char* kCaptures[] = {
@@ -113,4 +113,4 @@ TEST(Times, OfMotesAreJudgedBesideALineWithoutThem) {
 }
 
 }  // namespace
-}  // namespace rubric::check
+}  // namespace rubric::check::times_test

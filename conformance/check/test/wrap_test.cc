@@ -5,7 +5,7 @@
 
 #include "conformance/check/test/testing_log.h"
 
-namespace rubric::check {
+namespace rubric::check::wrap_test {
 namespace {
 
 constexpr const char* kBegin = R"(%rtr 1  %profile paper  %tick ms
@@ -57,4 +57,4 @@ TEST(Wrap, ARebootForgetsTheCalls) {
 }
 
 }  // namespace
-}  // namespace rubric::check
+}  // namespace rubric::check::wrap_test

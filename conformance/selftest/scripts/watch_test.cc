@@ -23,7 +23,7 @@ std::string text_of(const std::optional<Broken>& broken) {
   return broken ? broken->text() : "nothing broken";
 }
 
-std::vector<Script> golden_scripts() {
+std::vector<Script> scripts_without_cases() {
   std::vector<Script> out;
   for (const trace::Parsed& file : runner::load_cases("conformance/cases")) {
     for (const trace::Case& one : file.file.cases) {
@@ -47,7 +47,7 @@ TEST(Watched, TheMachineKeepsItsPromisesInGoldenTraces) {
 TEST(Watched, TheMachineKeepsItsPromisesInChangedTraces) {
   std::mt19937 random(11);
   int runs = 0;
-  for (const Script& script : golden_scripts()) {
+  for (const Script& script : scripts_without_cases()) {
     for (int i = 0; i < 20; ++i, ++runs) {
       std::vector<std::uint8_t> bytes = encode(script);
       for (int k = 0; k < 4; ++k) {
@@ -64,7 +64,7 @@ TEST(Watched, TheMachineKeepsItsPromisesInChangedTraces) {
 // Golden traces that lead a flaw astray break a promise; except for the flaw that needs two looks
 // at the same clock.
 TEST(Watched, FlawsBreakPromises) {
-  const std::vector<Script> scripts = golden_scripts();
+  const std::vector<Script> scripts = scripts_without_cases();
   for (const flaws::Flaw& flaw : flaws::all()) {
     std::optional<Broken> first;
     for (std::size_t i = 0; i < scripts.size() && !first; ++i) {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "codec/text/files.h"
-#include "conformance/test/report/html.h"
+#include "conformance/test/report/folder_testing.h"
 #include "conformance/test/suite/run.h"
 #include "conformance/test/suite/test/testing.h"
 
@@ -20,35 +20,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class Folder {
- public:
-  Folder() : path_(fs::temp_directory_path() / ("folder-" + std::to_string(getpid()))) {
-    fs::create_directories(path_);
-  }
-  ~Folder() { fs::remove_all(path_); }
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
-
 void put(const fs::path& path, const std::string& text) {
   fs::create_directories(path.parent_path());
   std::ofstream(path) << text;
-}
-
-std::set<std::string> files_in(const fs::path& folder) {
-  std::set<std::string> out;
-  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    if (!entry.is_directory()) out.insert(fs::relative(entry.path(), folder).string());
-  }
-  return out;
-}
-
-void report(const SuiteRun& run, const fs::path& path) {
-  ReportFolder folder(path);
-  write_html_report(run, nullptr, folder);
-  folder.finish();
 }
 
 TEST(ReportFolder, AUsedFolderLosesWhatAnEarlierReportLeftAndNothingElse) {

@@ -15,6 +15,7 @@
 #include "codec/containers/reader.h"
 #include "conformance/test/report/case_files.h"
 #include "conformance/test/report/case_source.h"
+#include "conformance/test/report/folder_testing.h"
 #include "conformance/test/report/frame_view.h"
 #include "conformance/test/report/log_lines.h"
 #include "conformance/test/suite/run.h"
@@ -50,36 +51,6 @@ const CaseRun& one(const std::string& name) {
     if (each.name == name) return each;
   }
   throw std::runtime_error("no case " + name);
-}
-
-class Folder {
- public:
-  Folder() : path_(fs::temp_directory_path() / ("report-" + std::to_string(getpid()))) {
-    fs::create_directories(path_);
-  }
-  ~Folder() { fs::remove_all(path_); }
-  const fs::path& path() const { return path_; }
-  std::string read(const fs::path& name) const {
-    std::ifstream in(path_ / name, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  }
-  // Returns all files, with relative paths.
-  std::set<std::string> files() const {
-    std::set<std::string> out;
-    for (const auto& each : fs::recursive_directory_iterator(path_)) {
-      if (each.is_regular_file()) out.insert(fs::relative(each.path(), path_).generic_string());
-    }
-    return out;
-  }
-
- private:
-  fs::path path_;
-};
-
-void report(const SuiteRun& run, const fs::path& path) {
-  ReportFolder folder(path);
-  write_html_report(run, nullptr, folder);
-  folder.finish();
 }
 
 TEST(FrameView, EachByteOfEachFrameHasItsField) {

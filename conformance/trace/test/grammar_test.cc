@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "conformance/trace/ebnf.h"
 #include "conformance/trace/parse.h"
 #include "conformance/trace/print.h"
+#include "conformance/trace/test/ebnf.h"
 
 namespace rubric::trace {
 namespace {

@@ -11,7 +11,7 @@
 namespace rubricc {
 namespace {
 
-const std::string kFolder = "spec/compiler/";
+const std::string kCompiler = "spec/compiler/";
 
 std::string read(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
@@ -21,8 +21,8 @@ std::string read(const std::filesystem::path& file) {
 /// Returns the comments at the top of every bad input, lines joined, and the test that makes its
 /// own.
 std::string expectations() {
-  std::string out = read(kFolder + "test/bad_test.cc");
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(kFolder + "test/bad")) {
+  std::string out = read(kCompiler + "test/bad_test.cc");
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(kCompiler + "test/bad")) {
     if (!entry.is_regular_file()) continue;
     std::ifstream in(entry.path());
     for (std::string line; std::getline(in, line) && line.find_first_of("#;") == 0;) {
@@ -99,7 +99,7 @@ std::vector<std::string> texts_in(const std::string& source) {
 TEST(Diagnostics, HaveATestEach) {
   const std::string expected = expectations();
   std::size_t found = 0;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(kFolder)) {
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(kCompiler)) {
     const std::string name = entry.path().filename().string();
     const bool reports = name.ends_with(".cc") && !name.ends_with("_test.cc") &&
                          !name.starts_with("emit_") && name != "main.cc";

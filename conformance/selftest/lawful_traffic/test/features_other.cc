@@ -16,8 +16,6 @@ using rubicon::Component;
 constexpr std::int64_t kPeriodUs = 488'281;
 constexpr std::int64_t kJitterUs = 20'000;
 
-bool any(const Frames& frames, const Pick& wanted) { return count(frames, wanted) > 0; }
-
 bool usual(const Traffic&, const Frames& f) {
   return count(f, [](const Seen& s) { return s.radio && s.body_type() == 35; }) > 20 &&
          count(f, [](const Seen& s) { return s.serial_joined(); }) == 3;

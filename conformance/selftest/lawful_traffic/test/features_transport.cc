@@ -11,7 +11,6 @@ namespace {
 using rubicon::AmType;
 using rubicon::Component;
 
-bool any(const Frames& frames, const Pick& wanted) { return count(frames, wanted) > 0; }
 bool is_ack(const Seen& s) { return s.app(Component::kRubiconAck); }
 bool out(const Seen& s) { return !s.radio && !s.inbound && s.net; }
 bool in(const Seen& s) { return !s.radio && s.inbound && s.net; }

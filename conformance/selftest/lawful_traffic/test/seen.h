@@ -51,6 +51,7 @@ using Pick = std::function<bool(const Seen&)>;
 Frames see(const Traffic& traffic);
 Frames pick(const Frames& frames, const Pick& wanted);
 std::size_t count(const Frames& frames, const Pick& wanted);
+inline bool any(const Frames& frames, const Pick& wanted) { return count(frames, wanted) > 0; }
 
 Frames requests(const Frames& frames, std::uint16_t mote);
 Frames replies(const Frames& frames, std::uint16_t mote);
