@@ -107,10 +107,9 @@ class Parser {
       ++at_;
     }
     token_start_ = at_;
-    if (at_ == text_.size()) {
-      token_ = {};
-      return;
-    }
+    token_ = {};
+    operator_ = nullptr;
+    if (at_ == text_.size()) return;
     std::size_t end = at_ + 1;
     const std::string_view two = text_.substr(at_, 2);
     if (is_word(text_[at_])) {
@@ -121,13 +120,9 @@ class Parser {
     }
     token_ = text_.substr(at_, end - at_);
     at_ = end;
-  }
-
-  const Operator* operator_here() const {
     for (const Operator& candidate : kOperators) {
-      if (candidate.text == token_) return &candidate;
+      if (candidate.text == token_) operator_ = &candidate;
     }
-    return nullptr;
   }
 
   ExprPtr node(ExprOp op, const Place& place) {
@@ -146,9 +141,8 @@ class Parser {
       return out;
     }
     ExprPtr left = level == kTightest + 1 ? unary(depth) : binary(level + 1, depth);
-    while (const Operator* found = operator_here()) {
-      if (level > kTightest || found->level != level) break;
-      ExprPtr out = node(found->op, here());
+    while (operator_ != nullptr && operator_->level == level) {
+      ExprPtr out = node(operator_->op, here());
       next();
       out->operands.push_back(std::move(left));
       out->operands.push_back(binary(level + 1, depth));
@@ -182,8 +176,7 @@ class Parser {
       return out;
     }
     if (!token_.empty() && is_digit(token_[0])) return number();
-    if (!token_.empty() && is_word_start(token_[0]) && operator_here() == nullptr &&
-        token_ != "not") {
+    if (!token_.empty() && is_word_start(token_[0]) && operator_ == nullptr && token_ != "not") {
       return name();
     }
     fail(token_.empty() ? "the expression ends early" : fmt::format("unexpected {}", quote(token_)),
@@ -253,6 +246,7 @@ class Parser {
   std::size_t at_ = 0;
   std::size_t token_start_ = 0;
   std::string_view token_;
+  const Operator* operator_ = nullptr;  // What the token is, if it is one.
 };
 
 std::string joined(const std::vector<std::string>& words, std::string_view separator) {

@@ -27,7 +27,7 @@ struct YamlInput {
   /// Returns false once the budget is used up, which is reported once.
   bool spend(const YAML::Node& node) const;
 };
-constexpr int kNodeBudget = 200'000;
+constexpr int kNodeBudget = 50'000;
 
 /// Parses `text`. Reports and returns nothing if it is not YAML or not text at all.
 std::optional<YAML::Node> parse_yaml(const std::string& file, const std::string& text,

@@ -1,4 +1,4 @@
-# expect: 13:59: too much to read once aliases are expanded; at most 200000 values are read
+# expect: 10:11: too much to read once aliases are expanded; at most 50000 values are read
 meta:
   id: bad
   endian: be
