@@ -200,7 +200,8 @@ endfunction()
 # rubric_fuzzer(NAME [MUTATOR lib] [DICT protocol] [MAX_LEN bytes] [SMOKE_RUNS n] [TIMEOUT seconds]
 #   [REPRO] [SEEDS folder ...] [DEPS lib ...]): the fuzz target targets/NAME_fuzz.cc. With
 # RUBRIC_FUZZ a program for the engine. With tests, a program built by any compiler that replays the
-# corpus: corpora/NAME, if it is there, and SEEDS, folders of the project; with sanitizers it is a test. REPRO says that `rubric repro`
+# corpus: corpora/NAME, if it is there, and SEEDS, folders of the project; with sanitizers it is a
+# test.
 # writes this target's inputs as traces. What the scripts in fuzz/ must know goes to the build
 # folder's fuzz_targets.tsv: name, dictionary or -, max_len, smoke runs, folders of the corpus,
 # seconds that an input may take, repro or -.
