@@ -9,6 +9,7 @@
 #include <optional>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "conformance/test/runner/blame.h"
 #include "conformance/test/runner/expectation.h"
@@ -411,7 +412,10 @@ class Run {
       const Line& line = *one.timed.line;
       NearestMiss miss =
           node_of(line)->nearest_miss(line, one.wide, one.wide.to + kLateTicks, bindings_);
-      fail(result, line, one.timed.window, one.wide.to, std::move(miss.text), miss.evidence);
+      // An output that differs broke the line when it came: what another line says of the same
+      // output must not come first and take the blame.
+      fail(result, line, one.timed.window, miss.time.value_or(one.wide.to), std::move(miss.text),
+           miss.evidence);
     }
     for (const Line* line : passed_over_) allowed_.push_back({line, {0, now_}, 0});
     for (const Timed& one : allowed_) {
@@ -429,7 +433,9 @@ class Run {
            node.evidence_of(*output));
     }
     std::stable_sort(result.failures.begin(), result.failures.end(),
-                     [](const Failure& a, const Failure& b) { return a.time < b.time; });
+                     [](const Failure& a, const Failure& b) {
+                       return std::pair(a.time, a.place.line) < std::pair(b.time, b.place.line);
+                     });
   }
 
   void broken(CaseResult& result, trace::Place place, const char* why) {
