@@ -212,7 +212,7 @@ std::string missing_rule(const suite::CaseRun& run) {
                                              "syn_data"};
   if (link == "app" && !kEvents.contains(name)) return {};
   const auto lines = run.result.log.lines();
-  if (lines.empty() || lines.back()->time.from <= first.to) return {};
+  if (lines.empty() || lines.back()->time.from <= first.time) return {};
   return first.requirements.front();
 }
 

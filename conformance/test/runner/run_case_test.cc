@@ -437,7 +437,8 @@ TEST(RunCase, WhatDiffersIsBlamedBeforeWhatForbidsTheSameOutput) {
           {30});
   ASSERT_EQ(result.failures.size(), 2u);
   EXPECT_EQ(result.failures[0].requirements, std::vector<std::string>{"T2-CONTENT"});
-  EXPECT_EQ(result.failures[0].time, 30u);
+  EXPECT_EQ(result.failures[0].broken_at, 30u);
+  EXPECT_EQ(result.failures[0].time, 50u);
   EXPECT_FALSE(result.failures[0].implied);
   EXPECT_TRUE(result.failures[1].implied);
   // Without an output in its window, the line is broken when its time is over.
@@ -446,7 +447,7 @@ TEST(RunCase, WhatDiffersIsBlamedBeforeWhatForbidsTheSameOutput) {
           "@60..90 m5 !> app clock(*) [T2-ONCE]\n",
           {70});
   ASSERT_EQ(late.failures.size(), 2u);
-  EXPECT_EQ(late.failures[0].time, 50u);
+  EXPECT_EQ(late.failures[0].broken_at, 50u);
   EXPECT_EQ(late.failures[0].requirements, std::vector<std::string>{"T2-ACK"});
 }
 
