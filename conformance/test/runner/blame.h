@@ -28,7 +28,8 @@ using Evidence = std::set<std::string, std::less<>>;
 /// `suspected`.
 void blame_one(Failure& failure, const Evidence& evidence);
 
-/// Marks the failures of each node that its first one implies. Failures are in the order of time.
+/// Marks the failures of each node that its first one implies. Failures are in the order in which
+/// the lines were broken.
 void mark_implied(std::vector<Failure>& failures);
 
 }  // namespace rubric::runner

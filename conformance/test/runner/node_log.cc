@@ -200,7 +200,8 @@ NearestMiss NodeLog::nearest_miss(const trace::Line& line, const Window& window,
     best = distance;
     if (match && in_time) {
       miss = {fmt::format("at {} it came before one that was to come first", outputs[i].time),
-              {"differs", "order"}};
+              {"differs", "order"},
+              outputs[i].time};
     } else if (match) {
       miss = {
           fmt::format("it came at {}, not from {} to {}", outputs[i].time, window.from, window.to),
@@ -208,7 +209,8 @@ NearestMiss NodeLog::nearest_miss(const trace::Line& line, const Window& window,
     } else {
       miss = {
           fmt::format("nearest, at {}: {}: {}", outputs[i].time, text_of(outputs[i]), match.text()),
-          {"differs"}};
+          {"differs"},
+          outputs[i].time};
       for (const trace::Difference& one : match.differences) {
         miss.evidence.insert(one.path.substr(0, one.path.find_first_of(". ")));
       }

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,7 @@ struct LoggedLine {
 struct NearestMiss {
   std::string text;
   Evidence evidence;
+  std::optional<Ticks> time = {};  // When it came, if it came in the window and differs.
 };
 
 class NodeLog {

@@ -9,6 +9,7 @@
 #include <optional>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "conformance/test/runner/blame.h"
 #include "conformance/test/runner/expectation.h"
@@ -412,6 +413,9 @@ class Run {
       NearestMiss miss =
           node_of(line)->nearest_miss(line, one.wide, one.wide.to + kLateTicks, bindings_);
       fail(result, line, one.timed.window, one.wide.to, std::move(miss.text), miss.evidence);
+      // An output that differs broke the line when it came: what another line says of the same
+      // output must not come first and take the blame.
+      if (miss.time) result.failures.back().broken_at = *miss.time;
     }
     for (const Line* line : passed_over_) allowed_.push_back({line, {0, now_}, 0});
     for (const Timed& one : allowed_) {
@@ -428,14 +432,16 @@ class Run {
            fmt::format("at {} it emitted {}", output->time, node.text_of(*output)),
            node.evidence_of(*output));
     }
-    std::stable_sort(result.failures.begin(), result.failures.end(),
-                     [](const Failure& a, const Failure& b) { return a.time < b.time; });
+    std::stable_sort(
+        result.failures.begin(), result.failures.end(), [](const Failure& a, const Failure& b) {
+          return std::pair(a.broken_at, a.place.line) < std::pair(b.broken_at, b.place.line);
+        });
   }
 
   void broken(CaseResult& result, trace::Place place, const char* why) {
     Failure failure;
     failure.place = place;
-    failure.time = failure.from = failure.to = now_;
+    failure.time = failure.from = failure.to = failure.broken_at = now_;
     failure.text = why;
     result.failures.push_back(std::move(failure));
     result.verdict = CaseVerdict::kError;
@@ -480,7 +486,8 @@ class Run {
                     .from = window.from,
                     .to = window.to,
                     .forbidden = line.op == Op::kMustNot,
-                    .node = line.node};
+                    .node = line.node,
+                    .broken_at = time};
     blame_one(failure, evidence);
     result.verdict =
         std::max(result.verdict, failure.weak ? CaseVerdict::kWeak : CaseVerdict::kFail);

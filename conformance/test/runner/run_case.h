@@ -46,6 +46,9 @@ struct Failure {
   std::string node = {};                    ///< The node under test, as the trace calls it.
   std::vector<std::string> suspected = {};  ///< Other rules that the line names.
   bool implied = false;                     ///< An earlier failure of the node can be its cause.
+  /// When the node broke the line: when an output came that differs, else at `time`. Failures are
+  /// in this order.
+  Ticks broken_at = 0;
 
   /// Returns all rules that the line names, the blamed one first.
   std::vector<std::string> rules() const;

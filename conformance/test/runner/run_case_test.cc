@@ -430,6 +430,27 @@ TEST(RunCase, GoesOnAfterAMissingOutput) {
             (Failed{{5, false}}));
 }
 
+TEST(RunCase, WhatDiffersIsBlamedBeforeWhatForbidsTheSameOutput) {
+  const CaseResult result =
+      run("0..50 m5 > app clock(ms=99) [T2-CONTENT]\n"
+          "@0..90 m5 !> app clock(*) [T2-ONCE]\n",
+          {30});
+  ASSERT_EQ(result.failures.size(), 2u);
+  EXPECT_EQ(result.failures[0].requirements, std::vector<std::string>{"T2-CONTENT"});
+  EXPECT_EQ(result.failures[0].broken_at, 30u);
+  EXPECT_EQ(result.failures[0].time, 50u);
+  EXPECT_FALSE(result.failures[0].implied);
+  EXPECT_TRUE(result.failures[1].implied);
+  // Without an output in its window, the line is broken when its time is over.
+  const CaseResult late =
+      run("0..50 m5 > app clock(ms=99) [T2-ACK]\n"
+          "@60..90 m5 !> app clock(*) [T2-ONCE]\n",
+          {70});
+  ASSERT_EQ(late.failures.size(), 2u);
+  EXPECT_EQ(late.failures[0].broken_at, 50u);
+  EXPECT_EQ(late.failures[0].requirements, std::vector<std::string>{"T2-ACK"});
+}
+
 TEST(RunCase, NothingUnderTestIsAnError) {
   const trace::Parsed parsed =
       trace::parse("%rtr 1\n%profile paper\n%node m5 mote id=5\ncase x\n", "x.rtr");

@@ -245,15 +245,19 @@ Identity read_hello(const std::string& line) {
   out.version = words.next();
   if (out.name.empty() || out.version.empty()) throw broken("it lacks its name or version");
   std::set<std::string_view> keys;
+  const std::string known = "roles, time, links, " + trace::parameter_names();
   while (!words.at_end()) {
     const std::string_view word = words.next();
     const std::size_t size = word.find('=');
     if (size == 0 || size == std::string_view::npos) {
-      throw broken(quoted(word) + " is not key=value, such as roles=mote");
+      throw broken(quoted(word) + " is not key=value, such as roles=mote; known are " + known);
     }
     const std::string_view key = word.substr(0, size);
     const std::string_view value = word.substr(size + 1);
     if (key != "roles" && key != "time" && key != "links") {
+      if (!trace::find_parameter(key)) {
+        throw broken(quoted(key) + " is nothing that `hello` says; known are " + known);
+      }
       std::string wrong = trace::add_stated(word, out.stated);
       if (!wrong.empty()) throw broken(wrong);
       continue;

@@ -195,13 +195,17 @@ TEST(RctAnswer, Hello) {
   EXPECT_EQ(hello_wrong_with("hello rct/1 a 2 roles=mote time=real time=real"),
             "it says time= twice");
   EXPECT_NE(hello_wrong_with("hello rct/1 a 2 roles=mote time=warped"), "");
-  EXPECT_NE(hello_wrong_with("hello rct/1 a 2 roles=mote fast"), "");
+  const std::string known =
+      "roles, time, links, response, join_period, join_requests, ack_joins, ack_timeout, "
+      "channel_access, members, channels, synaptic_period, synaptic_phase";
+  EXPECT_EQ(hello_wrong_with("hello rct/1 a 2 roles=mote fast"),
+            "'fast' is not key=value, such as roles=mote; known are " + known);
   EXPECT_NE(hello_wrong_with("hello rct/1 a 2 roles=mote =fast"), "");
   EXPECT_EQ(hello_wrong_with("hello rct/1 a 2 response=1"), "it says no roles=");
   EXPECT_EQ(hello_wrong_with("hello rct/1 a 2 roles=mote ack_timout=2000"),
-            "'ack_timout' is no parameter that can be stated; known are response, join_period, "
-            "join_requests, ack_joins, ack_timeout, channel_access, members, channels, "
-            "synaptic_period, synaptic_phase");
+            "'ack_timout' is nothing that `hello` says; known are " + known);
+  EXPECT_EQ(hello_wrong_with("hello rct/1 a 2 roles=mote rolls=sink"),
+            "'rolls' is nothing that `hello` says; known are " + known);
   EXPECT_EQ(hello_wrong_with("hello rct/1 a 2 roles=mote channels=9"),
             "expected channels from 1 to 8 channels, given '9'");
   EXPECT_EQ(hello_wrong_with("hello rct/1 a 2 roles=mote response=9 response=9"),
