@@ -200,10 +200,12 @@ class MqttSpace::Client {
                               path(settings.key_file), nullptr),
             "TLS");
     }
-    const std::string last = payload_of({will.key, will.data, creator_, run::wall_ms(), false});
-    check(mosquitto_will_set(handle_, (root_ + will.key).c_str(), static_cast<int>(last.size()),
-                             last.data(), kQos, true),
-          "last will");
+    if (!will.key.empty()) {
+      const std::string last = payload_of({will.key, will.data, creator_, run::wall_ms(), false});
+      check(mosquitto_will_set(handle_, (root_ + will.key).c_str(), static_cast<int>(last.size()),
+                               last.data(), kQos, true),
+            "last will");
+    }
     mosquitto_reconnect_delay_set(handle_, kFirstPauseS, kLongestPauseS, true);
     host_ = settings.host;
     port_ = settings.port;

@@ -35,7 +35,8 @@ void add_credentials(const std::string& file, MqttSettings& settings);
 /// there.
 class MqttSpace final : public Space {
  public:
-  /// `will`: what the broker writes under its key when this participant has gone without a word.
+  /// `will`: what the broker writes under its key when this participant has gone without a word;
+  /// nothing if it has no key.
   MqttSpace(const MqttSettings& settings, const std::string& creator, const Tuple& will);
   ~MqttSpace() override;
 
