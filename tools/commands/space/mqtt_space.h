@@ -40,7 +40,7 @@ class MqttSpace final : public Space {
   MqttSpace(const MqttSettings& settings, const std::string& creator, const Tuple& will);
   ~MqttSpace() override;
 
-  void put(const std::string& key, const std::string& data, Stay stay) override;
+  std::int64_t put(const std::string& key, const std::string& data, Stay stay) override;
   void announce(const std::string& topic, const std::string& payload) override;
   void remove(const std::string& key) override;
   void subscribe(const std::string& filter) override;
