@@ -86,7 +86,8 @@ class Load:
     def took(self, packet, now):
         if packet[7] != 0x1C:
             return  # SET_ISLAND_ID
-        key = (int.from_bytes(packet[10:12], "big"), int.from_bytes(packet[17:19], "big"))
+        at = 22 if packet[19] == 4 else 23  # An ack has one of two bodies (decision 108).
+        key = (int.from_bytes(packet[10:12], "big"), int.from_bytes(packet[at:at + 2], "big"))
         sent = self.waiting.pop(key, None)
         if sent is None:
             self.unasked += 1
