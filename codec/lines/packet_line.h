@@ -28,6 +28,8 @@ class PacketLine {
   virtual void send(const std::vector<std::uint8_t>& packet, SteadyTime deadline) = 0;
   /// Returns the next packet; nothing if the time is over first.
   virtual std::optional<TimedPacket> receive(SteadyTime deadline) = 0;
+  /// Returns the descriptor on which more comes while it is open, for poll(); -1 if there is none.
+  virtual int fd() const { return -1; }
 };
 
 }  // namespace rubric::lines

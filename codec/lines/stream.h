@@ -94,6 +94,7 @@ class StreamLine : public PacketLine {
 
   bool open(SteadyTime deadline) override;
   void close() override { stream_.close(); }
+  int fd() const override { return stream_.fd(); }
 
  protected:
   /// Starts a new stream and drops what was read from an earlier one.

@@ -78,22 +78,33 @@ class Node {
   bool interface_is_on(Line line) const { return at(line).on; }
   /// Sets the island of a base station and of its sink.
   bool set_island(uint16_t island);
+  /// A base station has no channels: it refuses this and the next calls. (decision 135)
   ChannelResult create_out(Address dest, uint8_t size, Mode mode) {
+    if (is_base_station()) return {0, false};
     return channels_.create(true, address(), dest, size, mode);
   }
   ChannelResult create_in(Address src, uint8_t size, Mode mode) {
+    if (is_base_station()) return {0, false};
     return channels_.create(false, address(), src, size, mode);
   }
   bool dispose(ChannelId id) { return channels_.dispose(id); }
   bool start_channel(ChannelId id) { return channels_.start(id, now_, phase()); }
   bool stop_channel(ChannelId id) { return channels_.stop(id); }
-  void start_all() { channels_.start_all(now_, phase()); }
-  void stop_all() { channels_.stop_all(); }
+  bool start_all() {
+    channels_.start_all(now_, phase());
+    return !is_base_station();
+  }
+  bool stop_all() {
+    channels_.stop_all();
+    return !is_base_station();
+  }
   bool write_output(ChannelId id, uint8_t pos, float value) {
     return channels_.write(id, pos, value);
   }
   InputValue read_input(ChannelId id, uint8_t pos) { return channels_.read(id, pos); }
-  bool set_time_step(uint16_t ticks) { return channels_.set_period(ticks, now_); }
+  bool set_time_step(uint16_t ticks) {
+    return !is_base_station() && channels_.set_period(ticks, now_);
+  }
   /// Returns milliseconds; for a member the clock of its island.
   uint32_t clock_ms() const { return time_ms() + clock_offset_ms_; }
   /// While busy, arrivals wait in the incoming buffers.

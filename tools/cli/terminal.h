@@ -1,4 +1,4 @@
-// The width of text.
+// The width of text, and the height of a screen.
 #pragma once
 
 #include <cstddef>
@@ -10,5 +10,7 @@ constexpr std::size_t kColumnsMin = 60;
 /// Returns `asked` if it is not 0; else the width of the terminal that `fd` is, between 60 and 120;
 /// else 100.
 std::size_t columns(std::size_t asked, int fd);
+/// Returns how many lines the terminal that `fd` is shows, at least 10; 24 if it does not say.
+std::size_t rows(int fd);
 
 }  // namespace rubric::cli

@@ -56,6 +56,7 @@ int run(int argc, char** argv) {
   rubric::tools::add_diff(program);
   rubric::tools::add_chart(program);
   rubric::tools::add_run(program);
+  rubric::tools::add_monitor(program);
   rubric::tools::add_simulate(program);
   rubric::tools::add_explore(program);
   rubric::tools::add_coverage(program);

@@ -81,18 +81,36 @@ class Subscriber:
                           (topic, state))
 
 
-class Broker:
-    """mosquitto, which asks for a user."""
+def openssl(*arguments):
+    subprocess.run(["openssl", *map(str, arguments)], check=True, capture_output=True)
 
-    def __init__(self, test, port):
+
+def certificates(folder):
+    """Makes an authority, ca.crt, and a certificate of this host by it, host.crt and host.key."""
+    openssl("req", "-x509", "-newkey", "rsa:2048", "-nodes", "-days", "2", "-subj", "/CN=ours",
+            "-keyout", folder / "ca.key", "-out", folder / "ca.crt")
+    openssl("req", "-newkey", "rsa:2048", "-nodes", "-subj", "/CN=localhost", "-keyout",
+            folder / "host.key", "-out", folder / "host.csr")
+    (folder / "names").write_text("subjectAltName=DNS:localhost,IP:127.0.0.1\n", encoding="utf-8")
+    openssl("x509", "-req", "-in", folder / "host.csr", "-CA", folder / "ca.crt", "-CAkey",
+            folder / "ca.key", "-CAcreateserial", "-days", "2", "-extfile", folder / "names",
+            "-out", folder / "host.crt")
+
+
+class Broker:
+    """mosquitto, which asks for a user; with `tls` a folder of certificates()."""
+
+    def __init__(self, test, port, tls=None):
         self.port = port
+        self.tls = tls
         folder = test.folder
         subprocess.run(["mosquitto_passwd", "-b", "-c", folder / "users", *USER.values()],
                        check=True, capture_output=True)
         self.file = folder / "mosquitto.conf"
         self.file.write_text(f"listener {port} 127.0.0.1\nallow_anonymous false\n"
                              f"password_file {folder}/users\n"
-                             f"user {pwd.getpwuid(os.getuid()).pw_name}\n",
+                             f"user {pwd.getpwuid(os.getuid()).pw_name}\n" +
+                             (f"certfile {tls}/host.crt\nkeyfile {tls}/host.key\n" if tls else ""),
                              encoding="utf-8")
         self.process = None
         test.addCleanup(self.stop)
@@ -116,7 +134,9 @@ class Broker:
 
     def client(self, program):
         user, password = USER.values()
-        return [program, "-h", "127.0.0.1", "-p", str(self.port), "-u", user, "-P", password]
+        secure = ["--cafile", self.tls / "ca.crt"] if self.tls else []
+        return [program, "-h", "127.0.0.1", "-p", str(self.port), "-u", user, "-P", password,
+                *secure]
 
     def publish(self, topic, payload, *more):
         subprocess.run([*self.client("mosquitto_pub"), "-q", "1", "-t", topic, "-m", payload,
@@ -124,7 +144,7 @@ class Broker:
 
     @property
     def url(self):
-        return f"mqtt://127.0.0.1:{self.port}/rubicon"
+        return f"mqtt{'s' if self.tls else ''}://127.0.0.1:{self.port}/rubicon"
 
 
 class Space(LiveTest):
@@ -143,7 +163,7 @@ class Space(LiveTest):
         serial = "sf@127.0.0.1:" + sink.waits_for(rb"sf-server:(\d+)\n")
         base = self.started("base-station", "--island", number, "--sink", serial, "--space",
                             self.broker.url, *more, env={**os.environ, **USER, **environment})
-        base.waits_for(rb"(mqtt://\S+: connected)")
+        base.waits_for(rb"(mqtts?://\S+: connected)")
         sink.waits_for(rb"(sf-server:\d+: connected)")
         return base, air
 
@@ -286,13 +306,13 @@ islands:
                              env={**os.environ, **USER})
         early.waits_for(rb"(mqtt://\S+: Connection refused)")
         self.broker.start()
-        early.waits_for(rb"(mqtt://\S+: connected)")
+        early.waits_for(rb"(mqtts?://\S+: connected)")
         base, air = self.island(11)
         self.mote(5, air)
         self.broker.stop()
         base.waits_for(rb"(mqtt://\S+: the connection is lost)")
         self.broker.start()
-        base.waits_for(rb"(mqtt://\S+: connected)")
+        base.waits_for(rb"(mqtts?://\S+: connected)")
         subscriber = Subscriber(self, self.broker)
         subscriber.until(lambda topic, _: topic == "rubicon/11/motes/5", "the mote, written anew")
         self.assertEqual(base.end()[0], 0)
@@ -324,6 +344,46 @@ islands:
         self.assertEqual(run.returncode, 64)
         self.assertIn(f"{wrong}:2: expected user=, password=", run.stderr)
         self.assertNotIn("sesame", run.stderr)
+
+    def test_tls(self):
+        certificates(self.folder)
+        self.broker.stop()
+        self.broker = Broker(self, self.broker.port, self.folder)
+        subscriber = Subscriber(self, self.broker)
+        users = self.folder / "gate"
+        secret = f"user={USER['RUBRIC_MQTT_USER']}\npassword={USER['RUBRIC_MQTT_PASSWORD']}\n"
+        users.write_text(secret + f"ca={self.folder}/ca.crt\n", encoding="utf-8")
+        base, air = self.island(11, "--credentials", users)
+        self.mote(5, air)
+        subscriber.until(lambda topic, _: topic == "rubicon/11/motes/5/state", "state")
+        self.assertEqual(base.end()[0], 0)
+        subscriber.state("rubicon/11/availability", "offline")
+        # By nobody whom this host trusts.
+        users.write_text(secret, encoding="utf-8")
+        stranger = self.started("base-station", "--island", 12, "--space", self.broker.url,
+                                "--credentials", users)
+        stranger.waits_for(rb"(mqtts://\S+: no TLS: its certificate is not trusted)")
+        self.assertEqual(stranger.end(None)[0], 66)
+        # And in plain text.
+        plain = self.started("base-station", "--island", 12, "--space",
+                             self.broker.url.replace("mqtts", "mqtt"), "--credentials", users)
+        self.assertNotIn("connected", plain.waits_for(rb"mqtt://\S+: (.*)\n"))
+
+    def test_two_base_stations_of_an_island(self):
+        subscriber = Subscriber(self, self.broker, "rubicon/11/availability")
+        one, _ = self.island(11)
+        subscriber.state("rubicon/11/availability", "online")
+        two = self.started("base-station", "--island", 11, "--space", self.broker.url,
+                           env={**os.environ, **USER})
+        one.waits_for(rb"(another base station of island 11 is there since \S+; both take)")
+        self.assertEqual(two.end()[0], 0)
+        # The one that is left says that the island is there.
+        subscriber.state("rubicon/11/availability", "offline")
+        subscriber.seen.clear()
+        subscriber.state("rubicon/11/availability", "online")
+        code, _, err = one.end()
+        self.assertEqual(code, 0)
+        self.assertNotIn("another", err)
 
     def test_the_schema_refuses(self):
         for topic, payload in (

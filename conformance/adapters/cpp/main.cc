@@ -241,11 +241,9 @@ void Adapter::call(const std::string& call) {
   } else if (name == "stop") {
     result(node_->stop_channel(channel()));
   } else if (name == "start_all") {
-    node_->start_all();
-    result(true);
+    result(node_->start_all());
   } else if (name == "stop_all") {
-    node_->stop_all();
-    result(true);
+    result(node_->stop_all());
   } else if (name == "write_output") {
     result(node_->write_output(channel(), with.number<std::uint8_t>("pos"), with.real("value")));
   } else if (name == "read_input") {

@@ -48,12 +48,10 @@ class Performer {
     return result(node_.stop_channel(call.id));
   }
   std::optional<Notice> operator()(const machine::StartAllChannels&) const {
-    node_.start_all();
-    return result(true);
+    return result(node_.start_all());
   }
   std::optional<Notice> operator()(const machine::StopAllChannels&) const {
-    node_.stop_all();
-    return result(true);
+    return result(node_.stop_all());
   }
   std::optional<Notice> operator()(const machine::WriteOutput& call) const {
     return result(node_.write_output(call.id, call.pos, call.value));

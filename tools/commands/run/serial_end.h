@@ -29,6 +29,8 @@ class SerialEnd {
   bool send(const std::vector<std::uint8_t>& packet);
   /// Returns the next packet; empty if none comes before the deadline.
   std::vector<std::uint8_t> receive(lines::SteadyTime deadline);
+  /// Returns the descriptor on which packets come, for poll(); -1 while there is none.
+  int fd() const { return open_ ? line_->fd() : -1; }
 
  private:
   void lost(const std::string& why);

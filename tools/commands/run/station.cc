@@ -224,8 +224,8 @@ void Station::step() {
   if (radio_) {
     radio_->run(until, calls);
   } else {
-    pollfd input{calls, POLLIN, 0};
-    ::poll(&input, 1, static_cast<int>(kMoment.count()));
+    pollfd inputs[] = {{calls, POLLIN, 0}, {serial_ ? serial_->fd() : -1, POLLIN, 0}};
+    ::poll(inputs, 2, static_cast<int>(kMoment.count()));
   }
   hear_serial();
   keeper_.settle();

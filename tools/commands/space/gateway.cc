@@ -20,7 +20,8 @@ namespace {
 using std::chrono::steady_clock;
 
 constexpr std::chrono::seconds kSayEvery{1};  // Of refusals.
-constexpr std::size_t kMembersMax = 1024;     // A broker may offer any number.
+constexpr std::chrono::seconds kSayOtherEvery{10};
+constexpr std::size_t kMembersMax = 1024;  // A broker may offer any number.
 constexpr std::size_t kArrivedMax = 1024;
 
 // Text of others, fit for a terminal.
@@ -33,8 +34,8 @@ std::string printable(std::string_view text) {
 }  // namespace
 
 void Gateway::start(run::Caller&) {
-  space_->put(island_availability_key(settings_.island), availability_data(true),
-              Space::Stay::kTuple);
+  say_online();
+  space_->subscribe(island_availability_key(settings_.island));
   // Its own motes of an earlier run: a mote reports its joining once.
   space_->subscribe(fmt::format("{}/motes/+", settings_.island));
   space_->subscribe(fmt::format("{}/motes/+/set", settings_.island));
@@ -46,6 +47,30 @@ void Gateway::stop(run::Caller&) {
   say_rest();
   space_->put(island_availability_key(settings_.island), availability_data(false),
               Space::Stay::kTuple);
+}
+
+void Gateway::say_online() {
+  wrote_online_.insert(space_->put(island_availability_key(settings_.island),
+                                   availability_data(true), Space::Stay::kTuple));
+}
+
+// All base stations of an island have one key, so its tuple tells whether there are two.
+void Gateway::take_availability(const Tuple& tuple) {
+  if (wrote_online_.contains(tuple.written_ms)) return;
+  if (tuple.data != availability_data(true)) {
+    // The last will of a session of its own that broke off, or the goodbye of another. What stayed
+    // is replaced already.
+    if (!tuple.stays) say_online();
+    return;
+  }
+  const auto now = steady_clock::now();
+  if (now - said_other_ < kSayOtherEvery) return;
+  said_other_ = now;
+  report::print(stderr,
+                "rubric: space: another base station of island {} is there since {}{}; both take "
+                "its messages and wishes\n",
+                settings_.island, time_text(tuple.written_ms),
+                tuple.stays ? ", or was and is not missed yet" : "");
 }
 
 void Gateway::happened(const machine::Notice& notice, run::Caller&) {
@@ -130,6 +155,7 @@ void Gateway::take(const Tuple& tuple, run::Caller& caller) {
     members_[key->mote] = member;
     return announce(key->mote, member.mote);
   }
+  if (key->kind == Key::Kind::kIslandAvailability) return take_availability(tuple);
   if (key->kind != Key::Kind::kNet) return;
   if (tuple.stays) return refuse(tuple.key, "a net_msg that stays would arrive again and again");
   std::vector<std::uint8_t> packet;

@@ -5,6 +5,7 @@
 #include <deque>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -48,6 +49,8 @@ class Gateway final : public run::Application, public run::Peers {
     std::string id;
   };
   void take(const Tuple& tuple, run::Caller& caller);
+  void say_online();
+  void take_availability(const Tuple& tuple);
   void take_wish(const Tuple& tuple, std::uint16_t mote, run::Caller& caller);
   void heard(const machine::Received& message);
   void joined(const machine::Received& message);
@@ -64,6 +67,8 @@ class Gateway final : public run::Application, public run::Peers {
   std::map<std::uint16_t, Member> members_;
   std::map<std::uint16_t, Awaited> awaited_;       // By sequence number.
   std::deque<std::vector<std::uint8_t>> arrived_;  // From other base stations.
+  std::set<std::int64_t> wrote_online_;            // By when.
+  lines::SteadyTime said_other_{};
   lines::SteadyTime said_{};
   int unsaid_ = 0;
 };

@@ -64,8 +64,10 @@ std::vector<Tuple> MemoryBoard::take(Inbox& inbox) {
   return std::exchange(inbox.tuples, {});
 }
 
-void MemorySpace::put(const std::string& key, const std::string& data, Stay stay) {
-  board_->put({key, data, creator_, run::wall_ms(), false}, stay);
+std::int64_t MemorySpace::put(const std::string& key, const std::string& data, Stay stay) {
+  const std::int64_t now_ms = run::wall_ms();
+  board_->put({key, data, creator_, now_ms, false}, stay);
+  return now_ms;
 }
 
 }  // namespace rubric::space

@@ -36,7 +36,7 @@ class MemorySpace final : public Space {
   MemorySpace(std::shared_ptr<MemoryBoard> board, std::string creator)
       : board_(std::move(board)), creator_(std::move(creator)), inbox_(board_->join()) {}
 
-  void put(const std::string& key, const std::string& data, Stay stay) override;
+  std::int64_t put(const std::string& key, const std::string& data, Stay stay) override;
   void announce(const std::string&, const std::string&) override {}
   void remove(const std::string& key) override { board_->remove(key); }
   void subscribe(const std::string& filter) override { board_->subscribe(*inbox_, filter); }

@@ -117,7 +117,8 @@ class MqttSpace::Client {
   Client(const MqttSettings& settings, const std::string& creator, const Tuple& will)
       : creator_(creator),
         root_(settings.root + '/'),
-        name_(fmt::format("mqtt://{}:{}/{}", settings.host, settings.port, settings.root)) {
+        name_(fmt::format("mqtt{}://{}:{}/{}", settings.tls ? "s" : "", settings.host,
+                          settings.port, settings.root)) {
     static const int library = mosquitto_lib_init();
     check(library, "library");
     handle_ = mosquitto_new(nullptr, true, this);
@@ -136,20 +137,18 @@ class MqttSpace::Client {
   Client(const Client&) = delete;
   Client& operator=(const Client&) = delete;
 
-  void put(const std::string& key, const std::string& data, Stay stay) {
-    const std::string payload = payload_of({key, data, creator_, run::wall_ms(), false});
+  std::int64_t put(const std::string& key, const std::string& data, Stay stay) {
+    const std::int64_t now_ms = run::wall_ms();
+    const std::string payload = payload_of({key, data, creator_, now_ms, false});
     const std::lock_guard lock(mutex_);
     if (stay == Stay::kTuple) {
-      return keep(root_ + key, payload);
-    } else if (!connected_) {
-      if (++unsent_ > kUnsentMax) {
-        if (unsent_ == kUnsentMax + 1) {
-          report::print(stderr, "rubric: {}: not there; events are lost\n", name_);
-        }
-        return;
-      }
+      keep(root_ + key, payload);
+    } else if (connected_ || ++unsent_ <= kUnsentMax) {
+      publish(root_ + key, payload, false);
+    } else if (unsent_ == kUnsentMax + 1) {
+      report::print(stderr, "rubric: {}: not there; events are lost\n", name_);
     }
-    publish(root_ + key, payload, false);
+    return now_ms;
   }
 
   void announce(const std::string& topic, const std::string& payload) {
@@ -200,10 +199,12 @@ class MqttSpace::Client {
                               path(settings.key_file), nullptr),
             "TLS");
     }
-    const std::string last = payload_of({will.key, will.data, creator_, run::wall_ms(), false});
-    check(mosquitto_will_set(handle_, (root_ + will.key).c_str(), static_cast<int>(last.size()),
-                             last.data(), kQos, true),
-          "last will");
+    if (!will.key.empty()) {
+      const std::string last = payload_of({will.key, will.data, creator_, run::wall_ms(), false});
+      check(mosquitto_will_set(handle_, (root_ + will.key).c_str(), static_cast<int>(last.size()),
+                               last.data(), kQos, true),
+            "last will");
+    }
     mosquitto_reconnect_delay_set(handle_, kFirstPauseS, kLongestPauseS, true);
     host_ = settings.host;
     port_ = settings.port;
@@ -221,6 +222,11 @@ class MqttSpace::Client {
       next_try_ = now + pause_;
       pause_ = std::min(2 * pause_, std::chrono::seconds(kLongestPauseS));
       return;
+    }
+    if (result == MOSQ_ERR_TLS) {
+      throw lines::Broken(name_ +
+                          ": no TLS: its certificate is not trusted (ca= in --credentials), or "
+                          "nothing speaks TLS there");
     }
     check(result, host_.c_str());
     check(mosquitto_loop_start(handle_), "thread");
@@ -321,8 +327,8 @@ MqttSpace::MqttSpace(const MqttSettings& settings, const std::string& creator, c
     : client_(std::make_unique<Client>(settings, creator, will)) {}
 MqttSpace::~MqttSpace() = default;
 
-void MqttSpace::put(const std::string& key, const std::string& data, Stay stay) {
-  client_->put(key, data, stay);
+std::int64_t MqttSpace::put(const std::string& key, const std::string& data, Stay stay) {
+  return client_->put(key, data, stay);
 }
 void MqttSpace::announce(const std::string& topic, const std::string& payload) {
   client_->announce(topic, payload);

@@ -35,11 +35,12 @@ void add_credentials(const std::string& file, MqttSettings& settings);
 /// there.
 class MqttSpace final : public Space {
  public:
-  /// `will`: what the broker writes under its key when this participant has gone without a word.
+  /// `will`: what the broker writes under its key when this participant has gone without a word;
+  /// nothing if it has no key.
   MqttSpace(const MqttSettings& settings, const std::string& creator, const Tuple& will);
   ~MqttSpace() override;
 
-  void put(const std::string& key, const std::string& data, Stay stay) override;
+  std::int64_t put(const std::string& key, const std::string& data, Stay stay) override;
   void announce(const std::string& topic, const std::string& payload) override;
   void remove(const std::string& key) override;
   void subscribe(const std::string& filter) override;

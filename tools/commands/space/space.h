@@ -31,8 +31,9 @@ class Space {
   };
 
   virtual ~Space() = default;
-  /// Writes data under a key, by this participant and now.
-  virtual void put(const std::string& key, const std::string& data, Stay stay) = 0;
+  /// Writes data under a key, by this participant and now. Returns when that was, in
+  /// Tuple::written_ms, by which it knows its own tuple again.
+  virtual std::int64_t put(const std::string& key, const std::string& data, Stay stay) = 0;
   /// Writes a payload as it is under a whole topic, for programs with conventions of their own. It
   /// stays. Does nothing where there are no such programs.
   virtual void announce(const std::string& topic, const std::string& payload) = 0;

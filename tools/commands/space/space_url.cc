@@ -17,4 +17,10 @@ std::unique_ptr<Space> open_mqtt(const std::string& url, const std::string& cred
   return std::make_unique<MqttSpace>(settings, fmt::format("{}:null", island), will);
 }
 
+std::unique_ptr<Space> watch_mqtt(const std::string& url, const std::string& credentials) {
+  MqttSettings settings = parse_mqtt(url);
+  add_credentials(credentials, settings);
+  return std::make_unique<MqttSpace>(settings, "monitor", Tuple{});
+}
+
 }  // namespace rubric::space

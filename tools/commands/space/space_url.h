@@ -1,4 +1,4 @@
-// Opens the tuple space of a base station by its URL.
+// Opens a tuple space by its URL.
 #pragma once
 
 #include <cstdint>
@@ -14,5 +14,7 @@ namespace rubric::space {
 /// std::invalid_argument or Broken.
 std::unique_ptr<Space> open_mqtt(const std::string& url, const std::string& credentials,
                                  std::uint16_t island);
+/// Returns the same for somebody who only subscribes.
+std::unique_ptr<Space> watch_mqtt(const std::string& url, const std::string& credentials);
 
 }  // namespace rubric::space

@@ -4,7 +4,7 @@ import java.util.Locale;
 
 /** An output of a base station: a frame for a line, or news for the application. */
 public sealed interface Action {
-  /** The rule that it follows, such as "T2-ACK". */
+  /** The rule that it follows, such as "T2-ACK"; empty where no rule asks for it. */
   String rule();
 
   /**
@@ -46,6 +46,14 @@ public sealed interface Action {
     @Override
     public String toString() {
       return "op_result(" + text(success) + ")";
+    }
+  }
+
+  /** The answer to a call of synaptic channels, which a base station does not have. */
+  record NoChannels(String text, String rule) implements Notice {
+    @Override
+    public String toString() {
+      return text;
     }
   }
 

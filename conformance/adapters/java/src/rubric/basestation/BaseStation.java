@@ -140,6 +140,13 @@ public final class BaseStation {
     return done(now);
   }
 
+  /** Refuses a call of synaptic channels with this answer. (decision 135) */
+  public List<Action> refuseChannels(String answer, long now) {
+    if (off) return done(now);
+    actions.add(new Action.NoChannels(answer, ""));
+    return done(now);
+  }
+
   /** Somebody else takes the serial line, or leaves it. */
   public List<Action> serialTaken(boolean taken, long now) {
     serialTaken = taken;

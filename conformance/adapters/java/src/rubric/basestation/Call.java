@@ -43,6 +43,12 @@ final class Call {
         return station.getClock(now);
       case "join":
         return station.join(now);
+      case "create_out", "create_in":
+        return station.refuseChannels("channel_result(0->0 fail)", now);
+      case "read_input":
+        return station.refuseChannels("input_value(0 fail)", now);
+      case "dispose", "start", "stop", "start_all", "stop_all", "write_output", "set_time_step":
+        return station.refuseChannels("op_result(fail)", now);
       default:
         throw new IllegalArgumentException("a base station has no call " + name);
     }

@@ -190,7 +190,7 @@ public class RctAdapter {
   }
 
   void write(Action action, long time) {
-    final String rule = " [" + action.rule() + "]\n";
+    final String rule = action.rule().isEmpty() ? "\n" : " [" + action.rule() + "]\n";
     if (action instanceof Action.Transmit) {
       final Frame frame = ((Action.Transmit) action).frame();
       out.print("tx " + time + " " + frame.link() + " " + Hex.of(frame.toPacket()) + rule);

@@ -1,0 +1,42 @@
+#!/usr/bin/env python3
+"""Base stations of the kit refuse the calls of synaptic channels alike (decision 135).
+
+Usage: pc_channels_test.py RUBRIC TARGET...
+"""
+
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+CALLS = {"create_out(dest=11:5 size=1 mode=reliable)": "channel_result(0->0 fail)",
+         "create_in(src=11:5 size=1 mode=power_save)": "channel_result(0->0 fail)",
+         "read_input(null->5 pos=0)": "input_value(0 fail)", "start(null->5)": "op_result(fail)",
+         "stop(null->5)": "op_result(fail)", "dispose(null->5)": "op_result(fail)",
+         "write_output(null->5 pos=0 value=1)": "op_result(fail)",
+         "set_time_step(512)": "op_result(fail)", "start_all": "op_result(fail)",
+         "stop_all": "op_result(fail)"}
+
+
+class Channels(unittest.TestCase):
+    def test_calls_are_refused(self):
+        lines = ["%rtr 1", "%profile paper"]
+        for i, (call, answer) in enumerate(CALLS.items()):
+            lines += [f"case pc.call{i}", "; A call of channels.",
+                      "%node bA base_station island=11 iut", f"a: 100     bA < app {call}",
+                      f"   a+0..50 bA > app {answer}"]
+        with tempfile.TemporaryDirectory() as folder:
+            trace = pathlib.Path(folder) / "pc.rtr"
+            trace.write_text("\n".join(lines) + "\n", encoding="utf-8")
+            for target in TARGETS:
+                with self.subTest(target=target):
+                    run = subprocess.run([RUBRIC, "test", "--target", target, trace], check=False,
+                                         capture_output=True, text=True)
+                    self.assertIn(f": {len(CALLS)} pass.", run.stdout, run.stderr)
+
+
+if __name__ == "__main__":
+    RUBRIC, *TARGETS = sys.argv[1:]
+    del sys.argv[1:]
+    unittest.main()
