@@ -201,10 +201,9 @@ endfunction()
 #   [REPRO] [SEEDS folder ...] [DEPS lib ...]): the fuzz target targets/NAME_fuzz.cc. With
 # RUBRIC_FUZZ a program for the engine. With tests, a program built by any compiler that replays the
 # corpus: corpora/NAME, if it is there, and SEEDS, folders of the project; with sanitizers it is a
-# test.
-# writes this target's inputs as traces. What the scripts in fuzz/ must know goes to the build
-# folder's fuzz_targets.tsv: name, dictionary or -, max_len, smoke runs, folders of the corpus,
-# seconds that an input may take, repro or -.
+# test. REPRO says that `rubric repro` writes this target's inputs as traces. What the scripts in
+# fuzz/ must know goes to the build folder's fuzz_targets.tsv: name, dictionary or -, max_len, smoke
+# runs, folders of the corpus, seconds that an input may take, repro or -.
 function(rubric_fuzzer name)
   cmake_parse_arguments(arg "REPRO" "MUTATOR;DICT;MAX_LEN;SMOKE_RUNS;TIMEOUT" "SEEDS;DEPS" ${ARGN})
   set(target ${name}_fuzz)
