@@ -21,6 +21,7 @@ constexpr WithoutVariant kWithout[] = {
     {137, "All traffic has the bytes of release 1.0."},
     {138, "It makes no rule."},
     {141, "The sizes of a node are no frames."},
+    {142, "What an application makes of its data is not on the air."},
 };
 
 void usual(Plan&, Random&) {}
