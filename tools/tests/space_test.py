@@ -4,12 +4,16 @@
 Usage: space_test.py RUBRIC PROJECT_FOLDER MOSQUITTO. All of it on this host's loopback.
 """
 
+import contextlib
 import json
 import os
 import pwd
 import re
+import socket
+import ssl
 import subprocess
 import sys
+import threading
 import time
 import unittest
 
@@ -95,6 +99,23 @@ def certificates(folder):
     openssl("x509", "-req", "-in", folder / "host.csr", "-CA", folder / "ca.crt", "-CAkey",
             folder / "ca.key", "-CAcreateserial", "-days", "2", "-extfile", folder / "names",
             "-out", folder / "host.crt")
+
+
+def slow_host(test):
+    """The port of a host with the certificates() of a test, which begins TLS only after a while."""
+    context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
+    context.load_cert_chain(test.folder / "host.crt", test.folder / "host.key")
+    listener = socket.create_server(("127.0.0.1", 0))
+    test.addCleanup(listener.close)
+
+    def serve():
+        client = listener.accept()[0]
+        time.sleep(0.3)
+        with contextlib.suppress(OSError):  # The client does not trust it, and goes.
+            context.wrap_socket(client, server_side=True).close()
+        client.close()
+    threading.Thread(target=serve, daemon=True).start()
+    return listener.getsockname()[1]
 
 
 class Broker:
@@ -358,12 +379,13 @@ islands:
         subscriber.until(lambda topic, _: topic == "rubicon/11/motes/5/state", "state")
         self.assertEqual(base.end()[0], 0)
         subscriber.state("rubicon/11/availability", "offline")
-        # By nobody whom this host trusts.
+        # By nobody whom this host trusts; a slow host answers when the library is in its thread.
         users.write_text(secret, encoding="utf-8")
-        stranger = self.started("base-station", "--island", 12, "--space", self.broker.url,
-                                "--credentials", users)
-        stranger.waits_for(rb"(mqtts://\S+: no TLS: its certificate is not trusted)")
-        self.assertEqual(stranger.end(None)[0], 66)
+        for url in (self.broker.url, f"mqtts://127.0.0.1:{slow_host(self)}/rubicon"):
+            stranger = self.started("base-station", "--island", 12, "--space", url,
+                                    "--credentials", users)
+            stranger.waits_for(rb"(mqtts://\S+: no TLS: its certificate is not trusted)")
+            self.assertEqual(stranger.end(None)[0], 66)
         # And in plain text.
         plain = self.started("base-station", "--island", 12, "--space",
                              self.broker.url.replace("mqtts", "mqtt"), "--credentials", users)

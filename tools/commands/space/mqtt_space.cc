@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <charconv>
 #include <chrono>
@@ -171,6 +172,7 @@ class MqttSpace::Client {
   std::vector<Tuple> take() {
     begin();
     const std::lock_guard lock(mutex_);
+    if (tls_failed_ && !connected_) no_tls();
     return std::exchange(inbox_, {});
   }
 
@@ -188,6 +190,12 @@ class MqttSpace::Client {
                                    });
     mosquitto_publish_callback_set(
         handle_, [](mosquitto*, void* self, int id) { static_cast<Client*>(self)->published(id); });
+    // When TLS fails in the library's thread, this line is all that it says before the thread ends.
+    mosquitto_log_callback_set(handle_, [](mosquitto*, void* self, int level, const char* text) {
+      if (level == MOSQ_LOG_ERR && std::string_view(text).starts_with("OpenSSL Error")) {
+        static_cast<Client*>(self)->tls_failed_ = true;
+      }
+    });
     if (!settings.user.empty()) {
       const char* const password = settings.password.empty() ? nullptr : settings.password.c_str();
       check(mosquitto_username_pw_set(handle_, settings.user.c_str(), password), "user");
@@ -223,14 +231,16 @@ class MqttSpace::Client {
       pause_ = std::min(2 * pause_, std::chrono::seconds(kLongestPauseS));
       return;
     }
-    if (result == MOSQ_ERR_TLS) {
-      throw lines::Broken(name_ +
-                          ": no TLS: its certificate is not trusted (ca= in --credentials), or "
-                          "nothing speaks TLS there");
-    }
+    if (result == MOSQ_ERR_TLS) no_tls();
     check(result, host_.c_str());
     check(mosquitto_loop_start(handle_), "thread");
     started_ = true;
+  }
+
+  [[noreturn]] void no_tls() const {
+    throw lines::Broken(name_ +
+                        ": no TLS: its certificate is not trusted (ca= in --credentials), or "
+                        "nothing speaks TLS there");
   }
 
   // Writes a tuple, now or when the broker is there. Both with the mutex held.
@@ -315,6 +325,7 @@ class MqttSpace::Client {
       mutex_;  // Also held while the library is called; its callbacks come without its locks.
   std::condition_variable done_;
   bool connected_ = false;
+  std::atomic<bool> tls_failed_ = false;
   bool said_ = false;
   int unsent_ = 0;
   int last_id_ = 0;                            // Of what was published last and is not done.
