@@ -272,7 +272,7 @@ class Runs {
     ::dup2(nothing, STDIN_FILENO);
     ::dup2(nothing, STDOUT_FILENO);
     std::string members;
-    int code = job_.broken;
+    int code = kExitBroken;
     try {
       code = run(runs_[i].file, members);
     } catch (const Ending& ending) {
@@ -303,7 +303,7 @@ class Runs {
     while (error.ends_with('\n')) error.pop_back();
     std::string line = fmt::format(R"({{"schema":"rubric.each/1","file":{},"exit_code":{})",
                                    report::json_string(runs_[child.run].file),
-                                   killed ? job_.broken : WEXITSTATUS(status));
+                                   killed ? kExitBroken : WEXITSTATUS(status));
     if (!members.empty()) line += "," + members;
     if (!error.empty()) line += R"(,"error":)" + report::json_string(error);
     line += '}';

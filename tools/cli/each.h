@@ -27,11 +27,10 @@ void check_each(const EachOptions& options);
 struct EachJob {
   const char* command = "";
   std::string settings;  ///< All that a result depends on besides the file.
-  int broken = 0;        ///< The exit code of a run whose process was killed.
 };
 
 /// Does one run: puts what its line says into `members`, as members of a JSON object, and returns
-/// its exit code.
+/// its exit code. Where its process is killed, that is kExitBroken.
 using EachRun = std::function<int(const std::string& file, std::string& members)>;
 
 /// Does `run` with each file of `names`, which are files, folders (their captures and logs, at any

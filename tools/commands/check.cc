@@ -128,7 +128,7 @@ int check_each_run(const CheckOptions& options) {
   const report::KnownFailures expected = expectations(options);
   const std::string known =
       options.expect.empty() ? "" : cli::text_of_file(kCheckCommand, options.expect);
-  const cli::EachJob job{kCheckCommand, command_of(options) + "\n" + known, cli::kExitBroken};
+  const cli::EachJob job{kCheckCommand, command_of(options) + "\n" + known};
   keep_outputs_apart(options);
   if (!options.each.resume.empty()) cli::keep_apart("--out", options.out, {options.each.resume});
   return cli::each(options.each, job, options.input.files, options.out,

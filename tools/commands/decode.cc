@@ -230,9 +230,9 @@ int decode_each(const DecodeOptions& options) {
   Decode{options};  // Finds what makes no sense before the first run.
   const cli::InputOptions& in = options.input;
   const std::string settings =
-      fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}", in.format, in.fcs, in.spec, in.as_message,
-                  options.filter, options.count, options.strict);
-  const cli::EachJob job{"decode", settings, cli::kExitInput};
+      fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}", in.format, in.fcs, fmt::join(in.links, " "),
+                  in.spec, in.as_message, options.filter, options.count, options.strict);
+  const cli::EachJob job{"decode", settings};
   return cli::each(options.each, job, in.files, "-",
                    [&](const std::string& file, std::string& members) {
                      DecodeOptions one = options;

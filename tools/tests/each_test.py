@@ -131,6 +131,32 @@ class Each(unittest.TestCase):
         self.assertEqual(state.read_bytes(), b"something of mine\n")
         self.assertEqual(run("check", "--each", touched, "--resume", touched).returncode, USAGE)
 
+    def test_what_is_read_otherwise_is_not_known(self):
+        state = self.folder / "state"
+        words = ("decode", "--each", self.runs, "--resume", state)
+        run(*words)
+        self.assertIn(f"({len(CAPTURES)} known", run(*words).stderr)
+        self.assertNotIn("known", run(*words, "--link-type", "150=radio-fcs").stderr)
+
+    def test_a_run_that_is_killed_is_broken(self):
+        for command in ("check", "decode"):
+            waits = self.folder / f"{command}.pcapng"
+            os.mkfifo(waits)
+            process = subprocess.Popen([RUBRIC, command, "--each", str(waits)], text=True,
+                                       stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+            self.addCleanup(process.kill)
+            children = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children")
+            for _ in range(6000):
+                found = children.read_text(encoding="ascii").split()
+                if found:
+                    break
+                time.sleep(0.01)
+            os.kill(int(found[0]), signal.SIGKILL)
+            out, _ = process.communicate(timeout=60)
+            line, = lines(out)
+            self.assertEqual((process.returncode, line["exit_code"]), (BROKEN, BROKEN))
+            self.assertIn("was killed by signal 9", line["error"])
+
     def test_killed_at_any_point(self):
         state = self.folder / "state"
         whole = run("check", "--each", self.runs).stdout
