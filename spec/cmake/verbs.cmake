@@ -114,20 +114,41 @@ function(rubric_label_test name label foreign targets)
   endif()
 endfunction()
 
-# rubric_test(NAME [FOREIGN] SOURCES a_test.cc ... [DEPS lib ...] [LABEL fast|slow|waits|long]): one
-# GoogleTest program, one ctest entry, run from the project's folder.
+# Adds a ctest entry, run from the project's folder; with PARTS n of them, which run side by side:
+# each takes its share of the tests by GoogleTest's variables, which tools/tests/live_testing.py
+# reads as well.
+function(rubric_add_test name parts label foreign targets)
+  if(NOT parts)
+    set(parts 1)
+  endif()
+  foreach(part RANGE 1 ${parts})
+    set(entry ${name})
+    if(parts GREATER 1)
+      string(APPEND entry "_${part}")
+    endif()
+    math(EXPR index "${part} - 1")
+    add_test(NAME ${entry} COMMAND ${ARGN} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+    rubric_label_test(${entry} "${label}" "${foreign}" "${targets}")
+    if(parts GREATER 1)
+      set_tests_properties(${entry} PROPERTIES ENVIRONMENT
+        "GTEST_TOTAL_SHARDS=${parts};GTEST_SHARD_INDEX=${index}")
+    endif()
+  endforeach()
+endfunction()
+
+# rubric_test(NAME [FOREIGN] SOURCES a_test.cc ... [DEPS lib ...] [LABEL fast|slow|waits|long]
+# [PARTS n]): one GoogleTest program, one ctest entry or n.
 function(rubric_test name)
   if(NOT RUBRIC_TESTS)
     return()
   endif()
-  cmake_parse_arguments(arg "FOREIGN" "LABEL" "SOURCES;DEPS" ${ARGN})
+  cmake_parse_arguments(arg "FOREIGN" "LABEL;PARTS" "SOURCES;DEPS" ${ARGN})
   add_executable(${name} ${arg_SOURCES})
   target_link_libraries(${name} PRIVATE rubric_options ${arg_DEPS} GTest::gmock GTest::gtest_main
     fmt::fmt)
   target_compile_options(${name} PRIVATE -O0)
   target_precompile_headers(${name} REUSE_FROM rubric_test_headers)
-  add_test(NAME ${name} COMMAND ${name} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
-  rubric_label_test(${name} "${arg_LABEL}" ${arg_FOREIGN} ${name})
+  rubric_add_test(${name} "${arg_PARTS}" "${arg_LABEL}" "${arg_FOREIGN}" ${name} ${name})
   if(rapidcheck IN_LIST arg_DEPS)
     # A stated seed, so that a run says the same twice; only the long proofs take any seed.
     set(runs "max_success=1000 max_size=200")
@@ -138,21 +159,21 @@ function(rubric_test name)
   endif()
 endfunction()
 
-# rubric_script_test(NAME [FOREIGN] [LABEL fast|slow|waits|long] COMMAND word ...): a program or
-# script as a ctest entry.
+# rubric_script_test(NAME [FOREIGN] [LABEL fast|slow|waits|long] [PARTS n] COMMAND word ...): a
+# program or script as a ctest entry, or as n.
 function(rubric_script_test name)
   if(NOT RUBRIC_TESTS)
     return()
   endif()
-  cmake_parse_arguments(arg "FOREIGN" "LABEL" "COMMAND" ${ARGN})
-  add_test(NAME ${name} COMMAND ${arg_COMMAND} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+  cmake_parse_arguments(arg "FOREIGN" "LABEL;PARTS" "COMMAND" ${ARGN})
   string(REGEX MATCHALL "TARGET_FILE:[a-z_-]+" targets "${arg_COMMAND}")
   list(TRANSFORM targets REPLACE "TARGET_FILE:" "")
   list(GET arg_COMMAND 0 program)
   if(TARGET ${program})
     list(APPEND targets ${program})
   endif()
-  rubric_label_test(${name} "${arg_LABEL}" ${arg_FOREIGN} "${targets}")
+  rubric_add_test(${name} "${arg_PARTS}" "${arg_LABEL}" "${arg_FOREIGN}" "${targets}"
+    ${arg_COMMAND})
 endfunction()
 
 # rubric_have_tools(RESULT WHAT VARIABLE ...): RESULT says whether find_program or find_library set

@@ -28,6 +28,13 @@ def lines_of(path, *arguments):
     return [json.loads(line) for line in out.splitlines()]
 
 
+def load_tests(_loader, tests, _pattern):
+    """For unittest: the share of the tests that a ctest entry with PARTS takes."""
+    parts = int(os.environ.get("GTEST_TOTAL_SHARDS", "1"))
+    part = int(os.environ.get("GTEST_SHARD_INDEX", "0"))
+    return unittest.TestSuite([test for suite in tests for test in suite][part::parts])
+
+
 class Running:
     """A rubric that is read and ended by somebody else."""
 

@@ -25,7 +25,7 @@ from serial_testing import held_port
 
 HERE = pathlib.Path(__file__).resolve().parent
 MISTAKE = "reads_numbers_backwards"
-PARTS = 6
+PARTS = 9
 # A station lives for a second or two: code that runs once is not worth an optimising compiler.
 SHORT_LIVED = ["-XX:TieredStopAtLevel=1", "-XX:+UseSerialGC", "-Xshare:auto"]
 
