@@ -136,18 +136,24 @@ function(rubric_add_test name parts label foreign targets)
   endforeach()
 endfunction()
 
-# rubric_test(NAME [FOREIGN] SOURCES a_test.cc ... [DEPS lib ...] [LABEL fast|slow|waits|long]
-# [PARTS n]): one GoogleTest program, one ctest entry or n.
+# rubric_test(NAME [FOREIGN] [BUSY] SOURCES a_test.cc ... [DEPS lib ...] [PARTS n]
+# [LABEL fast|slow|waits|long]): one GoogleTest program, one ctest entry or n. Tests are not
+# optimised, and the linker takes their copies of inline functions for the libraries, too: where
+# that costs more than compiling with optimisation, a test is BUSY.
 function(rubric_test name)
   if(NOT RUBRIC_TESTS)
     return()
   endif()
-  cmake_parse_arguments(arg "FOREIGN" "LABEL;PARTS" "SOURCES;DEPS" ${ARGN})
+  cmake_parse_arguments(arg "FOREIGN;BUSY" "LABEL;PARTS" "SOURCES;DEPS" ${ARGN})
   add_executable(${name} ${arg_SOURCES})
   target_link_libraries(${name} PRIVATE rubric_options ${arg_DEPS} GTest::gmock GTest::gtest_main
     fmt::fmt)
-  target_compile_options(${name} PRIVATE -O0)
-  target_precompile_headers(${name} REUSE_FROM rubric_test_headers)
+  if(arg_BUSY)
+    target_compile_options(${name} PRIVATE ${RUBRIC_COLD})
+  else()
+    target_compile_options(${name} PRIVATE -O0)
+    target_precompile_headers(${name} REUSE_FROM rubric_test_headers)
+  endif()
   rubric_add_test(${name} "${arg_PARTS}" "${arg_LABEL}" "${arg_FOREIGN}" ${name} ${name})
   if(rapidcheck IN_LIST arg_DEPS)
     # A stated seed, so that a run says the same twice; only the long proofs take any seed.
