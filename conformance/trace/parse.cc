@@ -55,14 +55,16 @@ NodeHeader parse_node(Scanner& in) {
   while (!(word = header_word(in)).empty()) {
     if (word == "iut" && !node.iut) {
       node.iut = true;
+    } else if (word == "whole" && !node.whole) {
+      node.whole = true;
     } else if (word.starts_with("id=") && !node.id) {
       node.id = small_number(in, word.substr(3), "a TinyOS id");
     } else if (word.starts_with("island=") && !node.island) {
       node.island = small_number(in, word.substr(7), "an island");
-    } else if (word == "iut" || word.starts_with("id=") || word.starts_with("island=") ||
+    } else if (word.starts_with("id=") || word.starts_with("island=") ||
                word.find('=') == std::string_view::npos) {
-      in.fail_at(word,
-                 "expected id=, island=, a parameter or iut, each once, given " + quoted(word));
+      in.fail_at(word, "expected id=, island=, a parameter, iut or whole, each once, given " +
+                           quoted(word));
     } else if (const std::string wrong = add_stated(word, node.stated); !wrong.empty()) {
       in.fail_at(word, wrong);
     }

@@ -66,6 +66,7 @@ struct HeaderText {
     if (h.island) out += " island=" + std::to_string(*h.island);
     if (!h.stated.empty()) out += ' ' + statement_text(h.stated);
     if (h.iut) out += " iut";
+    if (h.whole) out += " whole";
   }
   void operator()(const LinkHeader& h) const {
     out += "%link " + h.name + ' ' + std::string(link_text(h.kind));

@@ -226,6 +226,7 @@ struct NodeHeader {
   std::optional<std::uint16_t> id;      ///< TinyOS id; motes and sinks have one.
   std::optional<std::uint16_t> island;  ///< For sinks and base stations when they start.
   bool iut = false;                     ///< Under test.
+  bool whole = false;                   ///< A log has all that it got and did, in the given values.
   Statement stated = {};                ///< Other parameters are the profile's.
   friend bool operator==(const NodeHeader&, const NodeHeader&) = default;
 };

@@ -108,7 +108,10 @@ class Capture {
 
 std::string case_rtr(const CaseRun& one) {
   trace::File file = trace::File::begin(one.profile.empty() ? "paper" : one.profile);
-  for (const trace::NodeHeader& node : one.nodes) file.node(node);
+  for (trace::NodeHeader node : one.nodes) {
+    node.whole = node.iut && one.whole;
+    file.node(node);
+  }
   for (const trace::LinkHeader& link : one.links) file.header({link, {}, {}});
   if (one.seed != 0) file.header({trace::SeedHeader{one.seed}, {}, {}});
   file.cases.push_back(one.result.log);

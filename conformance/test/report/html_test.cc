@@ -142,7 +142,9 @@ TEST(CaseFiles, LogsAreReadAgain) {
     for (std::size_t i = 0; i < lines.size(); ++i) {
       EXPECT_EQ(trace::print(*again[i]), trace::print(*lines[i]));
     }
-    EXPECT_EQ(trace::scope_of(parsed.file, read).nodes, each.nodes);
+    std::vector<trace::NodeHeader> nodes = each.nodes;
+    for (trace::NodeHeader& node : nodes) node.whole = node.iut;  // The log has all of them.
+    EXPECT_EQ(trace::scope_of(parsed.file, read).nodes, nodes);
   }
 }
 

@@ -44,6 +44,7 @@ struct CaseRun {
   /// It had to be decided and was not: the case is not foreign, and the file does not
   /// list it as skipped. No case at the own line of a node, which names what the line cannot show.
   bool owed = false;
+  bool whole = false;  ///< Its log has all that its nodes got and did, in virtual time.
   double wall_ms = 0;
   std::string stderr_text;  ///< Written while it broke.
 

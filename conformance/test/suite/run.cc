@@ -141,7 +141,9 @@ CaseRun run_one(const SuiteCase& one, targets::Attachment& attachment, const std
       out.result.reason = missing;
       out.foreign = true;
     }
-    out.owed = out.undecided() && !out.foreign && !attachment.identity().own_line;
+    const targets::Identity& who = attachment.identity();
+    out.owed = out.undecided() && !out.foreign && !who.own_line;
+    out.whole = !who.own_line && !who.shown && !who.real_time;
   } catch (const std::exception& error) {  // It did not start again.
     out.result.verdict = CaseVerdict::kError;
     out.result.reason = error.what();

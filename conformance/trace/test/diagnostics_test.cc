@@ -113,7 +113,7 @@ const Wrong kWrong[] = {
     {"NodeName", "%node ?", "7: expected a node's name"},
     {"NodeRole", "%node n robot", "9: expected mote, sink or base_station, given 'robot'"},
     {"NodeWord", "%node n mote id=1 id=2",
-     "19: expected id=, island=, a parameter or iut, each once, given 'id=2'"},
+     "19: expected id=, island=, a parameter, iut or whole, each once, given 'id=2'"},
     {"NodeId", "%node n mote id=65536", "17: expected a TinyOS id from 0 to 65535, given '65536'"},
     {"NodeIsland", "%node n sink id=1 island=x",
      "26: expected an island from 0 to 65535, given 'x'"},
