@@ -85,10 +85,11 @@ struct LoggedNode {
   bool application = false;   ///< The log has its application's calls and events.
   bool hearing = false;       ///< The log has what its radio was given; a base station's lines.
   bool logged = false;        ///< The log has lines of it; else only a header names it.
+  bool whole = false;         ///< The log has all that it got and did.
   std::uint8_t channels = 0;  ///< Synaptic channels of each direction; 0: not said.
   bool peis = false;          ///< The log has its lines of PEIS.
-  bool busy = false;          ///< A line of it, or its application, was busy for some time.
-  std::vector<std::pair<std::int64_t, std::int64_t>> busy_us;  ///< From when to when.
+  /// From when to when a line of it, or its application, was busy.
+  std::vector<std::pair<std::int64_t, std::int64_t>> busy_us;
 };
 
 /// The times between which a frame of a file without stamps must lie, by frames that other files
@@ -147,6 +148,7 @@ struct Run {
   std::vector<LoggedNode> nodes;
   /// What logs state of their nodes under test; `channels` are not seen.
   trace::Statement stated = {};
+  bool all_stated = false;  ///< Other values are the profile's, by a log that is whole.
   /// A log marks nodes as under test: the trace plays everybody else.
   bool marked = false;
   std::shared_ptr<RunStorage> storage;

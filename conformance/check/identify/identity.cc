@@ -59,6 +59,7 @@ class Identifier {
     device.judged = node.under_test && (node.logged || captured_);
     device.application = node.application;
     device.hearing = node.hearing;
+    device.whole = node.whole;
     device.name = node.name;
     add(device);
   }
@@ -127,6 +128,9 @@ class Identifier {
     }
     if (seen.kind == Observation::Kind::kRadio) mark.device = logged_sender(seen.frame, node);
     if (seen.kind == Observation::Kind::kSerial) mark.device = base_station_of(node);
+    const bool other =
+        mark.device != kNobody && mark.device < run_.nodes.size() && run_.nodes[mark.device].whole;
+    if (other) mark.device = kNobody;  // Its log would have it.
   }
 
   // Returns the log's node that sent a frame given to `receiver`, if that is certain. A log has all

@@ -75,6 +75,7 @@ struct Device {
   bool application = false;  ///< A log has its application's calls and events.
   bool hearing = false;      ///< A log has all that its radio was given.
   bool radio = false;        ///< It was heard on the air.
+  bool whole = false;        ///< A log has all that it got and did.
   std::string name;
   std::uint16_t partner = kNobody;  ///< The base station of a sink and the other way round.
   std::vector<std::uint32_t> taps;  ///< A sink's serial lines.
@@ -83,6 +84,9 @@ struct Device {
   std::int64_t last_us = 0;
   /// Times between two frames whose DSNs do not follow each other: something was missed.
   std::vector<std::pair<std::int64_t, std::int64_t>> holes;
+
+  /// Returns whether what a sink sends on its serial line is seen.
+  bool shows_line() const { return whole || !taps.empty(); }
 };
 
 /// The first pass's result for one observation.

@@ -52,8 +52,12 @@ class LogReader {
         node.application = node.application || link == LinkKind::kApp;
         node.hearing = node.hearing ||
                        (hears_by(node.role, link) && line->op == Op::kGiven && !is_state(*line));
-        node.busy = node.busy || line->message.name == "busy";
         node.peis = node.peis || link == LinkKind::kPeis;
+      }
+      if (header.whole) {
+        node.whole = node.logged = node.application = node.hearing = true;
+        node.peis = header.role == trace::Role::kBaseStation;
+        run_.all_stated = true;
       }
       run_.nodes.push_back(std::move(node));
       applications = applications || run_.nodes.back().application;

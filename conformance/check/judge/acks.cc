@@ -15,11 +15,12 @@ constexpr std::int64_t kAroundUs = 100'000;
 }  // namespace
 
 Acks::Acks(Context& context, std::size_t devices)
-    : context_(context), arrived_(devices), owed_(devices, 0) {}
+    : context_(context), arrived_(devices), owed_(devices, 0), orders_(devices) {}
 
 void Acks::begin_life(std::uint16_t node) {
   arrived_[node].clear();
   owed_[node] = 0;
+  orders_[node] = {};
 }
 
 void Acks::arrived(std::uint16_t node, const Observation& seen, std::uint16_t sender,
@@ -41,6 +42,7 @@ void Acks::arrived(std::uint16_t node, const Observation& seen, std::uint16_t se
     arrived.delivers = arrival.delivers;
   }
   arrived.sure = arrival.sure;
+  arrived.order = ++orders_[node].came;
   if (arrived.must_ack && arrived.sure) ++owed_[node];
   if (ring.full()) {
     missing_delivery(node, ring.oldest(0), seen.place.time_us);
@@ -228,6 +230,7 @@ void Acks::delivered(std::uint16_t node, const Observation& seen,
          {}});
   }
   if (rank(*best) == 2) {
+    judge_order(node, seen, *best);
     ++best->delivered;
     const bool owed = best->must_ack && best->sure;
     best->must_ack = best->must_ack || best->ackable;
@@ -247,6 +250,24 @@ void Acks::delivered(std::uint16_t node, const Observation& seen,
                        (forbidden ? ", which the node should have dropped or ignored."
                                   : " more often than it came."),
                    forbidden ? "No delivery." : "Each message once.",
+                   {}});
+}
+
+// Judges the order of deliveries, by a log that has what the node was given.
+void Acks::judge_order(std::uint16_t node, const Observation& seen, const Arrived& arrived) {
+  Order& order = orders_[node];
+  const bool late = arrived.order < order.delivered;
+  order.delivered = std::max(order.delivered, arrived.order);
+  if (!context_.device(node).whole || !arrived.sure) return;
+  Ring<Arrived, kRoom>& ring = arrived_[node];
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const Arrived& other = ring.newest(i);  // Of two that are alike nobody knows which one it is.
+    if (other.order != arrived.order && same_payload(other.net, arrived.net)) return;
+  }
+  if (!late) return context_.findings.kept("N2-IN-ORDER"_rule);
+  context_.report("N2-IN-ORDER"_rule, Severity::kFail, seen.place, node,
+                  {"The application gets " + name_of(arrived.net) + " after one that came later.",
+                   "Messages in the order in which they came.",
                    {}});
 }
 
@@ -314,12 +335,13 @@ void Acks::missing_delivery(std::uint16_t node, Arrived& arrived, std::int64_t n
   const Device& device = context_.device(node);
   if (arrived.delivers == ReqId::kNone || !arrived.sure || arrived.delivered > 0) return;
   if (!device.application || !device.hearing || !context_.run.has_time) return;
+  const std::int64_t due_us = context_.due_us(node, arrived.whole_us);
+  if (now_us <= due_us) return;
   // A busy application, or what waits for it, may have filled the buffer.
-  if (context_.due_us(node, arrived.whole_us) != arrived.whole_us + context_.response_us()) return;
-  if (now_us <= arrived.whole_us + context_.response_us()) return;
+  const bool held = context_.busy(node, arrived.whole_us, due_us);
   if (delivered_before(node, arrived)) return;
   context_.report(
-      arrived.delivers, crowded(node, arrived) ? Severity::kInconclusive : Severity::kFail,
+      arrived.delivers, held || crowded(node, arrived) ? Severity::kInconclusive : Severity::kFail,
       arrived.place, node,
       {"The node was given " + name_of(arrived.net) +
            ", and its application did not get it within " + ms_text(context_.response_us()) + ".",

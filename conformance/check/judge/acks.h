@@ -53,8 +53,9 @@ struct Arrived {
   bool must_ack = false;
   bool ackable = false;  ///< Apart from `free`: reliable, and so on.
   ReqId delivers =
-      ReqId::kNone;   ///< Why the application gets it, if it arrived; kNone: it need not.
-  bool sure = false;  ///< It surely arrived.
+      ReqId::kNone;         ///< Why the application gets it, if it arrived; kNone: it need not.
+  bool sure = false;        ///< It surely arrived.
+  std::uint32_t order = 0;  ///< Counts what came to the node.
   std::uint8_t copies = 1;
   std::uint8_t acks = 0;
   std::uint8_t delivered = 0;
@@ -99,12 +100,18 @@ class Acks {
   void missing_delivery(std::uint16_t node, Arrived& arrived, std::int64_t now_us);
   bool crowded(std::uint16_t node, const Arrived& arrived);
   bool delivered_before(std::uint16_t node, const Arrived& arrived);
+  void judge_order(std::uint16_t node, const Observation& seen, const Arrived& arrived);
   void refuse(std::uint16_t node, const Observation& seen, const Net& ack, std::int32_t acked,
               Arrived* best);
 
   Context& context_;
   std::vector<Ring<Arrived, kRoom>> arrived_;
   std::vector<std::uint16_t> owed_;  ///< Surely owed acks of each node.
+  struct Order {
+    std::uint32_t came = 0;       ///< How many messages.
+    std::uint32_t delivered = 0;  ///< The latest that its application got.
+  };
+  std::vector<Order> orders_;
 };
 
 }  // namespace rubric::check

@@ -232,10 +232,18 @@ std::int64_t Context::due_us(std::uint16_t node, std::int64_t whole_us) const {
   return due;
 }
 
+bool Context::busy(std::uint16_t node, std::int64_t from_us, std::int64_t to_us) const {
+  if (node >= run.nodes.size()) return false;
+  const auto& times = run.nodes[node].busy_us;
+  return std::any_of(times.begin(), times.end(), [&](const auto& time) {
+    return time.first <= to_us && time.second >= from_us;
+  });
+}
+
 bool Context::ack_timeout_stated() const {
   constexpr auto kAckTimeout = trace::ParameterId::kAckTimeout;
-  return options.ack_timeout_us.has_value() || find(options.stated, kAckTimeout) ||
-         find(run.stated, kAckTimeout);
+  return run.all_stated || options.ack_timeout_us.has_value() ||
+         find(options.stated, kAckTimeout) || find(run.stated, kAckTimeout);
 }
 
 Severity Context::without(std::uint16_t cause, std::int64_t from_us, std::int64_t to_us) const {

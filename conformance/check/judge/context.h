@@ -76,6 +76,8 @@ struct Context {
   /// Returns when an answer to what the node has whole at `whole_us` is overdue. What waited for a
   /// line or an application that was busy, by the node's log, may take as long again behind others.
   std::int64_t due_us(std::uint16_t node, std::int64_t whole_us) const;
+  /// Returns whether by its log a line or the application of the node was busy within that time.
+  bool busy(std::uint16_t node, std::int64_t from_us, std::int64_t to_us) const;
   machine::JoinContext join_context(std::uint16_t id, std::uint16_t island,
                                     std::int64_t now_us) const {
     return {profile(), id, island, 0, machine::ticks_of(now_us)};

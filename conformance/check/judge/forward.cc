@@ -33,13 +33,14 @@ Forwarding::Forwarding(Context& context) : context_(context) {
     line.sink = static_cast<std::uint16_t>(i);
     line.am = device.am;
     line.island = device.island;
-    line.serial = !device.taps.empty();
+    line.serial = device.shows_line();
+    line.slack_us = device.whole ? context.response_us() : kIslandSlackUs;
     lines_.push_back(std::move(line));
   }
 }
 
 bool Forwarding::Line::changing(std::int64_t time_us) const {
-  return std::abs(time_us - island_changed_us) < kIslandSlackUs;
+  return std::abs(time_us - island_changed_us) < slack_us;
 }
 
 Forwarding::Line* Forwarding::find(std::uint16_t sink) {
@@ -184,9 +185,9 @@ void Forwarding::heard_on_serial(std::uint16_t sink, std::uint16_t base, const O
   }
   passing.sure = surely_received;
   // A log says what was received.
-  passing.owed = onward && net.sound && net.reliable <= 1 &&
-                 (surely_received || !context_.device(sink).hearing) &&
+  passing.owes = onward && net.sound && net.reliable <= 1 && !line->deaf &&
                  net.dest.pid != machine::kBroadcastPid;
+  passing.owed = passing.owes && (surely_received || !context_.device(sink).hearing);
   store(line->down, passing, line->owed_down);
   const bool foreign = net.dest.pid != line->island && net.dest.pid != machine::kBroadcastPid;
   if (!foreign) return;
@@ -195,6 +196,21 @@ void Forwarding::heard_on_serial(std::uint16_t sink, std::uint16_t base, const O
                        number(line->island) + ".",
                    "Another island's messages go through PEIS.",
                    {}});
+}
+
+void Forwarding::surely_down(std::uint16_t sink, const Net& net) {
+  Line* const line = find(sink);
+  if (line == nullptr) return;
+  for (std::size_t i = 0; i < line->down.size(); ++i) {
+    Passing& passing = line->down.newest(i);
+    if (!same_message(passing.net, net)) continue;
+    passing.sure = true;
+    if (passing.owes && !passing.owed && passing.passed == 0) {
+      passing.owed = true;
+      ++line->owed_down;
+    }
+    return;
+  }
 }
 
 bool Forwarding::out_of_order(const Passing& passing, std::uint64_t& last) {
@@ -275,7 +291,7 @@ void Forwarding::refuse_up(Line& line, const Observation& seen, const Net& net) 
                      {}});
     return;
   }
-  if (!context_.hears_radio || line.island == 0) return;
+  if (!(context_.hears_radio || context_.device(line.sink).whole) || line.island == 0) return;
   for (std::size_t i = 0; i < line.up.size(); ++i) {
     Passing& passing = line.up.newest(i);
     if (passing.net.seq_num != net.seq_num || passing.net.src != net.src) continue;

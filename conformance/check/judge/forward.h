@@ -22,6 +22,7 @@ struct Passing {
   ReqId forbidden = ReqId::kNone;  ///< Passing it on breaks this rule.
   bool weak = false;               ///< And that rule is a SHOULD.
   bool owed = false;               ///< Received, and not yet passed on.
+  bool owes = false;               ///< It is to be passed on, if it was received.
   bool sure = true;                ///< The reception is proven.
   bool twin = false;               ///< Another one of the same content is around.
   std::uint8_t copies = 1;         ///< Times that it may have been received.
@@ -57,6 +58,8 @@ class Forwarding {
   void showed_life(std::uint16_t sink, std::int64_t now_us);
   /// Notes that one of the sinks, unknown which, sent this by radio.
   void somebody_sent(const Net& net);
+  /// Notes that by a log the sink was given a message that its host sent before.
+  void surely_down(std::uint16_t sink, const Net& net);
   /// Sets the sink's island from now on.
   void set_island(std::uint16_t sink, std::uint16_t island, std::int64_t now_us, bool sure);
   void begin_life(std::uint16_t sink);
@@ -72,7 +75,8 @@ class Forwarding {
     std::uint16_t island = 0;
     std::uint16_t last_island = 0;  ///< Before SET_ISLAND_ID.
     std::int64_t island_changed_us = -1'000'000'000;
-    bool island_sure = true;  ///< That change surely arrived.
+    std::int64_t slack_us = 0;  ///< For so long it may act for either island.
+    bool island_sure = true;    ///< That change surely arrived.
     /// Returns whether its island changed about then.
     bool changing(std::int64_t time_us) const;
     bool off = false;                 // Its serial line, by its application.
@@ -99,10 +103,9 @@ class Forwarding {
   void expire_early(Line& line, std::int64_t now_us);
   void overdue_up(Line& line, std::int64_t now_us);
   void overdue_down(Line& line, std::int64_t now_us);
-  bool crowded(Line& line, std::int64_t time_us);
+  bool crowded(Line& line, const Passing& passing);
   bool also_elsewhere(const Line& line, const Net& net);
   void unheard(Line& line, const Passing& passing);
-  bool busy(const Line& line, std::int64_t came_us) const;
   bool out_of_order(const Passing& passing, std::uint64_t& last);
 
   Context& context_;

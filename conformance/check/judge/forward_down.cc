@@ -80,7 +80,8 @@ bool Forwarding::sent_on_radio(std::uint16_t sink, const Observation& seen, cons
   const bool sure = !context_.run.order_guessed &&
                     context_.without_ever(kNobody, now) == Severity::kFail &&
                     context_.on_line(sink, Severity::kFail) == Severity::kFail;
-  if (!sure || line->changing(now)) return true;
+  const bool held = context_.busy(sink, line->island_changed_us, now);
+  if (!sure || held || line->changing(now)) return true;
   if (context_.half_heard(sink)) {
     context_.needs_host(sink, seen.place);
     return true;
@@ -107,18 +108,11 @@ bool Forwarding::came_down(std::uint16_t sink, const Net& net) {
   return false;
 }
 
-// Returns whether by its log one of the sink's lines was busy while the message was due.
-bool Forwarding::busy(const Line& line, std::int64_t came_us) const {
-  if (line.sink >= context_.run.nodes.size()) return false;
-  const auto& times = context_.run.nodes[line.sink].busy_us;
-  return std::any_of(times.begin(), times.end(), [&](const auto& time) {
-    return time.first <= came_us + context_.response_us() && time.second >= came_us;
-  });
-}
-
-// Returns whether so many messages came around that time that a buffer may have been full (decision
-// 122).
-bool Forwarding::crowded(Line& line, std::int64_t time_us) {
+// Returns whether a buffer may have been full (decision 122): so many messages came around that
+// time, or a line was busy.
+bool Forwarding::crowded(Line& line, const Passing& passing) {
+  const std::int64_t time_us = passing.place.time_us;
+  if (context_.busy(line.sink, time_us, passing.whole_us + context_.response_us())) return true;
   constexpr std::size_t kCrowd = 2;
   constexpr std::int64_t kAroundUs = 100'000;
   std::size_t around = 0;
@@ -133,6 +127,7 @@ bool Forwarding::crowded(Line& line, std::int64_t time_us) {
 
 void Forwarding::somebody_sent(const Net& net) {
   for (Line& line : lines_) {
+    if (context_.device(line.sink).whole) continue;  // Its log would have it.
     for (std::size_t i = 0; i < line.down.size(); ++i) {
       Passing& passing = line.down.newest(i);
       if (!same_message(passing.net, net)) continue;
@@ -188,14 +183,13 @@ void Forwarding::overdue_up(Line& line, std::int64_t now_us) {
   if (now_us < 0) return;
   for (std::size_t i = 0; i < line.up.size(); ++i) {
     Passing& passing = line.up.oldest(i);
-    if (!passing.owed || now_us - passing.whole_us <= context_.response_us()) continue;
+    if (!passing.owed || now_us <= context_.due_us(line.sink, passing.whole_us)) continue;
     passing.owed = false;
     --line.owed_up;
-    if (busy(line, passing.place.time_us)) continue;
     const bool own_island = passing.net.dest.pid == line.island;
     context_.report(
         own_island ? "N6-FORWARD"_rule : "N6-ROUTE"_rule,
-        crowded(line, passing.place.time_us) || context_.who.damaged(passing.place.time_us, now_us)
+        crowded(line, passing) || context_.who.damaged(passing.place.time_us, now_us)
             ? Severity::kInconclusive
             : context_.on_line(line.sink, Severity::kFail),
         passing.place, line.sink,
@@ -211,12 +205,10 @@ void Forwarding::overdue_down(Line& line, std::int64_t now_us) {
   if (now_us < 0) return;
   for (std::size_t i = 0; i < line.down.size(); ++i) {
     Passing& passing = line.down.oldest(i);
-    if (!passing.owed || now_us - passing.whole_us <= context_.response_us()) continue;
+    if (!passing.owed || now_us <= context_.due_us(line.sink, passing.whole_us)) continue;
     passing.owed = false;
     --line.owed_down;
-    if (busy(line, passing.place.time_us)) continue;
-    const bool open =
-        !passing.sure || crowded(line, passing.place.time_us) || also_elsewhere(line, passing.net);
+    const bool open = !passing.sure || crowded(line, passing) || also_elsewhere(line, passing.net);
     const Severity severity =
         open ? Severity::kInconclusive : context_.without(line.sink, passing.place.time_us, now_us);
     context_.report("N7-RADIO"_rule, context_.on_line(line.sink, severity), passing.place,

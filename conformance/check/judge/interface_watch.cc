@@ -109,7 +109,7 @@ void InterfaceWatch::finish(std::int64_t end_us) {
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     const auto device = static_cast<std::uint16_t>(i);
     const Node& node = nodes_[i];
-    const bool busy = i < context_.run.nodes.size() && context_.run.nodes[i].busy;
+    const bool busy = i < context_.run.nodes.size() && !context_.run.nodes[i].busy_us.empty();
     if (!node.awaited || busy || end_us - node.accepted.time_us <= context_.response_us()) continue;
     const Severity severity = context_.device(device).hearing
                                   ? Severity::kFail

@@ -31,10 +31,7 @@ void JoinWatch::radio_set(std::uint16_t node, bool on, std::int64_t now_us) {
 }
 
 // A busy line or application stops the time (decision 125).
-bool JoinWatch::waits(std::uint16_t node) const {
-  const bool busy = node < context_.run.nodes.size() && context_.run.nodes[node].busy;
-  return context_.run.has_time && !off_[node] && !busy;
-}
+bool JoinWatch::waits(std::uint16_t node) const { return context_.run.has_time && !off_[node]; }
 
 void JoinWatch::owe(std::uint16_t node, const Debt& debt) {
   if (debts_[node].size() < kRoom) debts_[node].push_back(debt);
@@ -50,8 +47,20 @@ void JoinWatch::asked(std::uint16_t mote, std::uint32_t index) {
   debt.owes = Owes::kRetry;
   debt.index = index;
   debt.due_us =
-      context_.run.seen[index].place.time_us + context_.join_period_us() + context_.response_us();
+      context_.due_us(mote, context_.run.seen[index].place.time_us + context_.join_period_us());
   owe(mote, debt);
+}
+
+void JoinWatch::repeats(std::uint16_t mote, std::int64_t now_us) {
+  if (!context_.run.all_stated) return;
+  std::erase_if(debts_[mote], [&](const Debt& debt) {
+    if (debt.owes != Owes::kRetry || now_us <= debt.due_us || !still_owed(mote, debt)) return false;
+    const std::int64_t from = context_.run.seen[debt.index].place.time_us;
+    const bool open = crowded(mote, debt) || context_.busy(mote, from, debt.due_us) ||
+                      context_.who.damaged(from, now_us);
+    missing(mote, debt, open ? Severity::kInconclusive : Severity::kFail);
+    return true;
+  });
 }
 
 void JoinWatch::surely_asked(std::uint16_t sink, std::uint32_t index, std::uint16_t seq_num) {
@@ -62,7 +71,7 @@ void JoinWatch::surely_asked(std::uint16_t sink, std::uint32_t index, std::uint1
   debt.mote_am = am;
   debt.seq_num = seq_num;
   debt.index = index;
-  debt.due_us = seen.place.time_us + air_us(seen) + context_.response_us();
+  debt.due_us = context_.due_us(sink, seen.place.time_us + air_us(seen));
   if (!still_owed(sink, debt)) return;
   owe(sink, debt);
   sinks_.settled(am);
@@ -91,7 +100,7 @@ void JoinWatch::surely_offered(std::uint16_t mote, std::uint32_t index, const Re
   debt.seq_num = reply.seq_num;
   debt.index = index;
   const Observation& seen = context_.run.seen[index];
-  debt.due_us = seen.place.time_us + air_us(seen) + context_.response_us();
+  debt.due_us = context_.due_us(mote, seen.place.time_us + air_us(seen));
   if (still_owed(mote, debt)) owe(mote, debt);
 }
 
@@ -99,6 +108,8 @@ void JoinWatch::surely_offered(std::uint16_t mote, std::uint32_t index, const Re
 bool JoinWatch::still_owed(std::uint16_t node, const Debt& debt) {
   const Observation& cause = context_.run.seen[debt.index];
   const std::int64_t from = cause.place.time_us;
+  const std::uint8_t requests_min =
+      context_.run.all_stated ? context_.profile().join_requests_max : kRequestsMin;
   if (debt.owes != Owes::kReply) {
     const auto owes = [&](const MoteHypothesis& h) {
       if (h.unknown) return false;
@@ -107,7 +118,7 @@ bool JoinWatch::still_owed(std::uint16_t node, const Debt& debt) {
                h.join.seq_num == debt.seq_num;
       }
       return h.join.phase == Phase::kJoining && h.last_request_us == from &&
-             h.join.requests < kRequestsMin;
+             h.join.requests < requests_min;
     };
     const std::vector<MoteHypothesis>& set = motes_.set(node);
     return !set.empty() && std::all_of(set.begin(), set.end(), owes);
@@ -136,7 +147,9 @@ void JoinWatch::settle(std::uint16_t node, std::int64_t now_us, bool end) {
     const bool sure =
         !context_.who.damaged(from, now_us) &&
         (device.hearing || (!end && context_.without(node, from, now_us) == Severity::kFail));
-    missing(node, debt, sure && !crowded(node, debt) ? Severity::kFail : Severity::kInconclusive);
+    // What waited for a line that was busy may have filled a buffer.
+    const bool open = crowded(node, debt) || context_.busy(node, from, debt.due_us);
+    missing(node, debt, sure && !open ? Severity::kFail : Severity::kInconclusive);
     return true;
   });
 }
@@ -163,7 +176,7 @@ void JoinWatch::missing(std::uint16_t node, const Debt& debt, Severity severity)
     case Owes::kRetry:
       context_.report(
           "J8-RETRY"_rule, severity, cause.place, node,
-          {"No join_request follows this one, no reply came that the mote could "
+          {"No join_request follows this one in time, no reply came that the mote could "
            "accept, and requests remain.",
            "The join_request again, " + ms_text(context_.join_period_us()) + " after the last.",
            {}});

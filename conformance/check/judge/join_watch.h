@@ -23,6 +23,10 @@ class JoinWatch {
   /// Notes that the node sends a frame on the air, so whatever it still owes is overdue.
   void showed_life(std::uint16_t node, std::int64_t now_us) { settle(node, now_us, false); }
 
+  /// Called before the same function of MoteJoins: a request that the mote sends now, or the end of
+  /// its call, is too late for a repetition that was due, where the join period is stated.
+  void repeats(std::uint16_t mote, std::int64_t now_us);
+
   // Called after the same function of MoteJoins or SinkJoins.
   void asked(std::uint16_t mote, std::uint32_t index);
   void surely_asked(std::uint16_t sink, std::uint32_t index, std::uint16_t seq_num);

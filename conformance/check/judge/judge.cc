@@ -91,6 +91,7 @@ void Judge::look(std::uint32_t index) {
     case Kind::kReboot:
       if (mark.device == kNobody) break;
       joins_.rebooted(mark.device, seen.place.time_us);
+      if (is(mark.device, Role::kSink)) sinks_.ends(mark.device, seen.place.time_us);
       begin_life(mark.device);
       break;
     case Kind::kLinkAck:
@@ -125,6 +126,7 @@ void Judge::radio(std::uint32_t index, const Observation& seen, const Mark& mark
       Request request;
       if (!parse_request(seen.frame.payload, request)) return;
       if (is(mark.device, Role::kMote)) {
+        joins_.repeats(mark.device, seen.place.time_us);
         motes_.request(mark.device, seen, request);
         joins_.asked(mark.device, index);
       }
@@ -232,6 +234,10 @@ void Judge::called(const Observation& seen, std::uint16_t device) {
   const bool other = std::holds_alternative<machine::GetInterface>(call) ||
                      std::holds_alternative<machine::GetClock>(call) ||
                      std::holds_alternative<machine::SetIslandId>(call);
+  if (std::holds_alternative<machine::SetIslandId>(call)) {
+    originals_.moved(device);
+    peis_.moved(device);
+  }
   if (other) return;  // The rest is for the channels.
   const Device& d = who_.devices[device];
   const machine::Address sinks_own{sinks_.island(device), d.am};
@@ -242,6 +248,7 @@ void Judge::called(const Observation& seen, std::uint16_t device) {
 void Judge::told(const Observation& seen, std::uint16_t device) {
   interfaces_.told(device, seen);
   if (const auto* joined = std::get_if<machine::Joined>(seen.notice)) {
+    joins_.repeats(device, seen.place.time_us);
     if (is(device, Role::kMote)) motes_.told(device, seen, *joined);
     if (joined->success) synaptic_.member(device, seen.place.time_us);
   } else if (const auto* mote_joined = std::get_if<machine::MoteJoined>(seen.notice)) {
@@ -296,7 +303,10 @@ void Judge::surely(const Observation& seen, const Mark& mark, const Net& net) {
     forwarding_.heard_on_radio(seen, mark.device, net, mark.receiver);
   }
   if (mark.again) acks_.repeated(mark.receiver, net);
-  if (seen.kind == Kind::kSerial) peis_.surely_up(mark.receiver, net);
+  if (seen.kind == Kind::kSerial) {
+    peis_.surely_up(mark.receiver, net);
+    forwarding_.surely_down(mark.receiver, net);
+  }
 }
 
 void Judge::radio_net(std::uint32_t index, const Observation& seen, const Mark& mark,
@@ -407,6 +417,10 @@ void Judge::hears(std::uint16_t node, const machine::Router& router, machine::Li
                 {forbidden, forbidden == "N6-OTHER"_rule, sure && on, straight,
                  owed ? route.delivered : ReqId::kNone});
   if (sure && !off && route.deliver) synaptic_.given(node, seen, net, on);
+  const bool exact = net.dest == router.own && owed && !straight && on && !off;
+  if (sure && exact && forbidden == ReqId::kNone && context_.options.start_cold) {
+    synaptic_.owed(node, seen, net);
+  }
 }
 
 // Counts an ack at the originator of the acked message.
@@ -507,10 +521,10 @@ void Judge::down_serial(std::uint32_t index, const Observation& seen, const Mark
   const machine::Address base{island, machine::kNullDevid};
   if (net.src == base) own_message(mark.device, seen, net, machine::Link::kSerial, base);
   if (net.src != base && !seen.received) peis_.went_down(mark.device, seen, net);
-  const bool deaf = interfaces_.switched_off(sink, machine::Link::kSerial) ||
-                    interfaces_.switched_off(sink, machine::Link::kRadio);
-  const bool sure = !deaf && (serial_acked(run_, index) || mark.receiver == sink);
-  forwarding_.heard_on_serial(sink, mark.device, seen, net, sure);
+  const bool sure = !interfaces_.switched_off(sink, machine::Link::kSerial) &&
+                    (serial_acked(run_, index) || mark.receiver == sink);
+  const bool deaf = interfaces_.switched_off(sink, machine::Link::kRadio);
+  forwarding_.heard_on_serial(sink, mark.device, seen, net, sure && !deaf);
   const std::uint16_t am = who_.devices[sink].am;
   if (net.dest.devid != am && net.dest.devid != machine::kBroadcastDevid) return;
   hears(sink, {Role::kSink, {island, am}, true, context_.sink_am}, machine::Link::kSerial, seen,

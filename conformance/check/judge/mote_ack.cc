@@ -200,6 +200,17 @@ void MoteJoins::told(std::uint16_t mote, const Observation& seen, const machine:
       if (h.unaccepted) return true;
       return !h.unknown && (h.join.phase != Phase::kMember || h.join.address != joined.address);
     });
+    const auto joined_before = [&](const MoteHypothesis& h) {
+      return !h.unknown && h.told && watch.called_us > h.accepted_us;
+    };
+    if (watch.call && !watch.set.empty() && std::ranges::all_of(watch.set, joined_before)) {
+      context_.report("J8-JOINED"_rule, Severity::kFail, seen.place, mote,
+                      {"joined(" + text_of(joined.address) +
+                           ", SUCCESS) for a call of joinIsland while the mote was a member.",
+                       "joined(FAIL), at once.",
+                       {}});
+      return;
+    }
     for (MoteHypothesis& h : watch.set) h.told = true;
     if (!watch.set.empty()) {
       context_.findings.kept("J5-SUCCESS"_rule);

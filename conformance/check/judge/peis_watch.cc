@@ -104,7 +104,7 @@ void PeisWatch::went_down(std::uint16_t base, const Observation& seen, const Net
   Base& watch = bases_[base];
   Message* const came = match(watch.down, net);
   if (came == nullptr) {
-    refuse(base, seen, net, watch.down, false);
+    if (!watch.moved) refuse(base, seen, net, watch.down, false);
   } else {
     came->passed = true;
     came->owed = false;

@@ -17,6 +17,8 @@ class PeisWatch {
   PeisWatch(Context& context, std::size_t devices);
 
   void begin_life(std::uint16_t base) { bases_[base] = Base{}; }
+  /// Notes that the island of `base` is another one now.
+  void moved(std::uint16_t base) { bases_[base].moved = true; }
   /// Takes a message from the sink of `base`, in `island`; `surely` if a log has it.
   void came_up(std::uint16_t base, std::uint16_t island, const Observation& seen, const Net& net,
                bool surely);
@@ -42,8 +44,9 @@ class PeisWatch {
   };
   using Messages = Ring<Message, kRoom>;
   struct Base {
-    Messages up;    ///< From the sink.
-    Messages down;  ///< From PEIS.
+    Messages up;         ///< From the sink.
+    Messages down;       ///< From PEIS.
+    bool moved = false;  ///< Its application set another island.
   };
 
   static Message* match(Messages& messages, const Net& net);

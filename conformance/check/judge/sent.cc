@@ -14,6 +14,7 @@ using rubicon::Component;
 
 constexpr std::int64_t kAtOnceUs = 50'000;
 constexpr std::int64_t kTimeouts = 2;  // After so many of the stated ones there is no event.
+constexpr std::size_t kBufferOut = 4;  // Messages; release 1.0's radio.
 constexpr std::size_t kFloatBytes = rubicon::SynapticDataLayout::ValuesAt::kUnitBytes;
 
 bool known_trans(std::uint8_t trans_id) {
@@ -30,7 +31,8 @@ Originals::Originals(Context& context, std::size_t devices)
       stale_(devices),
       acks_(devices),
       calls_(devices),
-      begun_(devices) {}
+      begun_(devices),
+      moved_(devices) {}
 
 void Originals::begin_life(std::uint16_t node) {
   sent_[node].clear();
@@ -48,10 +50,10 @@ void Originals::called(std::uint16_t node, const Observation& seen, const machin
                     (here && call.dest.devid == own.devid);
   const bool base = device.role == Role::kBaseStation;
   const std::uint16_t sink = base ? device.partner : node;
-  const bool line = sink != kNobody && !context_.device(sink).taps.empty();
+  const bool line = device.whole || (sink != kNobody && context_.device(sink).shows_line());
   bool shown = device.role == Role::kMote || line;
   if (base && !here) shown = logs_peis(context_.run, node);
-  calls_[node].push({&call, {}, {}, seen.place, free || !shown});
+  calls_[node].push({&call, {}, {}, seen.place, free || !shown || moved_[node]});
 }
 
 void Originals::used(std::uint16_t node, std::uint16_t number) {
@@ -92,7 +94,57 @@ void Originals::told(std::uint16_t node, const Observation& seen,
   if (calls_[node].size() == 0) return;
   Call& call = calls_[node].newest(0);
   call.result = result.seq_num;
+  if (result.seq_num == machine::kNoSeq) judge_refused(node, seen, call);
   if (call.left) judge_result(node, seen, call);
+}
+
+// Says that send refused a message although fewer of its application's messages waited than a
+// buffer holds. Forwarded ones may have filled it, and awaited acks the room for acks, which nobody
+// states.
+void Originals::judge_refused(std::uint16_t node, const Observation& seen, const Call& call) {
+  if (!context_.run.all_stated || call.free) return;
+  std::size_t waiting = 0;
+  for (std::size_t i = 0; i < calls_[node].size(); ++i) {
+    const Call& one = calls_[node].newest(i);
+    if (one.result && *one.result != machine::kNoSeq && !one.left) ++waiting;
+  }
+  if (waiting >= kBufferOut) return;
+  bool awaits = false;
+  for (std::size_t i = 0; i < sent_[node].size(); ++i) {
+    const Sent& sent = sent_[node].newest(i);
+    awaits = awaits || (sent.net.reliable == 1 && !sent.acked && sent.told == 0);
+  }
+  const bool several = awaits && call.send->reliable;
+  context_.report(several ? "T4-SEVERAL"_rule : "N1-ROOM"_rule, Severity::kInconclusive, seen.place,
+                  node,
+                  {"send refused the message to " + text_of(call.send->dest) + " with " +
+                       number(waiting) + " messages of the application waiting.",
+                   several ? "It is accepted, unless there is no room for another awaited ack."
+                           : "It is accepted, unless other messages fill the outgoing buffer.",
+                   {}});
+}
+
+// Judges whether a message overtook one that send accepted before it, for the same line.
+void Originals::judge_order(std::uint16_t node, const Observation& seen, const Call& later) {
+  const Device& device = context_.device(node);
+  if (device.role == Role::kBaseStation || !device.hearing) return;
+  auto& calls = calls_[node];
+  for (std::size_t i = 0; i < calls.size(); ++i) {
+    const Call& one = calls.newest(i);
+    if (&one == &later || one.place.frame >= later.place.frame) continue;
+    if (one.free || one.left || !one.result || one.result == machine::kNoSeq) continue;
+    // By one way: to motes of the island by radio, or all by the same sink.
+    const bool same_way = device.role == Role::kMote || one.send->dest.pid == later.send->dest.pid;
+    const bool up = one.send->dest.devid == machine::kNullDevid;
+    if (!same_way || up != (later.send->dest.devid == machine::kNullDevid)) continue;
+    context_.report("N2-ORDER"_rule, Severity::kFail, seen.place, node,
+                    {"The message to " + text_of(later.send->dest) + " leaves before the one to " +
+                         text_of(one.send->dest) + " with number " + number(*one.result) +
+                         ", which send accepted earlier for the same line.",
+                     "The order of the calls.",
+                     {}});
+    return;
+  }
 }
 
 // Judges the number of a message that left and the one that send returned for it.
@@ -133,6 +185,7 @@ void Originals::judge_wrap(std::uint16_t node, const Observation& seen, const Ne
   }
   if (same != nullptr) {
     same->left = net.seq_num;
+    if (same->result == net.seq_num) judge_order(node, seen, *same);
     if (same->result && !calls.full()) judge_result(node, seen, *same);
     return;
   }
@@ -168,6 +221,13 @@ void Originals::sent(std::uint16_t node, const Observation& seen, const Net& net
   sent.net = net;
   sent.place = seen.place;
   sent.order = orders_[node];
+  sent.called_us = seen.place.time_us;
+  for (std::size_t i = 0; i < calls_[node].size(); ++i) {
+    const Call& call = calls_[node].newest(i);
+    if (call.left != net.seq_num) continue;
+    sent.called_us = call.place.time_us;
+    break;
+  }
   if (sent_[node].full()) close(node, sent_[node].size() - 1, seen.place.time_us);
   sent_[node].push(sent);
 }
@@ -353,7 +413,8 @@ void Originals::close(std::uint16_t node, std::size_t newest, std::int64_t now_u
   }
   // An unstated timeout may be longer than what is assumed (decision 110); for ever it is not.
   const std::int64_t waited = now_us - sent.place.time_us;
-  if (waited <= kTimeouts * context_.ack_timeout_us() + response_us) return;
+  const std::int64_t timeouts = context_.run.all_stated ? 1 : kTimeouts;
+  if (waited <= timeouts * context_.ack_timeout_us() + 2 * response_us) return;
   context_.report("T3-ONCE"_rule, Severity::kFail, sent.place, node,
                   {"No receive_ack for " + name_of(sent.net) + " in " + ms_text(waited) + ".",
                    "receive_ack(failure) at the timeout, or receive_ack(success) before.",
@@ -424,9 +485,14 @@ void Originals::told(std::uint16_t node, const Observation& seen, const machine:
                      {}});
     return;
   }
-  const std::int64_t waited = now - match->place.time_us;
+  // An implementation may start its timer at either.
+  const std::int64_t waited = now - match->called_us;
+  const std::int64_t latest = context_.due_us(
+      node, match->place.time_us + context_.ack_timeout_us() + context_.response_us());
   const std::int64_t since_ack = match->given_us < 0 ? 0 : now - match->given_us;
-  if (!ack.success && since_ack > context_.response_us()) {
+  const bool overdue = match->given_us >= 0 && now > context_.due_us(node, match->given_us);
+  const bool too_late = seen.place.timed() && match->place.timed() && now > latest;
+  if (ack.success ? overdue : since_ack > context_.response_us()) {
     context_.report("T3-SUCCESS"_rule, Severity::kFail, seen.place, node,
                     {what + ", " + ms_text(now - match->given_us) + " after its ack had come.",
                      "receive_ack(success) when the ack came.",
@@ -456,6 +522,12 @@ void Originals::told(std::uint16_t node, const Observation& seen, const machine:
                     {what + " " + ms_text(waited) + " after the message.",
                      "Not before the timeout, " + ms_text(context_.ack_timeout_us()) + ".",
                      {}});
+  } else if (too_late && context_.ack_timeout_stated()) {
+    context_.report(
+        "T3-TIMEOUT"_rule, Severity::kFail, seen.place, node,
+        {what + " " + ms_text(waited) + " after the message.",
+         "receive_ack(failure) at the timeout, " + ms_text(context_.ack_timeout_us()) + ".",
+         {}});
   } else {
     context_.findings.kept(ack.success ? "T3-SUCCESS"_rule : "T3-TIMEOUT"_rule);
   }

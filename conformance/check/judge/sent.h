@@ -20,6 +20,7 @@ struct Sent {
   std::int64_t given_us = -1;  ///< When its ack surely reached the node, by a log.
   std::uint8_t told = 0;       ///< receive_ack events, by a log.
   std::uint32_t order = 0;     ///< Among the frames of the node.
+  std::int64_t called_us = 0;  ///< When its application asked for it; else when it left.
 };
 
 class Originals {
@@ -31,6 +32,8 @@ class Originals {
   /// off: then the island of `own` is 0.
   void called(std::uint16_t node, const Observation& seen, const machine::Send& call,
               machine::Address own);
+  /// Notes that the island of the node is now another one.
+  void moved(std::uint16_t node) { moved_[node] = true; }
   /// Notes that a frame of the node has that number, whoever's message it is.
   void used(std::uint16_t node, std::uint16_t number);
   /// Notes that an interface was switched off, so that what waits may be lost.
@@ -69,6 +72,8 @@ class Originals {
   void judge_synaptic(std::uint16_t node, const Observation& seen, const Net& net);
   void judge_unsent(std::uint16_t node, std::int64_t end_us, const InterfaceWatch& interfaces);
   void judge_result(std::uint16_t node, const Observation& seen, const Call& call);
+  void judge_refused(std::uint16_t node, const Observation& seen, const Call& call);
+  void judge_order(std::uint16_t node, const Observation& seen, const Call& later);
   void judge_wrap(std::uint16_t node, const Observation& seen, const Net& net, machine::Link link);
   bool rightly_acked(std::uint16_t node, const Net& message);
   void judge_number(std::uint16_t node, const Observation& seen, const Net& net);
@@ -84,6 +89,7 @@ class Originals {
   std::vector<Ring<Ack, kRoom>> acks_;
   std::vector<Ring<Call, kRoom>> calls_;
   std::vector<bool> begun_;  ///< Its start is in the log, so that it has no older calls.
+  std::vector<bool> moved_;  ///< Its application set the island of a base station.
 };
 
 }  // namespace rubric::check

@@ -54,6 +54,12 @@ void SinkJoins::begin_life(std::uint16_t sink) {
   watch->reported_us = -1;
 }
 
+void SinkJoins::ends(std::uint16_t sink, std::int64_t now_us) {
+  SinkWatch* const watch = find(sink);
+  if (watch == nullptr) return;
+  for (const auto& [am, pair] : watch->motes) unannounced(*watch, am, pair, now_us);
+}
+
 void SinkJoins::set_island(std::uint16_t sink, std::uint16_t island, const Place& at, bool sure) {
   SinkWatch* const watch = find(sink);
   if (watch == nullptr) return;
@@ -62,6 +68,7 @@ void SinkJoins::set_island(std::uint16_t sink, std::uint16_t island, const Place
   watch->island_sure = sure;
   watch->island = island;
   if (same) return;
+  ends(sink, at.time_us);
   if (listed(*watch) > 0) {
     context_.report("N9-MEMBERS"_rule, Severity::kNote, at, sink,
                     {"The island becomes " + number(island) + " while " + number(listed(*watch)) +

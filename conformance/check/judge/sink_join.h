@@ -99,6 +99,7 @@ struct SinkWatch {
   std::uint32_t debts = 0;        ///< Pairs with something due.
   bool serial_off = false;        ///< Its serial line, by its application.
   std::int64_t serial_us = -1;    ///< Its last frame on its serial line.
+  bool behind = false;            ///< That one had to wait for the one before.
   std::int64_t reported_us = -1;  ///< The latest ack_join that it reported.
 };
 
@@ -106,6 +107,8 @@ class SinkJoins {
  public:
   explicit SinkJoins(Context& context);
 
+  /// Judges what the sink owes when it loses its power.
+  void ends(std::uint16_t sink, std::int64_t now_us);
   void begin_life(std::uint16_t sink);
   void set_island(std::uint16_t sink, std::uint16_t island, const Place& at, bool sure);
   void request(std::uint16_t mote_device, const Observation& seen, const Request& request,
@@ -151,7 +154,8 @@ class SinkJoins {
   };
   void close_unanswered(std::uint16_t mote_am, Unanswered& unanswered);
   /// Reports each serial_joined that is overdue; `end`: no frame of the sink comes any more.
-  void overdue_reports(SinkWatch& sink, bool end);
+  static constexpr std::int64_t kNotEnded = -1;
+  void overdue_reports(SinkWatch& sink, std::int64_t end_us);
   void unannounced(const SinkWatch& sink, std::uint16_t mote_am, const PairWatch& watch,
                    std::int64_t end_us);
   bool hears(const Device& device, const Observation& seen, bool sure) const;

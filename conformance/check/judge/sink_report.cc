@@ -5,6 +5,11 @@
 #include "conformance/check/links.h"
 
 namespace rubric::check {
+namespace {
+
+constexpr std::int64_t kFrameUs = 12'000;  // A whole message on a serial line of 115,200 baud.
+
+}  // namespace
 
 using machine::Admission;
 using machine::JoinSink;
@@ -46,14 +51,14 @@ void SinkJoins::ack_join(std::uint16_t, const Observation& seen, const AckJoin& 
       if (!admits) continue;
       admitted = true;
       heard.unknown = false;
-      heard.owes_report = !device.taps.empty();
+      heard.owes_report = device.shows_line();
       heard.owes_notice = device.application;
       next_.push_back(heard);
     }
     watch.ack = seen.place;
     watch.ack_whole_us = seen.place.time_us + air_us(seen);
     watch.ignored_ack = admitted ? ReqId::kNone : ignored;
-    if (sure && all_admit && !watch.report_due && !device.taps.empty() && !sink.serial_off) {
+    if (sure && all_admit && !watch.report_due && device.shows_line() && !sink.serial_off) {
       watch.report_due = true;
       ++sink.debts;
     }
@@ -201,8 +206,9 @@ void SinkJoins::refuse_report(SinkWatch& sink, PairWatch& watch, const Place& at
 void SinkJoins::showed_life(std::uint16_t sink_device, std::int64_t now_us, bool on_serial) {
   SinkWatch* const sink = find(sink_device);
   if (sink == nullptr || !on_serial || now_us < 0) return;
+  sink->behind = sink->serial_us >= 0 && now_us - sink->serial_us <= kFrameUs;
   sink->serial_us = now_us;
-  if (sink->debts > 0) overdue_reports(*sink, false);
+  if (sink->debts > 0) overdue_reports(*sink, kNotEnded);
 }
 
 void SinkJoins::serial_set(std::uint16_t sink_device, bool on) {
@@ -214,11 +220,15 @@ void SinkJoins::serial_set(std::uint16_t sink_device, bool on) {
   sink->debts = 0;
 }
 
-void SinkJoins::overdue_reports(SinkWatch& sink, bool end) {
+void SinkJoins::overdue_reports(SinkWatch& sink, std::int64_t end_us) {
   std::vector<std::uint16_t> due;
+  const bool end = end_us != kNotEnded;
+  const bool whole = context_.device(sink.device).whole;
+  const std::int64_t now_us = whole && end ? end_us : sink.serial_us;
   for (const auto& [am, watch] : sink.motes) {
-    const std::int64_t due_us = context_.due_us(sink.device, watch.ack_whole_us);
-    if (watch.report_due && sink.serial_us > due_us) due.push_back(am);
+    const std::int64_t due_us =
+        context_.due_us(sink.device, watch.ack_whole_us) + (sink.behind ? kFrameUs : 0);
+    if (watch.report_due && now_us > due_us) due.push_back(am);
   }
   std::sort(due.begin(), due.end(), [&](std::uint16_t a, std::uint16_t b) {
     return std::pair(sink.motes[a].ack.time_us, a) < std::pair(sink.motes[b].ack.time_us, b);
@@ -236,14 +246,15 @@ void SinkJoins::overdue_reports(SinkWatch& sink, bool end) {
     if (listed(sink) >= context_.profile().members_max) continue;
     context_.report(
         "J6-REPORT"_rule,
-        room && !context_.who.damaged(watch.ack.time_us, sink.serial_us)
+        room && !context_.who.damaged(watch.ack.time_us, now_us)
             ? context_.on_line(sink.device, Severity::kFail)
             : Severity::kInconclusive,
         watch.ack, sink.device,
         {"The ack_join of mote " + number(am) +
-             " was received (the link acknowledged it), and no serial_joined followed "
-             "within " +
-             ms_text(context_.response_us()) + ", though the sink sent other frames later.",
+             (whole ? " was received (by the sink's log)"
+                    : " was received (the link acknowledged it)") +
+             ", and no serial_joined followed within " + ms_text(context_.response_us()) +
+             (whole ? "." : ", though the sink sent other frames later."),
          "One serial_joined for the new member.",
          {}});
   }
@@ -269,7 +280,7 @@ void SinkJoins::unannounced(const SinkWatch& sink, std::uint16_t mote_am, const 
 
 void SinkJoins::finish(std::int64_t end_us) {
   for (SinkWatch& sink : sinks_) {
-    overdue_reports(sink, true);
+    overdue_reports(sink, end_us);
     for (const auto& [am, watch] : sink.motes) unannounced(sink, am, watch, end_us);
   }
   std::vector<std::uint16_t> open;

@@ -53,6 +53,12 @@ void SynapticWatch::called(std::uint16_t device, const Observation& seen, machin
   context_.actions.clear();
   machine::call_synaptic(node.channels, config, own, machine::ticks_of(seen.place.time_us),
                          *seen.call, context_.actions);
+  if (const auto* create = std::get_if<machine::CreateChannel>(seen.call)) {
+    const machine::ChannelId id = machine::channel_id(create->peer.devid, config.id);
+    std::erase_if(node.unknowns, [&](const Unknown& one) { return one.id == id; });
+    const auto is = [&](const machine::Channel& channel) { return channel.id == id; };
+    if (std::ranges::none_of(node.channels.in, is)) node.perhaps.push_back(id);
+  }
   note(node, before, seen.place.time_us);
   if (const auto* write = std::get_if<machine::WriteOutput>(seen.call)) {
     Out* const out = find(node, write->id);
@@ -174,7 +180,9 @@ void SynapticWatch::sent(std::uint16_t device, const Observation& seen, const Ne
                      {}});
   }
   const std::int64_t least = machine::us_of(node.channels.period_ticks) - context_.early_us();
-  const bool steady = out->sent_us >= 0 && node.step_us < out->sent_us;
+  // What had to wait for the channel is nearer to the next.
+  const bool steady = out->sent_us >= 0 && node.step_us < out->sent_us &&
+                      !context_.busy(device, out->sent_us - context_.response_us(), out->sent_us);
   if (steady && now - out->sent_us < least) {
     context_.report(
         "S2-TICK"_rule, Severity::kFail, seen.place, device,
@@ -218,6 +226,7 @@ void SynapticWatch::member(std::uint16_t device, std::int64_t now_us) {
 
 void SynapticWatch::able(std::uint16_t device, bool radio_on, std::int64_t now_us) {
   settle(device, now_us);
+  nodes_[device].unknowns.clear();
   nodes_[device].on_us = radio_on ? now_us : -1;
 }
 
@@ -253,7 +262,8 @@ void SynapticWatch::note_inputs(Node& node, const machine::Synaptic& before, std
 std::int64_t SynapticWatch::able_since(std::uint16_t device) const {
   const Node& node = nodes_[device];
   const bool sink = context_.device(device).role == machine::Role::kSink;
-  const bool busy = device < context_.run.nodes.size() && context_.run.nodes[device].busy;
+  const bool busy =
+      device < context_.run.nodes.size() && !context_.run.nodes[device].busy_us.empty();
   if (!node.logged || !context_.run.has_time || node.on_us < 0 || busy) return -1;
   if (!sink && node.member_us < 0) return -1;
   return std::max(node.on_us, sink ? 0 : node.member_us);
@@ -277,12 +287,56 @@ void SynapticWatch::given(std::uint16_t device, const Observation& seen, const N
   if (in->begun_us < 0) return;
   const std::size_t at = in->data_next++ % in->data_us.size();
   in->data_us[at] = seen.place.time_us;
-  in->data_sure[at] = sure;
+  // Data of a mote of another island is not its peer's; a sink may have peers there.
+  in->data_sure[at] = sure && (net.src.pid == net.dest.pid || net.src.devid == context_.sink_am);
+}
+
+void SynapticWatch::owed(std::uint16_t device, const Observation& seen, const Net& net) {
+  Node& node = nodes_[device];
+  if (!net.sound || net.trans_id != component::kSynChannel || net.body().empty()) return;
+  if (net.body().size() % sizeof(float) != 0 || node.unknowns.size() == kOldsMax) return;
+  const machine::ChannelId id = machine::channel_id(net.src.devid, net.dest.devid);
+  const auto is = [&](const machine::Channel& channel) { return channel.id == id; };
+  if (std::ranges::any_of(node.channels.in, is)) return;
+  if (std::ranges::find(node.perhaps, id) != node.perhaps.end()) return;
+  // What its application has just disposed may end at the next tick; a copy may be left out.
+  const In* const in = find_in(node, id);
+  if (in != nullptr && seen.place.time_us - in->ended_us <= context_.early_us()) return;
+  const auto copy = [&](const Unknown& one) { return one.id == id && one.seq_num == net.seq_num; };
+  if (std::ranges::any_of(node.unknowns, copy)) return;
+  node.unknowns.push_back({id, seen.place, net.seq_num});
+}
+
+// Reports data for channels that do not exist, of which the application was not told by the tick
+// after the next. Only a node whose log has its calls of channels surely shows such events.
+void SynapticWatch::settle_unknowns(std::uint16_t device, std::int64_t now_us) {
+  Node& node = nodes_[device];
+  if (!node.logged || able_since(device) < 0) return;
+  const Device& its = context_.device(device);
+  if (!its.application || !its.hearing) return;
+  for (Unknown& one : node.unknowns) {
+    const std::int64_t since = std::max(one.place.time_us, node.step_us);
+    if (one.told || now_us - since <= patience_us(device, true)) continue;
+    one.told = true;                                      // Said once.
+    const bool open = node.unknowns.size() > kTickCrowd;  // A buffer may have been full.
+    context_.report("S5-UNKNOWN"_rule, open ? Severity::kInconclusive : Severity::kFail, one.place,
+                    device,
+                    {"Data from " + number(one.id >> 16) + " to " + number(one.id & 0xFFFF) +
+                         ", for which no channel exists, and no synData_received with status "
+                         "unknown in " +
+                         ms_text(now_us - one.place.time_us) + ".",
+                     "synData_received with status unknown.",
+                     {}});
+  }
 }
 
 void SynapticWatch::told(std::uint16_t device, const Observation& seen,
                          const machine::SynDataReceived& data) {
   Node& node = nodes_[device];
+  if (data.status == machine::DataStatus::kUnknownChannel) {
+    settle_unknowns(device, seen.place.time_us);
+    for (Unknown& one : node.unknowns) one.told = one.told || one.id == data.id;
+  }
   In* const in = find_in(node, data.id);
   if (in == nullptr || data.status == machine::DataStatus::kUnknownChannel) return;
   const std::int64_t now = seen.place.time_us;
@@ -423,6 +477,7 @@ void SynapticWatch::settle(std::uint16_t device, std::int64_t now_us) {
   const std::int64_t able_us = able_since(device);
   if (able_us < 0) return;
   settle_outputs(device, now_us, able_us);
+  settle_unknowns(device, now_us);
   Node& node = nodes_[device];
   if (!context_.device(device).application) return;
   for (In& in : node.ins) {

@@ -23,6 +23,9 @@ class SynapticWatch {
   void able(std::uint16_t node, bool radio_on, std::int64_t now_us);
   /// Notes that by a log it was given a message for itself; not `sure`: as its radio went off.
   void given(std::uint16_t node, const Observation& seen, const Net& net, bool sure = true);
+  /// Notes that by a log whose start is known data came that are surely for the node, at its
+  /// address.
+  void owed(std::uint16_t node, const Observation& seen, const Net& net);
   /// Judges synData_received.
   void told(std::uint16_t node, const Observation& seen, const machine::SynDataReceived& data);
   void finish(std::int64_t end_us);
@@ -72,12 +75,21 @@ class SynapticWatch {
     bool before = false;  ///< Data came while it did not run; it may count, or not.
     Ticks ticks;
   };
+  /// Data for a channel that does not exist, which the application was not told of yet.
+  struct Unknown {
+    machine::ChannelId id = 0;
+    Place place;
+    std::uint16_t seq_num = 0;
+    bool told = false;
+  };
   struct Node {
-    bool logged = false;           ///< Its log creates channels.
-    std::int64_t member_us = -1;   ///< A mote: joined since; a sink always is.
-    std::int64_t on_us = 0;        ///< Its radio is on since; -1: it is off.
-    std::int64_t restart_us = -1;  ///< A channel was started while others ran.
-    bool shifted = false;          ///< That shifted the ticks, and was reported.
+    std::vector<Unknown> unknowns;
+    std::vector<machine::ChannelId> perhaps;  ///< Calls that the model refused; who knows.
+    bool logged = false;                      ///< Its log creates channels.
+    std::int64_t member_us = -1;              ///< A mote: joined since; a sink always is.
+    std::int64_t on_us = 0;                   ///< Its radio is on since; -1: it is off.
+    std::int64_t restart_us = -1;             ///< A channel was started while others ran.
+    bool shifted = false;                     ///< That shifted the ticks, and was reported.
     std::vector<In> ins;
     machine::Synaptic channels;
     std::int64_t step_us = -1;  ///< The last set_time_step.
@@ -90,6 +102,7 @@ class SynapticWatch {
   std::int64_t able_since(std::uint16_t device) const;
   std::int64_t patience_us(std::uint16_t device, bool first) const;
   void settle(std::uint16_t device, std::int64_t now_us);
+  void settle_unknowns(std::uint16_t device, std::int64_t now_us);
   void settle_outputs(std::uint16_t device, std::int64_t now_us, std::int64_t able_us);
   bool crowded(std::uint16_t device, std::int64_t from_us, std::int64_t to_us) const;
   void judge_grid(std::uint16_t device, const Observation& seen, const Ticks& ticks);
