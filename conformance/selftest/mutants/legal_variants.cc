@@ -104,19 +104,22 @@ void number_for_each_request(Moment& moment, Renumbered& memory) {
   });
 }
 
-// Delays joined(SUCCESS) until the link ack of ack_join.
+// Delays joined(SUCCESS) until the link ack of ack_join, or until it does not repeat it any more.
 void joined_on_confirmation(Moment& moment, bool& told) {
-  const bool was_acked = moment.state.join.acked;
+  const auto* done = std::get_if<machine::SendDone>(&moment.event);
+  bool given_up = done != nullptr && !done->acked && is_member(moment);
   moment.honest();
   if (!is_member(moment)) told = false;
   moment.rewrite([&](const Action& action) {
+    if (action.what == Action::What::kTransmit) given_up = false;
     if (action.what == Action::What::kNotify) {
       const auto* joined = std::get_if<Joined>(&moment.notice_of(action));
       if (joined != nullptr && joined->success) return;
     }
     moment.keep(action);
   });
-  if (!moment.is(Role::kMote) || was_acked || !moment.state.join.acked || told) return;
+  const bool over = moment.state.join.acked || given_up;
+  if (!moment.is(Role::kMote) || !is_member(moment) || !over || told) return;
   told = true;
   moment.actions.notify(Joined{own(moment), true}, "J5-SUCCESS"_rule);
 }

@@ -9,8 +9,9 @@
 // - A frame that must not be on a link, by a line that fails, is before the eyes of both. The judge
 //   may blame the node for it, by whatever rule, or say what it cannot know; it may not call the
 //   rule of that line kept and leave the run in order.
-// - A frame or an event that the suite misses, and after which the log goes on, the judge of that
-//   log misses as well, or it says what it cannot know: nearly always (kToldMin).
+// - A frame or an event that the suite misses the judge of that log misses as well, or it says what
+//   it cannot know; kSilent names the runs in which it is silent, and why. Each case goes on for
+//   some seconds, so that what is late or missing is before the eyes of both.
 // Of forbidden frames both must know the same: a line with a variable may speak of what an
 // application was told, and only a net_msg can break a rule of messages (N, S, T), however wide the
 // line is. A judge sees what comes from outside of a node alone if the node's own address is not
@@ -53,10 +54,32 @@ using runner::CaseVerdict;
 constexpr unsigned kEvery = 40;
 constexpr unsigned kEveryShipped = 2;
 constexpr unsigned kEveryGenerated = 25;  // Of the mutants.
-// Of a hundred frames or events that the suite misses a judge finds so many in the log: it waits
-// longer for timers, and gives the benefit of a buffer that may have been full.
-// RUBRIC_SHOW_MISSING prints the others.
-constexpr std::size_t kToldMin = 85;
+// Runs that lack something of which the judge of their log says nothing. A log has one state for
+// all lines of a node, so that what waited for a busy line is not judged by its order (N2-BUSY).
+constexpr const char* kBusy = "a line was busy";
+struct Silent {
+  std::string_view mutant;
+  std::string_view name;
+  const char* why;
+};
+constexpr Silent kSilent[] = {
+    {"join_not_answered", "edges_p.serial_taken_while_off", kBusy},
+    {"buffer_order_broken", "again_n.sink_order_of_kinds", kBusy},
+    {"busy_radio_sends", "again_n.sink_order_of_kinds", kBusy},
+    {"busy_radio_sends", "edges_n.island_change_keeps_the_rest", kBusy},
+    {"busy_radio_sends", "n2.sink_synaptic_in_its_place", kBusy},
+    {"busy_radio_sends", "n1.sink_radio_full", kBusy},
+    {"busy_radio_sends", "n2.one_line_does_not_hold_up_the_other", kBusy},
+    {"first_tick_silent", "n2.sink_synaptic_in_its_place", kBusy},
+    {"inter_island_dropped", "again_n.base_station_islands", "its island was set"},
+    {"foreign_to_own_sink", "again_n.base_station_islands", "its island was set"},
+    {"default_step_of_a_second", "s4.sink_to_sink", "the channel's name is that of a local one"},
+    {"clock_too_fast", "s1.sink_ten_connections", "one signal may be late, the next one prompt"},
+    {"unknown_channel_silent", "s5.sink_unknown", "the channel is created before the time is over"},
+    {"unknown_channel_new", "s5.sink_unknown", "the channel is created before the time is over"},
+};
+
+constexpr std::int64_t kGoesOnTicks = 6000;  // After the last line of a case.
 
 const suite::Cases& cases() {
   static const suite::Cases own = suite::Cases::own();
@@ -222,7 +245,7 @@ struct Opinions {
   std::string blamed;       ///< Where the judge alone blames.
   std::size_t asked = 0;    ///< Lack what an application asked for.
   std::size_t missing = 0;  ///< Lack a frame or an event.
-  std::size_t told = 0;     ///< So much of that the judge finds, too.
+  std::size_t told = 0;     ///< So many of these the judge finds, too, or says that it cannot know.
 };
 
 void compare(const std::string& who, const suite::CaseRun& run, const trace::Statement& stated,
@@ -239,14 +262,16 @@ void compare(const std::string& who, const suite::CaseRun& run, const trace::Sta
       const std::string rule = recording.name == "whole log" ? missing_rule(run) : "";
       if (!rule.empty()) {
         ++out.missing;
-        const bool told = report && std::ranges::any_of(report->findings, [](const auto& one) {
-                            return one.severity >= Severity::kWeak;
-                          });
+        // Of a run in which it could judge nothing it says so.
+        const bool told =
+            report && (report->verdict != check::Verdict::kPass || report->exercised.empty());
         out.told += told ? 1 : 0;
-        if (!told && std::getenv("RUBRIC_SHOW_MISSING") != nullptr) {
-          std::printf("%s, %s: %s\n", who.c_str(), run.name.c_str(),
-                      run.result.failures.front().expected.c_str());
-        }
+        const auto its = [&](const Silent& one) {
+          return one.mutant == who && one.name == run.name;
+        };
+        EXPECT_NE(told, std::ranges::any_of(kSilent, its))
+            << who << ", " << run.name << ": " << run.result.failures.front().expected
+            << (told ? " is told; it need not be listed" : " is not told");
       }
       if (recording.name == "whole log" && lacks_what_was_asked(run)) {
         EXPECT_NE(blame, "") << who << ", " << run.name;
@@ -265,7 +290,33 @@ suite::testing::FakeAttachment attached(const StepMaker& step, const trace::Stat
   return out;
 }
 
-suite::CaseRun run_one(const suite::SuiteCase& one, targets::Attachment& attachment) {
+// Returns a frame that no node knows, on a link that the case uses: the run goes on until then, and
+// what is missing in it is missing for a judge, too.
+std::optional<trace::Line> late_noise(const suite::SuiteCase& one) {
+  trace::Scope scope;
+  scope.nodes = one.blank.nodes;
+  scope.links = one.blank.links;
+  for (const trace::Line* line : one.one->lines()) {
+    const auto kind = scope.link(line->link);
+    const auto its = [&](const auto& node) { return node.iut && node.name == line->node; };
+    if (kind != trace::LinkKind::kRadio && kind != trace::LinkKind::kSerial) continue;
+    if (std::ranges::none_of(scope.nodes, its)) continue;
+    trace::Line noise;
+    noise.time.base = trace::Time::Base::kPrevious;
+    noise.time.from = noise.time.to = kGoesOnTicks;
+    noise.node = line->node;
+    noise.link = line->link;
+    noise.message.name = "am";
+    noise.bytes = std::string("\x00\xFF\xFF\x0E\xEE\x01\x00\xEE\x00", 9);
+    return noise;
+  }
+  return std::nullopt;
+}
+
+suite::CaseRun run_one(suite::SuiteCase one, targets::Attachment& attachment) {
+  trace::Case longer = *one.one;
+  if (const auto noise = late_noise(one)) longer.items.push_back({*noise});
+  one.one = &longer;
   return suite::run_one(one, attachment, "", std::nullopt);
 }
 
@@ -369,10 +420,9 @@ std::size_t expect_same(const Mutants& mutants, Chance& chance, unsigned every,
   }
   std::printf(
       "runs of mutants: %zu, of which the suite fails %zu, %zu for what was asked for and %zu for "
-      "what is missing, %zu of which the judge finds\n",
+      "what is missing, %zu of which the judge finds or leaves open\n",
       runs, failed, asked, missing, told);
   EXPECT_GT(failed, at_least);
-  EXPECT_GE(told * 100, missing * kToldMin);
   return tried;
 }
 
