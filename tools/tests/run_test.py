@@ -8,6 +8,7 @@ minute.
 
 import json
 import os
+import pathlib
 import re
 import select
 import socket
@@ -188,6 +189,25 @@ islands:
         base.event("ack_received", seq_num=number, success=True)
         for node in (base, sink):
             self.assertEqual(node.end()[0], 0)
+
+    def test_a_sink_waits_on_its_lines(self):
+        """It runs when a line brings something, not some time later: it does not look again and
+        again."""
+        sink = self.started("sink", "--island", "11", "--radio", "zep:0", "--serial", "sf-server:0")
+        port = int(sink.waits_for(rb"sf-server:(\d+)\n"))
+        with socket.create_connection(("127.0.0.1", port)) as host:
+            host.sendall(b"U ")
+            self.assertEqual(host.recv(2), b"U ")
+            sink.waits_for(rb"(connected)")
+            status = pathlib.Path(f"/proc/{sink.process.pid}/status")
+            woken = []
+            for _ in range(2):
+                time.sleep(0.5)
+                woken.append(int(re.search(r"\nvoluntary_ctxt_switches:\s+(\d+)",
+                                           status.read_text(encoding="utf-8")).group(1)))
+            # The tenth of a second in which a stop is seen: five times. Every 5 ms: 100 times.
+            self.assertLess(woken[1] - woken[0], 25)
+        self.assertEqual(sink.end()[0], 0)
 
     def test_mistakes_of_a_file_have_their_line(self):
         island = "islands:\n  - island: 11\n"

@@ -20,7 +20,7 @@ using node::Line;
 using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 
-constexpr milliseconds kMoment{5};     // While there are lines to look at.
+constexpr milliseconds kMoment{5};     // Between looks at a tuple space.
 constexpr milliseconds kLongest{100};  // Until a stop is seen.
 
 machine::Link link_of(Line line) { return static_cast<machine::Link>(line); }
@@ -216,16 +216,19 @@ void Station::step() {
   }
   if (serial_) {
     if (serial_->open() && is_base_station()) call(machine::SetIslandId{setup_.island});
-    until = std::min(until, steady_clock::now() + kMoment);
+    until = std::min(until, serial_->next_try());
   }
   if (peers_ != nullptr) {
     peers_->receive([this](Bytes packet) { heard(Line::kPeis, packet); });
+    until = std::min(until, steady_clock::now() + kMoment);
   }
+  const int serial = serial_ ? serial_->fd() : -1;
   if (radio_) {
-    radio_->run(until, calls);
+    radio_->run(until, {calls, serial});
   } else {
-    pollfd inputs[] = {{calls, POLLIN, 0}, {serial_ ? serial_->fd() : -1, POLLIN, 0}};
-    ::poll(inputs, 2, static_cast<int>(kMoment.count()));
+    const auto left = std::chrono::ceil<milliseconds>(until - steady_clock::now()).count();
+    pollfd inputs[] = {{calls, POLLIN, 0}, {serial, POLLIN, 0}};
+    ::poll(inputs, 2, static_cast<int>(std::max<std::int64_t>(0, left)));
   }
   hear_serial();
   keeper_.settle();
