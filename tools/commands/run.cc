@@ -67,9 +67,10 @@ constexpr const char* kRunFooter =
     "The nodes of a virtual air may start in any order; the first at a port passes frames on to "
     "the\n"
     "others. Watch it with 'rubric decode zep:17754' or Wireshark.\n"
-    "Events come on stdout as JSON lines: joined, mote_joined, received, ack_received, syn_data. "
-    "With\n"
-    "--app - calls are read from stdin, and its end ends the run; see 'rubric run' in the book.\n"
+    "Events come on stdout as JSON lines: joined, mote_joined, mote_left, received, ack_received,\n"
+    "syn_data. With --app - calls are read from stdin, and its end ends the run; see 'rubric run' "
+    "in\n"
+    "the book.\n"
     "Examples:\n"
     "  rubric run sink --island 11 --serial sf-server:9002\n"
     "  rubric run base-station --island 11 --sink sf@localhost:9002\n"
@@ -93,6 +94,7 @@ run::StationSetup setup_of(const RunOptions& options) {
   setup.loss = options.loss_percent / 100.0;
   setup.seed = static_cast<std::uint32_t>(options.seed.value_or(std::random_device{}()));
   setup.offered = options.serial;
+  setup.gone_after_s = options.gone_after_s;
   setup.air = lines::parse_address(options.radio)->at;
   if (setup.role == node::Role::kBaseStation) setup.to = lines::required_address(options.sink);
   return setup;
@@ -185,6 +187,9 @@ void check_run(const RunOptions& options) {
     throw cli::UsageError("--island", "a mote gets its island by joining");
   if (!sink && !options.serial.empty()) throw cli::UsageError("--serial", "only a sink has one");
   if (!mote && options.app == "demo") throw cli::UsageError("--app", "the demo is a mote's");
+  if (mote && options.gone_after_s != 0) {
+    throw cli::UsageError("--gone-after", "is a sink's or base station's");
+  }
   if (!options.is_base_station() && !options.space.empty()) {
     throw cli::UsageError("--space", "is a base station's");
   }
@@ -313,8 +318,8 @@ void add_run(cli::Command& app) {
       .check(cli::given);
   sub.add_option(
          "--gone-after", options->gone_after_s,
-         "Call a mote offline in the space when nothing was heard of it for so many seconds; "
-         "0: never")
+         "A sink or base station: say mote_left of a mote that was silent for so many seconds; a "
+         "sink then lets it join anew, in the space it is offline; 0: never")
       .between(0, 86'400)
       .show_default();
   sub.add_option("--log", options->log, "Write what the nodes were given and did to this .rtr file")

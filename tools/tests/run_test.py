@@ -190,6 +190,36 @@ islands:
         for node in (base, sink):
             self.assertEqual(node.end()[0], 0)
 
+    def test_a_mote_that_was_killed_comes_back(self):
+        """Its sink lists it until it has been silent for the stated time (decision 124)."""
+        kept = self.folder / "run.rtr"
+        radio = self.folder / "run.pcapng"
+        sink = self.started("sink", "--island", "11", "--radio", "zep:0", "--serial",
+                            "sf-server:0", "--gone-after", "1", "--log", kept, "--write", radio)
+        air = "zep:" + sink.waits_for(rb"zep:(\d+)\n")
+        serial = "sf@localhost:" + sink.waits_for(rb"sf-server:(\d+)\n")
+        base = self.started("base-station", "--island", "11", "--sink", serial, "--gone-after", "1")
+        base.waits_for(rb"(connected)")
+        mote = self.started("mote", "--id", "5", "--radio", air, "--seed", "2")
+        mote.event("joined", own="11:5", success=True)
+        base.event("received", src="11:5")
+        mote.process.kill()
+        mote = self.started("mote", "--id", "5", "--radio", air, "--seed", "3")
+        for node in (sink, base):
+            node.event("mote_left", mote="11:5")
+        mote.event("joined", own="11:5", success=True)
+        sink.event("mote_joined", mote="11:5")
+        base.event("received", src="11:5")
+        self.assertEqual(mote.end()[0], 0)
+        for node in (base, sink):
+            self.assertEqual(node.end()[0], 0)
+        self.judged(kept)
+        self.assertIn("mote_left(address=11:5)", kept.read_text(encoding="utf-8"))
+        self.judged(radio, "--state", "gone_after=1024")
+        blamed = subprocess.run([RUBRIC, "check", radio], capture_output=True, check=False,
+                                text=True)
+        self.assertIn("J2-LISTED", blamed.stdout)
+
     def test_a_sink_waits_on_its_lines(self):
         """It runs when a line brings something, not some time later: it does not look again and
         again."""

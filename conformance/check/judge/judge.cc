@@ -246,6 +246,8 @@ void Judge::told(const Observation& seen, std::uint16_t device) {
     if (joined->success) synaptic_.member(device, seen.place.time_us);
   } else if (const auto* mote_joined = std::get_if<machine::MoteJoined>(seen.notice)) {
     if (is(device, Role::kSink)) sinks_.told(device, seen, *mote_joined);
+  } else if (const auto* mote_left = std::get_if<machine::MoteLeft>(seen.notice)) {
+    if (is(device, Role::kSink)) sinks_.forgot(device, mote_left->address.devid);
   } else if (const auto* received = std::get_if<machine::Received>(seen.notice)) {
     acks_.delivered(device, seen, *received);
   } else if (const auto* ack = std::get_if<machine::AckReceived>(seen.notice)) {
