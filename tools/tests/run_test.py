@@ -295,7 +295,7 @@ islands:
                 (("base-station", "--island", "11", "--space", "http://x"), "mqtt://HOST"),
                 (("base-station", "--island", "11", "--space", "mqtt://me:secret@x"),
                  "into a file or the environment"),
-                (("robot",), "expected mote, sink, base-station or FILE.yaml")):
+                (("robot",), "expected mote, sink, base-station, proxy or FILE.yaml")):
             run = subprocess.run([RUBRIC, "run", *arguments], capture_output=True, check=False,
                                  text=True, stdin=subprocess.DEVNULL)
             self.assertEqual(run.returncode, 64, run.stderr)

@@ -194,7 +194,8 @@ void Watched::check_labels(const Seen& seen) {
     // Nor has a mote that left, where that is stated. (decision 124)
     const bool left = told && config_.profile.gone_after_ticks != 0 &&
                       std::holds_alternative<machine::MoteLeft>(seen.actions.notice_of(action));
-    must(!sends && (!told || channel_of_base || left), "Whatever a node does names its rule.", seen.now);
+    must(!sends && (!told || channel_of_base || left), "Whatever a node does names its rule.",
+         seen.now);
     must(told || beyond, "Whatever a node ignores names its rule.", seen.now);
   }
   if (heard) must(!seen.actions.all().empty(), "No frame is taken without a word.", seen.now);
