@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """A home of switches and lamps, as a network behind `rubric run proxy --network lines:HOST:PORT`.
 
-Usage: home_lines.py [PORT]. Stands for the KNX installation of the paper's test-bed: a switch in a
-Usage: home_lines.py [PORT]. Stands for the KNX installation of the test-bed of the paper: a switch in
-a drawer, and a lamp. Says on stdout where it listens, then what the proxy asks of it; what it reads
-on stdin goes to the proxy, such as `there 1/1/9 switch` or `gone 1/1/7`.
+Usage: home_lines.py [PORT]. Stands for the KNX installation of the test-bed of the paper: a
+switch in a drawer, and a lamp. Says on stdout where it listens, then what the proxy asks of it;
+what it reads on stdin goes to the proxy, such as `there 1/1/9 switch` or `gone 1/1/7`.
 """
+
 import os
 import select
 import socket
