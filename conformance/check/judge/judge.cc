@@ -186,6 +186,7 @@ void Judge::joins_heard(std::uint32_t index, const Observation& seen, const Mark
 // Takes a reply. Motes whose log has what they were given hear nothing else.
 void Judge::replied(std::uint32_t index, const Observation& seen, const Mark& mark,
                     const Reply& reply) {
+  if (seen.received) sinks_.answered(seen.frame.dest, reply.seq_num);
   context_.for_motes(seen.frame.dest, [&](std::uint16_t mote) {
     const bool given = mark.receiver == mote;
     if (who_.devices[mote].hearing ? !given : seen.received) return;

@@ -169,6 +169,11 @@ void SinkJoins::request(std::uint16_t mote_device, const Observation& seen, cons
   }
 }
 
+void SinkJoins::answered(std::uint16_t mote_am, std::uint16_t seq_num) {
+  const auto found = unanswered_.find(mote_am);
+  if (found != unanswered_.end() && found->second.seq_num == seq_num) found->second.open = false;
+}
+
 void SinkJoins::close_unanswered(std::uint16_t mote_am, Unanswered& unanswered) {
   if (!unanswered.open) return;
   unanswered.open = false;

@@ -128,6 +128,9 @@ class SinkJoins {
   /// Notes that somebody else waits for the answer to the mote's last request.
   void settled(std::uint16_t mote_am) { unanswered_[mote_am].open = false; }
 
+  /// Notes that the mote was given a reply to this request, though no sink was seen to send it.
+  void answered(std::uint16_t mote_am, std::uint16_t seq_num);
+
   /// Returns the sink's island now; 0 if unknown.
   std::uint16_t island(std::uint16_t sink) const;
   SinkWatch* find(std::uint16_t sink);

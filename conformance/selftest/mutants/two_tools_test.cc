@@ -85,6 +85,7 @@ std::optional<check::Options> options_of(const suite::CaseRun& run,
   bool host = false;
   for (const trace::NodeHeader& node : run.nodes) {
     if (node.iut && node.id) own.insert(*node.id);
+    if (node.iut) out.stated = joined(std::move(out.stated), node.stated);
     host = host || (node.iut && node.role == trace::Role::kBaseStation);
   }
   // On a serial line AM sources say nothing: at its other end is the host, or the sink.
